@@ -1,0 +1,10 @@
+# PlatformIO script: strict warnings, as errors, for this project's src/ and lib/ but not for the Arduino core.
+Import("env", "projenv")  # noqa: F821 (given by SCons)
+
+STRICT = ["-Wall", "-Wextra", "-Wconversion", "-Werror"]
+
+own_libraries = env.subst("$PROJECT_DIR/lib/")  # noqa: F821
+for library in env.GetLibBuilders():  # noqa: F821
+    if library.path.startswith(own_libraries):
+        library.env.Append(CCFLAGS=STRICT)
+projenv.Append(CCFLAGS=STRICT)  # noqa: F821

@@ -1,0 +1,9 @@
+# The scons.py that PlatformIO starts: runs the SCons installed beside it.
+import os
+import sys
+
+sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
+
+import SCons.Script.Main  # noqa: E402 (found through the line above)
+
+SCons.Script.Main.main()
