@@ -1,0 +1,157 @@
+"""Golden vectors for both sides: every message with its payload and its whole frame, and the packed default parameters.
+
+Bytes are made here from the declarations by their own short definitions of little-endian, CRC and COBS, so that neither
+side's code is its own judge.
+"""
+
+from __future__ import annotations
+
+import random
+from dataclasses import dataclass
+
+from . import NOTICE
+from .declaration import WIDTHS, Declaration, Field, Message, limits
+
+_SEED = 20220
+_RANDOM_VECTORS = 3
+
+
+@dataclass(frozen=True)
+class Vector:
+    message: Message
+    seq: int
+    values: dict[str, list[int]]
+    payload: bytes
+    wire: bytes
+
+
+def crc16(data: bytes) -> int:
+    """CRC-16/CCITT-FALSE, bit by bit as published."""
+    crc = 0xFFFF
+    for byte in data:
+        crc ^= byte << 8
+        for _ in range(8):
+            crc = ((crc << 1) ^ 0x1021 if crc & 0x8000 else crc << 1) & 0xFFFF
+    return crc
+
+
+def cobs(data: bytes) -> bytes:
+    """COBS of fewer than 254 bytes: every zero becomes the distance to the next."""
+    return b"".join(bytes([len(run) + 1]) + run for run in data.split(b"\0"))
+
+
+def frame(number: int, seq: int, payload: bytes) -> bytes:
+    body = bytes([number, seq]) + payload
+    return cobs(body + crc16(body).to_bytes(2, "little")) + b"\0"
+
+
+def vectors(declaration: Declaration) -> list[Vector]:
+    """Smallest, largest and a few random values of every message."""
+    chance = random.Random(_SEED)
+    made = []
+    for message in declaration.messages:
+        for kind in ["low", "high"] + ["random"] * _RANDOM_VECTORS if message.fields else ["low"]:
+            values = {field.name: _values(field, kind, chance, declaration) for field in message.fields}
+            payload = b"".join(
+                value.to_bytes(WIDTHS[field.kind], "little", signed=field.kind[0] == "i")
+                for field in message.fields
+                for value in values[field.name]
+            )
+            seq = {"low": 0, "high": 255}.get(kind, chance.randrange(256))
+            made.append(Vector(message, seq, values, payload, frame(message.type, seq, payload)))
+    return made
+
+
+def _values(field: Field, kind: str, chance: random.Random, declaration: Declaration) -> list[int]:
+    if field.enum:
+        choices = sorted(value.value for enum in declaration.enums if enum.name == field.enum for value in enum.values)
+    else:
+        choices = list(limits(field.kind))
+    picks = {"low": lambda: choices[0], "high": lambda: choices[-1]}
+    if field.enum:
+        picks["random"] = lambda: chance.choice(choices)
+    else:
+        picks["random"] = lambda: chance.randint(choices[0], choices[-1])
+    return [picks[kind]() for _ in range(field.count or 1)]
+
+
+def default_table(declaration: Declaration) -> bytes:
+    """The default parameters packed in index order."""
+    return b"".join(
+        p.defaults[element].to_bytes(WIDTHS[p.kind], "little", signed=p.kind[0] == "i")
+        for group in declaration.groups
+        for element in range(group.count)
+        for p in group.parameters
+    )
+
+
+def toml(declaration: Declaration) -> str:
+    """Text of shared/link/golden.toml."""
+    table = default_table(declaration)
+    lines = [
+        f"# Golden vectors of the link. {NOTICE}",
+        "",
+        "[parameters]",
+        f'defaults = "{table.hex()}"',
+        f"crc = 0x{crc16(table):04X}",
+    ]
+    for vector in vectors(declaration):
+        lines += [
+            "",
+            "[[vector]]",
+            f'message = "{vector.message.struct}"',
+            f"seq = {vector.seq}",
+            f'payload = "{vector.payload.hex()}"',
+            f'wire = "{vector.wire.hex()}"',
+            "[vector.values]",
+        ]
+        for field in vector.message.fields:
+            values = vector.values[field.name]
+            lines.append(f"{field.name} = {values if field.count else values[0]}")
+    return "\n".join(lines) + "\n"
+
+
+def header(declaration: Declaration) -> str:
+    """Text of golden.h: the same vectors for the firmware's native tests."""
+    table = default_table(declaration)
+    lines = [
+        f"// Golden vectors of the link.\n// {NOTICE}\n#pragma once\n",
+        '#include <stddef.h>\n#include <stdint.h>\n\n#include "link/schema.h"\n',
+        "namespace golden {\n",
+        f"constexpr uint8_t default_table[] = {_bytes(table)};",
+        f"constexpr uint16_t default_crc = 0x{crc16(table):04X};\n",
+        "// Calls visit(name, seq, message, payload, payload_size, wire, wire_size) for every vector.",
+        "template <class Visit>\nvoid for_each(Visit visit) {",
+    ]
+    for vector in vectors(declaration):
+        lines += _visit(vector)
+    return "\n".join([*lines, "}\n", "}  // namespace golden"]) + "\n"
+
+
+def _bytes(data: bytes) -> str:
+    return "{" + ", ".join(f"0x{byte:02X}" for byte in data) + "}"
+
+
+def _literal(field: Field, value: int) -> str:
+    if field.enum:
+        return f"static_cast<wire::{field.enum}>({value})"
+    if value == -(1 << 31):
+        return "INT32_MIN"
+    return f"{value}u" if field.kind == "u32" else str(value)
+
+
+def _visit(vector: Vector) -> list[str]:
+    lines = ["  {", f"    wire::{vector.message.struct} message{{}};"]
+    for field in vector.message.fields:
+        for i, value in enumerate(vector.values[field.name]):
+            place = f"[{i}]" if field.count else ""
+            lines.append(f"    message.{field.name}{place} = {_literal(field, value)};")
+    payload = _bytes(vector.payload or b"\0")
+    return [
+        *lines,
+        f"    const uint8_t payload[] = {payload};",
+        f"    const uint8_t wire_bytes[] = {_bytes(vector.wire)};",
+        f'    visit("{vector.message.struct}", {vector.seq}, message, payload, size_t{{{len(vector.payload)}}}, '
+        f"wire_bytes, size_t{{{len(vector.wire)}}});",
+        "  }",
+    ]
