@@ -1,7 +1,7 @@
 """Assembles a PlatformIO core folder from Debian's packages, for where PlatformIO's own registry cannot be reached.
 
-`python -m tools.setup.offline_core FOLDER`, with the Python that has PlatformIO. An ordinary platformio.ini then builds,
-tests and uploads with PLATFORMIO_CORE_DIR=FOLDER. The folder is made anew each time.
+`python -m tools.setup.offline_core FOLDER`, with the Python that has PlatformIO. An ordinary platformio.ini then
+builds, tests and uploads with PLATFORMIO_CORE_DIR=FOLDER. The folder is made anew each time.
 """
 
 from __future__ import annotations
@@ -38,9 +38,7 @@ def new_tool(core: Path, name: str, version: str) -> Path:
     """An empty package folder with its description."""
     folder = core / "packages" / name
     folder.mkdir(parents=True)
-    write_json(
-        folder / "package.json", {"name": name, "version": version, "description": f"{name} from Debian"}
-    )
+    write_json(folder / "package.json", {"name": name, "version": version, "description": f"{name} from Debian"})
     register(folder, "tool", name, version)
     return folder
 
@@ -54,7 +52,7 @@ def link(target: Path, place: Path) -> None:
 
 def wanted_version(tool: str) -> str:
     """The lowest version of a tool that this PlatformIO accepts."""
-    return get_core_dependencies()[tool].lstrip("~^=")
+    return str(get_core_dependencies()[tool]).lstrip("~^=")
 
 
 def add_scons(core: Path) -> None:

@@ -1,6 +1,6 @@
 # SCons script of the offline `atmelavr` platform: Debian's avr-gcc and avrdude, with the same targets and program
 # names as PlatformIO's own platform.
-from SCons.Script import AlwaysBuild, Builder, COMMAND_LINE_TARGETS, Default, DefaultEnvironment
+from SCons.Script import COMMAND_LINE_TARGETS, AlwaysBuild, Builder, Default, DefaultEnvironment
 
 env = DefaultEnvironment()
 env.Replace(
@@ -31,9 +31,7 @@ else:
 
 AlwaysBuild(env.Alias("nobuild", image))
 program = env.Alias("buildprog", image, image)
-env.AddPlatformTarget(
-    "size", elf, env.VerboseAction("$SIZEPRINTCMD", "Calculating size $SOURCE"), "Program Size"
-)
+env.AddPlatformTarget("size", elf, env.VerboseAction("$SIZEPRINTCMD", "Calculating size $SOURCE"), "Program Size")
 
 
 def find_port(target, source, env):

@@ -4,6 +4,6 @@ import sys
 
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
 
-import SCons.Script.Main  # noqa: E402 (found through the line above)
+import SCons.Script.Main
 
 SCons.Script.Main.main()

@@ -1,0 +1,50 @@
+# Every target makes itself ready first; repeating one costs seconds. `make` alone lists them.
+
+PYTHON := .venv/bin/python
+export PATH := $(CURDIR)/.venv/bin:$(PATH)
+
+.DEFAULT_GOAL := help
+.PHONY: help setup build firmware demo test lint oracles bench docs lock clean
+
+help: ## list the targets
+	@sed -n 's/^\([a-z]*\):[^#]*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12
+
+setup: ## install and build everything that is missing (Debian packages, .venv, extensions, firmware)
+	@python3 -m tools.setup
+
+build: setup ## the same, under the name people look for
+
+firmware: setup ## build the firmware for both boards and show its size
+	@$(PYTHON) -m tools.firmware_gate
+
+demo: setup ## the whole story on the simulated bench; options in ARGS, e.g. ARGS="--leader motion.csv"
+	@$(PYTHON) -m greywhale demo $(ARGS)
+
+lint: setup ## ruff, mypy --strict, cppcheck, generated files
+	ruff check
+	ruff format --check
+	mypy
+	$(PYTHON) -m tools.pio check -e megaatmega2560 --fail-on-defect=medium --fail-on-defect=high
+	$(PYTHON) -m tools.generate_link --check
+
+test: lint ## everything: lint, unit tests here and on the simulated board, size gate, pytest
+	$(PYTHON) -m tools.pio test -e native
+	$(PYTHON) -m tools.pio test -e sim
+	$(PYTHON) -m tools.firmware_gate
+	$(PYTHON) -m pytest $(ARGS)
+
+oracles: setup ## tests against heavy outside references (installs them first)
+	@python3 -m tools.oracles
+	$(PYTHON) -m pytest tests/oracles $(ARGS)
+
+bench: setup ## measure the figures of the design; a table here, JSON in build/bench.json
+	@$(PYTHON) -m tools.bench $(ARGS)
+
+docs: setup ## write the generated files (link schema, reference page) again
+	$(PYTHON) -m tools.generate_link
+
+lock: ## resolve and pin the Python packages anew
+	python3 -m tools.lock
+
+clean: ## remove everything that was built; .venv stays
+	rm -rf build firmware/.pio host/src/greywhale/_native.pyi sim/bench/greywhale_sim/_board.pyi

@@ -1,0 +1,19 @@
+"""PlatformIO in firmware/, with the environment that the set-up decided on: `python -m tools.pio test -e native`."""
+
+from __future__ import annotations
+
+import os
+import sys
+
+from tools.setup import platformio, venv
+from tools.setup.console import ROOT
+
+
+def main() -> None:
+    os.chdir(ROOT / "firmware")
+    environment = {**os.environ, **platformio.environment()}
+    os.execve(venv.PYTHON, [str(venv.PYTHON), "-m", "platformio", *sys.argv[1:]], environment)
+
+
+if __name__ == "__main__":
+    main()

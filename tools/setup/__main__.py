@@ -1,0 +1,45 @@
+"""Everything `make demo` and `make test` need, from a bare Debian on: `python3 -m tools.setup`.
+
+Needs only the system's Python. Each step checks whether it has anything to do, so that repeating it takes no time.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import sys
+import time
+
+if sys.version_info < (3, 11):  # noqa: UP036 (an older Python is what this is about)
+    sys.exit(f"greywhale needs Python 3.11 or newer, but {sys.executable} is {sys.version.split()[0]}.")
+
+from tools.setup import debian, extensions, firmware, platformio, venv
+from tools.setup.console import ROOT, SetupError, say
+
+STEPS = (debian.step, venv.step, platformio.step, extensions.step, firmware.step)
+
+
+def main() -> int:
+    start = time.monotonic()
+    build = ROOT / "build"
+    build.mkdir(exist_ok=True)
+    with (build / "setup.lock").open("w") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            say("waiting for another set-up of this folder to finish")
+            fcntl.flock(lock, fcntl.LOCK_EX)
+        try:
+            for step in STEPS:
+                step()
+        except SetupError as error:
+            print(f"set-up: {error}", file=sys.stderr)
+            return 1
+        except KeyboardInterrupt:
+            print("set-up: stopped; run it again to continue.", file=sys.stderr)
+            return 1
+    say(f"ready ({time.monotonic() - start:.1f} s)")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
