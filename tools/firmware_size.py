@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from elftools.elf.elffile import ELFFile
+from elftools.elf.sections import SymbolTableSection
 
 from tools.setup.firmware import BOARDS, BUILD
 
@@ -43,7 +44,8 @@ def measure(board: str, elf_path: Path) -> Size:
     with elf_path.open("rb") as stream:
         elf = ELFFile(stream)
         sizes = {section.name: int(section["sh_size"]) for section in elf.iter_sections()}
-        names = {symbol.name for symbol in elf.get_section_by_name(".symtab").iter_symbols()}
+        tables = (section for section in elf.iter_sections() if isinstance(section, SymbolTableSection))
+        names = {symbol.name for table in tables for symbol in table.iter_symbols()}
     return Size(
         board=board,
         flash=sum(sizes.get(name, 0) for name in FLASH_SECTIONS),
