@@ -1,8 +1,8 @@
 """Makes everything that is derived from shared/link/*.toml: `python tools/generate_link.py [--check]`.
 
 The declarations become a C++ header of messages, the firmware's parameter table, the host's Python module, the
-reference page and golden vectors for the tests of both sides. With --check nothing is written; stale files are named and
-the exit code is 1.
+reference page and golden vectors for the tests of both sides. With --check nothing is written; stale files are named
+and the exit code is 1.
 Needs nothing but Python 3.11.
 """
 

@@ -26,18 +26,20 @@ def page(declaration: Declaration) -> str:
 
 
 def _frame(declaration: Declaration) -> str:
-    return f"""Protocol {declaration.protocol}, schema hash `0x{declaration.schema_hash:08X}`. 1 Mbaud, 8 data bits, no parity, 1 stop bit.
+    return f"""Protocol {declaration.protocol}, schema hash `0x{declaration.schema_hash:08X}`.
+1 Mbaud, 8 data bits, no parity, 1 stop bit.
 
 ```
 wire:  COBS( type u8 | seq u8 | payload, at most {declaration.max_payload} bytes | crc u16 ) 00
 ```
 
-- Numbers are little-endian, two's complement. The CRC is CRC-16/CCITT-FALSE (polynomial 0x1021, start 0xFFFF, no reflection,
-  check value 0x29B1; Python: `binascii.crc_hqx(data, 0xFFFF)`) over type, seq and payload.
+- Numbers are little-endian, two's complement. The CRC is CRC-16/CCITT-FALSE (polynomial 0x1021, start 0xFFFF, no
+  reflection, check value 0x29B1; Python: `binascii.crc_hqx(data, 0xFFFF)`) over type, seq and payload.
 - The byte 00 stands between frames and nowhere else; a receiver that has lost its place waits for the next one. Empty
   frames (00 00) mean nothing, so that a sender may begin with a 00.
-- A request is answered by its type + 0x{REPLY_BIT:02X} with the same seq, or by `nack`. Every request may be repeated: a host that
-  hears nothing sends the same frame again. A frame that is not understood (length, coding, CRC) is counted and not answered.
+- A request is answered by its type + 0x{REPLY_BIT:02X} with the same seq, or by `nack`. Every request may be repeated:
+  a host that hears nothing sends the same frame again. A frame that is not understood (length, coding, CRC) is counted
+  and not answered.
 - `hello` keeps its type, and its reply keeps the protocol version as its first byte, in every version to come."""
 
 
@@ -84,19 +86,21 @@ def _enum(enum: Enum) -> str:
     lines = [
         _row(head),
         _row(["---:"] + ["---"] * (len(head) - 1)),
-        *(_row([cell.replace("|", "\\|") for cell in row]) for row in rows),
+        *(_row(row) for row in rows),
     ]
     return "\n".join([f"### {enum.name}", "", enum.description, "", *lines])
 
 
 def _row(cells: list[str]) -> str:
-    return f"| {' | '.join(cells)} |"
+    escaped = (cell.replace("|", "\\|") for cell in cells)
+    return f"| {' | '.join(escaped)} |"
 
 
 def _table(declaration: Declaration) -> str:
-    return f"""{declaration.parameter_count} parameters, {declaration.table_size} bytes packed in index order without padding; `param_crc` is the CRC of these bytes.
-`param_set` writes a staged copy, `param_apply` checks it whole and makes it the running set between two ticks, `param_save`
-writes the running set to EEPROM. Layout {declaration.layout} of the EEPROM banks: a board that finds another layout starts from the defaults.
+    return f"""{declaration.parameter_count} parameters, {declaration.table_size} bytes packed in index order
+without padding; `param_crc` is the CRC of these bytes. `param_set` writes a staged copy, `param_apply` checks it whole
+and makes it the running set between two ticks, `param_save` writes the running set to EEPROM. The EEPROM banks have
+layout {declaration.layout}: a board that finds another layout starts from the defaults.
 
 On the link a parameter is a raw integer: physical value = raw x lsb."""
 

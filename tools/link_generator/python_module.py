@@ -15,7 +15,7 @@ def module(declaration: Declaration) -> str:
     parts = [
         f'"""Messages, enums and parameters of the serial link.\n\n{NOTICE}\n"""',
         "# ruff: noqa: E501\n# fmt: off",
-        _IMPORTS,
+        f"{_IMPORTS}\n\n"
         f"PROTOCOL = {declaration.protocol}\n"
         f"SCHEMA_HASH = 0x{declaration.schema_hash:08X}\n"
         f"MAX_PAYLOAD = {declaration.max_payload}\n"
@@ -36,8 +36,7 @@ from dataclasses import dataclass
 from struct import Struct
 from typing import ClassVar
 
-from .declared import Described, Field, Group, Message, Table, check_length
-from .declared import Parameter as Parameter"""
+from .declared import Described, Field, Group, Message, Parameter, Table, check_length"""
 
 
 def _text(text: str) -> str:
@@ -138,8 +137,8 @@ def _group(group: Group) -> list[str]:
     lines = [f"    Group({_text(group.name)}, {group.count}, {_text(group.description)}, ("]
     for p in group.parameters:
         lines.append(
-            f"        Field({_text(p.name)}, {_text(p.kind)}, {_text(p.unit)}, {float(p.lsb)!r}, {p.minimum}, {p.maximum}, "
-            f"{p.defaults!r}, {p.nonzero}, {p.below!r}, {_text(p.description)}),"
+            f"        Field({_text(p.name)}, {_text(p.kind)}, {_text(p.unit)}, {float(p.lsb)!r}, "
+            f"{p.minimum}, {p.maximum}, {p.defaults!r}, {p.nonzero}, {p.below!r}, {_text(p.description)}),"
         )
     return [*lines, "    )),"]
 

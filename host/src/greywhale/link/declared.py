@@ -212,7 +212,8 @@ class Table:
             if raw[parameter.index] >= raw[other.index]:
                 low, high = parameter.to_physical(raw[parameter.index]), other.to_physical(raw[other.index])
                 raise UserError(
-                    f"{parameter.name} is {low:.6g} and {other.name} is {high:.6g}{other._unit()}; choose {parameter.name} below {other.name}.",
+                    f"{parameter.name} is {low:.6g} and {other.name} is {high:.6g}{other._unit()}; "
+                    f"choose {parameter.name} below {other.name}.",
                     2,
                 )
 

@@ -15,9 +15,7 @@ from dataclasses import dataclass
 from struct import Struct
 from typing import ClassVar
 
-from .declared import Described, Field, Group, Message, Table, check_length
-from .declared import Parameter as Parameter
-
+from .declared import Described, Field, Group, Message, Parameter, Table, check_length
 
 PROTOCOL = 1
 SCHEMA_HASH = 0xF055E369

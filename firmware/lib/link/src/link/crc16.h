@@ -5,22 +5,32 @@
 
 namespace wire {
 
-constexpr uint16_t crc_start = 0xFFFF;
+// Kept as two bytes because an 8-bit machine pays for every wide shift; needs no table.
+class Crc16 {
+ public:
+  // One byte more. With t = high byte ^ data, folded by four bits, the eight steps of the polynomial come to
+  // t << 12 ^ t << 5 ^ t, added to the low byte moved up.
+  void add(uint8_t byte) {
+    uint8_t t = static_cast<uint8_t>(high_ ^ byte);
+    t = static_cast<uint8_t>(t ^ (t >> 4));
+    const uint8_t t_high = static_cast<uint8_t>(t << 4);
+    high_ = static_cast<uint8_t>(low_ ^ t_high ^ (t >> 3));
+    low_ = static_cast<uint8_t>(t ^ static_cast<uint8_t>(t_high << 1));
+  }
 
-// One byte more. With t = high byte ^ data, folded by four bits, the eight polynomial steps come to t << 12 ^ t << 5 ^ t;
-// written in bytes because an 8-bit machine has no wide shifts, and needs no table this way.
-inline uint16_t crc_add(uint16_t crc, uint8_t byte) {
-  uint8_t t = static_cast<uint8_t>((crc >> 8) ^ byte);
-  t = static_cast<uint8_t>(t ^ (t >> 4));
-  const uint8_t t_high = static_cast<uint8_t>(t << 4);
-  const uint8_t high = static_cast<uint8_t>((crc & 0xFF) ^ t_high ^ (t >> 3));
-  const uint8_t low = static_cast<uint8_t>(t ^ static_cast<uint8_t>(t_high << 1));
-  return static_cast<uint16_t>((high << 8) | low);
-}
+  uint8_t high() const { return high_; }
+  uint8_t low() const { return low_; }
+  uint16_t value() const { return static_cast<uint16_t>((high_ << 8) | low_); }
 
-inline uint16_t crc_over(const uint8_t *data, uint8_t size, uint16_t crc = crc_start) {
-  for (uint8_t i = 0; i < size; ++i) crc = crc_add(crc, data[i]);
-  return crc;
+ private:
+  uint8_t high_ = 0xFF;
+  uint8_t low_ = 0xFF;
+};
+
+inline uint16_t crc_over(const uint8_t *data, uint8_t size) {
+  Crc16 crc;
+  for (; size != 0; --size) crc.add(*data++);
+  return crc.value();
 }
 
 }  // namespace wire
