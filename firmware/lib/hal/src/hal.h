@@ -1,0 +1,61 @@
+// The hardware as the rest of the firmware sees it: plain functions, one implementation linked per target.
+// avr/ serves the two boards and holds every register access; fake/ serves unit tests on a computer.
+#pragma once
+#include <stdint.h>
+
+namespace hal {
+
+constexpr uint8_t joint_count = 4;
+constexpr uint8_t pot_count = 8;             // 0..3 leader, 4..7 follower
+constexpr uint8_t conversions_per_pot = 4;   // summed each tick
+constexpr uint16_t ticks_per_second = 1000;
+
+enum class Board : uint8_t { mega2560 = 1, nano328 = 2, native = 3 };
+Board board_id();
+
+// unknown: a bootloader has cleared the chip's own record.
+enum class ResetCause : uint8_t { unknown, power_on, external, brown_out, watchdog };
+ResetCause reset_cause();
+
+// Takes over timers, ADC and serial port from the framework. Outputs are low and the drivers off since reset.
+void begin();
+
+// --- The tick: a 1 kHz timer interrupt. It turns the drivers off by itself when a tick is not finished in time.
+struct TickStart {
+    uint8_t elapsed;   // ticks since the last tick_begin(): 1 unless some were missed
+    bool late;         // the tick before this one was not finished in time, or its samples were not complete
+};
+bool tick_pending();
+TickStart tick_begin();
+void tick_end();
+uint16_t tick_age_us();   // time since the timer started this tick, resolution 4 us
+
+// Sums of four 10-bit conversions a pot, all taken during the last tick. Once a tick, before tick_end(); false when
+// there is no new set.
+bool read_pots(uint16_t (&sums)[pot_count]);
+
+// --- Outputs. Duty is signed Q15, 32767 = full supply; positive sets the direction pin.
+void set_duty(uint8_t joint, int16_t duty);
+void set_drivers(bool on);
+void set_led(bool on);
+
+// --- Serial port, interrupt-driven both ways.
+constexpr uint8_t tx_capacity = 127;
+constexpr uint8_t rx_capacity = 127;
+bool rx_available();
+uint8_t rx_read();              // only when rx_available()
+uint8_t tx_free();
+void tx_write(uint8_t byte);    // only when tx_free() > 0
+uint8_t rx_lost();              // bytes lost since the last call
+
+// --- EEPROM, one byte at a time; a write goes on in the background for about 3.4 ms.
+bool eeprom_busy();
+uint8_t eeprom_read(uint16_t address);                    // only when not busy
+void eeprom_begin_write(uint16_t address, uint8_t value); // only when not busy
+
+// --- Watchdog of 60 ms, and idle sleep until the next interrupt unless there is something to do.
+void watchdog_start();
+void watchdog_kick();
+void idle();
+
+}  // namespace hal
