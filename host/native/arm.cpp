@@ -1,0 +1,207 @@
+// Binds sim/arm. greywhale.arm wraps these classes with validated parameters; use that, not this.
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/variant.h>
+
+#include <array>
+#include <cstring>
+#include <initializer_list>
+#include <memory>
+#include <variant>
+
+#include "arm/arm.h"
+#include "arm/motor.h"
+#include "arm/potentiometer.h"
+#include "arm/rigid_body.h"
+#include "bindings.h"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+namespace arm = greywhale::arm;
+
+namespace {
+
+using Four = double[arm::kJoints];
+using InArray = nb::ndarray<const double, nb::shape<arm::kJoints>, nb::c_contig, nb::device::cpu>;
+using In = std::variant<InArray, std::array<double, arm::kJoints>>;  // numpy, or any sequence of four numbers
+using Out = nb::ndarray<nb::numpy, double, nb::shape<arm::kJoints>, nb::c_contig>;
+using Matrix = nb::ndarray<nb::numpy, double, nb::shape<arm::kJoints, arm::kJoints>, nb::c_contig>;
+using ActuatorOfOne = arm::Actuator<double>;
+using JointOfOne = arm::Joint<double>;
+using Body = arm::RigidBody<double>;
+
+// A copy of an argument, so that its memory need not outlive the call.
+struct Copy {
+  explicit Copy(const In& in) {
+    std::visit([this](const auto& four) { std::memcpy(values, four.data(), sizeof values); }, in);
+  }
+  Four values;
+};
+
+template <class Result, std::size_t N>
+Result owned(const double (&values)[N], std::initializer_list<std::size_t> shape) {
+  auto copy = std::make_unique<double[]>(N);
+  std::memcpy(copy.get(), values, sizeof values);
+  nb::capsule owner(copy.get(), [](void* p) noexcept { delete[] static_cast<double*>(p); });
+  return Result(copy.release(), shape, owner);
+}
+
+Out array_of(const Four& values) { return owned<Out>(values, {arm::kJoints}); }
+
+using State = arm::State<double>;
+
+template <Four State::*Member>
+Out copy_of(const arm::Arm& self) {
+  return array_of(self.state().*Member);
+}
+
+arm::Pose<double> pose_at(const In& in) {
+  const Copy q(in);
+  return arm::pose_of(q.values[1], q.values[2]);
+}
+
+Matrix mass_matrix(const Body& body, const In& q) {
+  const arm::MassMatrix<double> m = arm::mass_matrix(body, pose_at(q));
+  const double full[16] = {m.m00, 0, 0, m.m03, 0, m.m11, m.m12, 0, 0, m.m12, m.m22, 0, m.m03, 0, 0, m.m33};
+  return owned<Matrix>(full, {arm::kJoints, arm::kJoints});
+}
+
+Out bias(const Body& body, const In& q, const In& v) {
+  Four torque;
+  arm::bias_torque(body, pose_at(q), Copy(v).values, torque);
+  return array_of(torque);
+}
+
+double kinetic(const Body& body, const In& q, const In& v) {
+  return arm::kinetic_energy(arm::mass_matrix(body, pose_at(q)), Copy(v).values);
+}
+
+double potential(const Body& body, const In& q) { return arm::potential_energy(body, pose_at(q)); }
+
+void bind_parameters(nb::module_& m) {
+  nb::class_<arm::Link>(m, "Link", "Mass properties of one link, SI units, inertias about its centre of mass.")
+      .def(
+          "__init__",
+          [](arm::Link* self, double mass, double length, double centre, double ixx, double iyy, double izz) {
+            new (self) arm::Link{mass, length, centre, ixx, iyy, izz};
+          },
+          nb::kw_only(), "mass"_a, "length"_a, "centre"_a, "ixx"_a, "iyy"_a, "izz"_a);
+
+  nb::class_<ActuatorOfOne>(m, "Actuator", "A geared motor as its joint feels it.")
+      .def_ro("torque_per_volt", &ActuatorOfOne::torque_per_volt, "N m/V at standstill")
+      .def_ro("inertia", &ActuatorOfOne::inertia, "kg m^2, reflected to the joint")
+      .def_ro("damping", &ActuatorOfOne::damping, "N m s, back-EMF and viscous friction");
+  const auto define_actuator = [&m](const char* name, ActuatorOfOne (*equation)(const arm::Motor&), const char* doc) {
+    m.def(
+        name,
+        [equation](double inertia, double resistance, double torque_constant, double viscous, double gear_ratio) {
+          return equation({inertia, resistance, torque_constant, viscous, gear_ratio});
+        },
+        nb::kw_only(), "inertia"_a, "resistance"_a, "torque_constant"_a, "viscous"_a, "gear_ratio"_a, doc);
+  };
+  define_actuator("physical_actuator", &arm::physical_actuator, "The physical gear-coupled motor equation.");
+  define_actuator("paper_actuator", &arm::paper_actuator, "The paper's Eq. 1 as its units allow it.");
+
+  nb::class_<JointOfOne>(m, "Joint", "Motor, friction, gear and stops of one joint, at its output shaft, SI units.")
+      .def(
+          "__init__",
+          [](JointOfOne* self, const ActuatorOfOne& actuator, double coulomb, double breakaway, double stribeck_velocity,
+             double half_gap, double stiffness, double damping, double min, double max) {
+            new (self) JointOfOne{actuator, {coulomb, breakaway, stribeck_velocity}, {half_gap, stiffness, damping}, {min, max}};
+          },
+          nb::kw_only(), "actuator"_a, "coulomb"_a, "breakaway"_a, "stribeck_velocity"_a, "half_gap"_a, "stiffness"_a, "damping"_a,
+          "min"_a, "max"_a);
+
+  nb::class_<arm::ArmParameters>(m, "ArmParameters", "The whole arm; greywhale.arm.ArmParameters makes it, validated.")
+      .def(
+          "__init__",
+          [](arm::ArmParameters* self, const std::array<arm::Link, arm::kJoints>& links, double tip_mass, double gravity,
+             const std::array<JointOfOne, arm::kJoints>& joints, double supply, int pwm_levels) {
+            new (self) arm::ArmParameters{links, tip_mass, gravity, joints, {supply, pwm_levels}};
+          },
+          nb::kw_only(), "links"_a, "tip_mass"_a, "gravity"_a, "joints"_a, "supply"_a, "pwm_levels"_a);
+}
+
+void bind_body(nb::module_& m) {
+  nb::class_<Body>(m, "RigidBody", "The links alone: M(q) q'' + bias(q, q') = torque. Arrays of four, rad and SI units.")
+      .def("mass_matrix", &mass_matrix, "q"_a, "4x4, kg m^2")
+      .def("bias", &bias, "q"_a, "v"_a, "Velocity and gravity torques, N m")
+      .def("kinetic_energy", &kinetic, "q"_a, "v"_a, "J")
+      .def("potential_energy", &potential, "q"_a, "J, zero with the arm level");
+}
+
+void bind_motion(nb::module_& m) {
+  nb::class_<arm::Arm>(m, "Arm", "The follower arm: four voltages in, four joint angles out.")
+      .def(nb::init<const arm::ArmParameters&, std::uint64_t, double>(), "parameters"_a, "seed"_a = 0,
+           "longest_step"_a = arm::Arm::kLongestStep)
+      .def(
+          "step",
+          [](arm::Arm& self, const In& voltages, double dt) {
+            self.step(Copy(voltages).values, dt);
+            return array_of(self.state().q);
+          },
+          "voltages"_a, "dt"_a, "Hold the voltages (V) for dt seconds; the joint angles (rad) then.")
+      .def(
+          "reset", [](arm::Arm& self, const In& angles) { self.reset(Copy(angles).values); }, "angles"_a,
+          "At rest at these angles (rad).")
+      .def(
+          "set_load", [](arm::Arm& self, const In& torques) { self.set_load(Copy(torques).values); }, "torques"_a,
+          "Outside torques (N m) on the links from now on.")
+      .def_prop_ro("angles", copy_of<&State::q>, nb::rv_policy::move, "rad")
+      .def_prop_ro("velocities", copy_of<&State::v>, nb::rv_policy::move, "rad/s")
+      .def_prop_ro("motor_angles", copy_of<&State::motor_q>, nb::rv_policy::move,
+                   "rad at the output shaft; differ from the angles by backlash and tooth bending")
+      .def_prop_ro("motor_velocities", copy_of<&State::motor_v>, nb::rv_policy::move, "rad/s at the output shaft")
+      .def_prop_ro("kinetic_energy", &arm::Arm::kinetic_energy, "J, links and motors")
+      .def_prop_ro("potential_energy", &arm::Arm::potential_energy, "J, gravity and teeth")
+      .def_prop_ro("body", &arm::Arm::body, nb::rv_policy::reference_internal)
+      .def_prop_ro("steps", &arm::Arm::steps, "Integration steps so far")
+      .def_prop_ro("unsettled_steps", &arm::Arm::unsettled_steps, "Those whose contact conditions were not settled; 0 is normal");
+}
+
+void bind_pots(nb::module_& m) {
+  nb::enum_<arm::Wiring>(m, "Wiring", "Where a potentiometer's wiper leads.")
+      .value("CONNECTED", arm::Wiring::connected)
+      .value("OPEN", arm::Wiring::open, "wire off: the pull-down reads 0 V")
+      .value("SHORTED", arm::Wiring::shorted, "wiper on the supply");
+
+  nb::class_<arm::Potentiometer>(m, "Potentiometer")
+      .def(
+          "__init__",
+          [](arm::Potentiometer* self, double track, double centre, double direction, double noise, double linearity) {
+            new (self) arm::Potentiometer{track, centre, direction, noise, linearity};
+          },
+          nb::kw_only(), "track"_a, "centre"_a, "direction"_a, "noise"_a, "linearity"_a);
+
+  nb::class_<arm::Potentiometers>(m, "Potentiometers", "Four joint potentiometers.")
+      .def(nb::init<const std::array<arm::Potentiometer, arm::kJoints>&, double, std::uint64_t>(), "pots"_a, "supply"_a, "seed"_a = 0)
+      .def(
+          "millivolts",
+          [](arm::Potentiometers& self, const In& angles) {
+            Four out;
+            self.millivolts(Copy(angles).values, out);
+            return array_of(out);
+          },
+          "angles"_a, "Wiper voltages in mV, 0 to the supply; each call draws new noise.")
+      .def(
+          "counts",
+          [](arm::Potentiometers& self, const In& angles, int bits) {
+            if (bits < 1 || bits > 24) throw nb::value_error("the converter must have 1 to 24 bits.");
+            Four out;
+            self.counts(Copy(angles).values, bits, out);
+            return array_of(out);
+          },
+          "angles"_a, "bits"_a = 10, "The same through a converter whose reference is the supply.")
+      .def("set_wiring", &arm::Potentiometers::set_wiring, "joint"_a, "wiring"_a)
+      .def("wiring", &arm::Potentiometers::wiring, "joint"_a);
+}
+
+}  // namespace
+
+void bind_arm(nb::module_& m) {
+  bind_parameters(m);
+  bind_body(m);
+  bind_motion(m);
+  bind_pots(m);
+}

@@ -1,0 +1,7 @@
+// What each file of the binding adds to greywhale._native.
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+void bind_arm(nanobind::module_& m);
+void bind_fuzzy(nanobind::module_& m);

@@ -1,0 +1,8 @@
+// greywhale._native: the firmware's own controller and the arm model, for Python.
+#include "bindings.h"
+
+NB_MODULE(_native, m) {
+  m.doc() = "The firmware's fuzzy controller and the arm model, compiled for this machine.";
+  bind_arm(m);
+  bind_fuzzy(m);
+}

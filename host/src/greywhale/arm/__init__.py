@@ -1,0 +1,21 @@
+"""The follower arm and its sensors, from a TOML file to a thing that moves.
+
+>>> arm = Arm(default_arm())
+>>> angles = arm.step([3.0, 0.0, 0.0, 0.0], 0.001)
+"""
+
+from greywhale._native import Wiring
+from greywhale.arm.files import arm_names, default_arm, load_arm
+from greywhale.arm.parameters import ArmParameters, PotentiometerBank
+from greywhale.arm.plant import Arm, Potentiometers
+
+__all__ = [
+    "Arm",
+    "ArmParameters",
+    "PotentiometerBank",
+    "Potentiometers",
+    "Wiring",
+    "arm_names",
+    "default_arm",
+    "load_arm",
+]

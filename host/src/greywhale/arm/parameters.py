@@ -1,0 +1,220 @@
+"""What an arm.toml may say: geometry, motors, friction, gears, stops, potentiometers; checked as physics, not only as types."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Literal, TypeVar
+
+from pydantic import AfterValidator, Field, model_validator
+
+from greywhale import _native
+from greywhale.config.toml_file import Table
+
+JOINT_NAMES = ("base yaw", "shoulder pitch", "wrist pitch", "wrist roll")
+PAPER_IYY0 = 8.26e-3  # as printed in the paper's Table 3
+
+Positive = Annotated[float, Field(gt=0)]
+NotNegative = Annotated[float, Field(ge=0)]
+Item = TypeVar("Item")
+
+
+def _one_per_joint(items: tuple[Item, ...]) -> tuple[Item, ...]:
+    if len(items) != len(JOINT_NAMES):
+        raise ValueError(f"it lists {len(items)}, but the arm needs exactly four: {', '.join(JOINT_NAMES)}")
+    return items
+
+
+class Inertia(Table):
+    """Principal moments about the centre of mass, kg m2; x along the link, y up at zero pitch, z the pitch axis."""
+
+    xx: Positive
+    yy: Positive
+    zz: Positive
+
+    @model_validator(mode="after")
+    def _is_a_body(self) -> Inertia:
+        for key, one, others in (
+            ("xx", self.xx, ("yy", "zz")),
+            ("yy", self.yy, ("xx", "zz")),
+            ("zz", self.zz, ("xx", "yy")),
+        ):
+            rest = sum(getattr(self, other) for other in others)
+            if one > rest * (1 + 1e-9):
+                raise ValueError(
+                    f"{key} is {one:g}, more than {others[0]} + {others[1]} = {rest:g}, which no body can have (triangle "
+                    f"inequality of moments of inertia){_printed_value(key, one)}"
+                )
+        return self
+
+
+def _printed_value(key: str, value: float) -> str:
+    if key == "yy" and math.isclose(value, PAPER_IYY0):
+        return "; the paper's Table 3 prints this value for link 0, 8.26e-5 is probably meant"
+    return ""
+
+
+class Link(Table):
+    """One rigid link."""
+
+    mass: Positive  # kg
+    length: Positive  # m
+    centre: NotNegative  # m, centre of mass from the nearer joint
+    inertia: Inertia
+
+    @model_validator(mode="after")
+    def _centre_is_on_the_link(self) -> Link:
+        if self.centre > self.length:
+            raise ValueError(f"centre is {self.centre:g} m, beyond the link's length of {self.length:g} m")
+        return self
+
+
+class Tip(Table):
+    """What the arm carries at the end of link 3."""
+
+    mass: NotNegative = 0.0  # kg
+
+
+class Motor(Table):
+    """A geared DC motor; motor speed = gear_ratio x joint speed, back-EMF constant = torque constant."""
+
+    inertia: Positive  # J, kg m2
+    resistance: Positive  # R, ohm
+    torque_constant: Positive  # Kt, N m/A
+    viscous: NotNegative  # Bm, N m s
+    gear_ratio: Positive  # N
+
+
+class Friction(Table):
+    """Dry friction of motor and gear train, as torque at the joint."""
+
+    coulomb: NotNegative = 0.0  # N m, sliding
+    breakaway: NotNegative = 0.0  # N m, at rest
+    stribeck_velocity: Positive = 0.1  # rad/s, where the excess of breakaway over coulomb has halved
+
+    @model_validator(mode="after")
+    def _rest_holds_more(self) -> Friction:
+        if self.breakaway < self.coulomb:
+            raise ValueError(
+                f"breakaway is {self.breakaway:g} N m, below coulomb = {self.coulomb:g} N m; a shaft at rest holds at least as much"
+            )
+        return self
+
+
+class Gear(Table):
+    """The mesh between motor and link, at the joint; all zero is a rigid gear."""
+
+    half_gap: Annotated[float, Field(ge=0, le=0.5)] = 0.0  # rad, to either side
+    stiffness: NotNegative = 0.0  # N m/rad, of the teeth in contact
+    damping: NotNegative = 0.0  # N m s, of the teeth in contact
+
+    @model_validator(mode="after")
+    def _gap_needs_teeth(self) -> Gear:
+        if self.half_gap > 0 and self.stiffness == 0:
+            raise ValueError(f"half_gap is {self.half_gap:g} rad, so stiffness must be above 0 N m/rad")
+        return self
+
+
+class Stops(Table):
+    """Mechanical end stops of the joint."""
+
+    min: Annotated[float, Field(ge=-math.tau, le=math.tau)]  # rad
+    max: Annotated[float, Field(ge=-math.tau, le=math.tau)]  # rad
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Stops:
+        if self.min >= self.max:
+            raise ValueError(f"min is {self.min:g} rad, not below max = {self.max:g} rad; swap or correct them")
+        return self
+
+
+class Joint(Table):
+    """Everything between a joint's two wires and its output shaft."""
+
+    name: str = ""
+    motor: Motor
+    friction: Friction = Friction()
+    gear: Gear = Gear()
+    stops: Stops
+
+
+class Drive(Table):
+    """The motor drivers."""
+
+    supply: Annotated[float, Field(gt=0, le=60)]  # V
+    pwm_levels: Annotated[int, Field(ge=0, le=65535)] = 0  # duty steps from 0 to full; 0: not quantised here
+
+
+class Potentiometer(Table):
+    """One joint potentiometer across the board's supply."""
+
+    track: Annotated[float, Field(gt=0, le=10 * math.tau)] = math.radians(300)  # rad, end to end
+    centre: float = 0.0  # rad, joint angle at mid-track
+    direction: Literal[1, -1] = 1  # sign of the voltage's slope
+    noise: Annotated[float, Field(ge=0, le=0.5)] = 0.0  # V rms
+    linearity: Annotated[float, Field(ge=0, le=0.05)] = 0.0  # largest deviation, share of full scale
+
+
+class PotentiometerBank(Table):
+    """The four potentiometers of one arm."""
+
+    supply: Positive = 5.0  # V, also the converter's reference
+    joint: Annotated[tuple[Potentiometer, ...], AfterValidator(_one_per_joint)] = (Potentiometer(),) * 4
+
+
+class ArmParameters(Table):
+    """A leader-follower arm as simulated: the follower's mechanics and both arms' potentiometers."""
+
+    name: str
+    source: str = ""
+    gravity: NotNegative = 9.81  # m/s2
+    motor_equation: Literal["physical", "paper"] = "physical"
+    link: Annotated[tuple[Link, ...], AfterValidator(_one_per_joint)]
+    tip: Tip = Tip()
+    joint: Annotated[tuple[Joint, ...], AfterValidator(_one_per_joint)]
+    drive: Drive
+    leader_pots: PotentiometerBank = PotentiometerBank()
+    follower_pots: PotentiometerBank = PotentiometerBank()
+
+    def actuator(self, joint: int) -> _native.Actuator:
+        """The motor of one joint as its output shaft feels it, by this arm's motor equation."""
+        motor = self.joint[joint].motor
+        equation = _native.physical_actuator if self.motor_equation == "physical" else _native.paper_actuator
+        return equation(
+            inertia=motor.inertia,
+            resistance=motor.resistance,
+            torque_constant=motor.torque_constant,
+            viscous=motor.viscous,
+            gear_ratio=motor.gear_ratio,
+        )
+
+    def native(self) -> _native.ArmParameters:
+        """The same numbers for the C++ plant."""
+        return _native.ArmParameters(
+            links=[_native_link(link) for link in self.link],
+            tip_mass=self.tip.mass,
+            gravity=self.gravity,
+            joints=[self._native_joint(index) for index in range(len(self.joint))],
+            supply=self.drive.supply,
+            pwm_levels=self.drive.pwm_levels,
+        )
+
+    def _native_joint(self, index: int) -> _native.Joint:
+        joint = self.joint[index]
+        return _native.Joint(
+            actuator=self.actuator(index),
+            coulomb=joint.friction.coulomb,
+            breakaway=joint.friction.breakaway,
+            stribeck_velocity=joint.friction.stribeck_velocity,
+            half_gap=joint.gear.half_gap,
+            stiffness=joint.gear.stiffness,
+            damping=joint.gear.damping,
+            min=joint.stops.min,
+            max=joint.stops.max,
+        )
+
+
+def _native_link(link: Link) -> _native.Link:
+    inertia = link.inertia
+    return _native.Link(
+        mass=link.mass, length=link.length, centre=link.centre, ixx=inertia.xx, iyy=inertia.yy, izz=inertia.zz
+    )

@@ -1,0 +1,33 @@
+"""The arm and the potentiometers that move and measure; the work is done in C++ (sim/arm)."""
+
+from __future__ import annotations
+
+from greywhale import _native
+from greywhale.arm.parameters import ArmParameters, PotentiometerBank
+
+LONGEST_STEP = 0.25e-3  # s
+
+
+class Arm(_native.Arm):
+    """The follower arm: `step(voltages, dt)` holds four voltages (V) for dt seconds and returns the four joint angles (rad).
+
+    The same parameters, seed and inputs give the same motion. The seed draws where in its backlash each gear stands after a reset.
+    """
+
+    def __init__(self, parameters: ArmParameters, seed: int = 0, longest_step: float = LONGEST_STEP) -> None:
+        super().__init__(parameters.native(), seed, longest_step)
+        self.parameters = parameters
+
+
+class Potentiometers(_native.Potentiometers):
+    """The four potentiometers of one arm: `millivolts(angles)`, or `counts(angles)` through a 10-bit converter."""
+
+    def __init__(self, bank: PotentiometerBank, seed: int = 0) -> None:
+        pots = [
+            _native.Potentiometer(
+                track=pot.track, centre=pot.centre, direction=pot.direction, noise=pot.noise, linearity=pot.linearity
+            )
+            for pot in bank.joint
+        ]
+        super().__init__(pots, bank.supply, seed)
+        self.bank = bank

@@ -1,0 +1,46 @@
+// Four joint potentiometers: angle to wiper voltage, with noise, linearity error, broken wires, and a converter where one is wanted.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "parameters.h"
+#include "random.h"
+
+namespace greywhale::arm {
+
+struct Potentiometer {
+  double track;       // rad, from one end of the resistance to the other
+  double centre;      // rad, joint angle at mid-track
+  double direction;   // +1 or -1: sign of the voltage's slope
+  double noise;       // V rms at the wiper
+  double linearity;   // largest deviation from the straight line, as a share of the full scale
+};
+
+// Connected; open: the wire is off and the input's pull-down wins; shorted: the wiper touches the supply.
+enum class Wiring : std::uint8_t { connected, open, shorted };
+
+class Potentiometers {
+ public:
+  Potentiometers(const std::array<Potentiometer, kJoints>& pots, double supply, std::uint64_t seed);
+
+  void set_wiring(std::size_t joint, Wiring wiring) { wiring_.at(joint) = wiring; }
+  Wiring wiring(std::size_t joint) const { return wiring_.at(joint); }
+
+  // Wiper voltages in mV, 0 to the supply; each call draws new noise.
+  void millivolts(const double (&angles)[kJoints], double (&out)[kJoints]);
+
+  // The same through a converter of `bits` bits whose reference is the supply.
+  void counts(const double (&angles)[kJoints], int bits, double (&out)[kJoints]);
+
+ private:
+  double wiper(std::size_t joint, double angle) const;
+
+  std::array<Potentiometer, kJoints> pots_;
+  std::array<Wiring, kJoints> wiring_{};
+  double supply_;
+  std::array<Noise, kJoints> noise_;
+  std::uint64_t readings_ = 0;
+};
+
+}  // namespace greywhale::arm

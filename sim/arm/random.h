@@ -1,0 +1,34 @@
+// Reproducible noise: the n-th number of a stream is a function of (seed, stream, n), so nothing depends on who asks first.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+namespace greywhale::arm {
+
+// SplitMix64's finaliser: every bit of the result depends on every bit of the input.
+inline std::uint64_t mixed(std::uint64_t x) {
+  x += 0x9E3779B97F4A7C15u;
+  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
+  x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
+  return x ^ (x >> 31);
+}
+
+class Noise {
+ public:
+  Noise(std::uint64_t seed, std::uint64_t stream) : key_(mixed(mixed(seed) ^ mixed(~stream))) {}
+
+  // In (0, 1).
+  double uniform(std::uint64_t n) const { return (static_cast<double>(mixed(key_ ^ mixed(n)) >> 12) + 0.5) * 0x1p-52; }
+
+  // Mean 0, standard deviation 1 (Box and Muller).
+  double gaussian(std::uint64_t n) const {
+    constexpr double kTurn = 6.283185307179586;
+    return std::sqrt(-2.0 * std::log(uniform(2 * n))) * std::cos(kTurn * uniform(2 * n + 1));
+  }
+
+ private:
+  std::uint64_t key_;
+};
+
+}  // namespace greywhale::arm

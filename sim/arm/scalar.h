@@ -1,0 +1,39 @@
+// What the plant asks of its number type, so that the same equations run on double and on a vector of candidates.
+#pragma once
+
+#include <cmath>
+
+namespace greywhale::arm {
+
+// A constant in every lane. T may be a GCC vector type, which has no conversion from a number but does broadcast in sums.
+template <class T>
+constexpr T constant(double value) {
+  return T{} + value;
+}
+
+// The wrapper around ?: that also takes a lane-wise mask (GCC's vector ?: needs vectors on both sides).
+template <class Mask, class T>
+T choose(Mask mask, T yes, T no) {
+  return mask ? yes : no;
+}
+
+template <class T>
+T absolute(T value) {
+  return choose(value < constant<T>(0.0), -value, value);
+}
+
+// -1, 0 or +1, in the number type itself: sides and directions multiply straight into the equations.
+template <class T>
+T sign(T value) {
+  const T zero = constant<T>(0.0);
+  return choose(value > zero, constant<T>(1.0), choose(value < zero, constant<T>(-1.0), zero));
+}
+
+inline bool any(bool mask) { return mask; }
+
+inline void sine_cosine(double angle, double& sine, double& cosine) {
+  sine = std::sin(angle);
+  cosine = std::cos(angle);
+}
+
+}  // namespace greywhale::arm
