@@ -1,0 +1,85 @@
+"""Puts a bench together: board with bootloader and firmware, arm, potentiometers and leader, ready to be
+powered.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from greywhale import arm
+from greywhale.errors import UserError
+from greywhale.trajectory import human_reaches, load_leader
+from greywhale_sim import eeprom_file
+from greywhale_sim.bench import SLICE_S, Bench, Plant
+from greywhale_sim.leader import LeaderPlayer
+from greywhale_sim.wiring import BOARDS, Wiring
+
+BUILDS = Path(__file__).resolve().parents[3] / "firmware" / ".pio" / "build"
+
+
+@dataclass(frozen=True)
+class BenchOptions:
+    """What stands on the bench."""
+
+    board: str = "mega"
+    leader: Path | None = None  # CSV of the leader's motion; None: generated human-like reaches
+    arm: Path | None = None  # TOML of the arm; None: the default one
+    firmware: Path | None = None  # HEX to start with; None: the last build
+    blank: bool = False  # a board with nothing but its bootloader
+    eeprom: Path | None = None  # file that keeps the EEPROM; None: forgotten at the end
+    seed: int = 1  # of everything random
+
+
+def wiring_of(board: str) -> Wiring:
+    if board not in BOARDS:
+        raise UserError(f'board "{board}" is not known; there are: {", ".join(BOARDS)}.', 2)
+    return BOARDS[board]
+
+
+def build_board(options: BenchOptions) -> Any:
+    """A powered board: bootloader, firmware unless blank, EEPROM content."""
+    try:
+        from greywhale_sim._board import Board
+    except ImportError as error:
+        raise UserError(f"the simulated board is not built ({error}); run: make setup") from None
+    wiring = wiring_of(options.board)
+    if not wiring.bootloader.is_file():
+        raise UserError(f"{wiring.bootloader}: the bootloader is missing; install the Debian package arduino-core-avr.")
+    board = Board(wiring.mcu)
+    board.load_hex(str(wiring.bootloader), bootloader=True)
+    if not options.blank:
+        board.load_hex(str(_firmware(options, wiring)))
+    if options.eeprom is not None:
+        content = eeprom_file.load(options.eeprom, len(board.eeprom()))
+        if content is not None:
+            board.set_eeprom(content)
+    board.power_on(options.seed)
+    return board
+
+
+def build_bench(options: BenchOptions, plant: Plant | None = None) -> Bench:
+    """The whole bench; `plant` may be any object with step(voltages, dt) -> angles instead of the built-in arm."""
+    parameters = arm.default_arm() if options.arm is None else arm.load_arm(options.arm)
+    motion = human_reaches(options.seed) if options.leader is None else load_leader(options.leader)
+    return Bench(
+        board=build_board(options),
+        wiring=wiring_of(options.board),
+        plant=arm.Arm(parameters, seed=options.seed) if plant is None else plant,
+        leader=LeaderPlayer(motion, SLICE_S),
+        leader_pots=arm.Potentiometers(parameters.leader_pots, options.seed),
+        follower_pots=arm.Potentiometers(parameters.follower_pots, options.seed + 1),
+        supply_v=parameters.drive.supply,
+    )
+
+
+def _firmware(options: BenchOptions, wiring: Wiring) -> Path:
+    if options.firmware is not None:
+        if not options.firmware.is_file():
+            raise UserError(f"{options.firmware}: there is no such firmware file.")
+        return options.firmware
+    built = BUILDS / wiring.environment / "firmware.hex"
+    if not built.is_file():
+        raise UserError(f"{built}: the firmware is not built; run: make firmware, or start with --blank and flash it.")
+    return built

@@ -1,0 +1,157 @@
+"""The bench: board, arm and leader in lock step on one simulated clock.
+
+Time advances in slices of 250 us. In each slice the bench reads the driver pins, moves the arm under the
+voltages they mean, puts all eight potentiometers on the converter's inputs and lets the processor run.
+Nothing here looks at the wall clock: the same bytes into the serial port at the same cycles give the same
+trace.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale_sim.leader import LeaderPlayer
+from greywhale_sim.wiring import Wiring
+
+Array = npt.NDArray[np.float64]
+
+CLOCK_HZ = 16_000_000
+SLICE_CYCLES = 4000
+SLICE_S = SLICE_CYCLES / CLOCK_HZ
+SLICES_PER_S = CLOCK_HZ // SLICE_CYCLES
+CRASHED = 2
+
+
+class Board(Protocol):
+    """What the bench needs of the simulated Arduino (greywhale_sim._board.Board)."""
+
+    @property
+    def cycle(self) -> int: ...
+    @property
+    def pc(self) -> int: ...
+    def add_duty_output(self, timer: int, channel: str) -> int: ...
+    def add_pin_output(self, port: str, bit: int) -> int: ...
+    def outputs(self) -> Array: ...
+    def set_millivolts(self, millivolts: Array) -> None: ...
+    def run_until(self, cycle: int) -> int: ...
+
+
+class Plant(Protocol):
+    """The follower arm: any object that turns four motor voltages into four joint angles after `dt` seconds."""
+
+    def step(self, voltages: Array, dt: float) -> Array: ...
+
+
+class Potentiometers(Protocol):
+    """Four angles in rad to four voltages in mV."""
+
+    def millivolts(self, angles: Array) -> Array: ...
+
+
+class CrashError(RuntimeError):
+    """The simulated processor stopped in a way a real one would not."""
+
+
+Trace = Callable[[int, Array, Array], None]
+
+
+class Bench:
+    """Lock step of one board, one plant and one leader; `run` is synchronous and deterministic."""
+
+    def __init__(
+        self,
+        board: Board,
+        wiring: Wiring,
+        plant: Plant,
+        leader: LeaderPlayer,
+        leader_pots: Potentiometers,
+        follower_pots: Potentiometers,
+        supply_v: float,
+    ) -> None:
+        self.board = board
+        self.plant = plant
+        self.leader = leader
+        self.leader_pots = leader_pots
+        self.follower_pots = follower_pots
+        self.supply_v = supply_v
+        self.voltages: Array = np.zeros(4)
+        self.angles: Array = leader.home.copy()
+        self.trace: Trace | None = None
+        board.add_pin_output(wiring.enable.port, wiring.enable.bit)
+        for motor in wiring.motors:
+            board.add_duty_output(motor.timer, motor.channel)
+        for motor in wiring.motors:
+            board.add_pin_output(motor.direction.port, motor.direction.bit)
+        self._millivolts = np.zeros(8)
+        self._last_outputs = b""
+        self._enabled = False
+        self.place(leader.home)
+
+    @property
+    def time_s(self) -> float:
+        return self.board.cycle / CLOCK_HZ
+
+    @property
+    def motors_enabled(self) -> bool:
+        """The drivers' enable pin, as it is now."""
+        return bool(self.board.outputs()[0])
+
+    def place(self, angles: Array) -> None:
+        """Hold the follower in a pose by hand, if the plant can be (it offers `reset`)."""
+        reset = getattr(self.plant, "reset", None)
+        if reset is not None:
+            reset(angles)
+            self.angles = np.array(angles, dtype=np.float64)
+
+    def run(self, seconds: float) -> None:
+        """Advance by `seconds` of simulated time, rounded to whole slices."""
+        self.run_slices(round(seconds * SLICES_PER_S))
+
+    def run_slices(self, count: int) -> None:
+        board, leader, millivolts = self.board, self.leader, self._millivolts
+        outputs, run_until, set_millivolts = board.outputs, board.run_until, board.set_millivolts
+        step, advance = self.plant.step, leader.step
+        leader_pots, follower_pots = self.leader_pots.millivolts, self.follower_pots.millivolts
+        target = board.cycle // SLICE_CYCLES * SLICE_CYCLES
+        for _ in range(count):
+            target += SLICE_CYCLES
+            pins = outputs()
+            if pins.tobytes() != self._last_outputs:
+                self._drive(pins)
+            if leader.hold is None:
+                self.angles = step(self.voltages, SLICE_S)
+            else:
+                self.place(leader.hold)
+            advance(self._enabled, self.angles)
+            millivolts[:4] = leader_pots(leader.angles)
+            millivolts[4:] = follower_pots(self.angles)
+            set_millivolts(millivolts)
+            if run_until(target) == CRASHED:
+                raise CrashError(f"the simulated processor crashed at program address 0x{board.pc:05x}")
+            if self.trace is not None:
+                self.trace(target, pins, self.angles)
+
+    def coast(self, slices: int) -> None:
+        """Let time pass for arm and leader while the board has no power and the drivers are off."""
+        self.voltages = np.zeros(4)
+        self._enabled = False
+        self._last_outputs = b""
+        for _ in range(slices):
+            if self.leader.hold is None:
+                self.angles = self.plant.step(self.voltages, SLICE_S)
+            else:
+                self.place(self.leader.hold)
+            self.leader.step(False, self.angles)
+
+    def _drive(self, pins: Array) -> None:
+        """Sign-magnitude drive: voltage is duty x supply, its sign the direction pin; drivers off brake with 0 V."""
+        self._last_outputs = pins.tobytes()
+        self._enabled = bool(pins[0])
+        if self._enabled:
+            self.voltages = pins[1:5] * (2.0 * pins[5:9] - 1.0) * self.supply_v
+        else:
+            self.voltages = np.zeros(4)

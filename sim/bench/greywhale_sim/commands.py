@@ -1,0 +1,88 @@
+"""What can be done to a running bench, one command a line; every answer is one JSON object.
+
+status                             time, motors, voltages, angles, resets, EEPROM, serial line
+pot leader|follower 0..3 STATE     a potentiometer's wiring: connected, open (the wire is off) or shorted (to the supply)
+line flip|lose PROBABILITY         damage or lose bytes on the serial line, per byte
+power off|on                       cut or restore the board's supply
+speed 1|max                        real time, or as fast as possible
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from greywhale import arm
+from greywhale.errors import UserError
+from greywhale_sim.server import Server
+
+Answer = dict[str, Any]
+
+
+def run(server: Server, text: str) -> Answer:
+    """Carry out one command; a bad one raises UserError and changes nothing."""
+    name, *words = text.split() or [""]
+    if name not in COMMANDS:
+        raise UserError(f'"{name}" is not a bench command; there are: {", ".join(COMMANDS)}.', 2)
+    command, usage = COMMANDS[name]
+    try:
+        return command(server, *words)
+    except (TypeError, ValueError):  # wrong number of words, or a word that is no number
+        raise UserError(f'"{text.strip()}" is not understood; say: {name} {usage}.', 2) from None
+
+
+def status(server: Server) -> Answer:
+    bench, stats = server.bench, server.board.stats()
+    return {
+        "time_s": round(server.time_s, 6),
+        "cycle": server.board.cycle,
+        "powered": server.powered,
+        "motors_enabled": server.powered and bench.motors_enabled,
+        "voltages": [round(float(volts), 3) for volts in bench.voltages],
+        "leader": [round(float(angle), 5) for angle in bench.leader.angles],
+        "follower": [round(float(angle), 5) for angle in bench.angles],
+        "leader_plays": bench.leader.plays,
+        "in_bootloader": server.board.in_bootloader,
+        "connected": server.port.connected,
+        "resets": stats.resets,
+        "watchdog_resets": stats.watchdog_resets,
+        "eeprom_writes": stats.eeprom_writes,
+        "rx_overruns": stats.rx_overruns,
+        "resets_by_host": server.resets_by_host,
+    }
+
+
+def pot(server: Server, side: str, joint: str, state: str) -> Answer:
+    pots = {"leader": server.bench.leader_pots, "follower": server.bench.follower_pots}
+    if side not in pots or not 0 <= int(joint) <= 3 or state not in ("connected", "open", "shorted"):
+        raise ValueError
+    pots[side].set_wiring(int(joint), arm.Wiring[state.upper()])  # type: ignore[attr-defined]
+    return {"pot": f"{side}_{joint}", "state": state}
+
+
+def line(server: Server, what: str, probability: str) -> Answer:
+    server.noise.set(what, float(probability))
+    return {"flip": server.noise.flip, "lose": server.noise.lose}
+
+
+def power(server: Server, switch: str) -> Answer:
+    if switch not in ("on", "off"):
+        raise ValueError
+    server.power_on() if switch == "on" else server.power_off()
+    return {"powered": server.powered}
+
+
+def speed(server: Server, value: str) -> Answer:
+    if value not in ("1", "max"):
+        raise ValueError
+    server.fast = value == "max"
+    return {"speed": value}
+
+
+COMMANDS: dict[str, tuple[Callable[..., Answer], str]] = {
+    "status": (status, ""),
+    "pot": (pot, "leader|follower 0..3 connected|open|shorted"),
+    "line": (line, "flip|lose PROBABILITY"),
+    "power": (power, "on|off"),
+    "speed": (speed, "1|max"),
+}

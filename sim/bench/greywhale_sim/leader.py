@@ -1,0 +1,86 @@
+"""The person at the bench: moves the leader arm along a motion, and lifts the follower back when the motors
+are off.
+
+The person waits for the drivers' enable pin (the LED says the same), lets the soft start pass, plays the
+motion once and holds the last pose. A while after the motors went off both arms are brought back to the first
+pose and held there, so that the next enable is accepted; before that the follower is left alone, so that a
+fall or coasting after a stop shows.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.trajectory import Trajectory
+
+Array = npt.NDArray[np.float64]
+
+START_S = 1.5  # from enable to the first movement: the soft start takes 1 s
+LET_GO_S = 0.5  # from motors off to the hand on the follower
+BRING_BACK_S = 1.0
+
+
+class LeaderPlayer:
+    """Leader angles for every slice; `hold` is the pose the follower is held in by hand, or None when it is free."""
+
+    def __init__(self, motion: Trajectory, slice_s: float, start_s: float = START_S) -> None:
+        self._motion = motion
+        self._slice_s = slice_s
+        self._start = round(start_s / slice_s)
+        self._let_go = round(LET_GO_S / slice_s)
+        self._bring_back = max(1, round(BRING_BACK_S / slice_s))
+        self._rows = int(np.ceil(motion.duration_s / slice_s)) + 1
+        self._chunk = np.empty((0, 4))
+        self._chunk_first = 0
+        self._on = 0  # slices since the motors went on
+        self._off = self._let_go + self._bring_back  # slices since they went off
+        self._left_at = (self._row(0), self._row(0))  # both arms when the hand takes them
+        self.home = self._row(0).copy()
+        self.angles: Array = self.home
+        self.hold: Array | None = self.home
+        self.plays = 0
+
+    def step(self, enabled: bool, follower: Array) -> None:
+        """Advance one slice; `follower` is where the follower is now."""
+        if enabled:
+            self._follow_motion()
+        elif self._off < self._let_go:
+            self._off += 1
+            self._on = 0
+            self._left_at = (self.angles, follower)
+        elif self._off < self._let_go + self._bring_back:
+            self._off += 1
+            share = (self._off - self._let_go) / self._bring_back
+            self.angles = self._left_at[0] + share * (self.home - self._left_at[0])
+            self.hold = self._left_at[1] + share * (self.home - self._left_at[1])
+        else:
+            self.angles = self.hold = self.home
+            self._on = 0
+
+    @property
+    def finished(self) -> bool:
+        """The motion was played to its end since the motors went on."""
+        return self._on >= self._start + self._rows
+
+    def _follow_motion(self) -> None:
+        if self._on == 0:
+            self._off = 0
+            self.hold = None
+        self._on += 1
+        row = self._on - self._start
+        if row == self._rows:
+            self.plays += 1
+        if 0 <= row <= self._rows:
+            self.angles = self._row(min(row, self._rows - 1))
+
+    def _row(self, index: int) -> Array:
+        """The motion at slice `index`, from a chunk of one second, so that an hour of motion needs no more memory."""
+        offset = index - self._chunk_first
+        if not 0 <= offset < len(self._chunk):
+            self._chunk_first = index
+            times = np.arange(index, index + max(1, round(1.0 / self._slice_s)), dtype=np.float64) * self._slice_s
+            self._chunk = self._motion.at(times)
+            offset = 0
+        row: Array = self._chunk[offset]
+        return row

@@ -1,0 +1,52 @@
+"""How fast simulated time may run: real time, or as fast as the machine and the host on the serial port can
+go.
+
+As fast as possible has three exceptions: the host's flashing tool has time-outs on the wall clock, so the
+bootloader runs in real time while it is spoken to; a bench nobody is connected to idles in real time; and
+time stands still while the host has not yet read what the board sent, so that it never finds itself seconds
+behind the board.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+UNREAD_LIMIT = 256  # bytes: about eight samples of telemetry
+GIVE_UP_S = 0.05  # a lag beyond this (the machine was busy) is not made up for
+
+
+def wants_real_time(fast: bool, connected: bool, in_bootloader: bool, host_baud: float, bootloader_baud: float) -> bool:
+    """Whether simulated time must keep to the wall clock now."""
+    return not fast or not connected or (in_bootloader and host_baud == bootloader_baud)
+
+
+class Pacer:
+    """Keeps simulated time from running ahead of the wall clock; a slow machine falls behind, and that is counted."""
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic, wait: Callable[[float], None] = time.sleep) -> None:
+        self._clock = clock
+        self._wait = wait
+        self._origin: tuple[float, float] | None = None  # simulated and wall time that belong together
+        self.lag_s = 0.0
+
+    def pace(self, simulated_s: float, real_time: bool) -> None:
+        """Call after every piece of simulation with the simulated time reached."""
+        if not real_time:
+            self._origin = None
+            return
+        now = self._clock()
+        if self._origin is None:
+            self._origin = (simulated_s, now)
+            return
+        ahead = (simulated_s - self._origin[0]) - (now - self._origin[1])
+        if ahead > 0.0:
+            self._wait(ahead)
+        elif ahead < -GIVE_UP_S:
+            self.lag_s -= ahead
+            self._origin = (simulated_s, now)
+
+    def drain(self, unread: Callable[[], int], keep_waiting: Callable[[], bool]) -> None:
+        """Hold simulated time until the host has read enough; `keep_waiting` ends the wait when the host is gone."""
+        while unread() > UNREAD_LIMIT and keep_waiting():
+            self._wait(0.0002)

@@ -1,0 +1,127 @@
+"""The host's end of the serial line: a pseudo-terminal that behaves like the USB port of an Arduino.
+
+An Arduino resets when its port is opened (the DTR edge). A pseudo-terminal has no modem lines, so opening and
+closing are watched with inotify on its path; the bench keeps one descriptor of its own open, so that the port
+outlives its users.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import errno
+import fcntl
+import os
+import select
+import struct
+import termios
+import tty
+from collections.abc import Sequence
+from pathlib import Path
+
+from greywhale.errors import UserError, because
+
+IN_OPEN = 0x20
+IN_CLOSE = 0x08 | 0x10
+EVENT = struct.Struct("iIII")  # struct inotify_event, without a name: the watch is on a file
+TCGETS2 = 0x802C542A  # tells any speed, where tcgetattr knows the classic ones only
+SPEED_OFFSET = 40  # c_ospeed in struct termios2
+
+
+class SerialPort:
+    """One pty: who has it open, at which speed, and the bytes both ways."""
+
+    def __init__(self, links: Sequence[Path] = ()) -> None:
+        self._master, self._slave = os.openpty()
+        tty.setraw(self._slave)
+        os.set_blocking(self._master, False)
+        self.path = os.ttyname(self._slave)
+        self._notify = _watch(self.path)
+        self._users = 0
+        self._links: list[Path] = []
+        try:
+            for link in links:
+                self._make_link(link)
+                self._links.append(link)
+        except UserError:
+            self.close()
+            raise
+
+    def poll(self) -> bool:
+        """Take note of opens and closes since the last call; true if the port was opened by its first user."""
+        try:
+            events = os.read(self._notify, 4096)
+        except BlockingIOError:
+            return False
+        opened = False
+        for offset in range(0, len(events), EVENT.size):
+            _, mask, _, _ = EVENT.unpack_from(events, offset)
+            if mask & IN_OPEN:
+                opened |= self._users == 0
+                self._users += 1
+            elif mask & IN_CLOSE:
+                self._users = max(0, self._users - 1)
+        return opened
+
+    @property
+    def connected(self) -> bool:
+        return self._users > 0
+
+    def baud(self) -> float:
+        """The speed the host has set."""
+        settings = fcntl.ioctl(self._slave, TCGETS2, bytes(44))
+        return float(struct.unpack_from("I", settings, SPEED_OFFSET)[0])
+
+    def read(self) -> bytes:
+        """What the host has written."""
+        try:
+            return os.read(self._master, 4096)
+        except BlockingIOError:
+            return b""
+
+    def write(self, data: bytes) -> int:
+        """Hand `data` to the host; what the system's queue has no room for is lost. Returns how many bytes fitted."""
+        try:
+            return os.write(self._master, data)
+        except BlockingIOError:
+            return 0
+
+    def unread(self) -> int:
+        """How many bytes the host has not read yet."""
+        count: int = struct.unpack("i", fcntl.ioctl(self._slave, termios.FIONREAD, bytes(4)))[0]
+        return count
+
+    def discard_unread(self) -> None:
+        termios.tcflush(self._slave, termios.TCIFLUSH)
+
+    def wait(self, timeout_s: float) -> None:
+        """Sleep, but wake at once when somebody opens, closes or writes."""
+        select.select([self._notify, self._master], [], [], max(0.0, timeout_s))
+
+    def close(self) -> None:
+        for link in self._links:
+            if link.is_symlink() and os.readlink(link) == self.path:
+                link.unlink()
+        for descriptor in (self._notify, self._slave, self._master):
+            os.close(descriptor)
+
+    def _make_link(self, link: Path) -> None:
+        if link.exists() and not link.is_symlink():
+            raise UserError(f"{link}: exists and is not a link; choose another name for the port.", 2)
+        partial = link.with_name(f".{link.name}.{os.getpid()}")
+        try:
+            partial.symlink_to(self.path)
+            partial.replace(link)
+        except OSError as error:
+            raise UserError(f"{link}: the link to the port cannot be made: {because(error)}.") from None
+
+
+def _watch(path: str) -> int:
+    """An inotify descriptor that tells each open and close of `path`."""
+    libc = ctypes.CDLL(None, use_errno=True)
+    descriptor: int = libc.inotify_init1(os.O_NONBLOCK | os.O_CLOEXEC)
+    if descriptor < 0 or libc.inotify_add_watch(descriptor, os.fsencode(path), IN_OPEN | IN_CLOSE) < 0:
+        number = ctypes.get_errno() or errno.ENOSYS
+        raise UserError(
+            f"{path}: cannot be watched (inotify: {os.strerror(number).lower()}); raise fs.inotify.max_user_instances."
+        )
+    return descriptor

@@ -1,0 +1,105 @@
+"""Runs a bench behind a serial port until it is told to end; used by `greywhale sim` and `python -m
+greywhale_sim`.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import select
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from greywhale.errors import UserError, because
+from greywhale.link.ports import bench_directory
+from greywhale_sim import commands
+from greywhale_sim.assemble import BenchOptions, build_bench, wiring_of
+from greywhale_sim.serial_port import SerialPort
+from greywhale_sim.server import Server
+
+TURNS_PER_COMMAND = 16  # turns between two looks at the standard input
+
+
+@dataclass(frozen=True)
+class ServeOptions(BenchOptions):
+    """A bench and how it is offered."""
+
+    speed: str = "1"  # "1" real time, "max" as fast as possible
+    link: Path | None = None  # a lasting name for the port
+    control: bool = field(default=False)  # take commands from standard input; its end ends the bench
+
+
+@contextmanager
+def running(options: ServeOptions) -> Iterator[Server]:
+    """A server whose port is open; cleaned up whatever happens."""
+    if options.speed not in ("1", "max"):
+        raise UserError(f'speed "{options.speed}" is not known; say 1 (real time) or max.', 2)
+    bench = build_bench(options)
+    port = SerialPort(_links(options))
+    server = Server(
+        bench, bench.board, wiring_of(options.board), port, fast=options.speed == "max", eeprom=options.eeprom
+    )
+    try:
+        yield server
+    finally:
+        server.close()
+
+
+def serve(options: ServeOptions, on_ready: Callable[[str], None]) -> None:
+    """Serve until Ctrl-C (KeyboardInterrupt is taken as the normal end) or, with control, the end of standard input."""
+    with running(options) as server:
+        on_ready(server.port.path if options.link is None else str(options.link))
+        control = Control(server) if options.control else None
+        try:
+            while control is None or control.alive:
+                for _ in range(TURNS_PER_COMMAND):
+                    server.turn()
+                if control is not None:
+                    control.look()
+        except KeyboardInterrupt:
+            return
+
+
+def _links(options: ServeOptions) -> list[Path]:
+    """Names of the port: where `greywhale ports` looks for benches, and the one asked for."""
+    directory = bench_directory()
+    try:
+        directory.mkdir(mode=0o700, exist_ok=True)
+    except OSError as error:
+        raise UserError(f"{directory}: cannot be made: {because(error)}.") from None
+    announced = directory / f"{options.board}-{os.getpid()}"
+    return [announced] if options.link is None else [announced, options.link]
+
+
+class Control:
+    """Commands from standard input, answers as JSON lines on standard output."""
+
+    def __init__(self, server: Server) -> None:
+        self._server = server
+        self._partial = b""
+        self.alive = True
+
+    def look(self) -> None:
+        """Carry out what has arrived; never waits."""
+        descriptor = sys.stdin.fileno()
+        while select.select([descriptor], [], [], 0)[0]:
+            data = os.read(descriptor, 4096)
+            if not data:
+                self.alive = False
+                return
+            *lines, self._partial = (self._partial + data).split(b"\n")
+            for text in lines:
+                self._answer(text.decode("utf-8", "replace"))
+
+    def _answer(self, text: str) -> None:
+        if text.strip() == "quit":
+            self.alive = False
+            return
+        try:
+            answer = commands.run(self._server, text)
+        except UserError as error:
+            answer = {"error": error.message}
+        print(json.dumps(answer), flush=True)

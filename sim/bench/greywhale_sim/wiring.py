@@ -1,0 +1,98 @@
+"""Which wire of the arm sits on which pin of the board: one table per board, the same as in README.md.
+
+Leader potentiometers are on A0..A3 and follower potentiometers on A4..A7 of both boards.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+ARDUINO_BOOTLOADERS = Path("/usr/share/arduino/hardware/arduino/avr/bootloaders")  # Debian package arduino-core-avr
+
+
+@dataclass(frozen=True)
+class Pin:
+    """A digital pin: the Arduino's number and the chip's port and bit."""
+
+    arduino: str
+    port: str
+    bit: int
+
+
+@dataclass(frozen=True)
+class Motor:
+    """The two wires of one motor driver: PWM (compare output `channel` of `timer`) and direction."""
+
+    pwm_arduino: str
+    timer: int
+    channel: str
+    direction: Pin
+
+
+@dataclass(frozen=True)
+class Wiring:
+    """One board and what is connected to it."""
+
+    name: str
+    title: str
+    mcu: str
+    environment: str  # PlatformIO's
+    bootloader: Path
+    bootloader_baud: int
+    motors: tuple[Motor, Motor, Motor, Motor]
+    enable: Pin  # the drivers' enable inputs, high = motors powered; an external pull-down keeps them off at reset
+    led: Pin
+
+
+MEGA = Wiring(
+    name="mega",
+    title="Arduino Mega 2560",
+    mcu="atmega2560",
+    environment="megaatmega2560",
+    bootloader=ARDUINO_BOOTLOADERS / "stk500v2" / "stk500boot_v2_mega2560.hex",
+    bootloader_baud=115200,
+    motors=(
+        Motor("D5", 3, "A", Pin("D22", "A", 0)),
+        Motor("D6", 4, "A", Pin("D24", "A", 2)),
+        Motor("D7", 4, "B", Pin("D26", "A", 4)),
+        Motor("D8", 4, "C", Pin("D28", "A", 6)),
+    ),
+    enable=Pin("D9", "H", 6),
+    led=Pin("D13", "B", 7),
+)
+
+NANO = Wiring(
+    name="nano",
+    title="Arduino Nano (ATmega328P)",
+    mcu="atmega328p",
+    environment="nanoatmega328",
+    bootloader=ARDUINO_BOOTLOADERS / "optiboot" / "optiboot_atmega328.hex",
+    bootloader_baud=115200,
+    motors=(
+        Motor("D9", 1, "A", Pin("D2", "D", 2)),
+        Motor("D10", 1, "B", Pin("D4", "D", 4)),
+        Motor("D11", 2, "A", Pin("D7", "D", 7)),
+        Motor("D3", 2, "B", Pin("D8", "B", 0)),
+    ),
+    enable=Pin("D12", "B", 4),
+    led=Pin("D13", "B", 5),
+)
+
+BOARDS: Mapping[str, Wiring] = {wiring.name: wiring for wiring in (MEGA, NANO)}
+
+
+def markdown_table() -> str:
+    """The wiring of every board, as README.md shows it."""
+    boards = tuple(BOARDS.values())
+    joints = ("base yaw", "shoulder pitch", "wrist pitch", "wrist roll")
+    rows = [["wire", *(board.title for board in boards)], ["---"] * (len(boards) + 1)]
+    for side, first in (("leader", 0), ("follower", 4)):
+        rows += [[f"{side} potentiometer {joint}", *([f"A{first + joint}"] * len(boards))] for joint in range(4)]
+    for joint, name in enumerate(joints):
+        rows.append([f"motor {joint} ({name}), PWM", *(board.motors[joint].pwm_arduino for board in boards)])
+        rows.append([f"motor {joint}, direction", *(board.motors[joint].direction.arduino for board in boards)])
+    rows.append(["enable of all drivers", *(board.enable.arduino for board in boards)])
+    rows.append(["state LED (on the board)", *(board.led.arduino for board in boards)])
+    return "\n".join("| " + " | ".join(row) + " |" for row in rows)

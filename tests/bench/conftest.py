@@ -1,0 +1,138 @@
+"""Stand-ins for the board and the arm: the bench's own rules are tested without a processor."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import pytest
+
+from greywhale.trajectory import Trajectory
+from greywhale_sim.bench import SLICE_S, Bench
+from greywhale_sim.leader import LeaderPlayer
+from greywhale_sim.wiring import MEGA
+
+
+@dataclass
+class FakeStats:
+    resets: int = 0
+    eeprom_writes: int = 0
+    watchdog_resets: int = 0
+    rx_overruns: int = 0
+
+
+@dataclass
+class FakeBoard:
+    """Pins as the test sets them; remembers what the bench did to it."""
+
+    cycle: int = 0
+    pc: int = 0
+    baud: float = 1e6
+    in_bootloader: bool = False
+    result: int = 0
+    registered: list[tuple[object, ...]] = field(default_factory=list)
+    pins: np.ndarray = field(default_factory=lambda: np.zeros(9))
+    millivolts: list[np.ndarray] = field(default_factory=list)
+    received: bytearray = field(default_factory=bytearray)  # from the host
+    to_send: bytearray = field(default_factory=bytearray)  # to the host
+    events: list[str] = field(default_factory=list)
+    memory: bytes = bytes(4096)
+    counters: FakeStats = field(default_factory=FakeStats)
+
+    def add_duty_output(self, timer: int, channel: str) -> int:
+        self.registered.append((timer, channel))
+        return len(self.registered) - 1
+
+    def add_pin_output(self, port: str, bit: int) -> int:
+        self.registered.append((port, bit))
+        return len(self.registered) - 1
+
+    def outputs(self) -> np.ndarray:
+        return self.pins
+
+    def set_millivolts(self, millivolts: np.ndarray) -> None:
+        self.millivolts.append(millivolts.copy())
+
+    def run_until(self, cycle: int) -> int:
+        self.cycle = cycle + 1  # the last instruction ends a little late, as on the real thing
+        return self.result
+
+    def uart_send(self, data: bytes) -> None:
+        self.events.append("bytes")
+        self.received += data
+
+    def uart_receive(self) -> bytes:
+        data = bytes(self.to_send)
+        self.to_send.clear()
+        return data
+
+    def reset(self) -> None:
+        self.events.append("reset")
+
+    def power_off(self) -> None:
+        self.events.append("off")
+
+    def power_on(self) -> None:
+        self.events.append("on")
+
+    def stats(self) -> FakeStats:
+        return self.counters
+
+    def eeprom(self) -> bytes:
+        return self.memory
+
+
+class FakePlant:
+    """Integrates voltage to angle: 1 rad/s a volt."""
+
+    def __init__(self) -> None:
+        self.angles = np.zeros(4)
+        self.voltages: list[list[float]] = []
+
+    def step(self, voltages: np.ndarray, dt: float) -> np.ndarray:
+        self.voltages.append(voltages.tolist())
+        self.angles = self.angles + voltages * dt
+        return self.angles
+
+    def reset(self, angles: np.ndarray) -> None:
+        self.angles = np.array(angles)
+
+
+class FakePots:
+    """1 V a radian around 2.5 V."""
+
+    def __init__(self) -> None:
+        self.wirings: dict[int, object] = {}
+
+    def set_wiring(self, joint: int, wiring: object) -> None:
+        self.wirings[joint] = wiring
+
+    def millivolts(self, angles: np.ndarray) -> np.ndarray:
+        return np.asarray(2500.0 + 1000.0 * angles)
+
+
+def ramp(seconds: float = 1.0) -> Trajectory:
+    """Every joint from its own start (0, 0.1, 0.2, 0.3 rad) 1 rad up at constant speed."""
+    rows = np.arange(round(seconds * 100) + 1) / (100 * seconds)
+    return Trajectory(rows * seconds, rows[:, None] + np.array([0.0, 0.1, 0.2, 0.3]))
+
+
+@pytest.fixture
+def motion() -> Trajectory:
+    return ramp()
+
+
+@pytest.fixture
+def board() -> FakeBoard:
+    return FakeBoard()
+
+
+@pytest.fixture
+def plant() -> FakePlant:
+    return FakePlant()
+
+
+@pytest.fixture
+def bench(board: FakeBoard, plant: FakePlant, motion: Trajectory) -> Bench:
+    player = LeaderPlayer(motion, SLICE_S)
+    return Bench(board, MEGA, plant, player, FakePots(), FakePots(), supply_v=12.0)

@@ -1,0 +1,98 @@
+"""Lock step: what the driver pins do to the arm, what the arm does to the converter, and determinism."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from greywhale_sim.bench import CRASHED, SLICE_CYCLES, Bench, CrashError
+
+ENABLE, DUTY, DIRECTION = 0, slice(1, 5), slice(5, 9)
+
+
+def test_outputs_are_registered_in_the_order_they_are_read(board: Any, bench: Bench) -> None:
+    assert board.registered == [
+        ("H", 6),
+        *((3, "A"), (4, "A"), (4, "B"), (4, "C")),
+        *(("A", 0), ("A", 2), ("A", 4), ("A", 6)),
+    ]
+
+
+def test_run_takes_whole_slices_and_never_drifts(board: Any, bench: Bench) -> None:
+    bench.run(0.1)
+    assert board.cycle == 400 * SLICE_CYCLES + 1
+    bench.run_slices(1)
+    assert board.cycle == 401 * SLICE_CYCLES + 1
+    assert len(board.millivolts) == 401
+
+
+def test_sign_magnitude_drive(board: Any, bench: Bench) -> None:
+    board.pins[ENABLE] = 1
+    board.pins[DUTY] = [0.5, 1.0, 0.25, 0.0]
+    board.pins[DIRECTION] = [1, 0, 0, 1]
+    bench.run_slices(2)
+    assert bench.voltages.tolist() == [6.0, -12.0, -3.0, 0.0]
+    assert bench.motors_enabled
+
+
+def test_drivers_off_means_no_voltage_whatever_the_duty(board: Any, bench: Bench) -> None:
+    board.pins[ENABLE] = 1
+    board.pins[DUTY] = 0.5
+    bench.run_slices(1)
+    board.pins[ENABLE] = 0
+    bench.run_slices(1)
+    assert bench.voltages.tolist() == [0.0] * 4
+    assert not bench.motors_enabled
+
+
+def test_potentiometers_reach_their_channels(board: Any, bench: Bench) -> None:
+    bench.run_slices(1)
+    np.testing.assert_allclose(board.millivolts[-1], [2500, 2600, 2700, 2800] * 2)
+    board.pins[ENABLE] = 1
+    board.pins[DUTY] = [1.0, 0.0, 0.0, 0.0]
+    board.pins[DIRECTION] = 1
+    bench.run(0.1)
+    moved = board.millivolts[-1]
+    assert moved[4] > 3000
+    assert moved[:4].tolist() == [2500, 2600, 2700, 2800]
+    assert moved[5] == 2600
+
+
+def test_follower_is_held_until_enabled_then_free(board: Any, plant: Any, bench: Bench) -> None:
+    bench.run(0.01)
+    assert plant.voltages == []
+    assert plant.angles.tolist() == pytest.approx([0.0, 0.1, 0.2, 0.3])
+    board.pins[ENABLE] = 1
+    bench.run(0.01)
+    assert len(plant.voltages) == 39  # 40 slices, and the first is needed to see the enable pin
+
+
+def test_any_object_with_step_is_a_plant(board: Any, bench: Bench) -> None:
+    class Stuck:
+        def step(self, voltages: np.ndarray, dt: float) -> np.ndarray:
+            return np.full(4, 0.7)
+
+    bench.plant = Stuck()
+    board.pins[ENABLE] = 1
+    bench.run(0.01)
+    np.testing.assert_allclose(board.millivolts[-1][4:], 3200.0)
+
+
+def test_a_crash_is_told_with_its_address(board: Any, bench: Bench) -> None:
+    board.result = CRASHED
+    board.pc = 0x1234
+    with pytest.raises(CrashError, match="0x01234"):
+        bench.run(0.01)
+
+
+def test_without_power_the_arm_gets_no_voltage_and_the_board_no_time(board: Any, plant: Any, bench: Bench) -> None:
+    board.pins[ENABLE] = 1
+    board.pins[DUTY] = 1.0
+    bench.run(0.01)
+    cycle = board.cycle
+    plant.voltages.clear()
+    bench.coast(10)
+    assert board.cycle == cycle
+    assert plant.voltages == [[0.0] * 4] * 10

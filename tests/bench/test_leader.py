@@ -1,0 +1,76 @@
+"""The person at the bench: when the leader moves, and when the follower is held."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from greywhale.trajectory import Trajectory
+from greywhale_sim.leader import BRING_BACK_S, LET_GO_S, LeaderPlayer
+
+SLICE = 0.01
+START = 1.0
+FALLEN = np.array([-1.0, -1.0, -1.0, -1.0])
+
+
+def advance(player: LeaderPlayer, seconds: float, enabled: bool, follower: np.ndarray = FALLEN) -> None:
+    for _ in range(round(seconds / SLICE)):
+        player.step(enabled, follower)
+
+
+def test_holds_both_arms_at_the_first_pose_until_enabled(motion: Trajectory) -> None:
+    player = LeaderPlayer(motion, SLICE, START)
+    advance(player, 30.0, enabled=False)
+    np.testing.assert_array_equal(player.angles, motion.angles[0])
+    np.testing.assert_array_equal(player.hold, motion.angles[0])
+
+
+def test_lets_the_follower_go_at_once_and_moves_after_the_soft_start(motion: Trajectory) -> None:
+    player = LeaderPlayer(motion, SLICE, START)
+    player.step(True, FALLEN)
+    assert player.hold is None
+    advance(player, START - SLICE, enabled=True)
+    np.testing.assert_array_equal(player.angles, motion.angles[0])
+    advance(player, 0.5, enabled=True)
+    np.testing.assert_allclose(player.angles, motion.angles[0] + 0.5, atol=1e-9)
+    assert player.plays == 0
+
+
+def test_plays_once_and_holds_the_last_pose(motion: Trajectory) -> None:
+    player = LeaderPlayer(motion, SLICE, START)
+    advance(player, START + motion.duration_s + 0.05, enabled=True)
+    assert player.finished
+    assert player.plays == 1
+    advance(player, 60.0, enabled=True)
+    assert player.plays == 1
+    np.testing.assert_allclose(player.angles, motion.angles[-1])
+
+
+def test_brings_both_arms_back_after_the_motors_went_off_and_plays_again(motion: Trajectory) -> None:
+    player = LeaderPlayer(motion, SLICE, START)
+    advance(player, START + motion.duration_s + 0.05, enabled=True)
+    advance(player, LET_GO_S, enabled=False)
+    assert player.hold is None, "a fall after a stop must be visible"
+    np.testing.assert_allclose(player.angles, motion.angles[-1])
+    advance(player, BRING_BACK_S / 2, enabled=False)
+    assert player.hold is not None
+    np.testing.assert_allclose(player.hold, (FALLEN + motion.angles[0]) / 2)
+    np.testing.assert_allclose(player.angles, (motion.angles[-1] + motion.angles[0]) / 2)
+    advance(player, BRING_BACK_S / 2 + SLICE, enabled=False)
+    np.testing.assert_allclose(player.hold, motion.angles[0])
+    advance(player, START + motion.duration_s + 0.05, enabled=True)
+    assert player.plays == 2
+
+
+def test_a_short_break_starts_the_motion_over_from_where_the_hand_is(motion: Trajectory) -> None:
+    player = LeaderPlayer(motion, SLICE, START)
+    advance(player, START + 0.5, enabled=True)
+    advance(player, LET_GO_S / 2, enabled=False)
+    advance(player, START, enabled=True)
+    np.testing.assert_allclose(player.angles, motion.angles[0], atol=0.02)
+
+
+def test_a_long_motion_is_read_in_pieces() -> None:
+    minutes = Trajectory(np.array([0.0, 600.0]), np.array([[0.0] * 4, [1.2] * 4]))
+    player = LeaderPlayer(minutes, SLICE, START)
+    advance(player, START + 301.0, enabled=True)
+    np.testing.assert_allclose(player.angles, 301.0 / 600.0 * 1.2, atol=1e-6)

@@ -1,0 +1,69 @@
+"""A serial line with the wrong speed or with noise."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from greywhale.errors import UserError
+from greywhale_sim.line import Noise, resample
+
+TEXT = bytes(range(256)) * 2
+
+
+@given(st.binary(max_size=60), st.floats(0.97, 1.03))
+def test_a_few_percent_off_is_no_harm(data: bytes, ratio: float) -> None:
+    assert resample(data, 1e6, 1e6 * ratio) == data
+
+
+@pytest.mark.parametrize("ratio", [0.9, 1.1, 115200 / 1e6, 1e6 / 115200, 57600 / 115200, 2.0])
+def test_wrong_speed_garbles(ratio: float) -> None:
+    assert resample(TEXT, 1e6, 1e6 * ratio) != TEXT
+
+
+def test_known_garbling() -> None:
+    """Worked by hand, bit by bit."""
+    # 0x00: nine low bits are eighteen at a receiver twice as fast, which takes the first nine for a byte 0.
+    assert resample(b"\x00", 1.0, 2.0)[0] == 0x00
+    # 0xFF: only the start bit is low, two receiver bits long: start, then one low data bit.
+    assert resample(b"\xff", 1.0, 2.0) == b"\xfe"
+    # A receiver half as fast looks 1.5 of its bits after the edge, which is in the high data bits already.
+    assert resample(b"\xff", 2.0, 1.0) == b"\xff"
+
+
+def test_a_faster_receiver_sees_more_bytes_a_slower_one_fewer() -> None:
+    assert len(resample(bytes(40), 1e6, 4e6)) > 40
+    assert len(resample(bytes(40), 4e6, 1e6)) < 40
+
+
+def test_no_baud_rate_no_bytes() -> None:
+    assert resample(b"hello", 0.0, 1e6) == b"" == resample(b"hello", 1e6, 0.0)
+
+
+def test_noise_flips_single_bits_and_loses_bytes_reproducibly() -> None:
+    noise, again = Noise(seed=7), Noise(seed=7)
+    data = bytes(10_000)
+    assert noise(data) == data
+    assert again(data) == data
+    noise.set("flip", 0.05)
+    again.set("flip", 0.05)
+    damaged = noise(data)
+    assert damaged == again(data)
+    assert len(damaged) == len(data)
+    changed = [byte for byte in damaged if byte]
+    assert 400 < len(changed) < 600
+    assert all(byte.bit_count() == 1 for byte in changed)
+    noise.set("flip", 0.0)
+    noise.set("lose", 0.1)
+    assert 8_800 < len(noise(data)) < 9_200
+
+
+@pytest.mark.parametrize(
+    ("what", "probability"), [("burn", 0.1), ("flip", 1.1), ("lose", -0.1), ("flip", float("nan"))]
+)
+def test_bad_settings_are_refused(what: str, probability: float) -> None:
+    noise = Noise()
+    with pytest.raises(UserError):
+        noise.set(what, probability)
+    assert noise.flip == noise.lose == 0.0

@@ -1,0 +1,103 @@
+"""The rules of simulated against wall-clock time, with a clock that the test moves."""
+
+from __future__ import annotations
+
+import pytest
+
+from greywhale_sim.pacing import GIVE_UP_S, UNREAD_LIMIT, Pacer, wants_real_time
+
+
+class Clock:
+    """Wall time; waiting is the only thing that moves it, besides the test."""
+
+    def __init__(self) -> None:
+        self.now = 100.0
+        self.waits: list[float] = []
+
+    def __call__(self) -> float:
+        return self.now
+
+    def wait(self, seconds: float) -> None:
+        self.waits.append(seconds)
+        self.now += seconds
+
+
+@pytest.fixture
+def clock() -> Clock:
+    return Clock()
+
+
+@pytest.fixture
+def pacer(clock: Clock) -> Pacer:
+    return Pacer(clock, clock.wait)
+
+
+def test_real_time_waits_for_the_wall_clock(clock: Clock, pacer: Pacer) -> None:
+    for millisecond in range(1001):
+        pacer.pace(5.0 + millisecond / 1000, real_time=True)
+        clock.now += 0.0001  # the work itself
+    assert clock.now == pytest.approx(101.0001, abs=1e-6)
+    assert pacer.lag_s == 0.0
+
+
+def test_as_fast_as_possible_never_waits(clock: Clock, pacer: Pacer) -> None:
+    for millisecond in range(1000):
+        pacer.pace(millisecond / 1000, real_time=False)
+    assert clock.waits == []
+
+
+def test_time_spent_fast_is_not_waited_for_afterwards(clock: Clock, pacer: Pacer) -> None:
+    pacer.pace(0.0, real_time=True)
+    pacer.pace(50.0, real_time=False)
+    pacer.pace(50.0, real_time=True)
+    pacer.pace(50.010, real_time=True)
+    assert sum(clock.waits) == pytest.approx(0.010)
+
+
+def test_a_short_lag_is_made_up_for_a_long_one_is_counted(clock: Clock, pacer: Pacer) -> None:
+    pacer.pace(0.0, real_time=True)
+    clock.now += 0.8 * GIVE_UP_S
+    pacer.pace(0.001, real_time=True)
+    pacer.pace(GIVE_UP_S, real_time=True)
+    assert clock.now == pytest.approx(100.0 + GIVE_UP_S)
+    clock.now += 3.0
+    pacer.pace(GIVE_UP_S, real_time=True)
+    assert pacer.lag_s == pytest.approx(3.0)
+    waited = len(clock.waits)
+    pacer.pace(GIVE_UP_S + 0.001, real_time=True)
+    assert clock.waits[waited:] == pytest.approx([0.001]), "no catching up after a long lag"
+
+
+def test_time_stands_still_until_the_host_has_read(clock: Clock, pacer: Pacer) -> None:
+    queue = [UNREAD_LIMIT + 500]
+
+    def unread() -> int:
+        queue[0] -= 100
+        return queue[0]
+
+    pacer.drain(unread, lambda: True)
+    assert UNREAD_LIMIT - 100 < queue[0] <= UNREAD_LIMIT
+    assert len(clock.waits) == 4
+
+
+def test_a_host_that_goes_away_ends_the_wait(clock: Clock, pacer: Pacer) -> None:
+    answers = iter([True, True, False])
+    pacer.drain(lambda: 4096, lambda: next(answers))
+    assert len(clock.waits) == 2
+
+
+@pytest.mark.parametrize(
+    ("fast", "connected", "in_bootloader", "host_baud", "expected"),
+    [
+        (False, True, False, 1e6, True),  # speed 1 is real time, whatever happens
+        (True, True, False, 1e6, False),
+        (True, False, False, 1e6, True),  # nobody there: idle without burning the processor
+        (True, True, True, 115200.0, True),  # avrdude's time-outs run on the wall clock
+        (True, True, True, 1e6, False),  # the bootloader times out unheard while our host waits
+        (True, True, False, 115200.0, False),  # a firmware at the bootloader's speed
+    ],
+)
+def test_when_real_time_is_kept(
+    fast: bool, connected: bool, in_bootloader: bool, host_baud: float, expected: bool
+) -> None:
+    assert wants_real_time(fast, connected, in_bootloader, host_baud, 115200.0) is expected

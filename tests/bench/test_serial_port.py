@@ -1,0 +1,108 @@
+"""The pseudo-terminal as an Arduino's USB port: who opens it, at which speed, and what is lost."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import serial
+
+from greywhale.errors import UserError
+from greywhale_sim.serial_port import SerialPort
+
+
+@pytest.fixture
+def port() -> Iterator[SerialPort]:
+    port = SerialPort()
+    yield port
+    port.close()
+
+
+def test_first_open_is_told_once(port: SerialPort) -> None:
+    assert not port.poll()
+    assert not port.connected
+    with serial.Serial(port.path, 1_000_000):
+        assert port.poll()
+        assert port.connected
+        assert not port.poll()
+        assert port.connected
+        with serial.Serial(port.path, 1_000_000):
+            assert not port.poll(), "a second user opens no line that is open already"
+        assert not port.poll()
+        assert port.connected
+    assert not port.poll()
+    assert not port.connected
+
+
+def test_a_close_and_open_between_two_looks_is_an_open(port: SerialPort) -> None:
+    with serial.Serial(port.path):
+        assert port.poll()
+    with serial.Serial(port.path):
+        assert port.poll()
+        assert port.connected
+
+
+def test_a_killed_host_is_a_closed_port(port: SerialPort) -> None:
+    code = f"import serial, sys; s = serial.Serial({port.path!r}); print('open', flush=True); sys.stdin.read()"
+    with subprocess.Popen([sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as host:
+        assert host.stdout is not None
+        assert host.stdout.readline() == b"open\n"
+        assert port.poll()
+        assert port.connected
+        host.kill()
+        host.wait()
+    port.poll()
+    assert not port.connected
+
+
+@pytest.mark.parametrize("baud", [115200, 1_000_000, 57600, 250_000])
+def test_host_speed_is_seen(port: SerialPort, baud: int) -> None:
+    with serial.Serial(port.path, baud):
+        assert port.baud() == baud
+
+
+def test_all_bytes_pass_both_ways_unchanged(port: SerialPort) -> None:
+    everything = bytes(range(256))
+    with serial.Serial(port.path, 1_000_000, timeout=5) as host:
+        host.write(everything)
+        assert port.read() == everything
+        assert port.read() == b""
+        assert port.write(everything) == 256
+        assert port.unread() == 256
+        assert host.read(256) == everything
+        assert port.unread() == 0
+
+
+def test_unread_bytes_can_be_discarded(port: SerialPort) -> None:
+    with serial.Serial(port.path, timeout=0) as host:
+        port.write(b"old news")
+        port.discard_unread()
+        assert port.unread() == 0
+        assert host.read(10) == b""
+
+
+def test_a_full_queue_loses_bytes_and_blocks_nobody(port: SerialPort) -> None:
+    fitted = [port.write(bytes(1000)) for _ in range(200)]
+    assert fitted[0] == 1000
+    assert fitted[-1] < 1000
+
+
+def test_link_names_the_port_while_it_lives(tmp_path: Path) -> None:
+    link = tmp_path / "bench"
+    link.symlink_to("/dev/pts/999999")  # left behind by a bench that was killed
+    port = SerialPort(links=(link,))
+    assert os.readlink(link) == port.path
+    port.close()
+    assert not link.is_symlink()
+
+
+def test_link_replaces_no_file(tmp_path: Path) -> None:
+    precious = tmp_path / "thesis.tex"
+    precious.write_text("text")
+    with pytest.raises(UserError, match="not a link"):
+        SerialPort(links=(precious,))
+    assert precious.read_text() == "text"

@@ -1,0 +1,191 @@
+"""Bench, serial port and wall clock together, with a stand-in for the board."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import serial
+
+from greywhale.arm import Wiring
+from greywhale.errors import UserError
+from greywhale_sim import commands
+from greywhale_sim.bench import Bench
+from greywhale_sim.pacing import Pacer
+from greywhale_sim.serial_port import SerialPort
+from greywhale_sim.server import Server
+from greywhale_sim.wiring import MEGA
+
+
+class Wall:
+    """A wall clock that only waiting moves."""
+
+    def __init__(self) -> None:
+        self.now = 0.0
+
+    def wait(self, seconds: float) -> None:
+        self.now += seconds
+
+
+@pytest.fixture
+def wall() -> Wall:
+    return Wall()
+
+
+@pytest.fixture
+def eeprom(tmp_path: Path) -> Path:
+    return tmp_path / "eeprom.bin"
+
+
+@pytest.fixture
+def server(board: Any, bench: Bench, wall: Wall, eeprom: Path) -> Iterator[Server]:
+    port = SerialPort()
+    server = Server(bench, board, MEGA, port, fast=True, eeprom=eeprom, pacer=Pacer(lambda: wall.now, wall.wait))
+    yield server
+    server.close()
+
+
+def test_opening_resets_the_board_before_the_first_byte(board: Any, server: Server) -> None:
+    server.turn()
+    with serial.Serial(server.port.path, 1_000_000) as host:
+        host.write(b"first")
+        server.turn()
+        assert board.events == ["reset", "bytes"]
+        assert bytes(board.received) == b"first"
+        host.write(b"second")
+        server.turn()
+        assert board.events == ["reset", "bytes", "bytes"]
+    server.turn()
+    with serial.Serial(server.port.path, 1_000_000):
+        server.turn()
+        assert board.events[-1] == "reset"
+        assert server.resets_by_host == 2
+
+
+def test_last_words_before_a_close_are_delivered(board: Any, server: Server) -> None:
+    with serial.Serial(server.port.path, 1_000_000) as host:
+        server.turn()
+        host.write(b"stop")
+    server.turn()
+    assert bytes(board.received) == b"stop"
+
+
+def test_a_new_host_hears_nothing_from_before(board: Any, server: Server) -> None:
+    board.to_send += b"nobody hears this"
+    server.turn()
+    with serial.Serial(server.port.path, 1_000_000, timeout=0) as host:
+        server.turn()
+        board.to_send += b"hello"
+        server.turn()
+        assert host.read(100) == b"hello"
+        board.to_send += b"left unread"
+        server.turn()
+    server.turn()
+    with serial.Serial(server.port.path, 1_000_000, timeout=0) as host:
+        server.turn()
+        assert host.read(100) == b""
+
+
+def test_a_wrong_speed_garbles_both_ways(board: Any, server: Server) -> None:
+    with serial.Serial(server.port.path, 115_200, timeout=0) as host:
+        host.write(b"hello")
+        board.to_send += b"hello"
+        server.turn()
+        assert bytes(board.received) != b"hello"
+        assert host.read(100) != b"hello"
+
+
+def test_nobody_connected_keeps_real_time_and_a_host_does_not(server: Server, wall: Wall) -> None:
+    for _ in range(100):
+        server.turn()
+    assert wall.now == pytest.approx(server.time_s, abs=0.02)
+    with serial.Serial(server.port.path, 1_000_000):
+        server.turn()
+        before = wall.now
+        for _ in range(100):
+            server.turn()
+        assert wall.now == before
+
+
+def test_simulated_time_waits_for_a_slow_reader(board: Any, server: Server, wall: Wall) -> None:
+    with serial.Serial(server.port.path, 1_000_000, timeout=1) as host:
+        server.turn()
+        board.to_send += bytes(1000)
+        waits: list[float] = []
+
+        def reads_at_last(seconds: float) -> None:
+            waits.append(seconds)
+            if len(waits) == 3:
+                host.read(1000)
+
+        server._pacer._wait = reads_at_last
+        server.turn()
+        assert len(waits) == 3
+
+
+def test_a_host_that_dies_with_bytes_unread_does_not_stop_the_bench(board: Any, server: Server) -> None:
+    host = serial.Serial(server.port.path, 1_000_000)
+    server.turn()
+    board.to_send += bytes(1000)
+    server._pacer._wait = lambda seconds: host.close()
+    server.turn()
+    assert not server.port.connected
+    assert server.port.unread() == 0
+
+
+def test_eeprom_reaches_its_file_when_it_changes(board: Any, server: Server, eeprom: Path) -> None:
+    for _ in range(20):
+        server.turn()
+    assert not eeprom.exists(), "nothing was written, so there is nothing to keep"
+    board.memory = b"\x5a" * 4096
+    board.counters.eeprom_writes += 1
+    for _ in range(20):
+        server.turn()
+    assert eeprom.read_bytes() == b"\x5a" * 4096
+    assert [path.name for path in eeprom.parent.iterdir()] == [eeprom.name]
+
+
+def test_a_power_cut_keeps_what_the_eeprom_holds_at_that_moment(board: Any, server: Server, eeprom: Path) -> None:
+    server.turn()
+    board.memory = b"\x33" * 4096
+    board.counters.eeprom_writes += 1
+    server.power_off()
+    assert eeprom.read_bytes() == b"\x33" * 4096
+    assert not commands.run(server, "status")["motors_enabled"]
+    cycle = board.cycle
+    server.turn()
+    assert board.cycle == cycle
+    server.power_on()
+    server.turn()
+    assert board.events == ["off", "on"]
+    assert board.cycle > cycle
+
+
+def test_commands_change_the_bench(server: Server) -> None:
+    assert commands.run(server, "line flip 0.25") == {"flip": 0.25, "lose": 0.0}
+    assert commands.run(server, "speed 1") == {"speed": "1"}
+    assert not server.fast
+    assert commands.run(server, "power off") == {"powered": False}
+    assert commands.run(server, "pot follower 2 open") == {"pot": "follower_2", "state": "open"}
+    assert server.bench.follower_pots.wirings == {2: Wiring.OPEN}  # type: ignore[attr-defined]
+    status = commands.run(server, "status")
+    assert status["powered"] is False
+    assert status["leader"] == pytest.approx([0.0, 0.1, 0.2, 0.3])
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        *("", "fly", "speed", "speed 2", "power maybe", "line flip", "line flip much", "line flip 2"),
+        *("pot nobody 1 open", "pot leader 4 open", "pot leader x open", "pot leader 1 melted", "status now"),
+    ],
+)
+def test_bad_commands_are_answered_with_a_sentence(server: Server, text: str) -> None:
+    with pytest.raises(UserError) as caught:
+        commands.run(server, text)
+    assert caught.value.message.endswith(".")
+    assert server.fast
+    assert server.powered
+    assert server.noise.flip == 0.0
