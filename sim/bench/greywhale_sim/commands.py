@@ -1,7 +1,7 @@
 """What can be done to a running bench, one command a line; every answer is one JSON object.
 
 status                             time, motors, voltages, angles, resets, EEPROM, serial line
-pot leader|follower 0..3 STATE     a potentiometer's wiring: connected, open (the wire is off) or shorted (to the supply)
+pot leader|follower 0..3 STATE     a potentiometer: connected, open (its wire is off) or shorted (to the supply)
 line flip|lose PROBABILITY         damage or lose bytes on the serial line, per byte
 power off|on                       cut or restore the board's supply
 speed 1|max                        real time, or as fast as possible

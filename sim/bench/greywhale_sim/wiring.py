@@ -89,7 +89,8 @@ def markdown_table() -> str:
     joints = ("base yaw", "shoulder pitch", "wrist pitch", "wrist roll")
     rows = [["wire", *(board.title for board in boards)], ["---"] * (len(boards) + 1)]
     for side, first in (("leader", 0), ("follower", 4)):
-        rows += [[f"{side} potentiometer {joint}", *([f"A{first + joint}"] * len(boards))] for joint in range(4)]
+        pins = ", ".join(f"A{first + joint}" for joint in range(4))
+        rows.append([f"{side} potentiometers, joints 0 to 3", *([pins] * len(boards))])
     for joint, name in enumerate(joints):
         rows.append([f"motor {joint} ({name}), PWM", *(board.motors[joint].pwm_arduino for board in boards)])
         rows.append([f"motor {joint}, direction", *(board.motors[joint].direction.arduino for board in boards)])

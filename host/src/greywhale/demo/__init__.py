@@ -1,0 +1,7 @@
+"""The demonstration: the whole of greywhale on the simulated bench in one go."""
+
+from greywhale.demo.bench import BenchProcess
+from greywhale.demo.result import DemoResult
+from greywhale.demo.story import DemoOptions, run
+
+__all__ = ["BenchProcess", "DemoOptions", "DemoResult", "run"]
