@@ -1,0 +1,248 @@
+// The parameter set in EEPROM: two banks, written in turn one byte at a time from the main loop, so that a power cut at
+// any moment leaves the old or the new set whole.
+//
+// A bank: magic u16 | layout u8 | length u16 | sequence u16 | packed table | crc u16, the CRC over layout to table. A
+// save spoils the first magic byte of the older bank, writes and reads back all the rest, and puts that byte right last:
+// a bank with its magic is a finished bank, whatever a byte that was being written at the cut has become. The bank with
+// the newer sequence wins at boot. Bytes that are right already are not written. A save of a set that is already stored
+// writes nothing; any other wears each cell at most once, the magic byte twice per two saves: 100,000 saves.
+//
+// Eeprom has `uint8_t read(uint16_t)`, `void begin_write(uint16_t, uint8_t)` and `bool busy()`; while busy, neither of the
+// other two is called.
+#pragma once
+
+#include <stdint.h>
+
+#include "link/crc16.h"
+#include "link/schema.h"
+#include "params/params.h"
+
+namespace params {
+
+namespace bank {
+constexpr uint16_t magic = 0x5747;  // "GW"
+constexpr uint8_t layout_at = 2;
+constexpr uint8_t length_at = 3;
+constexpr uint8_t sequence_at = 5;
+constexpr uint8_t payload_at = 7;
+constexpr uint8_t crc_at = payload_at + table_size;
+constexpr uint8_t size = crc_at + 2;
+static_assert(payload_at + table_size + 2 <= 255, "positions within a bank are bytes");
+// Not at address 0, the cell that a brown-out is most likely to spoil.
+constexpr uint16_t start_a = 16;
+constexpr uint16_t start_b = start_a + 256;
+}  // namespace bank
+
+template <class Eeprom>
+class Store {
+ public:
+  explicit Store(Eeprom &eeprom) : eeprom_(eeprom) {}
+
+  // Boot: the newest bank that is whole and in range, or else the defaults. Waits for a write that a reset left behind.
+  wire::ParamSource load(Table &table);
+
+  // Starts to save; `table` must stay as it is until state() is no longer saving. Does nothing while saving.
+  void save(const Table &table);
+
+  // One step of at most one byte; call it again and again from the main loop.
+  void poll();
+
+  wire::SaveState state() const { return state_; }
+
+ private:
+  enum class Phase : uint8_t { idle, compare, spoil, spoiled, write, verify, seal, sealed };
+
+  static constexpr uint8_t no_bank = 2;
+  static uint16_t start(uint8_t b) { return b == 0 ? bank::start_a : bank::start_b; }
+
+  bool whole(uint8_t b, uint16_t &sequence);
+  bool fetch(uint8_t b, Table &table);
+  uint16_t read_u16(uint16_t at) { return static_cast<uint16_t>(eeprom_.read(at) | (eeprom_.read(at + 1) << 8)); }
+
+  uint8_t image(uint8_t position);
+  void walk(Phase phase, uint8_t from);
+  bool step(uint8_t b, bool write);
+  void retarget();
+  void finish(wire::SaveState state);
+
+  Eeprom &eeprom_;
+  const Table *table_ = nullptr;
+  uint16_t sequence_ = 0;   // newest in EEPROM, or the one being written
+  wire::Crc16 crc_;         // over the positions walked so far
+  uint8_t position_ = 0;
+  uint8_t current_ = no_bank;  // holds the set that a boot would find
+  uint8_t target_ = 0;
+  Phase phase_ = Phase::idle;
+  wire::SaveState state_ = wire::SaveState::idle;
+};
+
+template <class Eeprom>
+bool Store<Eeprom>::whole(uint8_t b, uint16_t &sequence) {
+  const uint16_t at = start(b);
+  if (read_u16(at) != bank::magic || eeprom_.read(at + bank::layout_at) != layout) return false;
+  if (read_u16(at + bank::length_at) != table_size) return false;
+  wire::Crc16 crc;
+  for (uint8_t i = bank::layout_at; i < bank::crc_at; ++i) crc.add(eeprom_.read(static_cast<uint16_t>(at + i)));
+  sequence = read_u16(at + bank::sequence_at);
+  return crc.value() == read_u16(at + bank::crc_at);
+}
+
+template <class Eeprom>
+bool Store<Eeprom>::fetch(uint8_t b, Table &table) {
+  uint8_t *out = reinterpret_cast<uint8_t *>(&table);
+  const uint16_t at = start(b) + bank::payload_at;
+  for (uint8_t i = 0; i < table_size; ++i) out[i] = eeprom_.read(static_cast<uint16_t>(at + i));
+  return first_invalid(table) == none;
+}
+
+template <class Eeprom>
+wire::ParamSource Store<Eeprom>::load(Table &table) {
+  while (eeprom_.busy()) {
+  }
+  uint16_t sequences[2] = {0, 0};
+  const bool good[2] = {whole(0, sequences[0]), whole(1, sequences[1])};
+  // Sequence numbers wrap: b is newer when it is less than half the circle ahead.
+  const bool b_newer = good[1] && (!good[0] || static_cast<uint16_t>(sequences[1] - sequences[0]) < 0x8000);
+  const uint8_t newest = b_newer ? 1 : 0;
+  sequence_ = sequences[newest];
+  current_ = no_bank;
+  for (uint8_t i = 0; i < 2 && current_ == no_bank; ++i) {
+    const uint8_t b = static_cast<uint8_t>(newest ^ i);
+    if (good[b] && fetch(b, table)) current_ = b;
+  }
+  if (current_ == no_bank) {
+    load_defaults(table);
+    return wire::ParamSource::defaults;
+  }
+  return current_ == 0 ? wire::ParamSource::bank_a : wire::ParamSource::bank_b;
+}
+
+template <class Eeprom>
+void Store<Eeprom>::save(const Table &table) {
+  if (state_ == wire::SaveState::saving) return;
+  table_ = &table;
+  state_ = wire::SaveState::saving;
+  if (current_ == no_bank) {
+    retarget();
+  } else {
+    target_ = current_;
+    walk(Phase::compare, 0);
+  }
+}
+
+// Turns to the bank that may be lost, under the next sequence number.
+template <class Eeprom>
+void Store<Eeprom>::retarget() {
+  target_ = current_ == 0 ? 1 : 0;
+  ++sequence_;
+  phase_ = Phase::spoil;
+}
+
+template <class Eeprom>
+void Store<Eeprom>::walk(Phase phase, uint8_t from) {
+  phase_ = phase;
+  position_ = from;
+  crc_ = wire::Crc16();
+}
+
+template <class Eeprom>
+void Store<Eeprom>::finish(wire::SaveState state) {
+  phase_ = Phase::idle;
+  state_ = state;
+  if (state == wire::SaveState::saved) current_ = target_;
+}
+
+// The byte that belongs at a position; positions from layout_at on must be asked for in order, for the CRC.
+template <class Eeprom>
+uint8_t Store<Eeprom>::image(uint8_t position) {
+  uint8_t byte = 0;
+  switch (position) {
+    case 0:
+      return bank::magic & 0xFF;
+    case 1:
+      return bank::magic >> 8;
+    case bank::layout_at:
+      byte = layout;
+      break;
+    case bank::length_at:
+      byte = table_size & 0xFF;
+      break;
+    case bank::length_at + 1:
+      byte = table_size >> 8;
+      break;
+    case bank::sequence_at:
+      byte = static_cast<uint8_t>(sequence_ & 0xFF);
+      break;
+    case bank::sequence_at + 1:
+      byte = static_cast<uint8_t>(sequence_ >> 8);
+      break;
+    case bank::crc_at:
+      return crc_.low();
+    case bank::crc_at + 1:
+      return crc_.high();
+    default:
+      byte = reinterpret_cast<const uint8_t *>(table_)[position - bank::payload_at];
+  }
+  crc_.add(byte);
+  return byte;
+}
+
+// One position of a walk: true when the EEPROM held the right byte, else writes it if asked to.
+template <class Eeprom>
+bool Store<Eeprom>::step(uint8_t b, bool write) {
+  const uint8_t byte = image(position_);
+  const uint16_t at = static_cast<uint16_t>(start(b) + position_);
+  ++position_;
+  if (eeprom_.read(at) == byte) return true;
+  if (write) eeprom_.begin_write(at, byte);
+  return false;
+}
+
+template <class Eeprom>
+void Store<Eeprom>::poll() {
+  if (phase_ == Phase::idle || eeprom_.busy()) return;
+  const uint16_t first = start(target_);
+  const uint8_t mark = image(0);
+  switch (phase_) {
+    case Phase::compare:
+      if (!step(target_, false)) {
+        retarget();
+      } else if (position_ == bank::size) {
+        finish(wire::SaveState::saved);
+      }
+      break;
+    case Phase::spoil:
+      if (eeprom_.read(first) == mark) eeprom_.begin_write(first, static_cast<uint8_t>(~mark));
+      phase_ = Phase::spoiled;
+      break;
+    case Phase::spoiled:
+      if (eeprom_.read(first) == mark) {
+        finish(wire::SaveState::failed);
+      } else {
+        walk(Phase::write, 1);
+      }
+      break;
+    case Phase::write:
+      step(target_, true);
+      if (position_ == bank::size) walk(Phase::verify, 1);
+      break;
+    case Phase::verify:
+      if (!step(target_, false)) {
+        finish(wire::SaveState::failed);
+      } else if (position_ == bank::size) {
+        phase_ = Phase::seal;
+      }
+      break;
+    case Phase::seal:
+      eeprom_.begin_write(first, mark);
+      phase_ = Phase::sealed;
+      break;
+    case Phase::sealed:
+      finish(eeprom_.read(first) == mark ? wire::SaveState::saved : wire::SaveState::failed);
+      break;
+    case Phase::idle:
+      break;
+  }
+}
+
+}  // namespace params
