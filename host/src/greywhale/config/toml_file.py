@@ -1,4 +1,5 @@
-"""Reads a TOML file into a pydantic model; whatever is wrong becomes one sentence that names file, key, value and range.
+"""Reads a TOML file into a pydantic model; whatever is wrong becomes one sentence that names file, key, value and
+range.
 
 Unknown keys and non-finite numbers are refused for every model, whatever its own configuration says.
 """
@@ -20,7 +21,9 @@ Model = TypeVar("Model", bound=BaseModel)
 
 
 class Table(BaseModel):
-    """Base for a table of a TOML file: no unknown key, no silent conversion (text to number), no inf or nan, immutable."""
+    """Base for a table of a TOML file: no unknown key, no silent conversion (text to number), no inf or nan,
+    immutable.
+    """
 
     model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
 

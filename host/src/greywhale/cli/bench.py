@@ -1,0 +1,20 @@
+"""Finds the bench, which is a package of its own and may be missing."""
+
+from __future__ import annotations
+
+import importlib
+from typing import Any
+
+from greywhale.errors import UserError
+
+
+def need_bench(module: str) -> Any:
+    """A module that needs greywhale_sim; without that, one sentence with the remedy."""
+    try:
+        return importlib.import_module(module)
+    except ImportError as error:
+        if (error.name or "").split(".")[0] != "greywhale_sim":
+            raise
+        raise UserError(
+            "the simulated bench is not installed; run `make setup` in the source tree, or `pip install ./sim` there."
+        ) from None

@@ -1,0 +1,54 @@
+"""`greywhale demo`: bench, flash, upload, record and evaluate in one go."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from greywhale.cli.bench import need_bench
+from greywhale.cli.output import json_option, progress, show
+
+
+@click.command("demo")
+@click.option(
+    "--out",
+    "-o",
+    type=click.Path(path_type=Path),
+    default=Path("demo"),
+    show_default=True,
+    help="Folder for logs and pictures.",
+)
+@click.option(
+    "--leader", type=click.Path(path_type=Path), help="CSV with the leader's motion; without it, a generated one."
+)
+@click.option(
+    "--board", type=click.Choice(["mega", "nano"]), default="mega", show_default=True, help="The simulated board."
+)
+@click.option("--arm", type=click.Path(path_type=Path), help="TOML with the arm; without it, the built-in one.")
+@click.option("--speed", type=click.Choice(["1", "max"]), default="max", show_default=True, help="Real time or faster.")
+@click.option("--duration", type=float, default=20.0, show_default=True, help="Seconds of generated motion.")
+@click.option("--seed", type=int, default=1, show_default=True, help="Seed of the generated motion.")
+@json_option
+def command(
+    out: Path,
+    leader: Path | None,
+    board: str,
+    arm: Path | None,
+    speed: str,
+    duration: float,
+    seed: int,
+    as_json: bool,
+) -> None:
+    """The whole story on the simulated bench in one go, pictures at the end.
+
+    Flashes the real firmware onto a simulated Arduino, follows the leader with the paper's controllers before tuning
+    and with those of table 10, and shows how well each did.
+    """
+    demo = need_bench("greywhale.demo")
+    options = demo.DemoOptions(
+        out=out, leader=leader, board=board, arm=arm, speed=speed, duration_s=duration, seed=seed
+    )
+    with progress(as_json) as report:
+        result = demo.run(options, report)
+    show(as_json, result.as_dict(), result.text())

@@ -1,0 +1,72 @@
+"""Runs a verb and ends the process: 0 done, 1 failed, 2 bad usage, 130 interrupted by Ctrl-C or SIGTERM.
+
+A failure is one sentence on stderr; with --json also {"error": ...} as the one object on stdout. Traceback is for bugs.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import sys
+from collections.abc import Sequence
+from types import FrameType
+from typing import NoReturn
+
+import click
+
+from greywhale.cli.verbs import greywhale
+from greywhale.errors import BAD_USAGE, FAILED, UserError, because
+
+INTERRUPTED = 130
+
+
+def main(arguments: Sequence[str] | None = None) -> NoReturn:
+    """Run the command line and exit."""
+    sys.exit(run(sys.argv[1:] if arguments is None else arguments))
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Run the command line; its exit code."""
+    signal.signal(signal.SIGTERM, _terminated)
+    as_json = "--json" in arguments
+    try:
+        code = greywhale.main(list(arguments), prog_name="greywhale", standalone_mode=False)
+        sys.stdout.flush()
+        return code if isinstance(code, int) else 0
+    except UserError as error:
+        return _failed(_with_notes(error.message, error), error.exit_code, as_json)
+    except click.UsageError as error:
+        return _failed(_usage_sentence(error), BAD_USAGE, as_json)
+    except click.ClickException as error:
+        return _failed(error.format_message(), error.exit_code, as_json)
+    except (KeyboardInterrupt, click.Abort) as error:
+        return _failed(_with_notes("interrupted.", error.__cause__ or error), INTERRUPTED, as_json)
+    except BrokenPipeError:
+        # Whoever read our output has gone; nothing is left to say, and Python must not try to at exit.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return FAILED
+    except OSError as error:
+        named = f"{error.filename}: " if error.filename else ""
+        return _failed(f"{named}{because(error)}.", FAILED, as_json)
+
+
+def _terminated(number: int, frame: FrameType | None) -> None:
+    """SIGTERM ends a verb as Ctrl-C does: motors off, files whole."""
+    raise KeyboardInterrupt
+
+
+def _failed(message: str, code: int, as_json: bool) -> int:
+    if as_json:
+        print(json.dumps({"error": message, "exit_code": code}, ensure_ascii=False))
+    print(f"greywhale: {message}", file=sys.stderr)
+    return code
+
+
+def _with_notes(message: str, error: BaseException) -> str:
+    return " ".join([message, *getattr(error, "__notes__", ())])
+
+
+def _usage_sentence(error: click.UsageError) -> str:
+    message = error.format_message()
+    return f"{message} Try `{error.ctx.command_path} --help`." if error.ctx else message

@@ -1,0 +1,68 @@
+"""`greywhale evaluate`: the paper's three measures of a log, and its picture."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from greywhale.cli.output import json_option, show
+from greywhale.log import Log, read_log
+from greywhale.measure import Evaluation, evaluate
+
+
+@click.command("evaluate")
+@click.argument("logs", metavar="LOG...", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.option("--picture", type=click.Path(path_type=Path), help="Draw leader against follower (.png, .svg or .pdf).")
+@json_option
+def command(logs: tuple[Path, ...], picture: Path | None, as_json: bool) -> None:
+    """Measure how well the follower followed in a log.
+
+    Per joint: the mean squared error (the total is the sum over the joints), the steady-state error (mean of the
+    absolute error while the leader has rested for half a second), and the time delay (the lag at which the follower
+    resembles the leader most; for steps out of a rest also the time between both onsets, as the paper measures it).
+    Several logs are measured one by one and drawn into one picture.
+    """
+    read = [read_log(path) for path in logs]
+    evaluations = [evaluate(log) for log in read]
+    results = [
+        {"log": log.name, "dropped": log.dropped, "complete": log.complete, **evaluation.as_dict()}
+        for log, evaluation in zip(read, evaluations, strict=True)
+    ]
+    text = "\n\n".join(_text(log, evaluation) for log, evaluation in zip(read, evaluations, strict=True))
+    facts: dict[str, object] = {"logs": results}
+    if picture is not None:
+        _draw(picture, read)
+        facts["picture"] = str(picture)
+        text += f"\n\nPicture: {picture}"
+    show(as_json, facts, text)
+
+
+def _draw(picture: Path, logs: list[Log]) -> None:
+    # Matplotlib takes a second to import, and most evaluations draw nothing.
+    from greywhale.report import draw_following, trace
+
+    draw_following(picture, [trace(log, Path(log.name).stem) for log in logs], "Leader and follower")
+
+
+def _text(log: Log, evaluation: Evaluation) -> str:
+    notes = [f"{evaluation.samples} samples, {evaluation.duration_s:.2f} s"]
+    if log.dropped:
+        notes.append(f"{log.dropped} dropped")
+    if not log.complete:
+        notes.append("recording interrupted")
+    if not evaluation.following:
+        notes.append("the motors never followed; the whole log is measured")
+    lines = [
+        f"{log.name}: {', '.join(notes)}",
+        "          MSE [rad²]   steady-state error [rad]   delay [s]   onset delay [s]",
+    ]
+    for number, joint in enumerate(evaluation.joints):
+        steady, delay, onset = map(_number, (joint.steady_state_error, joint.delay_s, joint.onset_delay_s))
+        lines.append(f"joint {number}   {joint.mse:10.6f}   {steady:>24}   {delay:>9}   {onset:>15}")
+    lines.append(f"total     {evaluation.total_mse:10.6f}")
+    return "\n".join(lines)
+
+
+def _number(value: float | None) -> str:
+    return "n/a" if value is None else f"{value:.4f}"

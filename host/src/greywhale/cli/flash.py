@@ -1,0 +1,41 @@
+"""`greywhale flash`: the firmware onto a board, through its bootloader."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from greywhale.cli.output import json_option, port_option, progress, show
+from greywhale.flash import BOARDS, flash
+from greywhale.link.device import version
+from greywhale.link.ports import board_of, choose_port
+
+
+@click.command("flash")
+@click.option("--board", type=click.Choice(list(BOARDS)), help="The board; without it, what the port says, else mega.")
+@click.option(
+    "--firmware", type=click.Path(path_type=Path), help="Folder of the firmware's source (with platformio.ini)."
+)
+@click.option("--hex", "hex_file", type=click.Path(path_type=Path), help="Upload this HEX file instead of building.")
+@port_option
+@json_option
+def command(board: str | None, firmware: Path | None, hex_file: Path | None, port: str | None, as_json: bool) -> None:
+    """Build the firmware and flash it onto a board.
+
+    PlatformIO builds and uploads; a simulated board is flashed through its bootloader exactly as a real one. Afterwards
+    the new firmware is greeted, so success means that it runs.
+    """
+    if firmware is not None and hex_file is not None:
+        raise click.UsageError("--firmware and --hex exclude each other.")
+    chosen = choose_port(port)
+    target = board or board_of(chosen) or "mega"
+    with progress(as_json) as report:
+        hello = flash(chosen, target, firmware, hex_file, report)
+    facts = {
+        "port": chosen,
+        "board": hello.board.key,
+        "firmware": version(hello),
+        "parameter_crc": f"0x{hello.param_crc:04x}",
+    }
+    show(as_json, facts, f"{chosen}: greywhale firmware {version(hello)} runs on the {hello.board.description}.")

@@ -1,0 +1,61 @@
+"""What all verbs share: --json, --port, and progress bars."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, TypeVar
+
+import click
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
+
+Report = Callable[[str, float], None]
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+
+def json_option(command: Command) -> Command:
+    return click.option("--json", "as_json", is_flag=True, help="Print exactly one JSON object on stdout.")(command)
+
+
+def port_option(command: Command) -> Command:
+    return click.option(
+        "--port",
+        "-p",
+        envvar="GREYWHALE_PORT",
+        metavar="PORT",
+        help="Serial port of the board; without it, the only board found. [env: GREYWHALE_PORT]",
+    )(command)
+
+
+def show(as_json: bool, result: Mapping[str, Any], text: str) -> None:
+    """Print the result of a verb: for programs or for people."""
+    click.echo(json.dumps(result, ensure_ascii=False) if as_json else text)
+
+
+@contextlib.contextmanager
+def progress(as_json: bool) -> Iterator[Report | None]:
+    """A bar on stderr for (what is being done, fraction done); None with --json or without a terminal."""
+    console = Console(stderr=True)
+    if as_json or not sys.stderr.isatty() or not console.is_terminal:
+        yield None
+        return
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.percentage:>3.0f} %"),
+        TimeElapsedColumn(),
+    )
+    with Progress(*columns, console=console, transient=True) as bars:
+        tasks: dict[str, TaskID] = {}
+
+        def report(what: str, fraction: float) -> None:
+            if what not in tasks:
+                for done in tasks.values():
+                    bars.update(done, completed=1.0)
+                tasks[what] = bars.add_task(what, total=1.0)
+            bars.update(tasks[what], completed=fraction)
+
+        yield report

@@ -1,0 +1,131 @@
+"""`greywhale params`: a board's parameter table, one by one or as a file."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+
+import click
+
+from greywhale.cli.output import json_option, port_option, progress, show
+from greywhale.config import parameter_file
+from greywhale.errors import BAD_USAGE, UserError
+from greywhale.link import schema
+from greywhale.link.declared import Parameter
+from greywhale.link.device import Device
+from greywhale.link.ports import choose_port
+from greywhale.link.upload import change_parameters, read_parameters
+
+
+@click.group("params")
+def command() -> None:
+    """Read and change a board's parameter table.
+
+    Parameters have names such as joint0.kp, leader2.zero or supply_mv, and values in the unit that `get` shows.
+    """
+
+
+@command.command("get")
+@click.argument("names", metavar="[NAME]...", nargs=-1)
+@port_option
+@json_option
+def get(names: tuple[str, ...], port: str | None, as_json: bool) -> None:
+    """Show parameters; without names, all of them."""
+    wanted = [_parameter(name) for name in names] or list(schema.PARAMETERS)
+    with Device(choose_port(port)) as device, progress(as_json) as report:
+        values = read_parameters(device, report)
+    facts = {parameter.name: parameter_file.physical(parameter, values[parameter.index]) for parameter in wanted}
+    lines = [f"{name:<16} {value:>12g} {schema.PARAMETER_BY_NAME[name].unit}" for name, value in facts.items()]
+    show(as_json, {"port": device.port, "parameters": facts}, "\n".join(line.rstrip() for line in lines))
+
+
+@command.command("set")
+@click.argument("settings", metavar="NAME=VALUE...", nargs=-1, required=True)
+@port_option
+@json_option
+def set_(settings: tuple[str, ...], port: str | None, as_json: bool) -> None:
+    """Change parameters, all together: run them and store them."""
+    changes = dict(_setting(setting) for setting in settings)
+    with Device(choose_port(port)) as device, progress(as_json) as report:
+        done = change_parameters(device, changes, report)
+    show(as_json, {"port": device.port, **done.as_dict()}, _changed(device.port, done.changed))
+
+
+@command.command("backup")
+@click.argument("file", type=click.Path(path_type=Path))
+@port_option
+@json_option
+def backup(file: Path, port: str | None, as_json: bool) -> None:
+    """Write all parameters of a board into a TOML file."""
+    with Device(choose_port(port)) as device, progress(as_json) as report:
+        values = read_parameters(device, report)
+    parameter_file.save(file, values)
+    crc = schema.param_crc(values)
+    show(
+        as_json,
+        {"port": device.port, "file": str(file), "parameter_crc": f"0x{crc:04x}"},
+        f"{file}: {len(values)} parameters, CRC {crc:#06x}.",
+    )
+
+
+@command.command("restore")
+@click.argument("file", type=click.Path(path_type=Path))
+@port_option
+@json_option
+def restore(file: Path, port: str | None, as_json: bool) -> None:
+    """Run and store the parameters of a backup."""
+    wanted = parameter_file.load(file)
+    with Device(choose_port(port)) as device, progress(as_json) as report:
+        done = change_parameters(device, dict(enumerate(wanted)), report)
+    show(as_json, {"port": device.port, **done.as_dict()}, _changed(device.port, done.changed))
+
+
+@command.command("diff")
+@click.argument("file", type=click.Path(path_type=Path))
+@port_option
+@json_option
+def diff(file: Path, port: str | None, as_json: bool) -> None:
+    """Show where a board differs from a backup."""
+    wanted = parameter_file.load(file)
+    with Device(choose_port(port)) as device, progress(as_json) as report:
+        running = read_parameters(device, report)
+    differences = {
+        parameter.name: {
+            "board": parameter_file.physical(parameter, running[parameter.index]),
+            "file": parameter_file.physical(parameter, wanted[parameter.index]),
+        }
+        for parameter in schema.PARAMETERS
+        if running[parameter.index] != wanted[parameter.index]
+    }
+    lines = [f"{name:<16} board {both['board']:g}, file {both['file']:g}" for name, both in differences.items()]
+    show(
+        as_json,
+        {"port": device.port, "file": str(file), "differences": differences},
+        "\n".join(lines) or f"{device.port} and {file} hold the same parameters.",
+    )
+
+
+def _parameter(name: str) -> Parameter:
+    try:
+        return schema.PARAMETER_BY_NAME[name]
+    except KeyError:
+        raise UserError(
+            f"there is no parameter {json.dumps(name)}; `greywhale params get` shows all names.", BAD_USAGE
+        ) from None
+
+
+def _setting(text: str) -> tuple[int, int]:
+    name, equals, value = text.partition("=")
+    if not equals:
+        raise UserError(f"{json.dumps(text)} is not NAME=VALUE, such as joint0.kp=0.5.", BAD_USAGE)
+    parameter = _parameter(name.strip())
+    try:
+        number = float(value)
+    except ValueError:
+        raise UserError(f"{name} is {json.dumps(value)}, but it must be a number.", BAD_USAGE) from None
+    return parameter.index, parameter.to_raw(number)
+
+
+def _changed(port: str, names: Sequence[str]) -> str:
+    return f"{port}: changed and stored {', '.join(names)}." if names else f"{port}: nothing had to change."

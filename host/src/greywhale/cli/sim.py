@@ -1,0 +1,42 @@
+"""`greywhale sim`: the simulated bench, run by the separate package greywhale_sim."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import click
+
+from greywhale.cli.bench import need_bench
+from greywhale.cli.output import json_option
+
+
+@click.command("sim")
+@click.option("--board", type=click.Choice(["mega", "nano"]), default="mega", show_default=True, help="The board.")
+@click.option("--leader", type=click.Path(path_type=Path), help="CSV with the leader's motion.")
+@click.option("--arm", type=click.Path(path_type=Path), help="TOML with the arm; without it, the built-in one.")
+@click.option("--speed", type=click.Choice(["1", "max"]), default="1", show_default=True, help="Real time or faster.")
+@click.option("--eeprom", type=click.Path(path_type=Path), help="File that keeps the EEPROM between starts.")
+@click.option("--firmware", type=click.Path(path_type=Path), help="HEX file to start with, as if flashed.")
+@click.option("--blank", is_flag=True, help="Start with nothing but the bootloader.")
+@json_option
+def command(
+    board: str,
+    leader: Path | None,
+    arm: Path | None,
+    speed: str,
+    eeprom: Path | None,
+    firmware: Path | None,
+    blank: bool,
+    as_json: bool,
+) -> None:
+    """Start the simulated bench and print its serial port; Ctrl-C ends it."""
+    serve = need_bench("greywhale_sim.serve")
+    options = serve.ServeOptions(
+        board=board, leader=leader, arm=arm, speed=speed, eeprom=eeprom, blank=blank, firmware=firmware
+    )
+
+    def ready(port: str) -> None:
+        click.echo(json.dumps({"port": port}) if as_json else port)
+
+    serve.serve(options, on_ready=ready)

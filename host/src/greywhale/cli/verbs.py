@@ -1,0 +1,49 @@
+"""The verbs and where they live. A verb's module is imported only when it runs, so that --help stays quick."""
+
+from __future__ import annotations
+
+import importlib
+
+import click
+
+# verb -> (module in this folder, what it does)
+VERBS = {
+    "demo": ("demo", "The whole story on the simulated bench in one go, pictures at the end."),
+    "sim": ("sim", "Start the simulated bench and print its serial port."),
+    "ports": ("ports", "List the serial ports and what is behind them."),
+    "flash": ("flash", "Build the firmware and flash it onto a board."),
+    "info": ("info", "Tell a board's version, state, faults and counters."),
+    "upload": ("upload", "Run and store the controllers of a controller.toml."),
+    "params": ("params", "Read and change a board's parameter table."),
+    "record": ("record", "Record leader, follower and voltages into a CSV log."),
+    "stop": ("stop", "Stop the motors; clear a fault."),
+    "evaluate": ("evaluate", "Measure how well the follower followed in a log."),
+}
+
+
+class Verbs(click.Group):
+    """A group whose commands are imported on demand."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(VERBS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in VERBS:
+            return None
+        module = importlib.import_module(f"greywhale.cli.{VERBS[cmd_name][0]}")
+        command = module.command
+        assert isinstance(command, click.Command)
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        with formatter.section("Verbs"):
+            formatter.write_dl([(verb, purpose) for verb, (_, purpose) in VERBS.items()])
+
+
+@click.group(cls=Verbs, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+@click.version_option(package_name="greywhale", prog_name="greywhale")
+def greywhale() -> None:
+    """Identify, tune and run leader-follower robot arms. Every verb has --help and --json.
+
+    Exit codes: 0 done, 1 failed, 2 bad usage, 130 interrupted (motors off, files whole).
+    """

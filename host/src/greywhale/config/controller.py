@@ -1,0 +1,98 @@
+"""controller.toml: the fuzzy sets and gains of four joints, checked before anything of them reaches a board.
+
+The sets are named as in the paper: NE [-1,-1,Ne_c,0], ZE [Ze_a,0,Ze_c], PE [0,Pe_b,1,1], and the same for the change of
+error with Nce_c, Zce_a, Zce_c, Pce_b.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Self
+
+from pydantic import Field, model_validator
+
+from greywhale.config import toml_file
+from greywhale.errors import UserError
+from greywhale.link import schema
+from greywhale.link.declared import Parameter
+
+JOINTS = 4
+# No flank of a fuzzy set may be narrower than this.
+NARROWEST = 0.01
+
+
+def _left() -> float:
+    """A corner left of zero."""
+    return Field(ge=-1.0, le=-NARROWEST)  # type: ignore[no-any-return]
+
+
+def _right() -> float:
+    """A corner right of zero."""
+    return Field(ge=NARROWEST, le=1.0)  # type: ignore[no-any-return]
+
+
+class Sets(toml_file.Table):
+    """The corners of one joint's fuzzy sets; every flank has zero at its other end."""
+
+    Ne_c: float = _left()
+    Ze_a: float = _left()
+    Ze_c: float = _right()
+    Pe_b: float = _right()
+    Nce_c: float = _left()
+    Zce_a: float = _left()
+    Zce_c: float = _right()
+    Pce_b: float = _right()
+
+
+class JointController(toml_file.Table):
+    """One joint: scaling factors kp (1/rad), kd (1/rad over 20 ms), ki (V/(rad s)), ku (V), and the sets."""
+
+    kp: float
+    kd: float
+    ki: float
+    ku: float
+    sets: Sets
+
+    @model_validator(mode="after")
+    def _fits_the_firmware(self) -> Self:
+        for key, parameter, value in self.parameters():
+            lowest, highest = (parameter.to_physical(raw) for raw in (parameter.minimum, parameter.maximum))
+            if not lowest <= value <= highest:
+                scale = 1000.0 if key == "ku" else 1.0
+                raise ValueError(
+                    f"{key} is {value / scale:g}, but it must lie within {lowest / scale:g}..{highest / scale:g}"
+                )
+        return self
+
+    def parameters(self, joint: int = 0) -> list[tuple[str, Parameter, float]]:
+        """Key in the file, parameter of the board and value in the parameter's unit."""
+        values = {"kp": self.kp, "kd": self.kd, "ki": self.ki, "ku": 1000.0 * self.ku, **self.sets.model_dump()}
+        return [
+            (key, schema.PARAMETER_BY_NAME[f"joint{joint}.{'ku_mv' if key == 'ku' else key.lower()}"], value)
+            for key, value in values.items()
+        ]
+
+
+class Controller(toml_file.Table):
+    """Controllers of joint 0..3, and where their numbers come from."""
+
+    source: str = ""
+    joint: tuple[JointController, ...] = Field(min_length=JOINTS, max_length=JOINTS)
+
+    def raw_values(self) -> dict[int, int]:
+        """Parameter index -> raw value, for everything that a controller file says."""
+        return {
+            parameter.index: parameter.to_raw(value)
+            for number, joint in enumerate(self.joint)
+            for _, parameter, value in joint.parameters(number)
+        }
+
+
+def load(path: str | Path) -> Controller:
+    """Read and check a controller file."""
+    controller = toml_file.load(path, Controller)
+    try:
+        controller.raw_values()
+    except UserError as error:
+        raise UserError(f"{path}: {error.message}") from None
+    return controller

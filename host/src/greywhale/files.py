@@ -1,0 +1,54 @@
+"""Writes a file whole or not at all: into a temporary file beside it, then renamed."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import IO
+
+from greywhale.errors import UserError, because
+
+
+def temporary_beside(path: Path) -> tuple[int, str]:
+    """An open, empty file in the folder of `path`, with the access rights that any new file of the user gets."""
+    descriptor, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
+    mask = os.umask(0)
+    os.umask(mask)
+    os.chmod(name, 0o666 & ~mask)
+    return descriptor, name
+
+
+def write_whole(path: str | Path, write: Callable[[IO[bytes]], None]) -> None:
+    """Let `write` fill the file; `path` appears, or is replaced, only when that went well."""
+    target = Path(path)
+    try:
+        descriptor, name = temporary_beside(target)
+    except OSError as error:
+        raise UserError(f"{path}: cannot be written: {because(error)}.") from None
+    try:
+        with open(descriptor, "wb") as file:
+            write(file)
+        os.replace(name, target)
+    except OSError as error:
+        _discard(name)
+        raise UserError(f"{path}: cannot be written: {because(error)}.") from None
+    except BaseException:
+        _discard(name)
+        raise
+
+
+def write_text(path: str | Path, text: str) -> None:
+    """Write `text` as UTF-8."""
+    write_whole(path, lambda file: _write_all(file, text.encode("utf-8")))
+
+
+def _write_all(file: IO[bytes], data: bytes) -> None:
+    file.write(data)
+
+
+def _discard(name: str) -> None:
+    with contextlib.suppress(OSError):
+        os.unlink(name)

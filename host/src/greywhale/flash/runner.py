@@ -1,0 +1,89 @@
+"""Runs a build tool with its output in a file: watched for progress, and quoted when the tool fails."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from greywhale.errors import UserError
+
+_LOOK_EVERY_S = 0.1
+_GRACE_S = 5.0
+_PROBLEM = re.compile(r"error|not in sync|failed|denied|timeout|cannot|can't|mismatch|doesn't match", re.IGNORECASE)
+_ESCAPE = re.compile(r"\x1b\[[0-9;]*[A-Za-z]")
+
+
+@dataclass(frozen=True)
+class Tool:
+    """A command with the name people know it by, and how long it may take."""
+
+    name: str
+    command: list[str]
+    environment: dict[str, str]
+    limit_s: float
+
+
+def run_tool(tool: Tool, look: Callable[[str], None]) -> str:
+    """Run to the end; all output. `look` sees the output so far, again and again. The output goes through a file
+    because
+    a pipe that nobody empties in time would stop the tool."""
+    with tempfile.NamedTemporaryFile(prefix="greywhale-", suffix=".txt") as output:
+        try:
+            process = subprocess.Popen(
+                tool.command,
+                env=tool.environment,
+                stdin=subprocess.DEVNULL,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+            )
+        except OSError as error:
+            raise UserError(f"{tool.name} cannot be started: {error.strerror}.") from None
+        try:
+            code = _wait(process, tool, Path(output.name), look)
+        except BaseException:
+            _end(process)
+            raise
+        text = _read(Path(output.name))
+    if code != 0:
+        raise UserError(f"{tool.name} failed with exit code {code}: {_problem(text)}")
+    return text
+
+
+def _wait(process: subprocess.Popen[bytes], tool: Tool, output: Path, look: Callable[[str], None]) -> int:
+    deadline = time.monotonic() + tool.limit_s
+    while True:
+        look(_read(output))
+        try:
+            return process.wait(_LOOK_EVERY_S)
+        except subprocess.TimeoutExpired:
+            if time.monotonic() > deadline:
+                raise UserError(
+                    f"{tool.name} has not ended after {tool.limit_s:g} s; reset the board and try again."
+                ) from None
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    process.terminate()
+    try:
+        process.wait(_GRACE_S)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
+
+
+def _read(path: Path) -> str:
+    return _ESCAPE.sub("", path.read_text(encoding="utf-8", errors="replace"))
+
+
+def _problem(text: str) -> str:
+    """The line of the output that says most: the first that names a problem, else the last."""
+    lines = [line.strip() for line in text.splitlines() if line.strip()]
+    for line in lines:
+        if _PROBLEM.search(line):
+            return line
+    return lines[-1] if lines else "it said nothing"

@@ -1,0 +1,72 @@
+"""The serial port as bytes: opened exclusively at 1 Mbaud; whatever happens to it is one sentence."""
+
+from __future__ import annotations
+
+import errno
+import os
+
+import serial
+
+from greywhale.errors import UserError, because
+
+BAUD = 1_000_000
+
+# How long a read waits for the first byte. Short, so that deadlines are kept; long enough not to spin.
+_READ_WAIT_S = 0.02
+_WRITE_WAIT_S = 1.0
+
+
+class Transport:
+    """An open port; every failure of it is a UserError that names it."""
+
+    def __init__(self, port: str) -> None:
+        self.port = port
+        if not os.path.exists(port):
+            raise UserError(f"{port}: there is no such port; `greywhale ports` lists those there are.")
+        try:
+            self._serial = serial.Serial(port, BAUD, timeout=_READ_WAIT_S, write_timeout=_WRITE_WAIT_S, exclusive=True)
+        except ValueError as error:
+            raise UserError(f"{port}: cannot be opened: {error}.") from None
+        except OSError as error:
+            raise UserError(_why_not_open(port, error)) from None
+
+    def read(self) -> bytes:
+        """What has arrived; waits a moment when nothing has, and may then return nothing."""
+        try:
+            return bytes(self._serial.read(self._serial.in_waiting or 1))
+        except (OSError, TypeError) as error:  # pyserial reads from a port closed under it as a TypeError
+            raise self._gone(error) from None
+
+    def write(self, data: bytes) -> None:
+        try:
+            self._serial.write(data)
+        except serial.SerialTimeoutException:
+            raise UserError(
+                f"{self.port}: the port takes no data; unplug the board, plug it in and try again."
+            ) from None
+        except (OSError, TypeError) as error:
+            raise self._gone(error) from None
+
+    def close(self) -> None:
+        self._serial.close()
+
+    def _gone(self, error: Exception) -> UserError:
+        reason = because(error) if isinstance(error, OSError) else "it was closed"
+        return UserError(
+            f"{self.port}: the port went away in the middle ({reason.rstrip('.')}); check the cable and try again."
+        )
+
+
+def _why_not_open(port: str, error: OSError) -> str:
+    if error.errno in (errno.EBUSY, errno.EAGAIN, errno.EWOULDBLOCK):
+        return f"{port}: the port is in use by another program; close that (a serial monitor?) and try again."
+    if error.errno in (errno.EACCES, errno.EPERM):
+        return (
+            f"{port}: no permission to open the port; add yourself to its group "
+            "(`sudo usermod -aG dialout $USER`) and log in again."
+        )
+    if error.errno in (errno.ENOENT, errno.ENODEV, errno.ENXIO):
+        return f"{port}: there is no such port any more; `greywhale ports` lists those there are."
+    if error.errno in (errno.ENOTTY, errno.EISDIR, errno.EINVAL) or error.errno is None:
+        return f"{port}: this is not a serial port; `greywhale ports` lists those there are."
+    return f"{port}: the port cannot be opened: {because(error)}."

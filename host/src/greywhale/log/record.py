@@ -1,0 +1,140 @@
+"""Records a board's samples into a log; with `enable`, lets the follower follow meanwhile.
+
+The log begins with the first sample in state `following` (without `enable`: with the first sample) and is as long as
+asked by the board's clock. Whatever ends it early, the motors are stopped and what was recorded stays, marked as
+interrupted.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from greywhale.errors import BAD_USAGE, UserError
+from greywhale.link import schema
+from greywhale.link.device import Device
+from greywhale.link.stream import Received, stream, why_stopped
+from greywhale.log.layout import Origin
+from greywhale.log.writer import LogWriter
+
+Progress = Callable[[str, float], None]
+
+# The motors go off this long after this host falls silent.
+LEASE_MS = 500
+# Above this the lease could not be renewed in time from the samples alone.
+_LONGEST_EVERY_ENABLED = 100
+_LONGEST_EVERY = 65535
+_SHORTEST_S = 0.01
+_LONGEST_S = 86400.0
+# Within this many ticks of enable the samples must show that the motors started.
+_ENABLE_TICKS = 1000
+_ROWS_PER_REPORT = 50
+_MOVING = (schema.State.SOFT_START, schema.State.FOLLOWING)
+_RAD = schema.Sample.LSB["leader"]
+_VOLT = schema.Sample.LSB["voltage"]
+
+
+@dataclass(frozen=True)
+class Recording:
+    """What was recorded: rows in the log, samples that the link lost, duration by the board's clock."""
+
+    path: Path
+    rows: int
+    dropped: int
+    duration_s: float
+
+    def as_dict(self) -> dict[str, object]:
+        return {
+            "log": str(self.path),
+            "samples": self.rows,
+            "dropped": self.dropped,
+            "duration_s": self.duration_s,
+        }
+
+
+def record(
+    device: Device,
+    path: str | Path,
+    seconds: float,
+    every: int = 1,
+    enable: bool = False,
+    progress: Progress | None = None,
+) -> Recording:
+    """Record `seconds` of samples, one every `every` ticks of 1 ms."""
+    _check(seconds, every, enable)
+    report = progress or (lambda what, fraction: None)
+    origin = Origin(device.firmware_version, device.hello.board.key, device.hello.param_crc, _period_ms(device), every)
+    length = round(seconds * 1000)
+    with LogWriter(path, origin) as log:
+        received = stream(device, every)
+        if enable:
+            with device.enabled(max(LEASE_MS, 20 * every)):
+                received = _following(device, received, report)
+                duration = _write(device, log, received, length, True, report)
+        else:
+            duration = _write(device, log, received, length, False, report)
+    device.telemetry(0)
+    return Recording(Path(path), log.rows, log.dropped, duration)
+
+
+def _check(seconds: float, every: int, enable: bool) -> None:
+    if not _SHORTEST_S <= seconds <= _LONGEST_S:
+        raise UserError(f"the duration is {seconds:g} s; it must be {_SHORTEST_S:g} to {_LONGEST_S:g} s.", BAD_USAGE)
+    longest = _LONGEST_EVERY_ENABLED if enable else _LONGEST_EVERY
+    if not 1 <= every <= longest:
+        motors = " while the motors are on" if enable else ""
+        raise UserError(
+            f"one sample every {every} ticks is out of range; it must be 1 to {longest}{motors}.", BAD_USAGE
+        )
+
+
+def _period_ms(device: Device) -> int:
+    return device.ask(schema.ParamGetRequest(schema.PARAMETER_BY_NAME["period_ms"].index)).value
+
+
+def _following(device: Device, received: Iterator[Received], report: Progress) -> Iterator[Received]:
+    """Wait until the soft start is over; the samples from then on."""
+    report("starting the motors", 0.0)
+    moved = False
+    for one in received:
+        state = one.sample.state
+        if state is schema.State.FOLLOWING:
+            return itertools.chain((one,), received)
+        moved = moved or state is schema.State.SOFT_START
+        # Samples from before the request may still be on their way, but not for long.
+        if state is schema.State.FAULT or (state not in _MOVING and (moved or one.elapsed > _ENABLE_TICKS)):
+            raise why_stopped(device)
+    raise AssertionError("a stream of samples has no end")
+
+
+def _write(
+    device: Device, log: LogWriter, received: Iterator[Received], length: int, enabled: bool, report: Progress
+) -> float:
+    """Fill the log for `length` ticks; its duration in s."""
+    start: int | None = None
+    for one in received:
+        if enabled and one.sample.state is not schema.State.FOLLOWING:
+            raise why_stopped(device)
+        if start is None:
+            start = one.elapsed
+        else:
+            log.drop(one.lost)
+        ticks = one.elapsed - start
+        if ticks >= length:
+            return ticks / 1000
+        _append(log, ticks / 1000, one.sample)
+        if log.rows % _ROWS_PER_REPORT == 0:
+            report("recording", ticks / length)
+    raise AssertionError("a stream of samples has no end")
+
+
+def _append(log: LogWriter, time_s: float, sample: schema.Sample) -> None:
+    log.append(
+        time_s,
+        [value * _RAD for value in sample.leader],
+        [value * _RAD for value in sample.follower],
+        [value * _VOLT for value in sample.voltage],
+        sample.state.key,
+    )

@@ -1,0 +1,101 @@
+"""The delay from leader to follower by two definitions.
+
+`correlation_delay` slides the follower over the leader and takes the lag of highest correlation, refined between
+samples by a parabola through the peak. At every lag mean and scale of exactly the overlapping samples are removed, so
+that a constant error, a gain, or a window that cuts a motion in half does not pull the peak. `onset_delays` is the
+paper's definition.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+# A joint that moves less than this (rad) shows noise rather than a delay.
+_SMALLEST_MOTION = 0.05
+# Below this correlation the follower does not follow in any useful sense.
+_LOWEST_CORRELATION = 0.5
+# Lags below zero are searched this far (s), only so that a peak at zero can be told from the edge of the search.
+_BEFORE_ZERO_S = 0.1
+# The two signals must overlap at least this many seconds at the longest lag.
+_SHORTEST_OVERLAP_S = 1.0
+
+
+def correlation_delay(leader: Floats, follower: Floats, period: float, longest_s: float) -> float | None:
+    """Delay in s, or None: too short a recording, too little motion, too little likeness, no peak within the search."""
+    if np.ptp(leader) < _SMALLEST_MOTION or np.ptp(follower) < _SMALLEST_MOTION:
+        return None
+    first = -max(2, round(_BEFORE_ZERO_S / period))
+    last = max(2, round(longest_s / period))
+    if (len(leader) - last) * period < _SHORTEST_OVERLAP_S:
+        return None
+    likeness = np.array([_correlation(leader, follower, lag) for lag in range(first, last + 1)])
+    best = int(np.argmax(likeness))
+    if likeness[best] < _LOWEST_CORRELATION or best in (0, len(likeness) - 1):
+        return None
+    left, peak, right = likeness[best - 1 : best + 2]
+    bend = left - 2.0 * peak + right
+    between = 0.5 * (left - right) / bend if bend < 0.0 else 0.0
+    return float((first + best + between) * period)
+
+
+def _correlation(leader: Floats, follower: Floats, lag: int) -> float:
+    """Pearson's correlation of leader[k] and follower[k + lag] over the samples that both have."""
+    count = len(leader) - abs(lag)
+    a = leader[:count] if lag >= 0 else leader[-lag:]
+    b = follower[lag:] if lag >= 0 else follower[:count]
+    a = a - a.mean()
+    b = b - b.mean()
+    scale = float(np.sqrt(a.dot(a) * b.dot(b)))
+    return float(a.dot(b)) / scale if scale > 0.0 else 0.0
+
+
+def onset_delays(
+    leader: Floats,
+    follower: Floats,
+    period: float,
+    rest: NDArray[np.bool_],
+    rest_samples: int,
+    band: float,
+    step: float,
+    step_samples: int,
+) -> list[float]:
+    """The paper's time delay for every step the leader makes out of a rest, in s.
+
+    An onset is the first time an angle is further than `band` from where it rested, in the direction of the step; it
+    lies between two samples, and is interpolated. A departure counts as a step when the leader gets further than
+    `step` within `step_samples`. The follower's onset is looked for until the leader's next rest has ended.
+    """
+    delays = []
+    ends = np.flatnonzero(rest[:-1] & ~rest[1:])
+    for index, end in enumerate(ends):
+        limit = int(ends[index + 1]) + 1 if index + 1 < len(ends) else len(leader)
+        # The follower may still be settling when the leader leaves, so its place of rest is where it was last.
+        moved = leader[end:limit] - np.median(leader[end - rest_samples : end + 1])
+        answered = follower[end:limit] - np.median(follower[end - rest_samples // 10 : end + 1])
+        away = np.flatnonzero(np.abs(moved) > band)
+        if not away.size:
+            continue
+        sign = np.sign(moved[away[0]])
+        reached = sign * moved[away[0] : away[0] + step_samples]
+        if reached.max() < step:
+            continue
+        command = _crossing(sign * moved, band)
+        answer = _crossing(sign * answered, band)
+        if command is not None and answer is not None:
+            delays.append((answer - command) * period)
+    return delays
+
+
+def _crossing(value: Floats, level: float) -> float | None:
+    """Where `value` first rises above `level`, in samples, interpolated."""
+    above = np.flatnonzero(value > level)
+    if not above.size:
+        return None
+    after = int(above[0])
+    if after == 0:
+        return 0.0
+    low, high = value[after - 1], value[after]
+    return float(after - 1 + (level - low) / (high - low))

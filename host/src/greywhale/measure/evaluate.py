@@ -1,0 +1,142 @@
+"""The paper's three measures of a log (section 5.1), made exact.
+
+- Input tracking: mean of (leader - follower)^2 over the measured samples; the total is the sum over the joints, as in
+  equation 5 and table 11.
+- Steady-state error: "the difference between the desired final position and the actual position in steady state".
+  Here the mean of |leader - follower| over all samples at which the leader has stayed within `rest_band` for
+  `rest_s`. None where the leader never rests.
+- Time delay: two definitions, see `delay.py`. `delay_s` is the lag at which the follower resembles the leader most,
+  defined for any motion; `onset_delay_s` is the paper's, "the difference between the times that the leader gives a
+  position command and the follower begins to respond", and exists only where the leader steps out of a rest.
+
+Measured samples are those in state `following`; a log without any (motors off) is measured whole, and says so.
+Samples that the link dropped are absent, not filled in: the means run over what was received. Steady state and delays
+look only at runs of samples without a gap.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from greywhale.errors import UserError
+from greywhale.log import Log
+from greywhale.measure.delay import correlation_delay, onset_delays
+from greywhale.measure.runs import Run, gap_free_runs, resting
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Thresholds of the measures; angles in rad, times in s."""
+
+    rest_s: float = 0.5
+    rest_band: float = 0.02
+    onset_band: float = 0.05
+    step_size: float = 0.15
+    step_s: float = 0.5
+    longest_delay_s: float = 1.0
+
+
+@dataclass(frozen=True)
+class JointMeasures:
+    """rad^2, rad, s, s; None where the motion does not define the measure."""
+
+    mse: float
+    steady_state_error: float | None
+    delay_s: float | None
+    onset_delay_s: float | None
+    steps: int
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """The measures of one log; `rests_s` tells per joint how long the leader rested."""
+
+    joints: tuple[JointMeasures, ...]
+    total_mse: float
+    samples: int
+    duration_s: float
+    following: bool
+    rests_s: tuple[float, ...]
+
+    def as_dict(self) -> dict[str, object]:
+        """For JSON: plain numbers with their units in the keys."""
+        return {
+            "joints": [
+                {
+                    "mse_rad2": joint.mse,
+                    "steady_state_error_rad": joint.steady_state_error,
+                    "time_delay_s": joint.delay_s,
+                    "onset_delay_s": joint.onset_delay_s,
+                    "steps": joint.steps,
+                    "leader_rested_s": rested,
+                }
+                for joint, rested in zip(self.joints, self.rests_s, strict=True)
+            ],
+            "total_mse_rad2": self.total_mse,
+            "samples": self.samples,
+            "duration_s": self.duration_s,
+            "measured": "following" if self.following else "whole log, motors never followed",
+        }
+
+
+def evaluate(log: Log, settings: Settings | None = None) -> Evaluation:
+    """Measure every joint of a log."""
+    chosen = settings or Settings()
+    following = log.state == "following"
+    measured = following if following.any() else np.ones(len(log.time), dtype=bool)
+    runs = gap_free_runs(log.time, measured)
+    if not runs:
+        raise UserError(
+            f"{log.name}: nothing to measure: no two neighbouring samples in state following; record longer."
+        )
+    joints, rests = [], []
+    for joint in range(log.leader.shape[1]):
+        measures, rested = _joint(log.leader[:, joint], log.follower[:, joint], measured, runs, chosen)
+        joints.append(measures)
+        rests.append(rested)
+    return Evaluation(
+        joints=tuple(joints),
+        total_mse=sum(joint.mse for joint in joints),
+        samples=int(measured.sum()),
+        duration_s=sum(run.period * (run.stop - run.start - 1) for run in runs),
+        following=bool(following.any()),
+        rests_s=tuple(rests),
+    )
+
+
+def _joint(
+    leader: Floats, follower: Floats, measured: NDArray[np.bool_], runs: list[Run], settings: Settings
+) -> tuple[JointMeasures, float]:
+    error = leader - follower
+    at_rest = np.zeros(len(leader), dtype=bool)
+    onsets: list[float] = []
+    for run in runs:
+        rest = resting(leader[run.slice], run.samples(settings.rest_s), settings.rest_band)
+        at_rest[run.slice] = rest
+        onsets += onset_delays(
+            leader[run.slice],
+            follower[run.slice],
+            run.period,
+            rest,
+            run.samples(settings.rest_s),
+            settings.onset_band,
+            settings.step_size,
+            run.samples(settings.step_s),
+        )
+    longest = max(runs, key=lambda run: run.stop - run.start)
+    measures = JointMeasures(
+        mse=float(np.mean(error[measured] ** 2)),
+        steady_state_error=float(np.mean(np.abs(error[at_rest]))) if at_rest.any() else None,
+        delay_s=correlation_delay(
+            leader[longest.slice], follower[longest.slice], longest.period, settings.longest_delay_s
+        ),
+        onset_delay_s=float(np.mean(onsets)) if onsets else None,
+        steps=len(onsets),
+    )
+    period = longest.period
+    return measures, float(np.count_nonzero(at_rest) * period)

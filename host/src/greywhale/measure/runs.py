@@ -1,0 +1,57 @@
+"""Gap-free runs of samples, and where in a run a joint rests."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter1d, minimum_filter1d
+
+# A step of time longer than this many periods is a gap: samples were lost.
+_GAP = 1.5
+
+
+@dataclass(frozen=True)
+class Run:
+    """Samples start..stop-1, evenly spaced by `period` seconds (to within clock rounding)."""
+
+    start: int
+    stop: int
+    period: float
+
+    @property
+    def slice(self) -> slice:
+        return slice(self.start, self.stop)
+
+    def samples(self, seconds: float) -> int:
+        """How many sampling periods make up `seconds`, rounded up."""
+        return math.ceil(seconds / self.period - 1e-9)
+
+
+def gap_free_runs(time: NDArray[np.float64], wanted: NDArray[np.bool_]) -> list[Run]:
+    """The runs of at least two neighbouring wanted samples between which nothing is missing."""
+    steps = np.diff(time)
+    period = float(np.median(steps))
+    joined = (steps <= _GAP * period) & wanted[1:] & wanted[:-1]
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], joined, [False])).astype(np.int8)))
+    runs = []
+    for start, stop in zip(edges[::2], edges[1::2], strict=True):
+        mean_period = float(time[stop] - time[start]) / int(stop - start)
+        runs.append(Run(int(start), int(stop) + 1, mean_period))
+    return runs
+
+
+def resting(angle: NDArray[np.float64], window: int, band: float) -> NDArray[np.bool_]:
+    """True where the angle has stayed within `band` (highest minus lowest) during the last `window` periods."""
+    rest = np.zeros(len(angle), dtype=bool)
+    size = window + 1
+    if len(angle) < size:
+        return rest
+    # The filters are centred; shifting their origin makes them look only backwards.
+    origin = window // 2
+    highest = maximum_filter1d(angle, size, origin=origin)
+    lowest = minimum_filter1d(angle, size, origin=origin)
+    rest[window:] = (highest - lowest)[window:] <= band
+    return rest
