@@ -1,0 +1,75 @@
+// The fuzzy PD+I law of one joint in fixed point: what to store, what to derive from it, one control period.
+//
+// Portable C++14: no heap, no float, no division outside compile(). docs/fuzzy.md derives formats, roundings and the error bound.
+// A host twin (greywhale.fuzzy.twin) and a rational reference (greywhale.fuzzy.exact) pin every bit and the bound.
+#pragma once
+
+#include <stdint.h>
+
+namespace fuzzy_pdi {
+
+// One joint's controller as the parameter table stores it. Sets are q14 (16384 = 1.0) and named as in the paper: the end of
+// NE's plateau, ZE's left and right foot, the start of PE's plateau, then the same for the change of error. Every other foot is 0.
+struct Settings {
+  int16_t ne_c, ze_a, ze_c, pe_b;
+  int16_t nce_c, zce_a, zce_c, pce_b;
+  uint32_t kp, kd, ki;  // q16; kd belongs to a control period of 20 ms and is scaled by 20 / period_ms
+  uint16_t ku_mv;       // volts at full output, in mV
+};
+
+// Why compile() refuses. The numbers travel over the link, so they never change their meaning.
+enum class Refusal : uint8_t {
+  none = 0,
+  order = 1,   // a set on the wrong side of zero: ne_c, ze_a, nce_c, zce_a < 0 < ze_c, pe_b, zce_c, pce_b
+  range = 2,   // a set outside [-1, 1]
+  width = 3,   // a set narrower than 0.01
+  gain = 4,    // a scaling factor above its limit, or Ki times the period above the format's limit
+  period = 5,  // a control period outside 1..50 ms
+};
+
+// A membership function's slope on one side of zero: height = size * slope for size <= last, 1 beyond it.
+// See inference.h for the two formats of the slope.
+struct Ramp {
+  uint32_t slope;
+  uint16_t last;
+};
+
+// One side of one input: how ZE (or ZCE) falls from 1 and how PE or NE (PCE or NCE) rises to 1 with the input's size.
+struct Side {
+  Ramp zero;
+  Ramp outer;
+};
+
+// Everything the tick needs of one joint.
+struct Coefficients {
+  Side e[2];          // [0] for e >= 0, [1] for e < 0
+  Side ce[2];
+  uint32_t integral;  // volts added per control period and unit of e: 2^-31 mV for 1/4096 rad
+  uint16_t ku_mv;
+};
+
+// What one joint remembers between control periods.
+struct State {
+  int32_t integral;   // 2^-15 mV, never beyond +-30000 mV
+  uint16_t fraction;  // 2^-31 mV: nothing is lost in the sum
+  int16_t previous_e;
+  bool started;       // false until the first step: its change of error is 0
+};
+
+struct Output {
+  int16_t u_fuzzy;   // q15; 1.0 is 32767 here, 32768 inside
+  int16_t volts_mv;
+  bool saturated;    // the law asked for more than limit_mv
+  bool no_rule;      // no rule fired, u_fuzzy is 0
+};
+
+// Derives the coefficients. Leaves `out` untouched unless it returns Refusal::none. Divides: not for the tick.
+Refusal compile(const Settings& settings, uint8_t period_ms, Coefficients& out);
+
+void reset(State& state);
+
+// One control period. e = leader - follower, saturated to +-32767 (+-8 rad); limit_mv (0..32767) is the voltage available now.
+// The integral takes e in unless the output is beyond the limit on e's own side.
+Output step(const Coefficients& coefficients, State& state, int16_t leader_q12, int16_t follower_q12, uint16_t limit_mv);
+
+}  // namespace fuzzy_pdi

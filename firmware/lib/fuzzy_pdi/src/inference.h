@@ -1,0 +1,76 @@
+// From the two inputs to u_fuzzy: memberships, rules, defuzzification.
+//
+// Heights are 24-bit fractions of `one`. Each input is taken as size and sign: on either side of zero only two sets are active,
+// so the nine rules of Table 6 become three (same signs) or four (opposite signs) minima.
+#pragma once
+
+#include "arithmetic.h"
+#include "fuzzy_pdi.h"
+
+namespace fuzzy_pdi {
+
+constexpr uint32_t one = 0xFFFFFF;  // membership 1.0: a scale that makes 1 - h a complement
+
+struct Input {
+  uint16_t size;
+  bool negative;
+};
+
+struct Memberships {
+  uint32_t zero;   // ZE or ZCE
+  uint32_t outer;  // PE or NE, PCE or NCE: the one on the input's side
+};
+
+// Heights of the output sets, seen from e's side: `with` is PU for e >= 0 and NU for e < 0, `against` the other.
+struct Rules {
+  uint32_t with, zero, against;
+};
+
+// round(size * slope), half up. A ramp that ends below 256 has a slope 256 times finer, so that it keeps its 24 bits.
+inline uint32_t climb(const Ramp& ramp, uint16_t size) {
+  if (size > ramp.last) return one;
+  if (ramp.last < 256) size = static_cast<uint16_t>(size << 8);
+  const Product product = multiply(size, ramp.slope);
+  return product.whole + (product.fraction >> 15);
+}
+
+inline Memberships fuzzify(const Side& side, uint16_t size) {
+  return {one - climb(side.zero, size), climb(side.outer, size)};
+}
+
+inline uint32_t lesser(uint32_t a, uint32_t b) { return a < b ? a : b; }
+inline uint32_t greater(uint32_t a, uint32_t b) { return a < b ? b : a; }
+
+inline Rules fire(const Memberships& e, const Memberships& ce, bool same_sign) {
+  if (same_sign) {
+    return {greater(lesser(e.zero, ce.outer), lesser(e.outer, greater(ce.zero, ce.outer))), lesser(e.zero, ce.zero), 0};
+  }
+  return {lesser(e.outer, ce.zero), greater(lesser(e.zero, ce.zero), lesser(e.outer, ce.outer)), lesser(e.zero, ce.outer)};
+}
+
+// Magnitude of u_fuzzy in q15 (32768 = 1.0); `flip` is set when it points against e.
+struct Defuzzified {
+  uint16_t size;
+  bool flip;
+  bool no_rule;
+};
+
+inline Defuzzified defuzzify(const Rules& rules) {
+  const bool flip = rules.against > rules.with;
+  uint32_t part = flip ? rules.against - rules.with : rules.with - rules.against;
+  uint32_t whole = rules.with + rules.zero + rules.against;
+  if (whole == 0) return {0, false, true};
+  if (whole >= (uint32_t{1} << 24)) {
+    part >>= 2;
+    whole >>= 2;
+  }
+  return {ratio_q15(part, whole), flip, false};
+}
+
+inline Defuzzified infer(const Coefficients& c, const Input& e, const Input& ce) {
+  const Memberships error = fuzzify(c.e[e.negative], e.size);
+  const Memberships change = fuzzify(c.ce[ce.negative], ce.size);
+  return defuzzify(fire(error, change, e.negative == ce.negative));
+}
+
+}  // namespace fuzzy_pdi

@@ -1,0 +1,153 @@
+// The law's landmarks on the native build; the bit-for-bit and error-bound tests live in tests/fuzzy.
+#include <doctest/doctest.h>
+
+#include <fuzzy_pdi.h>
+#include <inference.h>
+
+using namespace fuzzy_pdi;
+
+namespace {
+
+// The paper's sets before tuning, joint 0's scaling factors, 15 V.
+const Settings before = {-4915, -4915, 4915, 4915, -1638, -1638, 1638, 1638, 33620, 10486, 20513, 15000};
+
+Coefficients compiled(const Settings& settings, uint8_t period_ms = 20) {
+  Coefficients c = {};
+  REQUIRE(compile(settings, period_ms, c) == Refusal::none);
+  return c;
+}
+
+Output first(const Settings& settings, int16_t leader, int16_t follower, uint16_t limit = 15000) {
+  State state;
+  reset(state);
+  return step(compiled(settings), state, leader, follower, limit);
+}
+
+}  // namespace
+
+TEST_CASE("no error gives no voltage") {
+  const Output out = first(before, 1000, 1000);
+  CHECK(out.u_fuzzy == 0);
+  CHECK(out.volts_mv == 0);
+  CHECK_FALSE(out.saturated);
+  CHECK_FALSE(out.no_rule);
+}
+
+TEST_CASE("beyond PE's plateau the output is full") {
+  Settings s = before;
+  s.ki = 0;
+  const Output up = first(s, 4096, 0);  // Kp e = 0.513 > 0.3
+  CHECK(up.u_fuzzy == 32767);
+  CHECK(up.volts_mv == 15000);
+  CHECK_FALSE(up.saturated);
+  const Output down = first(s, 0, 4096);
+  CHECK(down.u_fuzzy == -32767);
+  CHECK(down.volts_mv == -15000);
+}
+
+TEST_CASE("on a partition of unity u_fuzzy is the line x / 0.3") {
+  Settings s = before;
+  s.ki = 0;
+  s.kp = 65536;
+  for (int16_t e = -1228; e <= 1228; e = static_cast<int16_t>(e + 7)) {
+    const double exact = e / 4096.0 * 16384.0 / 4915.0 * 32768.0;
+    CHECK(first(s, e, 0).u_fuzzy == doctest::Approx(exact).epsilon(1e-9).scale(1e9));
+    CHECK(first(s, e, 0).u_fuzzy - exact <= 0.51);
+    CHECK(first(s, e, 0).u_fuzzy - exact >= -0.51);
+  }
+}
+
+TEST_CASE("the integral is exact and waits while the output is saturated on the error's side") {
+  Settings s = before;
+  s.ku_mv = 0;
+  s.ki = 65536;  // 1 V per rad and second
+  const Coefficients c = compiled(s, 20);
+  State state;
+  reset(state);
+  for (int i = 1; i <= 1000; ++i) CHECK(step(c, state, 4096, 0, 30000).volts_mv == 20 * i);  // 1 rad for 20 ms a step
+  for (int i = 0; i < 10; ++i) {
+    const Output out = step(c, state, 4096, 0, 20000);
+    CHECK(out.volts_mv == 20000);
+    CHECK(out.saturated);
+  }
+  CHECK(step(c, state, -4096, 0, 20000).volts_mv == 19980);
+}
+
+TEST_CASE("the integral never passes 30 V") {
+  Settings s = before;
+  s.ku_mv = 0;
+  s.ki = 1000UL << 16;
+  const Coefficients c = compiled(s, 8);
+  State state;
+  reset(state);
+  for (int i = 0; i < 100; ++i) CHECK(step(c, state, 32767, -32768, 32767).volts_mv == (i == 0 ? 30000 : 30000));
+  for (int i = 0; i < 100; ++i) step(c, state, -32768, 32767, 32767);
+  CHECK(state.integral == -(int32_t{30000} << 15));
+}
+
+TEST_CASE("the first change of error is zero, also after a reset") {
+  Settings s = before;
+  s.ki = 0;
+  s.kp = 0;
+  s.kd = 65536;
+  const Coefficients c = compiled(s);
+  State state;
+  reset(state);
+  CHECK(step(c, state, 400, 0, 15000).volts_mv == 0);
+  CHECK(step(c, state, 500, 0, 15000).volts_mv > 0);
+  reset(state);
+  CHECK(step(c, state, 900, 0, 15000).volts_mv == 0);
+}
+
+TEST_CASE("Kd is stored for 20 ms") {
+  Settings slow = before;
+  slow.kd = 20 * 1000;
+  Settings fast = before;
+  fast.kd = 1000;
+  const Coefficients a = compiled(slow, 20);
+  const Coefficients b = compiled(fast, 1);
+  CHECK(a.ce[0].zero.slope == b.ce[0].zero.slope);
+  CHECK(a.ce[1].outer.slope == b.ce[1].outer.slope);
+  CHECK(a.ce[1].outer.last == b.ce[1].outer.last);
+}
+
+TEST_CASE("bad settings are refused with their reason and leave the running set untouched") {
+  Coefficients c = compiled(before);
+  const uint32_t slope = c.e[0].zero.slope;
+  const auto refuses = [&](void (*spoil)(Settings&), uint8_t period = 20) {
+    Settings s = before;
+    s.kp = 65536;
+    spoil(s);
+    const Refusal refusal = compile(s, period, c);
+    CHECK(c.e[0].zero.slope == slope);
+    return refusal;
+  };
+  CHECK(refuses([](Settings& s) { s.ne_c = 4915; }) == Refusal::order);
+  CHECK(refuses([](Settings& s) { s.zce_c = -200; }) == Refusal::order);
+  CHECK(refuses([](Settings& s) { s.pe_b = 16385; }) == Refusal::range);
+  CHECK(refuses([](Settings& s) { s.zce_a = -16385; }) == Refusal::range);
+  CHECK(refuses([](Settings& s) { s.ne_c = 16385; }) == Refusal::range);
+  CHECK(refuses([](Settings& s) { s.ze_c = 163; }) == Refusal::width);
+  CHECK(refuses([](Settings& s) { s.nce_c = -163; }) == Refusal::width);
+  CHECK(refuses([](Settings& s) { s.pce_b = 0; }) == Refusal::width);
+  CHECK(refuses([](Settings& s) { s.kp = (64UL << 16) + 1; }) == Refusal::gain);
+  CHECK(refuses([](Settings& s) { s.kd = (64UL << 16) + 1; }) == Refusal::gain);
+  CHECK(refuses([](Settings& s) { s.ki = (1000UL << 16) + 1; }, 1) == Refusal::gain);
+  CHECK(refuses([](Settings& s) { s.ki = 1000UL << 16; }, 9) == Refusal::gain);
+  CHECK(refuses([](Settings& s) { s.ku_mv = 30001; }) == Refusal::gain);
+  CHECK(refuses([](Settings&) {}, 0) == Refusal::period);
+  CHECK(refuses([](Settings&) {}, 51) == Refusal::period);
+}
+
+TEST_CASE("the quotient is the rounded one, to the last bit") {
+  uint32_t seed = 1;
+  for (uint32_t i = 0; i < 200000; ++i) {
+    seed = seed * 1664525u + 1013904223u;
+    const uint32_t whole = 1 + (seed >> (8 + i % 24)) % 0xFFFFFF;
+    seed = seed * 1664525u + 1013904223u;
+    const uint32_t part = static_cast<uint32_t>((static_cast<uint64_t>(seed) * (whole + 1)) >> 32);
+    const uint64_t twice = static_cast<uint64_t>(part) * 65536u / whole;
+    REQUIRE(ratio_q15(part, whole) == (twice + 1) / 2);
+  }
+  CHECK(ratio_q15(77, 77) == 32768);
+}
