@@ -1,0 +1,194 @@
+// Binds firmware/lib/fuzzy_pdi: the firmware's own arithmetic, one value or whole arrays at a time. greywhale.fuzzy wraps it.
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "bindings.h"
+#include "fuzzy_pdi.h"
+#include "inference.h"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+namespace law = fuzzy_pdi;
+
+namespace {
+
+template <typename T>
+using In = nb::ndarray<const T, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+template <typename T>
+using Out = nb::ndarray<nb::numpy, T, nb::ndim<1>, nb::c_contig>;
+
+// A fresh numpy array and the memory behind it.
+template <typename T>
+struct Array {
+  explicit Array(size_t size) : values(new T[size]), size(size) {}
+  Out<T> numpy() {
+    T *raw = values.release();
+    return Out<T>(raw, {size}, nb::capsule(raw, [](void *p) noexcept { delete[] static_cast<T *>(p); }));
+  }
+  std::unique_ptr<T[]> values;
+  size_t size;
+};
+
+template <typename A, typename B>
+void same_length(const A &a, const B &b) {
+  if (a.shape(0) != b.shape(0)) throw std::invalid_argument("The arrays differ in length.");
+}
+
+law::Input split(int32_t value) {
+  return {static_cast<uint16_t>(value < 0 ? -value : value), value < 0};
+}
+
+// Every intermediate of one inference, as columns of a row.
+struct Intermediates {
+  static constexpr size_t columns = 10;
+  static constexpr const char *names[columns] = {"e_zero", "e_outer",  "ce_zero", "ce_outer", "with",
+                                                 "zero",   "against", "size",    "flip",     "no_rule"};
+  int32_t row[columns];
+};
+
+Intermediates trace(const law::Coefficients &c, int32_t e, int32_t ce) {
+  const law::Input error = split(e);
+  const law::Input change = split(ce);
+  const law::Memberships a = law::fuzzify(c.e[error.negative], error.size);
+  const law::Memberships b = law::fuzzify(c.ce[change.negative], change.size);
+  const law::Rules rules = law::fire(a, b, error.negative == change.negative);
+  const law::Defuzzified u = law::defuzzify(rules);
+  const auto i = [](uint32_t value) { return static_cast<int32_t>(value); };
+  return {{i(a.zero), i(a.outer), i(b.zero), i(b.outer), i(rules.with), i(rules.zero), i(rules.against), u.size, u.flip,
+           u.no_rule}};
+}
+
+nb::dict infer_all(const law::Coefficients &c, In<int32_t> e, In<int32_t> ce) {
+  same_length(e, ce);
+  const size_t n = e.shape(0);
+  std::unique_ptr<Array<int32_t>> out[Intermediates::columns];
+  for (auto &column : out) column = std::make_unique<Array<int32_t>>(n);
+  for (size_t k = 0; k < n; ++k) {
+    const Intermediates all = trace(c, e(k), ce(k));
+    for (size_t j = 0; j < Intermediates::columns; ++j) out[j]->values[k] = all.row[j];
+  }
+  nb::dict result;
+  for (size_t j = 0; j < Intermediates::columns; ++j) result[Intermediates::names[j]] = out[j]->numpy();
+  return result;
+}
+
+// u_fuzzy in q15 with its sign, 32768 = 1.0.
+int32_t u_of(const law::Coefficients &c, int32_t e, int32_t ce) {
+  const law::Input error = split(e);
+  const law::Defuzzified u = law::infer(c, error, split(ce));
+  return (error.negative != u.flip) ? -int32_t{u.size} : int32_t{u.size};
+}
+
+Out<int32_t> surface(const law::Coefficients &c, In<int32_t> e, In<int32_t> ce) {
+  same_length(e, ce);
+  Array<int32_t> u(e.shape(0));
+  for (size_t k = 0; k < u.size; ++k) u.values[k] = u_of(c, e(k), ce(k));
+  return u.numpy();
+}
+
+struct Controller {
+  law::Coefficients coefficients;
+  law::State state;
+};
+
+nb::dict run(Controller &self, In<int16_t> leader, In<int16_t> follower, In<uint16_t> limit_mv) {
+  same_length(leader, follower);
+  same_length(leader, limit_mv);
+  const size_t n = leader.shape(0);
+  Array<int16_t> u(n), volts(n);
+  Array<int32_t> integral(n);
+  Array<uint16_t> fraction(n);
+  Array<bool> saturated(n), no_rule(n);
+  for (size_t k = 0; k < n; ++k) {
+    const law::Output out = law::step(self.coefficients, self.state, leader(k), follower(k), limit_mv(k));
+    u.values[k] = out.u_fuzzy;
+    volts.values[k] = out.volts_mv;
+    saturated.values[k] = out.saturated;
+    no_rule.values[k] = out.no_rule;
+    integral.values[k] = self.state.integral;
+    fraction.values[k] = self.state.fraction;
+  }
+  nb::dict result;
+  result["u_fuzzy"] = u.numpy();
+  result["volts_mv"] = volts.numpy();
+  result["saturated"] = saturated.numpy();
+  result["no_rule"] = no_rule.numpy();
+  result["integral"] = integral.numpy();
+  result["fraction"] = fraction.numpy();
+  return result;
+}
+
+nb::dict ramp(const law::Ramp &ramp) {
+  nb::dict result;
+  result["slope"] = ramp.slope;
+  result["last"] = ramp.last;
+  return result;
+}
+
+}  // namespace
+
+void bind_fuzzy(nb::module_ &m) {
+  nb::class_<law::Settings>(m, "FuzzySettings", "One joint's controller as stored: sets q14, gains q16, Ku in mV.")
+      .def(nb::init<>())
+      .def_rw("ne_c", &law::Settings::ne_c)
+      .def_rw("ze_a", &law::Settings::ze_a)
+      .def_rw("ze_c", &law::Settings::ze_c)
+      .def_rw("pe_b", &law::Settings::pe_b)
+      .def_rw("nce_c", &law::Settings::nce_c)
+      .def_rw("zce_a", &law::Settings::zce_a)
+      .def_rw("zce_c", &law::Settings::zce_c)
+      .def_rw("pce_b", &law::Settings::pce_b)
+      .def_rw("kp", &law::Settings::kp)
+      .def_rw("kd", &law::Settings::kd)
+      .def_rw("ki", &law::Settings::ki)
+      .def_rw("ku_mv", &law::Settings::ku_mv);
+
+  m.def(
+      "fuzzy_refusal",
+      [](const law::Settings &settings, uint8_t period_ms) {
+        law::Coefficients unused;
+        return static_cast<int>(law::compile(settings, period_ms, unused));
+      },
+      "settings"_a, "period_ms"_a, "Why compile() refuses these settings; 0 when it takes them.");
+
+  nb::class_<Controller>(m, "FuzzyController", "The compiled law of one joint with its memory.")
+      .def(
+          "__init__",
+          [](Controller *self, const law::Settings &settings, uint8_t period_ms) {
+            law::Coefficients coefficients;
+            const law::Refusal refusal = law::compile(settings, period_ms, coefficients);
+            if (refusal != law::Refusal::none)
+              throw std::invalid_argument("The settings are refused with reason " + std::to_string(static_cast<int>(refusal)) + ".");
+            new (self) Controller{coefficients, {}};
+            law::reset(self->state);
+          },
+          "settings"_a, "period_ms"_a)
+      .def("reset", [](Controller &self) { law::reset(self.state); })
+      .def("run", &run, "leader"_a, "follower"_a, "limit_mv"_a, "step() over arrays of angles (q12) and limits.")
+      .def(
+          "infer", [](const Controller &self, In<int32_t> e, In<int32_t> ce) { return infer_all(self.coefficients, e, ce); },
+          "e"_a, "ce"_a, "Every intermediate of the inference for e and ce in 1/4096 rad.")
+      .def(
+          "u", [](const Controller &self, In<int32_t> e, In<int32_t> ce) { return surface(self.coefficients, e, ce); }, "e"_a,
+          "ce"_a, "u_fuzzy in q15, 32768 = 1.0.")
+      .def_prop_ro("coefficients", [](const Controller &self) {
+        const law::Coefficients &c = self.coefficients;
+        nb::list ramps;
+        for (const law::Side *side : {&c.e[0], &c.e[1], &c.ce[0], &c.ce[1]}) {
+          ramps.append(ramp(side->zero));
+          ramps.append(ramp(side->outer));
+        }
+        nb::dict result;
+        result["ramps"] = ramps;
+        result["integral"] = c.integral;
+        result["ku_mv"] = c.ku_mv;
+        return result;
+      });
+}
