@@ -1,0 +1,140 @@
+// What can change from step to step in a joint: which teeth touch, whether the motor side slides, whether a stop holds.
+//
+// With these sides chosen, motor, mesh and friction are linear in the velocities at the end of the step. The motor's velocity is
+// eliminated, so that the link's equation alone remains; `corrected` then says which sides those velocities really ask for.
+#pragma once
+
+#include <cstddef>
+
+#include "friction.h"
+#include "parameters.h"
+#include "scalar.h"
+
+namespace greywhale::arm {
+
+template <class T>
+struct State {
+  T q[kJoints], v[kJoints];              // link side
+  T motor_q[kJoints], motor_v[kJoints];  // motor side, at the output shaft
+};
+
+// -1, 0 or +1 each.
+template <class T>
+struct Sides {
+  T mesh;  // teeth in contact: motor ahead (+1), behind (-1), apart (0)
+  T slip;  // direction the motor side slides in, 0 at rest
+  T stop;  // upper (+1) or lower (-1) stop holds the link
+};
+
+// One joint's constants over the step. Impulses in N m s; an "inertia" here is an impulse per velocity.
+template <class T>
+struct Terms {
+  T inertia;       // motor side with its damping over the step
+  T impulse;       // motor side momentum with the motor's torque
+  T friction;      // while sliding at the present speed
+  T breakaway;
+  T deflection;    // motor ahead of link, rad
+  T push;          // of the mesh as it is now deflected, were there no gap
+  T gap_push;      // what the half gap takes off it
+  T mesh;          // mesh impulse per closing velocity
+  T share;         // of the link's velocity that the touching, sliding motor side takes on
+};
+
+// One row of the links' equations: what motor and mesh add to it.
+template <class T>
+struct Row {
+  T diagonal, right;
+};
+
+// kg m^2; beside it every inertia of an arm vanishes in rounding, which is what makes a rigid gear rigid.
+constexpr double kRigid = 1e15;
+
+template <class T>
+Terms<T> terms_of(const Joint<T>& joint, const State<T>& s, std::size_t i, T volts, double dt) {
+  const Gear<T>& gear = joint.gear;
+  const T compliant = dt * (dt * gear.stiffness + gear.damping);
+  Terms<T> t;
+  t.inertia = joint.actuator.inertia + dt * joint.actuator.damping;
+  t.impulse = joint.actuator.inertia * s.motor_v[i] + dt * joint.actuator.torque_per_volt * volts;
+  t.friction = dt * friction_torque(joint.friction, s.motor_v[i]);
+  t.breakaway = dt * joint.friction.breakaway;
+  t.deflection = s.motor_q[i] - s.q[i];
+  t.push = dt * gear.stiffness * t.deflection;
+  t.gap_push = dt * gear.stiffness * gear.half_gap;
+  t.mesh = choose(gear.stiffness > constant<T>(0.0), compliant, constant<T>(kRigid));
+  t.share = t.mesh / (t.inertia + t.mesh);
+  return t;
+}
+
+// Where a joint stands before the step, taken on by its present velocities.
+template <class T>
+Sides<T> first_guess(const Joint<T>& joint, const State<T>& s, std::size_t i, double dt) {
+  const T zero = constant<T>(0.0);
+  const T one = constant<T>(1.0);
+  const T ahead = s.motor_q[i] - s.q[i] + dt * (s.motor_v[i] - s.v[i]);
+  Sides<T> side;
+  side.mesh = choose(absolute(ahead) >= joint.gear.half_gap, choose(ahead < zero, -one, one), zero);
+  side.slip = sign(s.motor_v[i]);
+  side.stop = choose(s.q[i] >= joint.stops.max, one, choose(s.q[i] <= joint.stops.min, -one, zero));
+  return side;
+}
+
+// A motor side at rest holds the link through the mesh alone; a sliding one moves with it by `share`.
+template <class T>
+Row<T> link_row(const Terms<T>& t, const Sides<T>& side) {
+  const T zero = constant<T>(0.0);
+  const T push = t.push - side.mesh * t.gap_push;
+  const T sliding = push + t.share * (t.impulse - push - side.slip * t.friction);
+  const auto touching = side.mesh != zero;
+  const auto slides = side.slip != zero;
+  Row<T> row;
+  row.diagonal = choose(touching, choose(slides, t.share * t.inertia, t.mesh), zero);
+  row.right = choose(touching, choose(slides, sliding, push), zero);
+  return row;
+}
+
+template <class T>
+T motor_velocity(const Terms<T>& t, const Sides<T>& side, T link_v) {
+  const T zero = constant<T>(0.0);
+  const T push = t.push - side.mesh * t.gap_push;
+  const T driven = t.impulse - side.slip * t.friction;
+  const T apart = driven / t.inertia;
+  const T touching = (driven - push) / (t.inertia + t.mesh) + t.share * link_v;
+  return choose(side.slip != zero, choose(side.mesh != zero, touching, apart), zero);
+}
+
+// Teeth push and never pull. Apart, they meet on the side where the gap would close and the mesh would push.
+template <class T>
+T corrected_mesh(const Gear<T>& gear, const Terms<T>& t, T side, T closing, double dt) {
+  const T zero = constant<T>(0.0);
+  const T one = constant<T>(1.0);
+  const T push = t.push + t.mesh * closing;
+  const T ahead = t.deflection + dt * closing;
+  const T meeting = choose(ahead > gear.half_gap, one, choose(-ahead > gear.half_gap, -one, zero));
+  const T meets = choose(meeting * push > t.gap_push, meeting, zero);
+  const T stays = choose(side * push < t.gap_push, zero, side);
+  return choose(gear.half_gap > zero, choose(side != zero, stays, meets), side);
+}
+
+// Sliding ends where it would reverse; rest ends where more than the breakaway torque is needed to keep it.
+template <class T>
+T corrected_slip(const Terms<T>& t, const Sides<T>& side, T motor_v, T closing) {
+  const T zero = constant<T>(0.0);
+  const T mesh_impulse = choose(side.mesh != zero, t.push - side.mesh * t.gap_push + t.mesh * closing, zero);
+  const T needed = t.impulse - mesh_impulse;
+  const T starts = choose(absolute(needed) > t.breakaway, sign(needed), zero);
+  const T stays = choose(side.slip * motor_v < zero, zero, side.slip);
+  return choose(side.slip != zero, stays, starts);
+}
+
+// A stop holds a link that would pass it and lets go of one that it would have to pull.
+template <class T>
+T corrected_stop(const Stops<T>& stops, T side, T reached, T stop_impulse) {
+  const T zero = constant<T>(0.0);
+  const T one = constant<T>(1.0);
+  const T arrives = choose(reached > stops.max, one, choose(reached < stops.min, -one, zero));
+  const T stays = choose(side * stop_impulse > zero, zero, side);
+  return choose(side != zero, stays, arrives);
+}
+
+}  // namespace greywhale::arm

@@ -1,0 +1,57 @@
+"""The exported arm in Pinocchio and MuJoCo: mass matrix and bias torques from two engines that share no code with greywhale."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+import pinocchio
+
+from greywhale.arm import ArmParameters, default_arm
+from greywhale.arm.export import mjcf, urdf
+
+TIP_MASS = 0.07  # kg, so that the tip's terms are in the comparison
+
+
+def arm_with_tip() -> ArmParameters:
+    arm = default_arm()
+    return arm.model_copy(update={"tip": arm.tip.model_copy(update={"mass": TIP_MASS})})
+
+
+def random_states(count: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    rng = np.random.default_rng(seed)
+    return rng.uniform(-np.pi, np.pi, (count, 4)), rng.uniform(-8, 8, (count, 4))
+
+
+class Pinocchio:
+    def __init__(self, parameters: ArmParameters) -> None:
+        self.model = pinocchio.buildModelFromXML(urdf(parameters))
+        self.data = self.model.createData()
+
+    def mass_matrix(self, q: np.ndarray) -> np.ndarray:
+        upper = np.triu(pinocchio.crba(self.model, self.data, q))
+        return upper + np.triu(upper, 1).T
+
+    def bias(self, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+        return np.array(pinocchio.rnea(self.model, self.data, q, v, np.zeros(4)))
+
+
+class MuJoCo:
+    def __init__(self, parameters: ArmParameters) -> None:
+        self.model = mujoco.MjModel.from_xml_string(mjcf(parameters))
+        self.data = mujoco.MjData(self.model)
+
+    def _place(self, q: np.ndarray, v: np.ndarray) -> None:
+        self.data.qpos[:] = q
+        self.data.qvel[:] = v
+        mujoco.mj_forward(self.model, self.data)
+
+    def mass_matrix(self, q: np.ndarray) -> np.ndarray:
+        self._place(q, np.zeros(4))
+        full = np.zeros((4, 4))
+        for column, unit in enumerate(np.eye(4)):
+            mujoco.mj_mulM(self.model, self.data, full[column], unit)
+        return full
+
+    def bias(self, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+        self._place(q, v)
+        return self.data.qfrc_bias.copy()

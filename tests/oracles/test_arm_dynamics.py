@@ -1,0 +1,65 @@
+"""greywhale's closed-form arm against Pinocchio and MuJoCo, which get it only through the exported URDF and MJCF."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parent))
+from arm_engines import MuJoCo, Pinocchio, arm_with_tip, random_states
+
+from greywhale.arm import Arm, ArmParameters, default_arm, load_arm
+from greywhale.arm.export import mjcf
+
+STATES = 500
+TOLERANCE = 1e-9
+
+
+@pytest.mark.parametrize("engine", [Pinocchio, MuJoCo])
+@pytest.mark.parametrize("parameters", [default_arm(), arm_with_tip()], ids=["default", "with tip"])
+def test_mass_matrix_and_bias_agree(engine: type[Pinocchio | MuJoCo], parameters: ArmParameters) -> None:
+    body = Arm(parameters).body
+    other = engine(parameters)
+    for q, v in zip(*random_states(STATES, seed=1), strict=True):
+        np.testing.assert_allclose(body.mass_matrix(q), other.mass_matrix(q), rtol=0, atol=TOLERANCE)
+        np.testing.assert_allclose(body.bias(q, v), other.bias(q, v), rtol=0, atol=TOLERANCE)
+
+
+def test_averaging_link_3_changes_no_entry_much() -> None:
+    parameters = default_arm()
+    body = Arm(parameters).body
+    exact = Pinocchio(parameters)
+    inertia = parameters.link[3].inertia
+    hand = exact.model.inertias[4]
+    hand.inertia = np.diag([inertia.xx, inertia.yy, inertia.zz])
+    exact.model.inertias[4] = hand
+    changes = [np.abs(body.mass_matrix(q) - exact.mass_matrix(q)).max() for q in random_states(STATES, 1)[0]]
+    assert 1e-5 < max(changes) < 3.3e-5
+
+
+@pytest.mark.parametrize("arm_name", ["white_box", "grey_box"])
+def test_motion_under_voltage_agrees_with_mujoco(arm_name: str) -> None:
+    """Rigid gears, no dry friction: 1 s of changing voltages, both engines at fine steps."""
+    parameters = load_arm(arm_name)
+    model = mujoco.MjModel.from_xml_string(mjcf(parameters, motors=True))
+    model.opt.timestep = 1e-4
+    model.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4
+    data = mujoco.MjData(model)
+    fine = Arm(parameters, longest_step=2e-6)
+    usual = Arm(parameters)
+    worst_fine = worst_usual = travel = 0.0
+    for block in range(20):
+        volts = 4.0 * np.sin(np.array([0.2, 0.25, 0.3, 0.35]) * (block + 1))
+        data.ctrl[:] = volts
+        for _ in range(500):
+            mujoco.mj_step(model, data)
+        travel = max(travel, np.abs(data.qpos).min())
+        worst_fine = max(worst_fine, np.abs(fine.step(volts, 0.05) - data.qpos).max())
+        worst_usual = max(worst_usual, np.abs(usual.step(volts, 0.05) - data.qpos).max())
+    assert travel > 0.1, "every joint must have moved"
+    assert worst_fine < 2e-5
+    assert worst_usual < 2e-3
