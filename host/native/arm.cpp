@@ -8,6 +8,8 @@
 #include <cstring>
 #include <initializer_list>
 #include <memory>
+#include <optional>
+#include <utility>
 #include <variant>
 
 #include "arm/arm.h"
@@ -19,6 +21,12 @@
 namespace nb = nanobind;
 using namespace nb::literals;
 namespace arm = greywhale::arm;
+
+// A Python object as type hints show it: `out` is returned as it came, which nanobind cannot say by itself.
+#define FOUR "numpy.typing.NDArray[numpy.float64]"
+#define FOUR_IN "numpy.typing.NDArray[numpy.float64] | collections.abc.Sequence[float]"
+#define STEP_SIGNATURE "def step(self, voltages: " FOUR_IN ", dt: float, out: " FOUR " | None = None) -> " FOUR
+#define MILLIVOLTS_SIGNATURE "def millivolts(self, angles: " FOUR_IN ", out: " FOUR " | None = None) -> " FOUR
 
 namespace {
 
@@ -48,6 +56,22 @@ Result owned(const double (&values)[N], std::initializer_list<std::size_t> shape
 }
 
 Out array_of(const Four& values) { return owned<Out>(values, {arm::kJoints}); }
+
+// An array of the caller's to fill, for loops of many thousand calls a second; without one a fresh array is made.
+using Writable = nb::ndarray<double, nb::shape<arm::kJoints>, nb::c_contig, nb::device::cpu>;
+
+std::optional<Writable> target(nb::handle out) {
+  if (out.is_none()) return std::nullopt;
+  Writable array;
+  if (!nb::try_cast(out, array, false)) throw nb::type_error("out must be a writable, contiguous float64 array of four.");
+  return array;
+}
+
+nb::object filled(nb::object out, const std::optional<Writable>& array, const Four& values) {
+  if (!array) return nb::cast(array_of(values));
+  std::memcpy(array->data(), values, sizeof values);
+  return out;
+}
 
 using State = arm::State<double>;
 
@@ -137,11 +161,13 @@ void bind_motion(nb::module_& m) {
            "longest_step"_a = arm::Arm::kLongestStep)
       .def(
           "step",
-          [](arm::Arm& self, const In& voltages, double dt) {
+          [](arm::Arm& self, const In& voltages, double dt, nb::object out) {
+            const std::optional<Writable> array = target(out);
             self.step(Copy(voltages).values, dt);
-            return array_of(self.state().q);
+            return filled(std::move(out), array, self.state().q);
           },
-          "voltages"_a, "dt"_a, "Hold the voltages (V) for dt seconds; the joint angles (rad) then.")
+          "voltages"_a, "dt"_a, "out"_a = nb::none(), nb::sig(STEP_SIGNATURE),
+          "Hold the voltages (V) for dt seconds; the joint angles (rad) then, in `out` or a fresh array.")
       .def(
           "reset", [](arm::Arm& self, const In& angles) { self.reset(Copy(angles).values); }, "angles"_a,
           "At rest at these angles (rad).")
@@ -178,12 +204,14 @@ void bind_pots(nb::module_& m) {
       .def(nb::init<const std::array<arm::Potentiometer, arm::kJoints>&, double, std::uint64_t>(), "pots"_a, "supply"_a, "seed"_a = 0)
       .def(
           "millivolts",
-          [](arm::Potentiometers& self, const In& angles) {
-            Four out;
-            self.millivolts(Copy(angles).values, out);
-            return array_of(out);
+          [](arm::Potentiometers& self, const In& angles, nb::object out) {
+            const std::optional<Writable> array = target(out);
+            Four values;
+            self.millivolts(Copy(angles).values, values);
+            return filled(std::move(out), array, values);
           },
-          "angles"_a, "Wiper voltages in mV, 0 to the supply; each call draws new noise.")
+          "angles"_a, "out"_a = nb::none(), nb::sig(MILLIVOLTS_SIGNATURE),
+          "Wiper voltages in mV, 0 to the supply, in `out` or a fresh array; each call draws new noise.")
       .def(
           "counts",
           [](arm::Potentiometers& self, const In& angles, int bits) {
