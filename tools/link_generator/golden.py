@@ -120,12 +120,23 @@ def header(declaration: Declaration) -> str:
         "namespace golden {\n",
         f"constexpr uint8_t default_table[] = {_bytes(table)};",
         f"constexpr uint16_t default_crc = 0x{crc16(table):04X};\n",
+        "struct Range {\n  int32_t minimum;\n  int32_t maximum;\n  int32_t initial;\n  bool nonzero;\n};\n",
+        f"constexpr Range ranges[] = {{  // in index order\n{_ranges(declaration)}\n}};\n",
         "// Calls visit(name, seq, message, payload, payload_size, wire, wire_size) for every vector.",
         "template <class Visit>\nvoid for_each(Visit visit) {",
     ]
     for vector in vectors(declaration):
         lines += _visit(vector)
     return "\n".join([*lines, "}\n", "}  // namespace golden"]) + "\n"
+
+
+def _ranges(declaration: Declaration) -> str:
+    return "\n".join(
+        f"    {{{p.minimum}, {p.maximum}, {p.defaults[element]}, {str(p.nonzero).lower()}}},"
+        for group in declaration.groups
+        for element in range(group.count)
+        for p in group.parameters
+    )
 
 
 def _bytes(data: bytes) -> str:

@@ -1,0 +1,55 @@
+// An EEPROM in memory that is busy after each write, counts wear, refuses misuse, and can lose power in a write.
+#pragma once
+
+#include <stdint.h>
+
+#include <stdexcept>
+#include <vector>
+
+struct PowerCut {};
+
+class FakeEeprom {
+ public:
+  static constexpr int size = 1024;
+  static constexpr int busy_polls = 3;
+
+  FakeEeprom() : cells(size, 0xFF), wear(size, 0) {}
+
+  uint8_t read(uint16_t address) const {
+    if (busy_ > 0) throw std::logic_error("read while busy");
+    return cells.at(address);
+  }
+
+  void begin_write(uint16_t address, uint8_t byte) {
+    if (busy_ > 0) throw std::logic_error("write while busy");
+    ++wear.at(address);
+    ++writes;
+    if (writes == cut_at) {
+      cells.at(address) = torn;  // whatever the cell had become when the power went
+      throw PowerCut();
+    }
+    cells.at(address) = stuck == address ? cells.at(address) : byte;
+    busy_ = busy_polls;
+  }
+
+  bool busy() {
+    if (busy_ > 0) --busy_;
+    return busy_ > 0;
+  }
+
+  void power_on() {
+    busy_ = 0;
+    writes = 0;
+    cut_at = 0;
+  }
+
+  std::vector<uint8_t> cells;
+  std::vector<int> wear;
+  int writes = 0;
+  int cut_at = 0;      // the write, counted from 1, in which the power goes; 0 never
+  uint8_t torn = 0xFF;
+  int stuck = -1;      // a worn-out cell that keeps its value
+
+ private:
+  int busy_ = 0;
+};

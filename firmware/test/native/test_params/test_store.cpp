@@ -1,0 +1,343 @@
+// The two-bank store: power cut at every write with every torn value, wear, rot, wrap-around, other layouts.
+#include <doctest/doctest.h>
+
+#include <string.h>
+
+#include <random>
+
+#include "../test_link/expect.h"
+#include "fake_eeprom.h"
+#include "params/store.h"
+
+namespace {
+
+using Store = params::Store<FakeEeprom>;
+namespace bank = params::bank;
+
+params::Table defaults() {
+  params::Table table;
+  params::load_defaults(table);
+  return table;
+}
+
+// A valid set that differs from others in many bytes.
+params::Table variant(unsigned seed) {
+  std::mt19937 random(seed);
+  params::Table table = defaults();
+  table.period_ms = static_cast<uint8_t>(1 + random() % 50);
+  table.supply_mv = static_cast<uint16_t>(3000 + random() % 27000);
+  for (auto &joint : table.joint) {
+    joint.kp = random() % 4194304;
+    joint.ki = random() % 65536000;
+    joint.limit_min = static_cast<int16_t>(-1 - static_cast<int>(random() % 20000));
+    joint.ne_c = static_cast<int16_t>(-static_cast<int>(random() % 16384));
+  }
+  for (auto &pot : table.follower) pot.zero = static_cast<uint16_t>(random() % 16369);
+  EXPECT(params::first_invalid(table) == params::none);
+  return table;
+}
+
+bool same(const params::Table &a, const params::Table &b) { return memcmp(&a, &b, sizeof(a)) == 0; }
+
+wire::SaveState save(Store &store, const params::Table &table) {
+  store.save(table);
+  for (int i = 0; i < 20000 && store.state() == wire::SaveState::saving; ++i) store.poll();
+  return store.state();
+}
+
+wire::SaveState save(FakeEeprom &eeprom, const params::Table &table) {
+  Store store(eeprom);
+  params::Table loaded;
+  store.load(loaded);
+  return save(store, table);
+}
+
+params::Table boot(FakeEeprom &eeprom, wire::ParamSource *source = nullptr) {
+  eeprom.power_on();
+  Store store(eeprom);
+  params::Table table;
+  const wire::ParamSource from = store.load(table);
+  if (source != nullptr) *source = from;
+  return table;
+}
+
+// An EEPROM after `saves` saves of different sets; `last` is what a boot finds.
+FakeEeprom history(int saves, params::Table &last) {
+  FakeEeprom eeprom;
+  last = defaults();
+  for (int i = 0; i < saves; ++i) {
+    last = variant(static_cast<unsigned>(100 + i));
+    EXPECT(save(eeprom, last) == wire::SaveState::saved);
+  }
+  eeprom.power_on();
+  return eeprom;
+}
+
+// Recomputes the CRC of a bank that a test has changed by hand.
+void reseal(FakeEeprom &eeprom, uint16_t start) {
+  wire::Crc16 crc;
+  for (int i = bank::layout_at; i < bank::crc_at; ++i) crc.add(eeprom.cells.at(static_cast<size_t>(start + i)));
+  eeprom.cells.at(start + size_t{bank::crc_at}) = crc.low();
+  eeprom.cells.at(start + size_t{bank::crc_at} + 1) = crc.high();
+}
+
+}  // namespace
+
+TEST_CASE("a blank EEPROM gives the defaults and is not written") {
+  for (const uint8_t fill : {uint8_t{0xFF}, uint8_t{0x00}, uint8_t{0x47}}) {
+    FakeEeprom eeprom;
+    eeprom.cells.assign(FakeEeprom::size, fill);
+    wire::ParamSource source;
+    CHECK(same(boot(eeprom, &source), defaults()));
+    CHECK(source == wire::ParamSource::defaults);
+    CHECK(eeprom.writes == 0);
+  }
+}
+
+TEST_CASE("what is saved is found at boot, the banks taking turns") {
+  FakeEeprom eeprom;
+  for (unsigned i = 0; i < 6; ++i) {
+    const params::Table table = variant(i);
+    EXPECT(save(eeprom, table) == wire::SaveState::saved);
+    wire::ParamSource source;
+    EXPECT(same(boot(eeprom, &source), table));
+    EXPECT(source == (i % 2 == 0 ? wire::ParamSource::bank_a : wire::ParamSource::bank_b));
+  }
+}
+
+TEST_CASE("one store saves again and again without a boot in between") {
+  FakeEeprom eeprom;
+  Store store(eeprom);
+  params::Table loaded;
+  store.load(loaded);
+  for (unsigned i = 0; i < 5; ++i) {
+    const params::Table table = variant(i);
+    EXPECT(save(store, table) == wire::SaveState::saved);
+    FakeEeprom copy = eeprom;
+    CHECK(same(boot(copy), table));
+  }
+}
+
+TEST_CASE("a power cut at any write, with any torn byte, leaves the old or the new set whole") {
+  long cuts = 0;
+  long found_old = 0;
+  long found_new = 0;
+  for (int saves = 0; saves <= 3; ++saves) {
+    params::Table old_table;
+    const FakeEeprom before = history(saves, old_table);
+    const params::Table new_table = variant(7);
+    FakeEeprom whole = before;
+    EXPECT(save(whole, new_table) == wire::SaveState::saved);
+    EXPECT(whole.writes > 50);
+    for (int cut = 1; cut <= whole.writes; ++cut) {
+      for (int torn = 0; torn < 256; ++torn) {
+        FakeEeprom eeprom = before;
+        eeprom.cut_at = cut;
+        eeprom.torn = static_cast<uint8_t>(torn);
+        bool was_cut = false;
+        try {
+          save(eeprom, new_table);
+        } catch (const PowerCut &) {
+          was_cut = true;
+        }
+        EXPECT(was_cut);
+        const params::Table found = boot(eeprom);
+        const bool is_old = same(found, old_table);
+        const bool is_new = same(found, new_table);
+        EXPECT((is_old || is_new));
+        found_old += is_old ? 1 : 0;
+        found_new += is_new ? 1 : 0;
+        ++cuts;
+        if (torn % 64 == 0) {  // and the store still works afterwards
+          const params::Table next = variant(8);
+          EXPECT(save(eeprom, next) == wire::SaveState::saved);
+          EXPECT(same(boot(eeprom), next));
+        }
+      }
+    }
+  }
+  MESSAGE(cuts, " power cuts: ", found_old, " boots found the old set, ", found_new, " the new one");
+  CHECK(found_new >= 4);  // a cut in the last write whose byte came out right
+}
+
+TEST_CASE("power cuts one after another never lose the last set that was whole") {
+  std::mt19937 random(5);
+  for (int run = 0; run < 300; ++run) {
+    FakeEeprom eeprom;
+    params::Table last = defaults();
+    for (unsigned i = 0; i < 12; ++i) {
+      const params::Table next = variant(static_cast<unsigned>(random() % 50));
+      eeprom.cut_at = random() % 4 == 0 ? 0 : 1 + static_cast<int>(random() % 200);
+      eeprom.torn = static_cast<uint8_t>(random());
+      bool was_cut = false;
+      try {
+        EXPECT(save(eeprom, next) == wire::SaveState::saved);
+      } catch (const PowerCut &) {
+        was_cut = true;
+      }
+      const params::Table found = boot(eeprom);
+      EXPECT((same(found, next) || (was_cut && same(found, last))));
+      last = found;
+    }
+  }
+}
+
+TEST_CASE("a set that is stored already costs no write") {
+  FakeEeprom eeprom;
+  const params::Table table = variant(1);
+  EXPECT(save(eeprom, table) == wire::SaveState::saved);
+  eeprom.writes = 0;
+  Store store(eeprom);
+  params::Table loaded;
+  store.load(loaded);
+  CHECK(save(store, table) == wire::SaveState::saved);
+  CHECK(save(store, table) == wire::SaveState::saved);
+  CHECK(eeprom.writes == 0);
+}
+
+TEST_CASE("bytes that are right already are not worn") {
+  FakeEeprom eeprom;
+  params::Table table = variant(1);
+  for (int i = 0; i < 1000; ++i) {
+    table.period_ms = static_cast<uint8_t>(1 + i % 50);
+    EXPECT(save(eeprom, table) == wire::SaveState::saved);
+  }
+  // Per save: the magic byte twice, the low byte of the sequence, the period, two bytes of CRC; now and then one more.
+  CHECK(eeprom.writes < 1000 * 6 + 2 * 194 + 10);
+  int worst = 0;
+  for (const int wear : eeprom.wear) worst = wear > worst ? wear : worst;
+  CHECK(worst <= 1001);
+  CHECK(worst >= 999);
+}
+
+TEST_CASE("one flipped bit anywhere in the newer bank falls back to the older one, in both to the defaults") {
+  params::Table newest;
+  const FakeEeprom before = history(2, newest);
+  const params::Table older = variant(100);
+  for (int at = 0; at < bank::size; ++at) {
+    for (int bit = 0; bit < 8; ++bit) {
+      FakeEeprom eeprom = before;
+      auto &cell = eeprom.cells.at(static_cast<size_t>(bank::start_b + at));
+      cell = static_cast<uint8_t>(cell ^ (1 << bit));
+      wire::ParamSource source;
+      EXPECT(same(boot(eeprom, &source), older));
+      EXPECT(source == wire::ParamSource::bank_a);
+      auto &other = eeprom.cells.at(static_cast<size_t>(bank::start_a + at));
+      other = static_cast<uint8_t>(other ^ (1 << bit));
+      EXPECT(same(boot(eeprom, &source), defaults()));
+      EXPECT(source == wire::ParamSource::defaults);
+    }
+  }
+}
+
+TEST_CASE("rot that is found while saving is healed by a fresh bank") {
+  params::Table newest;
+  FakeEeprom eeprom = history(2, newest);
+  Store store(eeprom);
+  params::Table loaded;
+  store.load(loaded);
+  eeprom.cells.at(bank::start_b + 50) ^= 0x10;
+  CHECK(save(store, newest) == wire::SaveState::saved);
+  wire::ParamSource source;
+  CHECK(same(boot(eeprom, &source), newest));
+  CHECK(source == wire::ParamSource::bank_a);
+}
+
+TEST_CASE("the sequence number wraps around") {
+  for (const unsigned begin : {0xFFFCu, 0x7FFCu}) {
+    params::Table last;
+    FakeEeprom eeprom = history(1, last);
+    eeprom.cells.at(bank::start_a + bank::sequence_at) = static_cast<uint8_t>(begin & 0xFF);
+    eeprom.cells.at(bank::start_a + bank::sequence_at + 1) = static_cast<uint8_t>(begin >> 8);
+    reseal(eeprom, bank::start_a);
+    for (unsigned i = 0; i < 8; ++i) {
+      const params::Table table = variant(i);
+      EXPECT(save(eeprom, table) == wire::SaveState::saved);
+      EXPECT(same(boot(eeprom), table));
+    }
+  }
+}
+
+TEST_CASE("banks of another layout or length are left alone until they are needed") {
+  for (const int at : {int{bank::layout_at}, int{bank::length_at}}) {
+    params::Table newest;
+    FakeEeprom eeprom = history(2, newest);
+    for (const uint16_t start : {bank::start_a, bank::start_b}) {
+      eeprom.cells.at(static_cast<size_t>(start + at)) ^= 0x03;
+      reseal(eeprom, start);
+    }
+    wire::ParamSource source;
+    CHECK(same(boot(eeprom, &source), defaults()));
+    CHECK(source == wire::ParamSource::defaults);
+    CHECK(save(eeprom, variant(9)) == wire::SaveState::saved);
+    CHECK(same(boot(eeprom), variant(9)));
+  }
+}
+
+TEST_CASE("a whole bank with a value out of range is passed over, and the next save outranks it") {
+  params::Table newest;
+  FakeEeprom eeprom = history(2, newest);
+  eeprom.cells.at(bank::start_b + bank::payload_at) = 0;  // period_ms
+  reseal(eeprom, bank::start_b);
+  wire::ParamSource source;
+  CHECK(same(boot(eeprom, &source), variant(100)));
+  CHECK(source == wire::ParamSource::bank_a);
+  CHECK(save(eeprom, variant(11)) == wire::SaveState::saved);
+  CHECK(same(boot(eeprom), variant(11)));
+}
+
+TEST_CASE("a worn-out cell is reported, and the last good set stays") {
+  params::Table newest;
+  const FakeEeprom before = history(2, newest);
+  int failures = 0;
+  for (int at = 0; at < bank::size; ++at) {
+    FakeEeprom eeprom = before;
+    eeprom.stuck = bank::start_a + at;
+    const wire::SaveState state = save(eeprom, variant(12));
+    const params::Table found = boot(eeprom);
+    if (state == wire::SaveState::saved) {
+      EXPECT(same(found, variant(12)));  // the cell happened to hold the right value
+    } else {
+      EXPECT(state == wire::SaveState::failed);
+      EXPECT(same(found, newest));
+      ++failures;
+    }
+  }
+  CHECK(failures > 50);
+}
+
+TEST_CASE("a repeated request to save does not start over, and a failed save can be tried again") {
+  FakeEeprom eeprom;
+  Store store(eeprom);
+  params::Table loaded;
+  store.load(loaded);
+  const params::Table table = variant(3);
+  store.save(table);
+  int polls = 0;
+  for (; store.state() == wire::SaveState::saving; ++polls) {
+    store.save(table);
+    store.poll();
+  }
+  CHECK(store.state() == wire::SaveState::saved);
+  CHECK(polls < 1500);
+
+  eeprom.stuck = bank::start_b + bank::payload_at;
+  CHECK(save(store, variant(4)) == wire::SaveState::failed);
+  eeprom.stuck = -1;
+  CHECK(save(store, variant(4)) == wire::SaveState::saved);
+  CHECK(same(boot(eeprom), variant(4)));
+}
+
+TEST_CASE("each poll does at most one write and none while busy") {
+  FakeEeprom eeprom;
+  Store store(eeprom);
+  params::Table loaded;
+  store.load(loaded);
+  const params::Table table = variant(3);
+  store.save(table);
+  while (store.state() == wire::SaveState::saving) {
+    const int before = eeprom.writes;
+    store.poll();  // the fake throws on any use while it is busy
+    EXPECT(eeprom.writes <= before + 1);
+  }
+}
