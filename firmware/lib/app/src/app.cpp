@@ -41,6 +41,7 @@ void App::tick() {
     show_state();
     const uint16_t age_us = hal::tick_age_us();
     if (age_us > tick_us_max_) tick_us_max_ = age_us;
+    heard_this_tick_ = false;
     hal::watchdog_kick();
     hal::tick_end();
 }
@@ -54,8 +55,8 @@ void App::count_ticks(hal::TickStart start) {
 void App::observe(bool late, int16_t (&references)[hal::joint_count]) {
     supervisor::Observation seen;
     for (uint8_t i = 0; i < hal::joint_count; ++i) {
-        const int16_t wanted = controllers_.reference(i, sampling_.leader()[i]);
-        const int16_t is = sampling_.follower()[i];
+        const int16_t wanted = controllers_.reference(i, sampling_.leader(i));
+        const int16_t is = sampling_.follower(i);
         references[i] = wanted;
         seen.distance[i] = static_cast<uint16_t>(wanted > is ? wanted - is : is - wanted);
     }
@@ -81,8 +82,10 @@ void App::follow_supervisor() {
 void App::control(const int16_t* references) {
     if (--until_control_) return;
     until_control_ = sets_.running().period_ms;
-    controllers_.step(references, sampling_.follower(), supervisor_.ramp_q15());
-    for (uint8_t i = 0; i < hal::joint_count; ++i) drive_.set(i, controllers_.volts_mv()[i]);
+    const uint16_t limit_mv = controllers_.limit_mv(supervisor_.ramp_q15());
+    for (uint8_t i = 0; i < hal::joint_count; ++i) {
+        drive_.set(i, controllers_.step(i, references[i], sampling_.follower(i), limit_mv));
+    }
 }
 
 // A sample that could not be sent before the next one is due is dropped; its sequence number stays out.

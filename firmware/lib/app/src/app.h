@@ -30,7 +30,7 @@ class App {
     void take_running_set();
 
     // requests.cpp: the link
-    bool receive();
+    void receive();
     void handle_frame();
     void handle_parameters(uint8_t type);
     void handle_motors(uint8_t type);
@@ -63,6 +63,7 @@ class App {
     uint8_t until_control_ = 1;      // ticks
     uint8_t sample_seq_ = 0;
     bool sample_due_ = false;
+    bool heard_this_tick_ = false;
     bool hello_due_ = false;
     bool drivers_on_ = false;
     uint8_t request_ = 0, seq_ = 0;              // of the frame being answered

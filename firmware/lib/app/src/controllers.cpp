@@ -36,14 +36,17 @@ int16_t Controllers::reference(uint8_t joint, int16_t leader) const {
     return leader;
 }
 
-void Controllers::step(const int16_t* references, const int16_t* followers, uint16_t ramp_q15) {
-    // (supply * ramp) >> 15 as one shift by 16
-    const auto limit_mv = static_cast<uint16_t>((static_cast<uint32_t>(supply_mv_) * ramp_q15 * 2) >> 16);
-    for (uint8_t i = 0; i < hal::joint_count; ++i) {
-        const fuzzy_pdi::Output out = fuzzy_pdi::step(coefficients_[i], states_[i], references[i], followers[i], limit_mv);
-        volts_mv_[i] = out.volts_mv;
-        if (out.no_rule && no_rule_ != UINT16_MAX) ++no_rule_;
-    }
+// (supply * ramp) >> 15, written as one shift by 16
+uint16_t Controllers::limit_mv(uint16_t ramp_q15) const {
+    return static_cast<uint16_t>((static_cast<uint32_t>(supply_mv_) * ramp_q15 * 2) >> 16);
+}
+
+int16_t Controllers::step(uint8_t joint, int16_t reference, int16_t follower, uint16_t limit_mv) {
+    const fuzzy_pdi::Output out =
+        fuzzy_pdi::step(coefficients_[joint], states_[joint], reference, follower, limit_mv);
+    if (out.no_rule && no_rule_ != UINT16_MAX) ++no_rule_;
+    volts_mv_[joint] = out.volts_mv;
+    return out.volts_mv;
 }
 
 }  // namespace app

@@ -17,10 +17,12 @@ class Controllers {
     void reset();
     // The leader within the joint's limits: what the follower is asked for.
     int16_t reference(uint8_t joint, int16_t leader) const;
-    // One control period of all joints; ramp_q15 is the share of the supply that may be used, 32768 all of it.
-    void step(const int16_t* references, const int16_t* followers, uint16_t ramp_q15);
+    // The voltage that may be used now; ramp_q15 is the share of the supply, 32768 all of it.
+    uint16_t limit_mv(uint16_t ramp_q15) const;
+    // One control period of a joint: the voltage for its motor.
+    int16_t step(uint8_t joint, int16_t reference, int16_t follower, uint16_t limit_mv);
 
-    const int16_t* volts_mv() const { return volts_mv_; }
+    int16_t volts_mv(uint8_t joint) const { return volts_mv_[joint]; }
     uint16_t no_rule() const { return no_rule_; }   // stops at 65535
 
   private:

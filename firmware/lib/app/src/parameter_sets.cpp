@@ -38,4 +38,10 @@ ParameterSets::Progress ParameterSets::work_on_apply(Controllers& controllers) {
     return Progress::applied;
 }
 
+bool ParameterSets::work_on_save() {
+    if (store_.state() != wire::SaveState::saving || hal::eeprom_busy()) return false;
+    store_.poll();
+    return !hal::eeprom_busy();
+}
+
 }  // namespace app

@@ -42,7 +42,7 @@ class ParameterSets {
     Unfit unfit() const { return unfit_; }   // after refused, or when begin() was false
 
     void save() { store_.save(sets_.running()); }
-    void work_on_save() { store_.poll(); }
+    bool work_on_save();   // one byte; true when the next can follow at once
     wire::SaveState save_state() const { return store_.state(); }
 
   private:

@@ -46,36 +46,38 @@ uint16_t pair(uint8_t high, uint16_t low) { return static_cast<uint16_t>(high <<
 }  // namespace
 
 bool App::service() {
-    if (hal::tick_age_us() > latest_start_us) return false;
+    const bool late_in_tick = hal::tick_age_us() > latest_start_us;
+    if (late_in_tick && heard_this_tick_) return false;
     const uint8_t lost = hal::rx_lost();
     if (lost) rx_overruns_ = rx_overruns_ > UINT16_MAX - lost ? UINT16_MAX : static_cast<uint16_t>(rx_overruns_ + lost);
-    sets_.work_on_save();
     if (sets_.applying()) {
         work_on_apply();
         return true;
     }
     if (hal::tx_free() < wire::max_wire) return false;   // what waits stays where it is until there is room to answer
+    if (!heard_this_tick_ && hal::rx_available()) {
+        receive();   // at least once a tick, whatever else there is: a stop must get through
+        return true;
+    }
+    if (late_in_tick) return false;
     if (sample_due_) {
         send_sample();
-        return true;
-    }
-    if (hello_due_) {
+    } else if (hello_due_) {
         hello_due_ = false;
         send_hello(0);   // unasked, so that a host that waits for the bootloader to end can go on
-        return true;
-    }
-    return receive();
-}
-
-bool App::receive() {
-    for (uint8_t left = bytes_per_piece; left; --left) {
-        if (!hal::rx_available()) return false;
-        if (decoder_.push(hal::rx_read())) {
-            handle_frame();
-            return true;
-        }
+    } else if (hal::rx_available()) {
+        receive();
+    } else {
+        return sets_.work_on_save();
     }
     return true;
+}
+
+void App::receive() {
+    heard_this_tick_ = true;
+    for (uint8_t left = bytes_per_piece; left && hal::rx_available(); --left) {
+        if (decoder_.push(hal::rx_read())) return handle_frame();
+    }
 }
 
 void App::handle_frame() {
@@ -269,9 +271,9 @@ void App::send_sample() {
     sample.state = on_link(supervisor_.state());
     sample.fault = static_cast<wire::Fault>(supervisor_.fault());
     for (uint8_t i = 0; i < hal::joint_count; ++i) {
-        sample.leader[i] = sampling_.leader()[i];
-        sample.follower[i] = sampling_.follower()[i];
-        sample.voltage[i] = controllers_.volts_mv()[i];
+        sample.leader[i] = sampling_.leader(i);
+        sample.follower[i] = sampling_.follower(i);
+        sample.voltage[i] = controllers_.volts_mv(i);
     }
     send(sample_seq_, sample);
 }
@@ -294,8 +296,7 @@ bool App::decode(Request& request) {
 template <class Message>
 void App::send(uint8_t seq, const Message& message) {
     encoder_.encode(seq, message);
-    const uint8_t* byte = encoder_.data();
-    for (uint8_t left = encoder_.size(); left; --left) hal::tx_write(*byte++);
+    hal::tx_write(encoder_.data(), encoder_.size());
 }
 
 }  // namespace app

@@ -5,11 +5,18 @@ namespace app {
 namespace {
 
 constexpr uint16_t full_count = 1023;
+constexpr uint8_t no_filter = 0xff;
+
+// round(distance / 2^(halvings + 1))
+inline uint16_t part_of(uint16_t distance, uint8_t halvings) {
+    return static_cast<uint16_t>(((distance >> halvings) + 1u) >> 1);
+}
 
 // First-order low-pass, rounded so that it neither overshoots nor stops more than half a step short.
-inline uint16_t low_pass(uint16_t old, uint16_t sample, uint8_t shift, uint8_t half) {
-    if (sample >= old) return static_cast<uint16_t>(old + (static_cast<uint16_t>(sample - old + half) >> shift));
-    return static_cast<uint16_t>(old - (static_cast<uint16_t>(old - sample + half) >> shift));
+inline uint16_t low_pass(uint16_t old, uint16_t sample, uint8_t halvings) {
+    if (halvings == no_filter) return sample;
+    if (sample >= old) return static_cast<uint16_t>(old + part_of(static_cast<uint16_t>(sample - old), halvings));
+    return static_cast<uint16_t>(old - part_of(static_cast<uint16_t>(old - sample), halvings));
 }
 
 // ((count14 - zero) * scale + 4096) >> 13, with one shift by 16 in place of 13 shifts by one. The ranges of zero and
@@ -17,18 +24,18 @@ inline uint16_t low_pass(uint16_t old, uint16_t sample, uint8_t shift, uint8_t h
 inline int16_t to_angle(uint16_t filtered, uint16_t zero, int16_t scale) {
     const uint16_t count14 = static_cast<uint16_t>((filtered + 2u) >> 2);
     const int16_t offset = static_cast<int16_t>(count14 - zero);
-    const int32_t product = static_cast<int32_t>(offset) * scale;
-    return static_cast<int16_t>((product * 8 + 0x8000) >> 16);
+    const int32_t twice = static_cast<int32_t>(static_cast<int16_t>(offset * 2)) * scale;
+    return static_cast<int16_t>((twice * 4 + 0x8000) >> 16);
 }
 
 }  // namespace
 
 void Sampling::configure(const params::Table& table) {
-    shift_ = table.filter_shift;
-    half_ = static_cast<uint8_t>((1 << shift_) >> 1);
+    halvings_ = static_cast<uint8_t>(table.filter_shift - 1);   // no_filter for a shift of 0
     const uint8_t rail = table.rail_counts;
-    low_sum_ = rail ? static_cast<uint16_t>(rail * hal::conversions_per_pot + 1) : 0;
-    high_sum_ = rail ? static_cast<uint16_t>((full_count - rail) * hal::conversions_per_pot - 1) : 0xffff;
+    lowest_ = rail ? static_cast<uint16_t>(rail * hal::conversions_per_pot + 1) : 0;
+    const uint16_t highest = static_cast<uint16_t>((full_count - rail) * hal::conversions_per_pot - 1);
+    span_ = rail ? static_cast<uint16_t>(highest - lowest_) : 0xffff;
     for (uint8_t i = 0; i < hal::joint_count; ++i) {
         pots_[i].zero = table.leader[i].zero;
         pots_[i].scale = table.leader[i].scale;
@@ -37,20 +44,26 @@ void Sampling::configure(const params::Table& table) {
     }
 }
 
+// Not inlined: within the loop over the pots avr-gcc runs out of registers, which costs more than the calls.
+__attribute__((noinline)) void Sampling::follow(Pot& pot, uint16_t sum, uint8_t halvings) {
+    const uint16_t filtered = low_pass(pot.filtered, static_cast<uint16_t>(sum << 4), halvings);
+    pot.filtered = filtered;
+    pot.angle = to_angle(filtered, pot.zero, pot.scale);
+}
+
+__attribute__((noinline)) void Sampling::note_rail(uint8_t pot, bool low) {
+    uint8_t& mask = low ? rail_low_ : rail_high_;
+    mask = static_cast<uint8_t>(mask | (1u << pot));
+}
+
 void Sampling::tick(const uint16_t (&sums)[hal::pot_count]) {
-    uint8_t low = 0, high = 0, bit = 1;
+    rail_low_ = rail_high_ = 0;
+    const uint8_t halvings = primed_ ? halvings_ : no_filter;
     for (uint8_t i = 0; i < hal::pot_count; ++i) {
-        Pot& pot = pots_[i];
         const uint16_t sum = sums[i];
-        if (sum < low_sum_) low = static_cast<uint8_t>(low | bit);
-        if (sum > high_sum_) high = static_cast<uint8_t>(high | bit);
-        bit = static_cast<uint8_t>(bit << 1);
-        const uint16_t sample = static_cast<uint16_t>(sum << 4);
-        pot.filtered = primed_ ? low_pass(pot.filtered, sample, shift_, half_) : sample;
-        angle_[i] = to_angle(pot.filtered, pot.zero, pot.scale);
+        if (static_cast<uint16_t>(sum - lowest_) > span_) note_rail(i, sum < lowest_);
+        follow(pots_[i], sum, halvings);
     }
-    rail_low_ = low;
-    rail_high_ = high;
     primed_ = true;
 }
 

@@ -45,7 +45,7 @@ constexpr uint8_t rx_capacity = 127;
 bool rx_available();
 uint8_t rx_read();              // only when rx_available()
 uint8_t tx_free();
-void tx_write(uint8_t byte);    // only when tx_free() > 0
+void tx_write(const uint8_t* bytes, uint8_t count);   // 1..tx_free() of them
 uint8_t rx_lost();              // bytes lost since the last call
 
 // --- EEPROM, one byte at a time; a write goes on in the background for about 3.4 ms.
@@ -53,7 +53,7 @@ bool eeprom_busy();
 uint8_t eeprom_read(uint16_t address);                    // only when not busy
 void eeprom_begin_write(uint16_t address, uint8_t value); // only when not busy
 
-// --- Watchdog of 60 ms, and idle sleep until the next interrupt unless there is something to do.
+// --- Watchdog of 60 ms, and idle sleep until a tick is pending or a byte has come.
 void watchdog_start();
 void watchdog_kick();
 void idle();

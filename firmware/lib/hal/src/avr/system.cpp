@@ -111,16 +111,17 @@ void watchdog_start() {
 
 void watchdog_kick() { wdt_reset(); }
 
+// Conversions and sent bytes interrupt the sleep; there is nothing to do for the main loop then.
 void idle() {
-    cli();
-    if (tick_pending() || rx_available()) {
-        sei();
-        return;
+    for (;;) {
+        cli();
+        if (tick_pending() || rx_available()) break;
+        SMCR = 1 << SE;
+        sei();   // takes effect after the next instruction: no interrupt can slip in before the sleep
+        sleep_cpu();
+        SMCR = 0;
     }
-    SMCR = 1 << SE;
-    sei();   // takes effect after the next instruction: no interrupt can slip in before the sleep
-    sleep_cpu();
-    SMCR = 0;
+    sei();
 }
 
 }  // namespace hal

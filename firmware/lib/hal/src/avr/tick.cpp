@@ -1,4 +1,4 @@
-// The 1 kHz tick by timer 0, and the chain of 32 ADC conversions that it starts.
+// The 1 kHz tick by timer 0, and the start of the chain of 32 ADC conversions (interrupts.S goes on with it).
 #ifdef __AVR__
 #include <avr/interrupt.h>
 #include <avr/io.h>
@@ -6,23 +6,18 @@
 #include "../hal.h"
 #include "internal.h"
 #include "pins.h"
+#include "shared_state.h"
 
 namespace hal {
 namespace {
 
-// Prescaler 32: 500 kHz ADC clock. Free-running: a conversion takes exactly 13 ADC clocks (416 cycles) however late
-// the interrupt is, so 32 of them take 13,312 of the tick's 16,000 cycles.
-constexpr uint8_t adc_one = (1 << ADEN) | (1 << ADIE) | (1 << ADPS2) | (1 << ADPS0);
-constexpr uint8_t adc_start = adc_one | (1 << ADATE) | (1 << ADSC) | (1 << ADIF);
-constexpr uint8_t conversions = pot_count * conversions_per_pot;
+static_assert(CONVERSIONS == pot_count * conversions_per_pot, "each pot in turn, the same number of times");
 
 constexpr uint8_t channel(uint8_t n) { return static_cast<uint8_t>((1 << REFS0) | (n & 7)); }   // reference AVcc
 
-uint16_t sums[2][pot_count];
-uint16_t* volatile filling = sums[0];   // the interrupt adds here; the other one is the main loop's
-volatile uint8_t full = 0;              // the main loop's one holds sums that it has not read
-volatile uint8_t conversion = conversions;
-volatile uint8_t running = 0;           // a tick has started and tick_end() has not been called
+volatile uint8_t filling = 0;   // of the two sets of sums; the interrupt adds there, the other one is the main loop's
+volatile uint8_t full = 0;      // the main loop's one holds sums that it has not read
+volatile uint8_t running = 0;   // a tick has started and tick_end() has not been called
 volatile uint8_t elapsed = 0;
 volatile uint8_t late = 0;
 
@@ -30,11 +25,13 @@ volatile uint8_t late = 0;
 
 // The first conversion is started before anything else: its moment does not depend on the work below.
 ISR(TIMER0_COMPA_vect) {
-    const bool restart = conversion == conversions && !full;
+    const bool restart = CONVERSION == CONVERSIONS && !full;
     if (restart) {
-        ADCSRA = adc_start;   // channel 0 was chosen by the last interrupt of the chain before
-        conversion = 0;
-        filling = filling == sums[0] ? sums[1] : sums[0];
+        ADCSRA = ADC_CHAIN;   // channel 0 was chosen by the last interrupt of the chain before
+        CONVERSION = 0;
+        const uint8_t next = filling ^ 1;
+        filling = next;
+        SUM_POSITION = static_cast<uint8_t>(reinterpret_cast<uint16_t>(hal_sums[next]));
         full = 1;
     } else {
         late = 1;
@@ -54,17 +51,6 @@ ISR(TIMER0_COMPA_vect) {
     }
 }
 
-// Conversion n is in ADC, n + 1 is under way with its channel latched: this chooses the channel of n + 2.
-// Pots are visited in turn, not four times in a row, so that all eight are averaged over the same time.
-ISR(ADC_vect) {
-    const uint8_t n = conversion;
-    uint16_t* const sum = filling + (n & 7);
-    if (n == conversions - 2) ADCSRA = adc_one;   // the one under way is the last
-    ADMUX = n == conversions - 1 ? channel(0) : channel(static_cast<uint8_t>(n + 2));
-    *sum = static_cast<uint16_t>(*sum + ADC);
-    conversion = static_cast<uint8_t>(n + 1);
-}
-
 namespace internal {
 
 void start_tick() {
@@ -76,10 +62,11 @@ void start_tick() {
     TIFR0 = (1 << OCF0A) | (1 << TOV0);
     TIMSK0 = 1 << OCIE0A;
 
+    CONVERSION = CONVERSIONS;
     DIDR0 = 0xff;   // no digital inputs on the pots
     ADCSRB = 0;     // channels 0..7, free-running
     ADMUX = channel(0);
-    ADCSRA = adc_one | (1 << ADIF);
+    ADCSRA = ADC_SINGLE | (1 << ADIF);
 }
 
 }  // namespace internal
@@ -111,10 +98,10 @@ uint16_t tick_age_us() {
 
 bool read_pots(uint16_t (&out)[pot_count]) {
     if (!full) return false;
-    uint16_t* const sum = filling == sums[0] ? sums[1] : sums[0];
+    uint16_t* const sums = hal_sums[filling ^ 1];
     for (uint8_t i = 0; i < pot_count; ++i) {
-        out[i] = sum[i];
-        sum[i] = 0;
+        out[i] = sums[i];
+        sums[i] = 0;
     }
     full = 0;
     return true;

@@ -64,9 +64,10 @@ std::uint8_t rx_read() {
 
 std::uint8_t tx_free() { return fake::board.tx_room; }
 
-void tx_write(std::uint8_t byte) {
-    fake::board.sent.push_back(byte);
-    --fake::board.tx_room;
+void tx_write(const std::uint8_t* bytes, std::uint8_t count) {
+    if (count == 0 || count > fake::board.tx_room) ++fake::board.tx_misuse;
+    fake::board.sent.insert(fake::board.sent.end(), bytes, bytes + count);
+    fake::board.tx_room = static_cast<std::uint8_t>(fake::board.tx_room - count);
 }
 
 std::uint8_t rx_lost() {

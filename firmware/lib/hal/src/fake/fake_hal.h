@@ -34,6 +34,7 @@ struct FakeBoard {
     bool watchdog_on = false;
     unsigned watchdog_kicks = 0;
     unsigned eeprom_writes = 0;
+    unsigned tx_misuse = 0;                        // writes of no bytes or of more than there is room for
     unsigned eeprom_misuse = 0;                    // reads or writes while a write was going on
     std::uint16_t eeprom_busy_ticks = 0;
     bool pending = false;

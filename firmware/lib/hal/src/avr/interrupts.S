@@ -1,0 +1,141 @@
+; The interrupts that come often: a conversion every 416 cycles, a byte every 160 each way. In assembler because
+; avr-gcc saves twice the registers they need. Cycles from the interrupt to the end of reti, ATmega2560 (one or two
+; less on the ATmega328P): conversion 68, byte sent 52, byte received 58.
+#ifdef __AVR__
+#define __SFR_OFFSET 0
+#include <avr/io.h>
+#include <avr/interrupt.h>
+
+#include "shared_state.h"
+
+#ifdef USART_RX_vect   /* the ATmega328P has one USART and no number in the vector's name */
+#define RECEIVED USART_RX_vect
+#define SENDABLE USART_UDRE_vect
+#else
+#define RECEIVED USART0_RX_vect
+#define SENDABLE USART0_UDRE_vect
+#endif
+
+.section .bss.hal, "aw", @nobits
+.balign 32                      ; the address of a sum changes in its low byte only
+.global hal_sums, hal_tx_ring, hal_rx_ring
+hal_sums:    .skip 32           ; two sets of eight
+hal_tx_ring: .skip RING_SIZE
+hal_rx_ring: .skip RING_SIZE
+.global hal_tx_head, hal_rx_head, hal_rx_tail, hal_rx_lost
+hal_tx_head: .skip 1
+hal_rx_head: .skip 1
+hal_rx_tail: .skip 1
+hal_rx_lost: .skip 1
+
+.section .text.hal, "ax", @progbits
+
+.macro enter
+    push r30
+    in   r30, SREG
+    push r30
+    push r31
+    push r24
+    push r25
+.endm
+
+; Z := ring + position (subtracts the negative: there is no addition of a constant)
+.macro point ring, position
+    mov  r30, \position
+    ldi  r31, 0
+    subi r30, lo8(-(\ring))
+    sbci r31, hi8(-(\ring))
+.endm
+
+.macro leave
+    pop  r25
+    pop  r24
+    pop  r31
+    pop  r30
+    out  SREG, r30
+    pop  r30
+    reti
+.endm
+
+; Conversion n is in ADC, n + 1 is under way with its channel latched: this chooses the channel of n + 2.
+; Pots are visited in turn, not four times in a row, so that all eight are averaged over the same time.
+.global ADC_vect
+ADC_vect:
+    enter
+    in   r30, SUM_POSITION
+    ldi  r31, hi8(hal_sums)
+    lds  r24, ADCL
+    ld   r25, Z
+    add  r24, r25
+    st   Z+, r24
+    lds  r24, ADCH
+    ld   r25, Z
+    adc  r24, r25
+    st   Z+, r24
+    in   r24, CONVERSION
+    inc  r24
+    out  CONVERSION, r24
+    mov  r25, r24
+    andi r25, 7
+    brne 1f
+    subi r30, 16                ; after the eighth pot comes the first
+1:  out  SUM_POSITION, r30
+    inc  r25
+    andi r25, 7
+    ori  r25, 1 << REFS0
+    cpi  r24, CONVERSIONS - 1
+    brsh 3f
+2:  sts  ADMUX, r25
+    leave
+3:  ldi  r25, 1 << REFS0        ; the chain of the next tick begins with channel 0
+    brne 2b
+    ldi  r24, ADC_SINGLE        ; the conversion under way is the last
+    sts  ADCSRA, r24
+    rjmp 2b
+
+; The transmitter takes a byte; without one left it is silenced.
+.global SENDABLE
+SENDABLE:
+    enter
+    in   r24, TX_TAIL
+    point hal_tx_ring, r24
+    ld   r25, Z
+    sts  UDR0, r25
+    inc  r24
+    andi r24, RING_SIZE - 1
+    out  TX_TAIL, r24
+    lds  r25, hal_tx_head
+    cpse r24, r25
+    rjmp 1f
+    ldi  r25, UART_ON
+    sts  UCSR0B, r25
+1:  leave
+
+; A byte has come. One that finds the ring full is lost and counted, as are those that the chip had to drop.
+.global RECEIVED
+RECEIVED:
+    enter
+    lds  r24, UCSR0A            ; before UDR0, which clears it
+    lds  r25, UDR0
+    sbrc r24, DOR0
+    rcall count_lost
+    lds  r24, hal_rx_head
+    point hal_rx_ring, r24
+    st   Z, r25                 ; the place at the head is never in use
+    inc  r24
+    andi r24, RING_SIZE - 1
+    lds  r31, hal_rx_tail
+    cp   r24, r31
+    breq 1f
+    sts  hal_rx_head, r24
+    leave
+1:  rcall count_lost
+    leave
+
+count_lost:
+    lds  r24, hal_rx_lost
+    inc  r24
+    breq 1f                     ; stays at 255
+    sts  hal_rx_lost, r24
+1:  ret
+#endif  /* __AVR__ */

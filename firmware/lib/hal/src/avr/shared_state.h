@@ -1,0 +1,33 @@
+// What the interrupts in interrupts.S share with the C++ code: sizes, registers and variables.
+#pragma once
+#ifdef __AVR__
+
+#define RING_SIZE 128
+#define CONVERSIONS 32
+
+// The chip's general purpose registers, one cycle away.
+#define CONVERSION GPIOR0     // conversions of this chain that are done
+#define SUM_POSITION GPIOR1   // low byte of the address of the sum that the next conversion is added to
+#define TX_TAIL GPIOR2        // position in the ring of the byte to be sent next
+
+#define UART_ON ((1 << RXEN0) | (1 << TXEN0) | (1 << RXCIE0))
+
+// Prescaler 32: 500 kHz ADC clock. Free-running, a conversion takes exactly 13 ADC clocks (416 cycles) however late the
+// interrupt is, so the chain takes 13,312 of a tick's 16,000 cycles.
+#define ADC_SINGLE ((1 << ADEN) | (1 << ADIE) | (1 << ADPS2) | (1 << ADPS0))
+#define ADC_CHAIN (ADC_SINGLE | (1 << ADATE) | (1 << ADSC) | (1 << ADIF))
+
+#ifndef __ASSEMBLER__
+#include <stdint.h>
+
+extern "C" {
+extern uint8_t hal_tx_ring[RING_SIZE];
+extern uint8_t hal_rx_ring[RING_SIZE];
+extern uint16_t hal_sums[2][8];
+extern volatile uint8_t hal_tx_head;
+extern volatile uint8_t hal_rx_head, hal_rx_tail;   // head is written by the producer, tail by the consumer
+extern volatile uint8_t hal_rx_lost;
+}
+#endif
+
+#endif  // __AVR__
