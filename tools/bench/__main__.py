@@ -1,7 +1,8 @@
 """Runs the benchmarks: `python -m tools.bench [name ...]`.
 
-Each bench_<name>.py beside this file has run() -> list[Figure]. Prints a table and writes build/bench.json. A figure that misses its aim is shown as such but is no failure: how fast
-a machine is says nothing about whether the code is right.
+Each bench_<name>.py beside this file has run() -> list[Figure]. Prints a table and writes build/bench.json. A figure
+that misses its aim is shown as such but is no failure: how fast a machine is says nothing about whether the code is
+right.
 """
 
 from __future__ import annotations
