@@ -6,30 +6,57 @@ Ignored`) but needs no Unity. A suite passes only if it ran to its end and every
 
 import re
 import subprocess
-import threading
 from pathlib import Path
-from subprocess import PIPE, STDOUT
+from xml.etree import ElementTree
 
 import click
 from platformio.test.exception import UnitTestSuiteError
-from platformio.test.result import TestStatus
+from platformio.test.result import TestCase, TestCaseSource, TestStatus
 from platformio.test.runners.base import TestRunnerBase
-from platformio.test.runners.doctest import DoctestTestCaseParser, DoctestTestRunner
-from platformio.test.runners.unity import UnityTestRunner
+from platformio.test.runners.doctest import DoctestTestRunner
 
 SYSTEM_DOCTEST = Path("/usr/include/doctest/doctest.h")  # Debian: doctest-dev; elsewhere PlatformIO downloads it
-COUNT = re.compile(r"^(?:\[doctest\] test cases: *(\d+)|(\d+) Tests \d+ Failures \d+ Ignored)", re.MULTILINE)
 TIME_LIMIT_S = 600
+
+UNITY_CASE = re.compile(r"^(?P<file>[^:\s]+):(?P<line>\d+):(?P<name>[^:]+):(?P<status>PASS|FAIL)(:\s*(?P<why>.*))?$")
+UNITY_END = re.compile(r"^(\d+) Tests (\d+) Failures \d+ Ignored")
+
+
+def read_doctest(output):
+    """The cases of doctest's JUnit report; none when the program died before writing it."""
+    _, declaration, report = output.partition("<?xml")
+    if not declaration:
+        return []
+    return [doctest_case(element) for element in ElementTree.fromstring(declaration + report).iter("testcase")]
+
+
+def doctest_case(element):
+    problems = [*element.iter("failure"), *element.iter("error")]
+    why = "\n".join((problem.text or problem.get("message")).strip() for problem in problems)
+    status = TestStatus.FAILED if problems else TestStatus.PASSED
+    name = f"{Path(element.get('classname')).name}: {element.get('name')}"
+    return TestCase(name, status, message=why.partition("\n")[2] or why or None, stdout=why)
+
+
+def read_unity(output):
+    """The cases an on-target suite printed; none when it stopped half-way or its own count differs."""
+    matches = [match for line in output.splitlines() if (match := UNITY_CASE.match(line.strip()))]
+    ends = [match for line in output.splitlines() if (match := UNITY_END.match(line.strip()))]
+    if len(ends) != 1 or int(ends[0][1]) != len(matches):
+        return []
+    return [unity_case(match) for match in matches]
+
+
+def unity_case(match):
+    status = TestStatus.PASSED if match["status"] == "PASS" else TestStatus.FAILED
+    source = TestCaseSource(match["file"], int(match["line"]))
+    return TestCase(match["name"], status, message=match["why"] or None, source=source)
 
 
 class CustomTestRunner(TestRunnerBase):
-    TESTCASE_PARSE_RE = UnityTestRunner.TESTCASE_PARSE_RE
-    parse_unity_line = UnityTestRunner.parse_test_case
-
     def __init__(self, *args, **kwargs):
         super().__init__(*args, **kwargs)
         self.on_target = self.platform.is_embedded()
-        self.parse = self.parse_unity_line if self.on_target else DoctestTestCaseParser().parse
         if not self.on_target and not SYSTEM_DOCTEST.is_file():
             self.EXTRA_LIB_DEPS = DoctestTestRunner.EXTRA_LIB_DEPS
 
@@ -39,42 +66,29 @@ class CustomTestRunner(TestRunnerBase):
             self.options.without_uploading = True
             self.stage_building()
 
-    def stage_testing(self):
-        if self.options.without_testing:
-            return
-        output = []
-        with subprocess.Popen(self.command(), stdout=PIPE, stderr=STDOUT, text=True, errors="replace") as program:
-            watchdog = threading.Timer(TIME_LIMIT_S, program.kill)
-            watchdog.start()
-            for line in program.stdout:
-                output.append(line)
-                self.show(line)
-            program.wait()
-            watchdog.cancel()
-        self.check_end(program.returncode, output)
-
     def command(self):
         """What to start: the setting of the environment, or the program built for this computer."""
         build = Path(self.project_config.get("platformio", "build_dir")) / self.test_suite.env_name
         custom = self.project_config.get(f"env:{self.test_suite.env_name}", "test_testing_command")
-        return [*(custom or [str(build / "program")]), *(self.options.program_args or [])]
+        return [*(custom or [str(build / "program"), "--reporters=junit"]), *(self.options.program_args or [])]
 
-    def show(self, line):
-        if self.options.verbose:
-            click.echo(line, nl=False)
-        if case := self.parse(line):
-            self.test_suite.add_case(case)
-            if not self.options.verbose:
-                click.echo(case.humanize())
-
-    def check_end(self, exit_code, output):
-        """A program that fails, stops half-way or says less than it counts is a failure, not a shorter suite."""
-        counts = [int(found[1] or found[2]) for found in COUNT.finditer("".join(output))]
-        heard = len(self.test_suite.cases)
-        failed = any(case.status in (TestStatus.FAILED, TestStatus.ERRORED) for case in self.test_suite.cases)
-        complete = len(counts) == 1 and heard >= max(counts[0], 1)  # doctest's subcases are heard one by one
-        if complete and (exit_code == 0 or failed):
+    def stage_testing(self):
+        if self.options.without_testing:
             return
-        click.echo("".join(output[-20:]))
-        counted = counts[-1] if counts else "no"
-        raise UnitTestSuiteError(f"It ended with code {exit_code}, counted {counted} cases, and {heard} were heard.")
+        try:
+            done = subprocess.run(
+                self.command(), capture_output=True, text=True, errors="replace", timeout=TIME_LIMIT_S
+            )
+        except subprocess.TimeoutExpired as error:
+            raise UnitTestSuiteError(f"It did not end within {TIME_LIMIT_S} s.") from error
+        cases = (read_unity if self.on_target else read_doctest)(done.stdout)
+        for case in cases:
+            self.test_suite.add_case(case)
+            click.echo(case.humanize())
+        failed = any(case.status == TestStatus.FAILED for case in cases)
+        if self.options.verbose or not cases or (done.returncode != 0 and not failed):
+            click.echo(done.stdout[-4000:] + done.stderr[-4000:])
+        if not cases:
+            raise UnitTestSuiteError(f"It ended with code {done.returncode} and without a whole report.")
+        if done.returncode != 0 and not failed:
+            raise UnitTestSuiteError(f"Its cases passed, but it ended with code {done.returncode}.")
