@@ -54,6 +54,7 @@ TEST_CASE("crc has the published check value") {
 }
 
 TEST_CASE("crc equals the bitwise definition for every high byte and data byte") {
+  int pairs = 0;
   for (unsigned high = 0; high < 256; ++high) {
     for (unsigned data = 0; data < 256; ++data) {
       // The first byte steers the high byte of the CRC through all values, the second is the data.
@@ -66,8 +67,10 @@ TEST_CASE("crc equals the bitwise definition for every high byte and data byte")
         }
       }
       EXPECT(wire::crc_over(bytes, 2) == expected);
+      ++pairs;
     }
   }
+  CHECK(pairs == 65536);
 }
 
 namespace {
@@ -130,6 +133,7 @@ TEST_CASE("every payload size from empty to the largest survives") {
 
 TEST_CASE("any single changed byte is noticed") {
   std::mt19937 random(2);
+  size_t changes = 0;
   for (const size_t size : {size_t{0}, size_t{6}, size_t{30}, size_t{wire::max_payload}}) {
     const Bytes payload = random_payload(random, size);
     const Bytes good = frame_of(0x04, 9, payload);
@@ -143,9 +147,11 @@ TEST_CASE("any single changed byte is noticed") {
         EXPECT(decoder.bad() >= 1);
         // and the frame after it arrives
         EXPECT(feed(decoder, good).size() == 1);
+        ++changes;
       }
     }
   }
+  CHECK(changes == 255 * (6 + 12 + 36 + 54));
 }
 
 TEST_CASE("garbage of any kind is survived, counted and left behind") {
@@ -161,6 +167,7 @@ TEST_CASE("garbage of any kind is survived, counted and left behind") {
     EXPECT(decoder.bad() == trial + 1);
     EXPECT(feed(decoder, good).size() == 1);
   }
+  CHECK(decoder.bad() == 20000);
 }
 
 TEST_CASE("an endless frame does not write past the buffer") {

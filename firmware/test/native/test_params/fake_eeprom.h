@@ -12,6 +12,7 @@ class FakeEeprom {
  public:
   static constexpr int size = 1024;
   static constexpr int busy_polls = 3;
+  static constexpr int untouched = -1;
 
   FakeEeprom() : cells(size, 0xFF), wear(size, 0) {}
 
@@ -25,7 +26,7 @@ class FakeEeprom {
     ++wear.at(address);
     ++writes;
     if (writes == cut_at) {
-      cells.at(address) = torn;  // whatever the cell had become when the power went
+      if (torn != untouched) cells.at(address) = static_cast<uint8_t>(torn);
       throw PowerCut();
     }
     cells.at(address) = stuck == address ? cells.at(address) : byte;
@@ -47,7 +48,7 @@ class FakeEeprom {
   std::vector<int> wear;
   int writes = 0;
   int cut_at = 0;      // the write, counted from 1, in which the power goes; 0 never
-  uint8_t torn = 0xFF;
+  int torn = 0xFF;     // what the cell has become when the power went
   int stuck = -1;      // a worn-out cell that keeps its value
 
  private:

@@ -27,8 +27,8 @@ params::Table variant(unsigned seed) {
   table.period_ms = static_cast<uint8_t>(1 + random() % 50);
   table.supply_mv = static_cast<uint16_t>(3000 + random() % 27000);
   for (auto &joint : table.joint) {
-    joint.kp = random() % 4194304;
-    joint.ki = random() % 65536000;
+    joint.kp = static_cast<uint32_t>(random() % 4194304);
+    joint.ki = static_cast<uint32_t>(random() % 65536000);
     joint.limit_min = static_cast<int16_t>(-1 - static_cast<int>(random() % 20000));
     joint.ne_c = static_cast<int16_t>(-static_cast<int>(random() % 16384));
   }
@@ -101,7 +101,7 @@ TEST_CASE("what is saved is found at boot, the banks taking turns") {
     EXPECT(save(eeprom, table) == wire::SaveState::saved);
     wire::ParamSource source;
     EXPECT(same(boot(eeprom, &source), table));
-    EXPECT(source == (i % 2 == 0 ? wire::ParamSource::bank_a : wire::ParamSource::bank_b));
+    CHECK(source == (i % 2 == 0 ? wire::ParamSource::bank_a : wire::ParamSource::bank_b));
   }
 }
 
@@ -130,10 +130,10 @@ TEST_CASE("a power cut at any write, with any torn byte, leaves the old or the n
     EXPECT(save(whole, new_table) == wire::SaveState::saved);
     EXPECT(whole.writes > 50);
     for (int cut = 1; cut <= whole.writes; ++cut) {
-      for (int torn = 0; torn < 256; ++torn) {
+      for (int torn = FakeEeprom::untouched; torn < 256; ++torn) {
         FakeEeprom eeprom = before;
         eeprom.cut_at = cut;
-        eeprom.torn = static_cast<uint8_t>(torn);
+        eeprom.torn = torn;
         bool was_cut = false;
         try {
           save(eeprom, new_table);
@@ -160,15 +160,51 @@ TEST_CASE("a power cut at any write, with any torn byte, leaves the old or the n
   CHECK(found_new >= 4);  // a cut in the last write whose byte came out right
 }
 
+TEST_CASE("a half-written bank is never taken, even when its CRC happens to be right") {
+  params::Table newest;
+  const FakeEeprom before = history(2, newest);  // bank A: variant(100), sequence 1; the save goes there, as sequence 3
+  constexpr int kp_at = bank::payload_at + 13 + 16;
+  const auto crc_up_to_kp = [](const FakeEeprom &eeprom, int sequence, uint16_t low) {
+    wire::Crc16 crc;
+    for (int i = bank::layout_at; i < kp_at; ++i) {
+      const uint8_t byte = eeprom.cells.at(static_cast<size_t>(bank::start_a + i));
+      crc.add(i == bank::sequence_at ? static_cast<uint8_t>(sequence) : byte);
+    }
+    crc.add(static_cast<uint8_t>(low & 0xFF));
+    crc.add(static_cast<uint8_t>(low >> 8));
+    return crc.value();
+  };
+  // A new set whose first part brings the CRC to where the old first part brought it: the old rest and the old CRC fit it.
+  params::Table next = variant(100);
+  const uint32_t old_kp = next.joint[0].kp;
+  const uint16_t target = crc_up_to_kp(before, 1, static_cast<uint16_t>(old_kp & 0xFFFF));
+  uint32_t low = 0;
+  while (low < 0x10000 && crc_up_to_kp(before, 3, static_cast<uint16_t>(low)) != target) ++low;
+  REQUIRE(low < 0x10000);
+  next.joint[0].kp = (old_kp & 0xFF0000) | low;
+  next.joint[3].pce_b = 1234;
+
+  FakeEeprom whole = before;
+  REQUIRE(save(whole, next) == wire::SaveState::saved);
+  for (int cut = 1; cut <= whole.writes; ++cut) {
+    FakeEeprom eeprom = before;
+    eeprom.cut_at = cut;
+    eeprom.torn = FakeEeprom::untouched;
+    CHECK_THROWS_AS(save(eeprom, next), PowerCut);
+    CHECK(same(boot(eeprom), newest));
+  }
+}
+
 TEST_CASE("power cuts one after another never lose the last set that was whole") {
   std::mt19937 random(5);
+  int boots = 0;
   for (int run = 0; run < 300; ++run) {
     FakeEeprom eeprom;
     params::Table last = defaults();
     for (unsigned i = 0; i < 12; ++i) {
       const params::Table next = variant(static_cast<unsigned>(random() % 50));
       eeprom.cut_at = random() % 4 == 0 ? 0 : 1 + static_cast<int>(random() % 200);
-      eeprom.torn = static_cast<uint8_t>(random());
+      eeprom.torn = static_cast<int>(random() % 257) - 1;
       bool was_cut = false;
       try {
         EXPECT(save(eeprom, next) == wire::SaveState::saved);
@@ -178,8 +214,10 @@ TEST_CASE("power cuts one after another never lose the last set that was whole")
       const params::Table found = boot(eeprom);
       EXPECT((same(found, next) || (was_cut && same(found, last))));
       last = found;
+      boots += 1;
     }
   }
+  CHECK(boots == 300 * 12);
 }
 
 TEST_CASE("a set that is stored already costs no write") {
@@ -214,6 +252,7 @@ TEST_CASE("one flipped bit anywhere in the newer bank falls back to the older on
   params::Table newest;
   const FakeEeprom before = history(2, newest);
   const params::Table older = variant(100);
+  int flips = 0;
   for (int at = 0; at < bank::size; ++at) {
     for (int bit = 0; bit < 8; ++bit) {
       FakeEeprom eeprom = before;
@@ -226,8 +265,10 @@ TEST_CASE("one flipped bit anywhere in the newer bank falls back to the older on
       other = static_cast<uint8_t>(other ^ (1 << bit));
       EXPECT(same(boot(eeprom, &source), defaults()));
       EXPECT(source == wire::ParamSource::defaults);
+      ++flips;
     }
   }
+  CHECK(flips == 8 * bank::size);
 }
 
 TEST_CASE("rot that is found while saving is healed by a fresh bank") {
@@ -253,7 +294,7 @@ TEST_CASE("the sequence number wraps around") {
     for (unsigned i = 0; i < 8; ++i) {
       const params::Table table = variant(i);
       EXPECT(save(eeprom, table) == wire::SaveState::saved);
-      EXPECT(same(boot(eeprom), table));
+      CHECK(same(boot(eeprom), table));
     }
   }
 }
@@ -340,4 +381,5 @@ TEST_CASE("each poll does at most one write and none while busy") {
     store.poll();  // the fake throws on any use while it is busy
     EXPECT(eeprom.writes <= before + 1);
   }
+  CHECK(store.state() == wire::SaveState::saved);
 }
