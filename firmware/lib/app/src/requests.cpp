@@ -9,6 +9,7 @@ namespace {
 
 // A piece of work is not begun this late in a tick, so that the next tick starts in time even while bytes pour in.
 constexpr uint16_t latest_start_us = 800;
+constexpr uint16_t latest_apply_us = 300;   // a joint's compilation takes most of a tick
 constexpr uint8_t bytes_per_piece = 16;
 
 // The supervisor and the parts below it know nothing of the link; their numbers are the link's all the same.
@@ -46,15 +47,17 @@ uint16_t pair(uint8_t high, uint16_t low) { return static_cast<uint16_t>(high <<
 }  // namespace
 
 bool App::service() {
-    const bool late_in_tick = hal::tick_age_us() > latest_start_us;
+    const uint16_t age_us = hal::tick_age_us();
+    const bool late_in_tick = age_us > latest_start_us;
     if (late_in_tick && heard_this_tick_) return false;
     const uint8_t lost = hal::rx_lost();
     if (lost) rx_overruns_ = rx_overruns_ > UINT16_MAX - lost ? UINT16_MAX : static_cast<uint16_t>(rx_overruns_ + lost);
+    if (hal::tx_free() < wire::max_wire) return false;   // what waits stays where it is until there is room to answer
     if (sets_.applying()) {
+        if (age_us > latest_apply_us) return false;
         work_on_apply();
         return true;
     }
-    if (hal::tx_free() < wire::max_wire) return false;   // what waits stays where it is until there is room to answer
     if (!heard_this_tick_ && hal::rx_available()) {
         receive();   // at least once a tick, whatever else there is: a stop must get through
         return true;

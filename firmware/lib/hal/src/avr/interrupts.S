@@ -1,6 +1,5 @@
-; The interrupts that come often: a conversion every 416 cycles, a byte every 160 each way. In assembler because
-; avr-gcc saves twice the registers they need. Cycles from the interrupt to the end of reti, ATmega2560 (one or two
-; less on the ATmega328P): conversion 68, byte sent 52, byte received 58.
+/* The interrupts that come often: a conversion every 416 cycles, a byte every 160 each way. In assembler because
+   avr-gcc saves twice the registers they need. */
 #ifdef __AVR__
 #define __SFR_OFFSET 0
 #include <avr/io.h>
