@@ -29,6 +29,7 @@ class FakeBoard:
     pc: int = 0
     baud: float = 1e6
     in_bootloader: bool = False
+    powered: bool = True
     result: int = 0
     registered: list[tuple[object, ...]] = field(default_factory=list)
     pins: np.ndarray = field(default_factory=lambda: np.zeros(9))
@@ -69,11 +70,13 @@ class FakeBoard:
     def reset(self) -> None:
         self.events.append("reset")
 
-    def power_off(self) -> None:
-        self.events.append("off")
+    def power_off(self, seed: int) -> None:
+        self.events.append(f"off {seed}")
+        self.powered = False
 
-    def power_on(self) -> None:
-        self.events.append("on")
+    def power_on(self, seed: int) -> None:
+        self.events.append(f"on {seed}")
+        self.powered = True
 
     def stats(self) -> FakeStats:
         return self.counters
@@ -107,8 +110,9 @@ class FakePots:
     def set_wiring(self, joint: int, wiring: object) -> None:
         self.wirings[joint] = wiring
 
-    def millivolts(self, angles: np.ndarray) -> np.ndarray:
-        return np.asarray(2500.0 + 1000.0 * angles)
+    def millivolts(self, angles: np.ndarray, out: np.ndarray) -> np.ndarray:
+        out[:] = 2500.0 + 1000.0 * angles
+        return out
 
 
 def ramp(seconds: float = 1.0) -> Trajectory:

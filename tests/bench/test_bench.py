@@ -85,14 +85,3 @@ def test_a_crash_is_told_with_its_address(board: Any, bench: Bench) -> None:
     board.pc = 0x1234
     with pytest.raises(CrashError, match="0x01234"):
         bench.run(0.01)
-
-
-def test_without_power_the_arm_gets_no_voltage_and_the_board_no_time(board: Any, plant: Any, bench: Bench) -> None:
-    board.pins[ENABLE] = 1
-    board.pins[DUTY] = 1.0
-    bench.run(0.01)
-    cycle = board.cycle
-    plant.voltages.clear()
-    bench.coast(10)
-    assert board.cycle == cycle
-    assert plant.voltages == [[0.0] * 4] * 10

@@ -71,18 +71,18 @@ def test_a_short_lag_is_made_up_for_a_long_one_is_counted(clock: Clock, pacer: P
 def test_time_stands_still_until_the_host_has_read(clock: Clock, pacer: Pacer) -> None:
     queue = [UNREAD_LIMIT + 500]
 
-    def unread() -> int:
+    def backlog(limit: int) -> int:
         queue[0] -= 100
         return queue[0]
 
-    pacer.drain(unread, lambda: True)
+    pacer.drain(backlog, lambda: True)
     assert UNREAD_LIMIT - 100 < queue[0] <= UNREAD_LIMIT
     assert len(clock.waits) == 4
 
 
 def test_a_host_that_goes_away_ends_the_wait(clock: Clock, pacer: Pacer) -> None:
     answers = iter([True, True, False])
-    pacer.drain(lambda: 4096, lambda: next(answers))
+    pacer.drain(lambda limit: 4096, lambda: next(answers))
     assert len(clock.waits) == 2
 
 

@@ -77,6 +77,18 @@ def test_all_bytes_pass_both_ways_unchanged(port: SerialPort) -> None:
         assert port.unread() == 0
 
 
+def test_backlog_is_an_upper_bound_that_reading_clears(port: SerialPort) -> None:
+    with serial.Serial(port.path, timeout=5) as host:
+        for written in range(100, 1001, 100):
+            port.write(bytes(100))
+            assert port.backlog(500) == written
+        host.read(999)
+        assert port.backlog(500) == 1000, "one byte is left, so the bound stays"
+        host.read(1)
+        assert port.backlog(1000) == 1000, "not above the limit: not worth a look"
+        assert port.backlog(500) == 0
+
+
 def test_unread_bytes_can_be_discarded(port: SerialPort) -> None:
     with serial.Serial(port.path, timeout=0) as host:
         port.write(b"old news")

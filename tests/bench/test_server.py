@@ -100,7 +100,7 @@ def test_a_wrong_speed_garbles_both_ways(board: Any, server: Server) -> None:
 def test_nobody_connected_keeps_real_time_and_a_host_does_not(server: Server, wall: Wall) -> None:
     for _ in range(100):
         server.turn()
-    assert wall.now == pytest.approx(server.time_s, abs=0.02)
+    assert wall.now == pytest.approx(server.bench.time_s, abs=0.02)
     with serial.Serial(server.port.path, 1_000_000):
         server.turn()
         before = wall.now
@@ -112,13 +112,13 @@ def test_nobody_connected_keeps_real_time_and_a_host_does_not(server: Server, wa
 def test_simulated_time_waits_for_a_slow_reader(board: Any, server: Server, wall: Wall) -> None:
     with serial.Serial(server.port.path, 1_000_000, timeout=1) as host:
         server.turn()
-        board.to_send += bytes(1000)
+        board.to_send += bytes(2000)
         waits: list[float] = []
 
         def reads_at_last(seconds: float) -> None:
             waits.append(seconds)
             if len(waits) == 3:
-                host.read(1000)
+                host.read(2000)
 
         server._pacer._wait = reads_at_last
         server.turn()
@@ -128,7 +128,7 @@ def test_simulated_time_waits_for_a_slow_reader(board: Any, server: Server, wall
 def test_a_host_that_dies_with_bytes_unread_does_not_stop_the_bench(board: Any, server: Server) -> None:
     host = serial.Serial(server.port.path, 1_000_000)
     server.turn()
-    board.to_send += bytes(1000)
+    board.to_send += bytes(2000)
     server._pacer._wait = lambda seconds: host.close()
     server.turn()
     assert not server.port.connected
@@ -153,14 +153,28 @@ def test_a_power_cut_keeps_what_the_eeprom_holds_at_that_moment(board: Any, serv
     board.counters.eeprom_writes += 1
     server.power_off()
     assert eeprom.read_bytes() == b"\x33" * 4096
-    assert not commands.run(server, "status")["motors_enabled"]
-    cycle = board.cycle
+    assert not commands.run(server, "status")["powered"]
+    with serial.Serial(server.port.path, 1_000_000) as host:
+        host.write(b"anybody there?")
+        server.turn()
+    assert board.received == b""
+    server.power_on()
+    assert [event for event in board.events if event != "reset"] == ["off 2", "on 2"]
+
+
+def test_a_power_cut_can_wait_for_eeprom_writes(board: Any, server: Server) -> None:
+    board.counters.eeprom_writes = 100
+    commands.run(server, "power off 3")
+    for writes in (100, 101, 102):
+        board.counters.eeprom_writes = writes
+        server.turn()
+        assert board.powered
+    board.counters.eeprom_writes = 103
     server.turn()
-    assert board.cycle == cycle
+    assert not board.powered
     server.power_on()
     server.turn()
-    assert board.events == ["off", "on"]
-    assert board.cycle > cycle
+    assert board.powered, "one cut was ordered"
 
 
 def test_commands_change_the_bench(server: Server) -> None:
@@ -187,5 +201,5 @@ def test_bad_commands_are_answered_with_a_sentence(server: Server, text: str) ->
         commands.run(server, text)
     assert caught.value.message.endswith(".")
     assert server.fast
-    assert server.powered
+    assert server.board.powered
     assert server.noise.flip == 0.0

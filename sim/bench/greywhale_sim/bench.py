@@ -14,6 +14,7 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
+from greywhale import arm
 from greywhale_sim.leader import LeaderPlayer
 from greywhale_sim.wiring import Wiring
 
@@ -47,15 +48,16 @@ class Plant(Protocol):
 
 
 class Potentiometers(Protocol):
-    """Four angles in rad to four voltages in mV."""
+    """Four angles in rad to four voltages in mV, written into `out`."""
 
-    def millivolts(self, angles: Array) -> Array: ...
+    def millivolts(self, angles: Array, out: Array) -> Array: ...
 
 
 class CrashError(RuntimeError):
     """The simulated processor stopped in a way a real one would not."""
 
 
+# Called after every slice: cycle reached, pins at its beginning, follower's angles. The arrays are reused.
 Trace = Callable[[int, Array, Array], None]
 
 
@@ -105,7 +107,7 @@ class Bench:
         reset = getattr(self.plant, "reset", None)
         if reset is not None:
             reset(angles)
-            self.angles = np.array(angles, dtype=np.float64)
+            self.angles[:] = angles
 
     def run(self, seconds: float) -> None:
         """Advance by `seconds` of simulated time, rounded to whole slices."""
@@ -114,8 +116,9 @@ class Bench:
     def run_slices(self, count: int) -> None:
         board, leader, millivolts = self.board, self.leader, self._millivolts
         outputs, run_until, set_millivolts = board.outputs, board.run_until, board.set_millivolts
-        step, advance = self.plant.step, leader.step
+        step, advance, angles = self._stepper(), leader.step, self.angles
         leader_pots, follower_pots = self.leader_pots.millivolts, self.follower_pots.millivolts
+        leader_millivolts, follower_millivolts = millivolts[:4], millivolts[4:]
         target = board.cycle // SLICE_CYCLES * SLICE_CYCLES
         for _ in range(count):
             target += SLICE_CYCLES
@@ -123,29 +126,28 @@ class Bench:
             if pins.tobytes() != self._last_outputs:
                 self._drive(pins)
             if leader.hold is None:
-                self.angles = step(self.voltages, SLICE_S)
+                step(self.voltages, SLICE_S, angles)
             else:
                 self.place(leader.hold)
-            advance(self._enabled, self.angles)
-            millivolts[:4] = leader_pots(leader.angles)
-            millivolts[4:] = follower_pots(self.angles)
+            advance(self._enabled, angles)
+            leader_pots(leader.angles, leader_millivolts)
+            follower_pots(angles, follower_millivolts)
             set_millivolts(millivolts)
             if run_until(target) == CRASHED:
                 raise CrashError(f"the simulated processor crashed at program address 0x{board.pc:05x}")
             if self.trace is not None:
-                self.trace(target, pins, self.angles)
+                self.trace(target, pins, angles)
 
-    def coast(self, slices: int) -> None:
-        """Let time pass for arm and leader while the board has no power and the drivers are off."""
-        self.voltages = np.zeros(4)
-        self._enabled = False
-        self._last_outputs = b""
-        for _ in range(slices):
-            if self.leader.hold is None:
-                self.angles = self.plant.step(self.voltages, SLICE_S)
-            else:
-                self.place(self.leader.hold)
-            self.leader.step(False, self.angles)
+    def _stepper(self) -> Callable[[Array, float, Array], object]:
+        """The plant's step, writing into an array: the built-in arm can do that itself, which saves time."""
+        plant = self.plant
+        if isinstance(plant, arm.Arm):
+            return plant.step
+
+        def step(voltages: Array, dt: float, out: Array) -> None:
+            out[:] = plant.step(voltages, dt)
+
+        return step
 
     def _drive(self, pins: Array) -> None:
         """Sign-magnitude drive: voltage is duty x supply, its sign the direction pin; drivers off brake with 0 V."""

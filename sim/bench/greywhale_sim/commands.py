@@ -34,10 +34,10 @@ def run(server: Server, text: str) -> Answer:
 def status(server: Server) -> Answer:
     bench, stats = server.bench, server.board.stats()
     return {
-        "time_s": round(server.time_s, 6),
+        "time_s": round(server.bench.time_s, 6),
         "cycle": server.board.cycle,
-        "powered": server.powered,
-        "motors_enabled": server.powered and bench.motors_enabled,
+        "powered": server.board.powered,
+        "motors_enabled": bench.motors_enabled,
         "voltages": [round(float(volts), 3) for volts in bench.voltages],
         "leader": [round(float(angle), 5) for angle in bench.leader.angles],
         "follower": [round(float(angle), 5) for angle in bench.angles],
@@ -65,11 +65,14 @@ def line(server: Server, what: str, probability: str) -> Answer:
     return {"flip": server.noise.flip, "lose": server.noise.lose}
 
 
-def power(server: Server, switch: str) -> Answer:
-    if switch not in ("on", "off"):
+def power(server: Server, switch: str, writes: str = "0") -> Answer:
+    if switch not in ("on", "off") or not 0 <= int(writes) <= 100_000:
         raise ValueError
-    server.power_on() if switch == "on" else server.power_off()
-    return {"powered": server.powered}
+    if switch == "on":
+        server.power_on()
+    else:
+        server.power_off(int(writes))
+    return {"powered": server.board.powered}
 
 
 def speed(server: Server, value: str) -> Answer:
@@ -83,6 +86,6 @@ COMMANDS: dict[str, tuple[Callable[..., Answer], str]] = {
     "status": (status, ""),
     "pot": (pot, "leader|follower 0..3 connected|open|shorted"),
     "line": (line, "flip|lose PROBABILITY"),
-    "power": (power, "on|off"),
+    "power": (power, "on|off [WRITES]"),
     "speed": (speed, "1|max"),
 }

@@ -48,7 +48,7 @@ class LeaderPlayer:
         elif self._off < self._let_go:
             self._off += 1
             self._on = 0
-            self._left_at = (self.angles, follower)
+            self._left_at = (self.angles, follower.copy())
         elif self._off < self._let_go + self._bring_back:
             self._off += 1
             share = (self._off - self._let_go) / self._bring_back

@@ -12,7 +12,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
-UNREAD_LIMIT = 256  # bytes: about eight samples of telemetry
+UNREAD_LIMIT = 1024  # bytes: about 30 samples of telemetry
 GIVE_UP_S = 0.05  # a lag beyond this (the machine was busy) is not made up for
 
 
@@ -46,7 +46,7 @@ class Pacer:
             self.lag_s -= ahead
             self._origin = (simulated_s, now)
 
-    def drain(self, unread: Callable[[], int], keep_waiting: Callable[[], bool]) -> None:
+    def drain(self, backlog: Callable[[int], int], keep_waiting: Callable[[], bool]) -> None:
         """Hold simulated time until the host has read enough; `keep_waiting` ends the wait when the host is gone."""
-        while unread() > UNREAD_LIMIT and keep_waiting():
-            self._wait(0.0002)
+        while backlog(UNREAD_LIMIT) > UNREAD_LIMIT and keep_waiting():
+            self._wait(0.0001)

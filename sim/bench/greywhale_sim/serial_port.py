@@ -37,6 +37,7 @@ class SerialPort:
         self.path = os.ttyname(self._slave)
         self._notify = _watch(self.path)
         self._users = 0
+        self._unseen = 0  # bytes written since the host was last known to have read all
         self._links: list[Path] = []
         try:
             for link in links:
@@ -81,21 +82,29 @@ class SerialPort:
     def write(self, data: bytes) -> int:
         """Hand `data` to the host; what the system's queue has no room for is lost. Returns how many bytes fitted."""
         try:
-            return os.write(self._master, data)
+            fitted = os.write(self._master, data)
         except BlockingIOError:
             return 0
+        self._unseen += fitted
+        return fitted
 
     def unread(self) -> int:
-        """How many bytes the host has not read yet."""
+        """How many bytes lie ready for the host; 0 only if it has read everything that was written."""
+        # The kernel carries bytes to the host's side in its own time; looking for them makes it do so at once.
+        select.select([self._slave], [], [], 0)
         count: int = struct.unpack("i", fcntl.ioctl(self._slave, termios.FIONREAD, bytes(4)))[0]
         return count
 
-    def discard_unread(self) -> None:
-        termios.tcflush(self._slave, termios.TCIFLUSH)
+    def backlog(self, limit: int) -> int:
+        """An upper bound of what the host has not read; exact enough to tell whether it is above `limit`."""
+        if self._unseen > limit and self.unread() == 0:
+            self._unseen = 0
+        return self._unseen
 
-    def wait(self, timeout_s: float) -> None:
-        """Sleep, but wake at once when somebody opens, closes or writes."""
-        select.select([self._notify, self._master], [], [], max(0.0, timeout_s))
+    def discard_unread(self) -> None:
+        while self.unread():
+            termios.tcflush(self._slave, termios.TCIFLUSH)
+        self._unseen = 0
 
     def close(self) -> None:
         for link in self._links:

@@ -28,6 +28,7 @@ class Server:
         fast: bool = False,
         eeprom: Path | None = None,
         pacer: Pacer | None = None,
+        seed: int = 1,
     ) -> None:
         self.bench = bench
         self.board = board
@@ -35,42 +36,40 @@ class Server:
         self.port = port
         self.fast = fast
         self.noise = line.Noise()
-        self.powered = True
         self.resets_by_host = 0
+        self._seed = seed
+        self._cut_at: int | None = None  # EEPROM writes at which the power goes
         self._pacer = pacer or Pacer()
         self._eeprom = eeprom
         self._eeprom_writes = board.stats().eeprom_writes
         self._eeprom_check_at = 0.0
         self._was_connected = False
-        self._off_s = 0.0  # simulated time that passed without power, when the processor's clock stood still
-
-    @property
-    def time_s(self) -> float:
-        return self.bench.time_s + self._off_s
 
     def turn(self) -> None:
         """One round: host to board, simulate, board to host, then let the wall clock catch up."""
         self._receive()
         slices = CONNECTED_SLICES if self.port.connected else IDLE_SLICES
-        if self.powered:
-            self.bench.run_slices(slices)
-            self._send()
-            self._keep_eeprom()
-        else:
-            self.bench.coast(slices)
+        self.bench.run_slices(slices)
+        self._send()
+        if self._cut_at is not None and self.board.stats().eeprom_writes >= self._cut_at:
+            self.power_off()
+        self._keep_eeprom()
         self._pace()
 
-    def power_off(self) -> None:
-        """Cut the supply at once, also in the middle of an EEPROM write."""
-        if self.powered:
-            self.powered = False
-            self.board.power_off()
+    def power_off(self, after_writes: int = 0) -> None:
+        """Cut the supply, also in the middle of an EEPROM write: at once, or when the EEPROM has taken more bytes."""
+        if after_writes > 0:
+            self._cut_at = self.board.stats().eeprom_writes + after_writes
+            return
+        self._cut_at = None
+        if self.board.powered:
+            self._seed += 1  # another torn byte, another content of the RAM
+            self.board.power_off(self._seed)
             self._keep_eeprom(now=True)
 
     def power_on(self) -> None:
-        if not self.powered:
-            self.powered = True
-            self.board.power_on()
+        if not self.board.powered:
+            self.board.power_on(self._seed)
 
     def close(self) -> None:
         self._keep_eeprom(now=True)
@@ -79,9 +78,8 @@ class Server:
     def _receive(self) -> None:
         data = self.port.read()
         self._notice_host()  # after the read: bytes written right after an open must meet the board already reset
-        if data and self.powered:
-            board_baud = self.board.baud
-            self.board.uart_send(self.noise(line.resample(data, self.port.baud(), board_baud)))
+        if data and self.board.powered:
+            self.board.uart_send(self.noise(line.resample(data, self.port.baud(), self.board.baud)))
 
     def _send(self) -> None:
         data = self.board.uart_receive()
@@ -93,8 +91,7 @@ class Server:
         connected = self.port.connected
         if opened:
             self.resets_by_host += 1
-            if self.powered:
-                self.board.reset()
+            self.board.reset()
         if opened or (self._was_connected and not connected):
             self.port.discard_unread()
         self._was_connected = connected
@@ -108,17 +105,17 @@ class Server:
             self.wiring.bootloader_baud,
         )
         if self.fast and not real_time:
-            self._pacer.drain(self.port.unread, self._host_stays)
-        self._pacer.pace(self.time_s, real_time)
+            self._pacer.drain(self.port.backlog, self._host_stays)
+        self._pacer.pace(self.bench.time_s, real_time)
 
     def _host_stays(self) -> bool:
         self._notice_host()
         return self.port.connected
 
     def _keep_eeprom(self, now: bool = False) -> None:
-        if self._eeprom is None or not (now or self.time_s >= self._eeprom_check_at):
+        if self._eeprom is None or not (now or self.bench.time_s >= self._eeprom_check_at):
             return
-        self._eeprom_check_at = self.time_s + EEPROM_CHECK_S
+        self._eeprom_check_at = self.bench.time_s + EEPROM_CHECK_S
         writes = self.board.stats().eeprom_writes
         if writes != self._eeprom_writes:
             self._eeprom_writes = writes

@@ -68,8 +68,9 @@ NANO = Wiring(
     title="Arduino Nano (ATmega328P)",
     mcu="atmega328p",
     environment="nanoatmega328",
-    bootloader=ARDUINO_BOOTLOADERS / "optiboot" / "optiboot_atmega328.hex",
-    bootloader_baud=115200,
+    # The older of the Nano's two bootloaders: Debian's build of the newer one (optiboot) is too large for the chip.
+    bootloader=ARDUINO_BOOTLOADERS / "atmega" / "ATmegaBOOT_168_atmega328.hex",
+    bootloader_baud=57600,
     motors=(
         Motor("D9", 1, "A", Pin("D2", "D", 2)),
         Motor("D10", 1, "B", Pin("D4", "D", 4)),

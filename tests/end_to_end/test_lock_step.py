@@ -1,0 +1,194 @@
+"""The real firmware, cycle by cycle and without a wall clock: following, stopping, faults, and determinism."""
+
+from __future__ import annotations
+
+import hashlib
+from typing import Any
+
+import numpy as np
+import pytest
+
+from greywhale.arm import Wiring
+from greywhale.link import schema
+from greywhale.link.schema import Fault, NackCode, State, StopReason
+
+RAD = schema.Sample.LSB["leader"]
+
+
+def test_hello_says_which_board(lock_step: Any, board_name: str) -> None:
+    host = lock_step(board_name)
+    hello = host.ask(schema.HelloRequest())
+    assert hello.board.key == {"mega": "mega2560", "nano": "nano328"}[board_name]
+    assert hello.schema_hash == schema.SCHEMA_HASH
+    assert hello.param_crc == schema.param_crc(schema.DEFAULTS)
+    status = host.status()
+    assert (status.state, status.fault) == (State.DISABLED, Fault.NONE)
+    assert not host.bench.motors_enabled
+
+
+def test_motors_stay_off_from_power_on_through_the_bootloader(lock_step: Any, board_name: str) -> None:
+    host = lock_step(board_name, boot=False)
+    on: list[int] = []
+    host.bench.trace = lambda cycle, pins, angles: on.append(cycle) if pins[:5].any() else None
+    assert host.board.in_bootloader
+    host.boot()
+    host.run(0.5)
+    assert on == []
+
+
+def test_the_follower_follows_and_telemetry_tells_the_truth(lock_step: Any, board_name: str) -> None:
+    host = lock_step(board_name)
+    host.ask(schema.TelemetryRequest(1))
+    host.follow()
+    host.samples.clear()
+    host.run(3.5)
+    leader = np.array([sample.leader for sample in host.samples]) * RAD
+    follower = np.array([sample.follower for sample in host.samples]) * RAD
+    ticks = np.array([sample.tick for sample in host.samples])
+    assert np.all(np.diff(ticks) == 1), "a sample every tick, none lost"
+    assert np.ptp(leader, axis=0) == pytest.approx([0.4] * 4, abs=0.03)
+    assert np.all(np.ptp(follower, axis=0) > 0.25), "every joint moved with its leader"
+    error = np.sqrt(np.mean((leader - follower) ** 2, axis=0))
+    assert np.all((error > 0.001) & (error < 0.15)), error
+    # What the board measured is where the arm is: 10 bits over 300 degrees is 5 mrad a step, before oversampling.
+    assert follower[-1] == pytest.approx(host.bench.angles, abs=0.02)
+    assert leader[-1] == pytest.approx(host.bench.leader.angles, abs=0.02)
+    status = host.status()
+    assert (status.late_ticks, status.rx_overruns, status.telemetry_dropped, status.no_rule) == (0, 0, 0, 0)
+
+
+def test_stop_works_while_moving(lock_step: Any) -> None:
+    host = lock_step()
+    host.follow()
+    host.run(1.0)
+    assert host.bench.motors_enabled
+    assert np.abs(host.bench.voltages).max() > 0.0
+    assert host.ask(schema.StopRequest()).state is State.DISABLED
+    assert not host.bench.motors_enabled
+    assert host.status().stop_reason is StopReason.HOST
+    host.run(0.01)
+    assert host.bench.voltages.tolist() == [0.0] * 4
+
+
+def test_the_lease_ends_when_it_is_not_renewed(lock_step: Any) -> None:
+    host = lock_step()
+    host.ask(schema.EnableRequest(200))
+    for _ in range(10):
+        host.run(0.15)
+        host.ask(schema.RenewRequest(200))
+    assert host.bench.motors_enabled, "renewed ten times, 1.5 s after a lease of 0.2 s began"
+    host.run(0.19)
+    assert host.bench.motors_enabled
+    host.run(0.03)
+    assert not host.bench.motors_enabled
+    assert host.status().stop_reason is StopReason.LEASE
+
+
+@pytest.mark.parametrize(
+    ("side", "joint", "wiring", "fault"),
+    [
+        ("leader", 0, Wiring.OPEN, Fault.POT_LOW),
+        ("leader", 3, Wiring.SHORTED, Fault.POT_HIGH),
+        ("follower", 1, Wiring.OPEN, Fault.POT_LOW),
+        ("follower", 2, Wiring.SHORTED, Fault.POT_HIGH),
+    ],
+)
+def test_a_broken_potentiometer_stops_the_motors(
+    lock_step: Any, side: str, joint: int, wiring: Wiring, fault: Fault
+) -> None:
+    host = lock_step()
+    host.follow()
+    pots = host.bench.leader_pots if side == "leader" else host.bench.follower_pots
+    pots.set_wiring(joint, wiring)
+    host.run(0.05)
+    assert not host.bench.motors_enabled
+    status = host.status()
+    assert (status.state, status.fault) == (State.FAULT, fault)
+    assert status.fault_where == joint + (4 if side == "follower" else 0)
+    with pytest.raises(AssertionError) as refused:
+        host.ask(schema.EnableRequest(0))
+    assert refused.value.nack.code is NackCode.IN_FAULT  # type: ignore[attr-defined]
+    pots.set_wiring(joint, Wiring.CONNECTED)
+    host.run(2.0)  # the person brings both arms back
+    host.ask(schema.ClearFaultRequest())
+    host.follow()
+    assert host.bench.motors_enabled
+
+
+def test_enable_is_refused_while_a_potentiometer_is_broken(lock_step: Any) -> None:
+    host = lock_step()
+    host.bench.follower_pots.set_wiring(2, Wiring.OPEN)
+    host.run(0.1)
+    with pytest.raises(AssertionError) as refused:
+        host.ask(schema.EnableRequest(0))
+    nack = refused.value.nack  # type: ignore[attr-defined]
+    assert (nack.code, nack.detail) == (NackCode.POT_BAD, 6 << 8 | Fault.POT_LOW)
+    assert not host.bench.motors_enabled
+
+
+def test_enable_is_refused_while_the_arms_are_apart(lock_step: Any) -> None:
+    host = lock_step()
+
+    class Elsewhere:
+        """An arm that leans against the wall, 1 rad away in joint 3."""
+
+        def step(self, voltages: np.ndarray, dt: float) -> np.ndarray:
+            return np.asarray(host.bench.leader.home + np.array([0.0, 0.0, 0.0, -1.0]))
+
+    host.bench.plant = Elsewhere()
+    host.bench.leader.hold = None
+    host.run(0.1)
+    with pytest.raises(AssertionError) as refused:
+        host.ask(schema.EnableRequest(0))
+    nack = refused.value.nack  # type: ignore[attr-defined]
+    assert (nack.code, nack.detail >> 8) == (NackCode.ERROR_TOO_LARGE, 3)
+    assert (nack.detail & 0xFF) / 32 == pytest.approx(1.0, abs=0.05)
+
+
+def test_a_follower_that_cannot_follow_is_a_fault(lock_step: Any) -> None:
+    host = lock_step()
+    limit = schema.PARAMETER_BY_NAME["tracking_limit"]
+    set_parameters(host, {"tracking_limit": limit.to_raw(0.3)})
+    stuck = host.bench.leader.home.copy()
+
+    class Stuck:
+        def step(self, voltages: np.ndarray, dt: float) -> np.ndarray:
+            return stuck
+
+    host.bench.plant = Stuck()
+    host.follow()
+    host.run(2.0)
+    assert not host.bench.motors_enabled
+    assert host.status().fault is Fault.TRACKING
+
+
+def set_parameters(host: Any, changes: dict[str, int]) -> int:
+    """Stage a whole set with changes made to the defaults, and apply it; its CRC."""
+    values = list(schema.DEFAULTS)
+    for name, raw in changes.items():
+        values[schema.PARAMETER_BY_NAME[name].index] = raw
+    for index, raw in enumerate(values):
+        host.ask(schema.ParamSetRequest(index, raw))
+    return int(host.ask(schema.ParamApplyRequest(schema.param_crc(values))).param_crc)
+
+
+def test_same_bytes_same_trace(lock_step: Any, board_name: str) -> None:
+    def trace(kp: int, pieces: int) -> str:
+        host = lock_step(board_name, boot=False)
+        digest = hashlib.sha256()
+        host.bench.trace = lambda cycle, pins, angles: digest.update(
+            cycle.to_bytes(8, "little") + pins.tobytes() + angles.tobytes()
+        )
+        host.boot()
+        host.ask(schema.TelemetryRequest(7))
+        set_parameters(host, {"joint0.kp": kp})
+        host.follow()
+        for _ in range(pieces):
+            host.run(1.2 / pieces)
+        return digest.hexdigest()
+
+    default = schema.PARAMETER_BY_NAME["joint0.kp"].default
+    first = trace(default, 1)
+    assert trace(default, 1) == first
+    assert trace(default, 40) == first, "nor does it matter in how many pieces time is simulated"
+    assert trace(default + 1000, 1) != first, "the trace shows what the controller does"
