@@ -72,10 +72,6 @@ def add_tools(core: Path) -> None:
     for part in ("cores", "variants", "libraries"):
         link(ARDUINO / part, framework / part)
     link(Path("/usr/bin/avrdude"), new_tool(core, "tool-avrdude", "1.70100.0") / "bin/avrdude")
-    link(
-        Path("/usr/bin/cppcheck"),
-        new_tool(core, "tool-cppcheck", wanted_version("tool-cppcheck")) / "cppcheck",
-    )
 
 
 def new_platform(core: Path, name: str, main_script: str, **fields: object) -> Path:
