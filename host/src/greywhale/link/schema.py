@@ -50,7 +50,7 @@ class Fault(Described):
     NONE = 0, "no fault", "Nothing to do."
     POT_LOW = 1, "a potentiometer reads at the lower rail", "Check that potentiometer's wiper and its +5 V wire (an open wire or a short to ground reads 0), then clear the fault."
     POT_HIGH = 2, "a potentiometer reads at the upper rail", "Check that potentiometer's ground wire (an open one reads full scale) and for a wiper shorted to +5 V, then clear the fault."
-    LATE_TICK = 3, "a control tick had not finished when the next one began", "Raise period_ms or lower the telemetry rate, then clear the fault; if it comes back, report the firmware version with `greywhale info`."
+    LATE_TICK = 3, "a control tick had not finished when the next one began", "Lower the telemetry rate, then clear the fault; if it comes back, report the firmware version with `greywhale info`."
     TRACKING = 4, "a follower stayed too far from its leader for too long", "Check that joint's motor supply, motor_sign and for something in the arm's way, or raise tracking_limit or tracking_ms, then clear the fault."
     WATCHDOG = 5, "the firmware had stopped and the watchdog restarted the board", "Clear the fault to go on; if it comes back, check the board's supply and report the firmware version with `greywhale info`."
     PARAMS = 6, "the stored parameters cannot be run by the controllers", "Upload a controller file with `greywhale upload`, then clear the fault."
@@ -79,11 +79,11 @@ class Refusal(Described):
     """Why the controller cannot run a joint's settings; the low byte of set_refused."""
 
     NONE = 0, "the settings can be run", "Nothing to do."
-    ORDER = 1, "the corners of the fuzzy sets are out of order", "Keep Ze_a below 0 below Ze_c, Ne_c below 0 and Pe_b above 0, and the same for Nce_c, Zce_a, Zce_c, Pce_b."
+    ORDER = 1, "a fuzzy set lies on the wrong side of zero", "Keep Ze_a below 0 below Ze_c, Ne_c below 0 and Pe_b above 0, and the same for Nce_c, Zce_a, Zce_c, Pce_b."
     RANGE = 2, "a corner of a fuzzy set is outside -1..1", "Keep every corner within -1..1."
     WIDTH = 3, "a flank of a fuzzy set is narrower than 0.01", "Keep every flank at least 0.01 wide."
-    GAIN = 4, "a gain is larger than the fixed-point arithmetic can hold", "Lower kp, kd, ki or ku of the named joint."
-    PERIOD = 5, "the control period does not suit the gains", "Choose period_ms within 1..50, or lower ki."
+    GAIN = 4, "a gain, or ki times the period, is larger than the fixed-point arithmetic can hold", "Lower kp, kd, ki or ku of the named joint, or period_ms."
+    PERIOD = 5, "the control period is outside 1..50 ms", "Choose period_ms within 1..50."
 
 
 class Board(Described):

@@ -80,11 +80,11 @@ enum class NackCode : uint8_t {
 // Why the controller cannot run a joint's settings; the low byte of set_refused.
 enum class Refusal : uint8_t {
   none = 0,  // the settings can be run
-  order = 1,  // the corners of the fuzzy sets are out of order
+  order = 1,  // a fuzzy set lies on the wrong side of zero
   range = 2,  // a corner of a fuzzy set is outside -1..1
   width = 3,  // a flank of a fuzzy set is narrower than 0.01
-  gain = 4,  // a gain is larger than the fixed-point arithmetic can hold
-  period = 5,  // the control period does not suit the gains
+  gain = 4,  // a gain, or ki times the period, is larger than the fixed-point arithmetic can hold
+  period = 5,  // the control period is outside 1..50 ms
 };
 
 // Boards the firmware is built for.
