@@ -131,10 +131,10 @@ void bind_parameters(nb::module_& m) {
       .def(
           "__init__",
           [](JointOfOne* self, const ActuatorOfOne& actuator, double coulomb, double breakaway, double stribeck_velocity,
-             double half_gap, double stiffness, double damping, double min, double max) {
-            new (self) JointOfOne{actuator, {coulomb, breakaway, stribeck_velocity}, {half_gap, stiffness, damping}, {min, max}};
+             double half_gap, double stiffness, double damping, double drag, double min, double max) {
+            new (self) JointOfOne{actuator, {coulomb, breakaway, stribeck_velocity}, {half_gap, stiffness, damping, drag}, {min, max}};
           },
-          nb::kw_only(), "actuator"_a, "coulomb"_a, "breakaway"_a, "stribeck_velocity"_a, "half_gap"_a, "stiffness"_a, "damping"_a,
+          nb::kw_only(), "actuator"_a, "coulomb"_a, "breakaway"_a, "stribeck_velocity"_a, "half_gap"_a, "stiffness"_a, "damping"_a, "drag"_a,
           "min"_a, "max"_a);
 
   nb::class_<arm::ArmParameters>(m, "ArmParameters", "The whole arm; greywhale.arm.ArmParameters makes it, validated.")

@@ -36,8 +36,15 @@ struct Terms {
   T deflection;    // motor ahead of link, rad
   T push;          // of the mesh as it is now deflected, were there no gap
   T gap_push;      // what the half gap takes off it
-  T mesh;          // mesh impulse per closing velocity
-  T share;         // of the link's velocity that the touching, sliding motor side takes on
+  T mesh;          // impulse of touching teeth per closing velocity
+  T drag;          // the same of the grease, which works all the time
+};
+
+// What the mesh does for one choice of sides: an impulse from its present deflection, and one per closing velocity.
+template <class T>
+struct Mesh {
+  T push, stiff;
+  T share;         // of the link's velocity that a sliding motor side takes on
 };
 
 // One row of the links' equations: what motor and mesh add to it.
@@ -48,6 +55,9 @@ struct Row {
 
 // kg m^2; beside it every inertia of an arm vanishes in rounding, which is what makes a rigid gear rigid.
 constexpr double kRigid = 1e15;
+
+// N m s; a pull below it is rounding and lets nothing go, so that a side that neither pushes nor pulls is not chosen in turns.
+constexpr double kNoPull = 1e-14;
 
 template <class T>
 Terms<T> terms_of(const Joint<T>& joint, const State<T>& s, std::size_t i, T volts, double dt) {
@@ -62,7 +72,7 @@ Terms<T> terms_of(const Joint<T>& joint, const State<T>& s, std::size_t i, T vol
   t.push = dt * gear.stiffness * t.deflection;
   t.gap_push = dt * gear.stiffness * gear.half_gap;
   t.mesh = choose(gear.stiffness > constant<T>(0.0), compliant, constant<T>(kRigid));
-  t.share = t.mesh / (t.inertia + t.mesh);
+  t.drag = dt * gear.drag;
   return t;
 }
 
@@ -79,28 +89,35 @@ Sides<T> first_guess(const Joint<T>& joint, const State<T>& s, std::size_t i, do
   return side;
 }
 
+template <class T>
+Mesh<T> mesh_of(const Terms<T>& t, const Sides<T>& side) {
+  const T zero = constant<T>(0.0);
+  const auto touching = side.mesh != zero;
+  Mesh<T> mesh;
+  mesh.push = choose(touching, t.push - side.mesh * t.gap_push, zero);
+  mesh.stiff = choose(touching, t.mesh + t.drag, t.drag);
+  mesh.share = mesh.stiff / (t.inertia + mesh.stiff);
+  return mesh;
+}
+
 // A motor side at rest holds the link through the mesh alone; a sliding one moves with it by `share`.
 template <class T>
 Row<T> link_row(const Terms<T>& t, const Sides<T>& side) {
-  const T zero = constant<T>(0.0);
-  const T push = t.push - side.mesh * t.gap_push;
-  const T sliding = push + t.share * (t.impulse - push - side.slip * t.friction);
-  const auto touching = side.mesh != zero;
-  const auto slides = side.slip != zero;
+  const Mesh<T> mesh = mesh_of(t, side);
+  const auto slides = side.slip != constant<T>(0.0);
+  const T driven = t.impulse - mesh.push - side.slip * t.friction;
   Row<T> row;
-  row.diagonal = choose(touching, choose(slides, t.share * t.inertia, t.mesh), zero);
-  row.right = choose(touching, choose(slides, sliding, push), zero);
+  row.diagonal = choose(slides, mesh.share * t.inertia, mesh.stiff);
+  row.right = choose(slides, mesh.push + mesh.share * driven, mesh.push);
   return row;
 }
 
 template <class T>
 T motor_velocity(const Terms<T>& t, const Sides<T>& side, T link_v) {
   const T zero = constant<T>(0.0);
-  const T push = t.push - side.mesh * t.gap_push;
-  const T driven = t.impulse - side.slip * t.friction;
-  const T apart = driven / t.inertia;
-  const T touching = (driven - push) / (t.inertia + t.mesh) + t.share * link_v;
-  return choose(side.slip != zero, choose(side.mesh != zero, touching, apart), zero);
+  const Mesh<T> mesh = mesh_of(t, side);
+  const T driven = t.impulse - mesh.push - side.slip * t.friction;
+  return choose(side.slip != zero, driven / (t.inertia + mesh.stiff) + mesh.share * link_v, zero);
 }
 
 // Teeth push and never pull. Apart, they meet on the side where the gap would close and the mesh would push.
@@ -112,7 +129,7 @@ T corrected_mesh(const Gear<T>& gear, const Terms<T>& t, T side, T closing, doub
   const T ahead = t.deflection + dt * closing;
   const T meeting = choose(ahead > gear.half_gap, one, choose(-ahead > gear.half_gap, -one, zero));
   const T meets = choose(meeting * push > t.gap_push, meeting, zero);
-  const T stays = choose(side * push < t.gap_push, zero, side);
+  const T stays = choose(side * push < t.gap_push - kNoPull, zero, side);
   return choose(gear.half_gap > zero, choose(side != zero, stays, meets), side);
 }
 
@@ -120,8 +137,8 @@ T corrected_mesh(const Gear<T>& gear, const Terms<T>& t, T side, T closing, doub
 template <class T>
 T corrected_slip(const Terms<T>& t, const Sides<T>& side, T motor_v, T closing) {
   const T zero = constant<T>(0.0);
-  const T mesh_impulse = choose(side.mesh != zero, t.push - side.mesh * t.gap_push + t.mesh * closing, zero);
-  const T needed = t.impulse - mesh_impulse;
+  const Mesh<T> mesh = mesh_of(t, side);
+  const T needed = t.impulse - mesh.push - mesh.stiff * closing;
   const T starts = choose(absolute(needed) > t.breakaway, sign(needed), zero);
   const T stays = choose(side.slip * motor_v < zero, zero, side.slip);
   return choose(side.slip != zero, stays, starts);
@@ -133,7 +150,7 @@ T corrected_stop(const Stops<T>& stops, T side, T reached, T stop_impulse) {
   const T zero = constant<T>(0.0);
   const T one = constant<T>(1.0);
   const T arrives = choose(reached > stops.max, one, choose(reached < stops.min, -one, zero));
-  const T stays = choose(side * stop_impulse > zero, zero, side);
+  const T stays = choose(side * stop_impulse > constant<T>(kNoPull), zero, side);
   return choose(side != zero, stays, arrives);
 }
 

@@ -47,6 +47,7 @@ struct Gear {
   T half_gap;                   // rad, at the output shaft
   T stiffness;                  // N m/rad, of the teeth in contact
   T damping;                    // N m s, of the teeth in contact
+  T drag;                       // N m s, of the grease, also with the teeth apart
 };
 
 template <class T>

@@ -1,4 +1,4 @@
-"""The exported arm in Pinocchio and MuJoCo: mass matrix and bias torques from two engines that share no code with greywhale."""
+"""The exported arm in Pinocchio and MuJoCo, two engines that share no code with greywhale."""
 
 from __future__ import annotations
 

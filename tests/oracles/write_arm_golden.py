@@ -21,7 +21,9 @@ def main() -> None:
     states = []
     for q, v in zip(*random_states(40, seed=2), strict=True):
         mass, bias = one.mass_matrix(q), one.bias(q, v)
-        if not np.allclose(mass, other.mass_matrix(q), atol=1e-12) or not np.allclose(bias, other.bias(q, v), atol=1e-12):
+        if not np.allclose(mass, other.mass_matrix(q), atol=1e-12) or not np.allclose(
+            bias, other.bias(q, v), atol=1e-12
+        ):
             raise SystemExit(f"Pinocchio and MuJoCo disagree at q = {q}, v = {v}; nothing written.")
         states.append({"q": q.tolist(), "v": v.tolist(), "mass_matrix": mass.tolist(), "bias": bias.tolist()})
     document = {

@@ -63,21 +63,23 @@ def urdf(parameters: ArmParameters) -> str:
 
 
 def mjcf(parameters: ArmParameters, motors: bool = False) -> str:
-    """The arm as MJCF: the links alone, or with motors whose controls are volts (rigid gears, Coulomb friction, no stops)."""
+    """The arm as MJCF: the links alone, or with motors controlled in volts (rigid gears, Coulomb friction, no stops)."""
     model = xml.Element("mujoco", model=parameters.name)
     xml.SubElement(model, "compiler", angle="radian")
     xml.SubElement(model, "option", gravity=_text((0.0, 0.0, -parameters.gravity)))
     parent = xml.SubElement(model, "worldbody")
     for index, body in enumerate(_bodies(parameters)):
-        euler = {"euler": _text((math.pi / 2, 0.0, 0.0))} if index == 0 else {}
-        parent = xml.SubElement(parent, "body", name=LINK_NAMES[index], pos=_text(body.origin), **euler)
+        frame = {"name": LINK_NAMES[index], "pos": _text(body.origin)}
+        if index == 0:
+            frame["euler"] = _text((math.pi / 2, 0.0, 0.0))
+        parent = xml.SubElement(parent, "body", frame)
         joint = {"name": JOINT_IDS[index], "type": "hinge", "axis": _text(_AXES[index])}
         if motors:
             actuator = parameters.actuator(index)
             joint["armature"] = repr(actuator.inertia)
             joint["damping"] = repr(actuator.damping)
             joint["frictionloss"] = repr(parameters.joint[index].friction.coulomb)
-        xml.SubElement(parent, "joint", **joint)
+        xml.SubElement(parent, "joint", joint)
         inertia = _text(body.inertia)
         xml.SubElement(parent, "inertial", pos=_text(body.centre), mass=repr(body.mass), diaginertia=inertia)
     if motors:

@@ -1,4 +1,4 @@
-"""What an arm.toml may say: geometry, motors, friction, gears, stops, potentiometers; checked as physics, not only as types."""
+"""What an arm.toml may say: geometry, motors, friction, gears, stops, potentiometers; checked as physics."""
 
 from __future__ import annotations
 
@@ -41,8 +41,8 @@ class Inertia(Table):
             rest = sum(getattr(self, other) for other in others)
             if one > rest * (1 + 1e-9):
                 raise ValueError(
-                    f"{key} is {one:g}, more than {others[0]} + {others[1]} = {rest:g}, which no body can have (triangle "
-                    f"inequality of moments of inertia){_printed_value(key, one)}"
+                    f"{key} is {one:g}, more than {others[0]} + {others[1]} = {rest:g}, which no body can have "
+                    f"(triangle inequality of moments of inertia){_printed_value(key, one)}"
                 )
         return self
 
@@ -95,7 +95,8 @@ class Friction(Table):
     def _rest_holds_more(self) -> Friction:
         if self.breakaway < self.coulomb:
             raise ValueError(
-                f"breakaway is {self.breakaway:g} N m, below coulomb = {self.coulomb:g} N m; a shaft at rest holds at least as much"
+                f"breakaway is {self.breakaway:g} N m, below coulomb = {self.coulomb:g} N m; "
+                "a shaft at rest holds at least as much"
             )
         return self
 
@@ -106,6 +107,7 @@ class Gear(Table):
     half_gap: Annotated[float, Field(ge=0, le=0.5)] = 0.0  # rad, to either side
     stiffness: NotNegative = 0.0  # N m/rad, of the teeth in contact
     damping: NotNegative = 0.0  # N m s, of the teeth in contact
+    drag: NotNegative = 0.0  # N m s, of the grease, also with the teeth apart
 
     @model_validator(mode="after")
     def _gap_needs_teeth(self) -> Gear:
@@ -208,6 +210,7 @@ class ArmParameters(Table):
             half_gap=joint.gear.half_gap,
             stiffness=joint.gear.stiffness,
             damping=joint.gear.damping,
+            drag=joint.gear.drag,
             min=joint.stops.min,
             max=joint.stops.max,
         )

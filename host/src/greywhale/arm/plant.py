@@ -9,9 +9,10 @@ LONGEST_STEP = 0.25e-3  # s
 
 
 class Arm(_native.Arm):
-    """The follower arm: `step(voltages, dt)` holds four voltages (V) for dt seconds and returns the four joint angles (rad).
+    """The follower arm: `step(voltages, dt)` holds four voltages (V) for dt seconds; it returns the joint angles (rad).
 
-    The same parameters, seed and inputs give the same motion. The seed draws where in its backlash each gear stands after a reset.
+    The same parameters, seed and inputs give the same motion. The seed draws where in its backlash each gear stands
+    after a reset.
     """
 
     def __init__(self, parameters: ArmParameters, seed: int = 0, longest_step: float = LONGEST_STEP) -> None:

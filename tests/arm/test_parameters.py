@@ -1,0 +1,107 @@
+"""arm.toml: what ships, and one clear sentence for everything that is wrong."""
+
+from __future__ import annotations
+
+from importlib import resources
+from pathlib import Path
+
+import pytest
+
+from greywhale.arm import Arm, arm_names, default_arm, load_arm
+from greywhale.errors import UserError
+
+DEFAULT = resources.files("greywhale.arm").joinpath("data", "default.toml").read_text(encoding="utf-8")
+
+
+def test_shipped_arms_load_and_move() -> None:
+    assert arm_names() == ["default", "grey_box", "white_box"]
+    for name in arm_names():
+        arm = Arm(load_arm(name))
+        assert abs(arm.step([10.0] * 4, 0.5)).min() > 0.05
+
+
+def test_paper_arms_hold_the_papers_values() -> None:
+    white, grey = load_arm("white_box"), load_arm("grey_box")
+    assert [joint.motor.resistance for joint in white.joint] == [3.6, 0.8, 2.4, 6.3]
+    assert [joint.motor.gear_ratio for joint in white.joint] == [0.8] * 4
+    assert [joint.motor.inertia for joint in grey.joint] == [18.302, 4.477, 0.918, 0.176]
+    assert [joint.motor.viscous for joint in grey.joint] == [0.495, 5.731, 20.405, 0.457]
+    for arm in (white, grey, default_arm()):
+        assert [link.mass for link in arm.link] == [0.21, 0.13, 0.11, 0.2148]
+        assert [link.length for link in arm.link] == [0.086, 0.14, 0.049, 0.172]
+        assert arm.link[0].inertia.yy == 8.26e-5
+
+
+def test_default_motors_are_near_the_white_box_but_not_equal() -> None:
+    """Each of the three combinations that motion reveals lies within e^0.4 of the white box, and none is the same."""
+    white, default = load_arm("white_box"), default_arm()
+    for joint in range(4):
+        # Both by the same equation, so that the motors are compared and not the equations.
+        near = white.model_copy(update={"motor_equation": "physical"}).actuator(joint)
+        ours = default.actuator(joint)
+        for one, other in (
+            (1 / ours.torque_per_volt, 1 / near.torque_per_volt),
+            (ours.inertia / ours.torque_per_volt, near.inertia / near.torque_per_volt),
+            (ours.damping / ours.torque_per_volt, near.damping / near.torque_per_volt),
+        ):
+            assert one != pytest.approx(other, rel=0.005)
+            assert 0.67 < one / other < 1.5
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence"),
+    [
+        ("mass = 0.21\n", "mass = -0.21\n", "link[0].mass is -0.21, but it should be greater than 0"),
+        ("mass = 0.0   ", "mass = -0.1   ", "tip.mass is -0.1, but it should be greater than or equal to 0"),
+        (
+            "yy = 8.26e-5",
+            "yy = 8.26e-3",
+            "link[0].inertia: yy is 0.00826, more than xx + zz = 0.000258, which no body can have "
+            "(triangle inequality of moments of inertia); "
+            "the paper's Table 3 prints this value for link 0, 8.26e-5 is probably meant",
+        ),
+        ("zz = 1.13e-4", "zz = 1.14e-4", "link[2].inertia: zz is 0.000114, more than xx + yy = 0.0001133"),
+        ("xx = 3.17e-5", "xx = 0", "link[1].inertia.xx is 0, but it should be greater than 0"),
+        ("centre = 0.07\n", "centre = 0.2\n", "link[1]: centre is 0.2 m, beyond the link's length of 0.14 m"),
+        (
+            "min = -2.55, max = 2.55",
+            "min = 2.55, max = -2.55",
+            "joint[0].stops: min is 2.55 rad, not below max = -2.55 rad",
+        ),
+        ("resistance = 3.9", "resistance = 0", "joint[0].motor.resistance is 0, but it should be greater than 0"),
+        ("coulomb = 0.078", "coulomb = 0.2", "joint[0].friction: breakaway is 0.1 N m, below coulomb = 0.2 N m"),
+        ("stiffness = 320.0", "stiffness = 0.0", "joint[0].gear: half_gap is 0.004 rad, so stiffness must be above 0"),
+        ("viscous = 0.055", "viscous = 0.055, viscosity = 1", "unknown key joint[0].motor.viscosity"),
+        ("gravity = 9.81", "gravity = nan", "gravity is nan; it must be a finite number"),
+        ("gravity = 9.81", 'gravity = "9.81"', 'gravity is "9.81", but it should be a valid number'),
+        ("supply = 15.0", "supply = 150.0", "drive.supply is 150.0, but it should be less than or equal to 60"),
+        ("direction = 1,", "direction = 2,", "leader_pots.joint[0].direction is 2, but it should be 1 or -1"),
+        (
+            'motor_equation = "physical"',
+            'motor_equation = "printed"',
+            "motor_equation is \"printed\", but it should be 'physical' or 'paper'",
+        ),
+        ("[drive]\nsupply = 15.0", "[drives]\nsupply = 15.0", "drive is missing"),
+    ],
+)
+def test_bad_values_are_refused_by_file_key_value_and_reason(tmp_path: Path, old: str, new: str, sentence: str) -> None:
+    assert old in DEFAULT
+    path = tmp_path / "arm.toml"
+    path.write_text(DEFAULT.replace(old, new, 1), encoding="utf-8")
+    with pytest.raises(UserError) as refused:
+        load_arm(path)
+    assert refused.value.message.startswith(f"{path}: {sentence}")
+
+
+def test_missing_joint_is_refused(tmp_path: Path) -> None:
+    start, end = DEFAULT.index("[[joint]]             # 3"), DEFAULT.index("[drive]")
+    path = tmp_path / "arm.toml"
+    path.write_text(DEFAULT[:start] + DEFAULT[end:], encoding="utf-8")
+    with pytest.raises(UserError) as refused:
+        load_arm(path)
+    assert "joint: it lists 3, but the arm needs exactly four: base yaw, shoulder pitch" in refused.value.message
+
+
+def test_absent_file_is_one_sentence() -> None:
+    with pytest.raises(UserError, match="no-such-arm.toml: cannot be read"):
+        load_arm("no-such-arm.toml")

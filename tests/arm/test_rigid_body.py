@@ -1,0 +1,72 @@
+"""The closed-form links: against outside golden values, and as physics."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+
+from greywhale._native import RigidBody
+from greywhale.arm import Arm, default_arm
+
+Vector = NDArray[np.float64]
+GOLDEN = json.loads(Path(__file__).with_name("golden_dynamics.json").read_text(encoding="utf-8"))
+RNG_STATES = 200
+
+
+@pytest.fixture(scope="module")
+def body() -> RigidBody:
+    return Arm(default_arm()).body
+
+
+def states(count: int = RNG_STATES) -> list[tuple[Vector, Vector]]:
+    rng = np.random.default_rng(7)
+    return [(rng.uniform(-np.pi, np.pi, 4), rng.uniform(-8, 8, 4)) for _ in range(count)]
+
+
+@pytest.mark.parametrize("state", GOLDEN["states"])
+def test_agrees_with_pinocchio(state: dict[str, Any], make_arm: Any) -> None:
+    body = Arm(make_arm(GOLDEN["arm"], tip={"mass": GOLDEN["tip_mass"]})).body
+    np.testing.assert_allclose(body.mass_matrix(state["q"]), state["mass_matrix"], rtol=0, atol=1e-12)
+    np.testing.assert_allclose(body.bias(state["q"], state["v"]), state["bias"], rtol=0, atol=1e-12)
+
+
+def test_mass_matrix_is_symmetric_and_positive_definite(body: RigidBody) -> None:
+    for q, _ in states():
+        mass = body.mass_matrix(q)
+        np.testing.assert_array_equal(mass, mass.T)
+        assert np.linalg.eigvalsh(mass).min() > 0
+
+
+def test_velocity_terms_do_no_work(body: RigidBody) -> None:
+    """Passivity: the power of the velocity terms is what the changing mass matrix takes, v'(dM/dt / 2) v = v' C."""
+    h = 1e-5
+    for q, v in states():
+        rate = (body.mass_matrix(q + h * v) - body.mass_matrix(q - h * v)) / (2 * h)
+        velocity_terms = body.bias(q, v) - body.bias(q, np.zeros(4))
+        assert 0.5 * v @ rate @ v == pytest.approx(v @ velocity_terms, abs=1e-7)
+
+
+def test_gravity_is_the_slope_of_the_potential_energy(body: RigidBody) -> None:
+    h = 1e-5
+    for q, _ in states():
+        for joint, unit in enumerate(np.eye(4)):
+            slope = (body.potential_energy(q + h * unit) - body.potential_energy(q - h * unit)) / (2 * h)
+            assert body.bias(q, np.zeros(4))[joint] == pytest.approx(slope, abs=1e-8)
+
+
+def test_energy_is_conserved_over_5_s(body: RigidBody) -> None:
+    def motion(_: float, y: Vector) -> Vector:
+        q, v = y[:4], y[4:]
+        return np.concatenate([v, np.linalg.solve(body.mass_matrix(q), -body.bias(q, v))])
+
+    start = np.array([0.3, 0.4, -0.7, 0.5, 3.0, -1.0, 2.0, 4.0])
+    solution = solve_ivp(motion, (0, 5), start, method="DOP853", rtol=1e-12, atol=1e-12)
+    energy = [body.kinetic_energy(y[:4], y[4:]) + body.potential_energy(y[:4]) for y in solution.y.T]
+    assert np.abs(solution.y[:4]).max() > 3, "the arm must have swung"
+    assert np.ptp(energy) < 1e-9

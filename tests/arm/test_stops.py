@@ -1,0 +1,68 @@
+"""End stops: never passed, never sticky, and they only take energy."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from greywhale.arm import Arm
+
+
+@pytest.fixture(params=["geared", "rigid"])
+def short_arm(request: pytest.FixtureRequest, make_arm: Any, rigid: Any) -> Arm:
+    stops = {"stops": {"min": -0.4, "max": 0.3}}
+    return Arm(make_arm(every_joint=stops | (rigid if request.param == "rigid" else {})))
+
+
+def test_no_link_passes_its_stop(short_arm: Arm) -> None:
+    rng = np.random.default_rng(4)
+    touched = np.zeros(4, dtype=bool)
+    for _ in range(1500):
+        angles = short_arm.step(rng.choice([-15.0, 15.0], 4), 0.01)
+        assert (angles <= 0.3).all()
+        assert (angles >= -0.4).all()
+        touched |= (angles == 0.3) | (angles == -0.4)
+    assert touched.all()
+    assert short_arm.unsettled_steps == 0
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_pressed_link_rests_on_its_stop_and_leaves_at_once(short_arm: Arm, side: float) -> None:
+    for _ in range(100):
+        short_arm.step(np.full(4, side * 10.0), 0.01)
+    np.testing.assert_array_equal(short_arm.angles, 0.3 if side > 0 else -0.4)
+    np.testing.assert_array_equal(short_arm.velocities, 0.0)
+    before = short_arm.angles
+    for _ in range(10):
+        short_arm.step(np.full(4, -side * 10.0), 0.01)
+    assert (side * (before - short_arm.angles) > 0.05).all()
+
+
+def test_impact_takes_energy_and_the_neighbour_feels_it(make_arm: Any, no_friction: Any, rigid: Any) -> None:
+    """The shoulder hits its stop: the wrist, coupled with it, is thrown on, and kinetic energy falls."""
+    parameters = make_arm(gravity=0.0, every_joint=no_friction | rigid, joint_1={"stops": {"min": -0.4, "max": 0.3}})
+    arm = Arm(parameters)
+    while arm.angles[1] < 0.3:
+        energy, wrist = arm.kinetic_energy, arm.velocities[2]
+        arm.step([0.0, 6.0, 0.0, 0.0], 0.25e-3)
+    assert arm.velocities[1] == 0.0
+    assert arm.velocities[2] > wrist + 0.1
+    assert arm.kinetic_energy < energy
+
+
+def test_the_step_of_the_blow_converges(make_arm: Any) -> None:
+    """What an impact leaves behind depends only in first order on where in the step it fell."""
+
+    def after(longest_step: float) -> np.ndarray[Any, np.dtype[np.float64]]:
+        arm = Arm(make_arm("white_box", joint_0={"stops": {"min": -0.4, "max": 0.3}}), longest_step=longest_step)
+        for _ in range(60):
+            arm.step([6.0, 2.0, 1.0, 1.0], 5e-3)
+        assert arm.angles[0] == 0.3
+        return arm.angles
+
+    exact = after(2.5e-6)
+    errors = [np.abs(after(step) - exact).max() for step in (0.25e-3, 0.125e-3, 0.0625e-3)]
+    assert errors[0] < 1e-3
+    assert errors[2] < 0.4 * errors[0]
