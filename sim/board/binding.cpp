@@ -159,6 +159,8 @@ void bind_board(nb::module_& m) {
         .def("uart_receive", [](PyBoard& b) { return to_bytes(b.uart().receive()); }, "Bytes the AVR sent since the last call.")
         .def_prop_ro("uart_available", [](PyBoard& b) { return b.uart().available(); }, "Bytes uart_receive() would return.")
         .def_prop_ro("uart_sent", [](PyBoard& b) { return b.uart().sent(); }, "Bytes the AVR ever sent.")
+        .def_prop_rw("uart_loopback", [](PyBoard& b) { return b.uart().loopback; }, [](PyBoard& b, bool on) { b.uart().loopback = on; },
+                     "A wire from TX0 to RX0: the AVR also receives what it sends.")
         .def_prop_ro("baud", [](PyBoard& b) { return b.uart().baud(); }, "Baud rate the AVR is set to.")
 
         .def("eeprom", [](PyBoard& b) { return to_bytes(b.eeprom().content()); })

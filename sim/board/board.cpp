@@ -238,7 +238,8 @@ uint64_t Board::call(uint32_t address, uint64_t limit) {
     if (address > avr.flashend) throw BoardError("there is no function at " + hex(address) + "; the flash ends before");
     const avr_flashaddr_t back = avr.pc;
     const int state = avr.state;
-    const uint8_t interrupts_on = avr.sreg[S_I];
+    std::array<uint8_t, 8> flags;
+    std::copy_n(avr.sreg, flags.size(), flags.begin());
     const auto stack = static_cast<uint16_t>(avr.data[reg::SPL] | avr.data[reg::SPH] << 8);
     const avr_flashaddr_t return_address = avr.flashend - 1;
 
@@ -264,7 +265,7 @@ uint64_t Board::call(uint32_t address, uint64_t limit) {
     avr.data[reg::SPL] = static_cast<uint8_t>(stack);
     avr.data[reg::SPH] = static_cast<uint8_t>(stack >> 8);
     if (!crashed) avr.state = state;
-    avr_sreg_set(&avr, S_I, interrupts_on);
+    for (uint8_t bit = 0; bit < flags.size(); ++bit) avr_sreg_set(&avr, bit, flags[bit]);
     if (crashed) throw BoardError("the function at " + hex(address) + " crashed: " + crash_reason());
     if (!returned)
         throw BoardError("the function at " + hex(address) + " did not return within " + std::to_string(limit) + " cycles");

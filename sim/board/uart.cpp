@@ -138,6 +138,7 @@ void Uart::write_data(uint16_t, uint8_t value) {
     } else {
         transmit_shift_ = value;
         transmitting_ = true;
+        if (loopback) send(&transmit_shift_, 1);
         schedule<&Uart::on_transmitted>(avr_, store_ends(avr_) + frame_cycles(), *this);
     }
 }
@@ -151,6 +152,7 @@ avr_cycle_count_t Uart::on_transmitted(avr_cycle_count_t when) {
         transmit_buffer_full_ = false;
         status() |= UDRE;
         refresh_interrupts();
+        if (loopback) send(&transmit_shift_, 1);
         return when + frame_cycles();
     }
     transmitting_ = false;

@@ -27,6 +27,9 @@ public:
     std::string receive();
     size_t available() const { return received_.size(); }
 
+    // A wire from TX0 to RX0: what the AVR sends it also receives.
+    bool loopback = false;
+
     double baud() const;
     uint64_t sent() const { return sent_; }
     uint64_t overruns() const { return overruns_; }

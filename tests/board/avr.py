@@ -1,0 +1,67 @@
+"""A compiled AVR program on a simulated board, as the tests of the board use it."""
+
+from __future__ import annotations
+
+import struct
+from pathlib import Path
+from typing import Protocol
+
+from greywhale_sim._board import Board
+from greywhale_sim.symbols import Symbol, read_symbols
+
+PRELUDE = """
+#include <avr/interrupt.h>
+#include <avr/io.h>
+#include <avr/sleep.h>
+#include <avr/wdt.h>
+#include <stdint.h>
+#define DONE() do { cli(); sleep_enable(); sleep_cpu(); } while (1)
+"""
+DONE = 1
+
+
+class Program:
+    """A compiled program on a board of its own."""
+
+    def __init__(self, path: Path, chip: str) -> None:
+        self.path = path
+        self.symbols: dict[str, Symbol] = read_symbols(path)
+        self.board = Board(chip)
+        self.board.load_elf(str(path))
+
+    def start(self, seed: int = 1) -> Program:
+        self.board.power_on(seed)
+        return self
+
+    def run(self, cycles: int) -> int:
+        """As Board.run_until: 0 running, 1 done, 2 crashed."""
+        return self.board.run_until(self.board.cycle + cycles)
+
+    def finish(self, limit: int = 4_000_000) -> Program:
+        """Starts the program and runs it to its DONE()."""
+        self.start()
+        assert self.run(limit) == DONE, f"still at {self.board.pc:#x} after {limit} cycles"
+        return self
+
+    def u8(self, name: str) -> list[int]:
+        symbol = self.symbols[name]
+        return list(self.board.peek(symbol.address, symbol.size))
+
+    def u16(self, name: str) -> list[int]:
+        symbol = self.symbols[name]
+        return list(struct.unpack(f"<{symbol.size // 2}H", self.board.peek(symbol.address, symbol.size)))
+
+    def set_u8(self, name: str, value: int) -> None:
+        self.board.poke(self.symbols[name].address, bytes([value]))
+
+
+class Compile(Protocol):
+    """compile_avr(source, chip): the linked program; the same source is compiled once."""
+
+    def __call__(self, source: str, chip: str) -> Path: ...
+
+
+class MakeProgram(Protocol):
+    """program(source, chip): a Program, loaded but not started."""
+
+    def __call__(self, source: str, chip: str = "atmega2560") -> Program: ...
