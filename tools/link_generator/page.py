@@ -102,6 +102,10 @@ without padding; `param_crc` is the CRC of these bytes. `param_set` writes a sta
 and makes it the running set between two ticks, `param_save` writes the running set to EEPROM. The EEPROM banks have
 layout {declaration.layout}: a board that finds another layout starts from the defaults.
 
+A bank is magic 0x5747 u16, layout u8, length u16, sequence u16, the packed table, and the CRC of layout to table u16. Bank
+A is at address 16, bank B at 272; a save writes the older one and sets its magic last, and a board starts from the newer
+of the whole ones.
+
 On the link a parameter is a raw integer: physical value = raw x lsb."""
 
 
@@ -145,5 +149,5 @@ def _group(group: Group, first: int) -> str:
     ]
     head = ["place" if group.count > 1 else "index", "name", "type", "unit", "lsb", "range", "default", "meaning"]
     return "\n".join(
-        [f"### {title}", "", group.description, where, "", _row(head), _row(["---:"] + ["---"] * 7), *rows]
+        [f"### {title}", "", group.description, "", where, "", _row(head), _row(["---:"] + ["---"] * 7), *rows]
     )

@@ -369,6 +369,35 @@ TEST_CASE("a repeated request to save does not start over, and a failed save can
   CHECK(same(boot(eeprom), variant(4)));
 }
 
+TEST_CASE("a table that changes while it is being saved is never stored as a mixture") {
+  params::Table newest;
+  const FakeEeprom before = history(1, newest);
+  int stored = 0;
+  int refused = 0;
+  for (int moment = 0; moment < 1200; ++moment) {
+    FakeEeprom eeprom = before;
+    Store store(eeprom);
+    params::Table loaded;
+    store.load(loaded);
+    params::Table table = variant(3);
+    store.save(table);
+    for (int polls = 0; store.state() == wire::SaveState::saving; ++polls) {
+      if (polls == moment) table = variant(4);
+      store.poll();
+    }
+    const params::Table found = boot(eeprom);
+    if (store.state() == wire::SaveState::saved) {
+      EXPECT((same(found, variant(3)) || same(found, variant(4))));
+      ++stored;
+    } else {
+      EXPECT(same(found, newest));
+      ++refused;
+    }
+  }
+  CHECK(stored > 0);
+  CHECK(refused > 100);
+}
+
 TEST_CASE("each poll does at most one write and none while busy") {
   FakeEeprom eeprom;
   Store store(eeprom);
