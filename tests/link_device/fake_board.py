@@ -1,7 +1,7 @@
 """A board in Python on a pseudo terminal: only for what a host does when things go wrong.
 
 It answers as the firmware should, and `faults` spoils that: lost answers, refusals, garbage, a restart, an unplugged
-cable. Its time runs with the samples it sends; as the pseudo terminal holds few of them, it never runs ahead of its host.
+cable. Its time runs with the samples it sends, and waits while its host has not read them.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from types import TracebackType
 from typing import Self
 
 from greywhale.link import schema
+from greywhale.link.declared import Message
 from greywhale.link.frames import FrameDecoder, encode_frame
 from greywhale.link.schema import Fault, NackCode, SaveState, State, StopReason
 
@@ -99,7 +100,7 @@ class FakeBoard:
         if self.problem is not None and error is None:
             raise self.problem
 
-    def asked(self, request: type[schema.Message]) -> int:
+    def asked(self, request: type[Message]) -> int:
         """How many frames of this request arrived, repeats included."""
         return sum(1 for kind, _ in self.requests if kind == request.TYPE)
 

@@ -98,9 +98,11 @@ def test_other_firmware_is_told_from_silence() -> None:
 
 
 def test_other_protocol_names_both_versions() -> None:
-    with FakeBoard(Faults(hello=bytes([9, 1]))) as board:
-        with pytest.raises(UserError, match=rf"protocol version 9, this host version {schema.PROTOCOL}; flash"):
-            open_device(board)
+    with (
+        FakeBoard(Faults(hello=bytes([9, 1]))) as board,
+        pytest.raises(UserError, match=rf"protocol version 9, this host version {schema.PROTOCOL}; flash"),
+    ):
+        open_device(board)
 
 
 def test_other_schema_names_both_hashes_and_the_firmware() -> None:
@@ -113,9 +115,11 @@ def test_other_schema_names_both_hashes_and_the_firmware() -> None:
 
 
 def test_malformed_hello_is_one_sentence() -> None:
-    with FakeBoard(Faults(hello=bytes([schema.PROTOCOL, 1, 2]))) as board:
-        with pytest.raises(UserError, match=rf"^{board.port}: .*3 bytes"):
-            open_device(board)
+    with (
+        FakeBoard(Faults(hello=bytes([schema.PROTOCOL, 1, 2]))) as board,
+        pytest.raises(UserError, match=rf"^{board.port}: .*3 bytes"),
+    ):
+        open_device(board)
 
 
 @pytest.mark.parametrize(
@@ -143,12 +147,17 @@ def test_refusals_say_what_where_and_the_remedy(code: NackCode, detail: int, wor
     assert remedy[1:] in caught.value.message
 
 
+def enable_and_fail(board: FakeBoard) -> None:
+    with open_device(board) as device:
+        device.enable(0)
+        assert board.state is State.SOFT_START
+        raise ZeroDivisionError
+
+
 def test_leaving_stops_motors_that_an_error_left_on() -> None:
     with FakeBoard() as board:
-        with pytest.raises(ZeroDivisionError), open_device(board) as device:
-            device.enable(0)
-            assert board.state is State.SOFT_START
-            raise ZeroDivisionError
+        with pytest.raises(ZeroDivisionError):
+            enable_and_fail(board)
         assert board.state is State.DISABLED
         assert board.asked(schema.StopRequest) == 1
 
@@ -171,11 +180,16 @@ def test_enabled_stops_on_ctrl_c_and_after_a_refusal() -> None:
         assert board.state is State.DISABLED
 
 
+def fall_silent_and_fail(board: FakeBoard, device: Device) -> None:
+    with device.enabled(700):
+        board.faults.silent = True
+        raise ZeroDivisionError
+
+
 def test_an_unconfirmed_stop_is_told_with_the_error() -> None:
     with FakeBoard() as board, open_device(board) as device:
-        with pytest.raises(ZeroDivisionError) as caught, device.enabled(700):
-            board.faults.silent = True
-            raise ZeroDivisionError
+        with pytest.raises(ZeroDivisionError) as caught:
+            fall_silent_and_fail(board, device)
         assert "not confirmed; the board stops by itself within 700 ms" in caught.value.__notes__[0]
 
 
@@ -195,19 +209,23 @@ def test_a_restart_during_a_request_is_named() -> None:
             device.status()
 
 
+def read_for_ever(device: Device) -> None:
+    while True:
+        device.samples()
+
+
 def test_an_unplugged_cable_is_one_sentence() -> None:
     with FakeBoard() as board, open_device(board) as device:
         board.faults.unplug_at = 1
+        device.telemetry(1)
         with pytest.raises(UserError, match=rf"^{board.port}: the port went away in the middle"):
-            device.telemetry(1)
-            while True:
-                device.samples()
+            read_for_ever(device)
 
 
 def test_wrong_telemetry_echo_is_noticed() -> None:
     with FakeBoard() as board, open_device(board) as device:
+        board._reply = lambda kind, payload: schema.TelemetryReply(3).pack()  # type: ignore[method-assign]
         with pytest.raises(UserError, match="every 3 ticks instead of 4"):
-            board._reply = lambda kind, payload: schema.TelemetryReply(3).pack()  # type: ignore[method-assign]
             device.telemetry(4)
 
 

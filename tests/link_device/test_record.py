@@ -101,15 +101,21 @@ def test_a_bad_end_keeps_what_was_recorded_and_says_why(tmp_path: Path, faults: 
 
 def test_a_restart_without_a_word_is_found(tmp_path: Path) -> None:
     faults = Faults(restart_at=200, restart_says_hello=False)
-    with FakeBoard(faults) as board, pytest.raises(UserError, match="restarted in the middle"):
-        with open_device(board) as device:
-            record(device, tmp_path / "log.csv", 10.0)
+    with (
+        FakeBoard(faults) as board,
+        pytest.raises(UserError, match="restarted in the middle"),
+        open_device(board) as device,
+    ):
+        record(device, tmp_path / "log.csv", 10.0)
 
 
 def test_samples_that_stop_coming_are_named(tmp_path: Path) -> None:
-    with FakeBoard(Faults(stop_sampling_at=100)) as board, open_device(board) as device:
-        with pytest.raises(UserError, match=r"answers but sent no sample for 2 s \(state disabled\)"):
-            record(device, tmp_path / "log.csv", 10.0)
+    with (
+        FakeBoard(Faults(stop_sampling_at=100)) as board,
+        open_device(board) as device,
+        pytest.raises(UserError, match=r"answers but sent no sample for 2 s \(state disabled\)"),
+    ):
+        record(device, tmp_path / "log.csv", 10.0)
 
 
 def test_ctrl_c_stops_the_motors_and_marks_the_log(tmp_path: Path) -> None:
@@ -128,9 +134,12 @@ def test_ctrl_c_stops_the_motors_and_marks_the_log(tmp_path: Path) -> None:
 
 def test_a_refused_enable_leaves_no_file(tmp_path: Path) -> None:
     faults = Faults(refuse={schema.EnableRequest.TYPE: (schema.NackCode.ERROR_TOO_LARGE, 2 << 8 | 40)})
-    with FakeBoard(faults) as board, pytest.raises(UserError, match=r"joint 2, 1\.25 rad"):
-        with open_device(board) as device:
-            record(device, tmp_path / "log.csv", 1.0, enable=True)
+    with (
+        FakeBoard(faults) as board,
+        pytest.raises(UserError, match=r"joint 2, 1\.25 rad"),
+        open_device(board) as device,
+    ):
+        record(device, tmp_path / "log.csv", 1.0, enable=True)
     assert list(tmp_path.iterdir()) == []
 
 

@@ -72,7 +72,7 @@ def test_a_wrong_echo_changes_nothing() -> None:
 def test_a_refused_set_changes_nothing_and_names_the_joint() -> None:
     refusal = (NackCode.SET_REFUSED, 1 << 8 | Refusal.GAIN)
     with FakeBoard(Faults(refuse={schema.ParamApplyRequest.TYPE: refusal})) as board, open_device(board) as device:
-        with pytest.raises(UserError, match="joint 1, a gain is larger"):
+        with pytest.raises(UserError, match=r"\(joint 1, a gain"):
             upload.upload_controller(device, TABLE_10)
         assert board.running == board.stored == list(schema.DEFAULTS)
         assert board.asked(schema.ParamSaveRequest) == 0
@@ -89,22 +89,31 @@ def test_a_board_still_saving_is_waited_for() -> None:
 
 
 def test_a_failed_save_says_that_the_set_runs_but_is_not_stored() -> None:
-    with FakeBoard(Faults(save_result=SaveState.FAILED)) as board, open_device(board) as device:
-        with pytest.raises(UserError, match="the new parameters run, but could not be stored"):
-            upload.upload_controller(device, TABLE_10)
+    with (
+        FakeBoard(Faults(save_result=SaveState.FAILED)) as board,
+        open_device(board) as device,
+        pytest.raises(UserError, match="the new parameters run, but could not be stored"),
+    ):
+        upload.upload_controller(device, TABLE_10)
 
 
 def test_a_save_without_end_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(upload, "_SAVE_WAIT_S", 0.2)
-    with FakeBoard(Faults(save_result=SaveState.SAVING)) as board, open_device(board) as device:
-        with pytest.raises(UserError, match=r"has not ended after 0\.2 s"):
-            upload.upload_controller(device, TABLE_10)
+    with (
+        FakeBoard(Faults(save_result=SaveState.SAVING)) as board,
+        open_device(board) as device,
+        pytest.raises(UserError, match=r"has not ended after 0\.2 s"),
+    ):
+        upload.upload_controller(device, TABLE_10)
 
 
 def test_another_running_set_after_the_upload_is_noticed() -> None:
-    with FakeBoard(Faults(wrong_crc_after_apply=True)) as board, open_device(board) as device:
-        with pytest.raises(UserError, match="after the upload the board runs a set with CRC"):
-            upload.upload_controller(device, TABLE_10)
+    with (
+        FakeBoard(Faults(wrong_crc_after_apply=True)) as board,
+        open_device(board) as device,
+        pytest.raises(UserError, match="after the upload the board runs a set with CRC"),
+    ):
+        upload.upload_controller(device, TABLE_10)
 
 
 def test_parameters_read_wrong_are_noticed() -> None:

@@ -11,7 +11,7 @@ import math
 import tomllib
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
@@ -58,7 +58,7 @@ def check(data: dict[str, Any], model: type[Model], name: str) -> Model:
         # Through JSON, so that in strict mode arrays may still become tuples and words may become enumerations.
         return model.model_validate_json(json.dumps(data, default=str), extra="forbid")
     except ValidationError as error:
-        raise UserError(_sentence(name, error)) from None
+        raise UserError(_sentence(name, model, error)) from None
 
 
 def key_path(location: Sequence[str | int]) -> str:
@@ -87,28 +87,83 @@ def _numbers(value: object, location: tuple[str | int, ...]) -> Iterator[tuple[t
         yield location, value
 
 
-def _sentence(name: str, error: ValidationError) -> str:
-    problems = error.errors(include_url=False)
-    text = f"{name}: {_problem(problems[0])}"
-    if len(problems) > 1:
-        text += f" (and {len(problems) - 1} more in this file)"
+def _sentence(name: str, model: type[BaseModel], error: ValidationError) -> str:
+    problems = [Problem(found["loc"], found["type"], found["msg"], found["input"]) for found in error.errors()]
+    # An array with a bad item is also reported as too short; that is no problem of its own.
+    whole = [one for one in problems if one.kind != "too_short" or not any(one.contains(other) for other in problems)]
+    text = f"{name}: {_problem(whole[0], model)}"
+    if len(whole) > 1:
+        text += f" (and {len(whole) - 1} more in this file)"
     return text + "."
 
 
-def _problem(problem: Any) -> str:
-    key = key_path(problem["loc"])
-    kind = problem["type"]
-    if kind == "extra_forbidden":
+class Problem(NamedTuple):
+    """One complaint of pydantic."""
+
+    location: tuple[str | int, ...]
+    kind: str
+    message: str
+    value: object
+
+    def contains(self, other: Problem) -> bool:
+        size = len(self.location)
+        return len(other.location) > size and other.location[:size] == self.location
+
+
+def _problem(problem: Problem, model: type[BaseModel]) -> str:
+    key = key_path(problem.location)
+    if problem.kind == "extra_forbidden":
         return f"unknown key {key}; remove it or check its spelling"
-    if kind == "missing":
+    if problem.kind == "missing":
         return f"{key} is missing"
-    message = problem["msg"].removeprefix("Value error, ").removeprefix("Assertion failed, ").rstrip(".")
-    message = message.replace("Input should", "it should").replace("List should", "it should")
-    value = problem["input"]
-    if isinstance(value, dict | list):
+    if problem.kind in _BOUNDS:
+        bounds = _range(model.model_json_schema(), problem.location)
+        return f"{key} is {json.dumps(problem.value)}, but it must be {bounds}"
+    message = _lower_first(problem.message.removeprefix("Value error, ").removeprefix("Assertion failed, "))
+    message = message.replace("input should", "it should").rstrip(".")
+    if isinstance(problem.value, dict | list):
         # A rule over a whole table words its own sentence; the table itself would be noise.
-        return f"{key}: {_lower_first(message)}" if problem["loc"] else _lower_first(message)
-    return f"{key} is {json.dumps(value)}, but {_lower_first(message)}"
+        return f"{key}: {message}" if problem.location else message
+    return f"{key} is {json.dumps(problem.value)}, but {message}"
+
+
+# Kinds of complaint about a number out of range; the words for each bound in a JSON schema.
+_BOUNDS = ("greater_than", "greater_than_equal", "less_than", "less_than_equal")
+_BOUND_WORDS = {
+    "minimum": "at least",
+    "exclusiveMinimum": "greater than",
+    "maximum": "at most",
+    "exclusiveMaximum": "less than",
+}
+
+
+def _range(schema: dict[str, Any], location: Sequence[str | int]) -> str:
+    """Both ends of the range of the number at `location`; pydantic's own words name only the end that was missed."""
+    here = schema
+    for part in location:
+        here = _resolve(schema, here)
+        if isinstance(part, int):
+            fixed = here.get("prefixItems", ())
+            here = fixed[part] if part < len(fixed) else here.get("items", {})
+        else:
+            properties = here.get("properties", {})
+            here = properties[part] if part in properties else here.get("additionalProperties", {})
+    here = _resolve(schema, here)
+    return " and ".join(f"{words} {here[bound]:g}" for bound, words in _BOUND_WORDS.items() if bound in here)
+
+
+def _resolve(schema: dict[str, Any], here: dict[str, Any]) -> dict[str, Any]:
+    """Follow a reference; of alternatives (a number or nothing) take the one with bounds."""
+    for choice in here.get("anyOf", ()):
+        found = _resolve(schema, choice)
+        if found.get("type") != "null":
+            return found
+    if "$ref" not in here:
+        return here
+    found = schema
+    for part in here["$ref"].removeprefix("#/").split("/"):
+        found = found[part]
+    return found
 
 
 def _lower_first(text: str) -> str:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from greywhale.errors import BAD_USAGE, UserError
-from greywhale.flash.runner import Tool, run_tool
+from greywhale.flash.runner import Tool, ToolError, run_tool
 from greywhale.link import schema
 from greywhale.link.device import Device
 
@@ -29,13 +29,14 @@ class FlashBoard:
     environment: str
     part: str
     programmer: str
-    baud: int
+    bauds: tuple[int, ...]
     identity: schema.Board
 
 
+# Nanos are sold with two bootloaders that look alike from outside, so both speeds are tried, the newer one's first.
 BOARDS = {
-    "mega": FlashBoard("megaatmega2560", "atmega2560", "wiring", 115200, schema.Board.MEGA2560),
-    "nano": FlashBoard("nanoatmega328", "atmega328p", "arduino", 115200, schema.Board.NANO328),
+    "mega": FlashBoard("megaatmega2560", "atmega2560", "wiring", (115200,), schema.Board.MEGA2560),
+    "nano": FlashBoard("nanoatmega328", "atmega328p", "arduino", (115200, 57600), schema.Board.NANO328),
 }
 
 # Longest time of a first build on a slow machine, and of an upload of a full flash memory.
@@ -64,7 +65,10 @@ def flash(
     with Device(port) as device:
         hello = device.hello
     if hello.board is not BOARDS[board].identity:
-        raise UserError(f"{port}: flashed for {board}, but the firmware says it runs on {hello.board.description}.")
+        raise UserError(
+            f"{port}: flashed for {board}, but the firmware says it was built for {hello.board.description}; "
+            "give a HEX file that was built for this board."
+        )
     return hello
 
 
@@ -103,6 +107,10 @@ def _build_and_upload(port: str, board: FlashBoard, firmware: Path, report: Prog
     environment = platformio_environment(firmware)
     # Built first and on its own: a board is not touched before there is something to put on it.
     run_tool(Tool("PlatformIO's build", pio, environment, _BUILD_LIMIT_S), lambda text: report("building", 0.0))
+    if len(board.bauds) > 1:
+        # PlatformIO knows one speed a board.
+        _upload_hex(port, board, _build_folder(firmware, environment) / board.environment / "firmware.hex", report)
+        return
     upload = [*pio, "--target", "upload", "--upload-port", port]
     run_tool(Tool("the upload", upload, environment, _UPLOAD_LIMIT_S), _avrdude_progress(report))
 
@@ -119,15 +127,38 @@ def platformio_environment(firmware: Path) -> dict[str, str]:
     return environment
 
 
+def _build_folder(firmware: Path, environment: dict[str, str]) -> Path:
+    """Where PlatformIO builds, which its environment variables may move."""
+    if "PLATFORMIO_BUILD_DIR" in environment:
+        return Path(environment["PLATFORMIO_BUILD_DIR"])
+    return Path(environment.get("PLATFORMIO_WORKSPACE_DIR", firmware / ".pio")) / "build"
+
+
 def _upload_hex(port: str, board: FlashBoard, file: Path, report: Progress) -> None:
     if not file.is_file():
         raise UserError(f"{file}: there is no such file; build one with `pio run`, or leave --hex out.", BAD_USAGE)
-    avrdude = shutil.which("avrdude")
-    if avrdude is None:
-        raise UserError("avrdude is not installed; install it (`sudo apt-get install avrdude`), or leave --hex out.")
-    command = [avrdude, "-c", board.programmer, "-p", board.part, "-P", port, "-b", str(board.baud), "-D"]
-    command += ["-U", f"flash:w:{file}:i"]
-    run_tool(Tool("avrdude", command, dict(os.environ), _UPLOAD_LIMIT_S), _avrdude_progress(report))
+    command = [*_avrdude(), "-c", board.programmer, "-p", board.part, "-P", port, "-D", "-U", f"flash:w:{file}:i"]
+    for baud in board.bauds:
+        tool = Tool("avrdude", [*command, "-b", str(baud)], dict(os.environ), _UPLOAD_LIMIT_S)
+        try:
+            run_tool(tool, _avrdude_progress(report))
+            return
+        except ToolError as error:
+            if not error.no_answer or baud == board.bauds[-1]:
+                raise
+
+
+def _avrdude() -> list[str]:
+    """avrdude as the system has it, else as PlatformIO has fetched it, which needs its own configuration file named."""
+    found = shutil.which("avrdude")
+    if found is not None:
+        return [found]
+    core = os.environ.get("PLATFORMIO_CORE_DIR") or Path.home() / ".platformio"
+    package = Path(core) / "packages" / "tool-avrdude"
+    for program in (package / "bin" / "avrdude", package / "avrdude"):
+        if program.is_file():
+            return [str(program), "-C", str(package / "avrdude.conf")]
+    raise UserError("avrdude is not installed; install it, for example with `sudo apt-get install avrdude`.")
 
 
 def _avrdude_progress(report: Progress) -> Callable[[str], None]:

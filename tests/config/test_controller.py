@@ -1,0 +1,106 @@
+"""Controller files: the shipped ones load, wrong ones are refused before a board sees them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from greywhale.config import controller
+from greywhale.errors import UserError
+from greywhale.link import schema
+
+ROOT = Path(__file__).parents[2]
+TABLES = sorted((ROOT / "shared" / "fuzzy_tables").glob("table_*.toml"))
+SETS = {
+    "Ne_c": -0.3, "Ze_a": -0.3, "Ze_c": 0.3, "Pe_b": 0.3, "Nce_c": -0.1, "Zce_a": -0.1, "Zce_c": 0.1, "Pce_b": 0.1,
+}  # fmt: skip
+GAINS = {"kp": 0.5, "kd": 0.1, "ki": 0.2, "ku": 15.0}
+
+
+def text(joint: int = 0, **changes: float | str) -> str:
+    """Four joints, of which one differs."""
+    lines = []
+    for number in range(4):
+        values = {**GAINS, **SETS, **(changes if number == joint else {})}
+        lines += ["[[joint]]", *(f"{key} = {values[key]}" for key in GAINS)]
+        lines += ["[joint.sets]", *(f"{key} = {values[key]}" for key in SETS)]
+    return "\n".join(lines) + "\n"
+
+
+def load(tmp_path: Path, content: str) -> controller.Controller:
+    path = tmp_path / "controller.toml"
+    path.write_text(content)
+    return controller.load(path)
+
+
+@pytest.mark.parametrize(
+    "path", [*TABLES, ROOT / "shared" / "fuzzy_tables" / "before_tuning.toml"], ids=lambda p: p.stem
+)
+def test_the_papers_controllers_load(path: Path) -> None:
+    loaded = controller.load(path)
+    values = loaded.raw_values()
+    assert len(values) == 4 * 12
+    for index, raw in values.items():
+        schema.PARAMETERS[index].check_raw(raw)
+
+
+def test_before_tuning_is_what_the_firmware_starts_with() -> None:
+    values = controller.load(ROOT / "shared" / "fuzzy_tables" / "before_tuning.toml").raw_values()
+    assert {index: schema.DEFAULTS[index] for index in values} == values
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"Ne_c": 0.2}, "joint[2].sets.Ne_c is 0.2, but it must be at least -1 and at most -0.01"),
+        ({"Ze_a": -0.009}, "joint[2].sets.Ze_a is -0.009, but it must be at least -1 and at most -0.01"),
+        ({"Pe_b": 1.01}, "joint[2].sets.Pe_b is 1.01, but it must be at least 0.01 and at most 1"),
+        ({"Zce_c": 0.0}, "joint[2].sets.Zce_c is 0.0, but it must be at least 0.01 and at most 1"),
+        ({"kp": 65.0}, "joint[2]: kp is 65, but it must lie within 0..64"),
+        ({"ki": -0.1}, "joint[2]: ki is -0.1, but it must lie within 0..1000"),
+        ({"ku": 31.0}, "joint[2]: ku is 31, but it must lie within 0..30"),
+        ({"kd": "nan"}, "joint[2].kd is nan; it must be a finite number"),
+        ({"kd": "'0.1'"}, 'joint[2].kd is "0.1", but it should be a valid number'),
+    ],
+)
+def test_values_out_of_range_name_key_value_and_range(
+    tmp_path: Path, changes: dict[str, float | str], words: str
+) -> None:
+    with pytest.raises(UserError) as caught:
+        load(tmp_path, text(2, **changes))
+    assert caught.value.message.startswith(f"{tmp_path}/controller.toml: {words}")
+
+
+@pytest.mark.parametrize("joints", [0, 3, 5])
+def test_other_than_four_joints_are_refused(tmp_path: Path, joints: int) -> None:
+    one = text().partition("[[joint]]\n")[2].partition("[[joint]]\n")[0]
+    with pytest.raises(UserError, match=r"controller\.toml: joint"):
+        load(tmp_path, ("[[joint]]\n" + one) * joints)
+
+
+@given(
+    st.fixed_dictionaries(
+        {
+            **{key: st.floats(-1.0, -0.01) for key in ("Ne_c", "Ze_a", "Nce_c", "Zce_a")},
+            **{key: st.floats(0.01, 1.0) for key in ("Ze_c", "Pe_b", "Zce_c", "Pce_b")},
+            "kp": st.floats(0, 64),
+            "kd": st.floats(0, 64),
+            "ki": st.floats(0, 1000),
+            "ku": st.floats(0, 30),
+        }
+    )
+)
+def test_whatever_is_accepted_fits_the_board_to_half_a_count(values: dict[str, float]) -> None:
+    joint = {key: values[key] for key in GAINS} | {"sets": {key: values[key] for key in SETS}}
+    raw = controller.Controller.model_validate({"joint": (joint,) * 4}).raw_values()
+    for key, value in values.items():
+        parameter = schema.PARAMETER_BY_NAME[f"joint3.{'ku_mv' if key == 'ku' else key.lower()}"]
+        physical = value * 1000 if key == "ku" else value
+        stored = raw[parameter.index]
+        assert parameter.minimum <= stored <= parameter.maximum
+        assert abs(parameter.to_physical(stored) - physical) <= parameter.lsb * 0.5000001
+        if key in SETS:  # the firmware refuses flanks below 0.01 in its own counts
+            assert abs(stored) >= 0.01 * 16384
