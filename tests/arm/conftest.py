@@ -24,7 +24,7 @@ def _merge(target: dict[str, Any], changes: Mapping[str, Any]) -> None:
 
 @pytest.fixture
 def make_arm() -> Change:
-    """The named arm, changed and validated again: make_arm("default", gravity=0.0, every_joint={...}, joint_3={...})."""
+    """The named arm, changed and validated: make_arm("default", gravity=0.0, every_joint={...}, joint_3={...})."""
 
     def make(name: str = "default", every_joint: Mapping[str, Any] | None = None, **changes: Any) -> ArmParameters:
         data = copy.deepcopy(load_arm(name).model_dump(mode="json"))

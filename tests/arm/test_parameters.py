@@ -51,8 +51,8 @@ def test_default_motors_are_near_the_white_box_but_not_equal() -> None:
 @pytest.mark.parametrize(
     ("old", "new", "sentence"),
     [
-        ("mass = 0.21\n", "mass = -0.21\n", "link[0].mass is -0.21, but it should be greater than 0"),
-        ("mass = 0.0   ", "mass = -0.1   ", "tip.mass is -0.1, but it should be greater than or equal to 0"),
+        ("mass = 0.21\n", "mass = -0.21\n", "link[0].mass is -0.21, but it must be greater than 0"),
+        ("mass = 0.0   ", "mass = -0.1   ", "tip.mass is -0.1, but it must be at least 0"),
         (
             "yy = 8.26e-5",
             "yy = 8.26e-3",
@@ -61,20 +61,20 @@ def test_default_motors_are_near_the_white_box_but_not_equal() -> None:
             "the paper's Table 3 prints this value for link 0, 8.26e-5 is probably meant",
         ),
         ("zz = 1.13e-4", "zz = 1.14e-4", "link[2].inertia: zz is 0.000114, more than xx + yy = 0.0001133"),
-        ("xx = 3.17e-5", "xx = 0", "link[1].inertia.xx is 0, but it should be greater than 0"),
+        ("xx = 3.17e-5", "xx = 0", "link[1].inertia.xx is 0, but it must be greater than 0"),
         ("centre = 0.07\n", "centre = 0.2\n", "link[1]: centre is 0.2 m, beyond the link's length of 0.14 m"),
         (
             "min = -2.55, max = 2.55",
             "min = 2.55, max = -2.55",
             "joint[0].stops: min is 2.55 rad, not below max = -2.55 rad",
         ),
-        ("resistance = 3.9", "resistance = 0", "joint[0].motor.resistance is 0, but it should be greater than 0"),
+        ("resistance = 3.9", "resistance = 0", "joint[0].motor.resistance is 0, but it must be greater than 0"),
         ("coulomb = 0.078", "coulomb = 0.2", "joint[0].friction: breakaway is 0.1 N m, below coulomb = 0.2 N m"),
         ("stiffness = 320.0", "stiffness = 0.0", "joint[0].gear: half_gap is 0.004 rad, so stiffness must be above 0"),
         ("viscous = 0.055", "viscous = 0.055, viscosity = 1", "unknown key joint[0].motor.viscosity"),
         ("gravity = 9.81", "gravity = nan", "gravity is nan; it must be a finite number"),
         ("gravity = 9.81", 'gravity = "9.81"', 'gravity is "9.81", but it should be a valid number'),
-        ("supply = 15.0", "supply = 150.0", "drive.supply is 150.0, but it should be less than or equal to 60"),
+        ("supply = 15.0", "supply = 150.0", "drive.supply is 150.0, but it must be greater than 0 and at most 60"),
         ("direction = 1,", "direction = 2,", "leader_pots.joint[0].direction is 2, but it should be 1 or -1"),
         (
             'motor_equation = "physical"',

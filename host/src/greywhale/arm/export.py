@@ -63,7 +63,7 @@ def urdf(parameters: ArmParameters) -> str:
 
 
 def mjcf(parameters: ArmParameters, motors: bool = False) -> str:
-    """The arm as MJCF: the links alone, or with motors controlled in volts (rigid gears, Coulomb friction, no stops)."""
+    """The arm as MJCF: the links alone, or with motors driven in volts (rigid gears, Coulomb friction, no stops)."""
     model = xml.Element("mujoco", model=parameters.name)
     xml.SubElement(model, "compiler", angle="radian")
     xml.SubElement(model, "option", gravity=_text((0.0, 0.0, -parameters.gravity)))
