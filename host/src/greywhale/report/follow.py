@@ -80,18 +80,22 @@ def draw_following(path: str | Path, traces: Sequence[Trace], title: str) -> Non
 
 
 def _figure(traces: Sequence[Trace], title: str) -> Figure:
-    figure = plt.figure(figsize=(11.0, 8.6), layout="constrained")
-    figure.suptitle(title, fontsize=12, fontweight="bold")
-    panels = figure.subfigures(2, 2, hspace=0.02, wspace=0.02)
+    # Fixed margins: a layout solver's result differs in the last digits from run to run.
+    figure = plt.figure(figsize=(11.0, 8.6))
+    figure.suptitle(title, fontsize=12, fontweight="bold", y=0.98)
+    grid = figure.add_gridspec(2, 2, left=0.065, right=0.985, bottom=0.1, top=0.915, wspace=0.16, hspace=0.3)
     shared_leader = _same_leader(traces)
-    assert isinstance(panels, np.ndarray)
-    for joint, panel in enumerate(panels.flat):
-        angle, error = panel.subplots(2, 1, sharex=True, height_ratios=(3, 1))
+    for joint in range(len(JOINT_NAMES)):
+        rows = grid[divmod(joint, 2)].subgridspec(2, 1, height_ratios=(3, 1), hspace=0.08)
+        angle = figure.add_subplot(rows[0])
+        error = figure.add_subplot(rows[1], sharex=angle)
+        angle.tick_params(labelbottom=False)
         _draw_angle(angle, traces, joint, shared_leader)
         _draw_error(error, traces, joint)
-    # Drawn once above all panels: four equal legends would only cover the curves.
+        figure.align_ylabels([angle, error])
+    # Drawn once below all panels: four equal legends would only cover the curves.
     handles, labels = angle.get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), frameon=False)
+    figure.legend(handles, labels, loc="lower center", bbox_to_anchor=(0.5, 0.005), ncols=len(labels), frameon=False)
     return figure
 
 

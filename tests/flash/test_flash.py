@@ -1,0 +1,192 @@
+"""Flashing with tools that are scripts: what is run with what, and what people are told. The real tools flash the
+simulated board in the end-to-end tests."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import pytest
+
+from greywhale.errors import UserError
+from greywhale.flash import flasher as module
+from greywhale.flash import runner
+from greywhale.flash.runner import Tool, ToolError, run_tool
+from greywhale.link import schema
+from greywhale.link.device import Device
+from tests.link_device.fake_board import FakeBoard
+
+
+def script(folder: Path, name: str, body: str) -> Path:
+    """An executable Python script."""
+    path = folder / name
+    path.write_text(f"#!{sys.executable}\nimport os, sys\nhere = {str(folder)!r}\n{body}\n")
+    path.chmod(0o755)
+    return path
+
+
+def tool(*command: str, limit_s: float = 60.0) -> Tool:
+    return Tool("the tool", list(command), dict(os.environ), limit_s)
+
+
+@pytest.fixture
+def quick_device(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A device that does not wait for a bootloader."""
+    monkeypatch.setattr(module, "Device", lambda port: Device(port, quiet_s=0.0, patience_s=0.5))
+
+
+def test_output_is_watched_and_returned() -> None:
+    seen: list[str] = []
+    text = run_tool(tool(sys.executable, "-c", "print('\\x1b[32mone\\x1b[0m'); print('two')"), seen.append)
+    assert text == "one\ntwo\n"
+    assert seen
+
+
+@pytest.mark.parametrize(
+    ("output", "words"),
+    [
+        ("compiling\\nmain.cpp:3: error: no such thing\\n*** failed", "main.cpp:3: error: no such thing"),
+        ("one\\nlast words", "last words"),
+        ("", "it said nothing"),
+    ],
+)
+def test_a_failed_tool_is_quoted_where_it_names_the_problem(output: str, words: str) -> None:
+    with pytest.raises(ToolError) as caught:
+        run_tool(tool(sys.executable, "-c", f"print('{output}'); raise SystemExit(3)"), lambda text: None)
+    assert caught.value.message == f"the tool failed with exit code 3: {words}"
+
+
+def test_a_tool_that_is_not_there_is_named() -> None:
+    with pytest.raises(UserError, match="the tool cannot be started: No such file"):
+        run_tool(tool("/nowhere/tool"), lambda text: None)
+
+
+def test_a_tool_that_hangs_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
+    started: list[subprocess.Popen[bytes]] = []
+    real = subprocess.Popen
+
+    def start(*args: object, **options: object) -> subprocess.Popen[bytes]:
+        started.append(real(*args, **options))  # type: ignore[call-overload]
+        return started[-1]
+
+    monkeypatch.setattr(subprocess, "Popen", start)
+    with pytest.raises(UserError, match=r"has not ended after 0\.3 s; reset the board"):
+        run_tool(
+            tool(sys.executable, "-c", "import threading; threading.Event().wait()", limit_s=0.3), lambda text: None
+        )
+    assert started[0].returncode == -signal.SIGTERM
+
+
+def test_ctrl_c_ends_the_tool_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    ended = threading.Event()
+
+    def end(process: subprocess.Popen[bytes]) -> None:
+        process.kill()
+        process.wait()
+        ended.set()
+
+    monkeypatch.setattr(runner, "_end", end)
+
+    def interrupt(text: str) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run_tool(tool(sys.executable, "-c", "import threading; threading.Event().wait()"), interrupt)
+    assert ended.is_set()
+
+
+def test_a_port_that_is_not_there_stops_before_any_tool(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    # avrdude would wait for it for ever
+    monkeypatch.setattr(module, "run_tool", lambda *args: pytest.fail("a tool was started"))
+    with pytest.raises(UserError, match="there is no such port"):
+        module.flash(str(tmp_path / "ttyNONE"), "mega", hex_file=tmp_path / "x.hex")
+
+
+def test_missing_sources_and_files_are_bad_usage(tmp_path: Path) -> None:
+    with FakeBoard() as board:
+        with pytest.raises(UserError, match=r"holds no platformio\.ini; name the firmware folder") as caught:
+            module.flash(board.port, "mega", firmware_dir=tmp_path)
+        assert caught.value.exit_code == 2
+        with pytest.raises(UserError, match=r"x\.hex: there is no such file") as caught:
+            module.flash(board.port, "mega", hex_file=tmp_path / "x.hex")
+        assert caught.value.exit_code == 2
+        with pytest.raises(UserError, match="board 'uno' is unknown; choose one of mega, nano"):
+            module.flash(board.port, "uno")
+
+
+@pytest.mark.usefixtures("quick_device")
+def test_avrdude_gets_the_boards_own_settings_and_the_firmware_is_greeted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    script(tmp_path, "avrdude", "open(here + '/told', 'w').write(' '.join(sys.argv[1:]))")
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
+    image = tmp_path / "firmware.hex"
+    image.write_text(":00000001FF\n")
+    with FakeBoard() as board:
+        hello = module.flash(board.port, "mega", hex_file=image)
+        assert (tmp_path / "told").read_text() == (
+            f"-c wiring -p atmega2560 -P {board.port} -D -U flash:w:{image}:i -b 115200"
+        )
+    assert hello.board is schema.Board.MEGA2560
+
+
+@pytest.mark.usefixtures("quick_device")
+def test_a_nano_with_the_old_bootloader_is_tried_at_its_speed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    script(
+        tmp_path,
+        "avrdude",
+        "open(here + '/told', 'a').write(sys.argv[-1] + ' ')\n"
+        "if sys.argv[-1] != '57600':\n    print('stk500_getsync(): not in sync: resp=0x00'); sys.exit(1)",
+    )
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
+    image = tmp_path / "firmware.hex"
+    image.write_text(":00000001FF\n")
+    with FakeBoard() as board, pytest.raises(UserError, match="flashed for nano, but .* built for Arduino Mega 2560"):
+        module.flash(board.port, "nano", hex_file=image)
+    assert (tmp_path / "told").read_text() == "115200 57600 "
+
+
+def test_other_failures_of_avrdude_are_not_tried_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    script(
+        tmp_path,
+        "avrdude",
+        "open(here + '/told', 'a').write('x')\nprint('verification error, content mismatch'); sys.exit(1)",
+    )
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
+    image = tmp_path / "firmware.hex"
+    image.write_text(":00000001FF\n")
+    with FakeBoard() as board, pytest.raises(UserError, match="avrdude failed with exit code 1: verification error"):
+        module.flash(board.port, "nano", hex_file=image)
+    assert (tmp_path / "told").read_text() == "x"
+
+
+@pytest.mark.usefixtures("quick_device")
+def test_platformio_builds_first_and_then_uploads(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    firmware = tmp_path / "tree" / "firmware"
+    firmware.mkdir(parents=True)
+    (firmware / "platformio.ini").write_text("")
+    assembled = tmp_path / "tree" / "build" / "platformio" / "assembled"
+    assembled.parent.mkdir(parents=True)
+    assembled.touch()
+    told: list[tuple[list[str], dict[str, str]]] = []
+    monkeypatch.setattr(module, "run_tool", lambda tool, look: told.append((tool.command[3:], tool.environment)))
+    with FakeBoard() as board:
+        module.flash(board.port, "mega", firmware_dir=firmware)
+        port = board.port
+    build = ["run", "--project-dir", str(firmware), "--environment", "megaatmega2560"]
+    assert [command for command, _ in told] == [build, [*build, "--target", "upload", "--upload-port", port]]
+    for _, environment in told:
+        assert environment["PLATFORMIO_CORE_DIR"] == str(assembled.parent)
+        assert environment["PLATFORMIO_SETTING_ENABLE_TELEMETRY"] == "no"
+
+
+def test_avrdudes_rows_become_fractions() -> None:
+    seen: list[tuple[str, float]] = []
+    look = module._avrdude_progress(lambda what, fraction: seen.append((what, fraction)))
+    look("avrdude: writing flash\n\nWriting | #########################")
+    look("Writing | ################################################## | 100% 1.2s\n\nReading | #####")
+    assert seen == [("writing", 0.5), ("writing", 1.0), ("verifying", 0.1)]
