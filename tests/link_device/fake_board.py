@@ -76,6 +76,8 @@ class FakeBoard:
         self._enabled_at = 0
         self._decoder = FrameDecoder()
         self._end = threading.Event()
+        self._changed = threading.Condition()
+        self._ticks_in_state = 0
 
     def __enter__(self) -> Self:
         self._master, self._slave = os.openpty()
@@ -103,6 +105,12 @@ class FakeBoard:
     def asked(self, request: type[Message]) -> int:
         """How many frames of this request arrived, repeats included."""
         return sum(1 for kind, _ in self.requests if kind == request.TYPE)
+
+    def wait_for(self, state: State, ticks: int) -> None:
+        """Return when the board has been in this state for so many ticks; the test's own time limit bounds the wait."""
+        with self._changed:
+            self._changed.wait_for(lambda: self.problem or (self.state is state and self._ticks_in_state >= ticks))
+        assert self.problem is None
 
     def own_hello(self) -> bytes:
         """The frame that a board sends by itself when it has started."""
@@ -137,7 +145,9 @@ class FakeBoard:
                 elif chattering and room:
                     self.say(self.faults.chatter)
         except BaseException as error:
-            self.problem = error
+            with self._changed:
+                self.problem = error
+                self._changed.notify_all()
 
     def _unread(self) -> int:
         # What this side wrote and the host has not read waits in the other end's input queue.
@@ -145,7 +155,7 @@ class FakeBoard:
         return int(struct.unpack("i", waiting)[0])
 
     def _live_a_tick(self) -> None:
-        faults = self.faults
+        faults, before = self.faults, self.state
         self.tick += 1
         if faults.unplug_at is not None and self.tick >= faults.unplug_at:
             self._unplug()
@@ -161,6 +171,9 @@ class FakeBoard:
                 self.state, self.stop_reason = State.DISABLED, StopReason.LEASE
             elif self.tick >= self._enabled_at + SOFT_START_TICKS:
                 self.state = State.FOLLOWING
+        with self._changed:
+            self._ticks_in_state = self._ticks_in_state + 1 if self.state is before else 0
+            self._changed.notify_all()
         if self.tick % self._every == 0:
             self._sample()
 

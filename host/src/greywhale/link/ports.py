@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -57,11 +56,11 @@ def find_ports() -> list[Port]:
     return _benches() + _hardware()
 
 
-def choose_port(named: str | None, find: Callable[[], list[Port]] = find_ports) -> str:
+def choose_port(named: str | None) -> str:
     """The port to use: the one named, or else the only one behind which a board may be."""
     if named is not None:
         return named
-    likely = [port for port in find() if port.likely]
+    likely = [port for port in find_ports() if port.likely]
     if len(likely) == 1:
         return likely[0].device
     if not likely:

@@ -1,0 +1,298 @@
+"""The command line as people and scripts meet it: exit codes, one JSON object, one sentence, never a traceback."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from greywhale.cli import entry
+from greywhale.cli.verbs import VERBS
+from greywhale.link import device, schema
+from greywhale.link.schema import State
+from greywhale.log import LogWriter, read_log
+from greywhale.log.layout import Origin
+from tests.link_device.fake_board import FakeBoard
+
+ROOT = Path(__file__).parents[2]
+TABLE_10 = str(ROOT / "shared" / "fuzzy_tables" / "table_10.toml")
+Captured = pytest.CaptureFixture[str]
+
+
+@pytest.fixture(autouse=True)
+def _quick_and_alone(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """No wait for a bootloader, no port of this machine, and the signal handler as it was."""
+    monkeypatch.setattr(device.Device.__init__, "__defaults__", (0.0, 0.5))
+    monkeypatch.setattr("greywhale.link.ports.find_ports", list)
+    monkeypatch.delenv("GREYWHALE_PORT", raising=False)
+    before = signal.getsignal(signal.SIGTERM)
+    yield
+    signal.signal(signal.SIGTERM, before)
+
+
+def ask(captured: Captured, *arguments: str) -> tuple[int, dict[str, Any]]:
+    """Exit code and the one JSON object on stdout."""
+    code = entry.run([*arguments, "--json"])
+    out = captured.readouterr().out
+    assert out.count("\n") == 1
+    answer = json.loads(out)
+    assert isinstance(answer, dict)
+    return code, answer
+
+
+def write_log(path: Path, seconds: float = 1.0) -> None:
+    with LogWriter(path, Origin("0.1.0", "mega2560", 1, 1, 1)) as log:
+        for row in range(int(seconds * 1000)):
+            log.append(row / 1000, [0.1] * 4, [0.0] * 4, [0.0] * 4, "following")
+
+
+# --- every verb -----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("verb", [*VERBS, "params get", "params set", "params backup", "params restore", "params diff"])
+def test_every_verb_has_help_and_json(verb: str, capsys: Captured) -> None:
+    assert entry.run([*verb.split(), "--help"]) == 0
+    text = capsys.readouterr().out
+    assert text.startswith(f"Usage: greywhale {verb}")
+    assert "--json" in text or verb == "params"
+
+
+def test_the_list_of_verbs_is_complete(capsys: Captured) -> None:
+    assert entry.run(["--help"]) == 0
+    text = capsys.readouterr().out
+    assert all(f"  {verb} " in text for verb in VERBS)
+
+
+def test_help_needs_no_heavy_imports() -> None:
+    code = "import sys; from greywhale.cli import entry; entry.run(['--help']); sys.exit('matplotlib' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False, stdout=subprocess.DEVNULL).returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["dance"], "No such command 'dance'"),
+        (["info", "--prt", "x"], "No such option '--prt'"),
+        (["upload"], "Missing argument 'CONTROLLER'"),
+        (["record", "--seconds", "long"], "'long' is not a valid float"),
+        (["flash", "--firmware", "a", "--hex", "b"], "--firmware and --hex exclude each other"),
+        (["params", "set", "joint0.kp"], "is not NAME=VALUE"),
+        (["params", "set", "joint0.kp=much"], '"much", but it must be a number'),
+        (["params", "set", "joint0.kq=1"], 'there is no parameter "joint0.kq"'),
+        (["params", "set", "joint0.kp=65"], "joint0.kp is 65 1/rad, which is out of range"),
+        (["info"], "no board was found on any serial port"),
+    ],
+)
+def test_bad_usage_is_exit_code_2_and_one_sentence(arguments: list[str], words: str, capsys: Captured) -> None:
+    assert entry.run(arguments) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err.startswith("greywhale: ")
+    assert words in captured.err
+    code, answer = ask(capsys, *arguments)
+    assert (code, answer["exit_code"]) == (2, 2)
+    assert words in answer["error"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["info", "--port", "/dev/none"], "/dev/none: there is no such port"),
+        (["evaluate", "none.csv"], "none.csv: cannot be read: no such file or directory."),
+        (["upload", "none.toml"], "none.toml: cannot be read"),
+        (["params", "restore", "none.toml"], "none.toml: cannot be read"),
+    ],
+)
+def test_failures_are_exit_code_1_and_one_sentence(arguments: list[str], words: str, capsys: Captured) -> None:
+    code, answer = ask(capsys, *arguments)
+    assert (code, answer["exit_code"]) == (1, 1)
+    assert words in answer["error"]
+
+
+# --- with a board ---------------------------------------------------------------------------------------------------
+
+
+def test_info_tells_version_crc_state_and_counters(capsys: Captured) -> None:
+    with FakeBoard() as board:
+        code, answer = ask(capsys, "info", "--port", board.port)
+        assert entry.run(["info", "--port", board.port]) == 0
+        text = capsys.readouterr().out
+    assert code == 0
+    assert answer["firmware"] == "0.1.0"
+    assert answer["parameter_crc"] == f"0x{schema.param_crc(schema.DEFAULTS):04x}"
+    assert (answer["state"], answer["fault"], answer["tick_us_max"]) == ("disabled", "none", 300)
+    assert "Arduino Mega 2560" in text
+    assert "longest tick   300 us of 1000, 0 late" in text
+
+
+def test_info_names_a_fault_with_its_place_and_remedy(capsys: Captured) -> None:
+    board = FakeBoard()
+    board.state, board.fault, board.fault_where = State.FAULT, schema.Fault.POT_LOW, 5
+    with board:
+        assert entry.run(["info", "--port", board.port]) == 0
+    assert "lower rail (follower potentiometer 1): check that" in capsys.readouterr().out
+
+
+def test_the_port_may_come_from_the_environment(capsys: Captured, monkeypatch: pytest.MonkeyPatch) -> None:
+    with FakeBoard() as board:
+        monkeypatch.setenv("GREYWHALE_PORT", board.port)
+        assert ask(capsys, "stop")[1] == {"port": board.port, "state": "disabled"}
+
+
+def test_stop_clears_a_fault_when_asked(capsys: Captured) -> None:
+    board = FakeBoard()
+    board.fault = schema.Fault.PARAMS
+    with board:
+        assert ask(capsys, "stop", "--port", board.port, "--clear-fault")[0] == 0
+    assert board.fault is schema.Fault.NONE
+
+
+def test_upload_tells_what_changed(capsys: Captured) -> None:
+    with FakeBoard() as board:
+        code, answer = ask(capsys, "upload", TABLE_10, "--port", board.port)
+        assert code == 0
+        assert answer["parameter_crc"] == f"0x{schema.param_crc(board.stored):04x}"
+        assert "joint0.pce_b" in answer["changed"]
+        assert entry.run(["upload", TABLE_10, "--port", board.port]) == 0
+    assert "nothing had to change" in capsys.readouterr().out
+
+
+def test_a_bad_controller_is_refused_before_the_board_is_touched(tmp_path: Path, capsys: Captured) -> None:
+    bad = tmp_path / "bad.toml"
+    bad.write_text(Path(TABLE_10).read_text().replace("Pce_b = 1.0", "Pce_b = 1.5", 1))
+    with FakeBoard() as board:
+        code, answer = ask(capsys, "upload", str(bad), "--port", board.port)
+        assert board.requests == []
+    assert code == 1
+    assert "Pce_b is 1.5, but it must be at least 0.01 and at most 1" in answer["error"]
+
+
+def test_record_and_evaluate(tmp_path: Path, capsys: Captured) -> None:
+    out = tmp_path / "log.csv"
+    with FakeBoard() as board:
+        code, answer = ask(capsys, "record", "--port", board.port, "-o", str(out), "-s", "0.3", "--enable")
+        assert board.state is State.DISABLED
+    assert code == 0
+    assert (answer["samples"], answer["dropped"], answer["log"]) == (300, 0, str(out))
+    picture = tmp_path / "picture.png"
+    code, answer = ask(capsys, "evaluate", str(out), "--picture", str(picture))
+    assert code == 0
+    assert answer["logs"][0]["samples"] == 300
+    assert len(answer["logs"][0]["joints"]) == 4
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+def test_params_set_get_backup_diff_restore(tmp_path: Path, capsys: Captured) -> None:
+    backup = str(tmp_path / "backup.toml")
+    with FakeBoard() as board:
+        at = ["--port", board.port]
+        assert ask(capsys, "params", "backup", backup, *at)[0] == 0
+        assert ask(capsys, "params", "set", "joint1.kp=0.5", "supply_mv=12000", *at)[1]["changed"] == [
+            "supply_mv",
+            "joint1.kp",
+        ]
+        assert board.stored == board.running
+        values = ask(capsys, "params", "get", "joint1.kp", "supply_mv", *at)[1]["parameters"]
+        assert values == {"joint1.kp": 0.5, "supply_mv": 12000}
+        differences = ask(capsys, "params", "diff", backup, *at)[1]["differences"]
+        assert differences["supply_mv"] == {"board": 12000, "file": 15000}
+        assert set(differences) == {"supply_mv", "joint1.kp"}
+        assert ask(capsys, "params", "restore", backup, *at)[0] == 0
+        assert board.stored == list(schema.DEFAULTS)
+        assert ask(capsys, "params", "diff", backup, *at)[1]["differences"] == {}
+
+
+# --- evaluate -------------------------------------------------------------------------------------------------------
+
+
+def test_evaluate_prints_a_table_for_people(tmp_path: Path, capsys: Captured) -> None:
+    write_log(tmp_path / "log.csv")
+    assert entry.run(["evaluate", str(tmp_path / "log.csv")]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].endswith("1000 samples, 1.00 s")
+    assert lines[2].split() == ["joint", "0", "0.010000", "0.1000", "n/a", "n/a"]
+    assert lines[6].split() == ["total", "0.040000"]
+
+
+def test_a_bad_log_leaves_no_picture(tmp_path: Path, capsys: Captured) -> None:
+    write_log(tmp_path / "log.csv")
+    text = (tmp_path / "log.csv").read_text()
+    (tmp_path / "log.csv").write_text(text.replace("0.100000", "inf", 1))
+    code, answer = ask(capsys, "evaluate", str(tmp_path / "log.csv"), "--picture", str(tmp_path / "p.png"))
+    assert code == 1
+    assert "line 10, column leader_0: inf is not a finite number" in answer["error"]
+    assert not (tmp_path / "p.png").exists()
+
+
+# --- ports, bench ---------------------------------------------------------------------------------------------------
+
+
+def test_ports_without_any(capsys: Captured, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("greywhale.cli.ports.find_ports", list)
+    assert ask(capsys, "ports") == (0, {"ports": []})
+    assert entry.run(["ports"]) == 0
+    assert "greywhale sim" in capsys.readouterr().out
+
+
+def test_a_missing_bench_is_one_sentence(capsys: Captured, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "greywhale_sim", None)
+    monkeypatch.setitem(sys.modules, "greywhale_sim.serve", None)
+    code, answer = ask(capsys, "sim")
+    assert code == 1
+    assert answer["error"].startswith("the simulated bench is not installed; run `make setup`")
+
+
+# --- signals and pipes, in a process of its own ---------------------------------------------------------------------
+
+RUN = """
+import sys
+from greywhale.link import device
+device.Device.__init__.__defaults__ = (0.0, 0.5)
+from greywhale.cli import main
+main(sys.argv[1:])
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_ctrl_c_leaves_motors_off_and_the_log_whole(tmp_path: Path, number: signal.Signals) -> None:
+    out = tmp_path / "log.csv"
+    with FakeBoard() as board:
+        arguments = ["record", "--port", board.port, "-o", str(out), "-s", "600", "--enable", "--json"]
+        process = subprocess.Popen(
+            [sys.executable, "-c", RUN, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        )
+        board.wait_for(State.FOLLOWING, 300)
+        process.send_signal(number)
+        output, errors = process.communicate(timeout=60)
+        assert board.state is State.DISABLED
+        assert board.asked(schema.StopRequest) >= 1
+    assert process.returncode == 130
+    assert json.loads(output) == {"error": "interrupted.", "exit_code": 130}
+    assert "Traceback" not in errors
+    log = read_log(out)
+    assert not log.complete
+    assert set(log.state) == {"following"}
+    assert os.listdir(tmp_path) == ["log.csv"]
+
+
+def test_a_reader_that_goes_away_is_no_traceback(tmp_path: Path) -> None:
+    write_log(tmp_path / "log.csv")
+    read, write = os.pipe()
+    os.close(read)
+    done = subprocess.run(
+        [sys.executable, "-c", RUN, "evaluate", str(tmp_path / "log.csv")],
+        stdout=write,
+        stderr=subprocess.PIPE,
+        text=True,
+        check=False,
+    )
+    os.close(write)
+    assert done.returncode == 1
+    assert done.stderr == ""
