@@ -8,6 +8,6 @@ static app::App arm;
 void setup() { arm.begin(); }
 
 void loop() {
-    if (hal::tick_pending()) arm.tick();
-    else if (!arm.service()) hal::idle();
+  if (hal::tick_pending()) arm.tick();
+  else if (!arm.service()) hal::idle();
 }

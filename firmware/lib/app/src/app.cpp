@@ -7,106 +7,107 @@ namespace app {
 namespace {
 
 uint16_t add_saturated(uint16_t count, uint8_t more) {
-    return count > UINT16_MAX - more ? uint16_t{UINT16_MAX} : static_cast<uint16_t>(count + more);
+  return count > UINT16_MAX - more ? uint16_t{UINT16_MAX} : static_cast<uint16_t>(count + more);
 }
 
 }  // namespace
 
 void App::begin() {
-    const bool stored_set_runs = sets_.begin(controllers_);
-    take_running_set();
-    supervisor_.begin(hal::reset_cause() == hal::ResetCause::watchdog, stored_set_runs);
-    hal::begin();
-    hal::watchdog_start();
+  const bool stored_set_runs = sets_.begin(controllers_);
+  take_running_set();
+  supervisor_.begin(hal::reset_cause() == hal::ResetCause::watchdog, stored_set_runs);
+  hal::begin();
+  hal::watchdog_start();
 }
 
 // The parts of the running set that the tick keeps in its own form; the controllers have taken theirs joint by joint.
 void App::take_running_set() {
-    const params::Table& table = sets_.running();
-    sampling_.configure(table);
-    drive_.configure(table);
-    supervisor_.set_limits({table.enable_limit, table.tracking_limit, table.tracking_ms, table.soft_start_ms});
+  const params::Table& table = sets_.running();
+  sampling_.configure(table);
+  drive_.configure(table);
+  supervisor_.set_limits({table.enable_limit, table.tracking_limit, table.tracking_ms, table.soft_start_ms});
 }
 
 void App::tick() {
-    const hal::TickStart start = hal::tick_begin();
-    count_ticks(start);
-    uint16_t sums[hal::pot_count];
-    if (hal::read_pots(sums)) sampling_.tick(sums);
-    int16_t references[hal::joint_count];
-    observe(start.late, references);
-    follow_supervisor();
-    if (drivers_on_) control(references);
-    schedule_sample();
-    show_state();
-    const uint16_t age_us = hal::tick_age_us();
-    if (age_us > tick_us_max_) tick_us_max_ = age_us;
-    heard_this_tick_ = false;
-    hal::watchdog_kick();
-    hal::tick_end();
+  const hal::TickStart start = hal::tick_begin();
+  count_ticks(start);
+  if (const uint16_t* sums = hal::pot_sums()) {
+    sampling_.tick(sums);
+    hal::release_pots();
+  }
+  int16_t references[hal::joint_count];
+  observe(start.late, references);
+  follow_supervisor();
+  if (drivers_on_) control(references);
+  schedule_sample();
+  show_state();
+  const uint16_t age_us = hal::tick_age_us();
+  if (age_us > tick_us_max_) tick_us_max_ = age_us;
+  heard_this_tick_ = false;
+  hal::watchdog_kick();
+  hal::tick_end();
 }
 
 void App::count_ticks(hal::TickStart start) {
-    tick_ += start.elapsed;
-    if (!start.late) return;
-    late_ticks_ = add_saturated(late_ticks_, start.elapsed > 1 ? static_cast<uint8_t>(start.elapsed - 1) : uint8_t{1});
+  tick_ += start.elapsed;
+  if (!start.late) return;
+  late_ticks_ = add_saturated(late_ticks_, start.elapsed > 1 ? static_cast<uint8_t>(start.elapsed - 1) : uint8_t{1});
 }
 
 void App::observe(bool late, int16_t (&references)[hal::joint_count]) {
-    supervisor::Observation seen;
-    for (uint8_t i = 0; i < hal::joint_count; ++i) {
-        const int16_t wanted = controllers_.reference(i, sampling_.leader(i));
-        const int16_t is = sampling_.follower(i);
-        references[i] = wanted;
-        seen.distance[i] = static_cast<uint16_t>(wanted > is ? wanted - is : is - wanted);
-    }
-    seen.rail_low = sampling_.rail_low();
-    seen.rail_high = sampling_.rail_high();
-    seen.late = late;
-    const bool booting = supervisor_.state() == supervisor::State::boot;
-    supervisor_.tick(seen);
-    if (booting && supervisor_.state() != supervisor::State::boot) hello_due_ = true;
+  for (uint8_t i = 0; i < hal::joint_count; ++i) {
+    const int16_t wanted = controllers_.reference(i, sampling_.leader(i));
+    const int16_t is = sampling_.follower(i);
+    references[i] = wanted;
+    seen_.distance[i] = static_cast<uint16_t>(wanted > is ? wanted - is : is - wanted);
+  }
+  seen_.rail_low = sampling_.rail_low();
+  seen_.rail_high = sampling_.rail_high();
+  seen_.late = late;
+  const bool booting = supervisor_.state() == supervisor::State::boot;
+  supervisor_.tick(seen_);
+  if (booting && supervisor_.state() != supervisor::State::boot) hello_due_ = true;
 }
 
 // The drivers go on from rest and off at once; called wherever the supervisor may have changed its mind.
 void App::follow_supervisor() {
-    if (supervisor_.motors_on() == drivers_on_) return;
-    drivers_on_ = !drivers_on_;
-    if (!drivers_on_) hal::set_drivers(false);
-    controllers_.reset();
-    drive_.release();
-    until_control_ = 1;
-    if (drivers_on_) hal::set_drivers(true);
+  if (supervisor_.motors_on() == drivers_on_) return;
+  drivers_on_ = !drivers_on_;
+  if (!drivers_on_) hal::set_drivers(false);
+  controllers_.reset();
+  drive_.release();
+  until_control_ = 1;
+  if (drivers_on_) hal::set_drivers(true);
 }
 
 void App::control(const int16_t* references) {
-    if (--until_control_) return;
-    until_control_ = sets_.running().period_ms;
-    const uint16_t limit_mv = controllers_.limit_mv(supervisor_.ramp_q15());
-    for (uint8_t i = 0; i < hal::joint_count; ++i) {
-        drive_.set(i, controllers_.step(i, references[i], sampling_.follower(i), limit_mv));
-    }
+  if (--until_control_) return;
+  until_control_ = sets_.running().period_ms;
+  const uint16_t limit_mv = controllers_.limit_mv(supervisor_.ramp_q15());
+  for (uint8_t i = 0; i < hal::joint_count; ++i) {
+    drive_.set(i, controllers_.step(i, references[i], sampling_.follower(i), limit_mv));
+  }
 }
 
 // A sample that could not be sent before the next one is due is dropped; its sequence number stays out.
 void App::schedule_sample() {
-    if (every_ == 0 || --until_sample_) return;
-    until_sample_ = every_;
-    ++sample_seq_;
-    if (sample_due_) telemetry_dropped_ = add_saturated(telemetry_dropped_, 1);
-    sample_due_ = true;
+  if (every_ == 0 || --until_sample_) return;
+  until_sample_ = every_;
+  ++sample_seq_;
+  if (sample_due_) telemetry_dropped_ = add_saturated(telemetry_dropped_, 1);
+  sample_due_ = true;
 }
 
 // LED: on while following, quick while starting, a short flash a second while disabled, 4 Hz in fault.
 void App::show_state() {
-    const auto ms = static_cast<uint16_t>(tick_);
-    switch (supervisor_.state()) {
-        case supervisor::State::boot:
-        case supervisor::State::following: hal::set_led(true); break;
-        case supervisor::State::disabled: hal::set_led((ms & 1023) < 64); break;
-        case supervisor::State::soft_start: hal::set_led(ms & 32); break;
-        case supervisor::State::fault: hal::set_led(ms & 128); break;
-    }
+  const auto ms = static_cast<uint16_t>(tick_);
+  switch (supervisor_.state()) {
+    case supervisor::State::boot:
+    case supervisor::State::following: hal::set_led(true); break;
+    case supervisor::State::disabled: hal::set_led((ms & 1023) < 64); break;
+    case supervisor::State::soft_start: hal::set_led(ms & 32); break;
+    case supervisor::State::fault: hal::set_led(ms & 128); break;
+  }
 }
 
 }  // namespace app

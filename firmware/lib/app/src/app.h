@@ -13,60 +13,61 @@
 namespace app {
 
 class App {
-  public:
-    void begin();
-    void tick();      // when hal::tick_pending()
-    // One bounded piece of other work; false when there is nothing to do until the next interrupt.
-    bool service();
+ public:
+  void begin();
+  __attribute__((noinline)) void tick();   // when hal::tick_pending()
+  // One bounded piece of other work; false when there is nothing to do until the next interrupt.
+  __attribute__((noinline)) bool service();
 
-  private:
-    // app.cpp: the tick
-    void count_ticks(hal::TickStart start);
-    void observe(bool late, int16_t (&references)[hal::joint_count]);
-    void follow_supervisor();
-    void control(const int16_t* references);
-    void schedule_sample();
-    void show_state();
-    void take_running_set();
+ private:
+  // app.cpp: the tick
+  void count_ticks(hal::TickStart start);
+  void observe(bool late, int16_t (&references)[hal::joint_count]);
+  void follow_supervisor();
+  void control(const int16_t* references);
+  void schedule_sample();
+  void show_state();
+  void take_running_set();
 
-    // requests.cpp: the link
-    void receive();
-    void handle_frame();
-    void handle_parameters(uint8_t type);
-    void handle_motors(uint8_t type);
-    void begin_apply(uint16_t crc);
-    void work_on_apply();
-    void send_hello(uint8_t seq);
-    void send_status();
-    void send_sample();
-    void answer(const supervisor::Reply& reply);
-    void refuse_set();
-    void refuse(wire::NackCode code, uint16_t detail);
-    template <class Message>
-    void send(uint8_t seq, const Message& message);
-    template <class Message>
-    void reply(const Message& message) { send(seq_, message); }
-    template <class Request>
-    bool decode(Request& request);
+  // requests.cpp: the link
+  void receive();
+  void handle_frame();
+  void handle_parameters(uint8_t type);
+  void handle_motors(uint8_t type);
+  void begin_apply(uint16_t crc);
+  void work_on_apply();
+  void send_hello(uint8_t seq);
+  void send_status();
+  void send_sample();
+  void answer(const supervisor::Reply& reply);
+  void refuse_set();
+  void refuse(wire::NackCode code, uint16_t detail);
+  template <class Message>
+  void send(uint8_t seq, const Message& message);
+  template <class Message>
+  void reply(const Message& message) { send(seq_, message); }
+  template <class Request>
+  bool decode(Request& request);
 
-    Sampling sampling_;
-    Controllers controllers_;
-    Drive drive_;
-    supervisor::Supervisor supervisor_;
-    ParameterSets sets_;
-    wire::Decoder decoder_;
-    wire::Encoder encoder_;
+  Sampling sampling_;
+  Controllers controllers_;
+  Drive drive_;
+  supervisor::Supervisor supervisor_;
+  supervisor::Observation seen_ = {};   // by the last tick
+  ParameterSets sets_;
+  wire::Decoder decoder_;
+  wire::Encoder encoder_;
 
-    uint32_t tick_ = 0;
-    uint16_t late_ticks_ = 0, rx_overruns_ = 0, telemetry_dropped_ = 0, tick_us_max_ = 0;   // stop at 65535
-    uint16_t every_ = 0, until_sample_ = 0;
-    uint8_t until_control_ = 1;      // ticks
-    uint8_t sample_seq_ = 0;
-    bool sample_due_ = false;
-    bool heard_this_tick_ = false;
-    bool hello_due_ = false;
-    bool drivers_on_ = false;
-    uint8_t request_ = 0, seq_ = 0;              // of the frame being answered
+  uint32_t tick_ = 0;
+  uint16_t late_ticks_ = 0, rx_overruns_ = 0, telemetry_dropped_ = 0, tick_us_max_ = 0;   // stop at 65535
+  uint16_t every_ = 0, until_sample_ = 0;
+  uint8_t until_control_ = 1;      // ticks
+  uint8_t sample_seq_ = 0;
+  bool sample_due_ = false;
+  bool heard_this_tick_ = false;
+  bool hello_due_ = false;
+  bool drivers_on_ = false;
+  uint8_t request_ = 0, seq_ = 0;              // of the frame being answered
 };
 
 }  // namespace app

@@ -8,30 +8,30 @@
 namespace app {
 
 class Controllers {
-  public:
-    // Whether a joint's settings can be run; costs a few thousand cycles.
-    static fuzzy_pdi::Refusal check(const params::Table& table, uint8_t joint);
-    // Takes a joint's settings over; only while the motors are off and after check().
-    void take(const params::Table& table, uint8_t joint);
+ public:
+  // Whether a joint's settings can be run; costs a few thousand cycles.
+  static fuzzy_pdi::Refusal check(const params::Table& table, uint8_t joint);
+  // Takes a joint's settings over; only while the motors are off and after check().
+  void take(const params::Table& table, uint8_t joint);
 
-    void reset();
-    // The leader within the joint's limits: what the follower is asked for.
-    int16_t reference(uint8_t joint, int16_t leader) const;
-    // The voltage that may be used now; ramp_q15 is the share of the supply, 32768 all of it.
-    uint16_t limit_mv(uint16_t ramp_q15) const;
-    // One control period of a joint: the voltage for its motor.
-    int16_t step(uint8_t joint, int16_t reference, int16_t follower, uint16_t limit_mv);
+  void reset();
+  // The leader within the joint's limits: what the follower is asked for.
+  int16_t reference(uint8_t joint, int16_t leader) const;
+  // The voltage that may be used now; ramp_q15 is the share of the supply, 32768 all of it.
+  uint16_t limit_mv(uint16_t ramp_q15) const;
+  // One control period of a joint: the voltage for its motor.
+  int16_t step(uint8_t joint, int16_t reference, int16_t follower, uint16_t limit_mv);
 
-    int16_t volts_mv(uint8_t joint) const { return volts_mv_[joint]; }
-    uint16_t no_rule() const { return no_rule_; }   // stops at 65535
+  int16_t volts_mv(uint8_t joint) const { return volts_mv_[joint]; }
+  uint16_t no_rule() const { return no_rule_; }   // stops at 65535
 
-  private:
-    fuzzy_pdi::Coefficients coefficients_[hal::joint_count] = {};
-    fuzzy_pdi::State states_[hal::joint_count] = {};
-    int16_t volts_mv_[hal::joint_count] = {};
-    int16_t limit_min_[hal::joint_count] = {}, limit_max_[hal::joint_count] = {};
-    uint16_t supply_mv_ = 0;
-    uint16_t no_rule_ = 0;
+ private:
+  fuzzy_pdi::Coefficients coefficients_[hal::joint_count] = {};
+  fuzzy_pdi::State states_[hal::joint_count] = {};
+  int16_t volts_mv_[hal::joint_count] = {};
+  int16_t limit_min_[hal::joint_count] = {}, limit_max_[hal::joint_count] = {};
+  uint16_t supply_mv_ = 0;
+  uint16_t no_rule_ = 0;
 };
 
 }  // namespace app

@@ -7,14 +7,14 @@
 namespace app {
 
 class Drive {
-  public:
-    void configure(const params::Table& table);
-    void set(uint8_t joint, int16_t millivolts) const;   // |millivolts| <= the supply
-    void release() const;                                // all duties 0
+ public:
+  void configure(const params::Table& table);
+  void set(uint8_t joint, int16_t millivolts) const;   // |millivolts| <= the supply
+  void release() const;                                // all duties 0
 
-  private:
-    uint16_t per_supply_ = 0;   // 2^27 / supply_mv
-    int8_t sign_[hal::joint_count] = {1, 1, 1, 1};
+ private:
+  uint16_t per_supply_ = 0;   // 2^27 / supply_mv
+  int8_t sign_[hal::joint_count] = {1, 1, 1, 1};
 };
 
 }  // namespace app

@@ -11,51 +11,51 @@
 namespace app {
 
 struct HalEeprom {
-    uint8_t read(uint16_t address) { return hal::eeprom_read(address); }
-    void begin_write(uint16_t address, uint8_t value) { hal::eeprom_begin_write(address, value); }
-    bool busy() { return hal::eeprom_busy(); }
+  uint8_t read(uint16_t address) { return hal::eeprom_read(address); }
+  void begin_write(uint16_t address, uint8_t value) { hal::eeprom_begin_write(address, value); }
+  bool busy() { return hal::eeprom_busy(); }
 };
 
 // The joint whose settings cannot be run, and why.
 struct Unfit {
-    uint8_t joint;
-    fuzzy_pdi::Refusal refusal;
+  uint8_t joint;
+  fuzzy_pdi::Refusal refusal;
 };
 
 class ParameterSets {
-  public:
-    // Loads the stored set, or the defaults. False when the stored set cannot be run and the defaults stand in.
-    bool begin(Controllers& controllers);
+ public:
+  // Loads the stored set, or the defaults. False when the stored set cannot be run and the defaults stand in.
+  bool begin(Controllers& controllers);
 
-    const params::Table& running() const { return sets_.running(); }
-    const params::Table& staged() const { return sets_.staged(); }
-    uint16_t crc() const { return sets_.running_crc(); }
-    wire::ParamSource source() const { return source_; }
-    params::Access stage(uint16_t index, int32_t value) { return sets_.stage(index, value); }
-    void stage_defaults() { sets_.stage_defaults(); }
+  const params::Table& running() const { return sets_.running(); }
+  const params::Table& staged() const { return sets_.staged(); }
+  uint16_t crc() const { return sets_.running_crc(); }
+  wire::ParamSource source() const { return source_; }
+  params::Access stage(uint16_t index, int32_t value) { return sets_.stage(index, value); }
+  void stage_defaults() { sets_.stage_defaults(); }
 
-    // Checks the staged set joint by joint and then takes it over, a step a call, so that no tick waits for long.
-    enum class Progress : uint8_t { going_on, applied, refused };
-    void begin_apply() { step_ = 0; }
-    bool applying() const { return step_ != idle; }
-    Progress work_on_apply(Controllers& controllers);
-    Unfit unfit() const { return unfit_; }   // after refused, or when begin() was false
+  // Checks the staged set joint by joint and then takes it over, a step a call, so that no tick waits for long.
+  enum class Progress : uint8_t { going_on, applied, refused };
+  void begin_apply() { step_ = 0; }
+  bool applying() const { return step_ != idle; }
+  Progress work_on_apply(Controllers& controllers);
+  Unfit unfit() const { return unfit_; }   // after refused, or when begin() was false
 
-    void save() { store_.save(sets_.running()); }
-    bool work_on_save();   // one byte; true when the next can follow at once
-    wire::SaveState save_state() const { return store_.state(); }
+  void save() { store_.save(sets_.running()); }
+  bool work_on_save();   // one byte; true when the next can follow at once
+  wire::SaveState save_state() const { return store_.state(); }
 
-  private:
-    static constexpr uint8_t idle = 255;
+ private:
+  static constexpr uint8_t idle = 255;
 
-    bool fit(const params::Table& table, uint8_t joint);
+  bool fit(const params::Table& table, uint8_t joint);
 
-    params::Sets sets_;
-    HalEeprom eeprom_;
-    params::Store<HalEeprom> store_{eeprom_};
-    uint8_t step_ = idle;
-    Unfit unfit_ = {0, fuzzy_pdi::Refusal::none};
-    wire::ParamSource source_ = wire::ParamSource::defaults;
+  params::Sets sets_;
+  HalEeprom eeprom_;
+  params::Store<HalEeprom> store_{eeprom_};
+  uint8_t step_ = idle;
+  Unfit unfit_ = {0, fuzzy_pdi::Refusal::none};
+  wire::ParamSource source_ = wire::ParamSource::defaults;
 };
 
 }  // namespace app

@@ -22,17 +22,18 @@ void begin();
 
 // --- The tick: a 1 kHz timer interrupt. It turns the drivers off by itself when a tick is not finished in time.
 struct TickStart {
-    uint8_t elapsed;   // ticks since the last tick_begin(): 1 unless some were missed
-    bool late;         // the tick before this one was not finished in time, or its samples were not complete
+  uint8_t elapsed;   // ticks since the last tick_begin(): 1 unless some were missed
+  bool late;         // the tick before this one was not finished in time, or its samples were not complete
 };
 bool tick_pending();
 TickStart tick_begin();
 void tick_end();
 uint16_t tick_age_us();   // time since the timer started this tick, resolution 4 us
 
-// Sums of four 10-bit conversions a pot, all taken during the last tick. Once a tick, before tick_end(); false when
-// there is no new set.
-bool read_pots(uint16_t (&sums)[pot_count]);
+// Sums of four 10-bit conversions for every pot, all taken during the last tick; null when there are no new ones. Once
+// read they are released, before tick_end(): the chain of the next tick adds its conversions there.
+const uint16_t* pot_sums();
+void release_pots();
 
 // --- Outputs. Duty is signed Q15, 32767 = full supply; positive sets the direction pin.
 void set_duty(uint8_t joint, int16_t duty);

@@ -5,145 +5,144 @@ namespace supervisor {
 namespace {
 
 uint8_t lowest_bit(uint8_t mask) {
-    uint8_t bit = 0;
-    while (!(mask & 1)) {
-        mask = static_cast<uint8_t>(mask >> 1);
-        ++bit;
-    }
-    return bit;
+  uint8_t bit = 0;
+  while (!(mask & 1)) {
+    mask = static_cast<uint8_t>(mask >> 1);
+    ++bit;
+  }
+  return bit;
 }
 
 }  // namespace
 
 void Supervisor::begin(bool after_watchdog, bool params_ok) {
-    params_ok_ = params_ok;
-    boot_fault_ = after_watchdog ? Fault::watchdog : params_ok ? Fault::none : Fault::params;
+  params_ok_ = params_ok;
+  boot_fault_ = after_watchdog ? Fault::watchdog : params_ok ? Fault::none : Fault::params;
 }
 
 void Supervisor::set_limits(const Limits& limits) {
-    limits_ = limits;
-    ramp_step_ = full_ramp / limits.soft_start_ms;
+  limits_ = limits;
+  ramp_step_ = full_ramp / limits.soft_start_ms;
 }
 
 void Supervisor::tick(const Observation& seen) {
-    seen_ = seen;
-    debounce(seen);
-    if (state_ == State::boot) {
-        if (--boot_left_ == 0) {
-            state_ = State::disabled;
-            if (boot_fault_ != Fault::none) {
-                state_ = State::fault;
-                fault_ = boot_fault_;
-            }
-        }
-        return;
+  debounce(seen);
+  if (state_ == State::boot) {
+    if (--boot_left_ == 0) {
+      state_ = State::disabled;
+      if (boot_fault_ != Fault::none) {
+        state_ = State::fault;
+        fault_ = boot_fault_;
+      }
     }
-    if (motors_on()) watch(seen);
-    if (state_ != State::soft_start) return;
-    ramp_ += ramp_step_;
-    if (--ramp_left_ == 0) {
-        ramp_ = full_ramp;
-        state_ = State::following;
-    }
+    return;
+  }
+  if (motors_on()) watch(seen);
+  if (state_ != State::soft_start) return;
+  ramp_ += ramp_step_;
+  if (--ramp_left_ == 0) {
+    ramp_ = full_ramp;
+    state_ = State::following;
+  }
 }
 
 // Faults before the lease, and the gravest first: only one is reported.
 void Supervisor::watch(const Observation& seen) {
-    uint8_t joint = 0;
-    if (seen.late) {
-        raise(Fault::late_tick, nowhere);
-    } else if (steady_low_) {
-        raise(Fault::pot_low, lowest_bit(steady_low_));
-    } else if (steady_high_) {
-        raise(Fault::pot_high, lowest_bit(steady_high_));
-    } else if (lost_joint(joint)) {
-        raise(Fault::tracking, joint);
-    } else if (lease_ && --lease_ == 0) {
-        switch_off(State::disabled, StopReason::lease);
-    }
+  uint8_t joint = 0;
+  if (seen.late) {
+    raise(Fault::late_tick, nowhere);
+  } else if (steady_low_) {
+    raise(Fault::pot_low, lowest_bit(steady_low_));
+  } else if (steady_high_) {
+    raise(Fault::pot_high, lowest_bit(steady_high_));
+  } else if (lost_joint(seen, joint)) {
+    raise(Fault::tracking, joint);
+  } else if (lease_ && --lease_ == 0) {
+    switch_off(State::disabled, StopReason::lease);
+  }
 }
 
 // One tick at a rail may be noise; three in a row are a broken wire.
 void Supervisor::debounce(const Observation& seen) {
-    steady_low_ = seen.rail_low & low_[0] & low_[1];
-    steady_high_ = seen.rail_high & high_[0] & high_[1];
-    low_[1] = low_[0];
-    low_[0] = seen.rail_low;
-    high_[1] = high_[0];
-    high_[0] = seen.rail_high;
+  steady_low_ = seen.rail_low & low_[0] & low_[1];
+  steady_high_ = seen.rail_high & high_[0] & high_[1];
+  low_[1] = low_[0];
+  low_[0] = seen.rail_low;
+  high_[1] = high_[0];
+  high_[0] = seen.rail_high;
 }
 
-bool Supervisor::lost_joint(uint8_t& joint) {
-    if (limits_.tracking_limit == 0) return false;
-    for (uint8_t i = 0; i < joint_count; ++i) {
-        if (seen_.distance[i] <= limits_.tracking_limit) {
-            lost_ticks_[i] = 0;
-        } else if (++lost_ticks_[i] >= limits_.tracking_ms) {
-            joint = i;
-            return true;
-        }
+bool Supervisor::lost_joint(const Observation& seen, uint8_t& joint) {
+  if (limits_.tracking_limit == 0) return false;
+  for (uint8_t i = 0; i < joint_count; ++i) {
+    if (seen.distance[i] <= limits_.tracking_limit) {
+      lost_ticks_[i] = 0;
+    } else if (++lost_ticks_[i] >= limits_.tracking_ms) {
+      joint = i;
+      return true;
     }
-    return false;
+  }
+  return false;
 }
 
 void Supervisor::switch_off(State next, StopReason reason) {
-    state_ = next;
-    stop_reason_ = reason;
-    ramp_ = 0;
-    lease_ = 0;
+  state_ = next;
+  stop_reason_ = reason;
+  ramp_ = 0;
+  lease_ = 0;
 }
 
 void Supervisor::raise(Fault fault, uint8_t where) {
-    switch_off(State::fault, StopReason::fault);
-    fault_ = fault;
-    fault_where_ = where;
+  switch_off(State::fault, StopReason::fault);
+  fault_ = fault;
+  fault_where_ = where;
 }
 
-Reply Supervisor::enable(uint16_t lease_ms) {
-    if (motors_on()) {
-        lease_ = lease_ms;
-        return {Answer::ok, nowhere, 0};
-    }
-    if (state_ == State::boot) return {Answer::booting, nowhere, 0};
-    if (state_ == State::fault) return {Answer::in_fault, nowhere, static_cast<uint16_t>(fault_)};
-    const uint8_t low = steady_low_ | seen_.rail_low, high = steady_high_ | seen_.rail_high;
-    if (low) return {Answer::pot_bad, lowest_bit(low), static_cast<uint16_t>(Fault::pot_low)};
-    if (high) return {Answer::pot_bad, lowest_bit(high), static_cast<uint16_t>(Fault::pot_high)};
-    for (uint8_t i = 0; i < joint_count; ++i) {
-        const uint16_t distance = seen_.distance[i];
-        if (distance > limits_.enable_limit) return {Answer::too_far, i, distance};
-        lost_ticks_[i] = 0;
-    }
-    state_ = State::soft_start;
-    ramp_ = 0;
-    ramp_left_ = limits_.soft_start_ms;
+Reply Supervisor::enable(uint16_t lease_ms, const Observation& seen) {
+  if (motors_on()) {
     lease_ = lease_ms;
     return {Answer::ok, nowhere, 0};
+  }
+  if (state_ == State::boot) return {Answer::booting, nowhere, 0};
+  if (state_ == State::fault) return {Answer::in_fault, nowhere, static_cast<uint16_t>(fault_)};
+  const uint8_t low = steady_low_ | seen.rail_low, high = steady_high_ | seen.rail_high;
+  if (low) return {Answer::pot_bad, lowest_bit(low), static_cast<uint16_t>(Fault::pot_low)};
+  if (high) return {Answer::pot_bad, lowest_bit(high), static_cast<uint16_t>(Fault::pot_high)};
+  for (uint8_t i = 0; i < joint_count; ++i) {
+    const uint16_t distance = seen.distance[i];
+    if (distance > limits_.enable_limit) return {Answer::too_far, i, distance};
+    lost_ticks_[i] = 0;
+  }
+  state_ = State::soft_start;
+  ramp_ = 0;
+  ramp_left_ = limits_.soft_start_ms;
+  lease_ = lease_ms;
+  return {Answer::ok, nowhere, 0};
 }
 
 void Supervisor::stop() {
-    if (motors_on()) switch_off(State::disabled, StopReason::host);
+  if (motors_on()) switch_off(State::disabled, StopReason::host);
 }
 
 void Supervisor::renew(uint16_t lease_ms) {
-    if (motors_on()) lease_ = lease_ms;
+  if (motors_on()) lease_ = lease_ms;
 }
 
-Reply Supervisor::clear_fault() {
-    if (state_ == State::boot) return {Answer::booting, nowhere, 0};
-    if (state_ != State::fault) return {Answer::ok, nowhere, 0};
-    if (steady_low_) return {Answer::pot_bad, lowest_bit(steady_low_), static_cast<uint16_t>(Fault::pot_low)};
-    if (steady_high_) return {Answer::pot_bad, lowest_bit(steady_high_), static_cast<uint16_t>(Fault::pot_high)};
-    if (!params_ok_) return {Answer::params, nowhere, static_cast<uint16_t>(Fault::params)};
-    if (fault_ == Fault::late_tick && seen_.late) return {Answer::in_fault, nowhere, static_cast<uint16_t>(fault_)};
-    if (fault_ == Fault::tracking) {
-        const uint16_t distance = seen_.distance[fault_where_];
-        if (distance > limits_.tracking_limit) return {Answer::too_far, fault_where_, distance};
-    }
-    state_ = State::disabled;
-    fault_ = Fault::none;
-    fault_where_ = nowhere;
-    return {Answer::ok, nowhere, 0};
+Reply Supervisor::clear_fault(const Observation& seen) {
+  if (state_ == State::boot) return {Answer::booting, nowhere, 0};
+  if (state_ != State::fault) return {Answer::ok, nowhere, 0};
+  if (steady_low_) return {Answer::pot_bad, lowest_bit(steady_low_), static_cast<uint16_t>(Fault::pot_low)};
+  if (steady_high_) return {Answer::pot_bad, lowest_bit(steady_high_), static_cast<uint16_t>(Fault::pot_high)};
+  if (!params_ok_) return {Answer::params, nowhere, static_cast<uint16_t>(Fault::params)};
+  if (fault_ == Fault::late_tick && seen.late) return {Answer::in_fault, nowhere, static_cast<uint16_t>(fault_)};
+  if (fault_ == Fault::tracking) {
+    const uint16_t distance = seen.distance[fault_where_];
+    if (distance > limits_.tracking_limit) return {Answer::too_far, fault_where_, distance};
+  }
+  state_ = State::disabled;
+  fault_ = Fault::none;
+  fault_where_ = nowhere;
+  return {Answer::ok, nowhere, 0};
 }
 
 }  // namespace supervisor

@@ -13,76 +13,76 @@ enum class StopReason : uint8_t { none, host, lease, fault, reset };
 enum class Fault : uint8_t { none, pot_low, pot_high, late_tick, tracking, watchdog, params };
 
 struct Limits {
-    uint16_t enable_limit;     // q12 rad
-    uint16_t tracking_limit;   // q12 rad, 0 = no check
-    uint16_t tracking_ms;
-    uint16_t soft_start_ms;
+  uint16_t enable_limit;     // q12 rad
+  uint16_t tracking_limit;   // q12 rad, 0 = no check
+  uint16_t tracking_ms;
+  uint16_t soft_start_ms;
 };
 
 // What a tick has seen. The distance of a joint is that between its reference (the leader within the joint's limits)
 // and the follower, q12 rad. Bit i of a rail mask is pot i: 0..3 leader, 4..7 follower.
 struct Observation {
-    uint16_t distance[joint_count];
-    uint8_t rail_low;
-    uint8_t rail_high;
-    bool late;
+  uint16_t distance[joint_count];
+  uint8_t rail_low;
+  uint8_t rail_high;
+  bool late;
 };
 
 // Why a request was refused; `where` is a pot for pot_bad and a joint for too_far.
 enum class Answer : uint8_t { ok, booting, in_fault, pot_bad, too_far, params };
 struct Reply {
-    Answer answer;
-    uint8_t where;
-    uint16_t detail;   // the Fault for pot_bad and in_fault, the distance for too_far
+  Answer answer;
+  uint8_t where;
+  uint16_t detail;   // the Fault for pot_bad and in_fault, the distance for too_far
 };
 
 class Supervisor {
-  public:
-    // Until both say so: the reason for a fault that stands from the start, and whether the set can be run.
-    void begin(bool after_watchdog, bool params_ok);
-    void set_limits(const Limits& limits);   // only while the motors are off
-    void params_mended() { params_ok_ = true; }
+ public:
+  // Until both say so: the reason for a fault that stands from the start, and whether the set can be run.
+  void begin(bool after_watchdog, bool params_ok);
+  void set_limits(const Limits& limits);   // only while the motors are off
+  void params_mended() { params_ok_ = true; }
 
-    void tick(const Observation& seen);
+  void tick(const Observation& seen);
 
-    Reply enable(uint16_t lease_ms);   // while already on: renews the lease
-    void stop();
-    void renew(uint16_t lease_ms);
-    Reply clear_fault();
+  // Both judge by what the last tick has seen.
+  Reply enable(uint16_t lease_ms, const Observation& seen);   // while already on: renews the lease
+  Reply clear_fault(const Observation& seen);
+  void stop();
+  void renew(uint16_t lease_ms);
 
-    State state() const { return state_; }
-    StopReason stop_reason() const { return stop_reason_; }
-    Fault fault() const { return fault_; }
-    uint8_t fault_where() const { return fault_where_; }
-    bool motors_on() const { return state_ == State::soft_start || state_ == State::following; }
-    // Share of the supply that the controllers may use now; 32768 is all of it.
-    uint16_t ramp_q15() const { return static_cast<uint16_t>(ramp_ >> 16); }
+  State state() const { return state_; }
+  StopReason stop_reason() const { return stop_reason_; }
+  Fault fault() const { return fault_; }
+  uint8_t fault_where() const { return fault_where_; }
+  bool motors_on() const { return state_ == State::soft_start || state_ == State::following; }
+  // Share of the supply that the controllers may use now; 32768 is all of it.
+  uint16_t ramp_q15() const { return static_cast<uint16_t>(ramp_ >> 16); }
 
-  private:
-    void switch_off(State next, StopReason reason);
-    void raise(Fault fault, uint8_t where);
-    void watch(const Observation& seen);
-    bool lost_joint(uint8_t& joint);
-    void debounce(const Observation& seen);
+ private:
+  void switch_off(State next, StopReason reason);
+  void raise(Fault fault, uint8_t where);
+  void watch(const Observation& seen);
+  bool lost_joint(const Observation& seen, uint8_t& joint);
+  void debounce(const Observation& seen);
 
-    static constexpr uint8_t boot_ticks = 20;          // the filters settle and pots are judged
-    static constexpr uint32_t full_ramp = 1UL << 31;
+  static constexpr uint8_t boot_ticks = 20;          // the filters settle and pots are judged
+  static constexpr uint32_t full_ramp = 1UL << 31;
 
-    Limits limits_ = {};
-    Observation seen_ = {};
-    uint8_t low_[2] = {}, high_[2] = {};               // rail masks of the two ticks before
-    uint8_t steady_low_ = 0, steady_high_ = 0;         // at the rail for three ticks
-    uint16_t lost_ticks_[joint_count] = {};            // time beyond the tracking limit
-    uint32_t ramp_ = 0, ramp_step_ = 0;
-    uint16_t ramp_left_ = 0;                           // ticks
-    uint16_t lease_ = 0;                               // ticks, 0 = until stop
-    uint8_t boot_left_ = boot_ticks;
-    bool params_ok_ = true;
-    State state_ = State::boot;
-    StopReason stop_reason_ = StopReason::reset;
-    Fault fault_ = Fault::none;
-    Fault boot_fault_ = Fault::none;
-    uint8_t fault_where_ = nowhere;
+  Limits limits_ = {};
+  uint8_t low_[2] = {}, high_[2] = {};               // rail masks of the two ticks before
+  uint8_t steady_low_ = 0, steady_high_ = 0;         // at the rail for three ticks
+  uint16_t lost_ticks_[joint_count] = {};            // time beyond the tracking limit
+  uint32_t ramp_ = 0, ramp_step_ = 0;
+  uint16_t ramp_left_ = 0;                           // ticks
+  uint16_t lease_ = 0;                               // ticks, 0 = until stop
+  uint8_t boot_left_ = boot_ticks;
+  bool params_ok_ = true;
+  State state_ = State::boot;
+  StopReason stop_reason_ = StopReason::reset;
+  Fault fault_ = Fault::none;
+  Fault boot_fault_ = Fault::none;
+  uint8_t fault_where_ = nowhere;
 };
 
 }  // namespace supervisor

@@ -7,166 +7,166 @@ using bench::Bench;
 using bench::board;
 
 TEST_CASE("samples come every so many ticks with numbers in a row, until they are turned off") {
-    for (std::uint16_t every : {std::uint16_t{1}, std::uint16_t{7}, std::uint16_t{1000}}) {
-        Bench arm;
-        arm.boot();
-        CHECK(arm.get<wire::TelemetryReply>(wire::TelemetryRequest{every}).every == every);
-        arm.run(every * 20u);
-        REQUIRE(arm.samples.size() == 20);
-        int wrong = 0;
-        for (std::size_t i = 1; i < 20; ++i) {
-            if (arm.samples[i].tick - arm.samples[i - 1].tick != every) ++wrong;
-            if (static_cast<std::uint8_t>(arm.sample_seqs[i] - arm.sample_seqs[i - 1]) != 1) ++wrong;
-        }
-        CHECK(wrong == 0);
-        arm.get<wire::TelemetryReply>(wire::TelemetryRequest{0});
-        arm.samples.clear();
-        arm.run(every * 3u);
-        CHECK(arm.samples.empty());
+  for (std::uint16_t every : {std::uint16_t{1}, std::uint16_t{7}, std::uint16_t{1000}}) {
+    Bench arm;
+    arm.boot();
+    CHECK(arm.get<wire::TelemetryReply>(wire::TelemetryRequest{every}).every == every);
+    arm.run(every * 20u);
+    REQUIRE(arm.samples.size() == 20);
+    int wrong = 0;
+    for (std::size_t i = 1; i < 20; ++i) {
+      if (arm.samples[i].tick - arm.samples[i - 1].tick != every) ++wrong;
+      if (static_cast<std::uint8_t>(arm.sample_seqs[i] - arm.sample_seqs[i - 1]) != 1) ++wrong;
     }
+    CHECK(wrong == 0);
+    arm.get<wire::TelemetryReply>(wire::TelemetryRequest{0});
+    arm.samples.clear();
+    arm.run(every * 3u);
+    CHECK(arm.samples.empty());
+  }
 }
 
 TEST_CASE("a sample tells angles, voltages, state and fault") {
-    Bench arm;
-    arm.set_leader(1, 0.5);
-    arm.set_follower(3, -0.4);
-    arm.boot();
-    arm.get<wire::TelemetryReply>(wire::TelemetryRequest{1});
-    arm.run(50);
-    CHECK(arm.samples.back().leader[1] / 4096.0 == doctest::Approx(0.5).epsilon(0.01));
-    CHECK(arm.samples.back().follower[3] / 4096.0 == doctest::Approx(-0.4).epsilon(0.01));
-    CHECK(arm.samples.back().voltage[1] == 0);
-    CHECK(arm.samples.back().state == wire::State::disabled);
-    arm.enable();
-    arm.run(1100);
-    const wire::Sample& last = arm.samples.back();
-    CHECK(last.state == wire::State::following);
-    for (std::uint8_t i = 0; i < 4; ++i) {
-        CHECK(std::abs(board.duty[i] * 15000L / 32768 - last.voltage[i]) <= 2);
-    }
-    CHECK(last.voltage[1] > 1000);
-    CHECK(last.voltage[3] > 1000);
-    board.late = true;
-    arm.run(2);
-    CHECK(arm.samples.back().fault == wire::Fault::late_tick);
-    CHECK(arm.samples.back().voltage[1] == 0);
+  Bench arm;
+  arm.set_leader(1, 0.5);
+  arm.set_follower(3, -0.4);
+  arm.boot();
+  arm.get<wire::TelemetryReply>(wire::TelemetryRequest{1});
+  arm.run(50);
+  CHECK(arm.samples.back().leader[1] / 4096.0 == doctest::Approx(0.5).epsilon(0.01));
+  CHECK(arm.samples.back().follower[3] / 4096.0 == doctest::Approx(-0.4).epsilon(0.01));
+  CHECK(arm.samples.back().voltage[1] == 0);
+  CHECK(arm.samples.back().state == wire::State::disabled);
+  arm.enable();
+  arm.run(1100);
+  const wire::Sample& last = arm.samples.back();
+  CHECK(last.state == wire::State::following);
+  for (std::uint8_t i = 0; i < 4; ++i) {
+    CHECK(std::abs(board.duty[i] * 15000L / 32768 - last.voltage[i]) <= 2);
+  }
+  CHECK(last.voltage[1] > 1000);
+  CHECK(last.voltage[3] > 1000);
+  board.late = true;
+  arm.run(2);
+  CHECK(arm.samples.back().fault == wire::Fault::late_tick);
+  CHECK(arm.samples.back().voltage[1] == 0);
 }
 
 TEST_CASE("samples that find no room are dropped and counted, and their numbers stay out") {
-    Bench arm;
-    arm.boot();
-    arm.get<wire::TelemetryReply>(wire::TelemetryRequest{1});
-    arm.run(5);
-    const auto sent = arm.samples.size();
-    arm.drain = false;
-    arm.run(20);
-    arm.drain = true;
-    arm.run(2);
-    const auto status = arm.status();
-    CHECK(status.telemetry_dropped >= 17);
-    const unsigned ticks_since = status.tick - arm.samples.front().tick;
-    CHECK(arm.samples.size() + status.telemetry_dropped + 1 >= ticks_since);
-    CHECK(arm.samples.size() > sent);
-    unsigned gap = 0;
-    for (std::size_t i = 1; i < arm.samples.size(); ++i) {
-        const unsigned in_ticks = arm.samples[i].tick - arm.samples[i - 1].tick;
-        CHECK(static_cast<std::uint8_t>(arm.sample_seqs[i] - arm.sample_seqs[i - 1]) == in_ticks);
-        gap = std::max(gap, in_ticks);
-    }
-    CHECK(gap >= 17);
+  Bench arm;
+  arm.boot();
+  arm.get<wire::TelemetryReply>(wire::TelemetryRequest{1});
+  arm.run(5);
+  const auto sent = arm.samples.size();
+  arm.drain = false;
+  arm.run(20);
+  arm.drain = true;
+  arm.run(2);
+  const auto status = arm.status();
+  CHECK(status.telemetry_dropped >= 17);
+  const unsigned ticks_since = status.tick - arm.samples.front().tick;
+  CHECK(arm.samples.size() + status.telemetry_dropped + 1 >= ticks_since);
+  CHECK(arm.samples.size() > sent);
+  unsigned gap = 0;
+  for (std::size_t i = 1; i < arm.samples.size(); ++i) {
+    const unsigned in_ticks = arm.samples[i].tick - arm.samples[i - 1].tick;
+    CHECK(static_cast<std::uint8_t>(arm.sample_seqs[i] - arm.sample_seqs[i - 1]) == in_ticks);
+    gap = std::max(gap, in_ticks);
+  }
+  CHECK(gap >= 17);
 }
 
 TEST_CASE("unknown types and wrong lengths are refused") {
-    Bench arm;
-    arm.boot();
-    arm.frames.clear();
-    wire::Encoder encoder;
-    encoder.finish(0x3f, 9, 0);
+  Bench arm;
+  arm.boot();
+  arm.frames.clear();
+  wire::Encoder encoder;
+  encoder.finish(0x3f, 9, 0);
+  arm.send_raw({encoder.data(), encoder.data() + encoder.size()});
+  arm.tick();
+  REQUIRE(arm.frames.size() == 1);
+  CHECK(arm.frames[0].type == 0xff);
+  CHECK(arm.frames[0].payload == std::vector<std::uint8_t>{0x3f, 1, 0x3f, 0});
+  arm.frames.clear();
+  for (std::uint8_t type = 1; type <= 0x0c; ++type) {
+    encoder.finish(type, type, 40);   // no request is that long
     arm.send_raw({encoder.data(), encoder.data() + encoder.size()});
     arm.tick();
-    REQUIRE(arm.frames.size() == 1);
-    CHECK(arm.frames[0].type == 0xff);
-    CHECK(arm.frames[0].payload == std::vector<std::uint8_t>{0x3f, 1, 0x3f, 0});
-    arm.frames.clear();
-    for (std::uint8_t type = 1; type <= 0x0c; ++type) {
-        encoder.finish(type, type, 40);   // no request is that long
-        arm.send_raw({encoder.data(), encoder.data() + encoder.size()});
-        arm.tick();
-    }
-    REQUIRE(arm.frames.size() == 12);
-    int wrong = 0;
-    for (const auto& frame : arm.frames) wrong += frame.type != 0xff || frame.payload[1] != 2 || frame.payload[2] != 40;
-    CHECK(wrong == 0);
-    CHECK_FALSE(board.drivers);
+  }
+  REQUIRE(arm.frames.size() == 12);
+  int wrong = 0;
+  for (const auto& frame : arm.frames) wrong += frame.type != 0xff || frame.payload[1] != 2 || frame.payload[2] != 40;
+  CHECK(wrong == 0);
+  CHECK_FALSE(board.drivers);
 }
 
 TEST_CASE("a request that is repeated is answered again and changes nothing") {
-    Bench arm;
-    arm.boot();
-    arm.frames.clear();
-    for (int i = 0; i < 3; ++i) arm.send_raw(Bench::frame(wire::EnableRequest{500}, 42));
-    arm.run(2);
-    CHECK(arm.frames.size() == 3);
-    for (const auto& frame : arm.frames) CHECK(frame.type == 0x88);
-    CHECK(arm.state() == wire::State::soft_start);
+  Bench arm;
+  arm.boot();
+  arm.frames.clear();
+  for (int i = 0; i < 3; ++i) arm.send_raw(Bench::frame(wire::EnableRequest{500}, 42));
+  arm.run(2);
+  CHECK(arm.frames.size() == 3);
+  for (const auto& frame : arm.frames) CHECK(frame.type == 0x88);
+  CHECK(arm.state() == wire::State::soft_start);
 }
 
 TEST_CASE("many requests at once are all answered, in their order, a few each tick") {
-    Bench arm;
-    arm.boot();
-    arm.frames.clear();
-    for (std::uint8_t seq = 0; seq < 60; ++seq) arm.send_raw(Bench::frame(wire::StatusRequest{}, seq));
-    arm.run(60);
-    REQUIRE(arm.frames.size() == 60);
-    int wrong = 0;
-    for (std::size_t i = 0; i < 60; ++i) wrong += arm.frames[i].seq != i;
-    CHECK(wrong == 0);
+  Bench arm;
+  arm.boot();
+  arm.frames.clear();
+  for (std::uint8_t seq = 0; seq < 60; ++seq) arm.send_raw(Bench::frame(wire::StatusRequest{}, seq));
+  arm.run(60);
+  REQUIRE(arm.frames.size() == 60);
+  int wrong = 0;
+  for (std::size_t i = 0; i < 60; ++i) wrong += arm.frames[i].seq != i;
+  CHECK(wrong == 0);
 }
 
 TEST_CASE("random bytes never turn a motor on, and afterwards the link works") {
-    Bench arm;
-    arm.boot();
-    std::mt19937 random(20221);
-    for (int ms = 0; ms < 4000; ++ms) {
-        std::vector<std::uint8_t> noise(random() % 100);
-        for (auto& byte : noise) byte = static_cast<std::uint8_t>(random() % (random() % 2 ? 256 : 16));
-        arm.send_raw(noise);
-        arm.tick();
-        REQUIRE_FALSE(board.drivers);
-    }
-    arm.send_raw({0});
-    arm.run(50);
-    CHECK(arm.status().frames_bad > 1000);
-    CHECK(arm.state() == wire::State::disabled);
+  Bench arm;
+  arm.boot();
+  std::mt19937 random(20221);
+  for (int ms = 0; ms < 4000; ++ms) {
+    std::vector<std::uint8_t> noise(random() % 100);
+    for (auto& byte : noise) byte = static_cast<std::uint8_t>(random() % (random() % 2 ? 256 : 16));
+    arm.send_raw(noise);
+    arm.tick();
+    REQUIRE_FALSE(board.drivers);
+  }
+  arm.send_raw({0});
+  arm.run(50);
+  CHECK(arm.status().frames_bad > 1000);
+  CHECK(arm.state() == wire::State::disabled);
 }
 
 TEST_CASE("an enable frame with any one or two bits wrong does not turn the motors on") {
-    const auto good = Bench::frame(wire::EnableRequest{1000}, 5);
-    Bench arm;
-    arm.boot();
-    const auto bits = good.size() * 8;
-    for (std::size_t a = 0; a < bits; ++a) {
-        for (std::size_t b = a; b < bits; ++b) {   // b == a: one bit
-            auto bad = good;
-            bad[a / 8] = static_cast<std::uint8_t>(bad[a / 8] ^ (1u << (a % 8)));
-            if (b != a) bad[b / 8] = static_cast<std::uint8_t>(bad[b / 8] ^ (1u << (b % 8)));
-            arm.send_raw(bad);
-            arm.send_raw({0});
-            arm.service();
-            board.tx_room = hal::tx_capacity;
-            REQUIRE_FALSE(board.drivers);
-        }
+  const auto good = Bench::frame(wire::EnableRequest{1000}, 5);
+  Bench arm;
+  arm.boot();
+  const auto bits = good.size() * 8;
+  for (std::size_t a = 0; a < bits; ++a) {
+    for (std::size_t b = a; b < bits; ++b) {   // b == a: one bit
+      auto bad = good;
+      bad[a / 8] = static_cast<std::uint8_t>(bad[a / 8] ^ (1u << (a % 8)));
+      if (b != a) bad[b / 8] = static_cast<std::uint8_t>(bad[b / 8] ^ (1u << (b % 8)));
+      arm.send_raw(bad);
+      arm.send_raw({0});
+      arm.service();
+      board.tx_room = hal::tx_capacity;
+      REQUIRE_FALSE(board.drivers);
     }
-    arm.run(2);
-    CHECK(arm.enable() == wire::State::soft_start);   // the whole one does
+  }
+  arm.run(2);
+  CHECK(arm.enable() == wire::State::soft_start);   // the whole one does
 }
 
 TEST_CASE("lost bytes are counted") {
-    Bench arm;
-    arm.boot();
-    board.lost = 7;
-    arm.tick();
-    board.lost = 3;
-    arm.tick();
-    CHECK(arm.status().rx_overruns == 10);
+  Bench arm;
+  arm.boot();
+  board.lost = 7;
+  arm.tick();
+  board.lost = 3;
+  arm.tick();
+  CHECK(arm.status().rx_overruns == 10);
 }

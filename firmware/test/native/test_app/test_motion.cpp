@@ -5,249 +5,249 @@ using bench::Bench;
 using bench::board;
 
 TEST_CASE("enable is refused while leader and follower differ too much, and names the joint") {
-    Bench arm;
-    arm.set_leader(2, 0.9);
-    arm.boot();
-    const wire::Nack nack = arm.refused(wire::EnableRequest{0});
-    CHECK(nack.code == wire::NackCode::error_too_large);
-    CHECK((nack.detail >> 8) == 2);
-    CHECK((nack.detail & 0xff) / 32.0 == doctest::Approx(0.9).epsilon(0.05));
-    arm.run(5);
-    CHECK_FALSE(board.drivers);
-    arm.set_leader(2, 0.75);
-    arm.run(30);
-    CHECK(arm.enable() == wire::State::soft_start);
+  Bench arm;
+  arm.set_leader(2, 0.9);
+  arm.boot();
+  const wire::Nack nack = arm.refused(wire::EnableRequest{0});
+  CHECK(nack.code == wire::NackCode::error_too_large);
+  CHECK((nack.detail >> 8) == 2);
+  CHECK((nack.detail & 0xff) / 32.0 == doctest::Approx(0.9).epsilon(0.05));
+  arm.run(5);
+  CHECK_FALSE(board.drivers);
+  arm.set_leader(2, 0.75);
+  arm.run(30);
+  CHECK(arm.enable() == wire::State::soft_start);
 }
 
 TEST_CASE("enable is refused while a pot is at a rail, and names the pot") {
-    Bench arm;
-    arm.set_count(6, 2);
-    arm.boot();
-    wire::Nack nack = arm.refused(wire::EnableRequest{0});
-    CHECK(nack.code == wire::NackCode::pot_bad);
-    CHECK(nack.detail == (6 << 8 | static_cast<int>(wire::Fault::pot_low)));
-    arm.set_count(6, 1023);
-    arm.run(5);
-    nack = arm.refused(wire::EnableRequest{0});
-    CHECK(nack.detail == (6 << 8 | static_cast<int>(wire::Fault::pot_high)));
+  Bench arm;
+  arm.set_count(6, 2);
+  arm.boot();
+  wire::Nack nack = arm.refused(wire::EnableRequest{0});
+  CHECK(nack.code == wire::NackCode::pot_bad);
+  CHECK(nack.detail == (6 << 8 | static_cast<int>(wire::Fault::pot_low)));
+  arm.set_count(6, 1023);
+  arm.run(5);
+  nack = arm.refused(wire::EnableRequest{0});
+  CHECK(nack.detail == (6 << 8 | static_cast<int>(wire::Fault::pot_high)));
 }
 
 TEST_CASE("soft start: the duty stays below the ramp, and the ramp reaches the top") {
-    Bench arm;
-    for (std::uint8_t i = 0; i < 4; ++i) arm.set_leader(i, 0.79);   // as far as enable allows: more volts than the ramp
-    arm.boot();
-    REQUIRE(arm.enable() == wire::State::soft_start);
-    CHECK(board.drivers);
-    CHECK(bench::joint_max(board.duty) == 0);
-    int over = 0, at_end = 0;
-    for (int ms = 1; ms <= 1000; ++ms) {
-        arm.tick();
-        at_end = bench::joint_max(board.duty);
-        if (at_end > 32768 * ms / 1000 + 10) ++over;
-        if (ms == 100) CHECK(at_end > 3000);   // the ramp is the limit here, not the controller
-    }
-    CHECK(over == 0);
-    CHECK(at_end > 10000);
-    CHECK(arm.state() == wire::State::following);
+  Bench arm;
+  for (std::uint8_t i = 0; i < 4; ++i) arm.set_leader(i, 0.79);   // as far as enable allows: more volts than the ramp
+  arm.boot();
+  REQUIRE(arm.enable() == wire::State::soft_start);
+  CHECK(board.drivers);
+  CHECK(bench::joint_max(board.duty) == 0);
+  int over = 0, at_end = 0;
+  for (int ms = 1; ms <= 1000; ++ms) {
+    arm.tick();
+    at_end = bench::joint_max(board.duty);
+    if (at_end > 32768 * ms / 1000 + 10) ++over;
+    if (ms == 100) CHECK(at_end > 3000);   // the ramp is the limit here, not the controller
+  }
+  CHECK(over == 0);
+  CHECK(at_end > 10000);
+  CHECK(arm.state() == wire::State::following);
 }
 
 TEST_CASE("the followers come to their leaders, each to its own") {
-    Bench arm;
-    arm.speed = 3.0;
-    const double wanted[4] = {0.6, -0.6, 0.3, -0.2};
-    for (std::uint8_t i = 0; i < 4; ++i) arm.set_leader(i, wanted[i]);
-    arm.boot();
-    REQUIRE(arm.enable() == wire::State::soft_start);
-    arm.run(6000);
-    CHECK(arm.state() == wire::State::following);
-    for (std::uint8_t i = 0; i < 4; ++i) CHECK(arm.follower(i) == doctest::Approx(wanted[i]).epsilon(0.05));
+  Bench arm;
+  arm.speed = 3.0;
+  const double wanted[4] = {0.6, -0.6, 0.3, -0.2};
+  for (std::uint8_t i = 0; i < 4; ++i) arm.set_leader(i, wanted[i]);
+  arm.boot();
+  REQUIRE(arm.enable() == wire::State::soft_start);
+  arm.run(6000);
+  CHECK(arm.state() == wire::State::following);
+  for (std::uint8_t i = 0; i < 4; ++i) CHECK(arm.follower(i) == doctest::Approx(wanted[i]).epsilon(0.05));
 }
 
 TEST_CASE("a motor that turns the other way is set right by motor_sign") {
-    Bench arm;
-    arm.boot();
-    params::Table table;
-    params::load_defaults(table);
-    table.joint[1].motor_sign = -1;
-    REQUIRE(arm.apply(table).type == 0x85);
-    arm.set_leader(0, 0.5);
-    arm.set_leader(1, 0.5);
-    arm.run(30);
-    REQUIRE(arm.enable() == wire::State::soft_start);
-    arm.run(200);
-    CHECK(board.duty[0] > 100);
-    CHECK(board.duty[1] < -100);
+  Bench arm;
+  arm.boot();
+  params::Table table;
+  params::load_defaults(table);
+  table.joint[1].motor_sign = -1;
+  REQUIRE(arm.apply(table).type == 0x85);
+  arm.set_leader(0, 0.5);
+  arm.set_leader(1, 0.5);
+  arm.run(30);
+  REQUIRE(arm.enable() == wire::State::soft_start);
+  arm.run(200);
+  CHECK(board.duty[0] > 100);
+  CHECK(board.duty[1] < -100);
 }
 
 TEST_CASE("a leader beyond the joint's limits is followed to the limit only") {
-    Bench arm;
-    arm.boot();
-    params::Table table;
-    params::load_defaults(table);
-    table.joint[0].limit_max = 1024;   // 0.25 rad
-    REQUIRE(arm.apply(table).type == 0x85);
-    arm.speed = 3.0;
-    arm.set_leader(0, 2.0);            // 2 rad away from the follower, but the reference is not
-    arm.run(30);
-    REQUIRE(arm.enable() == wire::State::soft_start);
-    arm.run(6000);
-    CHECK(arm.follower(0) == doctest::Approx(0.25).epsilon(0.05));
+  Bench arm;
+  arm.boot();
+  params::Table table;
+  params::load_defaults(table);
+  table.joint[0].limit_max = 1024;   // 0.25 rad
+  REQUIRE(arm.apply(table).type == 0x85);
+  arm.speed = 3.0;
+  arm.set_leader(0, 2.0);            // 2 rad away from the follower, but the reference is not
+  arm.run(30);
+  REQUIRE(arm.enable() == wire::State::soft_start);
+  arm.run(6000);
+  CHECK(arm.follower(0) == doctest::Approx(0.25).epsilon(0.05));
 }
 
 TEST_CASE("stop turns the drivers off before it is answered, in soft start and in following") {
-    Bench starting;
-    starting.boot();
-    starting.enable();
-    starting.run(10);
-    REQUIRE(board.drivers);
-    starting.send_raw(Bench::frame(wire::StopRequest{}, 77));
-    starting.service();   // no tick in between
-    CHECK_FALSE(board.drivers);
-    CHECK(bench::joint_max(board.duty) == 0);
-    starting.tick();
-    CHECK(starting.status().stop_reason == wire::StopReason::host);
+  Bench starting;
+  starting.boot();
+  starting.enable();
+  starting.run(10);
+  REQUIRE(board.drivers);
+  starting.send_raw(Bench::frame(wire::StopRequest{}, 77));
+  starting.service();   // no tick in between
+  CHECK_FALSE(board.drivers);
+  CHECK(bench::joint_max(board.duty) == 0);
+  starting.tick();
+  CHECK(starting.status().stop_reason == wire::StopReason::host);
 
-    Bench following;
-    following.follow();
-    CHECK(following.stop() == wire::State::disabled);
-    CHECK_FALSE(board.drivers);
+  Bench following;
+  following.follow();
+  CHECK(following.stop() == wire::State::disabled);
+  CHECK_FALSE(board.drivers);
 }
 
 TEST_CASE("stop is answered in every other state too, and gets through while samples fill the wire") {
-    Bench boot;
-    boot.run(1);
-    CHECK(boot.stop() == wire::State::boot);
-    Bench fault;
-    fault.follow();
-    board.late = true;
-    fault.tick();
-    CHECK(fault.stop() == wire::State::fault);
+  Bench boot;
+  boot.run(1);
+  CHECK(boot.stop() == wire::State::boot);
+  Bench fault;
+  fault.follow();
+  board.late = true;
+  fault.tick();
+  CHECK(fault.stop() == wire::State::fault);
 
-    Bench busy;
-    busy.follow();
-    busy.get<wire::TelemetryReply>(wire::TelemetryRequest{1});
-    board.age_us = 900;   // the processor is busy: every tick ends late
-    busy.run(10);
-    CHECK(busy.stop() == wire::State::disabled);
+  Bench busy;
+  busy.follow();
+  busy.get<wire::TelemetryReply>(wire::TelemetryRequest{1});
+  board.age_us = 900;   // the processor is busy: every tick ends late
+  busy.run(10);
+  CHECK(busy.stop() == wire::State::disabled);
 }
 
 TEST_CASE("a pot that goes to a rail stops the arm within three ticks and is named") {
-    for (std::uint8_t pot = 0; pot < 8; ++pot) {
-        Bench arm;
-        arm.follow();
-        arm.set_count(pot, pot % 2 ? 0 : 1023);
-        arm.run(2);
-        CHECK(board.drivers);
-        arm.run(1);
-        CHECK_FALSE(board.drivers);
-        const auto status = arm.status();
-        CHECK(status.state == wire::State::fault);
-        CHECK(status.fault == (pot % 2 ? wire::Fault::pot_low : wire::Fault::pot_high));
-        CHECK(status.fault_where == pot);
-        CHECK(status.stop_reason == wire::StopReason::fault);
-        CHECK(arm.refused(wire::ClearFaultRequest{}).code == wire::NackCode::pot_bad);
-        arm.set_count(pot, 512);
-        arm.run(5);
-        CHECK(arm.get<wire::ClearFaultReply>(wire::ClearFaultRequest{}).state == wire::State::disabled);
-        CHECK_FALSE(board.drivers);
-    }
+  for (std::uint8_t pot = 0; pot < 8; ++pot) {
+    Bench arm;
+    arm.follow();
+    arm.set_count(pot, pot % 2 ? 0 : 1023);
+    arm.run(2);
+    CHECK(board.drivers);
+    arm.run(1);
+    CHECK_FALSE(board.drivers);
+    const auto status = arm.status();
+    CHECK(status.state == wire::State::fault);
+    CHECK(status.fault == (pot % 2 ? wire::Fault::pot_low : wire::Fault::pot_high));
+    CHECK(status.fault_where == pot);
+    CHECK(status.stop_reason == wire::StopReason::fault);
+    CHECK(arm.refused(wire::ClearFaultRequest{}).code == wire::NackCode::pot_bad);
+    arm.set_count(pot, 512);
+    arm.run(5);
+    CHECK(arm.get<wire::ClearFaultReply>(wire::ClearFaultRequest{}).state == wire::State::disabled);
+    CHECK_FALSE(board.drivers);
+  }
 }
 
 TEST_CASE("the rail is where rail_counts says, to the count") {
-    Bench arm;
-    arm.follow();
-    arm.set_leader(0, 0);
-    arm.set_count(0, 5);
-    arm.set_count(1, 1018);
-    arm.run(50);
-    CHECK(arm.status().fault == wire::Fault::none);
-    arm.set_count(1, 1019);
-    arm.run(5);
-    CHECK(arm.status().fault == wire::Fault::pot_high);
+  Bench arm;
+  arm.follow();
+  arm.set_leader(0, 0);
+  arm.set_count(0, 5);
+  arm.set_count(1, 1018);
+  arm.run(50);
+  CHECK(arm.status().fault == wire::Fault::none);
+  arm.set_count(1, 1019);
+  arm.run(5);
+  CHECK(arm.status().fault == wire::Fault::pot_high);
 }
 
 TEST_CASE("a late tick stops the arm at once and is counted") {
-    Bench arm;
-    arm.follow();
-    board.late = true;
-    board.elapsed = 3;
-    hal::fake::start_tick();
-    CHECK_FALSE(board.drivers);   // the interrupt does not wait for the main loop
-    arm.tick();
-    CHECK_FALSE(board.drivers);
-    const auto status = arm.status();
-    CHECK(status.fault == wire::Fault::late_tick);
-    CHECK(status.late_ticks == 2);
-    CHECK(bench::joint_max(board.duty) == 0);
+  Bench arm;
+  arm.follow();
+  board.late = true;
+  board.elapsed = 3;
+  hal::fake::start_tick();
+  CHECK_FALSE(board.drivers);   // the interrupt does not wait for the main loop
+  arm.tick();
+  CHECK_FALSE(board.drivers);
+  const auto status = arm.status();
+  CHECK(status.fault == wire::Fault::late_tick);
+  CHECK(status.late_ticks == 2);
+  CHECK(bench::joint_max(board.duty) == 0);
 }
 
 TEST_CASE("a lease that is not renewed ends in disabled; one that is renewed goes on") {
-    Bench arm;
-    arm.boot();
-    REQUIRE(arm.enable(100) == wire::State::soft_start);
-    for (int i = 0; i < 5; ++i) {
-        arm.run(80);
-        REQUIRE(arm.get<wire::RenewReply>(wire::RenewRequest{100}).state == wire::State::soft_start);
-    }
-    arm.run(99);
-    CHECK(board.drivers);
-    arm.run(2);
-    CHECK_FALSE(board.drivers);
-    const auto status = arm.status();
-    CHECK(status.state == wire::State::disabled);
-    CHECK(status.stop_reason == wire::StopReason::lease);
+  Bench arm;
+  arm.boot();
+  REQUIRE(arm.enable(100) == wire::State::soft_start);
+  for (int i = 0; i < 5; ++i) {
+    arm.run(80);
+    REQUIRE(arm.get<wire::RenewReply>(wire::RenewRequest{100}).state == wire::State::soft_start);
+  }
+  arm.run(99);
+  CHECK(board.drivers);
+  arm.run(2);
+  CHECK_FALSE(board.drivers);
+  const auto status = arm.status();
+  CHECK(status.state == wire::State::disabled);
+  CHECK(status.stop_reason == wire::StopReason::lease);
 }
 
 TEST_CASE("a follower that does not come is lost after tracking_ms") {
-    Bench arm;
-    arm.follow();   // the plant stands still
-    arm.set_leader(3, 2.4);
-    arm.set_follower(3, -0.3);
-    arm.run(495);
-    CHECK(board.drivers);
-    arm.run(20);
-    const auto status = arm.status();
-    CHECK(status.fault == wire::Fault::tracking);
-    CHECK(status.fault_where == 3);
-    CHECK_FALSE(board.drivers);
+  Bench arm;
+  arm.follow();   // the plant stands still
+  arm.set_leader(3, 2.4);
+  arm.set_follower(3, -0.3);
+  arm.run(495);
+  CHECK(board.drivers);
+  arm.run(20);
+  const auto status = arm.status();
+  CHECK(status.fault == wire::Fault::tracking);
+  CHECK(status.fault_where == 3);
+  CHECK_FALSE(board.drivers);
 }
 
 TEST_CASE("controllers run every period_ms ticks and hold in between") {
-    Bench arm;
-    arm.boot();
-    params::Table table;
-    params::load_defaults(table);
-    table.period_ms = 10;
-    REQUIRE(arm.apply(table).type == 0x85);
-    arm.set_leader(0, 0.7);
-    arm.run(30);
-    REQUIRE(arm.enable() == wire::State::soft_start);
-    int changes = 0, before = board.duty[0];
-    for (int i = 0; i < 500; ++i) {
-        arm.tick();
-        if (board.duty[0] != before) ++changes;
-        before = board.duty[0];
-    }
-    CHECK(changes >= 45);
-    CHECK(changes <= 50);
+  Bench arm;
+  arm.boot();
+  params::Table table;
+  params::load_defaults(table);
+  table.period_ms = 10;
+  REQUIRE(arm.apply(table).type == 0x85);
+  arm.set_leader(0, 0.7);
+  arm.run(30);
+  REQUIRE(arm.enable() == wire::State::soft_start);
+  int changes = 0, before = board.duty[0];
+  for (int i = 0; i < 500; ++i) {
+    arm.tick();
+    if (board.duty[0] != before) ++changes;
+    before = board.duty[0];
+  }
+  CHECK(changes >= 45);
+  CHECK(changes <= 50);
 }
 
 TEST_CASE("the LED tells the states apart") {
-    const auto share = [](Bench& arm) {
-        int on = 0;
-        for (int i = 0; i < 1024; ++i) {
-            arm.tick();
-            on += board.led;
-        }
-        return on;
-    };
-    Bench arm;
-    arm.boot();
-    CHECK(share(arm) == 64);
-    arm.enable();
-    arm.run(1001);
-    CHECK(share(arm) == 1024);
-    board.late = true;
-    arm.tick();
-    CHECK(share(arm) == 512);
+  const auto share = [](Bench& arm) {
+    int on = 0;
+    for (int i = 0; i < 1024; ++i) {
+      arm.tick();
+      on += board.led;
+    }
+    return on;
+  };
+  Bench arm;
+  arm.boot();
+  CHECK(share(arm) == 64);
+  arm.enable();
+  arm.run(1001);
+  CHECK(share(arm) == 1024);
+  board.late = true;
+  arm.tick();
+  CHECK(share(arm) == 512);
 }

@@ -7,176 +7,176 @@ using bench::board;
 namespace {
 
 params::Table changed() {
-    params::Table table;
-    params::load_defaults(table);
-    table.supply_mv = 12000;
-    table.joint[2].kp = 70000;
-    table.leader[1].zero = 8000;
-    return table;
+  params::Table table;
+  params::load_defaults(table);
+  table.supply_mv = 12000;
+  table.joint[2].kp = 70000;
+  table.leader[1].zero = 8000;
+  return table;
 }
 
 std::int32_t value_of(Bench& arm, std::uint16_t index) {
-    return arm.get<wire::ParamGetReply>(wire::ParamGetRequest{index}).value;
+  return arm.get<wire::ParamGetReply>(wire::ParamGetRequest{index}).value;
 }
 
 }  // namespace
 
 TEST_CASE("a set is staged piece by piece and runs only once it is applied") {
-    Bench arm;
-    arm.boot();
-    CHECK(value_of(arm, 1) == 15000);
-    arm.get<wire::ParamSetReply>(wire::ParamSetRequest{1, 12000});
-    CHECK(value_of(arm, 1) == 15000);
-    const auto answer = arm.apply(changed());
-    CHECK(answer.type == 0x85);
-    CHECK(value_of(arm, 1) == 12000);
-    CHECK(arm.get<wire::HelloReply>(wire::HelloRequest{}).param_crc == params::crc(changed()));
+  Bench arm;
+  arm.boot();
+  CHECK(value_of(arm, 1) == 15000);
+  arm.get<wire::ParamSetReply>(wire::ParamSetRequest{1, 12000});
+  CHECK(value_of(arm, 1) == 15000);
+  const auto answer = arm.apply(changed());
+  CHECK(answer.type == 0x85);
+  CHECK(value_of(arm, 1) == 12000);
+  CHECK(arm.get<wire::HelloReply>(wire::HelloRequest{}).param_crc == params::crc(changed()));
 }
 
 TEST_CASE("a repeated apply is answered again") {
-    Bench arm;
-    arm.boot();
-    arm.apply(changed());
-    const auto crc = params::crc(changed());
-    CHECK(arm.get<wire::ParamApplyReply>(wire::ParamApplyRequest{crc}).param_crc == crc);
+  Bench arm;
+  arm.boot();
+  arm.apply(changed());
+  const auto crc = params::crc(changed());
+  CHECK(arm.get<wire::ParamApplyReply>(wire::ParamApplyRequest{crc}).param_crc == crc);
 }
 
 TEST_CASE("a lower supply means more duty for the same voltage") {
-    Bench arm;
-    arm.boot();
-    arm.set_leader(0, 0.3);
-    arm.run(30);
-    arm.enable();
-    arm.run(1100);
-    const int at_15v = board.duty[0];
-    arm.stop();
-    params::Table table;
-    params::load_defaults(table);
-    table.supply_mv = 12000;
-    table.joint[0].ki = 0;   // the integral would go on in between
-    REQUIRE(arm.apply(table).type == 0x85);
-    arm.enable();
-    arm.run(1100);
-    CHECK(board.duty[0] / double(at_15v) == doctest::Approx(1.25).epsilon(0.03));
+  Bench arm;
+  arm.boot();
+  arm.set_leader(0, 0.3);
+  arm.run(30);
+  arm.enable();
+  arm.run(1100);
+  const int at_15v = board.duty[0];
+  arm.stop();
+  params::Table table;
+  params::load_defaults(table);
+  table.supply_mv = 12000;
+  table.joint[0].ki = 0;   // the integral would go on in between
+  REQUIRE(arm.apply(table).type == 0x85);
+  arm.enable();
+  arm.run(1100);
+  CHECK(board.duty[0] / double(at_15v) == doctest::Approx(1.25).epsilon(0.03));
 }
 
 TEST_CASE("apply is refused while the motors are on, and the running set stays") {
-    Bench arm;
-    arm.follow();
-    arm.get<wire::ParamSetReply>(wire::ParamSetRequest{1, 12000});   // staging is harmless
-    const wire::Nack nack = arm.refused(wire::ParamApplyRequest{0});
-    CHECK(nack.code == wire::NackCode::not_disabled);
-    CHECK(nack.detail == static_cast<int>(wire::State::following));
-    CHECK(value_of(arm, 1) == 15000);
-    CHECK(board.drivers);
+  Bench arm;
+  arm.follow();
+  arm.get<wire::ParamSetReply>(wire::ParamSetRequest{1, 12000});   // staging is harmless
+  const wire::Nack nack = arm.refused(wire::ParamApplyRequest{0});
+  CHECK(nack.code == wire::NackCode::not_disabled);
+  CHECK(nack.detail == static_cast<int>(wire::State::following));
+  CHECK(value_of(arm, 1) == 15000);
+  CHECK(board.drivers);
 }
 
 TEST_CASE("apply is refused for another CRC, for contradictions and for a set that cannot run") {
-    Bench arm;
-    arm.boot();
-    params::Table table;
-    params::load_defaults(table);
-    CHECK(arm.refused(wire::ParamApplyRequest{static_cast<std::uint16_t>(params::crc(table) + 1)}).code ==
-          wire::NackCode::crc_mismatch);
+  Bench arm;
+  arm.boot();
+  params::Table table;
+  params::load_defaults(table);
+  CHECK(arm.refused(wire::ParamApplyRequest{static_cast<std::uint16_t>(params::crc(table) + 1)}).code ==
+     wire::NackCode::crc_mismatch);
 
-    table.joint[1].limit_min = 2000;
-    table.joint[1].limit_max = 2000;
-    CHECK(arm.apply(table).type == 0xff);
-    CHECK(arm.refused(wire::ParamApplyRequest{params::crc(table)}).code == wire::NackCode::inconsistent);
+  table.joint[1].limit_min = 2000;
+  table.joint[1].limit_max = 2000;
+  CHECK(arm.apply(table).type == 0xff);
+  CHECK(arm.refused(wire::ParamApplyRequest{params::crc(table)}).code == wire::NackCode::inconsistent);
 
-    params::load_defaults(table);
-    table.joint[3].ze_c = 10;   // narrower than 0.01
-    table.supply_mv = 9000;
-    CHECK(arm.apply(table).type == 0xff);
-    const wire::Nack nack = arm.refused(wire::ParamApplyRequest{params::crc(table)});
-    CHECK(nack.code == wire::NackCode::set_refused);
-    CHECK(nack.detail == (3 << 8 | static_cast<int>(wire::Refusal::width)));
-    CHECK(value_of(arm, 1) == 15000);   // nothing of it runs
-    CHECK(arm.enable() == wire::State::soft_start);
+  params::load_defaults(table);
+  table.joint[3].ze_c = 10;   // narrower than 0.01
+  table.supply_mv = 9000;
+  CHECK(arm.apply(table).type == 0xff);
+  const wire::Nack nack = arm.refused(wire::ParamApplyRequest{params::crc(table)});
+  CHECK(nack.code == wire::NackCode::set_refused);
+  CHECK(nack.detail == (3 << 8 | static_cast<int>(wire::Refusal::width)));
+  CHECK(value_of(arm, 1) == 15000);   // nothing of it runs
+  CHECK(arm.enable() == wire::State::soft_start);
 }
 
 TEST_CASE("values out of range and indices that do not exist are refused and named") {
-    Bench arm;
-    arm.boot();
-    wire::Nack nack = arm.refused(wire::ParamSetRequest{1, 2999});
-    CHECK(nack.code == wire::NackCode::out_of_range);
-    CHECK(nack.detail == 1);
-    nack = arm.refused(wire::ParamSetRequest{params::count, 0});
-    CHECK(nack.code == wire::NackCode::bad_index);
-    CHECK(nack.detail == unsigned(params::count));
-    CHECK(arm.refused(wire::ParamGetRequest{65535}).code == wire::NackCode::bad_index);
+  Bench arm;
+  arm.boot();
+  wire::Nack nack = arm.refused(wire::ParamSetRequest{1, 2999});
+  CHECK(nack.code == wire::NackCode::out_of_range);
+  CHECK(nack.detail == 1);
+  nack = arm.refused(wire::ParamSetRequest{params::count, 0});
+  CHECK(nack.code == wire::NackCode::bad_index);
+  CHECK(nack.detail == unsigned(params::count));
+  CHECK(arm.refused(wire::ParamGetRequest{65535}).code == wire::NackCode::bad_index);
 }
 
 TEST_CASE("defaults are staged, not run") {
-    Bench arm;
-    arm.boot();
-    arm.apply(changed());
-    arm.get<wire::ParamDefaultsReply>(wire::ParamDefaultsRequest{});
-    CHECK(value_of(arm, 1) == 12000);
-    params::Table table;
-    params::load_defaults(table);
-    REQUIRE(arm.ask(wire::ParamApplyRequest{params::crc(table)}).type == 0x85);
-    CHECK(value_of(arm, 1) == 15000);
+  Bench arm;
+  arm.boot();
+  arm.apply(changed());
+  arm.get<wire::ParamDefaultsReply>(wire::ParamDefaultsRequest{});
+  CHECK(value_of(arm, 1) == 12000);
+  params::Table table;
+  params::load_defaults(table);
+  REQUIRE(arm.ask(wire::ParamApplyRequest{params::crc(table)}).type == 0x85);
+  CHECK(value_of(arm, 1) == 15000);
 }
 
 TEST_CASE("a saved set survives a power cycle; ticks go on and motors may run meanwhile") {
-    Bench arm;
-    arm.boot();
-    arm.apply(changed());
-    CHECK(arm.status().save_state == wire::SaveState::idle);
-    arm.enable();
-    CHECK(arm.get<wire::ParamSaveReply>(wire::ParamSaveRequest{}).param_crc == params::crc(changed()));
-    CHECK(arm.status().save_state == wire::SaveState::saving);
-    arm.stop();
-    CHECK(arm.refused(wire::ParamApplyRequest{params::crc(changed())}).code == wire::NackCode::busy_saving);
-    unsigned waited = 0;
-    while (arm.status().save_state == wire::SaveState::saving && waited < 2000) {
-        arm.tick();
-        ++waited;
-    }
-    CHECK(arm.status().save_state == wire::SaveState::saved);
-    CHECK(board.eeprom_misuse == 0);
-    CHECK(board.eeprom_writes > 100);
+  Bench arm;
+  arm.boot();
+  arm.apply(changed());
+  CHECK(arm.status().save_state == wire::SaveState::idle);
+  arm.enable();
+  CHECK(arm.get<wire::ParamSaveReply>(wire::ParamSaveRequest{}).param_crc == params::crc(changed()));
+  CHECK(arm.status().save_state == wire::SaveState::saving);
+  arm.stop();
+  CHECK(arm.refused(wire::ParamApplyRequest{params::crc(changed())}).code == wire::NackCode::busy_saving);
+  unsigned waited = 0;
+  while (arm.status().save_state == wire::SaveState::saving && waited < 2000) {
+    arm.tick();
+    ++waited;
+  }
+  CHECK(arm.status().save_state == wire::SaveState::saved);
+  CHECK(board.eeprom_misuse == 0);
+  CHECK(board.eeprom_writes > 100);
 
-    arm.power_on();
-    arm.boot();
-    CHECK(value_of(arm, 1) == 12000);
-    const auto hello = arm.get<wire::HelloReply>(wire::HelloRequest{});
-    CHECK(hello.param_source != wire::ParamSource::defaults);
-    CHECK(hello.param_crc == params::crc(changed()));
+  arm.power_on();
+  arm.boot();
+  CHECK(value_of(arm, 1) == 12000);
+  const auto hello = arm.get<wire::HelloReply>(wire::HelloRequest{});
+  CHECK(hello.param_source != wire::ParamSource::defaults);
+  CHECK(hello.param_crc == params::crc(changed()));
 }
 
 TEST_CASE("what is not saved is gone after a power cycle") {
-    Bench arm;
-    arm.boot();
-    arm.apply(changed());
-    arm.power_on();
-    arm.boot();
-    CHECK(value_of(arm, 1) == 15000);
+  Bench arm;
+  arm.boot();
+  arm.apply(changed());
+  arm.power_on();
+  arm.boot();
+  CHECK(value_of(arm, 1) == 15000);
 }
 
 TEST_CASE("a stored set that cannot run: defaults, a fault, and a way out") {
-    Bench arm;
-    params::Table table = changed();
-    table.joint[0].ne_c = 0;   // within its range, but the controller refuses it
-    app::HalEeprom eeprom;
-    params::Store<app::HalEeprom> store(eeprom);
-    params::Table found;
-    store.load(found);
-    store.save(table);
-    for (int i = 0; i < 5000 && store.state() == wire::SaveState::saving; ++i) {
-        store.poll();
-        hal::fake::start_tick();
-    }
-    REQUIRE(store.state() == wire::SaveState::saved);
+  Bench arm;
+  params::Table table = changed();
+  table.joint[0].ne_c = 0;   // within its range, but the controller refuses it
+  app::HalEeprom eeprom;
+  params::Store<app::HalEeprom> store(eeprom);
+  params::Table found;
+  store.load(found);
+  store.save(table);
+  for (int i = 0; i < 5000 && store.state() == wire::SaveState::saving; ++i) {
+    store.poll();
+    hal::fake::start_tick();
+  }
+  REQUIRE(store.state() == wire::SaveState::saved);
 
-    arm.power_on();
-    arm.boot();
-    CHECK(arm.status().fault == wire::Fault::params);
-    CHECK(value_of(arm, 1) == 15000);
-    CHECK(arm.refused(wire::EnableRequest{0}).code == wire::NackCode::in_fault);
-    CHECK(arm.refused(wire::ClearFaultRequest{}).code == wire::NackCode::set_refused);
-    REQUIRE(arm.apply(changed()).type == 0x85);
-    CHECK(arm.get<wire::ClearFaultReply>(wire::ClearFaultRequest{}).state == wire::State::disabled);
-    CHECK(arm.enable() == wire::State::soft_start);
+  arm.power_on();
+  arm.boot();
+  CHECK(arm.status().fault == wire::Fault::params);
+  CHECK(value_of(arm, 1) == 15000);
+  CHECK(arm.refused(wire::EnableRequest{0}).code == wire::NackCode::in_fault);
+  CHECK(arm.refused(wire::ClearFaultRequest{}).code == wire::NackCode::set_refused);
+  REQUIRE(arm.apply(changed()).type == 0x85);
+  CHECK(arm.get<wire::ClearFaultReply>(wire::ClearFaultRequest{}).state == wire::State::disabled);
+  CHECK(arm.enable() == wire::State::soft_start);
 }

@@ -7,132 +7,132 @@
 namespace {
 
 params::Table defaults() {
-    params::Table table;
-    params::load_defaults(table);
-    return table;
+  params::Table table;
+  params::load_defaults(table);
+  return table;
 }
 
 // The definition: ((count14 - zero) * scale + 4096) >> 13
 int angle_of(int sum, int zero, int scale) {
-    const long long product = static_cast<long long>(sum * 4 - zero) * scale + 4096;
-    return static_cast<int>(product >= 0 ? product / 8192 : -((-product + 8191) / 8192));
+  const long long product = static_cast<long long>(sum * 4 - zero) * scale + 4096;
+  return static_cast<int>(product >= 0 ? product / 8192 : -((-product + 8191) / 8192));
 }
 
 }  // namespace
 
 TEST_CASE("an unfiltered angle is what the definition says, for every reading and extreme pots") {
-    int wrong = 0;
-    for (const int scale : {10734, -10734, 1, -1, 16384, -16384}) {
-        for (const int zero : {0, 1, 8184, 16368}) {
-            params::Table table = defaults();
-            table.filter_shift = 0;
-            for (int i = 0; i < 4; ++i) {
-                table.leader[i] = {static_cast<std::uint16_t>(zero), static_cast<std::int16_t>(scale)};
-                table.follower[i] = table.leader[i];
-            }
-            app::Sampling sampling;
-            sampling.configure(table);
-            for (int sum = 0; sum <= 4092; sum += 4) {
-                std::uint16_t sums[8];
-                for (int i = 0; i < 8; ++i) sums[i] = static_cast<std::uint16_t>(std::min(sum + i % 4, 4092));
-                sampling.tick(sums);
-                for (std::uint8_t i = 0; i < 4; ++i) {
-                    wrong += sampling.leader(i) != angle_of(sums[i], zero, scale);
-                    wrong += sampling.follower(i) != angle_of(sums[i + 4], zero, scale);
-                }
-            }
+  int wrong = 0;
+  for (const int scale : {10734, -10734, 1, -1, 16384, -16384}) {
+    for (const int zero : {0, 1, 8184, 16368}) {
+      params::Table table = defaults();
+      table.filter_shift = 0;
+      for (int i = 0; i < 4; ++i) {
+        table.leader[i] = {static_cast<std::uint16_t>(zero), static_cast<std::int16_t>(scale)};
+        table.follower[i] = table.leader[i];
+      }
+      app::Sampling sampling;
+      sampling.configure(table);
+      for (int sum = 0; sum <= 4092; sum += 4) {
+        std::uint16_t sums[8];
+        for (int i = 0; i < 8; ++i) sums[i] = static_cast<std::uint16_t>(std::min(sum + i % 4, 4092));
+        sampling.tick(sums);
+        for (std::uint8_t i = 0; i < 4; ++i) {
+          wrong += sampling.leader(i) != angle_of(sums[i], zero, scale);
+          wrong += sampling.follower(i) != angle_of(sums[i + 4], zero, scale);
         }
+      }
     }
-    CHECK(wrong == 0);
+  }
+  CHECK(wrong == 0);
 }
 
 TEST_CASE("the filter reaches a step from both sides, never overshoots, and its first sample is taken whole") {
-    for (std::uint8_t shift = 0; shift <= 4; ++shift) {
-        for (const int from : {0, 1000, 4092}) {
-            for (const int to : {0, 997, 4092}) {
-                params::Table table = defaults();
-                table.filter_shift = shift;
-                app::Sampling sampling;
-                sampling.configure(table);
-                std::uint16_t sums[8];
-                std::fill(sums, sums + 8, static_cast<std::uint16_t>(from));
-                sampling.tick(sums);
-                CHECK(sampling.leader(0) == angle_of(from, 8184, 10734));
-                std::fill(sums, sums + 8, static_cast<std::uint16_t>(to));
-                const int goal = angle_of(to, 8184, 10734);
-                int before = std::abs(sampling.leader(0) - goal), worse = 0;
-                for (int i = 0; i < 300; ++i) {
-                    sampling.tick(sums);
-                    const int now = sampling.leader(0) - goal;
-                    if ((from < to) ? now > 0 : now < 0) ++worse;
-                    if (std::abs(now) > before) ++worse;
-                    before = std::abs(now);
-                }
-                CHECK(worse == 0);
-                CHECK(before <= 3);   // half of the filter's smallest step, 8/64 of a 10-bit count
-            }
+  for (std::uint8_t shift = 0; shift <= 4; ++shift) {
+    for (const int from : {0, 1000, 4092}) {
+      for (const int to : {0, 997, 4092}) {
+        params::Table table = defaults();
+        table.filter_shift = shift;
+        app::Sampling sampling;
+        sampling.configure(table);
+        std::uint16_t sums[8];
+        std::fill(sums, sums + 8, static_cast<std::uint16_t>(from));
+        sampling.tick(sums);
+        CHECK(sampling.leader(0) == angle_of(from, 8184, 10734));
+        std::fill(sums, sums + 8, static_cast<std::uint16_t>(to));
+        const int goal = angle_of(to, 8184, 10734);
+        int before = std::abs(sampling.leader(0) - goal), worse = 0;
+        for (int i = 0; i < 300; ++i) {
+          sampling.tick(sums);
+          const int now = sampling.leader(0) - goal;
+          if ((from < to) ? now > 0 : now < 0) ++worse;
+          if (std::abs(now) > before) ++worse;
+          before = std::abs(now);
         }
+        CHECK(worse == 0);
+        CHECK(before <= 3);   // half of the filter's smallest step, 8/64 of a 10-bit count
+      }
     }
+  }
 }
 
 TEST_CASE("filter_shift is the share of a step taken each tick") {
-    params::Table table = defaults();
-    table.filter_shift = 2;
-    table.leader[0] = {0, 8192};   // the angle is count14
-    app::Sampling sampling;
-    sampling.configure(table);
-    std::uint16_t sums[8] = {};
-    sampling.tick(sums);
-    sums[0] = 4000;
-    sampling.tick(sums);
-    CHECK(sampling.leader(0) == 4000);    // 16000 / 4
-    sampling.tick(sums);
-    CHECK(sampling.leader(0) == 7000);
+  params::Table table = defaults();
+  table.filter_shift = 2;
+  table.leader[0] = {0, 8192};   // the angle is count14
+  app::Sampling sampling;
+  sampling.configure(table);
+  std::uint16_t sums[8] = {};
+  sampling.tick(sums);
+  sums[0] = 4000;
+  sampling.tick(sums);
+  CHECK(sampling.leader(0) == 4000);    // 16000 / 4
+  sampling.tick(sums);
+  CHECK(sampling.leader(0) == 7000);
 }
 
 TEST_CASE("rails are flagged per pot on the raw reading, and rail_counts 0 turns them off") {
-    params::Table table = defaults();
-    app::Sampling sampling;
-    sampling.configure(table);
-    for (std::uint8_t pot = 0; pot < 8; ++pot) {
-        std::uint16_t sums[8];
-        std::fill(sums, sums + 8, static_cast<std::uint16_t>(2048));
-        const auto bit = 1u << pot;
-        for (const int sum : {0, 15, 16, 17, 4075, 4076, 4077, 4092}) {
-            sums[pot] = static_cast<std::uint16_t>(sum);
-            sampling.tick(sums);
-            CHECK(sampling.rail_low() == (sum <= 16 ? bit : 0u));      // 4 counts x 4 conversions
-            CHECK(sampling.rail_high() == (sum >= 4076 ? bit : 0u));   // 1019 x 4
-        }
+  params::Table table = defaults();
+  app::Sampling sampling;
+  sampling.configure(table);
+  for (std::uint8_t pot = 0; pot < 8; ++pot) {
+    std::uint16_t sums[8];
+    std::fill(sums, sums + 8, static_cast<std::uint16_t>(2048));
+    const auto bit = 1u << pot;
+    for (const int sum : {0, 15, 16, 17, 4075, 4076, 4077, 4092}) {
+      sums[pot] = static_cast<std::uint16_t>(sum);
+      sampling.tick(sums);
+      CHECK(sampling.rail_low() == (sum <= 16 ? bit : 0u));      // 4 counts x 4 conversions
+      CHECK(sampling.rail_high() == (sum >= 4076 ? bit : 0u));   // 1019 x 4
     }
-    table.rail_counts = 0;
-    sampling.configure(table);
-    std::uint16_t sums[8] = {0, 4092, 0, 4092, 0, 4092, 0, 4092};
-    sampling.tick(sums);
-    CHECK(sampling.rail_low() == 0);
-    CHECK(sampling.rail_high() == 0);
+  }
+  table.rail_counts = 0;
+  sampling.configure(table);
+  std::uint16_t sums[8] = {0, 4092, 0, 4092, 0, 4092, 0, 4092};
+  sampling.tick(sums);
+  CHECK(sampling.rail_low() == 0);
+  CHECK(sampling.rail_high() == 0);
 }
 
 TEST_CASE("a duty is voltage over supply within 0.02 % of full scale, odd in the voltage, and full at the supply") {
-    for (const int supply : {3000, 3001, 7777, 12000, 15000, 24000, 29999, 30000}) {
-        params::Table table = defaults();
-        table.supply_mv = static_cast<std::uint16_t>(supply);
-        app::Drive drive;
-        drive.configure(table);
-        double worst = 0;
-        int unequal = 0;
-        for (int mv = 0; mv <= supply; mv += 7) {
-            drive.set(0, static_cast<std::int16_t>(mv));
-            const int positive = bench::board.duty[0];
-            drive.set(0, static_cast<std::int16_t>(-mv));
-            unequal += bench::board.duty[0] != -positive;
-            worst = std::max(worst, std::abs(positive / 32768.0 - mv / double(supply)));
-        }
-        CHECK(worst < 0.0002);
-        CHECK(unequal == 0);
-        drive.set(0, static_cast<std::int16_t>(supply));
-        CHECK(bench::board.duty[0] > 32755);
-        drive.set(0, 0);
-        CHECK(bench::board.duty[0] == 0);
+  for (const int supply : {3000, 3001, 7777, 12000, 15000, 24000, 29999, 30000}) {
+    params::Table table = defaults();
+    table.supply_mv = static_cast<std::uint16_t>(supply);
+    app::Drive drive;
+    drive.configure(table);
+    double worst = 0;
+    int unequal = 0;
+    for (int mv = 0; mv <= supply; mv += 7) {
+      drive.set(0, static_cast<std::int16_t>(mv));
+      const int positive = bench::board.duty[0];
+      drive.set(0, static_cast<std::int16_t>(-mv));
+      unequal += bench::board.duty[0] != -positive;
+      worst = std::max(worst, std::abs(positive / 32768.0 - mv / double(supply)));
     }
+    CHECK(worst < 0.0002);
+    CHECK(unequal == 0);
+    drive.set(0, static_cast<std::int16_t>(supply));
+    CHECK(bench::board.duty[0] > 32755);
+    drive.set(0, 0);
+    CHECK(bench::board.duty[0] == 0);
+  }
 }

@@ -13,280 +13,284 @@ constexpr Limits limits = {3277, 10240, 500, 1000};   // 0.8 rad, 2.5 rad
 constexpr Observation calm = {{0, 0, 0, 0}, 0, 0, false};
 
 Observation apart(std::uint8_t joint, std::uint16_t distance) {
-    Observation seen = calm;
-    seen.distance[joint] = distance;
-    return seen;
+  Observation seen = calm;
+  seen.distance[joint] = distance;
+  return seen;
 }
 
 Observation with_rails(std::uint8_t low, std::uint8_t high) {
-    Observation seen = calm;
-    seen.rail_low = low;
-    seen.rail_high = high;
-    return seen;
+  Observation seen = calm;
+  seen.rail_low = low;
+  seen.rail_high = high;
+  return seen;
 }
 
 Observation late() {
-    Observation seen = calm;
-    seen.late = true;
-    return seen;
+  Observation seen = calm;
+  seen.late = true;
+  return seen;
 }
 
 struct Arm : Supervisor {
-    explicit Arm(bool after_watchdog = false, bool params_ok = true) {
-        set_limits(limits);
-        begin(after_watchdog, params_ok);
-    }
-    Arm& run(unsigned ticks, const Observation& seen = calm) {
-        while (ticks--) tick(seen);
-        return *this;
-    }
-    Arm& booted() { return run(20); }
-    Arm& enabled(std::uint16_t lease = 0) {
-        booted();
-        REQUIRE(enable(lease).answer == Answer::ok);
-        return *this;
-    }
-    Arm& following() {
-        enabled().run(1000);
-        REQUIRE(state() == State::following);
-        return *this;
-    }
+  explicit Arm(bool after_watchdog = false, bool params_ok = true) {
+    set_limits(limits);
+    begin(after_watchdog, params_ok);
+  }
+  Arm& run(unsigned ticks, const Observation& seen = calm) {
+    while (ticks--) tick(seen);
+    last = seen;
+    return *this;
+  }
+  Reply enable(std::uint16_t lease) { return Supervisor::enable(lease, last); }
+  Reply clear_fault() { return Supervisor::clear_fault(last); }
+  Observation last = calm;
+  Arm& booted() { return run(20); }
+  Arm& enabled(std::uint16_t lease = 0) {
+    booted();
+    REQUIRE(enable(lease).answer == Answer::ok);
+    return *this;
+  }
+  Arm& following() {
+    enabled().run(1000);
+    REQUIRE(state() == State::following);
+    return *this;
+  }
 };
 
 }  // namespace
 
 TEST_CASE("boot lasts 20 ticks, ends in disabled and refuses enable until then") {
-    Arm arm;
-    CHECK(arm.stop_reason() == StopReason::reset);
-    arm.run(19);
-    CHECK(arm.state() == State::boot);
-    CHECK(arm.enable(0).answer == Answer::booting);
-    CHECK(arm.clear_fault().answer == Answer::booting);
-    arm.run(1);
-    CHECK(arm.state() == State::disabled);
-    CHECK_FALSE(arm.motors_on());
+  Arm arm;
+  CHECK(arm.stop_reason() == StopReason::reset);
+  arm.run(19);
+  CHECK(arm.state() == State::boot);
+  CHECK(arm.enable(0).answer == Answer::booting);
+  CHECK(arm.clear_fault().answer == Answer::booting);
+  arm.run(1);
+  CHECK(arm.state() == State::disabled);
+  CHECK_FALSE(arm.motors_on());
 }
 
 TEST_CASE("after a watchdog reset the arm waits in fault until it is cleared") {
-    Arm arm(true);
-    arm.booted();
-    CHECK(arm.state() == State::fault);
-    CHECK(arm.fault() == Fault::watchdog);
-    const Reply refused = arm.enable(0);
-    CHECK(refused.answer == Answer::in_fault);
-    CHECK(refused.detail == static_cast<unsigned>(Fault::watchdog));
-    CHECK(arm.clear_fault().answer == Answer::ok);
-    CHECK(arm.state() == State::disabled);
-    CHECK(arm.fault() == Fault::none);
+  Arm arm(true);
+  arm.booted();
+  CHECK(arm.state() == State::fault);
+  CHECK(arm.fault() == Fault::watchdog);
+  const Reply refused = arm.enable(0);
+  CHECK(refused.answer == Answer::in_fault);
+  CHECK(refused.detail == static_cast<unsigned>(Fault::watchdog));
+  CHECK(arm.clear_fault().answer == Answer::ok);
+  CHECK(arm.state() == State::disabled);
+  CHECK(arm.fault() == Fault::none);
 }
 
 TEST_CASE("a stored set that cannot run is a fault until another set is applied") {
-    Arm arm(false, false);
-    arm.booted();
-    CHECK(arm.fault() == Fault::params);
-    CHECK(arm.clear_fault().answer == Answer::params);
-    CHECK(arm.state() == State::fault);
-    arm.params_mended();
-    CHECK(arm.clear_fault().answer == Answer::ok);
-    CHECK(arm.state() == State::disabled);
+  Arm arm(false, false);
+  arm.booted();
+  CHECK(arm.fault() == Fault::params);
+  CHECK(arm.clear_fault().answer == Answer::params);
+  CHECK(arm.state() == State::fault);
+  arm.params_mended();
+  CHECK(arm.clear_fault().answer == Answer::ok);
+  CHECK(arm.state() == State::disabled);
 }
 
 TEST_CASE("enable is refused beyond the limit on any joint and names it") {
-    for (std::uint8_t joint = 0; joint < 4; ++joint) {
-        Arm arm;
-        arm.booted().run(1, apart(joint, 3278));
-        const Reply refused = arm.enable(0);
-        CHECK(refused.answer == Answer::too_far);
-        CHECK(refused.where == joint);
-        CHECK(refused.detail == 3278);
-        CHECK(arm.state() == State::disabled);
-        arm.run(1, apart(joint, 3277));
-        CHECK(arm.enable(0).answer == Answer::ok);
-    }
+  for (std::uint8_t joint = 0; joint < 4; ++joint) {
+    Arm arm;
+    arm.booted().run(1, apart(joint, 3278));
+    const Reply refused = arm.enable(0);
+    CHECK(refused.answer == Answer::too_far);
+    CHECK(refused.where == joint);
+    CHECK(refused.detail == 3278);
+    CHECK(arm.state() == State::disabled);
+    arm.run(1, apart(joint, 3277));
+    CHECK(arm.enable(0).answer == Answer::ok);
+  }
 }
 
 TEST_CASE("enable is refused while a pot is at a rail") {
-    Arm arm;
-    arm.booted().run(1, with_rails(1 << 5, 0));
-    Reply refused = arm.enable(0);
-    CHECK(refused.answer == Answer::pot_bad);
-    CHECK(refused.where == 5);
-    CHECK(refused.detail == static_cast<unsigned>(Fault::pot_low));
-    arm.run(1, with_rails(0, 1 << 2));
-    refused = arm.enable(0);
-    CHECK(refused.where == 2);
-    CHECK(refused.detail == static_cast<unsigned>(Fault::pot_high));
-    CHECK(arm.state() == State::disabled);
+  Arm arm;
+  arm.booted().run(1, with_rails(1 << 5, 0));
+  Reply refused = arm.enable(0);
+  CHECK(refused.answer == Answer::pot_bad);
+  CHECK(refused.where == 5);
+  CHECK(refused.detail == static_cast<unsigned>(Fault::pot_low));
+  arm.run(1, with_rails(0, 1 << 2));
+  refused = arm.enable(0);
+  CHECK(refused.where == 2);
+  CHECK(refused.detail == static_cast<unsigned>(Fault::pot_high));
+  CHECK(arm.state() == State::disabled);
 }
 
 TEST_CASE("soft start rises evenly from 0 to the whole supply in soft_start_ms") {
-    for (std::uint16_t ms : std::initializer_list<std::uint16_t>{100, 777, 1000, 10000}) {
-        Arm arm;
-        arm.set_limits({3277, 10240, 500, ms});
-        arm.enabled();
-        CHECK(arm.ramp_q15() == 0);
-        int before = 0, widest = 0, narrowest = 32768;
-        unsigned ticks = 0;
-        while (arm.state() == State::soft_start && ticks < 20000) {
-            arm.run(1);
-            ++ticks;
-            const int step = arm.ramp_q15() - before;
-            widest = step > widest ? step : widest;
-            narrowest = step < narrowest ? step : narrowest;
-            before = arm.ramp_q15();
-        }
-        CHECK(ticks == ms);
-        CHECK(widest - narrowest <= 1);
-        CHECK(arm.state() == State::following);
-        CHECK(arm.ramp_q15() == 32768);
+  for (std::uint16_t ms : std::initializer_list<std::uint16_t>{100, 777, 1000, 10000}) {
+    Arm arm;
+    arm.set_limits({3277, 10240, 500, ms});
+    arm.enabled();
+    CHECK(arm.ramp_q15() == 0);
+    int before = 0, widest = 0, narrowest = 32768;
+    unsigned ticks = 0;
+    while (arm.state() == State::soft_start && ticks < 20000) {
+      arm.run(1);
+      ++ticks;
+      const int step = arm.ramp_q15() - before;
+      widest = step > widest ? step : widest;
+      narrowest = step < narrowest ? step : narrowest;
+      before = arm.ramp_q15();
     }
+    CHECK(ticks == ms);
+    CHECK(widest - narrowest <= 1);
+    CHECK(arm.state() == State::following);
+    CHECK(arm.ramp_q15() == 32768);
+  }
 }
 
 TEST_CASE("a second enable ramps from zero again") {
-    Arm arm;
-    arm.following().stop();
-    CHECK(arm.ramp_q15() == 0);
-    CHECK(arm.enable(0).answer == Answer::ok);
-    CHECK(arm.state() == State::soft_start);
-    CHECK(arm.ramp_q15() == 0);
+  Arm arm;
+  arm.following().stop();
+  CHECK(arm.ramp_q15() == 0);
+  CHECK(arm.enable(0).answer == Answer::ok);
+  CHECK(arm.state() == State::soft_start);
+  CHECK(arm.ramp_q15() == 0);
 }
 
 TEST_CASE("stop works in every state") {
-    Arm boot;
-    boot.stop();
-    CHECK(boot.state() == State::boot);
-    Arm disabled;
-    disabled.booted().stop();
-    CHECK(disabled.state() == State::disabled);
-    CHECK(disabled.stop_reason() == StopReason::reset);
-    Arm starting;
-    starting.enabled().run(10).stop();
-    CHECK(starting.state() == State::disabled);
-    CHECK(starting.stop_reason() == StopReason::host);
-    Arm following;
-    following.following().stop();
-    CHECK_FALSE(following.motors_on());
-    CHECK(following.stop_reason() == StopReason::host);
-    Arm fault;
-    fault.following().run(1, late()).stop();
-    CHECK(fault.state() == State::fault);
-    CHECK(fault.stop_reason() == StopReason::fault);
+  Arm boot;
+  boot.stop();
+  CHECK(boot.state() == State::boot);
+  Arm disabled;
+  disabled.booted().stop();
+  CHECK(disabled.state() == State::disabled);
+  CHECK(disabled.stop_reason() == StopReason::reset);
+  Arm starting;
+  starting.enabled().run(10).stop();
+  CHECK(starting.state() == State::disabled);
+  CHECK(starting.stop_reason() == StopReason::host);
+  Arm following;
+  following.following().stop();
+  CHECK_FALSE(following.motors_on());
+  CHECK(following.stop_reason() == StopReason::host);
+  Arm fault;
+  fault.following().run(1, late()).stop();
+  CHECK(fault.state() == State::fault);
+  CHECK(fault.stop_reason() == StopReason::fault);
 }
 
 TEST_CASE("a late tick is a fault at once while motors are on, and only then") {
-    Arm arm;
-    arm.booted().run(3, late());
-    CHECK(arm.state() == State::disabled);
-    arm.run(1);
-    REQUIRE(arm.enable(0).answer == Answer::ok);
-    arm.run(1, late());
-    CHECK(arm.state() == State::fault);
-    CHECK(arm.fault() == Fault::late_tick);
-    CHECK(arm.fault_where() == nowhere);
-    CHECK_FALSE(arm.motors_on());
-    CHECK(arm.clear_fault().answer == Answer::in_fault);   // the last tick was late
-    arm.run(1);
-    CHECK(arm.clear_fault().answer == Answer::ok);
+  Arm arm;
+  arm.booted().run(3, late());
+  CHECK(arm.state() == State::disabled);
+  arm.run(1);
+  REQUIRE(arm.enable(0).answer == Answer::ok);
+  arm.run(1, late());
+  CHECK(arm.state() == State::fault);
+  CHECK(arm.fault() == Fault::late_tick);
+  CHECK(arm.fault_where() == nowhere);
+  CHECK_FALSE(arm.motors_on());
+  CHECK(arm.clear_fault().answer == Answer::in_fault);   // the last tick was late
+  arm.run(1);
+  CHECK(arm.clear_fault().answer == Answer::ok);
 }
 
 TEST_CASE("a pot at a rail for three ticks in a row is a fault and names the pot; two are not") {
-    for (std::uint8_t pot = 0; pot < 8; ++pot) {
-        for (bool high : {false, true}) {
-            const auto bit = static_cast<std::uint8_t>(1u << pot);
-            const Observation rail = high ? with_rails(0, bit) : with_rails(bit, 0);
-            Arm arm;
-            arm.following().run(2, rail).run(1).run(2, rail);
-            CHECK(arm.state() == State::following);
-            arm.run(1, rail);
-            CHECK(arm.state() == State::fault);
-            CHECK(arm.fault() == (high ? Fault::pot_high : Fault::pot_low));
-            CHECK(arm.fault_where() == pot);
-            const Reply refused = arm.clear_fault();
-            CHECK(refused.answer == Answer::pot_bad);
-            CHECK(refused.where == pot);
-            arm.run(1);
-            CHECK(arm.clear_fault().answer == Answer::ok);
-        }
+  for (std::uint8_t pot = 0; pot < 8; ++pot) {
+    for (bool high : {false, true}) {
+      const auto bit = static_cast<std::uint8_t>(1u << pot);
+      const Observation rail = high ? with_rails(0, bit) : with_rails(bit, 0);
+      Arm arm;
+      arm.following().run(2, rail).run(1).run(2, rail);
+      CHECK(arm.state() == State::following);
+      arm.run(1, rail);
+      CHECK(arm.state() == State::fault);
+      CHECK(arm.fault() == (high ? Fault::pot_high : Fault::pot_low));
+      CHECK(arm.fault_where() == pot);
+      const Reply refused = arm.clear_fault();
+      CHECK(refused.answer == Answer::pot_bad);
+      CHECK(refused.where == pot);
+      arm.run(1);
+      CHECK(arm.clear_fault().answer == Answer::ok);
     }
+  }
 }
 
 TEST_CASE("different pots at a rail in turn do not add up to a fault") {
-    Arm arm;
-    arm.following();
-    for (int i = 0; i < 30; ++i) arm.run(1, with_rails(static_cast<std::uint8_t>(1u << (i % 8)), 0));
-    CHECK(arm.state() == State::following);
+  Arm arm;
+  arm.following();
+  for (int i = 0; i < 30; ++i) arm.run(1, with_rails(static_cast<std::uint8_t>(1u << (i % 8)), 0));
+  CHECK(arm.state() == State::following);
 }
 
 TEST_CASE("tracking: beyond the limit for tracking_ms in a row") {
-    Arm arm;
-    arm.following().run(499, apart(3, 10241)).run(1).run(499, apart(3, 10241));
-    CHECK(arm.state() == State::following);
-    arm.run(1, apart(3, 10241));
-    CHECK(arm.state() == State::fault);
-    CHECK(arm.fault() == Fault::tracking);
-    CHECK(arm.fault_where() == 3);
-    CHECK(arm.clear_fault().answer == Answer::too_far);
-    arm.run(1, apart(3, 10240));
-    CHECK(arm.clear_fault().answer == Answer::ok);
+  Arm arm;
+  arm.following().run(499, apart(3, 10241)).run(1).run(499, apart(3, 10241));
+  CHECK(arm.state() == State::following);
+  arm.run(1, apart(3, 10241));
+  CHECK(arm.state() == State::fault);
+  CHECK(arm.fault() == Fault::tracking);
+  CHECK(arm.fault_where() == 3);
+  CHECK(arm.clear_fault().answer == Answer::too_far);
+  arm.run(1, apart(3, 10240));
+  CHECK(arm.clear_fault().answer == Answer::ok);
 }
 
 TEST_CASE("tracking: at the limit is within it, and a limit of 0 turns the check off") {
-    Arm arm;
-    arm.following().run(2000, apart(0, 10240));
-    CHECK(arm.state() == State::following);
-    Arm unwatched;
-    unwatched.set_limits({3277, 0, 500, 1000});
-    unwatched.following().run(2000, apart(0, 30000));
-    CHECK(unwatched.state() == State::following);
+  Arm arm;
+  arm.following().run(2000, apart(0, 10240));
+  CHECK(arm.state() == State::following);
+  Arm unwatched;
+  unwatched.set_limits({3277, 0, 500, 1000});
+  unwatched.following().run(2000, apart(0, 30000));
+  CHECK(unwatched.state() == State::following);
 }
 
 TEST_CASE("time lost before a stop does not count after the next enable") {
-    Arm arm;
-    arm.following().run(400, apart(1, 20000)).stop();
-    arm.run(1);
-    REQUIRE(arm.enable(0).answer == Answer::ok);
-    arm.run(499, apart(1, 20000));
-    CHECK(arm.motors_on());
-    arm.run(1, apart(1, 20000));
-    CHECK(arm.fault() == Fault::tracking);
+  Arm arm;
+  arm.following().run(400, apart(1, 20000)).stop();
+  arm.run(1);
+  REQUIRE(arm.enable(0).answer == Answer::ok);
+  arm.run(499, apart(1, 20000));
+  CHECK(arm.motors_on());
+  arm.run(1, apart(1, 20000));
+  CHECK(arm.fault() == Fault::tracking);
 }
 
 TEST_CASE("a lease runs out on its tick; renew and a repeated enable start it anew; 0 never runs out") {
-    Arm arm;
-    arm.enabled(100).run(99);
-    CHECK(arm.motors_on());
-    arm.run(1);
-    CHECK(arm.state() == State::disabled);
-    CHECK(arm.stop_reason() == StopReason::lease);
+  Arm arm;
+  arm.enabled(100).run(99);
+  CHECK(arm.motors_on());
+  arm.run(1);
+  CHECK(arm.state() == State::disabled);
+  CHECK(arm.stop_reason() == StopReason::lease);
 
-    Arm renewed;
-    renewed.enabled(100).run(99).renew(100);
-    renewed.run(99);
-    CHECK(renewed.motors_on());
-    CHECK(renewed.enable(50).answer == Answer::ok);
-    CHECK(renewed.state() == State::soft_start);
-    renewed.run(49);
-    CHECK(renewed.motors_on());
-    renewed.run(1);
-    CHECK_FALSE(renewed.motors_on());
+  Arm renewed;
+  renewed.enabled(100).run(99).renew(100);
+  renewed.run(99);
+  CHECK(renewed.motors_on());
+  CHECK(renewed.enable(50).answer == Answer::ok);
+  CHECK(renewed.state() == State::soft_start);
+  renewed.run(49);
+  CHECK(renewed.motors_on());
+  renewed.run(1);
+  CHECK_FALSE(renewed.motors_on());
 
-    Arm endless;
-    endless.enabled(0).run(70000);
-    CHECK(endless.state() == State::following);
+  Arm endless;
+  endless.enabled(0).run(70000);
+  CHECK(endless.state() == State::following);
 }
 
 TEST_CASE("renew never turns motors on") {
-    Arm arm;
-    arm.booted().renew(1000);
-    arm.run(5);
-    CHECK(arm.state() == State::disabled);
-    Arm fault;
-    fault.following().run(1, late()).renew(1000);
-    CHECK(fault.state() == State::fault);
+  Arm arm;
+  arm.booted().renew(1000);
+  arm.run(5);
+  CHECK(arm.state() == State::disabled);
+  Arm fault;
+  fault.following().run(1, late()).renew(1000);
+  CHECK(fault.state() == State::fault);
 }
 
 TEST_CASE("the first fault is the one reported") {
-    Arm arm;
-    arm.following().run(1, late()).run(5, with_rails(1, 0));
-    CHECK(arm.fault() == Fault::late_tick);
+  Arm arm;
+  arm.following().run(1, late()).run(5, with_rails(1, 0));
+  CHECK(arm.fault() == Fault::late_tick);
 }

@@ -12,81 +12,81 @@ constexpr uint8_t directions[4] = {1 << PA0, 1 << PA2, 1 << PA4, 1 << PA6};
 constexpr uint8_t all_directions = (1 << PA0) | (1 << PA2) | (1 << PA4) | (1 << PA6);
 
 uint16_t compare(uint8_t joint) {
-    switch (joint) {
-        case 0: return OCR3A;
-        case 1: return OCR4A;
-        case 2: return OCR4B;
-        default: return OCR4C;
-    }
+  switch (joint) {
+    case 0: return OCR3A;
+    case 1: return OCR4A;
+    case 2: return OCR4B;
+    default: return OCR4C;
+  }
 }
 
 void at_reset() {   // before hal::begin(): what start-up code has done
-    const uint8_t port_h = PORTH, port_e = PORTE, port_a = PORTA, ddr_h = DDRH, ddr_e = DDRE, ddr_a = DDRA;
-    hal::begin();
-    EQUAL("at_reset_enable_is_driven", ddr_h & enable, enable);
-    EQUAL("at_reset_port_h_is_low", port_h & (enable | pwm_h), 0);
-    EQUAL("at_reset_port_e_is_low", port_e & (1 << PE3), 0);
-    EQUAL("at_reset_directions_are_low", port_a & all_directions, 0);
-    EQUAL("at_reset_pwm_pins_are_driven", (ddr_h & pwm_h) | (ddr_e & (1 << PE3)), pwm_h | (1 << PE3));
-    EQUAL("at_reset_directions_are_driven", ddr_a & all_directions, all_directions);
+  const uint8_t port_h = PORTH, port_e = PORTE, port_a = PORTA, ddr_h = DDRH, ddr_e = DDRE, ddr_a = DDRA;
+  hal::begin();
+  EQUAL("at_reset_enable_is_driven", ddr_h & enable, enable);
+  EQUAL("at_reset_port_h_is_low", port_h & (enable | pwm_h), 0);
+  EQUAL("at_reset_port_e_is_low", port_e & (1 << PE3), 0);
+  EQUAL("at_reset_directions_are_low", port_a & all_directions, 0);
+  EQUAL("at_reset_pwm_pins_are_driven", (ddr_h & pwm_h) | (ddr_e & (1 << PE3)), pwm_h | (1 << PE3));
+  EQUAL("at_reset_directions_are_driven", ddr_a & all_directions, all_directions);
 }
 
 void after_begin() {
-    EQUAL("drivers_stay_off", PORTH & enable, 0);
-    for (uint8_t i = 0; i < 4; ++i) EQUAL("duty_is_0", compare(i), 0);
-    EQUAL("timer_3_top_is_20_khz", ICR3, 400);
-    EQUAL("timer_4_top_is_20_khz", ICR4, 400);
-    EQUAL("timer_3_mode_8_no_prescaler", TCCR3B, (1 << WGM33) | (1 << CS30));
-    EQUAL("timer_4_mode_8_no_prescaler", TCCR4B, (1 << WGM43) | (1 << CS40));
-    EQUAL("timer_3_drives_its_pin", TCCR3A, 1 << COM3A1);
-    EQUAL("timer_4_drives_its_pins", TCCR4A, (1 << COM4A1) | (1 << COM4B1) | (1 << COM4C1));
-    EQUAL("no_pwm_interrupts", TIMSK3 | TIMSK4, 0);
-    EQUAL("no_millis_interrupt", TIMSK0, 1 << OCIE0A);
+  EQUAL("drivers_stay_off", PORTH & enable, 0);
+  for (uint8_t i = 0; i < 4; ++i) EQUAL("duty_is_0", compare(i), 0);
+  EQUAL("timer_3_top_is_20_khz", ICR3, 400);
+  EQUAL("timer_4_top_is_20_khz", ICR4, 400);
+  EQUAL("timer_3_mode_8_no_prescaler", TCCR3B, (1 << WGM33) | (1 << CS30));
+  EQUAL("timer_4_mode_8_no_prescaler", TCCR4B, (1 << WGM43) | (1 << CS40));
+  EQUAL("timer_3_drives_its_pin", TCCR3A, 1 << COM3A1);
+  EQUAL("timer_4_drives_its_pins", TCCR4A, (1 << COM4A1) | (1 << COM4B1) | (1 << COM4C1));
+  EQUAL("no_pwm_interrupts", TIMSK3 | TIMSK4, 0);
+  EQUAL("no_millis_interrupt", TIMSK0, 1 << OCIE0A);
 }
 
 struct Duty {
-    int16_t duty;
-    uint16_t compare;
+  int16_t duty;
+  uint16_t compare;
 };
 
 void duties() {
-    constexpr Duty known[] = {{0, 0},        {40, 0},       {41, 1},       {8192, 100},   {16384, 200},
-                              {32767, 400},  {-1, 0},       {-41, 1},      {-16384, 200}, {-32767, 400},
-                              {-32768, 400}, {32726, 399}};
-    uint16_t wrong_compare = 0, wrong_direction = 0, disturbed = 0;
-    for (uint8_t joint = 0; joint < 4; ++joint) {
-        for (const Duty& d : known) {
-            const uint8_t others = PORTA & static_cast<uint8_t>(~directions[joint]);
-            hal::set_duty(joint, d.duty);
-            wrong_compare += compare(joint) != d.compare;
-            wrong_direction += ((PORTA & directions[joint]) != 0) != (d.duty >= 0);
-            disturbed += (PORTA & static_cast<uint8_t>(~directions[joint])) != others;
-        }
+  constexpr Duty known[] = {{0, 0},        {40, 0},       {41, 1},       {8192, 100},   {16384, 200},
+               {32767, 400},  {-1, 0},       {-41, 1},      {-16384, 200}, {-32767, 400},
+               {-32768, 400}, {32726, 399}};
+  uint16_t wrong_compare = 0, wrong_direction = 0, disturbed = 0;
+  for (uint8_t joint = 0; joint < 4; ++joint) {
+    for (const Duty& d : known) {
+      const uint8_t others = PORTA & static_cast<uint8_t>(~directions[joint]);
+      hal::set_duty(joint, d.duty);
+      wrong_compare += compare(joint) != d.compare;
+      wrong_direction += ((PORTA & directions[joint]) != 0) != (d.duty >= 0);
+      disturbed += (PORTA & static_cast<uint8_t>(~directions[joint])) != others;
     }
-    EQUAL("compare_is_duty_times_400", wrong_compare, 0);
-    EQUAL("direction_follows_the_sign", wrong_direction, 0);
-    EQUAL("a_joint_leaves_the_others_alone", disturbed, 0);
+  }
+  EQUAL("compare_is_duty_times_400", wrong_compare, 0);
+  EQUAL("direction_follows_the_sign", wrong_direction, 0);
+  EQUAL("a_joint_leaves_the_others_alone", disturbed, 0);
 }
 
 void drivers() {
-    hal::set_drivers(true);
-    EQUAL("drivers_on", PORTH & enable, enable);
-    hal::set_drivers(false);
-    EQUAL("drivers_off", PORTH & enable, 0);
-    hal::set_led(true);
-    EQUAL("led_on", PORTB & (1 << PB7), 1 << PB7);
-    hal::set_led(false);
-    EQUAL("led_off", PORTB & (1 << PB7), 0);
+  hal::set_drivers(true);
+  EQUAL("drivers_on", PORTH & enable, enable);
+  hal::set_drivers(false);
+  EQUAL("drivers_off", PORTH & enable, 0);
+  hal::set_led(true);
+  EQUAL("led_on", PORTB & (1 << PB7), 1 << PB7);
+  hal::set_led(false);
+  EQUAL("led_off", PORTB & (1 << PB7), 0);
 }
 
 }  // namespace
 
 void setup() {
-    at_reset();
-    after_begin();
-    duties();
-    drivers();
-    report::end();
+  at_reset();
+  after_begin();
+  duties();
+  drivers();
+  report::end();
 }
 
 void loop() {}

@@ -10,94 +10,94 @@ constexpr uint16_t bytes = 20000;
 constexpr uint8_t burst = 100;
 
 struct Result {
-    uint16_t received, wrong, lost, late, milliseconds;
+  uint16_t received, wrong, lost, late, milliseconds;
 };
 
 uint8_t pattern(uint16_t i) {
-    const uint8_t byte = static_cast<uint8_t>(i * 7 + (i >> 8));
-    return byte < 0x80 ? static_cast<uint8_t>(byte | 0x80) : byte;   // nothing that the report's reader takes for text
+  const uint8_t byte = static_cast<uint8_t>(i * 7 + (i >> 8));
+  return byte < 0x80 ? static_cast<uint8_t>(byte | 0x80) : byte;   // nothing that the report's reader takes for text
 }
 
 // Waits until the wire has been quiet for 5 ms.
 void drain() {
-    hal::rx_lost();
-    for (uint8_t quiet_ms = 0; quiet_ms < 5;) {
-        if (hal::rx_available()) {
-            hal::rx_read();
-            quiet_ms = 0;
-        }
-        if (!hal::tick_pending()) continue;
-        finish_tick();
-        ++quiet_ms;
+  hal::rx_lost();
+  for (uint8_t quiet_ms = 0; quiet_ms < 5;) {
+    if (hal::rx_available()) {
+      hal::rx_read();
+      quiet_ms = 0;
     }
-    catch_up();
+    if (!hal::tick_pending()) continue;
+    finish_tick();
+    ++quiet_ms;
+  }
+  catch_up();
 }
 
 // Bursts as fast as the wire carries them; what has not come back yet fits the receiver's ring.
 Result bursts() {
-    Result r = {};
-    uint8_t out[burst];
-    uint16_t sent = 0, idle_ms = 0;
-    while (r.received < bytes && idle_ms < 50) {
-        if (sent < bytes && sent == r.received) {
-            for (uint8_t i = 0; i < burst; ++i) out[i] = pattern(static_cast<uint16_t>(sent + i));
-            hal::tx_write(out, burst);
-            sent = static_cast<uint16_t>(sent + burst);
-        }
-        if (hal::rx_available()) {
-            r.wrong += hal::rx_read() != pattern(r.received);
-            ++r.received;
-            idle_ms = 0;
-        }
-        if (!hal::tick_pending()) continue;
-        r.late += finish_tick();
-        ++r.milliseconds;
-        ++idle_ms;
+  Result r = {};
+  uint8_t out[burst];
+  uint16_t sent = 0, idle_ms = 0;
+  while (r.received < bytes && idle_ms < 50) {
+    if (sent < bytes && sent == r.received) {
+      for (uint8_t i = 0; i < burst; ++i) out[i] = pattern(static_cast<uint16_t>(sent + i));
+      hal::tx_write(out, burst);
+      sent = static_cast<uint16_t>(sent + burst);
     }
-    r.lost = hal::rx_lost();
-    return r;
+    if (hal::rx_available()) {
+      r.wrong += hal::rx_read() != pattern(r.received);
+      ++r.received;
+      idle_ms = 0;
+    }
+    if (!hal::tick_pending()) continue;
+    r.late += finish_tick();
+    ++r.milliseconds;
+    ++idle_ms;
+  }
+  r.lost = hal::rx_lost();
+  return r;
 }
 
 // More than the ring holds, with nobody reading: the rest is lost, counted, and nothing is overwritten.
 Result overflow() {
-    Result r = {};
-    uint8_t out[burst];
-    for (uint8_t part = 0; part < 3; ++part) {
-        for (uint8_t i = 0; i < burst; ++i) out[i] = pattern(static_cast<uint16_t>(part * burst + i));
-        while (hal::tx_free() < burst) {
-        }
-        hal::tx_write(out, burst);
+  Result r = {};
+  uint8_t out[burst];
+  for (uint8_t part = 0; part < 3; ++part) {
+    for (uint8_t i = 0; i < burst; ++i) out[i] = pattern(static_cast<uint16_t>(part * burst + i));
+    while (hal::tx_free() < burst) {
     }
-    while (hal::tx_free() != hal::tx_capacity) {
-    }
-    __builtin_avr_delay_cycles(1000);
-    while (hal::rx_available()) {
-        r.wrong += hal::rx_read() != pattern(r.received);
-        ++r.received;
-    }
-    r.lost = hal::rx_lost();
-    return r;
+    hal::tx_write(out, burst);
+  }
+  while (hal::tx_free() != hal::tx_capacity) {
+  }
+  __builtin_avr_delay_cycles(1000);
+  while (hal::rx_available()) {
+    r.wrong += hal::rx_read() != pattern(r.received);
+    ++r.received;
+  }
+  r.lost = hal::rx_lost();
+  return r;
 }
 
 }  // namespace
 
 void setup() {
-    hal::begin();
-    drain();
-    const Result full = bursts();
-    drain();
-    const Result over = overflow();
-    drain();
-    hal::tx_write(reinterpret_cast<const uint8_t*>("\n"), 1);
-    EQUAL("every_byte_comes_back", full.received, bytes);
-    EQUAL("as_it_was_sent", full.wrong, 0);
-    EQUAL("none_is_lost", full.lost, 0);
-    EQUAL("no_tick_is_late", full.late, 0);
-    WITHIN("at_nearly_the_speed_of_the_wire", full.milliseconds, bytes / 100, bytes / 100 * 2);
-    EQUAL("a_full_ring_keeps_what_it_has", over.received, hal::rx_capacity);
-    EQUAL("in_order", over.wrong, 0);
-    EQUAL("and_counts_the_rest", over.lost, 3 * burst - hal::rx_capacity);
-    report::end();
+  hal::begin();
+  drain();
+  const Result full = bursts();
+  drain();
+  const Result over = overflow();
+  drain();
+  hal::tx_write(reinterpret_cast<const uint8_t*>("\n"), 1);
+  EQUAL("every_byte_comes_back", full.received, bytes);
+  EQUAL("as_it_was_sent", full.wrong, 0);
+  EQUAL("none_is_lost", full.lost, 0);
+  EQUAL("no_tick_is_late", full.late, 0);
+  WITHIN("at_nearly_the_speed_of_the_wire", full.milliseconds, bytes / 100, bytes / 100 * 2);
+  EQUAL("a_full_ring_keeps_what_it_has", over.received, hal::rx_capacity);
+  EQUAL("in_order", over.wrong, 0);
+  EQUAL("and_counts_the_rest", over.lost, 3 * burst - hal::rx_capacity);
+  report::end();
 }
 
 void loop() {}

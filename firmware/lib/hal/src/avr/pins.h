@@ -23,47 +23,47 @@ inline void drivers_on() { PORTH = static_cast<uint8_t>(PORTH | enable_bit); }
 inline void led(bool on) { if (on) PORTB |= led_bit; else PORTB &= static_cast<uint8_t>(~led_bit); }
 
 inline void all_outputs_low() {
-    PORTH = 0;
-    DDRH = enable_bit | pwm_h;
-    PORTE = 0;
-    DDRE = pwm_e;
-    PORTA = 0;
-    DDRA = direction_bits[0] | direction_bits[1] | direction_bits[2] | direction_bits[3];
-    PORTB = 0;
-    DDRB = led_bit;
+  PORTH = 0;
+  DDRH = enable_bit | pwm_h;
+  PORTE = 0;
+  DDRE = pwm_e;
+  PORTA = 0;
+  DDRA = direction_bits[0] | direction_bits[1] | direction_bits[2] | direction_bits[3];
+  PORTB = 0;
+  DDRB = led_bit;
 }
 
 // Compare registers at 0 keep the pins low when they are handed to the timers.
 inline void start_pwm() {
-    TIMSK3 = TIMSK4 = 0;
-    TCCR3B = TCCR4B = 0;
-    ICR3 = ICR4 = pwm_top;
-    OCR3A = OCR4A = OCR4B = OCR4C = 0;
-    TCNT3 = TCNT4 = 0;
-    TCCR3A = 1 << COM3A1;
-    TCCR4A = (1 << COM4A1) | (1 << COM4B1) | (1 << COM4C1);
-    TCCR3B = TCCR4B = (1 << WGM33) | (1 << CS30);   // mode 8, no prescaler
+  TIMSK3 = TIMSK4 = 0;
+  TCCR3B = TCCR4B = 0;
+  ICR3 = ICR4 = pwm_top;
+  OCR3A = OCR4A = OCR4B = OCR4C = 0;
+  TCNT3 = TCNT4 = 0;
+  TCCR3A = 1 << COM3A1;
+  TCCR4A = (1 << COM4A1) | (1 << COM4B1) | (1 << COM4C1);
+  TCCR3B = TCCR4B = (1 << WGM33) | (1 << CS30);   // mode 8, no prescaler
 }
 
 inline void stop_unused_timers() { TCCR1B = TCCR2B = TCCR5B = 0; }
 
 inline void direction(uint8_t joint, bool positive) {
-    if (positive) PORTA = static_cast<uint8_t>(PORTA | direction_bits[joint]);
-    else PORTA = static_cast<uint8_t>(PORTA & ~direction_bits[joint]);
+  if (positive) PORTA = static_cast<uint8_t>(PORTA | direction_bits[joint]);
+  else PORTA = static_cast<uint8_t>(PORTA & ~direction_bits[joint]);
 }
 
 inline uint16_t scale(uint16_t magnitude) {   // 0..32767 -> 0..400, nearest
-    return static_cast<uint16_t>((static_cast<uint32_t>(magnitude) * (2 * pwm_top) + 0x8000u) >> 16);
+  return static_cast<uint16_t>((static_cast<uint32_t>(magnitude) * (2 * pwm_top) + 0x8000u) >> 16);
 }
 
 inline void duty(uint8_t joint, uint16_t magnitude) {
-    const uint16_t compare = scale(magnitude);
-    switch (joint) {
-        case 0: OCR3A = compare; break;
-        case 1: OCR4A = compare; break;
-        case 2: OCR4B = compare; break;
-        default: OCR4C = compare; break;
-    }
+  const uint16_t compare = scale(magnitude);
+  switch (joint) {
+    case 0: OCR3A = compare; break;
+    case 1: OCR4A = compare; break;
+    case 2: OCR4B = compare; break;
+    default: OCR4C = compare; break;
+  }
 }
 
 #elif defined(__AVR_ATmega328P__)
@@ -77,53 +77,53 @@ inline void drivers_on() { PORTB |= enable_bit; }
 inline void led(bool on) { if (on) PORTB |= led_bit; else PORTB &= static_cast<uint8_t>(~led_bit); }
 
 inline void all_outputs_low() {
-    PORTB = 0;
-    DDRB = enable_bit | led_bit | pwm_b | direction_b;
-    PORTD = 0;
-    DDRD = pwm_d | directions_d;
+  PORTB = 0;
+  DDRB = enable_bit | led_bit | pwm_b | direction_b;
+  PORTD = 0;
+  DDRD = pwm_d | directions_d;
 }
 
 // Timer 1 at 20 kHz like the Mega's; timer 2 has 8 bits and no room for both: 31.4 kHz, top 255.
 inline void start_pwm() {
-    TIMSK1 = TIMSK2 = 0;
-    TCCR1B = TCCR2B = 0;
-    ICR1 = pwm_top;
-    OCR1A = OCR1B = 0;
-    OCR2A = OCR2B = 0;
-    TCNT1 = 0;
-    TCNT2 = 0;
-    TCCR1A = (1 << COM1A1) | (1 << COM1B1);
-    TCCR1B = (1 << WGM13) | (1 << CS10);   // mode 8, no prescaler
-    TCCR2A = (1 << COM2A1) | (1 << COM2B1) | (1 << WGM20);
-    TCCR2B = 1 << CS20;                    // mode 1, no prescaler
+  TIMSK1 = TIMSK2 = 0;
+  TCCR1B = TCCR2B = 0;
+  ICR1 = pwm_top;
+  OCR1A = OCR1B = 0;
+  OCR2A = OCR2B = 0;
+  TCNT1 = 0;
+  TCNT2 = 0;
+  TCCR1A = (1 << COM1A1) | (1 << COM1B1);
+  TCCR1B = (1 << WGM13) | (1 << CS10);   // mode 8, no prescaler
+  TCCR2A = (1 << COM2A1) | (1 << COM2B1) | (1 << WGM20);
+  TCCR2B = 1 << CS20;                    // mode 1, no prescaler
 }
 
 inline void stop_unused_timers() {}
 
 inline void direction(uint8_t joint, bool positive) {
-    switch (joint) {   // single-bit instructions, so interrupts may touch the same port
-        case 0: if (positive) PORTD |= 1 << PD2; else PORTD &= static_cast<uint8_t>(~(1 << PD2)); break;
-        case 1: if (positive) PORTD |= 1 << PD4; else PORTD &= static_cast<uint8_t>(~(1 << PD4)); break;
-        case 2: if (positive) PORTD |= 1 << PD7; else PORTD &= static_cast<uint8_t>(~(1 << PD7)); break;
-        default: if (positive) PORTB |= direction_b; else PORTB &= static_cast<uint8_t>(~direction_b); break;
-    }
+  switch (joint) {   // single-bit instructions, so interrupts may touch the same port
+    case 0: if (positive) PORTD |= 1 << PD2; else PORTD &= static_cast<uint8_t>(~(1 << PD2)); break;
+    case 1: if (positive) PORTD |= 1 << PD4; else PORTD &= static_cast<uint8_t>(~(1 << PD4)); break;
+    case 2: if (positive) PORTD |= 1 << PD7; else PORTD &= static_cast<uint8_t>(~(1 << PD7)); break;
+    default: if (positive) PORTB |= direction_b; else PORTB &= static_cast<uint8_t>(~direction_b); break;
+  }
 }
 
 inline uint16_t scale(uint16_t magnitude) {   // 0..32767 -> 0..400, nearest
-    return static_cast<uint16_t>((static_cast<uint32_t>(magnitude) * (2 * pwm_top) + 0x8000u) >> 16);
+  return static_cast<uint16_t>((static_cast<uint32_t>(magnitude) * (2 * pwm_top) + 0x8000u) >> 16);
 }
 
 inline uint8_t scale8(uint16_t magnitude) {   // 0..32767 -> 0..255, nearest
-    return static_cast<uint8_t>((static_cast<uint32_t>(magnitude) * (2 * 255) + 0x8000u) >> 16);
+  return static_cast<uint8_t>((static_cast<uint32_t>(magnitude) * (2 * 255) + 0x8000u) >> 16);
 }
 
 inline void duty(uint8_t joint, uint16_t magnitude) {
-    switch (joint) {
-        case 0: OCR1A = scale(magnitude); break;
-        case 1: OCR1B = scale(magnitude); break;
-        case 2: OCR2A = scale8(magnitude); break;
-        default: OCR2B = scale8(magnitude); break;
-    }
+  switch (joint) {
+    case 0: OCR1A = scale(magnitude); break;
+    case 1: OCR1B = scale(magnitude); break;
+    case 2: OCR2A = scale8(magnitude); break;
+    default: OCR2B = scale8(magnitude); break;
+  }
 }
 
 #else

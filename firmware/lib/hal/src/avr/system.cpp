@@ -31,57 +31,57 @@ constexpr uint8_t hung_ticks = 40;   // of the 60 that the watchdog waits
 // its shortest time, after a watchdog reset). No registers are saved: section .init3 is straight-line start-up code.
 extern "C" void hal_early_start() __attribute__((naked, used, section(".init3")));
 extern "C" void hal_early_start() {
-    pins::all_outputs_low();
-    uint8_t flags = MCUSR;
-    MCUSR = 0;
-    wdt_disable();
-    // A bootloader that clears MCUSR hides the watchdog; a tick that hung for most of its time betrays it.
-    if (flags == 0 && watchdog_mark == watchdog_is_on && internal::missed_ticks >= hung_ticks) flags = 1 << WDRF;
-    watchdog_mark = 0;
-    internal::missed_ticks = 0;
-    reset_flags = flags;
+  pins::all_outputs_low();
+  uint8_t flags = MCUSR;
+  MCUSR = 0;
+  wdt_disable();
+  // A bootloader that clears MCUSR hides the watchdog; a tick that hung for most of its time betrays it.
+  if (flags == 0 && watchdog_mark == watchdog_is_on && internal::missed_ticks >= hung_ticks) flags = 1 << WDRF;
+  watchdog_mark = 0;
+  internal::missed_ticks = 0;
+  reset_flags = flags;
 }
 
 Board board_id() {
 #ifdef __AVR_ATmega2560__
-    return Board::mega2560;
+  return Board::mega2560;
 #else
-    return Board::nano328;
+  return Board::nano328;
 #endif
 }
 
 // Power-on and brown-out set several flags: the most telling first.
 ResetCause reset_cause() {
-    if (reset_flags & (1 << WDRF)) return ResetCause::watchdog;
-    if (reset_flags & (1 << PORF)) return ResetCause::power_on;
-    if (reset_flags & (1 << BORF)) return ResetCause::brown_out;
-    if (reset_flags & (1 << EXTRF)) return ResetCause::external;
-    return ResetCause::unknown;
+  if (reset_flags & (1 << WDRF)) return ResetCause::watchdog;
+  if (reset_flags & (1 << PORF)) return ResetCause::power_on;
+  if (reset_flags & (1 << BORF)) return ResetCause::brown_out;
+  if (reset_flags & (1 << EXTRF)) return ResetCause::external;
+  return ResetCause::unknown;
 }
 
 void begin() {
-    cli();
-    pins::stop_unused_timers();
-    pins::start_pwm();
-    internal::start_uart();
-    internal::start_tick();
-    SMCR = 0;   // idle sleep: timers, ADC and serial port go on
-    sei();
+  cli();
+  pins::stop_unused_timers();
+  pins::start_pwm();
+  internal::start_uart();
+  internal::start_tick();
+  SMCR = 0;   // idle sleep: timers, ADC and serial port go on
+  sei();
 }
 
 void set_duty(uint8_t joint, int16_t duty) {
-    const bool positive = duty >= 0;
-    const uint16_t magnitude = positive ? static_cast<uint16_t>(duty) : static_cast<uint16_t>(-(duty + 1) + 1u);
-    pins::direction(joint, positive);
-    pins::duty(joint, magnitude);
+  const bool positive = duty >= 0;
+  const uint16_t magnitude = positive ? static_cast<uint16_t>(duty) : static_cast<uint16_t>(-(duty + 1) + 1u);
+  pins::direction(joint, positive);
+  pins::duty(joint, magnitude);
 }
 
 // The tick interrupt may turn the drivers off at any moment, hence no interrupt between read and write.
 void set_drivers(bool on) {
-    cli();
-    if (on) pins::drivers_on();
-    else pins::drivers_off();
-    sei();
+  cli();
+  if (on) pins::drivers_on();
+  else pins::drivers_off();
+  sei();
 }
 
 void set_led(bool on) { pins::led(on); }
@@ -89,39 +89,39 @@ void set_led(bool on) { pins::led(on); }
 bool eeprom_busy() { return (EECR & (1 << EEPE)) != 0; }
 
 uint8_t eeprom_read(uint16_t address) {
-    EEAR = address;
-    EECR = 1 << EERE;
-    return EEDR;
+  EEAR = address;
+  EECR = 1 << EERE;
+  return EEDR;
 }
 
 void eeprom_begin_write(uint16_t address, uint8_t value) {
-    EEAR = address;
-    EEDR = value;
-    cli();   // EEPE must follow EEMPE within four cycles
-    EECR = 1 << EEMPE;
-    EECR = (1 << EEMPE) | (1 << EEPE);
-    sei();
+  EEAR = address;
+  EEDR = value;
+  cli();   // EEPE must follow EEMPE within four cycles
+  EECR = 1 << EEMPE;
+  EECR = (1 << EEMPE) | (1 << EEPE);
+  sei();
 }
 
 void watchdog_start() {
-    internal::missed_ticks = 0;
-    watchdog_mark = watchdog_is_on;
-    wdt_enable(WDTO_60MS);
+  internal::missed_ticks = 0;
+  watchdog_mark = watchdog_is_on;
+  wdt_enable(WDTO_60MS);
 }
 
 void watchdog_kick() { wdt_reset(); }
 
 // Conversions and sent bytes interrupt the sleep; there is nothing to do for the main loop then.
 void idle() {
-    for (;;) {
-        cli();
-        if (tick_pending() || rx_available()) break;
-        SMCR = 1 << SE;
-        sei();   // takes effect after the next instruction: no interrupt can slip in before the sleep
-        sleep_cpu();
-        SMCR = 0;
-    }
-    sei();
+  for (;;) {
+    cli();
+    if (tick_pending() || rx_available()) break;
+    SMCR = 1 << SE;
+    sei();   // takes effect after the next instruction: no interrupt can slip in before the sleep
+    sleep_cpu();
+    SMCR = 0;
+  }
+  sei();
 }
 
 }  // namespace hal

@@ -19,11 +19,11 @@ static_assert(rx_capacity == mask && tx_capacity == mask, "one place of a ring s
 namespace internal {
 
 void start_uart() {
-    TX_TAIL = 0;
-    UBRR0 = 0;   // 16 MHz / 16 = 1 Mbaud exactly
-    UCSR0A = 0;
-    UCSR0C = (1 << UCSZ01) | (1 << UCSZ00);   // 8N1
-    UCSR0B = UART_ON;
+  TX_TAIL = 0;
+  UBRR0 = 0;   // 16 MHz / 16 = 1 Mbaud exactly
+  UCSR0A = 0;
+  UCSR0C = (1 << UCSZ01) | (1 << UCSZ00);   // 8N1
+  UCSR0B = UART_ON;
 }
 
 }  // namespace internal
@@ -31,32 +31,32 @@ void start_uart() {
 bool rx_available() { return hal_rx_head != hal_rx_tail; }
 
 uint8_t rx_read() {
-    const uint8_t tail = hal_rx_tail;
-    const uint8_t byte = hal_rx_ring[tail];
-    hal_rx_tail = (tail + 1) & mask;
-    return byte;
+  const uint8_t tail = hal_rx_tail;
+  const uint8_t byte = hal_rx_ring[tail];
+  hal_rx_tail = (tail + 1) & mask;
+  return byte;
 }
 
 uint8_t tx_free() { return static_cast<uint8_t>(mask - ((hal_tx_head - TX_TAIL) & mask)); }
 
 // The head moves once, behind the last byte: while the interrupt sees bytes, it need not be woken for each.
 void tx_write(const uint8_t* bytes, uint8_t count) {
-    uint8_t head = hal_tx_head;
-    for (; count; --count) {
-        hal_tx_ring[head] = *bytes++;
-        head = (head + 1) & mask;
-    }
-    hal_tx_head = head;
-    UCSR0B = UART_ON | (1 << UDRIE0);
+  uint8_t head = hal_tx_head;
+  for (; count; --count) {
+    hal_tx_ring[head] = *bytes++;
+    head = (head + 1) & mask;
+  }
+  hal_tx_head = head;
+  UCSR0B = UART_ON | (1 << UDRIE0);
 }
 
 uint8_t rx_lost() {
-    if (hal_rx_lost == 0) return 0;
-    cli();
-    const uint8_t count = hal_rx_lost;
-    hal_rx_lost = 0;
-    sei();
-    return count;
+  if (hal_rx_lost == 0) return 0;
+  cli();
+  const uint8_t count = hal_rx_lost;
+  hal_rx_lost = 0;
+  sei();
+  return count;
 }
 
 }  // namespace hal

@@ -8,20 +8,20 @@ namespace fake {
 FakeBoard board;
 
 FakeBoard::FakeBoard() {
-    counts.fill(512);
-    eeprom.fill(0xff);
+  counts.fill(512);
+  eeprom.fill(0xff);
 }
 
 void power_on() {
-    const auto kept = board.eeprom;
-    board = FakeBoard();
-    board.eeprom = kept;
+  const auto kept = board.eeprom;
+  board = FakeBoard();
+  board.eeprom = kept;
 }
 
 void start_tick() {
-    board.pending = true;
-    if (board.late) board.drivers = false;   // as the interrupt does
-    if (board.eeprom_busy_ticks) --board.eeprom_busy_ticks;
+  board.pending = true;
+  if (board.late) board.drivers = false;   // as the interrupt does
+  if (board.eeprom_busy_ticks) --board.eeprom_busy_ticks;
 }
 
 }  // namespace fake
@@ -33,22 +33,24 @@ void begin() {}
 bool tick_pending() { return fake::board.pending; }
 
 TickStart tick_begin() {
-    const TickStart start = {fake::board.elapsed, fake::board.late};
-    fake::board.elapsed = 1;
-    fake::board.late = false;
-    return start;
+  const TickStart start = {fake::board.elapsed, fake::board.late};
+  fake::board.elapsed = 1;
+  fake::board.late = false;
+  return start;
 }
 
 void tick_end() { fake::board.pending = false; }
 std::uint16_t tick_age_us() { return fake::board.age_us; }
 
-bool read_pots(std::uint16_t (&sums)[pot_count]) {
-    if (!fake::board.samples_ready) return false;
-    for (std::uint8_t i = 0; i < pot_count; ++i) {
-        sums[i] = static_cast<std::uint16_t>(fake::board.counts[i] * conversions_per_pot);
-    }
-    return true;
+const std::uint16_t* pot_sums() {
+  static std::uint16_t sums[pot_count];
+  for (std::uint8_t i = 0; i < pot_count; ++i) {
+    sums[i] = static_cast<std::uint16_t>(fake::board.counts[i] * conversions_per_pot);
+  }
+  return fake::board.samples_ready ? sums : nullptr;
 }
+
+void release_pots() {}
 
 void set_duty(std::uint8_t joint, std::int16_t duty) { fake::board.duty.at(joint) = duty; }
 void set_drivers(bool on) { fake::board.drivers = on; }
@@ -57,37 +59,37 @@ void set_led(bool on) { fake::board.led = on; }
 bool rx_available() { return !fake::board.received.empty(); }
 
 std::uint8_t rx_read() {
-    const std::uint8_t byte = fake::board.received.front();
-    fake::board.received.pop_front();
-    return byte;
+  const std::uint8_t byte = fake::board.received.front();
+  fake::board.received.pop_front();
+  return byte;
 }
 
 std::uint8_t tx_free() { return fake::board.tx_room; }
 
 void tx_write(const std::uint8_t* bytes, std::uint8_t count) {
-    if (count == 0 || count > fake::board.tx_room) ++fake::board.tx_misuse;
-    fake::board.sent.insert(fake::board.sent.end(), bytes, bytes + count);
-    fake::board.tx_room = static_cast<std::uint8_t>(fake::board.tx_room - count);
+  if (count == 0 || count > fake::board.tx_room) ++fake::board.tx_misuse;
+  fake::board.sent.insert(fake::board.sent.end(), bytes, bytes + count);
+  fake::board.tx_room = static_cast<std::uint8_t>(fake::board.tx_room - count);
 }
 
 std::uint8_t rx_lost() {
-    const std::uint8_t count = fake::board.lost;
-    fake::board.lost = 0;
-    return count;
+  const std::uint8_t count = fake::board.lost;
+  fake::board.lost = 0;
+  return count;
 }
 
 bool eeprom_busy() { return fake::board.eeprom_busy_ticks != 0; }
 
 std::uint8_t eeprom_read(std::uint16_t address) {
-    if (eeprom_busy()) ++fake::board.eeprom_misuse;
-    return fake::board.eeprom.at(address);
+  if (eeprom_busy()) ++fake::board.eeprom_misuse;
+  return fake::board.eeprom.at(address);
 }
 
 void eeprom_begin_write(std::uint16_t address, std::uint8_t value) {
-    if (eeprom_busy()) ++fake::board.eeprom_misuse;
-    fake::board.eeprom.at(address) = value;
-    fake::board.eeprom_busy_ticks = fake::eeprom_write_ticks;
-    ++fake::board.eeprom_writes;
+  if (eeprom_busy()) ++fake::board.eeprom_misuse;
+  fake::board.eeprom.at(address) = value;
+  fake::board.eeprom_busy_ticks = fake::eeprom_write_ticks;
+  ++fake::board.eeprom_writes;
 }
 
 void watchdog_start() { fake::board.watchdog_on = true; }
