@@ -125,13 +125,6 @@ nb::dict run(Controller &self, In<int16_t> leader, In<int16_t> follower, In<uint
   return result;
 }
 
-nb::dict ramp(const law::Ramp &ramp) {
-  nb::dict result;
-  result["slope"] = ramp.slope;
-  result["last"] = ramp.last;
-  return result;
-}
-
 }  // namespace
 
 void bind_fuzzy(nb::module_ &m) {
@@ -180,13 +173,11 @@ void bind_fuzzy(nb::module_ &m) {
           "ce"_a, "u_fuzzy in q15, 32768 = 1.0.")
       .def_prop_ro("coefficients", [](const Controller &self) {
         const law::Coefficients &c = self.coefficients;
-        nb::list ramps;
-        for (const law::Side *side : {&c.e[0], &c.e[1], &c.ce[0], &c.ce[1]}) {
-          ramps.append(ramp(side->zero));
-          ramps.append(ramp(side->outer));
-        }
+        nb::list sides;
+        for (const law::Side *side : {&c.e[0], &c.e[1], &c.ce[0], &c.ce[1]})
+          sides.append(nb::make_tuple(side->zero, side->outer, side->short_ramps));
         nb::dict result;
-        result["ramps"] = ramps;
+        result["sides"] = sides;
         result["integral"] = c.integral;
         result["ku_mv"] = c.ku_mv;
         return result;

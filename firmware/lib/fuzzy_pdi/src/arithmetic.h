@@ -17,18 +17,29 @@ inline Product multiply(uint16_t size, uint32_t factor) {
   return {high + (low >> 16), static_cast<uint16_t>(low)};
 }
 
-// round(2^15 * part / whole), half up, for part <= whole < 2^24 and whole > 0.
-inline uint16_t ratio_q15(uint32_t part, uint32_t whole) {
-  uint32_t quotient = 0;
-  for (uint8_t bit = 0; bit < 17; ++bit) {
-    quotient <<= 1;
-    if (part >= whole) {
-      part -= whole;
-      quotient |= 1;
-    }
-    part <<= 1;
+// Reciprocals of 257..512, 2^17 / (257 + i), less 256.
+struct Reciprocals {
+  uint8_t less_256[256];
+  constexpr Reciprocals() : less_256() {
+    for (uint16_t i = 0; i < 256; ++i) less_256[i] = static_cast<uint8_t>(131072 / (257 + i) - 256);
   }
-  return static_cast<uint16_t>((quotient + 1) >> 1);
+};
+
+// 2^15 * part / whole for part <= whole and 2^16 <= whole < 2^26, by a table and two terms of the geometric series:
+// 1 / whole = R / (1 - E) = R (1 + E + E^2 + ...) with E < 2^-7. Less than 0.04 below the quotient before the rounding.
+inline uint16_t ratio_q15(uint32_t part, uint32_t whole) {
+  static constexpr Reciprocals reciprocals;
+  for (; whole >> 24; whole >>= 1) part >>= 1;
+  for (; !(whole >> 23); whole <<= 1) part <<= 1;
+
+  const uint32_t r = uint32_t{256} + reciprocals.less_256[(whole >> 15) & 255];
+  const uint32_t rest = (0xFFFFFFFF - whole * r) >> 9;              // E, 2^-23
+  const uint32_t series = rest + (((rest >> 8) * (rest >> 8)) >> 7);  // E + E^2
+  const uint32_t first = (part * r) >> 8;                            // 2^-24
+  const uint32_t high = first >> 16;
+  const uint32_t low = (first >> 8) & 255;
+  const uint32_t more = high * (series >> 8) + ((high * (series & 255)) >> 8) + ((low * (series >> 8)) >> 8);
+  return static_cast<uint16_t>((((first + 2 * more) >> 8) + 1) >> 1);
 }
 
 }  // namespace fuzzy_pdi

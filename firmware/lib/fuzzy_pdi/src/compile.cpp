@@ -12,12 +12,11 @@ constexpr uint16_t largest_ku_mv = 30000;
 constexpr uint8_t longest_period_ms = 50;
 constexpr uint8_t kd_period_ms = 20;
 
-struct Division {
-  uint32_t quotient, remainder;
-};
+constexpr uint32_t largest_slope = 0xFFFFFFFF;
 
-// (high * 2^32 + low) / divisor, for high < divisor < 2^31.
-Division divide(uint32_t high, uint32_t low, uint32_t divisor) {
+// round((high * 2^32 + low) / divisor), half up, at most largest_slope. divisor < 2^31.
+uint32_t divide(uint32_t high, uint32_t low, uint32_t divisor) {
+  if (high >= divisor) return largest_slope;
   for (uint8_t bit = 0; bit < 32; ++bit) {
     high = (high << 1) | (low >> 31);
     low <<= 1;
@@ -26,26 +25,34 @@ Division divide(uint32_t high, uint32_t low, uint32_t divisor) {
       low |= 1;
     }
   }
-  return {low, high};
+  return low + ((high >= divisor - high && low != largest_slope) ? 1 : 0);
 }
 
-// The ramp that reaches 1 at size = width * 2^14 / gain: gain in q16, width in q14, both times the same number of milliseconds.
-Ramp make_ramp(uint32_t width, uint32_t gain) {
-  if (gain == 0) return {0, 0xFFFF};
-  Ramp ramp = {0, 0xFFFF};
-  if (width < 4 * gain) {
-    const Division full = divide(width >> 18, width << 14, gain);
-    ramp.last = static_cast<uint16_t>(full.remainder == 0 ? full.quotient - 1 : full.quotient);
-  }
-  if (ramp.last == 0) return ramp;  // full at size 1: only size 0 is ever multiplied
-  // slope = one * 2^16 / full size, one = 2^24 - 1; or 2^8 for a short ramp.
-  const uint32_t divisor = ramp.last < 256 ? width << 8 : width;
-  const uint32_t take = gain << 2;
+struct Slope {
+  uint32_t slope;
+  bool is_short;
+};
+
+// The slope of a ramp that is full at size width * 2^14 / gain (width in q14, gain in q16, or both times the same factor):
+// (2^24 - 1) * 2^16 / full size, or 2^8 for a short ramp.
+Slope make_slope(uint32_t width, uint32_t gain) {
+  const uint32_t below = gain << 2;
   const uint32_t low = gain << 26;
-  const uint32_t high = (gain >> 6) - (low < take ? 1 : 0);
-  const Division slope = divide(high, low - take, divisor);
-  ramp.slope = slope.quotient + (slope.remainder >= divisor - slope.remainder ? 1 : 0);
-  return ramp;
+  const uint32_t high = (gain >> 6) - (low < below ? 1 : 0);
+  const bool is_short = high >= width;
+  return {divide(high, low - below, is_short ? width << 8 : width), is_short};
+}
+
+// A rising ramp needs relative precision only: 24 bits of slope, in the upper three bytes unless the slope is below 2^24.
+uint32_t without_low_byte(uint32_t slope) {
+  if (slope < (uint32_t{1} << 24)) return slope;
+  return (slope > largest_slope - 128 ? largest_slope : slope + 128) & ~uint32_t{0xFF};
+}
+
+Side make_side(uint32_t zero_width, uint32_t outer_width, uint32_t gain) {
+  const Slope zero = make_slope(zero_width, gain);
+  const Slope outer = make_slope(outer_width, gain);
+  return {zero.slope, without_low_byte(outer.slope), static_cast<uint8_t>((zero.is_short ? 1 : 0) | (outer.is_short ? 2 : 0))};
 }
 
 Refusal check_sets(const int16_t (&negative)[4], const int16_t (&positive)[4]) {
@@ -79,8 +86,8 @@ Refusal compile(const Settings& s, uint8_t period_ms, Coefficients& out) {
     const uint16_t zero_e = static_cast<uint16_t>(side == 0 ? positive[1] : -negative[1]);
     const uint16_t outer_ce = static_cast<uint16_t>(side == 0 ? positive[2] : -negative[2]);
     const uint16_t zero_ce = static_cast<uint16_t>(side == 0 ? positive[3] : -negative[3]);
-    made.e[side] = {make_ramp(zero_e, s.kp), make_ramp(outer_e, s.kp)};
-    made.ce[side] = {make_ramp(uint32_t{zero_ce} * period_ms, kd), make_ramp(uint32_t{outer_ce} * period_ms, kd)};
+    made.e[side] = make_side(zero_e, outer_e, s.kp);
+    made.ce[side] = make_side(uint32_t{zero_ce} * period_ms, uint32_t{outer_ce} * period_ms, kd);
   }
   made.integral = (s.ki * period_ms) << 3;
   made.ku_mv = s.ku_mv;

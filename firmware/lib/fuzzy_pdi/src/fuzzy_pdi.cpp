@@ -8,7 +8,7 @@ namespace {
 
 constexpr int32_t integral_limit = int32_t{30000} << 15;
 
-Input split(int32_t value) {
+Input split(int16_t value) {
   return {static_cast<uint16_t>(value < 0 ? -value : value), value < 0};
 }
 
@@ -40,7 +40,7 @@ void reset(State& state) { state = {0, 0, 0, false}; }
 
 Output step(const Coefficients& c, State& state, int16_t leader_q12, int16_t follower_q12, uint16_t limit_mv) {
   const int16_t error = saturate(int32_t{leader_q12} - follower_q12);
-  const int32_t change = state.started ? int32_t{error} - state.previous_e : 0;
+  const int16_t change = state.started ? saturate(int32_t{error} - state.previous_e) : int16_t{0};
   const Input e = split(error);
   const Defuzzified u = infer(c, e, split(change));
   const bool down = (e.negative != u.flip) && u.size != 0;

@@ -27,17 +27,11 @@ enum class Refusal : uint8_t {
   period = 5,  // a control period outside 1..50 ms
 };
 
-// A membership function's slope on one side of zero: height = size * slope for size <= last, 1 beyond it.
-// See inference.h for the two formats of the slope.
-struct Ramp {
-  uint32_t slope;
-  uint16_t last;
-};
-
-// One side of one input: how ZE (or ZCE) falls from 1 and how PE or NE (PCE or NCE) rises to 1 with the input's size.
+// One side of one input: slopes of the two sets active there. inference.h says what a slope is.
 struct Side {
-  Ramp zero;
-  Ramp outer;
+  uint32_t zero;        // how ZE (ZCE) falls from 1
+  uint32_t outer;       // how PE, NE (PCE, NCE) rises to 1
+  uint8_t short_ramps;  // bit 0: zero's ramp is a short one, bit 1: outer's
 };
 
 // Everything the tick needs of one joint.
@@ -68,8 +62,8 @@ Refusal compile(const Settings& settings, uint8_t period_ms, Coefficients& out);
 
 void reset(State& state);
 
-// One control period. e = leader - follower, saturated to +-32767 (+-8 rad); limit_mv (0..32767) is the voltage available now.
-// The integral takes e in unless the output is beyond the limit on e's own side.
+// One control period. e = leader - follower and its change saturate at +-32767 (+-8 rad); limit_mv (0..32767) is the voltage
+// available now. The integral takes e in unless the output is beyond the limit on e's own side.
 Output step(const Coefficients& coefficients, State& state, int16_t leader_q12, int16_t follower_q12, uint16_t limit_mv);
 
 }  // namespace fuzzy_pdi

@@ -9,7 +9,7 @@
 
 namespace fuzzy_pdi {
 
-constexpr uint32_t one = 0xFFFFFF;  // membership 1.0: a scale that makes 1 - h a complement
+constexpr uint32_t one = 0xFFFFFF;  // membership 1.0; with this scale 1 - h is a complement
 
 struct Input {
   uint16_t size;
@@ -26,16 +26,20 @@ struct Rules {
   uint32_t with, zero, against;
 };
 
-// round(size * slope), half up. A ramp that ends below 256 has a slope 256 times finer, so that it keeps its 24 bits.
-inline uint32_t climb(const Ramp& ramp, uint16_t size) {
-  if (size > ramp.last) return one;
-  if (ramp.last < 256) size = static_cast<uint16_t>(size << 8);
-  const Product product = multiply(size, ramp.slope);
-  return product.whole + (product.fraction >> 15);
+// A ramp from 0 at size 0 to 1: round(size * slope / 2^16), half up. A short ramp, full within the first 256 sizes, has a slope
+// 2^8 times finer, so that every ramp keeps its precision.
+inline uint32_t climb(uint32_t slope, bool is_short, uint16_t size) {
+  if (is_short) {
+    if (size > 255) return one;
+    size = static_cast<uint16_t>(size << 8);
+  }
+  const Product product = multiply(size, slope);
+  const uint32_t height = product.whole + (product.fraction >> 15);
+  return height > one ? one : height;
 }
 
 inline Memberships fuzzify(const Side& side, uint16_t size) {
-  return {one - climb(side.zero, size), climb(side.outer, size)};
+  return {one - climb(side.zero, side.short_ramps & 1, size), climb(side.outer, side.short_ramps & 2, size)};
 }
 
 inline uint32_t lesser(uint32_t a, uint32_t b) { return a < b ? a : b; }
@@ -57,20 +61,27 @@ struct Defuzzified {
 
 inline Defuzzified defuzzify(const Rules& rules) {
   const bool flip = rules.against > rules.with;
-  uint32_t part = flip ? rules.against - rules.with : rules.with - rules.against;
-  uint32_t whole = rules.with + rules.zero + rules.against;
-  if (whole == 0) return {0, false, true};
-  if (whole >= (uint32_t{1} << 24)) {
-    part >>= 2;
-    whole >>= 2;
-  }
+  const uint32_t part = flip ? rules.against - rules.with : rules.with - rules.against;
+  const uint32_t whole = rules.with + rules.zero + rules.against;
+  if (whole < 65536) return {0, false, true};  // nothing above 2^-8: impossible with sets as wide as compile() demands
   return {ratio_q15(part, whole), flip, false};
 }
 
+#if defined(__AVR__) && !defined(FUZZY_PDI_PORTABLE)
+
+// The same in assembly: inference_avr.S.
+extern "C" Defuzzified fuzzy_pdi_infer(const Side* e, uint16_t e_size, const Side* ce, uint16_t ce_size, bool same_sign);
+
+#else
+
+inline Defuzzified fuzzy_pdi_infer(const Side* e, uint16_t e_size, const Side* ce, uint16_t ce_size, bool same_sign) {
+  return defuzzify(fire(fuzzify(*e, e_size), fuzzify(*ce, ce_size), same_sign));
+}
+
+#endif
+
 inline Defuzzified infer(const Coefficients& c, const Input& e, const Input& ce) {
-  const Memberships error = fuzzify(c.e[e.negative], e.size);
-  const Memberships change = fuzzify(c.ce[ce.negative], ce.size);
-  return defuzzify(fire(error, change, e.negative == ce.negative));
+  return fuzzy_pdi_infer(&c.e[e.negative], e.size, &c.ce[ce.negative], ce.size, e.negative == ce.negative);
 }
 
 }  // namespace fuzzy_pdi

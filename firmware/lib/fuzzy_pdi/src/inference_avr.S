@@ -1,0 +1,538 @@
+; infer() of inference.h in AVR assembly: the same bits in half the cycles. Optional: defining FUZZY_PDI_PORTABLE compiles the
+; C++ there instead. The tests hold the two equal.
+;
+;   Defuzzified fuzzy_pdi_infer(const Side *e, uint16_t e_size, const Side *ce, uint16_t ce_size, bool same_sign)
+;                               r25:r24        r23:r22          r21:r20         r19:r18           r16
+;   returns size in r23:r22, flip in r24, no_rule in r25
+#if defined(__AVR__) && !defined(FUZZY_PDI_PORTABLE)
+
+; Heights, low byte first: a = ZE and A = PE or NE of e; b and B the same of ce. Six registers in a row each, for movw.
+#define a0 r10
+#define a1 r11
+#define a2 r12
+#define A0 r13
+#define A1 r14
+#define A2 r15
+#define b0 r20
+#define b1 r21
+#define b2 r22
+#define B0 r23
+#define B1 r24
+#define B2 r25
+#define ZERO r16
+#define HALF r17  /* 0x80 */
+#define S r26     /* a byte of a slope */
+#define LOW r27   /* the byte below a height, for its rounding */
+
+; ---- Memberships -----------------------------------------------------------------------------------------------------------
+; height = round(size * slope / 2^16): the long multiplication, a slope byte at a time. `at` is the slope's place in Side.
+
+; A byte of the slope times both bytes of the size; `hi` is a byte the sum reaches for the first time.
+.macro row at, el, eh, low, mid, hi
+  ldd S, Z+\at
+  mul \eh, S
+  mov \hi, r1
+  add \mid, r0
+  adc \hi, ZERO
+  mul \el, S
+  add \low, r0
+  adc \mid, r1
+  adc \hi, ZERO
+.endm
+
+; The slope's highest byte, with which a height may pass 2^24.
+.macro last_row at, el, eh, h1, h2, full
+  ldd S, Z+\at
+  mul \el, S
+  add \h1, r0
+  adc \h2, r1
+  brcs \full
+  mul \eh, S
+  add \h2, r0
+  adc r1, ZERO
+  brne \full
+.endm
+
+.macro climb_zero el, eh, h0, h1, h2, full
+  ldd S, Z+0
+  mul \eh, S
+  mov LOW, r0
+  mov \h0, r1
+  mul \el, S
+  add LOW, r1
+  adc \h0, ZERO
+  add LOW, HALF
+  adc \h0, ZERO
+  row 1, \el, \eh, LOW, \h0, \h1
+  row 2, \el, \eh, \h0, \h1, \h2
+  last_row 3, \el, \eh, \h1, \h2, \full
+.endm
+
+; A rising slope's low byte is 0, unless its high byte is.
+.macro climb_outer el, eh, h0, h1, h2, coarse, full
+  ldd S, Z+5
+  mul \el, S
+  mov LOW, r0
+  mov \h0, r1
+  add LOW, HALF
+  adc \h0, ZERO
+  mul \eh, S
+  mov \h1, r1
+  add \h0, r0
+  adc \h1, ZERO
+  row 6, \el, \eh, \h0, \h1, \h2
+  ldd S, Z+7
+  tst S
+  breq \coarse
+  mul \el, S
+  add \h1, r0
+  adc \h2, r1
+  brcs \full
+  mul \eh, S
+  add \h2, r0
+  adc r1, ZERO
+  brne \full
+.endm
+
+.macro low_byte_after_all el, eh, h0, h1, h2
+  ldd S, Z+4
+  mul \eh, S
+  add LOW, r0
+  adc \h0, r1
+  adc \h1, ZERO
+  adc \h2, ZERO
+  mul \el, S
+  add LOW, r1
+  adc \h0, ZERO
+  adc \h1, ZERO
+  adc \h2, ZERO
+.endm
+
+; A short ramp: a size of one byte, and the slope one byte finer.
+.macro short_row at, el, mid, hi
+  ldd S, Z+\at
+  mul \el, S
+  mov \hi, r1
+  add \mid, r0
+  adc \hi, ZERO
+.endm
+
+.macro short_climb_zero el, eh, h0, h1, h2, full
+  tst \eh
+  brne \full
+  ldd S, Z+0
+  mul \el, S
+  mov LOW, r0
+  mov \h0, r1
+  add LOW, HALF
+  adc \h0, ZERO
+  short_row 1, \el, \h0, \h1
+  short_row 2, \el, \h1, \h2
+  ldd S, Z+3
+  mul \el, S
+  add \h2, r0
+  adc r1, ZERO
+  brne \full
+.endm
+
+.macro short_climb_outer el, eh, h0, h1, h2, full
+  tst \eh
+  brne \full
+  ldd S, Z+5
+  mul \el, S
+  mov \h0, r0
+  mov \h1, r1
+  short_row 6, \el, \h1, \h2
+  ldd S, Z+7
+  mul \el, S
+  add \h2, r0
+  adc r1, ZERO
+  brne \full
+.endm
+
+.macro invert h0, h1, h2
+  com \h0
+  com \h1
+  com \h2
+.endm
+
+; Both heights of one input: z = 1 - climb of zero's slope, o = climb of outer's. `slow`, within a branch's reach, jumps to
+; `slow_far`, which handles short ramps.
+.macro fuzzify slow, slow_far, el, eh, z0, z1, z2, o0, o1, o2
+  ldd S, Z+8
+  tst S
+  brne \slow
+  climb_zero \el, \eh, \z0, \z1, \z2, 13f
+  invert \z0, \z1, \z2
+11:climb_outer \el, \eh, \o0, \o1, \o2, 15f, 12f
+  rjmp 19f
+
+12:ldi S, 0xFF
+  mov \o0, S
+  mov \o1, S
+  mov \o2, S
+  rjmp 19f
+13:ldi S, 0xFF
+  mov \z0, S
+  mov \z1, S
+  mov \z2, S
+14:invert \z0, \z1, \z2
+  ldd S, Z+8
+  sbrs S, 1
+  rjmp 11b
+  short_climb_outer \el, \eh, \o0, \o1, \o2, 12b
+  rjmp 19f
+15:low_byte_after_all \el, \eh, \o0, \o1, \o2
+  rjmp 19f
+
+\slow_far:
+  sbrs S, 0
+  rjmp 16f
+  short_climb_zero \el, \eh, \z0, \z1, \z2, 17f
+  rjmp 14b
+17:rjmp 13b
+16:climb_zero \el, \eh, \z0, \z1, \z2, 18f
+  rjmp 14b
+18:rjmp 13b
+.endm
+
+; ---- Rules -----------------------------------------------------------------------------------------------------------------
+.macro compare x0, x1, x2, y0, y1, y2
+  cp \x0, \y0
+  cpc \x1, \y1
+  cpc \x2, \y2
+.endm
+
+; x = min(x, y)
+.macro lesser x0, x1, x2, y0, y1, y2
+  compare \y0, \y1, \y2, \x0, \x1, \x2
+  brcc 20f
+  mov \x0, \y0
+  mov \x1, \y1
+  mov \x2, \y2
+20:
+.endm
+
+; x = max(x, y)
+.macro greater x0, x1, x2, y0, y1, y2
+  compare \x0, \x1, \x2, \y0, \y1, \y2
+  brcc 20f
+  mov \x0, \y0
+  mov \x1, \y1
+  mov \x2, \y2
+20:
+.endm
+
+.macro add3 x0, x1, x2, y0, y1, y2
+  add \x0, \y0
+  adc \x1, \y1
+  adc \x2, \y2
+.endm
+
+.macro sub3 x0, x1, x2, y0, y1, y2
+  sub \x0, \y0
+  sbc \x1, \y1
+  sbc \x2, \y2
+.endm
+
+; com leaves the carry set.
+.macro negate x0, x1, x2
+  ldi S, 0
+  com \x0
+  com \x1
+  com \x2
+  adc \x0, S
+  adc \x1, S
+  adc \x2, S
+.endm
+
+; Into the fourth byte of the sum.
+#define SUM3 ZERO
+.macro carry
+  brcc 20f
+  inc SUM3
+20:
+.endm
+
+  .section .text.fuzzy_pdi_infer, "ax", @progbits
+.Lslow_e:
+  rjmp .Lslow_e_far
+  .global fuzzy_pdi_infer
+  .type fuzzy_pdi_infer, @function
+fuzzy_pdi_infer:
+  push r10
+  push r11
+  push r12
+  push r13
+  push r14
+  push r15
+  push r16
+  push r17
+  bst r16, 0
+  clr ZERO
+  ldi HALF, 0x80
+  movw r30, r24
+  fuzzify .Lslow_e, .Lslow_e_far, r22, r23, a0, a1, a2, A0, A1, A2
+.Lslow_ce:
+  rjmp .Lslow_ce_far
+19:movw r30, r20
+  fuzzify .Lslow_ce, .Lslow_ce_far, r18, r19, b0, b1, b2, B0, B1, B2
+19:
+; From here: with - against ends in A, its sign in T (flip), with + zero + against in SUM3:a.
+  compare b0, b1, b2, a0, a1, a2
+  brcs .Lb_is_less
+  brts .La_least_same
+  rjmp .La_least_opposite
+.Lb_is_less:
+  brts .Lb_least_same
+  rjmp .Lb_least_opposite
+
+; Same sign, a <= b: zero = a. with = max(min(a, B), min(A, max(b, B))): the second unless A < a.
+.La_least_same:
+  clt
+  compare A0, A1, A2, a0, a1, a2
+  brcs 1f
+  greater b0, b1, b2, B0, B1, B2
+  lesser A0, A1, A2, b0, b1, b2
+2:add3 a0, a1, a2, A0, A1, A2
+  carry
+  rjmp .Ldivide
+1:lesser B0, B1, B2, a0, a1, a2
+  greater A0, A1, A2, B0, B1, B2
+  rjmp 2b
+
+; The same with the inputs exchanged: zero = b.
+.Lb_least_same:
+  clt
+  compare B0, B1, B2, b0, b1, b2
+  brcs 1f
+  greater a0, a1, a2, A0, A1, A2
+  lesser B0, B1, B2, a0, a1, a2
+2:movw r10, r20
+  movw r12, r22
+  movw r14, r24
+  add3 a0, a1, a2, A0, A1, A2
+  carry
+  rjmp .Ldivide
+1:lesser A0, A1, A2, b0, b1, b2
+  greater B0, B1, B2, A0, A1, A2
+  rjmp 2b
+
+; Opposite signs: with = min(A, b), against = min(a, B), zero = max(min(a, b), min(A, B)).
+; a <= b: zero = max(a, min(A, B)).
+.La_least_opposite:
+  compare B0, B1, B2, a0, a1, a2
+  brcc 1f
+  ; B < a: against = B, zero = a
+  lesser A0, A1, A2, b0, b1, b2
+  rjmp .Lwith_A_against_B_zero_a
+1:compare A0, A1, A2, a0, a1, a2
+  brcs 2f
+  ; a is the least of all: against = a, zero = min(A, B)
+  lesser B0, B1, B2, A0, A1, A2
+  lesser b0, b1, b2, A0, A1, A2
+  rjmp .Lwith_b_against_a_zero_B
+2:; A < a <= b, B: with = A, against = a, zero = a
+  mov B0, a0
+  mov B1, a1
+  mov B2, a2
+  rjmp .Lwith_A_against_B_zero_a
+
+; b < a: zero = max(b, min(A, B)).
+.Lb_least_opposite:
+  compare A0, A1, A2, b0, b1, b2
+  brcc 1f
+  ; A < b: with = A, zero = b
+  lesser B0, B1, B2, a0, a1, a2
+  mov a0, b0
+  mov a1, b1
+  mov a2, b2
+  rjmp .Lwith_A_against_B_zero_a
+1:compare B0, B1, B2, b0, b1, b2
+  brcs 2f
+  ; b is the least of all: with = b, zero = min(A, B)
+  lesser a0, a1, a2, B0, B1, B2
+  lesser B0, B1, B2, A0, A1, A2
+  rjmp .Lwith_b_against_a_zero_B
+2:; B < b <= A, b < a: with = b, against = B, zero = b
+  mov a0, b0
+  mov a1, b1
+  mov a2, b2
+  mov A0, b0
+  mov A1, b1
+  mov A2, b2
+
+.Lwith_A_against_B_zero_a:
+  add3 a0, a1, a2, A0, A1, A2
+  carry
+  add3 a0, a1, a2, B0, B1, B2
+  carry
+  sub3 A0, A1, A2, B0, B1, B2
+  brcs .Lagainst_is_more
+  rjmp .Ldivide
+
+.Lwith_b_against_a_zero_B:
+  mov A0, b0
+  mov A1, b1
+  mov A2, b2
+  sub3 A0, A1, A2, a0, a1, a2
+  brcc 1f
+  set
+  negate A0, A1, A2
+1:add3 a0, a1, a2, b0, b1, b2
+  carry
+  add3 a0, a1, a2, B0, B1, B2
+  carry
+  rjmp .Ldivide
+
+.Ltoo_big:
+  lsr SUM3
+  ror a2
+  ror a1
+  ror a0
+  lsr A2
+  ror A1
+  ror A0
+  tst SUM3
+  brne .Ltoo_big
+  movw r20, a0
+  mov r22, a2
+  mov r26, A0
+  mov r27, A1
+  mov r23, A2
+  ldi r31, hi8(fuzzy_pdi_tables)
+  rjmp .Lnormalised
+
+.Lnothing:
+  ldi r22, 0
+  ldi r23, 0
+  ldi r24, 0
+  ldi r25, 1
+  rjmp .Lfinish
+
+.Lagainst_is_more:
+  set
+  negate A0, A1, A2
+
+; ---- Defuzzification: A / (SUM3:a), see ratio_q15() ------------------------------------------------------------------------
+; Normalised into d = r22:r21:r20 (2^23..2^24-1) and n = r23:r27:r26.
+.Ldivide:
+  tst SUM3
+  brne .Ltoo_big
+  tst a2
+  breq .Lnothing
+  ldi r31, hi8(fuzzy_pdi_tables)
+  mov r30, a2
+  lpm r18, Z
+  mul a0, r18
+  movw r20, r0
+  mul a1, r18
+  or r21, r0
+  mov r22, r1
+  mul a2, r18
+  or r22, r0
+  mul A0, r18
+  movw r26, r0
+  mul A1, r18
+  or r27, r0
+  mov r23, r1
+  mul A2, r18
+  or r23, r0
+
+.Lnormalised:
+  mov r30, r21
+  lsl r30
+  mov r30, r22
+  rol r30
+  inc r31
+  lpm r19, Z  ; R - 256
+  ; d * R, its bytes 1..3 in r12:r11:r10
+  mul r21, r19
+  movw r10, r0
+  mul r22, r19
+  mov r12, r1
+  add r11, r0
+  adc r12, ZERO
+  mul r20, r19
+  add r10, r1
+  adc r11, ZERO
+  adc r12, ZERO
+  add3 r10, r11, r12, r20, r21, r22
+  ; E in r11:r10
+  lsr r12
+  ror r11
+  ror r10
+  com r11
+  com r10
+  ; + E^2
+  mul r11, r11
+  lsl r0
+  rol r1
+  adc r11, ZERO
+  add r10, r1
+  adc r11, ZERO
+  ; n * R, its bytes 1..3 in r25:r24:r22
+  mul r27, r19
+  mov r22, r0
+  mov r24, r1
+  mul r23, r19
+  mov r25, r1
+  add r24, r0
+  adc r25, ZERO
+  mul r26, r19
+  add r22, r1
+  adc r24, ZERO
+  adc r25, ZERO
+  add3 r22, r24, r25, r26, r27, r23
+  ; times (E + E^2)
+  mul r25, r11
+  movw r20, r0
+  mul r25, r10
+  add r20, r1
+  adc r21, ZERO
+  mul r24, r11
+  add r20, r1
+  adc r21, ZERO
+  lsl r20
+  rol r21
+  adc r25, ZERO
+  add3 r22, r24, r25, r20, r21, ZERO
+  ; to q15
+  adiw r24, 1
+  ror r25
+  ror r24
+  movw r22, r24
+  ldi r24, 0
+  bld r24, 0
+  ldi r25, 0
+.Lfinish:
+  clr r1
+  pop r17
+  pop r16
+  pop r15
+  pop r14
+  pop r13
+  pop r12
+  pop r11
+  pop r10
+  ret
+
+  .size fuzzy_pdi_infer, . - fuzzy_pdi_infer
+
+; Two pages: the shift that normalises a sum with this top byte, as a factor; and the reciprocals R - 256.
+  .section .progmem.data.fuzzy_pdi_tables, "a", @progbits
+  .balign 256
+fuzzy_pdi_tables:
+  .byte 0, 128, 64, 64
+  .fill 4, 1, 32
+  .fill 8, 1, 16
+  .fill 16, 1, 8
+  .fill 32, 1, 4
+  .fill 64, 1, 2
+  .fill 128, 1, 1
+  .set i, 0
+  .rept 256
+  .byte 131072 / (257 + i) - 256
+  .set i, i + 1
+  .endr
+#endif
