@@ -14,7 +14,8 @@ namespace app {
 
 class App {
  public:
-  void begin();
+  // None of these is inlined into main(), where its variables would stay on the stack for ever.
+  __attribute__((noinline)) void begin();
   __attribute__((noinline)) void tick();   // when hal::tick_pending()
   // One bounded piece of other work; false when there is nothing to do until the next interrupt.
   __attribute__((noinline)) bool service();
@@ -65,6 +66,7 @@ class App {
   uint8_t sample_seq_ = 0;
   bool sample_due_ = false;
   bool heard_this_tick_ = false;
+  bool after_apply_ = false;   // a step of applying a set (motors off) may make the next tick late: it does not count
   bool hello_due_ = false;
   bool drivers_on_ = false;
   uint8_t request_ = 0, seq_ = 0;              // of the frame being answered

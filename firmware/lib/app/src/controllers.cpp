@@ -11,16 +11,13 @@ fuzzy_pdi::Settings settings_of(const params::Table& table, uint8_t joint) {
 
 }  // namespace
 
-fuzzy_pdi::Refusal Controllers::check(const params::Table& table, uint8_t joint) {
-  fuzzy_pdi::Coefficients unused;
-  return fuzzy_pdi::compile(settings_of(table, joint), table.period_ms, unused);
-}
-
-void Controllers::take(const params::Table& table, uint8_t joint) {
-  fuzzy_pdi::compile(settings_of(table, joint), table.period_ms, coefficients_[joint]);
+fuzzy_pdi::Refusal Controllers::take(const params::Table& table, uint8_t joint) {
+  const auto refusal = fuzzy_pdi::compile(settings_of(table, joint), table.period_ms, coefficients_[joint]);
+  if (refusal != fuzzy_pdi::Refusal::none) return refusal;
   limit_min_[joint] = table.joint[joint].limit_min;
   limit_max_[joint] = table.joint[joint].limit_max;
   supply_mv_ = table.supply_mv;
+  return refusal;
 }
 
 void Controllers::reset() {

@@ -9,10 +9,8 @@ namespace app {
 
 class Controllers {
  public:
-  // Whether a joint's settings can be run; costs a few thousand cycles.
-  static fuzzy_pdi::Refusal check(const params::Table& table, uint8_t joint);
-  // Takes a joint's settings over; only while the motors are off and after check().
-  void take(const params::Table& table, uint8_t joint);
+  // Takes a joint's settings over, unless they cannot be run; only while the motors are off. Costs most of a tick.
+  fuzzy_pdi::Refusal take(const params::Table& table, uint8_t joint);
 
   void reset();
   // The leader within the joint's limits: what the follower is asked for.

@@ -3,38 +3,46 @@
 
 namespace app {
 
+// Loaded where it will be staged: a third table, on the stack, would be a tenth of a Nano's memory.
 bool ParameterSets::begin(Controllers& controllers) {
-  params::Table table;
+  params::Table& table = const_cast<params::Table&>(sets_.staged());
   source_ = store_.load(table);
   bool runs = true;
-  for (uint8_t i = 0; i < hal::joint_count && runs; ++i) runs = fit(table, i);
+  for (uint8_t i = 0; i < hal::joint_count && runs; ++i) runs = take(controllers, table, i);
   if (!runs) {
     params::load_defaults(table);
     source_ = wire::ParamSource::defaults;
+    for (uint8_t i = 0; i < hal::joint_count; ++i) controllers.take(table, i);
   }
   sets_.begin(table);
-  for (uint8_t i = 0; i < hal::joint_count; ++i) controllers.take(table, i);
   return runs;
 }
 
-bool ParameterSets::fit(const params::Table& table, uint8_t joint) {
-  unfit_ = {joint, Controllers::check(table, joint)};
-  return unfit_.refusal == fuzzy_pdi::Refusal::none;
+bool ParameterSets::take(Controllers& controllers, const params::Table& table, uint8_t joint) {
+  const fuzzy_pdi::Refusal refusal = controllers.take(table, joint);
+  if (refusal == fuzzy_pdi::Refusal::none) return true;
+  unfit_ = {joint, refusal};
+  return false;
 }
 
-// Steps 0..3 check, so that a refused set leaves the running one whole; steps 4..7 take over.
 ParameterSets::Progress ParameterSets::work_on_apply(Controllers& controllers) {
-  const uint8_t step = step_++;
-  if (step < hal::joint_count) {
-    if (fit(sets_.staged(), step)) return Progress::going_on;
-    step_ = idle;
+  if (undoing_) {
+    if (joint_ < unfit_.joint) {
+      controllers.take(sets_.running(), joint_++);
+      return Progress::going_on;
+    }
+    undoing_ = false;
+    joint_ = idle;
     return Progress::refused;
   }
-  const uint8_t joint = static_cast<uint8_t>(step - hal::joint_count);
-  controllers.take(sets_.staged(), joint);
-  if (joint < hal::joint_count - 1) return Progress::going_on;
+  if (!take(controllers, sets_.staged(), joint_)) {
+    undoing_ = true;
+    joint_ = 0;
+    return Progress::going_on;
+  }
+  if (++joint_ < hal::joint_count) return Progress::going_on;
   sets_.apply();
-  step_ = idle;
+  joint_ = idle;
   return Progress::applied;
 }
 

@@ -34,10 +34,11 @@ class ParameterSets {
   params::Access stage(uint16_t index, int32_t value) { return sets_.stage(index, value); }
   void stage_defaults() { sets_.stage_defaults(); }
 
-  // Checks the staged set joint by joint and then takes it over, a step a call, so that no tick waits for long.
+  // Hands the staged set to the controllers, a joint a call, so that no tick waits for long. When a joint refuses, those
+  // before it get their running settings back.
   enum class Progress : uint8_t { going_on, applied, refused };
-  void begin_apply() { step_ = 0; }
-  bool applying() const { return step_ != idle; }
+  void begin_apply() { joint_ = 0; }
+  bool applying() const { return joint_ != idle; }
   Progress work_on_apply(Controllers& controllers);
   Unfit unfit() const { return unfit_; }   // after refused, or when begin() was false
 
@@ -48,12 +49,13 @@ class ParameterSets {
  private:
   static constexpr uint8_t idle = 255;
 
-  bool fit(const params::Table& table, uint8_t joint);
+  bool take(Controllers& controllers, const params::Table& table, uint8_t joint);
 
   params::Sets sets_;
   HalEeprom eeprom_;
   params::Store<HalEeprom> store_{eeprom_};
-  uint8_t step_ = idle;
+  uint8_t joint_ = idle;     // the next one to be handed over
+  bool undoing_ = false;
   Unfit unfit_ = {0, fuzzy_pdi::Refusal::none};
   wire::ParamSource source_ = wire::ParamSource::defaults;
 };

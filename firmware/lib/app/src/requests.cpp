@@ -223,6 +223,7 @@ void App::begin_apply(uint16_t crc) {
 // No request is taken while a set is being applied (a few ms, motors off), so request_ and seq_ still are those of
 // the param_apply.
 void App::work_on_apply() {
+  after_apply_ = true;
   switch (sets_.work_on_apply(controllers_)) {
     case ParameterSets::Progress::going_on: break;
     case ParameterSets::Progress::refused:
