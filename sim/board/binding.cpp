@@ -134,7 +134,9 @@ void bind_board(nb::module_& m) {
         .def("call", &PyBoard::call, "address"_a, "limit"_a,
              "Call a compiled function by its flash byte address, interrupts off; its exact cycles, RET included.")
         .def_prop_ro("cycle", &PyBoard::cycle)
-        .def_prop_ro("pc", &PyBoard::pc, "Program counter, a byte address.")
+        .def_prop_rw("pc", &PyBoard::pc, &PyBoard::set_pc, "Program counter, a byte address.")
+        .def("use_reference_decoder", &PyBoard::use_reference_decoder, "on"_a,
+             "Execute with simavr's own, slower instruction decoder: the reference that the fast one is tested against.")
         .def_prop_ro("in_bootloader", &PyBoard::in_bootloader)
         .def("peek", [](PyBoard& b, uint32_t address, uint32_t count) { return to_bytes(b.peek(address, count)); }, "address"_a,
              "count"_a = 1, "Bytes of the data space: registers, I/O registers, RAM. Has no side effect.")

@@ -63,6 +63,7 @@ Board::~Board() = default;
 
 void Board::build_models() {
     avr_t& avr = *avr_;
+    cpu_ = std::make_unique<Cpu>(avr, chip_);
     interrupts_ = std::make_unique<Interrupts>(avr, chip_, trace_);
     ports_ = std::make_unique<Ports>(avr, chip_);
     std::vector<Timer*> timers;
@@ -82,7 +83,7 @@ void Board::build_models() {
         throw BoardError("this libsimavr lacks peripherals of the " + std::string(chip_.title) +
                          "; install Debian's libsimavr-dev 1.6");
     adc_ = std::make_unique<Adc>(avr, chip_, *interrupts_);
-    flash_ = std::make_unique<Flash>(avr, chip_, trace_);
+    flash_ = std::make_unique<Flash>(avr, chip_, *cpu_, trace_);
     prescaler_ = std::make_unique<Prescaler>(avr, std::move(timers));
 }
 
@@ -106,6 +107,7 @@ void Board::write_memory(const std::vector<Segment>& segments, const std::string
     }
     for (const Segment& segment : segments)
         if (segment.address < flash_size) std::copy(segment.bytes.begin(), segment.bytes.end(), avr_->flash + segment.address);
+    cpu_->flash_changed(0, flash_size);
     eeprom_->set_content(eeprom);
 }
 
@@ -130,6 +132,7 @@ void Board::load_elf(const std::string& path) {
 
 void Board::erase_flash() {
     std::fill_n(avr_->flash, avr_->flashend + 1, uint8_t{0xFF});
+    cpu_->flash_changed(0, avr_->flashend + 1);
     boot_start_ = UINT32_MAX;
     avr_->reset_pc = 0;
     flash_->protect_from(UINT32_MAX);
@@ -192,7 +195,7 @@ void Board::step() {
         return;
     }
     avr_flashaddr_t next_pc = avr.pc;
-    if (avr.state == cpu_Running) next_pc = avr_run_one(&avr);
+    if (avr.state == cpu_Running) next_pc = reference_decoder_ ? avr_run_one(&avr) : cpu_->run();
     const bool asleep = avr.state == cpu_Sleeping;
     const avr_cycle_count_t idle = avr_cycle_timer_process(&avr);
     avr.pc = next_pc;
@@ -202,8 +205,9 @@ void Board::step() {
         } else if (!(avr.data[reg::SMCR] & sleep_enable)) {
             avr.state = cpu_Running;
         } else {
-            avr.cycle += idle;
-            stats_.sleep_cycles += idle;
+            const avr_cycle_count_t wake_at = std::min(avr.cycle + idle, std::max(avr.cycle, stop_at_));
+            stats_.sleep_cycles += wake_at - avr.cycle;
+            avr.cycle = wake_at;
         }
         return;
     }

@@ -10,6 +10,7 @@
 
 #include "adc.h"
 #include "chip.h"
+#include "cpu.h"
 #include "eeprom.h"
 #include "flash.h"
 #include "image.h"
@@ -61,6 +62,9 @@ public:
 
     uint64_t cycle() const { return avr_->cycle; }
     uint32_t pc() const { return avr_->pc; }
+    void set_pc(uint32_t address) { avr_->pc = address & avr_->flashend & ~1u; }
+    // Execute with simavr's own, slower instruction decoder: the reference that the fast one is tested against.
+    void use_reference_decoder(bool on) { reference_decoder_ = on; }
     bool in_bootloader() const { return avr_->pc >= boot_start_; }
     std::string peek(uint32_t address, uint32_t count);
     void poke(uint32_t address, const std::string& bytes);
@@ -108,6 +112,7 @@ private:
     std::unique_ptr<avr_t, FreeAvr> avr_;
     avr_run_t normal_run_ = nullptr;
     Trace trace_;
+    std::unique_ptr<Cpu> cpu_;
     std::unique_ptr<Interrupts> interrupts_;
     std::unique_ptr<Ports> ports_;
     std::unique_ptr<Uart> uart_;
@@ -121,6 +126,7 @@ private:
     uint32_t boot_start_ = UINT32_MAX;
     uint64_t stop_at_ = 0;
     bool powered_ = false;
+    bool reference_decoder_ = false;
 };
 
 }  // namespace board

@@ -15,6 +15,7 @@ struct Chip {
     unsigned reti;                // cycles of RETI
     uint32_t nrww_start;          // first flash byte that cannot be read while it is written
     uint32_t flash_page;          // bytes
+    bool wide_pc;                 // more than 128 KB of flash: 22-bit program counter, RAMPZ, EIND
     bool wide_adc_mux;            // six multiplexer bits (MUX5 in ADCSRB) instead of four
     const char* ports;            // port letters
 };
@@ -26,7 +27,7 @@ namespace reg {
 enum : uint16_t {
     PINA = 0x20,
     EECR = 0x3F, EEDR = 0x40, EEARL = 0x41, EEARH = 0x42, GTCCR = 0x43,
-    SMCR = 0x53, MCUSR = 0x54, SPMCSR = 0x57, RAMPZ = 0x5B, SPL = 0x5D, SPH = 0x5E, SREG = 0x5F,
+    SMCR = 0x53, MCUSR = 0x54, SPMCSR = 0x57, RAMPZ = 0x5B, EIND = 0x5C, SPL = 0x5D, SPH = 0x5E, SREG = 0x5F,
     ADCL = 0x78, ADCH = 0x79, ADCSRA = 0x7A, ADCSRB = 0x7B, ADMUX = 0x7C,
     UCSR0A = 0xC0, UCSR0B = 0xC1, UCSR0C = 0xC2, UBRR0L = 0xC4, UBRR0H = 0xC5, UDR0 = 0xC6,
 };

@@ -21,8 +21,8 @@ constexpr unsigned window_cycles = 4;
 constexpr uint64_t page_milliseconds = 4;
 }  // namespace
 
-Flash::Flash(avr_t& avr, const Chip& chip, Trace& trace)
-    : avr_(avr), chip_(chip), trace_(trace), buffer_(chip.flash_page), filled_(chip.flash_page / 2) {
+Flash::Flash(avr_t& avr, const Chip& chip, Cpu& cpu, Trace& trace)
+    : avr_(avr), chip_(chip), cpu_(cpu), trace_(trace), buffer_(chip.flash_page), filled_(chip.flash_page / 2) {
     plain_register(avr_, reg::SPMCSR);
     on_write<&Flash::write_control>(avr_, reg::SPMCSR, *this);
     for (avr_io_t* io = avr.io_port; io; io = io->next) {
@@ -103,6 +103,7 @@ void Flash::program_page(uint32_t address, bool erase) {
             uint8_t& cell = avr_.flash[page + i];
             cell = erase ? uint8_t{0xFF} : static_cast<uint8_t>(cell & buffer_[i]);  // writing only clears bits
         }
+        cpu_.flash_changed(page, chip_.flash_page);
         ++page_writes_;
     }
     trace_.add(Trace::Kind::flash_write, avr_.cycle, page);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "chip.h"
+#include "cpu.h"
 #include "simavr.h"
 #include "trace.h"
 
@@ -13,7 +14,7 @@ namespace board {
 
 class Flash {
 public:
-    Flash(avr_t& avr, const Chip& chip, Trace& trace);
+    Flash(avr_t& avr, const Chip& chip, Cpu& cpu, Trace& trace);
     void reset();
     // From here up nothing is written: the boot lock bits of an Arduino.
     void protect_from(uint32_t address) { protected_from_ = address; }
@@ -31,6 +32,7 @@ private:
 
     avr_t& avr_;
     const Chip& chip_;
+    Cpu& cpu_;
     Trace& trace_;
     std::vector<uint8_t> buffer_;
     std::vector<bool> filled_;  // one a word

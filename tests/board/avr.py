@@ -17,6 +17,21 @@ PRELUDE = """
 #include <stdint.h>
 #define DONE() do { cli(); sleep_enable(); sleep_cpu(); } while (1)
 """
+# A tick, a chain of conversions, a serial echo and an EEPROM writer, all by interrupt, around a sleeping main loop.
+BUSY = """
+volatile uint16_t sum, ticks; volatile uint8_t address;
+ISR(TIMER0_COMPA_vect) { ++ticks; ADCSRA |= _BV(ADSC); }
+ISR(ADC_vect) { sum += ADC; ADMUX = 0x40 | (sum & 7); if (sum & 3) ADCSRA |= _BV(ADSC); }
+ISR(USART0_RX_vect) { uint8_t c = UDR0; UDR0 = c ^ (uint8_t)sum; }
+ISR(EE_READY_vect) { EEAR = ++address; EEDR = sum; EECR |= _BV(EEMPE); EECR |= _BV(EEPE); }
+int main(void) {
+    TCCR0A = 2; OCR0A = 249; TCCR0B = 3; TIMSK0 = 2;
+    ADMUX = 0x40; ADCSRA = _BV(ADEN) | _BV(ADIE) | 5;
+    UBRR0 = 0; UCSR0B = _BV(RXEN0) | _BV(TXEN0) | _BV(RXCIE0); EECR = _BV(EERIE);
+    uint16_t work = 1; sleep_enable(); sei();
+    for (;;) { for (uint8_t i = sum & 63; i; --i) work = work * 31 + sum; GPIOR1 = work; sleep_cpu(); }
+}
+"""
 DONE = 1
 
 

@@ -114,8 +114,8 @@ def test_a_watchdog_reset_comes_at_the_same_cycle_however_the_run_is_cut(program
 @pytest.mark.parametrize(
     ("body", "words"),
     [
-        ("*(volatile uint8_t *)0x5000 = 1;", "out of ram"),
-        ('__asm__ volatile(".word 0x9404");', ""),
+        ("*(volatile uint8_t *)0x5000 = 1;", "a write beyond the end of RAM, to 0x5000"),
+        ('__asm__ volatile(".word 0x9404");', "an invalid instruction, 0x9404"),
     ],
 )
 def test_a_program_that_does_the_impossible_has_crashed(program: MakeProgram, body: str, words: str) -> None:
