@@ -42,8 +42,8 @@ void App::tick() {
   schedule_sample();
   show_state();
   const uint16_t age_us = hal::tick_age_us();
-  if (age_us > tick_us_max_ && !after_apply_) tick_us_max_ = age_us;
-  after_apply_ = false;
+  if (age_us > tick_us_max_ && !excused_) tick_us_max_ = age_us;
+  excused_ = false;
   heard_this_tick_ = false;
   hal::watchdog_kick();
   hal::tick_end();
@@ -51,7 +51,7 @@ void App::tick() {
 
 void App::count_ticks(hal::TickStart start) {
   tick_ += start.elapsed;
-  if (!start.late || after_apply_) return;
+  if (!start.late || excused_) return;
   late_ticks_ = add_saturated(late_ticks_, start.elapsed > 1 ? static_cast<uint8_t>(start.elapsed - 1) : uint8_t{1});
 }
 

@@ -25,25 +25,50 @@ bool ParameterSets::take(Controllers& controllers, const params::Table& table, u
   return false;
 }
 
+void ParameterSets::begin_apply(uint16_t crc) {
+  apply_crc_ = crc;
+  at_ = 0;
+  step_ = Step::crc;
+}
+
+ParameterSets::Progress ParameterSets::end(Progress how) {
+  step_ = Step::none;
+  return how;
+}
+
 ParameterSets::Progress ParameterSets::work_on_apply(Controllers& controllers) {
-  if (undoing_) {
-    if (joint_ < unfit_.joint) {
-      controllers.take(sets_.running(), joint_++);
-      return Progress::going_on;
+  switch (step_) {
+    case Step::crc: {
+      const uint16_t wanted = apply_crc_;
+      apply_crc_ = params::crc(sets_.staged());
+      if (apply_crc_ != wanted) return end(Progress::crc_differs);
+      step_ = Step::consistency;
+      break;
     }
-    undoing_ = false;
-    joint_ = idle;
-    return Progress::refused;
+    case Step::consistency:
+      at_ = params::first_inconsistent(sets_.staged());
+      if (at_ != params::none) return end(Progress::inconsistent);
+      at_ = 0;
+      step_ = Step::joints;
+      break;
+    case Step::joints:
+      if (!take(controllers, sets_.staged(), at_)) {
+        at_ = 0;
+        step_ = Step::undo;
+      } else if (++at_ == hal::joint_count) {
+        step_ = Step::finish;
+      }
+      break;
+    case Step::undo:
+      if (at_ == unfit_.joint) return end(Progress::refused);
+      controllers.take(sets_.running(), at_++);
+      break;
+    case Step::finish:
+      sets_.apply();
+      return end(Progress::applied);
+    case Step::none: break;
   }
-  if (!take(controllers, sets_.staged(), joint_)) {
-    undoing_ = true;
-    joint_ = 0;
-    return Progress::going_on;
-  }
-  if (++joint_ < hal::joint_count) return Progress::going_on;
-  sets_.apply();
-  joint_ = idle;
-  return Progress::applied;
+  return Progress::going_on;
 }
 
 bool ParameterSets::work_on_save() {

@@ -34,28 +34,33 @@ class ParameterSets {
   params::Access stage(uint16_t index, int32_t value) { return sets_.stage(index, value); }
   void stage_defaults() { sets_.stage_defaults(); }
 
-  // Hands the staged set to the controllers, a joint a call, so that no tick waits for long. When a joint refuses, those
-  // before it get their running settings back.
-  enum class Progress : uint8_t { going_on, applied, refused };
-  void begin_apply() { joint_ = 0; }
-  bool applying() const { return joint_ != idle; }
+  // Checks the staged set and hands it to the controllers, a step a call: each takes up to a millisecond. When a joint
+  // refuses, those before it get their running settings back.
+  enum class Progress : uint8_t { going_on, applied, crc_differs, inconsistent, refused };
+  void begin_apply(uint16_t crc);
+  bool applying() const { return step_ != Step::none; }
   Progress work_on_apply(Controllers& controllers);
-  Unfit unfit() const { return unfit_; }   // after refused, or when begin() was false
+  // What was wrong: the CRC of the staged set, the index of the parameter that contradicts another, the joint.
+  uint16_t staged_crc() const { return apply_crc_; }
+  uint8_t misfit() const { return at_; }
+  Unfit unfit() const { return unfit_; }   // also when begin() was false
 
   void save() { store_.save(sets_.running()); }
   bool work_on_save();   // one byte; true when the next can follow at once
   wire::SaveState save_state() const { return store_.state(); }
 
  private:
-  static constexpr uint8_t idle = 255;
+  enum class Step : uint8_t { none, crc, consistency, joints, undo, finish };
 
+  Progress end(Progress how);
   bool take(Controllers& controllers, const params::Table& table, uint8_t joint);
 
   params::Sets sets_;
   HalEeprom eeprom_;
   params::Store<HalEeprom> store_{eeprom_};
-  uint8_t joint_ = idle;     // the next one to be handed over
-  bool undoing_ = false;
+  uint16_t apply_crc_ = 0;   // wanted, then found
+  Step step_ = Step::none;
+  uint8_t at_ = 0;           // the joint that is next, or the parameter that does not fit
   Unfit unfit_ = {0, fuzzy_pdi::Refusal::none};
   wire::ParamSource source_ = wire::ParamSource::defaults;
 };

@@ -213,22 +213,18 @@ void App::handle_parameters(uint8_t type) {
 void App::begin_apply(uint16_t crc) {
   if (supervisor_.motors_on()) return refuse(wire::NackCode::not_disabled, static_cast<uint8_t>(supervisor_.state()));
   if (sets_.save_state() == wire::SaveState::saving) return refuse(wire::NackCode::busy_saving, 0);
-  const uint16_t staged_crc = params::crc(sets_.staged());
-  if (staged_crc != crc) return refuse(wire::NackCode::crc_mismatch, staged_crc);
-  const uint8_t misfit = params::first_inconsistent(sets_.staged());
-  if (misfit != params::none) return refuse(wire::NackCode::inconsistent, misfit);
-  sets_.begin_apply();
+  sets_.begin_apply(crc);
 }
 
 // No request is taken while a set is being applied (a few ms, motors off), so request_ and seq_ still are those of
 // the param_apply.
 void App::work_on_apply() {
-  after_apply_ = true;
+  excused_ = true;
   switch (sets_.work_on_apply(controllers_)) {
     case ParameterSets::Progress::going_on: break;
-    case ParameterSets::Progress::refused:
-      refuse_set();
-      break;
+    case ParameterSets::Progress::crc_differs: refuse(wire::NackCode::crc_mismatch, sets_.staged_crc()); break;
+    case ParameterSets::Progress::inconsistent: refuse(wire::NackCode::inconsistent, sets_.misfit()); break;
+    case ParameterSets::Progress::refused: refuse_set(); break;
     case ParameterSets::Progress::applied:
       take_running_set();
       supervisor_.params_mended();
