@@ -8,6 +8,7 @@ constexpr int16_t unit = 16384;            // 1.0 in q14
 constexpr int16_t least_width = 164;       // 0.01, rounded up
 constexpr uint32_t largest_k = 64UL << 16;
 constexpr uint32_t largest_ki = 1000UL << 16;
+constexpr uint32_t largest_ki_period = 1UL << 28;  // 4096 V ms / (rad s): a step of the integral stays below 2^30
 constexpr uint16_t largest_ku_mv = 30000;
 constexpr uint8_t longest_period_ms = 50;
 constexpr uint8_t kd_period_ms = 20;
@@ -77,7 +78,7 @@ Refusal compile(const Settings& s, uint8_t period_ms, Coefficients& out) {
   const Refusal refusal = check_sets(negative, positive);
   if (refusal != Refusal::none) return refusal;
   if (s.kp > largest_k || s.kd > largest_k || s.ki > largest_ki || s.ku_mv > largest_ku_mv) return Refusal::gain;
-  if (s.ki > 0x1FFFFFFFUL / period_ms) return Refusal::gain;
+  if (s.ki * period_ms >= largest_ki_period) return Refusal::gain;
 
   const uint32_t kd = s.kd * kd_period_ms;
   Coefficients made;

@@ -6,32 +6,48 @@
 namespace fuzzy_pdi {
 namespace {
 
-constexpr int32_t integral_limit = int32_t{30000} << 15;
+constexpr int32_t integral_end = int32_t{1} << 30;
 
-Input split(int16_t value) {
+// a - b, saturated so that its size has 15 bits.
+inline int16_t difference(int16_t a, int16_t b) {
+  const int32_t exact = int32_t{a} - b;
+  return static_cast<int16_t>(exact > 32767 ? 32767 : exact < -32767 ? -32767 : exact);
+}
+
+inline Input split(int16_t value) {
   return {static_cast<uint16_t>(value < 0 ? -value : value), value < 0};
 }
 
-int16_t saturate(int32_t value) {
-  return static_cast<int16_t>(value > 32767 ? 32767 : value < -32767 ? -32767 : value);
+// Takes one more period of e into the integral.
+inline void integrate(State& state, uint32_t factor, const Input& e) {
+  const Product more = multiply(e.size, factor);
+  const uint16_t before = state.fraction;
+  if (e.negative) {
+    state.fraction = static_cast<uint16_t>(before - more.fraction);
+    state.integral -= static_cast<int32_t>(more.whole) + (before < more.fraction);
+  } else {
+    state.fraction = static_cast<uint16_t>(before + more.fraction);
+    state.integral += static_cast<int32_t>(more.whole) + (state.fraction < before);
+  }
+  if (state.integral >= integral_end) {
+    state.integral = integral_end - 1;
+    state.fraction = 0xFFFF;
+  } else if (state.integral < -integral_end) {
+    state.integral = -integral_end;
+    state.fraction = 0;
+  }
 }
 
-// The integral after one more period of e, held within what any supply can give.
-State integrate(const State& state, uint32_t factor, const Input& e) {
-  const Product step = multiply(e.size, factor);
-  State next = state;
-  const uint16_t down = e.negative ? step.fraction : 0;
-  const uint16_t up = e.negative ? 0 : step.fraction;
-  next.fraction = static_cast<uint16_t>(state.fraction + up - down);
-  const uint32_t whole = step.whole + (e.negative ? state.fraction < down : next.fraction < up);
-  const uint32_t room = static_cast<uint32_t>(e.negative ? state.integral + integral_limit : integral_limit - state.integral);
-  if (whole >= room) {
-    next.integral = e.negative ? -integral_limit : integral_limit;
-    next.fraction = 0;
-  } else {
-    next.integral = e.negative ? state.integral - static_cast<int32_t>(whole) : state.integral + static_cast<int32_t>(whole);
-  }
-  return next;
+struct Volts {
+  uint16_t size_mv;
+  bool negative;
+};
+
+// Rounded to mV, half away from zero.
+inline Volts sum(int32_t proportional, int32_t integral) {
+  const int32_t total = proportional + integral;
+  const uint32_t size = static_cast<uint32_t>(total < 0 ? -total : total);
+  return {static_cast<uint16_t>((size * 2 + 0x8000) >> 16), total < 0};
 }
 
 }  // namespace
@@ -39,30 +55,31 @@ State integrate(const State& state, uint32_t factor, const Input& e) {
 void reset(State& state) { state = {0, 0, 0, false}; }
 
 Output step(const Coefficients& c, State& state, int16_t leader_q12, int16_t follower_q12, uint16_t limit_mv) {
-  const int16_t error = saturate(int32_t{leader_q12} - follower_q12);
-  const int16_t change = state.started ? saturate(int32_t{error} - state.previous_e) : int16_t{0};
+  const int16_t error = difference(leader_q12, follower_q12);
+  const int16_t change = state.started ? difference(error, state.previous_e) : int16_t{0};
+  state.previous_e = error;
+  state.started = true;
+
   const Input e = split(error);
   const Defuzzified u = infer(c, e, split(change));
-  const bool down = (e.negative != u.flip) && u.size != 0;
+  const bool down = e.negative != u.flip;
+  const int32_t drive = static_cast<int32_t>(static_cast<uint32_t>(u.size) * c.ku_mv);  // 2^-15 mV
+  const int32_t proportional = down ? -drive : drive;
 
-  const uint32_t drive = static_cast<uint32_t>(u.size) * c.ku_mv;
-  const int32_t proportional = down ? -static_cast<int32_t>(drive) : static_cast<int32_t>(drive);
-  const int32_t limit = limit_mv > 32767 ? 32767 : limit_mv;
-
-  State next = integrate(state, c.integral, e);
-  int32_t volts = (proportional + next.integral + (int32_t{1} << 14)) >> 15;
-  const bool beyond = volts > limit || volts < -limit;
-  if (beyond && (volts < 0) == e.negative) {
-    next = state;
-    volts = (proportional + next.integral + (int32_t{1} << 14)) >> 15;
+  const State before = state;
+  integrate(state, c.integral, e);
+  Volts volts = sum(proportional, state.integral);
+  const bool saturated = volts.size_mv > limit_mv;
+  if (saturated && volts.negative == e.negative) {
+    state = before;
+    volts = sum(proportional, state.integral);
   }
-  next.previous_e = error;
-  next.started = true;
-  state = next;
-  volts = volts > limit ? limit : volts < -limit ? -limit : volts;
+  if (volts.size_mv > limit_mv) volts.size_mv = limit_mv;
 
   const int16_t size = static_cast<int16_t>(u.size > 32767 ? 32767 : u.size);
-  return {static_cast<int16_t>(down ? -size : size), static_cast<int16_t>(volts), beyond, u.no_rule};
+  const int16_t size_mv = static_cast<int16_t>(volts.size_mv);
+  return {static_cast<int16_t>(down ? -size : size), static_cast<int16_t>(volts.negative ? -size_mv : size_mv), saturated,
+          u.no_rule};
 }
 
 }  // namespace fuzzy_pdi

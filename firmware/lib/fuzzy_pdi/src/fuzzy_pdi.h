@@ -38,13 +38,13 @@ struct Side {
 struct Coefficients {
   Side e[2];          // [0] for e >= 0, [1] for e < 0
   Side ce[2];
-  uint32_t integral;  // volts added per control period and unit of e: 2^-31 mV for 1/4096 rad
+  uint32_t integral;  // 2^-31 mV per control period and 1/4096 rad
   uint16_t ku_mv;
 };
 
 // What one joint remembers between control periods.
 struct State {
-  int32_t integral;   // 2^-15 mV, never beyond +-30000 mV
+  int32_t integral;   // 2^-15 mV, held within +-2^15 mV
   uint16_t fraction;  // 2^-31 mV: nothing is lost in the sum
   int16_t previous_e;
   bool started;       // false until the first step: its change of error is 0

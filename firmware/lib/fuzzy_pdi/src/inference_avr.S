@@ -1,12 +1,12 @@
-; infer() of inference.h in AVR assembly: the same bits in half the cycles. Optional: defining FUZZY_PDI_PORTABLE compiles the
-; C++ there instead. The tests hold the two equal.
-;
-;   Defuzzified fuzzy_pdi_infer(const Side *e, uint16_t e_size, const Side *ce, uint16_t ce_size, bool same_sign)
-;                               r25:r24        r23:r22          r21:r20         r19:r18           r16
-;   returns size in r23:r22, flip in r24, no_rule in r25
+// infer() of inference.h in AVR assembly: the same bits in half the cycles. Optional: defining FUZZY_PDI_PORTABLE compiles the
+// C++ there instead. The tests hold the two equal.
+//
+//   Defuzzified fuzzy_pdi_infer(const Side *e, uint16_t e_size, const Side *ce, uint16_t ce_size, bool same_sign)
+//                               r25:r24        r23:r22          r21:r20         r19:r18           r16
+//   returns size in r23:r22, flip in r24, no_rule in r25
 #if defined(__AVR__) && !defined(FUZZY_PDI_PORTABLE)
 
-; Heights, low byte first: a = ZE and A = PE or NE of e; b and B the same of ce. Six registers in a row each, for movw.
+// Heights, low byte first: a = ZE and A = PE or NE of e; b and B the same of ce. Six registers in a row each, for movw.
 #define a0 r10
 #define a1 r11
 #define a2 r12
@@ -24,10 +24,10 @@
 #define S r26     /* a byte of a slope */
 #define LOW r27   /* the byte below a height, for its rounding */
 
-; ---- Memberships -----------------------------------------------------------------------------------------------------------
-; height = round(size * slope / 2^16): the long multiplication, a slope byte at a time. `at` is the slope's place in Side.
+// ---- Memberships -----------------------------------------------------------------------------------------------------------
+// height = round(size * slope / 2^16): the long multiplication, a slope byte at a time. `at` is the slope's place in Side.
 
-; A byte of the slope times both bytes of the size; `hi` is a byte the sum reaches for the first time.
+// A byte of the slope times both bytes of the size; `hi` is a byte the sum reaches for the first time.
 .macro row at, el, eh, low, mid, hi
   ldd S, Z+\at
   mul \eh, S
@@ -40,7 +40,7 @@
   adc \hi, ZERO
 .endm
 
-; The slope's highest byte, with which a height may pass 2^24.
+// The slope's highest byte, with which a height may pass 2^24.
 .macro last_row at, el, eh, h1, h2, full
   ldd S, Z+\at
   mul \el, S
@@ -68,7 +68,7 @@
   last_row 3, \el, \eh, \h1, \h2, \full
 .endm
 
-; A rising slope's low byte is 0, unless its high byte is.
+// A rising slope's low byte is 0, unless its high byte is.
 .macro climb_outer el, eh, h0, h1, h2, coarse, full
   ldd S, Z+5
   mul \el, S
@@ -108,7 +108,7 @@
   adc \h2, ZERO
 .endm
 
-; A short ramp: a size of one byte, and the slope one byte finer.
+// A short ramp: a size of one byte, and the slope one byte finer.
 .macro short_row at, el, mid, hi
   ldd S, Z+\at
   mul \el, S
@@ -156,8 +156,8 @@
   com \h2
 .endm
 
-; Both heights of one input: z = 1 - climb of zero's slope, o = climb of outer's. `slow`, within a branch's reach, jumps to
-; `slow_far`, which handles short ramps.
+// Both heights of one input: z = 1 - climb of zero's slope, o = climb of outer's. `slow`, within a branch's reach, jumps to
+// `slow_far`, which handles short ramps.
 .macro fuzzify slow, slow_far, el, eh, z0, z1, z2, o0, o1, o2
   ldd S, Z+8
   tst S
@@ -196,14 +196,14 @@
 18:rjmp 13b
 .endm
 
-; ---- Rules -----------------------------------------------------------------------------------------------------------------
+// ---- Rules -----------------------------------------------------------------------------------------------------------------
 .macro compare x0, x1, x2, y0, y1, y2
   cp \x0, \y0
   cpc \x1, \y1
   cpc \x2, \y2
 .endm
 
-; x = min(x, y)
+// x = min(x, y)
 .macro lesser x0, x1, x2, y0, y1, y2
   compare \y0, \y1, \y2, \x0, \x1, \x2
   brcc 20f
@@ -213,7 +213,7 @@
 20:
 .endm
 
-; x = max(x, y)
+// x = max(x, y)
 .macro greater x0, x1, x2, y0, y1, y2
   compare \x0, \x1, \x2, \y0, \y1, \y2
   brcc 20f
@@ -235,7 +235,7 @@
   sbc \x2, \y2
 .endm
 
-; com leaves the carry set.
+// com leaves the carry set.
 .macro negate x0, x1, x2
   ldi S, 0
   com \x0
@@ -246,7 +246,7 @@
   adc \x2, S
 .endm
 
-; Into the fourth byte of the sum.
+// Into the fourth byte of the sum.
 #define SUM3 ZERO
 .macro carry
   brcc 20f
@@ -278,7 +278,7 @@ fuzzy_pdi_infer:
 19:movw r30, r20
   fuzzify .Lslow_ce, .Lslow_ce_far, r18, r19, b0, b1, b2, B0, B1, B2
 19:
-; From here: with - against ends in A, its sign in T (flip), with + zero + against in SUM3:a.
+// From here: with - against ends in A, its sign in T (flip), with + zero + against in SUM3:a.
   compare b0, b1, b2, a0, a1, a2
   brcs .Lb_is_less
   brts .La_least_same
@@ -287,7 +287,7 @@ fuzzy_pdi_infer:
   brts .Lb_least_same
   rjmp .Lb_least_opposite
 
-; Same sign, a <= b: zero = a. with = max(min(a, B), min(A, max(b, B))): the second unless A < a.
+// Same sign, a <= b: zero = a. with = max(min(a, B), min(A, max(b, B))): the second unless A < a.
 .La_least_same:
   clt
   compare A0, A1, A2, a0, a1, a2
@@ -301,7 +301,7 @@ fuzzy_pdi_infer:
   greater A0, A1, A2, B0, B1, B2
   rjmp 2b
 
-; The same with the inputs exchanged: zero = b.
+// The same with the inputs exchanged: zero = b.
 .Lb_least_same:
   clt
   compare B0, B1, B2, b0, b1, b2
@@ -318,31 +318,31 @@ fuzzy_pdi_infer:
   greater B0, B1, B2, A0, A1, A2
   rjmp 2b
 
-; Opposite signs: with = min(A, b), against = min(a, B), zero = max(min(a, b), min(A, B)).
-; a <= b: zero = max(a, min(A, B)).
+// Opposite signs: with = min(A, b), against = min(a, B), zero = max(min(a, b), min(A, B)).
+// a <= b: zero = max(a, min(A, B)).
 .La_least_opposite:
   compare B0, B1, B2, a0, a1, a2
   brcc 1f
-  ; B < a: against = B, zero = a
+  // B < a: against = B, zero = a
   lesser A0, A1, A2, b0, b1, b2
   rjmp .Lwith_A_against_B_zero_a
 1:compare A0, A1, A2, a0, a1, a2
   brcs 2f
-  ; a is the least of all: against = a, zero = min(A, B)
+  // a is the least of all: against = a, zero = min(A, B)
   lesser B0, B1, B2, A0, A1, A2
   lesser b0, b1, b2, A0, A1, A2
   rjmp .Lwith_b_against_a_zero_B
-2:; A < a <= b, B: with = A, against = a, zero = a
+2:// A < a <= b, B: with = A, against = a, zero = a
   mov B0, a0
   mov B1, a1
   mov B2, a2
   rjmp .Lwith_A_against_B_zero_a
 
-; b < a: zero = max(b, min(A, B)).
+// b < a: zero = max(b, min(A, B)).
 .Lb_least_opposite:
   compare A0, A1, A2, b0, b1, b2
   brcc 1f
-  ; A < b: with = A, zero = b
+  // A < b: with = A, zero = b
   lesser B0, B1, B2, a0, a1, a2
   mov a0, b0
   mov a1, b1
@@ -350,11 +350,11 @@ fuzzy_pdi_infer:
   rjmp .Lwith_A_against_B_zero_a
 1:compare B0, B1, B2, b0, b1, b2
   brcs 2f
-  ; b is the least of all: with = b, zero = min(A, B)
+  // b is the least of all: with = b, zero = min(A, B)
   lesser a0, a1, a2, B0, B1, B2
   lesser B0, B1, B2, A0, A1, A2
   rjmp .Lwith_b_against_a_zero_B
-2:; B < b <= A, b < a: with = b, against = B, zero = b
+2:// B < b <= A, b < a: with = b, against = B, zero = b
   mov a0, b0
   mov a1, b1
   mov a2, b2
@@ -414,8 +414,8 @@ fuzzy_pdi_infer:
   set
   negate A0, A1, A2
 
-; ---- Defuzzification: A / (SUM3:a), see ratio_q15() ------------------------------------------------------------------------
-; Normalised into d = r22:r21:r20 (2^23..2^24-1) and n = r23:r27:r26.
+// ---- Defuzzification: A / (SUM3:a), see ratio_q15() ------------------------------------------------------------------------
+// Normalised into d = r22:r21:r20 (2^23..2^24-1) and n = r23:r27:r26.
 .Ldivide:
   tst SUM3
   brne .Ltoo_big
@@ -445,8 +445,8 @@ fuzzy_pdi_infer:
   mov r30, r22
   rol r30
   inc r31
-  lpm r19, Z  ; R - 256
-  ; d * R, its bytes 1..3 in r12:r11:r10
+  lpm r19, Z  // R - 256
+  // d * R, its bytes 1..3 in r12:r11:r10
   mul r21, r19
   movw r10, r0
   mul r22, r19
@@ -458,20 +458,20 @@ fuzzy_pdi_infer:
   adc r11, ZERO
   adc r12, ZERO
   add3 r10, r11, r12, r20, r21, r22
-  ; E in r11:r10
+  // E in r11:r10
   lsr r12
   ror r11
   ror r10
   com r11
   com r10
-  ; + E^2
+  // + E^2
   mul r11, r11
   lsl r0
   rol r1
   adc r11, ZERO
   add r10, r1
   adc r11, ZERO
-  ; n * R, its bytes 1..3 in r25:r24:r22
+  // n * R, its bytes 1..3 in r25:r24:r22
   mul r27, r19
   mov r22, r0
   mov r24, r1
@@ -484,7 +484,7 @@ fuzzy_pdi_infer:
   adc r24, ZERO
   adc r25, ZERO
   add3 r22, r24, r25, r26, r27, r23
-  ; times (E + E^2)
+  // times (E + E^2)
   mul r25, r11
   movw r20, r0
   mul r25, r10
@@ -497,7 +497,7 @@ fuzzy_pdi_infer:
   rol r21
   adc r25, ZERO
   add3 r22, r24, r25, r20, r21, ZERO
-  ; to q15
+  // to q15
   adiw r24, 1
   ror r25
   ror r24
@@ -519,7 +519,7 @@ fuzzy_pdi_infer:
 
   .size fuzzy_pdi_infer, . - fuzzy_pdi_infer
 
-; Two pages: the shift that normalises a sum with this top byte, as a factor; and the reciprocals R - 256.
+// Two pages: the shift that normalises a sum with this top byte, as a factor; and the reciprocals R - 256.
   .section .progmem.data.fuzzy_pdi_tables, "a", @progbits
   .balign 256
 fuzzy_pdi_tables:
