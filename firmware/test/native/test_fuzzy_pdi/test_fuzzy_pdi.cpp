@@ -78,7 +78,7 @@ TEST_CASE("the integral is held within 2^15 mV") {
   s.ku_mv = 30000;
   s.kp = 0;
   s.kd = 64UL << 16;
-  s.ki = 10UL << 16;
+  s.ki = 20UL << 16;
   const Coefficients c = compiled(s, 4);
   State state;
   reset(state);
