@@ -1,0 +1,128 @@
+"""scipy's differential evolution behind ask and tell.
+
+scipy calls the cost function itself, so its public function runs in a thread of its own: what it wants to know is
+handed out by `ask`, what it is told comes in by `tell`. Only one of the two threads ever runs, so a run is as
+repeatable as scipy's. The thread ends with the budget, with close(), or when the optimiser is forgotten. Bounds: scipy
+draws a coordinate that leaves the box anew.
+"""
+
+from __future__ import annotations
+
+import threading
+import weakref
+from queue import SimpleQueue
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from greywhale.optimise.box import Box, Floats, Source, latin_hypercube
+from greywhale.optimise.optimiser import PACK, Optimiser
+
+# Finite, because scipy evaluates a first pack of infinities once more; far enough from the limit that sums stay finite.
+WORST = 1e300
+FOR_EVER = 2**31 - 1
+
+
+class _Closed(BaseException):
+    """Ends scipy from inside the cost function; no Exception, which scipy might catch."""
+
+
+class _Channel:
+    """What passes between scipy's thread and the optimiser's; knows neither."""
+
+    def __init__(self) -> None:
+        self._batches: SimpleQueue[Floats | BaseException] = SimpleQueue()
+        self._costs: SimpleQueue[Floats | None] = SimpleQueue()
+
+    def cost(self, columns: Floats) -> Floats:
+        """The cost function as scipy sees it."""
+        self._batches.put(columns.T.copy())
+        costs = self._costs.get()
+        if costs is None:
+            raise _Closed
+        return costs
+
+    def run(self, options: dict[str, Any]) -> None:
+        try:
+            # Imported here: it takes a second, and most runs need no scipy.
+            from scipy.optimize import differential_evolution
+
+            # The spread of costs that stand for "worst" may overflow; nothing depends on it.
+            with np.errstate(all="ignore"):
+                differential_evolution(self.cost, **options)
+        except _Closed:
+            return
+        except BaseException as error:
+            self._batches.put(error)
+        else:
+            self._batches.put(RuntimeError("scipy's differential evolution ended by itself"))
+
+    def next_batch(self) -> Floats:
+        batch = self._batches.get()
+        if isinstance(batch, BaseException):
+            raise batch
+        return batch
+
+    def answer(self, costs: Floats) -> None:
+        self._costs.put(costs)
+
+    def close(self) -> None:
+        self._costs.put(None)
+
+
+class DifferentialEvolution(Optimiser):
+    """`scipy.optimize.differential_evolution` with its own defaults, a pack of the same size as the others', no polish
+    (which would be another method) and no early end.
+    """
+
+    name: ClassVar[str] = "de"
+    smallest_pack: ClassVar[int] = 5
+
+    def __init__(
+        self,
+        box: Box,
+        budget: int,
+        source: np.random.Generator,
+        *,
+        pack: int = PACK,
+        start: ArrayLike | None = None,
+        **scipy_options: Any,
+    ) -> None:
+        super().__init__(box, budget, source, pack=pack, start=start)
+        self._options: dict[str, Any] = {
+            **scipy_options,
+            "bounds": list(zip(box.lower, box.upper, strict=True)),
+            "rng": source,
+            "updating": "deferred",
+            "vectorized": True,
+            "polish": False,
+            "maxiter": FOR_EVER,
+            # Never converged: a negative tolerance is below every spread.
+            "tol": 0.0,
+            "atol": -1.0,
+        }
+        self._channel = _Channel()
+        self._thread: threading.Thread | None = None
+        self._finalizer = weakref.finalize(self, self._channel.close)
+
+    def _propose(self) -> Floats:
+        if self._thread is None:
+            self._options["init"] = self._first_pack()
+            self._thread = threading.Thread(
+                target=self._channel.run, args=(self._options,), name="differential evolution", daemon=True
+            )
+            self._thread.start()
+        return self.box.clip(self._channel.next_batch())
+
+    def _learn(self, candidates: Floats, costs: Floats) -> None:
+        self._channel.answer(np.where(np.isfinite(costs), costs, WORST))
+
+    def close(self) -> None:
+        """End scipy's thread."""
+        self._finalizer()
+        if self._thread is not None:
+            self._thread.join()
+
+    def _scatter(self, source: Source, count: int, dimensions: int) -> Floats:
+        return latin_hypercube(source, count, dimensions)

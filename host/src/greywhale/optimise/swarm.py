@@ -1,0 +1,75 @@
+"""Particle swarm optimisation with the global best and Clerc and Kennedy's constriction.
+
+Bounds: a coordinate that leaves the box is put onto its bound and its velocity there becomes zero. The velocity is
+limited to half the box a move.
+"""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from greywhale.optimise.box import Box, Floats, Source
+from greywhale.optimise.optimiser import PACK, Optimiser
+
+INERTIA = 0.7298
+PULL = 1.49618
+FASTEST = 0.5
+
+
+def steer(
+    velocity: Floats, places: Floats, own_best: Floats, best: Floats, limit: Floats, r1: Floats, r2: Floats
+) -> Floats:
+    """The particles' next velocities."""
+    velocity = INERTIA * velocity + PULL * (r1 * (own_best - places) + r2 * (best - places))
+    return np.clip(velocity, -limit, limit)
+
+
+class Swarm(Optimiser):
+    """PSO; elitist by nature, since every particle remembers its best place."""
+
+    name: ClassVar[str] = "pso"
+
+    def __init__(
+        self, box: Box, budget: int, source: Source, *, pack: int = PACK, start: ArrayLike | None = None
+    ) -> None:
+        super().__init__(box, budget, source, pack=pack, start=start)
+        self._places = np.empty((0, box.dimensions))
+        self._velocity = np.zeros((pack, box.dimensions))
+        self._own_best = self._places
+        self._own_costs = np.full(pack, np.inf)
+
+    def _propose(self) -> Floats:
+        if not len(self._places):
+            return self._first_pack()
+        r1, r2 = self._source.random(self._places.shape), self._source.random(self._places.shape)
+        limit = FASTEST * self.box.width
+        self._velocity = steer(self._velocity, self._places, self._own_best, self.best.x, limit, r1, r2)
+        moved = self._places + self._velocity
+        inside = self.box.clip(moved)
+        self._velocity[inside != moved] = 0.0
+        return inside
+
+    def _learn(self, candidates: Floats, costs: Floats) -> None:
+        if not len(self._places):
+            self._own_best = candidates
+        better = costs < self._own_costs
+        self._own_best = np.where(better[:, None], candidates, self._own_best)
+        self._own_costs = np.where(better, costs, self._own_costs)
+        self._places = candidates
+
+
+class RandomSearch(Optimiser):
+    """Independent uniform points: what every other method has to beat."""
+
+    name: ClassVar[str] = "random"
+
+    def _propose(self) -> Floats:
+        if not self.evaluations:
+            return self._first_pack()
+        return self.box.from_unit(self._scatter(self._source, self.pack_size, self.box.dimensions))
+
+    def _learn(self, candidates: Floats, costs: Floats) -> None:
+        pass
