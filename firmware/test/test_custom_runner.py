@@ -50,7 +50,7 @@ def read_unity(output):
 def unity_case(match):
     status = TestStatus.PASSED if match["status"] == "PASS" else TestStatus.FAILED
     source = TestCaseSource(match["file"], int(match["line"]))
-    return TestCase(match["name"], status, message=match["why"] or None, source=source)
+    return TestCase(match["name"], status, message=match["why"] or None, source=source, stdout=match[0])
 
 
 class CustomTestRunner(TestRunnerBase):
