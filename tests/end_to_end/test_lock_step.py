@@ -149,7 +149,7 @@ def test_a_follower_that_cannot_follow_is_a_fault(lock_step: Any) -> None:
     host = lock_step()
     limit = schema.PARAMETER_BY_NAME["tracking_limit"]
     set_parameters(host, {"tracking_limit": limit.to_raw(0.3)})
-    stuck = host.bench.leader.home.copy()
+    stuck: np.ndarray = host.bench.leader.home.copy()
 
     class Stuck:
         def step(self, voltages: np.ndarray, dt: float) -> np.ndarray:

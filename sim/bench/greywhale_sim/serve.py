@@ -52,13 +52,13 @@ def serve(options: ServeOptions, on_ready: Callable[[str], None]) -> None:
     """Serve until Ctrl-C (KeyboardInterrupt is taken as the normal end) or, with control, the end of standard input."""
     with running(options) as server:
         on_ready(server.port.path if options.link is None else str(options.link))
-        control = Control(server) if options.control else None
+        if options.control:
+            server.while_waiting = Control(server).look
         try:
-            while control is None or control.alive:
+            while not server.ending:
                 for _ in range(TURNS_PER_COMMAND):
                     server.turn()
-                if control is not None:
-                    control.look()
+                server.while_waiting()
         except KeyboardInterrupt:
             return
 
@@ -80,7 +80,6 @@ class Control:
     def __init__(self, server: Server) -> None:
         self._server = server
         self._partial = b""
-        self.alive = True
 
     def look(self) -> None:
         """Carry out what has arrived; never waits."""
@@ -88,7 +87,7 @@ class Control:
         while select.select([descriptor], [], [], 0)[0]:
             data = os.read(descriptor, 4096)
             if not data:
-                self.alive = False
+                self._server.ending = True
                 return
             *lines, self._partial = (self._partial + data).split(b"\n")
             for text in lines:
@@ -96,7 +95,7 @@ class Control:
 
     def _answer(self, text: str) -> None:
         if text.strip() == "quit":
-            self.alive = False
+            self._server.ending = True
             return
         try:
             answer = commands.run(self._server, text)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -37,6 +38,8 @@ class Server:
         self.fast = fast
         self.noise = line.Noise()
         self.resets_by_host = 0
+        self.ending = False
+        self.while_waiting: Callable[[], None] = lambda: None  # called again and again while a host does not read
         self._seed = seed
         self._cut_at: int | None = None  # EEPROM writes at which the power goes
         self._pacer = pacer or Pacer()
@@ -110,7 +113,8 @@ class Server:
 
     def _host_stays(self) -> bool:
         self._notice_host()
-        return self.port.connected
+        self.while_waiting()
+        return self.port.connected and not self.ending
 
     def _keep_eeprom(self, now: bool = False) -> None:
         if self._eeprom is None or not (now or self.bench.time_s >= self._eeprom_check_at):

@@ -46,6 +46,11 @@ class BenchProcess:
     ) -> None:
         self.close()
 
+    @property
+    def exit_code(self) -> int | None:
+        """How the bench ended; None while it runs."""
+        return self._process.poll()
+
     def command(self, text: str) -> dict[str, Any]:
         """Carry out one bench command, for example "power off", and return its answer."""
         assert self._process.stdin is not None

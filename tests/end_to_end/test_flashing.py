@@ -1,0 +1,75 @@
+"""The real avrdude writes the real firmware through the real bootloaders; boards with other firmware are told apart."""
+
+from __future__ import annotations
+
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from greywhale import flash
+from greywhale.demo import BenchProcess
+from greywhale.errors import UserError
+from greywhale.link import schema
+from greywhale.link.device import Device
+from greywhale.link.frames import encode_frame
+
+Start = Callable[..., BenchProcess]
+
+
+def test_flash_a_blank_board(start_bench: Start, board_name: str) -> None:
+    bench = start_bench("--blank", board=board_name)
+    assert bench.command("status")["in_bootloader"]
+    hello = flash.flash(bench.port, board_name)
+    assert hello.schema_hash == schema.SCHEMA_HASH
+    with Device(bench.port) as device:
+        assert device.hello.board.key == {"mega": "mega2560", "nano": "nano328"}[board_name]
+    assert not bench.command("status")["in_bootloader"]
+
+
+OTHER_PROTOCOL = """
+#include <avr/io.h>
+#include <avr/pgmspace.h>
+#include <avr/sleep.h>
+#include <stdint.h>
+/* A firmware of another protocol version: answers each hello with the frame of its sequence number. */
+static const uint8_t frames[256][32] PROGMEM = {@FRAMES@};
+int main(void) {
+    uint8_t received[64], n = 0;
+    UCSR0A = _BV(U2X0);
+    UBRR0 = 1; /* 1 Mbaud */
+    UCSR0B = _BV(RXEN0) | _BV(TXEN0);
+    for (;;) {
+        while (!(UCSR0A & _BV(RXC0))) {}
+        uint8_t byte = UDR0;
+        if (byte) { received[n++ & 63] = byte; continue; }
+        n = 0;
+        const uint8_t* frame = frames[received[2]]; /* COBS: code, type, sequence number, ... */
+        uint8_t size = pgm_read_byte(frame);
+        while (size--) {
+            while (!(UCSR0A & _BV(UDRE0))) {}
+            UDR0 = pgm_read_byte(++frame);
+        }
+    }
+}
+"""
+
+
+def test_a_firmware_of_another_protocol_version_is_named(start_bench: Start, tmp_path: Path) -> None:
+    payload = bytes([schema.PROTOCOL + 1]) + b"a later hello"
+    rows = []
+    for sequence in range(256):
+        frame = encode_frame(schema.HelloReply.TYPE, sequence, payload)
+        rows.append("{" + ",".join(str(byte) for byte in (len(frame), *frame)) + "}")
+    source, elf, hex_file = (tmp_path / f"other.{ending}" for ending in ("c", "elf", "hex"))
+    source.write_text(OTHER_PROTOCOL.replace("@FRAMES@", ",\n".join(rows)))
+    subprocess.run(["avr-gcc", "-mmcu=atmega2560", "-Os", "-Wall", "-Werror", "-o", elf, source], check=True)
+    subprocess.run(["avr-objcopy", "-O", "ihex", elf, hex_file], check=True)
+    bench = start_bench("--firmware", str(hex_file))
+    with pytest.raises(UserError) as caught:
+        Device(bench.port)
+    message = caught.value.message
+    assert f"protocol version {schema.PROTOCOL + 1}" in message
+    assert f"version {schema.PROTOCOL}" in message
+    assert "greywhale flash" in message
