@@ -1,0 +1,203 @@
+"""Methods side by side: equal budgets, many runs, standard functions, plain and moved away from the origin.
+
+Every run's problem and random numbers follow from (seed, run, function, setting, method) alone, so that the result
+depends neither on the number of processes nor on which other methods and functions take part; all methods meet the same
+problems.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import signal
+import zlib
+from collections.abc import Callable, Iterator
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+
+import numpy as np
+
+from greywhale.errors import BAD_USAGE, UserError
+from greywhale.optimise.box import Floats
+from greywhale.optimise.functions import FUNCTIONS, SETTINGS, Setting, place
+from greywhale.optimise.methods import METHODS, create, minimise
+
+Progress = Callable[[str, float], None]
+# Two samples count as different when chance would separate them as far less often than this.
+SIGNIFICANCE = 0.05
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What is compared. `pack` None leaves every method its own size: 10, CMA-ES 4 + 3 ln d."""
+
+    functions: tuple[str, ...] = tuple(FUNCTIONS)
+    settings: tuple[Setting, ...] = ("plain", "shifted")
+    methods: tuple[str, ...] = tuple(METHODS)
+    dimensions: int = 10
+    budget: int = 500
+    runs: int = 25
+    seed: int = 0
+    pack: int | None = None
+
+    def check(self) -> None:
+        """Refuse what cannot be compared, in one sentence."""
+        for what, chosen, known in (
+            ("function", self.functions, FUNCTIONS),
+            ("setting", self.settings, SETTINGS),
+            ("method", self.methods, METHODS),
+        ):
+            _check_names(what, chosen, tuple(known))
+        for what, value, least in (
+            ("dimensions", self.dimensions, 2),
+            ("budget", self.budget, 1),
+            ("seeds", self.runs, 1),
+            ("seed", self.seed, 0),
+        ):
+            if value < least:
+                raise UserError(f"{what} is {value}, but must be at least {least}.", BAD_USAGE)
+        for method in self.methods:
+            try:
+                create(method, np.zeros(self.dimensions), np.ones(self.dimensions), budget=1, pack=self.pack).close()
+            except ValueError as error:
+                raise UserError(f"{error}.", BAD_USAGE) from None
+
+    @property
+    def evaluations(self) -> int:
+        """How often cost functions are evaluated in all."""
+        return len(self.functions) * len(self.settings) * len(self.methods) * self.runs * self.budget
+
+
+def _check_names(what: str, chosen: tuple[str, ...], known: tuple[str, ...]) -> None:
+    if not chosen:
+        raise UserError(f"no {what} was chosen; there are {', '.join(known)}.", BAD_USAGE)
+    for name in chosen:
+        if name not in known:
+            raise UserError(f"there is no {what} {name!r}; there are {', '.join(known)}.", BAD_USAGE)
+        if chosen.count(name) > 1:
+            raise UserError(f"{what} {name!r} was chosen twice.", BAD_USAGE)
+
+
+@dataclass(frozen=True)
+class Duel:
+    """On how many functions a method's costs are lower, higher, or not told apart from a rival's."""
+
+    better: int
+    worse: int
+    undecided: int
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """`costs[function, setting, method, run]`: the lowest cost found, in the plan's order."""
+
+    plan: Plan
+    costs: Floats
+
+    @property
+    def medians(self) -> Floats:
+        """A function, a setting, a method each."""
+        medians: Floats = np.median(self.costs, axis=3)
+        return medians
+
+    def of(self, function: str, setting: Setting, method: str) -> Floats:
+        """The costs of all runs of one method on one problem."""
+        plan = self.plan
+        cell = (plan.functions.index(function), plan.settings.index(setting), plan.methods.index(method))
+        costs: Floats = self.costs[cell]
+        return costs
+
+    def mean_ranks(self, setting: Setting) -> dict[str, float]:
+        """Rank 1 is the lowest cost of a run; the mean over all functions and runs (ties share their ranks)."""
+        from scipy.stats import rankdata
+
+        costs = self.costs[:, self.plan.settings.index(setting)]
+        ranks = rankdata(costs, axis=1).mean(axis=(0, 2))
+        return dict(zip(self.plan.methods, map(float, ranks), strict=True))
+
+    def places(self, setting: Setting) -> dict[str, int]:
+        """The order of the mean ranks: 1 is the best method."""
+        ranks = self.mean_ranks(setting)
+        return {method: 1 + sum(other < rank for other in ranks.values()) for method, rank in ranks.items()}
+
+    def duel(self, setting: Setting, method: str, rival: str) -> Duel:
+        """Function by function, by the Mann-Whitney test over the runs."""
+        outcomes = [self._outcome(function, setting, method, rival) for function in self.plan.functions]
+        return Duel(outcomes.count(-1), outcomes.count(1), outcomes.count(0))
+
+    def _outcome(self, function: str, setting: Setting, method: str, rival: str) -> int:
+        from scipy.stats import mannwhitneyu
+
+        own, other = self.of(function, setting, method), self.of(function, setting, rival)
+        pairs = np.sign(own[:, None] - other[None, :])
+        if not pairs.any():
+            return 0
+        if mannwhitneyu(own, other).pvalue >= SIGNIFICANCE:
+            return 0
+        return int(np.sign(pairs.sum()))
+
+
+def compare(plan: Plan, jobs: int = 1, progress: Progress | None = None) -> Comparison:
+    """Run the plan in `jobs` processes; the result does not depend on how many."""
+    plan.check()
+    shape = (len(plan.functions), len(plan.settings), len(plan.methods))
+    cells = list(np.ndindex(*shape))
+    costs = np.empty((*shape, plan.runs))
+    results = _here(plan, cells) if min(jobs, len(cells)) <= 1 else _in_processes(plan, cells, jobs)
+    for done, (cell, values) in enumerate(results, start=1):
+        costs[cell] = values
+        if progress is not None:
+            progress("comparing", done / len(cells))
+    return Comparison(plan, costs)
+
+
+Cell = tuple[int, ...]
+
+
+def _here(plan: Plan, cells: list[Cell]) -> Iterator[tuple[Cell, Floats]]:
+    for cell in cells:
+        yield cell, _run_cell(plan, cell)
+
+
+def _in_processes(plan: Plan, cells: list[Cell], jobs: int) -> Iterator[tuple[Cell, Floats]]:
+    # Spawned, since a fork would copy whatever threads (a progress bar's) are holding.
+    context = multiprocessing.get_context("spawn")
+    pool = ProcessPoolExecutor(min(jobs, len(cells)), mp_context=context, initializer=_ignore_interrupts)
+    try:
+        futures = {pool.submit(_run_cell, plan, cell): cell for cell in cells}
+        for future in as_completed(futures):
+            yield futures[future], future.result()
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _ignore_interrupts() -> None:
+    """Ctrl-C reaches all processes of a terminal; the first one ends the others."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def _run_cell(plan: Plan, cell: Cell) -> Floats:
+    function, setting, method = cell
+    return np.array(
+        [
+            run_once(plan, plan.functions[function], plan.settings[setting], plan.methods[method], run)
+            for run in range(plan.runs)
+        ]
+    )
+
+
+def run_once(plan: Plan, function: str, setting: Setting, method: str, run: int) -> float:
+    """The lowest cost that one method finds in one run."""
+    problem = place(FUNCTIONS[function], plan.dimensions, setting, _generator(plan.seed, run, function))
+    return minimise(
+        problem,
+        problem.lower,
+        problem.upper,
+        method=method,
+        budget=plan.budget,
+        seed=_generator(plan.seed, run, function, setting, method),
+        pack=plan.pack,
+    ).cost
+
+
+def _generator(seed: int, run: int, *names: str) -> np.random.Generator:
+    return np.random.default_rng([seed, run, *(zlib.crc32(name.encode()) for name in names)])
