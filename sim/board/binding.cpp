@@ -87,7 +87,8 @@ Stats collect(PyBoard& self) {
 }
 
 void bind_stats(nb::module_& m) {
-    nb::class_<InterruptTimes>(m, "InterruptTimes", "Cycles of one interrupt handler, from accepting the interrupt to the end of RETI.")
+    nb::class_<InterruptTimes>(
+        m, "InterruptTimes", "Cycles of one interrupt handler, from accepting the interrupt to the end of RETI.")
         .def_ro("count", &InterruptTimes::count, "Finished runs.")
         .def_ro("min", &InterruptTimes::shortest)
         .def_ro("mean", &InterruptTimes::mean)
@@ -104,19 +105,15 @@ void bind_stats(nb::module_& m) {
         .def_ro("eeprom_writes", &Stats::eeprom_writes)
         .def_ro("flash_pages", &Stats::flash_pages, "Flash pages erased or written by the program.")
         .def_prop_ro(
-            "vectors", [](const Stats& s) { return s.vectors; }, nb::sig("def vectors(self) -> dict[int, InterruptTimes]"),
-            "By vector number, those that ran.");
+            "vectors", [](const Stats& s) { return s.vectors; },
+            nb::sig("def vectors(self) -> dict[int, InterruptTimes]"), "By vector number, those that ran.");
 }
 
-void bind_board(nb::module_& m) {
-    nb::class_<PyBoard>(m, "Board",
-                        "A simulated Arduino: an AVR at 16 MHz and 5 V. Boards are independent of each other; use one from one "
-                        "thread at a time. A new board has no power.")
-        .def(nb::init<const std::string&>(), "chip"_a, "chip: \"atmega2560\" or \"atmega328p\".")
-        .def_prop_ro("chip", [](const PyBoard& b) { return b.chip().name; })
+using BoardClass = nb::class_<PyBoard>;
 
-        .def("load_hex", &PyBoard::load_hex, "path"_a, "bootloader"_a = false,
-             "Write an Intel HEX file to the flash; a bootloader's lowest address becomes the reset vector.")
+void bind_running(BoardClass& c) {
+    c.def("load_hex", &PyBoard::load_hex, "path"_a, nb::arg("bootloader") = false,
+          "Write an Intel HEX file to the flash; a bootloader's lowest address becomes the reset vector.")
         .def("load_elf", &PyBoard::load_elf, "path"_a, "Write an ELF program to flash and EEPROM.")
         .def("erase_flash", &PyBoard::erase_flash, "Erase the flash, the bootloader too.")
         .def("flash", [](const PyBoard& b) { return to_bytes(b.flash()); })
@@ -128,49 +125,68 @@ void bind_board(nb::module_& m) {
         .def_prop_ro("powered", &PyBoard::powered)
 
         .def("run_until", &PyBoard::run, "cycle"_a,
-             "Run to the first instruction boundary at or after the cycle. 0 running, 1 done (asleep with interrupts off), "
-             "2 crashed. Without power only time passes.")
+             "Run to the first instruction boundary at or after the cycle. 0 running, 1 done (asleep with interrupts "
+             "off), 2 crashed. Without power only time passes.")
         .def_prop_ro("crash_reason", [](const PyBoard& b) { return b.crash_reason(); })
         .def("call", &PyBoard::call, "address"_a, "limit"_a,
-             "Call a compiled function by its flash byte address, interrupts off; its exact cycles, RET included.")
+             "Call a compiled function by its flash byte address, interrupts off; its exact cycles, RET included. "
+             "Arguments and results are in the registers, data addresses 0..31.")
         .def_prop_ro("cycle", &PyBoard::cycle)
         .def_prop_rw("pc", &PyBoard::pc, &PyBoard::set_pc, "Program counter, a byte address.")
-        .def("use_reference_decoder", &PyBoard::use_reference_decoder, "on"_a,
-             "Execute with simavr's own, slower instruction decoder: the reference that the fast one is tested against.")
         .def_prop_ro("in_bootloader", &PyBoard::in_bootloader)
-        .def("peek", [](PyBoard& b, uint32_t address, uint32_t count) { return to_bytes(b.peek(address, count)); }, "address"_a,
-             "count"_a = 1, "Bytes of the data space: registers, I/O registers, RAM. Has no side effect.")
-        .def("poke", [](PyBoard& b, uint32_t address, const nb::bytes& bytes) { b.poke(address, to_string(bytes)); }, "address"_a,
-             "bytes"_a, "Overwrite bytes of the data space, without the effect a program's write would have.")
+        .def("use_reference_decoder", &PyBoard::use_reference_decoder, "on"_a,
+             "Execute with simavr's own, slower instruction decoder: the reference for tests of the fast one.");
+}
 
-        .def("set_millivolts", &PyBoard::set_millivolts, "millivolts"_a,
-             "Voltages at ADC0..7 from now on, eight float64 in mV.")
+void bind_memory(BoardClass& c) {
+    c.def(
+         "peek", [](PyBoard& b, uint32_t address, uint32_t count) { return to_bytes(b.peek(address, count)); },
+         "address"_a, "count"_a = 1, "Bytes of the data space: registers, I/O registers, RAM. Has no side effect.")
+        .def(
+            "poke", [](PyBoard& b, uint32_t address, const nb::bytes& bytes) { b.poke(address, to_string(bytes)); },
+            "address"_a, "bytes"_a, "Overwrite bytes of the data space, without what a program's write would set off.")
+        .def("eeprom", [](PyBoard& b) { return to_bytes(b.eeprom().content()); })
+        .def(
+            "set_eeprom", [](PyBoard& b, const nb::bytes& bytes) { b.eeprom().set_content(to_string(bytes)); },
+            "data"_a, "Replace the whole content.")
+        .def("stats", &collect)
+        .def_prop_ro("trace_hash", &PyBoard::trace_hash,
+                     "Equal for two boards that behaved alike to the cycle: interrupts, UART bytes, EEPROM and flash "
+                     "writes, resets.");
+}
+
+void bind_pins(BoardClass& c) {
+    c.def("set_millivolts", &PyBoard::set_millivolts, "millivolts"_a,
+          "Voltages at ADC0..7 from now on, eight float64 in mV.")
         .def("add_duty_output", &PyBoard::add_duty_output, "timer"_a, "channel"_a,
              "Watch a PWM output, for example (3, \"A\") for OC3A; its place in outputs().")
         .def("add_pin_output", &PyBoard::add_pin_output, "port"_a, "bit"_a,
              "Watch a pin, for example (\"H\", 6); its place in outputs().")
         .def("outputs", &PyBoard::outputs, nb::sig("def outputs(self) -> numpy.typing.NDArray[numpy.float64]"),
              "All watched outputs, duties 0..1 and pins 0 or 1. The same array each time: copy what must stay.")
-        .def("duty", &PyBoard::duty, "timer"_a, "channel"_a, "Mean level of an output-compare pin, 0..1, from the registers.")
-        .def("pin", &PyBoard::pin, "port"_a, "bit"_a, "Whether the pin is driven high.")
+        .def("duty", &PyBoard::duty, "timer"_a, "channel"_a,
+             "Mean level of an output-compare pin, 0..1, from the registers.")
+        .def("pin", &PyBoard::pin, "port"_a, "bit"_a, "Whether the pin is driven high.");
+}
 
-        .def("uart_send", [](PyBoard& b, const nb::bytes& bytes) {
-                 b.uart().send(static_cast<const uint8_t*>(bytes.data()), bytes.size());
-             }, "data"_a, "Queue bytes for the AVR; they take their time on the line.")
-        .def("uart_pending", [](PyBoard& b) { return b.uart().pending(); }, "Bytes the AVR's receiver does not have yet.")
-        .def("uart_receive", [](PyBoard& b) { return to_bytes(b.uart().receive()); }, "Bytes the AVR sent since the last call.")
-        .def_prop_ro("uart_available", [](PyBoard& b) { return b.uart().available(); }, "Bytes uart_receive() would return.")
+void bind_serial(BoardClass& c) {
+    c.def(
+         "uart_send", [](PyBoard& b, const nb::bytes& bytes) { b.send(to_string(bytes)); }, "data"_a,
+         "Queue bytes for the AVR; they take their time on the line. Without power they are lost.")
+        .def(
+            "uart_pending", [](PyBoard& b) { return b.uart().pending(); },
+            "Bytes the AVR's receiver does not have yet.")
+        .def(
+            "uart_receive", [](PyBoard& b) { return to_bytes(b.uart().receive()); },
+            "Bytes the AVR sent since the last call.")
+        .def_prop_ro(
+            "uart_available", [](PyBoard& b) { return b.uart().available(); }, "Bytes uart_receive() would return.")
         .def_prop_ro("uart_sent", [](PyBoard& b) { return b.uart().sent(); }, "Bytes the AVR ever sent.")
-        .def_prop_rw("uart_loopback", [](PyBoard& b) { return b.uart().loopback; }, [](PyBoard& b, bool on) { b.uart().loopback = on; },
-                     "A wire from TX0 to RX0: the AVR also receives what it sends.")
-        .def_prop_ro("baud", [](PyBoard& b) { return b.uart().baud(); }, "Baud rate the AVR is set to.")
-
-        .def("eeprom", [](PyBoard& b) { return to_bytes(b.eeprom().content()); })
-        .def("set_eeprom", [](PyBoard& b, const nb::bytes& bytes) { b.eeprom().set_content(to_string(bytes)); }, "data"_a)
-
-        .def("stats", &collect)
-        .def_prop_ro("trace_hash", &PyBoard::trace_hash,
-                     "Equal for two boards that behaved alike to the cycle: interrupts, UART bytes, EEPROM and flash writes, resets.");
+        .def_prop_rw(
+            "uart_loopback", [](PyBoard& b) { return b.uart().loopback; },
+            [](PyBoard& b, bool on) { b.uart().loopback = on; },
+            "A wire from TX0 to RX0: the AVR also receives what it sends.")
+        .def_prop_ro("baud", [](PyBoard& b) { return b.uart().baud(); }, "Baud rate the AVR is set to.");
 }
 
 }  // namespace
@@ -179,5 +195,13 @@ NB_MODULE(_board, m) {
     m.doc() = "The simulated Arduino over libsimavr.";
     nb::exception<BoardError>(m, "BoardError", PyExc_ValueError);
     bind_stats(m);
-    bind_board(m);
+    BoardClass board(m, "Board",
+                     "A simulated Arduino: an AVR at 16 MHz and 5 V. Boards are independent of each other; use each "
+                     "from one thread at a time. A new board has no power.");
+    board.def(nb::init<const std::string&>(), "chip"_a, "chip: \"atmega2560\" or \"atmega328p\".")
+        .def_prop_ro("chip", [](const PyBoard& b) { return b.chip().name; });
+    bind_running(board);
+    bind_memory(board);
+    bind_pins(board);
+    bind_serial(board);
 }

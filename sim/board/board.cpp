@@ -99,14 +99,16 @@ void Board::write_memory(const std::vector<Segment>& segments, const std::string
         const uint32_t at = in_eeprom ? segment.address - eeprom_base : segment.address;
         const size_t room = in_eeprom ? eeprom.size() : flash_size;
         if (at > room || size > room - at)
-            throw BoardError(path + " has bytes up to address " + hex(static_cast<uint32_t>(segment.address + size - 1)) +
-                             ", but the " + chip_.title + " has " + std::to_string(room / 1024) + " KB of " +
-                             (in_eeprom ? "EEPROM" : "flash") + "; build it for this chip");
+            throw BoardError(path + " has bytes up to address " +
+                             hex(static_cast<uint32_t>(segment.address + size - 1)) + ", but the " + chip_.title +
+                             " has " + std::to_string(room / 1024) + " KB of " + (in_eeprom ? "EEPROM" : "flash") +
+                             "; build it for this chip");
         if (in_eeprom)
             eeprom.replace(at, size, reinterpret_cast<const char*>(segment.bytes.data()), size);
     }
     for (const Segment& segment : segments)
-        if (segment.address < flash_size) std::copy(segment.bytes.begin(), segment.bytes.end(), avr_->flash + segment.address);
+        if (segment.address < flash_size)
+            std::copy(segment.bytes.begin(), segment.bytes.end(), avr_->flash + segment.address);
     cpu_->flash_changed(0, flash_size);
     eeprom_->set_content(eeprom);
 }
@@ -125,8 +127,9 @@ void Board::load_hex(const std::string& path, bool bootloader) {
 void Board::load_elf(const std::string& path) {
     const ElfImage image = read_elf(path);
     if (image.architecture != chip_.elf_architecture)
-        throw BoardError(path + " is built for another chip family (avr" + std::to_string(image.architecture) + "), but the " +
-                         chip_.title + " is avr" + std::to_string(chip_.elf_architecture) + "; build it for this chip");
+        throw BoardError(path + " is built for another chip family (avr" + std::to_string(image.architecture) +
+                         "), but the " + chip_.title + " is avr" + std::to_string(chip_.elf_architecture) +
+                         "; build it for this chip");
     write_memory(image.segments, path);
 }
 
@@ -272,8 +275,13 @@ uint64_t Board::call(uint32_t address, uint64_t limit) {
     for (uint8_t bit = 0; bit < flags.size(); ++bit) avr_sreg_set(&avr, bit, flags[bit]);
     if (crashed) throw BoardError("the function at " + hex(address) + " crashed: " + crash_reason());
     if (!returned)
-        throw BoardError("the function at " + hex(address) + " did not return within " + std::to_string(limit) + " cycles");
+        throw BoardError("the function at " + hex(address) + " did not return within " + std::to_string(limit) +
+                         " cycles");
     return cycles;
+}
+
+void Board::send(const std::string& bytes) {
+    if (powered_) uart_->send(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size());
 }
 
 // ---- memory ----

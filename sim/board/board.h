@@ -56,9 +56,12 @@ public:
     const std::string& crash_reason() const { return hooks_.last_error; }
 
     // Runs a compiled function as if called, interrupts off, and returns its exact cycles, RET included. Arguments and
-    // results are in the registers of the ABI (data addresses 0..31), which stay as the function leaves them. Throws if it
-    // takes more cycles than limit.
+    // results are in the registers of the ABI (data addresses 0..31), which stay as the function leaves them. Throws if
+    // it takes more cycles than limit.
     uint64_t call(uint32_t address, uint64_t limit);
+
+    // Bytes to USART0; without power they are lost.
+    void send(const std::string& bytes);
 
     uint64_t cycle() const { return avr_->cycle; }
     uint32_t pc() const { return avr_->pc; }

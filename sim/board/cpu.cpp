@@ -70,6 +70,7 @@ void Cpu::write_register(uint32_t address, uint8_t value) {
     avr_.data[address] = value;
 }
 
+// One long function on purpose: everything it needs stays in registers from one instruction to the next.
 avr_flashaddr_t Cpu::run() {
     avr_t& avr = avr_;
     uint8_t* const data = avr.data;
@@ -135,7 +136,9 @@ avr_flashaddr_t Cpu::run() {
         address |= static_cast<uint32_t>(pop()) << 8;
         return address | pop();
     };
-    const auto extended_z = [&](uint16_t high) ALWAYS_INLINE { return word(R_ZL) | static_cast<uint32_t>(data[high]) << 16; };
+    const auto extended_z = [&](uint16_t high) ALWAYS_INLINE {
+        return word(R_ZL) | static_cast<uint32_t>(data[high]) << 16;
+    };
     const auto as_signed = [&](unsigned reg) ALWAYS_INLINE { return static_cast<int>(static_cast<int8_t>(data[reg])); };
 
     for (;;) {
@@ -152,7 +155,9 @@ avr_flashaddr_t Cpu::run() {
         switch (op.code) {
             case Code::undecoded: decoded[pc] = decoder_.decode(pc); continue;
             case Code::invalid:
-                with_simavr([&] { crash("an invalid instruction,", static_cast<uint32_t>(flash[2 * pc] | flash[2 * pc + 1] << 8)); });
+                with_simavr([&] {
+                    crash("an invalid instruction,", static_cast<uint32_t>(flash[2 * pc] | flash[2 * pc + 1] << 8));
+                });
                 next = pc;
                 break;
             case Code::nop: break;
@@ -201,7 +206,9 @@ avr_flashaddr_t Cpu::run() {
                 break;
             }
             case Code::bst: flags[S_T] = static_cast<uint8_t>(d >> op.r & 1); break;
-            case Code::bld: d = static_cast<uint8_t>((d & ~(1u << op.r)) | static_cast<unsigned>(flags[S_T]) << op.r); break;
+            case Code::bld:
+                d = static_cast<uint8_t>((d & ~(1u << op.r)) | static_cast<unsigned>(flags[S_T]) << op.r);
+                break;
             case Code::sbi: write_io(op.k, read_io(op.k) | op.r); break;
             case Code::cbi: write_io(op.k, read_io(op.k) & ~static_cast<unsigned>(op.r)); break;
 

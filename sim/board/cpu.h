@@ -15,8 +15,8 @@ class Cpu {
 public:
     Cpu(avr_t& avr, const Chip& chip);
 
-    // Like simavr's avr_run_one(): executes until the next event is due, an interrupt wants attention, or the CPU sleeps
-    // or crashes. Returns where the program goes on (a byte address).
+    // Like simavr's avr_run_one(): executes until the next event is due, an interrupt wants attention, or the CPU
+    // sleeps or crashes. Returns where the program goes on (a byte address).
     avr_flashaddr_t run();
 
     // Forgets what was decoded there.

@@ -119,7 +119,9 @@ Instruction Decoder::decode_multiply(unsigned opcode) const {
 Instruction Decoder::decode_load_store(unsigned opcode, uint32_t address) const {
     const unsigned d = field_d5(opcode);
     const bool is_store = opcode & 0x200u;
-    const auto memory = [&](Code load, Code store, unsigned pointer) { return make(is_store ? store : load, d, pointer, 2); };
+    const auto memory = [&](Code load, Code store, unsigned pointer) {
+        return make(is_store ? store : load, d, pointer, 2);
+    };
     switch (opcode & 0x0Fu) {
         case 0x0: return make(is_store ? Code::store_direct : Code::load_direct, d, 0, 2, word(address + 1));
         case 0x1: return memory(Code::load_increment, Code::store_increment, register_z);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Model of the EEPROM after the data sheets, section "EEPROM Data Memory": EEMPE opens a window of four cycles for EEPE;
-// 3.4 ms to erase and write, 1.8 ms to do one of them; the CPU stands still for 4 cycles after a read and 2 after a write.
+// Model of the EEPROM after the data sheets, section "EEPROM Data Memory": EEMPE opens a window of four cycles for
+// EEPE; 3.4 ms to erase and write, 1.8 ms to do one of them; the CPU stands still for 4 cycles after a read and 2
+// after a write.
 #include "eeprom.h"
 
 #include "error.h"
@@ -69,7 +70,8 @@ avr_cycle_count_t Eeprom::on_window_closed(avr_cycle_count_t) {
 
 void Eeprom::write_control(uint16_t, uint8_t value) {
     const uint8_t old = control();
-    uint8_t now = static_cast<uint8_t>((value & EERIE) | (busy_ ? (old & EEPM) | EEPE : (value & EEPM)) | (old & EEMPE));
+    const unsigned mode = busy_ ? (old & EEPM) | EEPE : value & EEPM;  // fixed during a write
+    uint8_t now = static_cast<uint8_t>((value & EERIE) | (old & EEMPE) | mode);
     unsigned stalled = 0;
     if ((value & EEPE) && (old & EEMPE) && !busy_) {
         mode_ = static_cast<Mode>((value & EEPM) >> 4);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// ELF programs of avr-gcc: the PT_LOAD segments by physical address. simavr's own loader takes sections it knows by name
-// only and would leave out everything else a linker script places.
+// ELF programs of avr-gcc: the PT_LOAD segments by physical address. simavr's own loader takes only sections it knows
+// by name and would leave out everything else a linker script places.
 #include <elf.h>
 
 #include <cstring>
@@ -25,7 +25,8 @@ public:
     ElfImage read() const {
         const auto header = take<Elf32_Ehdr>(0, "the ELF header");
         if (std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0) fail("it does not begin like an ELF file");
-        if (header.e_ident[EI_CLASS] != ELFCLASS32 || header.e_machine != EM_AVR) fail("it is not a program for an AVR");
+        if (header.e_ident[EI_CLASS] != ELFCLASS32 || header.e_machine != EM_AVR)
+            fail("it is not a program for an AVR");
         if (header.e_type != ET_EXEC) fail("it is not linked");
         ElfImage image;
         image.architecture = header.e_flags & 0x7Fu;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Program files: Intel HEX and ELF, read into pieces of memory. Errors name the file, the line or field, and the remedy.
+// Program files: Intel HEX and ELF, read into pieces of memory. Errors name file, line or field, and remedy.
 #pragma once
 
 #include <cstdint>

@@ -9,7 +9,14 @@ namespace board {
 
 namespace {
 
-enum RecordType : unsigned { data = 0, end_of_file = 1, segment_base = 2, segment_start = 3, linear_base = 4, linear_start = 5 };
+enum RecordType : unsigned {
+    data = 0,
+    end_of_file = 1,
+    segment_base = 2,
+    segment_start = 3,
+    linear_base = 4,
+    linear_start = 5,
+};
 
 class HexReader {
 public:
@@ -64,7 +71,8 @@ private:
         const std::vector<uint8_t> record = decode(line);
         const uint32_t offset = static_cast<uint32_t>(record[1] << 8 | record[2]);
         const unsigned type = record[3];
-        if ((type == segment_base || type == linear_base) && record[0] != 2) fail("a base address record must hold 2 bytes");
+        if ((type == segment_base || type == linear_base) && record[0] != 2)
+            fail("a base address record must hold 2 bytes");
         const auto word = [&] { return static_cast<uint32_t>(record[4] << 8 | record[5]); };
         switch (type) {
             case data: append(base_ + offset, {record.begin() + 4, record.end() - 1}); break;

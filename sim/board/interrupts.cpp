@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Interrupts over simavr's vector table. simavr keeps the requests and picks the vector; entry takes it no time, so the
-// cycles of the data sheet are added here (section "Interrupt Response Time": 4 cycles, 5 with a 22-bit program counter,
-// and as many again when the CPU was asleep).
+// cycles of the data sheet are added here (section "Interrupt Response Time": 4 cycles, 5 with a 22-bit program
+// counter, and as many again when the CPU was asleep).
 #include "interrupts.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The digital ports: what the program drives. Nothing outside drives a pin, so inputs read their pull-up, and there are no
-// external and pin-change interrupts; simavr's own model would signal eight listeners on every write.
+// The digital ports: what the program drives. Nothing outside drives a pin, so inputs read their pull-up, and there are
+// no external and pin-change interrupts; simavr's own model would signal eight listeners on every write.
 #pragma once
 
 #include <cstdint>

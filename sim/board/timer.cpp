@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Counting, flags and interrupts of the timer/counters after the data sheets. A match or overflow flag appears one timer
-// clock after the counter reached the value. Not modelled: external clocks, input capture, asynchronous operation, the
-// delay of OCR updates in PWM modes.
+// Counting, flags and interrupts of the timer/counters after the data sheets. A match or overflow flag appears one
+// timer clock after the counter reached the value. Not modelled: external clocks, input capture, asynchronous clock,
+// the delay of OCR updates in PWM modes.
 #include "timer.h"
 
 #include <algorithm>

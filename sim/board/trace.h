@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A running hash over everything a program does in time. Two runs behaved alike, to the cycle, if their hashes are equal.
+// A running hash over what a program does and when. Two runs behaved alike, to the cycle, if their hashes are equal.
 #pragma once
 
 #include <cstdint>

@@ -65,8 +65,8 @@ void Uart::drop_pending() {
     cancel<&Uart::on_stop_bit>(avr_, *this);
 }
 
-// The chip samples the middle of each bit: it is sure of the start bit after half a bit, and has the byte in the middle of
-// the stop bit.
+// The chip samples the middle of each bit: it is sure of the start bit after half a bit, and has the byte in the middle
+// of the stop bit.
 void Uart::start_reception(uint64_t start) {
     receiving_ = true;
     const uint64_t half_bit = bit_cycles() / 2;
