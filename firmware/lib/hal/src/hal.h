@@ -47,7 +47,7 @@ bool rx_available();
 uint8_t rx_read();              // only when rx_available()
 uint8_t tx_free();
 void tx_write(const uint8_t* bytes, uint8_t count);   // 1..tx_free() of them
-uint8_t rx_lost();              // bytes lost since the last call
+uint8_t rx_lost();              // times since the last call that bytes were lost, at most 255
 
 // --- EEPROM, one byte at a time; a write goes on in the background for about 3.4 ms.
 bool eeprom_busy();

@@ -110,31 +110,32 @@ SENDABLE:
     sts  UCSR0B, r25
 1:  leave
 
-; A byte has come. One that finds the ring full is lost and counted, as are those that the chip had to drop.
+; A byte has come. When the ring is full it stays in the chip and the receiver is silenced until there is room again: a
+; babbling host then costs no more time than the main loop spends reading it. What the chip drops meanwhile, it tells.
 .global RECEIVED
 RECEIVED:
     enter
+    lds  r24, hal_rx_head
+    mov  r25, r24
+    inc  r25
+    andi r25, RING_SIZE - 1
+    lds  r30, hal_rx_tail
+    cp   r25, r30
+    breq 2f
+    sts  hal_rx_head, r25
+    point hal_rx_ring, r24
     lds  r24, UCSR0A            ; before UDR0, which clears it
     lds  r25, UDR0
-    sbrc r24, DOR0
-    rcall count_lost
-    lds  r24, hal_rx_head
-    point hal_rx_ring, r24
-    st   Z, r25                 ; the place at the head is never in use
-    inc  r24
-    andi r24, RING_SIZE - 1
-    lds  r31, hal_rx_tail
-    cp   r24, r31
-    breq 1f
-    sts  hal_rx_head, r24
-    leave
-1:  rcall count_lost
-    leave
-
-count_lost:
+    st   Z, r25
+    sbrs r24, DOR0
+    rjmp 1f
     lds  r24, hal_rx_lost
     inc  r24
     breq 1f                     ; stays at 255
     sts  hal_rx_lost, r24
-1:  ret
+1:  leave
+2:  lds  r24, UCSR0B
+    andi r24, 0xff - (1 << RXCIE0)
+    sts  UCSR0B, r24
+    leave
 #endif  /* __AVR__ */

@@ -1,4 +1,4 @@
-// USART0 at 1 Mbaud with a ring each way; interrupts.S moves the bytes. At that speed one comes every 160 cycles and the
+// USART0 at 1 Mbaud with a ring each way; interrupts.S moves the bytes. At that speed one comes every 160 cycles, and the
 // chip holds three.
 #ifdef __AVR__
 #include <avr/interrupt.h>
@@ -34,20 +34,28 @@ uint8_t rx_read() {
   const uint8_t tail = hal_rx_tail;
   const uint8_t byte = hal_rx_ring[tail];
   hal_rx_tail = (tail + 1) & mask;
+  if (!(UCSR0B & (1 << RXCIE0))) {   // silenced by a full ring
+    cli();
+    UCSR0B |= 1 << RXCIE0;
+    sei();
+  }
   return byte;
 }
 
 uint8_t tx_free() { return static_cast<uint8_t>(mask - ((hal_tx_head - TX_TAIL) & mask)); }
 
-// The head moves once, behind the last byte: while the interrupt sees bytes, it need not be woken for each.
+// The head moves once, behind the last byte, and together with the waking of the interrupt: that one sends whatever is at
+// the tail, so it must never be awake with an empty ring.
 void tx_write(const uint8_t* bytes, uint8_t count) {
   uint8_t head = hal_tx_head;
   for (; count; --count) {
     hal_tx_ring[head] = *bytes++;
     head = (head + 1) & mask;
   }
+  cli();
   hal_tx_head = head;
   UCSR0B = UART_ON | (1 << UDRIE0);
+  sei();
 }
 
 uint8_t rx_lost() {
