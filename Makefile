@@ -31,8 +31,8 @@ lint: setup ## ruff, mypy --strict, cppcheck, generated files
 	$(PYTHON) -m tools.generate_link --check
 
 test: lint ## everything: lint, unit tests here and on the simulated board, size gate, pytest
-	$(PYTHON) -m tools.pio test -e native
-	$(PYTHON) -m tools.pio test -e sim
+	$(PYTHON) -m tools.firmware_tests native
+	$(PYTHON) -m tools.firmware_tests sim
 	$(PYTHON) -m tools.firmware_gate
 	$(PYTHON) -m pytest $(ARGS)
 

@@ -11,8 +11,7 @@ from tools.setup.console import ROOT
 
 def main() -> None:
     os.chdir(ROOT / "firmware")
-    environment = {**os.environ, **platformio.environment()}
-    os.execve(venv.PYTHON, [str(venv.PYTHON), "-m", "platformio", *sys.argv[1:]], environment)
+    os.execve(venv.PYTHON, [str(venv.PYTHON), "-m", "platformio", *sys.argv[1:]], platformio.full_environment())
 
 
 if __name__ == "__main__":

@@ -32,6 +32,10 @@ def environment() -> dict[str, str]:
     return {**venv.environment(), **quiet, **core}
 
 
+def full_environment() -> dict[str, str]:
+    return {**os.environ, **environment()}
+
+
 def step() -> None:
     """Assemble the project's own core folder if the registry does not answer; the decision is kept in build/stamps."""
     wanted = stamps.digest(stamps.files_below("tools/setup", "requirements.txt"), *debian.PACKAGES)
