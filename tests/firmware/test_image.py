@@ -1,0 +1,85 @@
+"""The real firmware images on the simulated chips: what unit tests cannot show, because it is about time and memory."""
+
+from __future__ import annotations
+
+import struct
+
+import pytest
+
+from greywhale.link import schema
+from tools.bench.bench_tick import BOARDS, Bench, memory
+
+BYTES_A_MS = 100  # what the wire carries at 1 Mbaud
+
+
+@pytest.fixture(params=BOARDS)
+def bench(request: pytest.FixtureRequest) -> Bench:
+    return Bench(request.param)
+
+
+def status(bench: Bench) -> schema.StatusReply:
+    return schema.StatusReply.unpack(bench.ask(schema.StatusRequest))
+
+
+def babble(bench: Bench, ms: int) -> None:
+    """Random bytes without a gap; at the end a zero, so that the next frame is not taken for part of the noise."""
+    bench.board.uart_send(bench.random.bytes(ms * BYTES_A_MS) + b"\0")
+    bench.wait(ms + 2)
+
+
+def test_a_babbling_host_neither_starts_the_motors_nor_delays_a_tick(bench: Bench) -> None:
+    babble(bench, 1000)
+    seen = status(bench)
+    assert seen.state == schema.State.DISABLED
+    assert seen.late_ticks == 0
+    assert seen.frames_bad > 0
+    assert seen.rx_overruns > 0
+
+
+def test_a_babbling_host_neither_stops_the_arm_nor_keeps_stop_from_it(bench: Bench) -> None:
+    bench.ask(schema.TelemetryRequest, struct.pack("<H", 1))
+    bench.ask(schema.EnableRequest, struct.pack("<H", 0))
+    babble(bench, 500)
+    seen = status(bench)
+    assert seen.state == schema.State.SOFT_START
+    assert seen.fault == schema.Fault.NONE
+    assert seen.late_ticks == 0
+    assert schema.StopReply.unpack(bench.ask(schema.StopRequest)).state == schema.State.DISABLED
+
+
+def test_no_tick_is_late_while_a_set_is_staged_applied_and_saved_with_telemetry_on(bench: Bench) -> None:
+    bench.ask(schema.TelemetryRequest, struct.pack("<H", 1))
+    for i, value in enumerate(schema.DEFAULTS):
+        bench.ask(schema.ParamSetRequest, struct.pack("<Hi", i, value))
+    bench.ask(schema.ParamApplyRequest, struct.pack("<H", schema.param_crc(schema.DEFAULTS)))
+    bench.ask(schema.ParamSaveRequest)
+    bench.wait(1500)
+    seen = status(bench)
+    assert seen.save_state == schema.SaveState.SAVED
+    assert seen.late_ticks == 0
+    assert seen.tick_us_max < 500
+
+
+def test_enabling_right_after_applying_works(bench: Bench) -> None:
+    bench.ask(schema.ParamApplyRequest, struct.pack("<H", schema.param_crc(schema.DEFAULTS)))
+    bench.ask(schema.EnableRequest, struct.pack("<H", 0))
+    bench.wait(1200)
+    assert status(bench).state == schema.State.FOLLOWING
+
+
+def test_a_reset_while_the_motors_run_leaves_them_off(bench: Bench) -> None:
+    bench.millivolts[0] += 300
+    bench.board.set_millivolts(bench.millivolts)
+    bench.ask(schema.EnableRequest, struct.pack("<H", 0))
+    bench.wait(500)
+    assert bench.board.duty(*bench.output) > 0.05
+    bench.board.reset()
+    for _ in range(100):
+        bench.wait(1)
+        assert bench.board.duty(*bench.output) == 0
+    assert status(bench).stop_reason == schema.StopReason.RESET
+
+
+@pytest.mark.parametrize("name", BOARDS)
+def test_variables_and_the_deepest_stack_fit_one_and_a_half_kilobytes(name: str) -> None:
+    assert memory(name).value <= 1536
