@@ -295,6 +295,7 @@ avr_flashaddr_t Cpu::run() {
                 });
                 break;
             case Code::wdr: with_simavr([&] { avr_ioctl(&avr, AVR_IOCTL_WATCHDOG_RESET, nullptr); }); break;
+            default: __builtin_unreachable();  // spares the dispatch a range check
         }
         cycle += op.cycles;
         pc = next & mask;

@@ -116,6 +116,17 @@ def test_an_interrupt_driven_echo_at_1_megabaud_loses_nothing(program: MakeProgr
     assert run.board.stats().rx_overruns == 0
 
 
+def test_bytes_to_a_board_without_power_are_lost(program: MakeProgram) -> None:
+    run = program(ECHO)
+    run.board.uart_send(b"early")
+    assert run.board.uart_pending() == 0
+    run.start().run(1000)
+    run.board.uart_send(b"late")
+    run.board.power_off()
+    run.start().run(10_000)
+    assert run.board.uart_receive() == b""
+
+
 LEVEL = """
 volatile uint8_t rounds, got;
 ISR(USART0_UDRE_vect) { if (++rounds == 3) UCSR0B &= ~_BV(UDRIE0); }
