@@ -93,6 +93,14 @@ Out<int32_t> surface(const law::Coefficients &c, In<int32_t> e, In<int32_t> ce) 
   return u.numpy();
 }
 
+law::Coefficients compiled(const law::Settings &settings, uint8_t period_ms) {
+  law::Coefficients out;
+  const law::Refusal refusal = law::compile(settings, period_ms, out);
+  if (refusal != law::Refusal::none)
+    throw std::invalid_argument("The settings are refused for reason " + std::to_string(static_cast<int>(refusal)) + ".");
+  return out;
+}
+
 struct Controller {
   law::Coefficients coefficients;
   law::State state;
@@ -155,15 +163,17 @@ void bind_fuzzy(nb::module_ &m) {
       .def(
           "__init__",
           [](Controller *self, const law::Settings &settings, uint8_t period_ms) {
-            law::Coefficients coefficients;
-            const law::Refusal refusal = law::compile(settings, period_ms, coefficients);
-            if (refusal != law::Refusal::none)
-              throw std::invalid_argument("The settings are refused with reason " + std::to_string(static_cast<int>(refusal)) + ".");
-            new (self) Controller{coefficients, {}};
+            new (self) Controller{compiled(settings, period_ms), {}};
             law::reset(self->state);
           },
           "settings"_a, "period_ms"_a)
       .def("reset", [](Controller &self) { law::reset(self.state); })
+      .def(
+          "configure",
+          [](Controller &self, const law::Settings &settings, uint8_t period_ms) {
+            self.coefficients = compiled(settings, period_ms);
+          },
+          "settings"_a, "period_ms"_a, "New settings or period; the memory stays.")
       .def("run", &run, "leader"_a, "follower"_a, "limit_mv"_a, "step() over arrays of angles (q12) and limits.")
       .def(
           "infer", [](const Controller &self, In<int32_t> e, In<int32_t> ce) { return infer_all(self.coefficients, e, ce); },

@@ -56,39 +56,34 @@ Side make_side(uint32_t zero_width, uint32_t outer_width, uint32_t gain) {
   return {zero.slope, without_low_byte(outer.slope), static_cast<uint8_t>((zero.is_short ? 1 : 0) | (outer.is_short ? 2 : 0))};
 }
 
-Refusal check_sets(const int16_t (&negative)[4], const int16_t (&positive)[4]) {
-  for (uint8_t i = 0; i < 4; ++i) {
-    if (negative[i] < -unit || positive[i] > unit) return Refusal::range;
-    if (negative[i] >= 0 || positive[i] <= 0) {
-      // A set on the other side of zero is out of order, however far; exactly 0 is a set without width.
-      if (negative[i] > unit || positive[i] < -unit) return Refusal::range;
-      return (negative[i] > 0 || positive[i] < 0) ? Refusal::order : Refusal::width;
-    }
-    if (negative[i] > -least_width || positive[i] < least_width) return Refusal::width;
-  }
-  return Refusal::none;
+// outward: a set's width, counted away from zero on its own side.
+Refusal check_width(int32_t outward) {
+  if (outward < -unit || outward > unit) return Refusal::range;
+  if (outward < 0) return Refusal::order;
+  return outward < least_width ? Refusal::width : Refusal::none;
 }
 
 }  // namespace
 
 Refusal compile(const Settings& s, uint8_t period_ms, Coefficients& out) {
   if (period_ms < 1 || period_ms > longest_period_ms) return Refusal::period;
-  const int16_t negative[4] = {s.ne_c, s.ze_a, s.nce_c, s.zce_a};
-  const int16_t positive[4] = {s.pe_b, s.ze_c, s.pce_b, s.zce_c};
-  const Refusal refusal = check_sets(negative, positive);
-  if (refusal != Refusal::none) return refusal;
+  const int16_t left[4] = {s.ne_c, s.ze_a, s.nce_c, s.zce_a};
+  const int16_t right[4] = {s.pe_b, s.ze_c, s.pce_b, s.zce_c};
+  for (uint8_t i = 0; i < 4; ++i) {
+    Refusal refusal = check_width(-int32_t{left[i]});
+    if (refusal == Refusal::none) refusal = check_width(right[i]);
+    if (refusal != Refusal::none) return refusal;
+  }
   if (s.kp > largest_k || s.kd > largest_k || s.ki > largest_ki || s.ku_mv > largest_ku_mv) return Refusal::gain;
   if (s.ki * period_ms >= largest_ki_period) return Refusal::gain;
 
   const uint32_t kd = s.kd * kd_period_ms;
   Coefficients made;
   for (uint8_t side = 0; side < 2; ++side) {
-    const uint16_t outer_e = static_cast<uint16_t>(side == 0 ? positive[0] : -negative[0]);
-    const uint16_t zero_e = static_cast<uint16_t>(side == 0 ? positive[1] : -negative[1]);
-    const uint16_t outer_ce = static_cast<uint16_t>(side == 0 ? positive[2] : -negative[2]);
-    const uint16_t zero_ce = static_cast<uint16_t>(side == 0 ? positive[3] : -negative[3]);
-    made.e[side] = make_side(zero_e, outer_e, s.kp);
-    made.ce[side] = make_side(uint32_t{zero_ce} * period_ms, uint32_t{outer_ce} * period_ms, kd);
+    uint32_t width[4];
+    for (uint8_t i = 0; i < 4; ++i) width[i] = static_cast<uint16_t>(side == 0 ? right[i] : -left[i]);
+    made.e[side] = make_side(width[1], width[0], s.kp);
+    made.ce[side] = make_side(width[3] * period_ms, width[2] * period_ms, kd);
   }
   made.integral = (s.ki * period_ms) << 3;
   made.ku_mv = s.ku_mv;

@@ -1,0 +1,93 @@
+"""One joint's controller as the board stores it, and what a board refuses: the host checks before it sends."""
+
+from __future__ import annotations
+
+from dataclasses import astuple, dataclass, fields
+from fractions import Fraction
+from pathlib import Path
+from typing import Self
+
+from greywhale import _native
+from greywhale.config.controller import JointController, load
+from greywhale.link.schema import Refusal
+
+SET_UNIT = 1 << 14
+GAIN_UNIT = 1 << 16
+ANGLE_UNIT = 1 << 12
+
+LEAST_WIDTH = 164  # 0.01, rounded up
+LARGEST_K = 64 * GAIN_UNIT
+LARGEST_KI = 1000 * GAIN_UNIT
+LARGEST_KI_PERIOD = 1 << 28
+LARGEST_KU_MV = 30_000
+LONGEST_PERIOD_MS = 50
+KD_PERIOD_MS = 20
+
+
+@dataclass(frozen=True)
+class JointSettings:
+    """Sets in q14, gains in q16, Ku in mV; kd belongs to 20 ms. The names are the paper's and the firmware's."""
+
+    ne_c: int
+    ze_a: int
+    ze_c: int
+    pe_b: int
+    nce_c: int
+    zce_a: int
+    zce_c: int
+    pce_b: int
+    kp: int
+    kd: int
+    ki: int
+    ku_mv: int
+
+    @classmethod
+    def of(cls, joint: JointController) -> Self:
+        """The nearest values that the board can store."""
+        raw = {parameter.name.partition(".")[2]: parameter.to_raw(value) for _, parameter, value in joint.parameters()}
+        return cls(**raw)
+
+    def set_values(self) -> dict[str, Fraction]:
+        """The sets as exact numbers in [-1, 1]."""
+        return {field.name: Fraction(getattr(self, field.name), SET_UNIT) for field in fields(self)[:8]}
+
+    def native(self) -> _native.FuzzySettings:
+        """The firmware's structure."""
+        settings = _native.FuzzySettings()
+        for field in fields(self):
+            setattr(settings, field.name, getattr(self, field.name))
+        return settings
+
+    def controller(self, period_ms: int) -> _native.FuzzyController:
+        """The firmware's controller, compiled for this machine."""
+        return _native.FuzzyController(self.native(), period_ms)
+
+    def refusal(self, period_ms: int) -> Refusal:
+        """Why a board would refuse these settings: the checks of the firmware's compile(), in their order."""
+        if not 1 <= period_ms <= LONGEST_PERIOD_MS:
+            return Refusal.PERIOD
+        left = (self.ne_c, self.ze_a, self.nce_c, self.zce_a)
+        right = (self.pe_b, self.ze_c, self.pce_b, self.zce_c)
+        for outward in (size for pair in zip((-value for value in left), right, strict=True) for size in pair):
+            if abs(outward) > SET_UNIT:
+                return Refusal.RANGE
+            if outward < 0:
+                return Refusal.ORDER
+            if outward < LEAST_WIDTH:
+                return Refusal.WIDTH
+        return self._gain_refusal(period_ms)
+
+    def _gain_refusal(self, period_ms: int) -> Refusal:
+        limits = ((self.kp, LARGEST_K), (self.kd, LARGEST_K), (self.ki, LARGEST_KI), (self.ku_mv, LARGEST_KU_MV))
+        if any(value > limit for value, limit in limits) or self.ki * period_ms >= LARGEST_KI_PERIOD:
+            return Refusal.GAIN
+        return Refusal.NONE
+
+    def as_tuple(self) -> tuple[int, ...]:
+        """The values in the firmware's order."""
+        return astuple(self)
+
+
+def load_joints(path: str | Path) -> tuple[JointSettings, ...]:
+    """The four joints of a controller file."""
+    return tuple(JointSettings.of(joint) for joint in load(path).joint)

@@ -1,0 +1,211 @@
+"""The firmware's arithmetic, bit for bit, over numpy arrays: the integer twin of firmware/lib/fuzzy_pdi.
+
+Function for function compile.cpp, arithmetic.h, inference.h and fuzzy_pdi.cpp; docs/fuzzy.md has the formats.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from greywhale.fuzzy.settings import KD_PERIOD_MS, JointSettings
+
+Ints = NDArray[np.int64]
+
+ONE = (1 << 24) - 1  # membership 1.0
+LARGEST_SLOPE = (1 << 32) - 1
+INTEGRAL_END = 1 << 46  # 2^-31 mV
+
+_RECIPROCALS = np.array([131072 // (257 + i) for i in range(256)], dtype=np.int64)
+
+
+@dataclass(frozen=True)
+class Side:
+    """Slopes on one side of one input; a short ramp's is 2^8 times finer."""
+
+    zero: int
+    outer: int
+    zero_short: bool
+    outer_short: bool
+
+
+@dataclass(frozen=True)
+class Coefficients:
+    """Sides [positive, negative] of e and ce, the integral's step in 2^-31 mV and Ku."""
+
+    e: tuple[Side, Side]
+    ce: tuple[Side, Side]
+    integral: int
+    ku_mv: int
+
+
+def _slope(width: int, gain: int) -> tuple[int, bool]:
+    part = ONE * 4 * gain
+    is_short = (part >> 32) >= width
+    divisor = width << 8 if is_short else width
+    return min((2 * part + divisor) // (2 * divisor), LARGEST_SLOPE), is_short
+
+
+def _without_low_byte(slope: int) -> int:
+    if slope < 1 << 24:
+        return slope
+    return min(slope + 128, LARGEST_SLOPE) & ~0xFF
+
+
+def _side(zero_width: int, outer_width: int, gain: int) -> Side:
+    zero, zero_short = _slope(zero_width, gain)
+    outer, outer_short = _slope(outer_width, gain)
+    return Side(zero, _without_low_byte(outer), zero_short, outer_short)
+
+
+def compile_settings(s: JointSettings, period_ms: int) -> Coefficients:
+    """The coefficients that the firmware derives from settings it does not refuse."""
+    kd = s.kd * KD_PERIOD_MS
+    return Coefficients(
+        e=(_side(s.ze_c, s.pe_b, s.kp), _side(-s.ze_a, -s.ne_c, s.kp)),
+        ce=(
+            _side(s.zce_c * period_ms, s.pce_b * period_ms, kd),
+            _side(-s.zce_a * period_ms, -s.nce_c * period_ms, kd),
+        ),
+        integral=(s.ki * period_ms) << 3,
+        ku_mv=s.ku_mv,
+    )
+
+
+def _climb(slope: int, is_short: bool, size: Ints) -> Ints:
+    if is_short:
+        return np.where(size > 255, ONE, _climb(slope, False, np.minimum(size, 255) * 256))
+    height: Ints = np.minimum((size * slope + 32768) >> 16, ONE)
+    return height
+
+
+def _fuzzify(sides: tuple[Side, Side], value: Ints) -> tuple[Ints, Ints]:
+    size = np.abs(value)
+    zero = [_climb(side.zero, side.zero_short, size) for side in sides]
+    outer = [_climb(side.outer, side.outer_short, size) for side in sides]
+    return ONE - np.where(value < 0, zero[1], zero[0]), np.where(value < 0, outer[1], outer[0])
+
+
+def ratio_q15(part: Ints, whole: Ints) -> Ints:
+    """2^15 * part / whole for part <= whole and 2^16 <= whole < 2^26."""
+    down = np.where(whole >> 25, 2, np.where(whole >> 24, 1, 0))
+    part, whole = part >> down, whole >> down
+    up = 24 - np.frexp(whole.astype(np.float64))[1].astype(np.int64)  # 2^(exponent-1) <= whole < 2^exponent
+    part, whole = part << up, whole << up
+
+    r = _RECIPROCALS[(whole >> 15) & 255]
+    rest = (0xFFFFFFFF - whole * r) >> 9
+    series = rest + (((rest >> 8) * (rest >> 8)) >> 7)
+    first = (part * r) >> 8
+    high, low = first >> 16, (first >> 8) & 255
+    more = high * (series >> 8) + ((high * (series & 255)) >> 8) + ((low * (series >> 8)) >> 8)
+    quotient: Ints = (((first + 2 * more) >> 8) + 1) >> 1
+    return quotient
+
+
+@dataclass(frozen=True)
+class Inference:
+    """Every intermediate: heights, rules seen from e's side, magnitude of u_fuzzy in q15 and its sign."""
+
+    e_zero: Ints
+    e_outer: Ints
+    ce_zero: Ints
+    ce_outer: Ints
+    with_e: Ints
+    zero: Ints
+    against_e: Ints
+    size: Ints
+    flip: NDArray[np.bool_]
+    no_rule: NDArray[np.bool_]
+    u: Ints  # with its sign
+
+
+def infer(c: Coefficients, e: ArrayLike, ce: ArrayLike) -> Inference:
+    """The inference for errors and changes of error in 1/4096 rad."""
+    e, ce = np.broadcast_arrays(np.asarray(e, np.int64), np.asarray(ce, np.int64))
+    a, big_a = _fuzzify(c.e, e)
+    b, big_b = _fuzzify(c.ce, ce)
+    same = (e < 0) == (ce < 0)
+    with_e = np.where(
+        same,
+        np.maximum(np.minimum(a, big_b), np.minimum(big_a, np.maximum(b, big_b))),
+        np.minimum(big_a, b),
+    )
+    zero = np.where(same, np.minimum(a, b), np.maximum(np.minimum(a, b), np.minimum(big_a, big_b)))
+    against = np.where(same, 0, np.minimum(a, big_b))
+
+    whole = with_e + zero + against
+    no_rule = whole < 65536
+    size = np.where(no_rule, 0, ratio_q15(np.abs(with_e - against), np.where(no_rule, 65536, whole)))
+    flip = (against > with_e) & ~no_rule
+    u = np.where((e < 0) != flip, -size, size)
+    return Inference(a, big_a, b, big_b, with_e, zero, against, size, flip, no_rule, u)
+
+
+@dataclass(frozen=True)
+class Run:
+    """A trajectory: per period u_fuzzy (q15), volts (mV), flags, and the integral in 2^-31 mV."""
+
+    u_fuzzy: Ints
+    volts_mv: Ints
+    saturated: NDArray[np.bool_]
+    no_rule: NDArray[np.bool_]
+    integral: list[int]
+
+
+def _difference(a: Ints, b: Ints) -> Ints:
+    difference: Ints = np.clip(a - b, -32767, 32767)
+    return difference
+
+
+class Controller:
+    """The law of one joint with its memory."""
+
+    def __init__(self, settings: JointSettings, period_ms: int) -> None:
+        self.configure(settings, period_ms)
+        self.reset()
+
+    def configure(self, settings: JointSettings, period_ms: int) -> None:
+        """New settings or period; the memory stays."""
+        self.coefficients = compile_settings(settings, period_ms)
+
+    def reset(self) -> None:
+        self.integral = 0  # 2^-31 mV
+        self.previous: int | None = None
+
+    def run(self, leader: ArrayLike, follower: ArrayLike, limit_mv: ArrayLike) -> Run:
+        """One period after another; only the integral cannot be vectorised."""
+        c = self.coefficients
+        error = _difference(np.asarray(leader, np.int64), np.asarray(follower, np.int64))
+        before = np.concatenate([[error[0] if self.previous is None else self.previous], error[:-1]])
+        inference = infer(c, error, _difference(error, before))
+        limits = np.broadcast_to(np.asarray(limit_mv, np.int64), error.shape)
+        drive = inference.u * c.ku_mv
+
+        volts, saturated, integral = [], [], []
+        for e, proportional, limit in zip(error.tolist(), drive.tolist(), limits.tolist(), strict=True):
+            taken = min(max(self.integral + e * c.integral, -INTEGRAL_END), INTEGRAL_END - 1)
+            millivolts, down = _volts(proportional, taken)
+            saturated.append(millivolts > limit)
+            if millivolts > limit and down == (e < 0):
+                taken = self.integral
+                millivolts, down = _volts(proportional, taken)
+            self.integral = taken
+            integral.append(taken)
+            volts.append(-min(millivolts, limit) if down else min(millivolts, limit))
+        self.previous = int(error[-1])
+        return Run(
+            np.clip(inference.u, -32767, 32767),
+            np.array(volts, np.int64),
+            np.array(saturated, np.bool_),
+            inference.no_rule,
+            integral,
+        )
+
+
+def _volts(proportional: int, integral: int) -> tuple[int, bool]:
+    """Size in mV, rounded half away from zero, and whether it is negative."""
+    total = proportional + (integral >> 16)
+    return (2 * abs(total) + 0x8000) >> 16, total < 0

@@ -1,0 +1,98 @@
+"""The firmware's C++, compiled for this machine, equals the integer twin bit for bit."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from greywhale.fuzzy import twin
+from greywhale.fuzzy.settings import JointSettings
+
+Case = tuple[JointSettings, int]
+Points = Callable[[JointSettings, int, int], tuple[NDArray[np.int64], NDArray[np.int64]]]
+
+COLUMNS = {
+    "e_zero": "e_zero",
+    "e_outer": "e_outer",
+    "ce_zero": "ce_zero",
+    "ce_outer": "ce_outer",
+    "with": "with_e",
+    "zero": "zero",
+    "against": "against_e",
+    "size": "size",
+    "flip": "flip",
+    "no_rule": "no_rule",
+}
+
+
+@settings(max_examples=400)
+@given(data=st.data())
+def test_coefficients(cases: st.SearchStrategy[Case], data: st.DataObject) -> None:
+    joint, period = data.draw(cases)
+    native = joint.controller(period).coefficients
+    ours = twin.compile_settings(joint, period)
+    sides = [
+        (side.zero, side.outer, side.zero_short | side.outer_short << 1) for pair in (ours.e, ours.ce) for side in pair
+    ]
+    assert native == {"sides": sides, "integral": ours.integral, "ku_mv": ours.ku_mv}
+
+
+@settings(max_examples=400)
+@given(data=st.data())
+def test_every_intermediate(cases: st.SearchStrategy[Case], points: Points, data: st.DataObject) -> None:
+    joint, period = data.draw(cases)
+    e, ce = points(joint, period, data.draw(st.integers(0, 2**32 - 1)))
+    controller = joint.controller(period)
+    native = controller.infer(e.astype(np.int32), ce.astype(np.int32))
+    ours = twin.infer(twin.compile_settings(joint, period), e, ce)
+    for name, column in COLUMNS.items():
+        np.testing.assert_array_equal(native[name], getattr(ours, column), err_msg=name)
+    np.testing.assert_array_equal(controller.u(e.astype(np.int32), ce.astype(np.int32)), ours.u)
+
+
+def _walk(random: np.random.Generator, length: int) -> NDArray[np.int64]:
+    """Angles that move smoothly, jump, and sometimes sit at the ends of the format."""
+    steps = random.normal(0.0, 10.0 ** random.uniform(0, 3.5), length)
+    steps[random.random(length) < 0.02] *= 50
+    return np.clip(np.cumsum(steps), -32768, 32767).astype(np.int64)
+
+
+@settings(max_examples=200)
+@given(data=st.data())
+def test_whole_trajectories(cases: st.SearchStrategy[Case], data: st.DataObject) -> None:
+    """Integral, saturation, anti-windup, the supply's limit, a change of settings and period on the way, a reset."""
+    random = np.random.default_rng(data.draw(st.integers(0, 2**32 - 1)))
+    joint, period = data.draw(cases)
+    native, ours = joint.controller(period), twin.Controller(joint, period)
+    for part in range(3):
+        length = 150
+        leader, follower = _walk(random, length), _walk(random, length)
+        limit = np.minimum(random.integers(0, 32768) + np.arange(length) * random.integers(0, 200), 32767)
+        got = native.run(leader.astype(np.int16), follower.astype(np.int16), limit.astype(np.uint16))
+        expected = ours.run(leader, follower, limit)
+        for name in ("u_fuzzy", "volts_mv", "saturated", "no_rule"):
+            np.testing.assert_array_equal(got[name], getattr(expected, name), err_msg=name)
+        integral = [
+            (int(whole) << 16) + int(part) for whole, part in zip(got["integral"], got["fraction"], strict=True)
+        ]
+        assert integral == expected.integral
+        if part == 0:
+            joint, period = data.draw(cases)
+            native.configure(joint.native(), period)
+            ours.configure(joint, period)
+        else:
+            native.reset()
+            ours.reset()
+
+
+def test_the_paper_s_controllers_over_a_plane(paper_joints: tuple[JointSettings, ...]) -> None:
+    for joint in paper_joints:
+        for period in (1, 20):
+            axis = np.arange(-32767, 32768, 173)
+            e, ce = (grid.ravel() for grid in np.meshgrid(axis, axis // 7))
+            native = joint.controller(period).u(e.astype(np.int32), ce.astype(np.int32))
+            np.testing.assert_array_equal(native, twin.infer(twin.compile_settings(joint, period), e, ce).u)

@@ -1,0 +1,189 @@
+"""What the law promises, checked on the exact reference and on the integers."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from greywhale import _native
+from greywhale.fuzzy import exact, twin
+from greywhale.fuzzy.rules import OUTPUTS, RULES
+from greywhale.fuzzy.settings import GAIN_UNIT, JointSettings
+from greywhale.link.schema import Refusal
+
+Case = tuple[JointSettings, int]
+Points = Callable[[JointSettings, int, int], tuple[NDArray[np.int64], NDArray[np.int64]]]
+
+Q15 = 1 << 15
+PLAIN = JointSettings(-4915, -4915, 4915, 4915, -1638, -1638, 1638, 1638, 33620, 10486, 20513, 15000)
+
+
+def _mirrored(joint: JointSettings) -> JointSettings:
+    return replace(
+        joint,
+        ne_c=-joint.pe_b,
+        ze_a=-joint.ze_c,
+        ze_c=-joint.ze_a,
+        pe_b=-joint.ne_c,
+        nce_c=-joint.pce_b,
+        zce_a=-joint.zce_c,
+        zce_c=-joint.zce_a,
+        pce_b=-joint.nce_c,
+    )
+
+
+@settings(max_examples=200)
+@given(data=st.data())
+def test_mirrored_sets_mirror_the_output(cases: st.SearchStrategy[Case], points: Points, data: st.DataObject) -> None:
+    """Odd symmetry, also for symmetric sets, which are their own mirror image."""
+    joint, period = data.draw(cases)
+    e, ce = points(joint, period, data.draw(st.integers(0, 2**32 - 1)))
+    u = twin.infer(twin.compile_settings(joint, period), e, ce).u
+    mirrored = twin.infer(twin.compile_settings(_mirrored(joint), period), -e, -ce).u
+    np.testing.assert_array_equal(u, -mirrored)
+
+
+@settings(max_examples=200)
+@given(data=st.data())
+def test_output_is_within_one_and_some_rule_fires(
+    cases: st.SearchStrategy[Case], points: Points, data: st.DataObject
+) -> None:
+    joint, period = data.draw(cases)
+    e, ce = points(joint, period, data.draw(st.integers(0, 2**32 - 1)))
+    ours = twin.infer(twin.compile_settings(joint, period), e, ce)
+    assert np.abs(ours.u).max() <= Q15
+    assert not ours.no_rule.any()
+    # The least sum of heights that widths of 0.01 and more allow: 0.01 / (1 + 0.01), rounded as the sets are.
+    assert (ours.with_e + ours.zero + ours.against_e).min() >= 164 / (16384 + 164) * twin.ONE - 3
+
+
+@settings(max_examples=200)
+@given(data=st.data())
+def test_no_error_no_output_and_no_change_of_sides(cases: st.SearchStrategy[Case], data: st.DataObject) -> None:
+    joint, period = data.draw(cases)
+    size = np.arange(0, 32768, 97)
+    ours = twin.infer(twin.compile_settings(joint, period), np.concatenate([size, -size]), 0).u
+    assert ours[0] == 0
+    assert (ours[: len(size)] >= 0).all()
+    assert (ours[len(size) :] <= 0).all()
+
+
+@settings(max_examples=100)
+@given(data=st.data())
+def test_monotone_in_e_wherever_the_exact_law_is(
+    cases: st.SearchStrategy[Case], points: Points, data: st.DataObject
+) -> None:
+    """Where the exact law does not fall, the integers do not fall by more than their last bit."""
+    joint, period = data.draw(cases)
+    e, ce = points(joint, period, data.draw(st.integers(0, 2**32 - 1)))
+    law = exact.Law(joint, period)
+    e, change = np.unique(e)[::10], int(ce[0])
+    exactly = [law.infer(Fraction(int(value), 4096), Fraction(change, 4096)).u for value in e]
+    ours = twin.infer(twin.compile_settings(joint, period), e, change).u
+    for before, after, low, high in zip(exactly, exactly[1:], ours, ours[1:], strict=False):
+        if after >= before:
+            assert high >= low - 1
+
+
+def test_a_partition_of_unity_makes_a_straight_line() -> None:
+    """The sets before tuning, without a change of error: u_fuzzy is x / 0.3 up to 1, and the integers never fall."""
+    e = np.arange(-12000, 12001)
+    u = twin.infer(twin.compile_settings(PLAIN, 20), e, 0).u
+    line = np.clip(e / 4096 * PLAIN.kp / GAIN_UNIT / (PLAIN.pe_b / 16384), -1, 1) * Q15
+    assert np.abs(u - line).max() < 1
+    assert (np.diff(u) >= 0).all()
+
+
+@settings(max_examples=100)
+@given(data=st.data())
+def test_the_exact_law_is_continuous(cases: st.SearchStrategy[Case], data: st.DataObject) -> None:
+    """Across every corner a step of 1e-9 moves u by no more than the steepest slope allows."""
+    joint, _ = data.draw(cases)
+    sets = joint.set_values()
+    tiny = Fraction(1, 10**9)
+    y = data.draw(st.fractions(-1, 1, max_denominator=1000))
+    for corner in [Fraction(0), *list(sets.values())[:4]]:
+        below, above = (exact.infer(exact.clamp(corner + side * tiny, Fraction(1)), y, sets).u for side in (-1, 1))
+        assert abs(above - below) <= 3 * 2 * tiny * 100 / Fraction(99, 10_000)
+    x = data.draw(st.fractions(-1, 1, max_denominator=1000))
+    for corner in [Fraction(0), *list(sets.values())[4:]]:
+        below, above = (exact.infer(x, exact.clamp(corner + side * tiny, Fraction(1)), sets).u for side in (-1, 1))
+        assert abs(above - below) <= 3 * 2 * tiny * 100 / Fraction(99, 10_000)
+
+
+def test_the_exact_law_is_the_weighted_singletons_of_table_6() -> None:
+    """The rules as the file has them, and one point worked out by hand."""
+    file = Path(__file__).parents[2] / "shared" / "fuzzy_tables" / "rules.toml"
+    table = tomllib.loads(file.read_text())
+    assert table["rules"] == RULES
+    assert table["outputs"] == OUTPUTS
+    sets = {name: Fraction(value) for name, value in zip(
+        ("ne_c", "ze_a", "ze_c", "pe_b", "nce_c", "zce_a", "zce_c", "pce_b"),
+        ("-1/2", "-1/2", "1/2", "1/4", "-1/5", "-1/5", "1/5", "1/5"),
+        strict=True,
+    )}  # fmt: skip
+    # x = 1/8: ZE 3/4, PE 1/2. y = -1/20: ZCE 3/4, NCE 1/4. PU: min(1/2, 3/4); NU: min(3/4, 1/4); ZU: 3/4.
+    found = exact.infer(Fraction(1, 8), Fraction(-1, 20), sets)
+    assert found.heights == {"PU": Fraction(1, 2), "NU": Fraction(1, 4), "ZU": Fraction(3, 4)}
+    assert found.u == Fraction(1, 6)
+
+
+def test_crisp_feet_leave_points_without_a_rule() -> None:
+    """Defined all the same: 0, and reported."""
+    sets = PLAIN.set_values()
+    gap = {**sets, "ze_c": Fraction(1, 10)}
+    between = exact.infer(Fraction(1, 5), Fraction(0), gap, exact.Feet.CRISP)
+    assert between.no_rule
+    assert between.u == 0
+    assert not exact.infer(Fraction(1, 5), Fraction(0), gap).no_rule
+    beyond = exact.infer(Fraction(1), Fraction(0), gap, exact.Feet.CRISP)
+    assert beyond.u == 1
+
+
+@settings(max_examples=500)
+@given(data=st.data())
+def test_host_and_firmware_refuse_the_same(data: st.DataObject) -> None:
+    corner = st.one_of(
+        st.sampled_from([0, 1, 163, 164, 16384, 16385, 32767]), st.integers(164, 16384), st.integers(-300, 300)
+    )
+    signs = (-1, -1, 1, 1, -1, -1, 1, 1)
+    values = [sign * data.draw(corner) for sign in signs]
+    gain = st.sampled_from([0, 1, GAIN_UNIT, 64 * GAIN_UNIT, 64 * GAIN_UNIT + 1, 2**32 - 1])
+    ki = st.sampled_from([0, GAIN_UNIT, 1000 * GAIN_UNIT, 1000 * GAIN_UNIT + 1, (1 << 28) - 1, 1 << 28, 1 << 27])
+    values += [data.draw(gain), data.draw(gain), data.draw(ki), data.draw(st.sampled_from([0, 30_000, 30_001]))]
+    joint = JointSettings(*values)
+    period = data.draw(st.sampled_from([0, 1, 2, 4, 20, 50, 51, 255]))
+    assert Refusal(_native.fuzzy_refusal(joint.native(), period)) is joint.refusal(period)
+
+
+@pytest.mark.parametrize(
+    ("change", "refusal"),
+    [
+        ({"ne_c": 4915}, Refusal.ORDER),
+        ({"pe_b": 16385}, Refusal.RANGE),
+        ({"zce_c": 163}, Refusal.WIDTH),
+        ({"kp": 64 * GAIN_UNIT + 1}, Refusal.GAIN),
+        ({"ki": 1 << 27}, Refusal.GAIN),
+        ({"ku_mv": 30_001}, Refusal.GAIN),
+    ],
+)
+def test_reasons(change: dict[str, int], refusal: Refusal) -> None:
+    assert replace(PLAIN, **change).refusal(20) is refusal
+    with pytest.raises(ValueError, match="refused"):
+        replace(PLAIN, **change).controller(20)
+
+
+@pytest.mark.parametrize("period", [0, 51])
+def test_a_period_out_of_range_is_refused(period: int) -> None:
+    assert PLAIN.refusal(period) is Refusal.PERIOD
+    with pytest.raises(ValueError, match="refused"):
+        PLAIN.controller(period)
