@@ -46,8 +46,7 @@ void Sampling::configure(const params::Table& table) {
   }
 }
 
-// Not inlined: within the loop over the pots avr-gcc runs out of registers, which costs more than the calls.
-__attribute__((noinline)) void Sampling::follow(Pot& pot, uint16_t sum, uint8_t halvings) {
+inline __attribute__((always_inline)) void Sampling::follow(Pot& pot, uint16_t sum, uint8_t halvings) {
   const uint16_t filtered = low_pass(pot.filtered, static_cast<uint16_t>(sum << 4), halvings);
   pot.filtered = filtered;
   pot.angle = to_angle(filtered, pot.zero, pot.scale);
@@ -58,7 +57,8 @@ __attribute__((noinline)) void Sampling::note_rail(uint8_t pot, bool low) {
   mask = static_cast<uint8_t>(mask | (1u << pot));
 }
 
-void Sampling::tick(const uint16_t* sums) {
+// A function of its own: within a longer one avr-gcc runs out of registers here.
+__attribute__((noinline)) void Sampling::tick(const uint16_t* sums) {
   rail_low_ = rail_high_ = 0;
   const uint8_t halvings = primed_ ? halvings_ : no_filter;
   const uint16_t lowest = lowest_, span = span_;
