@@ -13,7 +13,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from greywhale.errors import BAD_USAGE, UserError
-from greywhale.flash.runner import Tool, ToolError, run_tool
+from greywhale.flash.bootloader import find_speed
+from greywhale.flash.runner import Tool, run_tool
 from greywhale.link import schema
 from greywhale.link.device import Device
 
@@ -33,7 +34,7 @@ class FlashBoard:
     identity: schema.Board
 
 
-# Nanos are sold with two bootloaders that look alike from outside, so both speeds are tried, the newer one's first.
+# Nanos are sold with two bootloaders that look alike from outside: which speed it is must be found out.
 BOARDS = {
     "mega": FlashBoard("megaatmega2560", "atmega2560", "wiring", (115200,), schema.Board.MEGA2560),
     "nano": FlashBoard("nanoatmega328", "atmega328p", "arduino", (115200, 57600), schema.Board.NANO328),
@@ -138,14 +139,10 @@ def _upload_hex(port: str, board: FlashBoard, file: Path, report: Progress) -> N
     if not file.is_file():
         raise UserError(f"{file}: there is no such file; build one with `pio run`, or leave --hex out.", BAD_USAGE)
     command = [*_avrdude(), "-c", board.programmer, "-p", board.part, "-P", port, "-D", "-U", f"flash:w:{file}:i"]
-    for baud in board.bauds:
-        tool = Tool("avrdude", [*command, "-b", str(baud)], dict(os.environ), _UPLOAD_LIMIT_S)
-        try:
-            run_tool(tool, _avrdude_progress(report))
-            return
-        except ToolError as error:
-            if not error.no_answer or baud == board.bauds[-1]:
-                raise
+    report("looking for the bootloader", 0.0)
+    baud = board.bauds[0] if len(board.bauds) == 1 else find_speed(port, board.bauds)
+    tool = Tool("avrdude", [*command, "-b", str(baud)], dict(os.environ), _UPLOAD_LIMIT_S)
+    run_tool(tool, _avrdude_progress(report))
 
 
 def _avrdude() -> list[str]:

@@ -15,7 +15,6 @@ from greywhale.errors import UserError
 _LOOK_EVERY_S = 0.1
 _GRACE_S = 5.0
 _PROBLEM = re.compile(r"error|not in sync|failed|denied|timeout|cannot|can't|mismatch|doesn't match", re.IGNORECASE)
-_NO_ANSWER = re.compile(r"not in sync|not responding|timeout communicating", re.IGNORECASE)
 _ESCAPE = re.compile(r"\x1b\[[0-9;]*[A-Za-z]")
 
 
@@ -27,14 +26,6 @@ class Tool:
     command: list[str]
     environment: dict[str, str]
     limit_s: float
-
-
-class ToolError(UserError):
-    """A tool that failed; `no_answer` when it could not talk to a bootloader at all."""
-
-    def __init__(self, tool: Tool, code: int, text: str) -> None:
-        super().__init__(f"{tool.name} failed with exit code {code}: {_problem(text)}")
-        self.no_answer = _NO_ANSWER.search(text) is not None
 
 
 def run_tool(tool: Tool, look: Callable[[str], None]) -> str:
@@ -59,7 +50,7 @@ def run_tool(tool: Tool, look: Callable[[str], None]) -> str:
             raise
         text = _read(Path(output.name))
     if code != 0:
-        raise ToolError(tool, code, text)
+        raise UserError(f"{tool.name} failed with exit code {code}: {_problem(text)}")
     return text
 
 

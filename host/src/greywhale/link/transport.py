@@ -21,14 +21,7 @@ class Transport:
 
     def __init__(self, port: str) -> None:
         self.port = port
-        if not os.path.exists(port):
-            raise UserError(f"{port}: there is no such port; `greywhale ports` lists those there are.")
-        try:
-            self._serial = serial.Serial(port, BAUD, timeout=_READ_WAIT_S, write_timeout=_WRITE_WAIT_S, exclusive=True)
-        except ValueError as error:
-            raise UserError(f"{port}: cannot be opened: {error}.") from None
-        except OSError as error:
-            raise UserError(_why_not_open(port, error)) from None
+        self._serial = open_serial(port, BAUD, _READ_WAIT_S)
 
     def read(self) -> bytes:
         """What has arrived; waits a moment when nothing has, and may then return nothing."""
@@ -55,6 +48,18 @@ class Transport:
         return UserError(
             f"{self.port}: the port went away in the middle ({reason.rstrip('.')}); check the cable and try again."
         )
+
+
+def open_serial(port: str, baud: int, read_wait_s: float) -> serial.Serial:
+    """The port, for this process alone."""
+    if not os.path.exists(port):
+        raise UserError(f"{port}: there is no such port; `greywhale ports` lists those there are.")
+    try:
+        return serial.Serial(port, baud, timeout=read_wait_s, write_timeout=_WRITE_WAIT_S, exclusive=True)
+    except ValueError as error:
+        raise UserError(f"{port}: cannot be opened: {error}.") from None
+    except OSError as error:
+        raise UserError(_why_not_open(port, error)) from None
 
 
 def _why_not_open(port: str, error: OSError) -> str:
