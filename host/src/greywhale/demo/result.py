@@ -10,7 +10,7 @@ from greywhale.report.follow import JOINT_NAMES
 
 Measure = tuple[str, str, int]  # heading, attribute of JointMeasures, decimals
 MEASURES: tuple[Measure, ...] = (
-    ("MSE [rad²]", "mse", 5),
+    ("MSE [rad²]", "mse", 6),
     ("steady-state error [rad]", "steady_state_error", 4),
     ("time delay [s]", "delay_s", 3),
 )

@@ -13,7 +13,7 @@ import numpy as np
 from greywhale import flash
 from greywhale.demo.bench import BenchProcess
 from greywhale.demo.result import DemoResult, Run
-from greywhale.errors import UserError, because
+from greywhale.errors import BAD_USAGE, UserError, because
 from greywhale.files import write_text
 from greywhale.link import schema
 from greywhale.link.device import Device
@@ -30,6 +30,7 @@ Progress = Callable[[str, float], None]
 TABLES = Path(__file__).resolve().parents[4] / "shared" / "fuzzy_tables"
 RUNS = (("before tuning", "before", "before_tuning.toml"), ("Table 10", "after", "table_10.toml"))
 
+SHORTEST_S, LONGEST_S = 4.0, 600.0  # of a generated motion
 SETTLE_S = 1.0  # recorded after the leader's last movement
 LEAD_S = 0.5  # between the end of the soft start and the leader's first movement
 READY_RAD = 0.05  # both arms are back at the start within this
@@ -53,10 +54,11 @@ def run(options: DemoOptions, progress: Progress | None = None) -> DemoResult:
     """Tell the story; everything it shows is in the folder `options.out` afterwards."""
     report = progress or (lambda what, fraction: None)
     started = time.monotonic()
-    motion = human_reaches(options.seed, options.duration_s) if options.leader is None else load_leader(options.leader)
+    motion = _motion(options)
     _make_folder(options.out)
-    played = options.out / "leader.csv"
-    save_leader(played, motion)
+    played = options.leader or options.out / "leader.csv"
+    if options.leader is None:
+        save_leader(played, motion)
     report("starting the bench", 0.0)
     with BenchProcess(*_bench_options(options, played)) as bench:
         hello = flash.flash(bench.port, options.board, progress=report)
@@ -75,6 +77,16 @@ def run(options: DemoOptions, progress: Progress | None = None) -> DemoResult:
     )
     write_text(options.out / "summary.json", json.dumps(result.as_dict(), indent=2) + "\n")
     return result
+
+
+def _motion(options: DemoOptions) -> Trajectory:
+    if options.leader is not None:
+        return load_leader(options.leader)
+    if not SHORTEST_S <= options.duration_s <= LONGEST_S:
+        raise UserError(
+            f"the duration is {options.duration_s:g} s; it must be {SHORTEST_S:g} to {LONGEST_S:g} s.", BAD_USAGE
+        )
+    return human_reaches(options.seed, options.duration_s)
 
 
 def _one_run(
