@@ -1,9 +1,26 @@
 // One control period of the fuzzy PD+I law.
 #include "fuzzy_pdi.h"
 
+#include <stddef.h>
+
 #include "inference.h"
 
 namespace fuzzy_pdi {
+
+void reset(State& state) { state = {0, 0, 0, false}; }
+
+#if defined(__AVR__) && !defined(FUZZY_PDI_PORTABLE)
+
+// What the assembly takes for granted.
+static_assert(sizeof(Side) == 9 && offsetof(Side, outer) == 4 && offsetof(Side, short_ramps) == 8, "inference_avr.S");
+static_assert(offsetof(Coefficients, ce) == 18 && offsetof(Coefficients, integral) == 36 && offsetof(Coefficients, ku_mv) == 40,
+              "step_avr.S");
+static_assert(offsetof(State, fraction) == 4 && offsetof(State, previous_e) == 6 && offsetof(State, started) == 8,
+              "step_avr.S");
+static_assert(sizeof(Defuzzified) == 4 && sizeof(Output) == 6, "returned in registers");
+
+#else
+
 namespace {
 
 constexpr int32_t integral_end = int32_t{1} << 30;
@@ -52,8 +69,6 @@ inline Volts sum(int32_t proportional, int32_t integral) {
 
 }  // namespace
 
-void reset(State& state) { state = {0, 0, 0, false}; }
-
 Output step(const Coefficients& c, State& state, int16_t leader_q12, int16_t follower_q12, uint16_t limit_mv) {
   const int16_t error = difference(leader_q12, follower_q12);
   const int16_t change = state.started ? difference(error, state.previous_e) : int16_t{0};
@@ -81,5 +96,7 @@ Output step(const Coefficients& c, State& state, int16_t leader_q12, int16_t fol
   return {static_cast<int16_t>(down ? -size : size), static_cast<int16_t>(volts.negative ? -size_mv : size_mv), saturated,
           u.no_rule};
 }
+
+#endif
 
 }  // namespace fuzzy_pdi

@@ -64,6 +64,14 @@ void reset(State& state);
 
 // One control period. e = leader - follower and its change saturate at +-32767 (+-8 rad); limit_mv (0..32767) is the voltage
 // available now. The integral takes e in unless the output is beyond the limit on e's own side.
-Output step(const Coefficients& coefficients, State& state, int16_t leader_q12, int16_t follower_q12, uint16_t limit_mv);
+#if defined(__AVR__) && !defined(FUZZY_PDI_PORTABLE)
+extern "C" Output fuzzy_pdi_step(const Coefficients* c, State* state, int16_t leader, int16_t follower, uint16_t limit_mv);
+
+inline Output step(const Coefficients& c, State& state, int16_t leader_q12, int16_t follower_q12, uint16_t limit_mv) {
+  return fuzzy_pdi_step(&c, &state, leader_q12, follower_q12, limit_mv);  // step_avr.S
+}
+#else
+Output step(const Coefficients& c, State& state, int16_t leader_q12, int16_t follower_q12, uint16_t limit_mv);
+#endif
 
 }  // namespace fuzzy_pdi
