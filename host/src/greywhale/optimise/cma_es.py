@@ -37,6 +37,8 @@ class CmaEs(Optimiser):
         start: ArrayLike | None = None,
         sigma: float = SIGMA,
     ) -> None:
+        if box.dimensions < 2:
+            raise ValueError("cma-es needs at least two coordinates; take another method for one")
         default = 4 + int(3 * math.log(box.dimensions))
         super().__init__(box, budget, source, pack=default if pack is None else pack, start=start)
         self._generator = source

@@ -7,10 +7,11 @@ problems.
 
 from __future__ import annotations
 
+import contextlib
 import multiprocessing
 import signal
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 
@@ -24,6 +25,8 @@ from greywhale.optimise.methods import METHODS, create, minimise
 Progress = Callable[[str, float], None]
 # Two samples count as different when chance would separate them as far less often than this.
 SIGNIFICANCE = 0.05
+# Evaluations that a process does in one go: short enough for a smooth progress bar and a quick end at Ctrl-C.
+PART = 5000
 
 
 @dataclass(frozen=True)
@@ -128,61 +131,84 @@ class Comparison:
         from scipy.stats import mannwhitneyu
 
         own, other = self.of(function, setting, method), self.of(function, setting, rival)
-        pairs = np.sign(own[:, None] - other[None, :])
-        if not pairs.any():
+        higher, lower = own[:, None] > other, own[:, None] < other
+        balance = int(higher.sum()) - int(lower.sum())
+        if balance == 0 or mannwhitneyu(own, other).pvalue >= SIGNIFICANCE:
             return 0
-        if mannwhitneyu(own, other).pvalue >= SIGNIFICANCE:
-            return 0
-        return int(np.sign(pairs.sum()))
+        return 1 if balance > 0 else -1
 
 
 def compare(plan: Plan, jobs: int = 1, progress: Progress | None = None) -> Comparison:
     """Run the plan in `jobs` processes; the result does not depend on how many."""
     plan.check()
     shape = (len(plan.functions), len(plan.settings), len(plan.methods))
-    cells = list(np.ndindex(*shape))
     costs = np.empty((*shape, plan.runs))
-    results = _here(plan, cells) if min(jobs, len(cells)) <= 1 else _in_processes(plan, cells, jobs)
-    for done, (cell, values) in enumerate(results, start=1):
-        costs[cell] = values
-        if progress is not None:
-            progress("comparing", done / len(cells))
+    length = max(1, PART // plan.budget)
+    parts = [
+        Part(cell, range(first, min(first + length, plan.runs)))
+        for cell in np.ndindex(*shape)
+        for first in range(0, plan.runs, length)
+    ]
+    results = _here(plan, parts) if min(jobs, len(parts)) <= 1 else _in_processes(plan, parts, jobs)
+    with contextlib.closing(results):
+        for done, (part, values) in enumerate(results, start=1):
+            costs[part.cell][part.runs] = values
+            if progress is not None:
+                progress("comparing", done / len(parts))
     return Comparison(plan, costs)
 
 
-Cell = tuple[int, ...]
+@dataclass(frozen=True)
+class Part:
+    """Some runs of one method on one problem: what a process does in one go."""
+
+    cell: tuple[int, ...]
+    runs: range
 
 
-def _here(plan: Plan, cells: list[Cell]) -> Iterator[tuple[Cell, Floats]]:
-    for cell in cells:
-        yield cell, _run_cell(plan, cell)
+Results = Generator[tuple[Part, list[float]], None, None]
 
 
-def _in_processes(plan: Plan, cells: list[Cell], jobs: int) -> Iterator[tuple[Cell, Floats]]:
+def _here(plan: Plan, parts: list[Part]) -> Results:
+    for part in parts:
+        yield part, _run_part(plan, part)
+
+
+def _in_processes(plan: Plan, parts: list[Part], jobs: int) -> Results:
     # Spawned, since a fork would copy whatever threads (a progress bar's) are holding.
     context = multiprocessing.get_context("spawn")
-    pool = ProcessPoolExecutor(min(jobs, len(cells)), mp_context=context, initializer=_ignore_interrupts)
+    pool = ProcessPoolExecutor(min(jobs, len(parts)), mp_context=context, initializer=_ignore_interrupts)
     try:
-        futures = {pool.submit(_run_cell, plan, cell): cell for cell in cells}
+        with _interrupts_held_back():
+            futures = {pool.submit(_run_part, plan, part): part for part in parts}
         for future in as_completed(futures):
             yield futures[future], future.result()
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
 
 
+@contextlib.contextmanager
+def _interrupts_held_back() -> Iterator[None]:
+    """Ctrl-C reaches all processes of a terminal, but only the first shall answer: the others inherit this mask."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 def _ignore_interrupts() -> None:
-    """Ctrl-C reaches all processes of a terminal; the first one ends the others."""
+    """The same where signals have no masks, once a process runs."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
-def _run_cell(plan: Plan, cell: Cell) -> Floats:
-    function, setting, method = cell
-    return np.array(
-        [
-            run_once(plan, plan.functions[function], plan.settings[setting], plan.methods[method], run)
-            for run in range(plan.runs)
-        ]
-    )
+def _run_part(plan: Plan, part: Part) -> list[float]:
+    function, setting, method = part.cell
+    names = plan.functions[function], plan.settings[setting], plan.methods[method]
+    return [run_once(plan, *names, run) for run in part.runs]
 
 
 def run_once(plan: Plan, function: str, setting: Setting, method: str, run: int) -> float:

@@ -102,13 +102,12 @@ def _schwefel222(z: Floats) -> Floats:
 
 
 def _schwefel226(z: Floats) -> Floats:
-    """sum of 418.98 - z sin(sqrt |z|). Beyond its box of +-500, where shifting leads, that has deeper minima; as in the
-    CEC competitions it is continued there by its mirror image and a parabola.
+    """sum of 418.98 - z sin(sqrt |z|). Beyond its box of +-500, where shifting leads, that has deeper minima; it is
+    continued there by its mirror image and the parabola of the CEC competitions.
     """
-    over = np.abs(z) > 500
-    mirrored = np.sign(z) * (500 - np.fmod(np.abs(z), 500))
-    inner = np.where(over, mirrored, z)
-    penalty = np.where(over, (np.abs(z) - 500) ** 2 / (1e4 * z.shape[1]), 0.0)
+    around = np.mod(z + 500, 2000)
+    inner = np.where(around <= 1000, around - 500, 1500 - around)
+    penalty = np.maximum(np.abs(z) - 500, 0.0) ** 2 / (1e4 * z.shape[1])
     return _sum(418.9828872724338 - inner * np.sin(np.sqrt(np.abs(inner))) + penalty)
 
 

@@ -1,0 +1,115 @@
+"""`greywhale compare` as people and scripts meet it."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from greywhale.cli import entry
+
+Captured = pytest.CaptureFixture[str]
+QUICK = ("compare", "--functions", "sphere,ackley", "--methods", "gwo, de", "--dimensions", "3", "--seeds", "3")
+BUDGET = ("--budget", "40")
+
+
+@pytest.fixture(autouse=True)
+def _handler_as_it_was() -> Iterator[None]:
+    before = signal.getsignal(signal.SIGTERM)
+    yield
+    signal.signal(signal.SIGTERM, before)
+
+
+def test_json_is_one_object_the_same_with_any_number_of_processes(capsys: Captured) -> None:
+    answers = []
+    for jobs in ("1", "2"):
+        assert entry.run([*QUICK, *BUDGET, "--jobs", jobs, "--json"]) == 0
+        out = capsys.readouterr().out
+        assert out.count("\n") == 1
+        answers.append(json.loads(out))
+    assert answers[0] == answers[1]
+    assert list(answers[0]["median_cost"]["shifted"]["ackley"]) == ["gwo", "de"]
+    assert (answers[0]["dimensions"], answers[0]["budget"], answers[0]["seeds"]) == (3, 40, 3)
+
+
+def test_text_tables_and_files(capsys: Captured, tmp_path: Path) -> None:
+    table, picture = tmp_path / "r.csv", tmp_path / "r.png"
+    assert entry.run([*QUICK, *BUDGET, "--out", str(table), "--out", str(picture), "--seed", "5"]) == 0
+    out = capsys.readouterr().out
+    assert "shifted: median of the lowest costs of 3 runs, 3 dimensions, 40 evaluations" in out
+    assert "On shifted functions, by mean rank:" in out
+    assert f"Written: {table}" in out
+    assert table.read_text(encoding="utf-8").count("\n") == 1 + 2 * 2 * 2 * 3
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+def test_another_seed_other_costs(capsys: Captured) -> None:
+    answers = []
+    for seed in ("1", "2"):
+        assert entry.run([*QUICK, *BUDGET, "--seed", seed, "--json"]) == 0
+        answers.append(json.loads(capsys.readouterr().out)["median_cost"])
+    assert answers[0] != answers[1]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (("--budget", "0"), "budget is 0, but must be at least 1."),
+        (("--budget", "many"), "Invalid value for '--budget': 'many' is not a valid integer."),
+        (("--methods", "gwo,newton"), "there is no method 'newton'; there are gwo-woa-relative, gwo-woa,"),
+        (("--functions", "cube"), "there is no function 'cube'; there are sphere,"),
+        (("--functions", ","), "no function was chosen; there are sphere,"),
+        (("--settings", "plain,turned"), "there is no setting 'turned'; there are plain, shifted, rotated."),
+        (("--dimensions", "1"), "dimensions is 1, but must be at least 2."),
+        (("--seeds", "0"), "seeds is 0, but must be at least 1."),
+        (("--jobs", "0"), "Invalid value for '--jobs'"),
+        (("--pack", "2"), "the pack is 2, but gwo-woa-relative needs at least 3."),
+        (("--out", "r.txt"), "r.txt: reports end in .csv, .png, .svg, .pdf."),
+    ],
+)
+def test_bad_usage_is_one_sentence_and_code_2(
+    capsys: Captured, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: tuple[str, str], sentence: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert entry.run(["compare", *arguments]) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert sentence in captured.err
+    assert captured.err.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_folder_that_is_not_there(capsys: Captured, tmp_path: Path) -> None:
+    path = tmp_path / "none" / "r.csv"
+    assert entry.run([*QUICK, *BUDGET, "--out", str(path)]) == 1
+    assert f"{path}: cannot be written: no such file or directory." in capsys.readouterr().err
+
+
+def test_interrupt_ends_all_processes_and_writes_nothing(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "greywhale", "compare", "--budget", "2000", "--seeds", "500", "--jobs", "2"]
+    running = subprocess.Popen(
+        [*command, "--methods", "pso", "--out", "r.csv"],
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        start_new_session=True,
+        env={**os.environ, "PYTHONUNBUFFERED": "1"},
+    )
+    # The workers are there once the process has children of its own.
+    children = Path(f"/proc/{running.pid}/task/{running.pid}/children")
+    while len(children.read_text().split()) < 3:  # two workers and multiprocessing's resource tracker
+        assert running.poll() is None
+    workers = [int(child) for child in children.read_text().split()]
+    os.killpg(running.pid, signal.SIGINT)
+    out, err = running.communicate(timeout=120)
+    assert running.returncode == 130
+    assert out == b""
+    assert err.strip() == b"greywhale: interrupted."
+    assert not any(Path(f"/proc/{worker}").exists() for worker in workers)
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,152 @@
+"""Comparisons: the same result however it is computed, ranks and statements that follow from the costs."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from greywhale.errors import UserError
+from greywhale.optimise import DEFAULT
+from greywhale.optimise.comparison import Comparison, Duel, Plan, compare, run_once
+from greywhale.optimise.comparison_report import as_dict, statement, text, write_report
+from greywhale.optimise.functions import SETTINGS
+
+SMALL = Plan(("sphere", "ackley"), SETTINGS, ("gwo-woa", "de", "cma-es"), dimensions=3, budget=60, runs=4, seed=7)
+
+
+@pytest.fixture(scope="module")
+def small() -> Comparison:
+    return compare(SMALL)
+
+
+def test_processes_change_nothing_and_progress_ends_at_one(small: Comparison) -> None:
+    seen: list[float] = []
+    parallel = compare(SMALL, jobs=2, progress=lambda what, fraction: seen.append(fraction))
+    assert (parallel.costs == small.costs).all()
+    assert seen == sorted(seen)
+    assert seen[-1] == 1.0
+
+
+def test_runs_split_into_parts_are_the_runs_in_their_order() -> None:
+    # 3000 evaluations a run: a part holds one.
+    plan = Plan(("sphere",), ("shifted",), ("pso",), dimensions=2, budget=3000, runs=3)
+    costs = compare(plan).of("sphere", "shifted", "pso")
+    assert costs.tolist() == [run_once(plan, "sphere", "shifted", "pso", run) for run in range(3)]
+    assert len(set(costs)) == 3
+
+
+def test_company_changes_nothing(small: Comparison) -> None:
+    alone = compare(Plan(("ackley",), ("shifted",), ("de",), dimensions=3, budget=60, runs=4, seed=7))
+    assert alone.of("ackley", "shifted", "de").tolist() == small.of("ackley", "shifted", "de").tolist()
+    other = compare(Plan(("ackley",), ("shifted",), ("de",), dimensions=3, budget=60, runs=4, seed=8))
+    assert not set(other.costs.flat) & set(alone.costs.flat)
+
+
+def made_up() -> Comparison:
+    """Two functions, three methods, six runs; on plain functions gwo leads, on shifted ones it comes last."""
+    plan = Plan(("sphere", "ackley"), ("plain", "shifted"), ("gwo", "de", "pso"), runs=6)
+    costs = np.empty((2, 2, 3, 6))
+    runs = np.arange(6.0)
+    costs[:, 0] = np.stack([runs, 10 + runs, 20 + runs])
+    costs[:, 1] = np.stack([30 + runs, 10 + runs, 20 + runs])
+    costs[1, 1, 2] = 10 + runs  # pso and de tie on shifted ackley
+    return Comparison(plan, costs)
+
+
+def test_mean_ranks_and_places() -> None:
+    comparison = made_up()
+    assert comparison.mean_ranks("plain") == {"gwo": 1.0, "de": 2.0, "pso": 3.0}
+    assert comparison.mean_ranks("shifted") == {"gwo": 3.0, "de": 1.25, "pso": 1.75}
+    assert comparison.places("shifted") == {"gwo": 3, "de": 1, "pso": 2}
+    assert comparison.medians[1, 1].tolist() == [32.5, 12.5, 12.5]
+
+
+def test_duels_tell_apart_only_what_chance_would_not() -> None:
+    comparison = made_up()
+    assert comparison.duel("plain", "gwo", "de") == Duel(better=2, worse=0, undecided=0)
+    assert comparison.duel("shifted", "gwo", "de") == Duel(better=0, worse=2, undecided=0)
+    assert comparison.duel("shifted", "pso", "de") == Duel(better=0, worse=1, undecided=1)
+    comparison.costs[0, 0, 0] += 9.0  # 9..14 against 10..15
+    assert comparison.duel("plain", "gwo", "de") == Duel(better=1, worse=0, undecided=1)
+    comparison.costs[0, 0] = np.inf
+    assert comparison.duel("plain", "gwo", "de") == Duel(better=1, worse=0, undecided=1)
+
+
+def test_statement_says_who_falls_and_who_rises() -> None:
+    told = statement(made_up())
+    assert "On plain functions, by mean rank: gwo (1.00), de (2.00), pso (3.00)." in told
+    assert "On shifted functions, by mean rank: de (1.25), pso (1.75), gwo (3.00)." in told
+    assert "From plain to shifted functions gwo falls from place 1 to 3. What falls was helped by minima" in told
+    assert "against de on 2 shifted functions (Mann-Whitney, 5 %): gwo 0/2/0, pso 0/1/1." in told
+
+
+def test_statement_without_plain_functions_or_without_de(small: Comparison) -> None:
+    only = compare(Plan(("sphere",), ("shifted",), ("gwo", "pso"), dimensions=2, budget=20, runs=2))
+    assert "From plain" not in statement(only)
+    assert "against" not in statement(only)
+    assert as_dict(only)["against_de"] == {}
+    same = Comparison(made_up().plan, made_up().costs[:, [0, 0]])
+    assert "no method changes its place by 2 or more" in statement(same)
+
+
+def test_text_and_dict_hold_the_medians(small: Comparison) -> None:
+    facts = as_dict(small)
+    median = float(np.median(small.of("ackley", "rotated", "cma-es")))
+    assert facts["median_cost"]["rotated"]["ackley"]["cma-es"] == median  # type: ignore[index]
+    assert f"{median:.3g}" in text(small)
+    assert facts["mean_rank"]["plain"] == small.mean_ranks("plain")  # type: ignore[index]
+    assert text(small).endswith(statement(small))
+
+
+def test_csv_holds_every_run_to_the_last_bit(small: Comparison, tmp_path: Path) -> None:
+    path = tmp_path / "all.csv"
+    write_report(path, small)
+    with open(path, encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == small.costs.size
+    for row in rows:
+        costs = small.of(row["function"], row["setting"], row["method"])  # type: ignore[arg-type]
+        assert float(row["cost"]) == costs[int(row["run"])]
+        assert (row["dimensions"], row["budget"], row["seed"]) == ("3", "60", "7")
+
+
+@pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
+def test_pictures_are_the_same_byte_for_byte(small: Comparison, tmp_path: Path, ending: str) -> None:
+    first, second = tmp_path / f"a.{ending}", tmp_path / f"b.{ending}"
+    write_report(first, small)
+    write_report(second, small)
+    assert first.read_bytes() == second.read_bytes()
+    assert len(first.read_bytes()) > 5_000
+
+
+def test_default_is_ahead_of_differential_evolution_on_shifted_functions() -> None:
+    names = ("sphere", "elliptic", "schwefel221", "rosenbrock", "ackley", "griewank", "levy")
+    ahead = compare(Plan(names, ("shifted",), (DEFAULT, "gwo-woa", "de"), runs=15, seed=1234))
+    ranks = ahead.mean_ranks("shifted")
+    assert ranks[DEFAULT] < ranks["de"] < ranks["gwo-woa"]
+    duel = ahead.duel("shifted", DEFAULT, "de")
+    assert duel.better >= 4
+    assert duel.worse == 0
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ({"functions": ("sphere", "cube")}, "there is no function 'cube'; there are sphere, elliptic"),
+        ({"methods": ()}, "no method was chosen"),
+        ({"methods": ("de", "de")}, "method 'de' was chosen twice"),
+        ({"settings": ("moved",)}, "there is no setting 'moved'; there are plain, shifted, rotated."),
+        ({"dimensions": 1}, "dimensions is 1, but must be at least 2."),
+        ({"budget": 0}, "budget is 0, but must be at least 1."),
+        ({"runs": 0}, "seeds is 0, but must be at least 1."),
+        ({"seed": -1}, "seed is -1, but must be at least 0."),
+        ({"methods": ("de",), "pack": 4}, "the pack is 4, but de needs at least 5."),
+    ],
+)
+def test_impossible_plans_are_refused_before_anything_runs(change: dict[str, object], sentence: str) -> None:
+    with pytest.raises(UserError, match=sentence.replace(".", r"\.")) as refused:
+        compare(Plan(**change))  # type: ignore[arg-type]
+    assert refused.value.exit_code == 2
