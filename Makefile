@@ -20,7 +20,7 @@ firmware: setup ## build the firmware for both boards and show its size
 	@$(PYTHON) -m tools.firmware_gate
 
 demo: setup ## the whole story on the simulated bench; options in ARGS, e.g. ARGS="--leader motion.csv"
-	@$(PYTHON) -m greywhale demo $(ARGS)
+	@$(PYTHON) -m greywhale demo --out build/demo $(ARGS)
 
 lint: setup ## ruff, mypy --strict, cppcheck, generated files
 	ruff check
