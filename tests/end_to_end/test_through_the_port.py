@@ -211,17 +211,18 @@ def test_bad_options_are_one_sentence(options: tuple[str, ...], sentence: str) -
     assert done.stdout == ""
 
 
-def test_ctrl_c_ends_the_bench_cleanly(leader_file: Path) -> None:
-    command = [sys.executable, "-m", "greywhale_sim", "--leader", str(leader_file)]
+def test_ctrl_c_ends_the_bench_cleanly(leader_file: Path, tmp_path: Path) -> None:
+    link = tmp_path / "bench"
+    command = [sys.executable, "-m", "greywhale_sim", "--leader", str(leader_file), "--link", str(link)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as bench:
         assert bench.stdout is not None
-        port = bench.stdout.readline().decode().strip()
-        assert Path(port).exists()
+        assert bench.stdout.readline().decode().strip() == str(link)
+        assert link.exists()
         bench.send_signal(signal.SIGINT)
         _, errors = bench.communicate(timeout=30)
     assert bench.returncode == 0
     assert errors == b""
-    assert not Path(port).exists()
+    assert not link.is_symlink()
 
 
 def test_threads_can_watch_a_bench_while_it_is_used(start_bench: Start, tmp_path: Path) -> None:
