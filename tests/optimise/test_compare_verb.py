@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import select
 import signal
 import subprocess
 import sys
@@ -105,11 +106,13 @@ def test_interrupt_ends_all_processes_and_writes_nothing(tmp_path: Path) -> None
     children = Path(f"/proc/{running.pid}/task/{running.pid}/children")
     while len(children.read_text().split()) < 3:  # two workers and multiprocessing's resource tracker
         assert running.poll() is None
-    workers = [int(child) for child in children.read_text().split()]
+    ends = [os.pidfd_open(int(child)) for child in children.read_text().split()]
     os.killpg(running.pid, signal.SIGINT)
     out, err = running.communicate(timeout=120)
     assert running.returncode == 130
     assert out == b""
     assert err.strip() == b"greywhale: interrupted."
-    assert not any(Path(f"/proc/{worker}").exists() for worker in workers)
+    for end in ends:
+        assert select.select([end], [], [], 60)[0], "a process of the comparison is still there"
+        os.close(end)
     assert list(tmp_path.iterdir()) == []

@@ -10,6 +10,7 @@ from __future__ import annotations
 import contextlib
 import multiprocessing
 import signal
+import threading
 import zlib
 from collections.abc import Callable, Generator, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
@@ -175,12 +176,12 @@ def _here(plan: Plan, parts: list[Part]) -> Results:
 
 
 def _in_processes(plan: Plan, parts: list[Part], jobs: int) -> Results:
-    # Spawned, since a fork would copy whatever threads (a progress bar's) are holding.
-    context = multiprocessing.get_context("spawn")
-    pool = ProcessPoolExecutor(min(jobs, len(parts)), mp_context=context, initializer=_ignore_interrupts)
+    with _interrupts_held_back():
+        # Spawned, since a fork would copy whatever threads (a progress bar's) are holding.
+        context = multiprocessing.get_context("spawn")
+        pool = ProcessPoolExecutor(min(jobs, len(parts)), mp_context=context)
+        futures = {pool.submit(_run_part, plan, part): part for part in parts}
     try:
-        with _interrupts_held_back():
-            futures = {pool.submit(_run_part, plan, part): part for part in parts}
         for future in as_completed(futures):
             yield futures[future], future.result()
     finally:
@@ -189,20 +190,26 @@ def _in_processes(plan: Plan, parts: list[Part], jobs: int) -> Results:
 
 @contextlib.contextmanager
 def _interrupts_held_back() -> Iterator[None]:
-    """Ctrl-C reaches all processes of a terminal, but only the first shall answer: the others inherit this mask."""
-    if not hasattr(signal, "pthread_sigmask"):
+    """Ctrl-C reaches all processes of a terminal, but only this one shall answer, and not while it starts the others:
+    those inherit the mask, and this one, which may be told through any of its threads, notes it for later.
+    """
+    if threading.current_thread() is not threading.main_thread() or not hasattr(signal, "pthread_sigmask"):
         yield
         return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    noted: list[int] = []
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    for number in before:
+        signal.signal(number, lambda number, frame: noted.append(number))
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-def _ignore_interrupts() -> None:
-    """The same where signals have no masks, once a process runs."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+        for number, handler in before.items():
+            # None: not a handler of Python's, which cannot be put back.
+            signal.signal(number, signal.SIG_DFL if handler is None else handler)
+        if noted:
+            signal.raise_signal(noted[0])
 
 
 def _run_part(plan: Plan, part: Part) -> list[float]:
