@@ -5,11 +5,15 @@ from __future__ import annotations
 import csv
 import io
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from greywhale.errors import BAD_USAGE, UserError
 from greywhale.files import write_text, write_whole
 from greywhale.optimise.comparison import Comparison
 from greywhale.optimise.functions import Setting
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 PICTURES = {".png": "Software", ".svg": "Date", ".pdf": "CreationDate"}
 FORMATS = (".csv", *PICTURES)
@@ -160,33 +164,42 @@ def _draw(path: Path, comparison: Comparison) -> None:
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
-    plan = comparison.plan
     kind = path.suffix.lower()
     with matplotlib.rc_context({"svg.hashsalt": "greywhale", "font.size": 9}):
         figure, axes = plt.subplots(figsize=(7.0, 5.0), layout="constrained")
         try:
-            across = range(len(plan.settings))
-            ranks = [comparison.mean_ranks(setting) for setting in plan.settings]
-            for index, method in enumerate(plan.methods):
-                axes.plot(across, [rank[method] for rank in ranks], "o-", color=f"C{index}", linewidth=1.8)
-                axes.annotate(
-                    method,
-                    (across[-1], ranks[-1][method]),
-                    (8, 0),
-                    textcoords="offset points",
-                    va="center",
-                    color=f"C{index}",
-                )
-            axes.set_xticks(list(across), list(plan.settings))
-            axes.set_xlim(-0.2, len(plan.settings) - 0.4)
-            axes.invert_yaxis()
-            axes.set_ylabel("mean rank (1 is best)")
-            axes.grid(alpha=0.3)
-            axes.set_title(
-                f"{len(plan.functions)} functions, {plan.dimensions} dimensions, {plan.budget} evaluations, "
-                f"{plan.runs} runs"
-            )
+            _draw_ranks(axes, comparison)
             metadata = {PICTURES[kind]: None}
             write_whole(path, lambda file: figure.savefig(file, format=kind[1:], dpi=150, metadata=metadata))
         finally:
             plt.close(figure)
+
+
+def _draw_ranks(axes: Axes, comparison: Comparison) -> None:
+    """A line a method from setting to setting, its name at the end."""
+    plan = comparison.plan
+    across = range(len(plan.settings))
+    ranks = [comparison.mean_ranks(setting) for setting in plan.settings]
+    labels = _spread(ranks[-1])
+    for index, method in enumerate(plan.methods):
+        colour = f"C{index}"
+        axes.plot(across, [rank[method] for rank in ranks], "o-", color=colour, linewidth=1.8)
+        axes.text(across[-1] + 0.06, labels[method], method, va="center", color=colour)
+    axes.set_xticks(list(across), list(plan.settings))
+    axes.set_xlim(-0.2, len(plan.settings) - 0.4)
+    axes.invert_yaxis()
+    axes.set_ylabel("mean rank (1 is best)")
+    axes.grid(alpha=0.3)
+    axes.set_title(
+        f"{len(plan.functions)} functions, {plan.dimensions} dimensions, {plan.budget} evaluations, {plan.runs} runs"
+    )
+
+
+def _spread(ranks: dict[str, float]) -> dict[str, float]:
+    """Where the names go: beside their lines, but never over each other."""
+    gap = 0.035 * len(ranks)
+    places: dict[str, float] = {}
+    last = -gap
+    for method in sorted(ranks, key=lambda method: ranks[method]):
+        last = places[method] = max(ranks[method], last + gap)
+    return places
