@@ -4,4 +4,5 @@
 #include <nanobind/nanobind.h>
 
 void bind_arm(nanobind::module_& m);
+void bind_closed_loop(nanobind::module_& m);
 void bind_fuzzy(nanobind::module_& m);

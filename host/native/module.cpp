@@ -4,5 +4,6 @@
 NB_MODULE(_native, m) {
   m.doc() = "The firmware's fuzzy controller and the arm model, compiled for this machine.";
   bind_arm(m);
+  bind_closed_loop(m);
   bind_fuzzy(m);
 }

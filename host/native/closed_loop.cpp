@@ -1,0 +1,208 @@
+// Binds the closed loop; greywhale.simulate checks the arguments and explains them. Use that, not this.
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "arm/arm.h"
+#include "bindings.h"
+#include "closed_loop/batch.h"
+#include "closed_loop/experiment.h"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+namespace arm = greywhale::arm;
+namespace loop = greywhale::loop;
+
+namespace {
+
+using loop::kJoints;
+
+template <class T, class... Shape>
+using In = nb::ndarray<const T, Shape..., nb::c_contig, nb::device::cpu>;
+template <class T>
+using Out = nb::ndarray<nb::numpy, T, nb::c_contig>;
+template <class T>
+using Each = std::array<T, kJoints>;
+
+constexpr std::size_t kSettingColumns = 12;
+using ControllerTable = In<std::int32_t, nb::shape<-1, kJoints, kSettingColumns>>;
+using PlantTable = In<double, nb::shape<-1, loop::kPlantColumns>>;
+
+// A fresh array that numpy will own.
+template <class T>
+class Array {
+ public:
+  explicit Array(std::vector<std::size_t> shape) : shape_(std::move(shape)) {
+    std::size_t size = 1;
+    for (const std::size_t n : shape_) size *= n;
+    values_ = std::make_unique<T[]>(size);
+  }
+  T* data() { return values_.get(); }
+  nb::object numpy() {
+    T* raw = values_.release();
+    nb::capsule owner(raw, [](void* p) noexcept { delete[] static_cast<T*>(p); });
+    return nb::cast(Out<T>(raw, shape_.size(), shape_.data(), owner));
+  }
+
+ private:
+  std::vector<std::size_t> shape_;
+  std::unique_ptr<T[]> values_;
+};
+
+fuzzy_pdi::Settings settings_of(const std::int32_t* c) {
+  const auto set = [c](std::size_t i) { return static_cast<std::int16_t>(c[i]); };
+  const auto gain = [c](std::size_t i) { return static_cast<std::uint32_t>(c[i]); };
+  return {set(0), set(1), set(2), set(3), set(4), set(5), set(6), set(7), gain(8), gain(9), gain(10), static_cast<std::uint16_t>(c[11])};
+}
+
+std::vector<loop::Controllers> compiled(const ControllerTable& table, int period_ms) {
+  std::vector<loop::Controllers> all(table.shape(0));
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    for (std::size_t i = 0; i < kJoints; ++i) {
+      const fuzzy_pdi::Settings settings = settings_of(&table(n, i, 0));
+      const fuzzy_pdi::Refusal refusal = fuzzy_pdi::compile(settings, static_cast<std::uint8_t>(period_ms), all[n][i]);
+      if (refusal == fuzzy_pdi::Refusal::none) continue;
+      throw std::invalid_argument("controllers[" + std::to_string(n) + ", " + std::to_string(i) +
+                                  "] is refused by the firmware with reason " + std::to_string(static_cast<int>(refusal)) + ".");
+    }
+  }
+  return all;
+}
+
+// The experiment with the arrays that it looks into.
+struct ClosedLoop {
+  loop::Experiment x;
+  In<std::int16_t, nb::shape<-1, kJoints>> reference;
+  In<double, nb::shape<-1, kJoints>> leader;
+  In<double, nb::shape<-1>> weight;
+};
+
+template <class T, class U>
+void copy(const Each<U>& from, T (&to)[kJoints]) {
+  std::transform(from.begin(), from.end(), to, [](U value) { return static_cast<T>(value); });
+}
+
+loop::Calibration calibration_of(const Each<int>& zero, const Each<int>& scale) {
+  loop::Calibration c{};
+  copy(zero, c.zero);
+  copy(scale, c.scale);
+  return c;
+}
+
+// As greywhale.simulate passes it on; checked there.
+void make_settings(loop::Settings* self, int period_ms, int supply_mv, int soft_start_ms, int filter_shift, const Each<int>& limit_min,
+                   const Each<int>& limit_max, const Each<int>& motor_sign, const Each<int>& pwm_top, const Each<int>& leader_zero,
+                   const Each<int>& leader_scale, const Each<int>& follower_zero, const Each<int>& follower_scale) {
+  new (self) loop::Settings{};
+  self->period_ms = period_ms;
+  self->supply_mv = static_cast<std::uint16_t>(supply_mv);
+  self->soft_start_ms = static_cast<std::uint16_t>(soft_start_ms);
+  self->filter_shift = filter_shift;
+  copy(limit_min, self->limit_min);
+  copy(limit_max, self->limit_max);
+  copy(motor_sign, self->motor_sign);
+  copy(pwm_top, self->pwm_top);
+  self->leader = calibration_of(leader_zero, leader_scale);
+  self->follower = calibration_of(follower_zero, follower_scale);
+}
+
+void make_loop(ClosedLoop* self, const loop::Settings& settings, const loop::Timing& timing, const std::array<arm::Potentiometer, kJoints>& pots,
+               double pot_supply, std::uint64_t seed, const Each<double>& home, const Each<double>& gap,
+               const In<std::int16_t, nb::shape<-1, kJoints>>& reference, const In<double, nb::shape<-1, kJoints>>& leader,
+               const In<double, nb::shape<-1>>& weight) {
+  if (reference.shape(0) != leader.shape(0) || weight.shape(0) != leader.shape(0)) {
+    throw std::invalid_argument("reference, leader and weight differ in length.");
+  }
+  new (self) ClosedLoop{{}, reference, leader, weight};
+  loop::Experiment& x = self->x;
+  x.settings = settings;
+  x.timing = timing;
+  x.pots = pots;
+  x.pot_supply = pot_supply;
+  x.seed = seed;
+  copy(home, x.home);
+  copy(gap, x.gap);
+  x.ticks = reference.shape(0);
+  x.reference = reference.data();
+  x.leader = leader.data();
+  x.weight = weight.data();
+}
+
+nb::tuple run(const ClosedLoop& self, const ControllerTable& controllers, const PlantTable& plants, int substeps, int threads,
+              std::size_t every, bool single, const std::string& instructions) {
+  const std::size_t count = std::max(controllers.shape(0), plants.shape(0));
+  if (count == 0 || (controllers.shape(0) != count && controllers.shape(0) != 1) || (plants.shape(0) != count && plants.shape(0) != 1)) {
+    throw std::invalid_argument("controllers and plants must hold as many rows, or one of them a single row.");
+  }
+  const std::size_t rows = every == 0 ? 0 : (self.x.ticks + every - 1) / every;
+  Array<double> mse({count, kJoints}), itae({count, kJoints}), itau({count, kJoints});
+  Array<bool> diverged({count});
+  Array<float> angles({count, rows, kJoints});
+  Array<std::int16_t> duties({count, rows, kJoints});
+  const std::vector<loop::Controllers> laws = compiled(controllers, self.x.settings.period_ms);
+  const auto* plant_rows = reinterpret_cast<const loop::PlantRow*>(plants.data());
+  {
+    const nb::gil_scoped_release free;
+    const loop::Batch batch{laws.data(), laws.size(), plant_rows, plants.shape(0), count};
+    const loop::Outputs outputs{mse.data(), itae.data(), itau.data(), diverged.data(), every, rows, angles.data(), duties.data()};
+    loop::run_batch(self.x, batch, {substeps, threads, single, instructions}, outputs);
+  }
+  return nb::make_tuple(mse.numpy(), itae.numpy(), itau.numpy(), diverged.numpy(), angles.numpy(), duties.numpy());
+}
+
+nb::tuple leader_readings(const loop::Settings& settings, const loop::Timing& timing, const std::array<arm::Potentiometer, kJoints>& pots,
+                          double pot_supply, std::uint64_t seed, const In<double, nb::shape<-1, kJoints>>& angles) {
+  const std::size_t ticks = angles.shape(0) / loop::kSlices;
+  Array<std::int16_t> reference({ticks, kJoints});
+  Array<double> leader({ticks, kJoints});
+  loop::read_leader(settings, timing, {pots, pot_supply, seed}, angles.data(), ticks, reference.data(), leader.data());
+  return nb::make_tuple(reference.numpy(), leader.numpy());
+}
+
+nb::object plant_row(const arm::ArmParameters& parameters) {
+  Array<double> row({loop::kPlantColumns});
+  loop::PlantRow one{};
+  one.plant.body = arm::rigid_body(parameters);
+  for (std::size_t i = 0; i < kJoints; ++i) one.plant.joints[i] = parameters.joints[i];
+  one.supply = parameters.drive.supply;
+  std::copy_n(reinterpret_cast<const double*>(&one), loop::kPlantColumns, row.data());
+  return row.numpy();
+}
+
+}  // namespace
+
+void bind_closed_loop(nb::module_& m) {
+  nb::class_<loop::Settings>(m, "LoopSettings", "What the closed loop needs of a parameter table, raw values.")
+      .def("__init__", &make_settings, nb::kw_only(), "period_ms"_a, "supply_mv"_a, "soft_start_ms"_a, "filter_shift"_a, "limit_min"_a,
+           "limit_max"_a, "motor_sign"_a, "pwm_top"_a, "leader_zero"_a, "leader_scale"_a, "follower_zero"_a, "follower_scale"_a);
+  nb::class_<loop::Timing>(m, "LoopTiming", "When conversions begin (cycles) and voltages act (slices) within a tick.")
+      .def(
+          "__init__",
+          [](loop::Timing* self, int start, const Each<int>& acts, int on) {
+            new (self) loop::Timing{start, {}, on};
+            copy(acts, self->acts);
+          },
+          nb::kw_only(), "start"_a, "acts"_a, "on"_a);
+  nb::class_<ClosedLoop>(m, "ClosedLoop", "One experiment, for any number of candidates.")
+      .def("__init__", &make_loop, nb::kw_only(), "settings"_a, "timing"_a, "pots"_a, "pot_supply"_a, "seed"_a, "home"_a, "gap"_a,
+           "reference"_a.noconvert(), "leader"_a.noconvert(), "weight"_a.noconvert())
+      .def("run", &run, nb::kw_only(), "controllers"_a.noconvert(), "plants"_a.noconvert(), "substeps"_a, "threads"_a, "every"_a,
+           "single"_a, "instructions"_a,
+           "mse, itae, itau (n x 4), diverged (n), angles (float32) and duties (int16), both n x rows x 4. The GIL is released.");
+  m.def("leader_readings", &leader_readings, nb::kw_only(), "settings"_a, "timing"_a, "pots"_a, "pot_supply"_a, "seed"_a,
+        "angles"_a.noconvert(), "The leader's angles in every slice to q12 readings and true angles at every tick.");
+  m.def("plant_row", &plant_row, "parameters"_a, "An arm as one row of numbers.");
+  m.def("instruction_sets", &loop::instruction_sets, "Those of the batch kernel that this processor runs, the best first.");
+  m.attr("PLANT_COLUMNS") = loop::kPlantColumns;
+}

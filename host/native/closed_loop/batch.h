@@ -1,0 +1,44 @@
+// Many candidates at a time: sixteen lanes of a vector, and a thread for each core.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "experiment.h"
+
+namespace greywhale::loop {
+
+// One row each for every candidate, or a single one for all.
+struct Batch {
+  const Controllers* controllers;
+  std::size_t controller_count;
+  const PlantRow* plants;
+  std::size_t plant_count;
+  std::size_t count;
+};
+
+struct How {
+  int substeps;              // single: steps of the arm in a slice; else: steps of the arm in a tick, 1, 2 or 4
+  int threads;               // 0: as many as there are cores
+  bool single;               // in the bench's double precision, one by one
+  std::string instructions;  // one of instruction_sets(), or empty for the best; results are the same bits with all
+};
+
+// count x 4, count x 4, count x 4, count; then count x rows x 4, unused when `every` is 0.
+struct Outputs {
+  double* mse;
+  double* itae;
+  double* itau;
+  bool* diverged;
+  std::size_t every, rows;
+  float* angles;
+  std::int16_t* duties;
+};
+
+// Throws std::invalid_argument for an unknown instruction set. The result does not depend on the number of threads.
+void run_batch(const Experiment& experiment, const Batch& batch, const How& how, const Outputs& outputs);
+
+std::vector<std::string> instruction_sets();
+
+}  // namespace greywhale::loop
