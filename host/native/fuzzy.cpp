@@ -1,13 +1,17 @@
 // Binds firmware/lib/fuzzy_pdi: the firmware's own arithmetic, one value or whole arrays at a time. greywhale.fuzzy wraps it.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
-#include <nanobind/stl/string.h>
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/tuple.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "bindings.h"
 #include "fuzzy_pdi.h"
@@ -133,6 +137,54 @@ nb::dict run(Controller &self, In<int16_t> leader, In<int16_t> follower, In<uint
   return result;
 }
 
+// The law by its nine rules in double precision, for exhaustive comparison: its own rounding is below 1e-9 LSB of q15.
+struct Triple {
+  double n, z, p;
+};
+
+// x and the corners in the same unit, in which `one` is 1.
+Triple memberships(double x, double n_c, double z_a, double z_c, double p_b, double one) {
+  x = std::clamp(x, -one, one);
+  return {std::clamp(x / n_c, 0.0, 1.0), x < 0 ? std::max(0.0, 1.0 - x / z_a) : std::max(0.0, 1.0 - x / z_c),
+          std::clamp(x / p_b, 0.0, 1.0)};
+}
+
+double by_rules(const Triple &e, const Triple &ce) {
+  const double up = std::max({std::min(e.z, ce.p), std::min(e.p, ce.z), std::min(e.p, ce.p)});
+  const double none = std::max({std::min(e.n, ce.p), std::min(e.z, ce.z), std::min(e.p, ce.n)});
+  const double down = std::max({std::min(e.n, ce.n), std::min(e.n, ce.z), std::min(e.z, ce.n)});
+  return (up - down) / (up + none + down);
+}
+
+// The largest distance between the integer law and the one above, in LSB of q15, over all e and ce of a rectangle.
+double worst_difference(const law::Settings &s, uint8_t period_ms, std::array<int32_t, 2> e_range, std::array<int32_t, 2> ce_range) {
+  const law::Coefficients c = compiled(s, period_ms);
+  struct Both {
+    bool negative;
+    law::Memberships ours;
+    Triple exact;
+  };
+  std::vector<Both> changes;
+  for (int32_t ce = ce_range[0]; ce <= ce_range[1]; ++ce) {
+    const law::Input input = split(ce);
+    const double y = s.kd / 65536.0 * 20 / period_ms * ce / 4096;
+    changes.push_back({input.negative, law::fuzzify(c.ce[input.negative], input.size),
+                       memberships(y * 16384, s.nce_c, s.zce_a, s.zce_c, s.pce_b, 16384)});
+  }
+  double worst = 0;
+  for (int32_t e = e_range[0]; e <= e_range[1]; ++e) {
+    const law::Input input = split(e);
+    const law::Memberships ours = law::fuzzify(c.e[input.negative], input.size);
+    const Triple exact = memberships(s.kp / 65536.0 * e / 4096 * 16384, s.ne_c, s.ze_a, s.ze_c, s.pe_b, 16384);
+    for (const Both &change : changes) {
+      const law::Defuzzified u = law::defuzzify(law::fire(ours, change.ours, input.negative == change.negative));
+      const double q15 = input.negative != u.flip ? -static_cast<double>(u.size) : static_cast<double>(u.size);
+      worst = std::max(worst, std::abs(q15 - 32768 * by_rules(exact, change.exact)));
+    }
+  }
+  return worst;
+}
+
 }  // namespace
 
 void bind_fuzzy(nb::module_ &m) {
@@ -158,6 +210,9 @@ void bind_fuzzy(nb::module_ &m) {
         return static_cast<int>(law::compile(settings, period_ms, unused));
       },
       "settings"_a, "period_ms"_a, "Why compile() refuses these settings; 0 when it takes them.");
+
+  m.def("fuzzy_worst_difference", &worst_difference, "settings"_a, "period_ms"_a, "e"_a, "ce"_a, nb::call_guard<nb::gil_scoped_release>(),
+        "Largest distance of u_fuzzy from the law in double precision, in LSB of q15, over [first, last] of e and ce.");
 
   nb::class_<Controller>(m, "FuzzyController", "The compiled law of one joint with its memory.")
       .def(

@@ -65,6 +65,9 @@ Refusal check_width(int32_t outward) {
 
 }  // namespace
 
+#ifdef __AVR__
+__attribute__((noinline, noclone))  // stays a function of its own in the image, for the tests that call it there
+#endif
 Refusal compile(const Settings& s, uint8_t period_ms, Coefficients& out) {
   if (period_ms < 1 || period_ms > longest_period_ms) return Refusal::period;
   const int16_t left[4] = {s.ne_c, s.ze_a, s.nce_c, s.zce_a};

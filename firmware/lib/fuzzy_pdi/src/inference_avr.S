@@ -150,18 +150,51 @@
   brne \full
 .endm
 
+// A long ramp and a size of one byte: half the products, and no way past 2^24.
+.macro small_row at, el, low, hi
+  ldd S, Z+\at
+  mul \el, S
+  mov \hi, r1
+  add \low, r0
+  adc \hi, ZERO
+.endm
+
+.macro small_climb_zero el, h0, h1, h2
+  ldd S, Z+0
+  mul \el, S
+  mov LOW, r1
+  small_row 1, \el, LOW, \h0
+  add LOW, HALF
+  adc \h0, ZERO
+  small_row 2, \el, \h0, \h1
+  small_row 3, \el, \h1, \h2
+.endm
+
+.macro small_climb_outer el, h0, h1, h2
+  ldd S, Z+4
+  mul \el, S
+  mov LOW, r1
+  small_row 5, \el, LOW, \h0
+  add LOW, HALF
+  adc \h0, ZERO
+  small_row 6, \el, \h0, \h1
+  small_row 7, \el, \h1, \h2
+.endm
+
 .macro invert h0, h1, h2
   com \h0
   com \h1
   com \h2
 .endm
 
-// Both heights of one input: z = 1 - climb of zero's slope, o = climb of outer's. `slow`, within a branch's reach, jumps to
-// `slow_far`, which handles short ramps.
-.macro fuzzify slow, slow_far, el, eh, z0, z1, z2, o0, o1, o2
+// Both heights of one input: z = 1 - climb of zero's slope, o = climb of outer's. `slow` and `small`, within a branch's reach,
+// jump to `slow_far` and `small_far`, which handle short ramps and small sizes.
+.macro fuzzify slow, slow_far, small, small_far, el, eh, z0, z1, z2, o0, o1, o2
   ldd S, Z+8
   tst S
   brne \slow
+  tst \eh
+  breq \small
   climb_zero \el, \eh, \z0, \z1, \z2, 13f
   invert \z0, \z1, \z2
 11:climb_outer \el, \eh, \o0, \o1, \o2, 15f, 12f
@@ -194,6 +227,11 @@
 16:climb_zero \el, \eh, \z0, \z1, \z2, 18f
   rjmp 14b
 18:rjmp 13b
+
+\small_far:
+  small_climb_zero \el, \z0, \z1, \z2
+  invert \z0, \z1, \z2
+  small_climb_outer \el, \o0, \o1, \o2
 .endm
 
 // ---- Rules -----------------------------------------------------------------------------------------------------------------
@@ -257,6 +295,8 @@
   .section .text.fuzzy_pdi_infer, "ax", @progbits
 .Lslow_e:
   rjmp .Lslow_e_far
+.Lsmall_e:
+  rjmp .Lsmall_e_far
   .global fuzzy_pdi_infer
   .type fuzzy_pdi_infer, @function
 fuzzy_pdi_infer:
@@ -272,11 +312,14 @@ fuzzy_pdi_infer:
   clr ZERO
   ldi HALF, 0x80
   movw r30, r24
-  fuzzify .Lslow_e, .Lslow_e_far, r22, r23, a0, a1, a2, A0, A1, A2
+  fuzzify .Lslow_e, .Lslow_e_far, .Lsmall_e, .Lsmall_e_far, r22, r23, a0, a1, a2, A0, A1, A2
+  rjmp 19f
 .Lslow_ce:
   rjmp .Lslow_ce_far
+.Lsmall_ce:
+  rjmp .Lsmall_ce_far
 19:movw r30, r20
-  fuzzify .Lslow_ce, .Lslow_ce_far, r18, r19, b0, b1, b2, B0, B1, B2
+  fuzzify .Lslow_ce, .Lslow_ce_far, .Lsmall_ce, .Lsmall_ce_far, r18, r19, b0, b1, b2, B0, B1, B2
 19:
 // From here: with - against ends in A, its sign in T (flip), with + zero + against in SUM3:a.
   compare b0, b1, b2, a0, a1, a2

@@ -1,0 +1,88 @@
+"""The AVR firmware image on the simulated boards gives the bits of the native build: over 100,000 random vectors."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from greywhale.fuzzy import twin
+from greywhale.fuzzy.settings import JointSettings
+from greywhale.link.schema import Refusal
+from tools.bench.fuzzy_on_board import FuzzyOnBoard
+
+Case = tuple[JointSettings, int]
+Points = Callable[[JointSettings, int, int], tuple[NDArray[np.int64], NDArray[np.int64]]]
+
+
+@pytest.fixture(scope="module", params=["atmega2560", "atmega328p"])
+def board(request: pytest.FixtureRequest) -> FuzzyOnBoard:
+    return FuzzyOnBoard(request.param)
+
+
+# 300 controllers x 200 points on each of two boards, and 150 x 100 periods.
+@settings(max_examples=300, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(data=st.data())
+def test_inference(cases: st.SearchStrategy[Case], points: Points, board: FuzzyOnBoard, data: st.DataObject) -> None:
+    joint, period = data.draw(cases)
+    e, ce = (values[:200] for values in points(joint, period, data.draw(st.integers(0, 2**32 - 1))))
+    native = joint.controller(period).u(e.astype(np.int32), ce.astype(np.int32))
+    refusal, _ = board.compile(joint, period)
+    assert refusal is Refusal.NONE
+    on_board = [board.infer(error, change) for error, change in zip(e.tolist(), ce.tolist(), strict=True)]
+    assert [each.u for each in on_board] == native.tolist()
+    assert not any(each.no_rule for each in on_board)
+
+
+@settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(data=st.data())
+def test_whole_periods(
+    cases: st.SearchStrategy[Case], points: Points, board: FuzzyOnBoard, data: st.DataObject
+) -> None:
+    """Trajectories: jumps, saturation, the integral at its ends, the first period."""
+    joint, period = data.draw(cases)
+    random = np.random.default_rng(data.draw(st.integers(0, 2**32 - 1)))
+    leader, follower = points(joint, period, data.draw(st.integers(0, 2**32 - 1)))
+    leader, follower = (np.clip(values[:100], -32768, 32767) for values in (leader, follower))
+    limit = np.where(random.random(100) < 0.5, random.integers(0, 3000, 100), random.integers(0, 32768, 100))
+    native, board_state = joint.controller(period), data.draw(st.sampled_from(["start", "end"]))
+    board.compile(joint, period)
+    board.set_state(0, None)
+    expected = native.run(leader.astype(np.int16), follower.astype(np.int16), limit.astype(np.uint16))
+    for k in range(100):
+        got = board.step(int(leader[k]), int(follower[k]), int(limit[k]))
+        assert got.u_fuzzy == expected["u_fuzzy"][k]
+        assert got.volts_mv == expected["volts_mv"][k]
+        assert got.saturated == expected["saturated"][k]
+        assert got.integral == (int(expected["integral"][k]) << 16) + int(expected["fraction"][k])
+    if board_state == "end":
+        _at_the_ends_of_the_integral(joint, period, board, leader, follower)
+
+
+def _at_the_ends_of_the_integral(
+    joint: JointSettings, period: int, board: FuzzyOnBoard, leader: NDArray[np.int64], follower: NDArray[np.int64]
+) -> None:
+    ours = twin.Controller(joint, period)
+    for integral in (twin.INTEGRAL_END - 1, -twin.INTEGRAL_END, twin.INTEGRAL_END - 70_000, 70_000 - twin.INTEGRAL_END):
+        for k in range(8):
+            ours.integral, ours.previous = integral, int(follower[k])
+            board.set_state(integral, int(follower[k]))
+            run = ours.run([leader[k]], [follower[k + 1]], [32767])
+            got = board.step(int(leader[k]), int(follower[k + 1]), 32767)
+            assert got.volts_mv == run.volts_mv[0]
+            assert got.integral == run.integral[0]
+
+
+def test_refusals(board: FuzzyOnBoard) -> None:
+    fine = JointSettings(-4915, -4915, 4915, 4915, -1638, -1638, 1638, 1638, 33620, 10486, 20513, 15000)
+    assert board.compile(fine, 20)[0] is Refusal.NONE
+    assert board.compile(fine, 51)[0] is Refusal.PERIOD
+    before = board.infer(1000, 100).u
+    for spoiled in ({"ne_c": 200}, {"ze_c": 16385}, {"pce_b": 163}, {"kd": (64 << 16) + 1}):
+        settings_ = JointSettings(**{**fine.__dict__, **spoiled})
+        assert board.compile(settings_, 20)[0] is settings_.refusal(20)
+    assert board.infer(1000, 100).u == before
