@@ -139,18 +139,27 @@ def test_eeprom_reaches_its_file_when_it_changes(board: Any, server: Server, eep
     for _ in range(20):
         server.turn()
     assert not eeprom.exists(), "nothing was written, so there is nothing to keep"
-    board.memory = b"\x5a" * 4096
-    board.counters.eeprom_writes += 1
+    board.counters.eeprom_writes += 1  # a write has begun, its cell does not hold the byte yet
     for _ in range(20):
         server.turn()
-    assert eeprom.read_bytes() == b"\x5a" * 4096
+    for value in (b"\x5a", b"\xa5"):
+        board.memory = value * 4096
+        for _ in range(20):
+            server.turn()
+        assert eeprom.read_bytes() == value * 4096
     assert [path.name for path in eeprom.parent.iterdir()] == [eeprom.name]
+
+
+def test_the_last_byte_is_kept_when_the_bench_ends(board: Any, server: Server, eeprom: Path) -> None:
+    server.turn()
+    board.memory = b"\x77" * 4096
+    server._keep_eeprom(now=True)
+    assert eeprom.read_bytes() == b"\x77" * 4096
 
 
 def test_a_power_cut_keeps_what_the_eeprom_holds_at_that_moment(board: Any, server: Server, eeprom: Path) -> None:
     server.turn()
     board.memory = b"\x33" * 4096
-    board.counters.eeprom_writes += 1
     server.power_off()
     assert eeprom.read_bytes() == b"\x33" * 4096
     assert not commands.run(server, "status")["powered"]
