@@ -31,6 +31,7 @@ class FakeBoard:
     in_bootloader: bool = False
     powered: bool = True
     result: int = 0
+    crash_reason: str = "a write to nowhere"
     registered: list[tuple[object, ...]] = field(default_factory=list)
     pins: np.ndarray = field(default_factory=lambda: np.zeros(9))
     millivolts: list[np.ndarray] = field(default_factory=list)

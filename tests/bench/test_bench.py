@@ -83,5 +83,5 @@ def test_any_object_with_step_is_a_plant(board: Any, bench: Bench) -> None:
 def test_a_crash_is_told_with_its_address(board: Any, bench: Bench) -> None:
     board.result = CRASHED
     board.pc = 0x1234
-    with pytest.raises(CrashError, match="0x01234"):
+    with pytest.raises(CrashError, match="address 0x01234: a write to nowhere"):
         bench.run(0.01)

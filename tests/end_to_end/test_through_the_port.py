@@ -211,14 +211,15 @@ def test_bad_options_are_one_sentence(options: tuple[str, ...], sentence: str) -
     assert done.stdout == ""
 
 
-def test_ctrl_c_ends_the_bench_cleanly(leader_file: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_signals_end_the_bench_cleanly(leader_file: Path, tmp_path: Path, number: signal.Signals) -> None:
     link = tmp_path / "bench"
     command = [sys.executable, "-m", "greywhale_sim", "--leader", str(leader_file), "--link", str(link)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as bench:
         assert bench.stdout is not None
         assert bench.stdout.readline().decode().strip() == str(link)
         assert link.exists()
-        bench.send_signal(signal.SIGINT)
+        bench.send_signal(number)
         _, errors = bench.communicate(timeout=30)
     assert bench.returncode == 0
     assert errors == b""

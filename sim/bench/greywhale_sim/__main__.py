@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import argparse
 import json
-import signal
 import sys
 from pathlib import Path
-from types import FrameType
 
 from greywhale.errors import UserError
 from greywhale_sim.serve import ServeOptions, serve
@@ -41,7 +39,6 @@ def parser() -> argparse.ArgumentParser:
 def main() -> int:
     arguments = vars(parser().parse_args())
     as_json = arguments.pop("json")
-    signal.signal(signal.SIGTERM, _interrupt)
 
     def ready(port: str) -> None:
         print(json.dumps({"port": port}) if as_json else port, flush=True)
@@ -51,13 +48,9 @@ def main() -> int:
     except UserError as error:
         print(f"greywhale_sim: {error.message}", file=sys.stderr)
         return error.exit_code
-    except KeyboardInterrupt:
-        return 0
+    except KeyboardInterrupt:  # before the bench was up
+        return 130
     return 0
-
-
-def _interrupt(number: int, frame: FrameType | None) -> None:
-    raise KeyboardInterrupt
 
 
 if __name__ == "__main__":

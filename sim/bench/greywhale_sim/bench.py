@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from greywhale import arm
+from greywhale.errors import UserError
 from greywhale_sim.leader import LeaderPlayer
 from greywhale_sim.wiring import Wiring
 
@@ -34,6 +35,8 @@ class Board(Protocol):
     def cycle(self) -> int: ...
     @property
     def pc(self) -> int: ...
+    @property
+    def crash_reason(self) -> str: ...
     def add_duty_output(self, timer: int, channel: str) -> int: ...
     def add_pin_output(self, port: str, bit: int) -> int: ...
     def outputs(self) -> Array: ...
@@ -53,8 +56,8 @@ class Potentiometers(Protocol):
     def millivolts(self, angles: Array, out: Array) -> Array: ...
 
 
-class CrashError(RuntimeError):
-    """The simulated processor stopped in a way a real one would not."""
+class CrashError(UserError):
+    """The program did what no program should: an invalid instruction, an access outside the memory."""
 
 
 # Called after every slice: cycle reached, pins at its beginning, follower's angles. The arrays are reused.
@@ -134,7 +137,9 @@ class Bench:
             follower_pots(angles, follower_millivolts)
             set_millivolts(millivolts)
             if run_until(target) == CRASHED:
-                raise CrashError(f"the simulated processor crashed at program address 0x{board.pc:05x}")
+                raise CrashError(
+                    f"the program on the simulated board crashed at address {board.pc:#07x}: {board.crash_reason}."
+                )
             if self.trace is not None:
                 self.trace(target, pins, angles)
 

@@ -7,11 +7,14 @@ from __future__ import annotations
 import json
 import os
 import select
+import signal
 import sys
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import FrameType
 
 from greywhale.errors import UserError, because
 from greywhale.link.ports import bench_directory
@@ -49,18 +52,36 @@ def running(options: ServeOptions) -> Iterator[Server]:
 
 
 def serve(options: ServeOptions, on_ready: Callable[[str], None]) -> None:
-    """Serve until Ctrl-C (KeyboardInterrupt is taken as the normal end) or, with control, the end of standard input."""
-    with running(options) as server:
+    """Serve until Ctrl-C, a request to terminate or, with control, the end of standard input; all are normal ends."""
+    with running(options) as server, _ending_on_signals(server):
         on_ready(server.port.path if options.link is None else str(options.link))
         if options.control:
             server.while_waiting = Control(server).look
-        try:
-            while not server.ending:
-                for _ in range(TURNS_PER_COMMAND):
-                    server.turn()
-                server.while_waiting()
-        except KeyboardInterrupt:
-            return
+        while not server.ending:
+            for _ in range(TURNS_PER_COMMAND):
+                server.turn()
+            server.while_waiting()
+
+
+@contextmanager
+def _ending_on_signals(server: Server) -> Iterator[None]:
+    """Let the running turn come to its end, so that nothing is left half done; only the main thread hears signals."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def end(number: int, frame: FrameType | None) -> None:
+        server.ending = True
+
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)}
+    for number, handler in before.items():
+        if handler is not signal.SIG_IGN:  # nohup and background jobs mean what they say
+            signal.signal(number, end)
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def _links(options: ServeOptions) -> list[Path]:
