@@ -28,7 +28,7 @@ def names() -> list[str]:
 
 def show(figure: Figure) -> None:
     verdict = {None: "", True: "ok", False: "MISSED"}[figure.holds]
-    print(f"{figure.name:48} {figure.value:>14,.6g} {figure.unit:10} {figure.reach:24} {verdict}", flush=True)
+    print(f"{figure.name:60} {figure.value:>12,.6g} {figure.unit:10} {figure.reach:24} {verdict}", flush=True)
 
 
 def main(chosen: list[str]) -> int:
