@@ -157,8 +157,8 @@ class Bench:
     def _drive(self, pins: Array) -> None:
         """Sign-magnitude drive: voltage is duty x supply, its sign the direction pin; drivers off brake with 0 V."""
         self._last_outputs = pins.tobytes()
-        self._enabled = bool(pins[0])
-        if self._enabled:
-            self.voltages = pins[1:5] * (2.0 * pins[5:9] - 1.0) * self.supply_v
-        else:
-            self.voltages = np.zeros(4)
+        enable, *values = pins.tolist()
+        self._enabled = bool(enable)
+        supply = self.supply_v if enable else 0.0
+        for joint in range(4):  # quicker than array arithmetic on so few numbers
+            self.voltages[joint] = values[joint] * supply if values[joint + 4] else -values[joint] * supply
