@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from greywhale import flash
+from greywhale.config.paper_tables import paper_table
 from greywhale.demo.bench import BenchProcess
 from greywhale.demo.result import DemoResult, Run
 from greywhale.errors import BAD_USAGE, UserError, because
@@ -27,8 +28,7 @@ from greywhale.trajectory import Trajectory, human_reaches, load_leader, save_le
 
 Progress = Callable[[str, float], None]
 
-TABLES = Path(__file__).resolve().parents[4] / "shared" / "fuzzy_tables"
-RUNS = (("before tuning", "before", "before_tuning.toml"), ("Table 10", "after", "table_10.toml"))
+RUNS = (("before tuning", "before", "before_tuning"), ("Table 10", "after", "table_10"))
 
 SHORTEST_S, LONGEST_S = 4.0, 600.0  # of a generated motion
 SETTLE_S = 1.0  # recorded after the leader's last movement
@@ -99,7 +99,7 @@ def _one_run(
         report(f"{name}: {what}", fraction)
 
     with Device(bench.port) as device:
-        crc = upload_controller(device, TABLES / table, told).param_crc
+        crc = upload_controller(device, paper_table(table), told).param_crc
         _wait_for_the_arms(device, motion)
         recording = record(device, log, LEAD_S + motion.duration_s + SETTLE_S, enable=True, progress=told)
     return Run(name, log, crc, recording.rows, recording.dropped, evaluate(read_log(log)))
