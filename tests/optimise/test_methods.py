@@ -108,9 +108,9 @@ def test_same_seed_same_run_and_another_seed_another(method: str) -> None:
 
 @EVERY
 def test_a_run_neither_reads_nor_moves_numpys_global_generator(method: str) -> None:
-    np.random.seed(1)
+    np.random.seed(20_221)
     expected = np.random.random(3)
-    np.random.seed(1)
+    np.random.seed(20_221)
     first = minimise(bowl, LOWER, UPPER, method=method, budget=100)
     assert (np.random.random(3) == expected).all()
     assert minimise(bowl, LOWER, UPPER, method=method, budget=100).cost == first.cost
