@@ -9,10 +9,13 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 CHECK = """
+import sys
+# The checkout's editable install would win over PYTHONPATH.
+sys.meta_path[:] = [finder for finder in sys.meta_path if not type(finder).__name__.startswith("ScikitBuild")]
 from greywhale import _native, arm
 from greywhale.config import controller
 from greywhale.config.paper_tables import paper_table
-import pathlib, sys
+import pathlib
 for module in (_native, arm):
     assert pathlib.Path(module.__file__).is_relative_to(sys.argv[1]), module.__file__
 assert paper_table("table_10").is_relative_to(sys.argv[1])
