@@ -148,8 +148,8 @@ def latency(name: str) -> list[Figure]:
         delays.append((bench.board.cycle - start) / CYCLES_PER_TICK)
     mean = float(np.mean(delays))
     return [
-        Figure(f"{name}: leader pot to duty, mean over the phases of the tick", mean, "ms", "<= 1.3 ms", mean <= 1.3),
-        Figure(f"{name}: leader pot to duty, worst phase", max(delays), "ms"),
+        Figure(f"{name}: leader pot to duty, mean over the phases of the tick", mean, "ms"),
+        Figure(f"{name}: leader pot to duty, worst phase", max(delays), "ms", "<= 1.3 ms", max(delays) <= 1.3),
     ]
 
 

@@ -32,13 +32,12 @@ void App::tick() {
   const hal::TickStart start = hal::tick_begin();
   count_ticks(start);
   if (const uint16_t* sums = hal::pot_sums()) {
-    sampling_.tick(sums);
+    sampling_.tick(sums, seen_);
     hal::release_pots();
   }
-  int16_t references[hal::joint_count];
-  observe(start.late, references);
+  supervise(start.late);
   follow_supervisor();
-  if (drivers_on_) control(references);
+  if (drivers_on_) control();
   schedule_sample();
   show_state();
   const uint16_t age_us = hal::tick_age_us();
@@ -55,24 +54,14 @@ void App::count_ticks(hal::TickStart start) {
   late_ticks_ = add_saturated(late_ticks_, start.elapsed > 1 ? static_cast<uint8_t>(start.elapsed - 1) : uint8_t{1});
 }
 
-void App::observe(bool late, int16_t (&references)[hal::joint_count]) {
-  for (uint8_t i = 0; i < hal::joint_count; ++i) {
-    const int16_t wanted = controllers_.reference(i, sampling_.leader(i));
-    const int16_t is = sampling_.follower(i);
-    references[i] = wanted;
-    seen_.distance[i] = static_cast<uint16_t>(wanted > is ? wanted - is : is - wanted);
-  }
-  seen_.rail_low = sampling_.rail_low();
-  seen_.rail_high = sampling_.rail_high();
+void App::supervise(bool late) {
   seen_.late = late;
   const bool booting = supervisor_.state() == supervisor::State::boot;
   supervisor_.tick(seen_);
   if (booting && supervisor_.state() != supervisor::State::boot) hello_due_ = true;
 }
 
-// The drivers go on from rest and off at once; called wherever the supervisor may have changed its mind.
-void App::follow_supervisor() {
-  if (supervisor_.motors_on() == drivers_on_) return;
+__attribute__((noinline)) void App::switch_drivers() {
   drivers_on_ = !drivers_on_;
   if (!drivers_on_) hal::set_drivers(false);
   controllers_.reset();
@@ -81,13 +70,20 @@ void App::follow_supervisor() {
   if (drivers_on_) hal::set_drivers(true);
 }
 
-void App::control(const int16_t* references) {
+// Joint by joint, like Sampling::tick.
+void App::control() {
   if (--until_control_) return;
   until_control_ = sets_.running().period_ms;
   const uint16_t limit_mv = controllers_.limit_mv(supervisor_.ramp_q15());
-  for (uint8_t i = 0; i < hal::joint_count; ++i) {
-    drive_.set(i, controllers_.step(i, references[i], sampling_.follower(i), limit_mv));
-  }
+  control_joint<0>(limit_mv);
+  control_joint<1>(limit_mv);
+  control_joint<2>(limit_mv);
+  control_joint<3>(limit_mv);
+}
+
+template <uint8_t joint>
+inline __attribute__((always_inline)) void App::control_joint(uint16_t limit_mv) {
+  drive_.set<joint>(controllers_.step(joint, sampling_.reference(joint), sampling_.follower(joint), limit_mv));
 }
 
 // A sample that could not be sent before the next one is due is dropped; its sequence number stays out.
@@ -99,9 +95,10 @@ void App::schedule_sample() {
   sample_due_ = true;
 }
 
-// LED: on while following, quick while starting, a short flash a second while disabled, 4 Hz in fault.
+// LED, looked after every 32 ms: on while following, quick while starting, a short flash a second while disabled, 4 Hz in fault.
 void App::show_state() {
   const auto ms = static_cast<uint16_t>(tick_);
+  if (ms & 31) return;
   switch (supervisor_.state()) {
     case supervisor::State::boot:
     case supervisor::State::following: hal::set_led(true); break;

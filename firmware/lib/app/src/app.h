@@ -23,9 +23,15 @@ class App {
  private:
   // app.cpp: the tick
   void count_ticks(hal::TickStart start);
-  void observe(bool late, int16_t (&references)[hal::joint_count]);
-  void follow_supervisor();
-  void control(const int16_t* references);
+  void supervise(bool late);
+  // The drivers go on from rest and off at once; called wherever the supervisor may have changed its mind.
+  void follow_supervisor() {
+    if (supervisor_.motors_on() != drivers_on_) switch_drivers();
+  }
+  void switch_drivers();
+  void control();
+  template <uint8_t joint>
+  void control_joint(uint16_t limit_mv);
   void schedule_sample();
   void show_state();
   void take_running_set();

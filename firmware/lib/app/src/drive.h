@@ -1,6 +1,7 @@
 // From motor voltages to duties: division by the supply as a product, and the motors' signs.
 #pragma once
 #include <hal.h>
+#include <multiply.h>
 #include <params/table.h>
 #include <stdint.h>
 
@@ -9,12 +10,26 @@ namespace app {
 class Drive {
  public:
   void configure(const params::Table& table);
-  void set(uint8_t joint, int16_t millivolts) const;   // |millivolts| <= the supply
-  void release() const;                                // all duties 0
+  // |millivolts| <= the supply
+  template <uint8_t joint>
+  void set(int16_t millivolts) const;
+  void release() const;   // all duties 0
 
  private:
-  uint16_t per_supply_ = 0;   // 2^27 / supply_mv
-  int8_t sign_[hal::joint_count] = {1, 1, 1, 1};
+  struct Motor {
+    uint16_t scale;   // 2^18 * full duty / supply: at most 34,953
+    bool reversed;
+  };
+  Motor motors_[hal::joint_count] = {};
 };
+
+// duty = size * full duty / supply = (size * scale) >> 18, rounded
+template <uint8_t joint>
+inline __attribute__((always_inline)) void Drive::set(int16_t millivolts) const {
+  const bool negative = millivolts < 0;
+  const uint16_t size = static_cast<uint16_t>(negative ? -millivolts : millivolts);
+  const uint16_t duty = static_cast<uint16_t>(hal::upper_product(size, motors_[joint].scale) + 2u) >> 2;
+  hal::set_duty<joint>(negative == motors_[joint].reversed, duty);
+}
 
 }  // namespace app

@@ -30,13 +30,17 @@ TickStart tick_begin();
 void tick_end();
 uint16_t tick_age_us();   // time since the timer started this tick, resolution 4 us
 
-// Sums of four 10-bit conversions for every pot, all taken during the last tick; null when there are no new ones. Once
-// read they are released, before tick_end(): the chain of the next tick adds its conversions there.
+// Sums of four 10-bit conversions for every pot, all taken during the last tick; null when there are no new ones. They
+// stand until they are released, before tick_end().
 const uint16_t* pot_sums();
 void release_pots();
 
-// --- Outputs. Duty is signed Q15, 32767 = full supply; positive sets the direction pin.
-void set_duty(uint8_t joint, int16_t duty);
+// --- Outputs. A duty is a size of 0..full_duty(joint), the PWM's own steps, and a sign: positive sets the direction pin.
+// set_duty<joint>() is the same for a joint known at compile time, in a few cycles.
+uint16_t full_duty(uint8_t joint);
+void set_duty(uint8_t joint, bool positive, uint16_t size);
+template <uint8_t joint>
+void set_duty(bool positive, uint16_t size);
 void set_drivers(bool on);
 void set_led(bool on);
 
@@ -60,3 +64,10 @@ void watchdog_kick();
 void idle();
 
 }  // namespace hal
+
+#ifdef __AVR__
+#include "avr/outputs.h"
+#else
+template <uint8_t joint>
+inline void hal::set_duty(bool positive, uint16_t size) { set_duty(joint, positive, size); }
+#endif

@@ -23,6 +23,7 @@ void Supervisor::begin(bool after_watchdog, bool params_ok) {
 void Supervisor::set_limits(const Limits& limits) {
   limits_ = limits;
   ramp_step_ = full_ramp / limits.soft_start_ms;
+  tracking_limit_ = limits.tracking_limit ? limits.tracking_limit : UINT16_MAX;
 }
 
 void Supervisor::tick(const Observation& seen) {
@@ -73,11 +74,23 @@ void Supervisor::debounce(const Observation& seen) {
 }
 
 bool Supervisor::lost_joint(const Observation& seen, uint8_t& joint) {
-  if (limits_.tracking_limit == 0) return false;
+  static_assert(joint_count == 4, "joints 0..3 below");
+  const uint16_t limit = tracking_limit_;
+  const bool all_near = seen.distance[0] <= limit && seen.distance[1] <= limit && seen.distance[2] <= limit &&
+    seen.distance[3] <= limit;
+  return !(all_near && !any_far_) && count_lost(seen, joint);
+}
+
+// Apart, because most ticks do not come here.
+__attribute__((noinline)) bool Supervisor::count_lost(const Observation& seen, uint8_t& joint) {
+  any_far_ = false;
   for (uint8_t i = 0; i < joint_count; ++i) {
-    if (seen.distance[i] <= limits_.tracking_limit) {
+    if (seen.distance[i] <= tracking_limit_) {
       lost_ticks_[i] = 0;
-    } else if (++lost_ticks_[i] >= limits_.tracking_ms) {
+      continue;
+    }
+    any_far_ = true;
+    if (++lost_ticks_[i] >= limits_.tracking_ms) {
       joint = i;
       return true;
     }
@@ -137,7 +150,7 @@ Reply Supervisor::clear_fault(const Observation& seen) {
   if (fault_ == Fault::late_tick && seen.late) return {Answer::in_fault, nowhere, static_cast<uint16_t>(fault_)};
   if (fault_ == Fault::tracking) {
     const uint16_t distance = seen.distance[fault_where_];
-    if (distance > limits_.tracking_limit) return {Answer::too_far, fault_where_, distance};
+    if (distance > tracking_limit_) return {Answer::too_far, fault_where_, distance};
   }
   state_ = State::disabled;
   fault_ = Fault::none;

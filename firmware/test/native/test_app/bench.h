@@ -14,10 +14,11 @@
 namespace bench {
 
 using hal::fake::board;
+using hal::fake::full_duty;
 
 constexpr double count_per_rad = 1023.0 / (300.0 * 3.14159265358979 / 180.0);
 
-inline int joint_max(const std::array<std::int16_t, 4>& duty) {
+inline int joint_max(const std::array<int, 4>& duty) {
   int most = 0;
   for (const int d : duty) most = std::max(most, std::abs(d));
   return most;
@@ -164,7 +165,7 @@ class Bench {
   void move_plant() {
     if (speed != 0) {
       for (std::uint8_t i = 0; i < 4; ++i) {
-        if (board.drivers) position_[i] += speed * board.duty[i] / 32768.0 * 0.001;
+        if (board.drivers) position_[i] += speed * board.duty[i] / full_duty * 0.001;
         set(static_cast<std::uint8_t>(i + 4), position_[i]);
       }
     }

@@ -42,7 +42,7 @@ TEST_CASE("a sample tells angles, voltages, state and fault") {
   const wire::Sample& last = arm.samples.back();
   CHECK(last.state == wire::State::following);
   for (std::uint8_t i = 0; i < 4; ++i) {
-    CHECK(std::abs(board.duty[i] * 15000L / 32768 - last.voltage[i]) <= 2);
+    CHECK(board.duty[i] == std::lround(last.voltage[i] * bench::full_duty / 15000.0));
   }
   CHECK(last.voltage[1] > 1000);
   CHECK(last.voltage[3] > 1000);

@@ -31,11 +31,12 @@ TEST_CASE("an unfiltered angle is what the definition says, for every reading an
         table.follower[i] = table.leader[i];
       }
       app::Sampling sampling;
+      supervisor::Observation seen = {};
       sampling.configure(table);
       for (int sum = 0; sum <= 4092; sum += 4) {
         std::uint16_t sums[8];
         for (int i = 0; i < 8; ++i) sums[i] = static_cast<std::uint16_t>(std::min(sum + i % 4, 4092));
-        sampling.tick(sums);
+        sampling.tick(sums, seen);
         for (std::uint8_t i = 0; i < 4; ++i) {
           wrong += sampling.leader(i) != angle_of(sums[i], zero, scale);
           wrong += sampling.follower(i) != angle_of(sums[i + 4], zero, scale);
@@ -53,16 +54,17 @@ TEST_CASE("the filter reaches a step from both sides, never overshoots, and its 
         params::Table table = defaults();
         table.filter_shift = shift;
         app::Sampling sampling;
+        supervisor::Observation seen = {};
         sampling.configure(table);
         std::uint16_t sums[8];
         std::fill(sums, sums + 8, static_cast<std::uint16_t>(from));
-        sampling.tick(sums);
+        sampling.tick(sums, seen);
         CHECK(sampling.leader(0) == angle_of(from, 8184, 10734));
         std::fill(sums, sums + 8, static_cast<std::uint16_t>(to));
         const int goal = angle_of(to, 8184, 10734);
         int before = std::abs(sampling.leader(0) - goal), worse = 0;
         for (int i = 0; i < 300; ++i) {
-          sampling.tick(sums);
+          sampling.tick(sums, seen);
           const int now = sampling.leader(0) - goal;
           if ((from < to) ? now > 0 : now < 0) ++worse;
           if (std::abs(now) > before) ++worse;
@@ -80,19 +82,50 @@ TEST_CASE("filter_shift is the share of a step taken each tick") {
   table.filter_shift = 2;
   table.leader[0] = {0, 8192};   // the angle is count14
   app::Sampling sampling;
+  supervisor::Observation seen = {};
   sampling.configure(table);
   std::uint16_t sums[8] = {};
-  sampling.tick(sums);
+  sampling.tick(sums, seen);
   sums[0] = 4000;
-  sampling.tick(sums);
+  sampling.tick(sums, seen);
   CHECK(sampling.leader(0) == 4000);    // 16000 / 4
-  sampling.tick(sums);
+  sampling.tick(sums, seen);
   CHECK(sampling.leader(0) == 7000);
+}
+
+TEST_CASE("a reference is the leader within its joint's limits, and a distance is that from there to the follower") {
+  params::Table table = defaults();
+  table.filter_shift = 0;
+  int wrong = 0;
+  for (std::uint8_t joint = 0; joint < 4; ++joint) {
+    table.leader[joint] = {8184, 16384};   // twice count14
+    table.follower[joint] = {8184, -16384};
+    table.joint[joint].limit_min = static_cast<std::int16_t>(-1000 * (joint + 1));
+    table.joint[joint].limit_max = static_cast<std::int16_t>(700 * (joint + 2));
+  }
+  app::Sampling sampling;
+  supervisor::Observation seen = {};
+  sampling.configure(table);
+  for (int step = 0; step <= 4092; step += 11) {
+    std::uint16_t sums[8];
+    for (int i = 0; i < 8; ++i) sums[i] = static_cast<std::uint16_t>((step * (i + 1)) % 4093);
+    sampling.tick(sums, seen);
+    for (std::uint8_t i = 0; i < 4; ++i) {
+      const int leader = (sums[i] * 4 - 8184) * 2, follower = (8184 - sums[i + 4] * 4) * 2;
+      const int wanted = std::max<int>(table.joint[i].limit_min, std::min<int>(table.joint[i].limit_max, leader));
+      wrong += sampling.leader(i) != leader;
+      wrong += sampling.reference(i) != wanted;
+      wrong += sampling.follower(i) != follower;
+      wrong += seen.distance[i] != std::abs(wanted - follower);
+    }
+  }
+  CHECK(wrong == 0);
 }
 
 TEST_CASE("rails are flagged per pot on the raw reading, and rail_counts 0 turns them off") {
   params::Table table = defaults();
   app::Sampling sampling;
+  supervisor::Observation seen = {};
   sampling.configure(table);
   for (std::uint8_t pot = 0; pot < 8; ++pot) {
     std::uint16_t sums[8];
@@ -100,39 +133,42 @@ TEST_CASE("rails are flagged per pot on the raw reading, and rail_counts 0 turns
     const auto bit = 1u << pot;
     for (const int sum : {0, 15, 16, 17, 4075, 4076, 4077, 4092}) {
       sums[pot] = static_cast<std::uint16_t>(sum);
-      sampling.tick(sums);
-      CHECK(sampling.rail_low() == (sum <= 16 ? bit : 0u));      // 4 counts x 4 conversions
-      CHECK(sampling.rail_high() == (sum >= 4076 ? bit : 0u));   // 1019 x 4
+      sampling.tick(sums, seen);
+      CHECK(seen.rail_low == (sum <= 16 ? bit : 0u));      // 4 counts x 4 conversions
+      CHECK(seen.rail_high == (sum >= 4076 ? bit : 0u));   // 1019 x 4
     }
   }
   table.rail_counts = 0;
   sampling.configure(table);
   std::uint16_t sums[8] = {0, 4092, 0, 4092, 0, 4092, 0, 4092};
-  sampling.tick(sums);
-  CHECK(sampling.rail_low() == 0);
-  CHECK(sampling.rail_high() == 0);
+  sampling.tick(sums, seen);
+  CHECK(seen.rail_low == 0);
+  CHECK(seen.rail_high == 0);
 }
 
-TEST_CASE("a duty is voltage over supply within 0.02 % of full scale, odd in the voltage, and full at the supply") {
+TEST_CASE("a duty is the PWM step nearest to voltage over supply, odd in the voltage, and full at the supply") {
   for (const int supply : {3000, 3001, 7777, 12000, 15000, 24000, 29999, 30000}) {
     params::Table table = defaults();
     table.supply_mv = static_cast<std::uint16_t>(supply);
+    table.joint[1].motor_sign = -1;
     app::Drive drive;
     drive.configure(table);
     double worst = 0;
     int unequal = 0;
-    for (int mv = 0; mv <= supply; mv += 7) {
-      drive.set(0, static_cast<std::int16_t>(mv));
+    for (int mv = 0; mv <= supply; ++mv) {
+      drive.set<0>(static_cast<std::int16_t>(mv));
+      drive.set<1>(static_cast<std::int16_t>(mv));
       const int positive = bench::board.duty[0];
-      drive.set(0, static_cast<std::int16_t>(-mv));
+      unequal += bench::board.duty[1] != -positive;
+      drive.set<0>(static_cast<std::int16_t>(-mv));
       unequal += bench::board.duty[0] != -positive;
-      worst = std::max(worst, std::abs(positive / 32768.0 - mv / double(supply)));
+      worst = std::max(worst, std::abs(positive - mv * bench::full_duty / double(supply)));
     }
-    CHECK(worst < 0.0002);
+    CHECK(worst < 0.56);   // half a step, and what the rounded quotient costs at the highest supply
     CHECK(unequal == 0);
-    drive.set(0, static_cast<std::int16_t>(supply));
-    CHECK(bench::board.duty[0] > 32755);
-    drive.set(0, 0);
+    drive.set<0>(static_cast<std::int16_t>(supply));
+    CHECK(bench::board.duty[0] == bench::full_duty);
+    drive.set<0>(0);
     CHECK(bench::board.duty[0] == 0);
   }
 }

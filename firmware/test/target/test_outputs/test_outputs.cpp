@@ -41,29 +41,41 @@ void after_begin() {
   EQUAL("timer_3_drives_its_pin", TCCR3A, 1 << COM3A1);
   EQUAL("timer_4_drives_its_pins", TCCR4A, (1 << COM4A1) | (1 << COM4B1) | (1 << COM4C1));
   EQUAL("no_pwm_interrupts", TIMSK3 | TIMSK4, 0);
-  EQUAL("no_millis_interrupt", TIMSK0, 1 << OCIE0A);
+  EQUAL("no_millis_interrupt", TIMSK0, (1 << OCIE0A) | (1 << OCIE0B));
 }
 
-struct Duty {
-  int16_t duty;
-  uint16_t compare;
-};
+template <uint8_t joint>
+void set(bool positive, uint16_t size, bool inlined) {
+  if (inlined) hal::set_duty<joint>(positive, size);
+  else hal::set_duty(joint, positive, size);
+}
+
+void set(uint8_t joint, bool positive, uint16_t size, bool inlined) {
+  switch (joint) {
+    case 0: set<0>(positive, size, inlined); break;
+    case 1: set<1>(positive, size, inlined); break;
+    case 2: set<2>(positive, size, inlined); break;
+    default: set<3>(positive, size, inlined); break;
+  }
+}
 
 void duties() {
-  constexpr Duty known[] = {{0, 0},        {40, 0},       {41, 1},       {8192, 100},   {16384, 200},
-               {32767, 400},  {-1, 0},       {-41, 1},      {-16384, 200}, {-32767, 400},
-               {-32768, 400}, {32726, 399}};
+  constexpr uint16_t sizes[] = {0, 1, 100, 255, 256, 399, 400};
   uint16_t wrong_compare = 0, wrong_direction = 0, disturbed = 0;
   for (uint8_t joint = 0; joint < 4; ++joint) {
-    for (const Duty& d : known) {
-      const uint8_t others = PORTA & static_cast<uint8_t>(~directions[joint]);
-      hal::set_duty(joint, d.duty);
-      wrong_compare += compare(joint) != d.compare;
-      wrong_direction += ((PORTA & directions[joint]) != 0) != (d.duty >= 0);
-      disturbed += (PORTA & static_cast<uint8_t>(~directions[joint])) != others;
+    for (const uint16_t size : sizes) {
+      for (uint8_t way = 0; way < 4; ++way) {
+        const bool positive = way & 1;
+        const uint8_t others = PORTA & static_cast<uint8_t>(~directions[joint]);
+        set(joint, positive, size, way & 2);
+        wrong_compare += compare(joint) != size;
+        wrong_direction += ((PORTA & directions[joint]) != 0) != positive;
+        disturbed += (PORTA & static_cast<uint8_t>(~directions[joint])) != others;
+      }
     }
+    EQUAL("full_duty_is_the_timers_top", hal::full_duty(joint), 400);
   }
-  EQUAL("compare_is_duty_times_400", wrong_compare, 0);
+  EQUAL("compare_is_the_duty", wrong_compare, 0);
   EQUAL("direction_follows_the_sign", wrong_direction, 0);
   EQUAL("a_joint_leaves_the_others_alone", disturbed, 0);
 }

@@ -64,6 +64,8 @@ ADC_vect:
     in   r30, SUM_POSITION
     ldi  r31, hi8(hal_sums)
     lds  r24, ADCL
+    sbic CONVERSION, 7
+    rjmp 4f
     ld   r25, Z
     add  r24, r25
     st   Z+, r24
@@ -71,26 +73,31 @@ ADC_vect:
     ld   r25, Z
     adc  r24, r25
     st   Z+, r24
-    in   r24, CONVERSION
+1:  in   r24, CONVERSION
     inc  r24
     out  CONVERSION, r24
-    mov  r25, r24
-    andi r25, 7
-    brne 1f
+    mov  r25, r30
+    andi r25, 15
+    brne 2f
     subi r30, 16                ; after the eighth pot comes the first
-1:  out  SUM_POSITION, r30
+2:  out  SUM_POSITION, r30
+    lsr  r25                    ; the pot of conversion n + 1
     inc  r25
     andi r25, 7
     ori  r25, 1 << REFS0
-    cpi  r24, CONVERSIONS - 1
-    brsh 3f
-2:  sts  ADMUX, r25
+    cpi  r24, CHAIN_END - 1     ; signed
+    brge 5f
+3:  sts  ADMUX, r25
     leave
-3:  ldi  r25, 1 << REFS0        ; the chain of the next tick begins with channel 0
-    brne 2b
+4:  st   Z+, r24                ; the first round
+    lds  r24, ADCH
+    st   Z+, r24
+    rjmp 1b
+5:  ldi  r25, (1 << REFS0) | FIRST_POT   ; the chain of the next tick begins there
+    brne 3b
     ldi  r24, ADC_SINGLE        ; the conversion under way is the last
     sts  ADCSRA, r24
-    rjmp 2b
+    rjmp 3b
 
 ; The transmitter takes a byte; without one left it is silenced.
 .global SENDABLE

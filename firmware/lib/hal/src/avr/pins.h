@@ -48,21 +48,22 @@ inline void start_pwm() {
 inline void stop_unused_timers() { TCCR1B = TCCR2B = TCCR5B = 0; }
 
 inline void direction(uint8_t joint, bool positive) {
-  if (positive) PORTA = static_cast<uint8_t>(PORTA | direction_bits[joint]);
-  else PORTA = static_cast<uint8_t>(PORTA & ~direction_bits[joint]);
-}
-
-inline uint16_t scale(uint16_t magnitude) {   // 0..32767 -> 0..400, nearest
-  return static_cast<uint16_t>((static_cast<uint32_t>(magnitude) * (2 * pwm_top) + 0x8000u) >> 16);
-}
-
-inline void duty(uint8_t joint, uint16_t magnitude) {
-  const uint16_t compare = scale(magnitude);
   switch (joint) {
-    case 0: OCR3A = compare; break;
-    case 1: OCR4A = compare; break;
-    case 2: OCR4B = compare; break;
-    default: OCR4C = compare; break;
+    case 0: if (positive) PORTA |= direction_bits[0]; else PORTA &= static_cast<uint8_t>(~direction_bits[0]); break;
+    case 1: if (positive) PORTA |= direction_bits[1]; else PORTA &= static_cast<uint8_t>(~direction_bits[1]); break;
+    case 2: if (positive) PORTA |= direction_bits[2]; else PORTA &= static_cast<uint8_t>(~direction_bits[2]); break;
+    default: if (positive) PORTA |= direction_bits[3]; else PORTA &= static_cast<uint8_t>(~direction_bits[3]); break;
+  }
+}
+
+inline uint16_t top(uint8_t) { return pwm_top; }
+
+inline void compare(uint8_t joint, uint16_t value) {
+  switch (joint) {
+    case 0: OCR3A = value; break;
+    case 1: OCR4A = value; break;
+    case 2: OCR4B = value; break;
+    default: OCR4C = value; break;
   }
 }
 
@@ -70,6 +71,7 @@ inline void duty(uint8_t joint, uint16_t magnitude) {
 
 constexpr uint8_t enable_bit = 1 << PB4, led_bit = 1 << PB5;
 constexpr uint8_t directions_d = (1 << PD2) | (1 << PD4) | (1 << PD7), direction_b = 1 << PB0;
+constexpr uint16_t pwm_top8 = 255;
 constexpr uint8_t pwm_b = (1 << PB1) | (1 << PB2) | (1 << PB3), pwm_d = 1 << PD3;
 
 inline void drivers_off() { PORTB &= static_cast<uint8_t>(~enable_bit); }
@@ -109,20 +111,14 @@ inline void direction(uint8_t joint, bool positive) {
   }
 }
 
-inline uint16_t scale(uint16_t magnitude) {   // 0..32767 -> 0..400, nearest
-  return static_cast<uint16_t>((static_cast<uint32_t>(magnitude) * (2 * pwm_top) + 0x8000u) >> 16);
-}
+inline uint16_t top(uint8_t joint) { return joint < 2 ? pwm_top : pwm_top8; }
 
-inline uint8_t scale8(uint16_t magnitude) {   // 0..32767 -> 0..255, nearest
-  return static_cast<uint8_t>((static_cast<uint32_t>(magnitude) * (2 * 255) + 0x8000u) >> 16);
-}
-
-inline void duty(uint8_t joint, uint16_t magnitude) {
+inline void compare(uint8_t joint, uint16_t value) {
   switch (joint) {
-    case 0: OCR1A = scale(magnitude); break;
-    case 1: OCR1B = scale(magnitude); break;
-    case 2: OCR2A = scale8(magnitude); break;
-    default: OCR2B = scale8(magnitude); break;
+    case 0: OCR1A = value; break;
+    case 1: OCR1B = value; break;
+    case 2: OCR2A = static_cast<uint8_t>(value); break;
+    default: OCR2B = static_cast<uint8_t>(value); break;
   }
 }
 

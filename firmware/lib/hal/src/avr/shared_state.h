@@ -5,9 +5,15 @@
 #define RING_SIZE 128
 #define CONVERSIONS 32
 
-// The chip's general purpose registers, one cycle away.
-#define CONVERSION GPIOR0     // conversions of this chain that are done
-#define SUM_POSITION GPIOR1   // low byte of the address of the sum that the next conversion is added to
+// The first pot of each round: the followers before the leaders, whose readings are then the younger ones.
+#define FIRST_POT 4
+
+// The chip's general purpose registers, one cycle away. CONVERSION counts from -8, so that bit 7 tells the first round, whose
+// conversions replace what the sums hold, and ends at CHAIN_END.
+#define CONVERSION GPIOR0
+#define CHAIN_START 0xf8
+#define CHAIN_END (CONVERSIONS - 8)
+#define SUM_POSITION GPIOR1   // low byte of the address of the sum that the next conversion belongs to
 #define TX_TAIL GPIOR2        // position in the ring of the byte to be sent next
 
 #define UART_ON ((1 << RXEN0) | (1 << TXEN0) | (1 << RXCIE0))
@@ -23,7 +29,7 @@
 extern "C" {
 extern uint8_t hal_tx_ring[RING_SIZE];
 extern uint8_t hal_rx_ring[RING_SIZE];
-extern uint16_t hal_sums[2][8];
+extern uint16_t hal_sums[2][8];   // each set within 16 bytes that begin at a multiple of 16
 extern volatile uint8_t hal_tx_head;
 extern volatile uint8_t hal_rx_head, hal_rx_tail;   // head is written by the producer, tail by the consumer
 extern volatile uint8_t hal_rx_lost;

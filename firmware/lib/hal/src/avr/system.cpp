@@ -69,11 +69,11 @@ void begin() {
   sei();
 }
 
-void set_duty(uint8_t joint, int16_t duty) {
-  const bool positive = duty >= 0;
-  const uint16_t magnitude = positive ? static_cast<uint16_t>(duty) : static_cast<uint16_t>(-(duty + 1) + 1u);
+uint16_t full_duty(uint8_t joint) { return pins::top(joint); }
+
+void set_duty(uint8_t joint, bool positive, uint16_t size) {
   pins::direction(joint, positive);
-  pins::duty(joint, magnitude);
+  pins::compare(joint, size);
 }
 
 // The tick interrupt may turn the drivers off at any moment, hence no interrupt between read and write.

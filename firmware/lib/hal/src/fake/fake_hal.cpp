@@ -52,7 +52,12 @@ const std::uint16_t* pot_sums() {
 
 void release_pots() {}
 
-void set_duty(std::uint8_t joint, std::int16_t duty) { fake::board.duty.at(joint) = duty; }
+std::uint16_t full_duty(std::uint8_t) { return fake::full_duty; }
+
+void set_duty(std::uint8_t joint, bool positive, std::uint16_t size) {
+  fake::board.duty.at(joint) = positive ? size : -static_cast<int>(size);
+}
+
 void set_drivers(bool on) { fake::board.drivers = on; }
 void set_led(bool on) { fake::board.led = on; }
 

@@ -13,6 +13,7 @@ namespace fake {
 
 constexpr std::uint16_t eeprom_size = 1024;   // the Nano's
 constexpr std::uint16_t eeprom_write_ticks = 4;
+constexpr std::uint16_t full_duty = 400;         // the Mega's
 
 struct FakeBoard {
   // in
@@ -28,7 +29,7 @@ struct FakeBoard {
   // out
   std::vector<std::uint8_t> sent;
   std::uint8_t tx_room = tx_capacity;            // places left; sending takes them, the test gives them back
-  std::array<std::int16_t, joint_count> duty = {};
+  std::array<int, joint_count> duty = {};        // -full_duty..full_duty
   bool drivers = false;
   bool led = false;
   bool watchdog_on = false;
