@@ -1,4 +1,4 @@
-// Shares a batch out between threads: see closed_loop/batch.h.
+// Shares a batch out between threads and picks the kernel for this processor: see closed_loop/batch.h.
 #include "closed_loop/batch.h"
 
 #include <algorithm>
@@ -6,21 +6,49 @@
 #include <stdexcept>
 #include <thread>
 
+#include "arm/random.h"
+#include "closed_loop/block.h"
+
 namespace greywhale::loop {
 
 namespace {
 
-// Calls work(0) .. work(pieces - 1), each once, from `threads` threads.
+struct InstructionSet {
+  const char* name;
+  bool (*available)();
+  Kernel kernel;
+  void (*check_law)(const LawCheck&);
+};
+
+bool has_avx512() {
+  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd") &&
+         __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+}
+
+constexpr InstructionSet kInstructionSets[] = {
+    {"avx512", has_avx512, run_block_avx512, check_law_avx512},
+    {"avx2", [] { return __builtin_cpu_supports("avx2") != 0; }, run_block_avx2, check_law_avx2},
+    {"baseline", [] { return true; }, run_block_baseline, check_law_baseline},
+};
+
+const InstructionSet& chosen(const std::string& name) {
+  for (const InstructionSet& set : kInstructionSets) {
+    if ((name.empty() || name == set.name) && set.available()) return set;
+  }
+  throw std::invalid_argument("the instruction set \"" + name + "\" is not known or not in this processor.");
+}
+
+// Calls work(0) .. work(pieces - 1), each once, from as many threads.
 template <class Work>
 void share_out(std::size_t pieces, int threads, const Work& work) {
   const std::size_t cores = threads > 0 ? static_cast<std::size_t>(threads) : std::max(1u, std::thread::hardware_concurrency());
   std::atomic<std::size_t> next{0};
-  const auto loop = [&] {
+  const auto take = [&] {
     for (std::size_t piece = next++; piece < pieces; piece = next++) work(piece);
   };
   std::vector<std::thread> helpers;
-  for (std::size_t n = 1; n < std::min(cores, pieces); ++n) helpers.emplace_back(loop);
-  loop();
+  for (std::size_t n = 1; n < std::min(cores, pieces); ++n) helpers.emplace_back(take);
+  take();
   for (std::thread& helper : helpers) helper.join();
 }
 
@@ -37,16 +65,74 @@ Trace trace_of(std::size_t n, const Outputs& out) {
   return {out.every, out.angles + offset, out.duties + offset};
 }
 
-}  // namespace
+// The noise of every slice in converter counts, the same for all candidates: the numbers that the single run draws.
+std::vector<float> noise_of(const Experiment& x) {
+  const bool quiet = std::all_of(x.pots.begin(), x.pots.end(), [](const arm::Potentiometer& pot) { return pot.noise == 0.0; });
+  if (quiet) return {};
+  const std::size_t slices = kSlices * x.ticks + 1;
+  std::vector<float> noise(slices * kJoints);
+  for (std::size_t i = 0; i < kJoints; ++i) {
+    const arm::Noise source(x.seed, i);
+    const double counts = x.pots[i].noise * 1000.0 * 1024.0 / kConverterMillivolts;
+    for (std::size_t slice = 0; slice < slices; ++slice) noise[slice * kJoints + i] = static_cast<float>(counts * source.gaussian(slice));
+  }
+  return noise;
+}
 
-void run_batch(const Experiment& x, const Batch& batch, const How& how, const Outputs& out) {
-  const auto controllers_of = [&](std::size_t n) -> const Controllers& { return batch.controllers[batch.controller_count == 1 ? 0 : n]; };
-  const auto plant_of = [&](std::size_t n) -> const PlantRow& { return batch.plants[batch.plant_count == 1 ? 0 : n]; };
-  share_out(batch.count, how.threads, [&](std::size_t n) {
-    store(run_single(x, controllers_of(n), plant_of(n), how.substeps, trace_of(n, out)), n, out);
+Pots pots_of(const Experiment& x, const std::vector<float>& noise) {
+  Pots pots{};
+  const double full = x.pot_supply * 1000.0 * 1024.0 / kConverterMillivolts;  // counts
+  for (std::size_t i = 0; i < kJoints; ++i) {
+    const arm::Potentiometer& pot = x.pots[i];
+    const double per_radian = full * pot.direction / pot.track;
+    pots.gain[i] = static_cast<float>(per_radian * 6.283185307179586 / 1073741824.0);
+    pots.offset[i] = static_cast<float>(0.5 * full - per_radian * pot.centre);
+    pots.linearity[i] = static_cast<float>(full * pot.linearity);
+  }
+  pots.noise = noise.empty() ? nullptr : noise.data();
+  return pots;
+}
+
+const Controllers& controllers_of(const Batch& batch, std::size_t n) { return batch.controllers[batch.controller_count == 1 ? 0 : n]; }
+const PlantRow& plant_of(const Batch& batch, std::size_t n) { return batch.plants[batch.plant_count == 1 ? 0 : n]; }
+
+void run_lanes(const Experiment& x, const Batch& batch, const How& how, const Outputs& out) {
+  const Kernel kernel = chosen(how.instructions).kernel;
+  const std::vector<float> noise = noise_of(x);
+  const Pots pots = pots_of(x, noise);
+  share_out((batch.count + kBlock - 1) / kBlock, how.threads, [&](std::size_t piece) {
+    const std::size_t first = piece * kBlock;
+    Block block{};
+    block.count = std::min(kBlock, batch.count - first);
+    for (std::size_t n = 0; n < kBlock; ++n) {
+      const std::size_t candidate = first + std::min(n, block.count - 1);
+      block.controllers[n] = controllers_of(batch, candidate).data();
+      block.plants[n] = &plant_of(batch, candidate);
+      block.traces[n] = trace_of(candidate, out);
+    }
+    Measures measures[kBlock];
+    kernel(x, pots, block, how.substeps, measures);
+    for (std::size_t n = 0; n < block.count; ++n) store(measures[n], first + n, out);
   });
 }
 
-std::vector<std::string> instruction_sets() { return {"baseline"}; }
+}  // namespace
+
+void run_batch(const Experiment& x, const Batch& batch, const How& how, const Outputs& out) {
+  if (!how.single) return run_lanes(x, batch, how, out);
+  share_out(batch.count, how.threads, [&](std::size_t n) {
+    store(run_single(x, controllers_of(batch, n), plant_of(batch, n), how.substeps, trace_of(n, out)), n, out);
+  });
+}
+
+void check_law(const std::string& instructions, const LawCheck& check) { chosen(instructions).check_law(check); }
+
+std::vector<std::string> instruction_sets() {
+  std::vector<std::string> names;
+  for (const InstructionSet& set : kInstructionSets) {
+    if (set.available()) names.emplace_back(set.name);
+  }
+  return names;
+}
 
 }  // namespace greywhale::loop

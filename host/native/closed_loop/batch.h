@@ -39,6 +39,10 @@ struct Outputs {
 // Throws std::invalid_argument for an unknown instruction set. The result does not depend on the number of threads.
 void run_batch(const Experiment& experiment, const Batch& batch, const How& how, const Outputs& outputs);
 
+// The vector form of the law, for tests.
+struct LawCheck;
+void check_law(const std::string& instructions, const LawCheck& check);
+
 std::vector<std::string> instruction_sets();
 
 }  // namespace greywhale::loop

@@ -1,0 +1,337 @@
+// The closed loop of sixteen candidates over the whole experiment. Include after one of the lanes_*.h.
+#pragma once
+
+#include <xmmintrin.h>
+
+#include "block.h"
+#include "firmware_tick.h"
+#include "lanes_controller.h"
+#include "lanes_plant.h"
+
+namespace greywhale::loop::lanes {
+
+constexpr std::size_t kFlush = 256;  // ticks between additions to the sums in double precision
+
+template <class Value>
+GREYWHALE_INLINE Float gather(const Block& block, const Value& value) {
+  float lanes[kBlock];
+  for (std::size_t n = 0; n < kBlock; ++n) lanes[n] = static_cast<float>(value(*block.plants[n]));
+  return load(lanes);
+}
+
+template <class Value>
+GREYWHALE_INLINE Int gather_int(const Value& value) {
+  std::int32_t lanes[kBlock];
+  for (std::size_t n = 0; n < kBlock; ++n) lanes[n] = static_cast<std::int32_t>(value(n));
+  return load(lanes);
+}
+
+inline double units(double radians) { return radians * (1073741824.0 / 6.283185307179586); }
+
+inline Body body_of(const Block& block) {
+  const auto of = [&](double arm::RigidBody<double>::*member) {
+    return gather(block, [member](const PlantRow& row) { return row.plant.body.*member; });
+  };
+  using Rigid = arm::RigidBody<double>;
+  Body b;
+  b.yaw = of(&Rigid::yaw);
+  b.ixx1 = of(&Rigid::ixx1);
+  b.iyy1 = of(&Rigid::iyy1);
+  b.ixx23 = of(&Rigid::ixx23);
+  b.iyy23 = of(&Rigid::iyy23);
+  b.izz23 = of(&Rigid::izz23);
+  b.ixx3 = of(&Rigid::ixx3);
+  b.izz1 = of(&Rigid::izz1);
+  b.coupling = of(&Rigid::coupling);
+  b.gravity1 = of(&Rigid::gravity1);
+  b.gravity2 = of(&Rigid::gravity2);
+  b.d1 = b.ixx1 - b.iyy1;
+  b.across = b.ixx23 - b.iyy23;
+  b.m11 = b.izz1 + b.izz23;
+  return b;
+}
+
+inline Joint joint_of(const Block& block, std::size_t i, double h, int top) {
+  using Source = arm::Joint<double>;
+  const auto of = [&](auto value) { return gather(block, [&](const PlantRow& row) { return value(row.plant.joints[i]); }); };
+  const auto rotor_damped = [h](const Source& s) { return s.actuator.inertia + h * s.actuator.damping; };
+  const auto mesh = [h](const Source& s) { return s.gear.stiffness > 0.0 ? h * (h * s.gear.stiffness + s.gear.damping) : arm::kRigid; };
+  Joint j;
+  j.rotor = of([](const Source& s) { return s.actuator.inertia; });
+  j.impulse = gather(block, [&](const PlantRow& r) { return h * r.plant.joints[i].actuator.torque_per_volt * r.supply / top; });
+  j.coulomb = of([h](const Source& s) { return h * s.friction.coulomb; });
+  j.stribeck = of([h](const Source& s) { return h * (s.friction.breakaway - s.friction.coulomb); });
+  j.per_stribeck_velocity = of([](const Source& s) { return 1.0 / s.friction.stribeck_velocity; });
+  j.breakaway = of([h](const Source& s) { return h * s.friction.breakaway; });
+  j.spring = of([h](const Source& s) { return h * s.gear.stiffness; });
+  j.gap_push = of([h](const Source& s) { return h * s.gear.stiffness * s.gear.half_gap; });
+  j.no_pull = of([h](const Source& s) { return 1e-6 * h * (s.gear.stiffness * s.gear.half_gap + 1e-3); });
+  j.gap = of([](const Source& s) { return s.gear.half_gap; });
+  j.mesh = of(mesh);
+  for (int touching = 0; touching < 2; ++touching) {
+    const auto stiff = [=](const Source& s) { return h * s.gear.drag + (touching ? mesh(s) : 0.0); };
+    j.stiff[touching] = of(stiff);
+    j.give[touching] = of([=](const Source& s) { return 1.0 / (rotor_damped(s) + stiff(s)); });
+    j.share[touching] = of([=](const Source& s) { return stiff(s) / (rotor_damped(s) + stiff(s)); });
+    j.inertia[touching] = of([=](const Source& s) { return rotor_damped(s) * (stiff(s) / (rotor_damped(s) + stiff(s))); });
+  }
+  const auto stop = [&](double arm::Stops<double>::*side) {
+    return gather_int([&](std::size_t n) { return units(block.plants[n]->plant.joints[i].stops.*side); });
+  };
+  j.stop_min = stop(&arm::Stops<double>::min);
+  j.stop_max = stop(&arm::Stops<double>::max);
+  return j;
+}
+
+inline Side side_of(const Block& block, std::size_t joint, fuzzy_pdi::Side (fuzzy_pdi::Coefficients::*input)[2], std::size_t below) {
+  const auto of = [&](auto value) {
+    return gather_int([&](std::size_t n) { return value((block.controllers[n][joint].*input)[below]); });
+  };
+  return {of([](const fuzzy_pdi::Side& s) { return s.zero; }), of([](const fuzzy_pdi::Side& s) { return s.outer; }),
+          of([](const fuzzy_pdi::Side& s) { return s.short_ramps & 1 ? 8 : 0; }),
+          of([](const fuzzy_pdi::Side& s) { return s.short_ramps & 2 ? 8 : 0; })};
+}
+
+inline Law law_of(const Block& block, std::size_t joint, bool& short_ramps) {
+  using fuzzy_pdi::Coefficients;
+  Law law;
+  for (std::size_t below = 0; below < 2; ++below) {
+    law.e[below] = side_of(block, joint, &Coefficients::e, below);
+    law.ce[below] = side_of(block, joint, &Coefficients::ce, below);
+    for (std::size_t n = 0; n < kBlock; ++n) {
+      const Coefficients& c = block.controllers[n][joint];
+      short_ramps = short_ramps || (c.e[below].short_ramps | c.ce[below].short_ramps) != 0;
+    }
+  }
+  law.integral = gather_int([&](std::size_t n) { return block.controllers[n][joint].integral; });
+  law.ku = gather_int([&](std::size_t n) { return block.controllers[n][joint].ku_mv; });
+  return law;
+}
+
+// How many of a pot's four conversions fall into each slice of a tick and the first of the next.
+struct Turns {
+  std::int32_t in[kSlices + 1];
+};
+
+inline Turns turns_of(const Timing& timing, std::size_t joint) {
+  Turns t{};
+  for (std::size_t turn = 0; turn < kConversions; ++turn) ++t.in[slice_of(timing, turn, kJoints + joint)];
+  return t;
+}
+
+struct Totals {
+  Float mse[kJoints], itae[kJoints], itau[kJoints];
+};
+
+class Run {
+ public:
+  Run(const Experiment& x, const Pots& pots, const Block& block, int steps)
+      : x_(x), pots_(pots), block_(block), steps_(static_cast<std::size_t>(steps)), per_supply_(per_supply(x.settings.supply_mv)),
+        ramp_(x.settings.soft_start_ms) {
+    const double h = kTick / steps;
+    plant_.body = body_of(block);
+    plant_.step = all(static_cast<float>(h));
+    plant_.travel = all(static_cast<float>(h) * kRadian);
+    plant_.per_step = all(static_cast<float>(1.0 / h));
+    for (std::size_t i = 0; i < kJoints; ++i) {
+      plant_.joints[i] = joint_of(block, i, h, x.settings.pwm_top[i]);
+      laws_[i] = law_of(block, i, short_ramps_);
+      memories_[i] = {all(0), all(0), all(0)};
+      turns_[i] = turns_of(x.timing, i);
+      state_[i] = {all(static_cast<std::int32_t>(units(x.home[i]))), all(0.0f), plant_.joints[i].gap * all(static_cast<float>(x.gap[i])),
+                   all(0.0f)};
+      const Int count = count_of(i, counts(i, state_[i].q), 0.0f);
+      sum_[i] = shift_left<2>(count);
+      filtered_[i] = shift_left<4>(sum_[i]);
+      compare_[i] = all(0);
+      duty_[i] = all(0.0f);
+    }
+  }
+
+  void through(Measures* measures) {
+    double sums[3][kJoints][kBlock] = {};
+    Totals totals = nothing();
+    for (std::size_t tick = 0; tick < x_.ticks; ++tick) {
+      Float error[kJoints];
+      for (std::size_t i = 0; i < kJoints; ++i) {
+        error[i] = all(static_cast<float>(x_.leader[tick * kJoints + i])) - to_float(state_[i].q) * all(kUnit);
+      }
+      control(tick);
+      add(tick, error, totals);
+      for (std::size_t n = 0; n < block_.count; ++n) record(tick, n);
+      move(tick);
+      if (tick % kFlush == kFlush - 1 || tick + 1 == x_.ticks) {
+        flush(totals, sums);
+        totals = nothing();
+      }
+    }
+    finish(sums, measures);
+  }
+
+ private:
+  // A pot's place in converter counts at an angle.
+  GREYWHALE_INLINE Float counts(std::size_t i, Int q) const { return to_float(q) * all(pots_.gain[i]) + all(pots_.offset[i]); }
+
+  GREYWHALE_INLINE Int count_of(std::size_t i, Float place, float noise) const {
+    if (pots_.linearity[i] != 0.0f) {
+      Float sine, cosine;
+      sine_cosine(to_nearest(place * all(1048576.0f)), sine, cosine);  // 1024 counts are a turn
+      place = place + all(pots_.linearity[i]) * sine;
+    }
+    const Float seen = greatest(least(place + all(noise), all(static_cast<float>(kTopCount))), all(0.0f));
+    return to_int(seen);
+  }
+
+  GREYWHALE_INLINE void control(std::size_t tick) {
+    const Settings& s = x_.settings;
+    const bool on = tick > 0;
+    const std::uint16_t limit = on ? ramp_.next_limit_mv(s.supply_mv) : std::uint16_t{0};
+    const bool due = on && (tick - 1) % static_cast<std::size_t>(s.period_ms) == 0;
+    for (std::size_t i = 0; i < kJoints; ++i) {
+      filtered_[i] = low_pass(filtered_[i], sum_[i], s.filter_shift);
+      if (!due) continue;
+      const Int follower = to_angle(filtered_[i], s.follower.zero[i], s.follower.scale[i]);
+      std::int32_t leader = x_.reference[tick * kJoints + i];
+      leader = leader < s.limit_min[i] ? s.limit_min[i] : leader > s.limit_max[i] ? s.limit_max[i] : leader;
+      const Int millivolts = step(laws_[i], memories_[i], all(leader), follower, limit, tick == 1, short_ramps_);
+      compare_[i] = compare_value(millivolts, per_supply_, s.motor_sign[i], s.pwm_top[i]);
+      duty_[i] = to_float(compare_[i]);
+    }
+  }
+
+  // The arm from the end of a tick's first slice to that of the next tick's, and what the converter sees on the way.
+  GREYWHALE_INLINE void move(std::size_t tick) {
+    Float place[kSlices + 1][kJoints];
+    for (std::size_t i = 0; i < kJoints; ++i) place[0][i] = counts(i, state_[i].q);
+    const std::size_t stride = kSlices / steps_;
+    for (std::size_t slice = stride; slice <= kSlices; slice += stride) {
+      const std::size_t first = kSlices * tick + slice - stride + 1;
+      if (first > static_cast<std::size_t>(x_.timing.on)) advance(plant_, state_, duty_);
+      for (std::size_t i = 0; i < kJoints; ++i) place[slice][i] = counts(i, state_[i].q);
+      for (std::size_t part = 1; part < stride; ++part) {  // between the steps the links move evenly
+        const Float share = all(static_cast<float>(part) / static_cast<float>(stride));
+        for (std::size_t i = 0; i < kJoints; ++i) {
+          const Float before = place[slice - stride][i];
+          place[slice - stride + part][i] = before + (place[slice][i] - before) * share;
+        }
+      }
+    }
+    for (std::size_t i = 0; i < kJoints; ++i) {
+      Int sum = all(0);
+      for (std::size_t slice = 0; slice <= kSlices; ++slice) {
+        const std::int32_t turns = turns_[i].in[slice];
+        if (turns == 0) continue;
+        const float noise = pots_.noise ? pots_.noise[(kSlices * tick + slice) * kJoints + i] : 0.0f;
+        const Int count = count_of(i, place[slice][i], noise);
+        sum = sum + (turns == 1 ? count : count * all(turns));
+      }
+      sum_[i] = sum;
+    }
+  }
+
+  static Totals nothing() {
+    Totals t;
+    for (std::size_t i = 0; i < kJoints; ++i) t.mse[i] = t.itae[i] = t.itau[i] = all(0.0f);
+    return t;
+  }
+
+  GREYWHALE_INLINE void add(std::size_t tick, const Float (&error)[kJoints], Totals& totals) const {
+    const Float weight = all(static_cast<float>(x_.weight[tick]));
+    for (std::size_t i = 0; i < kJoints; ++i) {
+      totals.mse[i] = totals.mse[i] + error[i] * error[i];
+      totals.itae[i] = totals.itae[i] + weight * absolute(error[i]);
+      totals.itau[i] = totals.itau[i] + weight * absolute(duty_[i]);
+    }
+  }
+
+  static void flush(const Totals& totals, double (&sums)[3][kJoints][kBlock]) {
+    for (std::size_t i = 0; i < kJoints; ++i) {
+      const Float parts[3] = {totals.mse[i], totals.itae[i], totals.itau[i]};
+      for (std::size_t k = 0; k < 3; ++k) {
+        float lanes[kBlock];
+        store(lanes, parts[k]);
+        for (std::size_t n = 0; n < kBlock; ++n) sums[k][i][n] += static_cast<double>(lanes[n]);
+      }
+    }
+  }
+
+  void record(std::size_t tick, std::size_t n) const {
+    const Trace& trace = block_.traces[n];
+    if (trace.every == 0 || tick % trace.every != 0) return;
+    for (std::size_t i = 0; i < kJoints; ++i) {
+      const std::size_t at = tick / trace.every * kJoints + i;
+      std::int32_t q[kBlock], compare[kBlock];
+      store(q, state_[i].q);
+      store(compare, compare_[i]);
+      trace.angles[at] = static_cast<float>(q[n] * (6.283185307179586 / 1073741824.0));
+      trace.duties[at] = static_cast<std::int16_t>(compare[n]);
+    }
+  }
+
+  // Once a velocity is no number it stays so.
+  void finish(const double (&sums)[3][kJoints][kBlock], Measures* measures) const {
+    float lost[kBlock] = {};
+    for (const State& s : state_) {
+      float v[kBlock], motor_v[kBlock];
+      store(v, s.v);
+      store(motor_v, s.motor_v);
+      for (std::size_t n = 0; n < kBlock; ++n) lost[n] += (v[n] - v[n]) + (motor_v[n] - motor_v[n]);
+    }
+    for (std::size_t n = 0; n < block_.count; ++n) {
+      Measures& m = measures[n];
+      m.diverged = !(lost[n] == 0.0f);
+      for (std::size_t i = 0; i < kJoints; ++i) {
+        const double volts = block_.plants[n]->supply / x_.settings.pwm_top[i];
+        m.mse[i] = m.diverged ? kDiverged : sums[0][i][n] / static_cast<double>(x_.ticks);
+        m.itae[i] = m.diverged ? kDiverged : kTick * sums[1][i][n];
+        m.itau[i] = m.diverged ? kDiverged : kTick * volts * sums[2][i][n];
+      }
+    }
+  }
+
+  const Experiment& x_;
+  const Pots& pots_;
+  const Block& block_;
+  const std::size_t steps_;
+  const std::uint16_t per_supply_;
+  SoftStart ramp_;
+  bool short_ramps_ = false;
+  Plant plant_;
+  Law laws_[kJoints];
+  Memory memories_[kJoints];
+  Turns turns_[kJoints];
+  State state_[kJoints];
+  Int sum_[kJoints], filtered_[kJoints], compare_[kJoints];
+  Float duty_[kJoints];
+};
+
+// Numbers too small to matter are 0, as they slow a processor down.
+class NoDenormals {
+ public:
+  NoDenormals() : before_(_mm_getcsr()) { _mm_setcsr(before_ | 0x8040u); }
+  ~NoDenormals() { _mm_setcsr(before_); }
+  NoDenormals(const NoDenormals&) = delete;
+  NoDenormals& operator=(const NoDenormals&) = delete;
+
+ private:
+  unsigned before_;
+};
+
+inline void run_block(const Experiment& x, const Pots& pots, const Block& block, int steps, Measures* measures) {
+  const NoDenormals here;
+  Run(x, pots, block, steps).through(measures);
+}
+
+inline void check_law(const LawCheck& c) {
+  Block block{};
+  for (std::size_t n = 0; n < kBlock; ++n) block.controllers[n] = c.laws + n;
+  bool short_ramps = false;
+  const Law law = law_of(block, 0, short_ramps);
+  Memory memory = {all(0), all(0), all(0)};
+  for (std::size_t k = 0; k < c.n; ++k) {
+    const Int out = step(law, memory, load(c.leader + k * kBlock), load(c.follower + k * kBlock), c.limit_mv[k], k == 0, short_ramps);
+    store(c.millivolts + k * kBlock, out);
+  }
+}
+
+}  // namespace greywhale::loop::lanes

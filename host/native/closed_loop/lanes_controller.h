@@ -1,0 +1,152 @@
+// The firmware's tick for sixteen candidates: filter, angle, fuzzy PD+I law, duty, in the same integers with the same bits.
+// The law is firmware/lib/fuzzy_pdi (fuzzy_pdi.cpp, inference.h, arithmetic.h), line by line; a test holds one against the other.
+#pragma once
+
+#include "fuzzy_pdi.h"
+
+namespace greywhale::loop::lanes {
+
+// One side of one input; a short ramp's size is scaled up by 2^8.
+struct Side {
+  Int zero, outer, zero_shift, outer_shift;
+};
+
+struct Law {
+  Side e[2], ce[2];
+  Int integral, ku;
+};
+
+struct Memory {
+  Int integral, fraction, previous;
+};
+
+struct Heights {
+  Int zero, outer;
+};
+
+struct Product {
+  Int whole, fraction;
+};
+
+constexpr std::int32_t kOne = 0xFFFFFF;
+
+GREYWHALE_INLINE Product multiply(Int size, Int factor) {
+  const Int low = size * (factor & all(0xFFFF));
+  return {size * shift_right<16>(factor) + shift_right<16>(low), low & all(0xFFFF)};
+}
+
+// `short_ramps`: whether any lane has one, so that the others' time is not spent on them.
+GREYWHALE_INLINE Int climb(Int slope, Int shift, Int size, bool short_ramps) {
+  const Int scaled = short_ramps ? shift_left(size, shift) : size;
+  const Int low = scaled * (slope & all(0xFFFF));
+  const Int height = scaled * shift_right<16>(slope) + shift_right<16>(low + all(0x8000));
+  // As an unsigned number it may be beyond 2^31, which is seen as negative here.
+  const Int clipped = choose(negative(height), all(kOne), least(height, all(kOne)));
+  return short_ramps ? choose(scaled > all(0xFFFF), all(kOne), clipped) : clipped;
+}
+
+GREYWHALE_INLINE Heights fuzzify(const Side (&sides)[2], Mask below, Int size, bool short_ramps) {
+  const Int zero = choose(below, sides[1].zero, sides[0].zero);
+  const Int outer = choose(below, sides[1].outer, sides[0].outer);
+  const Int zero_shift = short_ramps ? choose(below, sides[1].zero_shift, sides[0].zero_shift) : all(0);
+  const Int outer_shift = short_ramps ? choose(below, sides[1].outer_shift, sides[0].outer_shift) : all(0);
+  return {all(kOne) - climb(zero, zero_shift, size, short_ramps), climb(outer, outer_shift, size, short_ramps)};
+}
+
+GREYWHALE_INLINE Int ratio_q15(Int part, Int whole) {
+  const Int down = choose(whole >= all(1 << 25), all(2), choose(whole >= all(1 << 24), all(1), all(0)));
+  const Int small = shift_right(whole, down);
+  const Int up = all(23) - highest_bit(small);
+  part = shift_left(shift_right(part, down), up);
+  whole = shift_left(small, up);
+
+  // The table of reciprocals, 131072 / (257 + i): the quotient is never close below a whole number, so the division is safe.
+  const Int r = to_int(all(131072.0f) / to_float(all(257) + (shift_right<15>(whole) & all(255))));
+  const Int rest = shift_right<9>(all(-1) - whole * r);
+  const Int coarse = shift_right<8>(rest);
+  const Int series = rest + shift_right<7>(coarse * coarse);
+  const Int first = shift_right<8>(part * r);
+  const Int high = shift_right<16>(first);
+  const Int low = shift_right<8>(first) & all(255);
+  const Int fine = shift_right<8>(series);
+  const Int more = high * fine + shift_right<8>(high * (series & all(255))) + shift_right<8>(low * fine);
+  return shift_right<1>(shift_right<8>(first + shift_left<1>(more)) + all(1));
+}
+
+struct Voltage {
+  Int size;
+  Mask negative;
+};
+
+GREYWHALE_INLINE Voltage sum(Int proportional, Int integral) {
+  const Int total = proportional + integral;
+  return {shift_right<15>(absolute(total) + all(0x4000)), negative(total)};
+}
+
+// One control period; the voltage in mV.
+GREYWHALE_INLINE Int step(const Law& law, Memory& memory, Int leader, Int follower, std::int32_t limit_mv, bool first, bool short_ramps) {
+  const Int furthest = all(32767);
+  const Int error = greatest(least(leader - follower, furthest), all(0) - furthest);
+  const Int change = first ? all(0) : greatest(least(error - memory.previous, furthest), all(0) - furthest);
+  memory.previous = error;
+
+  const Mask e_below = negative(error);
+  const Mask opposite = e_below ^ negative(change);
+  const Int e_size = absolute(error);
+  const Heights e = fuzzify(law.e, e_below, e_size, short_ramps);
+  const Heights ce = fuzzify(law.ce, negative(change), absolute(change), short_ramps);
+
+  const Int both_zero = least(e.zero, ce.zero);
+  const Int both_outer = least(e.outer, ce.outer);
+  const Int outer_zero = least(e.outer, ce.zero);
+  const Int zero_outer = least(e.zero, ce.outer);
+  const Int with = choose(opposite, outer_zero, greatest(zero_outer, greatest(outer_zero, both_outer)));
+  const Int zero = choose(opposite, greatest(both_zero, both_outer), both_zero);
+  const Int against = choose(opposite, zero_outer, all(0));
+
+  const Int whole = with + zero + against;
+  const Mask fires = whole >= all(65536);
+  const Mask flip = (against > with) & fires;
+  const Int ratio = ratio_q15(absolute(with - against), choose(fires, whole, all(65536)));
+  const Int drive = choose(fires, ratio, all(0)) * law.ku;
+  const Int proportional = choose(e_below ^ flip, all(0) - drive, drive);
+
+  const Product more = multiply(e_size, law.integral);
+  const Int fraction = memory.fraction + choose(e_below, all(0) - more.fraction, more.fraction);
+  const Int integral = memory.integral + choose(e_below, all(0) - more.whole, more.whole) + shift_right_signed<16>(fraction);
+  const Mask above = integral >= all(1 << 30);
+  const Mask below = integral < all(-(1 << 30));
+  const Int next_integral = choose(above, all((1 << 30) - 1), choose(below, all(-(1 << 30)), integral));
+  const Int next_fraction = choose(above, all(0xFFFF), choose(below, all(0), fraction & all(0xFFFF)));
+
+  const Int limit = all(limit_mv);
+  const Voltage wanted = sum(proportional, next_integral);
+  const Mask held = (wanted.size > limit) & ~(wanted.negative ^ e_below);
+  const Voltage instead = sum(proportional, memory.integral);
+  memory.integral = choose(held, memory.integral, next_integral);
+  memory.fraction = choose(held, memory.fraction, next_fraction);
+  const Int size = least(choose(held, instead.size, wanted.size), limit);
+  const Mask backwards = (held & instead.negative) | (~held & wanted.negative);
+  return choose(backwards, all(0) - size, size);
+}
+
+GREYWHALE_INLINE Int low_pass(Int old, Int sum, int shift) {
+  const Int sample = shift_left<4>(sum);
+  if (shift == 0) return sample;
+  const Int distance = sample - old;
+  const Int part = shift_right<1>(shift_right_all(absolute(distance), shift - 1) + all(1));
+  return choose(negative(distance), old - part, old + part);
+}
+
+GREYWHALE_INLINE Int to_angle(Int filtered, std::int32_t zero, std::int32_t scale) {
+  const Int count14 = shift_right<2>(filtered + all(2));
+  return shift_right_signed<13>((count14 - all(zero)) * all(scale) + all(4096));
+}
+
+GREYWHALE_INLINE Int compare_value(Int millivolts, std::int32_t per_supply, std::int32_t sign, std::int32_t top) {
+  const Int duty = least(shift_right<12>(absolute(millivolts) * all(per_supply)), all(32767));
+  const Int compare = shift_right<16>(duty * all(2 * top) + all(0x8000));
+  return choose(negative(millivolts * all(sign)), all(0) - compare, compare);
+}
+
+}  // namespace greywhale::loop::lanes
