@@ -50,10 +50,12 @@ uint32_t without_low_byte(uint32_t slope) {
   return (slope > largest_slope - 128 ? largest_slope : slope + 128) & ~uint32_t{0xFF};
 }
 
-Side make_side(uint32_t zero_width, uint32_t outer_width, uint32_t gain) {
+void make_side(uint32_t zero_width, uint32_t outer_width, uint32_t gain, Side& out) {
   const Slope zero = make_slope(zero_width, gain);
   const Slope outer = make_slope(outer_width, gain);
-  return {zero.slope, without_low_byte(outer.slope), static_cast<uint8_t>((zero.is_short ? 1 : 0) | (outer.is_short ? 2 : 0))};
+  out.zero = zero.slope;
+  out.outer = without_low_byte(outer.slope);
+  out.short_ramps = static_cast<uint8_t>((zero.is_short ? 1 : 0) | (outer.is_short ? 2 : 0));
 }
 
 // outward: a set's width, counted away from zero on its own side.
@@ -63,6 +65,26 @@ Refusal check_width(int32_t outward) {
   return outward < least_width ? Refusal::width : Refusal::none;
 }
 
+Refusal check_pair(int16_t left, int16_t right) {
+  const Refusal refusal = check_width(-int32_t{left});
+  return refusal != Refusal::none ? refusal : check_width(right);
+}
+
+Refusal check_sets(const Settings& s) {
+  Refusal refusal = check_pair(s.ne_c, s.pe_b);
+  if (refusal == Refusal::none) refusal = check_pair(s.ze_a, s.ze_c);
+  if (refusal == Refusal::none) refusal = check_pair(s.nce_c, s.pce_b);
+  if (refusal == Refusal::none) refusal = check_pair(s.zce_a, s.zce_c);
+  return refusal;
+}
+
+Refusal check_gains(const Settings& s, uint8_t period_ms) {
+  if (s.kp > largest_k || s.kd > largest_k || s.ki > largest_ki || s.ku_mv > largest_ku_mv) return Refusal::gain;
+  return s.ki * period_ms >= largest_ki_period ? Refusal::gain : Refusal::none;
+}
+
+uint32_t width(int value, uint8_t period_ms) { return static_cast<uint32_t>(value) * period_ms; }
+
 }  // namespace
 
 #ifdef __AVR__
@@ -70,27 +92,17 @@ __attribute__((noinline, noclone))  // stays a function of its own in the image,
 #endif
 Refusal compile(const Settings& s, uint8_t period_ms, Coefficients& out) {
   if (period_ms < 1 || period_ms > longest_period_ms) return Refusal::period;
-  const int16_t left[4] = {s.ne_c, s.ze_a, s.nce_c, s.zce_a};
-  const int16_t right[4] = {s.pe_b, s.ze_c, s.pce_b, s.zce_c};
-  for (uint8_t i = 0; i < 4; ++i) {
-    Refusal refusal = check_width(-int32_t{left[i]});
-    if (refusal == Refusal::none) refusal = check_width(right[i]);
-    if (refusal != Refusal::none) return refusal;
-  }
-  if (s.kp > largest_k || s.kd > largest_k || s.ki > largest_ki || s.ku_mv > largest_ku_mv) return Refusal::gain;
-  if (s.ki * period_ms >= largest_ki_period) return Refusal::gain;
+  Refusal refusal = check_sets(s);
+  if (refusal == Refusal::none) refusal = check_gains(s, period_ms);
+  if (refusal != Refusal::none) return refusal;
 
   const uint32_t kd = s.kd * kd_period_ms;
-  Coefficients made;
-  for (uint8_t side = 0; side < 2; ++side) {
-    uint32_t width[4];
-    for (uint8_t i = 0; i < 4; ++i) width[i] = static_cast<uint16_t>(side == 0 ? right[i] : -left[i]);
-    made.e[side] = make_side(width[1], width[0], s.kp);
-    made.ce[side] = make_side(width[3] * period_ms, width[2] * period_ms, kd);
-  }
-  made.integral = (s.ki * period_ms) << 3;
-  made.ku_mv = s.ku_mv;
-  out = made;
+  make_side(width(s.ze_c, 1), width(s.pe_b, 1), s.kp, out.e[0]);
+  make_side(width(-s.ze_a, 1), width(-s.ne_c, 1), s.kp, out.e[1]);
+  make_side(width(s.zce_c, period_ms), width(s.pce_b, period_ms), kd, out.ce[0]);
+  make_side(width(-s.zce_a, period_ms), width(-s.nce_c, period_ms), kd, out.ce[1]);
+  out.integral = (s.ki * period_ms) << 3;
+  out.ku_mv = s.ku_mv;
   return Refusal::none;
 }
 

@@ -293,10 +293,6 @@
 .endm
 
   .section .text.fuzzy_pdi_infer, "ax", @progbits
-.Lslow_e:
-  rjmp .Lslow_e_far
-.Lsmall_e:
-  rjmp .Lsmall_e_far
   .global fuzzy_pdi_infer
   .type fuzzy_pdi_infer, @function
 fuzzy_pdi_infer:
@@ -312,6 +308,12 @@ fuzzy_pdi_infer:
   clr ZERO
   ldi HALF, 0x80
   movw r30, r24
+  rjmp 19f
+.Lslow_e:
+  rjmp .Lslow_e_far
+.Lsmall_e:
+  rjmp .Lsmall_e_far
+19:
   fuzzify .Lslow_e, .Lslow_e_far, .Lsmall_e, .Lsmall_e_far, r22, r23, a0, a1, a2, A0, A1, A2
   rjmp 19f
 .Lslow_ce:

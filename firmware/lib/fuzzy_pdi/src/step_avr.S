@@ -98,13 +98,6 @@
 .endm
 
   .section .text.fuzzy_pdi_step, "ax", @progbits
-.Lfirst:
-  ldi S, 1
-  std Y+STATE_STARTED, S
-  ldi r18, 0
-  ldi r19, 0
-  rjmp .Lsplit
-
   .global fuzzy_pdi_step
   .type fuzzy_pdi_step, @function
 fuzzy_pdi_step:
@@ -134,8 +127,9 @@ fuzzy_pdi_step:
   std Y+STATE_PREVIOUS+1, r23
   ldd S, Y+STATE_STARTED
   tst S
-  breq .Lfirst
-  movw r18, r22
+  brne 1f
+  rjmp .Lfirst
+1:  movw r18, r22
   difference r18, r19, r20, r21
 
   // sizes; the sides' addresses in r25:r24 and r21:r20
@@ -266,6 +260,13 @@ fuzzy_pdi_step:
   pop r3
   pop r2
   ret
+
+.Lfirst:
+  ldi S, 1
+  std Y+STATE_STARTED, S
+  ldi r18, 0
+  ldi r19, 0
+  rjmp .Lsplit
 
 .Ldown:
   ldd S, Y+STATE_FRACTION
