@@ -1,0 +1,143 @@
+"""The gates on small programs made to break them, and on the real images."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from greywhale_sim._board import Board
+from tools.gates import stack, tick
+from tools.gates.__main__ import BUILD, IMAGES, check
+from tools.gates.image import GateError, read_image
+
+TICK = "void app::App::tick()"
+FRAME = """
+#include <avr/interrupt.h>
+#include <avr/sleep.h>
+#include <stdint.h>
+#include <stdlib.h>
+volatile uint16_t a = 1000, b = 7;
+volatile float f = 1.5f;
+volatile uint8_t sink;
+namespace app {{ struct App {{ void tick() __attribute__((noinline)); }}; }}
+{program}
+int main() {{
+  app::App app;
+  app.tick();
+  cli();
+  sleep_enable();
+  sleep_cpu();
+}}
+"""
+
+
+def build(folder: Path, program: str, chip: str = "atmega328p") -> Path:
+    source, elf = folder / "program.cpp", folder / "program.elf"
+    source.write_text(FRAME.format(program=program))
+    subprocess.run(["avr-g++", "-std=gnu++14", "-O2", f"-mmcu={chip}", str(source), "-o", str(elf)], check=True)
+    return elf
+
+
+@pytest.mark.parametrize(
+    ("body", "complaint"),
+    [
+        ("a = a / b;", "a software division"),
+        ("a = a % b;", "a software division"),
+        ("a = (uint16_t)(int32_t(a) * 1000 / b);", "a software division"),
+        ("f = f * 2.5f;", "floating point"),
+        ("if (f > 2) a = 1;", "floating point"),
+        ("a = (uint16_t)f;", "floating point"),
+        ("a = (uint16_t)(uintptr_t)malloc(b);", "a heap"),
+    ],
+)
+def test_what_a_tick_must_not_contain(tmp_path: Path, body: str, complaint: str) -> None:
+    elf = build(tmp_path, f"void app::App::tick() {{ {body} }}")
+    assert complaint in " ".join(tick.complaints(read_image(elf)))
+
+
+def test_it_is_found_in_interrupts_and_deep_down_too(tmp_path: Path) -> None:
+    deep = "__attribute__((noinline)) void deep() { a = a / b; }"
+    mid = "__attribute__((noinline)) void mid() { deep(); sink = 1; }"
+    below = build(tmp_path, f"{deep} {mid} void app::App::tick() {{ mid(); sink = 2; }}")
+    assert any("mid" in complaint and "deep" in complaint for complaint in tick.complaints(read_image(below)))
+    interrupt = build(tmp_path, "ISR(TIMER0_COMPA_vect) { a = a / b; } void app::App::tick() {}")
+    assert "__vector_14" in tick.complaints(read_image(interrupt))[0]
+
+
+def test_multiplying_and_dividing_elsewhere_are_fine(tmp_path: Path) -> None:
+    program = """
+    __attribute__((noinline, used)) void elsewhere() { a = a / b; }
+    void app::App::tick() { a = (uint16_t)((uint32_t(a) * b) >> 3); }
+    """
+    assert tick.complaints(read_image(build(tmp_path, program))) == []
+
+
+def test_an_image_without_a_tick_is_not_passed(tmp_path: Path) -> None:
+    source, elf = tmp_path / "none.c", tmp_path / "none.elf"
+    source.write_text("int main(void) { return 0; }")
+    subprocess.run(["avr-gcc", "-mmcu=atmega328p", str(source), "-o", str(elf)], check=True)
+    with pytest.raises(GateError, match="not in the image"):
+        tick.complaints(read_image(elf))
+
+
+DEEP = """
+__attribute__((noinline)) uint8_t leaf(uint8_t n) {{
+  volatile uint8_t room[{leaf}];
+  for (uint8_t i = 0; i < sizeof room; ++i) room[i] = n;
+  return room[n];
+}}
+__attribute__((noinline)) uint8_t middle(uint8_t n) {{
+  volatile uint8_t room[{middle}];
+  for (uint16_t i = 0; i < sizeof room; ++i) room[i] = leaf(n);
+  return room[n];
+}}
+void app::App::tick() {{ sink = middle(3); }}
+"""
+
+
+@pytest.mark.parametrize(
+    ("chip", "kind", "ram"), [("atmega328p", stack.NANO, 0x100), ("atmega2560", stack.MEGA, 0x200)]
+)
+@pytest.mark.parametrize(("leaf", "middle"), [(5, 20), (60, 64), (100, 300)])
+def test_the_stack_bound_holds_and_is_tight(
+    tmp_path: Path, chip: str, kind: stack.Chip, ram: int, leaf: int, middle: int
+) -> None:
+    elf = build(tmp_path, DEEP.format(leaf=leaf, middle=middle), chip)
+    bound = stack.bound(elf, kind)
+    board = Board(chip)
+    board.load_elf(str(elf))
+    board.power_on(1)
+    board.poke(ram, bytes([0xA5]) * (kind.ram_end + 1 - ram))
+    assert board.run_until(10_000_000) == 1
+    memory = board.peek(ram, kind.ram_end + 1 - ram)
+    first = next(i for i in range(0x100, len(memory)) if memory[i] != 0xA5)
+    deepest = len(memory) - first
+    assert deepest <= bound.bytes <= deepest + 16
+    assert bound.free == kind.ram_end + 1 - ram - 9 or bound.free > 1000
+
+
+@pytest.mark.parametrize(
+    ("program", "reason"),
+    [
+        (f"uint16_t down(uint16_t n) {{ return n ? down(n - 1) + a : 0; }} {TICK} {{ a = down(b); }}", "recursion"),
+        (f"void (*volatile whom)(); {TICK} {{ whom(); sink = 1; }}", "through a pointer"),
+        (f"ISR(TIMER0_COMPA_vect) {{ sei(); sink = 1; }} {TICK} {{}}", "may nest"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_bounded_is_refused(tmp_path: Path, program: str, reason: str) -> None:
+    program = program.replace("uint16_t down", "__attribute__((noinline, optimize(0))) uint16_t down")
+    with pytest.raises(GateError, match=reason):
+        stack.bound(build(tmp_path, program), stack.NANO)
+
+
+def test_an_interrupt_counts(tmp_path: Path) -> None:
+    quiet = stack.bound(build(tmp_path, "void app::App::tick() {}"), stack.NANO).bytes
+    program = "ISR(TIMER0_COMPA_vect) { a = a * b; } void app::App::tick() {}"
+    assert stack.bound(build(tmp_path, program), stack.NANO).bytes > quiet + 6
+
+
+@pytest.mark.parametrize("environment", list(IMAGES))
+def test_the_real_images_pass(environment: str) -> None:
+    assert check(BUILD / environment / "firmware.elf", IMAGES[environment]) == []

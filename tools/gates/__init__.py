@@ -1,0 +1,1 @@
+"""Gates on a compiled firmware image, from its disassembly."""
