@@ -17,6 +17,7 @@
 #include "arm/arm.h"
 #include "bindings.h"
 #include "closed_loop/batch.h"
+#include "closed_loop/block.h"
 #include "closed_loop/experiment.h"
 
 namespace nb = nanobind;
@@ -170,6 +171,25 @@ nb::tuple leader_readings(const loop::Settings& settings, const loop::Timing& ti
   return nb::make_tuple(reference.numpy(), leader.numpy());
 }
 
+// The vector form of the law for sixteen controllers side by side; tests compare it with the firmware's own.
+nb::object sixteen_laws(const In<std::int32_t, nb::shape<loop::kBlock, kSettingColumns>>& controllers, int period_ms,
+                        const In<std::int32_t, nb::shape<-1, loop::kBlock>>& leader,
+                        const In<std::int32_t, nb::shape<-1, loop::kBlock>>& follower, const In<std::uint16_t, nb::shape<-1>>& limit_mv,
+                        const std::string& instructions) {
+  const std::size_t n = leader.shape(0);
+  if (follower.shape(0) != n || limit_mv.shape(0) != n) throw std::invalid_argument("leader, follower and limit_mv differ in length.");
+  std::array<fuzzy_pdi::Coefficients, loop::kBlock> laws;
+  for (std::size_t lane = 0; lane < loop::kBlock; ++lane) {
+    const fuzzy_pdi::Settings settings = settings_of(&controllers(lane, 0));
+    if (fuzzy_pdi::compile(settings, static_cast<std::uint8_t>(period_ms), laws[lane]) != fuzzy_pdi::Refusal::none) {
+      throw std::invalid_argument("controllers[" + std::to_string(lane) + "] is refused by the firmware.");
+    }
+  }
+  Array<std::int32_t> millivolts({n, loop::kBlock});
+  loop::check_law(instructions, {laws.data(), n, leader.data(), follower.data(), limit_mv.data(), millivolts.data()});
+  return millivolts.numpy();
+}
+
 nb::object plant_row(const arm::ArmParameters& parameters) {
   Array<double> row({loop::kPlantColumns});
   loop::PlantRow one{};
@@ -202,6 +222,8 @@ void bind_closed_loop(nb::module_& m) {
            "mse, itae, itau (n x 4), diverged (n), angles (float32) and duties (int16), both n x rows x 4. The GIL is released.");
   m.def("leader_readings", &leader_readings, nb::kw_only(), "settings"_a, "timing"_a, "pots"_a, "pot_supply"_a, "seed"_a,
         "angles"_a.noconvert(), "The leader's angles in every slice to q12 readings and true angles at every tick.");
+  m.def("sixteen_laws", &sixteen_laws, nb::kw_only(), "controllers"_a.noconvert(), "period_ms"_a, "leader"_a.noconvert(),
+        "follower"_a.noconvert(), "limit_mv"_a.noconvert(), "instructions"_a, "The batch kernel's form of the law, in mV; for tests.");
   m.def("plant_row", &plant_row, "parameters"_a, "An arm as one row of numbers.");
   m.def("instruction_sets", &loop::instruction_sets, "Those of the batch kernel that this processor runs, the best first.");
   m.attr("PLANT_COLUMNS") = loop::kPlantColumns;

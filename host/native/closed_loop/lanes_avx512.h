@@ -75,10 +75,10 @@ GREYWHALE_INLINE Mask operator>=(Int a, Int b) { return {_mm512_cmpge_epi32_mask
 GREYWHALE_INLINE Mask operator!=(Int a, Int b) { return {_mm512_cmpneq_epi32_mask(a.v, b.v)}; }
 GREYWHALE_INLINE Mask negative(Int a) { return {_mm512_movepi32_mask(a.v)}; }
 
-GREYWHALE_INLINE Mask operator&(Mask a, Mask b) { return {static_cast<__mmask16>(a.bits & b.bits)}; }
-GREYWHALE_INLINE Mask operator|(Mask a, Mask b) { return {static_cast<__mmask16>(a.bits | b.bits)}; }
-GREYWHALE_INLINE Mask operator^(Mask a, Mask b) { return {static_cast<__mmask16>(a.bits ^ b.bits)}; }
-GREYWHALE_INLINE Mask operator~(Mask a) { return {static_cast<__mmask16>(~a.bits)}; }
+GREYWHALE_INLINE Mask operator&(Mask a, Mask b) { return {_kand_mask16(a.bits, b.bits)}; }
+GREYWHALE_INLINE Mask operator|(Mask a, Mask b) { return {_kor_mask16(a.bits, b.bits)}; }
+GREYWHALE_INLINE Mask operator^(Mask a, Mask b) { return {_kxor_mask16(a.bits, b.bits)}; }
+GREYWHALE_INLINE Mask operator~(Mask a) { return {_knot_mask16(a.bits)}; }
 GREYWHALE_INLINE bool any(Mask a) { return a.bits != 0; }
 
 GREYWHALE_INLINE Float choose(Mask m, Float yes, Float no) { return {_mm512_mask_blend_ps(m.bits, no.v, yes.v)}; }

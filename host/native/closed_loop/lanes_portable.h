@@ -1,4 +1,4 @@
-// Sixteen lanes of single precision or 32-bit integers in GCC's vector types, which the compiler cuts into what registers there are.
+// Sixteen lanes of single precision or 32-bit integers in as many of GCC's vectors as the registers' width asks for.
 // Conditions are lanes of all ones or zeros. The same operations with the same results as lanes_avx512.h.
 #pragma once
 
@@ -12,99 +12,149 @@
 namespace greywhale::loop::lanes {
 
 constexpr int kLanes = 16;
+#ifdef __AVX2__
+constexpr int kWidth = 32;  // bytes of a register
+#else
+constexpr int kWidth = 16;
+#endif
+constexpr int kParts = 64 / kWidth;
 
-typedef float FloatBits __attribute__((vector_size(64)));
-typedef std::int32_t IntBits __attribute__((vector_size(64)));
-typedef std::uint32_t WordBits __attribute__((vector_size(64)));
+typedef float FloatPart __attribute__((vector_size(kWidth)));
+typedef std::int32_t IntPart __attribute__((vector_size(kWidth)));
+typedef std::uint32_t WordPart __attribute__((vector_size(kWidth)));
 
 struct Mask {
-  IntBits v;
+  IntPart v[kParts];
 };
 struct Float {
-  FloatBits v;
+  FloatPart v[kParts];
 };
 struct Int {
-  IntBits v;
+  IntPart v[kParts];
 };
 
-GREYWHALE_INLINE Float all(float x) { return {FloatBits{} + x}; }
-GREYWHALE_INLINE Int all(std::int32_t x) { return {IntBits{} + x}; }
-GREYWHALE_INLINE Float load(const float* p) {
-  Float a;
-  std::memcpy(&a, p, sizeof a);
+// A result of type T, part by part.
+template <class T, class Operation>
+GREYWHALE_INLINE T parts(const Operation& operation) {
+  T result;
+  for (int p = 0; p < kParts; ++p) result.v[p] = operation(p);
+  return result;
+}
+GREYWHALE_INLINE WordPart word(IntPart a) { return reinterpret_cast<WordPart>(a); }
+GREYWHALE_INLINE IntPart of_word(WordPart a) { return reinterpret_cast<IntPart>(a); }
+
+GREYWHALE_INLINE Float all(float x) {
+  return parts<Float>([=](int) { return FloatPart{} + x; });
+}
+GREYWHALE_INLINE Int all(std::int32_t x) {
+  return parts<Int>([=](int) { return IntPart{} + x; });
+}
+template <class T, class Number>
+GREYWHALE_INLINE T loaded(const Number* from) {
+  T a;
+  std::memcpy(&a, from, sizeof a);
   return a;
 }
-GREYWHALE_INLINE Int load(const std::int32_t* p) {
-  Int a;
-  std::memcpy(&a, p, sizeof a);
-  return a;
+GREYWHALE_INLINE Float load(const float* from) { return loaded<Float>(from); }
+GREYWHALE_INLINE Int load(const std::int32_t* from) { return loaded<Int>(from); }
+GREYWHALE_INLINE void store(float* to, Float a) { std::memcpy(to, &a, sizeof a); }
+GREYWHALE_INLINE void store(std::int32_t* to, Int a) { std::memcpy(to, &a, sizeof a); }
+
+#define GREYWHALE_COMPARE(sign, T)                                    \
+  GREYWHALE_INLINE Mask operator sign(T a, T b) {                     \
+    return parts<Mask>([&](int p) { return a.v[p] sign b.v[p]; });    \
+  }
+GREYWHALE_COMPARE(<, Float)
+GREYWHALE_COMPARE(>, Float)
+GREYWHALE_COMPARE(>=, Float)
+GREYWHALE_COMPARE(!=, Float)
+GREYWHALE_COMPARE(<, Int)
+GREYWHALE_COMPARE(>, Int)
+GREYWHALE_COMPARE(>=, Int)
+GREYWHALE_COMPARE(!=, Int)
+#undef GREYWHALE_COMPARE
+
+#define GREYWHALE_EXACT(sign, T)                                      \
+  GREYWHALE_INLINE T operator sign(T a, T b) {                        \
+    return parts<T>([&](int p) { return a.v[p] sign b.v[p]; });       \
+  }
+GREYWHALE_EXACT(+, Float)
+GREYWHALE_EXACT(-, Float)
+GREYWHALE_EXACT(*, Float)
+GREYWHALE_EXACT(/, Float)
+GREYWHALE_EXACT(&, Int)
+GREYWHALE_EXACT(^, Int)
+GREYWHALE_EXACT(&, Mask)
+GREYWHALE_EXACT(|, Mask)
+GREYWHALE_EXACT(^, Mask)
+#undef GREYWHALE_EXACT
+
+// Modulo 2^32.
+#define GREYWHALE_WRAPPING(sign)                                                        \
+  GREYWHALE_INLINE Int operator sign(Int a, Int b) {                                    \
+    return parts<Int>([&](int p) { return of_word(word(a.v[p]) sign word(b.v[p])); });  \
+  }
+GREYWHALE_WRAPPING(+)
+GREYWHALE_WRAPPING(-)
+GREYWHALE_WRAPPING(*)
+#undef GREYWHALE_WRAPPING
+
+GREYWHALE_INLINE Mask operator~(Mask a) {
+  return parts<Mask>([&](int p) { return ~a.v[p]; });
 }
-GREYWHALE_INLINE void store(float* p, Float a) { std::memcpy(p, &a, sizeof a); }
-GREYWHALE_INLINE void store(std::int32_t* p, Int a) { std::memcpy(p, &a, sizeof a); }
-GREYWHALE_INLINE WordBits words(Int a) { return reinterpret_cast<WordBits>(a.v); }
-GREYWHALE_INLINE Int of_words(WordBits a) { return {reinterpret_cast<IntBits>(a)}; }
-
-GREYWHALE_INLINE Mask operator<(Float a, Float b) { return {a.v < b.v}; }
-GREYWHALE_INLINE Mask operator>(Float a, Float b) { return {a.v > b.v}; }
-GREYWHALE_INLINE Mask operator>=(Float a, Float b) { return {a.v >= b.v}; }
-GREYWHALE_INLINE Mask operator!=(Float a, Float b) { return {a.v != b.v}; }
-GREYWHALE_INLINE Mask operator<(Int a, Int b) { return {a.v < b.v}; }
-GREYWHALE_INLINE Mask operator>(Int a, Int b) { return {a.v > b.v}; }
-GREYWHALE_INLINE Mask operator>=(Int a, Int b) { return {a.v >= b.v}; }
-GREYWHALE_INLINE Mask operator!=(Int a, Int b) { return {a.v != b.v}; }
-GREYWHALE_INLINE Mask negative(Int a) { return {a.v >> 31}; }
-
-GREYWHALE_INLINE Mask operator&(Mask a, Mask b) { return {a.v & b.v}; }
-GREYWHALE_INLINE Mask operator|(Mask a, Mask b) { return {a.v | b.v}; }
-GREYWHALE_INLINE Mask operator^(Mask a, Mask b) { return {a.v ^ b.v}; }
-GREYWHALE_INLINE Mask operator~(Mask a) { return {~a.v}; }
 GREYWHALE_INLINE bool any(Mask a) {
-  std::int64_t parts[8];
-  std::memcpy(parts, &a, sizeof a);
-  return (parts[0] | parts[1] | parts[2] | parts[3] | parts[4] | parts[5] | parts[6] | parts[7]) != 0;
+  std::int64_t words[8];
+  std::memcpy(words, &a, sizeof a);
+  return (words[0] | words[1] | words[2] | words[3] | words[4] | words[5] | words[6] | words[7]) != 0;
+}
+GREYWHALE_INLINE Mask negative(Int a) {
+  return parts<Mask>([&](int p) { return a.v[p] >> 31; });
 }
 
-GREYWHALE_INLINE Int choose(Mask m, Int yes, Int no) { return {(yes.v & m.v) | (no.v & ~m.v)}; }
-GREYWHALE_INLINE Int bits_of(Float a) { return {reinterpret_cast<IntBits>(a.v)}; }
-GREYWHALE_INLINE Float float_of_bits(Int a) { return {reinterpret_cast<FloatBits>(a.v)}; }
+GREYWHALE_INLINE Int bits_of(Float a) {
+  return parts<Int>([&](int p) { return reinterpret_cast<IntPart>(a.v[p]); });
+}
+GREYWHALE_INLINE Float float_of_bits(Int a) {
+  return parts<Float>([&](int p) { return reinterpret_cast<FloatPart>(a.v[p]); });
+}
+GREYWHALE_INLINE Int choose(Mask m, Int yes, Int no) {
+  return parts<Int>([&](int p) { return (yes.v[p] & m.v[p]) | (no.v[p] & ~m.v[p]); });
+}
 GREYWHALE_INLINE Float choose(Mask m, Float yes, Float no) { return float_of_bits(choose(m, bits_of(yes), bits_of(no))); }
-
-GREYWHALE_INLINE Float operator+(Float a, Float b) { return {a.v + b.v}; }
-GREYWHALE_INLINE Float operator-(Float a, Float b) { return {a.v - b.v}; }
-GREYWHALE_INLINE Float operator*(Float a, Float b) { return {a.v * b.v}; }
-GREYWHALE_INLINE Float operator/(Float a, Float b) { return {a.v / b.v}; }
 GREYWHALE_INLINE Float least(Float a, Float b) { return choose(a < b, a, b); }
 GREYWHALE_INLINE Float greatest(Float a, Float b) { return choose(a > b, a, b); }
-
-GREYWHALE_INLINE Int operator+(Int a, Int b) { return of_words(words(a) + words(b)); }
-GREYWHALE_INLINE Int operator-(Int a, Int b) { return of_words(words(a) - words(b)); }
-GREYWHALE_INLINE Int operator*(Int a, Int b) { return of_words(words(a) * words(b)); }
-GREYWHALE_INLINE Int operator&(Int a, Int b) { return {a.v & b.v}; }
-GREYWHALE_INLINE Int operator^(Int a, Int b) { return {a.v ^ b.v}; }
 GREYWHALE_INLINE Int least(Int a, Int b) { return choose(a < b, a, b); }
 GREYWHALE_INLINE Int greatest(Int a, Int b) { return choose(a > b, a, b); }
 GREYWHALE_INLINE Int absolute(Int a) { return choose(negative(a), all(0) - a, a); }
+
 template <int N>
 GREYWHALE_INLINE Int shift_left(Int a) {
-  return of_words(words(a) << N);
+  return parts<Int>([&](int p) { return of_word(word(a.v[p]) << N); });
 }
 template <int N>
 GREYWHALE_INLINE Int shift_right(Int a) {  // of unsigned numbers
-  return of_words(words(a) >> N);
+  return parts<Int>([&](int p) { return of_word(word(a.v[p]) >> N); });
 }
 template <int N>
 GREYWHALE_INLINE Int shift_right_signed(Int a) {
-  return {a.v >> N};
+  return parts<Int>([&](int p) { return a.v[p] >> N; });
 }
-GREYWHALE_INLINE Int shift_left(Int a, Int by) { return of_words(words(a) << words(by)); }
-GREYWHALE_INLINE Int shift_right(Int a, Int by) { return of_words(words(a) >> words(by)); }
-GREYWHALE_INLINE Int shift_right_all(Int a, int by) { return of_words(words(a) >> static_cast<std::uint32_t>(by)); }
+GREYWHALE_INLINE Int shift_left(Int a, Int by) {
+  return parts<Int>([&](int p) { return of_word(word(a.v[p]) << word(by.v[p])); });
+}
+GREYWHALE_INLINE Int shift_right(Int a, Int by) {
+  return parts<Int>([&](int p) { return of_word(word(a.v[p]) >> word(by.v[p])); });
+}
+GREYWHALE_INLINE Int shift_right_all(Int a, int by) {
+  return parts<Int>([&](int p) { return of_word(word(a.v[p]) >> static_cast<std::uint32_t>(by)); });
+}
 
-GREYWHALE_INLINE Float to_float(Int a) { return {__builtin_convertvector(a.v, FloatBits)}; }
-
-// Not __builtin_convertvector and rint: these give what the processor's instruction gives for every number, NaN included.
+GREYWHALE_INLINE Float to_float(Int a) {
+  return parts<Float>([&](int p) { return __builtin_convertvector(a.v[p], FloatPart); });
+}
+// The processor's own instructions, so that NaN and numbers too large for an integer give the same as anywhere.
 template <class Convert>
-GREYWHALE_INLINE Int in_quarters(Float a, Convert convert) {
+GREYWHALE_INLINE Int in_quarters(Float a, const Convert& convert) {
   __m128 from[4];
   __m128i to[4];
   std::memcpy(from, &a, sizeof a);

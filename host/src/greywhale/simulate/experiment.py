@@ -14,7 +14,7 @@ from greywhale.arm import ArmParameters, PotentiometerBank
 from greywhale.errors import UserError
 from greywhale.link import schema
 from greywhale.simulate.leader import SLICES_PER_TICK, leader_slices
-from greywhale.simulate.tables import JOINTS, check_controllers, check_plants, default_controller, plant_row
+from greywhale.simulate.tables import JOINTS, check_controllers, check_plants, controllers_of, plant_row
 from greywhale.trajectory import Trajectory
 from greywhale.trajectory.motion import Array
 
@@ -180,7 +180,7 @@ class Experiment:
         single: bool,
         instructions: str,
     ) -> Result:
-        laws = check_controllers(default_controller() if controllers is None else controllers)
+        laws = check_controllers(controllers_of(self.parameters) if controllers is None else controllers)
         rows = check_plants(plant_row(self.arm) if plants is None else plants)
         if len(laws) != len(rows) and 1 not in (len(laws), len(rows)):
             raise UserError(

@@ -46,15 +46,16 @@ def _columns_named(names: Sequence[str]) -> npt.NDArray[np.intp]:
 def controller_row(controller: Controller) -> Controllers:
     """A controller.toml as the firmware will store it: int32 (4, 12)."""
     raw = controller.raw_values()
-    return _from_table([raw.get(index, value) for index, value in enumerate(schema.DEFAULTS)])
+    return controllers_of([raw.get(index, value) for index, value in enumerate(schema.DEFAULTS)])
 
 
 def default_controller() -> Controllers:
     """The firmware's own defaults: int32 (4, 12)."""
-    return _from_table(schema.DEFAULTS)
+    return controllers_of(schema.DEFAULTS)
 
 
-def _from_table(values: Sequence[int]) -> Controllers:
+def controllers_of(values: Sequence[int]) -> Controllers:
+    """The controllers of a whole parameter table (raw, in index order): int32 (4, 12)."""
     index = schema.PARAMETER_BY_NAME
     rows = [[values[index[f"joint{joint}.{key}"].index] for key in CONTROLLER_COLUMNS] for joint in range(JOINTS)]
     return np.array(rows, dtype=np.int32)
