@@ -8,7 +8,7 @@ void Drive::configure(const params::Table& table) {
   for (uint8_t i = 0; i < hal::joint_count; ++i) {
     const uint32_t full = static_cast<uint32_t>(hal::full_duty(i)) << 18;
     motors_[i].scale = static_cast<uint16_t>((full + supply_mv / 2u) / supply_mv);
-    motors_[i].reversed = table.joint[i].motor_sign < 0;
+    motors_[i].sign = table.joint[i].motor_sign;
   }
 }
 

@@ -18,7 +18,7 @@ class Drive {
  private:
   struct Motor {
     uint16_t scale;   // 2^18 * full duty / supply: at most 34,953
-    bool reversed;
+    int8_t sign;      // below 0: the motor turns the other way
   };
   Motor motors_[hal::joint_count] = {};
 };
@@ -26,10 +26,10 @@ class Drive {
 // duty = size * full duty / supply = (size * scale) >> 18, rounded
 template <uint8_t joint>
 inline __attribute__((always_inline)) void Drive::set(int16_t millivolts) const {
-  const bool negative = millivolts < 0;
-  const uint16_t size = static_cast<uint16_t>(negative ? -millivolts : millivolts);
+  const uint16_t size = static_cast<uint16_t>(millivolts < 0 ? -millivolts : millivolts);
   const uint16_t duty = static_cast<uint16_t>(hal::upper_product(size, motors_[joint].scale) + 2u) >> 2;
-  hal::set_duty<joint>(negative == motors_[joint].reversed, duty);
+  const auto direction = static_cast<int8_t>((millivolts >> 8) ^ motors_[joint].sign);
+  hal::set_duty<joint>(direction >= 0, duty);
 }
 
 }  // namespace app

@@ -5,7 +5,7 @@ namespace app {
 
 // Loaded where it will be staged: a third table, on the stack, would be a tenth of a Nano's memory.
 bool ParameterSets::begin(Controllers& controllers) {
-  params::Table& table = const_cast<params::Table&>(sets_.staged());
+  params::Table& table = sets_.staged();
   source_ = store_.load(table);
   bool runs = true;
   for (uint8_t i = 0; i < hal::joint_count && runs; ++i) runs = take(controllers, table, i);

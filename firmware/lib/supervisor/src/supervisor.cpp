@@ -49,18 +49,12 @@ void Supervisor::tick(const Observation& seen) {
 
 // Faults before the lease, and the gravest first: only one is reported.
 void Supervisor::watch(const Observation& seen) {
-  uint8_t joint = 0;
-  if (seen.late) {
-    raise(Fault::late_tick, nowhere);
-  } else if (steady_low_) {
-    raise(Fault::pot_low, lowest_bit(steady_low_));
-  } else if (steady_high_) {
-    raise(Fault::pot_high, lowest_bit(steady_high_));
-  } else if (lost_joint(seen, joint)) {
-    raise(Fault::tracking, joint);
-  } else if (lease_ && --lease_ == 0) {
-    switch_off(State::disabled, StopReason::lease);
-  }
+  if (seen.late) return raise(Fault::late_tick, nowhere);
+  if (steady_low_) return raise(Fault::pot_low, lowest_bit(steady_low_));
+  if (steady_high_) return raise(Fault::pot_high, lowest_bit(steady_high_));
+  const uint8_t lost = lost_joint(seen);
+  if (lost != nowhere) return raise(Fault::tracking, lost);
+  if (lease_ && --lease_ == 0) switch_off(State::disabled, StopReason::lease);
 }
 
 // One tick at a rail may be noise; three in a row are a broken wire.
@@ -73,16 +67,17 @@ void Supervisor::debounce(const Observation& seen) {
   high_[0] = seen.rail_high;
 }
 
-bool Supervisor::lost_joint(const Observation& seen, uint8_t& joint) {
+// The joint that has been beyond the tracking limit for too long, or nowhere.
+uint8_t Supervisor::lost_joint(const Observation& seen) {
   static_assert(joint_count == 4, "joints 0..3 below");
   const uint16_t limit = tracking_limit_;
   const bool all_near = seen.distance[0] <= limit && seen.distance[1] <= limit && seen.distance[2] <= limit &&
     seen.distance[3] <= limit;
-  return !(all_near && !any_far_) && count_lost(seen, joint);
+  return all_near && !any_far_ ? nowhere : count_lost(seen);
 }
 
 // Apart, because most ticks do not come here.
-__attribute__((noinline)) bool Supervisor::count_lost(const Observation& seen, uint8_t& joint) {
+__attribute__((noinline)) uint8_t Supervisor::count_lost(const Observation& seen) {
   any_far_ = false;
   for (uint8_t i = 0; i < joint_count; ++i) {
     if (seen.distance[i] <= tracking_limit_) {
@@ -90,12 +85,9 @@ __attribute__((noinline)) bool Supervisor::count_lost(const Observation& seen, u
       continue;
     }
     any_far_ = true;
-    if (++lost_ticks_[i] >= limits_.tracking_ms) {
-      joint = i;
-      return true;
-    }
+    if (++lost_ticks_[i] >= limits_.tracking_ms) return i;
   }
-  return false;
+  return nowhere;
 }
 
 void Supervisor::switch_off(State next, StopReason reason) {

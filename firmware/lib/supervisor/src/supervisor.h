@@ -63,8 +63,8 @@ class Supervisor {
   void switch_off(State next, StopReason reason);
   void raise(Fault fault, uint8_t where);
   void watch(const Observation& seen);
-  bool lost_joint(const Observation& seen, uint8_t& joint);
-  bool count_lost(const Observation& seen, uint8_t& joint);
+  uint8_t lost_joint(const Observation& seen);
+  uint8_t count_lost(const Observation& seen);
   void debounce(const Observation& seen);
 
   static constexpr uint8_t boot_ticks = 20;          // the filters settle and pots are judged

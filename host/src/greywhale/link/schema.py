@@ -224,7 +224,7 @@ class StatusReply(Message):
     tick: int  # ticks since boot [ticks]
     late_ticks: int  # ticks that began before the last one had finished
     frames_bad: int  # frames refused for their length, coding or CRC (stops at 65535)
-    rx_overruns: int  # bytes lost because the receiver was full
+    rx_overruns: int  # times that bytes were lost because the receiver was full
     telemetry_dropped: int  # samples not sent because the transmitter was full
     no_rule: int  # control periods in which no fuzzy rule fired
     tick_us_max: int  # longest tick since boot [us]

@@ -193,7 +193,7 @@ struct StatusReply {
   uint32_t tick;  // ticks since boot [ticks]
   uint16_t late_ticks;  // ticks that began before the last one had finished
   uint16_t frames_bad;  // frames refused for their length, coding or CRC (stops at 65535)
-  uint16_t rx_overruns;  // bytes lost because the receiver was full
+  uint16_t rx_overruns;  // times that bytes were lost because the receiver was full
   uint16_t telemetry_dropped;  // samples not sent because the transmitter was full
   uint16_t no_rule;  // control periods in which no fuzzy rule fired
   uint16_t tick_us_max;  // longest tick since boot [us]

@@ -38,6 +38,7 @@ class Sets {
 
   const Table &running() const { return running_; }
   const Table &staged() const { return staged_; }
+  Table &staged() { return staged_; }  // to be filled as a whole, from storage
   uint16_t running_crc() const { return running_crc_; }
 
   Access stage(uint16_t index, int32_t value) { return set(staged_, index, value); }

@@ -1,0 +1,173 @@
+// follow_pots_portable() of signals.cpp in AVR assembly: the same bits in four fifths of the cycles, 800 of them. The test
+// test/target/test_signals holds the two equal.
+//
+//   void app_follow_pots(const uint16_t* sums, Signals* signals, Observation* seen)
+//                        r25:r24               r23:r22           r21:r20
+#ifdef __AVR__
+
+#define ZERO r17
+#define KEEP r16
+#define GAIN r15
+#define LOWEST_LOW r13
+#define LOWEST_HIGH r14
+#define SPAN_LOW r11
+#define SPAN_HIGH r12
+
+// In the joint's record at Z, and in Observation
+#define LEADER 0
+#define FOLLOWER 10
+#define LIMIT_MIN 20
+#define LIMIT_MAX 22
+#define REFERENCE 24
+#define RECORD 26
+#define RAIL_LOW 8
+
+// The angle of a pot into r25:r24. `pot` is 0..7, `at` the place of its record after Z; X is at distance[joint].
+.macro angle pot, at, joint
+  ldd r24, Y+2*(\pot)
+  ldd r25, Y+2*(\pot)+1
+  movw r18, r24
+  sub r18, LOWEST_LOW
+  sbc r19, LOWEST_HIGH
+  cp SPAN_LOW, r18
+  cpc SPAN_HIGH, r19
+  brcc 1f
+  ldi r22, 1 << (\pot)
+  ldi r23, RAIL_LOW - 2*(\joint)
+  rcall .Lat_a_rail
+1:
+  // filtered (r19:r18) = (filtered * KEEP + 128) / 256 + sum * GAIN
+  ldd r18, Z+(\at)
+  ldd r19, Z+(\at)+1
+  mul r18, KEEP
+  lsl r0
+  mov r18, r1
+  adc r18, ZERO
+  mul r19, KEEP
+  add r18, r0
+  mov r19, r1
+  adc r19, ZERO
+  mul r24, GAIN
+  add r18, r0
+  adc r19, r1
+  mul r25, GAIN
+  add r19, r0
+  std Z+(\at), r18
+  std Z+(\at)+1, r19
+  // r25:r24:r23:r22 = offset + filtered * scale (r21:r20)
+  ldd r20, Z+(\at)+2
+  ldd r21, Z+(\at)+3
+  ldd r22, Z+(\at)+4
+  ldd r23, Z+(\at)+5
+  ldd r24, Z+(\at)+6
+  ldd r25, Z+(\at)+7
+  mul r18, r20
+  add r22, r0
+  adc r23, r1
+  adc r24, ZERO
+  adc r25, ZERO
+  mul r19, r20
+  add r23, r0
+  adc r24, r1
+  adc r25, ZERO
+  mulsu r21, r18
+  sbc r25, ZERO          // the carry is the sign of a mixed product
+  add r23, r0
+  adc r24, r1
+  adc r25, ZERO
+  mulsu r21, r19
+  add r24, r0
+  adc r25, r1
+  lsl r23
+  rol r24
+  rol r25
+  std Z+(\at)+8, r24
+  std Z+(\at)+9, r25
+.endm
+
+.macro joint number
+  angle \number, LEADER, \number
+  ldd r18, Z+LIMIT_MIN
+  ldd r19, Z+LIMIT_MIN+1
+  cp r24, r18
+  cpc r25, r19
+  brlt 2f
+  ldd r18, Z+LIMIT_MAX
+  ldd r19, Z+LIMIT_MAX+1
+  cp r18, r24
+  cpc r19, r25
+  brge 3f
+2:movw r24, r18
+3:std Z+REFERENCE, r24
+  std Z+REFERENCE+1, r25
+  angle \number+4, FOLLOWER, \number
+  ldd r18, Z+REFERENCE
+  ldd r19, Z+REFERENCE+1
+  sub r18, r24
+  sbc r19, r25
+  brge 4f
+  com r19
+  neg r18
+  sbci r19, 0xff
+4:st X+, r18
+  st X+, r19
+.endm
+
+  .section .text.app_follow_pots, "ax", @progbits
+  .global app_follow_pots
+  .type app_follow_pots, @function
+app_follow_pots:
+  push r11
+  push r12
+  push r13
+  push r14
+  push r15
+  push r16
+  push r17
+  push r28
+  push r29
+  movw r28, r24
+  movw r30, r22
+  movw r26, r20
+  clr ZERO
+  ld KEEP, Z+
+  ld GAIN, Z+
+  ld LOWEST_LOW, Z+
+  ld LOWEST_HIGH, Z+
+  ld SPAN_LOW, Z+
+  ld SPAN_HIGH, Z+
+  joint 0
+  adiw r30, RECORD
+  joint 1
+  adiw r30, RECORD
+  joint 2
+  adiw r30, RECORD
+  joint 3
+  clr r1
+  pop r29
+  pop r28
+  pop r17
+  pop r16
+  pop r15
+  pop r14
+  pop r13
+  pop r12
+  pop r11
+  ret
+
+// The sum in r25:r24 is outside: sets bit r22 of the rail below or above. X + r23 is the rail below.
+.Lat_a_rail:
+  movw r18, r26
+  add r26, r23
+  adc r27, ZERO
+  cp r24, LOWEST_LOW
+  cpc r25, LOWEST_HIGH
+  brcs 1f
+  adiw r26, 1
+1:ld r23, X
+  or r23, r22
+  st X, r23
+  movw r26, r18
+  ret
+  .size app_follow_pots, . - app_follow_pots
+#endif  // __AVR__
