@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import select
@@ -92,7 +93,9 @@ def test_folder_that_is_not_there(capsys: Captured, tmp_path: Path) -> None:
     assert f"{path}: cannot be written: no such file or directory." in capsys.readouterr().err
 
 
-def test_interrupt_ends_all_processes_and_writes_nothing(tmp_path: Path) -> None:
+# Interrupted while only the first process of the three has started, and with all of them there.
+@pytest.mark.parametrize("started", [1, 3])
+def test_interrupt_ends_all_processes_and_writes_nothing(tmp_path: Path, started: int) -> None:
     command = [sys.executable, "-m", "greywhale", "compare", "--budget", "2000", "--seeds", "500", "--jobs", "2"]
     running = subprocess.Popen(
         [*command, "--methods", "pso", "--out", "r.csv"],
@@ -102,13 +105,17 @@ def test_interrupt_ends_all_processes_and_writes_nothing(tmp_path: Path) -> None
         start_new_session=True,
         env={**os.environ, "PYTHONUNBUFFERED": "1"},
     )
-    # The workers are there once the process has children of its own.
-    children = Path(f"/proc/{running.pid}/task/{running.pid}/children")
-    while len(children.read_text().split()) < 3:  # two workers and multiprocessing's resource tracker
-        assert running.poll() is None
-    ends = [os.pidfd_open(int(child)) for child in children.read_text().split()]
-    os.killpg(running.pid, signal.SIGINT)
-    out, err = running.communicate(timeout=120)
+    try:
+        # The workers are there once the process has children of its own.
+        children = Path(f"/proc/{running.pid}/task/{running.pid}/children")
+        while len(children.read_text().split()) < started:  # multiprocessing's resource tracker and two workers
+            assert running.poll() is None
+        ends = [os.pidfd_open(int(child)) for child in children.read_text().split()]
+        os.killpg(running.pid, signal.SIGINT)
+        out, err = running.communicate(timeout=120)
+    finally:
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(running.pid, signal.SIGKILL)
     assert running.returncode == 130
     assert out == b""
     assert err.strip() == b"greywhale: interrupted."

@@ -15,6 +15,7 @@ import zlib
 from collections.abc import Callable, Generator, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
+from multiprocessing import resource_tracker
 
 import numpy as np
 
@@ -176,12 +177,11 @@ def _here(plan: Plan, parts: list[Part]) -> Results:
 
 
 def _in_processes(plan: Plan, parts: list[Part], jobs: int) -> Results:
-    with _interrupts_held_back():
-        # Spawned, since a fork would copy whatever threads (a progress bar's) are holding.
-        context = multiprocessing.get_context("spawn")
-        pool = ProcessPoolExecutor(min(jobs, len(parts)), mp_context=context)
-        futures = {pool.submit(_run_part, plan, part): part for part in parts}
+    # Spawned, since a fork would copy whatever threads (a progress bar's) are holding.
+    pool = ProcessPoolExecutor(min(jobs, len(parts)), mp_context=multiprocessing.get_context("spawn"))
     try:
+        with _interrupts_held_back():
+            futures = {pool.submit(_run_part, plan, part): part for part in parts}
         for future in as_completed(futures):
             yield futures[future], future.result()
     finally:
@@ -196,6 +196,8 @@ def _interrupts_held_back() -> Iterator[None]:
     if threading.current_thread() is not threading.main_thread() or not hasattr(signal, "pthread_sigmask"):
         yield
         return
+    # Starting it takes the mask away, so it must run already when the others start.
+    resource_tracker.ensure_running()
     noted: list[int] = []
     before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
     for number in before:
