@@ -1,0 +1,22 @@
+"""The native unit tests of the core under the address and undefined-behaviour sanitizers."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+FIRMWARE = Path(__file__).parents[2] / "firmware"
+SOURCES = FIRMWARE / "lib/fuzzy_pdi/src"
+TESTS = FIRMWARE / "test/native"
+WARNINGS = ["-Wall", "-Wextra", "-Wconversion", "-Werror"]
+SANITIZERS = ["-fsanitize=address,undefined,float-cast-overflow", "-fno-sanitize-recover=all", "-O1", "-g"]
+
+
+def test_no_complaint(tmp_path: Path) -> None:
+    program = tmp_path / "tests"
+    sources = [*SOURCES.glob("*.cpp"), *(TESTS / "test_fuzzy_pdi").glob("*.cpp"), TESTS / "main.cpp"]
+    command = ["g++", "-std=c++14", *WARNINGS, *SANITIZERS, f"-I{SOURCES}", *map(str, sources), "-o", str(program)]
+    subprocess.run(command, check=True)
+    result = subprocess.run([str(program), "--success=false"], capture_output=True, text=True, timeout=250, check=False)
+    assert result.returncode == 0, result.stderr[-4000:]
+    assert "[doctest]" in result.stdout
