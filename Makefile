@@ -4,6 +4,7 @@ PYTHON := .venv/bin/python
 export PATH := $(CURDIR)/.venv/bin:$(PATH)
 
 CPPCHECK := cppcheck --quiet --error-exitcode=1 --inline-suppr --enable=warning,performance,portability -j2
+FIRMWARE_ROOMS := $(patsubst %,-Ifirmware/lib/%/src,$(notdir $(wildcard firmware/lib/*)))
 
 .DEFAULT_GOAL := help
 .PHONY: help setup build firmware demo test lint oracles bench docs lock clean
@@ -16,24 +17,27 @@ setup: ## install and build everything that is missing (Debian packages, .venv, 
 
 build: setup ## the same, under the name people look for
 
-firmware: setup ## build the firmware for both boards and show its size
+firmware: setup ## build the firmware for both boards, show its size, check its tick and its stack
 	@$(PYTHON) -m tools.firmware_gate
+	@$(PYTHON) -m tools.gates
 
 demo: setup ## the whole story on the simulated bench; options in ARGS, e.g. ARGS="--leader motion.csv"
 	@$(PYTHON) -m greywhale demo --out build/demo $(ARGS)
 
-lint: setup ## ruff, mypy --strict, cppcheck, generated files
+lint: setup ## ruff, mypy --strict, cppcheck, clang-tidy, generated files
 	ruff check
 	ruff format --check
 	mypy
 	$(CPPCHECK) --std=c++14 '-DISR(vector,...)=void vector()' firmware/lib firmware/src
 	$(CPPCHECK) --std=c++17 --suppress=assignBoolToPointer:sim/board/binding.cpp sim host/native
+	clang-tidy --quiet $(shell find firmware/lib -name '*.cpp' -not -path '*/avr/*') -- -std=gnu++14 $(FIRMWARE_ROOMS)
 	$(PYTHON) -m tools.generate_link --check
 
-test: lint ## everything: lint, unit tests here and on the simulated board, size gate, pytest
+test: lint ## everything: lint, unit tests here and on the simulated board, gates on size, tick and stack, pytest
 	$(PYTHON) -m tools.firmware_tests native
 	$(PYTHON) -m tools.firmware_tests sim
 	$(PYTHON) -m tools.firmware_gate
+	$(PYTHON) -m tools.gates
 	$(PYTHON) -m pytest $(ARGS)
 
 oracles: setup ## tests against heavy outside references (installs them first)

@@ -1,4 +1,4 @@
-"""Installs the outside references that tests/oracles compares with: rigid-body and fuzzy-logic packages of others."""
+"""Installs the outside references that tests/oracles compares with: other people's packages, and another processor."""
 
 from __future__ import annotations
 
@@ -7,7 +7,14 @@ import sys
 from tools.setup import debian, stamps, venv
 from tools.setup.console import ROOT, SetupError, say
 
-DEBIAN = ("octave", "octave-fuzzy-logic-toolkit")
+DEBIAN = (
+    "octave",  # the fuzzy law as others evaluate it
+    "octave-fuzzy-logic-toolkit",
+    "gcc-arm-none-eabi",  # the controller core on a 32-bit chip
+    "libnewlib-arm-none-eabi",
+    "libstdc++-arm-none-eabi-newlib",
+    "qemu-user",
+)
 REQUIREMENTS = ROOT / "tools" / "oracles" / "requirements.txt"
 
 

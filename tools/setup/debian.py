@@ -22,6 +22,7 @@ PACKAGES = (
     "g++",  # native extensions and unit tests
     "doctest-dev",
     "cppcheck",
+    "clang-tidy",
 )
 
 
