@@ -6,3 +6,4 @@
 void bind_arm(nanobind::module_& m);
 void bind_closed_loop(nanobind::module_& m);
 void bind_fuzzy(nanobind::module_& m);
+void bind_identify(nanobind::module_& m);

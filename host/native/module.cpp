@@ -6,4 +6,5 @@ NB_MODULE(_native, m) {
   bind_arm(m);
   bind_closed_loop(m);
   bind_fuzzy(m);
+  bind_identify(m);
 }

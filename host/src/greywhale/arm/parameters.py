@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal, TypeVar
+from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import AfterValidator, Field, model_validator
 
@@ -176,6 +176,7 @@ class ArmParameters(Table):
     drive: Drive
     leader_pots: PotentiometerBank = PotentiometerBank()
     follower_pots: PotentiometerBank = PotentiometerBank()
+    identification: dict[str, Any] | None = None  # how `greywhale identify` found this arm; the plant ignores it
 
     def actuator(self, joint: int) -> _native.Actuator:
         """The motor of one joint as its output shaft feels it, by this arm's motor equation."""

@@ -18,6 +18,7 @@ VERBS = {
     "record": ("record", "Record leader, follower and voltages into a CSV log."),
     "stop": ("stop", "Stop the motors; clear a fault."),
     "evaluate": ("evaluate", "Measure how well the follower followed in a log."),
+    "identify": ("identify", "Find the arm that made a log: a model with its uncertainties."),
     "compare": ("compare", "Compare optimisers at equal budgets, over many seeds."),
 }
 

@@ -1,0 +1,76 @@
+"""`greywhale identify`: logs to a model of the arm that made them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from greywhale.arm import load_arm
+from greywhale.cli.output import json_option, progress, show
+from greywhale.errors import BAD_USAGE, UserError
+from greywhale.identify import METHODS, identify, load_table
+from greywhale.log import read_log
+
+
+@click.command("identify")
+@click.argument("logs", metavar="LOG...", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.option(
+    "--validate",
+    "-v",
+    type=click.Path(path_type=Path),
+    multiple=True,
+    help="A log to judge the model on; one of the same and one of a changed controller tell most.",
+)
+@click.option(
+    "--arm", "arm_file", default="white_box", show_default=True, help="Your arm.toml: geometry, nominal motors."
+)
+@click.option("--out", "-o", type=click.Path(path_type=Path), default=Path("model.toml"), show_default=True)
+@click.option(
+    "--controller",
+    "-c",
+    "controllers",
+    type=click.Path(path_type=Path),
+    multiple=True,
+    help="A controller.toml or `params backup` file that logs were recorded with; logs find theirs by its CRC.",
+)
+@click.option("--method", type=click.Choice(METHODS), default="default", show_default=True)
+@click.option("--seed", type=int, default=0, show_default=True, help="Where all random numbers start.")
+@click.option("--pictures", type=click.Path(path_type=Path), help="Folder for pictures of responses and convergence.")
+@json_option
+def command(
+    logs: tuple[Path, ...],
+    validate: tuple[Path, ...],
+    arm_file: str,
+    out: Path,
+    controllers: tuple[Path, ...],
+    method: str,
+    seed: int,
+    pictures: Path | None,
+    as_json: bool,
+) -> None:
+    """Identify the arm that made the logs, starting from your arm file.
+
+    Writes a model.toml: an arm file with a table on how sure each value is, what these logs cannot tell and which
+    motion would. Ctrl-C writes the best model so far, marked as unfinished.
+    """
+    if not out.parent.is_dir():
+        raise UserError(f"{out}: the folder {out.parent} does not exist; create it, or write elsewhere.", BAD_USAGE)
+    arm = load_arm(arm_file)
+    tables = [load_table(path) for path in controllers]
+    fit, second = [read_log(path) for path in logs], [read_log(path) for path in validate]
+    with progress(as_json) as report:
+        outcome = identify(fit, arm, validate=second, tables=tables, method=method, seed=seed, report=report)
+    outcome.save(out)
+    if not outcome.complete:
+        interrupted = KeyboardInterrupt()
+        interrupted.add_note(f"The best model so far is in {out}, marked as unfinished.")
+        raise interrupted
+    files = [out]
+    if pictures is not None:
+        # Matplotlib takes a second to import.
+        from greywhale.identify.pictures import draw
+
+        files += draw(outcome, pictures)
+    written = "\n\nWritten: " + ", ".join(str(path) for path in files)
+    show(as_json, {**outcome.as_dict(), "files": [str(path) for path in files]}, outcome.text() + written)

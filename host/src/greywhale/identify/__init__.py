@@ -1,0 +1,11 @@
+"""Grey-box identification: from logs and the user's nominal arm to a model of the arm that made the logs.
+
+>>> outcome = identify([read_log("log1.csv")], load_arm("arm.toml"), validate=[read_log("log2.csv")])
+>>> outcome.save("model.toml")
+"""
+
+from greywhale.identify.controllers import Table, load_table
+from greywhale.identify.identification import METHODS, identify
+from greywhale.identify.outcome import Outcome, ParameterEstimate
+
+__all__ = ["METHODS", "Outcome", "ParameterEstimate", "Table", "identify", "load_table"]

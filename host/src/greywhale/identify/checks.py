@@ -1,0 +1,115 @@
+"""What makes a log useless for identification, found before any of it is believed; each sentence names the joint and
+the evidence.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from greywhale.arm import ArmParameters
+from greywhale.errors import UserError
+from greywhale.identify.controllers import Table
+from greywhale.identify.data import JOINTS, Prepared
+from greywhale.link import schema
+
+Floats = NDArray[np.float64]
+SHORTEST_S = 4.0
+SMALLEST_MOTION = 0.1
+# A reading that stays exactly at its extreme value for this share of the log, that far out (rad), is clipped.
+CLIPPED_SHARE = 0.01
+CLIPPED_FROM = 2.3
+# Between error and voltage: a controller pulls towards the leader.
+AGAINST = -0.3
+SATURATED = 0.5
+
+
+def check(prepared: Prepared, arm: ArmParameters, table: Table | None) -> list[str]:
+    """Refuse what cannot be used; doubts that do not forbid it come back as sentences."""
+    log = prepared.log
+    used = _used(prepared)
+    seconds = sum(run.period * (run.stop - run.start - 1) for run in prepared.runs)
+    if seconds < SHORTEST_S:
+        raise UserError(
+            f"{log.name}: only {seconds:.1f} s of it can be used (motors following, no gap), but at least "
+            f"{SHORTEST_S:g} s are needed; record longer."
+        )
+    leader, follower, voltage = log.leader[used], log.follower[used], log.voltage[used]
+    if not prepared.moving.any():
+        ranges = ", ".join(f"{np.ptp(follower[:, joint]):.3f}" for joint in range(JOINTS))
+        raise UserError(
+            f"{log.name}: no joint moved: joints 0..3 stayed within {ranges} rad, but {SMALLEST_MOTION:g} rad at least "
+            "are needed; move the leader while recording."
+        )
+    doubts = []
+    for joint in np.flatnonzero(prepared.moving):
+        where = f"{log.name}: joint {joint}"
+        _refuse_clipped(where, follower[:, joint])
+        _refuse_swapped(where, leader[:, joint], follower[:, joint], voltage[:, joint])
+        doubts += _supply(where, voltage[:, joint], arm)
+    _refuse_other_period(prepared, table, used)
+    return doubts
+
+
+def _used(prepared: Prepared) -> NDArray[np.bool_]:
+    used = np.zeros(len(prepared.log.time), dtype=bool)
+    for run in prepared.runs:
+        used[run.slice] = True
+    return used
+
+
+def _refuse_clipped(where: str, follower: Floats) -> None:
+    for extreme in (follower.max(), follower.min()):
+        share = float(np.mean(follower == extreme))
+        if abs(extreme) > CLIPPED_FROM and share > CLIPPED_SHARE:
+            raise UserError(
+                f"{where} is clipped: its follower reads exactly {extreme:.4f} rad in {100 * share:.0f} % of the rows, "
+                "as a potentiometer at its end does; calibrate it, or keep the motion within its range."
+            )
+
+
+def _refuse_swapped(where: str, leader: Floats, follower: Floats, voltage: Floats) -> None:
+    error = leader - follower
+    if np.std(error) < 1e-4 or np.std(voltage) < 1e-3:
+        return
+    likeness = float(np.corrcoef(error, voltage)[0, 1])
+    if likeness < AGAINST:
+        raise UserError(
+            f"{where} looks as if leader and follower columns were swapped (or the motor's direction inverted): its "
+            f"voltage pushes away from the leader (correlation of voltage with leader - follower {likeness:.2f})."
+        )
+
+
+def _supply(where: str, voltage: Floats, arm: ArmParameters) -> list[str]:
+    largest = float(np.abs(voltage).max())
+    if largest > 1.02 * arm.drive.supply:
+        raise UserError(
+            f"{where} was driven with {largest:.2f} V, but drive.supply in the arm file is {arm.drive.supply:g} V; "
+            "correct the supply in the arm file."
+        )
+    share = float(np.mean(np.abs(voltage) > 0.99 * arm.drive.supply))
+    if share > SATURATED:
+        return [f"{where} was at full voltage {100 * share:.0f} % of the time; slower motion would tell more."]
+    return []
+
+
+def _refuse_other_period(prepared: Prepared, table: Table | None, used: NDArray[np.bool_]) -> None:
+    """With a row every tick the voltage shows the control period: it changes then and only then."""
+    log = prepared.log
+    stated = log.origin.period_ms
+    if table is not None:
+        stated = table.values[schema.PARAMETER_BY_NAME["period_ms"].index]
+    if stated is None or prepared.period > 1.5e-3:
+        return
+    joint = int(np.argmax([np.std(log.voltage[used, joint]) for joint in range(JOINTS)]))
+    changes = np.flatnonzero((np.diff(log.voltage[:, joint]) != 0.0) & used[1:] & used[:-1])
+    if len(changes) < 20:
+        return
+    spacing = np.diff(changes)
+    seen = int(np.gcd.reduce(spacing[spacing < 200])) if (spacing < 200).any() else stated
+    usual = float(np.median(spacing))
+    if usual < stated - 0.5 or seen % stated != 0 or (seen > stated and usual > 1.5 * stated):
+        raise UserError(
+            f"{log.name}: joint {joint}: the voltage changes every {usual:g} ms, but the control period is stated as "
+            f"{stated} ms; the log is from another controller or period."
+        )

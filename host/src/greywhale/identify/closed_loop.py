@@ -1,0 +1,175 @@
+"""The second residual: candidate arms inside the controller that made the log, led by the logged leader.
+
+It cannot be fooled by where a window starts, and it is what a model is for: the response of the closed loop.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from greywhale import _native
+from greywhale.arm import ArmParameters
+from greywhale.identify.data import Prepared
+from greywhale.identify.space import JOINTS, Space
+from greywhale.link import schema
+from greywhale.simulate import CONTROLLER_COLUMNS, Timing
+
+Floats = NDArray[np.float64]
+TICK_S = 1e-3
+LSB = 1.0 / 4096.0
+# The loop stands still at the first pose for so long before the log begins (ticks), so that it is not let go from rest.
+LEAD_TICKS = 500
+PWM_TOP = {"mega2560": 400, "nano328": 400}
+COMPARED_TICKS = 5
+SEED = 1
+
+
+class Loop:
+    """The controller, leader and readings of one log, for any number of candidate arms."""
+
+    def __init__(self, log: Prepared, values: Sequence[int], arm: ArmParameters, offsets: Floats | None = None) -> None:
+        self.log = log
+        zero = np.zeros(JOINTS) if offsets is None else offsets
+        self._made_of = (log, values, arm)
+        run = max(log.runs, key=lambda one: one.stop - one.start)
+        recorded = log.log
+        start, end = float(recorded.time[run.start]), float(recorded.time[run.stop - 1])
+        ticks = int((end - start) / TICK_S)
+        times: Floats = start + TICK_S * np.arange(ticks, dtype=np.float64)
+        leader = _at(times, recorded.time, recorded.leader)
+        self.follower = _at(times + log.delay, recorded.time, recorded.follower)
+        reference = np.vstack([np.tile(leader[:1], (LEAD_TICKS, 1)), leader])
+        target = np.vstack([np.tile(self.follower[:1], (LEAD_TICKS, 1)), self.follower]) + zero
+        self.ticks = ticks
+        self.time = times
+        self.laws = controller_rows(values)
+        settings = loop_settings(values)
+        moments = Timing().native()
+        noisy = _pots(log, arm, values, zero)
+        self._loop = _native.ClosedLoop(
+            settings=settings,
+            timing=moments,
+            pots=noisy,
+            pot_supply=arm.follower_pots.supply,
+            seed=SEED,
+            home=_home(self.follower[0] + zero, arm),
+            gap=[0.0] * JOINTS,
+            reference=np.ascontiguousarray(np.clip(np.round(reference / LSB), -32768, 32767).astype(np.int16)),
+            leader=np.ascontiguousarray(target),
+            weight=np.zeros(len(target)),
+        )
+        self._zero = zero
+        self.rows = len(self.follower[::COMPARED_TICKS])
+
+    def with_zero(self, offsets: Floats) -> Loop:
+        """The same experiment with potentiometers that read 0 at other angles."""
+        return Loop(*self._made_of, offsets)
+
+    def angles(self, plants: Floats, every: int = COMPARED_TICKS, threads: int = 0) -> Floats:
+        """What the candidates' potentiometers show, (candidates, rows, 4), every so many ticks of the log."""
+        outcome = self._run(plants, every, threads)
+        shown: Floats = outcome[4][:, LEAD_TICKS // every :].astype(np.float64) - self._zero
+        return shown[:, : len(self.follower[::every])]
+
+    def error(self, plants: Floats, part: slice | None = None) -> Floats:
+        """Mean squared difference to the log, (candidates, 4), rad², over a `part` of the log's ticks / 5."""
+        difference = self.angles(plants) - self.follower[None, ::COMPARED_TICKS]
+        kept = difference if part is None else difference[:, part]
+        mse: Floats = np.mean(np.nan_to_num(kept, nan=10.0, posinf=10.0, neginf=-10.0) ** 2, axis=1)
+        return mse
+
+    def _run(self, plants: Floats, every: int, threads: int) -> tuple[Floats, ...]:
+        outcome: tuple[Floats, ...] = self._loop.run(
+            controllers=self.laws[None],
+            plants=np.ascontiguousarray(plants),
+            substeps=1,
+            threads=threads,
+            every=every,
+            single=True,
+            instructions="",
+        )
+        return outcome
+
+
+class LoopResidual:
+    """Model minus log in the closed loop, in rad, for the joints that moved; a `part` of each log."""
+
+    def __init__(self, loops: Sequence[Loop], joints: Sequence[int], part: tuple[float, float] = (0.0, 1.0)) -> None:
+        self.loops = loops
+        self.joints = list(joints)
+        self.part = part
+
+    def __call__(self, space: Space, points: Floats) -> Floats:
+        plants = space.plants(points)
+        rows = []
+        for loop in self.loops:
+            difference = loop.angles(plants) - loop.follower[None, ::COMPARED_TICKS]
+            kept = difference[:, share_of(difference.shape[1], self.part)][..., self.joints]
+            rows.append(np.nan_to_num(kept, nan=10.0, posinf=10.0, neginf=-10.0).reshape(len(points), -1))
+        return np.concatenate(rows, axis=1)
+
+
+def share_of(count: int, part: tuple[float, float]) -> slice:
+    return slice(round(part[0] * count), round(part[1] * count))
+
+
+def controller_rows(values: Sequence[int]) -> NDArray[np.int32]:
+    """The controllers of a whole parameter table."""
+    rows = [[_value(values, f"joint{joint}.{key}") for key in CONTROLLER_COLUMNS] for joint in range(JOINTS)]
+    return np.array(rows, dtype=np.int32)
+
+
+def loop_settings(values: Sequence[int]) -> _native.LoopSettings:
+    """What the firmware does around the law; the log begins after the soft start."""
+
+    def four(group: str, key: str) -> list[int]:
+        return [_value(values, f"{group}{joint}.{key}") for joint in range(JOINTS)]
+
+    return _native.LoopSettings(
+        period_ms=_value(values, "period_ms"),
+        supply_mv=_value(values, "supply_mv"),
+        soft_start_ms=0,
+        filter_shift=_value(values, "filter_shift"),
+        limit_min=four("joint", "limit_min"),
+        limit_max=four("joint", "limit_max"),
+        motor_sign=[1] * JOINTS,
+        pwm_top=[400] * JOINTS,
+        leader_zero=four("leader", "zero"),
+        leader_scale=four("leader", "scale"),
+        follower_zero=[8184] * JOINTS,
+        follower_scale=[10734] * JOINTS,
+    )
+
+
+def _value(values: Sequence[int], name: str) -> int:
+    return values[schema.PARAMETER_BY_NAME[name].index]
+
+
+def _at(times: Floats, known: Floats, angles: Floats) -> Floats:
+    return np.column_stack([np.interp(times, known, angles[:, joint]) for joint in range(JOINTS)])
+
+
+def _home(angles: Floats, arm: ArmParameters) -> list[float]:
+    return [
+        float(np.clip(angle, joint.stops.min, joint.stops.max)) for angle, joint in zip(angles, arm.joint, strict=True)
+    ]
+
+
+def _pots(log: Prepared, arm: ArmParameters, values: Sequence[int], zero: Floats) -> list[_native.Potentiometer]:
+    """Ideal 300 degree potentiometers as noisy as the log: the noise lets joints creep that would stick without it."""
+    share = 1.0 / (1 << _value(values, "filter_shift"))
+    track = math.radians(300.0)
+    step = track / 1024.0
+    pots = []
+    for joint in range(JOINTS):
+        one = log.noise[joint] ** 2 * 4.0 * (2.0 - share) / share
+        left = math.sqrt(max(one - step**2 / 12.0, 0.0))
+        volts = left / track * arm.follower_pots.supply
+        pots.append(
+            _native.Potentiometer(track=track, centre=float(zero[joint]), direction=1.0, noise=volts, linearity=0.0)
+        )
+    return pots

@@ -1,0 +1,142 @@
+"""A log made ready: the stretches in which the motors followed, the arm's state along them, and windows to simulate."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import savgol_filter
+
+from greywhale.log import Log
+from greywhale.measure.runs import Run, gap_free_runs
+
+Floats = NDArray[np.float64]
+JOINTS = 4
+WINDOW_S = 0.5
+SMOOTHING_S = 0.03  # of the angle, to find velocities
+# Longest step of the integration in a window, s.
+STEP_S = 0.5e-3
+# Windows are compared with the log at this spacing, s; neighbouring readings differ in noise only.
+COMPARED_S = 5e-3
+# Firmware: from a new sample to its voltage, and the mean age of a tick's four conversions (s).
+ACTUATION_S = 0.3e-3
+CONVERSION_S = 0.5e-3
+TICK_S = 1e-3
+HELD_OUT = 0.25
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """One log with what it says about the motion."""
+
+    log: Log
+    runs: tuple[Run, ...]
+    period: float  # s between rows
+    delay: float  # s, age of a reading
+    velocity: Floats
+    acceleration: Floats
+    noise: Floats  # rad, standard deviation of a reading, per joint
+    moving: NDArray[np.bool_]  # per joint
+
+
+@dataclass(frozen=True)
+class Windows:
+    """Short pieces of a log as the native simulation takes them; `part` 0 to fit, 1 held out."""
+
+    first: NDArray[np.int64]
+    rows: int
+    every: int
+    angles: Floats
+    velocities: Floats
+    accelerations: Floats
+    measured: Floats  # (windows, rows kept, 4)
+    time: Floats  # (rows kept,) from the window's start
+    volts: Floats
+    spacing: Floats
+    substeps: int
+
+
+def prepare(log: Log, filter_shift: int | None) -> Prepared:
+    """Find the usable stretches; velocities by local quadratic fits, noise from the most quiet moments."""
+    following = log.state == "following"
+    wanted = following if following.any() else np.ones(len(log.time), dtype=bool)
+    runs = tuple(run for run in gap_free_runs(log.time, wanted) if run.stop - run.start >= 8)
+    period = float(np.median(np.diff(log.time)))
+    size = max(5, 2 * round(SMOOTHING_S / period / 2) + 1)
+    velocity, acceleration, smooth = (np.zeros_like(log.follower) for _ in range(3))
+    for run in runs:
+        piece = log.follower[run.slice]
+        if len(piece) >= size:
+            smooth[run.slice] = savgol_filter(piece, size, 2, axis=0)
+            velocity[run.slice] = savgol_filter(piece, size, 2, deriv=1, delta=run.period, axis=0)
+            acceleration[run.slice] = savgol_filter(piece, size, 2, deriv=2, delta=run.period, axis=0)
+    used = np.zeros(len(log.time), dtype=bool)
+    for run in runs:
+        used[run.slice] = True
+    delay = 0.0 if filter_shift is None else CONVERSION_S + TICK_S * ((1 << filter_shift) - 1)
+    noise = _noise(log.follower - smooth, used, size)
+    moving = np.array([bool(used.any() and np.ptp(log.follower[used, joint]) > 0.1) for joint in range(JOINTS)])
+    return Prepared(log, runs, period, delay, velocity, acceleration, noise, moving)
+
+
+def _noise(rest: Floats, used: NDArray[np.bool_], size: int) -> Floats:
+    """Standard deviation per joint, from the quieter half of short pieces, so that motion is not taken for noise."""
+    kept = rest[used]
+    count = len(kept) // size
+    if count == 0:
+        return np.full(JOINTS, 1e-3)
+    pieces = kept[: count * size].reshape(count, size, JOINTS)
+    # A quadratic takes about a ninth of the variance with it.
+    noise: Floats = np.maximum(np.sqrt(np.median(pieces.var(axis=1), axis=0)) * 1.06, 2e-4)
+    return noise
+
+
+def windows_of(prepared: Prepared, part: slice | None = None, length_s: float = WINDOW_S) -> Windows:
+    """Windows one after the other over the whole log, or over a `part` of its windows."""
+    rows = max(6, round(length_s / prepared.period))
+    every = max(1, round(COMPARED_S / prepared.period))
+    first = np.array(
+        [start for run in prepared.runs for start in range(run.start, run.stop - rows, rows)], dtype=np.int64
+    )
+    if part is not None:
+        first = np.ascontiguousarray(first[part])
+    log = prepared.log
+    kept = np.arange(0, rows, every)
+    at = first[:, None] + kept[None, :]
+    substeps = max(1, int(np.ceil(prepared.period / STEP_S - 1e-9)))
+    spacing = np.diff(log.time, append=log.time[-1] + prepared.period)
+    return Windows(
+        first=first,
+        rows=rows,
+        every=every,
+        angles=np.ascontiguousarray(_start_angles(prepared, first)),
+        velocities=np.ascontiguousarray(prepared.velocity[first]),
+        accelerations=prepared.acceleration[first],
+        measured=log.follower[at],
+        time=np.asarray(kept * prepared.period, dtype=np.float64),
+        volts=_volts(prepared, substeps, spacing),
+        spacing=np.ascontiguousarray(spacing),
+        substeps=substeps,
+    )
+
+
+def _start_angles(prepared: Prepared, first: NDArray[np.int64]) -> Floats:
+    """The smoothed angle at each window's start: the mean over +-2 rows, less what curvature adds to it."""
+    follower = prepared.log.follower
+    around = np.clip(first[:, None] + np.arange(-2, 3)[None, :], 0, len(follower) - 1)
+    bend: Floats = prepared.acceleration[first] * (prepared.period**2) * 2.0 / 2.0
+    angles: Floats = follower[around].mean(axis=1) - bend
+    return angles
+
+
+def _volts(prepared: Prepared, substeps: int, spacing: Floats) -> Floats:
+    """The voltage in every substep: what the board held then, or a line between rows where it is logged seldom."""
+    log = prepared.log
+    share = (np.arange(substeps) + 0.5) / substeps
+    moments = (log.time[:, None] + share[None, :] * spacing[:, None]).ravel() - prepared.delay - ACTUATION_S
+    period_ms = log.origin.period_ms or 0
+    if prepared.period > 1.5e-3 * max(period_ms, 1):
+        return np.column_stack([np.interp(moments, log.time, log.voltage[:, joint]) for joint in range(JOINTS)])
+    held = np.clip(np.searchsorted(log.time, moments + 1e-9, side="right") - 1, 0, len(log.time) - 1)
+    return np.ascontiguousarray(log.voltage[held])

@@ -1,0 +1,131 @@
+"""What an identification found, as numbers, as text for people and as model.toml."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from greywhale.arm import ArmParameters
+from greywhale.files import write_text
+from greywhale.identify.judge import Subject, Verdict
+from greywhale.identify.model_file import arm_of, to_toml
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ParameterEstimate:
+    """One identified number; `deviation` is its standard deviation, None where the method knows none."""
+
+    name: str
+    means: str
+    unit: str
+    white_box: float
+    value: float
+    deviation: float | None
+
+    def as_dict(self) -> dict[str, Any]:
+        facts = {"name": self.name, "means": self.means, "unit": self.unit}
+        numbers = {"white_box": self.white_box, "value": self.value}
+        return facts | numbers | ({} if self.deviation is None else {"standard_deviation": self.deviation})
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """A model, how sure it is, and how it does on every log."""
+
+    white_box: ArmParameters
+    method: str
+    seed: int
+    plant: Floats = field(repr=False)
+    zero: Floats = field(repr=False)
+    order: str
+    orders: tuple[tuple[str, float], ...]
+    estimates: tuple[ParameterEstimate, ...]
+    condition: float | None
+    open: tuple[str, ...]
+    verdicts: tuple[Verdict, ...]
+    warnings: tuple[str, ...]
+    subjects: tuple[Subject, ...] = field(repr=False)
+    simulations: int
+    complete: bool
+    curve: tuple[float, ...]
+
+    @property
+    def arm(self) -> ArmParameters:
+        """The model as an arm that can be simulated."""
+        name = f"{self.white_box.name}, identified" + ("" if self.complete else " (unfinished)")
+        return arm_of(self.white_box, self.plant, self.zero, name, f"greywhale identify, method {self.method}")
+
+    def save(self, path: str | Path) -> None:
+        """Write model.toml."""
+        write_text(path, to_toml(self.arm, self.identification()))
+
+    def identification(self) -> dict[str, Any]:
+        """The table [identification] of model.toml, also the JSON."""
+        facts: dict[str, Any] = {
+            "status": "complete" if self.complete else "unfinished: interrupted; the best model so far",
+            "method": self.method,
+            "seed": self.seed,
+            "white_box": self.white_box.name,
+            "simulations": self.simulations,
+            "order": self.order,
+        }
+        if self.condition is not None:
+            facts["fisher_condition"] = self.condition
+        facts["not_identified"] = list(self.open)
+        facts["warnings"] = list(self.warnings)
+        facts["log"] = [self._log(*pair) for pair in zip(self.subjects, self.verdicts, strict=True)]
+        if self.orders:
+            facts["orders_tried"] = [{"order": order, "held_out_error": error} for order, error in self.orders]
+        facts["parameter"] = [one.as_dict() for one in self.estimates]
+        return facts
+
+    @staticmethod
+    def _log(subject: Subject, verdict: Verdict) -> dict[str, Any]:
+        origin = subject.log.log.origin
+        facts: dict[str, Any] = {"name": verdict.name, "role": verdict.role}
+        if origin.param_crc is not None:
+            facts["parameter_crc"] = f"0x{origin.param_crc:04x}"
+        if origin.period_ms is not None:
+            facts["period_ms"] = origin.period_ms
+        return facts | {key: value for key, value in verdict.as_dict().items() if key not in ("log", "role")}
+
+    def as_dict(self) -> dict[str, Any]:
+        return self.identification() | {"convergence": list(self.curve)}
+
+    def text(self) -> str:
+        """For people: the layout of the paper's Table 5, then what is known and what is not."""
+        lines = [] if self.complete else ["UNFINISHED: interrupted; this is the best model so far.", ""]
+        for verdict in self.verdicts:
+            lines += _table(verdict)
+        if self.condition is not None:
+            lines.append(f"Model order: up to {self.order} (by held-out data).")
+            lines.append(f"Condition number of the Fisher information: {self.condition:.2g}.")
+            lines += ["", f"{'parameter':18} {'white box':>11} {'model':>11} {'std':>9}  unit"]
+            for one in self.estimates:
+                deviation = "" if one.deviation is None else f"{one.deviation:.2g}"
+                lines.append(
+                    f"{one.name:18} {one.white_box:>11.4g} {one.value:>11.4g} {deviation:>9}  {one.unit}".rstrip()
+                )
+        if self.open:
+            lines += ["", "Not identified by these logs:", *(f"- {sentence}" for sentence in self.open)]
+        if self.warnings:
+            lines += ["", "Warnings:", *(f"- {sentence}" for sentence in self.warnings)]
+        return "\n".join(lines)
+
+
+def _table(verdict: Verdict) -> list[str]:
+    lines = [
+        f"{verdict.name} ({verdict.role}; {verdict.measure})",
+        f"{'MSE [rad²]':12} {'white box':>12} {'model':>12}",
+    ]
+    for joint, (before, after) in enumerate(zip(verdict.white_box, verdict.model, strict=True)):
+        lines.append(f"{f'joint {joint}':12} {before:>12.3g} {after:>12.3g}")
+    before, after = sum(verdict.white_box), sum(verdict.model)
+    lines.append(f"{'all joints':12} {before:>12.3g} {after:>12.3g}   {100 * verdict.improvement:.1f} % better")
+    return [*lines, ""]

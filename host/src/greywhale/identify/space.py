@@ -1,0 +1,197 @@
+"""What is searched: per joint, the combinations of motor data that motion can reveal, friction, backlash, zero angle.
+
+A joint's five motor values act through three numbers only: volts a torque needs (alpha), volts an acceleration needs
+(inertia) and volts a speed needs (damping). They are positive and of unknown size, so their logarithms are searched.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from greywhale.arm import ArmParameters
+from greywhale.simulate import PLANT_COLUMNS, plant_row
+
+Floats = NDArray[np.float64]
+JOINTS = 4
+
+
+@dataclass(frozen=True)
+class Kind:
+    """One quantity of every joint: how it is searched, in which range, and how it is told."""
+
+    unit: str
+    means: str
+    logarithmic: bool
+    start: float  # where nothing is known
+    low: float  # factor of the start where logarithmic, else the value itself
+    high: float
+    step: float  # of finite differences, in the searched number
+
+    def to_search(self, value: float) -> float:
+        return math.log(value) if self.logarithmic else value
+
+    def from_search(self, number: float) -> float:
+        return math.exp(number) if self.logarithmic else number
+
+
+KINDS = {
+    "alpha": Kind("V/(N m)", "voltage a torque needs, R/(N Kt)", True, 0.0, 1 / 30, 30.0, 2e-3),
+    "inertia": Kind("V s²/rad", "voltage an acceleration needs, R N J/Kt", True, 0.0, 1 / 100, 100.0, 2e-3),
+    "damping": Kind("V s/rad", "voltage a speed needs, N Kt + N Bm R/Kt", True, 0.0, 1 / 30, 30.0, 2e-3),
+    "coulomb": Kind("V", "Coulomb friction at the motor", True, 0.3, 1 / 30, 30.0, 2e-3),
+    "breakaway": Kind(
+        "", "excess of friction at rest over sliding friction, a share of it", False, 0.2, 0.0, 2.0, 1e-2
+    ),
+    "stribeck": Kind("rad/s", "speed at which that excess has halved", True, 0.1, 0.1, 5.0, 1e-2),
+    "gap": Kind("rad", "half of the backlash, at the joint", False, 2e-3, 0.0, 0.03, 1e-4),
+    "offset": Kind("rad", "angle at which the potentiometer reads 0", False, 0.0, -0.3, 0.3, 1e-3),
+}
+MOTOR = ("alpha", "inertia", "damping")
+PITCH = (1, 2)  # only these feel gravity, so only they have a zero angle that matters
+# At the motor's stall torque teeth of unknown stiffness bend this far (rad), and their damping lasts this long (s).
+TEETH_BEND = 2e-3
+TEETH_S = 2e-3
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One searched number."""
+
+    joint: int
+    kind: str
+
+    @property
+    def name(self) -> str:
+        return f"joint{self.joint}.{self.kind}"
+
+
+@dataclass(frozen=True)
+class Space:
+    """Vectors of searched numbers for some quantities of some joints; all else stays as the user's arm has it."""
+
+    arm: ArmParameters
+    parameters: tuple[Parameter, ...]
+    base: Floats = field(repr=False)
+    zero: Floats = field(repr=False)  # zero angles that are not searched, rad
+
+    @classmethod
+    def of(cls, arm: ArmParameters, kinds: Sequence[str], joints: Sequence[int]) -> Space:
+        chosen = [Parameter(joint, kind) for joint in joints for kind in kinds if kind != "offset" or joint in PITCH]
+        return cls(arm, tuple(chosen), plant_row(arm), np.zeros(JOINTS))
+
+    def zero_angles_at(self, x: Floats) -> Space:
+        """The space of zero angles alone, all else as at `x`."""
+        joints = sorted({parameter.joint for parameter in self.parameters if parameter.joint in PITCH})
+        chosen = tuple(Parameter(joint, "offset") for joint in joints)
+        return Space(self.arm, chosen, self.plants(x[None])[0], np.zeros(JOINTS))
+
+    def with_zero(self, zero: Floats) -> Space:
+        return Space(self.arm, self.parameters, self.base, zero)
+
+    def __len__(self) -> int:
+        return len(self.parameters)
+
+    def kind(self, index: int) -> Kind:
+        return KINDS[self.parameters[index].kind]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(parameter.name for parameter in self.parameters)
+
+    @property
+    def steps(self) -> Floats:
+        return np.array([self.kind(index).step for index in range(len(self))])
+
+    def start(self) -> Floats:
+        """The user's arm; where it is silent (no friction, say), a usual value."""
+        return np.array([self.kind(n).to_search(self._known(one)) for n, one in enumerate(self.parameters)])
+
+    def bounds(self) -> tuple[Floats, Floats]:
+        low, high = [], []
+        for index, start in enumerate(self.start()):
+            kind = self.kind(index)
+            low.append(start + math.log(kind.low) if kind.logarithmic else kind.low)
+            high.append(start + math.log(kind.high) if kind.logarithmic else kind.high)
+        return np.array(low), np.array(high)
+
+    def values(self, x: Floats) -> Floats:
+        """In physical units."""
+        return np.array([self.kind(index).from_search(float(number)) for index, number in enumerate(x)])
+
+    def moved(self, x: Floats, source: Space) -> Floats:
+        """A vector of another space in this one; what that one does not have starts as usual."""
+        known = dict(zip(source.names, x, strict=True))
+        start = self.start()
+        return np.array([known.get(name, start[index]) for index, name in enumerate(self.names)])
+
+    def plants(self, points: Floats) -> Floats:
+        """Plants (rows, 60) of searched points (rows)."""
+        rows = np.tile(self.base, (len(points), 1))
+        found = {name: points[:, index] for index, name in enumerate(self.names)}
+        supply = self.base[_COLUMN["supply"]]
+        for joint in range(JOINTS):
+            here = {kind: found[f"joint{joint}.{kind}"] for kind in KINDS if f"joint{joint}.{kind}" in found}
+            if here:
+                _set_joint(rows, joint, here, supply)
+        return rows
+
+    def offsets(self, points: Floats) -> Floats:
+        """Zero angles (rows, 4) of searched points."""
+        angles = np.tile(self.zero, (len(points), 1))
+        for index, parameter in enumerate(self.parameters):
+            if parameter.kind == "offset":
+                angles[:, parameter.joint] = points[:, index]
+        return angles
+
+    def _known(self, parameter: Parameter) -> float:
+        joint = self.arm.joint[parameter.joint]
+        motor = self.arm.actuator(parameter.joint)
+        alpha = 1.0 / motor.torque_per_volt
+        usual = KINDS[parameter.kind].start
+        known = {
+            "alpha": alpha,
+            "inertia": alpha * motor.inertia,
+            "damping": alpha * motor.damping,
+            "coulomb": alpha * joint.friction.coulomb or usual,
+            "breakaway": joint.friction.breakaway / joint.friction.coulomb - 1.0 if joint.friction.coulomb else usual,
+            "stribeck": joint.friction.stribeck_velocity,
+            "gap": joint.gear.half_gap or usual,
+            "offset": 0.0,
+        }
+        return known[parameter.kind]
+
+
+_COLUMN = {name: index for index, name in enumerate(PLANT_COLUMNS)}
+
+
+def column(joint: int, name: str) -> int:
+    return _COLUMN[f"joint{joint}.{name}"]
+
+
+def _set_joint(rows: Floats, joint: int, here: dict[str, Floats], supply: float) -> None:
+    """Write searched numbers of one joint into its columns."""
+    torque = rows[:, column(joint, "torque_per_volt")]
+    volts_before = 1.0 / torque.copy()
+    if "alpha" in here:
+        torque[:] = np.exp(-here["alpha"])
+    for kind in ("inertia", "damping"):
+        values = rows[:, column(joint, kind)]
+        # What is not searched keeps its volts, as that is what moves the joint.
+        values[:] = (np.exp(here[kind]) if kind in here else values * volts_before) * torque
+    sliding, rest = rows[:, column(joint, "coulomb")], rows[:, column(joint, "breakaway")]
+    excess = np.where(sliding > 0.0, rest / np.where(sliding > 0.0, sliding, 1.0) - 1.0, 0.0)
+    sliding[:] = (np.exp(here["coulomb"]) if "coulomb" in here else sliding * volts_before) * torque
+    rest[:] = sliding * (1.0 + here.get("breakaway", excess))
+    if "stribeck" in here:
+        rows[:, column(joint, "stribeck_velocity")] = np.exp(here["stribeck"])
+    if "gap" in here:
+        rows[:, column(joint, "half_gap")] = here["gap"]
+        stiffness = rows[:, column(joint, "stiffness")]
+        if not stiffness.any():
+            stiffness[:] = torque * supply / TEETH_BEND
+            rows[:, column(joint, "mesh_damping")] = stiffness * TEETH_S

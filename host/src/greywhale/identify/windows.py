@@ -1,0 +1,119 @@
+"""The first residual: candidate arms driven by the logged voltages over short windows, each started from the log.
+
+Where a window starts is known only as well as the potentiometers are read. So angle and speed there are free within
+their uncertainty: the best ones are found for every window and candidate by a formula, as the error they cause is
+nearly linear in them. That keeps the residual smooth in the parameters, and fair.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from greywhale import _native
+from greywhale.arm import ArmParameters
+from greywhale.identify.data import Prepared, Windows, windows_of
+from greywhale.identify.space import Space, column
+
+Floats = NDArray[np.float64]
+# What a start speed may be off beyond what noise explains (rad/s): motion within the smoothing.
+SPEED_DOUBT = 0.05
+
+
+class WindowResidual:
+    """Differences between log and candidates in standard deviations of a reading; a row of numbers a candidate."""
+
+    def __init__(
+        self, logs: Sequence[Prepared], arm: ArmParameters, joints: Sequence[int], part: slice | None = None
+    ) -> None:
+        self.joints = list(joints)
+        self._body = _native.Arm(arm.native()).body
+        self._pieces = [(windows_of(log, part), log) for log in logs]
+        self._pieces = [piece for piece in self._pieces if len(piece[0].first)]
+        self._sides = [self._sides_of(windows) for windows, _ in self._pieces]
+        self.windows = sum(len(windows.first) for windows, _ in self._pieces)
+        self.clusters = self._clusters()
+
+    def __call__(self, space: Space, points: Floats) -> Floats:
+        """(candidates, numbers)."""
+        plants = np.ascontiguousarray(space.plants(points))
+        offsets = np.ascontiguousarray(space.offsets(points))
+        parts = [
+            self._compare(windows, log, sides, plants, offsets)
+            for (windows, log), sides in zip(self._pieces, self._sides, strict=True)
+        ]
+        return np.concatenate(parts, axis=1)
+
+    def mse(self, plant: Floats, zero: Floats) -> Floats:
+        """Mean squared difference per joint, rad², of one plant, with the best start of every window taken off."""
+        total, count = np.zeros(4), 0
+        for (windows, log), sides in zip(self._pieces, self._sides, strict=True):
+            error = self._errors(windows, sides, plant[None], zero[None])
+            for joint in self.joints:
+                left = self._without_start(error[..., joint], windows, log, plant[None], joint)[0]
+                total[joint] += log.noise[joint] ** 2 * float(np.sum(left[: windows.measured[..., 0].size] ** 2))
+            count += windows.measured[..., 0].size
+        mse: Floats = total / max(count, 1)
+        return mse
+
+    def _compare(self, windows: Windows, log: Prepared, sides: Floats, plants: Floats, offsets: Floats) -> Floats:
+        error = self._errors(windows, sides, plants, offsets)
+        rows = [self._without_start(error[..., joint], windows, log, plants, joint) for joint in self.joints]
+        return np.concatenate(rows, axis=1)
+
+    @staticmethod
+    def _errors(windows: Windows, sides: Floats, plants: Floats, offsets: Floats) -> Floats:
+        """Candidates minus log, (candidates, windows, rows, 4), rad."""
+        angles: Floats = _native.simulate_windows(  # type: ignore[assignment] # the stub says object
+            plants=plants,
+            offsets=offsets,
+            kicks=np.zeros_like(offsets),
+            first=windows.first,
+            angles=windows.angles,
+            velocities=windows.velocities,
+            sides=sides,
+            rows=windows.rows,
+            volts=windows.volts,
+            spacing=windows.spacing,
+            substeps=windows.substeps,
+            every=windows.every,
+        )
+        error: Floats = np.nan_to_num(angles - windows.measured[None], nan=1e3, posinf=1e3, neginf=-1e3)
+        return error
+
+    @staticmethod
+    def _without_start(error: Floats, windows: Windows, log: Prepared, plants: Floats, joint: int) -> Floats:
+        """Take off the best start angle and speed of every window; their sizes become residuals of their own."""
+        noise = log.noise[joint]
+        count = len(error)
+        lag = (plants[:, column(joint, "inertia")] / plants[:, column(joint, "damping")])[:, None]
+        speed = lag * -np.expm1(-windows.time[None, :] / lag)
+        basis = np.stack([np.ones_like(speed), speed], axis=2)  # (n, rows, 2)
+        doubt = np.array([noise, SPEED_DOUBT])
+        normal = np.einsum("nki,nkj->nij", basis, basis) / noise**2 + np.diag(1.0 / doubt**2)
+        right = np.einsum("nki,nwk->niw", basis, error) / noise**2
+        best = np.linalg.solve(normal, right)  # (n, 2, windows)
+        left = (error - np.einsum("nki,niw->nwk", basis, best)) / noise
+        return np.concatenate([left.reshape(count, -1), (best / doubt[None, :, None]).reshape(count, -1)], axis=1)
+
+    def _clusters(self) -> NDArray[np.intp]:
+        """The window that each number of the residual belongs to, counted over all logs."""
+        parts, before = [], 0
+        for windows, _ in self._pieces:
+            number = before + np.arange(len(windows.first))
+            readings = np.repeat(number, len(windows.time))
+            parts += [np.concatenate([readings, number, number])] * len(self.joints)
+            before += len(windows.first)
+        return np.concatenate(parts) if parts else np.zeros(0, dtype=np.intp)
+
+    def _sides_of(self, windows: Windows) -> Floats:
+        """Which teeth touch at a window's start: those that give the torque that the links take."""
+        sides = np.zeros_like(windows.angles)
+        for row in range(len(sides)):
+            q, v = list(windows.angles[row]), list(windows.velocities[row])
+            torque = self._body.mass_matrix(q) @ windows.accelerations[row] + self._body.bias(q, v)
+            still = (np.abs(torque) < 1e-3) & (np.abs(windows.velocities[row]) < 0.05)
+            sides[row] = np.where(still, 0.0, np.sign(torque))
+        return sides

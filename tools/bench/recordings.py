@@ -1,0 +1,151 @@
+"""Recordings of arms that the identification must not know: the native closed loop plays the bench, the log is all
+that leaves this file.
+
+The follower's readings are made as the firmware makes them: four 10-bit conversions in a tick of noisy potentiometers,
+filtered, scaled to 1/4096 rad.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from greywhale.arm import ArmParameters, Potentiometers, load_arm
+from greywhale.config import controller
+from greywhale.link import schema
+from greywhale.log import Log, LogWriter, read_log
+from greywhale.log.layout import Origin
+from greywhale.simulate import Experiment
+from greywhale.trajectory import Trajectory, human_reaches
+from greywhale.trajectory.motion import Array
+from tools.setup.console import ROOT
+
+TABLES = ROOT / "shared" / "fuzzy_tables"
+LSB = 1.0 / 4096.0
+# Within a tick, when the four conversions of a follower's potentiometer hold their input (ms).
+MOMENTS = (0.1, 0.3, 0.5, 0.7)
+PWM_TOP = 400
+SUPPLY = 15.0
+START_S = 1.5  # the log begins that long after the motors went on, as `greywhale record` does
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """Three logs of one arm: to fit, to validate, and to validate with another controller."""
+
+    fit: Log
+    second: Log
+    changed: Log
+
+
+def table_of(name: str) -> tuple[int, ...]:
+    """A whole parameter table with the controllers of shared/fuzzy_tables/`name`.toml."""
+    raw = controller.load(TABLES / f"{name}.toml").raw_values()
+    return tuple(raw.get(index, value) for index, value in enumerate(schema.DEFAULTS))
+
+
+def record(
+    arm: ArmParameters,
+    motion: Trajectory,
+    path: Path,
+    values: tuple[int, ...] = schema.DEFAULTS,
+    seed: int = 1,
+    every: int = 1,
+) -> Log:
+    """Record `motion` into the log `path`, a row every `every` ticks."""
+    experiment = Experiment(motion, arm, parameters=values, seed=seed, wait_s=START_S + 0.1)
+    result = experiment.run_single(controllers=_controllers(values), every=1)
+    if result.diverged[0]:
+        raise RuntimeError("the recorded arm left the range of numbers")
+    follower = _readings(np.asarray(result.angles[0], dtype=np.float64), arm, values, seed)
+    volts = result.duties[0].astype(np.float64) / PWM_TOP * arm.drive.supply
+    period = values[schema.PARAMETER_BY_NAME["period_ms"].index]
+    origin = Origin("0.1.0", "mega2560", schema.param_crc(values), period, every)
+    first = round(START_S * 1000)
+    with LogWriter(path, origin) as log:
+        for row, tick in enumerate(range(first, len(volts), every)):
+            leader = [float(value) * LSB for value in experiment.reference[tick]]
+            log.append(row * every / 1000, leader, list(follower[tick]), list(volts[tick]), "following")
+    return read_log(path)
+
+
+def _controllers(values: tuple[int, ...]) -> np.ndarray:
+    from greywhale.simulate import CONTROLLER_COLUMNS
+
+    index = schema.PARAMETER_BY_NAME
+    rows = [[values[index[f"joint{joint}.{key}"].index] for key in CONTROLLER_COLUMNS] for joint in range(4)]
+    return np.array(rows, dtype=np.int32)
+
+
+def _readings(angles: Array, arm: ArmParameters, values: tuple[int, ...], seed: int) -> Array:
+    """What the firmware makes of the true angles at every tick."""
+    pots = Potentiometers(arm.follower_pots, seed + 1)
+    shift = values[schema.PARAMETER_BY_NAME["filter_shift"].index]
+    before = np.vstack([angles[:1], angles[:-1]])
+    sums = np.zeros_like(angles)
+    for moment in MOMENTS:
+        between = np.ascontiguousarray(before + moment * (angles - before))
+        sums += np.array([pots.counts(row) for row in between])
+    filtered = sums * 4.0
+    for tick in range(1, len(filtered)):
+        filtered[tick] = filtered[tick - 1] + (filtered[tick] - filtered[tick - 1]) / (1 << shift)
+    index = schema.PARAMETER_BY_NAME
+    zero = np.array([values[index[f"follower{joint}.zero"].index] for joint in range(4)])
+    scale = np.array([values[index[f"follower{joint}.scale"].index] for joint in range(4)])
+    readings: Array = np.floor((filtered - zero) * scale / 8192.0 + 0.5) * LSB
+    return readings
+
+
+def random_arm(seed: int) -> ArmParameters:
+    """The white box with motor combinations times e^(+-0.9), friction, backlash and sensor noise of its own."""
+    random = np.random.default_rng(seed)
+    white = load_arm("white_box")
+    joints = []
+    for number, joint in enumerate(white.joint):
+        known = white.actuator(number)
+        alpha, inertia_volts, damping_volts = random.uniform(-0.9, 0.9, 3)
+        torque_per_volt = known.torque_per_volt * np.exp(-alpha)
+        inertia = known.inertia * np.exp(inertia_volts - alpha)
+        damping = known.damping * np.exp(damping_volts - alpha)
+        coulomb = random.uniform(0.2, 0.9) * torque_per_volt
+        motor = {
+            "gear_ratio": 1.0,
+            "torque_constant": 0.5 * damping / torque_per_volt,
+            "resistance": 0.5 * damping / torque_per_volt**2,
+            "inertia": inertia,
+            "viscous": 0.5 * damping,
+        }
+        stiffness = 15.0 * torque_per_volt / 0.004
+        joints.append(
+            joint.model_dump()
+            | {
+                "motor": {key: float(value) for key, value in motor.items()},
+                "friction": {
+                    "coulomb": float(coulomb),
+                    "breakaway": float(coulomb * random.uniform(1.05, 1.5)),
+                    "stribeck_velocity": float(random.uniform(0.05, 0.15)),
+                },
+                "gear": {
+                    "half_gap": float(random.uniform(0.001, 0.006)),
+                    "stiffness": float(stiffness),
+                    "damping": float(stiffness * 0.002),
+                    "drag": float(0.02 * damping),
+                },
+            }
+        )
+    noise = float(random.uniform(0.001, 0.004))
+    pots = {"supply": 5.0, "joint": [{"noise": noise}] * 4}
+    data = white.model_dump() | {"name": f"random arm {seed}", "joint": joints, "motor_equation": "physical"}
+    return ArmParameters.model_validate(data | {"follower_pots": pots, "leader_pots": pots}, strict=False)
+
+
+def record_three(arm: ArmParameters, folder: Path, seed: int = 1, seconds: float = 30.0) -> Recorded:
+    """The fitting log, a second one, and one with the controllers of the paper's Table 10."""
+    before, after = table_of("before_tuning"), table_of("table_10")
+    return Recorded(
+        record(arm, human_reaches(10 * seed + 1, seconds), folder / "fit.csv", before, 10 * seed + 1),
+        record(arm, human_reaches(10 * seed + 2, seconds), folder / "second.csv", before, 10 * seed + 2),
+        record(arm, human_reaches(10 * seed + 3, seconds), folder / "changed.csv", after, 10 * seed + 3),
+    )
