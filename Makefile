@@ -4,6 +4,7 @@ PYTHON := .venv/bin/python
 export PATH := $(CURDIR)/.venv/bin:$(PATH)
 
 CPPCHECK := cppcheck --quiet --error-exitcode=1 --inline-suppr --enable=warning,performance,portability -j2
+PORTABLE := $(shell find firmware/lib -name '*.cpp' -not -path '*/hal/src/*')
 FIRMWARE_ROOMS := $(patsubst %,-Ifirmware/lib/%/src,$(notdir $(wildcard firmware/lib/*)))
 
 .DEFAULT_GOAL := help
@@ -30,7 +31,7 @@ lint: setup ## ruff, mypy --strict, cppcheck, clang-tidy, generated files
 	mypy
 	$(CPPCHECK) --std=c++14 '-DISR(vector,...)=void vector()' firmware/lib firmware/src
 	$(CPPCHECK) --std=c++17 --suppress=assignBoolToPointer:sim/board/binding.cpp sim host/native
-	clang-tidy --quiet $(shell find firmware/lib -name '*.cpp' -not -path '*/avr/*') -- -std=gnu++14 $(FIRMWARE_ROOMS)
+	clang-tidy --quiet $(PORTABLE) -- -std=gnu++14 $(FIRMWARE_ROOMS) 2>build/clang-tidy.log || { cat build/clang-tidy.log; exit 1; }
 	$(PYTHON) -m tools.generate_link --check
 
 test: lint ## everything: lint, unit tests here and on the simulated board, gates on size, tick and stack, pytest
