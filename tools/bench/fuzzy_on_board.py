@@ -1,4 +1,7 @@
-"""Calls the compiled controller of a real firmware image on the simulated board: its bits and its exact cycles."""
+"""Calls the compiled controller of a real firmware image on the simulated board: its bits and its exact cycles.
+
+The inference is called where step() calls it, fuzzy_pdi_infer_bare; saving registers as C wants it costs 41 cycles more.
+"""
 
 from __future__ import annotations
 
@@ -49,7 +52,7 @@ class FuzzyOnBoard:
         image = elf or IMAGES[chip]
         symbols = read_symbols(image)
         self._compile, self._infer, self._step = (
-            symbols[name].address for name in (COMPILE, "fuzzy_pdi_infer", "fuzzy_pdi_step")
+            symbols[name].address for name in (COMPILE, "fuzzy_pdi_infer_bare", "fuzzy_pdi_step")
         )
         self._board = Board(chip)
         self._board.load_elf(str(image))

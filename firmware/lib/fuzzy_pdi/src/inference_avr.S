@@ -4,6 +4,8 @@
 //   Defuzzified fuzzy_pdi_infer(const Side *e, uint16_t e_size, const Side *ce, uint16_t ce_size, bool same_sign)
 //                               r25:r24        r23:r22          r21:r20         r19:r18           r16
 //   returns size in r23:r22, flip in r24, no_rule in r25
+//
+// fuzzy_pdi_infer_bare is the same without saving r10..r17, for step_avr.S.
 #if defined(__AVR__) && !defined(FUZZY_PDI_PORTABLE)
 
 // Heights, low byte first: a = ZE and A = PE or NE of e; b and B the same of ce. Six registers in a row each, for movw.
@@ -292,18 +294,10 @@
 20:
 .endm
 
-  .section .text.fuzzy_pdi_infer, "ax", @progbits
-  .global fuzzy_pdi_infer
-  .type fuzzy_pdi_infer, @function
-fuzzy_pdi_infer:
-  push r10
-  push r11
-  push r12
-  push r13
-  push r14
-  push r15
-  push r16
-  push r17
+  .section .text.fuzzy_pdi_infer_bare, "ax", @progbits
+  .global fuzzy_pdi_infer_bare
+  .type fuzzy_pdi_infer_bare, @function
+fuzzy_pdi_infer_bare:
   bst r16, 0
   clr ZERO
   ldi HALF, 0x80
@@ -440,6 +434,7 @@ fuzzy_pdi_infer:
   ror A0
   tst SUM3
   brne .Ltoo_big
+.Lin_place:
   movw r20, a0
   mov r22, a2
   mov r26, A0
@@ -451,9 +446,9 @@ fuzzy_pdi_infer:
 .Lnothing:
   ldi r22, 0
   ldi r23, 0
-  ldi r24, 0
   ldi r25, 1
-  rjmp .Lfinish
+  clt
+  rjmp .Linferred
 
 .Lagainst_is_more:
   set
@@ -466,6 +461,7 @@ fuzzy_pdi_infer:
   brne .Ltoo_big
   tst a2
   breq .Lnothing
+  brmi .Lin_place
   ldi r31, hi8(fuzzy_pdi_tables)
   mov r30, a2
   lpm r18, Z
@@ -547,11 +543,27 @@ fuzzy_pdi_infer:
   ror r25
   ror r24
   movw r22, r24
+  ldi r25, 0
+.Linferred:
   ldi r24, 0
   bld r24, 0
-  ldi r25, 0
-.Lfinish:
   clr r1
+  ret
+  .size fuzzy_pdi_infer_bare, . - fuzzy_pdi_infer_bare
+
+  .section .text.fuzzy_pdi_infer, "ax", @progbits
+  .global fuzzy_pdi_infer
+  .type fuzzy_pdi_infer, @function
+fuzzy_pdi_infer:
+  push r10
+  push r11
+  push r12
+  push r13
+  push r14
+  push r15
+  push r16
+  push r17
+  call fuzzy_pdi_infer_bare
   pop r17
   pop r16
   pop r15
@@ -561,7 +573,6 @@ fuzzy_pdi_infer:
   pop r11
   pop r10
   ret
-
   .size fuzzy_pdi_infer, . - fuzzy_pdi_infer
 
 // Two pages: the shift that normalises a sum with this top byte, as a factor; and the reciprocals R - 256.

@@ -4,6 +4,9 @@
 //   Output fuzzy_pdi_step(const Coefficients *c, State *state, int16_t leader, int16_t follower, uint16_t limit_mv)
 //                         r25:r24                r23:r22       r21:r20         r19:r18           r17:r16
 //   returns u_fuzzy in r19:r18, volts_mv in r21:r20, saturated in r22, no_rule in r23
+//
+// fuzzy_pdi_step_bare is the same for a caller in assembly that wants to save registers once for several joints: it uses every
+// register but r28 and r29, and leaves r1 = 0.
 #if defined(__AVR__) && !defined(FUZZY_PDI_PORTABLE)
 
 // Coefficients and State, see the assertions in fuzzy_pdi.cpp.
@@ -17,11 +20,11 @@
 #define STATE_STARTED 8
 
 // Across the inference: r3:r2 coefficients, Y state, r5:r4 limit, r9:r8 size of e, r6 sign of e (bit 7).
-// After it: r3:r2 size of u_fuzzy, r7 no_rule, T its sign, r16 zero, r17 scratch.
+// After it: r3:r2 size of u_fuzzy, r7 no_rule, T its sign.
 #define E_SIGN r6
 #define NO_RULE r7
 #define ZERO r16
-#define S r17
+#define SCRATCH r17
 
 // high:low = a - b, saturated to +-32767
 .macro difference low, high, b_low, b_high
@@ -48,13 +51,13 @@
   sbc \high, ZERO
 .endm
 
-// r31:r30 = size of drive + integral in mV, rounded; S: its sign in bit 7. drive in r27..r24, integral in r31:r30:r9:r8.
+// r31:r30 = size of drive + integral in mV, rounded; SCRATCH: its sign in bit 7. drive in r27..r24, integral in r31:r30:r9:r8.
 .macro volts
   add r8, r24
   adc r9, r25
   adc r30, r26
   adc r31, r27
-  mov S, r31
+  mov SCRATCH, r31
   brpl 4f
   com r31
   com r30
@@ -74,27 +77,27 @@
 .endm
 
 // A byte of the integral's factor times the size of e.
-.macro row at, low, mid, hi
-  ldd S, Z+(C_INTEGRAL + \at)
-  mul r9, S
+.macro integral_row at, low, mid, hi
+  ldd SCRATCH, Z+(C_INTEGRAL + \at)
+  mul r9, SCRATCH
   mov \hi, r1
   add \mid, r0
   adc \hi, ZERO
-  mul r8, S
+  mul r8, SCRATCH
   add \low, r0
   adc \mid, r1
   adc \hi, ZERO
 .endm
 
 .macro plus register, at
-  ldd S, Y+\at
-  adc \register, S
+  ldd SCRATCH, Y+\at
+  adc \register, SCRATCH
 .endm
 
 .macro minus register, at
-  ldd S, Y+\at
-  sbc S, \register
-  mov \register, S
+  ldd SCRATCH, Y+\at
+  sbc SCRATCH, \register
+  mov \register, SCRATCH
 .endm
 
   .section .text.fuzzy_pdi_step, "ax", @progbits
@@ -109,8 +112,37 @@ fuzzy_pdi_step:
   push r7
   push r8
   push r9
+  push r10
+  push r11
+  push r12
+  push r13
+  push r14
+  push r15
   push r16
   push r17
+  rcall fuzzy_pdi_step_bare
+  pop r17
+  pop r16
+  pop r15
+  pop r14
+  pop r13
+  pop r12
+  pop r11
+  pop r10
+  pop r9
+  pop r8
+  pop r7
+  pop r6
+  pop r5
+  pop r4
+  pop r3
+  pop r2
+  ret
+  .size fuzzy_pdi_step, . - fuzzy_pdi_step
+
+  .global fuzzy_pdi_step_bare
+  .type fuzzy_pdi_step_bare, @function
+fuzzy_pdi_step_bare:
   push r28
   push r29
   movw r2, r24
@@ -125,8 +157,8 @@ fuzzy_pdi_step:
   ldd r21, Y+STATE_PREVIOUS+1
   std Y+STATE_PREVIOUS, r22
   std Y+STATE_PREVIOUS+1, r23
-  ldd S, Y+STATE_STARTED
-  tst S
+  ldd SCRATCH, Y+STATE_STARTED
+  tst SCRATCH
   brne 1f
   rjmp .Lfirst
 1:  movw r18, r22
@@ -138,8 +170,8 @@ fuzzy_pdi_step:
   subi r20, lo8(-C_CE)
   sbci r21, hi8(-C_CE)
   mov E_SIGN, r23
-  mov S, r23
-  eor S, r19  // bit 7: opposite signs
+  mov SCRATCH, r23
+  eor SCRATCH, r19  // bit 7: opposite signs
   tst r23
   brpl 1f
   negate16 r22, r23
@@ -150,19 +182,19 @@ fuzzy_pdi_step:
   subi r20, lo8(-SIDE_SIZE)
   sbci r21, hi8(-SIDE_SIZE)
 2:movw r8, r22
-  lsl S
+  lsl SCRATCH
   ldi r16, 1
   sbci r16, 0
-  call fuzzy_pdi_infer
+  call fuzzy_pdi_infer_bare
 
   mov NO_RULE, r25
   movw r30, r2
   movw r2, r22
   clr ZERO
-  mov S, E_SIGN
+  mov SCRATCH, E_SIGN
   sbrc r24, 0
-  com S
-  bst S, 7
+  com SCRATCH
+  bst SCRATCH, 7
 
   // drive = size of u * Ku in r27..r24
   ldd r20, Z+C_KU
@@ -189,30 +221,35 @@ fuzzy_pdi_step:
   sbci r27, 0xFF
 
 1:// what e adds to the integral, in r23..r18: fraction r19:r18, whole r23..r20
-  ldd S, Z+C_INTEGRAL
-  mul r9, S
+  ldd SCRATCH, Z+C_INTEGRAL
+  mul r9, SCRATCH
   mov r19, r0
   mov r20, r1
-  mul r8, S
+  mul r8, SCRATCH
   mov r18, r0
   add r19, r1
   adc r20, ZERO
-  row 1, r19, r20, r21
-  row 2, r20, r21, r22
-  row 3, r21, r22, r23
-  sbrc E_SIGN, 7
+  integral_row 1, r19, r20, r21
+  integral_row 2, r20, r21, r22
+  ldd SCRATCH, Z+(C_INTEGRAL + 3)
+  tst SCRATCH
+  brne 2f
+  clr r23  // as with any ordinary Ki
+  rjmp 3f
+2:integral_row 3, r21, r22, r23
+3:  sbrc E_SIGN, 7
   rjmp .Ldown
-  ldd S, Y+STATE_FRACTION
-  add r18, S
+  ldd SCRATCH, Y+STATE_FRACTION
+  add r18, SCRATCH
   plus r19, STATE_FRACTION+1
   plus r20, STATE_INTEGRAL
   plus r21, STATE_INTEGRAL+1
   plus r22, STATE_INTEGRAL+2
   plus r23, STATE_INTEGRAL+3
 .Ltaken:
-  mov S, r23
-  lsl S
-  eor S, r23
+  mov SCRATCH, r23
+  lsl SCRATCH
+  eor SCRATCH, r23
   brpl .Lclamped
   rjmp .Lclamp
 .Lclamped:
@@ -241,7 +278,7 @@ fuzzy_pdi_step:
 1:brtc 2f
   negate16 r18, r19
 2:movw r20, r30
-  sbrs S, 7
+  sbrs SCRATCH, 7
   rjmp 3f
   negate16 r20, r21
 3:mov r22, r24
@@ -249,29 +286,19 @@ fuzzy_pdi_step:
   clr r1
   pop r29
   pop r28
-  pop r17
-  pop r16
-  pop r9
-  pop r8
-  pop r7
-  pop r6
-  pop r5
-  pop r4
-  pop r3
-  pop r2
   ret
 
 .Lfirst:
-  ldi S, 1
-  std Y+STATE_STARTED, S
+  ldi SCRATCH, 1
+  std Y+STATE_STARTED, SCRATCH
   ldi r18, 0
   ldi r19, 0
   rjmp .Lsplit
 
 .Ldown:
-  ldd S, Y+STATE_FRACTION
-  sub S, r18
-  mov r18, S
+  ldd SCRATCH, Y+STATE_FRACTION
+  sub SCRATCH, r18
+  mov r18, SCRATCH
   minus r19, STATE_FRACTION+1
   minus r20, STATE_INTEGRAL
   minus r21, STATE_INTEGRAL+1
@@ -295,7 +322,7 @@ fuzzy_pdi_step:
 
 // Beyond the limit: on e's own side the integral stays as it was.
 .Lsaturated:
-  mov r1, S
+  mov r1, SCRATCH
   eor r1, E_SIGN
   brmi 1f
   ldd r8, Y+STATE_INTEGRAL
@@ -312,5 +339,5 @@ fuzzy_pdi_step:
 1:movw r30, r4
   ldi r24, 1
   rjmp .Lstore
-  .size fuzzy_pdi_step, . - fuzzy_pdi_step
+  .size fuzzy_pdi_step_bare, . - fuzzy_pdi_step_bare
 #endif
