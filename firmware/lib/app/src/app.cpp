@@ -97,8 +97,8 @@ void App::schedule_sample() {
 
 // LED, looked after every 32 ms: on while following, quick while starting, a short flash a second while disabled, 4 Hz in fault.
 void App::show_state() {
+  if (static_cast<uint8_t>(tick_) & 31) return;
   const auto ms = static_cast<uint16_t>(tick_);
-  if (ms & 31) return;
   switch (supervisor_.state()) {
     case supervisor::State::boot:
     case supervisor::State::following: hal::set_led(true); break;

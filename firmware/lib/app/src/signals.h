@@ -31,12 +31,18 @@ void follow_pots_portable(const uint16_t* sums, Signals* signals, supervisor::Ob
 
 #if defined(__AVR__)
 
-// The same bits in assembly: signals_avr.S, which counts on this layout.
-extern "C" void app_follow_pots(const uint16_t* sums, Signals* signals, supervisor::Observation* seen);
+// The same bits in assembly: signals_avr.S, which counts on this layout. It saves no registers but Y: the tick has saved them
+// once, for this and for the controllers.
 static_assert(sizeof(Pot) == 10 && sizeof(JointSignals) == 26 && sizeof(Signals) == 6 + 4 * 26, "signals_avr.S");
 static_assert(sizeof(supervisor::Observation) == 11 && hal::pot_count == 8, "signals_avr.S");
 inline void follow_pots(const uint16_t* sums, Signals* signals, supervisor::Observation* seen) {
-  app_follow_pots(sums, signals, seen);
+  register const uint16_t* r24 __asm__("r24") = sums;
+  register Signals* r22 __asm__("r22") = signals;
+  register supervisor::Observation* r20 __asm__("r20") = seen;
+  __asm__ volatile("%~call app_follow_pots"
+      : "+r"(r24), "+r"(r22), "+r"(r20)
+      :
+      : "r11", "r12", "r13", "r14", "r15", "r16", "r17", "r18", "r19", "r26", "r27", "r30", "r31", "memory");
 }
 
 #else

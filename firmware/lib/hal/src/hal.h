@@ -66,7 +66,7 @@ void idle();
 }  // namespace hal
 
 #ifdef __AVR__
-#include "avr/outputs.h"
+#include "avr/inline.h"
 #else
 template <uint8_t joint>
 inline void hal::set_duty(bool positive, uint16_t size) { set_duty(joint, positive, size); }

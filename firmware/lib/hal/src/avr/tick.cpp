@@ -23,10 +23,17 @@ constexpr uint8_t chain_start = 33;
 volatile uint8_t filling = 0;   // of the two sets of sums; the interrupt adds there, the other one is the main loop's
 volatile uint8_t full = 0;      // the main loop's one holds sums that it has not released
 volatile uint8_t running = 0;   // a tick has started and tick_end() has not been called
-volatile uint8_t elapsed = 0;
 volatile uint8_t late = 0;
 
 }  // namespace
+
+namespace internal {
+
+volatile uint8_t elapsed = 0;
+
+uint16_t age_with(uint8_t ticks, uint8_t count) { return static_cast<uint16_t>(ticks * 1000u + count * 4u); }
+
+}  // namespace internal
 
 ISR(TIMER0_COMPA_vect) {
   if (CONVERSION == CHAIN_END && !full) {
@@ -35,7 +42,7 @@ ISR(TIMER0_COMPA_vect) {
   } else {
     late = 1;
   }
-  elapsed = static_cast<uint8_t>(elapsed + 1);
+  internal::elapsed = static_cast<uint8_t>(internal::elapsed + 1);
   if (running) {
     pins::drivers_off();
     late = 1;
@@ -84,8 +91,8 @@ bool tick_pending() { return running != 0; }
 
 TickStart tick_begin() {
   cli();
-  const TickStart start = {elapsed, late != 0};
-  elapsed = 0;
+  const TickStart start = {internal::elapsed, late != 0};
+  internal::elapsed = 0;
   late = 0;
   sei();
   return start;
@@ -94,16 +101,6 @@ TickStart tick_begin() {
 void tick_end() {
   internal::missed_ticks = 0;
   running = 0;
-}
-
-uint16_t tick_age_us() {
-  uint8_t ticks, count;
-  do {
-    ticks = elapsed;
-    count = TCNT0;
-  } while (ticks != elapsed);   // a tick in between: read again
-  const uint16_t us = static_cast<uint16_t>(count * 4u);
-  return ticks == 0 ? us : static_cast<uint16_t>(ticks * 1000u + us);
 }
 
 const uint16_t* pot_sums() { return !full ? nullptr : filling ? hal_sums[0] : hal_sums[1]; }
