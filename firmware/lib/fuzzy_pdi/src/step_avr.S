@@ -1,4 +1,4 @@
-// step() of fuzzy_pdi.h in AVR assembly: the same bits in half the cycles. Optional: defining FUZZY_PDI_PORTABLE compiles the
+// step() of fuzzy_pdi.h in AVR assembly: the same bits in a quarter of the cycles. Optional: defining FUZZY_PDI_PORTABLE compiles the
 // C++ of fuzzy_pdi.cpp instead. The tests hold the two equal.
 //
 //   Output fuzzy_pdi_step(const Coefficients *c, State *state, int16_t leader, int16_t follower, uint16_t limit_mv)
