@@ -6,6 +6,7 @@ from collections.abc import Callable
 from fractions import Fraction
 
 import numpy as np
+import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -64,3 +65,26 @@ def test_volts_of_one_step(cases: st.SearchStrategy[Case], data: st.DataObject) 
     assert run.saturated[0] == output.saturated
     assert abs(run.volts_mv[0] - 1000 * output.volts) <= bound
     assert abs(Fraction(run.integral[0], 1000 << 31) - after.integral) <= Fraction(1, 1000 << 31)
+
+
+@pytest.mark.parametrize(("falling", "lsb"), [(0.75, 0.413), (1.0, 0.498)])
+def test_the_maxima_that_the_derivation_states(falling: float, lsb: float) -> None:
+    """docs/fuzzy.md: the share of the heights' errors, over all p, n, z; `falling` is a falling ramp's error in bits."""
+    part = np.linspace(0, 1, 1001)
+    p, n = np.meshgrid(part, part)
+    z, u = 1 - p - n, p - n
+    allowed = (z >= n - 1e-12) & (p >= n)
+    least, last_bit, relative = 164 / (164 + 16384), 1 / ((1 << 24) - 1), 2.0**-17
+    absolute = ((1 - u) * falling + (1 + u) * falling + u * 0.5) * last_bit * np.maximum(np.maximum(p, n), z) / least
+    total = absolute + relative * ((1 - u) * p + (1 + u) * n + u * z)
+    assert lsb - 0.002 < np.where(allowed, total, 0).max() * Q15 <= lsb
+
+
+def test_the_quotient_s_error_that_the_derivation_states() -> None:
+    """Before its rounding the quotient is at most 0.034 LSB low, so a rounded one is within 0.5 + 0.034 below."""
+    random = np.random.default_rng(0)
+    whole = np.concatenate([random.integers(1 << 23, 1 << 24, 500_000), (np.arange(256, 512) << 15) + 32767])
+    part = (whole * np.concatenate([random.random(400_000), np.ones(len(whole) - 400_000)])).astype(np.int64)
+    error = twin.ratio_q15(part, whole) - Q15 * part / whole
+    assert error.max() <= 0.5
+    assert error.min() >= -0.534
