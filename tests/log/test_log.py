@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
+import resource
 import stat
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -74,6 +77,44 @@ def test_what_was_recorded_before_an_interruption_is_kept_and_marked(
     assert os.listdir(tmp_path) == ["log.csv"]
 
 
+@contextlib.contextmanager
+def disk_for(size: int) -> Iterator[None]:
+    """Files end at this many bytes, in the middle of a write, as they do on a full disk."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+
+
+@pytest.mark.parametrize("rows", [300, 10_000])
+def test_on_a_full_disk_the_lines_that_are_whole_stay(tmp_path: Path, rows: int) -> None:
+    path = tmp_path / "log.csv"
+    with disk_for(20_000), pytest.raises(UserError, match=r"log\.csv: cannot be written: "):
+        write(path, rows)
+    log = read_log(path)
+    assert 100 < len(log.time) < 300
+    assert not log.complete
+    assert 19_800 < path.stat().st_size <= 20_000
+    assert os.listdir(tmp_path) == ["log.csv"]
+
+
+def test_without_room_for_the_header_nothing_stays(tmp_path: Path) -> None:
+    with disk_for(50), pytest.raises(UserError, match=r"log\.csv: cannot be written: "):
+        write(tmp_path / "log.csv", 10)
+    assert os.listdir(tmp_path) == []
+
+
+def test_folders_and_devices_are_refused_before_anything_is_recorded(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "device")
+    for name, words in (("device", "not an ordinary file"), (".", "is a directory")):
+        with pytest.raises(UserError, match=f"cannot be written: {words}"):
+            LogWriter(tmp_path / name, ORIGIN).__enter__()
+    assert stat.S_ISFIFO((tmp_path / "device").stat().st_mode)
+    assert os.listdir(tmp_path) == ["device"]
+
+
 def test_the_old_file_stays_until_the_new_one_is_whole(tmp_path: Path) -> None:
     path = tmp_path / "log.csv"
     path.write_text("precious")
@@ -97,7 +138,7 @@ def test_a_killed_recording_can_be_told_from_a_whole_one(tmp_path: Path) -> None
     log = LogWriter(tmp_path / "log.csv", ORIGIN).__enter__()
     for row in range(3):
         log.append(row * 0.001, *ROW)
-    log._file.flush()  # the process dies here
+    log.flush()  # the process dies here
     (part,) = tmp_path.iterdir()
     assert not read_log(part).complete
     log.__exit__(None, None, None)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 import tempfile
 from collections.abc import Callable
@@ -13,7 +14,14 @@ from greywhale.errors import UserError, because
 
 
 def temporary_beside(path: Path) -> tuple[int, str]:
-    """An open, empty file in the folder of `path`, with the access rights that any new file of the user gets."""
+    """An open, empty file in the folder of `path`, with the access rights that any new file of the user gets.
+
+    Refused where `path` is something else than a file: a folder cannot be replaced, and a device (/dev/null) must not.
+    """
+    if path.is_dir():
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+    if path.exists() and not path.is_file():
+        raise OSError(errno.EINVAL, "not an ordinary file", str(path))
     descriptor, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
     mask = os.umask(0)
     os.umask(mask)

@@ -18,6 +18,7 @@ from greywhale.errors import UserError, because
 from greywhale.files import temporary_beside
 from greywhale.log.layout import COMPLETE, HEADING, INTERRUPTED, STATES, TITLE, UNFINISHED, Origin
 
+_ROWS_PER_WRITE = 256
 # The two facts known only at the end keep this many characters free in the header.
 _ROOM = 12
 
@@ -35,11 +36,16 @@ class LogWriter:
     def __enter__(self) -> Self:
         try:
             descriptor, self._temporary = temporary_beside(self.path)
-            self._file = open(descriptor, "r+", encoding="ascii", newline="\n")
         except OSError as error:
-            raise UserError(f"{self.path}: cannot be written: {because(error)}.") from None
-        self._file.write(self._header(UNFINISHED))
-        self._file.write(HEADING + "\n")
+            raise self._cannot_be_written(error) from None
+        self._file = open(descriptor, "r+b", buffering=0)
+        self._waiting = [self._header(UNFINISHED), HEADING + "\n"]
+        try:
+            self.flush()
+        except UserError:
+            self._file.close()
+            os.unlink(self._temporary)
+            raise
         return self
 
     def append(
@@ -65,31 +71,55 @@ class LogWriter:
         self.rows += 1
         angles = ",".join([f"{value:.6f}" for value in (*leader, *follower)])
         volts = ",".join([f"{value:.3f}" for value in voltage])
-        self._file.write(f"{time_us / 1e6:.6f},{angles},{volts},{state}\n")
+        self._waiting.append(f"{time_us / 1e6:.6f},{angles},{volts},{state}\n")
+        if len(self._waiting) >= _ROWS_PER_WRITE:
+            self.flush()
+
+    def flush(self) -> None:
+        """Write what waits. Where the disk takes a part of it only, the lines that are whole stay."""
+        data = "".join(self._waiting).encode("ascii")
+        self._waiting.clear()
+        end = self._file.seek(0, os.SEEK_END)
+        done = 0
+        try:
+            while done < len(data):
+                done += self._file.write(data[done:])
+        except OSError as error:
+            self._file.truncate(end + data.rfind(b"\n", 0, done) + 1)
+            raise self._cannot_be_written(error) from None
 
     def drop(self, samples: int) -> None:
         """Count samples that the board sent, or should have sent, and that never arrived."""
         self.dropped += samples
 
     def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+        self, kind: type[BaseException] | None, raised: BaseException | None, trace: TracebackType | None
     ) -> None:
         if self.rows == 0:
             self._file.close()
             os.unlink(self._temporary)
             return
+        problem: UserError | None = None
+        try:
+            self.flush()
+        except UserError as full:
+            problem = full
         try:
             self._file.seek(0)
-            self._file.write(self._header(COMPLETE if kind is None else INTERRUPTED))
-            self._file.flush()
+            self._file.write(self._header(COMPLETE if kind is problem is None else INTERRUPTED).encode("ascii"))
             os.fsync(self._file.fileno())
             self._file.close()
             os.replace(self._temporary, self.path)
-        except OSError as problem:
+        except OSError as error:
             with contextlib.suppress(OSError):
                 self._file.close()
                 os.unlink(self._temporary)
-            raise UserError(f"{self.path}: cannot be written: {because(problem)}.") from None
+            raise self._cannot_be_written(error) from None
+        if problem is not None and kind is None:
+            raise problem
+
+    def _cannot_be_written(self, error: OSError) -> UserError:
+        return UserError(f"{self.path}: cannot be written: {because(error)}.")
 
     def _header(self, ending: str) -> str:
         """Always the same length, so that the end of a recording can rewrite it in place."""
