@@ -111,6 +111,16 @@ def test_a_port_that_is_not_there_stops_before_any_tool(tmp_path: Path, monkeypa
         module.flash(str(tmp_path / "ttyNONE"), "mega", hex_file=tmp_path / "x.hex")
 
 
+def test_a_port_in_use_stops_before_any_tool(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    # avrdude would break into it, and reset a board that runs its motors
+    monkeypatch.setattr(module, "run_tool", lambda *args: pytest.fail("a tool was started"))
+    image = tmp_path / "firmware.hex"
+    image.write_text(":00000001FF\n")
+    with FakeBoard() as board, Device(board.port, 0.0, 0.5):
+        with pytest.raises(UserError, match="the port is in use by another program"):
+            module.flash(board.port, "mega", hex_file=image)
+
+
 def test_missing_sources_and_files_are_bad_usage(tmp_path: Path) -> None:
     with FakeBoard() as board:
         with pytest.raises(UserError, match=r"holds no platformio\.ini; name the firmware folder") as caught:

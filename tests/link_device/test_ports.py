@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 import tempfile
 from pathlib import Path
 from types import SimpleNamespace
@@ -42,8 +44,8 @@ def bench(name: str, target: str) -> Path:
 
 
 def test_benches_are_found_by_their_links_and_dead_ones_are_not() -> None:
-    link = bench("nano-123", "/dev/null")
-    bench("mega-124", "/dev/nowhere")
+    link = bench(f"nano-{os.getpid()}", "/dev/null")
+    bench(f"mega-{os.getpid()}", "/dev/nowhere")
     bench("something", "/dev/null")
     assert ports.find_ports() == [
         Port(str(link), "bench, simulated Arduino Nano (ATmega328P)", "nano", bench=True, usb=False)
@@ -52,8 +54,16 @@ def test_benches_are_found_by_their_links_and_dead_ones_are_not() -> None:
     assert ports.board_of("/dev/zero") is None
 
 
+def test_the_link_of_a_killed_bench_may_lead_to_somebody_elses_terminal() -> None:
+    killed = subprocess.Popen([sys.executable, "-c", ""])
+    killed.wait()
+    bench(f"nano-{killed.pid}", "/dev/null")
+    bench("mega-no-number", "/dev/null")
+    assert ports.find_ports() == []
+
+
 def test_a_folder_of_somebody_else_is_not_trusted(monkeypatch: pytest.MonkeyPatch) -> None:
-    bench("mega-1", "/dev/null")
+    bench(f"mega-{os.getpid()}", "/dev/null")
     folder = ports.bench_directory()
     monkeypatch.setattr(ports, "bench_directory", lambda: folder)
     monkeypatch.setattr(os, "getuid", lambda: os.geteuid() + 1)

@@ -17,6 +17,7 @@ from greywhale.flash.bootloader import find_speed
 from greywhale.flash.runner import Tool, run_tool
 from greywhale.link import schema
 from greywhale.link.device import Device
+from greywhale.link.transport import BAUD, open_serial
 
 Progress = Callable[[str, float], None]
 
@@ -56,8 +57,8 @@ def flash(
     if board not in BOARDS:
         raise UserError(f"board {board!r} is unknown; choose one of {', '.join(BOARDS)}.", BAD_USAGE)
     report = progress or (lambda what, fraction: None)
-    # avrdude waits for ever for a port that is not there.
-    _check_port(port)
+    # avrdude waits for ever for a port that is not there, and breaks into one that is in use.
+    open_serial(port, BAUD, read_wait_s=0.0).close()
     if hex_file is not None:
         _upload_hex(port, BOARDS[board], Path(hex_file), report)
     else:
@@ -71,16 +72,6 @@ def flash(
             "give a HEX file that was built for this board."
         )
     return hello
-
-
-def _check_port(port: str) -> None:
-    if not os.path.exists(port):
-        raise UserError(f"{port}: there is no such port; `greywhale ports` lists those there are.")
-    if not os.access(port, os.R_OK | os.W_OK):
-        raise UserError(
-            f"{port}: no permission to open the port; add yourself to its group "
-            "(`sudo usermod -aG dialout $USER`) and log in again."
-        )
 
 
 def _firmware(named: str | Path | None) -> Path:

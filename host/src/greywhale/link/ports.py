@@ -88,10 +88,21 @@ def _benches() -> list[Port]:
         return []
     ports = []
     for link in sorted(directory.iterdir()):
-        board = link.name.split("-")[0]
-        if board in BOARDS and link.exists():
+        board, _, process = link.name.partition("-")
+        # A killed bench leaves its link behind, and its pseudo-terminal may be somebody else's by now.
+        if board in BOARDS and link.exists() and _runs(process):
             ports.append(Port(str(link), f"bench, simulated {BOARDS[board]}", board, bench=True, usb=False))
     return ports
+
+
+def _runs(process: str) -> bool:
+    try:
+        os.kill(int(process), 0)
+    except (ValueError, OverflowError, ProcessLookupError):
+        return False
+    except PermissionError:
+        pass  # it runs, as somebody else
+    return True
 
 
 def _hardware() -> list[Port]:
