@@ -260,7 +260,7 @@ main(sys.argv[1:])
 """
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_ctrl_c_leaves_motors_off_and_the_log_whole(tmp_path: Path, number: signal.Signals) -> None:
     out = tmp_path / "log.csv"
     with FakeBoard() as board:

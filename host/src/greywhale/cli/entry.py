@@ -1,10 +1,11 @@
-"""Runs a verb and ends the process: 0 done, 1 failed, 2 bad usage, 130 interrupted by Ctrl-C or SIGTERM.
+"""Runs a verb and ends the process: 0 done, 1 failed, 2 bad usage, 130 interrupted by Ctrl-C, SIGTERM or SIGHUP.
 
 A failure is one sentence on stderr; with --json also {"error": ...} as the one object on stdout. Traceback is for bugs.
 """
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import signal
@@ -29,6 +30,8 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
 def run(arguments: Sequence[str]) -> int:
     """Run the command line; its exit code."""
     signal.signal(signal.SIGTERM, _terminated)
+    if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:  # nohup means what it says
+        signal.signal(signal.SIGHUP, _terminated)
     as_json = "--json" in arguments
     try:
         code = greywhale.main(list(arguments), prog_name="greywhale", standalone_mode=False)
@@ -52,14 +55,15 @@ def run(arguments: Sequence[str]) -> int:
 
 
 def _terminated(number: int, frame: FrameType | None) -> None:
-    """SIGTERM ends a verb as Ctrl-C does: motors off, files whole."""
+    """SIGTERM, and SIGHUP of a terminal that is closed, end a verb as Ctrl-C does: motors off, files whole."""
     raise KeyboardInterrupt
 
 
 def _failed(message: str, code: int, as_json: bool) -> int:
     if as_json:
         print(json.dumps({"error": message, "exit_code": code}, ensure_ascii=False))
-    print(f"greywhale: {message}", file=sys.stderr)
+    with contextlib.suppress(OSError):  # the terminal may be gone
+        print(f"greywhale: {message}", file=sys.stderr)
     return code
 
 
