@@ -199,12 +199,15 @@ def test_the_bench_ends_with_its_parent_and_leaves_no_link(start_bench: Start, t
         (("--leader", "nowhere.csv"), "nowhere.csv: cannot be read"),
         (("--arm", "nowhere.toml"), "nowhere.toml"),
         (("--firmware", "nowhere.hex"), "nowhere.hex"),
+        (("--firmware", "pyproject.toml"), "pyproject.toml, line 1: a record must begin with a colon"),
         (("--eeprom", "/proc/version"), "EEPROM"),
         (("--speed", "7"), "invalid choice"),
     ],
 )
 def test_bad_options_are_one_sentence(options: tuple[str, ...], sentence: str) -> None:
-    done = subprocess.run([sys.executable, "-m", "greywhale_sim", *options], capture_output=True, text=True, timeout=60)
+    done = subprocess.run(
+        [sys.executable, "-m", "greywhale_sim", *options], capture_output=True, text=True, timeout=60, cwd=ROOT
+    )
     assert done.returncode in (1, 2)
     assert sentence in done.stderr
     assert "Traceback" not in done.stderr

@@ -41,7 +41,7 @@ def wiring_of(board: str) -> Wiring:
 def build_board(options: BenchOptions) -> Any:
     """A powered board: bootloader, firmware unless blank, EEPROM content."""
     try:
-        from greywhale_sim._board import Board
+        from greywhale_sim._board import Board, BoardError
     except ImportError as error:
         raise UserError(f"the simulated board is not built ({error}); run: make setup") from None
     wiring = wiring_of(options.board)
@@ -50,7 +50,10 @@ def build_board(options: BenchOptions) -> Any:
     board = Board(wiring.mcu)
     board.load_hex(str(wiring.bootloader), bootloader=True)
     if not options.blank:
-        board.load_hex(str(_firmware(options, wiring)))
+        try:
+            board.load_hex(str(_firmware(options, wiring)))
+        except BoardError as error:
+            raise UserError(f"{error}.") from None
     if options.eeprom is not None:
         content = eeprom_file.load(options.eeprom, len(board.eeprom()))
         if content is not None:
