@@ -67,6 +67,20 @@ def test_axes_have_units_and_titles_their_figures() -> None:
         plt.close(figure)
 
 
+def test_no_label_is_cut_off() -> None:
+    other = trace(log(0.8), "before")
+    tall = Trace("log", other.time, other.leader - 0.5, other.follower - 0.5, other.mse)
+    figure = follow._figure([tall], "A title")
+    try:
+        renderer = figure.canvas.get_renderer()  # type: ignore[attr-defined]
+        figure.draw(renderer)
+        for axes in figure.get_axes():
+            box = axes.yaxis.label.get_window_extent(renderer)
+            assert box.x0 >= 0, axes.get_title()
+    finally:
+        plt.close(figure)
+
+
 def test_bad_requests_leave_no_file(tmp_path: Path) -> None:
     one = trace(log(0.8), "x")
     with pytest.raises(UserError, match=r"pictures end in \.png, \.svg, \.pdf"):

@@ -83,7 +83,7 @@ def _figure(traces: Sequence[Trace], title: str) -> Figure:
     # Fixed margins: a layout solver's result differs in the last digits from run to run.
     figure = plt.figure(figsize=(11.0, 8.6))
     figure.suptitle(title, fontsize=12, fontweight="bold", y=0.98)
-    grid = figure.add_gridspec(2, 2, left=0.065, right=0.985, bottom=0.1, top=0.915, wspace=0.16, hspace=0.3)
+    grid = figure.add_gridspec(2, 2, left=0.075, right=0.985, bottom=0.1, top=0.915, wspace=0.18, hspace=0.3)
     shared_leader = _same_leader(traces)
     for joint in range(len(JOINT_NAMES)):
         rows = grid[divmod(joint, 2)].subgridspec(2, 1, height_ratios=(3, 1), hspace=0.08)
