@@ -69,7 +69,7 @@ def test_volts_of_one_step(cases: st.SearchStrategy[Case], data: st.DataObject) 
 
 @pytest.mark.parametrize(("falling", "lsb"), [(0.75, 0.413), (1.0, 0.498)])
 def test_the_maxima_that_the_derivation_states(falling: float, lsb: float) -> None:
-    """docs/fuzzy.md: the share of the heights' errors, over all p, n, z; `falling` is a falling ramp's error in bits."""
+    """docs/fuzzy.md: the share of the heights' errors over all p, n, z; `falling`: a falling ramp's error in bits."""
     part = np.linspace(0, 1, 1001)
     p, n = np.meshgrid(part, part)
     z, u = 1 - p - n, p - n
