@@ -106,7 +106,8 @@ class LogWriter:
             problem = full
         try:
             self._file.seek(0)
-            self._file.write(self._header(COMPLETE if kind is problem is None else INTERRUPTED).encode("ascii"))
+            complete = kind is None and problem is None
+            self._file.write(self._header(COMPLETE if complete else INTERRUPTED).encode("ascii"))
             os.fsync(self._file.fileno())
             self._file.close()
             os.replace(self._temporary, self.path)
