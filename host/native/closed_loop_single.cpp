@@ -20,10 +20,10 @@ std::uint16_t count_of(double millivolts) {
 // The converter's sums of one side's pots, from the slices' voltages as they come.
 class Sums {
  public:
-  Sums(const Timing& timing, std::size_t first_channel) {
+  Sums(const Timing& timing, std::size_t first) {
     for (std::size_t turn = 0; turn < kConversions; ++turn) {
       for (std::size_t joint = 0; joint < kJoints; ++joint) {
-        const std::size_t slice = slice_of(timing, turn, first_channel + joint);
+        const std::size_t slice = slice_of(timing, turn, first + joint);
         ++(slice < kSlices ? early_[slice][joint] : late_[joint]);
       }
     }
@@ -97,8 +97,7 @@ class Run {
  public:
   Run(const Experiment& x, const Controllers& controllers, const PlantRow& row, int substeps, const Trace& trace)
       : x_(x), controllers_(controllers), row_(row), substeps_(substeps), trace_(trace), pots_(x.pots, x.pot_supply, x.seed),
-        sums_(x.timing, kJoints), angles_(x.settings, x.settings.follower), ramp_(x.settings.soft_start_ms),
-        per_supply_(per_supply(x.settings.supply_mv)), state_(resting(x, row.plant)) {
+        sums_(x.timing, kFollower), angles_(x.settings, x.settings.follower), ramp_(x.settings.soft_start_ms), state_(resting(x, row.plant)) {
     for (fuzzy_pdi::State& memory : memories_) fuzzy_pdi::reset(memory);
     Four millivolts;
     Potentiometers quiet(without_noise(x.pots), x.pot_supply, 0);
@@ -155,7 +154,7 @@ class Run {
       const std::int16_t reference = std::clamp(x_.reference[tick * kJoints + i], x_.settings.limit_min[i], x_.settings.limit_max[i]);
       const fuzzy_pdi::Output out = fuzzy_pdi::step(controllers_[i], memories_[i], reference, follower, limit);
       const int top = x_.settings.pwm_top[i];
-      compare_[i] = compare_value(out.volts_mv, per_supply_, x_.settings.motor_sign[i], top);
+      compare_[i] = compare_value(out.volts_mv, duty_scale(top, x_.settings.supply_mv), x_.settings.motor_sign[i]);
       const double size = std::abs(compare_[i]) / static_cast<double>(top);
       volts_[i] = (compare_[i] < 0 ? -size : size) * row_.supply;
     }
@@ -193,7 +192,6 @@ class Run {
   Sums sums_;
   Angles angles_;
   SoftStart ramp_;
-  const std::uint16_t per_supply_;
   arm::State<double> state_;
   fuzzy_pdi::State memories_[kJoints];
   std::int32_t compare_[kJoints] = {};
@@ -208,7 +206,7 @@ Measures run_single(const Experiment& x, const Controllers& controllers, const P
 
 void read_leader(const Settings& settings, const Timing& timing, Potentiometers pots, const double* angles, std::size_t ticks,
                  std::int16_t* reference, double* leader) {
-  Sums sums(timing, 0);
+  Sums sums(timing, kLeader);
   Angles readings(settings, settings.leader);
   for (std::size_t tick = 0; tick < ticks; ++tick) {
     for (std::size_t slice = 0; slice < kSlices; ++slice) {

@@ -24,6 +24,7 @@ ADCSRA = 0x7A
 ADC_CLOCK_CYCLES = 32
 CONVERSION_CYCLES = 416
 HOLD_CYCLES = 48
+CHAIN_AFTER_TICK = 2208
 ADATE = 0x20  # set while a tick's conversions follow each other
 BOOT_S = 4.0
 
@@ -56,9 +57,9 @@ def record(parameters: ArmParameters, motion: Trajectory, seconds: float, board:
     natural.follow(2.0)
     timing = clear_of_slices(natural.write_times())
     watched = _Watched(parameters, motion, board, delay=(timing.chain_start - start) % SLICE_CYCLES)
-    assert watched.boot() == timing.chain_start
+    assert watched.boot() == timing.chain_start % SLICE_CYCLES
     recording = watched.follow(seconds)
-    return replace(recording, timing=replace(recording.timing, acts=timing.acts))
+    return replace(recording, timing=replace(timing, drivers_on=recording.timing.drivers_on))
 
 
 def _clearance(start: int, written: Array, held: npt.NDArray[np.intp]) -> float:
@@ -75,7 +76,9 @@ def clear_of_slices(written: Array) -> Timing:
     """The timing with slice boundaries furthest from all that matters; `written` (4, 2): earliest and latest cycle."""
     held = CONVERSION_CYCLES * np.arange(32, dtype=np.intp) + HOLD_CYCLES
 
-    best = max(range(0, SLICE_CYCLES, 8), key=lambda start: _clearance(start, written, held))
+    best = max(
+        range(CHAIN_AFTER_TICK, CHAIN_AFTER_TICK + SLICE_CYCLES, 8), key=lambda start: _clearance(start, written, held)
+    )
     assert _clearance(best, written, held) > 0, f"the firmware's writes are spread too far: {written}"
     acts = [int(slice_number) + 1 for slice_number in (written[:, 0] + best) // SLICE_CYCLES]
     return Timing(best, (acts[0], acts[1], acts[2], acts[3]))
@@ -126,21 +129,18 @@ class _Watched:
     def write_times(self, ticks: int = 150) -> Array:
         """Cycles from a tick's first conversion to a joint's duty being written: earliest and latest, (4, 2)."""
         board = self.board
+        self._chain_start()
+        chain = board.cycle
         seen: list[list[int]] = [[] for _ in range(4)]
         for _ in range(ticks):
             self.bench.run_slices(4)
             end = board.cycle + TICK_CYCLES
-            before, running, start = board.outputs()[1:5].copy(), True, -1
+            before = board.outputs()[1:5].copy()
             while board.cycle < end:
                 board.run_until(board.cycle + 40)
-                chain = bool(board.peek(ADCSRA)[0] & ADATE)
-                if chain and not running:
-                    start = board.cycle
-                running = chain
                 duties = board.outputs()[1:5]
                 for joint in np.flatnonzero(duties != before):
-                    if start >= 0:
-                        seen[joint].append(board.cycle - start)
+                    seen[joint].append((board.cycle - chain + TICK_CYCLES // 2) % TICK_CYCLES - TICK_CYCLES // 2)
                 before = duties.copy()
         return np.array([[min(times) - 60, max(times) + 60] for times in seen])
 
@@ -165,7 +165,7 @@ class _Watched:
         assert bench.motors_enabled, "the motors went off on the way"
         leader, duties, angles = (np.array(column) for column in zip(*rows, strict=True))
         chain_start = self._chain_start()
-        tick_slice = self.board.cycle // SLICE_CYCLES * SLICE_CYCLES
+        tick_slice = (self.board.cycle - CHAIN_AFTER_TICK) // SLICE_CYCLES * SLICE_CYCLES
         on = (start[0][0] - tick_slice - SLICE_CYCLES) % TICK_CYCLES // SLICE_CYCLES + 1
         return Recording(
             timing=Timing(chain_start, drivers_on=on),

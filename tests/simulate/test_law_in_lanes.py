@@ -19,14 +19,14 @@ def random_controllers(random: np.random.Generator, period_ms: int) -> npt.NDArr
     def wide(low: float, high: float) -> npt.NDArray[np.float64]:
         return np.asarray(np.exp(random.uniform(np.log(low), np.log(high), LANES)))
 
-    columns = {}
+    columns: dict[str, npt.NDArray[np.float64]] = {}
     for name in CONTROLLER_COLUMNS[:8]:
         side = -1 if name in ("ne_c", "ze_a", "nce_c", "zce_a") else 1
         columns[name] = side * wide(164, 16384).round()
     columns["kp"] = wide(1, 64 * 65536).round() * (random.random(LANES) > 0.05)
     columns["kd"] = wide(1, 64 * 65536).round() * (random.random(LANES) > 0.05)
     columns["ki"] = wide(1, 1000 * 65536 / period_ms).round() * (random.random(LANES) > 0.1)
-    columns["ku_mv"] = random.integers(0, 30001, LANES)
+    columns["ku_mv"] = random.integers(0, 30001, LANES).astype(np.float64)
     return np.column_stack([columns[name] for name in CONTROLLER_COLUMNS]).astype(np.int32)
 
 
@@ -58,9 +58,10 @@ def test_lanes_equal_the_firmware(instructions: str, period_ms: int) -> None:
             settings = _native.FuzzySettings()
             for column, name in enumerate(CONTROLLER_COLUMNS):
                 setattr(settings, name, int(controllers[lane, column]))
-            alone = _native.FuzzyController(settings, period_ms).run(
+            run = _native.FuzzyController(settings, period_ms).run(
                 leader[:, lane].astype(np.int16), follower[:, lane].astype(np.int16), limit
-            )["volts_mv"]
+            )
+            alone = np.asarray(dict(run)["volts_mv"])
             np.testing.assert_array_equal(lanes[:, lane], alone)
             moved += len(np.unique(alone))
     assert moved > 10_000

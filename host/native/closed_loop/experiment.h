@@ -33,9 +33,12 @@ struct Timing {
   int on;                                 // the slice in which the drivers are first found on, 1..4; the hand lets go one later
 };
 
-// The slice, counted from the one in which the tick begins, in which conversion `turn` of pot `channel` holds its input.
-constexpr std::size_t slice_of(const Timing& timing, std::size_t turn, std::size_t channel) {
-  const int number = static_cast<int>(8 * turn + channel);
+// The pots of a round in their order: the followers' come first.
+constexpr std::size_t kFollower = 0, kLeader = kJoints;
+
+// The slice in which conversion `turn` of the round's pot `place` holds its input: 4 is the next tick's first.
+constexpr std::size_t slice_of(const Timing& timing, std::size_t turn, std::size_t place) {
+  const int number = static_cast<int>(8 * turn + place);
   return static_cast<std::size_t>((timing.start + number * Timing::kConversionCycles + Timing::kHoldCycles) / Timing::kSliceCycles);
 }
 

@@ -7,18 +7,14 @@
 
 namespace greywhale::loop {
 
-// The 10-bit count x 64 after the low-pass; a sum is of four conversions.
+// The 10-bit count x 64 after the low-pass; a sum is of four conversions. The first sum is taken as it is: shift 0.
 inline std::uint16_t low_pass(std::uint16_t old, std::uint16_t sum, int shift) {
-  const auto sample = static_cast<std::uint16_t>(sum << 4);
-  if (shift == 0) return sample;
-  const int halvings = shift - 1;
-  if (sample >= old) return static_cast<std::uint16_t>(old + ((((sample - old) >> halvings) + 1) >> 1));
-  return static_cast<std::uint16_t>(old - ((((old - sample) >> halvings) + 1) >> 1));
+  const std::uint32_t kept = old * (256u - (256u >> shift)) + 128u;
+  return static_cast<std::uint16_t>((kept >> 8) + sum * (16u >> shift));
 }
 
 inline std::int16_t to_angle(std::uint16_t filtered, std::uint16_t zero, std::int16_t scale) {
-  const std::int32_t count14 = (filtered + 2) >> 2;
-  return static_cast<std::int16_t>(((count14 - zero) * scale + 4096) >> 13);
+  return static_cast<std::int16_t>((filtered * scale + (0x4000 - 4 * zero * scale)) >> 15);
 }
 
 // The voltage limit after enable: it grows by the same step each tick.
@@ -40,16 +36,16 @@ class SoftStart {
   std::uint32_t left_, step_, ramp_ = 0;
 };
 
-inline std::uint16_t per_supply(std::uint16_t supply_mv) {
-  return static_cast<std::uint16_t>(((1u << 27) + supply_mv / 2u) / supply_mv);
+// Compare values per mV, 2^-18.
+inline std::int32_t duty_scale(std::int32_t top, std::int32_t supply_mv) {
+  return static_cast<std::int32_t>(((static_cast<std::uint32_t>(top) << 18) + static_cast<std::uint32_t>(supply_mv) / 2) /
+                                   static_cast<std::uint32_t>(supply_mv));
 }
 
-// The compare value of one motor's PWM, negative where the direction pin is low.
-inline std::int32_t compare_value(std::int32_t millivolts, std::uint16_t per_supply, std::int32_t sign, std::int32_t top) {
-  const std::uint32_t size = static_cast<std::uint32_t>(millivolts < 0 ? -millivolts : millivolts);
-  std::uint32_t duty = (size * per_supply) >> 12;
-  if (duty > 32767) duty = 32767;
-  const auto compare = static_cast<std::int32_t>((duty * (2 * static_cast<std::uint32_t>(top)) + 0x8000u) >> 16);
+// The compare value of one motor's PWM, negative where the direction pin is low. |millivolts| is at most the supply.
+inline std::int32_t compare_value(std::int32_t millivolts, std::int32_t scale, std::int32_t sign) {
+  const std::int32_t size = millivolts < 0 ? -millivolts : millivolts;
+  const std::int32_t compare = (size * scale + (1 << 17)) >> 18;
   return (millivolts < 0) != (sign < 0) ? -compare : compare;
 }
 

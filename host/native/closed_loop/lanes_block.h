@@ -115,7 +115,7 @@ struct Turns {
 
 inline Turns turns_of(const Timing& timing, std::size_t joint) {
   Turns t{};
-  for (std::size_t turn = 0; turn < kConversions; ++turn) ++t.in[slice_of(timing, turn, kJoints + joint)];
+  for (std::size_t turn = 0; turn < kConversions; ++turn) ++t.in[slice_of(timing, turn, kFollower + joint)];
   return t;
 }
 
@@ -126,8 +126,8 @@ struct Totals {
 class Run {
  public:
   Run(const Experiment& x, const Pots& pots, const Block& block, int steps)
-      : x_(x), pots_(pots), block_(block), steps_(static_cast<std::size_t>(steps)), per_supply_(per_supply(x.settings.supply_mv)),
-        ramp_(x.settings.soft_start_ms) {
+      : x_(x), pots_(pots), block_(block), steps_(static_cast<std::size_t>(steps)),
+        ramp_(x.settings.soft_start_ms), traced_(block.traces[0].every != 0) {
     const double h = kTick / steps;
     plant_.body = body_of(block);
     plant_.step = all(static_cast<float>(h));
@@ -140,11 +140,13 @@ class Run {
       turns_[i] = turns_of(x.timing, i);
       state_[i] = {all(static_cast<std::int32_t>(units(x.home[i]))), all(0.0f), plant_.joints[i].gap * all(static_cast<float>(x.gap[i])),
                    all(0.0f)};
-      const Int count = count_of(i, counts(i, state_[i].q), 0.0f);
+      const Int count = count_of<true>(i, counts(i, state_[i].q), 0.0f);
+      curved_ = curved_ || pots.linearity[i] != 0.0f;
       sum_[i] = shift_left<2>(count);
       filtered_[i] = shift_left<4>(sum_[i]);
       compare_[i] = all(0);
       duty_[i] = all(0.0f);
+      duty_scale_[i] = duty_scale(x.settings.pwm_top[i], x.settings.supply_mv);
     }
   }
 
@@ -158,8 +160,12 @@ class Run {
       }
       control(tick);
       add(tick, error, totals);
-      for (std::size_t n = 0; n < block_.count; ++n) record(tick, n);
-      move(tick);
+      if (traced_) record(tick);
+      if (curved_) {
+        move<true>(tick);
+      } else {
+        move<false>(tick);
+      }
       if (tick % kFlush == kFlush - 1 || tick + 1 == x_.ticks) {
         flush(totals, sums);
         totals = nothing();
@@ -172,8 +178,9 @@ class Run {
   // A pot's place in converter counts at an angle.
   GREYWHALE_INLINE Float counts(std::size_t i, Int q) const { return to_float(q) * all(pots_.gain[i]) + all(pots_.offset[i]); }
 
+  template <bool kCurved>
   GREYWHALE_INLINE Int count_of(std::size_t i, Float place, float noise) const {
-    if (pots_.linearity[i] != 0.0f) {
+    if (kCurved) {
       Float sine, cosine;
       sine_cosine(to_nearest(place * all(1048576.0f)), sine, cosine);  // 1024 counts are a turn
       place = place + all(pots_.linearity[i]) * sine;
@@ -187,19 +194,23 @@ class Run {
     const bool on = tick > 0;
     const std::uint16_t limit = on ? ramp_.next_limit_mv(s.supply_mv) : std::uint16_t{0};
     const bool due = on && (tick - 1) % static_cast<std::size_t>(s.period_ms) == 0;
+    for (std::size_t i = 0; i < kJoints; ++i) filtered_[i] = low_pass(filtered_[i], sum_[i], s.filter_shift);
+    if (!due) return;
+    Int leader[kJoints], follower[kJoints], millivolts[kJoints];
     for (std::size_t i = 0; i < kJoints; ++i) {
-      filtered_[i] = low_pass(filtered_[i], sum_[i], s.filter_shift);
-      if (!due) continue;
-      const Int follower = to_angle(filtered_[i], s.follower.zero[i], s.follower.scale[i]);
-      std::int32_t leader = x_.reference[tick * kJoints + i];
-      leader = leader < s.limit_min[i] ? s.limit_min[i] : leader > s.limit_max[i] ? s.limit_max[i] : leader;
-      const Int millivolts = step(laws_[i], memories_[i], all(leader), follower, limit, tick == 1, short_ramps_);
-      compare_[i] = compare_value(millivolts, per_supply_, s.motor_sign[i], s.pwm_top[i]);
+      const std::int32_t is = x_.reference[tick * kJoints + i];
+      leader[i] = all(is < s.limit_min[i] ? s.limit_min[i] : is > s.limit_max[i] ? s.limit_max[i] : is);
+      follower[i] = to_angle(filtered_[i], s.follower.zero[i], s.follower.scale[i]);
+    }
+    step(laws_, memories_, leader, follower, limit, tick == 1, short_ramps_, millivolts);
+    for (std::size_t i = 0; i < kJoints; ++i) {
+      compare_[i] = compare_value(millivolts[i], duty_scale_[i], s.motor_sign[i]);
       duty_[i] = to_float(compare_[i]);
     }
   }
 
   // The arm from the end of a tick's first slice to that of the next tick's, and what the converter sees on the way.
+  template <bool kCurved>
   GREYWHALE_INLINE void move(std::size_t tick) {
     Float place[kSlices + 1][kJoints];
     for (std::size_t i = 0; i < kJoints; ++i) place[0][i] = counts(i, state_[i].q);
@@ -222,7 +233,7 @@ class Run {
         const std::int32_t turns = turns_[i].in[slice];
         if (turns == 0) continue;
         const float noise = pots_.noise ? pots_.noise[(kSlices * tick + slice) * kJoints + i] : 0.0f;
-        const Int count = count_of(i, place[slice][i], noise);
+        const Int count = count_of<kCurved>(i, place[slice][i], noise);
         sum = sum + (turns == 1 ? count : count * all(turns));
       }
       sum_[i] = sum;
@@ -255,16 +266,18 @@ class Run {
     }
   }
 
-  void record(std::size_t tick, std::size_t n) const {
-    const Trace& trace = block_.traces[n];
-    if (trace.every == 0 || tick % trace.every != 0) return;
+  void record(std::size_t tick) const {
+    const std::size_t every = block_.traces[0].every;
+    if (tick % every != 0) return;
     for (std::size_t i = 0; i < kJoints; ++i) {
-      const std::size_t at = tick / trace.every * kJoints + i;
+      const std::size_t at = tick / every * kJoints + i;
       std::int32_t q[kBlock], compare[kBlock];
       store(q, state_[i].q);
       store(compare, compare_[i]);
-      trace.angles[at] = static_cast<float>(q[n] * (6.283185307179586 / 1073741824.0));
-      trace.duties[at] = static_cast<std::int16_t>(compare[n]);
+      for (std::size_t n = 0; n < block_.count; ++n) {
+        block_.traces[n].angles[at] = static_cast<float>(q[n] * (6.283185307179586 / 1073741824.0));
+        block_.traces[n].duties[at] = static_cast<std::int16_t>(compare[n]);
+      }
     }
   }
 
@@ -293,9 +306,10 @@ class Run {
   const Pots& pots_;
   const Block& block_;
   const std::size_t steps_;
-  const std::uint16_t per_supply_;
   SoftStart ramp_;
+  const bool traced_;
   bool short_ramps_ = false;
+  bool curved_ = false;  // some potentiometer's line is not straight
   Plant plant_;
   Law laws_[kJoints];
   Memory memories_[kJoints];
@@ -303,6 +317,7 @@ class Run {
   State state_[kJoints];
   Int sum_[kJoints], filtered_[kJoints], compare_[kJoints];
   Float duty_[kJoints];
+  std::int32_t duty_scale_[kJoints];
 };
 
 // Numbers too small to matter are 0, as they slow a processor down.
@@ -326,11 +341,13 @@ inline void check_law(const LawCheck& c) {
   Block block{};
   for (std::size_t n = 0; n < kBlock; ++n) block.controllers[n] = c.laws + n;
   bool short_ramps = false;
-  const Law law = law_of(block, 0, short_ramps);
-  Memory memory = {all(0), all(0), all(0)};
+  const Law law[1] = {law_of(block, 0, short_ramps)};
+  Memory memory[1] = {{all(0), all(0), all(0)}};
   for (std::size_t k = 0; k < c.n; ++k) {
-    const Int out = step(law, memory, load(c.leader + k * kBlock), load(c.follower + k * kBlock), c.limit_mv[k], k == 0, short_ramps);
-    store(c.millivolts + k * kBlock, out);
+    const Int leader[1] = {load(c.leader + k * kBlock)}, follower[1] = {load(c.follower + k * kBlock)};
+    Int millivolts[1];
+    step(law, memory, leader, follower, c.limit_mv[k], k == 0, short_ramps, millivolts);
+    store(c.millivolts + k * kBlock, millivolts[0]);
   }
 }
 

@@ -83,17 +83,23 @@ GREYWHALE_INLINE Voltage sum(Int proportional, Int integral) {
   return {shift_right<15>(absolute(total) + all(0x4000)), negative(total)};
 }
 
-// One control period; the voltage in mV.
-GREYWHALE_INLINE Int step(const Law& law, Memory& memory, Int leader, Int follower, std::int32_t limit_mv, bool first, bool short_ramps) {
+// What the rules say of one joint, before the division.
+struct Fired {
+  Int e_size, part, whole;
+  Mask e_below, backwards, fires;
+};
+
+GREYWHALE_INLINE Fired fire(const Law& law, Memory& memory, Int leader, Int follower, bool first, bool short_ramps) {
   const Int furthest = all(32767);
   const Int error = greatest(least(leader - follower, furthest), all(0) - furthest);
   const Int change = first ? all(0) : greatest(least(error - memory.previous, furthest), all(0) - furthest);
   memory.previous = error;
 
-  const Mask e_below = negative(error);
-  const Mask opposite = e_below ^ negative(change);
-  const Int e_size = absolute(error);
-  const Heights e = fuzzify(law.e, e_below, e_size, short_ramps);
+  Fired f;
+  f.e_below = negative(error);
+  f.e_size = absolute(error);
+  const Mask opposite = f.e_below ^ negative(change);
+  const Heights e = fuzzify(law.e, f.e_below, f.e_size, short_ramps);
   const Heights ce = fuzzify(law.ce, negative(change), absolute(change), short_ramps);
 
   const Int both_zero = least(e.zero, ce.zero);
@@ -105,47 +111,57 @@ GREYWHALE_INLINE Int step(const Law& law, Memory& memory, Int leader, Int follow
   const Int against = choose(opposite, zero_outer, all(0));
 
   const Int whole = with + zero + against;
-  const Mask fires = whole >= all(65536);
-  const Mask flip = (against > with) & fires;
-  const Int ratio = ratio_q15(absolute(with - against), choose(fires, whole, all(65536)));
-  const Int drive = choose(fires, ratio, all(0)) * law.ku;
-  const Int proportional = choose(e_below ^ flip, all(0) - drive, drive);
+  f.fires = whole >= all(65536);
+  f.whole = choose(f.fires, whole, all(65536));
+  f.part = absolute(with - against);
+  f.backwards = f.e_below ^ ((against > with) & f.fires);
+  return f;
+}
 
-  const Product more = multiply(e_size, law.integral);
-  const Int fraction = memory.fraction + choose(e_below, all(0) - more.fraction, more.fraction);
-  const Int integral = memory.integral + choose(e_below, all(0) - more.whole, more.whole) + shift_right_signed<16>(fraction);
+// The voltage in mV from u_fuzzy's size, and the integral that goes with it.
+GREYWHALE_INLINE Int finish(const Law& law, Memory& memory, const Fired& f, Int ratio, Int limit) {
+  const Int drive = choose(f.fires, ratio, all(0)) * law.ku;
+  const Int proportional = choose(f.backwards, all(0) - drive, drive);
+
+  const Product more = multiply(f.e_size, law.integral);
+  const Int fraction = memory.fraction + choose(f.e_below, all(0) - more.fraction, more.fraction);
+  const Int integral = memory.integral + choose(f.e_below, all(0) - more.whole, more.whole) + shift_right_signed<16>(fraction);
   const Mask above = integral >= all(1 << 30);
   const Mask below = integral < all(-(1 << 30));
   const Int next_integral = choose(above, all((1 << 30) - 1), choose(below, all(-(1 << 30)), integral));
   const Int next_fraction = choose(above, all(0xFFFF), choose(below, all(0), fraction & all(0xFFFF)));
 
-  const Int limit = all(limit_mv);
   const Voltage wanted = sum(proportional, next_integral);
-  const Mask held = (wanted.size > limit) & ~(wanted.negative ^ e_below);
-  const Voltage instead = sum(proportional, memory.integral);
-  memory.integral = choose(held, memory.integral, next_integral);
+  const Mask held = (wanted.size > limit) & ~(wanted.negative ^ f.e_below);
   memory.fraction = choose(held, memory.fraction, next_fraction);
-  const Int size = least(choose(held, instead.size, wanted.size), limit);
-  const Mask backwards = (held & instead.negative) | (~held & wanted.negative);
-  return choose(backwards, all(0) - size, size);
+  memory.integral = choose(held, memory.integral, next_integral);
+  const Voltage given = sum(proportional, memory.integral);
+  const Int size = least(given.size, limit);
+  return choose(given.negative, all(0) - size, size);
+}
+
+// One control period of N joints, stage by stage, so that the processor works at several joints at a time. The voltages in mV.
+template <int N>
+GREYWHALE_INLINE void step(const Law (&laws)[N], Memory (&memories)[N], const Int (&leader)[N], const Int (&follower)[N],
+                           std::int32_t limit_mv, bool first, bool short_ramps, Int (&millivolts)[N]) {
+  Fired fired[N];
+  Int ratio[N];
+  for (int i = 0; i < N; ++i) fired[i] = fire(laws[i], memories[i], leader[i], follower[i], first, short_ramps);
+  for (int i = 0; i < N; ++i) ratio[i] = ratio_q15(fired[i].part, fired[i].whole);
+  for (int i = 0; i < N; ++i) millivolts[i] = finish(laws[i], memories[i], fired[i], ratio[i], all(limit_mv));
 }
 
 GREYWHALE_INLINE Int low_pass(Int old, Int sum, int shift) {
-  const Int sample = shift_left<4>(sum);
-  if (shift == 0) return sample;
-  const Int distance = sample - old;
-  const Int part = shift_right<1>(shift_right_all(absolute(distance), shift - 1) + all(1));
-  return choose(negative(distance), old - part, old + part);
+  const Int kept = old * all(256 - (256 >> shift)) + all(128);
+  return shift_right<8>(kept) + sum * all(16 >> shift);
 }
 
 GREYWHALE_INLINE Int to_angle(Int filtered, std::int32_t zero, std::int32_t scale) {
-  const Int count14 = shift_right<2>(filtered + all(2));
-  return shift_right_signed<13>((count14 - all(zero)) * all(scale) + all(4096));
+  return shift_right_signed<15>(filtered * all(scale) + all(0x4000 - 4 * zero * scale));
 }
 
-GREYWHALE_INLINE Int compare_value(Int millivolts, std::int32_t per_supply, std::int32_t sign, std::int32_t top) {
-  const Int duty = least(shift_right<12>(absolute(millivolts) * all(per_supply)), all(32767));
-  const Int compare = shift_right<16>(duty * all(2 * top) + all(0x8000));
+GREYWHALE_INLINE Int compare_value(Int millivolts, std::int32_t scale, std::int32_t sign) {
+  const Int compare = shift_right_signed<18>(absolute(millivolts) * all(scale) + all(1 << 17));
   return choose(negative(millivolts * all(sign)), all(0) - compare, compare);
 }
 

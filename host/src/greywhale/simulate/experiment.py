@@ -14,13 +14,13 @@ from greywhale.arm import ArmParameters, PotentiometerBank
 from greywhale.errors import UserError
 from greywhale.link import schema
 from greywhale.simulate.leader import SLICES_PER_TICK, leader_slices
-from greywhale.simulate.tables import JOINTS, check_controllers, check_plants, controllers_of, plant_row
+from greywhale.simulate.tables import JOINTS, PLANT_COLUMNS, check_controllers, check_plants, controllers_of, plant_row
 from greywhale.trajectory import Trajectory
 from greywhale.trajectory.motion import Array
 
 TICK_S = 1e-3
 PWM_TOP = {"mega": (400, 400, 400, 400), "nano": (400, 400, 255, 255)}
-SLICE_CYCLES = 4000
+LATEST_CHAIN = 7000  # cycles: a chain takes 12,944 and must end before the next tick
 STEPS_PER_TICK = (1, 2, 4)
 
 
@@ -36,14 +36,14 @@ class Timing:
     begins with its slice and is done within it.
     """
 
-    chain_start: int = 100
+    chain_start: int = 2208
     acts: tuple[int, int, int, int] = (1, 1, 1, 1)
     drivers_on: int = 1
 
     def __post_init__(self) -> None:
-        if not 0 <= self.chain_start < SLICE_CYCLES:
+        if not 0 <= self.chain_start <= LATEST_CHAIN:
             raise UserError(
-                f"chain_start is {self.chain_start}, but it must be a cycle of a slice, 0..{SLICE_CYCLES - 1}."
+                f"chain_start is {self.chain_start}, but it must be a number of cycles in 0..{LATEST_CHAIN}."
             )
         if self.drivers_on not in (1, 2, 3, 4):
             raise UserError(f"drivers_on is {self.drivers_on}, but it must name a slice from 1 to 4.")
@@ -121,7 +121,7 @@ class Experiment:
             angles=slices,
         )
         self.weight_s = _checked_weight(weight_s, self.time_s, wait_s)
-        home = _checked_home(slices[0], arm)
+        self.home = slices[0].copy()
         gap = np.random.default_rng(seed).uniform(-1.0, 1.0, JOINTS) if gap_position is None else np.array(gap_position)
         self._loop = _native.ClosedLoop(
             settings=settings,
@@ -129,7 +129,7 @@ class Experiment:
             pots=_pots(arm.follower_pots, noise),
             pot_supply=arm.follower_pots.supply,
             seed=seed + 1,
-            home=home,
+            home=[float(angle) for angle in self.home],
             gap=[float(share) for share in gap],
             reference=self.reference,
             leader=self.leader,
@@ -186,6 +186,7 @@ class Experiment:
             raise UserError(
                 f"there are {len(laws)} controllers and {len(rows)} plants; give as many, or one of either."
             )
+        self._require_home(rows)
         if every < 0 or threads < 0:
             raise UserError(f"every is {every} and threads is {threads}, but neither may be negative.")
         try:
@@ -202,6 +203,17 @@ class Experiment:
             raise UserError(str(error)) from None
         time_s = self.time_s[::every] if every else self.time_s[:0]
         return Result(mse, itae, itau, diverged, time_s, angles, duties)
+
+    def _require_home(self, plants: Array) -> None:
+        for joint, angle in enumerate(self.home):
+            low, high = (PLANT_COLUMNS.index(f"joint{joint}.stop_{side}") for side in ("min", "max"))
+            outside = np.flatnonzero((plants[:, low] > angle) | (plants[:, high] < angle))
+            if outside.size:
+                row = int(outside[0])
+                raise UserError(
+                    f"the leader starts with joint {joint} at {angle:g} rad, beyond the follower's stops of plants[{row}], "
+                    f"{plants[row, low]:g} to {plants[row, high]:g} rad."
+                )
 
     def _settings(self, board: str, soft_start: bool) -> _native.LoopSettings:
         def value(name: str) -> int:
@@ -263,10 +275,3 @@ def _checked_weight(weight: Array | None, time_s: Array, wait_s: float) -> Array
     if not np.isfinite(weight).all():
         raise UserError("weight_s holds a weight that is not a finite number.")
     return np.ascontiguousarray(weight)
-
-
-def _checked_home(home: Array, arm: ArmParameters) -> list[float]:
-    for joint, (angle, parameters) in enumerate(zip(home, arm.joint, strict=True)):
-        if not parameters.stops.min <= angle <= parameters.stops.max:
-            raise UserError(f"the leader starts with joint {joint} at {angle:g} rad, beyond the follower's stops.")
-    return [float(angle) for angle in home]
