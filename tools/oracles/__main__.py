@@ -13,7 +13,7 @@ DEBIAN = (
     "gcc-arm-none-eabi",  # the controller core on a 32-bit chip
     "libnewlib-arm-none-eabi",
     "libstdc++-arm-none-eabi-newlib",
-    "qemu-user",
+    "qemu-system-arm",
 )
 REQUIREMENTS = ROOT / "tools" / "oracles" / "requirements.txt"
 
