@@ -45,7 +45,8 @@ oracles: setup ## tests against heavy outside references (installs them first)
 	@python3 -m tools.oracles
 	$(PYTHON) -m pytest tests/oracles $(ARGS)
 
-bench: setup ## measure the figures of the design; a table here, JSON in build/bench.json
+bench: setup ## measure the figures of the design beside others; a table here, JSON in build/bench.json
+	@python3 -m tools.oracles
 	@$(PYTHON) -m tools.bench $(ARGS)
 
 docs: setup ## write the generated files (link schema, reference page) again
