@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import numpy.typing as npt
 import pytest
@@ -46,7 +48,7 @@ def test_lanes_equal_the_firmware(instructions: str, period_ms: int) -> None:
         controllers = random_controllers(random, period_ms)
         leader, follower = random_angles(random), random_angles(random)
         limit = random.choice(np.array([0, 100, 5000, 15000, 30000, 32767], dtype=np.uint16), STEPS)
-        lanes = _native.sixteen_laws(
+        lanes: Any = _native.sixteen_laws(
             controllers=controllers,
             period_ms=period_ms,
             leader=leader,
@@ -58,10 +60,10 @@ def test_lanes_equal_the_firmware(instructions: str, period_ms: int) -> None:
             settings = _native.FuzzySettings()
             for column, name in enumerate(CONTROLLER_COLUMNS):
                 setattr(settings, name, int(controllers[lane, column]))
-            run = _native.FuzzyController(settings, period_ms).run(
+            run: dict[str, Any] = _native.FuzzyController(settings, period_ms).run(
                 leader[:, lane].astype(np.int16), follower[:, lane].astype(np.int16), limit
             )
-            alone = np.asarray(dict(run)["volts_mv"])
+            alone = np.asarray(run["volts_mv"])
             np.testing.assert_array_equal(lanes[:, lane], alone)
             moved += len(np.unique(alone))
     assert moved > 10_000

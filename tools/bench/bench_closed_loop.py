@@ -7,6 +7,7 @@ otherwise.
 
 from __future__ import annotations
 
+import importlib
 import importlib.util
 import os
 import subprocess
@@ -15,6 +16,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -156,7 +158,7 @@ def _pinocchio() -> list[Figure]:
 def _numba(ours: float, plants: np.ndarray, experiment: Experiment) -> list[Figure]:
     if importlib.util.find_spec("numba") is None:
         return []
-    from tools.bench.peers import numba_loop
+    numba_loop: Any = importlib.import_module("tools.bench.peers.numba_loop")
 
     gains = np.tile(np.array([2.0, 0.5, 4.0, 15.0]), (4, 1))
     some = np.ascontiguousarray(plants[:8])

@@ -8,12 +8,15 @@ from greywhale._native import Wiring
 from greywhale.arm.files import arm_names, default_arm, load_arm
 from greywhale.arm.parameters import ArmParameters, PotentiometerBank
 from greywhale.arm.plant import Arm, Potentiometers
+from greywhale.arm.printed import ERRATA, PrintedBody
 
 __all__ = [
+    "ERRATA",
     "Arm",
     "ArmParameters",
     "PotentiometerBank",
     "Potentiometers",
+    "PrintedBody",
     "Wiring",
     "arm_names",
     "default_arm",

@@ -211,8 +211,8 @@ class Experiment:
             if outside.size:
                 row = int(outside[0])
                 raise UserError(
-                    f"the leader starts with joint {joint} at {angle:g} rad, beyond the follower's stops of plants[{row}], "
-                    f"{plants[row, low]:g} to {plants[row, high]:g} rad."
+                    f"the leader starts with joint {joint} at {angle:g} rad, beyond the follower's stops of "
+                    f"plants[{row}], {plants[row, low]:g} to {plants[row, high]:g} rad."
                 )
 
     def _settings(self, board: str, soft_start: bool) -> _native.LoopSettings:
