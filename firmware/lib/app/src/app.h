@@ -72,7 +72,7 @@ class App {
   uint8_t sample_seq_ = 0;
   bool sample_due_ = false;
   bool heard_this_tick_ = false;
-  bool excused_ = false;   // applying a set (motors off) holds up the next tick: its lateness does not count
+  bool excused_ = false;   // applying a set (motors off) holds up the next tick: its lateness does not count. No request until then
   bool hello_due_ = false;
   bool drivers_on_ = false;
   uint8_t request_ = 0, seq_ = 0;              // of the frame being answered

@@ -12,6 +12,9 @@ constexpr uint16_t latest_start_us = 800;
 constexpr uint16_t latest_apply_us = 300;   // a joint's compilation takes most of a tick
 constexpr uint8_t bytes_per_piece = 16;
 
+// Farther than two angles can be apart: with it no tick has judged the pots by the running set yet.
+constexpr uint16_t not_seen = UINT16_MAX;
+
 // The supervisor and the parts below it know nothing of the link; their numbers are the link's all the same.
 template <class A, class B>
 constexpr bool same(A a, B b) { return static_cast<uint8_t>(a) == static_cast<uint8_t>(b); }
@@ -58,6 +61,7 @@ bool App::service() {
     work_on_apply();
     return true;
   }
+  if (excused_) return false;   // an enable must be judged by what a tick has seen with the new set
   if (!heard_this_tick_ && hal::rx_available()) {
     receive();   // at least once a tick, whatever else there is: a stop must get through
     return true;
@@ -227,6 +231,7 @@ void App::work_on_apply() {
     case ParameterSets::Progress::refused: refuse_set(); break;
     case ParameterSets::Progress::applied:
       take_running_set();
+      for (uint16_t& distance : seen_.distance) distance = not_seen;
       supervisor_.params_mended();
       reply(wire::ParamApplyReply{sets_.crc()});
       break;

@@ -128,6 +128,50 @@ TEST_CASE("values out of range and indices that do not exist are refused and nam
   CHECK(arm.refused(wire::ParamGetRequest{65535}).code == wire::NackCode::bad_index);
 }
 
+TEST_CASE("an enable on the heels of an apply is judged by the new calibration") {
+  Bench arm;
+  arm.boot();
+  params::Table table;
+  params::load_defaults(table);
+  table.leader[0].zero = 8184 - 6100;   // the leader now stands 1.95 rad away from the follower
+  for (std::uint8_t i = 0; i < params::count; ++i) {
+    std::int32_t value = 0;
+    REQUIRE(params::get(table, i, value) == params::Access::ok);
+    arm.get<wire::ParamSetReply>(wire::ParamSetRequest{i, value});
+  }
+  // Both in one go, and all the time the board wants before the next tick.
+  arm.frames.clear();
+  arm.send_raw(Bench::frame(wire::ParamApplyRequest{params::crc(table)}, 201));
+  arm.send_raw(Bench::frame(wire::EnableRequest{0}, 202));
+  arm.service();
+  CHECK_FALSE(board.drivers);
+  for (int i = 0; i < 20; ++i) {
+    arm.tick();
+    CHECK_FALSE(board.drivers);
+  }
+  REQUIRE(arm.frames.size() == 2);
+  CHECK(arm.frames[0].type == 0x85);
+  CHECK(arm.frames[1].seq == 202);
+  wire::Nack nack{};
+  REQUIRE(unsigned(arm.frames[1].type) == 0xff);
+  REQUIRE(wire::Nack::decode(arm.frames[1].payload.data(), static_cast<std::uint8_t>(arm.frames[1].payload.size()), nack));
+  CHECK(nack.code == wire::NackCode::error_too_large);
+  CHECK(unsigned(nack.detail) < 256);   // joint 0
+  CHECK(nack.detail / 32.0 == doctest::Approx(1.95).epsilon(0.02));
+}
+
+TEST_CASE("after an apply no enable works before potentiometers were read") {
+  Bench arm;
+  arm.boot();
+  REQUIRE(arm.apply(changed()).type == 0x85);
+  board.samples_ready = false;   // ticks without samples
+  CHECK(arm.refused(wire::EnableRequest{0}).code == wire::NackCode::error_too_large);
+  CHECK_FALSE(board.drivers);
+  board.samples_ready = true;
+  arm.tick();
+  CHECK(arm.enable() == wire::State::soft_start);
+}
+
 TEST_CASE("defaults are staged, not run") {
   Bench arm;
   arm.boot();
