@@ -59,7 +59,6 @@ GREYWHALE_INLINE Int shift_right_signed(Int a) {
 }
 GREYWHALE_INLINE Int shift_left(Int a, Int by) { return {_mm512_sllv_epi32(a.v, by.v)}; }
 GREYWHALE_INLINE Int shift_right(Int a, Int by) { return {_mm512_srlv_epi32(a.v, by.v)}; }
-GREYWHALE_INLINE Int shift_right_all(Int a, int by) { return {_mm512_srl_epi32(a.v, _mm_cvtsi32_si128(by))}; }
 
 GREYWHALE_INLINE Float to_float(Int a) { return {_mm512_cvtepi32_ps(a.v)}; }
 GREYWHALE_INLINE Int to_int(Float a) { return {_mm512_cvttps_epi32(a.v)}; }      // towards 0

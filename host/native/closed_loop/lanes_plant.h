@@ -66,50 +66,55 @@ GREYWHALE_INLINE void sine_cosine(Int q, Float& sine, Float& cosine) {
   cosine = negate_where(choose(odd, s, c), shift_left<30>(quarter + all(1)));
 }
 
-// Mass matrix and momentum with what bias torques do over the step.
-struct Links {
+// What depends on the links' angles alone: mass matrix, its derivatives, gravity.
+struct Geometry {
   Float m00, m03, m33, m11, m12, m22;
-  Float momentum[4];
+  Float half_d1, half_d2, roll, wrist, gravity1, gravity2;
 };
 
-GREYWHALE_INLINE Links links_of(const Plant& plant, const State (&s)[4]) {
-  const Body& b = plant.body;
+GREYWHALE_INLINE Geometry geometry_of(const Body& b, const State (&s)[4]) {
   Float s1, c1, s2, c2;
   sine_cosine(s[1].q, s1, c1);
   sine_cosine(s[2].q, s2, c2);
   const Float sphi = s1 * c2 + c1 * s2;
   const Float cphi = c1 * c2 - s1 * s2;
   const Float reach = b.coupling * c1;
-
-  Links l;
-  l.m00 = b.yaw + b.ixx1 * (s1 * s1) + b.iyy1 * (c1 * c1) + b.ixx23 * (sphi * sphi) + b.iyy23 * (cphi * cphi) +
-          (reach + reach) * cphi;
-  l.m03 = b.ixx3 * sphi;
-  l.m33 = b.ixx3;
   const Float folded = b.coupling * c2;
-  l.m22 = b.izz23;
-  l.m12 = b.izz23 + folded;
-  l.m11 = b.m11 + (folded + folded);
-
-  const Float v0 = s[0].v, v1 = s[1].v, v2 = s[2].v, v3 = s[3].v;
   const Float half_across = b.across * (sphi * cphi);
-  const Float half_d2 = half_across - reach * sphi;
-  const Float half_d1 = b.d1 * (s1 * c1) + half_across - b.coupling * (s1 * cphi + c1 * sphi);
-  const Float roll = b.ixx3 * cphi;
+
+  Geometry g;
+  g.m00 = b.yaw + b.ixx1 * (s1 * s1) + b.iyy1 * (c1 * c1) + b.ixx23 * (sphi * sphi) + b.iyy23 * (cphi * cphi) +
+          (reach + reach) * cphi;
+  g.m03 = b.ixx3 * sphi;
+  g.m33 = b.ixx3;
+  g.m22 = b.izz23;
+  g.m12 = b.izz23 + folded;
+  g.m11 = b.m11 + (folded + folded);
+  g.half_d2 = half_across - reach * sphi;
+  g.half_d1 = b.d1 * (s1 * c1) + half_across - b.coupling * (s1 * cphi + c1 * sphi);
+  g.roll = b.ixx3 * cphi;
+  g.wrist = b.coupling * s2;
+  g.gravity2 = b.gravity2 * cphi;
+  g.gravity1 = b.gravity1 * c1 + g.gravity2;
+  return g;
+}
+
+// The links' momentum with what bias torques do to it over the step.
+GREYWHALE_INLINE void momentum_of(const Geometry& g, Float step, const State (&s)[4], Float (&momentum)[4]) {
+  const Float v0 = s[0].v, v1 = s[1].v, v2 = s[2].v, v3 = s[3].v;
   const Float pitch_rate = v1 + v2;
-  const Float gyroscopic = roll * v0 * v3;
-  const Float wrist = b.coupling * s2;
-  const Float gravity2 = b.gravity2 * cphi;
-  const Float half_turn = half_d1 * v1 + half_d2 * v2;
-  const Float bias0 = (half_turn + half_turn) * v0 + roll * pitch_rate * v3;
-  const Float bias1 = b.gravity1 * c1 + gravity2 - half_d1 * (v0 * v0) - wrist * v2 * (pitch_rate + v1) - gyroscopic;
-  const Float bias2 = wrist * (v1 * v1) - half_d2 * (v0 * v0) - gyroscopic + gravity2;
-  const Float bias3 = roll * v0 * pitch_rate;
-  l.momentum[0] = l.m00 * v0 + l.m03 * v3 - plant.step * bias0;
-  l.momentum[1] = l.m11 * v1 + l.m12 * v2 - plant.step * bias1;
-  l.momentum[2] = l.m12 * v1 + l.m22 * v2 - plant.step * bias2;
-  l.momentum[3] = l.m03 * v0 + l.m33 * v3 - plant.step * bias3;
-  return l;
+  const Float rolling = g.roll * v0;
+  const Float gyroscopic = rolling * v3;
+  const Float square = v0 * v0;
+  const Float half_turn = g.half_d1 * v1 + g.half_d2 * v2;
+  const Float bias0 = (half_turn + half_turn) * v0 + g.roll * pitch_rate * v3;
+  const Float bias1 = g.gravity1 - g.half_d1 * square - g.wrist * v2 * (pitch_rate + v1) - gyroscopic;
+  const Float bias2 = g.gravity2 - g.half_d2 * square + g.wrist * (v1 * v1) - gyroscopic;
+  const Float bias3 = rolling * pitch_rate;
+  momentum[0] = g.m00 * v0 + g.m03 * v3 - step * bias0;
+  momentum[1] = g.m11 * v1 + g.m12 * v2 - step * bias1;
+  momentum[2] = g.m12 * v1 + g.m22 * v2 - step * bias2;
+  momentum[3] = g.m03 * v0 + g.m33 * v3 - step * bias3;
 }
 
 // A joint's terms in this step, and the sides tried: -1, 0 or +1.
@@ -215,16 +220,11 @@ GREYWHALE_INLINE Mask correct_stop(const Joint& j, Int reached, Float impulse, T
   return changed;
 }
 
-GREYWHALE_INLINE Links start(const Plant& plant, const State (&s)[4], const Float (&duty)[4], Trial (&t)[4]) {
-  for (int i = 0; i < 4; ++i) t[i] = first_trial(plant, plant.joints[i], s[i], duty[i]);
-  return links_of(plant, s);
-}
-
-GREYWHALE_INLINE void rows_of(const Plant& plant, const Links& l, const Trial (&t)[4], Row (&r)[4]) {
-  r[0] = row_of(plant.joints[0], t[0], l.m00, l.momentum[0]);
-  r[1] = row_of(plant.joints[1], t[1], l.m11, l.momentum[1]);
-  r[2] = row_of(plant.joints[2], t[2], l.m22, l.momentum[2]);
-  r[3] = row_of(plant.joints[3], t[3], l.m33, l.momentum[3]);
+GREYWHALE_INLINE void rows_of(const Plant& plant, const Geometry& g, const Float (&momentum)[4], const Trial (&t)[4], Row (&r)[4]) {
+  r[0] = row_of(plant.joints[0], t[0], g.m00, momentum[0]);
+  r[1] = row_of(plant.joints[1], t[1], g.m11, momentum[1]);
+  r[2] = row_of(plant.joints[2], t[2], g.m22, momentum[2]);
+  r[3] = row_of(plant.joints[3], t[3], g.m33, momentum[3]);
 }
 
 GREYWHALE_INLINE Float finished(const Row& r, Float slip, Float v) {
@@ -233,10 +233,12 @@ GREYWHALE_INLINE Float finished(const Row& r, Float slip, Float v) {
 }
 
 // With stops: the same, for the few steps in which a link is at one.
-__attribute__((noinline)) void advance_at_stops(const Plant& plant, State (&s)[4], const Float (&duty)[4]) {
+__attribute__((noinline)) void advance_at_stops(const Plant& plant, const Geometry& g, State (&s)[4], const Float (&duty)[4]) {
   Trial t[4];
   Row r[4];
-  const Links l = start(plant, s, duty, t);
+  Float momentum[4];
+  for (int i = 0; i < 4; ++i) t[i] = first_trial(plant, plant.joints[i], s[i], duty[i]);
+  momentum_of(g, plant.step, s, momentum);
   Float v[4], stops[4];
   Trial used[4];
   bool changed = true;
@@ -248,13 +250,13 @@ __attribute__((noinline)) void advance_at_stops(const Plant& plant, State (&s)[4
       arriving[i] = to_float(way) * all(kUnit) * plant.per_step;
       used[i] = t[i];
     }
-    rows_of(plant, l, t, r);
-    solve_held(r[0], r[3], l.m03, t[0], t[3], arriving[0], arriving[3], v[0], v[3]);
-    solve_held(r[1], r[2], l.m12, t[1], t[2], arriving[1], arriving[2], v[1], v[2]);
-    stops[0] = r[0].diagonal * v[0] + l.m03 * v[3] - r[0].right;
-    stops[1] = r[1].diagonal * v[1] + l.m12 * v[2] - r[1].right;
-    stops[2] = l.m12 * v[1] + r[2].diagonal * v[2] - r[2].right;
-    stops[3] = l.m03 * v[0] + r[3].diagonal * v[3] - r[3].right;
+    rows_of(plant, g, momentum, t, r);
+    solve_held(r[0], r[3], g.m03, t[0], t[3], arriving[0], arriving[3], v[0], v[3]);
+    solve_held(r[1], r[2], g.m12, t[1], t[2], arriving[1], arriving[2], v[1], v[2]);
+    stops[0] = r[0].diagonal * v[0] + g.m03 * v[3] - r[0].right;
+    stops[1] = r[1].diagonal * v[1] + g.m12 * v[2] - r[1].right;
+    stops[2] = g.m12 * v[1] + r[2].diagonal * v[2] - r[2].right;
+    stops[3] = g.m03 * v[0] + r[3].diagonal * v[3] - r[3].right;
     Mask any_changed = all(0) != all(0);
     for (int i = 0; i < 4; ++i) {
       const Joint& j = plant.joints[i];
@@ -265,8 +267,8 @@ __attribute__((noinline)) void advance_at_stops(const Plant& plant, State (&s)[4
   }
   const Float rest = all(0.0f);
   Float after[4];
-  solve_held(r[0], r[3], l.m03, used[0], used[3], rest, rest, after[0], after[3]);
-  solve_held(r[1], r[2], l.m12, used[1], used[2], rest, rest, after[1], after[2]);
+  solve_held(r[0], r[3], g.m03, used[0], used[3], rest, rest, after[0], after[3]);
+  solve_held(r[1], r[2], g.m12, used[1], used[2], rest, rest, after[1], after[2]);
   const Mask blow = (used[0].stop != rest) | (used[1].stop != rest) | (used[2].stop != rest) | (used[3].stop != rest);
   for (int i = 0; i < 4; ++i) {
     const Joint& j = plant.joints[i];
@@ -281,16 +283,18 @@ __attribute__((noinline)) void advance_at_stops(const Plant& plant, State (&s)[4
   }
 }
 
-GREYWHALE_INLINE void advance(const Plant& plant, State (&s)[4], const Float (&duty)[4]) {
+GREYWHALE_INLINE void advance(const Plant& plant, const Geometry& g, State (&s)[4], const Float (&duty)[4]) {
   Trial t[4];
   Row r[4];
-  const Links l = start(plant, s, duty, t);
+  Float momentum[4];
+  for (int i = 0; i < 4; ++i) t[i] = first_trial(plant, plant.joints[i], s[i], duty[i]);
+  momentum_of(g, plant.step, s, momentum);
   Float v[4], slip[4];
   bool changed = true;
   for (int pass = 0; pass < kPasses && changed; ++pass) {
-    rows_of(plant, l, t, r);
-    solve_pair(r[0], r[3], l.m03, v[0], v[3]);
-    solve_pair(r[1], r[2], l.m12, v[1], v[2]);
+    rows_of(plant, g, momentum, t, r);
+    solve_pair(r[0], r[3], g.m03, v[0], v[3]);
+    solve_pair(r[1], r[2], g.m12, v[1], v[2]);
     Mask any_changed = all(0) != all(0);
     for (int i = 0; i < 4; ++i) {
       slip[i] = t[i].slip;
@@ -306,7 +310,7 @@ GREYWHALE_INLINE void advance(const Plant& plant, State (&s)[4], const Float (&d
     at_stop = at_stop | (greatest(q[i], s[i].q) >= j.stop_max) | (j.stop_min >= least(q[i], s[i].q));
   }
   if (__builtin_expect(any(at_stop), 0)) {
-    advance_at_stops(plant, s, duty);
+    advance_at_stops(plant, g, s, duty);
     return;
   }
   for (int i = 0; i < 4; ++i) {

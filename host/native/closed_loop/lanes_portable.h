@@ -145,9 +145,6 @@ GREYWHALE_INLINE Int shift_left(Int a, Int by) {
 GREYWHALE_INLINE Int shift_right(Int a, Int by) {
   return parts<Int>([&](int p) { return of_word(word(a.v[p]) >> word(by.v[p])); });
 }
-GREYWHALE_INLINE Int shift_right_all(Int a, int by) {
-  return parts<Int>([&](int p) { return of_word(word(a.v[p]) >> static_cast<std::uint32_t>(by)); });
-}
 
 GREYWHALE_INLINE Float to_float(Int a) {
   return parts<Float>([&](int p) { return __builtin_convertvector(a.v[p], FloatPart); });
