@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from greywhale import _native
 from greywhale.arm import ArmParameters
-from greywhale.identify.data import Prepared
+from greywhale.identify.data import BLOCK_S, Prepared, part_of
 from greywhale.identify.space import JOINTS, Space
 from greywhale.link import schema
 from greywhale.simulate import CONTROLLER_COLUMNS, Timing
@@ -25,6 +25,8 @@ LSB = 1.0 / 4096.0
 LEAD_TICKS = 500
 PWM_TOP = {"mega2560": 400, "nano328": 400}
 COMPARED_TICKS = 5
+STEPS_PER_TICK = 2
+ROWS_PER_BLOCK = round(BLOCK_S / (COMPARED_TICKS * TICK_S))
 SEED = 1
 
 
@@ -75,10 +77,10 @@ class Loop:
         shown: Floats = outcome[4][:, LEAD_TICKS // every :].astype(np.float64) - self._zero
         return shown[:, : len(self.follower[::every])]
 
-    def error(self, plants: Floats, part: slice | None = None) -> Floats:
-        """Mean squared difference to the log, (candidates, 4), rad², over a `part` of the log's ticks / 5."""
+    def error(self, plants: Floats, held_out: bool | None = None) -> Floats:
+        """Mean squared difference to the log, (candidates, 4), rad²: all of it, what is held out, or the rest."""
         difference = self.angles(plants) - self.follower[None, ::COMPARED_TICKS]
-        kept = difference if part is None else difference[:, part]
+        kept = difference if held_out is None else difference[:, part_of(self.rows, ROWS_PER_BLOCK, held_out)]
         mse: Floats = np.mean(np.nan_to_num(kept, nan=10.0, posinf=10.0, neginf=-10.0) ** 2, axis=1)
         return mse
 
@@ -86,35 +88,33 @@ class Loop:
         outcome: tuple[Floats, ...] = self._loop.run(
             controllers=self.laws[None],
             plants=np.ascontiguousarray(plants),
-            substeps=1,
+            substeps=STEPS_PER_TICK,
             threads=threads,
             every=every,
-            single=True,
+            single=False,
             instructions="",
         )
         return outcome
 
 
 class LoopResidual:
-    """Model minus log in the closed loop, in rad, for the joints that moved; a `part` of each log."""
+    """Model minus log in the closed loop, in rad, for the joints that moved; with or without what is held out."""
 
-    def __init__(self, loops: Sequence[Loop], joints: Sequence[int], part: tuple[float, float] = (0.0, 1.0)) -> None:
+    def __init__(self, loops: Sequence[Loop], joints: Sequence[int], whole: bool = True) -> None:
         self.loops = loops
         self.joints = list(joints)
-        self.part = part
+        self.whole = whole
 
     def __call__(self, space: Space, points: Floats) -> Floats:
         plants = space.plants(points)
         rows = []
         for loop in self.loops:
             difference = loop.angles(plants) - loop.follower[None, ::COMPARED_TICKS]
-            kept = difference[:, share_of(difference.shape[1], self.part)][..., self.joints]
+            if not self.whole:
+                difference = difference[:, part_of(loop.rows, ROWS_PER_BLOCK, False)]
+            kept = difference[..., self.joints]
             rows.append(np.nan_to_num(kept, nan=10.0, posinf=10.0, neginf=-10.0).reshape(len(points), -1))
         return np.concatenate(rows, axis=1)
-
-
-def share_of(count: int, part: tuple[float, float]) -> slice:
-    return slice(round(part[0] * count), round(part[1] * count))
 
 
 def controller_rows(values: Sequence[int]) -> NDArray[np.int32]:

@@ -16,14 +16,16 @@ JOINTS = 4
 WINDOW_S = 0.5
 SMOOTHING_S = 0.03  # of the angle, to find velocities
 # Longest step of the integration in a window, s.
-STEP_S = 0.5e-3
+STEP_S = 1e-3
 # Windows are compared with the log at this spacing, s; neighbouring readings differ in noise only.
 COMPARED_S = 5e-3
 # Firmware: from a new sample to its voltage, and the mean age of a tick's four conversions (s).
 ACTUATION_S = 0.3e-3
 CONVERSION_S = 0.5e-3
 TICK_S = 1e-3
-HELD_OUT = 0.25
+# Of every four blocks of this length (s) the last is held out, so that every joint's motion is in both parts.
+BLOCK_S = 1.0
+BLOCKS = 4
 
 
 @dataclass(frozen=True)
@@ -55,6 +57,12 @@ class Windows:
     volts: Floats
     spacing: Floats
     substeps: int
+
+
+def part_of(count: int, per_block: int, held_out: bool) -> NDArray[np.intp]:
+    """Which of `count` rows or windows are held out, or are not."""
+    last = np.arange(count) // per_block % BLOCKS == BLOCKS - 1
+    return np.flatnonzero(last if held_out else ~last)
 
 
 def prepare(log: Log, filter_shift: int | None) -> Prepared:
@@ -92,7 +100,7 @@ def _noise(rest: Floats, used: NDArray[np.bool_], size: int) -> Floats:
     return noise
 
 
-def windows_of(prepared: Prepared, part: slice | None = None, length_s: float = WINDOW_S) -> Windows:
+def windows_of(prepared: Prepared, part: slice | NDArray[np.intp] | None = None, length_s: float = WINDOW_S) -> Windows:
     """Windows one after the other over the whole log, or over a `part` of its windows."""
     rows = max(6, round(length_s / prepared.period))
     every = max(1, round(COMPARED_S / prepared.period))

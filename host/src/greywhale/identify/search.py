@@ -3,9 +3,9 @@ data ask for.
 
 1. GWO-WOA over motors and Coulomb friction, on some windows of the log under its logged voltages.
 2. Least squares from the user's arm and from the best different points of that search; the best of them goes on.
-3. One quantity after the other is added: Stribeck friction, backlash, zero angles. Each is fitted to the first three
-   quarters of the log, first under the logged voltages, then (where the controller is known) in the closed loop, and
-   stays only if the last quarter is predicted better with it.
+3. One quantity after the other is added: Stribeck friction, backlash, zero angles. Each is fitted to three seconds of
+   every four, first under the logged voltages, then (where the controller is known) in the closed loop, and stays only
+   if the fourth seconds are predicted better with it.
 4. What was chosen is fitted to the whole log.
 """
 
@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
-from greywhale.identify.closed_loop import Loop, LoopResidual, share_of
-from greywhale.identify.data import HELD_OUT, Prepared
+from greywhale.identify.closed_loop import Loop, LoopResidual
+from greywhale.identify.data import Prepared
 from greywhale.identify.fit import Fit, Residual, least_squares_fit
 from greywhale.identify.space import MOTOR, Space
 from greywhale.identify.windows import WindowResidual
@@ -46,12 +46,10 @@ GLOBAL_EVALUATIONS = 500
 GLOBAL_WINDOWS = 12
 GLOBAL_SPREAD = 2.5  # the box of the global search: factors e^(+-2.5) around the user's arm
 STARTS = 2  # of the global search's points that least squares starts from, beside the user's arm
-WINDOW_STEPS = 15
-LOOP_STEPS = 5
+WINDOW_STEPS = 12
+LOOP_STEPS = 10
 # Readings come in steps, so finite differences in the closed loop are taken wider than in the windows.
 LOOP_STEP_SCALE = 5.0
-FIRST_PART = (0.0, 1.0 - HELD_OUT)
-LAST_PART = (1.0 - HELD_OUT, 1.0)
 
 
 @dataclass(frozen=True)
@@ -106,7 +104,7 @@ class Search:
         space = Space.of(self.arm, (*MOTOR, "coulomb"), self.joints)
         motors = self.tried[0]
         starts = [space.start(), space.moved(motors.x, motors.space), *self._global(space)]
-        residual = self._prior(WindowResidual(self.logs, self.arm, self.joints, slice(0, None, 3)))
+        residual = self._prior(self._some_windows())
         fits = []
         for number, point in enumerate(starts):
             self.report("least squares from several starts", number / len(starts))
@@ -117,7 +115,7 @@ class Search:
     def _global(self, space: Space) -> list[Floats]:
         """The best points of GWO-WOA that differ from each other."""
         count = WindowResidual(self.logs, self.arm, self.joints).windows
-        residual = WindowResidual(self.logs, self.arm, self.joints, slice(0, None, max(1, count // GLOBAL_WINDOWS)))
+        residual = WindowResidual(self.logs, self.arm, self.joints, False, max(1, count // GLOBAL_WINDOWS))
         middle = space.start()
         low, high = space.bounds()
         low, high = np.maximum(low, middle - GLOBAL_SPREAD), np.minimum(high, middle + GLOBAL_SPREAD)
@@ -154,11 +152,13 @@ class Search:
         if candidate.order == "zero angles":
             return self._with_zero_angles(candidate)
         x = candidate.x
-        # What the closed loop has fitted already is not thrown back: windows know less about the whole.
-        if not self.loops or candidate.order in ("motors", "Coulomb friction"):
-            x = self._fit(self._prior(self._windows(FIRST_PART)), candidate.space, x, WINDOW_STEPS).x
-        if self.loops and candidate.order != "motors":
-            inside = LoopResidual(self._loops_of(candidate.space), self.joints, FIRST_PART)
+        if candidate.order == "motors" and self.loops:
+            x = self._fit(self._prior(self._some_windows()), candidate.space, x, WINDOW_STEPS).x
+        elif candidate.order == "Coulomb friction" or not self.loops:
+            # Smooth and long, this is what the closed loop, full of steps, must start from.
+            x = self._fit(self._prior(self._windows(False)), candidate.space, x, WINDOW_STEPS).x
+        if self.loops:
+            inside = LoopResidual(self._loops_of(candidate.space), self.joints, False)
             x = self._fit(self._prior(_scaled(inside)), candidate.space, x, LOOP_STEPS, LOOP_STEP_SCALE).x
         return Candidate(candidate.space, x, candidate.order)
 
@@ -167,13 +167,16 @@ class Search:
         space = candidate.space.zero_angles_at(candidate.x)
         if not len(space):
             return candidate
-        found = self._fit(self._windows(FIRST_PART), space, space.start(), WINDOW_STEPS)
+        found = self._fit(self._windows(False), space, space.start(), WINDOW_STEPS)
         zero = space.offsets(found.x[None])[0]
         return Candidate(candidate.space.with_zero(zero), candidate.x, candidate.order)
 
-    def _windows(self, part: tuple[float, float]) -> WindowResidual:
-        count = WindowResidual(self.logs, self.arm, self.joints).windows
-        return WindowResidual(self.logs, self.arm, self.joints, share_of(count, part))
+    def _windows(self, held_out: bool) -> WindowResidual:
+        return WindowResidual(self.logs, self.arm, self.joints, held_out)
+
+    def _some_windows(self) -> WindowResidual:
+        """Every third of the fitted part: enough to come near, for a third of the time."""
+        return WindowResidual(self.logs, self.arm, self.joints, False, 3)
 
     def _loops_of(self, space: Space) -> Sequence[Loop]:
         return [loop.with_zero(space.zero) for loop in self.loops] if space.zero.any() else self.loops
@@ -182,10 +185,10 @@ class Search:
         plants = candidate.space.plants(candidate.x[None])
         if self.loops:
             loops = self._loops_of(candidate.space)
-            errors = [loop.error(plants, share_of(loop.rows, LAST_PART))[0, list(self.joints)] for loop in loops]
+            errors = [loop.error(plants, True)[0, list(self.joints)] for loop in loops]
             score = float(np.mean(np.sum(errors, axis=1)))
         else:
-            score = float(np.mean(self._windows(LAST_PART)(candidate.space, candidate.x[None]) ** 2))
+            score = float(np.mean(self._windows(True)(candidate.space, candidate.x[None]) ** 2))
         return replace(candidate, held_out=score)
 
     def _better(self, candidate: Candidate) -> bool:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from greywhale import _native
 from greywhale.arm import ArmParameters
-from greywhale.identify.data import Prepared, Windows, windows_of
+from greywhale.identify.data import BLOCK_S, WINDOW_S, Prepared, Windows, part_of, windows_of
 from greywhale.identify.space import Space, column
 
 Floats = NDArray[np.float64]
@@ -26,11 +26,17 @@ class WindowResidual:
     """Differences between log and candidates in standard deviations of a reading; a row of numbers a candidate."""
 
     def __init__(
-        self, logs: Sequence[Prepared], arm: ArmParameters, joints: Sequence[int], part: slice | None = None
+        self,
+        logs: Sequence[Prepared],
+        arm: ArmParameters,
+        joints: Sequence[int],
+        held_out: bool | None = None,
+        every: int = 1,
     ) -> None:
+        """All windows of the logs, or those held out, or the others; of these, one in `every`."""
         self.joints = list(joints)
         self._body = _native.Arm(arm.native()).body
-        self._pieces = [(windows_of(log, part), log) for log in logs]
+        self._pieces = [(windows_of(log, _part(log, held_out, every)), log) for log in logs]
         self._pieces = [piece for piece in self._pieces if len(piece[0].first)]
         self._sides = [self._sides_of(windows) for windows, _ in self._pieces]
         self.windows = sum(len(windows.first) for windows, _ in self._pieces)
@@ -117,3 +123,9 @@ class WindowResidual:
             still = (np.abs(torque) < 1e-3) & (np.abs(windows.velocities[row]) < 0.05)
             sides[row] = np.where(still, 0.0, np.sign(torque))
         return sides
+
+
+def _part(log: Prepared, held_out: bool | None, every: int) -> NDArray[np.intp]:
+    count = len(windows_of(log).first)
+    chosen = np.arange(count) if held_out is None else part_of(count, round(BLOCK_S / WINDOW_S), held_out)
+    return chosen[::every]

@@ -1,0 +1,111 @@
+"""Every kind of useless log is refused in one sentence that names file, joint and evidence."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from greywhale.arm import ArmParameters
+from greywhale.errors import UserError
+from greywhale.identify import Table, identify
+from greywhale.identify.checks import check
+from greywhale.identify.controllers import DEFAULTS, load_table, table_of
+from greywhale.identify.data import prepare
+from greywhale.link import schema
+from greywhale.log import Log
+from greywhale.log.layout import Origin
+from tools.bench.recordings import TABLES, Recorded
+from tools.bench.recordings import table_of as values_of
+
+
+def short(log: Log) -> Log:
+    return replace(
+        log, **{name: getattr(log, name)[:2000] for name in ("time", "leader", "follower", "voltage", "state")}
+    )
+
+
+def still(log: Log) -> Log:
+    return replace(log, follower=0.1 + 0.02 * log.follower)
+
+
+def clipped(log: Log) -> Log:
+    follower = log.follower.copy()
+    follower[:, 2] = np.minimum(4.0 * follower[:, 2] + 2.0, 2.5)
+    return replace(log, follower=follower)
+
+
+def swapped(log: Log) -> Log:
+    return replace(log, leader=log.follower, follower=log.leader)
+
+
+def overdriven(log: Log) -> Log:
+    return replace(log, voltage=1.5 * np.sign(log.voltage) * 15.0)
+
+
+def slower(log: Log) -> Log:
+    return replace(log, origin=replace(log.origin, period_ms=20))
+
+
+@pytest.mark.parametrize(
+    ("spoil", "evidence"),
+    [
+        (short, r"only 2\.0 s of it .* at least 4 s"),
+        (still, r"no joint moved: joints 0\.\.3 stayed within 0\.\d+, .* rad"),
+        (clipped, r"joint 2 is clipped: its follower reads exactly 2\.5000 rad in \d+ %"),
+        (swapped, r"joint \d looks as if leader and follower columns were swapped .*correlation .* -0\.\d\d"),
+        (overdriven, r"joint \d was driven with 22\.50 V, but drive\.supply .* 15 V"),
+        (slower, r"joint \d: the voltage changes every 1 ms, but the control period is stated as 20 ms"),
+    ],
+)
+def test_useless_logs_are_refused(
+    recorded: Recorded, white_box: ArmParameters, spoil: Callable[[Log], Log], evidence: str
+) -> None:
+    log = spoil(recorded.fit)
+    with pytest.raises(UserError, match=evidence) as refused:
+        check(prepare(log, 1), white_box, None)
+    assert refused.value.message.startswith(log.name)
+    with pytest.raises(UserError, match=evidence):
+        identify([replace(log, origin=replace(log.origin, param_crc=None))], white_box)
+
+
+def test_good_logs_pass_without_doubt(recorded: Recorded, white_box: ArmParameters, tables: list[Table]) -> None:
+    for log in (recorded.fit, recorded.second, recorded.changed):
+        assert check(prepare(log, 1), white_box, table_of(log, tables)) == []
+
+
+def test_full_voltage_most_of_the_time_is_a_doubt_only(recorded: Recorded, white_box: ArmParameters) -> None:
+    log = replace(recorded.fit, voltage=15.0 * np.sign(recorded.fit.leader - recorded.fit.follower))
+    doubts = check(prepare(log, 1), white_box, None)
+    assert doubts
+    assert all("full voltage" in one for one in doubts)
+
+
+def test_controllers_are_found_by_their_crc(recorded: Recorded, tables: list[Table]) -> None:
+    assert table_of(recorded.changed, tables) is tables[1]
+    assert table_of(recorded.fit, tables) is tables[0]
+    assert table_of(replace(recorded.fit, origin=Origin(param_crc=DEFAULTS.crc)), []) is DEFAULTS
+    assert table_of(recorded.changed, []) is None
+
+
+def test_another_controller_than_the_logs_is_refused(recorded: Recorded, white_box: ArmParameters) -> None:
+    values = list(values_of("table_10"))
+    values[schema.PARAMETER_BY_NAME["joint1.ku_mv"].index] -= 1
+    other = Table("other.toml", tuple(values))
+    with pytest.raises(UserError, match=r"recorded with parameter set 0x\w{4}, but there are only other.toml 0x\w{4}"):
+        identify([recorded.changed], white_box, tables=[other])
+    without = replace(recorded.fit, origin=Origin(period_ms=20))
+    with pytest.raises(UserError, match="its control period is 20 ms, but other.toml has 1 ms"):
+        table_of(without, [other])
+    with pytest.raises(UserError, match="only one --controller"):
+        table_of(without, [other, other])
+
+
+def test_tables_come_from_controller_files_and_backups(tmp_path_factory: pytest.TempPathFactory) -> None:
+    from greywhale.config import parameter_file
+
+    path = tmp_path_factory.mktemp("tables") / "backup.toml"
+    parameter_file.save(path, values_of("table_10"))
+    assert load_table(path).values == load_table(TABLES / "table_10.toml").values == values_of("table_10")

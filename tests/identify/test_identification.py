@@ -1,0 +1,168 @@
+"""The default method on an arm that it does not know: what it reaches, what it writes, what it leaves open."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from greywhale.arm import ArmParameters, load_arm
+from greywhale.errors import UserError
+from greywhale.identify import Outcome, identify
+from greywhale.identify.judge import CHANGED, FIT, SECOND, Verdict, warnings_of
+from greywhale.identify.search import Search
+from greywhale.identify.space import column
+from greywhale.log import Log
+from greywhale.simulate import plant_row
+from tools.bench.recordings import Recorded
+
+
+def test_model_predicts_other_logs_far_better_than_the_white_box(outcome: Outcome) -> None:
+    assert [verdict.role for verdict in outcome.verdicts] == [FIT, SECOND, CHANGED]
+    assert outcome.verdicts[1].improvement > 0.97
+    assert outcome.verdicts[2].improvement > 0.9
+    assert outcome.complete
+    assert outcome.warnings == ()
+
+
+def test_motors_come_out_as_they_are(outcome: Outcome, hidden: ArmParameters) -> None:
+    """Speed per volt and friction in volts are what such logs show best; torque per volt only where gravity acts."""
+    for joint in range(4):
+        true = hidden.actuator(joint)
+        found = {one.name: one.value for one in outcome.estimates}
+        assert found[f"joint{joint}.damping"] == pytest.approx(true.damping / true.torque_per_volt, rel=0.15)
+        friction = hidden.joint[joint].friction.coulomb / true.torque_per_volt
+        assert found[f"joint{joint}.coulomb"] == pytest.approx(friction, rel=0.35)
+    assert all(one.deviation is not None and one.deviation >= 0.0 for one in outcome.estimates)
+    assert outcome.condition is not None
+    assert outcome.condition > 1.0
+
+
+def test_order_is_chosen_by_held_out_data(outcome: Outcome) -> None:
+    """Coulomb friction must be seen to be worth it: this arm has a lot."""
+    errors = dict(outcome.orders)
+    assert errors["Coulomb friction"] < 0.5 * errors["motors"]
+    assert errors[outcome.order] <= min(errors.values()) / 0.98
+
+
+def test_model_file_is_an_arm_file(outcome: Outcome, tmp_path: Path) -> None:
+    outcome.save(tmp_path / "model.toml")
+    arm = load_arm(tmp_path / "model.toml")
+    np.testing.assert_allclose(plant_row(arm), outcome.plant, rtol=1e-9, atol=1e-12)
+    facts = arm.identification
+    assert facts is not None
+    assert facts["status"] == "complete"
+    assert facts["method"] == "default"
+    assert [one["role"] for one in facts["log"]] == [FIT, SECOND, CHANGED]
+    assert facts["log"][0]["parameter_crc"].startswith("0x")
+    assert facts["log"][0]["period_ms"] == 1
+    assert facts["log"][0]["model_mse_rad2"] == pytest.approx(outcome.verdicts[0].model)
+    named = {one["name"]: one for one in facts["parameter"]}
+    assert named["joint0.damping"]["standard_deviation"] > 0.0
+    assert isinstance(facts["fisher_condition"], float)
+
+
+def test_what_is_not_known_is_said_with_a_remedy(outcome: Outcome) -> None:
+    """Yaw and roll feel no gravity; whatever is named open must name its joint and a motion that would settle it."""
+    wide = [
+        one.name
+        for one in outcome.estimates
+        if one.name.endswith(("alpha", "inertia", "damping", "coulomb", "stribeck"))
+        and one.deviation is not None
+        and one.deviation > 0.35 * one.value
+    ]
+    for name in wide:
+        joint, _, kind = name.partition(".")
+        assert any(f"joint {joint[5:]} " in sentence and kind in sentence for sentence in outcome.open)
+    assert all(";" in sentence for sentence in outcome.open)
+
+
+def test_joints_that_did_not_move_keep_the_users_values(recorded: Recorded, white_box: ArmParameters) -> None:
+    outcome = identify([_without_joints(recorded.fit, (2, 3))], white_box)
+    for joint in (2, 3):
+        start = column(joint, "torque_per_volt")
+        np.testing.assert_array_equal(outcome.plant[start : start + 12], plant_row(white_box)[start : start + 12])
+        assert any(f"joint {joint} " in sentence and "did not move" in sentence for sentence in outcome.open)
+    assert {one.name[5] for one in outcome.estimates} == {"0", "1"}
+    assert outcome.verdicts[0].improvement > 0.9
+    assert outcome.verdicts[0].model[2:] == (0.0, 0.0)
+
+
+def test_without_its_controller_a_log_is_still_worth_something(recorded: Recorded, white_box: ArmParameters) -> None:
+    """Only the logged voltages remain; at a tenth of the rows, as another tool may log."""
+    origin = replace(recorded.fit.origin, param_crc=None, firmware=None, every_ticks=10)
+    outcome = identify([_every(replace(_first(recorded.fit, 6.0), origin=origin), 10)], white_box)
+    assert outcome.verdicts[0].measure.startswith("logged voltages")
+    assert outcome.verdicts[0].improvement > 0.8
+    assert any("controller is not known" in warning for warning in outcome.warnings)
+
+
+def test_interrupt_keeps_the_best_model(
+    recorded: Recorded, white_box: ArmParameters, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(self: Search) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Search, "_with_friction", interrupted)
+    outcome = identify([_first(recorded.fit, 5.0)], white_box)
+    assert not outcome.complete
+    outcome.save(tmp_path / "model.toml")
+    facts = load_arm(tmp_path / "model.toml").identification
+    assert facts is not None
+    assert facts["status"].startswith("unfinished")
+    assert outcome.text().startswith("UNFINISHED")
+
+
+def test_interrupt_before_any_model_is_an_interrupt(
+    recorded: Recorded, white_box: ArmParameters, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(self: Search) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Search, "_start", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        identify([recorded.fit], white_box)
+
+
+def test_model_that_learnt_its_controller_is_warned_about() -> None:
+    def verdict(name: str, role: str, model: float) -> Verdict:
+        return Verdict(name, role, "closed loop", (1.0, 0.0, 0.0, 0.0), (model, 0.0, 0.0, 0.0))
+
+    good = [verdict("a", FIT, 0.1), verdict("b", SECOND, 0.2)]
+    assert warnings_of([*good, verdict("c", CHANGED, 0.3)]) == []
+    assert any("learnt that controller" in one for one in warnings_of([*good, verdict("c", CHANGED, 1.5)]))
+    worse = warnings_of([good[0], verdict("b", SECOND, 2.0), verdict("c", CHANGED, 1.5)])
+    assert len(worse) == 2
+    assert all("no better" in one for one in worse)
+
+
+def test_unknown_method_and_no_logs_are_bad_usage(recorded: Recorded, white_box: ArmParameters) -> None:
+    with pytest.raises(UserError, match="paper-printed") as refused:
+        identify([recorded.fit], white_box, method="magic")
+    assert refused.value.exit_code == 2
+    with pytest.raises(UserError, match="at least one log"):
+        identify([], white_box)
+
+
+def _without_joints(log: Log, joints: tuple[int, ...]) -> Log:
+    columns = {}
+    for name in ("leader", "follower", "voltage"):
+        values = getattr(log, name).copy()
+        values[:, joints] = 0.0
+        columns[name] = values
+    return replace(log, **columns)
+
+
+def _every(log: Log, rows: int) -> Log:
+    return _rows(log, slice(None, None, rows))
+
+
+def _first(log: Log, seconds: float) -> Log:
+    return _rows(log, slice(None, int(np.searchsorted(log.time, seconds))))
+
+
+def _rows(log: Log, rows: slice) -> Log:
+    columns = {name: getattr(log, name)[rows] for name in ("time", "leader", "follower", "voltage", "state")}
+    return replace(log, **columns)

@@ -1,0 +1,75 @@
+"""`greywhale identify` as a person or a program calls it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from greywhale.arm import load_arm
+from greywhale.cli import identify as verb
+from greywhale.cli.entry import run
+from greywhale.identify import Outcome
+from tools.bench.recordings import TABLES, Recorded
+
+
+@pytest.fixture
+def found(monkeypatch: pytest.MonkeyPatch, outcome: Outcome) -> Outcome:
+    """The verb around an identification that has run already."""
+    monkeypatch.setattr(verb, "identify", lambda *logs, **options: outcome)
+    return outcome
+
+
+def arguments(recorded: Recorded, folder: Path) -> list[str]:
+    logs = [recorded.fit.name, "-v", recorded.second.name, "-v", recorded.changed.name]
+    controllers = ["-c", str(TABLES / "before_tuning.toml"), "-c", str(TABLES / "table_10.toml")]
+    return ["identify", *logs, *controllers, "--out", str(folder / "model.toml")]
+
+
+def test_text_model_and_pictures(
+    found: Outcome, recorded: Recorded, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run([*arguments(recorded, tmp_path), "--pictures", str(tmp_path / "pictures")]) == 0
+    text = capsys.readouterr().out
+    for word in ("white box", "all joints", "changed controller", "joint0.damping", "Fisher", "model.toml"):
+        assert word in text
+    load_arm(tmp_path / "model.toml")
+    pictures = sorted(path.name for path in (tmp_path / "pictures").iterdir())
+    assert pictures == ["responses_1.png", "responses_2.png", "responses_3.png"]
+    assert all(path.stat().st_size > 20_000 for path in (tmp_path / "pictures").iterdir())
+
+
+def test_json_is_one_object(
+    found: Outcome, recorded: Recorded, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run([*arguments(recorded, tmp_path), "--json"]) == 0
+    facts = json.loads(capsys.readouterr().out)
+    assert facts["status"] == "complete"
+    assert facts["files"] == [str(tmp_path / "model.toml")]
+    assert len(facts["log"]) == 3
+
+
+def test_interrupt_writes_the_model_and_says_so(
+    outcome: Outcome,
+    recorded: Recorded,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    from dataclasses import replace
+
+    monkeypatch.setattr(verb, "identify", lambda *logs, **options: replace(outcome, complete=False))
+    assert run(arguments(recorded, tmp_path)) == 130
+    assert "marked as unfinished" in capsys.readouterr().err
+    model = load_arm(tmp_path / "model.toml")
+    assert model.identification is not None
+    assert model.identification["status"].startswith("unfinished")
+    assert model.name.endswith("(unfinished)")
+
+
+def test_missing_folder_is_found_before_anything_runs(
+    recorded: Recorded, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run([*arguments(recorded, tmp_path / "nowhere")]) == 2
+    assert "does not exist" in capsys.readouterr().err

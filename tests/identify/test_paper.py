@@ -1,0 +1,49 @@
+"""The paper's method: its 20 numbers, bounds and budget; that it is worse is a matter of the benchmarks."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from greywhale.arm import ArmParameters, load_arm
+from greywhale.identify import paper
+from greywhale.identify.closed_loop import Loop
+from greywhale.identify.data import prepare
+from greywhale.identify.identification import identify
+from greywhale.link import schema
+from greywhale.simulate import plant_row
+from tools.bench.recordings import Recorded
+
+
+def test_table_4_gives_the_papers_arms(recorded: Recorded, white_box: ArmParameters) -> None:
+    """The 20 values of either column of Table 4, through the search's own equations, are the shipped arms."""
+    search = paper.PaperSearch(white_box, [], 0, lambda what, share: None)
+    for name in ("white_box", "grey_box"):
+        arm = load_arm(name)
+        x = np.array([[getattr(joint.motor, value) for joint in arm.joint for value in paper.VALUES]])
+        np.testing.assert_allclose(search.plants(x)[0], plant_row(arm), rtol=1e-12)
+
+
+def test_search_stays_within_table_2_and_never_gets_worse(
+    recorded: Recorded, white_box: ArmParameters, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(paper, "ITERATIONS", 6)
+    outcome = identify([recorded.fit], white_box, validate=[recorded.second], method="paper", seed=3)
+    values = np.array([one.value for one in outcome.estimates]).reshape(4, 5)
+    assert np.all(values >= paper.LOWER)
+    assert np.all(values <= paper.UPPER)
+    assert outcome.simulations == 60
+    assert len(outcome.curve) == 6
+    assert np.all(np.diff(outcome.curve) <= 0.0)
+    assert outcome.curve[-1] == pytest.approx(sum(outcome.verdicts[0].model), rel=1e-6)
+    assert "joint 3" in outcome.text()
+    assert "all joints" in outcome.text()
+
+
+def test_cost_is_equation_5(recorded: Recorded, white_box: ArmParameters) -> None:
+    """The sum over the joints of the mean squared difference of model and recorded follower."""
+    loop = Loop(prepare(recorded.fit, 1), schema.DEFAULTS, white_box)
+    plant = plant_row(white_box)[None]
+    difference = loop.angles(plant)[0] - loop.follower[::5]
+    assert loop.error(plant).sum() == pytest.approx(np.mean(difference**2, axis=0).sum())
+    assert loop.error(plant).sum() > 1e-4

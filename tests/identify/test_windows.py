@@ -1,0 +1,123 @@
+"""The native window simulation against the arm itself, and the residual made of it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from greywhale import _native
+from greywhale.arm import Arm, ArmParameters, default_arm
+from greywhale.identify.data import prepare, windows_of
+from greywhale.identify.space import MOTOR, Space
+from greywhale.identify.windows import WindowResidual
+from greywhale.simulate import plant_row
+from tools.bench.recordings import Recorded
+
+H = 0.25e-3
+ROWS, SUBSTEPS = 50, 4
+
+
+def arguments(parameters: ArmParameters, count: int = 3) -> dict[str, Any]:
+    """Three windows from rest, driven by the same noise."""
+    random = np.random.default_rng(5)
+    plants = np.tile(plant_row(parameters), (count, 1))
+    return {
+        "plants": plants,
+        "offsets": np.zeros((count, 4)),
+        "kicks": np.zeros((count, 4)),
+        "first": np.array([0, 50, 100], dtype=np.int64),
+        "angles": np.array([[0.1, 0.2, -0.3, 0.4], [0.0, 0.0, 0.0, 0.0], [-1.0, 0.5, 0.5, 1.0]]),
+        "velocities": np.zeros((3, 4)),
+        "sides": np.zeros((3, 4)),
+        "rows": ROWS,
+        "volts": random.uniform(-15, 15, (150 * SUBSTEPS, 4)),
+        "spacing": np.full(150, H * SUBSTEPS),
+        "substeps": SUBSTEPS,
+        "every": 1,
+    }
+
+
+def test_windows_are_the_arm_bit_by_bit(white_box: ArmParameters) -> None:
+    given = arguments(white_box)
+    angles = np.asarray(_native.simulate_windows(**given))
+    assert angles.shape == (3, 3, ROWS, 4)
+    for window, first in enumerate((0, 50, 100)):
+        arm = Arm(white_box)
+        arm.reset(given["angles"][window])
+        for row in range(ROWS):
+            np.testing.assert_array_equal(angles[0, window, row], arm.angles)
+            for n in range(SUBSTEPS):
+                arm.step(given["volts"][(first + row) * SUBSTEPS + n], H)
+
+
+def test_result_does_not_depend_on_the_number_of_threads() -> None:
+    given = arguments(default_arm())
+    one, three = (np.asarray(_native.simulate_windows(**given, threads=n)) for n in (1, 3))
+    np.testing.assert_array_equal(one, three)
+
+
+def test_kicks_offsets_and_sides_move_the_start() -> None:
+    given = arguments(default_arm(), 1)
+    plain = np.asarray(_native.simulate_windows(**given))
+    kicked = np.asarray(_native.simulate_windows(**(given | {"kicks": np.full((1, 4), 0.5)})))
+    assert np.all(np.abs(kicked - plain)[0, :, 1] > 1e-5)
+    # A joint without gravity does not care where zero is.
+    shifted = np.asarray(_native.simulate_windows(**(given | {"offsets": np.array([[0.3, 0.0, 0.0, 0.3]])})))
+    np.testing.assert_allclose(shifted[..., [0, 3]], plain[..., [0, 3]], atol=1e-9)
+    sides = np.asarray(_native.simulate_windows(**(given | {"sides": np.ones((3, 4))})))
+    assert np.all(np.max(np.abs(sides - plain), axis=(0, 1, 2)) > 1e-4)
+
+
+@pytest.mark.parametrize(
+    ("change", "complaint"),
+    [
+        ({"first": np.array([0, 50, 101], dtype=np.int64)}, "beyond the log"),
+        ({"first": np.array([0, 50, -1], dtype=np.int64)}, "beyond the log"),
+        ({"every": 0}, "1 or more"),
+        ({"substeps": 3}, "rows for every spacing"),
+        ({"offsets": np.zeros((2, 4))}, "row for every plant"),
+        ({"angles": np.zeros((2, 4))}, "differ in length"),
+    ],
+)
+def test_bad_arguments_are_refused(white_box: ArmParameters, change: dict[str, Any], complaint: str) -> None:
+    with pytest.raises(ValueError, match=complaint):
+        _native.simulate_windows(**(arguments(white_box) | change))
+
+
+def test_windows_cover_the_log_without_gaps(recorded: Recorded) -> None:
+    prepared = prepare(recorded.fit, 1)
+    windows = windows_of(prepared)
+    assert np.all(np.diff(windows.first) == windows.rows)
+    assert (len(windows.first) + 1) * windows.rows >= len(recorded.fit.time) - 1
+    np.testing.assert_array_equal(windows.measured[0, 0], recorded.fit.follower[0])
+
+
+def test_truth_explains_the_log_and_the_white_box_does_not(
+    recorded: Recorded, white_box: ArmParameters, hidden: ArmParameters
+) -> None:
+    """With the true arm only noise and backlash remain; the derivatives of the residual are finite everywhere."""
+    log = prepare(recorded.fit, 1)
+    residual = WindowResidual([log], white_box, range(4))
+    zero = np.zeros(4)
+    true, nominal = residual.mse(plant_row(hidden), zero), residual.mse(plant_row(white_box), zero)
+    assert np.all(true < (4e-3) ** 2)
+    assert true.sum() < 0.1 * nominal.sum()
+    space = Space.of(white_box, MOTOR, range(4))
+    points = space.start()[None] + np.vstack([np.zeros(12), 1e-3 * np.eye(12)])
+    numbers = residual(space, points)
+    assert numbers.shape == (13, len(residual.clusters))
+    assert np.isfinite(numbers).all()
+    assert np.all(np.abs(numbers[1:] - numbers[0]).max(axis=1) > 0.0)
+
+
+def test_start_of_a_window_is_not_held_against_a_candidate(recorded: Recorded, white_box: ArmParameters) -> None:
+    """An angle offset of one window costs about as much as the doubt about it, not as much as all its rows."""
+    log = prepare(recorded.fit, 1)
+    windows = windows_of(log, slice(0, 1))
+    plants = plant_row(white_box)[None]
+    error = np.full((1, 1, len(windows.time)), 3.0 * log.noise[0])
+    left = WindowResidual._without_start(error, windows, log, plants, 0)[0]
+    assert np.sum(left**2) < 12.0
+    assert np.sum((error / log.noise[0]) ** 2) > 500.0
