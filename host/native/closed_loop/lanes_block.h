@@ -244,7 +244,7 @@ class Run {
   }
 
   static Totals nothing() {
-    Totals t;
+    Totals t{};
     for (std::size_t i = 0; i < kJoints; ++i) t.mse[i] = t.itae[i] = t.itau[i] = all(0.0f);
     return t;
   }

@@ -108,7 +108,7 @@ GREYWHALE_INLINE bool any(Mask a) {
   return (words[0] | words[1] | words[2] | words[3] | words[4] | words[5] | words[6] | words[7]) != 0;
 }
 GREYWHALE_INLINE Mask negative(Int a) {
-  return parts<Mask>([&](int p) { return a.v[p] >> 31; });
+  return parts<Mask>([&](int p) { return a.v[p] < IntPart{}; });
 }
 
 GREYWHALE_INLINE Int bits_of(Float a) {
