@@ -23,8 +23,8 @@ COMPARED_S = 5e-3
 ACTUATION_S = 0.3e-3
 CONVERSION_S = 0.5e-3
 TICK_S = 1e-3
-# Of every four blocks of this length (s) the last is held out, so that every joint's motion is in both parts.
-BLOCK_S = 1.0
+# Of every four blocks of this length (s) the last is held out: shorter than a motion, so that each is in both parts.
+BLOCK_S = 0.5
 BLOCKS = 4
 
 

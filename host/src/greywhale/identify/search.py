@@ -3,9 +3,9 @@ data ask for.
 
 1. GWO-WOA over motors and Coulomb friction, on some windows of the log under its logged voltages.
 2. Least squares from the user's arm and from the best different points of that search; the best of them goes on.
-3. One quantity after the other is added: Stribeck friction, backlash, zero angles. Each is fitted to three seconds of
-   every four, first under the logged voltages, then (where the controller is known) in the closed loop, and stays only
-   if the fourth seconds are predicted better with it.
+3. One quantity after the other is added: Stribeck friction, backlash, zero angles. Each is fitted to three quarters
+   of the log, spread all over it, under the logged voltages or (where the controller is known) in the closed loop, and
+   stays only if the other quarter is predicted better with it.
 4. What was chosen is fitted to the whole log.
 """
 
@@ -203,12 +203,12 @@ class Search:
         assert self.best is not None
         self.report("fitting the chosen model to the whole log", 0.0)
         best = self.best
+        windows = WindowResidual(self.logs, self.arm, self.joints)
+        found = self._fit(self._prior(windows), best.space, best.x, WINDOW_STEPS)
         if self.loops:
             inside = self._prior(_scaled(LoopResidual(self._loops_of(best.space), self.joints)))
-            found = self._fit(inside, best.space, best.x, LOOP_STEPS, LOOP_STEP_SCALE)
-        else:
-            windows = WindowResidual(self.logs, self.arm, self.joints)
-            found = self._fit(self._prior(windows), best.space, best.x, WINDOW_STEPS)
+            ends = [self._fit(inside, best.space, start, LOOP_STEPS, LOOP_STEP_SCALE) for start in (best.x, found.x)]
+            found = min(ends, key=lambda one: one.cost)
         self.best = replace(best, x=found.x)
         self.complete = True
 
