@@ -142,6 +142,7 @@ class _Watched:
                 for joint in np.flatnonzero(duties != before):
                     seen[joint].append((board.cycle - chain + TICK_CYCLES // 2) % TICK_CYCLES - TICK_CYCLES // 2)
                 before = duties.copy()
+        assert all(seen), f"duties hardly ever changed: {[len(times) for times in seen]} times; does the arm follow?"
         return np.array([[min(times) - 60, max(times) + 60] for times in seen])
 
     def follow(self, seconds: float) -> Recording:
