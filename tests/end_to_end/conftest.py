@@ -117,7 +117,7 @@ def lock_step(leader_file: Path) -> LockStepFactory:
     """Makes a bench in this process, booted."""
 
     def make(board: str = "mega", boot: bool = True, **options: Any) -> LockStep:
-        host = LockStep(build_bench(BenchOptions(board=board, leader=leader_file, **options)))
+        host = LockStep(build_bench(BenchOptions(**{"board": board, "leader": leader_file, **options})))
         if boot:
             host.boot()
         return host

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import hashlib
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 from greywhale.arm import Wiring
+from greywhale.config import controller
+from greywhale.config.paper_tables import paper_table
 from greywhale.link import schema
 from greywhale.link.schema import Fault, NackCode, State, StopReason
+from greywhale.trajectory import multi_steps, save_leader
 
 RAD = schema.Sample.LSB["leader"]
 
@@ -160,6 +164,43 @@ def test_a_follower_that_cannot_follow_is_a_fault(lock_step: Any) -> None:
     host.run(2.0)
     assert not host.bench.motors_enabled
     assert host.status().fault is Fault.TRACKING
+
+
+@pytest.mark.parametrize("joint", range(4))
+def test_a_motor_with_the_wrong_sign_is_switched_off(lock_step: Any, joint: int) -> None:
+    """Its controller drives it away from the leader, faster and faster: a fault within the time docs/firmware.md
+    states."""
+    host = lock_step()
+    set_parameters(host, {f"joint{joint}.motor_sign": -1})
+    host.ask(schema.TelemetryRequest(1))
+    host.ask(schema.EnableRequest(0))
+    host.samples.clear()
+    host.run(5.0)
+    error = np.array([sample.leader[joint] - sample.follower[joint] for sample in host.samples]) * RAD
+    volts = np.array([sample.voltage[joint] for sample in host.samples]) / 1000
+    on = np.array([sample.state in (State.SOFT_START, State.FOLLOWING) for sample in host.samples])
+    status = host.status()
+    assert (status.fault, status.fault_where) == (Fault.TRACKING, joint)
+    assert not host.bench.motors_enabled
+    off = int(np.argmin(on))
+    noticeable = int(np.argmax(np.abs(error) > 0.2))
+    assert 200 <= off - noticeable < 500, "ms from 0.2 rad of error to motors off"
+    assert np.count_nonzero(np.abs(volts) > 10.0) < 350, "ms at more than 10 V"
+
+
+@pytest.mark.parametrize("table", ["before_tuning", "table_10"])
+def test_the_papers_steps_are_no_runaway(lock_step: Any, tmp_path: Path, table: str) -> None:
+    save_leader(tmp_path / "steps.csv", multi_steps())
+    host = lock_step(leader=tmp_path / "steps.csv")
+    controllers = controller.load(paper_table(table)).raw_values()
+    set_parameters(host, {schema.PARAMETERS[index].name: raw for index, raw in controllers.items()})
+    host.ask(schema.TelemetryRequest(1))
+    host.follow()
+    host.run(multi_steps().duration_s)
+    error = np.array([np.subtract(sample.leader, sample.follower) for sample in host.samples]) * RAD
+    assert np.abs(error).max() > 1.0, "the steps came"
+    assert np.abs(error[-200:]).max() < 0.2, "and the follower arrived"
+    assert (host.status().state, host.status().fault) == (State.FOLLOWING, Fault.NONE)
 
 
 def set_parameters(host: Any, changes: dict[str, int]) -> int:

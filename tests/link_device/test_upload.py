@@ -117,9 +117,10 @@ def test_another_running_set_after_the_upload_is_noticed() -> None:
 
 
 def test_parameters_read_wrong_are_noticed() -> None:
+    default = schema.param_crc(schema.DEFAULTS)
     with FakeBoard() as board, open_device(board) as device:
         board._hello = lambda: _with_crc(device.hello, 0x1234)  # type: ignore[method-assign]
-        with pytest.raises(UserError, match="parameters read have CRC 0x5301, the board's set has 0x1234"):
+        with pytest.raises(UserError, match=f"parameters read have CRC {default:#06x}, the board's set has 0x1234"):
             upload.read_parameters(device)
 
 

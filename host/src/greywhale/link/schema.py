@@ -18,7 +18,7 @@ from typing import ClassVar
 from .declared import Described, Field, Group, Message, Parameter, Table, check_length
 
 PROTOCOL = 1
-SCHEMA_HASH = 0xF055E369
+SCHEMA_HASH = 0xE2E8BC9A
 MAX_PAYLOAD = 48
 REPLY_BIT = 0x80
 LAYOUT = 1
@@ -852,8 +852,8 @@ TABLE = Table((
         Field("supply_mv", "u16", "mV", 1.0, 3000, 30000, (15000,), False, None, "motor supply; a duty of 1 puts this on a motor"),
         Field("enable_limit", "u16", "rad", 0.000244140625, 41, 25723, (3277,), False, None, "largest distance between leader and follower at which enable works"),
         Field("soft_start_ms", "u16", "ms", 1.0, 100, 10000, (1000,), False, None, "time in which the voltage limit rises from 0 to the supply after enable"),
-        Field("tracking_limit", "u16", "rad", 0.000244140625, 0, 51446, (10240,), False, None, "distance between leader and follower that counts as lost; 0 turns the check off"),
-        Field("tracking_ms", "u16", "ms", 1.0, 1, 60000, (500,), False, None, "time beyond tracking_limit that becomes a fault"),
+        Field("tracking_limit", "u16", "rad", 0.000244140625, 0, 51446, (3686,), False, None, "distance between leader and follower that counts as lost; 0 turns the check off"),
+        Field("tracking_ms", "u16", "ms", 1.0, 1, 60000, (200,), False, None, "time beyond tracking_limit that becomes a fault"),
         Field("filter_shift", "u8", "", 1.0, 0, 4, (1,), False, None, "potentiometer low-pass: new = old + (sample - old) / 2^filter_shift each tick; 0 is no filter"),
         Field("rail_counts", "u8", "10-bit counts", 1.0, 0, 100, (4,), False, None, "a potentiometer this close to 0 or 1023 is a fault; 0 turns the check off"),
     )),
