@@ -46,12 +46,13 @@ def _cycles() -> list[Figure]:
 
     def inference(point: Point) -> float:
         compiling.append(board.compile(point.settings, point.period_ms)[1])
-        return board.infer(point.e, point.ce).cycles
+        board.set_state(0, point.previous)
+        return board.inference_cycles(point.e)
 
     def period(point: Point) -> float:
         board.compile(point.settings, point.period_ms)
         board.set_state(point.integral, point.previous)
-        return board.step(point.e // 2, point.e // 2 - point.e, point.limit_mv).cycles
+        return board.period_cycles(point.e, point.limit_mv)
 
     _, inferring = climb(inference, Random(1), DRAWS, CLIMBS)
     _, stepping = climb(period, Random(2), DRAWS, CLIMBS)

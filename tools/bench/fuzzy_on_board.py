@@ -1,7 +1,7 @@
 """Calls the compiled controller of a real firmware image on the simulated board: its bits and its exact cycles.
 
-Called are the functions without the saving of registers that C wants: the inference where the control period calls it
-(fuzzy_pdi_infer 42 cycles more), the control period where the tick may call it (fuzzy_pdi_step 73 cycles more).
+Bits are those of fuzzy_pdi_step_error, as C++ calls it. Cycles are those of fuzzy_pdi_step_bare, as the tick calls it, RET
+included, and of the inference, which is a stretch of it.
 """
 
 from __future__ import annotations
@@ -27,13 +27,7 @@ CHANGE_SIDES = 2 * SIDE_SIZE
 # Scratch memory. Only powered, the board has not run an instruction: no variables, no watchdog, the stack at the end.
 SETTINGS_AT, COEFFICIENTS_AT, STATE_AT = 0x0600, 0x0640, 0x0680
 LIMIT = 200_000
-
-
-@dataclass(frozen=True)
-class Inferred:
-    u: int
-    no_rule: bool
-    cycles: int
+LEAST_INFERENCE = 120  # cycles that it takes in any case
 
 
 @dataclass(frozen=True)
@@ -43,7 +37,6 @@ class Stepped:
     saturated: bool
     no_rule: bool
     integral: int  # 2^-31 mV
-    cycles: int
 
 
 class FuzzyOnBoard:
@@ -52,8 +45,15 @@ class FuzzyOnBoard:
     def __init__(self, chip: str = "atmega2560", elf: Path | None = None) -> None:
         image = elf or IMAGES[chip]
         symbols = read_symbols(image)
-        self._compile, self._infer, self._step = (
-            symbols[name].address for name in (COMPILE, "fuzzy_pdi_infer_bare", "fuzzy_pdi_step_bare")
+        self._compile, self._step, self._bare, self._inference, self._inferred = (
+            symbols[name].address
+            for name in (
+                COMPILE,
+                "fuzzy_pdi_step_error",
+                "fuzzy_pdi_step_bare",
+                "fuzzy_pdi_inference",
+                "fuzzy_pdi_inferred",
+            )
         )
         self._board = Board(chip)
         self._board.load_elf(str(image))
@@ -72,21 +72,42 @@ class FuzzyOnBoard:
         cycles = self._board.call(self._compile, LIMIT)
         return Refusal(self._board.peek(24)[0]), cycles
 
-    def infer(self, e: int, ce: int) -> Inferred:
-        """u_fuzzy in q15 for errors in 1/4096 rad."""
-        sides = [COEFFICIENTS_AT + SIDE_SIZE * (e < 0), COEFFICIENTS_AT + CHANGE_SIDES + SIDE_SIZE * (ce < 0)]
-        self._registers(24, sides[0], abs(e), sides[1], abs(ce), (e < 0) == (ce < 0))
-        cycles = self._board.call(self._infer, LIMIT)
-        size, flip, no_rule = struct.unpack("<H??", self._board.peek(22, 4))
-        return Inferred(-size if (e < 0) != flip else size, no_rule, cycles)
-
     def set_state(self, integral: int, previous: int | None) -> None:
         """What step() remembers: the integral in 2^-31 mV and the last error."""
         self._board.poke(STATE_AT, STATE.pack(integral >> 16, integral & 0xFFFF, previous or 0, previous is not None))
 
-    def step(self, leader: int, follower: int, limit_mv: int) -> Stepped:
-        self._registers(24, COEFFICIENTS_AT, STATE_AT, leader, follower, limit_mv)
-        cycles = self._board.call(self._step, LIMIT)
+    def step(self, error: int, limit_mv: int) -> Stepped:
+        """One control period, as C++ calls it."""
+        self._registers(24, COEFFICIENTS_AT, STATE_AT, error, limit_mv)
+        self._board.call(self._step, LIMIT)
         u_fuzzy, volts, saturated, no_rule = struct.unpack("<hh??", self._board.peek(18, 6))
         whole, fraction, _, _ = STATE.unpack(self._board.peek(STATE_AT, STATE.size))
-        return Stepped(u_fuzzy, volts, saturated, no_rule, (whole << 16) + fraction, cycles)
+        return Stepped(u_fuzzy, volts, saturated, no_rule, (whole << 16) + fraction)
+
+    def _bare_arguments(self, error: int, limit_mv: int) -> None:
+        self._board.poke(4, struct.pack("<H", limit_mv))
+        self._board.poke(24, struct.pack("<h", error))
+        self._board.poke(28, struct.pack("<HH", STATE_AT, COEFFICIENTS_AT))
+
+    def period_cycles(self, error: int, limit_mv: int) -> int:
+        """Of one control period, as the tick calls it."""
+        self._bare_arguments(error, limit_mv)
+        return self._board.call(self._bare, LIMIT)
+
+    def inference_cycles(self, error: int) -> int:
+        """Of memberships, rules and defuzzification for this error and its change."""
+        self._bare_arguments(error, 0)
+        board = self._board
+        board.pc = self._bare
+        self._run_to(self._inference)
+        start = board.cycle
+        board.run_until(start + LEAST_INFERENCE)
+        self._run_to(self._inferred)
+        return board.cycle - start
+
+    def _run_to(self, address: int) -> None:
+        end = self._board.cycle + LIMIT
+        while self._board.pc != address:
+            self._board.run_until(self._board.cycle + 1)
+            if self._board.cycle > end:
+                raise RuntimeError(f"the firmware did not reach {address:#x} within {LIMIT} cycles")

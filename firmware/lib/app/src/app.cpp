@@ -83,7 +83,8 @@ void App::control() {
 
 template <uint8_t joint>
 inline __attribute__((always_inline)) void App::control_joint(uint16_t limit_mv) {
-  drive_.set<joint>(controllers_.step(joint, sampling_.reference(joint), sampling_.follower(joint), limit_mv));
+  const Outcome out = controllers_.step(joint, sampling_.error(joint), limit_mv);
+  drive_.set<joint>(out.size_mv, out.sign);
 }
 
 // A sample that could not be sent before the next one is due is dropped; its sequence number stays out.

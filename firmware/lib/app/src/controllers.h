@@ -4,44 +4,46 @@
 #include <hal.h>
 #include <multiply.h>
 #include <params/table.h>
-#include <stddef.h>
 #include <stdint.h>
 
 namespace app {
 
 // What the app wants of a fuzzy_pdi::Output.
 struct Outcome {
-  int16_t volts_mv;
+  uint16_t size_mv;
+  uint8_t sign;      // bit 7: the voltage is negative
   bool no_rule;
+
+  int16_t volts_mv() const { return static_cast<int16_t>(sign & 0x80 ? -static_cast<int16_t>(size_mv) : size_mv); }
 };
 
 #if defined(__AVR__) && !defined(FUZZY_PDI_PORTABLE)
 
-// fuzzy_pdi::step() called by hand. Its bare entry saves no registers: they are saved once a tick instead of once a joint. And
-// avr-gcc would put the returned struct, which comes in registers, on the stack first. Together that spares 90 cycles a joint.
+// fuzzy_pdi::step_error() called by hand. Its bare entry saves no registers, they are saved once a tick or not at all, and leaves
+// size and sign of the voltage apart, as the duty wants them.
 inline __attribute__((always_inline)) Outcome step_in_registers(
-  const fuzzy_pdi::Coefficients& c, fuzzy_pdi::State& s, int16_t leader, int16_t follower, uint16_t limit) {
-  static_assert(sizeof(fuzzy_pdi::Output) == 6, "returned in r18..r23");
-  static_assert(offsetof(fuzzy_pdi::Output, volts_mv) == 2 && offsetof(fuzzy_pdi::Output, no_rule) == 5, "see below");
-  register const fuzzy_pdi::Coefficients* r24 __asm__("r24") = &c;
-  register uint16_t r22 __asm__("r22") = reinterpret_cast<uint16_t>(&s);
-  register int16_t r20 __asm__("r20") = leader;
-  register int16_t r18 __asm__("r18") = follower;
-  register uint16_t r16 __asm__("r16") = limit;
+  const fuzzy_pdi::Coefficients& c, fuzzy_pdi::State& s, int16_t error, uint16_t limit) {
+  register uint16_t r30 __asm__("r30") = reinterpret_cast<uint16_t>(&c);
+  register fuzzy_pdi::State* r28 __asm__("r28") = &s;
+  register int16_t r24 __asm__("r24") = error;
+  register uint16_t r4 __asm__("r4") = limit;
+  register uint16_t r26 __asm__("r26");
+  register uint8_t r17 __asm__("r17");
+  register uint8_t r6 __asm__("r6");
   __asm__ volatile("%~call fuzzy_pdi_step_bare"
-      : "+r"(r24), "+r"(r22), "+r"(r20), "+r"(r18), "+r"(r16)
-      :
-      : "r2", "r3", "r4", "r5", "r6", "r7", "r8", "r9", "r10", "r11", "r12", "r13", "r14", "r15", "r26", "r27", "r30", "r31",
+      : "+r"(r30), "+r"(r28), "+r"(r24), "=r"(r26), "=r"(r17), "=r"(r6)
+      : "r"(r4)
+      : "r2", "r3", "r7", "r8", "r9", "r10", "r11", "r12", "r13", "r14", "r15", "r16", "r18", "r19", "r20", "r21", "r22", "r23",
         "memory");
-  return {r20, static_cast<uint8_t>(r22 >> 8) != 0};
+  return {r26, r17, r6 != 0};
 }
 
 #else
 
-inline Outcome step_in_registers(const fuzzy_pdi::Coefficients& c, fuzzy_pdi::State& s, int16_t leader, int16_t follower,
-                                 uint16_t limit) {
-  const fuzzy_pdi::Output out = fuzzy_pdi::step(c, s, leader, follower, limit);
-  return {out.volts_mv, out.no_rule};
+inline Outcome step_in_registers(const fuzzy_pdi::Coefficients& c, fuzzy_pdi::State& s, int16_t error, uint16_t limit) {
+  const fuzzy_pdi::Output out = fuzzy_pdi::step_error(c, s, error, limit);
+  const bool negative = out.volts_mv < 0;
+  return {static_cast<uint16_t>(negative ? -out.volts_mv : out.volts_mv), static_cast<uint8_t>(negative ? 0x80 : 0), out.no_rule};
 }
 
 #endif
@@ -57,11 +59,11 @@ class Controllers {
     return hal::upper_product(static_cast<uint16_t>(supply_mv_ * 2), ramp_q15);   // (supply * ramp) >> 15
   }
   // One control period of a joint: the voltage for its motor.
-  int16_t step(uint8_t joint, int16_t reference, int16_t follower, uint16_t limit_mv) {
-    const Outcome out = step_in_registers(coefficients_[joint], states_[joint], reference, follower, limit_mv);
+  Outcome step(uint8_t joint, int16_t error, uint16_t limit_mv) {
+    const Outcome out = step_in_registers(coefficients_[joint], states_[joint], error, limit_mv);
     if (out.no_rule) count_no_rule();
-    volts_mv_[joint] = out.volts_mv;
-    return out.volts_mv;
+    volts_mv_[joint] = out.volts_mv();
+    return out;
   }
 
   int16_t volts_mv(uint8_t joint) const { return volts_mv_[joint]; }

@@ -10,9 +10,9 @@ namespace app {
 class Drive {
  public:
   void configure(const params::Table& table);
-  // |millivolts| <= the supply
+  // size_mv <= the supply; bit 7 of sign: the voltage is negative
   template <uint8_t joint>
-  void set(int16_t millivolts) const;
+  void set(uint16_t size_mv, uint8_t sign) const;
   void release() const;   // all duties 0
 
  private:
@@ -25,10 +25,9 @@ class Drive {
 
 // duty = size * full duty / supply = (size * scale) >> 18, rounded
 template <uint8_t joint>
-inline __attribute__((always_inline)) void Drive::set(int16_t millivolts) const {
-  const uint16_t size = static_cast<uint16_t>(millivolts < 0 ? -millivolts : millivolts);
-  const uint16_t duty = static_cast<uint16_t>(hal::upper_product(size, motors_[joint].scale) + 2u) >> 2;
-  const auto direction = static_cast<int8_t>((millivolts >> 8) ^ motors_[joint].sign);
+inline __attribute__((always_inline)) void Drive::set(uint16_t size_mv, uint8_t sign) const {
+  const uint16_t duty = static_cast<uint16_t>(hal::upper_product(size_mv, motors_[joint].scale) + 2u) >> 2;
+  const auto direction = static_cast<int8_t>(sign ^ static_cast<uint8_t>(motors_[joint].sign));
   hal::set_duty<joint>(direction >= 0, duty);
 }
 

@@ -14,10 +14,10 @@ class Sampling {
   // Takes the sums of every pot, as hal::pot_sums() has them; notes rails and distances in `seen`.
   void tick(const uint16_t* sums, supervisor::Observation& seen);
 
-  int16_t leader(uint8_t joint) const { return signals_.joint[joint].leader.angle; }   // q12 rad
-  int16_t follower(uint8_t joint) const { return signals_.joint[joint].follower.angle; }
-  // The leader within the joint's limits: what the follower is asked for.
-  int16_t reference(uint8_t joint) const { return signals_.joint[joint].reference; }
+  int16_t leader(uint8_t joint) const { return angle(signals_.joint[joint].leader); }   // q12 rad
+  int16_t follower(uint8_t joint) const { return signals_.joint[joint].follower_angle; }
+  // From the follower to the leader within the joint's limits.
+  int16_t error(uint8_t joint) const { return signals_.joint[joint].error; }
 
  private:
   void start_filter();

@@ -1,6 +1,8 @@
 // See signals.h.
 #include "signals.h"
 
+#include <fuzzy_pdi.h>
+
 namespace app {
 namespace {
 
@@ -8,10 +10,9 @@ int16_t clamp(int16_t value, int16_t least, int16_t most) {
   return value < least ? least : value > most ? most : value;
 }
 
-int16_t angle(Pot& pot, uint16_t sum, const Signals& signals) {
+int16_t follow(Pot& pot, uint16_t sum, const Signals& signals) {
   pot.filtered = hal::blend(pot.filtered, signals.keep, sum, signals.gain);
-  pot.angle = hal::line(pot.filtered, pot.scale, pot.offset);
-  return pot.angle;
+  return angle(pot);
 }
 
 void note_rail(uint8_t pot, uint16_t sum, const Signals& signals, supervisor::Observation& seen) {
@@ -28,9 +29,10 @@ void follow_pots_portable(const uint16_t* sums, Signals* signals, supervisor::Ob
     note_rail(i, sums[i], *signals, *seen);
     note_rail(other, sums[other], *signals, *seen);
     JointSignals& joint = signals->joint[i];
-    const int16_t wanted = clamp(angle(joint.leader, sums[i], *signals), joint.limit_min, joint.limit_max);
-    const int16_t is = angle(joint.follower, sums[other], *signals);
-    joint.reference = wanted;
+    const int16_t wanted = clamp(follow(joint.leader, sums[i], *signals), joint.limit_min, joint.limit_max);
+    const int16_t is = follow(joint.follower, sums[other], *signals);
+    joint.follower_angle = is;
+    joint.error = fuzzy_pdi::difference(wanted, is);
     seen->distance[i] = static_cast<uint16_t>(wanted > is ? wanted - is : is - wanted);
   }
 }

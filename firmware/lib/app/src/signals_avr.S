@@ -3,7 +3,7 @@
 //   void app_follow_pots(const uint16_t* sums, Signals* signals, Observation* seen)
 //                        r25:r24               r23:r22           r21:r20
 //
-// For follow_pots() of signals.h only: uses every register from r11 on and keeps none but Y.
+// For follow_pots() of signals.h only: uses every register from r8 on and keeps none but Y.
 #ifdef __AVR__
 
 #define ZERO r17
@@ -16,11 +16,12 @@
 
 // In the joint's record at Z, and in Observation
 #define LEADER 0
-#define FOLLOWER 10
-#define LIMIT_MIN 20
-#define LIMIT_MAX 22
-#define REFERENCE 24
-#define RECORD 26
+#define FOLLOWER 8
+#define FOLLOWER_ANGLE 16
+#define LIMIT_MIN 18
+#define LIMIT_MAX 20
+#define ERROR 22
+#define RECORD 24
 #define RAIL_LOW 8
 
 // The angle of a pot into r25:r24. `pot` is 0..7, `at` the place of its record after Z; X is at distance[joint].
@@ -82,8 +83,6 @@
   lsl r23
   rol r24
   rol r25
-  std Z+(\at)+8, r24
-  std Z+(\at)+9, r25
 .endm
 
 .macro joint number
@@ -99,17 +98,24 @@
   cpc r19, r25
   brge 3f
 2:movw r24, r18
-3:std Z+REFERENCE, r24
-  std Z+REFERENCE+1, r25
+3:movw r8, r24
   angle \number+4, FOLLOWER, \number
-  ldd r18, Z+REFERENCE
-  ldd r19, Z+REFERENCE+1
+  std Z+FOLLOWER_ANGLE, r24
+  std Z+FOLLOWER_ANGLE+1, r25
+  movw r18, r8
   sub r18, r24
   sbc r19, r25
-  brge 4f
+  brvs 5f
+  std Z+ERROR, r18
+  std Z+ERROR+1, r19
+  brpl 4f
   com r19
   neg r18
   sbci r19, 0xff
+  brpl 4f
+  rcall .Lleast
+  rjmp 4f
+5:rcall .Lfar_apart
 4:st X+, r18
   st X+, r19
 .endm
@@ -140,6 +146,22 @@ app_follow_pots:
   clr r1
   pop r29
   pop r28
+  ret
+
+// The error is beyond 16 bits, positive if N is set: it saturates, the distance in r19:r18 does not.
+.Lfar_apart:
+  ldi r24, 0xff
+  ldi r25, 0x7f
+  brmi 1f
+  com r19
+  neg r18
+  sbci r19, 0xff
+// The least error is -32767.
+.Lleast:
+  ldi r24, 0x01
+  ldi r25, 0x80
+1:std Z+ERROR, r24
+  std Z+ERROR+1, r25
   ret
 
 // The sum in r25:r24 is outside: sets bit r22 of the rail below or above. X + r23 is the rail below.

@@ -12,24 +12,18 @@ void reset(State& state) { state = {0, 0, 0, false}; }
 #if defined(__AVR__) && !defined(FUZZY_PDI_PORTABLE)
 
 // What the assembly takes for granted.
-static_assert(sizeof(Side) == 9 && offsetof(Side, outer) == 4 && offsetof(Side, short_ramps) == 8, "inference_avr.S");
+static_assert(sizeof(Side) == 9 && offsetof(Side, outer) == 4 && offsetof(Side, short_ramps) == 8, "memberships_avr.inc");
 static_assert(offsetof(Coefficients, ce) == 18 && offsetof(Coefficients, integral) == 36 && offsetof(Coefficients, ku_mv) == 40,
               "step_avr.S");
 static_assert(offsetof(State, fraction) == 4 && offsetof(State, previous_e) == 6 && offsetof(State, started) == 8,
               "step_avr.S");
-static_assert(sizeof(Defuzzified) == 4 && sizeof(Output) == 6, "returned in registers");
+static_assert(sizeof(Output) == 6, "returned in registers");
 
 #else
 
 namespace {
 
 constexpr int32_t integral_end = int32_t{1} << 30;
-
-// a - b, saturated so that its size has 15 bits.
-inline int16_t difference(int16_t a, int16_t b) {
-  const int32_t exact = int32_t{a} - b;
-  return static_cast<int16_t>(exact > 32767 ? 32767 : exact < -32767 ? -32767 : exact);
-}
 
 inline Input split(int16_t value) {
   return {static_cast<uint16_t>(value < 0 ? -value : value), value < 0};
@@ -69,13 +63,12 @@ inline Volts sum(int32_t proportional, int32_t integral) {
 
 }  // namespace
 
-Output step(const Coefficients& c, State& state, int16_t leader_q12, int16_t follower_q12, uint16_t limit_mv) {
-  const int16_t error = difference(leader_q12, follower_q12);
-  const int16_t change = state.started ? difference(error, state.previous_e) : int16_t{0};
-  state.previous_e = error;
+Output step_error(const Coefficients& c, State& state, int16_t error_q12, uint16_t limit_mv) {
+  const int16_t change = state.started ? difference(error_q12, state.previous_e) : int16_t{0};
+  state.previous_e = error_q12;
   state.started = true;
 
-  const Input e = split(error);
+  const Input e = split(error_q12);
   const Defuzzified u = infer(c, e, split(change));
   const bool down = e.negative != u.flip;
   const int32_t drive = static_cast<int32_t>(static_cast<uint32_t>(u.size) * c.ku_mv);  // 2^-15 mV

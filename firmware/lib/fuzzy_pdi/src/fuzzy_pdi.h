@@ -62,16 +62,26 @@ Refusal compile(const Settings& settings, uint8_t period_ms, Coefficients& out);
 
 void reset(State& state);
 
-// One control period. e = leader - follower and its change saturate at +-32767 (+-8 rad); limit_mv (0..32767) is the voltage
-// available now. The integral takes e in unless the output is beyond the limit on e's own side.
-#if defined(__AVR__) && !defined(FUZZY_PDI_PORTABLE)
-extern "C" Output fuzzy_pdi_step(const Coefficients* c, State* state, int16_t leader, int16_t follower, uint16_t limit_mv);
+// a - b, saturated so that its size has 15 bits.
+inline int16_t difference(int16_t a, int16_t b) {
+  const int32_t exact = int32_t{a} - b;
+  return static_cast<int16_t>(exact > 32767 ? 32767 : exact < -32767 ? -32767 : exact);
+}
 
-inline Output step(const Coefficients& c, State& state, int16_t leader_q12, int16_t follower_q12, uint16_t limit_mv) {
-  return fuzzy_pdi_step(&c, &state, leader_q12, follower_q12, limit_mv);  // step_avr.S
+// One control period. error = difference(leader, follower), +-8 rad; limit_mv (0..32767) is the voltage available now. The
+// integral takes the error in unless the output is beyond the limit on the error's own side.
+#if defined(__AVR__) && !defined(FUZZY_PDI_PORTABLE)
+extern "C" Output fuzzy_pdi_step_error(const Coefficients* c, State* state, int16_t error, uint16_t limit_mv);
+
+inline Output step_error(const Coefficients& c, State& state, int16_t error_q12, uint16_t limit_mv) {
+  return fuzzy_pdi_step_error(&c, &state, error_q12, limit_mv);  // step_avr.S
 }
 #else
-Output step(const Coefficients& c, State& state, int16_t leader_q12, int16_t follower_q12, uint16_t limit_mv);
+Output step_error(const Coefficients& c, State& state, int16_t error_q12, uint16_t limit_mv);
 #endif
+
+inline Output step(const Coefficients& c, State& state, int16_t leader_q12, int16_t follower_q12, uint16_t limit_mv) {
+  return step_error(c, state, difference(leader_q12, follower_q12), limit_mv);
+}
 
 }  // namespace fuzzy_pdi

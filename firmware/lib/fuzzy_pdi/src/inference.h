@@ -1,4 +1,4 @@
-// From the two inputs to u_fuzzy: memberships, rules, defuzzification.
+// From the two inputs to u_fuzzy: memberships, rules, defuzzification. On AVR memberships_avr.inc and rules_avr.inc stand for it.
 //
 // Heights are 24-bit fractions of `one`. Each input is taken as size and sign: on either side of zero only two sets are active,
 // so the nine rules of Table 6 become three (same signs) or four (opposite signs) minima.
@@ -67,21 +67,8 @@ inline Defuzzified defuzzify(const Rules& rules) {
   return {ratio_q15(part, whole), flip, false};
 }
 
-#if defined(__AVR__) && !defined(FUZZY_PDI_PORTABLE)
-
-// The same in assembly: inference_avr.S.
-extern "C" Defuzzified fuzzy_pdi_infer(const Side* e, uint16_t e_size, const Side* ce, uint16_t ce_size, bool same_sign);
-
-#else
-
-inline Defuzzified fuzzy_pdi_infer(const Side* e, uint16_t e_size, const Side* ce, uint16_t ce_size, bool same_sign) {
-  return defuzzify(fire(fuzzify(*e, e_size), fuzzify(*ce, ce_size), same_sign));
-}
-
-#endif
-
 inline Defuzzified infer(const Coefficients& c, const Input& e, const Input& ce) {
-  return fuzzy_pdi_infer(&c.e[e.negative], e.size, &c.ce[ce.negative], ce.size, e.negative == ce.negative);
+  return defuzzify(fire(fuzzify(c.e[e.negative], e.size), fuzzify(c.ce[ce.negative], ce.size), e.negative == ce.negative));
 }
 
 }  // namespace fuzzy_pdi

@@ -1,12 +1,17 @@
-// step() of fuzzy_pdi.h in AVR assembly: the same bits in a quarter of the cycles. Optional: defining FUZZY_PDI_PORTABLE compiles the
-// C++ of fuzzy_pdi.cpp instead. The tests hold the two equal.
+// step_error() of fuzzy_pdi.h in AVR assembly: the same bits in a quarter of the cycles. Optional: defining FUZZY_PDI_PORTABLE
+// compiles the C++ of fuzzy_pdi.cpp instead. The tests hold the two equal.
 //
-//   Output fuzzy_pdi_step(const Coefficients *c, State *state, int16_t leader, int16_t follower, uint16_t limit_mv)
-//                         r25:r24                r23:r22       r21:r20         r19:r18           r17:r16
+//   Output fuzzy_pdi_step_error(const Coefficients *c, State *state, int16_t error, uint16_t limit_mv)
+//                               r25:r24                r23:r22       r21:r20        r19:r18
 //   returns u_fuzzy in r19:r18, volts_mv in r21:r20, saturated in r22, no_rule in r23
 //
-// fuzzy_pdi_step_bare is the same for a caller in assembly that wants to save registers once for several joints: it uses every
-// register but r28 and r29, and leaves r1 = 0.
+// fuzzy_pdi_step_bare does the work, for callers that save registers once for several joints:
+//
+//   takes    coefficients in r31:r30, state in r29:r28, error (+-32767) in r25:r24, limit_mv in r5:r4
+//   returns  size of the voltage in r27:r26, its sign in bit 7 of r17; no_rule in r6; saturated in T;
+//            size of u_fuzzy (up to 32768) in r3:r2, its sign in bit 7 of r7
+//
+// It keeps r5:r4 only, and leaves r1 = 0.
 #if defined(__AVR__) && !defined(FUZZY_PDI_PORTABLE)
 
 // Coefficients and State, see the assertions in fuzzy_pdi.cpp.
@@ -19,31 +24,14 @@
 #define STATE_PREVIOUS 6
 #define STATE_STARTED 8
 
-// Across the inference: r3:r2 coefficients, Y state, r5:r4 limit, r9:r8 size of e, r6 sign of e (bit 7).
-// After it: r3:r2 size of u_fuzzy, r7 no_rule, T its sign.
-#define E_SIGN r6
-#define NO_RULE r7
-#define ZERO r16
+// r3:r2 holds the coefficients until the inference is done, then the size of u_fuzzy. r9:r8 is the size of e. Signs in bit 7:
+#define E_SIGN r6  /* until the inference is done, then in T */
+#define U_SIGN r7
+#define SIGN r17   /* of the voltage */
+#define NO_RULE r6
 #define SCRATCH r17
 
-// high:low = a - b, saturated to +-32767
-.macro difference low, high, b_low, b_high
-  sub \low, \b_low
-  sbc \high, \b_high
-  brvs 1f
-  cpi \high, 0x80
-  brne 3f
-  cpi \low, 0
-  brne 3f
-  ldi \low, 1  // -32768
-  rjmp 3f
-1:ldi \low, 0xFF
-  ldi \high, 0x7F
-  brmi 3f  // the difference was too large; too small:
-  ldi \low, 0x01
-  ldi \high, 0x80
-3:
-.endm
+#include "memberships_avr.inc"
 
 .macro negate16 low, high
   neg \high
@@ -51,29 +39,42 @@
   sbc \high, ZERO
 .endm
 
-// r31:r30 = size of drive + integral in mV, rounded; SCRATCH: its sign in bit 7. drive in r27..r24, integral in r31:r30:r9:r8.
+// r27:r26 = size in mV of drive (r27..r24, at least 0) + integral (r23..r20), rounded half away from zero. All is seen from
+// u's side: where u is below 0 the integral is taken off, and SIGN begins as negative.
 .macro volts
-  add r8, r24
-  adc r9, r25
-  adc r30, r26
-  adc r31, r27
-  mov SCRATCH, r31
-  brpl 4f
-  com r31
-  com r30
-  com r9
-  com r8
-  adc r8, ZERO
-  adc r9, ZERO
-  adc r30, ZERO
-  adc r31, ZERO
-4:lsl r8
-  rol r9
-  rol r30
-  rol r31
-  lsl r9
-  adc r30, ZERO
-  adc r31, ZERO
+  mov SIGN, U_SIGN
+  sbrc U_SIGN, 7
+  rjmp 4f
+  add r24, r20
+  adc r25, r21
+  adc r26, r22
+  adc r27, r23
+  brmi 5f
+3:lsl r24
+  rol r25
+  rol r26
+  rol r27
+  lsl r25
+  adc r26, ZERO
+  adc r27, ZERO
+  rjmp 6f
+4:sub r24, r20
+  sbc r25, r21
+  sbc r26, r22
+  sbc r27, r23
+  brpl 3b
+5:com SIGN
+  lsl r24
+  rol r25
+  rol r26
+  rol r27
+  com r26  // -upper half, less one if the lower half is above 1/2
+  com r27
+  subi r24, 0x01
+  sbci r25, 0x80
+  adc r26, ZERO
+  adc r27, ZERO
+6:
 .endm
 
 // A byte of the integral's factor times the size of e.
@@ -89,21 +90,218 @@
   adc \hi, ZERO
 .endm
 
-.macro plus register, at
-  ldd SCRATCH, Y+\at
-  adc \register, SCRATCH
-.endm
+  .section .text.fuzzy_pdi_step_bare, "ax", @progbits
+  .type fuzzy_pdi_step_detours, @function
+fuzzy_pdi_step_detours:
+.Lslow_e:
+  rjmp .Lslow_e_far
+.Lsmall_e:
+  rjmp .Lsmall_e_far
 
-.macro minus register, at
-  ldd SCRATCH, Y+\at
-  sbc SCRATCH, \register
-  mov \register, SCRATCH
-.endm
+.Lfirst:
+  ldi S, 1
+  std Y+STATE_STARTED, S
+  clr S
+  ldi r18, 0
+  ldi r19, 0
+  rjmp .Lchange
 
-  .section .text.fuzzy_pdi_step, "ax", @progbits
-  .global fuzzy_pdi_step
-  .type fuzzy_pdi_step, @function
-fuzzy_pdi_step:
+// The change is beyond 16 bits, and its sign the wrong one.
+.Loverflow:
+  com S
+.Lmost:
+  ldi r18, 0xFF
+  ldi r19, 0x7F
+  rjmp .Lchange
+  .size fuzzy_pdi_step_detours, . - fuzzy_pdi_step_detours
+
+  .global fuzzy_pdi_step_bare
+  .type fuzzy_pdi_step_bare, @function
+fuzzy_pdi_step_bare:
+  clr ZERO
+  movw r2, r30
+
+  // size of e's change in r19:r18, its sign in S
+  ldd r20, Y+STATE_PREVIOUS
+  ldd r21, Y+STATE_PREVIOUS+1
+  std Y+STATE_PREVIOUS, r24
+  std Y+STATE_PREVIOUS+1, r25
+  ldd S, Y+STATE_STARTED
+  tst S
+  breq .Lfirst
+  movw r18, r24
+  sub r18, r20
+  sbc r19, r21
+  mov S, r19
+  brvs .Loverflow
+  brpl .Lchange
+  negate16 r18, r19
+  brmi .Lmost  // -32768 counts as -32767
+.Lchange:
+  eor S, r25
+  bst S, 7  // T: opposite signs
+
+  // size of e in r9:r8; Z at its side
+  mov E_SIGN, r25
+  movw r8, r24
+  tst r25
+  brpl 1f
+  negate16 r8, r9
+  adiw r30, SIDE_SIZE
+1:
+fuzzy_pdi_inference:
+  ldi HALF, 0x80
+  .set SIDE, 0
+  fuzzify .Lslow_e, .Lslow_e_far, .Lsmall_e, r8, r9, a0, a1, a2, A0, A1, A2
+.Lslow_ce:
+  rjmp .Lslow_ce_far
+.Lsmall_ce:
+  rjmp .Lsmall_ce_far
+  fuzzify_small .Lsmall_e_far, r8, a0, a1, a2, A0, A1, A2
+19:
+  brtc 1f
+  adiw r30, SIDE_SIZE  // the other side
+  sbrc E_SIGN, 7
+  sbiw r30, 2 * SIDE_SIZE
+1:
+  .set SIDE, C_CE
+  fuzzify .Lslow_ce, .Lslow_ce_far, .Lsmall_ce, r18, r19, b0, b1, b2, B0, B1, B2
+  fuzzify_small .Lsmall_ce_far, r18, b0, b1, b2, B0, B1, B2
+19:
+#include "rules_avr.inc"
+fuzzy_pdi_inferred:
+
+  // size of u_fuzzy in r25:r24, T: against e
+  movw r30, r2
+  movw r2, r24
+  mov U_SIGN, E_SIGN
+  brtc 1f
+  com U_SIGN
+1:
+  bst E_SIGN, 7
+
+  // drive = size of u * Ku in r27..r24
+  ldd r20, Z+C_KU
+  ldd r21, Z+C_KU+1
+  mul r2, r20
+  movw r24, r0
+  mul r3, r21
+  movw r26, r0
+  mul r3, r20
+  add r25, r0
+  adc r26, r1
+  adc r27, ZERO
+  mul r2, r21
+  add r25, r0
+  adc r26, r1
+  adc r27, ZERO
+
+  // what e adds to the integral in r15..r10
+  mov NO_RULE, NONE
+  ldd SCRATCH, Z+C_INTEGRAL
+  mul r8, SCRATCH
+  movw r10, r0
+  mul r9, SCRATCH
+  add r11, r0
+  mov r12, r1
+  adc r12, ZERO
+  integral_row 1, r11, r12, r13
+  integral_row 2, r12, r13, r14
+  ldd SCRATCH, Z+(C_INTEGRAL + 3)
+  cpse SCRATCH, ZERO
+  rjmp .Lhigh_byte
+  clr r15  // as with any ordinary Ki
+.Lmore:
+  ldd r18, Y+STATE_FRACTION
+  ldd r19, Y+STATE_FRACTION+1
+  ldd r20, Y+STATE_INTEGRAL
+  ldd r21, Y+STATE_INTEGRAL+1
+  ldd r22, Y+STATE_INTEGRAL+2
+  ldd r23, Y+STATE_INTEGRAL+3
+  brts .Ldown
+  add r18, r10
+  adc r19, r11
+  adc r20, r12
+  adc r21, r13
+  adc r22, r14
+  adc r23, r15
+.Ltaken:
+  mov SCRATCH, r23
+  lsl SCRATCH
+  eor SCRATCH, r23
+  brmi .Lclamp
+.Lclamped:
+  movw r12, r24
+  movw r14, r26
+  volts
+  cp r4, r26
+  cpc r5, r27
+  brcs .Lsaturated
+  clt
+.Lstore:
+  std Y+STATE_FRACTION, r18
+  std Y+STATE_FRACTION+1, r19
+  std Y+STATE_INTEGRAL, r20
+  std Y+STATE_INTEGRAL+1, r21
+  std Y+STATE_INTEGRAL+2, r22
+  std Y+STATE_INTEGRAL+3, r23
+  clr r1
+  ret
+
+.Ldown:
+  sub r18, r10
+  sbc r19, r11
+  sbc r20, r12
+  sbc r21, r13
+  sbc r22, r14
+  sbc r23, r15
+  rjmp .Ltaken
+
+// Beyond +-2^30: 2^30 - 2^-16 or -2^30.
+.Lclamp:
+  ldi r18, 0xFF
+  ldi r23, 0x3F
+  brtc 1f
+  ldi r18, 0x00
+  ldi r23, 0xC0
+1:mov r19, r18
+  mov r20, r18
+  mov r21, r18
+  mov r22, r18
+  rjmp .Lclamped
+
+// Beyond the limit: on e's own side the integral stays as it was.
+.Lsaturated:
+  mov r0, SIGN
+  brtc 1f
+  com r0
+1:set
+  sbrc r0, 7
+  rjmp 2f
+  ldd r20, Y+STATE_INTEGRAL
+  ldd r21, Y+STATE_INTEGRAL+1
+  ldd r22, Y+STATE_INTEGRAL+2
+  ldd r23, Y+STATE_INTEGRAL+3
+  movw r24, r12
+  movw r26, r14
+  volts
+  cp r4, r26
+  cpc r5, r27
+  brcc 3f
+  movw r26, r4
+3:clr r1
+  ret
+2:movw r26, r4
+  rjmp .Lstore
+
+.Lhigh_byte:
+  integral_row 3, r13, r14, r15
+  rjmp .Lmore
+  .size fuzzy_pdi_step_bare, . - fuzzy_pdi_step_bare
+
+  .global fuzzy_pdi_step_error
+  .type fuzzy_pdi_step_error, @function
+fuzzy_pdi_step_error:
   push r2
   push r3
   push r4
@@ -120,7 +318,31 @@ fuzzy_pdi_step:
   push r15
   push r16
   push r17
+  push r28
+  push r29
+  movw r30, r24
+  movw r28, r22
+  movw r24, r20
+  movw r4, r18
   rcall fuzzy_pdi_step_bare
+  clr ZERO
+  movw r20, r26
+  sbrs SIGN, 7
+  rjmp 1f
+  negate16 r20, r21
+1:movw r18, r2
+  sbrs r19, 7
+  rjmp 2f
+  ldi r18, 0xFF  // 1.0
+  ldi r19, 0x7F
+2:sbrs U_SIGN, 7
+  rjmp 3f
+  negate16 r18, r19
+3:ldi r22, 0
+  bld r22, 0
+  mov r23, NO_RULE
+  pop r29
+  pop r28
   pop r17
   pop r16
   pop r15
@@ -138,206 +360,22 @@ fuzzy_pdi_step:
   pop r3
   pop r2
   ret
-  .size fuzzy_pdi_step, . - fuzzy_pdi_step
+  .size fuzzy_pdi_step_error, . - fuzzy_pdi_step_error
 
-  .global fuzzy_pdi_step_bare
-  .type fuzzy_pdi_step_bare, @function
-fuzzy_pdi_step_bare:
-  push r28
-  push r29
-  movw r2, r24
-  movw r28, r22
-  movw r4, r16
-  clr ZERO
-
-  // e in r23:r22, its change in r19:r18
-  movw r22, r20
-  difference r22, r23, r18, r19
-  ldd r20, Y+STATE_PREVIOUS
-  ldd r21, Y+STATE_PREVIOUS+1
-  std Y+STATE_PREVIOUS, r22
-  std Y+STATE_PREVIOUS+1, r23
-  ldd SCRATCH, Y+STATE_STARTED
-  tst SCRATCH
-  brne 1f
-  rjmp .Lfirst
-1:  movw r18, r22
-  difference r18, r19, r20, r21
-
-  // sizes; the sides' addresses in r25:r24 and r21:r20
-.Lsplit:
-  movw r20, r2
-  subi r20, lo8(-C_CE)
-  sbci r21, hi8(-C_CE)
-  mov E_SIGN, r23
-  mov SCRATCH, r23
-  eor SCRATCH, r19  // bit 7: opposite signs
-  tst r23
-  brpl 1f
-  negate16 r22, r23
-  adiw r24, SIDE_SIZE
-1:tst r19
-  brpl 2f
-  negate16 r18, r19
-  subi r20, lo8(-SIDE_SIZE)
-  sbci r21, hi8(-SIDE_SIZE)
-2:movw r8, r22
-  lsl SCRATCH
-  ldi r16, 1
-  sbci r16, 0
-  call fuzzy_pdi_infer_bare
-
-  mov NO_RULE, r25
-  movw r30, r2
-  movw r2, r22
-  clr ZERO
-  mov SCRATCH, E_SIGN
-  sbrc r24, 0
-  com SCRATCH
-  bst SCRATCH, 7
-
-  // drive = size of u * Ku in r27..r24
-  ldd r20, Z+C_KU
-  ldd r21, Z+C_KU+1
-  mul r22, r20
-  movw r24, r0
-  mul r23, r21
-  movw r26, r0
-  mul r23, r20
-  add r25, r0
-  adc r26, r1
-  adc r27, ZERO
-  mul r22, r21
-  add r25, r0
-  adc r26, r1
-  adc r27, ZERO
-  brtc 1f
-  com r27
-  com r26
-  com r25
-  neg r24
-  sbci r25, 0xFF
-  sbci r26, 0xFF
-  sbci r27, 0xFF
-
-1:// what e adds to the integral, in r23..r18: fraction r19:r18, whole r23..r20
-  ldd SCRATCH, Z+C_INTEGRAL
-  mul r9, SCRATCH
-  mov r19, r0
-  mov r20, r1
-  mul r8, SCRATCH
-  mov r18, r0
-  add r19, r1
-  adc r20, ZERO
-  integral_row 1, r19, r20, r21
-  integral_row 2, r20, r21, r22
-  ldd SCRATCH, Z+(C_INTEGRAL + 3)
-  tst SCRATCH
-  brne 2f
-  clr r23  // as with any ordinary Ki
-  rjmp 3f
-2:integral_row 3, r21, r22, r23
-3:  sbrc E_SIGN, 7
-  rjmp .Ldown
-  ldd SCRATCH, Y+STATE_FRACTION
-  add r18, SCRATCH
-  plus r19, STATE_FRACTION+1
-  plus r20, STATE_INTEGRAL
-  plus r21, STATE_INTEGRAL+1
-  plus r22, STATE_INTEGRAL+2
-  plus r23, STATE_INTEGRAL+3
-.Ltaken:
-  mov SCRATCH, r23
-  lsl SCRATCH
-  eor SCRATCH, r23
-  brpl .Lclamped
-  rjmp .Lclamp
-.Lclamped:
-  movw r8, r20
-  movw r30, r22
-  volts
-  cp r4, r30
-  cpc r5, r31
-  brcc 1f
-  rjmp .Lsaturated
-1:ldi r24, 0
-.Lstore:
-  std Y+STATE_FRACTION, r18
-  std Y+STATE_FRACTION+1, r19
-  std Y+STATE_INTEGRAL, r20
-  std Y+STATE_INTEGRAL+1, r21
-  std Y+STATE_INTEGRAL+2, r22
-  std Y+STATE_INTEGRAL+3, r23
-
-.Lreturn:
-  movw r18, r2
-  sbrs r19, 7
-  rjmp 1f
-  ldi r18, 0xFF  // 1.0
-  ldi r19, 0x7F
-1:brtc 2f
-  negate16 r18, r19
-2:movw r20, r30
-  sbrs SCRATCH, 7
-  rjmp 3f
-  negate16 r20, r21
-3:mov r22, r24
-  mov r23, NO_RULE
-  clr r1
-  pop r29
-  pop r28
-  ret
-
-.Lfirst:
-  ldi SCRATCH, 1
-  std Y+STATE_STARTED, SCRATCH
-  ldi r18, 0
-  ldi r19, 0
-  rjmp .Lsplit
-
-.Ldown:
-  ldd SCRATCH, Y+STATE_FRACTION
-  sub SCRATCH, r18
-  mov r18, SCRATCH
-  minus r19, STATE_FRACTION+1
-  minus r20, STATE_INTEGRAL
-  minus r21, STATE_INTEGRAL+1
-  minus r22, STATE_INTEGRAL+2
-  minus r23, STATE_INTEGRAL+3
-  rjmp .Ltaken
-
-// Beyond +-2^30: 2^30 - 2^-16 or -2^30.
-.Lclamp:
-  ldi r18, 0xFF
-  ldi r23, 0x3F
-  sbrs E_SIGN, 7
-  rjmp 1f
-  ldi r18, 0x00
-  ldi r23, 0xC0
-1:mov r19, r18
-  mov r20, r18
-  mov r21, r18
-  mov r22, r18
-  rjmp .Lclamped
-
-// Beyond the limit: on e's own side the integral stays as it was.
-.Lsaturated:
-  mov r1, SCRATCH
-  eor r1, E_SIGN
-  brmi 1f
-  ldd r8, Y+STATE_INTEGRAL
-  ldd r9, Y+STATE_INTEGRAL+1
-  ldd r30, Y+STATE_INTEGRAL+2
-  ldd r31, Y+STATE_INTEGRAL+3
-  volts
-  ldi r24, 1
-  cp r4, r30
-  cpc r5, r31
-  brcc 2f
-  movw r30, r4
-2:rjmp .Lreturn
-1:movw r30, r4
-  ldi r24, 1
-  rjmp .Lstore
-  .size fuzzy_pdi_step_bare, . - fuzzy_pdi_step_bare
+// Two pages: the shift that normalises a sum with this top byte, as a factor; and the reciprocals R - 256.
+  .section .progmem.data.fuzzy_pdi_tables, "a", @progbits
+  .balign 256
+fuzzy_pdi_tables:
+  .byte 0, 128, 64, 64
+  .fill 4, 1, 32
+  .fill 8, 1, 16
+  .fill 16, 1, 8
+  .fill 32, 1, 4
+  .fill 64, 1, 2
+  .fill 128, 1, 1
+  .set i, 0
+  .rept 256
+  .byte 131072 / (257 + i) - 256
+  .set i, i + 1
+  .endr
 #endif

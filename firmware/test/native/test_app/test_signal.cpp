@@ -93,7 +93,7 @@ TEST_CASE("filter_shift is the share of a step taken each tick") {
   CHECK(sampling.leader(0) == 7000);
 }
 
-TEST_CASE("a reference is the leader within its joint's limits, and a distance is that from there to the follower") {
+TEST_CASE("an error is that from the follower to the leader within its joint's limits, and a distance is its size") {
   params::Table table = defaults();
   table.filter_shift = 0;
   int wrong = 0;
@@ -114,7 +114,7 @@ TEST_CASE("a reference is the leader within its joint's limits, and a distance i
       const int leader = (sums[i] * 4 - 8184) * 2, follower = (8184 - sums[i + 4] * 4) * 2;
       const int wanted = std::max<int>(table.joint[i].limit_min, std::min<int>(table.joint[i].limit_max, leader));
       wrong += sampling.leader(i) != leader;
-      wrong += sampling.reference(i) != wanted;
+      wrong += sampling.error(i) != wanted - follower;
       wrong += sampling.follower(i) != follower;
       wrong += seen.distance[i] != std::abs(wanted - follower);
     }
@@ -156,19 +156,19 @@ TEST_CASE("a duty is the PWM step nearest to voltage over supply, odd in the vol
     double worst = 0;
     int unequal = 0;
     for (int mv = 0; mv <= supply; ++mv) {
-      drive.set<0>(static_cast<std::int16_t>(mv));
-      drive.set<1>(static_cast<std::int16_t>(mv));
+      drive.set<0>(static_cast<std::uint16_t>(mv), 0);
+      drive.set<1>(static_cast<std::uint16_t>(mv), 0);
       const int positive = bench::board.duty[0];
       unequal += bench::board.duty[1] != -positive;
-      drive.set<0>(static_cast<std::int16_t>(-mv));
+      drive.set<0>(static_cast<std::uint16_t>(mv), 0x80);
       unequal += bench::board.duty[0] != -positive;
       worst = std::max(worst, std::abs(positive - mv * bench::full_duty / double(supply)));
     }
     CHECK(worst < 0.56);   // half a step, and what the rounded quotient costs at the highest supply
     CHECK(unequal == 0);
-    drive.set<0>(static_cast<std::int16_t>(supply));
+    drive.set<0>(static_cast<std::uint16_t>(supply), 0);
     CHECK(bench::board.duty[0] == bench::full_duty);
-    drive.set<0>(0);
+    drive.set<0>(0, 0);
     CHECK(bench::board.duty[0] == 0);
   }
 }

@@ -55,7 +55,7 @@ uint16_t reading() {
 
 void setup() {
   uint16_t signals_differ = 0, seen_differs = 0;
-  uint16_t low = 0, high = 0, clamped = 0;   // what the readings came across
+  uint16_t low = 0, high = 0, clamped = 0, saturated = 0;   // what the readings came across
   for (uint16_t set = 0; set < 250; ++set) {
     Signals fast;
     configure(fast, static_cast<uint8_t>(set % 5));
@@ -70,14 +70,19 @@ void setup() {
       seen_differs += memcmp(&by_fast, &by_portable, sizeof by_fast) != 0;
       low += by_portable.rail_low != 0;
       high += by_portable.rail_high != 0;
-      for (const app::JointSignals& joint : portable.joint) clamped += joint.reference != joint.leader.angle;
+      for (const app::JointSignals& joint : portable.joint) {
+        const int16_t leader = app::angle(joint.leader);
+        clamped += leader < joint.limit_min || leader > joint.limit_max;
+        saturated += joint.error == 32767 || joint.error == -32767;
+      }
     }
   }
   hal::begin();
-  EQUAL("angles_references_and_filters", signals_differ, 0);
+  EQUAL("angles_errors_and_filters", signals_differ, 0);
   EQUAL("distances_and_rails", seen_differs, 0);
   WITHIN("rails_were_met", low < high ? low : high, 100, 1990);
   WITHIN("limits_were_met", clamped, 100, 7900);
+  WITHIN("errors_were_cut", saturated, 20, 7900);
   report::end();
 }
 
