@@ -85,6 +85,9 @@ def test_help_needs_no_heavy_imports() -> None:
         (["flash", "--firmware", "a", "--hex", "b"], "--firmware and --hex exclude each other"),
         (["params", "set", "joint0.kp"], "is not NAME=VALUE"),
         (["params", "set", "joint0.kp=much"], '"much", but it must be a number'),
+        (["params", "set", "period_ms=1.5"], "period_ms is 1.5 ms, but it must be a whole number"),
+        (["params", "set", "joint0.motor_sign=0.7"], "joint0.motor_sign is 0.7, but it must be a whole number"),
+        (["params", "set", "joint0.kp=1e-9"], "joint0.kp is 1e-09 1/rad, which the board would store as 0"),
         (["params", "set", "joint0.kq=1"], 'there is no parameter "joint0.kq"'),
         (["params", "set", "joint0.kp=65"], "joint0.kp is 65 1/rad, which is out of range"),
         (["info"], "no board was found on any serial port"),
@@ -199,6 +202,9 @@ def test_params_set_get_backup_diff_restore(tmp_path: Path, capsys: Captured) ->
             "joint1.kp",
         ]
         assert board.stored == board.running
+        rounded = ask(capsys, "params", "set", "joint1.kp=0.5000061", *at)[1]
+        assert rounded["changed"] == []
+        assert rounded["stored"] == {"joint1.kp": 0.5}
         values = ask(capsys, "params", "get", "joint1.kp", "supply_mv", *at)[1]["parameters"]
         assert values == {"joint1.kp": 0.5, "supply_mv": 12000}
         differences = ask(capsys, "params", "diff", backup, *at)[1]["differences"]

@@ -62,6 +62,8 @@ def test_before_tuning_is_what_the_firmware_starts_with() -> None:
         ({"kp": 65.0}, "joint[2]: kp is 65, but it must lie within 0..64"),
         ({"ki": -0.1}, "joint[2]: ki is -0.1, but it must lie within 0..1000"),
         ({"ku": 31.0}, "joint[2]: ku is 31, but it must lie within 0..30"),
+        ({"kp": 1e-9}, "joint[2].kp is 1e-09, which the board would store as 0; give 0, or at least 1.52588e-05."),
+        ({"ku": 0.0001}, "joint[2].ku is 0.0001, which the board would store as 0; give 0, or at least 0.001."),
         ({"kd": "nan"}, "joint[2].kd is nan; it must be a finite number"),
         ({"kd": "'0.1'"}, 'joint[2].kd is "0.1", but it should be a valid number'),
     ],

@@ -46,6 +46,8 @@ def test_neighbouring_raw_values_stay_apart_at_the_ends_of_the_range(parameter: 
     ("old", "new", "words"),
     [
         ("period_ms = 1", "period_ms = 51", "period_ms is 51 ms, which is out of range"),
+        ("period_ms = 1", "period_ms = 1.5", "period_ms is 1.5 ms, but it must be a whole number"),
+        ("kp = 0.513", "kp = 1e-9", "joint0.kp is 1e-09 1/rad, which the board would store as 0"),
         ("period_ms = 1", "", "period_ms is missing"),
         ("period_ms = 1", "period_ms = 1\nperiod = 2", "unknown key period"),
         ("period_ms = 1", "period_ms = true", "period_ms is True, but it must be a number"),

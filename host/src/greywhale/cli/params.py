@@ -49,7 +49,16 @@ def set_(settings: tuple[str, ...], port: str | None, as_json: bool) -> None:
     changes = dict(_setting(setting) for setting in settings)
     with Device(choose_port(port)) as device, progress(as_json) as report:
         done = change_parameters(device, changes, report)
-    show(as_json, {"port": device.port, **done.as_dict()}, _changed(device.port, done.changed))
+    stored = {
+        schema.PARAMETERS[index].name: parameter_file.physical(schema.PARAMETERS[index], raw)
+        for index, raw in changes.items()
+    }
+    lines = [f"  {name} = {value:.9g} {schema.PARAMETER_BY_NAME[name].unit}".rstrip() for name, value in stored.items()]
+    show(
+        as_json,
+        {"port": device.port, **done.as_dict(), "stored": stored},
+        "\n".join([_changed(device.port, done.changed), "The board now runs and keeps:", *lines]),
+    )
 
 
 @command.command("backup")
@@ -124,7 +133,7 @@ def _setting(text: str) -> tuple[int, int]:
         number = float(value)
     except ValueError:
         raise UserError(f"{name} is {json.dumps(value)}, but it must be a number.", BAD_USAGE) from None
-    return parameter.index, parameter.to_raw(number)
+    return parameter.index, parameter.to_raw_as_given(number)
 
 
 def _changed(port: str, names: Sequence[str]) -> str:

@@ -95,4 +95,12 @@ def load(path: str | Path) -> Controller:
         controller.raw_values()
     except UserError as error:
         raise UserError(f"{path}: {error.message}") from None
+    for number, joint in enumerate(controller.joint):
+        for key, parameter, value in joint.parameters(number):
+            if value != 0.0 and parameter.to_raw(value) == 0:
+                scale = 1000.0 if key == "ku" else 1.0
+                raise UserError(
+                    f"{path}: joint[{number}].{key} is {value / scale:g}, which the board would store as 0; "
+                    f"give 0, or at least {parameter.lsb / scale:g}."
+                )
     return controller

@@ -48,7 +48,7 @@ def load(path: str | Path) -> tuple[int, ...]:
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise UserError(f"{path}: {parameter.name} is {value!r}, but it must be a number.")
         try:
-            values.append(parameter.to_raw(value))
+            values.append(parameter.to_raw_as_given(value))
         except UserError as error:
             raise UserError(f"{path}: {error.message}") from None
     try:

@@ -158,6 +158,19 @@ class Parameter:
         self._check(raw, physical)
         return raw
 
+    def to_raw_as_given(self, physical: float) -> int:
+        """As to_raw, for a number that a person gave: refused where rounding would make something else of it."""
+        raw = self.to_raw(physical)
+        if self.lsb == 1.0 and raw != physical:
+            raise UserError(f"{self.name} is {physical:.6g}{self._unit()}, but it must be a whole number.", 2)
+        if raw == 0 and physical != 0.0:
+            raise UserError(
+                f"{self.name} is {physical:.6g}{self._unit()}, which the board would store as 0; "
+                f"choose 0, or a size from {self.lsb:.6g}{self._unit()}.",
+                2,
+            )
+        return raw
+
     def check_raw(self, raw: int) -> None:
         """Raises UserError unless the raw value is in range."""
         self._check(raw, self.to_physical(raw))
