@@ -1,7 +1,7 @@
 """Calls the compiled controller of a real firmware image on the simulated board: its bits and its exact cycles.
 
-Bits are those of fuzzy_pdi_step_error, as C++ calls it. Cycles are those of fuzzy_pdi_step_bare, as the tick calls it, RET
-included, and of the inference, which is a stretch of it.
+Bits are those of fuzzy_pdi_step_error, as C++ calls it. Cycles are those of fuzzy_pdi_step_bare, as the tick calls it,
+RET included, and of the inference, which is a stretch of it.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ SETTINGS = struct.Struct("<8h3IH")
 STATE = struct.Struct("<iHh?")
 SIDE_SIZE = 9
 COEFFICIENTS_SIZE = 4 * SIDE_SIZE + 6
-CHANGE_SIDES = 2 * SIDE_SIZE
 # Scratch memory. Only powered, the board has not run an instruction: no variables, no watchdog, the stack at the end.
-SETTINGS_AT, COEFFICIENTS_AT, STATE_AT = 0x0600, 0x0640, 0x0680
+SETTINGS_AT, JOINT_AT = 0x0600, 0x0640
+STATE_AT = JOINT_AT + COEFFICIENTS_SIZE
 LIMIT = 200_000
 LEAST_INFERENCE = 120  # cycles that it takes in any case
 
@@ -68,7 +68,7 @@ class FuzzyOnBoard:
     def compile(self, settings: JointSettings, period_ms: int) -> tuple[Refusal, int]:
         """Derives the coefficients on the board; the refusal and its cycles."""
         self._board.poke(SETTINGS_AT, SETTINGS.pack(*settings.as_tuple()))
-        self._registers(24, SETTINGS_AT, period_ms, COEFFICIENTS_AT)
+        self._registers(24, SETTINGS_AT, period_ms, JOINT_AT)
         cycles = self._board.call(self._compile, LIMIT)
         return Refusal(self._board.peek(24)[0]), cycles
 
@@ -78,7 +78,7 @@ class FuzzyOnBoard:
 
     def step(self, error: int, limit_mv: int) -> Stepped:
         """One control period, as C++ calls it."""
-        self._registers(24, COEFFICIENTS_AT, STATE_AT, error, limit_mv)
+        self._registers(24, JOINT_AT, error, limit_mv)
         self._board.call(self._step, LIMIT)
         u_fuzzy, volts, saturated, no_rule = struct.unpack("<hh??", self._board.peek(18, 6))
         whole, fraction, _, _ = STATE.unpack(self._board.peek(STATE_AT, STATE.size))
@@ -87,7 +87,7 @@ class FuzzyOnBoard:
     def _bare_arguments(self, error: int, limit_mv: int) -> None:
         self._board.poke(4, struct.pack("<H", limit_mv))
         self._board.poke(24, struct.pack("<h", error))
-        self._board.poke(28, struct.pack("<HH", STATE_AT, COEFFICIENTS_AT))
+        self._board.poke(30, struct.pack("<H", JOINT_AT))
 
     def period_cycles(self, error: int, limit_mv: int) -> int:
         """Of one control period, as the tick calls it."""

@@ -21,17 +21,15 @@ struct Outcome {
 
 // fuzzy_pdi::step_error() called by hand. Its bare entry saves no registers, they are saved once a tick or not at all, and leaves
 // size and sign of the voltage apart, as the duty wants them.
-inline __attribute__((always_inline)) Outcome step_in_registers(
-  const fuzzy_pdi::Coefficients& c, fuzzy_pdi::State& s, int16_t error, uint16_t limit) {
-  register uint16_t r30 __asm__("r30") = reinterpret_cast<uint16_t>(&c);
-  register fuzzy_pdi::State* r28 __asm__("r28") = &s;
+inline __attribute__((always_inline)) Outcome step_in_registers(fuzzy_pdi::Joint& joint, int16_t error, uint16_t limit) {
+  register uint16_t r30 __asm__("r30") = reinterpret_cast<uint16_t>(&joint);
   register int16_t r24 __asm__("r24") = error;
   register uint16_t r4 __asm__("r4") = limit;
   register uint16_t r26 __asm__("r26");
   register uint8_t r17 __asm__("r17");
   register uint8_t r6 __asm__("r6");
   __asm__ volatile("%~call fuzzy_pdi_step_bare"
-      : "+r"(r30), "+r"(r28), "+r"(r24), "=r"(r26), "=r"(r17), "=r"(r6)
+      : "+r"(r30), "+r"(r24), "=r"(r26), "=r"(r17), "=r"(r6)
       : "r"(r4)
       : "r2", "r3", "r7", "r8", "r9", "r10", "r11", "r12", "r13", "r14", "r15", "r16", "r18", "r19", "r20", "r21", "r22", "r23",
         "memory");
@@ -40,8 +38,8 @@ inline __attribute__((always_inline)) Outcome step_in_registers(
 
 #else
 
-inline Outcome step_in_registers(const fuzzy_pdi::Coefficients& c, fuzzy_pdi::State& s, int16_t error, uint16_t limit) {
-  const fuzzy_pdi::Output out = fuzzy_pdi::step_error(c, s, error, limit);
+inline Outcome step_in_registers(fuzzy_pdi::Joint& joint, int16_t error, uint16_t limit) {
+  const fuzzy_pdi::Output out = fuzzy_pdi::step_error(joint, error, limit);
   const bool negative = out.volts_mv < 0;
   return {static_cast<uint16_t>(negative ? -out.volts_mv : out.volts_mv), static_cast<uint8_t>(negative ? 0x80 : 0), out.no_rule};
 }
@@ -60,7 +58,7 @@ class Controllers {
   }
   // One control period of a joint: the voltage for its motor.
   Outcome step(uint8_t joint, int16_t error, uint16_t limit_mv) {
-    const Outcome out = step_in_registers(coefficients_[joint], states_[joint], error, limit_mv);
+    const Outcome out = step_in_registers(joints_[joint], error, limit_mv);
     if (out.no_rule) count_no_rule();
     volts_mv_[joint] = out.volts_mv();
     return out;
@@ -72,8 +70,7 @@ class Controllers {
  private:
   void count_no_rule();
 
-  fuzzy_pdi::Coefficients coefficients_[hal::joint_count] = {};
-  fuzzy_pdi::State states_[hal::joint_count] = {};
+  fuzzy_pdi::Joint joints_[hal::joint_count] = {};
   int16_t volts_mv_[hal::joint_count] = {};
   uint16_t supply_mv_ = 0;
   uint16_t no_rule_ = 0;

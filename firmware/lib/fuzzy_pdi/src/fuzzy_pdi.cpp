@@ -17,6 +17,7 @@ static_assert(offsetof(Coefficients, ce) == 18 && offsetof(Coefficients, integra
               "step_avr.S");
 static_assert(offsetof(State, fraction) == 4 && offsetof(State, previous_e) == 6 && offsetof(State, started) == 8,
               "step_avr.S");
+static_assert(offsetof(Joint, state) == 42, "step_avr.S");
 static_assert(sizeof(Output) == 6, "returned in registers");
 
 #else

@@ -50,6 +50,12 @@ struct State {
   bool started;       // false until the first step: its change of error is 0
 };
 
+// A joint's controller, together because the assembly reaches both from one address.
+struct Joint {
+  Coefficients coefficients;
+  State state;
+};
+
 struct Output {
   int16_t u_fuzzy;   // q15; 1.0 is 32767 here, 32768 inside
   int16_t volts_mv;
@@ -71,17 +77,21 @@ inline int16_t difference(int16_t a, int16_t b) {
 // One control period. error = difference(leader, follower), +-8 rad; limit_mv (0..32767) is the voltage available now. The
 // integral takes the error in unless the output is beyond the limit on the error's own side.
 #if defined(__AVR__) && !defined(FUZZY_PDI_PORTABLE)
-extern "C" Output fuzzy_pdi_step_error(const Coefficients* c, State* state, int16_t error, uint16_t limit_mv);
+extern "C" Output fuzzy_pdi_step_error(Joint* joint, int16_t error, uint16_t limit_mv);  // step_avr.S
 
-inline Output step_error(const Coefficients& c, State& state, int16_t error_q12, uint16_t limit_mv) {
-  return fuzzy_pdi_step_error(&c, &state, error_q12, limit_mv);  // step_avr.S
+inline Output step_error(Joint& joint, int16_t error_q12, uint16_t limit_mv) {
+  return fuzzy_pdi_step_error(&joint, error_q12, limit_mv);
 }
 #else
 Output step_error(const Coefficients& c, State& state, int16_t error_q12, uint16_t limit_mv);
-#endif
+
+inline Output step_error(Joint& joint, int16_t error_q12, uint16_t limit_mv) {
+  return step_error(joint.coefficients, joint.state, error_q12, limit_mv);
+}
 
 inline Output step(const Coefficients& c, State& state, int16_t leader_q12, int16_t follower_q12, uint16_t limit_mv) {
   return step_error(c, state, difference(leader_q12, follower_q12), limit_mv);
 }
+#endif
 
 }  // namespace fuzzy_pdi

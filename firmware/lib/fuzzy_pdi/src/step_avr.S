@@ -1,30 +1,32 @@
 // step_error() of fuzzy_pdi.h in AVR assembly: the same bits in a quarter of the cycles. Optional: defining FUZZY_PDI_PORTABLE
 // compiles the C++ of fuzzy_pdi.cpp instead. The tests hold the two equal.
 //
-//   Output fuzzy_pdi_step_error(const Coefficients *c, State *state, int16_t error, uint16_t limit_mv)
-//                               r25:r24                r23:r22       r21:r20        r19:r18
+//   Output fuzzy_pdi_step_error(Joint *joint, int16_t error, uint16_t limit_mv)
+//                               r25:r24       r23:r22        r21:r20
 //   returns u_fuzzy in r19:r18, volts_mv in r21:r20, saturated in r22, no_rule in r23
 //
 // fuzzy_pdi_step_bare does the work, for callers that save registers once for several joints:
 //
-//   takes    coefficients in r31:r30, state in r29:r28, error (+-32767) in r25:r24, limit_mv in r5:r4
+//   takes    joint in r31:r30, error (+-32767) in r25:r24, limit_mv in r5:r4
 //   returns  size of the voltage in r27:r26, its sign in bit 7 of r17; no_rule in r6; saturated in T;
 //            size of u_fuzzy (up to 32768) in r3:r2, its sign in bit 7 of r7
 //
-// It keeps r5:r4 only, and leaves r1 = 0.
+// It uses every register but r5:r4 and r29:r28, and leaves r1 = 0.
 #if defined(__AVR__) && !defined(FUZZY_PDI_PORTABLE)
 
-// Coefficients and State, see the assertions in fuzzy_pdi.cpp.
+// Joint, see the assertions in fuzzy_pdi.cpp: the coefficients
 #define SIDE_SIZE 9
 #define C_CE (2 * SIDE_SIZE)
 #define C_INTEGRAL (4 * SIDE_SIZE)
 #define C_KU (4 * SIDE_SIZE + 4)
-#define STATE_INTEGRAL 0
-#define STATE_FRACTION 4
-#define STATE_PREVIOUS 6
-#define STATE_STARTED 8
+// and the state.
+#define STATE (4 * SIDE_SIZE + 6)
+#define STATE_INTEGRAL (STATE + 0)
+#define STATE_FRACTION (STATE + 4)
+#define STATE_PREVIOUS (STATE + 6)
+#define STATE_STARTED (STATE + 8)
 
-// r3:r2 holds the coefficients until the inference is done, then the size of u_fuzzy. r9:r8 is the size of e. Signs in bit 7:
+// r3:r2 holds the joint until the inference is done, then the size of u_fuzzy. r9:r8 is the size of e. Signs in bit 7:
 #define E_SIGN r6  /* until the inference is done, then in T */
 #define U_SIGN r7
 #define SIGN r17   /* of the voltage */
@@ -100,7 +102,7 @@ fuzzy_pdi_step_detours:
 
 .Lfirst:
   ldi S, 1
-  std Y+STATE_STARTED, S
+  std Z+STATE_STARTED, S
   clr S
   ldi r18, 0
   ldi r19, 0
@@ -122,11 +124,11 @@ fuzzy_pdi_step_bare:
   movw r2, r30
 
   // size of e's change in r19:r18, its sign in S
-  ldd r20, Y+STATE_PREVIOUS
-  ldd r21, Y+STATE_PREVIOUS+1
-  std Y+STATE_PREVIOUS, r24
-  std Y+STATE_PREVIOUS+1, r25
-  ldd S, Y+STATE_STARTED
+  ldd r20, Z+STATE_PREVIOUS
+  ldd r21, Z+STATE_PREVIOUS+1
+  std Z+STATE_PREVIOUS, r24
+  std Z+STATE_PREVIOUS+1, r25
+  ldd S, Z+STATE_STARTED
   tst S
   breq .Lfirst
   movw r18, r24
@@ -212,12 +214,12 @@ fuzzy_pdi_inferred:
   rjmp .Lhigh_byte
   clr r15  // as with any ordinary Ki
 .Lmore:
-  ldd r18, Y+STATE_FRACTION
-  ldd r19, Y+STATE_FRACTION+1
-  ldd r20, Y+STATE_INTEGRAL
-  ldd r21, Y+STATE_INTEGRAL+1
-  ldd r22, Y+STATE_INTEGRAL+2
-  ldd r23, Y+STATE_INTEGRAL+3
+  ldd r18, Z+STATE_FRACTION
+  ldd r19, Z+STATE_FRACTION+1
+  ldd r20, Z+STATE_INTEGRAL
+  ldd r21, Z+STATE_INTEGRAL+1
+  ldd r22, Z+STATE_INTEGRAL+2
+  ldd r23, Z+STATE_INTEGRAL+3
   brts .Ldown
   add r18, r10
   adc r19, r11
@@ -239,12 +241,12 @@ fuzzy_pdi_inferred:
   brcs .Lsaturated
   clt
 .Lstore:
-  std Y+STATE_FRACTION, r18
-  std Y+STATE_FRACTION+1, r19
-  std Y+STATE_INTEGRAL, r20
-  std Y+STATE_INTEGRAL+1, r21
-  std Y+STATE_INTEGRAL+2, r22
-  std Y+STATE_INTEGRAL+3, r23
+  std Z+STATE_FRACTION, r18
+  std Z+STATE_FRACTION+1, r19
+  std Z+STATE_INTEGRAL, r20
+  std Z+STATE_INTEGRAL+1, r21
+  std Z+STATE_INTEGRAL+2, r22
+  std Z+STATE_INTEGRAL+3, r23
   clr r1
   ret
 
@@ -278,10 +280,10 @@ fuzzy_pdi_inferred:
 1:set
   sbrc r0, 7
   rjmp 2f
-  ldd r20, Y+STATE_INTEGRAL
-  ldd r21, Y+STATE_INTEGRAL+1
-  ldd r22, Y+STATE_INTEGRAL+2
-  ldd r23, Y+STATE_INTEGRAL+3
+  ldd r20, Z+STATE_INTEGRAL
+  ldd r21, Z+STATE_INTEGRAL+1
+  ldd r22, Z+STATE_INTEGRAL+2
+  ldd r23, Z+STATE_INTEGRAL+3
   movw r24, r12
   movw r26, r14
   volts
@@ -318,12 +320,9 @@ fuzzy_pdi_step_error:
   push r15
   push r16
   push r17
-  push r28
-  push r29
   movw r30, r24
-  movw r28, r22
-  movw r24, r20
-  movw r4, r18
+  movw r24, r22
+  movw r4, r20
   rcall fuzzy_pdi_step_bare
   clr ZERO
   movw r20, r26
@@ -341,8 +340,6 @@ fuzzy_pdi_step_error:
 3:ldi r22, 0
   bld r22, 0
   mov r23, NO_RULE
-  pop r29
-  pop r28
   pop r17
   pop r16
   pop r15
