@@ -57,6 +57,13 @@ def test_output_is_watched_and_returned() -> None:
         ("compiling\\nmain.cpp:3: error: no such thing\\n*** failed", "main.cpp:3: error: no such thing"),
         ("one\\nlast words", "last words"),
         ("", "it said nothing"),
+        ("OS error: ioctl(TIOCMGET): Inappropriate ioctl for device", "it said nothing"),
+        (
+            "avrdude OS error: ioctl(TIOCMGET): Inappropriate ioctl for device\\n"
+            "avrdude error: timeout communicating with programmer\\navrdude done.  Thank you.",
+            "avrdude error: timeout communicating with programmer; no bootloader answered: check --board and the "
+            "cable, press the board's reset button and try again.",
+        ),
     ],
 )
 def test_a_failed_tool_is_quoted_where_it_names_the_problem(output: str, words: str) -> None:

@@ -15,6 +15,11 @@ from greywhale.errors import UserError
 _LOOK_EVERY_S = 0.1
 _GRACE_S = 5.0
 _PROBLEM = re.compile(r"error|not in sync|failed|denied|timeout|cannot|can't|mismatch|doesn't match", re.IGNORECASE)
+# avrdude says this of every port that is no real UART, whatever happens next.
+_HARMLESS = re.compile(r"\bioctl\b", re.IGNORECASE)
+_NO_BOOTLOADER = re.compile(
+    r"not in sync|stk500\w*getsync|timeout communicating|unable to open programmer|not responding", re.IGNORECASE
+)
 _ESCAPE = re.compile(r"\x1b\[[0-9;]*[A-Za-z]")
 
 
@@ -50,7 +55,7 @@ def run_tool(tool: Tool, look: Callable[[str], None]) -> str:
             raise
         text = _read(Path(output.name))
     if code != 0:
-        raise UserError(f"{tool.name} failed with exit code {code}: {_problem(text)}")
+        raise UserError(f"{tool.name} failed with exit code {code}: {_problem(text)}{_remedy(text)}")
     return text
 
 
@@ -82,8 +87,14 @@ def _read(path: Path) -> str:
 
 def _problem(text: str) -> str:
     """The line of the output that says most: the first that names a problem, else the last."""
-    lines = [line.strip() for line in text.splitlines() if line.strip()]
+    lines = [line.strip() for line in text.splitlines() if line.strip() and not _HARMLESS.search(line)]
     for line in lines:
         if _PROBLEM.search(line):
             return line
     return lines[-1] if lines else "it said nothing"
+
+
+def _remedy(text: str) -> str:
+    if not _NO_BOOTLOADER.search(text):
+        return ""
+    return "; no bootloader answered: check --board and the cable, press the board's reset button and try again."
