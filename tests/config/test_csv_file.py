@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
 
-from greywhale.config import csv_file
+from greywhale.config import csv_file, toml_file
 from greywhale.errors import UserError
+from greywhale.trajectory import load_leader
 
 COLUMNS = ("time_s", "a")
 
@@ -65,3 +67,11 @@ def test_bad_files_are_named_by_line_and_column(tmp_path: Path, content: str | b
 def test_missing_file(tmp_path: Path) -> None:
     with pytest.raises(UserError, match=r"none\.csv: cannot be read: no such file or directory"):
         csv_file.read(tmp_path / "none.csv", COLUMNS)
+
+
+@pytest.mark.parametrize("name", ["pipe", "/dev/zero"])
+def test_what_might_never_end_is_refused(tmp_path: Path, name: str) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    for read_it in (lambda path: csv_file.read(path, COLUMNS), toml_file.read, load_leader):
+        with pytest.raises(UserError, match=f"{name}: cannot be read: not an ordinary file"):
+            read_it(tmp_path / name)

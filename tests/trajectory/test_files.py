@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from greywhale.errors import UserError
-from greywhale.trajectory import human_reaches, load_leader, save_leader
+from greywhale.trajectory import human_reaches, load_leader, multi_steps, save_leader
+from greywhale.trajectory.motion import POT_RANGE_RAD
 
 HEADER = "time_s,leader_0,leader_1,leader_2,leader_3\n"
 
@@ -57,6 +58,8 @@ def test_a_log_is_a_leader_file(tmp_path: Path) -> None:
         (HEADER + "0,0,0,0,0\n1,0,0,0,0\n1,0,0,0,0\n", ["line 4", "time_s", "increase"]),
         (HEADER + "0,0,0,0,0\n-1,0,0,0,0\n", ["line 3", "time_s", "-1 follows 0"]),
         (HEADER + "0,0,0,0,0\n1,0,0,0,2.41\n", ["line 3", "leader_3", "2.41 rad", "[-2.4, 2.4]"]),
+        (HEADER + "0,0,0,0,0\n3601,0,0,0,0\n", ["line 3", "time_s", "3601 s is more than 3600 s"]),
+        (HEADER + "0,0,0,0,0\n1,0,0,0,0\n1.003,0,1,0,0\n", ["line 4", "leader_1", "faster than 250 rad/s"]),
         (HEADER + "\n0,0,0,0,0\n1,0,-3.1,0,0\n", ["line 4", "leader_1", "-3.1 rad"]),
     ],
 )
@@ -83,3 +86,8 @@ def test_files_that_are_no_text_or_not_there(tmp_path: Path) -> None:
 def test_unwritable_folder_leaves_nothing(tmp_path: Path) -> None:
     with pytest.raises(UserError, match="cannot be written"):
         save_leader(tmp_path / "missing" / "leader.csv", human_reaches(duration_s=4.0))
+
+
+def test_the_largest_step_of_the_project_is_not_too_fast(tmp_path: Path) -> None:
+    save_leader(tmp_path / "steps.csv", multi_steps([-POT_RANGE_RAD, POT_RANGE_RAD], [1.0, 1.0]))
+    assert load_leader(tmp_path / "steps.csv").angles.max() == POT_RANGE_RAD

@@ -1,16 +1,24 @@
-"""Writes a file whole or not at all: into a temporary file beside it, then renamed."""
+"""Reads whole files only, and writes a file whole or not at all: into a temporary file beside it, then renamed."""
 
 from __future__ import annotations
 
 import contextlib
 import errno
 import os
+import stat
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import IO
 
 from greywhale.errors import UserError, because
+
+
+def refuse_devices(path: str | Path) -> None:
+    """Raise where `path` is a device or a pipe: reading might never end. Folders and missing files are left to open()."""
+    mode = os.stat(path).st_mode
+    if not stat.S_ISREG(mode) and not stat.S_ISDIR(mode):
+        raise OSError(errno.EINVAL, "not an ordinary file", str(path))
 
 
 def temporary_beside(path: Path) -> tuple[int, str]:

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greywhale.errors import UserError, because
+from greywhale.files import refuse_devices
 
 
 @dataclass(frozen=True)
@@ -56,6 +57,7 @@ class CsvTable:
 def read(path: str | Path, columns: Sequence[str], minimum_rows: int = 1) -> CsvTable:
     """Read `path`, whose column names must be exactly `columns`, in that order."""
     try:
+        refuse_devices(path)
         with open(path, encoding="utf-8-sig", newline="") as file:
             return _table(file.read().splitlines(), columns, str(path), minimum_rows)
     except OSError as error:

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple, TypeVar
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from greywhale.errors import UserError, because
+from greywhale.files import refuse_devices
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -41,6 +42,7 @@ def loads(text: str, model: type[Model], name: str) -> Model:
 def read(path: str | Path) -> dict[str, Any]:
     """The parsed but unchecked content of a TOML file."""
     try:
+        refuse_devices(path)
         text = Path(path).read_text(encoding="utf-8")
     except OSError as error:
         raise UserError(f"{path}: cannot be read: {because(error)}.") from None
@@ -119,6 +121,11 @@ def _problem(problem: Problem, model: type[BaseModel]) -> str:
     if problem.kind in _BOUNDS:
         bounds = _range(model.model_json_schema(), problem.location)
         return f"{key} is {json.dumps(problem.value)}, but it must be {bounds}"
+    if problem.kind in ("too_short", "too_long") and isinstance(problem.value, list):
+        count = _fixed_count(model.model_json_schema(), problem.location)
+        if count is not None:
+            what = f"[[{key}]]" if all(isinstance(one, dict) for one in problem.value) else f"values of {key}"
+            return f"{len(problem.value)} {what} where there must be exactly {count}"
     message = _lower_first(problem.message.removeprefix("Value error, ").removeprefix("Assertion failed, "))
     message = message.replace("input should", "it should").rstrip(".")
     if isinstance(problem.value, dict | list):
@@ -139,6 +146,19 @@ _BOUND_WORDS = {
 
 def _range(schema: dict[str, Any], location: Sequence[str | int]) -> str:
     """Both ends of the range of the number at `location`; pydantic's own words name only the end that was missed."""
+    here = _at(schema, location)
+    return " and ".join(f"{words} {here[bound]:g}" for bound, words in _BOUND_WORDS.items() if bound in here)
+
+
+def _fixed_count(schema: dict[str, Any], location: Sequence[str | int]) -> int | None:
+    """How many items the array at `location` must have, if there is only one such number."""
+    here = _at(schema, location)
+    count = here.get("minItems")
+    return count if count is not None and count == here.get("maxItems") else None
+
+
+def _at(schema: dict[str, Any], location: Sequence[str | int]) -> dict[str, Any]:
+    """The schema of what stands at `location`."""
     here = schema
     for part in location:
         here = _resolve(schema, here)
@@ -148,8 +168,7 @@ def _range(schema: dict[str, Any], location: Sequence[str | int]) -> str:
         else:
             properties = here.get("properties", {})
             here = properties[part] if part in properties else here.get("additionalProperties", {})
-    here = _resolve(schema, here)
-    return " and ".join(f"{words} {here[bound]:g}" for bound, words in _BOUND_WORDS.items() if bound in here)
+    return _resolve(schema, here)
 
 
 def _resolve(schema: dict[str, Any], here: dict[str, Any]) -> dict[str, Any]:
