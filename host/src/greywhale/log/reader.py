@@ -12,7 +12,10 @@ from numpy.typing import NDArray
 
 from greywhale.config import csv_file
 from greywhale.errors import UserError
-from greywhale.log.layout import COLUMNS, COMPLETE, ENDINGS, JOINTS, STATES, Origin
+from greywhale.log.layout import COLUMNS, COMPLETE, ENDINGS, JOINTS, STATES, TITLE, Origin
+
+# Sizes that no board sends, 16 bits of 1/4096 rad and of mV: degrees or millivolts of another tool.
+_MOST = {"leader": (8.0, "rad"), "follower": (8.0, "rad"), "voltage": (33.0, "V")}
 
 
 @dataclass(frozen=True)
@@ -33,6 +36,7 @@ class Log:
 def read_log(path: str | Path) -> Log:
     """Read a log written by `greywhale record`, or by another tool with the same columns and any comments."""
     table = csv_file.read(path, COLUMNS, minimum_rows=2)
+    _check_version(table)
     facts = _facts(table.comments)
     time = table.increasing("time_s")
     for row, cell in enumerate(table.columns["state"]):
@@ -54,8 +58,28 @@ def read_log(path: str | Path) -> Log:
     )
 
 
+def _check_version(table: csv_file.CsvTable) -> None:
+    for comment in table.comments:
+        if comment.startswith(TITLE.rstrip("0123456789")) and comment != TITLE:
+            raise UserError(
+                f'{table.name} is a "{comment}", but this greywhale reads "{TITLE}"; '
+                "read it with the version that wrote it."
+            )
+
+
 def _joints(table: csv_file.CsvTable, quantity: str) -> NDArray[np.float64]:
-    return np.column_stack([table.numbers(f"{quantity}_{joint}") for joint in range(JOINTS)])
+    """The quantity of every joint, within what a board can say."""
+    most, unit = _MOST[quantity]
+    columns = []
+    for joint in range(JOINTS):
+        column = f"{quantity}_{joint}"
+        values = table.numbers(column)
+        beyond = np.flatnonzero(np.abs(values) > most)
+        if beyond.size:
+            row = int(beyond[0])
+            raise table.error(row, column, f"{values[row]:g} {unit} is beyond {most:g} {unit}; logs are in {unit}")
+        columns.append(values)
+    return np.column_stack(columns)
 
 
 def _facts(comments: tuple[str, ...]) -> dict[str, str]:
