@@ -52,9 +52,9 @@ def test_the_demo_tells_its_story(tmp_path: Path) -> None:
 )
 def test_bad_options_end_the_demo_with_a_sentence(tmp_path: Path, options: dict[str, object], sentence: str) -> None:
     with pytest.raises(UserError) as caught:
-        run(DemoOptions(tmp_path, **options))  # type: ignore[arg-type]
+        run(DemoOptions(tmp_path / "demo", **options))  # type: ignore[arg-type]
     assert sentence in caught.value.message
-    assert not (tmp_path / "summary.json").exists()
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_folder_that_cannot_be_made(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from greywhale import flash
+from greywhale.arm import load_arm
 from greywhale.config.paper_tables import paper_table
 from greywhale.demo.bench import BenchProcess
 from greywhale.demo.result import DemoResult, Run
@@ -55,6 +56,8 @@ def run(options: DemoOptions, progress: Progress | None = None) -> DemoResult:
     report = progress or (lambda what, fraction: None)
     started = time.monotonic()
     motion = _motion(options)
+    if options.arm is not None:
+        load_arm(options.arm)  # the bench loads it again; a bad one must not leave a folder behind
     _make_folder(options.out)
     played = options.leader or options.out / "leader.csv"
     if options.leader is None:
