@@ -90,6 +90,9 @@ def test_help_needs_no_heavy_imports() -> None:
         (["params", "set", "joint0.kp=1e-9"], "joint0.kp is 1e-09 1/rad, which the board would store as 0"),
         (["params", "set", "joint0.kq=1"], 'there is no parameter "joint0.kq"'),
         (["params", "set", "joint0.kp=65"], "joint0.kp is 65 1/rad, which is out of range"),
+        (["record", "--out", ""], "the value of --out is empty; give one, or leave it out."),
+        (["info", "--port="], "the value of --port is empty"),
+        (["evaluate", ""], "an argument is empty"),
         (["info"], "no board was found on any serial port"),
     ],
 )

@@ -34,6 +34,7 @@ def run(arguments: Sequence[str]) -> int:
         signal.signal(signal.SIGHUP, _terminated)
     as_json = "--json" in arguments
     try:
+        _refuse_empty(arguments)
         code = greywhale.main(list(arguments), prog_name="greywhale", standalone_mode=False)
         sys.stdout.flush()
         return code if isinstance(code, int) else 0
@@ -52,6 +53,15 @@ def run(arguments: Sequence[str]) -> int:
     except OSError as error:
         named = f"{error.filename}: " if error.filename else ""
         return _failed(f"{named}{because(error)}.", FAILED, as_json)
+
+
+def _refuse_empty(arguments: Sequence[str]) -> None:
+    """An empty name, mostly of a shell variable that is not set, would be taken for the current folder."""
+    for before, argument in zip(["", *arguments], arguments, strict=False):
+        if argument == "" or (argument.startswith("--") and argument.endswith("=")):
+            option = argument.rstrip("=") or before
+            named = f"the value of {option}" if option.startswith("-") else "an argument"
+            raise UserError(f"{named} is empty; give one, or leave it out.", BAD_USAGE)
 
 
 def _terminated(number: int, frame: FrameType | None) -> None:
