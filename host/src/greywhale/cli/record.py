@@ -26,6 +26,7 @@ def command(out: Path, seconds: float, every: int, enable: bool, port: str | Non
 
     Without --enable the motors stay off and the log shows what the potentiometers say. With it the log begins when the
     soft start is over. Ctrl-C stops the motors and keeps what was recorded, marked as interrupted.
+    A recording that is killed leaves a hidden file beside the log, .NAME.*.part, that `evaluate` reads as unfinished.
     """
     with Device(choose_port(port)) as device, progress(as_json) as report:
         recording = record(device, out, seconds, every, enable, report)
