@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
@@ -67,18 +68,24 @@ def test_axes_have_units_and_titles_their_figures() -> None:
         plt.close(figure)
 
 
-def test_no_label_is_cut_off() -> None:
-    other = trace(log(0.8), "before")
-    tall = Trace("log", other.time, other.leader - 0.5, other.follower - 0.5, other.mse)
-    figure = follow._figure([tall], "A title")
-    try:
-        renderer = figure.canvas.get_renderer()  # type: ignore[attr-defined]
-        figure.draw(renderer)
-        for axes in figure.get_axes():
-            box = axes.yaxis.label.get_window_extent(renderer)
-            assert box.x0 >= 0, axes.get_title()
-    finally:
-        plt.close(figure)
+@pytest.mark.parametrize("size", [0.0008, 0.02, 0.4])
+def test_no_label_is_cut_off_or_runs_into_the_next_panel(size: float) -> None:
+    # Reaches of a real log, and errors from those of a follower at rest to those of a step: the finer, the wider.
+    time = np.arange(0, 20, 0.01)
+    leader = np.column_stack([reach * np.sin(time + reach) - 0.1 for reach in (1.0, 0.65, 0.8, 1.2)])
+    error = size * np.column_stack([np.sin(3 * time + joint) for joint in range(4)])
+    with matplotlib.rc_context(follow._STYLE):
+        figure = follow._figure([Trace("log", time, leader, leader - error, (0.1,) * 4)], "A title")
+        try:
+            renderer = figure.canvas.get_renderer()  # type: ignore[attr-defined]
+            figure.draw(renderer)
+            axes = figure.get_axes()
+            ends = {0.0, *(one.get_window_extent(renderer).x1 for one in axes)}
+            for one in axes:
+                panel, label = one.get_window_extent(renderer), one.yaxis.label.get_window_extent(renderer)
+                assert label.x0 >= max(end for end in ends if end <= panel.x0) + 4, one.get_title()
+        finally:
+            plt.close(figure)
 
 
 def test_bad_requests_leave_no_file(tmp_path: Path) -> None:

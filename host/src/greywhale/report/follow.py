@@ -30,6 +30,7 @@ JOINT_NAMES = ("base yaw", "shoulder pitch", "wrist pitch", "wrist roll")
 # The formats, and the entry of each that would make two pictures of the same logs differ.
 _CHANGING = {".png": "Software", ".svg": "Date", ".pdf": "CreationDate"}
 FORMATS = tuple(_CHANGING)
+_STYLE = {"svg.hashsalt": "greywhale", "font.size": 9, "axes.grid": True, "grid.alpha": 0.3}
 _LEADER_COLOUR = "#222222"
 # Okabe and Ito's palette: told apart by colour-blind readers too.
 _COLOURS = ("#D55E00", "#0072B2", "#009E73", "#CC79A7")
@@ -67,7 +68,7 @@ def draw_following(path: str | Path, traces: Sequence[Trace], title: str) -> Non
         raise UserError(f"{path}: pictures end in {', '.join(FORMATS)}.", exit_code=2)
     if not 1 <= len(traces) <= _MOST_LOGS:
         raise UserError(f"a picture shows 1 to {_MOST_LOGS} logs, not {len(traces)}.", exit_code=2)
-    with matplotlib.rc_context({"svg.hashsalt": "greywhale", "font.size": 9, "axes.grid": True, "grid.alpha": 0.3}):
+    with matplotlib.rc_context(_STYLE):
         figure = _figure(traces, title)
         kind = target.suffix.lower()
         try:
@@ -83,7 +84,7 @@ def _figure(traces: Sequence[Trace], title: str) -> Figure:
     # Fixed margins: a layout solver's result differs in the last digits from run to run.
     figure = plt.figure(figsize=(11.0, 8.6))
     figure.suptitle(title, fontsize=12, fontweight="bold", y=0.98)
-    grid = figure.add_gridspec(2, 2, left=0.075, right=0.985, bottom=0.1, top=0.915, wspace=0.18, hspace=0.3)
+    grid = figure.add_gridspec(2, 2, left=0.082, right=0.985, bottom=0.1, top=0.915, wspace=0.2, hspace=0.3)
     shared_leader = _same_leader(traces)
     for joint in range(len(JOINT_NAMES)):
         rows = grid[divmod(joint, 2)].subgridspec(2, 1, height_ratios=(3, 1), hspace=0.08)
