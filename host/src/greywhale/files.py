@@ -15,7 +15,7 @@ from greywhale.errors import UserError, because
 
 
 def refuse_devices(path: str | Path) -> None:
-    """Raise where `path` is a device or a pipe: reading might never end. Folders and missing files are left to open()."""
+    """Raise where `path` is a device or a pipe, which may never end. Folders and missing files are left to open()."""
     mode = os.stat(path).st_mode
     if not stat.S_ISREG(mode) and not stat.S_ISDIR(mode):
         raise OSError(errno.EINVAL, "not an ordinary file", str(path))
