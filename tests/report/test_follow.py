@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
@@ -74,7 +73,7 @@ def test_no_label_is_cut_off_or_runs_into_the_next_panel(size: float) -> None:
     time = np.arange(0, 20, 0.01)
     leader = np.column_stack([reach * np.sin(time + reach) - 0.1 for reach in (1.0, 0.65, 0.8, 1.2)])
     error = size * np.column_stack([np.sin(3 * time + joint) for joint in range(4)])
-    with matplotlib.rc_context(follow._STYLE):
+    with follow._style():
         figure = follow._figure([Trace("log", time, leader, leader - error, (0.1,) * 4)], "A title")
         try:
             renderer = figure.canvas.get_renderer()  # type: ignore[attr-defined]

@@ -7,6 +7,7 @@ give the same file, byte for byte: no display, no date and no random identifier 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -30,7 +31,6 @@ JOINT_NAMES = ("base yaw", "shoulder pitch", "wrist pitch", "wrist roll")
 # The formats, and the entry of each that would make two pictures of the same logs differ.
 _CHANGING = {".png": "Software", ".svg": "Date", ".pdf": "CreationDate"}
 FORMATS = tuple(_CHANGING)
-_STYLE = {"svg.hashsalt": "greywhale", "font.size": 9, "axes.grid": True, "grid.alpha": 0.3}
 _LEADER_COLOUR = "#222222"
 # Okabe and Ito's palette: told apart by colour-blind readers too.
 _COLOURS = ("#D55E00", "#0072B2", "#009E73", "#CC79A7")
@@ -68,7 +68,7 @@ def draw_following(path: str | Path, traces: Sequence[Trace], title: str) -> Non
         raise UserError(f"{path}: pictures end in {', '.join(FORMATS)}.", exit_code=2)
     if not 1 <= len(traces) <= _MOST_LOGS:
         raise UserError(f"a picture shows 1 to {_MOST_LOGS} logs, not {len(traces)}.", exit_code=2)
-    with matplotlib.rc_context(_STYLE):
+    with _style():
         figure = _figure(traces, title)
         kind = target.suffix.lower()
         try:
@@ -78,6 +78,10 @@ def draw_following(path: str | Path, traces: Sequence[Trace], title: str) -> Non
             )
         finally:
             plt.close(figure)
+
+
+def _style() -> AbstractContextManager[None]:
+    return matplotlib.rc_context({"svg.hashsalt": "greywhale", "font.size": 9, "axes.grid": True, "grid.alpha": 0.3})
 
 
 def _figure(traces: Sequence[Trace], title: str) -> Figure:
