@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
+from threadpoolctl import threadpool_limits
 
 from greywhale.identify.space import Space
 
@@ -62,15 +63,17 @@ def least_squares_fit(
     scale = np.array(
         [1.0 if space.kind(index).logarithmic else 50.0 * space.kind(index).step for index in range(len(space))]
     )
-    found = least_squares(
-        values,
-        inside,
-        derivatives,
-        bounds=(low, high),
-        x_scale=scale,
-        max_nfev=most_steps,
-        ftol=tolerance,
-        xtol=tolerance,
-        gtol=1e-8,
-    )
+    # The matrices are tall and narrow: BLAS threads would only wait for each other, and for the simulations' own.
+    with threadpool_limits(limits=1, user_api="blas"):
+        found = least_squares(
+            values,
+            inside,
+            derivatives,
+            bounds=(low, high),
+            x_scale=scale,
+            max_nfev=most_steps,
+            ftol=tolerance,
+            xtol=tolerance,
+            gtol=1e-8,
+        )
     return Fit(space, found.x, float(found.cost), found.fun, found.jac, simulations)
