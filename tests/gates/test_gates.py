@@ -12,7 +12,7 @@ from tools.gates import stack, tick
 from tools.gates.__main__ import BUILD, IMAGES, check
 from tools.gates.image import GateError, read_image
 
-TICK = "void app::App::tick()"
+TICK = "void firmware_tick()"
 FRAME = """
 #include <avr/interrupt.h>
 #include <avr/sleep.h>
@@ -21,11 +21,10 @@ FRAME = """
 volatile uint16_t a = 1000, b = 7;
 volatile float f = 1.5f;
 volatile uint8_t sink;
-namespace app {{ struct App {{ void tick() __attribute__((noinline)); }}; }}
+extern "C" void firmware_tick() __attribute__((noinline));
 {program}
 int main() {{
-  app::App app;
-  app.tick();
+  firmware_tick();
   cli();
   sleep_enable();
   sleep_cpu();
@@ -53,23 +52,23 @@ def build(folder: Path, program: str, chip: str = "atmega328p") -> Path:
     ],
 )
 def test_what_a_tick_must_not_contain(tmp_path: Path, body: str, complaint: str) -> None:
-    elf = build(tmp_path, f"void app::App::tick() {{ {body} }}")
+    elf = build(tmp_path, f"void firmware_tick() {{ {body} }}")
     assert complaint in " ".join(tick.complaints(read_image(elf)))
 
 
 def test_it_is_found_in_interrupts_and_deep_down_too(tmp_path: Path) -> None:
     deep = "__attribute__((noinline)) void deep() { a = a / b; }"
     mid = "__attribute__((noinline)) void mid() { deep(); sink = 1; }"
-    below = build(tmp_path, f"{deep} {mid} void app::App::tick() {{ mid(); sink = 2; }}")
+    below = build(tmp_path, f"{deep} {mid} void firmware_tick() {{ mid(); sink = 2; }}")
     assert any("mid" in complaint and "deep" in complaint for complaint in tick.complaints(read_image(below)))
-    interrupt = build(tmp_path, "ISR(TIMER0_COMPA_vect) { a = a / b; } void app::App::tick() {}")
+    interrupt = build(tmp_path, "ISR(TIMER0_COMPA_vect) { a = a / b; } void firmware_tick() {}")
     assert "__vector_14" in tick.complaints(read_image(interrupt))[0]
 
 
 def test_multiplying_and_dividing_elsewhere_are_fine(tmp_path: Path) -> None:
     program = """
     __attribute__((noinline, used)) void elsewhere() { a = a / b; }
-    void app::App::tick() { a = (uint16_t)((uint32_t(a) * b) >> 3); }
+    void firmware_tick() { a = (uint16_t)((uint32_t(a) * b) >> 3); }
     """
     assert tick.complaints(read_image(build(tmp_path, program))) == []
 
@@ -93,7 +92,7 @@ __attribute__((noinline)) uint8_t middle(uint8_t n) {{
   for (uint16_t i = 0; i < sizeof room; ++i) room[i] = leaf(n);
   return room[n];
 }}
-void app::App::tick() {{ sink = middle(3); }}
+void firmware_tick() {{ sink = middle(3); }}
 """
 
 
@@ -133,8 +132,8 @@ def test_what_cannot_be_bounded_is_refused(tmp_path: Path, program: str, reason:
 
 
 def test_an_interrupt_counts(tmp_path: Path) -> None:
-    quiet = stack.bound(build(tmp_path, "void app::App::tick() {}"), stack.NANO).bytes
-    program = "ISR(TIMER0_COMPA_vect) { a = a * b; } void app::App::tick() {}"
+    quiet = stack.bound(build(tmp_path, "void firmware_tick() {}"), stack.NANO).bytes
+    program = "ISR(TIMER0_COMPA_vect) { a = a * b; } void firmware_tick() {}"
     assert stack.bound(build(tmp_path, program), stack.NANO).bytes > quiet + 6
 
 

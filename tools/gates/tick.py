@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 from tools.gates.image import Function, GateError
 
-TICK = "_ZN3app3App4tickEv"
+TICK = "firmware_tick"
 FORBIDDEN = {
     "a software division": re.compile(r"^__(u?div|u?mod|u?divmod)[a-z]*\d?[a-z]*\d?$"),
     "floating point": re.compile(

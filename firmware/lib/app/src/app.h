@@ -14,9 +14,9 @@ namespace app {
 
 class App {
  public:
-  // None of these is inlined into main(), where its variables would stay on the stack for ever.
+  // Not inlined into main(), where their variables would stay on the stack for ever.
   __attribute__((noinline)) void begin();
-  __attribute__((noinline)) void tick();   // when hal::tick_pending()
+  void tick();   // when hal::tick_pending()
   // One bounded piece of other work; false when there is nothing to do until the next interrupt.
   __attribute__((noinline)) bool service();
 

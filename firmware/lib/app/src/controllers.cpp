@@ -21,7 +21,7 @@ fuzzy_pdi::Refusal Controllers::take(const params::Table& table, uint8_t joint) 
 void Controllers::reset() {
   for (uint8_t i = 0; i < hal::joint_count; ++i) {
     fuzzy_pdi::reset(joints_[i].state);
-    volts_mv_[i] = 0;
+    size_mv_[i] = 0;
   }
 }
 

@@ -13,8 +13,6 @@ struct Outcome {
   uint16_t size_mv;
   uint8_t sign;      // bit 7: the voltage is negative
   bool no_rule;
-
-  int16_t volts_mv() const { return static_cast<int16_t>(sign & 0x80 ? -static_cast<int16_t>(size_mv) : size_mv); }
 };
 
 #if defined(__AVR__) && !defined(FUZZY_PDI_PORTABLE)
@@ -60,18 +58,23 @@ class Controllers {
   Outcome step(uint8_t joint, int16_t error, uint16_t limit_mv) {
     const Outcome out = step_in_registers(joints_[joint], error, limit_mv);
     if (out.no_rule) count_no_rule();
-    volts_mv_[joint] = out.volts_mv();
+    size_mv_[joint] = out.size_mv;
+    sign_[joint] = out.sign;
     return out;
   }
 
-  int16_t volts_mv(uint8_t joint) const { return volts_mv_[joint]; }
+  int16_t volts_mv(uint8_t joint) const {
+    const auto size = static_cast<int16_t>(size_mv_[joint]);
+    return static_cast<int16_t>(sign_[joint] & 0x80 ? -size : size);
+  }
   uint16_t no_rule() const { return no_rule_; }   // stops at 65535
 
  private:
   void count_no_rule();
 
   fuzzy_pdi::Joint joints_[hal::joint_count] = {};
-  int16_t volts_mv_[hal::joint_count] = {};
+  uint16_t size_mv_[hal::joint_count] = {};   // of the voltages, and their signs as in Outcome
+  uint8_t sign_[hal::joint_count] = {};
   uint16_t supply_mv_ = 0;
   uint16_t no_rule_ = 0;
 };

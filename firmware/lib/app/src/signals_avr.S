@@ -1,4 +1,4 @@
-// follow_pots_portable() of signals.cpp in AVR assembly: the same bits in 770 cycles. test/target/test_signals holds the two equal.
+// follow_pots_portable() of signals.cpp in AVR assembly: the same bits in 700 cycles. test/target/test_signals holds the two equal.
 //
 //   void app_follow_pots(const uint16_t* sums, Signals* signals, Observation* seen)
 //                        r25:r24               r23:r22           r21:r20
@@ -24,23 +24,8 @@
 #define RECORD 24
 #define RAIL_LOW 8
 
-// The angle of a pot into r25:r24. `pot` is 0..7, `at` the place of its record after Z; X is at distance[joint].
-.macro angle pot, at, joint
-  ldd r24, Y+2*(\pot)
-  ldd r25, Y+2*(\pot)+1
-  movw r18, r24
-  sub r18, LOWEST_LOW
-  sbc r19, LOWEST_HIGH
-  cp SPAN_LOW, r18
-  cpc SPAN_HIGH, r19
-  brcc 1f
-  ldi r22, 1 << (\pot)
-  ldi r23, RAIL_LOW - 2*(\joint)
-  rcall .Lat_a_rail
-1:
-  // filtered (r19:r18) = (filtered * KEEP + 128) / 256 + sum * GAIN
-  ldd r18, Z+(\at)
-  ldd r19, Z+(\at)+1
+// filtered (r19:r18) = (filtered * KEEP + 128) / 256 + sum (r25:r24) * GAIN
+.macro low_pass
   mul r18, KEEP
   lsl r0
   mov r18, r1
@@ -54,6 +39,36 @@
   adc r19, r1
   mul r25, GAIN
   add r19, r0
+.endm
+
+// The same for a KEEP of 128.
+.macro halving_low_pass
+  mul r24, GAIN
+  lsr r19
+  ror r18
+  adc r18, r0
+  adc r19, r1
+  mul r25, GAIN
+  add r19, r0
+.endm
+
+// The angle of a pot into r25:r24. `pot` is 0..7, `at` the place of its record after Z; X is at distance[joint].
+.macro angle pot, at, joint, filter
+  ldd r24, Y+2*(\pot)
+  ldd r25, Y+2*(\pot)+1
+  movw r18, r24
+  sub r18, LOWEST_LOW
+  sbc r19, LOWEST_HIGH
+  cp SPAN_LOW, r18
+  cpc SPAN_HIGH, r19
+  brcc 1f
+  ldi r22, 1 << (\pot)
+  ldi r23, RAIL_LOW - 2*(\joint)
+  rcall .Lat_a_rail
+1:
+  ldd r18, Z+(\at)
+  ldd r19, Z+(\at)+1
+  \filter
   std Z+(\at), r18
   std Z+(\at)+1, r19
   // r25:r24:r23:r22 = offset + filtered * scale (r21:r20)
@@ -85,8 +100,8 @@
   rol r25
 .endm
 
-.macro joint number
-  angle \number, LEADER, \number
+.macro joint number, filter
+  angle \number, LEADER, \number, \filter
   ldd r18, Z+LIMIT_MIN
   ldd r19, Z+LIMIT_MIN+1
   cp r24, r18
@@ -99,7 +114,7 @@
   brge 3f
 2:movw r24, r18
 3:movw r8, r24
-  angle \number+4, FOLLOWER, \number
+  angle \number+4, FOLLOWER, \number, \filter
   std Z+FOLLOWER_ANGLE, r24
   std Z+FOLLOWER_ANGLE+1, r25
   movw r18, r8
@@ -120,6 +135,16 @@
   st X+, r19
 .endm
 
+.macro joints filter
+  joint 0, \filter
+  adiw r30, RECORD
+  joint 1, \filter
+  adiw r30, RECORD
+  joint 2, \filter
+  adiw r30, RECORD
+  joint 3, \filter
+.endm
+
   .section .text.app_follow_pots, "ax", @progbits
   .global app_follow_pots
   .type app_follow_pots, @function
@@ -136,17 +161,19 @@ app_follow_pots:
   ld LOWEST_HIGH, Z+
   ld SPAN_LOW, Z+
   ld SPAN_HIGH, Z+
-  joint 0
-  adiw r30, RECORD
-  joint 1
-  adiw r30, RECORD
-  joint 2
-  adiw r30, RECORD
-  joint 3
+  cpi KEEP, 128
+  brne 1f
+  rjmp .Lhalving
+1:joints low_pass
+.Ldone:
   clr r1
   pop r29
   pop r28
   ret
+
+.Lhalving:   // filter_shift's default
+  joints halving_low_pass
+  rjmp .Ldone
 
 // The error is beyond 16 bits, positive if N is set: it saturates, the distance in r19:r18 does not.
 .Lfar_apart:

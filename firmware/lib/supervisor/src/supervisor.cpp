@@ -57,36 +57,44 @@ void Supervisor::watch(const Observation& seen) {
   if (lease_ && --lease_ == 0) switch_off(State::disabled, StopReason::lease);
 }
 
-// One tick at a rail may be noise; three in a row are a broken wire.
+// One tick at a rail may be noise; three in a row are a broken wire. Most ticks see no rail and remember none.
 void Supervisor::debounce(const Observation& seen) {
+  if ((seen.rail_low | seen.rail_high | any_rail_) != 0) remember_rails(seen);
+}
+
+__attribute__((noinline)) void Supervisor::remember_rails(const Observation& seen) {
   steady_low_ = seen.rail_low & low_[0] & low_[1];
   steady_high_ = seen.rail_high & high_[0] & high_[1];
   low_[1] = low_[0];
   low_[0] = seen.rail_low;
   high_[1] = high_[0];
   high_[0] = seen.rail_high;
+  any_rail_ = low_[0] | low_[1] | high_[0] | high_[1];
 }
 
 // The joint that has been beyond the tracking limit for too long, or nowhere.
 uint8_t Supervisor::lost_joint(const Observation& seen) {
   static_assert(joint_count == 4, "joints 0..3 below");
   const uint16_t limit = tracking_limit_;
-  const bool all_near = seen.distance[0] <= limit && seen.distance[1] <= limit && seen.distance[2] <= limit &&
-    seen.distance[3] <= limit;
-  return all_near && !any_far_ ? nowhere : count_lost(seen);
+  uint8_t far = 0;
+  if (seen.distance[0] > limit) far = 1;
+  if (seen.distance[1] > limit) far |= 2;
+  if (seen.distance[2] > limit) far |= 4;
+  if (seen.distance[3] > limit) far |= 8;
+  return (far | far_) != 0 ? count_lost(far) : nowhere;
 }
 
 // Apart, because most ticks do not come here.
-__attribute__((noinline)) uint8_t Supervisor::count_lost(const Observation& seen) {
-  any_far_ = false;
-  for (uint8_t i = 0; i < joint_count; ++i) {
-    if (seen.distance[i] <= tracking_limit_) {
-      lost_ticks_[i] = 0;
-      continue;
-    }
-    any_far_ = true;
-    if (++lost_ticks_[i] >= limits_.tracking_ms) return i;
-  }
+__attribute__((noinline)) uint8_t Supervisor::count_lost(uint8_t far) {
+  far_ = far;
+  if (!(far & 1)) lost_ticks_[0] = 0;
+  else if (++lost_ticks_[0] >= limits_.tracking_ms) return 0;
+  if (!(far & 2)) lost_ticks_[1] = 0;
+  else if (++lost_ticks_[1] >= limits_.tracking_ms) return 1;
+  if (!(far & 4)) lost_ticks_[2] = 0;
+  else if (++lost_ticks_[2] >= limits_.tracking_ms) return 2;
+  if (!(far & 8)) lost_ticks_[3] = 0;
+  else if (++lost_ticks_[3] >= limits_.tracking_ms) return 3;
   return nowhere;
 }
 

@@ -64,18 +64,20 @@ class Supervisor {
   void raise(Fault fault, uint8_t where);
   void watch(const Observation& seen);
   uint8_t lost_joint(const Observation& seen);
-  uint8_t count_lost(const Observation& seen);
+  uint8_t count_lost(uint8_t far);
   void debounce(const Observation& seen);
+  void remember_rails(const Observation& seen);
 
   static constexpr uint8_t boot_ticks = 20;          // the filters settle and pots are judged
   static constexpr uint32_t full_ramp = 1UL << 31;
 
   Limits limits_ = {};
   uint8_t low_[2] = {}, high_[2] = {};               // rail masks of the two ticks before
+  uint8_t any_rail_ = 0;                             // some bit in them
   uint8_t steady_low_ = 0, steady_high_ = 0;         // at the rail for three ticks
   uint16_t tracking_limit_ = UINT16_MAX;             // without a check no distance is beyond it
   uint16_t lost_ticks_[joint_count] = {};            // time beyond the tracking limit
-  bool any_far_ = false;                             // some lost_ticks_ count
+  uint8_t far_ = 0;                                  // joints whose lost_ticks_ count
   uint32_t ramp_ = 0, ramp_step_ = 0;
   uint16_t ramp_left_ = 0;                           // ticks
   uint16_t lease_ = 0;                               // ticks, 0 = until stop
