@@ -12,10 +12,12 @@ from greywhale.link.declared import Message
 from greywhale_sim._board import Board
 from greywhale_sim.symbols import Symbol, read_symbols
 from tools.bench.figure import Figure
+from tools.bench.fuzzy_search import Random
 
 BUILD = Path(__file__).parents[2] / "firmware/.pio/build"
 CYCLES_PER_TICK = 16_000
 TICKS = 250
+SETS, TICKS_PER_SET = 300, 10  # for the worst tick over the parameters
 PAINT = 0xA5
 RUNNING = "_ZN3hal12_GLOBAL__N_17runningE"  # hal's flag, set from the timer's interrupt to the end of the tick
 BOARDS = {  # name: chip, environment, vector of the tick, RAM, duty output of joint 0
@@ -117,6 +119,38 @@ def ticks(name: str) -> list[Figure]:
     ]
 
 
+def _apply(bench: Bench, values: dict[str, int]) -> None:
+    """Runs a whole parameter set: the defaults but for these."""
+    wanted = list(schema.DEFAULTS)
+    for key, value in values.items():
+        wanted[schema.PARAMETER_BY_NAME[key].index] = value
+    for i, value in enumerate(wanted):
+        bench.ask(schema.ParamSetRequest, struct.pack("<Hi", i, value))
+    bench.ask(schema.ParamApplyRequest, struct.pack("<H", schema.param_crc(wanted)))
+
+
+def over_parameters(name: str) -> Figure:
+    """The dearest tick over random sets for all joints, most of them where the sets bend, with the slowest low-pass."""
+    bench, draw = Bench(name), Random(5)
+    worst = 0.0
+    for _ in range(SETS):
+        bench.millivolts[:] = 2500.0
+        bench.board.set_millivolts(bench.millivolts)
+        bench.wait(30)
+        values = {"filter_shift": 2, "soft_start_ms": 100, "tracking_limit": 0}
+        for joint in range(4):
+            values |= {f"joint{joint}.{key}": value for key, value in vars(draw.settings(1)).items()}
+        _apply(bench, values)
+        bench.wait(30)
+        bench.ask(schema.EnableRequest, struct.pack("<H", 0))
+        bench.wait(110)
+        for _ in range(TICKS_PER_SET):
+            bench.wiggle(10.0 ** bench.random.uniform(0, 3.3))
+            worst = max(worst, bench.tick_cycles()[1])
+        bench.ask(schema.StopRequest)
+    return Figure(f"{name}: tick, worst of {SETS * TICKS_PER_SET} over the parameters", worst, "cycles")
+
+
 def jitter(name: str) -> Figure:
     """Of the tick's interrupt, which starts the first conversion itself, while telemetry and noise use the link."""
     bench = Bench(name)
@@ -173,5 +207,5 @@ def memory(name: str) -> Figure:
 def run() -> list[Figure]:
     figures = []
     for name in BOARDS:
-        figures += [*ticks(name), jitter(name), *latency(name), memory(name)]
+        figures += [*ticks(name), over_parameters(name), jitter(name), *latency(name), memory(name)]
     return figures
