@@ -93,6 +93,22 @@ def test_a_tool_that_hangs_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
     assert started[0].returncode == -signal.SIGTERM
 
 
+def test_what_the_tool_started_ends_with_it() -> None:
+    started: list[int] = []
+
+    def interrupt(text: str) -> None:
+        if text.endswith("\n"):
+            started.append(os.pidfd_open(int(text)))
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run_tool(tool("sh", "-c", "trap '' TERM; sleep 1000 & echo $!; wait"), interrupt)
+    try:
+        assert select.select(started, [], [], 10.0)[0] == started  # readable once the process has ended
+    finally:
+        os.close(started[0])
+
+
 def test_ctrl_c_ends_the_tool_too(monkeypatch: pytest.MonkeyPatch) -> None:
     ended = threading.Event()
 
@@ -242,7 +258,17 @@ def test_platformio_builds_first_and_then_uploads(tmp_path: Path, monkeypatch: p
 
 def test_avrdudes_rows_become_fractions() -> None:
     seen: list[tuple[str, float]] = []
-    look = module._avrdude_progress(lambda what, fraction: seen.append((what, fraction)))
+    look = module._avrdude_progress("COM3", lambda what, fraction: seen.append((what, fraction)))
     look("avrdude: writing flash\n\nWriting | #########################")
     look("Writing | ################################################## | 100% 1.2s\n\nReading | #####")
     assert seen == [("writing", 0.5), ("writing", 1.0), ("verifying", 0.1)]
+
+
+def test_a_port_that_goes_away_ends_the_upload(tmp_path: Path) -> None:
+    port = tmp_path / "port"
+    port.touch()
+    look = module._avrdude_progress(str(port), lambda what, fraction: None)
+    look("Writing | ####")
+    port.unlink()
+    with pytest.raises(UserError, match="port went away while it was being flashed; connect the board"):
+        look("Writing | ####")

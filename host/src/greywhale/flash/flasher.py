@@ -104,7 +104,7 @@ def _build_and_upload(port: str, board: FlashBoard, firmware: Path, report: Prog
         _upload_hex(port, board, _build_folder(firmware, environment) / board.environment / "firmware.hex", report)
         return
     upload = [*pio, "--target", "upload", "--upload-port", port]
-    run_tool(Tool("the upload", upload, environment, _UPLOAD_LIMIT_S), _avrdude_progress(report))
+    run_tool(Tool("the upload", upload, environment, _UPLOAD_LIMIT_S), _avrdude_progress(port, report))
 
 
 def platformio_environment(firmware: Path) -> dict[str, str]:
@@ -133,7 +133,7 @@ def _upload_hex(port: str, board: FlashBoard, file: Path, report: Progress) -> N
     report("looking for the bootloader", 0.0)
     baud = board.bauds[0] if len(board.bauds) == 1 else find_speed(port, board.bauds)
     tool = Tool("avrdude", [*command, "-b", str(baud)], dict(os.environ), _UPLOAD_LIMIT_S)
-    run_tool(tool, _avrdude_progress(report))
+    run_tool(tool, _avrdude_progress(port, report))
 
 
 def _avrdude() -> list[str]:
@@ -149,10 +149,13 @@ def _avrdude() -> list[str]:
     raise UserError("avrdude is not installed; install it, for example with `sudo apt-get install avrdude`.")
 
 
-def _avrdude_progress(report: Progress) -> Callable[[str], None]:
-    """Turns avrdude's rows of # into fractions; PlatformIO passes them on."""
+def _avrdude_progress(port: str, report: Progress) -> Callable[[str], None]:
+    """Turns avrdude's rows of # into fractions; PlatformIO passes them on. avrdude itself never notices a lost port."""
+    has_path = os.path.exists(port)  # a port of Windows has none
 
     def look(text: str) -> None:
+        if has_path and not os.path.exists(port):
+            raise UserError(f"{port} went away while it was being flashed; connect the board and flash it again.")
         for verb, stage in (("Writing", "writing"), ("Reading", "verifying")):
             rows = re.findall(rf"{verb} \| (#*)", text)
             if rows:

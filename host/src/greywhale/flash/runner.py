@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
 import re
+import signal
 import subprocess
 import tempfile
 import time
@@ -34,9 +37,8 @@ class Tool:
 
 
 def run_tool(tool: Tool, look: Callable[[str], None]) -> str:
-    """Run to the end; all output. `look` sees the output so far, again and again. The output goes through a file
-    because
-    a pipe that nobody empties in time would stop the tool."""
+    """Run to the end; all output. `look` sees the output so far, again and again, and may raise to end the tool. The
+    output goes through a file, because a pipe that nobody empties in time would stop the tool."""
     with tempfile.NamedTemporaryFile(prefix="greywhale-", suffix=".txt") as output:
         try:
             process = subprocess.Popen(
@@ -45,6 +47,7 @@ def run_tool(tool: Tool, look: Callable[[str], None]) -> str:
                 stdin=subprocess.DEVNULL,
                 stdout=output,
                 stderr=subprocess.STDOUT,
+                start_new_session=True,  # so that what the tool starts can be ended with it
             )
         except OSError as error:
             raise UserError(f"{tool.name} cannot be started: {error.strerror}.") from None
@@ -73,12 +76,17 @@ def _wait(process: subprocess.Popen[bytes], tool: Tool, output: Path, look: Call
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:
-    process.terminate()
-    try:
+    """End the tool and everything it has started: an avrdude left behind would hold the port and a processor."""
+    _signal_all(process, signal.SIGTERM)
+    with contextlib.suppress(subprocess.TimeoutExpired):
         process.wait(_GRACE_S)
-    except subprocess.TimeoutExpired:
-        process.kill()
-        process.wait()
+    _signal_all(process, signal.SIGKILL)
+    process.wait()
+
+
+def _signal_all(process: subprocess.Popen[bytes], number: signal.Signals) -> None:
+    with contextlib.suppress(ProcessLookupError):
+        os.killpg(process.pid, number)
 
 
 def _read(path: Path) -> str:
