@@ -74,3 +74,33 @@ def test_a_long_motion_is_read_in_pieces() -> None:
     player = LeaderPlayer(minutes, SLICE, START)
     advance(player, START + 301.0, enabled=True)
     np.testing.assert_allclose(player.angles, 301.0 / 600.0 * 1.2, atol=1e-6)
+
+
+def test_takes_up_another_motion_from_where_the_arms_are_held(motion: Trajectory) -> None:
+    other = Trajectory(np.array([0.0, 2.0]), np.array([[-0.4] * 4, [0.6] * 4]))
+    player = LeaderPlayer(motion, SLICE, START)
+    advance(player, START + motion.duration_s + 0.05, enabled=True)
+    advance(player, LET_GO_S + BRING_BACK_S + SLICE, enabled=False)
+    player.take_up(other)
+    advance(player, BRING_BACK_S / 2, enabled=False)
+    half_way = (motion.angles[0] + other.angles[0]) / 2
+    np.testing.assert_allclose(player.angles, half_way)
+    assert player.hold is not None
+    np.testing.assert_allclose(player.hold, half_way)
+    advance(player, BRING_BACK_S / 2 + SLICE, enabled=False)
+    np.testing.assert_array_equal(player.hold, other.angles[0])
+    advance(player, START + 1.0, enabled=True)
+    np.testing.assert_allclose(player.angles, 0.1, atol=1e-9)
+    advance(player, 1.05, enabled=True)
+    assert player.finished
+
+
+def test_another_motion_taken_up_right_after_a_stop_still_shows_the_fall(motion: Trajectory) -> None:
+    player = LeaderPlayer(motion, SLICE, START)
+    advance(player, START + 0.5, enabled=True)
+    advance(player, LET_GO_S / 2, enabled=False)
+    player.take_up(Trajectory(motion.time_s, motion.angles - 1.0))
+    advance(player, LET_GO_S / 2, enabled=False)
+    assert player.hold is None
+    advance(player, BRING_BACK_S + SLICE, enabled=False)
+    np.testing.assert_array_equal(player.hold, motion.angles[0] - 1.0)

@@ -6,11 +6,13 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 import serial
 
 from greywhale.arm import Wiring
 from greywhale.errors import UserError
+from greywhale.trajectory import Trajectory, save_leader
 from greywhale_sim import commands
 from greywhale_sim.bench import Bench
 from greywhale_sim.pacing import Pacer
@@ -198,9 +200,25 @@ def test_commands_change_the_bench(server: Server) -> None:
     assert status["leader"] == pytest.approx([0.0, 0.1, 0.2, 0.3])
 
 
+def test_the_person_takes_up_another_motion_between_two_enables(server: Server, board: Any, tmp_path: Path) -> None:
+    file = tmp_path / "another motion.csv"
+    save_leader(file, Trajectory(np.array([0.0, 2.0]), np.array([[0.5] * 4, [1.0] * 4])))
+    board.pins = np.ones(9)
+    server.turn()
+    with pytest.raises(UserError, match="motors are off"):
+        commands.run(server, f"leader '{file}'")
+    board.pins = np.zeros(9)
+    assert commands.run(server, f"leader '{file}'") == {"leader": str(file), "duration_s": 2.0}
+    server.bench.run(2.0)
+    assert commands.run(server, "status")["follower"] == [0.5] * 4
+    with pytest.raises(UserError, match="nowhere.csv: cannot be read"):
+        commands.run(server, "leader nowhere.csv")
+
+
 @pytest.mark.parametrize(
     "text",
     [
+        *("leader", "leader 'unfinished", "leader a b"),
         *("", "fly", "speed", "speed 2", "power maybe", "line flip", "line flip much", "line flip 2"),
         *("pot nobody 1 open", "pot leader 4 open", "pot leader x open", "pot leader 1 melted", "status now"),
     ],

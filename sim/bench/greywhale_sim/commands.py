@@ -1,6 +1,7 @@
 """What can be done to a running bench, one command a line; every answer is one JSON object.
 
 status                             time, motors, voltages, angles, resets, EEPROM, serial line
+leader FILE                        the person takes up another motion, while the motors are off
 pot leader|follower 0..3 STATE     a potentiometer: connected, open (its wire is off) or shorted (to the supply)
 line flip|lose PROBABILITY         damage or lose bytes on the serial line, per byte
 power off|on                       cut or restore the board's supply
@@ -9,11 +10,13 @@ speed 1|max                        real time, or as fast as possible
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Callable
 from typing import Any
 
 from greywhale import arm
 from greywhale.errors import UserError
+from greywhale.trajectory import load_leader
 from greywhale_sim.server import Server
 
 Answer = dict[str, Any]
@@ -21,7 +24,10 @@ Answer = dict[str, Any]
 
 def run(server: Server, text: str) -> Answer:
     """Carry out one command; a bad one raises UserError and changes nothing."""
-    name, *words = text.split() or [""]
+    try:
+        name, *words = shlex.split(text) or [""]
+    except ValueError as error:
+        raise UserError(f'"{text.strip()}" is not understood: {error}.', 2) from None
     if name not in COMMANDS:
         raise UserError(f'"{name}" is not a bench command; there are: {", ".join(COMMANDS)}.', 2)
     command, usage = COMMANDS[name]
@@ -50,6 +56,14 @@ def status(server: Server) -> Answer:
         "rx_overruns": stats.rx_overruns,
         "resets_by_host": server.resets_by_host,
     }
+
+
+def leader(server: Server, file: str) -> Answer:
+    if server.bench.motors_enabled:
+        raise UserError("the person takes up another motion only while the motors are off; stop them first.")
+    motion = load_leader(file)
+    server.bench.leader.take_up(motion)
+    return {"leader": file, "duration_s": motion.duration_s}
 
 
 def pot(server: Server, side: str, joint: str, state: str) -> Answer:
@@ -84,6 +98,7 @@ def speed(server: Server, value: str) -> Answer:
 
 COMMANDS: dict[str, tuple[Callable[..., Answer], str]] = {
     "status": (status, ""),
+    "leader": (leader, "FILE.csv"),
     "pot": (pot, "leader|follower 0..3 connected|open|shorted"),
     "line": (line, "flip|lose PROBABILITY"),
     "power": (power, "on|off [WRITES]"),

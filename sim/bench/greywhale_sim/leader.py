@@ -25,21 +25,24 @@ class LeaderPlayer:
     """Leader angles for every slice; `hold` is the pose the follower is held in by hand, or None when it is free."""
 
     def __init__(self, motion: Trajectory, slice_s: float, start_s: float = START_S) -> None:
-        self._motion = motion
         self._slice_s = slice_s
         self._start = round(start_s / slice_s)
         self._let_go = round(LET_GO_S / slice_s)
         self._bring_back = max(1, round(BRING_BACK_S / slice_s))
-        self._rows = int(np.ceil(motion.duration_s / slice_s)) + 1
-        self._chunk = np.empty((0, 4))
-        self._chunk_first = 0
+        self._learn(motion)
         self._on = 0  # slices since the motors went on
         self._off = self._let_go + self._bring_back  # slices since they went off
         self._left_at = (self._row(0), self._row(0))  # both arms when the hand takes them
-        self.home = self._row(0).copy()
         self.angles: Array = self.home
         self.hold: Array | None = self.home
         self.plays = 0
+
+    def take_up(self, motion: Trajectory) -> None:
+        """Play another motion from the next enable on; held arms are brought to its first pose within a second."""
+        self._learn(motion)
+        if self.hold is not None:
+            self._left_at = (self.angles, self.hold)
+            self._off = self._let_go
 
     def step(self, enabled: bool, follower: Array) -> None:
         """Advance one slice; `follower` is where the follower is now."""
@@ -62,6 +65,13 @@ class LeaderPlayer:
     def finished(self) -> bool:
         """The motion was played to its end since the motors went on."""
         return self._on >= self._start + self._rows
+
+    def _learn(self, motion: Trajectory) -> None:
+        self._motion = motion
+        self._rows = int(np.ceil(motion.duration_s / self._slice_s)) + 1
+        self._chunk = np.empty((0, 4))
+        self._chunk_first = 0
+        self.home = self._row(0).copy()
 
     def _follow_motion(self) -> None:
         if self._on == 0:
