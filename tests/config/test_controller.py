@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from greywhale.config import controller
+from greywhale.config import controller, toml_file
 from greywhale.errors import UserError
 from greywhale.link import schema
+from greywhale.simulate import CONTROLLER_COLUMNS, controller_row, default_controller
 
 ROOT = Path(__file__).parents[2]
 TABLES = sorted((ROOT / "shared" / "fuzzy_tables").glob("table_*.toml"))
@@ -107,3 +109,55 @@ def test_whatever_is_accepted_fits_the_board_to_half_a_count(values: dict[str, f
         assert abs(parameter.to_physical(stored) - physical) <= parameter.lsb * 0.5000001
         if key in SETS:  # the firmware refuses flanks below 0.01 in its own counts
             assert abs(stored) >= 0.01 * 16384
+
+
+left, right, gain = st.integers(-16384, -164), st.integers(164, 16384), st.integers(0, 64 << 16)
+row = st.tuples(
+    *(left, left, right, right), *(left, left, right, right), *(gain, gain), st.integers(0, 1000 << 16),
+    st.integers(0, 30_000),
+)  # fmt: skip
+
+
+@given(st.tuples(row, row, row, row))
+def test_what_is_written_is_read_back_bit_for_bit(rows: tuple[tuple[int, ...], ...]) -> None:
+    exact = np.array(rows, dtype=np.int32)
+    text = controller.to_text(exact, "any", header=("a line",), notes=("base yaw", "", "", ""), tuning={"seed": 1})
+    loaded = toml_file.loads(text, controller.Controller, "any.toml")
+    np.testing.assert_array_equal(controller_row(loaded), exact)
+    for number, joint in enumerate(loaded.joint):  # and no number of it is rounded
+        for place, (_, parameter, value) in enumerate([*joint.parameters(number)[4:], *joint.parameters(number)[:4]]):
+            assert parameter.name.endswith(CONTROLLER_COLUMNS[place])
+            assert value == pytest.approx(parameter.to_physical(rows[number][place]), rel=1e-15)
+
+
+def test_a_file_with_its_origin_loads_and_still_refuses_unknown_keys(tmp_path: Path) -> None:
+    path = tmp_path / "controller.toml"
+    tuning = {"status": "complete", "seed": 3, "margin": [{"joint": 0, "kind": "rest"}, {"joint": 1, "kind": "rest"}]}
+    controller.save(path, default_controller(), "a test", header=("first", ""), notes=("yaw",) * 4, tuning=tuning)
+    assert path.read_text().startswith('# first\n#\nsource = "a test"\n\n[[joint]]  # 0: yaw\nkp = ')
+    loaded = controller.load(path)
+    assert (loaded.source, loaded.tuning) == ("a test", tuning)
+    with pytest.raises(UserError, match="unknown key toning"):
+        load(tmp_path, path.read_text().replace("[tuning]", "[toning]").replace("tuning.margin", "toning.margin"))
+
+
+@pytest.mark.parametrize(
+    ("column", "raw", "words"),
+    [
+        ("ze_c", 163, r"controller\.toml: joint\[1\]\.sets\.Ze_c is 0\.0099\d*, but it must be at least 0\.01"),
+        ("ne_c", 5, r"joint\[1\]\.sets\.Ne_c is 0\.0003\d*, but it must be at least -1 and at most -0\.01"),
+        ("kp", (64 << 16) + 1, r"joint1\.kp is 64.*out of range"),
+        ("ku_mv", -1, r"joint1\.ku_mv is -1 mV, which is out of range"),
+    ],
+)
+def test_what_a_board_would_refuse_is_never_written(tmp_path: Path, column: str, raw: int, words: str) -> None:
+    rows = default_controller()
+    rows[1, CONTROLLER_COLUMNS.index(column)] = raw
+    with pytest.raises(UserError, match=words):
+        controller.save(tmp_path / "controller.toml", rows)
+    assert not list(tmp_path.iterdir())
+
+
+def test_rows_that_are_not_whole_numbers_are_no_controller(tmp_path: Path) -> None:
+    with pytest.raises(TypeError):
+        controller.save(tmp_path / "controller.toml", default_controller() + 0.5)

@@ -1,4 +1,5 @@
-"""controller.toml: the fuzzy sets and gains of four joints, checked before anything of them reaches a board.
+"""controller.toml: the fuzzy sets and gains of four joints, checked before anything of them reaches a board; and
+written so that reading it back gives the board's own numbers.
 
 The sets are named as in the paper: NE [-1,-1,Ne_c,0], ZE [Ze_a,0,Ze_c], PE [0,Pe_b,1,1], and the same for the change of
 error with Nce_c, Zce_a, Zce_c, Pce_b.
@@ -6,19 +7,23 @@ error with Nce_c, Zce_a, Zce_c, Pce_b.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping, Sequence
+from operator import index
 from pathlib import Path
-from typing import Self
+from typing import Any, Self
 
 from pydantic import Field, model_validator
 
-from greywhale.config import toml_file
+from greywhale.config import toml_file, toml_text
 from greywhale.errors import UserError
+from greywhale.files import write_text
 from greywhale.link import schema
 from greywhale.link.declared import Parameter
 
 JOINTS = 4
 # No flank of a fuzzy set may be narrower than this.
 NARROWEST = 0.01
+GAINS = ("kp", "kd", "ki", "ku")
 
 
 def _left() -> float:
@@ -78,6 +83,7 @@ class Controller(toml_file.Table):
 
     source: str = ""
     joint: tuple[JointController, ...] = Field(min_length=JOINTS, max_length=JOINTS)
+    tuning: dict[str, Any] | None = None  # how `greywhale tune` found it and what it expects; no board gets it
 
     def raw_values(self) -> dict[int, int]:
         """Parameter index -> raw value, for everything that a controller file says."""
@@ -104,3 +110,56 @@ def load(path: str | Path) -> Controller:
                     f"give 0, or at least {parameter.lsb / scale:g}."
                 )
     return controller
+
+
+def save(
+    path: str | Path,
+    rows: Iterable[Iterable[int]],
+    source: str = "",
+    *,
+    header: Sequence[str] = (),
+    notes: Sequence[str] = ("",) * JOINTS,
+    tuning: Mapping[str, Any] | None = None,
+) -> None:
+    """Write a controller file, or nothing at all where a board would refuse it.
+
+    `rows` are raw as a board stores them: (4, 12), a joint's keys in the order of its parameters (sets 1/16384, gains
+    1/65536, mV), an int32 array for one. `load` gives the same raw values back. `header` are lines of comment on top,
+    `notes` one for each joint.
+    """
+    text = to_text(rows, source, header=header, notes=notes, tuning=tuning)
+    toml_file.loads(text, Controller, str(path))
+    write_text(path, text)
+
+
+def to_text(
+    rows: Iterable[Iterable[int]],
+    source: str = "",
+    *,
+    header: Sequence[str] = (),
+    notes: Sequence[str] = ("",) * JOINTS,
+    tuning: Mapping[str, Any] | None = None,
+) -> str:
+    """The text of a controller file; see `save`."""
+    lines = [*(f"# {line}".rstrip() for line in header), f"source = {toml_text.value(source)}"]
+    for joint, (row, note) in enumerate(zip(rows, notes, strict=True)):
+        values = _in_file(joint, row)
+        lines += ["", f"[[joint]]  # {joint}" + (f": {note}" if note else "")]
+        lines += [f"{key} = {toml_text.value(values[key])}" for key in GAINS]
+        lines += ["[joint.sets]", *(f"{key} = {toml_text.value(values[key])}" for key in Sets.model_fields)]
+    if tuning is not None:
+        lines += ["", *toml_text.table("tuning", tuning)]
+    return "\n".join(lines) + "\n"
+
+
+def _in_file(joint: int, row: Iterable[int]) -> dict[str, float]:
+    """A joint's raw values by their keys in the file, exactly what the board will use."""
+    raw = dict(zip((*(key.lower() for key in Sets.model_fields), "kp", "kd", "ki", "ku_mv"), row, strict=True))
+    found = {}
+    for key in (*Sets.model_fields, *GAINS):
+        name = "ku_mv" if key == "ku" else key.lower()
+        parameter = schema.PARAMETER_BY_NAME[f"joint{joint}.{name}"]
+        value = index(raw[name])
+        parameter.check_raw(value)
+        found[key] = parameter.to_physical(value) / (1000.0 if key == "ku" else 1.0)
+    return found
