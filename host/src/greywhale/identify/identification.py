@@ -17,7 +17,7 @@ from greywhale.identify.outcome import Outcome, ParameterEstimate
 from greywhale.identify.paper import METHODS as PAPER_METHODS
 from greywhale.identify.paper import VALUES, PaperSearch
 from greywhale.identify.search import Search
-from greywhale.identify.space import KINDS
+from greywhale.identify.space import KINDS, Space
 from greywhale.identify.uncertainty import uncertainty
 from greywhale.identify.windows import WindowResidual
 from greywhale.link import schema
@@ -110,33 +110,20 @@ def _default(
     assert best is not None
     report("judging the model", 0.0)
     space = best.space
-    sure = uncertainty(WindowResidual(prepared, arm, joints), space, best.x, joints)
-    estimates = []
-    start, values = space.values(space.start()), space.values(best.x)
-    for index, parameter in enumerate(space.parameters):
-        kind = KINDS[parameter.kind]
-        deviation = float(sure.deviations[index])
-        absolute = deviation * float(values[index]) if kind.logarithmic else deviation
-        estimates.append(
-            ParameterEstimate(
-                parameter.name, kind.means, kind.unit, float(start[index]), float(values[index]), absolute
-            )
-        )
-    for joint in np.flatnonzero(space.zero):
-        estimates.append(
-            ParameterEstimate(f"joint{joint}.offset", KINDS["offset"].means, "rad", 0.0, float(space.zero[joint]), 0.0)
-        )
-    plant = space.plants(best.x[None])[0]
-    verdicts = tuple(judge.judge(subject, arm, plant, space.zero, joints) for subject in subjects)
+    zero, plant = space.zero, space.plants(best.x[None])[0]
+    searched, x = space.with_offsets(best.x)
+    sure = uncertainty(WindowResidual(prepared, arm, joints), searched, x, joints)
+    verdicts = tuple(judge.judge(subject, arm, plant, zero, joints) for subject in subjects)
     return Outcome(
         white_box=arm,
         method="default",
         seed=seed,
         plant=plant,
-        zero=space.zero,
+        zero=zero,
         order=best.order,
         orders=tuple((one.order, float(one.held_out or 0.0)) for one in search.tried),
-        estimates=tuple(estimates),
+        estimates=_estimates(searched, x, sure.deviations),
+        covariance=sure.covariance,
         condition=sure.condition,
         open=sure.open,
         verdicts=verdicts,
@@ -146,6 +133,18 @@ def _default(
         complete=search.complete,
         curve=(),
     )
+
+
+def _estimates(space: Space, x: Floats, deviations: Floats) -> tuple[ParameterEstimate, ...]:
+    """Values and standard deviations as people read them: a logarithm's deviation is a share of the value."""
+    start, values = space.values(space.start()), space.values(x)
+    estimates = []
+    for index, parameter in enumerate(space.parameters):
+        kind = KINDS[parameter.kind]
+        deviation = float(deviations[index]) * (float(values[index]) if kind.logarithmic else 1.0)
+        before, after = float(start[index]), float(values[index])
+        estimates.append(ParameterEstimate(parameter.name, kind.means, kind.unit, before, after, deviation))
+    return tuple(estimates)
 
 
 def _paper(
@@ -189,6 +188,7 @@ def _paper(
         order="motors",
         orders=(),
         estimates=estimates,
+        covariance=None,
         condition=None,
         open=("two of the five motor values of every joint: motion shows three combinations of them only",),
         verdicts=verdicts,

@@ -46,6 +46,7 @@ class Outcome:
     order: str
     orders: tuple[tuple[str, float], ...]
     estimates: tuple[ParameterEstimate, ...]
+    covariance: Floats | None = field(repr=False)  # of the searched numbers, in the order of the estimates
     condition: float | None
     open: tuple[str, ...]
     verdicts: tuple[Verdict, ...]
@@ -77,6 +78,8 @@ class Outcome:
         }
         if self.condition is not None:
             facts["fisher_condition"] = self.condition
+        if self.covariance is not None:
+            facts["covariance"] = self.covariance.tolist()
         facts["not_identified"] = list(self.open)
         facts["warnings"] = list(self.warnings)
         facts["log"] = [self._log(*pair) for pair in zip(self.subjects, self.verdicts, strict=True)]

@@ -38,8 +38,6 @@ ORDERS: tuple[tuple[str, tuple[str, ...]], ...] = (
 )
 # An order with more quantities must predict the held-out data better by this share.
 WORTH = 0.02
-# The user's arm counts as much as one reading: it decides only what the log leaves open (standard deviation of logs).
-PRIOR = 1.0
 # A closed-loop difference of this size counts as one standard deviation (rad).
 LOOP_DOUBT = 2e-3
 GLOBAL_EVALUATIONS = 500
@@ -221,11 +219,7 @@ class Search:
         """Add the user's arm as one weak observation of every number searched by its logarithm."""
 
         def with_prior(space: Space, points: Floats) -> Floats:
-            start = space.start()
-            doubt = np.array(
-                [PRIOR if space.kind(n).logarithmic else 100 * space.kind(n).step for n in range(len(space))]
-            )
-            return np.concatenate([residual(space, points), (points - start) / doubt], axis=1)
+            return np.concatenate([residual(space, points), (points - space.start()) / space.doubts()], axis=1)
 
         return with_prior
 

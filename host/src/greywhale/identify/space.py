@@ -52,6 +52,9 @@ KINDS = {
     "offset": Kind("rad", "angle at which the potentiometer reads 0", False, 0.0, -0.3, 0.3, 1e-3),
 }
 MOTOR = ("alpha", "inertia", "damping")
+# The user's arm counts as much as one reading: it decides only what the log leaves open (standard deviation of logs).
+PRIOR = 1.0
+PRIOR_STEPS = 100.0  # the same for what is not searched by its logarithm, in steps of finite differences
 PITCH = (1, 2)  # only these feel gravity, so only they have a zero angle that matters
 # At the motor's stall torque teeth of unknown stiffness bend this far (rad), and their damping lasts this long (s).
 TEETH_BEND = 2e-3
@@ -90,6 +93,13 @@ class Space:
         chosen = tuple(Parameter(joint, "offset") for joint in joints)
         return Space(self.arm, chosen, self.plants(x[None])[0], np.zeros(JOINTS))
 
+    def with_offsets(self, x: Floats) -> tuple[Space, Floats]:
+        """The same point in a space in which the zero angles, given here, are numbers like all others."""
+        joints = [joint for joint in PITCH if self.zero[joint] != 0.0]
+        more = tuple(Parameter(joint, "offset") for joint in joints)
+        space = Space(self.arm, (*self.parameters, *more), self.base, np.zeros(JOINTS))
+        return space, np.concatenate([x, self.zero[joints]])
+
     def with_zero(self, zero: Floats) -> Space:
         return Space(self.arm, self.parameters, self.base, zero)
 
@@ -106,6 +116,12 @@ class Space:
     @property
     def steps(self) -> Floats:
         return np.array([self.kind(index).step for index in range(len(self))])
+
+    def doubts(self) -> Floats:
+        """How far from the user's arm a value may well be: standard deviations of the searched numbers."""
+        return np.array(
+            [PRIOR if self.kind(n).logarithmic else PRIOR_STEPS * self.kind(n).step for n in range(len(self))]
+        )
 
     def start(self) -> Floats:
         """The user's arm; where it is silent (no friction, say), a usual value."""

@@ -1,7 +1,7 @@
 """How well the logs determine each parameter, what they leave open, and which motion would settle it.
 
-Standard deviations come from the sandwich formula with the windows as clusters: what a model gets wrong it gets wrong
-for many readings in a row, and counting each of them as new evidence would make every deviation far too small.
+The covariance comes from the sandwich formula with the windows as clusters: what a model gets wrong it gets wrong for
+many readings in a row, and counting each of them as new evidence would make every deviation far too small.
 """
 
 from __future__ import annotations
@@ -38,15 +38,21 @@ EXCITATION = {
 
 @dataclass(frozen=True)
 class Uncertainty:
-    """Standard deviations of the searched numbers, condition number of the information, sentences on what is open."""
+    """Covariance of the searched numbers, condition number of the information, sentences on what is open."""
 
-    deviations: Floats
+    covariance: Floats
     condition: float
     open: tuple[str, ...]
 
+    @property
+    def deviations(self) -> Floats:
+        """Standard deviations of the searched numbers."""
+        found: Floats = np.sqrt(np.diag(self.covariance))
+        return found
+
 
 def uncertainty(residual: WindowResidual, space: Space, x: Floats, joints: Sequence[int]) -> Uncertainty:
-    """Evaluate at a found point."""
+    """Evaluate at a found point; what the readings leave open is as uncertain as the user's arm file."""
     steps = space.steps * 2.0
     _, high = space.bounds()
     ahead = np.where(x + steps > high, -steps, steps)
@@ -55,15 +61,29 @@ def uncertainty(residual: WindowResidual, space: Space, x: Floats, joints: Seque
     information = jacobian.T @ jacobian
     # Each number in its own natural size: a factor of e, or what would be called another value of the quantity.
     size = np.array([1.0 if space.kind(n).logarithmic else OPEN[one.kind] for n, one in enumerate(space.parameters)])
-    values, vectors = np.linalg.eigh(information * np.outer(size, size))
-    least = max(float(values[0]), SMALLEST_EIGENVALUE * float(values[-1]))
-    condition = float(values[-1]) / least
-    inverse = (vectors / np.maximum(values, least)) @ vectors.T * np.outer(size, size)
+    values = np.linalg.eigvalsh(information * np.outer(size, size))
+    condition = float(values[-1]) / max(float(values[0]), SMALLEST_EIGENVALUE * float(values[-1]))
     gradients = np.zeros((residual.clusters.max() + 1, len(space)))
     np.add.at(gradients, residual.clusters, jacobian * numbers[0][:, None])
-    covariance = inverse @ (gradients.T @ gradients) @ inverse
-    deviations: Floats = np.sqrt(np.maximum(np.diag(covariance), 0.0))
-    return Uncertainty(deviations, condition, tuple(_open(space, x, deviations, joints)))
+    covariance = _combined(information, gradients.T @ gradients, np.diag(space.doubts() ** -2.0))
+    return Uncertainty(covariance, condition, tuple(_open(space, x, np.sqrt(np.diag(covariance)), joints)))
+
+
+def _combined(information: Floats, scatter: Floats, nominal: Floats) -> Floats:
+    """Covariance from what the readings would tell if only noise were in them (`information`), how much they disagree
+    beyond that (`scatter`, of the clusters' gradients), and the user's arm file (`nominal`, as information).
+
+    The readings tell information x scatter^-1 x information (Godambe). Few clusters show the scatter badly, so it is
+    drawn half way towards the information times one common factor. What the readings leave open stays as uncertain as
+    the arm file is taken to be.
+    """
+    inverse = np.linalg.inv(information + nominal)
+    common = float(np.trace(inverse @ scatter) / np.trace(inverse @ information))
+    drawn = (scatter + common * information) / 2.0 + 1e-9 * nominal
+    told = information @ np.linalg.solve(drawn, information)
+    covariance = np.linalg.inv((told + told.T) / 2.0 + nominal)
+    symmetric: Floats = (covariance + covariance.T) / 2.0
+    return symmetric
 
 
 def _open(space: Space, x: Floats, deviations: Floats, joints: Sequence[int]) -> list[str]:

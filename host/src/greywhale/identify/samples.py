@@ -1,0 +1,78 @@
+"""Arms that the logs could have come from: the identified one, and others drawn from its covariance.
+
+A controller that is to work on the real arm must work on all of these.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from greywhale.arm import ArmParameters
+from greywhale.errors import BAD_USAGE, UserError
+from greywhale.identify.space import JOINTS, KINDS, Parameter, Space
+from greywhale.simulate import plant_row
+
+Floats = NDArray[np.float64]
+
+
+def sampled_plants(arm: ArmParameters, count: int, seed: int = 0) -> Floats:
+    """Plants (count, 60) of an identified arm; row 0 is the estimate itself, the others are drawn with `seed`.
+
+    Drawn are the searched numbers, normal with [identification] covariance and kept within their ranges; row n does
+    not depend on `count`. A zero angle is drawn with the rest, but is the potentiometer's: no column of a plant.
+    Raises UserError (2) where `count` is below 1, (1) where the arm file holds no covariance.
+    """
+    if count < 1:
+        raise UserError(f"count of sampled plants is {count}, but it must be at least 1.", BAD_USAGE)
+    estimate = plant_row(arm)[None]
+    if count == 1:
+        return estimate
+    space, x, covariance = _searched(arm)
+    scale = np.sqrt(np.diag(covariance))
+    # A root that is the same on every computer: eigenvectors have free signs, a Cholesky factor has none.
+    root = np.linalg.cholesky(covariance / np.outer(scale, scale) + 1e-9 * np.eye(len(x))) * scale[:, None]
+    draws = np.einsum("nk,jk->nj", np.random.default_rng(seed).standard_normal((count - 1, len(x))), root)
+    low, high = _ranges(space)
+    # The estimate may itself lie at the end of its range.
+    points = np.clip(x + draws, np.minimum(low, x), np.maximum(high, x))
+    return np.concatenate([estimate, space.plants(points)])
+
+
+def _searched(arm: ArmParameters) -> tuple[Space, Floats, Floats]:
+    """What [identification] says was searched: space, point (n,) and covariance (n, n) in searched numbers."""
+    facts = arm.identification
+    if facts is None or "covariance" not in facts:
+        raise UserError(
+            f"{arm.name}: there is no [identification] with a covariance in it, so nothing tells how uncertain it is; "
+            "use a model.toml of greywhale identify (method default)."
+        )
+    tables: list[dict[str, Any]] = facts.get("parameter", [])
+    covariance = np.array(facts["covariance"], dtype=np.float64)
+    parameters = tuple(_parameter(arm, str(table.get("name"))) for table in tables)
+    if covariance.shape != (len(parameters), len(parameters)) or not np.isfinite(covariance).all():
+        raise UserError(
+            f"{arm.name}: [identification] covariance has the shape {covariance.shape}, but there are "
+            f"{len(parameters)} parameter tables; identify again."
+        )
+    x = [KINDS[one.kind].to_search(float(table["value"])) for one, table in zip(parameters, tables, strict=True)]
+    return Space(arm, parameters, plant_row(arm), np.zeros(JOINTS)), np.array(x), covariance
+
+
+def _parameter(arm: ArmParameters, name: str) -> Parameter:
+    joint, _, kind = name.partition(".")
+    if kind not in KINDS or joint not in {f"joint{number}" for number in range(JOINTS)}:
+        raise UserError(
+            f"{arm.name}: [identification] names the parameter {name!r}, which greywhale does not know; identify again."
+        )
+    return Parameter(int(joint.removeprefix("joint")), kind)
+
+
+def _ranges(space: Space) -> tuple[Floats, Floats]:
+    """The search's own limits where they mean something physical: shares and gaps are never negative."""
+    kinds = [space.kind(index) for index in range(len(space))]
+    low = np.array([-np.inf if kind.logarithmic else kind.low for kind in kinds])
+    high = np.array([np.inf if kind.logarithmic else kind.high for kind in kinds])
+    return low, high

@@ -1,0 +1,94 @@
+"""Plants drawn from an identified arm's covariance: which, how spread, how repeatable."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from greywhale.arm import ArmParameters, load_arm
+from greywhale.errors import UserError
+from greywhale.identify import Outcome, sampled_plants
+from greywhale.identify.space import KINDS, Space, column
+from greywhale.simulate import plant_row
+from greywhale.simulate.tables import check_plants
+
+
+@pytest.fixture(scope="module")
+def model(outcome: Outcome, tmp_path_factory: pytest.TempPathFactory) -> ArmParameters:
+    path = tmp_path_factory.mktemp("model") / "model.toml"
+    outcome.save(path)
+    return load_arm(path)
+
+
+def test_row_0_is_the_estimate_and_no_row_depends_on_how_many_there_are(model: ArmParameters) -> None:
+    plants = sampled_plants(model, 9, seed=4)
+    assert plants.shape == (9, 60)
+    np.testing.assert_array_equal(plants[0], plant_row(model))
+    np.testing.assert_array_equal(sampled_plants(model, 3, seed=4), plants[:3])
+    np.testing.assert_array_equal(sampled_plants(model, 1), plants[:1])
+    assert not np.array_equal(sampled_plants(model, 9, seed=5)[1:], plants[1:])
+
+
+def test_every_drawn_plant_is_one_that_an_arm_can_have(model: ArmParameters) -> None:
+    """With a covariance a hundred times wider too, so that gaps and shares would come out negative."""
+    facts = model.identification
+    assert facts is not None
+    wide = facts | {"covariance": (100.0 * np.array(facts["covariance"])).tolist()}
+    for arm in (model, model.model_copy(update={"identification": wide})):
+        plants = sampled_plants(arm, 200)
+        np.testing.assert_array_equal(check_plants(plants), plants)
+        assert len(np.unique(plants, axis=0)) == 200
+
+
+def test_draws_have_the_covariance_of_the_file(model: ArmParameters, outcome: Outcome) -> None:
+    """Of the logarithms that no range cuts, taken back out of the plants."""
+    plants = sampled_plants(model, 4000)
+    columns = Space.of(model, ("alpha", "inertia", "damping"), range(4))
+    taken, expected = [], []
+    names = [one.name for one in outcome.estimates]
+    assert outcome.covariance is not None
+    assert outcome.covariance.shape == (len(names), len(names))
+    for parameter in columns.parameters:
+        torque = np.log(plants[:, column(parameter.joint, "torque_per_volt")])
+        if parameter.kind == "alpha":
+            taken.append(-torque)
+        else:
+            taken.append(np.log(plants[:, column(parameter.joint, parameter.kind)]) - torque)
+        index = names.index(parameter.name)
+        expected.append(index)
+        assert np.sqrt(outcome.covariance[index, index]) * outcome.estimates[index].value == pytest.approx(
+            outcome.estimates[index].deviation
+        )
+    wanted = outcome.covariance[np.ix_(expected, expected)]
+    scale = np.sqrt(np.diag(wanted))
+    np.testing.assert_allclose(
+        np.cov(np.array(taken)) / np.outer(scale, scale), wanted / np.outer(scale, scale), atol=0.1
+    )
+
+
+def test_nothing_is_surer_than_it_is_written_and_nothing_less_sure_than_the_users_arm(outcome: Outcome) -> None:
+    """Every searched number has a deviation above 0, and the arm file counts where the readings tell nothing."""
+    assert outcome.covariance is not None
+    doubts = {kind: 1.0 if KINDS[kind].logarithmic else 100 * KINDS[kind].step for kind in KINDS}
+    for variance, one in zip(np.diag(outcome.covariance), outcome.estimates, strict=True):
+        assert 0.0 < np.sqrt(variance) <= 1.001 * doubts[one.name.partition(".")[2]], one.name
+    assert np.linalg.eigvalsh(outcome.covariance)[0] > 0.0
+
+
+def test_an_arm_without_a_covariance_and_a_wrong_count_are_refused(model: ArmParameters) -> None:
+    with pytest.raises(UserError, match="at least 1") as refused:
+        sampled_plants(model, 0)
+    assert refused.value.exit_code == 2
+    bare = load_arm("white_box")
+    np.testing.assert_array_equal(sampled_plants(bare, 1), plant_row(bare)[None])
+    with pytest.raises(UserError, match="no \\[identification\\] with a covariance"):
+        sampled_plants(bare, 2)
+    facts = model.identification
+    assert facts is not None
+    cut = model.model_copy(update={"identification": facts | {"covariance": [[1.0]]}})
+    with pytest.raises(UserError, match=r"shape \(1, 1\), but there are \d+ parameter tables"):
+        sampled_plants(cut, 2)
+    renamed = [table | {"name": "joint9.magic"} for table in facts["parameter"]]
+    strange = model.model_copy(update={"identification": facts | {"parameter": renamed}})
+    with pytest.raises(UserError, match="'joint9.magic'"):
+        sampled_plants(strange, 2)
