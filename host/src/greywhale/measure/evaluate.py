@@ -20,6 +20,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
 
 from greywhale.errors import UserError
 from greywhale.log import Log
@@ -95,10 +96,12 @@ def evaluate(log: Log, settings: Settings | None = None) -> Evaluation:
             f"{log.name}: nothing to measure: no two neighbouring samples in state following; record longer."
         )
     joints, rests = [], []
-    for joint in range(log.leader.shape[1]):
-        measures, rested = _joint(log.leader[:, joint], log.follower[:, joint], measured, runs, chosen)
-        joints.append(measures)
-        rests.append(rested)
+    # Each of the thousands of correlations is too short for BLAS threads, which would wait for a core that is busy.
+    with threadpool_limits(limits=1, user_api="blas"):
+        for joint in range(log.leader.shape[1]):
+            measures, rested = _joint(log.leader[:, joint], log.follower[:, joint], measured, runs, chosen)
+            joints.append(measures)
+            rests.append(rested)
     return Evaluation(
         joints=tuple(joints),
         total_mse=sum(joint.mse for joint in joints),
