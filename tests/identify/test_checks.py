@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from greywhale.arm import ArmParameters
+from greywhale.arm import ArmParameters, load_arm
 from greywhale.errors import UserError
 from greywhale.identify import Table, identify
 from greywhale.identify.checks import check
@@ -109,3 +109,17 @@ def test_tables_come_from_controller_files_and_backups(tmp_path_factory: pytest.
     path = tmp_path_factory.mktemp("tables") / "backup.toml"
     parameter_file.save(path, values_of("table_10"))
     assert load_table(path).values == load_table(TABLES / "table_10.toml").values == values_of("table_10")
+
+
+def test_a_table_tells_what_it_changes_and_a_file_keeps_it(tables: list[Table]) -> None:
+    import tomllib
+
+    from greywhale.identify.model_file import to_toml
+
+    changed = tables[1].changed()
+    assert changed
+    assert tuple(changed.get(one.name, one.default) for one in schema.PARAMETERS) == tables[1].values
+    assert DEFAULTS.changed() == {}
+    for pairs in (changed, {}):
+        text = to_toml(load_arm("white_box"), {"parameters": pairs})
+        assert tomllib.loads(text)["identification"] == {"parameters": pairs}

@@ -10,7 +10,7 @@ import pytest
 
 from greywhale.arm import ArmParameters, load_arm
 from greywhale.errors import UserError
-from greywhale.identify import Outcome, identify
+from greywhale.identify import Outcome, Table, identify
 from greywhale.identify.judge import CHANGED, FIT, SECOND, Verdict, warnings_of
 from greywhale.identify.search import Search
 from greywhale.identify.space import column
@@ -47,7 +47,7 @@ def test_order_is_chosen_by_held_out_data(outcome: Outcome) -> None:
     assert errors[outcome.order] <= min(errors.values()) / 0.98
 
 
-def test_model_file_is_an_arm_file(outcome: Outcome, tmp_path: Path) -> None:
+def test_model_file_is_an_arm_file(outcome: Outcome, tables: list[Table], tmp_path: Path) -> None:
     outcome.save(tmp_path / "model.toml")
     arm = load_arm(tmp_path / "model.toml")
     np.testing.assert_allclose(plant_row(arm), outcome.plant, rtol=1e-9, atol=1e-12)
@@ -59,6 +59,7 @@ def test_model_file_is_an_arm_file(outcome: Outcome, tmp_path: Path) -> None:
     assert facts["log"][0]["parameter_crc"].startswith("0x")
     assert facts["log"][0]["period_ms"] == 1
     assert facts["log"][0]["model_mse_rad2"] == pytest.approx(outcome.verdicts[0].model)
+    assert facts["parameters"] == tables[0].changed()
     named = {one["name"]: one for one in facts["parameter"]}
     assert named["joint0.damping"]["standard_deviation"] > 0.0
     assert isinstance(facts["fisher_condition"], float)

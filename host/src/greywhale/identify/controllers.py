@@ -23,6 +23,11 @@ class Table:
     def crc(self) -> int:
         return schema.param_crc(self.values)
 
+    def changed(self) -> dict[str, int]:
+        """By name, raw, what differs from the firmware's defaults."""
+        both = zip(schema.PARAMETERS, self.values, strict=True)
+        return {one.name: value for one, value in both if value != schema.DEFAULTS[one.index]}
+
 
 DEFAULTS = Table("the firmware's defaults", tuple(schema.DEFAULTS))
 

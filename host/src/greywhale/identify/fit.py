@@ -4,20 +4,37 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 from threadpoolctl import threadpool_limits
 
-from greywhale.identify.space import Space
+from greywhale.identify.space import Kind
 
 Floats = NDArray[np.float64]
+
+
+class Searched(Protocol):
+    """Whatever has numbers to search: how many, in which bounds, with which steps of finite differences."""
+
+    def __len__(self) -> int: ...
+
+    def bounds(self) -> tuple[Floats, Floats]: ...
+
+    @property
+    def steps(self) -> Floats: ...
+
+    def kind(self, index: int) -> Kind: ...
+
+
+Space = TypeVar("Space", bound=Searched)
 Residual = Callable[[Space, Floats], Floats]
 
 
 @dataclass(frozen=True)
-class Fit:
+class Fit(Generic[Space]):
     """Where least squares ended: half the sum of squares, the residual and its derivatives there."""
 
     space: Space
@@ -29,13 +46,13 @@ class Fit:
 
 
 def least_squares_fit(
-    residual: Residual,
+    residual: Residual[Space],
     space: Space,
     start: Floats,
     most_steps: int = 20,
     step_scale: float = 1.0,
     tolerance: float = 1e-4,
-) -> Fit:
+) -> Fit[Space]:
     """Trust-region least squares within the bounds, ended after `most_steps` steps or when little is gained."""
     low, high = space.bounds()
     inside = np.clip(start, low + 1e-9, high - 1e-9)

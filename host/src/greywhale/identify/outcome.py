@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
 from greywhale.files import write_text
-from greywhale.identify.judge import Subject, Verdict
+from greywhale.identify.judge import FIT, Subject, Verdict
 from greywhale.identify.model_file import arm_of, to_toml
 
 Floats = NDArray[np.float64]
@@ -80,6 +80,9 @@ class Outcome:
             facts["fisher_condition"] = self.condition
         if self.covariance is not None:
             facts["covariance"] = self.covariance.tolist()
+        table = next((one.table for one in self.subjects if one.role == FIT and one.table is not None), None)
+        if table is not None:
+            facts["parameters"] = table.changed()
         facts["not_identified"] = list(self.open)
         facts["warnings"] = list(self.warnings)
         facts["log"] = [self._log(*pair) for pair in zip(self.subjects, self.verdicts, strict=True)]

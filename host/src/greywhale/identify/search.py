@@ -210,12 +210,14 @@ class Search:
         self.best = replace(best, x=found.x)
         self.complete = True
 
-    def _fit(self, residual: Residual, space: Space, start: Floats, steps: int, step_scale: float = 1.0) -> Fit:
+    def _fit(
+        self, residual: Residual[Space], space: Space, start: Floats, steps: int, step_scale: float = 1.0
+    ) -> Fit[Space]:
         found = least_squares_fit(residual, space, start, steps, step_scale)
         self.simulations += found.simulations
         return found
 
-    def _prior(self, residual: Residual) -> Residual:
+    def _prior(self, residual: Residual[Space]) -> Residual[Space]:
         """Add the user's arm as one weak observation of every number searched by its logarithm."""
 
         def with_prior(space: Space, points: Floats) -> Floats:
@@ -224,5 +226,5 @@ class Search:
         return with_prior
 
 
-def _scaled(residual: Residual) -> Residual:
+def _scaled(residual: Residual[Space]) -> Residual[Space]:
     return lambda space, points: residual(space, points) / LOOP_DOUBT
