@@ -206,14 +206,14 @@ void bind_closed_loop(nb::module_& m) {
   nb::class_<loop::Settings>(m, "LoopSettings", "What the closed loop needs of a parameter table, raw values.")
       .def("__init__", &make_settings, nb::kw_only(), "period_ms"_a, "supply_mv"_a, "soft_start_ms"_a, "filter_shift"_a, "limit_min"_a,
            "limit_max"_a, "motor_sign"_a, "pwm_top"_a, "leader_zero"_a, "leader_scale"_a, "follower_zero"_a, "follower_scale"_a);
-  nb::class_<loop::Timing>(m, "LoopTiming", "When conversions begin (cycles) and voltages act (slices) within a tick.")
+  nb::class_<loop::Timing>(m, "LoopTiming", "When conversions begin (cycles) and voltages act (slices) within a tick, and by how many ticks duties are late.")
       .def(
           "__init__",
-          [](loop::Timing* self, int start, const Each<int>& acts, int on) {
-            new (self) loop::Timing{start, {}, on};
+          [](loop::Timing* self, int start, const Each<int>& acts, int on, int late) {
+            new (self) loop::Timing{start, {}, on, late};
             copy(acts, self->acts);
           },
-          nb::kw_only(), "start"_a, "acts"_a, "on"_a);
+          nb::kw_only(), "start"_a, "acts"_a, "on"_a, "late"_a = 0);
   nb::class_<ClosedLoop>(m, "ClosedLoop", "One experiment, for any number of candidates.")
       .def("__init__", &make_loop, nb::kw_only(), "settings"_a, "timing"_a, "pots"_a, "pot_supply"_a, "seed"_a, "home"_a, "gap"_a,
            "reference"_a.noconvert(), "leader"_a.noconvert(), "weight"_a.noconvert())

@@ -1,6 +1,9 @@
 // The closed loop of one candidate in the bench's own arithmetic: see closed_loop/experiment.h.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "closed_loop/experiment.h"
 #include "closed_loop/firmware_tick.h"
@@ -97,7 +100,8 @@ class Run {
  public:
   Run(const Experiment& x, const Controllers& controllers, const PlantRow& row, int substeps, const Trace& trace)
       : x_(x), controllers_(controllers), row_(row), substeps_(substeps), trace_(trace), pots_(x.pots, x.pot_supply, x.seed),
-        sums_(x.timing, kFollower), angles_(x.settings, x.settings.follower), ramp_(x.settings.soft_start_ms), state_(resting(x, row.plant)) {
+        sums_(x.timing, kFollower), angles_(x.settings, x.settings.follower), ramp_(x.settings.soft_start_ms), state_(resting(x, row.plant)),
+        waiting_(static_cast<std::size_t>(x.timing.late)) {
     for (fuzzy_pdi::State& memory : memories_) fuzzy_pdi::reset(memory);
     Four millivolts;
     Potentiometers quiet(without_noise(x.pots), x.pot_supply, 0);
@@ -153,9 +157,17 @@ class Run {
       if (!due) continue;
       const std::int16_t reference = std::clamp(x_.reference[tick * kJoints + i], x_.settings.limit_min[i], x_.settings.limit_max[i]);
       const fuzzy_pdi::Output out = fuzzy_pdi::step(controllers_[i], memories_[i], reference, follower, limit);
-      const int top = x_.settings.pwm_top[i];
-      compare_[i] = compare_value(out.volts_mv, duty_scale(top, x_.settings.supply_mv), x_.settings.motor_sign[i]);
-      const double size = std::abs(compare_[i]) / static_cast<double>(top);
+      commanded_[i] = compare_value(out.volts_mv, duty_scale(x_.settings.pwm_top[i], x_.settings.supply_mv), x_.settings.motor_sign[i]);
+    }
+    act(tick);
+  }
+
+  // The duties that the firmware commands, or those of `late` ticks ago.
+  void act(std::size_t tick) {
+    compare_ = commanded_;
+    if (!waiting_.empty()) std::swap(compare_, waiting_[tick % waiting_.size()]);
+    for (std::size_t i = 0; i < kJoints; ++i) {
+      const double size = std::abs(compare_[i]) / static_cast<double>(x_.settings.pwm_top[i]);
       volts_[i] = (compare_[i] < 0 ? -size : size) * row_.supply;
     }
   }
@@ -194,7 +206,8 @@ class Run {
   SoftStart ramp_;
   arm::State<double> state_;
   fuzzy_pdi::State memories_[kJoints];
-  std::int32_t compare_[kJoints] = {};
+  std::array<std::int32_t, kJoints> commanded_ = {}, compare_ = {};
+  std::vector<std::array<std::int32_t, kJoints>> waiting_;  // commanded, not acting yet
   Four volts_ = {};
 };
 

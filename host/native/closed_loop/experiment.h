@@ -31,6 +31,7 @@ struct Timing {
   int start;                              // of the first conversion, after the beginning of the slice in which the tick begins
   int acts[kJoints];                      // the slice in which a joint's new voltage begins to act, 1 or later
   int on;                                 // the slice in which the drivers are first found on, 1..4; the hand lets go one later
+  int late;                               // ticks by which every duty acts later than the firmware's; 0 on the board
 };
 
 // The pots of a round in their order: the followers' come first.

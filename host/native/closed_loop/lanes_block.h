@@ -3,6 +3,8 @@
 
 #include <xmmintrin.h>
 
+#include <vector>
+
 #include "block.h"
 #include "firmware_tick.h"
 #include "lanes_controller.h"
@@ -127,7 +129,8 @@ class Run {
  public:
   Run(const Experiment& x, const Pots& pots, const Block& block, int steps)
       : x_(x), pots_(pots), block_(block), steps_(static_cast<std::size_t>(steps)),
-        ramp_(x.settings.soft_start_ms), traced_(block.traces[0].every != 0) {
+        ramp_(x.settings.soft_start_ms), traced_(block.traces[0].every != 0),
+        waiting_(static_cast<std::size_t>(x.timing.late) * kJoints * kBlock) {
     const double h = kTick / steps;
     plant_.body = body_of(block);
     plant_.step = all(static_cast<float>(h));
@@ -144,6 +147,7 @@ class Run {
       curved_ = curved_ || pots.linearity[i] != 0.0f;
       sum_[i] = shift_left<2>(count);
       filtered_[i] = shift_left<4>(sum_[i]);
+      commanded_[i] = all(0);
       compare_[i] = all(0);
       duty_[i] = all(0.0f);
       duty_scale_[i] = duty_scale(x.settings.pwm_top[i], x.settings.supply_mv);
@@ -159,6 +163,7 @@ class Run {
         error[i] = all(static_cast<float>(x_.leader[tick * kJoints + i])) - to_float(state_[i].q) * all(kUnit);
       }
       control(tick);
+      act(tick);
       add(tick, error, totals);
       if (traced_) record(tick);
       if (curved_) {
@@ -203,8 +208,18 @@ class Run {
       follower[i] = to_angle(filtered_[i], s.follower.zero[i], s.follower.scale[i]);
     }
     step(laws_, memories_, leader, follower, limit, tick == 1, short_ramps_, millivolts);
+    for (std::size_t i = 0; i < kJoints; ++i) commanded_[i] = compare_value(millivolts[i], duty_scale_[i], s.motor_sign[i]);
+  }
+
+  // The duties that the firmware commands, or those of `late` ticks ago.
+  GREYWHALE_INLINE void act(std::size_t tick) {
     for (std::size_t i = 0; i < kJoints; ++i) {
-      compare_[i] = compare_value(millivolts[i], duty_scale_[i], s.motor_sign[i]);
+      compare_[i] = commanded_[i];
+      if (x_.timing.late != 0) {
+        std::int32_t* const then = waiting_.data() + (tick % static_cast<std::size_t>(x_.timing.late) * kJoints + i) * kBlock;
+        compare_[i] = load(then);
+        store(then, commanded_[i]);
+      }
       duty_[i] = to_float(compare_[i]);
     }
   }
@@ -318,9 +333,10 @@ class Run {
   Memory memories_[kJoints];
   Turns turns_[kJoints];
   State state_[kJoints];
-  Int sum_[kJoints], filtered_[kJoints], compare_[kJoints];
+  Int sum_[kJoints], filtered_[kJoints], commanded_[kJoints], compare_[kJoints];
   Float duty_[kJoints];
   std::int32_t duty_scale_[kJoints];
+  std::vector<std::int32_t> waiting_;  // commanded, not acting yet: late ticks x 4 joints x 16 lanes
 };
 
 // Numbers too small to matter are 0, as they slow a processor down.

@@ -22,6 +22,7 @@ TICK_S = 1e-3
 PWM_TOP = {"mega": (400, 400, 400, 400), "nano": (400, 400, 255, 255)}
 LATEST_CHAIN = 7000  # cycles: a chain takes 12,944 and must end before the next tick
 STEPS_PER_TICK = (1, 2, 4)
+LONGEST_DELAY = 1000  # ticks
 
 
 @dataclass(frozen=True)
@@ -34,24 +35,29 @@ class Timing:
     the follower, and the controllers run from tick 1 on.
     On the bench all depend on the cycle at which the board was switched on; the defaults are those of a tick that
     begins with its slice and is done within it.
+    `late`: ticks by which every duty acts later than the firmware gives it. No board does that; a controller with a
+    margin bears it.
     """
 
     chain_start: int = 2208
     acts: tuple[int, int, int, int] = (1, 1, 1, 1)
     drivers_on: int = 1
+    late: int = 0
 
     def __post_init__(self) -> None:
         if not 0 <= self.chain_start <= LATEST_CHAIN:
             raise UserError(
                 f"chain_start is {self.chain_start}, but it must be a number of cycles in 0..{LATEST_CHAIN}."
             )
+        if not 0 <= self.late <= LONGEST_DELAY:
+            raise UserError(f"late is {self.late}, but it must be a number of ticks in 0..{LONGEST_DELAY}.")
         if self.drivers_on not in (1, 2, 3, 4):
             raise UserError(f"drivers_on is {self.drivers_on}, but it must name a slice from 1 to 4.")
         if len(self.acts) != JOINTS or not all(1 <= slice_number < SLICES_PER_TICK for slice_number in self.acts):
             raise UserError(f"acts is {self.acts}, but it must name a slice from 1 to 3 for each of the four joints.")
 
     def native(self) -> _native.LoopTiming:
-        return _native.LoopTiming(start=self.chain_start, acts=self.acts, on=self.drivers_on)
+        return _native.LoopTiming(start=self.chain_start, acts=self.acts, on=self.drivers_on, **({"late": self.late} if self.late else {}))
 
 
 DEFAULT_TIMING = Timing()
