@@ -80,6 +80,31 @@ def test_a_reset_while_the_motors_run_leaves_them_off(bench: Bench) -> None:
     assert status(bench).stop_reason == schema.StopReason.RESET
 
 
+def test_a_host_that_leads_costs_the_tick_nothing_and_delays_none(bench: Bench) -> None:
+    bench.ask(schema.TelemetryRequest, struct.pack("<H", 1))
+    bench.ask(schema.EnableRequest, struct.pack("<H", 0))
+    bench.wait(1100)
+    by_pots = max(bench.tick_cycles()[1] for _ in range(50))
+    bench.ask(schema.StopRequest)
+    reply = schema.LeadReply.unpack(bench.ask(schema.LeadRequest, struct.pack("<H", 60000)))
+    bench.wait(1100)
+    assert (
+        max(bench.tick_cycles()[1] for _ in range(50)) <= by_pots + 10
+    )  # the same work: pots agree as the reference does
+    number, taken = reply.next, []
+    for step in [*range(0, 40, 8), *range(40, -40, -8), *range(-40, 8, 8)]:
+        taken.append(step)
+        payload = schema.LeadPointRequest(number, (step, -step, step // 2, 0)).pack()
+        number = schema.LeadPointReply.unpack(bench.ask(schema.LeadPointRequest, payload)).next
+        bench.wait(14.5)
+    assert max(bench.tick_cycles()[1] for _ in range(50)) <= 3200
+    assert number == (reply.next + len(taken)) % 256
+    after = schema.LeadReply.unpack(bench.ask(schema.LeadRequest, struct.pack("<H", 60000)))
+    assert after.reference[0] == reply.reference[0] + 4 * sum(taken)
+    assert status(bench).state == schema.State.FOLLOWING
+    assert status(bench).late_ticks == 0
+
+
 @pytest.mark.parametrize("name", BOARDS)
 def test_variables_and_the_deepest_stack_fit_one_and_a_half_kilobytes(name: str) -> None:
     assert memory(name).value <= 1536

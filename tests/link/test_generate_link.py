@@ -63,7 +63,7 @@ def test_a_stale_or_missing_file_is_named(copy: Path, path: str) -> None:
 
 
 def test_a_changed_declaration_makes_both_sides_stale(copy: Path) -> None:
-    edit(copy / "shared/link/messages.toml", "type = 0x0C", "type = 0x0D")
+    edit(copy / "shared/link/messages.toml", "type = 0x0C", "type = 0x0F")
     stale = generate("--check", "--root", copy).stderr
     assert "schema.h" in stale
     assert "schema.py" in stale

@@ -7,6 +7,7 @@
 
 #include "controllers.h"
 #include "drive.h"
+#include "lead.h"
 #include "parameter_sets.h"
 #include "sampling.h"
 
@@ -41,6 +42,11 @@ class App {
   void handle_frame();
   void handle_parameters(uint8_t type);
   void handle_motors(uint8_t type);
+  void handle_lead();
+  void handle_lead_point();
+  void reply_lead();
+  bool work_on_lead();
+  void see_distances();
   void begin_apply(uint16_t crc);
   void work_on_apply();
   void send_hello(uint8_t seq);
@@ -76,6 +82,7 @@ class App {
   bool hello_due_ = false;
   bool drivers_on_ = false;
   uint8_t request_ = 0, seq_ = 0;              // of the frame being answered
+  Lead lead_;                      // last: the tick has no use for it, and finds near at hand what it needs
 };
 
 }  // namespace app

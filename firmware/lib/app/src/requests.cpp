@@ -50,6 +50,7 @@ uint16_t pair(uint8_t high, uint16_t low) { return static_cast<uint16_t>(high <<
 }  // namespace
 
 bool App::service() {
+  if (lead_.on() && work_on_lead()) return true;
   const uint16_t age_us = hal::tick_age_us();
   const bool late_in_tick = age_us > latest_start_us;
   if (late_in_tick && heard_this_tick_) return false;
@@ -78,6 +79,25 @@ bool App::service() {
     return sets_.work_on_save();
   }
   return true;
+}
+
+// Once a tick, before anything else: moves the host's reference on. Once the motors are off, for whatever reason, the leader arm leads
+// again, and no request is taken before that.
+bool App::work_on_lead() {
+  const auto tick = static_cast<uint8_t>(tick_);
+  if (drivers_on_) {
+    if (!lead_.due(tick)) return false;
+    lead_.advance(tick, sampling_);
+    return true;
+  }
+  lead_.end();
+  sampling_.configure(sets_.running());
+  see_distances();
+  return true;
+}
+
+void App::see_distances() {
+  for (uint8_t i = 0; i < hal::joint_count; ++i) seen_.distance[i] = sampling_.distance(i);
 }
 
 void App::receive() {
@@ -118,9 +138,11 @@ void App::handle_frame() {
     case wire::StopRequest::type:
     case wire::RenewRequest::type:
     case wire::ClearFaultRequest::type:
+    case wire::LeadRequest::type:
       handle_motors(request_);
       follow_supervisor();
       break;
+    case wire::LeadPointRequest::type: handle_lead_point(); break;
     default: refuse(wire::NackCode::unknown_type, request_); break;
   }
 }
@@ -146,6 +168,7 @@ void App::handle_motors(uint8_t type) {
       reply(wire::RenewReply{on_link(supervisor_.state())});
       break;
     }
+    case wire::LeadRequest::type: handle_lead(); break;
     default: {
       wire::ClearFaultRequest request;
       if (decode(request)) answer(supervisor_.clear_fault(seen_));
@@ -154,12 +177,46 @@ void App::handle_motors(uint8_t type) {
   }
 }
 
-// The answer to enable and clear_fault, whose replies differ in their type only.
+// When it is refused the motors stay off, and the leader arm leads again before anything else is done.
+void App::handle_lead() {
+  wire::LeadRequest request;
+  if (!decode(request)) return;
+  if (request.lease_ms == 0) return refuse(wire::NackCode::lead_refused, pair(0, static_cast<uint8_t>(wire::LeadRefusal::no_lease)));
+  if (supervisor_.motors_on() && !lead_.on()) {
+    return refuse(wire::NackCode::not_disabled, static_cast<uint8_t>(supervisor_.state()));
+  }
+  if (!supervisor_.motors_on()) {
+    lead_.begin(sampling_);
+    see_distances();
+  }
+  answer(supervisor_.enable(request.lease_ms, seen_));
+}
+
+void App::handle_lead_point() {
+  wire::LeadPointRequest request;
+  if (!decode(request)) return;
+  const Lead::Verdict verdict = lead_.take(request, sampling_);
+  if (verdict.refusal != wire::LeadRefusal::none) {
+    return refuse(wire::NackCode::lead_refused, pair(verdict.joint, static_cast<uint8_t>(verdict.refusal)));
+  }
+  reply(wire::LeadPointReply{lead_.next(), lead_.waiting()});
+}
+
+void App::reply_lead() {
+  wire::LeadReply out;
+  out.state = on_link(supervisor_.state());
+  out.next = lead_.next();
+  for (uint8_t i = 0; i < hal::joint_count; ++i) out.reference[i] = lead_.last(i);
+  reply(out);
+}
+
+// The answer to enable, lead and clear_fault.
 void App::answer(const supervisor::Reply& result) {
   using supervisor::Answer;
   switch (result.answer) {
     case Answer::ok:
       if (request_ == wire::EnableRequest::type) reply(wire::EnableReply{on_link(supervisor_.state())});
+      else if (request_ == wire::LeadRequest::type) reply_lead();
       else reply(wire::ClearFaultReply{on_link(supervisor_.state())});
       break;
     case Answer::booting: refuse(wire::NackCode::booting, 0); break;

@@ -45,4 +45,25 @@ void Sampling::tick(const uint16_t* sums, supervisor::Observation& seen) {
   start_filter();
 }
 
+int16_t Sampling::within_limits(uint8_t joint, int16_t angle) const {
+  const JointSignals& signals = signals_.joint[joint];
+  return angle < signals.limit_min ? signals.limit_min : angle > signals.limit_max ? signals.limit_max : angle;
+}
+
+uint16_t Sampling::distance(uint8_t joint) const {
+  const int16_t wanted = within_limits(joint, leader(joint)), is = follower(joint);
+  return static_cast<uint16_t>(wanted > is ? wanted - is : is - wanted);
+}
+
+void Sampling::lead(uint8_t joint, int16_t angle) {
+  Pot& pot = signals_.joint[joint].leader;
+  pot.scale = 0;
+  pot.offset = hal::make_offset(static_cast<int32_t>(angle) * 0x8000 + 0x4000);
+}
+
+void Sampling::move_lead(uint8_t joint, int32_t by) {
+  hal::Offset& offset = signals_.joint[joint].leader.offset;
+  offset = hal::make_offset(hal::whole(offset) + by);
+}
+
 }  // namespace app

@@ -13,6 +13,8 @@ struct Offset {
 
 inline Offset make_offset(int32_t value) { return {static_cast<uint16_t>(value), static_cast<int16_t>(value >> 16)}; }
 
+inline int32_t whole(Offset offset) { return static_cast<int32_t>(offset.high) * 0x10000 + offset.low; }
+
 namespace portable {
 
 // (old * keep + 128) / 256 + sum * gain, within 16 bits
@@ -22,8 +24,7 @@ inline uint16_t blend(uint16_t old, uint8_t keep, uint16_t sum, uint8_t gain) {
 
 // (value * factor + offset) / 2^15, within 16 bits; value * factor + offset within 31 bits
 inline int16_t line(uint16_t value, int16_t factor, Offset offset) {
-  const int32_t added = static_cast<int32_t>(offset.high) * 0x10000 + offset.low;
-  return static_cast<int16_t>((static_cast<int32_t>(value) * factor + added) >> 15);
+  return static_cast<int16_t>((static_cast<int32_t>(value) * factor + whole(offset)) >> 15);
 }
 
 // The upper half of the product

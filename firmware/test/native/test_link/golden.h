@@ -857,6 +857,196 @@ void for_each(Visit visit) {
     visit("TelemetryReply", 144, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
+    wire::LeadRequest message{};
+    message.lease_ms = 0;
+    const uint8_t payload[] = {0x00, 0x00};
+    const uint8_t wire_bytes[] = {0x02, 0x0D, 0x01, 0x01, 0x03, 0x46, 0xBD, 0x00};
+    visit("LeadRequest", 0, message, payload, size_t{2}, wire_bytes, size_t{8});
+  }
+  {
+    wire::LeadRequest message{};
+    message.lease_ms = 65535;
+    const uint8_t payload[] = {0xFF, 0xFF};
+    const uint8_t wire_bytes[] = {0x07, 0x0D, 0xFF, 0xFF, 0xFF, 0x2A, 0x6F, 0x00};
+    visit("LeadRequest", 255, message, payload, size_t{2}, wire_bytes, size_t{8});
+  }
+  {
+    wire::LeadRequest message{};
+    message.lease_ms = 9101;
+    const uint8_t payload[] = {0x8D, 0x23};
+    const uint8_t wire_bytes[] = {0x07, 0x0D, 0x80, 0x8D, 0x23, 0xD9, 0xFF, 0x00};
+    visit("LeadRequest", 128, message, payload, size_t{2}, wire_bytes, size_t{8});
+  }
+  {
+    wire::LeadRequest message{};
+    message.lease_ms = 10343;
+    const uint8_t payload[] = {0x67, 0x28};
+    const uint8_t wire_bytes[] = {0x07, 0x0D, 0xA5, 0x67, 0x28, 0xFD, 0xDC, 0x00};
+    visit("LeadRequest", 165, message, payload, size_t{2}, wire_bytes, size_t{8});
+  }
+  {
+    wire::LeadRequest message{};
+    message.lease_ms = 28614;
+    const uint8_t payload[] = {0xC6, 0x6F};
+    const uint8_t wire_bytes[] = {0x07, 0x0D, 0x96, 0xC6, 0x6F, 0x64, 0x56, 0x00};
+    visit("LeadRequest", 150, message, payload, size_t{2}, wire_bytes, size_t{8});
+  }
+  {
+    wire::LeadReply message{};
+    message.state = static_cast<wire::State>(0);
+    message.next = 0;
+    message.reference[0] = -32768;
+    message.reference[1] = -32768;
+    message.reference[2] = -32768;
+    message.reference[3] = -32768;
+    const uint8_t payload[] = {0x00, 0x00, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80};
+    const uint8_t wire_bytes[] = {0x02, 0x8D, 0x01, 0x01, 0x01, 0x02, 0x80, 0x02, 0x80, 0x02, 0x80, 0x04, 0x80, 0xAA, 0x18, 0x00};
+    visit("LeadReply", 0, message, payload, size_t{10}, wire_bytes, size_t{16});
+  }
+  {
+    wire::LeadReply message{};
+    message.state = static_cast<wire::State>(4);
+    message.next = 255;
+    message.reference[0] = 32767;
+    message.reference[1] = 32767;
+    message.reference[2] = 32767;
+    message.reference[3] = 32767;
+    const uint8_t payload[] = {0x04, 0xFF, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F};
+    const uint8_t wire_bytes[] = {0x0F, 0x8D, 0xFF, 0x04, 0xFF, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0x48, 0x26, 0x00};
+    visit("LeadReply", 255, message, payload, size_t{10}, wire_bytes, size_t{16});
+  }
+  {
+    wire::LeadReply message{};
+    message.state = static_cast<wire::State>(3);
+    message.next = 204;
+    message.reference[0] = -28324;
+    message.reference[1] = -18563;
+    message.reference[2] = -28193;
+    message.reference[3] = 4081;
+    const uint8_t payload[] = {0x03, 0xCC, 0x5C, 0x91, 0x7D, 0xB7, 0xDF, 0x91, 0xF1, 0x0F};
+    const uint8_t wire_bytes[] = {0x0F, 0x8D, 0xDC, 0x03, 0xCC, 0x5C, 0x91, 0x7D, 0xB7, 0xDF, 0x91, 0xF1, 0x0F, 0x90, 0xEA, 0x00};
+    visit("LeadReply", 220, message, payload, size_t{10}, wire_bytes, size_t{16});
+  }
+  {
+    wire::LeadReply message{};
+    message.state = static_cast<wire::State>(4);
+    message.next = 140;
+    message.reference[0] = 16007;
+    message.reference[1] = 14971;
+    message.reference[2] = 17405;
+    message.reference[3] = -25925;
+    const uint8_t payload[] = {0x04, 0x8C, 0x87, 0x3E, 0x7B, 0x3A, 0xFD, 0x43, 0xBB, 0x9A};
+    const uint8_t wire_bytes[] = {0x0F, 0x8D, 0x3D, 0x04, 0x8C, 0x87, 0x3E, 0x7B, 0x3A, 0xFD, 0x43, 0xBB, 0x9A, 0xD1, 0xD7, 0x00};
+    visit("LeadReply", 61, message, payload, size_t{10}, wire_bytes, size_t{16});
+  }
+  {
+    wire::LeadReply message{};
+    message.state = static_cast<wire::State>(0);
+    message.next = 185;
+    message.reference[0] = -29595;
+    message.reference[1] = -8969;
+    message.reference[2] = 26435;
+    message.reference[3] = -11328;
+    const uint8_t payload[] = {0x00, 0xB9, 0x65, 0x8C, 0xF7, 0xDC, 0x43, 0x67, 0xC0, 0xD3};
+    const uint8_t wire_bytes[] = {0x03, 0x8D, 0xFE, 0x0C, 0xB9, 0x65, 0x8C, 0xF7, 0xDC, 0x43, 0x67, 0xC0, 0xD3, 0x2E, 0x0C, 0x00};
+    visit("LeadReply", 254, message, payload, size_t{10}, wire_bytes, size_t{16});
+  }
+  {
+    wire::LeadPointRequest message{};
+    message.number = 0;
+    message.step[0] = -128;
+    message.step[1] = -128;
+    message.step[2] = -128;
+    message.step[3] = -128;
+    const uint8_t payload[] = {0x00, 0x80, 0x80, 0x80, 0x80};
+    const uint8_t wire_bytes[] = {0x02, 0x0E, 0x01, 0x07, 0x80, 0x80, 0x80, 0x80, 0x34, 0xAF, 0x00};
+    visit("LeadPointRequest", 0, message, payload, size_t{5}, wire_bytes, size_t{11});
+  }
+  {
+    wire::LeadPointRequest message{};
+    message.number = 255;
+    message.step[0] = 127;
+    message.step[1] = 127;
+    message.step[2] = 127;
+    message.step[3] = 127;
+    const uint8_t payload[] = {0xFF, 0x7F, 0x7F, 0x7F, 0x7F};
+    const uint8_t wire_bytes[] = {0x0A, 0x0E, 0xFF, 0xFF, 0x7F, 0x7F, 0x7F, 0x7F, 0xEB, 0x38, 0x00};
+    visit("LeadPointRequest", 255, message, payload, size_t{5}, wire_bytes, size_t{11});
+  }
+  {
+    wire::LeadPointRequest message{};
+    message.number = 196;
+    message.step[0] = -62;
+    message.step[1] = 29;
+    message.step[2] = 72;
+    message.step[3] = -59;
+    const uint8_t payload[] = {0xC4, 0xC2, 0x1D, 0x48, 0xC5};
+    const uint8_t wire_bytes[] = {0x0A, 0x0E, 0x24, 0xC4, 0xC2, 0x1D, 0x48, 0xC5, 0x23, 0x18, 0x00};
+    visit("LeadPointRequest", 36, message, payload, size_t{5}, wire_bytes, size_t{11});
+  }
+  {
+    wire::LeadPointRequest message{};
+    message.number = 146;
+    message.step[0] = 45;
+    message.step[1] = -78;
+    message.step[2] = -30;
+    message.step[3] = 86;
+    const uint8_t payload[] = {0x92, 0x2D, 0xB2, 0xE2, 0x56};
+    const uint8_t wire_bytes[] = {0x0A, 0x0E, 0x9F, 0x92, 0x2D, 0xB2, 0xE2, 0x56, 0x5C, 0x78, 0x00};
+    visit("LeadPointRequest", 159, message, payload, size_t{5}, wire_bytes, size_t{11});
+  }
+  {
+    wire::LeadPointRequest message{};
+    message.number = 170;
+    message.step[0] = -72;
+    message.step[1] = 88;
+    message.step[2] = 106;
+    message.step[3] = 80;
+    const uint8_t payload[] = {0xAA, 0xB8, 0x58, 0x6A, 0x50};
+    const uint8_t wire_bytes[] = {0x0A, 0x0E, 0x1C, 0xAA, 0xB8, 0x58, 0x6A, 0x50, 0x82, 0x83, 0x00};
+    visit("LeadPointRequest", 28, message, payload, size_t{5}, wire_bytes, size_t{11});
+  }
+  {
+    wire::LeadPointReply message{};
+    message.next = 0;
+    message.waiting = 0;
+    const uint8_t payload[] = {0x00, 0x00};
+    const uint8_t wire_bytes[] = {0x02, 0x8E, 0x01, 0x01, 0x03, 0xA2, 0xFB, 0x00};
+    visit("LeadPointReply", 0, message, payload, size_t{2}, wire_bytes, size_t{8});
+  }
+  {
+    wire::LeadPointReply message{};
+    message.next = 255;
+    message.waiting = 255;
+    const uint8_t payload[] = {0xFF, 0xFF};
+    const uint8_t wire_bytes[] = {0x07, 0x8E, 0xFF, 0xFF, 0xFF, 0xCE, 0x29, 0x00};
+    visit("LeadPointReply", 255, message, payload, size_t{2}, wire_bytes, size_t{8});
+  }
+  {
+    wire::LeadPointReply message{};
+    message.next = 198;
+    message.waiting = 241;
+    const uint8_t payload[] = {0xC6, 0xF1};
+    const uint8_t wire_bytes[] = {0x07, 0x8E, 0x03, 0xC6, 0xF1, 0x3E, 0xE1, 0x00};
+    visit("LeadPointReply", 3, message, payload, size_t{2}, wire_bytes, size_t{8});
+  }
+  {
+    wire::LeadPointReply message{};
+    message.next = 124;
+    message.waiting = 228;
+    const uint8_t payload[] = {0x7C, 0xE4};
+    const uint8_t wire_bytes[] = {0x07, 0x8E, 0x5D, 0x7C, 0xE4, 0xA3, 0x17, 0x00};
+    visit("LeadPointReply", 93, message, payload, size_t{2}, wire_bytes, size_t{8});
+  }
+  {
+    wire::LeadPointReply message{};
+    message.next = 102;
+    message.waiting = 41;
+    const uint8_t payload[] = {0x66, 0x29};
+    const uint8_t wire_bytes[] = {0x07, 0x8E, 0xE2, 0x66, 0x29, 0x34, 0x21, 0x00};
+    visit("LeadPointReply", 226, message, payload, size_t{2}, wire_bytes, size_t{8});
+  }
+  {
     wire::Sample message{};
     message.tick = 0u;
     message.state = static_cast<wire::State>(0);
@@ -900,66 +1090,66 @@ void for_each(Visit visit) {
   }
   {
     wire::Sample message{};
-    message.tick = 4129719074u;
-    message.state = static_cast<wire::State>(2);
-    message.fault = static_cast<wire::Fault>(0);
-    message.leader[0] = 9498;
-    message.leader[1] = -4154;
-    message.leader[2] = 5764;
-    message.leader[3] = -13864;
-    message.follower[0] = -2885;
-    message.follower[1] = 23776;
-    message.follower[2] = 19657;
-    message.follower[3] = -28324;
-    message.voltage[0] = -18563;
-    message.voltage[1] = -28193;
-    message.voltage[2] = 4081;
-    message.voltage[3] = 23720;
-    const uint8_t payload[] = {0x22, 0x83, 0x26, 0xF6, 0x02, 0x00, 0x1A, 0x25, 0xC6, 0xEF, 0x84, 0x16, 0xD8, 0xC9, 0xBB, 0xF4, 0xE0, 0x5C, 0xC9, 0x4C, 0x5C, 0x91, 0x7D, 0xB7, 0xDF, 0x91, 0xF1, 0x0F, 0xA8, 0x5C};
-    const uint8_t wire_bytes[] = {0x08, 0x40, 0x8C, 0x22, 0x83, 0x26, 0xF6, 0x02, 0x1B, 0x1A, 0x25, 0xC6, 0xEF, 0x84, 0x16, 0xD8, 0xC9, 0xBB, 0xF4, 0xE0, 0x5C, 0xC9, 0x4C, 0x5C, 0x91, 0x7D, 0xB7, 0xDF, 0x91, 0xF1, 0x0F, 0xA8, 0x5C, 0xB7, 0xFB, 0x00};
-    visit("Sample", 140, message, payload, size_t{30}, wire_bytes, size_t{36});
-  }
-  {
-    wire::Sample message{};
-    message.tick = 1598263974u;
-    message.state = static_cast<wire::State>(3);
-    message.fault = static_cast<wire::Fault>(4);
-    message.leader[0] = -25925;
-    message.leader[1] = -16926;
-    message.leader[2] = -24140;
-    message.leader[3] = 14639;
-    message.follower[0] = -29595;
-    message.follower[1] = -8969;
-    message.follower[2] = 26435;
-    message.follower[3] = -11328;
-    message.voltage[0] = 32465;
-    message.voltage[1] = -13064;
-    message.voltage[2] = 10;
-    message.voltage[3] = 17422;
-    const uint8_t payload[] = {0xA6, 0x92, 0x43, 0x5F, 0x03, 0x04, 0xBB, 0x9A, 0xE2, 0xBD, 0xB4, 0xA1, 0x2F, 0x39, 0x65, 0x8C, 0xF7, 0xDC, 0x43, 0x67, 0xC0, 0xD3, 0xD1, 0x7E, 0xF8, 0xCC, 0x0A, 0x00, 0x0E, 0x44};
-    const uint8_t wire_bytes[] = {0x1E, 0x40, 0x42, 0xA6, 0x92, 0x43, 0x5F, 0x03, 0x04, 0xBB, 0x9A, 0xE2, 0xBD, 0xB4, 0xA1, 0x2F, 0x39, 0x65, 0x8C, 0xF7, 0xDC, 0x43, 0x67, 0xC0, 0xD3, 0xD1, 0x7E, 0xF8, 0xCC, 0x0A, 0x05, 0x0E, 0x44, 0xE4, 0xB8, 0x00};
-    visit("Sample", 66, message, payload, size_t{30}, wire_bytes, size_t{36});
-  }
-  {
-    wire::Sample message{};
-    message.tick = 1317110688u;
+    message.tick = 2006533010u;
     message.state = static_cast<wire::State>(1);
-    message.fault = static_cast<wire::Fault>(6);
-    message.leader[0] = -23337;
-    message.leader[1] = 4659;
-    message.leader[2] = 11687;
-    message.leader[3] = -19963;
-    message.follower[0] = -7436;
-    message.follower[1] = 22107;
-    message.follower[2] = 7949;
-    message.follower[3] = 10823;
-    message.voltage[0] = -18352;
-    message.voltage[1] = 22580;
-    message.voltage[2] = 27209;
-    message.voltage[3] = 20539;
-    const uint8_t payload[] = {0xA0, 0x83, 0x81, 0x4E, 0x01, 0x06, 0xD7, 0xA4, 0x33, 0x12, 0xA7, 0x2D, 0x05, 0xB2, 0xF4, 0xE2, 0x5B, 0x56, 0x0D, 0x1F, 0x47, 0x2A, 0x50, 0xB8, 0x34, 0x58, 0x49, 0x6A, 0x3B, 0x50};
-    const uint8_t wire_bytes[] = {0x23, 0x40, 0x1C, 0xA0, 0x83, 0x81, 0x4E, 0x01, 0x06, 0xD7, 0xA4, 0x33, 0x12, 0xA7, 0x2D, 0x05, 0xB2, 0xF4, 0xE2, 0x5B, 0x56, 0x0D, 0x1F, 0x47, 0x2A, 0x50, 0xB8, 0x34, 0x58, 0x49, 0x6A, 0x3B, 0x50, 0x1A, 0x81, 0x00};
-    visit("Sample", 28, message, payload, size_t{30}, wire_bytes, size_t{36});
+    message.fault = static_cast<wire::Fault>(3);
+    message.leader[0] = -15462;
+    message.leader[1] = -6101;
+    message.leader[2] = -11183;
+    message.leader[3] = 27186;
+    message.follower[0] = -25698;
+    message.follower[1] = -26732;
+    message.follower[2] = -2191;
+    message.follower[3] = -29237;
+    message.voltage[0] = 11510;
+    message.voltage[1] = -22596;
+    message.voltage[2] = 21432;
+    message.voltage[3] = 31307;
+    const uint8_t payload[] = {0x92, 0x43, 0x99, 0x77, 0x01, 0x03, 0x9A, 0xC3, 0x2B, 0xE8, 0x51, 0xD4, 0x32, 0x6A, 0x9E, 0x9B, 0x94, 0x97, 0x71, 0xF7, 0xCB, 0x8D, 0xF6, 0x2C, 0xBC, 0xA7, 0xB8, 0x53, 0x4B, 0x7A};
+    const uint8_t wire_bytes[] = {0x23, 0x40, 0xAA, 0x92, 0x43, 0x99, 0x77, 0x01, 0x03, 0x9A, 0xC3, 0x2B, 0xE8, 0x51, 0xD4, 0x32, 0x6A, 0x9E, 0x9B, 0x94, 0x97, 0x71, 0xF7, 0xCB, 0x8D, 0xF6, 0x2C, 0xBC, 0xA7, 0xB8, 0x53, 0x4B, 0x7A, 0x31, 0xA4, 0x00};
+    visit("Sample", 170, message, payload, size_t{30}, wire_bytes, size_t{36});
+  }
+  {
+    wire::Sample message{};
+    message.tick = 1400695378u;
+    message.state = static_cast<wire::State>(3);
+    message.fault = static_cast<wire::Fault>(3);
+    message.leader[0] = -19326;
+    message.leader[1] = -25103;
+    message.leader[2] = -30402;
+    message.leader[3] = -32377;
+    message.follower[0] = -22822;
+    message.follower[1] = -22677;
+    message.follower[2] = -2030;
+    message.follower[3] = -23845;
+    message.voltage[0] = -9034;
+    message.voltage[1] = 8978;
+    message.voltage[2] = 2884;
+    message.voltage[3] = 3978;
+    const uint8_t payload[] = {0x52, 0xEA, 0x7C, 0x53, 0x03, 0x03, 0x82, 0xB4, 0xF1, 0x9D, 0x3E, 0x89, 0x87, 0x81, 0xDA, 0xA6, 0x6B, 0xA7, 0x12, 0xF8, 0xDB, 0xA2, 0xB6, 0xDC, 0x12, 0x23, 0x44, 0x0B, 0x8A, 0x0F};
+    const uint8_t wire_bytes[] = {0x23, 0x40, 0x87, 0x52, 0xEA, 0x7C, 0x53, 0x03, 0x03, 0x82, 0xB4, 0xF1, 0x9D, 0x3E, 0x89, 0x87, 0x81, 0xDA, 0xA6, 0x6B, 0xA7, 0x12, 0xF8, 0xDB, 0xA2, 0xB6, 0xDC, 0x12, 0x23, 0x44, 0x0B, 0x8A, 0x0F, 0x73, 0xB6, 0x00};
+    visit("Sample", 135, message, payload, size_t{30}, wire_bytes, size_t{36});
+  }
+  {
+    wire::Sample message{};
+    message.tick = 3335820814u;
+    message.state = static_cast<wire::State>(3);
+    message.fault = static_cast<wire::Fault>(3);
+    message.leader[0] = 9116;
+    message.leader[1] = 82;
+    message.leader[2] = 15697;
+    message.leader[3] = -31589;
+    message.follower[0] = -14465;
+    message.follower[1] = -28212;
+    message.follower[2] = 1181;
+    message.follower[3] = 6873;
+    message.voltage[0] = -22256;
+    message.voltage[1] = 21651;
+    message.voltage[2] = -14157;
+    message.voltage[3] = 18377;
+    const uint8_t payload[] = {0x0E, 0x96, 0xD4, 0xC6, 0x03, 0x03, 0x9C, 0x23, 0x52, 0x00, 0x51, 0x3D, 0x9B, 0x84, 0x7F, 0xC7, 0xCC, 0x91, 0x9D, 0x04, 0xD9, 0x1A, 0x10, 0xA9, 0x93, 0x54, 0xB3, 0xC8, 0xC9, 0x47};
+    const uint8_t wire_bytes[] = {0x0C, 0x40, 0x79, 0x0E, 0x96, 0xD4, 0xC6, 0x03, 0x03, 0x9C, 0x23, 0x52, 0x17, 0x51, 0x3D, 0x9B, 0x84, 0x7F, 0xC7, 0xCC, 0x91, 0x9D, 0x04, 0xD9, 0x1A, 0x10, 0xA9, 0x93, 0x54, 0xB3, 0xC8, 0xC9, 0x47, 0x2A, 0xCF, 0x00};
+    visit("Sample", 121, message, payload, size_t{30}, wire_bytes, size_t{36});
   }
   {
     wire::Nack message{};
@@ -973,38 +1163,38 @@ void for_each(Visit visit) {
   {
     wire::Nack message{};
     message.request = 255;
-    message.code = static_cast<wire::NackCode>(13);
+    message.code = static_cast<wire::NackCode>(14);
     message.detail = 65535;
-    const uint8_t payload[] = {0xFF, 0x0D, 0xFF, 0xFF};
-    const uint8_t wire_bytes[] = {0x09, 0xFF, 0xFF, 0xFF, 0x0D, 0xFF, 0xFF, 0xFD, 0x14, 0x00};
+    const uint8_t payload[] = {0xFF, 0x0E, 0xFF, 0xFF};
+    const uint8_t wire_bytes[] = {0x09, 0xFF, 0xFF, 0xFF, 0x0E, 0xFF, 0xFF, 0xAD, 0x4D, 0x00};
     visit("Nack", 255, message, payload, size_t{4}, wire_bytes, size_t{10});
   }
   {
     wire::Nack message{};
-    message.request = 198;
-    message.code = static_cast<wire::NackCode>(7);
-    message.detail = 955;
-    const uint8_t payload[] = {0xC6, 0x07, 0xBB, 0x03};
-    const uint8_t wire_bytes[] = {0x09, 0xFF, 0x7C, 0xC6, 0x07, 0xBB, 0x03, 0x3B, 0x2F, 0x00};
-    visit("Nack", 124, message, payload, size_t{4}, wire_bytes, size_t{10});
+    message.request = 207;
+    message.code = static_cast<wire::NackCode>(6);
+    message.detail = 19215;
+    const uint8_t payload[] = {0xCF, 0x06, 0x0F, 0x4B};
+    const uint8_t wire_bytes[] = {0x09, 0xFF, 0x1F, 0xCF, 0x06, 0x0F, 0x4B, 0x77, 0x07, 0x00};
+    visit("Nack", 31, message, payload, size_t{4}, wire_bytes, size_t{10});
   }
   {
     wire::Nack message{};
-    message.request = 228;
-    message.code = static_cast<wire::NackCode>(10);
-    message.detail = 24027;
-    const uint8_t payload[] = {0xE4, 0x0A, 0xDB, 0x5D};
-    const uint8_t wire_bytes[] = {0x09, 0xFF, 0x66, 0xE4, 0x0A, 0xDB, 0x5D, 0xA9, 0x45, 0x00};
-    visit("Nack", 102, message, payload, size_t{4}, wire_bytes, size_t{10});
+    message.request = 183;
+    message.code = static_cast<wire::NackCode>(5);
+    message.detail = 18489;
+    const uint8_t payload[] = {0xB7, 0x05, 0x39, 0x48};
+    const uint8_t wire_bytes[] = {0x09, 0xFF, 0xBB, 0xB7, 0x05, 0x39, 0x48, 0xA3, 0xA5, 0x00};
+    visit("Nack", 187, message, payload, size_t{4}, wire_bytes, size_t{10});
   }
   {
     wire::Nack message{};
-    message.request = 41;
-    message.code = static_cast<wire::NackCode>(11);
-    message.detail = 58039;
-    const uint8_t payload[] = {0x29, 0x0B, 0xB7, 0xE2};
-    const uint8_t wire_bytes[] = {0x09, 0xFF, 0xCA, 0x29, 0x0B, 0xB7, 0xE2, 0x87, 0x41, 0x00};
-    visit("Nack", 202, message, payload, size_t{4}, wire_bytes, size_t{10});
+    message.request = 247;
+    message.code = static_cast<wire::NackCode>(9);
+    message.detail = 52266;
+    const uint8_t payload[] = {0xF7, 0x09, 0x2A, 0xCC};
+    const uint8_t wire_bytes[] = {0x09, 0xFF, 0x62, 0xF7, 0x09, 0x2A, 0xCC, 0xEC, 0xA6, 0x00};
+    visit("Nack", 98, message, payload, size_t{4}, wire_bytes, size_t{10});
   }
 }
 

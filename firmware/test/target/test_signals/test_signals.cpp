@@ -27,6 +27,12 @@ void calibrate(app::Pot& pot) {
   pot.filtered = next_random() % 65473;
 }
 
+// As a reference that the host leads: a line of slope 0 anywhere.
+void lead(app::Pot& pot) {
+  pot.scale = 0;
+  pot.offset = {next_random(), static_cast<int16_t>(static_cast<int16_t>(next_random()) / 4)};
+}
+
 void configure(Signals& signals, uint8_t shift) {
   memset(&signals, 0, sizeof signals);
   signals.keep = static_cast<uint8_t>(256 - (256 >> shift));
@@ -37,6 +43,7 @@ void configure(Signals& signals, uint8_t shift) {
   for (app::JointSignals& joint : signals.joint) {
     calibrate(joint.leader);
     calibrate(joint.follower);
+    if ((next_random() & 3) == 0) lead(joint.leader);
     joint.limit_min = static_cast<int16_t>(next_random()) / 2;
     joint.limit_max = static_cast<int16_t>(joint.limit_min + 1 + (next_random() & 0x3fff));
   }

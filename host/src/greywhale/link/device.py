@@ -12,7 +12,7 @@ import signal
 import threading
 import time
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from types import TracebackType
 from typing import Self
 
@@ -49,6 +49,8 @@ class Device:
         self._decoder = FrameDecoder()
         self._replies: deque[Frame] = deque(maxlen=32)
         self._samples: list[schema.Sample] = []
+        self._lead_progress: schema.LeadPointReply | None = None
+        self._lead_refused: schema.Nack | None = None
         self._sequence = _UNASKED
         self._heard_bytes = False
         self._started: bytes | None = None
@@ -116,11 +118,41 @@ class Device:
         self.lease_ms = lease_ms
         self.ask(schema.EnableRequest(lease_ms))
 
+    def lead(self, lease_ms: int) -> schema.LeadReply:
+        """Start the motors with this host in the leader's place; points of the reference go out by `lead_point`."""
+        self._motors_may_run = True
+        self.lease_ms = lease_ms
+        self._lead_progress = self._lead_refused = None
+        return self.ask(schema.LeadRequest(lease_ms))
+
+    def lead_point(self, number: int, step: tuple[int, int, int, int]) -> None:
+        """Send a point of the reference without waiting for the answer, which `lead_progress` tells."""
+        request = schema.LeadPointRequest(number, step)
+        self._transport.write(encode_frame(request.TYPE, self._next_sequence(), request.pack()))
+
+    def lead_progress(self) -> schema.LeadPointReply | None:
+        """The last answer to a point, None before the first; a refusal is raised."""
+        if self._lead_refused is not None:
+            raise RefusedError(self.port, schema.LeadPointRequest.NAME, self._lead_refused)
+        return self._lead_progress
+
     @contextlib.contextmanager
     def enabled(self, lease_ms: int) -> Iterator[None]:
         """Motors on inside, off afterwards, also when an error or Ctrl-C ends it."""
+        with self._motors_on(lambda: self.enable(lease_ms)):
+            yield
+
+    @contextlib.contextmanager
+    def leading(self, lease_ms: int) -> Iterator[schema.LeadReply]:
+        """The same with this host in the leader's place."""
+        begun: list[schema.LeadReply] = []
+        with self._motors_on(lambda: begun.append(self.lead(lease_ms))):
+            yield begun[0]
+
+    @contextlib.contextmanager
+    def _motors_on(self, start: Callable[[], None]) -> Iterator[None]:
         try:
-            self.enable(lease_ms)
+            start()
             yield
         except BaseException as error:
             try:
@@ -190,6 +222,10 @@ class Device:
                 self._samples.append(schema.Sample.unpack(frame.payload))
             elif frame.type == schema.HelloReply.TYPE and frame.seq == _UNASKED:
                 self._started = frame.payload
+            elif frame.type == schema.LeadPointReply.TYPE:
+                self._lead_progress = schema.LeadPointReply.unpack(frame.payload)
+            elif frame.type == schema.Nack.TYPE and frame.payload[:1] == bytes([schema.LeadPointRequest.TYPE]):
+                self._lead_refused = schema.Nack.unpack(frame.payload)
             elif frame.type & schema.REPLY_BIT:
                 self._replies.append(frame)
 

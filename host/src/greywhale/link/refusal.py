@@ -17,6 +17,8 @@ class RefusedError(UserError):
         remedy = nack.code.remedy
         if nack.code is schema.NackCode.SET_REFUSED:
             remedy = schema.Refusal.of(nack.detail & 0xFF).remedy or remedy
+        if nack.code is schema.NackCode.LEAD_REFUSED:
+            remedy = schema.LeadRefusal.of(nack.detail & 0xFF).remedy or remedy
         where = f" ({detail})" if detail else ""
         super().__init__(f"{port}: the board refused {request}: {nack.code.description}{where}: {lower_first(remedy)}")
 
@@ -29,6 +31,9 @@ def _detail(nack: schema.Nack) -> str:
             return schema.PARAMETERS[detail].name if detail < len(schema.PARAMETERS) else f"index {detail}"
         case schema.NackCode.SET_REFUSED:
             return f"joint {high}, {schema.Refusal.of(low).description}"
+        case schema.NackCode.LEAD_REFUSED:
+            where = f"joint {high}, " if low == schema.LeadRefusal.LIMIT else ""
+            return where + schema.LeadRefusal.of(low).description
         case schema.NackCode.ERROR_TOO_LARGE:
             more = " or more" if low == 0xFF else ""
             return f"joint {high}, {low * _ENABLE_ERROR_PER_COUNT:.2f} rad{more}"

@@ -18,7 +18,7 @@ from typing import ClassVar
 from .declared import Described, Field, Group, Message, Parameter, Table, check_length
 
 PROTOCOL = 1
-SCHEMA_HASH = 0xE2E8BC9A
+SCHEMA_HASH = 0xC648C927
 MAX_PAYLOAD = 48
 REPLY_BIT = 0x80
 LAYOUT = 1
@@ -73,6 +73,16 @@ class NackCode(Described):
     POT_BAD = 11, "a potentiometer reads at a rail", "Check that potentiometer's three wires and try again.", "pot (0..3 leader, 4..7 follower) << 8 | Fault"
     BOOTING = 12, "the board is still starting", "Try again in a moment.", "0"
     INCONSISTENT = 13, "parameters contradict each other", "Give limit_max above limit_min, a motor_sign of 1 or -1 and a pot scale other than 0, and upload again.", "the flat index of the first parameter that does not fit"
+    LEAD_REFUSED = 14, "the host cannot lead like this", "Correct the motion and start it again.", "joint << 8 | LeadRefusal"
+
+
+class LeadRefusal(Described):
+    """Why a reference of the host was refused; the low byte of lead_refused."""
+
+    NONE = 0, "not refused", "Nothing to do."
+    NO_LEASE = 1, "a host that leads needs a lease", "Give a lease of some hundred ms."
+    NOT_LEADING = 2, "the host does not lead, or not any more", "Ask for the status to see why the motors went off, and start the motion again."
+    LIMIT = 3, "a point is outside the joint's limits", "Keep the motion within limit_min and limit_max of the named joint."
 
 
 class Refusal(Described):
@@ -759,6 +769,116 @@ class TelemetryReply(Message):
         return cls(every)
 
 
+_LEADREQUEST = Struct("<H")
+
+
+@dataclass(frozen=True, slots=True)
+class LeadRequest(Message):
+    """Starts the motors like enable, but the host leads in the place of the leader arm: the reference rests at the pose that the followers have (within the joints' limits) until points come. When the motors go off, for whatever reason, the leader arm leads again. Sent again while the host leads it renews the lease."""
+
+    NAME: ClassVar[str] = "lead"
+    TYPE: ClassVar[int] = 0x0D
+    SIZE: ClassVar[int] = 2
+    LSB: ClassVar[dict[str, float]] = {}
+
+    lease_ms: int  # as in enable, but not 0 [ms]
+
+    def pack(self) -> bytes:
+        return self._checked(_LEADREQUEST, self.lease_ms)
+
+    @classmethod
+    def unpack(cls, payload: bytes) -> LeadRequest:
+        if len(payload) != cls.SIZE:
+            check_length(cls, payload)
+        lease_ms, = _LEADREQUEST.unpack(payload)
+        return cls(lease_ms)
+
+    def reply(self, payload: bytes) -> LeadReply:
+        return LeadReply.unpack(payload)
+
+
+_LEADREPLY = Struct("<BB4h")
+
+
+@dataclass(frozen=True, slots=True)
+class LeadReply(Message):
+    """Starts the motors like enable, but the host leads in the place of the leader arm: the reference rests at the pose that the followers have (within the joints' limits) until points come. When the motors go off, for whatever reason, the leader arm leads again. Sent again while the host leads it renews the lease."""
+
+    NAME: ClassVar[str] = "lead"
+    TYPE: ClassVar[int] = 0x8D
+    SIZE: ClassVar[int] = 10
+    LSB: ClassVar[dict[str, float]] = {'reference': 0.000244140625}
+
+    state: State  # state after the request
+    next: int  # number of the point that is expected next
+    reference: tuple[int, int, int, int]  # the last point that was taken; the pose at the start before any was [1/4096 rad]
+
+    def pack(self) -> bytes:
+        return self._checked(_LEADREPLY, self.state, self.next, *self.reference)
+
+    @classmethod
+    def unpack(cls, payload: bytes) -> LeadReply:
+        if len(payload) != cls.SIZE:
+            check_length(cls, payload)
+        state, next, reference_0, reference_1, reference_2, reference_3 = _LEADREPLY.unpack(payload)
+        return cls(State.of(state), next, (reference_0, reference_1, reference_2, reference_3))
+
+
+_LEADPOINTREQUEST = Struct("<B4b")
+
+
+@dataclass(frozen=True, slots=True)
+class LeadPointRequest(Message):
+    """The next control point of the reference that the host leads, one every 16 ticks; the board keeps up to 12. The reference is their uniform quadratic B-spline: it never leaves the hull of three points in a row, and its speed goes evenly from that of one step to that of the next. When no point is left it comes to rest at the last. A point is taken once and in its turn only, so that lost ones can be sent again: `next` tells."""
+
+    NAME: ClassVar[str] = "lead_point"
+    TYPE: ClassVar[int] = 0x0E
+    SIZE: ClassVar[int] = 5
+    LSB: ClassVar[dict[str, float]] = {'step': 0.0009765625}
+
+    number: int  # numbers count up from the one in lead's reply, 0 follows 255
+    step: tuple[int, int, int, int]  # from the last point to this one, which must be within the joint's limits [1/1024 rad]
+
+    def pack(self) -> bytes:
+        return self._checked(_LEADPOINTREQUEST, self.number, *self.step)
+
+    @classmethod
+    def unpack(cls, payload: bytes) -> LeadPointRequest:
+        if len(payload) != cls.SIZE:
+            check_length(cls, payload)
+        number, step_0, step_1, step_2, step_3 = _LEADPOINTREQUEST.unpack(payload)
+        return cls(number, (step_0, step_1, step_2, step_3))
+
+    def reply(self, payload: bytes) -> LeadPointReply:
+        return LeadPointReply.unpack(payload)
+
+
+_LEADPOINTREPLY = Struct("<BB")
+
+
+@dataclass(frozen=True, slots=True)
+class LeadPointReply(Message):
+    """The next control point of the reference that the host leads, one every 16 ticks; the board keeps up to 12. The reference is their uniform quadratic B-spline: it never leaves the hull of three points in a row, and its speed goes evenly from that of one step to that of the next. When no point is left it comes to rest at the last. A point is taken once and in its turn only, so that lost ones can be sent again: `next` tells."""
+
+    NAME: ClassVar[str] = "lead_point"
+    TYPE: ClassVar[int] = 0x8E
+    SIZE: ClassVar[int] = 2
+    LSB: ClassVar[dict[str, float]] = {}
+
+    next: int  # number of the point that is expected next; that of the request if it was not taken for want of room
+    waiting: int  # points that wait to be played
+
+    def pack(self) -> bytes:
+        return self._checked(_LEADPOINTREPLY, self.next, self.waiting)
+
+    @classmethod
+    def unpack(cls, payload: bytes) -> LeadPointReply:
+        if len(payload) != cls.SIZE:
+            check_length(cls, payload)
+        next, waiting = _LEADPOINTREPLY.unpack(payload)
+        return cls(next, waiting)
+
+
 _SAMPLE = Struct("<IBB4h4h4h")
 
 
@@ -774,7 +894,7 @@ class Sample(Message):
     tick: int  # ticks since boot [ticks]
     state: State  # state of the supervisor
     fault: Fault  # current fault
-    leader: tuple[int, int, int, int]  # leader angles [1/4096 rad]
+    leader: tuple[int, int, int, int]  # leader angles, or the reference that the host leads [1/4096 rad]
     follower: tuple[int, int, int, int]  # follower angles [1/4096 rad]
     voltage: tuple[int, int, int, int]  # motor voltages asked for [1/1000 V]
 
@@ -841,6 +961,10 @@ MESSAGES: tuple[type[Message], ...] = (
     ClearFaultReply,
     TelemetryRequest,
     TelemetryReply,
+    LeadRequest,
+    LeadReply,
+    LeadPointRequest,
+    LeadPointReply,
     Sample,
     Nack,
 )

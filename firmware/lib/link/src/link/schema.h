@@ -9,7 +9,7 @@
 namespace wire {
 
 constexpr uint8_t protocol = 1;
-constexpr uint32_t schema_hash = 0xE2E8BC9A;
+constexpr uint32_t schema_hash = 0xC648C927;
 constexpr uint8_t max_payload = 48;
 constexpr uint8_t reply_bit = 0x80;
 
@@ -26,6 +26,8 @@ enum class MessageType : uint8_t {
   renew = 0x0A,
   clear_fault = 0x0B,
   telemetry = 0x0C,
+  lead = 0x0D,
+  lead_point = 0x0E,
   sample = 0x40,
   nack = 0xFF,
 };
@@ -75,6 +77,15 @@ enum class NackCode : uint8_t {
   pot_bad = 11,  // a potentiometer reads at a rail
   booting = 12,  // the board is still starting
   inconsistent = 13,  // parameters contradict each other
+  lead_refused = 14,  // the host cannot lead like this
+};
+
+// Why a reference of the host was refused; the low byte of lead_refused.
+enum class LeadRefusal : uint8_t {
+  none = 0,  // not refused
+  no_lease = 1,  // a host that leads needs a lease
+  not_leading = 2,  // the host does not lead, or not any more
+  limit = 3,  // a point is outside the joint's limits
 };
 
 // Why the controller cannot run a joint's settings; the low byte of set_refused.
@@ -561,6 +572,102 @@ struct TelemetryReply {
   }
 };
 
+// Starts the motors like enable, but the host leads in the place of the leader arm: the reference rests at the pose that the followers have (within the joints' limits) until points come. When the motors go off, for whatever reason, the leader arm leads again. Sent again while the host leads it renews the lease.
+struct LeadRequest {
+  static constexpr uint8_t type = 0x0D;
+  static constexpr uint8_t size = 2;
+
+  uint16_t lease_ms;  // as in enable, but not 0 [ms]
+
+  void encode(uint8_t *out) const {
+    put_u16(out + 0, lease_ms);
+  }
+
+  static bool decode(const uint8_t *in, uint8_t length, LeadRequest &out) {
+    if (length != size) return false;
+    out.lease_ms = get_u16(in + 0);
+    return true;
+  }
+};
+
+// Starts the motors like enable, but the host leads in the place of the leader arm: the reference rests at the pose that the followers have (within the joints' limits) until points come. When the motors go off, for whatever reason, the leader arm leads again. Sent again while the host leads it renews the lease.
+struct LeadReply {
+  static constexpr uint8_t type = 0x8D;
+  static constexpr uint8_t size = 10;
+
+  State state;  // state after the request
+  uint8_t next;  // number of the point that is expected next
+  int16_t reference[4];  // the last point that was taken; the pose at the start before any was [1/4096 rad]
+
+  void encode(uint8_t *out) const {
+    put_u8(out + 0, static_cast<uint8_t>(state));
+    put_u8(out + 1, next);
+    put_u16(out + 2, static_cast<uint16_t>(reference[0]));
+    put_u16(out + 4, static_cast<uint16_t>(reference[1]));
+    put_u16(out + 6, static_cast<uint16_t>(reference[2]));
+    put_u16(out + 8, static_cast<uint16_t>(reference[3]));
+  }
+
+  static bool decode(const uint8_t *in, uint8_t length, LeadReply &out) {
+    if (length != size) return false;
+    out.state = static_cast<State>(get_u8(in + 0));
+    out.next = get_u8(in + 1);
+    out.reference[0] = static_cast<int16_t>(get_u16(in + 2));
+    out.reference[1] = static_cast<int16_t>(get_u16(in + 4));
+    out.reference[2] = static_cast<int16_t>(get_u16(in + 6));
+    out.reference[3] = static_cast<int16_t>(get_u16(in + 8));
+    return true;
+  }
+};
+
+// The next control point of the reference that the host leads, one every 16 ticks; the board keeps up to 12. The reference is their uniform quadratic B-spline: it never leaves the hull of three points in a row, and its speed goes evenly from that of one step to that of the next. When no point is left it comes to rest at the last. A point is taken once and in its turn only, so that lost ones can be sent again: `next` tells.
+struct LeadPointRequest {
+  static constexpr uint8_t type = 0x0E;
+  static constexpr uint8_t size = 5;
+
+  uint8_t number;  // numbers count up from the one in lead's reply, 0 follows 255
+  int8_t step[4];  // from the last point to this one, which must be within the joint's limits [1/1024 rad]
+
+  void encode(uint8_t *out) const {
+    put_u8(out + 0, number);
+    put_u8(out + 1, static_cast<uint8_t>(step[0]));
+    put_u8(out + 2, static_cast<uint8_t>(step[1]));
+    put_u8(out + 3, static_cast<uint8_t>(step[2]));
+    put_u8(out + 4, static_cast<uint8_t>(step[3]));
+  }
+
+  static bool decode(const uint8_t *in, uint8_t length, LeadPointRequest &out) {
+    if (length != size) return false;
+    out.number = get_u8(in + 0);
+    out.step[0] = static_cast<int8_t>(get_u8(in + 1));
+    out.step[1] = static_cast<int8_t>(get_u8(in + 2));
+    out.step[2] = static_cast<int8_t>(get_u8(in + 3));
+    out.step[3] = static_cast<int8_t>(get_u8(in + 4));
+    return true;
+  }
+};
+
+// The next control point of the reference that the host leads, one every 16 ticks; the board keeps up to 12. The reference is their uniform quadratic B-spline: it never leaves the hull of three points in a row, and its speed goes evenly from that of one step to that of the next. When no point is left it comes to rest at the last. A point is taken once and in its turn only, so that lost ones can be sent again: `next` tells.
+struct LeadPointReply {
+  static constexpr uint8_t type = 0x8E;
+  static constexpr uint8_t size = 2;
+
+  uint8_t next;  // number of the point that is expected next; that of the request if it was not taken for want of room
+  uint8_t waiting;  // points that wait to be played
+
+  void encode(uint8_t *out) const {
+    put_u8(out + 0, next);
+    put_u8(out + 1, waiting);
+  }
+
+  static bool decode(const uint8_t *in, uint8_t length, LeadPointReply &out) {
+    if (length != size) return false;
+    out.next = get_u8(in + 0);
+    out.waiting = get_u8(in + 1);
+    return true;
+  }
+};
+
 // One tick as the controllers saw it. Sent without being asked, see telemetry; seq counts samples, so that a gap shows.
 struct Sample {
   static constexpr uint8_t type = 0x40;
@@ -569,7 +676,7 @@ struct Sample {
   uint32_t tick;  // ticks since boot [ticks]
   State state;  // state of the supervisor
   Fault fault;  // current fault
-  int16_t leader[4];  // leader angles [1/4096 rad]
+  int16_t leader[4];  // leader angles, or the reference that the host leads [1/4096 rad]
   int16_t follower[4];  // follower angles [1/4096 rad]
   int16_t voltage[4];  // motor voltages asked for [1/1000 V]
 

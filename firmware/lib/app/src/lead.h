@@ -1,0 +1,50 @@
+// The reference that a host leads in the leader arm's place: a uniform quadratic B-spline through a short queue of points.
+// All of it is done between ticks; a tick only sees leader angles, as ever.
+#pragma once
+#include <hal.h>
+#include <link/schema.h>
+#include <stdint.h>
+
+#include "sampling.h"
+
+namespace app {
+
+class Lead {
+ public:
+  static constexpr uint8_t room = 12;              // points that can wait
+  static constexpr uint8_t ticks_per_point = 16;   // the arithmetic of advance() counts on it
+
+  bool on() const { return on_; }
+  // From now on the reference rests at the followers' pose, within the joints' limits.
+  void begin(Sampling& sampling);
+  void end() { on_ = false; }
+
+  struct Verdict {
+    wire::LeadRefusal refusal;
+    uint8_t joint;
+  };
+  // Takes a point if it is the next one and there is room; a refused one changes nothing.
+  Verdict take(const wire::LeadPointRequest& point, const Sampling& sampling);
+  uint8_t next() const { return next_; }
+  uint8_t waiting() const { return waiting_; }
+  int16_t last(uint8_t joint) const { return last_[joint]; }
+
+  bool due(uint8_t tick) const { return tick != tick_; }
+  // Moves the reference on by a tick.
+  void advance(uint8_t tick, Sampling& sampling);
+
+ private:
+  void begin_piece();
+
+  using Step = int8_t[hal::joint_count];     // 2^-10 rad
+  Step steps_[room] = {};
+  Step before_ = {}, after_ = {};            // the steps to and from the point that the curve bends around
+  int16_t last_[hal::joint_count] = {};      // q12 rad, the last point taken
+  uint8_t first_ = 0, waiting_ = 0;          // in steps_
+  uint8_t next_ = 0;
+  uint8_t done_ = ticks_per_point;           // ticks of this piece
+  uint8_t tick_ = 0;                         // lower byte of the tick in which it last advanced
+  bool on_ = false;
+};
+
+}  // namespace app
