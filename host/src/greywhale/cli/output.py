@@ -6,14 +6,19 @@ import contextlib
 import json
 import sys
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any, TypeVar
+from typing import Any, Protocol, TypeVar
 
 import click
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-Report = Callable[[str, float], None]
 Command = TypeVar("Command", bound=Callable[..., Any])
+
+
+class Report(Protocol):
+    """Takes what is being done, the fraction done and, where it helps, how good the result is so far."""
+
+    def __call__(self, what: str, fraction: float, note: str = "") -> None: ...
 
 
 def json_option(command: Command) -> Command:
@@ -37,7 +42,7 @@ def show(as_json: bool, result: Mapping[str, Any], text: str) -> None:
 
 @contextlib.contextmanager
 def progress(as_json: bool) -> Iterator[Report | None]:
-    """A bar on stderr for (what is being done, fraction done); None with --json or without a terminal."""
+    """A bar on stderr with the time left; None with --json or without a terminal."""
     console = Console(stderr=True)
     if as_json or not sys.stderr.isatty() or not console.is_terminal:
         yield None
@@ -47,15 +52,19 @@ def progress(as_json: bool) -> Iterator[Report | None]:
         BarColumn(),
         TextColumn("{task.percentage:>3.0f} %"),
         TimeElapsedColumn(),
+        TimeRemainingColumn(),
+        TextColumn("left"),
+        TextColumn("{task.fields[note]}"),
     )
     with Progress(*columns, console=console, transient=True) as bars:
         tasks: dict[str, TaskID] = {}
 
-        def report(what: str, fraction: float) -> None:
+        def report(what: str, fraction: float, note: str = "") -> None:
             if what not in tasks:
                 for done in tasks.values():
                     bars.update(done, completed=1.0)
-                tasks[what] = bars.add_task(what, total=1.0)
-            bars.update(tasks[what], completed=fraction)
+                # What was there at the beginning tells nothing about the speed.
+                tasks[what] = bars.add_task(what, total=1.0, completed=fraction, note=note)
+            bars.update(tasks[what], completed=fraction, note=note)
 
         yield report
