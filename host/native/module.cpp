@@ -6,5 +6,6 @@ NB_MODULE(_native, m) {
   bind_arm(m);
   bind_closed_loop(m);
   bind_fuzzy(m);
+  bind_ideal(m);
   bind_identify(m);
 }
