@@ -6,7 +6,7 @@ import struct
 
 import pytest
 
-from greywhale.link import schema
+from greywhale.link import frames, schema
 from tools.bench.bench_tick import BOARDS, Bench, memory
 
 BYTES_A_MS = 100  # what the wire carries at 1 Mbaud
@@ -80,6 +80,14 @@ def test_a_reset_while_the_motors_run_leaves_them_off(bench: Bench) -> None:
     assert status(bench).stop_reason == schema.StopReason.RESET
 
 
+def leader(bench: Bench) -> tuple[int, ...]:
+    """The leader's angles in the last sample of a tenth of a second."""
+    bench.wait(100)
+    frames_heard = frames.FrameDecoder().feed(bench.board.uart_receive())
+    samples = [frame for frame in frames_heard if frame.type == schema.Sample.TYPE]
+    return schema.Sample.unpack(samples[-1].payload).leader
+
+
 def test_a_host_that_leads_costs_the_tick_nothing_and_delays_none(bench: Bench) -> None:
     bench.ask(schema.TelemetryRequest, struct.pack("<H", 1))
     bench.ask(schema.EnableRequest, struct.pack("<H", 0))
@@ -92,7 +100,7 @@ def test_a_host_that_leads_costs_the_tick_nothing_and_delays_none(bench: Bench) 
         max(bench.tick_cycles()[1] for _ in range(50)) <= by_pots + 10
     )  # the same work: pots agree as the reference does
     number, taken = reply.next, []
-    for step in [*range(0, 40, 8), *range(40, -40, -8), *range(-40, 8, 8)]:
+    for step in [*range(0, 40, 8), *range(40, -32, -8), *range(-32, 8, 8)]:
         taken.append(step)
         payload = schema.LeadPointRequest(number, (step, -step, step // 2, 0)).pack()
         number = schema.LeadPointReply.unpack(bench.ask(schema.LeadPointRequest, payload)).next
@@ -101,6 +109,7 @@ def test_a_host_that_leads_costs_the_tick_nothing_and_delays_none(bench: Bench) 
     assert number == (reply.next + len(taken)) % 256
     after = schema.LeadReply.unpack(bench.ask(schema.LeadRequest, struct.pack("<H", 60000)))
     assert after.reference[0] == reply.reference[0] + 4 * sum(taken)
+    assert leader(bench) == after.reference
     assert status(bench).state == schema.State.FOLLOWING
     assert status(bench).late_ticks == 0
 

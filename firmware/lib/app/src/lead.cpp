@@ -7,6 +7,7 @@ namespace app {
 namespace {
 
 constexpr int16_t q12_per_step = 4;
+constexpr int32_t q27_per_tick = 32768L * q12_per_step / 512;   // of a speed of 1
 
 }  // namespace
 
@@ -60,7 +61,7 @@ void Lead::advance(uint8_t tick, Sampling& sampling) {
   for (uint8_t i = 0; i < hal::joint_count; ++i) {
     const auto bend = static_cast<int16_t>(after_[i] - before_[i]);
     const auto speed = static_cast<int16_t>(32 * before_[i] + share * bend);   // 2^-9 steps a tick
-    if (speed != 0) sampling.move_lead(i, static_cast<int32_t>(speed) * (0x8000 * q12_per_step / 512));
+    if (speed != 0) sampling.move_lead(i, speed * q27_per_tick);
   }
 }
 
