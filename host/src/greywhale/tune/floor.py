@@ -1,0 +1,266 @@
+"""The saturation floor of a motion: what the supply leaves to any controller, however good.
+
+A motor has only so much voltage, so an arm cannot jump when its leader does, and no tuning can change that. Two numbers
+enclose the best that is possible, per joint (both in rad^2, over the window of `Experiment(motion)`):
+
+- `mse`, the floor, is reached: by an ideal controller in the arm simulation, with its friction, gaps and couplings. It
+  knows plant and state without noise, delay or quantisation, acts every 250 us, and follows the braking curve of each
+  joint (host/native/ideal/law.h). It is causal: of the leader it knows angle and speed up to this moment. What its law
+  leaves open (when to brake, how to settle) is searched for on the motion itself, for the least total.
+- `bound` cannot be gone below by a controller that waits at the leader while the leader rests, however it then moves
+  that joint: from the moment the leader leaves, the joint runs at full voltage after it, without a gap to cross and
+  without ever having to brake; only what the leader is ahead of that counts. The other joints move as under the ideal
+  controller. It says nothing (0) about leaders that never rest or that a motor can keep up with.
+
+For steps the floor lies 0.1 to 1.2 % above the bound (grey box, default arm), and an optimiser over the voltages
+themselves, which knows what the leader will do, gains less than 1 % on it (tests/oracles/test_floor.py). Where nothing
+saturates the floor is some mrad of backlash, a multiple of it means nothing, and `multiple` gives None.
+"""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from greywhale import _native
+from greywhale.arm import ArmParameters
+from greywhale.errors import BAD_USAGE, UserError
+from greywhale.measure.runs import resting
+from greywhale.simulate import PLANT_COLUMNS, leader_slices, plant_row
+from greywhale.simulate.leader import SLICE_S, SLICES_PER_TICK
+from greywhale.simulate.tables import check_plants
+from greywhale.trajectory import JOINTS, Trajectory
+
+Floats = NDArray[np.float64]
+
+# A floor below this (rad^2) may be mere backlash (some mrad), unless the bound says that it is the supply.
+_BACKLASH = 1e-4
+
+# The ideal law's open numbers: brake (share), settle (s), lead (share), pull (share); see host/native/ideal/law.h.
+_GRID = list(itertools.product((0.9, 1.0, 1.1), (0.001, 0.004), (0.0, 1.0), (0.0, 1.0)))
+_BRAKES = (0.8, 0.85, 0.9, 0.95, 1.05, 1.1, 1.2, 1.3)  # tried for one joint after the other
+_NOTHING_TO_GAIN = 1e-4  # rad^2 in total
+
+_REST_S, _REST_RAD = 0.3, 0.004
+# The follower counts as waiting for the leader when it is so close to it and so slow; else a move bounds nothing.
+_WAITING_RAD, _WAITING_RAD_S = 0.01, 0.05
+
+
+@dataclass(frozen=True)
+class Floor:
+    """See above; `angles` are the ideal controller's, at every tick of 1 ms as `leader`."""
+
+    mse: Floats  # (4,) rad^2
+    bound: Floats  # (4,) rad^2
+    supply_v: float
+    delay_s: float
+    time_s: Floats = field(repr=False)  # (ticks,)
+    leader: Floats = field(repr=False)  # (ticks, 4) rad
+    angles: Floats = field(repr=False)  # (ticks, 4) rad
+
+    @property
+    def total(self) -> float:
+        return float(self.mse.sum())
+
+    @property
+    def how(self) -> str:
+        """One sentence for reports."""
+        late = f", told of the leader {1000 * self.delay_s:g} ms late" if self.delay_s else ""
+        return (
+            f"floor: MSE of an ideal causal controller at {self.supply_v:g} V that knows arm and state exactly{late}; "
+            f"no controller that waits for the leader gets below {self.bound.sum():.3g} rad² in total."
+        )
+
+    @property
+    def limited(self) -> tuple[bool, ...]:
+        """For each joint, then for all: whether it is the supply that keeps the error from zero."""
+        each = [*zip(self.mse, self.bound, strict=True), (self.mse.sum(), self.bound.sum())]
+        return tuple(bool(floor >= _BACKLASH or 2.0 * bound >= floor > 0.0) for floor, bound in each)
+
+    def multiple(self, mse: Floats) -> tuple[float | None, ...]:
+        """Each joint's error as a multiple of the floor, then the total's; None where the supply is no limit."""
+        each = zip([*mse, mse.sum()], [*self.mse, self.mse.sum()], self.limited, strict=True)
+        return tuple(float(one / floor) if limited else None for one, floor, limited in each)
+
+
+def saturation_floor(
+    motion: Trajectory | Floats,
+    arm: ArmParameters | Floats,
+    *,
+    supply_v: float | None = None,
+    delay_s: float = 0.0,
+    wait_s: float = 1.5,
+    after_s: float = 0.0,
+    resample: bool = False,
+    threads: int = 0,
+) -> Floor:
+    """The floor of a motion (or angles in every slice of 250 us) on an arm or a plant row (60,).
+
+    `supply_v`: a lower voltage to get along with, for instance a controller's Ku. `delay_s`: how late the controller
+    learns where the leader is, to tell what sensing costs from what the supply costs. The rest as in Experiment.
+    """
+    plant = check_plants(arm if isinstance(arm, np.ndarray) else plant_row(arm))
+    if len(plant) != 1:
+        raise UserError(f"the floor is of one plant, not of {len(plant)}; call it for each.", BAD_USAGE)
+    slices = leader_slices(motion, wait_s, after_s, resample) if isinstance(motion, Trajectory) else _checked(motion)
+    loop = _Loop(slices, plant[0], _supply(plant[0], supply_v), _late(delay_s), threads)
+    _require_reach(loop)
+    tunings = _best(loop)
+    mse, angles = loop.run(tunings[None], keep=True)
+    bound = np.array([_bound(loop, joint, tunings) for joint in range(JOINTS)])
+    time_s: Floats = np.arange(len(loop.leader), dtype=np.float64) * SLICE_S * SLICES_PER_TICK
+    return Floor(mse[0], bound, loop.supply, delay_s, time_s, loop.leader, angles[0])
+
+
+@dataclass(frozen=True)
+class _Loop:
+    """The arm under the ideal controller."""
+
+    slices: Floats  # (slices, 4) rad
+    plant: Floats
+    supply: float  # V
+    late: int  # slices
+    threads: int
+
+    @property
+    def leader(self) -> Floats:
+        return np.ascontiguousarray(self.slices[::SLICES_PER_TICK])
+
+    def run(self, tunings: Floats, keep: bool = False) -> tuple[Floats, Floats]:
+        """Errors (n, 4) and, to keep, angles (n, ticks, 4) for tunings (n, 4, 4)."""
+        nowhere = np.zeros(len(self.slices))
+        return self._simulate(self.plant, tunings, -1, nowhere.astype(np.int8), nowhere, keep)
+
+    def chase(self, joint: int, tunings: Floats, direction: NDArray[np.int8], until: Floats) -> Floats:
+        """A joint's angles (ticks,), its gear without a gap, at full voltage in `direction` as far as `until`."""
+        tight = self.plant.copy()
+        tight[PLANT_COLUMNS.index(f"joint{joint}.half_gap")] = 0.0
+        angles: Floats = self._simulate(tight, tunings[None], joint, direction, until, True)[1][0, :, joint]
+        return angles
+
+    def _simulate(
+        self, plant: Floats, tunings: Floats, chased: int, direction: NDArray[np.int8], until: Floats, keep: bool
+    ) -> tuple[Floats, Floats]:
+        mse, angles = _native.simulate_ideal(
+            leader=self.slices,
+            late=self.late,
+            plant=plant,
+            supply=self.supply,
+            tunings=tunings,
+            chased=chased,
+            direction=direction,
+            until=until,
+            keep=keep,
+            threads=self.threads,
+        )
+        return mse, angles
+
+
+def _best(loop: _Loop) -> Floats:
+    """The tunings (4, 4) of least total error."""
+    tried = np.repeat(np.array(_GRID)[:, None, :], JOINTS, axis=1)
+    totals = loop.run(tried)[0].sum(axis=1)
+    best, least = tried[totals.argmin()], totals.min()
+    # The pitches pull at each other most, so they go first.
+    for joint in (1, 2, 0, 3) if least > _NOTHING_TO_GAIN else ():
+        tried = np.repeat(best[None], len(_BRAKES), axis=0)
+        tried[:, joint, 0] = _BRAKES
+        totals = loop.run(tried)[0].sum(axis=1)
+        if totals.min() < least:
+            best, least = tried[totals.argmin()], totals.min()
+    return best
+
+
+@dataclass(frozen=True)
+class _Move:
+    """A joint's leader from its departure out of a rest to the next: ticks, the angle it left and the way it went."""
+
+    start: int
+    stop: int
+    origin: float
+    side: int  # +1 or -1
+    furthest: float
+
+
+def _moves(leader: Floats) -> list[_Move]:
+    """The moves of one joint out of a rest."""
+    window = round(_REST_S / (SLICE_S * SLICES_PER_TICK))
+    rest = resting(leader, window, _REST_RAD)
+    departures = []
+    for left in np.flatnonzero(rest[:-1] & ~rest[1:]) + 1:
+        origin = float(np.median(leader[left - window : left]))
+        side = 1 if leader[left] > origin else -1
+        # The band is left a little after the leader has gone: back to where it last was at its place of rest.
+        departures.append((int(np.flatnonzero(side * (leader[:left] - origin) <= 0.0)[-1]), origin, side))
+    ends = [*(start for start, _, _ in departures[1:]), len(leader)] if departures else []
+    return [
+        _Move(start, stop, origin, side, float(side * (side * leader[start:stop]).max()))
+        for (start, origin, side), stop in zip(departures, ends, strict=True)
+        if stop > start
+    ]
+
+
+def _bound(loop: _Loop, joint: int, tunings: Floats) -> float:
+    """What the leader is ahead of a joint at full voltage, squared, over all moves out of a rest; see the head."""
+    leader = loop.leader[:, joint]
+    moves = _moves(leader)
+    direction, until = np.zeros(len(leader), dtype=np.int8), np.zeros(len(leader))
+    stops = [loop.plant[PLANT_COLUMNS.index(f"joint{joint}.stop_{side}")] for side in ("min", "max")]
+    for move in moves:
+        direction[move.start : move.stop] = move.side
+        until[move.start : move.stop] = np.clip(move.furthest, *stops)
+    if not moves:
+        return 0.0
+    late = loop.late // SLICES_PER_TICK  # rounded down: the joint may leave earlier, which only lowers the bound
+    each = np.repeat(np.roll(direction, late), SLICES_PER_TICK), np.repeat(np.roll(until, late), SLICES_PER_TICK)
+    angles = loop.chase(joint, tunings, *each)
+    return sum(_ahead(move, leader, angles) for move in moves) / len(leader)
+
+
+def _ahead(move: _Move, leader: Floats, angles: Floats) -> float:
+    """The sum of squares (rad^2) by which the leader of one move is ahead; 0 where the joint was not waiting for it."""
+    start = move.start
+    speed = (angles[start] - angles[start - 1]) / (SLICE_S * SLICES_PER_TICK) if start else 0.0
+    if abs(angles[start] - move.origin) > _WAITING_RAD or abs(speed) > _WAITING_RAD_S:
+        return 0.0
+    run = angles[start : move.stop] - angles[start] + move.origin
+    there = np.flatnonzero(move.side * (run - move.furthest) >= 0.0)
+    ahead = move.side * (leader[start : move.stop] - run)
+    return float((np.maximum(ahead[: there[0] if there.size else None], 0.0) ** 2).sum())
+
+
+def _checked(slices: Floats) -> Floats:
+    if slices.ndim != 2 or slices.shape[1] != JOINTS or not len(slices) or len(slices) % SLICES_PER_TICK:
+        raise UserError(f"the leader has the shape {slices.shape}, but (4 x ticks, 4) is needed.", BAD_USAGE)
+    if not np.isfinite(slices).all():
+        raise UserError("the leader holds an angle that is not a finite number.", BAD_USAGE)
+    return np.ascontiguousarray(slices, dtype=np.float64)
+
+
+def _supply(plant: Floats, supply_v: float | None) -> float:
+    full = float(plant[PLANT_COLUMNS.index("supply")])
+    if supply_v is None:
+        return full
+    if not 0.0 < supply_v < np.inf:
+        raise UserError(f"supply_v is {supply_v:g}, but it must be a voltage above 0 V.", BAD_USAGE)
+    return min(supply_v, full)
+
+
+def _late(delay_s: float) -> int:
+    if not 0.0 <= delay_s <= 1.0:
+        raise UserError(f"delay_s is {delay_s:g}, but it must lie within 0..1 s.", BAD_USAGE)
+    return round(delay_s / SLICE_S)
+
+
+def _require_reach(loop: _Loop) -> None:
+    for joint, angle in enumerate(loop.slices[0]):
+        low, high = (loop.plant[PLANT_COLUMNS.index(f"joint{joint}.stop_{side}")] for side in ("min", "max"))
+        if not low <= angle <= high:
+            raise UserError(
+                f"the leader starts with joint {joint} at {angle:g} rad, beyond the follower's stops, "
+                f"{low:g} to {high:g} rad; shift the motion.",
+                BAD_USAGE,
+            )

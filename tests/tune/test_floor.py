@@ -1,0 +1,173 @@
+"""The saturation floor against closed forms, against what controllers reach, and for what it must not know."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from greywhale import _native
+from greywhale.arm import default_arm, load_arm
+from greywhale.errors import UserError
+from greywhale.simulate import PLANT_COLUMNS, Experiment, leader_slices, plant_row
+from greywhale.trajectory import Trajectory, human_reaches, multi_steps, steps
+from greywhale.tune.floor import Floats, saturation_floor
+
+TORQUE, INERTIA, SUPPLY = 0.5, 0.05, 10.0
+FASTEST = TORQUE * SUPPLY / INERTIA  # rad/s^2
+
+
+def double_integrators() -> Floats:
+    """A plant row of four joints that are nothing but inertia: motors so heavy that their links do not matter."""
+    row = plant_row(load_arm("grey_box"))
+    for index, column in enumerate(PLANT_COLUMNS):
+        name = column.split(".")[-1]
+        if name in ("damping", "coulomb", "breakaway", "gravity1", "gravity2", "coupling"):
+            row[index] = 0.0
+        elif name in ("torque_per_volt", "inertia"):
+            row[index] = {"torque_per_volt": TORQUE, "inertia": INERTIA}[name]
+        elif "." not in column:
+            row[index] = 1e-9
+    row[PLANT_COLUMNS.index("supply")] = SUPPLY
+    return row
+
+
+def jump(size: float, before_s: float = 0.5, after_s: float = 1.0) -> Floats:
+    slices = np.zeros((round((before_s + after_s) * 4000), 4))
+    slices[round(before_s * 4000) :] = size
+    return slices
+
+
+def fuller() -> float:
+    """The least integral of e^2 from e = 1 at rest with |e''| <= 1 (Fuller 1963): switching at e = -h e' |e'|."""
+    h = np.sqrt((np.sqrt(33.0) - 1.0) / 24.0)
+    turn = 1.0 / np.sqrt(h + 0.5)
+    t = np.linspace(0.0, turn, 200_001)
+    towards = np.trapezoid((1.0 - t**2 / 2.0) ** 2, t)
+    braking = np.trapezoid((h * turn**2 - turn * t + t**2 / 2.0) ** 2, t)
+    overshoot = (0.5 - h) / (0.5 + h)
+    return float((towards + braking) / (1.0 - overshoot**2.5))
+
+
+@pytest.mark.parametrize("size", [1.0, -0.3])
+def test_a_jump_of_pure_inertia_costs_what_fuller_found_and_the_bound_what_it_costs_without_brakes(size: float) -> None:
+    floor = saturation_floor(jump(size), double_integrators())
+    scale = abs(size) ** 2.5 / np.sqrt(FASTEST) / 1.5
+    least = fuller() * scale
+    assert np.all(floor.mse >= 0.999 * least)
+    assert np.all(floor.mse <= 1.01 * least)
+    without_brakes = 8.0 / 15.0 * np.sqrt(2.0) * scale
+    assert np.all(floor.bound <= without_brakes)
+    assert np.all(floor.bound >= 0.98 * without_brakes), "it may leave a tick early"
+
+
+def test_a_lower_voltage_costs_what_it_must() -> None:
+    full, quarter = (saturation_floor(jump(0.5), double_integrators(), supply_v=volts) for volts in (99.0, SUPPLY / 4))
+    assert full.supply_v == SUPPLY
+    np.testing.assert_allclose(quarter.mse / full.mse, 2.0, rtol=0.01)
+    np.testing.assert_allclose(quarter.bound / full.bound, 2.0, rtol=0.01)
+
+
+@pytest.mark.parametrize("name", ["default", "white_box", "grey_box"])
+def test_steps_leave_little_between_floor_and_bound_on_every_arm(name: str) -> None:
+    floor = saturation_floor(steps(), load_arm(name))
+    assert np.all(floor.bound <= floor.mse)
+    assert np.all(floor.mse <= 1.05 * floor.bound)
+    assert floor.total <= 1.02 * floor.bound.sum()
+    assert floor.limited == (True,) * 5
+
+
+def test_the_floor_is_of_the_experiments_own_window_and_below_its_controller() -> None:
+    motion, arm = multi_steps([0.0, 0.8, -0.4], [0.6, 1.0, 1.0]), default_arm()
+    experiment = Experiment(motion, arm, wait_s=0.7, after_s=0.3)
+    floor = saturation_floor(motion, arm, wait_s=0.7, after_s=0.3)
+    np.testing.assert_array_equal(floor.leader, experiment.leader)
+    np.testing.assert_allclose(floor.time_s, experiment.time_s, atol=1e-12)
+    np.testing.assert_allclose(floor.mse, np.mean((floor.leader - floor.angles) ** 2, axis=0), rtol=1e-12)
+    before = experiment.run_single().mse[0]
+    multiples = floor.multiple(before)
+    assert all(one is not None and one > 1.1 for one in multiples)
+    assert multiples[4] == pytest.approx(before.sum() / floor.total)
+
+
+def test_the_ideal_controller_does_not_look_ahead() -> None:
+    plant = plant_row(default_arm())
+    one = leader_slices(steps(0.7, 0.2, 0.4), 0.1)
+    other = one.copy()
+    other[1600:] = 0.2
+    tunings = np.tile([1.0, 0.001, 1.0, 1.0], (1, 4, 1))
+    common: dict[str, Any] = {
+        "late": 0,
+        "plant": plant,
+        "supply": 15.0,
+        "tunings": tunings,
+        "chased": -1,
+        "keep": True,
+        "threads": 1,
+    }
+    nowhere: dict[str, Any] = {"direction": np.zeros(len(one), dtype=np.int8), "until": np.zeros(len(one))}
+    angles = [_native.simulate_ideal(leader=leader, **common, **nowhere)[1][0] for leader in (one, other)]
+    np.testing.assert_array_equal(angles[0][:401], angles[1][:401])
+    assert np.abs(angles[0][420:] - angles[1][420:]).max() > 0.01
+
+
+def test_it_stands_still_at_rest_and_arrives() -> None:
+    floor = saturation_floor(steps(0.8, 0.5, 1.0), default_arm())
+    assert np.ptp(floor.angles[1000:2000], axis=0).max() < 1e-4, "no swinging, which would win a head start by luck"
+    assert np.abs(floor.angles[-200:] - floor.leader[-200:]).max() < 3e-3
+
+
+def test_what_a_motor_can_keep_up_with_has_no_multiple() -> None:
+    floor = saturation_floor(human_reaches(1, 5.0), default_arm())
+    assert floor.total < 1e-4
+    assert floor.multiple(np.full(4, 0.001)) == (None,) * 5
+    slow = saturation_floor(human_reaches(1, 5.0), load_arm("grey_box"))
+    assert slow.limited[0], "the grey box's yaw turns 1.6 rad/s at most"
+
+
+def test_a_leader_that_never_rests_is_bounded_by_nothing() -> None:
+    time = np.arange(0.0, 3.0, 0.01)
+    motion = Trajectory(time, np.repeat(1.5 * np.sin(12.0 * time)[:, None], 4, axis=1))
+    floor = saturation_floor(motion, load_arm("grey_box"), wait_s=0.0)
+    np.testing.assert_array_equal(floor.bound, 0.0)
+    assert floor.limited[4]
+
+
+def test_knowing_the_leader_later_costs_more() -> None:
+    motion = steps(1.0, 0.5, 0.5)
+    now, late = (saturation_floor(motion, default_arm(), wait_s=0.5, delay_s=delay) for delay in (0.0, 0.004))
+    assert np.all(late.mse > now.mse)
+    assert np.all(late.bound > now.bound)
+    # Every millisecond of a jump of 1 rad costs 1 rad^2 x 1 ms.
+    np.testing.assert_allclose((late.mse - now.mse) * 1.5, 0.004, rtol=0.25)
+    assert "4 ms late" in late.how
+    assert "late" not in now.how
+
+
+def test_the_number_of_threads_changes_no_bit_and_arm_and_row_are_the_same() -> None:
+    motion = steps(0.5, 0.4, 0.4)
+    one = saturation_floor(motion, default_arm(), threads=1)
+    two = saturation_floor(motion, plant_row(default_arm()), threads=2)
+    np.testing.assert_array_equal(one.angles, two.angles)
+    np.testing.assert_array_equal(one.bound, two.bound)
+
+
+@pytest.mark.parametrize(
+    ("change", "complaint"),
+    [
+        ({"supply_v": 0.0}, "supply_v is 0, but it must be a voltage above 0 V"),
+        ({"supply_v": float("nan")}, "supply_v is nan"),
+        ({"delay_s": -0.1}, "delay_s is -0.1, but it must lie within 0..1 s"),
+        ({"arm": np.repeat(double_integrators()[None], 2, axis=0)}, "of one plant, not of 2"),
+        ({"motion": jump(1.0) + 2.6}, "the leader starts with joint 0 at 2.6 rad, beyond the follower's stops"),
+        ({"motion": jump(1.0)[:-1]}, "the shape (5999, 4), but (4 x ticks, 4) is needed"),
+        ({"motion": jump(float("nan"))}, "not a finite number"),
+    ],
+)
+def test_bad_arguments_are_refused_in_a_sentence(change: dict[str, object], complaint: str) -> None:
+    arguments: dict[str, Any] = {"motion": jump(1.0), "arm": double_integrators()} | change
+    motion, arm = arguments.pop("motion"), arguments.pop("arm")
+    with pytest.raises(UserError) as caught:
+        saturation_floor(motion, arm, **arguments)
+    assert complaint in str(caught.value)
