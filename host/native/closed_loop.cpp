@@ -19,6 +19,7 @@
 #include "closed_loop/batch.h"
 #include "closed_loop/block.h"
 #include "closed_loop/experiment.h"
+#include "closed_loop/swings.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -190,6 +191,27 @@ nb::object sixteen_laws(const In<std::int32_t, nb::shape<loop::kBlock, kSettingC
   return millivolts.numpy();
 }
 
+// Reversals and travel (n x 4) of traces (n x rows x 4) between two rows.
+template <class T>
+nb::tuple swings(const In<T, nb::shape<-1, -1, kJoints>>& traces, std::size_t first, std::size_t last, double band) {
+  if (first > last || last > traces.shape(1)) throw std::invalid_argument("the rows must lie within the traces, the first before the last.");
+  const std::size_t count = traces.shape(0);
+  Array<std::int32_t> reversals({count, kJoints});
+  Array<double> travel({count, kJoints});
+  {
+    const nb::gil_scoped_release free;
+    for (std::size_t n = 0; n < count; ++n) {
+      for (std::size_t i = 0; i < kJoints; ++i) {
+        const T* from = traces.data() + (n * traces.shape(1) + first) * kJoints + i;
+        const loop::Swings found = loop::swings_of(from, last - first, kJoints, band);
+        reversals.data()[n * kJoints + i] = found.reversals;
+        travel.data()[n * kJoints + i] = found.travel;
+      }
+    }
+  }
+  return nb::make_tuple(reversals.numpy(), travel.numpy());
+}
+
 nb::object plant_row(const arm::ArmParameters& parameters) {
   Array<double> row({loop::kPlantColumns});
   loop::PlantRow one{};
@@ -224,6 +246,9 @@ void bind_closed_loop(nb::module_& m) {
         "angles"_a.noconvert(), "The leader's angles in every slice to q12 readings and true angles at every tick.");
   m.def("sixteen_laws", &sixteen_laws, nb::kw_only(), "controllers"_a.noconvert(), "period_ms"_a, "leader"_a.noconvert(),
         "follower"_a.noconvert(), "limit_mv"_a.noconvert(), "instructions"_a, "The batch kernel's form of the law, in mV; for tests.");
+  m.def("swings", &swings<float>, "traces"_a.noconvert(), "first"_a, "last"_a, "band"_a,
+        "How often (int32) and how far (float64) traces, n x rows x 4, swing to and fro by more than the band: both n x 4.");
+  m.def("swings", &swings<std::int16_t>, "traces"_a.noconvert(), "first"_a, "last"_a, "band"_a);
   m.def("plant_row", &plant_row, "parameters"_a, "An arm as one row of numbers.");
   m.def("instruction_sets", &loop::instruction_sets, "Those of the batch kernel that this processor runs, the best first.");
   m.attr("PLANT_COLUMNS") = loop::kPlantColumns;

@@ -57,7 +57,7 @@ class Timing:
             raise UserError(f"acts is {self.acts}, but it must name a slice from 1 to 3 for each of the four joints.")
 
     def native(self) -> _native.LoopTiming:
-        return _native.LoopTiming(start=self.chain_start, acts=self.acts, on=self.drivers_on, **({"late": self.late} if self.late else {}))
+        return _native.LoopTiming(start=self.chain_start, acts=self.acts, on=self.drivers_on, late=self.late)
 
 
 DEFAULT_TIMING = Timing()

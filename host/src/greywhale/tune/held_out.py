@@ -1,0 +1,81 @@
+"""Motions that nothing was tuned on: the paper's steps and multi-steps, and a human-like motion of another seed.
+
+The measures run from the moment the motors go on, as a log's do: WAIT_S of soft start and rest, then the motion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.arm import ArmParameters
+from greywhale.log import Log
+from greywhale.log.layout import Origin
+from greywhale.measure import Evaluation, evaluate
+from greywhale.simulate import Experiment
+from greywhale.trajectory import Trajectory, human_reaches, multi_steps, steps
+from greywhale.tune.outcome import HeldOut
+from greywhale.tune.training import reach, within
+
+Floats = npt.NDArray[np.float64]
+Controllers = npt.NDArray[np.int32]
+
+WAIT_S = 1.5
+SEED = 1
+EVERY = 2  # ticks between the rows of the traces
+
+
+def motions(low: Floats, high: Floats) -> dict[str, Trajectory]:
+    """By name, within the range of the joints."""
+    return {
+        "steps": within(steps(), low, high),
+        "multi-steps": within(multi_steps(), low, high),
+        "human-like reaches": within(human_reaches(SEED, 20.0), low, high),
+    }
+
+
+def judge_held_out(
+    arm: ArmParameters,
+    parameters: Sequence[int],
+    plant: Floats,
+    before: Controllers,
+    after: Controllers,
+    threads: int = 0,
+    floors: bool = True,
+) -> tuple[HeldOut, ...]:
+    """Both controllers (4, 12) on one plant (60,), in the bench's own arithmetic and with sensor noise."""
+    judged = []
+    for name, motion in motions(*reach(arm, parameters, plant[None])).items():
+        experiment = Experiment(motion, arm, parameters=parameters, seed=7, wait_s=WAIT_S)
+        result = experiment.run_single(np.stack([before, after]), plant, every=EVERY, threads=threads)
+        leader = experiment.leader[::EVERY]
+        angles = result.angles.astype(np.float64)
+        judged.append(
+            HeldOut(
+                name=name,
+                motion=motion,
+                before=_evaluated(name, result.time_s, leader, angles[0]),
+                after=_evaluated(name, result.time_s, leader, angles[1]),
+                floor=_floor(motion, plant, parameters) if floors else None,
+                time_s=result.time_s,
+                leader=leader,
+                angles_before=angles[0],
+                angles_after=angles[1],
+            )
+        )
+    return tuple(judged)
+
+
+def _evaluated(name: str, time_s: Floats, leader: Floats, follower: Floats) -> Evaluation:
+    state = np.full(len(time_s), "following")
+    return evaluate(Log(name, Origin(), time_s, leader, follower, np.zeros_like(leader), state, 0, True))
+
+
+def _floor(motion: Trajectory, plant: Floats, parameters: Sequence[int]) -> Floats | None:
+    try:
+        from greywhale.tune.floor import saturation_floor
+    except ImportError:
+        return None
+    return np.asarray(saturation_floor(motion, plant, wait_s=WAIT_S).mse, dtype=np.float64)

@@ -1,0 +1,155 @@
+"""The journal of a tuning: every cost that was told to an optimiser, so that a tuning can go on where it was cut off.
+
+A file of JSON lines. The first says what was asked for; each further one holds the costs of one batch and a digest of
+its candidates. Resuming plays the optimisers through the same batches with the costs from the file, which takes no
+simulation, and goes on from there: file and result become the same, byte for byte, as of a run that nobody interrupted.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import zlib
+from pathlib import Path
+from types import TracebackType
+from typing import IO, Any, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.errors import UserError, because
+from greywhale.files import refuse_devices
+
+Floats = npt.NDArray[np.float64]
+Controllers = npt.NDArray[np.int32]
+
+VERSION = 1
+
+
+class Journal:
+    """Costs as they are told; without a path it remembers nothing. Use as a context."""
+
+    def __init__(self, path: Path | None, request: dict[str, Any], resume: bool = False) -> None:
+        self._path = path
+        self._told: list[dict[str, Any]] = []
+        self._next = 0
+        self._file: IO[bytes] | None = None
+        if path is None:
+            return
+        heading = {"greywhale_tune_journal": VERSION, "request": request}
+        try:
+            if resume and path.exists():
+                self._file = self._reopened(path, heading)
+            else:
+                self._file = path.open("wb", buffering=0)
+                self._write(heading)
+        except OSError as error:
+            raise UserError(f"{path}: cannot be used as a journal: {because(error)}.") from None
+
+    @property
+    def replaying(self) -> bool:
+        """Whether the next batch's costs are known already."""
+        return self._next < len(self._told)
+
+    def costs(self, stage: str, candidates: Controllers) -> Floats | None:
+        """The costs of the next batch, if the journal has them."""
+        if not self.replaying:
+            return None
+        line = self._told[self._next]
+        if line["stage"] != stage or line["candidates"] != _digest(candidates):
+            raise UserError(
+                f"{self._path}: batch {self._next + 1} of the journal is of other candidates ({line['stage']}) than "
+                f"this version of greywhale asks for ({stage}); start anew without --resume."
+            )
+        self._next += 1
+        return np.array(line["costs"], dtype=np.float64)
+
+    def tell(self, stage: str, candidates: Controllers, costs: Floats) -> None:
+        """Append a batch's costs; they are on their way to the disk when this returns."""
+        if self._file is not None:
+            self._write({"stage": stage, "candidates": _digest(candidates), "costs": costs.tolist()})
+
+    def close(self) -> None:
+        """Give the file back."""
+        if self._file is not None:
+            self._file.close()
+            self._file = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def _write(self, line: dict[str, Any]) -> None:
+        assert self._file is not None
+        # A single unbuffered write: what is torn by a crash is the last line and nothing else.
+        self._file.write(json.dumps(line, separators=(",", ":")).encode() + b"\n")
+
+    def _reopened(self, path: Path, heading: dict[str, Any]) -> IO[bytes]:
+        refuse_devices(path)
+        whole = path.read_bytes()
+        lines, length = _whole_lines(path, whole)
+        if not lines:
+            # Cut off within its first line: nothing was told yet.
+            file = path.open("wb", buffering=0)
+            self._file = file
+            self._write(heading)
+            return file
+        _require_same(path, lines[0], heading)
+        self._told = lines[1:]
+        os.truncate(path, length)
+        return path.open("ab", buffering=0)
+
+
+def _whole_lines(path: Path, content: bytes) -> tuple[list[dict[str, Any]], int]:
+    """The lines that were written to their end, and how many bytes they are; a torn last one is dropped."""
+    length = content.rfind(b"\n") + 1
+    lines = []
+    for number, line in enumerate(content[:length].splitlines(), start=1):
+        try:
+            value = json.loads(line)
+        except ValueError:
+            value = None
+        good = isinstance(value, dict) and (isinstance(value.get("request"), dict) if number == 1 else _is_batch(value))
+        if not good:
+            raise UserError(f"{path}: line {number} is not a line of a tuning's journal; start anew without --resume.")
+        lines.append(value)
+    return lines, length
+
+
+def _is_batch(value: dict[str, Any]) -> bool:
+    costs = value.get("costs")
+    return (
+        isinstance(value.get("stage"), str)
+        and isinstance(value.get("candidates"), int)
+        and isinstance(costs, list)
+        and bool(costs)
+        and all(isinstance(row, list) and len(row) == 4 for row in costs)
+        and all(isinstance(cost, float) for row in costs for cost in row)
+    )
+
+
+def _require_same(path: Path, found: dict[str, Any], wanted: dict[str, Any]) -> None:
+    if found.get("greywhale_tune_journal") != VERSION:
+        raise UserError(f"{path}: this journal is of another version of greywhale; start anew without --resume.")
+    # As it looks after a way through the file: tuples are lists there.
+    now = json.loads(json.dumps(wanted["request"]))
+    then = found["request"]
+    for key in sorted({*now, *then}):
+        if now.get(key) != then.get(key):
+            raise UserError(
+                f"{path}: the journal is of another tuning: its {key} is {_short(then.get(key))}, now it is "
+                f"{_short(now.get(key))}; give the same again, or start anew without --resume."
+            )
+
+
+def _short(value: object) -> str:
+    text = json.dumps(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def _digest(candidates: Controllers) -> int:
+    return zlib.crc32(np.ascontiguousarray(candidates, dtype="<i4").tobytes())

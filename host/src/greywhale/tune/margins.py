@@ -1,0 +1,222 @@
+"""Whether a joint comes to rest, and still would with half or twice the loop gain or one control period of delay.
+
+The leader makes small moves and stops. From SETTLE_S after each stop on, the follower must not swing: REVERSALS or more
+turning points of its true angle, each more than SWING_RAD from the next, are a limit cycle (a gear that hunts in its
+backlash, an integrator that breaks loose again and again, a loop without phase margin); so are duties that swing by
+more than CHATTER_SHARE of the supply more than CHATTER_HZ times a second (a relay; sensor noise that Kd magnifies). A
+single overshoot, or creeping to the target, is neither.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale import _native
+from greywhale.arm import ArmParameters
+from greywhale.link import schema
+from greywhale.simulate import PLANT_COLUMNS, Experiment, Result, Timing
+from greywhale.simulate.experiment import PWM_TOP
+from greywhale.trajectory import Trajectory
+from greywhale.trajectory.generate import minimum_jerk
+from greywhale.tune.objective import crossed
+from greywhale.tune.training import EDGE_S, JOINTS, RATE_HZ, centre, reach
+
+Floats = npt.NDArray[np.float64]
+Integers = npt.NDArray[np.int32]
+Controllers = npt.NDArray[np.int32]
+
+SWING_RAD = 0.01
+REVERSALS = 3
+CHATTER_SHARE = 1 / 3
+CHATTER_HZ = 10.0
+SETTLE_S = 1.0
+WAIT_S = 0.2
+
+# Loop gains as factors of every joint's torque per volt.
+GAINS = {"at rest": 1.0, "half the loop gain": 0.5, "twice the loop gain": 2.0}
+DELAY = "one period more delay"
+SCENARIOS = (*GAINS, DELAY)
+# Where the leader stops, as shares of a joint's reach; (here and there joints move together, so that all are shaken).
+STOPS = (0.3, -0.15)
+REST_S = 2.2  # of which the last 1.2 s are looked at
+REST_LONG_S = 4.0
+
+
+@dataclass(frozen=True)
+class Margin:
+    """One joint in one scenario over all plants: the worst of them."""
+
+    scenario: str
+    joint: int
+    reversals: int  # of the angle within one rest
+    chatter_hz: float
+    plants_failing: int
+    plants: int
+
+    @property
+    def holds(self) -> bool:
+        return self.plants_failing == 0
+
+    def as_dict(self) -> dict[str, Any]:
+        return {
+            "scenario": self.scenario,
+            "joint": self.joint,
+            "holds": self.holds,
+            "reversals": self.reversals,
+            "chatter_hz": self.chatter_hz,
+            "plants_failing": self.plants_failing,
+            "plants": self.plants,
+        }
+
+
+@dataclass(frozen=True)
+class Unrest:
+    """Of every candidate on every plant, per joint: (n, k, 4) each, the worst rest of the record."""
+
+    reversals: Integers
+    travel: Floats  # rad/s, in swings of a limit cycle
+    chatter: Floats  # 1/s, duty swings
+    lost: npt.NDArray[np.bool_]  # left the range of numbers
+
+    @property
+    def fails(self) -> npt.NDArray[np.bool_]:
+        failing: npt.NDArray[np.bool_] = (self.reversals >= REVERSALS) | (self.chatter > CHATTER_HZ) | self.lost
+        return failing
+
+
+def unrest_of(result: Result, rests: Sequence[tuple[int, int]], every: int, shape: tuple[int, int]) -> Unrest:
+    """From traces of a Mega with a row every `every` ticks; `rests` are first and last tick."""
+    reversals = np.zeros((*shape, JOINTS), dtype=np.int32)
+    travel = np.zeros((*shape, JOINTS))
+    chatter = np.zeros((*shape, JOINTS))
+    for first, last in rests:
+        seconds = (last - first) * 1e-3
+        rows = (first // every, last // every)
+        turned, moved = _native.swings(result.angles, *rows, SWING_RAD)
+        beats, _ = _native.swings(result.duties, *rows, CHATTER_SHARE * max(PWM_TOP["mega"]))
+        reversals = np.maximum(reversals, turned.reshape(*shape, JOINTS))
+        travel = np.maximum(travel, np.where(turned >= REVERSALS, moved / seconds, 0.0).reshape(*shape, JOINTS))
+        chatter = np.maximum(chatter, (beats / seconds).reshape(*shape, JOINTS))
+    lost = np.repeat(result.diverged.reshape(shape)[:, :, None], JOINTS, axis=2)
+    return Unrest(reversals, travel, chatter, lost)
+
+
+def _part(found: Unrest, plants: slice) -> Unrest:
+    return Unrest(found.reversals[:, plants], found.travel[:, plants], found.chatter[:, plants], found.lost[:, plants])
+
+
+class Margins:
+    """The scenarios on some plants, ready to judge candidates."""
+
+    def __init__(
+        self,
+        arm: ArmParameters,
+        parameters: Sequence[int],
+        plants: Floats,
+        *,
+        threads: int = 0,
+        rest_s: float = REST_S,
+        seed: int = 0,
+    ) -> None:
+        low, high = reach(arm, parameters, plants)
+        period = parameters[schema.PARAMETER_BY_NAME["period_ms"].index]
+        motion = stops(low, high, rest_s)
+        self.plants = plants
+        self._threads = threads
+        self._rests = [
+            (round(1e3 * (WAIT_S + (number + 1) * rest_s - rest_s + _FIRST_S + EDGE_S + SETTLE_S)),
+             round(1e3 * (WAIT_S + _FIRST_S + (number + 1) * rest_s)))
+            for number in range(len(STOPS))
+        ]  # fmt: skip
+        common: dict[str, Any] = {
+            "parameters": parameters,
+            "seed": 100 * seed + 31,
+            "wait_s": WAIT_S,
+            "soft_start": False,
+        }
+        self._prompt = Experiment(motion, arm, **common)
+        self._late = Experiment(motion, arm, timing=Timing(late=period), **common)
+
+    def unrest(self, controllers: Controllers, *, single: bool = False, every: int = 2) -> dict[str, Unrest]:
+        """Every scenario for every candidate (n, 4, 12) on every plant."""
+        count, plants = len(controllers), len(self.plants)
+        gains = list(GAINS.values())
+        scaled = np.concatenate([with_gain(self.plants, gain) for gain in gains])
+        prompt = self._run(self._prompt, controllers, scaled, single, every)
+        found = {
+            name: _part(prompt, slice(number * plants, (number + 1) * plants)) for number, name in enumerate(GAINS)
+        }
+        found[DELAY] = self._run(self._late, controllers, self.plants, single, every)
+        assert all(one.reversals.shape == (count, plants, JOINTS) for one in found.values())
+        return found
+
+    def _run(
+        self, experiment: Experiment, controllers: Controllers, plants: Floats, single: bool, every: int
+    ) -> Unrest:
+        laws, arms = crossed(controllers, plants)
+        if single:
+            result = experiment.run_single(laws, arms, every=every, threads=self._threads)
+        else:
+            result = experiment.run(laws, arms, every=every, threads=self._threads)
+        return unrest_of(result, self._rests, every, (len(controllers), len(plants)))
+
+    def check(self, controllers: Controllers) -> tuple[Margin, ...]:
+        """One controller (4, 12), in the bench's own arithmetic: a verdict for each scenario and joint."""
+        verdicts = []
+        for name, found in self.unrest(controllers[None], single=True, every=1).items():
+            for joint in range(JOINTS):
+                verdicts.append(
+                    Margin(
+                        scenario=name,
+                        joint=joint,
+                        reversals=int(found.reversals[0, :, joint].max()),
+                        chatter_hz=float(found.chatter[0, :, joint].max()),
+                        plants_failing=int(found.fails[0, :, joint].sum()),
+                        plants=len(self.plants),
+                    )
+                )
+        return tuple(verdicts)
+
+
+# The leader rests this long before its first move.
+_FIRST_S = 0.2
+# What a search pays for a limit cycle: rad for each rad/s of swinging, for each CHATTER_HZ of chatter, and at least.
+TRAVEL_PRICE = 0.2
+CHATTER_PRICE = 0.01
+LEAST_PRICE = 0.02
+
+
+def penalty(found: dict[str, Unrest]) -> Floats:
+    """What candidates pay (n, 4), in rad: nothing for quiet ones, else LEAST_PRICE and more for more unrest."""
+    total = 0.0
+    for one in found.values():
+        excess = np.maximum(one.chatter / CHATTER_HZ - 1.0, 0.0)
+        price = TRAVEL_PRICE * one.travel + CHATTER_PRICE * excess + LEAST_PRICE * one.fails + 10.0 * one.lost
+        total = total + price.mean(axis=1)
+    return np.asarray(total, dtype=np.float64)
+
+
+def with_gain(plants: Floats, factor: float) -> Floats:
+    """The same plants with another torque per volt on every joint."""
+    scaled = plants.copy()
+    for joint in range(JOINTS):
+        scaled[:, PLANT_COLUMNS.index(f"joint{joint}.torque_per_volt")] *= factor
+    return scaled
+
+
+def stops(low: Floats, high: Floats, rest_s: float) -> Trajectory:
+    """Small moves of all joints and a rest after each."""
+    middle, size = centre(low, high)
+    total = _FIRST_S + rest_s * len(STOPS)
+    time_s = np.arange(round(total * RATE_HZ) + 1) / RATE_HZ
+    path = np.zeros(len(time_s))
+    before = 0.0
+    for number, place in enumerate(STOPS):
+        path += (place - before) * minimum_jerk((time_s - _FIRST_S - number * rest_s) / EDGE_S)
+        before = place
+    return Trajectory(time_s, middle + size * path[:, None])

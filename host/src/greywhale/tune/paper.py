@@ -1,0 +1,183 @@
+"""The paper's tuning: GWO-WOA, 10 agents, 30 iterations, every joint's controller on its own (section 4, Table 7).
+
+J = ITAE + ITAU with weights 1 (Eqs. 19 to 21), time counted from the leader's step to the end of the record, on the
+model as given: its estimate, no other plants, no sensor noise. What the paper leaves open is filled in like this:
+
+- Training motion: the paper's 1 rad step (section 5.1) of the joint that is tuned. The other joints' leaders rest, and
+  the other joints keep the controller from before.
+- Control period: 20 ms, to which the paper's Kd belongs.
+- Voltage: the model's supply for strategy mf. Where Ku is tuned too, 20 V: Ku = 20 of Table 8 is its bound.
+- Bounds of Kp, Kd, Ki: 0 to 3 (`space.py`). The sets of strategy sf and the factors of strategy mf stay as they are.
+- Table 7's bounds let a flank of a set have no width. No board takes that, so widths below 0.01 become 0.01; how often
+  that happened is among the notes. Out of order no set can be: each corner has a side of zero to itself.
+- No joint's search knows the controller from before; the first pack is random.
+
+On an objective that is mostly effort a controller that moves little does well. So this method may end worse than it
+began by any other measure; `default` is what to use.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.link import schema
+from greywhale.simulate import PLANT_COLUMNS, Experiment
+from greywhale.trajectory import Trajectory, steps
+from greywhale.tune.held_out import judge_held_out
+from greywhale.tune.journal import Journal
+from greywhale.tune.margins import Margins
+from greywhale.tune.outcome import Outcome, curves_of
+from greywhale.tune.progress import Report
+from greywhale.tune.search import Found, lockstep
+from greywhale.tune.space import JOINTS, Space
+
+if TYPE_CHECKING:
+    from greywhale.tune.model import Model
+
+Floats = npt.NDArray[np.float64]
+Controllers = npt.NDArray[np.int32]
+
+METHOD = "gwo-woa"
+AGENTS = 10
+ITERATIONS = 30
+# The first pack and then as many moves as iterations, a joint.
+BUDGET = AGENTS * (ITERATIONS + 1)
+PERIOD_MS = 20
+LARGEST_SUPPLY_V = 20.0
+WAIT_S = 0.1
+
+
+class Loops:
+    """The model in the paper's setting, with a step for each joint alone."""
+
+    def __init__(self, model: Model, strategy: str, before: Controllers, threads: int) -> None:
+        supply_v = LARGEST_SUPPLY_V if strategy != "mf" else model.arm.drive.supply
+        self.parameters = _with(model.parameters, period_ms=PERIOD_MS, supply_mv=round(1000 * supply_v))
+        self.plant = model.plants[0].copy()
+        self.plant[PLANT_COLUMNS.index("supply")] = supply_v
+        self.before = before
+        self._threads = threads
+        self._experiments = [
+            Experiment(
+                alone(steps(), joint),
+                model.arm,
+                parameters=self.parameters,
+                noise=False,
+                wait_s=WAIT_S,
+                soft_start=False,
+                weight_s=since_step(steps(), WAIT_S),
+            )
+            for joint in range(JOINTS)
+        ]
+
+    def costs(self, rows: Controllers) -> Floats:
+        """J of every joint, tried alone: (n, 4) for (n, 4, 12)."""
+        costs = np.empty((len(rows), JOINTS))
+        for joint, experiment in enumerate(self._experiments):
+            laws = np.repeat(self.before[None], len(rows), axis=0)
+            laws[:, joint] = rows[:, joint]
+            result = experiment.run(laws, self.plant, threads=self._threads)
+            costs[:, joint] = result.itae[:, joint] + result.itau[:, joint]
+        return costs
+
+
+def tune_as_paper(
+    model: Model,
+    strategy: str,
+    budget: int | None,
+    seed: int,
+    threads: int,
+    before: Controllers,
+    journal: Path | None,
+    resume: bool,
+    report: Report,
+    floors: bool,
+) -> Outcome:
+    """See the head of this file; the arguments are those of `tune`."""
+    spent = BUDGET if budget is None else budget
+    loops = Loops(model, strategy, before, threads)
+    found = Found.nothing(before)
+    request = {
+        "model": model.name,
+        "model_digest": model.digest,
+        "parameters": list(loops.parameters),
+        "strategy": strategy,
+        "method": "paper",
+        "budget": spent,
+        "seed": seed,
+        "before": before.tolist(),
+    }
+
+    def tick(now: Found) -> None:
+        report("tuning", min(1.0, now.evaluations / spent), note=f"J {now.total:.2f}")
+
+    complete = True
+    with Journal(journal, request, resume) as book:
+        try:
+            lockstep(
+                Space.paper(strategy, before), loops.costs, found, book, stage="paper", method=METHOD, budget=spent,
+                seed=(seed,), starts=np.empty((0, JOINTS, before.shape[1]), dtype=np.int32), tick=tick, pack=AGENTS,
+            )  # fmt: skip
+        except KeyboardInterrupt:
+            if not found.evaluations:
+                raise
+            complete = False
+    report("judging", 0.0)
+    margins = Margins(model.arm, loops.parameters, loops.plant[None], threads=threads)
+    margins_before, margins_after = margins.check(before), margins.check(found.best)
+    report("judging", 0.5)
+    held_out = judge_held_out(model.arm, loops.parameters, loops.plant, before, found.best, threads, floors)
+    report("judging", 1.0)
+    return Outcome(
+        model=model,
+        parameters=loops.parameters,
+        strategy=strategy,
+        method="paper",
+        seed=seed,
+        budget=spent,
+        evaluations=found.evaluations,
+        complete=complete,
+        before=before,
+        after=found.best.copy(),
+        cost_before=tuple(map(float, loops.costs(before[None])[0])),
+        cost_after=tuple(map(float, found.cost)),
+        curves=curves_of(found),
+        margins_before=margins_before,
+        margins=margins_after,
+        held_out=held_out,
+        notes=_notes(found, strategy, loops),
+    )
+
+
+def alone(motion: Trajectory, joint: int) -> Trajectory:
+    """The motion of one joint; the others rest where it begins."""
+    angles = np.repeat(motion.angles[:1], len(motion.angles), axis=0)
+    angles[:, joint] = motion.angles[:, joint]
+    return replace(motion, angles=angles)
+
+
+def since_step(motion: Trajectory, wait_s: float) -> Floats:
+    """The k of Eqs. 19 and 20 at every tick: the time since the leader left its first angle, 0 before."""
+    leaves = float(motion.time_s[int(np.argmax(np.abs(motion.angles - motion.angles[0]).max(axis=1) > 1e-9))])
+    ticks = int(np.ceil((wait_s + motion.duration_s) / 1e-3 - 1e-9))
+    since: Floats = np.maximum(np.arange(ticks) * 1e-3 - wait_s - leaves, 0.0)
+    return since
+
+
+def _with(parameters: tuple[int, ...], **changed: int) -> tuple[int, ...]:
+    values = list(parameters)
+    for name, value in changed.items():
+        values[schema.PARAMETER_BY_NAME[name].index] = value
+    return tuple(values)
+
+
+def _notes(found: Found, strategy: str, loops: Loops) -> tuple[str, ...]:
+    notes = [f"simulated with a control period of {PERIOD_MS} ms and {loops.plant[-1]:g} V, each joint alone"]
+    if strategy != "sf":
+        notes.append(f"{found.narrowed} of the searched widths were below 0.01 and became 0.01; none was out of order")
+    return tuple(notes)

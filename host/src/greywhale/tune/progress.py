@@ -1,0 +1,15 @@
+"""What a long piece of work tells a progress bar."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+
+class Report(Protocol):
+    """Told what is being done, the share of it that is done, and a note such as the best cost."""
+
+    def __call__(self, what: str, fraction: float, note: str = "") -> None: ...
+
+
+def silent(what: str, fraction: float, note: str = "") -> None:
+    """For when nobody looks."""

@@ -1,0 +1,134 @@
+"""Four optimisers in lockstep: candidate i of every joint is tried together with candidate i of the others.
+
+One simulation of the arm thus serves four searches, and every joint is judged among moving neighbours. What each joint
+is told is its own cost. A method's batches may grow at different times (CMA-ES restarts with a larger pack); then the
+joints with fewer candidates run their best one in the rows that are left over.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.optimise import Optimiser, create
+from greywhale.tune.journal import Journal
+from greywhale.tune.space import JOINTS, Space
+
+Floats = npt.NDArray[np.float64]
+Controllers = npt.NDArray[np.int32]
+Costs = Callable[[Controllers], Floats]
+Tick = Callable[["Found"], None]
+
+
+@dataclass
+class Found:
+    """The best so far of every joint, and how it came about."""
+
+    best: Controllers  # (4, 12)
+    cost: Floats  # (4,); infinite while a joint has none
+    evaluations: int = 0
+    narrowed: int = 0  # numbers that meant a width below 0.01 and were widened to it
+    curve: list[tuple[int, tuple[float, ...]]] = field(default_factory=list)
+    ranking: list[list[tuple[float, bytes]]] = field(default_factory=lambda: [[] for _ in range(JOINTS)])
+
+    @classmethod
+    def nothing(cls, start: Controllers) -> Found:
+        return cls(start.copy(), np.full(JOINTS, np.inf))
+
+    @property
+    def total(self) -> float:
+        return float(self.cost.sum())
+
+    def take(self, rows: Controllers, costs: Floats, counts: list[int]) -> None:
+        """Candidates (n, 4, 12) with their costs (n, 4); of joint j the first counts[j] rows are new."""
+        self.evaluations += len(rows)
+        for joint, count in enumerate(counts):
+            self.ranking[joint] += [(float(costs[row, joint]), rows[row, joint].tobytes()) for row in range(count)]
+            self.ranking[joint] = _best_few(self.ranking[joint])
+            if count and costs[:count, joint].min() < self.cost[joint]:
+                row = int(np.argmin(costs[:count, joint]))
+                self.best[joint], self.cost[joint] = rows[row, joint], costs[row, joint]
+        self.curve.append((self.evaluations, tuple(float(cost) for cost in self.cost)))
+
+    def contenders(self, count: int) -> Controllers:
+        """(count, 4, 12): the k-th row holds the k-th best of every joint, or its best where there are no more."""
+        rows = np.repeat(self.best[None], count, axis=0)
+        for joint, ranked in enumerate(self.ranking):
+            for place, (_, raw) in enumerate(ranked[:count]):
+                rows[place, joint] = np.frombuffer(raw, dtype=np.int32)
+        return rows
+
+
+# How many of a joint's best candidates are kept for the last judgement.
+KEPT = 8
+
+
+def _best_few(ranked: list[tuple[float, bytes]]) -> list[tuple[float, bytes]]:
+    """Different ones only, the best first."""
+    kept: dict[bytes, float] = {}
+    for cost, raw in sorted(ranked):
+        kept.setdefault(raw, cost)
+    return [(cost, raw) for raw, cost in list(kept.items())[:KEPT]]
+
+
+def lockstep(
+    space: Space,
+    evaluate: Costs,
+    found: Found,
+    journal: Journal,
+    *,
+    stage: str,
+    method: str,
+    budget: int,
+    seed: tuple[int, ...],
+    starts: Controllers,
+    tick: Tick,
+    pack: int | None = None,
+    **options: object,
+) -> None:
+    """Spend `budget` evaluations a joint and leave what is best in `found`; `starts` (k, 4, 12) open the first pack."""
+    points = space.points(starts)
+    packs: list[Optimiser] = []
+    try:
+        for joint in range(JOINTS):
+            packs.append(
+                create(
+                    method,
+                    space.lower,
+                    space.upper,
+                    budget=budget,
+                    seed=np.random.default_rng([*seed, joint]),
+                    pack=pack,
+                    start=points[:, joint],
+                    **options,
+                )
+            )
+        while not all(one.done for one in packs):
+            _batch(space, evaluate, found, journal, stage, packs)
+            tick(found)
+    finally:
+        for one in packs:
+            one.close()
+
+
+def _batch(space: Space, evaluate: Costs, found: Found, journal: Journal, stage: str, packs: list[Optimiser]) -> None:
+    """One round of ask and tell."""
+    asked = [np.empty((0, space.dimensions)) if one.done else one.ask() for one in packs]
+    counts = [len(one) for one in asked]
+    rows = np.repeat(found.best[None], max(counts), axis=0)
+    for joint, points in enumerate(asked):
+        if len(points):
+            whole = np.repeat(points[:, None], JOINTS, axis=1)
+            rows[: len(points), joint] = space.controllers(whole)[:, joint]
+            found.narrowed += space.narrowed(points[:, None])
+    costs = journal.costs(stage, rows)
+    if costs is None:
+        costs = evaluate(rows)
+        journal.tell(stage, rows, costs)
+    found.take(rows, costs, counts)
+    for joint, one in enumerate(packs):
+        if counts[joint]:
+            one.tell(costs[: counts[joint], joint])

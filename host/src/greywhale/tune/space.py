@@ -1,0 +1,201 @@
+"""What a search may change, as points of a box; and how a point becomes a controller that the firmware accepts.
+
+A point is decoded to the int32 numbers of the parameter table first: what is simulated is what will be downloaded, bit
+for bit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.errors import BAD_USAGE, UserError
+from greywhale.fuzzy.settings import GAIN_UNIT, LARGEST_KI_PERIOD, LARGEST_KU_MV, LEAST_WIDTH, SET_UNIT
+from greywhale.link import schema
+from greywhale.simulate import CONTROLLER_COLUMNS
+
+JOINTS = 4
+STRATEGIES = ("mf", "sf", "both")
+
+Bounds = Mapping[str, tuple[float, float]]
+Floats = npt.NDArray[np.float64]
+Controllers = npt.NDArray[np.int32]
+
+# The paper's names (Tables 8 to 10) in the order of its vector w (section 4), then the scaling factors.
+SETS = ("Ne_c", "Ze_a", "Ze_c", "Pe_b", "Nce_c", "Zce_a", "Zce_c", "Pce_b")
+GAINS = ("Kp", "Kd", "Ki", "Ku")
+_NEGATIVE = frozenset({"Ne_c", "Ze_a", "Nce_c", "Zce_a"})
+_UNIT = {"Kp": GAIN_UNIT, "Kd": GAIN_UNIT, "Ki": GAIN_UNIT, "Ku": 1000}
+NARROWEST = LEAST_WIDTH / SET_UNIT
+
+# Sizes that the default search may give to a scaling factor. Kp and Kd only stretch the axes of the sets.
+_GAIN_RANGE = {"Kp": (0.1, 10.0), "Kd": (1e-3, 5.0), "Ki": (1e-2, 300.0)}
+# The least Ku (V): enough for friction, and never 0, which would be doing nothing.
+_LEAST_KU = 3.0
+# Upper bounds of the paper's scaling factors: Ku = 20 V is visible in Table 8; for the others the paper prints none,
+# and 3 is the next whole number above all of Tables 8 and 9 (the largest is Ki = 2.072).
+_PAPER_GAIN_MAX = {"Kp": 3.0, "Kd": 3.0, "Ki": 3.0, "Ku": 20.0}
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One searched number: `low` to `high` in the file's unit and sign, searched by its logarithm or as it is."""
+
+    name: str
+    low: float
+    high: float
+    logarithmic: bool
+
+    @property
+    def column(self) -> int:
+        """Where it stands in a joint's row of the parameter table."""
+        return CONTROLLER_COLUMNS.index("ku_mv" if self.name == "Ku" else self.name.lower())
+
+    @property
+    def unit(self) -> int:
+        """Raw numbers in one of the file's units."""
+        return _UNIT.get(self.name, SET_UNIT)
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """In search units: logarithms of sizes, or the values themselves."""
+        if not self.logarithmic:
+            return self.low, self.high
+        sizes = sorted((abs(self.low), abs(self.high)))
+        return float(np.log(sizes[0])), float(np.log(sizes[1]))
+
+    def raw(self, x: Floats) -> npt.NDArray[np.int64]:
+        """The nearest numbers that the board can store, widths below 0.01 widened to it."""
+        sign = -1.0 if self.name in _NEGATIVE else 1.0
+        size = np.exp(x) if self.logarithmic else sign * x
+        raw = np.rint(size * self.unit).astype(np.int64)
+        if self.name in SETS:
+            raw = np.clip(raw, LEAST_WIDTH, SET_UNIT)
+        return np.asarray(sign * raw, dtype=np.int64)
+
+    def search_value(self, raw: npt.NDArray[np.int32]) -> Floats:
+        """The point of a stored number, moved into the box where it lies outside."""
+        value = raw.astype(np.float64) / self.unit
+        if self.logarithmic:
+            value = np.log(np.maximum(np.abs(value), 1e-9))
+        return np.clip(value, *self.bounds)
+
+
+@dataclass(frozen=True)
+class Space:
+    """The box of one strategy, the same for every joint; what it does not search stays as in `base` (4, 12)."""
+
+    strategy: str
+    variables: tuple[Variable, ...]
+    base: Controllers
+
+    @classmethod
+    def default(cls, strategy: str, base: Controllers, supply_mv: int, period_ms: int) -> Self:
+        """Widths from 0.01 to 1 and factors over decades by their logarithms, Ku up to the supply that is there."""
+        highest = {
+            **{name: high for name, (_, high) in _GAIN_RANGE.items()},
+            "Ki": min(_GAIN_RANGE["Ki"][1], (LARGEST_KI_PERIOD - 1) / GAIN_UNIT / period_ms),
+            "Ku": min(supply_mv, LARGEST_KU_MV) / 1000.0,
+        }
+        lowest = {**{name: low for name, (low, _) in _GAIN_RANGE.items()}, "Ku": min(_LEAST_KU, 0.5 * highest["Ku"])}
+        sets = [Variable(name, *_ordered(name, NARROWEST, 1.0), True) for name in SETS]
+        gains = [Variable(name, lowest[name], highest[name], name != "Ku") for name in GAINS]
+        return cls(strategy, _chosen(strategy, sets, gains), base)
+
+    @classmethod
+    def paper(cls, strategy: str, base: Controllers) -> Self:
+        """Table 7's bounds: sets from -1 to 0 and from 0 to 1; scaling factors from 0."""
+        sets = [Variable(name, *_ordered(name, 0.0, 1.0), False) for name in SETS]
+        gains = [Variable(name, 0.0, _PAPER_GAIN_MAX[name], False) for name in GAINS]
+        return cls(strategy, _chosen(strategy, sets, gains), base)
+
+    def bounded(self, bounds: Bounds) -> Self:
+        """The same box with other bounds for some variables, which `check_bounds` must have passed."""
+        changed = [
+            replace(variable, low=bounds[variable.name][0], high=bounds[variable.name][1])
+            if variable.name in bounds
+            else variable
+            for variable in self.variables
+        ]
+        return replace(self, variables=tuple(changed))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(variable.name for variable in self.variables)
+
+    @property
+    def dimensions(self) -> int:
+        return len(self.variables)
+
+    @property
+    def lower(self) -> Floats:
+        return np.array([variable.bounds[0] for variable in self.variables])
+
+    @property
+    def upper(self) -> Floats:
+        return np.array([variable.bounds[1] for variable in self.variables])
+
+    def controllers(self, points: Floats) -> Controllers:
+        """Points (n, 4, d) in search units as the firmware stores them: int32 (n, 4, 12)."""
+        rows = np.repeat(self.base[None], len(points), axis=0).astype(np.int64)
+        for place, variable in enumerate(self.variables):
+            rows[:, :, variable.column] = variable.raw(points[:, :, place])
+        return rows.astype(np.int32)
+
+    def points(self, controllers: Controllers) -> Floats:
+        """Controllers (n, 4, 12) as points (n, 4, d), moved into the box where they lie outside."""
+        columns = [variable.search_value(controllers[:, :, variable.column]) for variable in self.variables]
+        return np.stack(columns, axis=-1)
+
+    def narrowed(self, points: Floats) -> int:
+        """How many numbers of these points (n, 4, d) mean a width below 0.01, which `controllers` widens."""
+        count = 0
+        for place, variable in enumerate(self.variables):
+            if variable.name in SETS and not variable.logarithmic:
+                count += int((np.rint(np.abs(points[:, :, place]) * SET_UNIT) < LEAST_WIDTH).sum())
+        return count
+
+
+def check_strategy(strategy: str) -> None:
+    """Refuse a strategy that there is not."""
+    if strategy not in STRATEGIES:
+        raise UserError(f"there is no strategy {strategy!r}; there are {', '.join(STRATEGIES)}.", BAD_USAGE)
+
+
+def check_bounds(strategy: str, bounds: Bounds) -> None:
+    """Refuse bounds (in the file's units and signs) that the strategy does not search or no board can store."""
+    for name, (low, high) in bounds.items():
+        if name not in (*SETS, *GAINS):
+            raise UserError(f"there is no bound for {name!r}; there are {', '.join((*SETS, *GAINS))}.", BAD_USAGE)
+        if name in (GAINS if strategy == "mf" else SETS if strategy == "sf" else ()):
+            raise UserError(f"{name} is not searched by strategy {strategy}; leave out its bounds.", BAD_USAGE)
+        if not low < high:
+            raise UserError(f"the bounds of {name} are {low:g} and {high:g}; give the lower one first.", BAD_USAGE)
+        least, most = storable(name)
+        if not (least <= low and high <= most):
+            raise UserError(
+                f"the bounds of {name} are {low:g} and {high:g}, but they must lie within {least:g}..{most:g}.",
+                BAD_USAGE,
+            )
+
+
+def storable(name: str) -> tuple[float, float]:
+    """The smallest and the largest value that a search may bound a variable with."""
+    if name in SETS:
+        return _ordered(name, NARROWEST, 1.0)
+    parameter = schema.PARAMETER_BY_NAME["joint0.ku_mv" if name == "Ku" else f"joint0.{name.lower()}"]
+    # A gain is searched by its logarithm, so 0 is no bound; one step of the format is as good.
+    return 1.0 / _UNIT[name], parameter.maximum / _UNIT[name]
+
+
+def _ordered(name: str, small: float, large: float) -> tuple[float, float]:
+    return (-large, -small) if name in _NEGATIVE else (small, large)
+
+
+def _chosen(strategy: str, sets: Sequence[Variable], gains: Sequence[Variable]) -> tuple[Variable, ...]:
+    check_strategy(strategy)
+    return (*(sets if strategy != "sf" else ()), *(gains if strategy != "mf" else ()))

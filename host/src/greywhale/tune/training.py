@@ -1,0 +1,137 @@
+"""What controllers are trained on: moves to both sides in several sizes, and human-like reaches; and how time weighs.
+
+The weight of a moment is SOON_S plus the time since the leader last moved: an error counts while the leader moves, and
+counts more the longer the leader has been at rest. It starts again with every move, so that the tenth move of a
+record weighs as much as the first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.arm import ArmParameters
+from greywhale.errors import BAD_USAGE, UserError
+from greywhale.link import schema
+from greywhale.simulate import Experiment
+from greywhale.trajectory import Trajectory, human_reaches
+from greywhale.trajectory.generate import minimum_jerk
+
+JOINTS = 4
+Floats = npt.NDArray[np.float64]
+
+RATE_HZ = 200.0
+EDGE_S = 0.04  # a hand cannot jump; the same as in trajectory.multi_steps
+# Levels of the moves (shares of the reach), rotated from joint to joint: sizes from 0.1 to 1, as many up as down.
+LEVELS = (0.0, 1.0, 0.9, 0.4, -0.6, -0.5, 0.0, -1.0, 0.0)
+HOLD_S = 1.2
+REACH_RAD = 1.0
+# Kept clear of limits and stops (rad).
+CLEAR_RAD = 0.15
+HUMAN_SEED = 1001  # not one of those that anything is judged on
+HUMAN_S = 9.0
+WAIT_S = 0.2
+SOON_S = 0.1
+# The leader counts as moving while it changes by this much (rad) within this time (s): far above the tremor of a hand.
+MOVING_RAD, MOVING_S = 0.02, 0.1
+
+
+@dataclass(frozen=True)
+class Drill:
+    """One training motion with its weights."""
+
+    name: str
+    experiment: Experiment
+    total_weight: float  # s2, the integral of the weights
+
+
+def drills(arm: ArmParameters, parameters: Sequence[int], plants: Floats, seed: int = 0) -> tuple[Drill, ...]:
+    """The training motions within the range of this arm and table, with sensor noise."""
+    low, high = reach(arm, parameters, plants)
+    motions = {
+        "moves to both sides": moves(low, high),
+        "human-like reaches": within(human_reaches(HUMAN_SEED, HUMAN_S), low, high),
+    }
+    made = []
+    for number, (name, motion) in enumerate(motions.items()):
+        weight = since_moving(motion, WAIT_S)
+        experiment = Experiment(
+            motion, arm, parameters=parameters, seed=100 * seed + number + 11, wait_s=WAIT_S, soft_start=False,
+            weight_s=weight,
+        )  # fmt: skip
+        made.append(Drill(name, experiment, float(weight.sum()) * 1e-3))
+    return tuple(made)
+
+
+def reach(arm: ArmParameters, parameters: Sequence[int], plants: Floats) -> tuple[Floats, Floats]:
+    """Lowest and highest angle (4,) that the table's limits and all plants' stops allow, with some distance kept."""
+    low, high = [], []
+    for joint in range(JOINTS):
+        limits = [
+            parameters[schema.PARAMETER_BY_NAME[f"joint{joint}.limit_{side}"].index] / 4096 for side in ("min", "max")
+        ]
+        stops = [plants[:, _stop(joint, side)] for side in ("min", "max")]
+        low.append(max(limits[0], float(stops[0].max())) + CLEAR_RAD)
+        high.append(min(limits[1], float(stops[1].min())) - CLEAR_RAD)
+        if not low[-1] < high[-1]:
+            raise UserError(
+                f"joint {joint} has no room to move: limits {limits[0]:g} to {limits[1]:g} rad, stops "
+                f"{arm.joint[joint].stops.min:g} to {arm.joint[joint].stops.max:g} rad; correct them.",
+                BAD_USAGE,
+            )
+    return np.array(low), np.array(high)
+
+
+def _stop(joint: int, side: str) -> int:
+    from greywhale.simulate import PLANT_COLUMNS
+
+    return PLANT_COLUMNS.index(f"joint{joint}.stop_{side}")
+
+
+def moves(low: Floats, high: Floats, hold_s: float = HOLD_S) -> Trajectory:
+    """All joints move at the same instants, each through the levels in an order of its own, around its middle or 0."""
+    middle, size = centre(low, high)
+    count = len(LEVELS)
+    edges = hold_s * np.arange(1, count)
+    time_s = np.arange(round(hold_s * count * RATE_HZ) + 1) / RATE_HZ
+    angles = np.empty((len(time_s), JOINTS))
+    for joint in range(JOINTS):
+        levels = _levels_of(joint)
+        path = np.full(len(time_s), levels[0])
+        for edge, a, b in zip(edges, levels[:-1], levels[1:], strict=True):
+            path += (b - a) * minimum_jerk((time_s - edge) / EDGE_S)
+        angles[:, joint] = middle[joint] + size[joint] * path
+    return Trajectory(time_s, angles)
+
+
+def _levels_of(joint: int) -> list[float]:
+    """From rest at 0 through the levels, begun at another place and mirrored on every second joint."""
+    inner = list(LEVELS[1:-1])
+    turned = inner[2 * joint % len(inner) :] + inner[: 2 * joint % len(inner)]
+    sign = -1.0 if joint % 2 else 1.0
+    return [0.0, *(sign * level for level in turned), 0.0]
+
+
+def centre(low: Floats, high: Floats) -> tuple[Floats, Floats]:
+    """Where a joint rests and how far it goes to either side: 0 and 1 rad where the range has room for it."""
+    size = np.minimum(REACH_RAD, 0.5 * (high - low))
+    return np.clip(0.0, low + size, high - size), size
+
+
+def within(motion: Trajectory, low: Floats, high: Floats) -> Trajectory:
+    """The motion with what goes beyond the range folded onto its ends."""
+    return Trajectory(motion.time_s, np.clip(motion.angles, low, high))
+
+
+def since_moving(motion: Trajectory, wait_s: float) -> Floats:
+    """The weight (s) of every tick of an Experiment that waits `wait_s`; 0 while it waits."""
+    ticks = int(np.ceil((wait_s + motion.duration_s) / 1e-3 - 1e-9))
+    time_s: Floats = np.arange(ticks, dtype=np.float64) * 1e-3 - wait_s
+    change = np.abs(motion.at(time_s) - motion.at(time_s - MOVING_S)).max(axis=1)
+    moving = change > MOVING_RAD
+    last = np.maximum.accumulate(np.where(moving, time_s, 0.0))
+    weight: Floats = np.where(time_s < 0.0, 0.0, SOON_S + time_s - last)
+    return weight
