@@ -13,6 +13,7 @@ class RefusedError(UserError):
 
     def __init__(self, port: str, request: str, nack: schema.Nack) -> None:
         self.code = nack.code
+        self.detail = nack.detail
         detail = _detail(nack)
         remedy = nack.code.remedy
         if nack.code is schema.NackCode.SET_REFUSED:
