@@ -1,0 +1,165 @@
+"""`greywhale tune`: a model to a controller.toml that can be uploaded as it is."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import click
+
+from greywhale.cli.output import json_option, progress, show
+from greywhale.config import controller as controller_file
+from greywhale.errors import BAD_USAGE, UserError, because
+from greywhale.files import temporary_beside
+from greywhale.simulate import controller_row
+from greywhale.tune import METHODS, STRATEGIES, check_request, tune
+from greywhale.tune.model import SAMPLES, load_model
+from greywhale.tune.space import GAINS, SETS
+from greywhale.tune.summary import summary
+
+NAMES = {name.lower(): name for name in (*SETS, *GAINS)}
+EXISTING = click.Path(path_type=Path)
+
+
+@click.command("tune")
+@click.argument("model_file", metavar="MODEL")
+@click.option("--out", "-o", type=EXISTING, default=Path("controller.toml"), show_default=True)
+@click.option(
+    "--strategy",
+    type=click.Choice(STRATEGIES),
+    default="both",
+    show_default=True,
+    help="What is searched: membership functions, scaling factors, or both.",
+)
+@click.option(
+    "--method",
+    type=click.Choice(METHODS),
+    default="default",
+    show_default=True,
+    metavar="NAME",
+    help=f"default, paper (its objective, bounds and budget), or an optimiser: {', '.join(METHODS[2:])}.",
+)
+@click.option("--budget", type=int, help="Evaluations of every joint's controller; without it, the method's own.")
+@click.option("--seed", type=int, default=0, show_default=True, help="Where all random numbers start.")
+@click.option("--workers", type=int, help="Threads; without it, one for every processor.")
+@click.option(
+    "--start", type=EXISTING, help="A controller.toml to begin with; without it, what the board of the logs ran."
+)
+@click.option(
+    "--bounds",
+    multiple=True,
+    metavar="NAME=LOW..HIGH",
+    help="Narrow what is searched, in the file's units, for all joints: Ku=3..9. May be given more than once.",
+)
+@click.option("--arm", type=EXISTING, help="Your arm.toml, to make sure that the model is of this arm.")
+@click.option(
+    "--params", type=EXISTING, help="The board's table (`params backup`); without it, that of the model's logs."
+)
+@click.option(
+    "--samples", type=int, default=SAMPLES, show_default=True, help="Arms as likely as the model, itself among them."
+)
+@click.option("--resume", is_flag=True, help="Go on where an interrupted tuning with the same options ended.")
+@click.option("--force", is_flag=True, help="Tune for a model that speaks against itself; the doubts go along.")
+@click.option("--pictures", type=EXISTING, help="Folder for pictures of sets, responses and convergence.")
+@json_option
+def command(
+    model_file: str,
+    out: Path,
+    strategy: str,
+    method: str,
+    budget: int | None,
+    seed: int,
+    workers: int | None,
+    start: Path | None,
+    bounds: tuple[str, ...],
+    arm: Path | None,
+    params: Path | None,
+    samples: int,
+    resume: bool,
+    force: bool,
+    pictures: Path | None,
+    as_json: bool,
+) -> None:
+    """Tune the four controllers for a model of greywhale identify.
+
+    Writes a controller.toml for `greywhale upload`: the very numbers that were simulated. Ctrl-C writes the best so
+    far, marked as unfinished; --resume goes on and ends with the same file as if nothing had happened. The result
+    depends on model, options and --seed alone, not on the number of workers.
+    """
+    limits = _bounds(bounds)
+    if workers is not None and workers < 1:
+        raise UserError(f"workers is {workers}, but it must be at least 1.", BAD_USAGE)
+    check_request(strategy=strategy, method=method, budget=budget, seed=seed, bounds=limits)
+    journal = out.parent / f"{out.name}.journal"
+    _check_files(out, journal, resume, pictures, [Path(model_file), arm, params])
+    model = load_model(model_file, samples=samples, seed=seed, force=force, params=params, arm=arm)
+    first = controller_row(controller_file.load(start)) if start is not None else None
+    with progress(as_json) as report:
+        outcome = tune(
+            model,
+            strategy=strategy,
+            method=method,
+            budget=budget,
+            seed=seed,
+            threads=workers or 0,
+            start=first,
+            bounds=limits,
+            journal=journal,
+            resume=resume,
+            report=report,
+        )
+    outcome.save(out)
+    if not outcome.complete:
+        interrupted = KeyboardInterrupt()
+        interrupted.add_note(
+            f"The best controllers so far are in {out}, marked as unfinished; the same command with --resume goes on."
+        )
+        raise interrupted
+    journal.unlink(missing_ok=True)
+    files = [out]
+    if pictures is not None:
+        # Matplotlib takes a second to import.
+        from greywhale.tune.pictures import draw
+
+        files += draw(outcome, pictures)
+    written = "\n\nWritten: " + ", ".join(str(path) for path in files)
+    show(as_json, {**outcome.as_dict(), "files": [str(path) for path in files]}, summary(outcome) + written)
+
+
+def _bounds(given: tuple[str, ...]) -> dict[str, tuple[float, float]]:
+    """`NAME=LOW..HIGH` as numbers; what the names are and what the firmware can store is checked by the search."""
+    found: dict[str, tuple[float, float]] = {}
+    for one in given:
+        given_name, equals, interval = one.partition("=")
+        name = NAMES.get(given_name.lower(), given_name)
+        low, dots, high = interval.partition("..")
+        try:
+            limits = float(low), float(high)
+        except ValueError:
+            dots = ""
+        if not equals or not dots:
+            raise UserError(f"--bounds {one}: bounds look like NAME=LOW..HIGH, Ku=3..9 for one.", BAD_USAGE)
+        if name in found:
+            raise UserError(f"--bounds {one}: {name} has bounds already; give them once.", BAD_USAGE)
+        found[name] = limits
+    return found
+
+
+def _check_files(out: Path, journal: Path, resume: bool, pictures: Path | None, inputs: list[Path | None]) -> None:
+    """What is wrong with the files is said before any work, not after it."""
+    if not out.parent.is_dir():
+        raise UserError(f"{out}: the folder {out.parent} does not exist; create it, or write elsewhere.", BAD_USAGE)
+    for path in inputs:
+        if path is not None and path.exists() and out.exists() and out.samefile(path):
+            raise UserError(f"{out}: this file is read from; write the controllers elsewhere with --out.", BAD_USAGE)
+    for path in (out, journal):
+        try:
+            descriptor, name = temporary_beside(path)
+        except OSError as error:
+            raise UserError(f"{path}: cannot be written: {because(error)}.", BAD_USAGE) from None
+        os.close(descriptor)
+        os.unlink(name)
+    if resume and not journal.exists():
+        raise UserError(f"{journal}: no interrupted tuning is there to go on with; leave --resume out.", BAD_USAGE)
+    if pictures is not None and pictures.exists() and not pictures.is_dir():
+        raise UserError(f"{pictures}: pictures go into a folder, and this is a file.", BAD_USAGE)

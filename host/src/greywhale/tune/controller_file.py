@@ -1,0 +1,141 @@
+"""controller.toml as a tuning writes it: the board's own numbers, where they come from, and what to expect of them.
+
+Everything in it follows from the outcome, no date and no time of day, so that equal tunings give equal files.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+from greywhale.arm.parameters import JOINT_NAMES
+from greywhale.config import controller
+from greywhale.link import schema
+from greywhale.simulate import CONTROLLER_COLUMNS
+from greywhale.tune.margins import Margin
+from greywhale.tune.outcome import HeldOut, Outcome
+from greywhale.tune.summary import multiple_of_floor
+
+DIGITS = 4  # significant ones of what is expected
+
+
+def save(outcome: Outcome, path: str | Path) -> None:
+    """Write controller.toml, whole or not at all."""
+    notes = [_note(outcome, joint) for joint in range(len(JOINT_NAMES))]
+    controller.save(
+        path, outcome.after, _source(outcome), header=_header(outcome), notes=notes, tuning=provenance(outcome)
+    )
+
+
+def provenance(outcome: Outcome) -> dict[str, Any]:
+    """The table [tuning]: how the controllers were found, and per joint what is to be expected of them."""
+    model = outcome.model
+    facts: dict[str, Any] = {
+        "status": "complete" if outcome.complete else "unfinished: interrupted; the best so far",
+        "method": outcome.method,
+        "strategy": outcome.strategy,
+        "seed": outcome.seed,
+        "budget": outcome.budget,
+        "evaluations": outcome.evaluations,
+        "model": model.name,
+        "model_sha256": model.digest,
+        "plants": len(model.plants),
+        "period_ms": outcome.period_ms,
+        "supply_v": outcome.supply_v,
+        "parameter_crc": f"0x{schema.param_crc(_whole_table(outcome)):04x}",
+        "doubts": list(model.doubts),
+        "notes": list(outcome.notes),
+        "cost_before": _rounded(outcome.cost_before),
+        "cost_after": _rounded(outcome.cost_after),
+    }
+    # An unfinished tuning was not judged.
+    if outcome.margins:
+        facts |= {"margins_hold": outcome.steady, "margin": _margins(outcome.margins)}
+    if outcome.held_out:
+        facts["expected"] = [_expected(one) for one in outcome.held_out]
+    return facts
+
+
+def _source(outcome: Outcome) -> str:
+    how = f"method {outcome.method}, strategy {outcome.strategy}, seed {outcome.seed}"
+    return f"greywhale tune, {how}, for {outcome.model.name}" + ("" if outcome.complete else " (unfinished)")
+
+
+def _header(outcome: Outcome) -> list[str]:
+    lines = [
+        "Written by greywhale tune. Exactly what was simulated: greywhale upload stores these numbers as they are.",
+        f"For a control period of {outcome.period_ms} ms and a supply of {outcome.supply_v:g} V.",
+    ]
+    if not outcome.complete:
+        lines.append("UNFINISHED: interrupted; these are the best so far. The same command with --resume goes on.")
+    lines += [f"Expected on {one.name}, all joints: {_change(one)}." for one in outcome.held_out]
+    failing = [margin for margin in outcome.margins if not margin.holds]
+    if failing:
+        lines.append("NOT STEADY: " + "; ".join(f"joint {one.joint}, {one.scenario}" for one in failing) + ".")
+    return [*lines, *(f"Doubt: {doubt}" for doubt in outcome.model.doubts)]
+
+
+def _note(outcome: Outcome, joint: int) -> str:
+    if not outcome.held_out:
+        return JOINT_NAMES[joint]
+    first = outcome.held_out[0]
+    return f"{JOINT_NAMES[joint]}; on {first.name} {_change(first, joint)}"
+
+
+def _change(one: HeldOut, joint: int | None = None) -> str:
+    """Before, after, and how far from the floor, of one joint or all together."""
+    before, after = one.mse_before, one.mse_after
+    chosen = slice(None) if joint is None else slice(joint, joint + 1)
+    text = f"MSE {before[chosen].sum():.3g} -> {after[chosen].sum():.3g} rad²"
+    multiple = multiple_of_floor(one, joint)
+    return text if multiple is None else f"{text}, {multiple:.2f} x the floor"
+
+
+def _expected(one: HeldOut) -> dict[str, Any]:
+    """A held-out motion, a value per joint: measures before and after (those that every joint has), and the floor."""
+    facts: dict[str, Any] = {"motion": one.name}
+    for when, evaluation in (("before", one.before), ("after", one.after)):
+        columns: dict[str, Sequence[float | None]] = {
+            f"mse_{when}_rad2": [joint.mse for joint in evaluation.joints],
+            f"steady_state_error_{when}_rad": [joint.steady_state_error for joint in evaluation.joints],
+            f"time_delay_{when}_s": [joint.delay_s for joint in evaluation.joints],
+            f"onset_delay_{when}_s": [joint.onset_delay_s for joint in evaluation.joints],
+        }
+        for key, values in columns.items():
+            known = [value for value in values if value is not None]
+            if len(known) == len(values):
+                facts[key] = _rounded(known)
+    if one.floor is not None:
+        facts["floor_mse_rad2"] = _rounded(one.floor)
+    return facts
+
+
+def _margins(margins: tuple[Margin, ...]) -> list[dict[str, Any]]:
+    """A row for each scenario, a value for each joint."""
+    rows = []
+    for scenario in dict.fromkeys(margin.scenario for margin in margins):
+        joints = sorted((one for one in margins if one.scenario == scenario), key=lambda one: one.joint)
+        rows.append(
+            {
+                "scenario": scenario,
+                "holds": [one.holds for one in joints],
+                "plants_failing": [one.plants_failing for one in joints],
+                "reversals": [one.reversals for one in joints],
+                "chatter_hz": _rounded(one.chatter_hz for one in joints),
+            }
+        )
+    return rows
+
+
+def _whole_table(outcome: Outcome) -> list[int]:
+    """The parameter table of a board that runs these controllers."""
+    values = list(outcome.parameters)
+    for joint, row in enumerate(outcome.after):
+        for key, raw in zip(CONTROLLER_COLUMNS, row, strict=True):
+            values[schema.PARAMETER_BY_NAME[f"joint{joint}.{key}"].index] = int(raw)
+    return values
+
+
+def _rounded(values: Iterable[float]) -> list[float]:
+    return [float(f"{value:.{DIGITS}g}") for value in values]

@@ -1,0 +1,142 @@
+"""What a controller is tuned for: an identified arm, the board's parameter table, and arms that are as likely.
+
+A model that nobody validated, or that belongs to another arm or board, is refused with the reason, unless forced.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass, field
+from importlib import resources
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from greywhale.arm import ArmParameters, arm_names, load_arm
+from greywhale.errors import BAD_USAGE, UserError
+from greywhale.identify import load_table, sampled_plants
+from greywhale.link import schema
+from greywhale.simulate import plant_row
+from greywhale.simulate.tables import controllers_of
+from greywhale.tune import model_checks as checks
+from greywhale.tune.model_checks import Doubt, Identification
+
+Floats = NDArray[np.float64]
+
+SAMPLES = 8
+
+
+@dataclass(frozen=True)
+class Model:
+    """An arm to tune for; `doubts` are sentences on what speaks against it, none for a validated model."""
+
+    name: str
+    arm: ArmParameters
+    parameters: tuple[int, ...]  # the board's whole parameter table, raw, in index order
+    plants: Floats = field(repr=False)  # (k, 60): the estimate, then arms drawn from its covariance; k = 1 without one
+    doubts: tuple[str, ...]
+    file: str
+    digest: str  # SHA-256 of the file, hexadecimal
+
+    @property
+    def controllers(self) -> NDArray[np.int32]:
+        """What the board runs now: int32 (4, 12)."""
+        return controllers_of(self.parameters)
+
+    @property
+    def period_ms(self) -> int:
+        """The control period."""
+        return self.parameters[schema.PARAMETER_BY_NAME["period_ms"].index]
+
+
+def load_model(
+    path: str | Path,
+    *,
+    samples: int = SAMPLES,
+    seed: int = 0,
+    force: bool = False,
+    params: str | Path | None = None,
+    arm: str | Path | None = None,
+) -> Model:
+    """Read a model.toml (or an arm.toml, or one of the shipped arms by name, with `force`) and judge it.
+
+    `samples` plants are taken from its covariance with `seed`, the estimate among them. `params` is a file of
+    `greywhale params backup`: the table to tune for; without it, the one that the model's logs were recorded with.
+    `arm` is the arm file that the model shall be of. Raises UserError with the gravest doubt, unless `force`, which
+    keeps all doubts in the model.
+    """
+    if samples < 1:
+        raise UserError(f"samples is {samples}, but it must be at least 1.", BAD_USAGE)
+    identified = load_arm(path)
+    facts = checks.identification_of(identified, str(path))
+    table, table_doubts = _table(identified, facts, params)
+    doubts = _doubts(identified, facts, table, arm)
+    plants = plant_row(identified)[None]
+    if facts is not None and facts.covariance is not None:
+        plants = sampled_plants(identified, samples, seed)
+        doubts += checks.spread(identified, table)
+    doubts += table_doubts
+    if doubts and not force:
+        raise UserError(_refusal(str(path), doubts))
+    remarks = facts.remarks() if facts is not None else ()
+    return Model(
+        name=identified.name,
+        arm=identified,
+        parameters=table,
+        plants=plants,
+        doubts=(*(doubt.reason + "." for doubt in doubts), *remarks),
+        file=str(path),
+        digest=hashlib.sha256(_content(path)).hexdigest(),
+    )
+
+
+def _doubts(
+    arm: ArmParameters, facts: Identification | None, table: tuple[int, ...], wanted: str | Path | None
+) -> list[Doubt]:
+    """All that speaks against the model, the gravest first."""
+    doubts = checks.identified(facts)
+    if facts is not None:
+        doubts += checks.untouched(arm, facts)
+        doubts += checks.validated(facts)
+        doubts += checks.sure(facts)
+    if wanted is not None:
+        doubts += checks.same_arm(arm, load_arm(wanted), str(wanted))
+    return doubts + checks.same_board(arm, facts, table)
+
+
+def _table(
+    arm: ArmParameters, facts: Identification | None, params: str | Path | None
+) -> tuple[tuple[int, ...], list[Doubt]]:
+    """The parameter table to tune for, and what speaks against it."""
+    logged = facts.table() if facts is not None else None
+    if params is not None:
+        given = load_table(params).values
+        return given, checks.same_table(given, logged, str(params))
+    if logged is not None:
+        return logged, []
+    # The best guess: as shipped, but for what the model does say.
+    values = list(schema.DEFAULTS)
+    values[schema.PARAMETER_BY_NAME["supply_mv"].index] = round(1000.0 * arm.drive.supply)
+    if facts is not None and facts.log and facts.log[0].period_ms is not None:
+        values[schema.PARAMETER_BY_NAME["period_ms"].index] = facts.log[0].period_ms
+    schema.check_parameters(values)
+    if facts is None:
+        return tuple(values), []
+    doubt = Doubt(
+        "the parameter table of its logs is not known",
+        "give the board's own (greywhale params backup) with --params",
+    )
+    return tuple(values), [doubt]
+
+
+def _refusal(path: str, doubts: list[Doubt]) -> str:
+    more = len(doubts) - 1
+    others = f" ({more} more reason{'s' if more > 1 else ''} would come after this one)" if more else ""
+    return f"{path}: {doubts[0].reason}; {doubts[0].remedy}, or go on with --force{others}."
+
+
+def _content(path: str | Path) -> bytes:
+    if path in arm_names():
+        return resources.files("greywhale.arm").joinpath("data", f"{path}.toml").read_bytes()
+    return Path(path).read_bytes()

@@ -1,0 +1,381 @@
+"""What speaks against tuning for a model: each doubt says what was found and what would mend it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from greywhale.arm import ArmParameters
+from greywhale.arm.parameters import JOINT_NAMES
+from greywhale.errors import UserError
+from greywhale.identify import sampled_plants
+from greywhale.identify.judge import FIT, Verdict, warnings_of
+from greywhale.identify.uncertainty import EXCITATION
+from greywhale.link import schema
+from greywhale.simulate import PLANT_COLUMNS, Experiment, plant_row
+from greywhale.simulate.experiment import TICK_S
+from greywhale.simulate.tables import controllers_of
+from greywhale.trajectory import human_reaches
+from greywhale.tune.training import moves, reach, within
+
+Floats = NDArray[np.float64]
+JOINTS = len(JOINT_NAMES)
+
+# Half of the arms that the logs allow may follow a motion differently from the estimate by this share of its tracking
+# error. Slow reaches show friction and gravity, quick moves inertia and damping.
+SPREAD = {"slow reaches": 0.5, "quick moves": 0.25}
+SPREAD_SAMPLES, ONE_BY_ONE_SAMPLES = 33, 9
+REACHES_SEED, REACHES_S, WAIT_TICKS = 1, 6.0, 200
+# How far numbers that should agree may differ: supplies, potentiometers' slopes, an arm and its own table (relative);
+# its gaps (rad).
+SAME_SUPPLY, SAME_SLOPE, SAME_VALUE, SAME_GAP = 0.02, 0.1, 1e-3, 1e-5
+CERTAIN = 1e-20  # a variance of next to nothing
+CONVERTER_SPAN = 16368  # four conversions of 10 bits, as the board counts a potentiometer's whole track
+
+
+class Doubt(NamedTuple):
+    """A clause each, without a full stop."""
+
+    reason: str
+    remedy: str
+
+
+class _Facts(BaseModel):
+    model_config = ConfigDict(extra="ignore", frozen=True)
+
+
+class LogFacts(_Facts):
+    """One [[identification.log]]."""
+
+    name: str
+    role: str
+    measure: str = ""
+    improvement: float
+    white_box_mse_rad2: tuple[float, ...]
+    model_mse_rad2: tuple[float, ...]
+    period_ms: int | None = None
+    parameter_crc: str | None = None
+
+
+class ParameterFacts(_Facts):
+    """One [[identification.parameter]]."""
+
+    name: str
+    value: float
+    unit: str = ""
+    standard_deviation: float | None = None
+
+
+class Identification(_Facts):
+    """What of a model's [identification] matters for tuning."""
+
+    status: str
+    method: str
+    log: tuple[LogFacts, ...] = ()
+    parameter: tuple[ParameterFacts, ...] = ()
+    warnings: tuple[str, ...] = ()
+    covariance: tuple[tuple[float, ...], ...] | None = None
+    parameters: dict[str, int] | None = None
+
+    def table(self) -> tuple[int, ...] | None:
+        """The whole parameter table that the fitted log was recorded with, or None where it is not known."""
+        if self.parameters is not None:
+            changed = {schema.PARAMETER_BY_NAME[name].index: raw for name, raw in self.parameters.items()}
+            return tuple(changed.get(index, value) for index, value in enumerate(schema.DEFAULTS))
+        crcs = {log.parameter_crc for log in self.log if log.role == FIT}
+        return tuple(schema.DEFAULTS) if crcs == {f"0x{schema.param_crc(schema.DEFAULTS):04x}"} else None
+
+    def remarks(self) -> tuple[str, ...]:
+        """The identification's warnings, but for those that follow from the logs' numbers, which are judged here."""
+        verdicts = [
+            Verdict(log.name, log.role, log.measure, log.white_box_mse_rad2, log.model_mse_rad2) for log in self.log
+        ]
+        known = warnings_of(verdicts)
+        return tuple(warning for warning in self.warnings if warning not in known)
+
+
+def identification_of(arm: ArmParameters, name: str) -> Identification | None:
+    """The checked table [identification] of an arm file, None where there is none."""
+    if arm.identification is None:
+        return None
+    try:
+        facts = Identification.model_validate(arm.identification)
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(["identification", *(str(part) for part in first["loc"])])
+        raise UserError(f"{name}: {where}: {first['msg'].lower()}; identify again.") from None
+    for key in facts.parameters or {}:
+        if key not in schema.PARAMETER_BY_NAME:
+            raise UserError(f"{name}: identification.parameters: {key} is no parameter of a board; identify again.")
+    if (table := facts.table()) is not None:
+        try:
+            schema.check_parameters(table)
+        except UserError as error:
+            raise UserError(f"{name}: identification.parameters: {error.message}") from None
+    return facts
+
+
+def identified(facts: Identification | None) -> list[Doubt]:
+    """Whether the arm was identified at all, and to the end."""
+    if facts is None:
+        return [
+            Doubt(
+                "nothing in it was identified: it is an arm file, not a model",
+                "make a model from logs of your arm with greywhale identify",
+            )
+        ]
+    if facts.status != "complete":
+        return [Doubt(f'its identification is "{facts.status}"', "identify again and let it end")]
+    return []
+
+
+def validated(facts: Identification) -> list[Doubt]:
+    """Whether logs that were not fitted speak for the model."""
+    others = [log for log in facts.log if log.role != FIT]
+    if not others:
+        return [
+            Doubt(
+                "it was not validated on a second log",
+                "record another one and identify again with --validate SECOND.csv",
+            )
+        ]
+    poor = [log for log in others if log.improvement <= 0.0]
+    if not poor:
+        return []
+    worst = min(poor, key=lambda log: log.improvement)
+    learnt = (
+        "" if len(poor) == len(others) else ", though on others it is: it may have learnt its controller, not the arm"
+    )
+    return [
+        Doubt(
+            f"on {worst.name} ({worst.role}) it is no better than the arm file it began with "
+            f"({sum(worst.model_mse_rad2):.3g} against {sum(worst.white_box_mse_rad2):.3g} rad²){learnt}",
+            "check supply, directions and controller files, record livelier motion and identify again",
+        )
+    ]
+
+
+def sure(facts: Identification) -> list[Doubt]:
+    """Whether the model says how uncertain it is, of every joint."""
+    if facts.covariance is None:
+        return [
+            Doubt(
+                f"nothing in it tells how uncertain it is (method {facts.method} does not)",
+                "identify with --method default",
+            )
+        ]
+    still = [joint for joint in range(JOINTS) if not _parameters_of(facts, joint)]
+    if not still:
+        return []
+    named = " and ".join(f"joint {joint} ({JOINT_NAMES[joint]})" for joint in still)
+    return [
+        Doubt(
+            f"{named} did not move in its logs, so nothing of {'it' if len(still) == 1 else 'them'} was identified",
+            "record with every joint moving by half a radian or more and identify again",
+        )
+    ]
+
+
+def untouched(arm: ArmParameters, facts: Identification) -> list[Doubt]:
+    """Whether the arm's numbers are still those that were identified."""
+    if facts.covariance is None or not facts.parameter:
+        return []
+    now, then = sampled_plants(_only(arm, facts, None), 2)
+    # A gap of next to nothing is none, whatever its digits.
+    least = np.array([SAME_GAP if name.endswith("half_gap") else 1e-12 for name in PLANT_COLUMNS])
+    differs = np.abs(now - then) > SAME_VALUE * np.maximum(np.abs(now), np.abs(then)) + least
+    if not differs.any():
+        return []
+    column = int(np.argmax(differs))
+    return [
+        Doubt(
+            f"its numbers are not those that were identified ({PLANT_COLUMNS[column]} is {now[column]:.4g}, was "
+            f"{then[column]:.4g}), as if it was edited or put together from two arms",
+            "identify again",
+        )
+    ]
+
+
+def spread(arm: ArmParameters, table: Sequence[int]) -> list[Doubt]:
+    """Whether all arms that the logs allow follow alike, inside the board's present controllers.
+
+    Single parameters may be known poorly without harm (torque per volt of a joint that carries nothing), so what counts
+    is what they do to the motion.
+    """
+    experiments = _motions(arm, table)
+    plants = sampled_plants(arm, SPREAD_SAMPLES)
+    shares = {name: _shares(one, table, plants) for name, one in experiments.items()}
+    motion = max(shares, key=lambda name: float(np.max(shares[name])) / SPREAD[name])
+    joint = int(np.argmax(shares[motion]))
+    if shares[motion][joint] <= SPREAD[motion]:
+        return []
+    facts = identification_of(arm, arm.name)
+    assert facts is not None
+    harm = {
+        index: _shares(experiments[motion], table, sampled_plants(_only(arm, facts, index), ONE_BY_ONE_SAMPLES))[joint]
+        for index, one in enumerate(facts.parameter)
+        if one.name.startswith(f"joint{joint}.")
+    }
+    guilty = facts.parameter[max(harm, key=lambda index: harm[index])]
+    kind = guilty.name.partition(".")[2]
+    size = f"{guilty.value:.2g} +- {guilty.standard_deviation or 0.0:.2g} {guilty.unit}".rstrip()
+    return [
+        Doubt(
+            f"joint {joint} ({JOINT_NAMES[joint]}) is too uncertain: arms that its logs allow follow {motion} "
+            f"differently by {100 * shares[motion][joint]:.0f} % of the tracking error (at most "
+            f"{100 * SPREAD[motion]:.0f} %), most of all because {kind} is {size}",
+            f"record again ({EXCITATION.get(kind, 'move that joint through its range')}) and identify again",
+        )
+    ]
+
+
+def _motions(arm: ArmParameters, table: Sequence[int]) -> dict[str, Experiment]:
+    low, high = reach(arm, table, plant_row(arm)[None])
+    slow, quick = SPREAD
+    motions = {slow: within(human_reaches(REACHES_SEED, REACHES_S), low, high), quick: moves(low, high)}
+    return {
+        name: Experiment(motion, arm, parameters=table, noise=False, soft_start=False, wait_s=WAIT_TICKS * TICK_S)
+        for name, motion in motions.items()
+    }
+
+
+def _shares(experiment: Experiment, table: Sequence[int], plants: Floats) -> Floats:
+    """Per joint: how differently the median plant follows from the first one, as a share of its tracking error, rms."""
+    result = experiment.run(controllers_of(table), plants, every=10, threads=1)
+    angles = result.angles[:, WAIT_TICKS // 10 :].astype(np.float64)
+    apart = np.sqrt(((angles[1:] - angles[0]) ** 2).mean(axis=1))
+    apart[result.diverged[1:]] = np.inf
+    shares: Floats = np.median(apart, axis=0) / np.sqrt(np.maximum(result.mse[0], 1e-12))
+    return shares
+
+
+def _only(arm: ArmParameters, facts: Identification, index: int | None) -> ArmParameters:
+    """The arm with only one of its numbers uncertain, or none; never quite certain, so that there is a distribution."""
+    assert facts.covariance is not None
+    assert arm.identification is not None
+    variances = np.full(len(facts.covariance), CERTAIN)
+    if index is not None:
+        variances[index] = max(CERTAIN, facts.covariance[index][index])
+    alone = {"covariance": np.diag(variances).tolist()}
+    return arm.model_copy(update={"identification": arm.identification | alone})
+
+
+def _parameters_of(facts: Identification, joint: int) -> list[ParameterFacts]:
+    return [one for one in facts.parameter if one.name.startswith(f"joint{joint}.")]
+
+
+def same_arm(model: ArmParameters, arm: ArmParameters, name: str) -> list[Doubt]:
+    """Whether the model is of this arm file: geometry, gears, stops and supply are the user's in both."""
+    ours, theirs = (dict(_leaves(_fixed(one))) for one in (model, arm))
+    for key, value in ours.items():
+        other = theirs.get(key)
+        if isinstance(value, float) and isinstance(other, float):
+            equal = math.isclose(value, other, rel_tol=1e-9)
+        else:
+            equal = bool(value == other)
+        if not equal:
+            return [
+                Doubt(
+                    f"it is of another arm than {name}: {key} is {value} here and {other} there",
+                    "identify with that arm file",
+                )
+            ]
+    return []
+
+
+def _fixed(arm: ArmParameters) -> dict[str, Any]:
+    """What an identification leaves as it was."""
+    data = arm.model_dump(exclude={"name", "source", "identification"})
+    for joint in data["joint"]:
+        joint["motor"] = {"gear_ratio": joint["motor"]["gear_ratio"]}
+        del joint["friction"], joint["gear"], joint["name"]
+    for pot in data["follower_pots"]["joint"]:
+        del pot["centre"]
+    for pot in (*data["follower_pots"]["joint"], *data["leader_pots"]["joint"]):
+        del pot["noise"]
+    return data
+
+
+def _leaves(data: object, name: str = "") -> Iterator[tuple[str, Any]]:
+    if isinstance(data, Mapping):
+        for key, value in data.items():
+            yield from _leaves(value, f"{name}.{key}" if name else str(key))
+    elif isinstance(data, list | tuple):
+        for index, value in enumerate(data):
+            yield from _leaves(value, f"{name}[{index}]")
+    else:
+        yield name, data
+
+
+def same_table(given: Sequence[int], logged: Sequence[int] | None, name: str) -> list[Doubt]:
+    """Whether a board's table differs from the logs' in more than its controllers and limits."""
+    if logged is None:
+        return []
+    for parameter in schema.PARAMETERS:
+        matters = parameter.name in ("supply_mv", "filter_shift") or parameter.name.endswith(
+            (".zero", ".scale", ".motor_sign")
+        )
+        here, there = given[parameter.index], logged[parameter.index]
+        if matters and here != there:
+            was, now = (f"{parameter.to_physical(raw):g} {parameter.unit}".rstrip() for raw in (there, here))
+            return [
+                Doubt(
+                    f"its logs were recorded with another parameter table than {name}: {parameter.name} was {was} and "
+                    f"is {now}",
+                    "record and identify with the board as it is now",
+                )
+            ]
+    return []
+
+
+def same_board(arm: ArmParameters, facts: Identification | None, table: Sequence[int]) -> list[Doubt]:
+    """Whether the table's period, supply and potentiometers are those of the model and its logs."""
+    return [*_same_period(facts, table), *_same_supply(arm, table), *_same_slopes(arm, table)]
+
+
+def _same_period(facts: Identification | None, table: Sequence[int]) -> list[Doubt]:
+    period = table[schema.PARAMETER_BY_NAME["period_ms"].index]
+    logged = sorted({log.period_ms for log in facts.log if log.period_ms is not None}) if facts is not None else []
+    if not logged or period in logged:
+        return []
+    return [
+        Doubt(
+            f"its logs were recorded at a control period of {' and '.join(map(str, logged))} ms, but {period} ms is "
+            "to be tuned for",
+            f"record and identify at {period} ms",
+        )
+    ]
+
+
+def _same_supply(arm: ArmParameters, table: Sequence[int]) -> list[Doubt]:
+    supply = table[schema.PARAMETER_BY_NAME["supply_mv"].index] / 1000.0
+    if abs(supply - arm.drive.supply) <= SAME_SUPPLY * arm.drive.supply:
+        return []
+    return [
+        Doubt(
+            f"its drive.supply is {arm.drive.supply:g} V, but the board's supply_mv says {supply:g} V",
+            "correct the one that is wrong (greywhale params set supply_mv=..., or the arm file and identify again)",
+        )
+    ]
+
+
+def _same_slopes(arm: ArmParameters, table: Sequence[int]) -> list[Doubt]:
+    for side, bank in (("leader", arm.leader_pots), ("follower", arm.follower_pots)):
+        for joint, pot in enumerate(bank.joint):
+            parameter = schema.PARAMETER_BY_NAME[f"{side}{joint}.scale"]
+            track = parameter.to_physical(table[parameter.index]) * CONVERTER_SPAN
+            wanted = pot.direction * pot.track
+            if abs(track - wanted) > SAME_SLOPE * abs(wanted):
+                return [
+                    Doubt(
+                        f"its {side} potentiometer {joint} turns {wanted:.3g} rad from end to end, but the board's "
+                        f"{parameter.name} makes it {track:.3g} rad",
+                        "correct the one that is wrong",
+                    )
+                ]
+    return []

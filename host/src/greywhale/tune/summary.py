@@ -1,0 +1,80 @@
+"""A tuning in a page of text: what changed, what to expect on motions not trained on, what speaks against it."""
+
+from __future__ import annotations
+
+from greywhale.arm.parameters import JOINT_NAMES
+from greywhale.tune.outcome import HeldOut, Outcome
+
+# Below this (rad²) what is left of a joint's error is backlash, not lack of voltage.
+UNSATURATED = 1e-5
+
+
+def summary(outcome: Outcome) -> str:
+    """For people."""
+    how = f"{outcome.method}, strategy {outcome.strategy}, seed {outcome.seed}, {outcome.evaluations:,} evaluations"
+    lines = [] if outcome.complete else ["UNFINISHED: interrupted; this is the best so far.", ""]
+    lines += [
+        f"Tuned for {outcome.model.name} at {outcome.period_ms} ms and {outcome.supply_v:g} V: {how}.",
+    ]
+    if outcome.held_out:
+        lines += ["", "Expected on motions that were not trained on, before -> after:"]
+    for one in outcome.held_out:
+        lines += ["", *_motion(one)]
+    if outcome.margins:
+        lines += ["", *_margins(outcome)]
+    for title, sentences in (("Notes", outcome.notes), ("Doubts about the model", outcome.model.doubts)):
+        if sentences:
+            lines += ["", f"{title}:", *(f"- {sentence}" for sentence in sentences)]
+    return "\n".join(lines)
+
+
+def _motion(one: HeldOut) -> list[str]:
+    """A line for each joint: the paper's three measures, and how far the error is from the least possible."""
+    lines = [f"{one.name:24} {'MSE [rad²]':>22} {'x floor':>8} {'steady state [rad]':>20} {'delay [s]':>16}"]
+    for joint, (before, after) in enumerate(zip(one.before.joints, one.after.joints, strict=True)):
+        lines.append(
+            f"{f'joint {joint} ({JOINT_NAMES[joint]})':24} {_pair(before.mse, after.mse, '.2e'):>22} "
+            f"{_multiple(one, joint):>8} {_pair(before.steady_state_error, after.steady_state_error, '.3f'):>20} "
+            f"{_pair(before.delay_s, after.delay_s, '.3f'):>16}"
+        )
+    before_sum, after_sum = float(one.mse_before.sum()), float(one.mse_after.sum())
+    lines.append(
+        f"{'all joints':24} {_pair(before_sum, after_sum, '.2e'):>22} {_multiple(one, None):>8} "
+        f"  {100.0 * (1.0 - after_sum / before_sum):.1f} % lower"
+    )
+    return lines
+
+
+def _pair(before: float | None, after: float | None, form: str) -> str:
+    return " -> ".join("none" if value is None else f"{value:{form}}" for value in (before, after))
+
+
+def multiple_of_floor(one: HeldOut, joint: int | None = None) -> float | None:
+    """The error after tuning as a multiple of the least possible, of a joint or of all; None where the supply is no
+    limit, so that it means nothing.
+    """
+    chosen = slice(None) if joint is None else slice(joint, joint + 1)
+    if one.floor is None or one.floor[chosen].min() < UNSATURATED:
+        return None
+    return float(one.mse_after[chosen].sum() / one.floor[chosen].sum())
+
+
+def _multiple(one: HeldOut, joint: int | None) -> str:
+    multiple = multiple_of_floor(one, joint)
+    return "-" if multiple is None else f"{multiple:.2f}"
+
+
+def _margins(outcome: Outcome) -> list[str]:
+    scenarios = ", ".join(dict.fromkeys(margin.scenario for margin in outcome.margins))
+    failing = [margin for margin in outcome.margins if not margin.holds]
+    plants = outcome.margins[0].plants
+    if not failing:
+        arms = f"on all {plants} plants" if plants > 1 else "on the model itself"
+        return [f"Margins hold {arms}, no joint swings or chatters: {scenarios}."]
+    lines = ["NOT STEADY:"]
+    for one in failing:
+        lines.append(
+            f"- joint {one.joint} ({JOINT_NAMES[one.joint]}), {one.scenario}: does not come to rest on "
+            f"{one.plants_failing} of {one.plants} plants ({one.reversals} reversals, {one.chatter_hz:.0f} Hz chatter)"
+        )
+    return lines

@@ -1,0 +1,111 @@
+"""What a tuned controller.toml says of itself."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from greywhale.config import controller
+from greywhale.link import schema
+from greywhale.measure import Evaluation
+from greywhale.measure.evaluate import JointMeasures
+from greywhale.simulate import controller_row, default_controller
+from greywhale.trajectory import Trajectory
+from greywhale.tune.controller_file import provenance, save
+from greywhale.tune.margins import Margin
+from greywhale.tune.model import load_model
+from greywhale.tune.outcome import Curve, HeldOut, Outcome
+from tests.tune.models import log_facts, write_model
+
+
+def evaluation(mse: float) -> Evaluation:
+    """Joint 3 never rests and never steps."""
+    joints = [JointMeasures(mse, 0.0123456, 0.05, 0.02, 3)] * 3 + [JointMeasures(mse, None, 0.05, None, 0)]
+    return Evaluation(tuple(joints), 4 * mse, 1000, 1.0, True, (1.0,) * 3 + (0.0,))
+
+
+@pytest.fixture
+def outcome(tmp_path: Path) -> Outcome:
+    """An outcome that nobody tuned: two held-out motions, one of which saturates nothing."""
+    model = load_model(write_model(tmp_path / "model.toml", log=[log_facts()]), force=True, samples=2)
+    after = default_controller()
+    after[2, 8] += 1
+    motion, rows = Trajectory(np.array([0.0, 1.0]), np.zeros((2, 4))), np.zeros((1, 4))
+    held = [
+        HeldOut(name, motion, evaluation(0.01), evaluation(0.002468), floor, rows[:, 0], rows, rows, rows)
+        for name, floor in (("steps", np.full(4, 0.002)), ("reaches", np.array([1e-3, 1e-3, 1e-3, 1e-9])))
+    ]
+    margins = [Margin("at rest", joint, 0, 0.0, 0, 2) for joint in (1, 0, 2, 3)]
+    return Outcome(
+        model=model,
+        parameters=model.parameters,
+        strategy="both",
+        method="default",
+        seed=3,
+        budget=10,
+        evaluations=10,
+        complete=True,
+        before=default_controller(),
+        after=after,
+        cost_before=(1.0,) * 4,
+        cost_after=(0.123456,) * 4,
+        curves=(Curve((10,), (0.1,)),) * 4,
+        margins_before=tuple(margins),
+        margins=tuple(margins),
+        held_out=tuple(held),
+        notes=("a note",),
+    )
+
+
+def test_it_is_a_controller_file_with_the_very_numbers(outcome: Outcome, tmp_path: Path) -> None:
+    save(outcome, tmp_path / "controller.toml")
+    loaded = controller.load(tmp_path / "controller.toml")
+    np.testing.assert_array_equal(controller_row(loaded), outcome.after)
+    assert loaded.tuning == provenance(outcome)
+    assert loaded.source == f"greywhale tune, method default, strategy both, seed 3, for {outcome.model.name}"
+
+
+def test_it_tells_the_crc_that_the_board_will_have(outcome: Outcome) -> None:
+    values = list(schema.DEFAULTS)
+    values[schema.PARAMETER_BY_NAME["joint2.kp"].index] += 1
+    assert provenance(outcome)["parameter_crc"] == f"0x{schema.param_crc(values):04x}"
+
+
+def test_a_measure_that_not_every_joint_has_is_left_out(outcome: Outcome) -> None:
+    first, second = provenance(outcome)["expected"]
+    assert (first["motion"], second["motion"]) == ("steps", "reaches")
+    assert first["mse_after_rad2"] == [0.002468] * 4
+    assert first["time_delay_before_s"] == [0.05] * 4
+    assert not any(key.startswith(("steady", "onset")) for key in first)
+
+
+def test_comments_tell_people_what_to_expect(outcome: Outcome, tmp_path: Path) -> None:
+    save(outcome, tmp_path / "controller.toml")
+    lines = (tmp_path / "controller.toml").read_text(encoding="utf-8").splitlines()
+    assert "# For a control period of 1 ms and a supply of 15 V." in lines
+    assert "# Expected on steps, all joints: MSE 0.04 -> 0.00987 rad², 1.23 x the floor." in lines
+    # Where a joint does not saturate a multiple of the floor means nothing.
+    assert "# Expected on reaches, all joints: MSE 0.04 -> 0.00987 rad²." in lines
+    assert "# Doubt: it was not validated on a second log." in lines
+    assert "[[joint]]  # 1: shoulder pitch; on steps MSE 0.01 -> 0.00247 rad², 1.23 x the floor" in lines
+    assert not any("UNFINISHED" in line or "NOT STEADY" in line for line in lines)
+
+
+def test_what_is_unfinished_or_not_steady_says_so_on_top(outcome: Outcome, tmp_path: Path) -> None:
+    swinging = replace(outcome.margins[0], reversals=9, plants_failing=1)
+    save(replace(outcome, complete=False, margins=(swinging, *outcome.margins[1:])), tmp_path / "controller.toml")
+    text = (tmp_path / "controller.toml").read_text(encoding="utf-8")
+    assert text.index("# UNFINISHED: interrupted") < text.index("# NOT STEADY: joint 1, at rest.") < text.index("[[jo")
+    tuning = controller.load(tmp_path / "controller.toml").tuning
+    assert tuning is not None
+    assert (tuning["status"], tuning["margins_hold"]) == ("unfinished: interrupted; the best so far", False)
+    assert tuning["margin"][0]["holds"] == [True, False, True, True]
+
+
+def test_equal_outcomes_give_equal_files(outcome: Outcome, tmp_path: Path) -> None:
+    for name in ("a.toml", "b.toml"):
+        save(outcome, tmp_path / name)
+    assert (tmp_path / "a.toml").read_bytes() == (tmp_path / "b.toml").read_bytes()

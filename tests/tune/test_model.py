@@ -1,0 +1,277 @@
+"""Which models are tuned for, which are refused and in which words, and which plants stand for them."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from greywhale.arm import ArmParameters, default_arm, load_arm
+from greywhale.config import parameter_file
+from greywhale.errors import BAD_USAGE, FAILED, UserError
+from greywhale.identify import sampled_plants
+from greywhale.identify.model_file import to_toml
+from greywhale.link import schema
+from greywhale.simulate import default_controller, plant_row
+from greywhale.tune.model import load_model
+from tests.tune.models import facts_of, log_facts, write_model
+
+INDEX = {parameter.name: parameter.index for parameter in schema.PARAMETERS}
+
+
+def table(**changes: int) -> list[int]:
+    """The firmware's defaults, but for some raw values (`joint0__kp` for joint0.kp)."""
+    values = list(schema.DEFAULTS)
+    for name, raw in changes.items():
+        values[INDEX[name.replace("__", ".")]] = raw
+    return values
+
+
+def refused(path: Path, **options: Any) -> str:
+    """The sentence of a refusal, which --force must turn into a doubt of the model."""
+    with pytest.raises(UserError) as caught:
+        load_model(path, **options)
+    assert caught.value.exit_code == FAILED
+    sentence = caught.value.message
+    assert sentence.startswith(f"{path}: ")
+    assert "or go on with --force" in sentence
+    reason = sentence.removeprefix(f"{path}: ").partition("; ")[0]
+    assert f"{reason}." in load_model(path, force=True, **options).doubts
+    return sentence
+
+
+# --- good models ----------------------------------------------------------------------------------------------------
+
+
+def test_a_validated_model_has_no_doubts_and_is_its_arm(tmp_path: Path) -> None:
+    path = write_model(tmp_path / "model.toml")
+    model = load_model(path)
+    assert (model.doubts, model.file) == ((), str(path))
+    assert model.parameters == tuple(schema.DEFAULTS)
+    assert model.digest == hashlib.sha256(path.read_bytes()).hexdigest()
+    np.testing.assert_array_equal(model.controllers, default_controller())
+    np.testing.assert_allclose(model.plants[0], plant_row(default_arm()), rtol=1e-12)
+
+
+def test_plants_are_drawn_from_the_covariance_and_follow_from_the_seed(tmp_path: Path) -> None:
+    path = write_model(tmp_path / "model.toml", deviation=0.05)
+    model = load_model(path, samples=400, seed=3)
+    np.testing.assert_array_equal(model.plants, sampled_plants(load_arm(path), 400, 3))
+    torque = np.log(model.plants[1:, 11])  # joint0.torque_per_volt = 1 / alpha
+    assert np.std(torque) == pytest.approx(0.05, rel=0.15)
+    np.testing.assert_array_equal(load_model(path, samples=5, seed=3).plants, model.plants[:5])
+    assert not np.array_equal(load_model(path, samples=5, seed=4).plants, model.plants[:5])
+
+
+def test_the_table_is_that_of_the_logs(tmp_path: Path) -> None:
+    changed = {"joint0.kp": 40_000, "filter_shift": 2}
+    model = load_model(write_model(tmp_path / "model.toml", parameters=changed))
+    assert model.parameters == tuple(table(joint0__kp=40_000, filter_shift=2))
+    assert model.controllers[0, 8] == 40_000
+    assert model.period_ms == 1
+
+
+def test_a_model_without_table_whose_logs_name_the_defaults_has_the_defaults(tmp_path: Path) -> None:
+    crc = f"0x{schema.param_crc(schema.DEFAULTS):04x}"
+    logs = [log_facts(parameter_crc=crc), log_facts("validation")]
+    model = load_model(write_model(tmp_path / "model.toml", parameters=None, log=logs))
+    assert model.parameters == tuple(schema.DEFAULTS)
+
+
+def test_a_backup_of_the_board_comes_before_the_logs(tmp_path: Path) -> None:
+    backup = tmp_path / "backup.toml"
+    parameter_file.save(backup, table(joint1__kp=50_000, joint2__limit_max=4096, soft_start_ms=500))
+    model = load_model(write_model(tmp_path / "model.toml", parameters={"joint1.kp": 1}), params=backup)
+    assert model.parameters == parameter_file.load(backup)
+    assert not model.doubts
+
+
+def test_warnings_of_the_identification_go_along(tmp_path: Path) -> None:
+    warning = "fit.csv: joint 0 was at full voltage 60 % of the time; slower motion would tell more."
+    assert load_model(write_model(tmp_path / "model.toml", warnings=[warning])).doubts == (warning,)
+
+
+# --- refusals -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"status": "unfinished"}, 'its identification is "unfinished"; identify again and let it end,'),
+        ({"log": [log_facts()]}, "it was not validated on a second log; record another one and identify again with"),
+        (
+            {"log": [log_facts(), log_facts("validation", -0.5)]},
+            "on validation.csv (validation) it is no better than the arm file it began with (0.015 against 0.01 rad²);",
+        ),
+        (
+            {"log": [log_facts(), log_facts("validation"), log_facts("validation, changed controller", 0.0)]},
+            "(0.01 against 0.01 rad²), though on others it is: it may have learnt its controller, not the arm; check",
+        ),
+        ({"covariance": None, "method": "paper"}, "nothing in it tells how uncertain it is (method paper does not);"),
+        ({"joints": (0, 1, 3)}, "joint 2 (wrist pitch) did not move in its logs, so nothing of it was identified;"),
+        ({"parameters": {"supply_mv": 12_000}}, "its drive.supply is 15 V, but the board's supply_mv says 12 V;"),
+        ({"parameters": {"period_ms": 5}}, "recorded at a control period of 1 ms, but 5 ms is to be tuned for;"),
+        (
+            {"parameters": {"follower1.scale": 8_000}},
+            "its follower potentiometer 1 turns 5.24 rad from end to end, but the board's follower1.scale makes it 3.9",
+        ),
+        ({"parameters": None}, "the parameter table of its logs is not known; give the board's own (greywhale params"),
+    ],
+)
+def test_a_doubtful_model_is_refused_with_the_reason(tmp_path: Path, changes: dict[str, Any], words: str) -> None:
+    sentence = refused(write_model(tmp_path / "model.toml", **changes))
+    assert words in sentence
+    assert "more reason" not in sentence
+
+
+def test_a_bare_arm_file_is_no_model_but_can_be_forced(tmp_path: Path) -> None:
+    path = tmp_path / "arm.toml"
+    path.write_text(to_toml(default_arm(), {}).replace("[identification]", ""), encoding="utf-8")
+    assert "nothing in it was identified: it is an arm file, not a model; make a model from logs" in refused(path)
+    assert load_model(path, force=True).plants.shape == (1, 60)
+
+
+def test_a_shipped_arm_can_be_forced_by_its_name_at_its_own_supply() -> None:
+    model = load_model("grey_box", force=True)
+    assert model.arm == load_arm("grey_box")
+    assert model.parameters[INDEX["supply_mv"]] == round(1000 * model.arm.drive.supply)
+    assert len(model.digest) == 64
+
+
+@pytest.mark.parametrize(
+    ("joint", "guilty", "motion"),
+    [
+        ("2 (wrist pitch)", "damping", "move at a steady speed"),
+        ("0 (base yaw)", "inertia", "reverse the motion quickly"),
+        ("1 (shoulder pitch)", "coulomb", "move slowly to and fro"),
+    ],
+)
+def test_too_uncertain_names_the_number_its_size_and_the_motion_that_settles_it(
+    tmp_path: Path, joint: str, guilty: str, motion: str
+) -> None:
+    facts = facts_of(default_arm(), 0.01)
+    (index,) = (n for n, one in enumerate(facts["parameter"]) if one["name"] == f"joint{joint[0]}.{guilty}")
+    facts["covariance"][index][index] = 1.5**2
+    facts["parameter"][index]["standard_deviation"] = 1.5 * facts["parameter"][index]["value"]
+    sentence = refused(write_model(tmp_path / "model.toml", facts=facts))
+    assert f"joint {joint} is too uncertain: arms that its logs allow follow" in sentence
+    value = facts["parameter"][index]["value"]
+    assert f"most of all because {guilty} is {value:.2g} +- {1.5 * value:.2g} V" in sentence
+    assert f"; record again ({motion}" in sentence
+
+
+def test_a_number_that_no_motion_feels_may_be_uncertain(tmp_path: Path) -> None:
+    facts = facts_of(default_arm(), 0.01)
+    names = [one["name"] for one in facts["parameter"]]
+    direction = np.zeros(len(names))
+    # The wrist roll carries next to nothing: twice the torque per volt against twice the inertia moves it alike.
+    direction[names.index("joint3.alpha")] = 1.0
+    facts["covariance"] = (np.array(facts["covariance"]) + 0.7**2 * np.outer(direction, direction)).tolist()
+    assert not load_model(write_model(tmp_path / "model.toml", facts=facts)).doubts
+
+
+def test_numbers_edited_after_the_identification_are_found(tmp_path: Path) -> None:
+    path = write_model(tmp_path / "model.toml", facts=facts_of(load_arm("white_box")))
+    sentence = refused(path)
+    assert "its numbers are not those that were identified (joint0.torque_per_volt is" in sentence
+    assert "as if it was edited or put together from two arms; identify again, or" in sentence
+
+
+def test_a_gap_of_next_to_nothing_is_none(tmp_path: Path) -> None:
+    data = default_arm().model_dump()
+    for joint in data["joint"]:
+        joint["gear"] |= {"half_gap": 0.0}
+    arm = ArmParameters.model_validate(data, strict=False)
+    facts = facts_of(arm)
+    gap = {"name": "joint2.gap", "unit": "rad", "value": 5e-10, "standard_deviation": 1e-3}
+    covariance = np.zeros((len(facts["parameter"]) + 1,) * 2)
+    covariance[:-1, :-1], covariance[-1, -1] = facts["covariance"], 1e-6
+    facts |= {"parameter": [*facts["parameter"], gap], "covariance": covariance.tolist()}
+    assert not load_model(write_model(tmp_path / "model.toml", arm, facts)).doubts
+
+
+def other_arm(**link: float) -> ArmParameters:
+    data = default_arm().model_dump()
+    links = [one | link if index == 1 else one for index, one in enumerate(data["link"])]
+    return ArmParameters.model_validate(data | {"name": "another", "link": links}, strict=False)
+
+
+def test_a_model_of_another_arm_is_found(tmp_path: Path) -> None:
+    path, arm = write_model(tmp_path / "model.toml"), tmp_path / "arm.toml"
+    arm.write_text(to_toml(other_arm(mass=0.5), {}), encoding="utf-8")
+    sentence = refused(path, arm=arm)
+    assert (
+        f"it is of another arm than {arm}: link[1].mass is {default_arm().link[1].mass} here and 0.5 there;" in sentence
+    )
+
+
+def test_motors_friction_and_noise_may_differ_from_the_arm_file(tmp_path: Path) -> None:
+    white = default_arm().model_dump()
+    for joint in white["joint"]:
+        joint["motor"] |= {"inertia": 1e-3, "viscous": 0.0}
+        joint["friction"] |= {"coulomb": 0.0}
+        joint["gear"] = {}
+    for pot in (*white["follower_pots"]["joint"], *white["leader_pots"]["joint"]):
+        pot["noise"] = 0.1
+    arm = tmp_path / "arm.toml"
+    arm.write_text(to_toml(ArmParameters.model_validate(white, strict=False), {}), encoding="utf-8")
+    assert not load_model(write_model(tmp_path / "model.toml"), arm=arm).doubts
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"filter_shift": 3}, "filter_shift was 1 and is 3; record"),
+        ({"leader2__zero": 8000}, "leader2.zero was 8184 count14 and is 8000 count14; record"),
+        ({"joint3__motor_sign": -1}, "joint3.motor_sign was 1 and is -1; record"),
+    ],
+)
+def test_a_board_that_is_not_that_of_the_logs_is_found(tmp_path: Path, changes: dict[str, int], words: str) -> None:
+    backup = tmp_path / "backup.toml"
+    parameter_file.save(backup, table(**changes))
+    sentence = refused(write_model(tmp_path / "model.toml"), params=backup)
+    assert f"its logs were recorded with another parameter table than {backup}: {words}" in sentence
+
+
+def test_of_several_reasons_the_gravest_is_told_and_the_others_counted(tmp_path: Path) -> None:
+    path = write_model(tmp_path / "model.toml", status="unfinished", log=[log_facts()], parameters={"supply_mv": 9000})
+    sentence = refused(path)
+    assert 'its identification is "unfinished"; identify again and let it end, or go on with --force' in sentence
+    assert sentence.endswith("(2 more reasons would come after this one).")
+    assert len(load_model(path, force=True).doubts) == 3
+
+
+# --- broken files ---------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"status": None}, "identification.status: field required"),
+        (
+            {"log": [log_facts() | {"improvement": "much"}]},
+            "identification.log.0.improvement: input should be a valid number",
+        ),
+        ({"parameters": {"kp": 1}}, "identification.parameters: kp is no parameter of a board"),
+        ({"parameters": {"period_ms": 99}}, "identification.parameters: period_ms is 99 ms, which is out of range"),
+    ],
+)
+def test_a_broken_table_is_refused_even_with_force(tmp_path: Path, changes: dict[str, Any], words: str) -> None:
+    path = write_model(tmp_path / "model.toml", **changes)
+    with pytest.raises(UserError) as caught:
+        load_model(path, force=True)
+    assert caught.value.message.startswith(f"{path}: {words}")
+
+
+def test_no_samples_are_bad_usage(tmp_path: Path) -> None:
+    with pytest.raises(UserError) as caught:
+        load_model(write_model(tmp_path / "model.toml"), samples=0)
+    assert (caught.value.exit_code, caught.value.message) == (BAD_USAGE, "samples is 0, but it must be at least 1.")
+
+
+def test_a_missing_file_is_named(tmp_path: Path) -> None:
+    with pytest.raises(UserError, match=r"none\.toml: cannot be read: no such file or directory"):
+        load_model(tmp_path / "none.toml")
