@@ -10,35 +10,81 @@ import pytest
 
 from greywhale.demo import BenchProcess, DemoOptions, run
 from greywhale.errors import UserError
-from greywhale.log import read_log
+from greywhale.link import schema
+from greywhale.log import Log
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def test_the_demo_tells_its_story(tmp_path: Path) -> None:
     told: list[str] = []
     out = tmp_path / "new" / "demo"
-    result = run(DemoOptions(out, duration_s=8.0), lambda what, fraction: told.append(what))
+    options = DemoOptions(out, duration_s=8.0, practice_s=15.0, budget=150)
+    result = run(options, lambda what, fraction, note="": told.append(what))
+    recordings = ["practice", "check", "check_changed"]
     assert sorted(path.name for path in out.iterdir()) == sorted(
-        ["leader.csv", "before.csv", "after.csv", "following.png", "summary.json"]
+        [
+            *(
+                "leader.csv",
+                "before.csv",
+                "after.csv",
+                "model.toml",
+                "controller.toml",
+                "following.png",
+                "summary.json",
+            ),
+            *(f"{name}{kind}.csv" for name in recordings for kind in ("", "_leader")),
+        ]
     )
     assert json.loads((out / "summary.json").read_text()) == result.as_dict()
-    assert result.picture.read_bytes().startswith(b"\x89PNG\r\n")
+    assert result.pictures[0].read_bytes().startswith(b"\x89PNG\r\n")
     assert told[0] == "starting the bench"
     assert told[-1] == "drawing"
+    assert told.index("practice: recording") < told.index("tuning") < told.index("tuned: recording")
 
-    before, after = (read_log(one.log) for one in result.runs)
-    assert before.origin.param_crc != after.origin.param_crc
+    before, after = (one.recorded.log() for one in result.runs)
     assert before.origin.board == "mega2560"
-    seconds = min(before.time[-1], after.time[-1])
-    assert seconds > 8.0
-    grid = np.arange(0.0, seconds, 0.01)
-    leaders = [np.interp(grid, log.time, log.leader[:, 0]) for log in (before, after)]
-    assert np.abs(leaders[0] - leaders[1]).max() < 0.03, "both runs saw the same motion"
+    assert schema.param_crc(schema.DEFAULTS) == before.origin.param_crc != after.origin.param_crc
+    assert_same_motion(before, after)
+    assert result.learnt is not None
+    second, changed = result.learnt.identification.verdicts[1:]
+    assert second.improvement > 0.9
+    assert changed.improvement > 0.5
+    was, became = (one.measures for one in result.runs)
+    assert became.total_mse < 0.7 * was.total_mse
+    for joint in range(4):
+        assert became.joints[joint].mse < 1.05 * was.joints[joint].mse
+    text = result.text()
+    for word in (
+        "before tuning",
+        "tuned",
+        "Identified",
+        "base yaw",
+        "wrist roll",
+        "all joints",
+        str(result.pictures[0]),
+    ):
+        assert word in text
+
+
+def test_the_demo_shows_a_controller_that_it_is_given(tmp_path: Path) -> None:
+    table = ROOT / "shared" / "fuzzy_tables" / "table_10.toml"
+    result = run(DemoOptions(tmp_path, duration_s=5.0, controller=table))
+    assert result.learnt is None
+    assert [one.name for one in result.runs] == ["before tuning", "table_10"]
+    assert not (tmp_path / "model.toml").exists()
+    assert_same_motion(*(one.recorded.log() for one in result.runs))
     # The paper's tuned sets are steeper around zero error: where no gravity acts, they follow much more closely.
     for joint in (0, 2):
         assert result.runs[1].measures.joints[joint].mse < 0.5 * result.runs[0].measures.joints[joint].mse
-    text = result.text()
-    for word in ("before tuning", "Table 10", "base yaw", "wrist roll", "all joints", str(result.picture)):
-        assert word in text
+
+
+def assert_same_motion(before: Log, after: Log) -> None:
+    seconds = min(before.time[-1], after.time[-1])
+    assert seconds > 4.0
+    grid = np.arange(0.0, seconds, 0.01)
+    leaders = [np.interp(grid, log.time, log.leader[:, 0]) for log in (before, after)]
+    assert np.abs(leaders[0] - leaders[1]).max() < 0.03
 
 
 @pytest.mark.parametrize(
@@ -46,6 +92,8 @@ def test_the_demo_tells_its_story(tmp_path: Path) -> None:
     [
         ({"duration_s": 1.0}, "duration is 1 s"),
         ({"duration_s": float("nan")}, "duration is nan s"),
+        ({"practice_s": 9.0}, "practice is 9 s"),
+        ({"controller": Path("nowhere.toml")}, "nowhere.toml: cannot be read"),
         ({"leader": Path("nowhere.csv")}, "nowhere.csv: cannot be read"),
         ({"arm": Path("nowhere.toml")}, "nowhere.toml"),
     ],

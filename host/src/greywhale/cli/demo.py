@@ -1,4 +1,4 @@
-"""`greywhale demo`: bench, flash, upload, record and evaluate in one go."""
+"""`greywhale demo`: bench, flash, record, identify, tune, upload and record again in one go."""
 
 from __future__ import annotations
 
@@ -29,6 +29,19 @@ from greywhale.cli.output import json_option, progress, show
 @click.option("--speed", type=click.Choice(["1", "max"]), default="max", show_default=True, help="Real time or faster.")
 @click.option("--duration", type=float, default=20.0, show_default=True, help="Seconds of generated motion.")
 @click.option("--seed", type=int, default=1, show_default=True, help="Seed of the generated motion.")
+@click.option(
+    "--controller",
+    type=click.Path(path_type=Path),
+    help="Show this controller.toml instead of identifying and tuning.",
+)
+@click.option(
+    "--practice", type=float, default=30.0, show_default=True, help="Seconds of motion to identify the arm from."
+)
+@click.option(
+    "--budget",
+    type=click.IntRange(min=1),
+    help="Controllers tried for each joint; without it, as many as `tune` tries.",
+)
 @json_option
 def command(
     out: Path,
@@ -38,16 +51,29 @@ def command(
     speed: str,
     duration: float,
     seed: int,
+    controller: Path | None,
+    practice: float,
+    budget: int | None,
     as_json: bool,
 ) -> None:
     """The whole story on the simulated bench in one go, pictures at the end.
 
-    Flashes the real firmware onto a simulated Arduino, follows the leader with the paper's controllers before tuning
-    and with those of table 10, and shows how well each did.
+    Flashes the real firmware onto a simulated Arduino and lets the arm follow a leader with untuned controllers.
+    Then it records practice motions, identifies the arm from them, tunes on the identified model, uploads the result,
+    and lets the arm follow the same leader again. Neither identification nor tuning sees that motion or the arm's data.
     """
     demo = need_bench("greywhale.demo")
     options = demo.DemoOptions(
-        out=out, leader=leader, board=board, arm=arm, speed=speed, duration_s=duration, seed=seed
+        out=out,
+        leader=leader,
+        board=board,
+        arm=arm,
+        speed=speed,
+        duration_s=duration,
+        seed=seed,
+        controller=controller,
+        practice_s=practice,
+        budget=budget,
     )
     with progress(as_json) as report:
         result = demo.run(options, report)

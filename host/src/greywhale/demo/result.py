@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from greywhale.demo.learn import Learnt
+from greywhale.demo.recorder import Recorded
 from greywhale.measure import Evaluation, JointMeasures
 from greywhale.report.follow import JOINT_NAMES
 
@@ -21,51 +23,75 @@ class Run:
     """One recording with one set of controllers."""
 
     name: str
-    log: Path
-    param_crc: int
-    samples: int
-    dropped: int
+    recorded: Recorded
     measures: Evaluation
+
+    def as_dict(self) -> dict[str, object]:
+        return {
+            "controllers": self.name,
+            "log": str(self.recorded.path),
+            "parameter_crc": f"0x{self.recorded.param_crc:04x}",
+            "samples": self.recorded.samples,
+            "dropped": self.recorded.dropped,
+            "measures": self.measures.as_dict(),
+        }
 
 
 @dataclass(frozen=True)
 class DemoResult:
-    """All runs of the demo."""
+    """All runs of the demo; `learnt` where the second one's controllers were tuned in it."""
 
     leader: str
     board: str
     firmware: str
     runs: tuple[Run, ...]
-    picture: Path
+    learnt: Learnt | None
+    pictures: tuple[Path, ...]
     wall_s: float
 
     def as_dict(self) -> dict[str, object]:
-        return {
+        facts: dict[str, object] = {
             "leader": self.leader,
             "board": self.board,
             "firmware": self.firmware,
-            "runs": [
-                {
-                    "controllers": run.name,
-                    "log": str(run.log),
-                    "parameter_crc": f"0x{run.param_crc:04x}",
-                    "samples": run.samples,
-                    "dropped": run.dropped,
-                    "measures": run.measures.as_dict(),
-                }
-                for run in self.runs
-            ],
-            "picture": str(self.picture),
+            "runs": [run.as_dict() for run in self.runs],
+            "pictures": [str(picture) for picture in self.pictures],
             "wall_s": round(self.wall_s, 1),
         }
+        if self.learnt is not None:
+            facts["learnt"] = {
+                "model": str(self.learnt.model),
+                "controller": str(self.learnt.controller),
+                "identify_s": round(self.learnt.identify_s, 1),
+                "tune_s": round(self.learnt.tune_s, 1),
+                "upload_s": round(self.runs[-1].recorded.upload_s, 1),
+                "improvement_of_the_model": [one.improvement for one in self.learnt.identification.verdicts],
+                "doubts": list(self.learnt.tuning.model.doubts),
+            }
+        return facts
 
     def text(self) -> str:
         """A table a person can read, and where the files are."""
         parts = [f"Leader: {self.leader}. Board: {self.board}, firmware {self.firmware}."]
+        if self.learnt is not None:
+            parts.append(self._story(self.learnt))
         parts += [self._table(*measure) for measure in MEASURES]
-        files = ", ".join(str(run.log) for run in self.runs)
-        parts.append(f"Picture: {self.picture}\nLogs: {files}")
+        files = ", ".join(str(run.recorded.path) for run in self.runs)
+        parts.append(f"Pictures: {', '.join(map(str, self.pictures))}\nLogs: {files}")
         return "\n\n".join(parts)
+
+    def _story(self, learnt: Learnt) -> str:
+        """How the tuned controllers came about."""
+        fit, *others = learnt.identification.verdicts
+        checked = " and ".join(f"{100 * verdict.improvement:.0f} %" for verdict in others)
+        lines = [
+            f"Identified from {Path(fit.name).name} in {learnt.identify_s:.0f} s: {learnt.model} follows the arm "
+            f"{checked} more closely than its drawings, on two recordings it had not seen.",
+            f"Tuned on that model in {learnt.tune_s:.0f} s: {learnt.controller}, uploaded in "
+            f"{self.runs[-1].recorded.upload_s:.1f} s. The motion below was used for neither.",
+            *(f"Doubt: {doubt}" for doubt in learnt.tuning.model.doubts),
+        ]
+        return "\n".join(lines)
 
     def _table(self, heading: str, attribute: str, decimals: int) -> str:
         width = max(14, *(len(run.name) + 2 for run in self.runs))

@@ -1,41 +1,35 @@
-"""The whole story on the bench: flash, upload, follow, record, measure - with untuned and with tuned controllers."""
+"""The whole story on the bench: flash, record, identify, tune, upload, and record the same motion again.
+
+The motion that is shown is not used for anything else: identification sees other motions, tuning only the model.
+"""
 
 from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-import numpy as np
-
 from greywhale import flash
-from greywhale.arm import load_arm
+from greywhale.arm import ArmParameters, default_arm, load_arm
+from greywhale.config import controller as controller_file
 from greywhale.config.paper_tables import paper_table
+from greywhale.demo import learn
 from greywhale.demo.bench import BenchProcess
+from greywhale.demo.practice import PRACTICE_S, UNTUNED, practise, tables
+from greywhale.demo.recorder import Recorded, record_motion
 from greywhale.demo.result import DemoResult, Run
 from greywhale.errors import BAD_USAGE, UserError, because
 from greywhale.files import write_text
 from greywhale.link import schema
 from greywhale.link.device import Device
-from greywhale.link.stream import stream
-from greywhale.link.upload import upload_controller
-from greywhale.log import read_log
-from greywhale.log.record import record
+from greywhale.link.upload import change_parameters
 from greywhale.measure import evaluate
 from greywhale.report.follow import draw_following, trace
 from greywhale.trajectory import Trajectory, human_reaches, load_leader, save_leader
+from greywhale.tune.progress import Report, silent
 
-Progress = Callable[[str, float], None]
-
-RUNS = (("before tuning", "before", "before_tuning"), ("Table 10", "after", "table_10"))
-
-SHORTEST_S, LONGEST_S = 4.0, 600.0  # of a generated motion
-SETTLE_S = 1.0  # recorded after the leader's last movement
-LEAD_S = 0.5  # between the end of the soft start and the leader's first movement
-READY_RAD = 0.05  # both arms are back at the start within this
-READY_WAIT_S = 20.0
+SHORTEST_S, SHORTEST_PRACTICE_S, LONGEST_S = 4.0, 10.0, 600.0  # of generated motions
 
 
 @dataclass(frozen=True)
@@ -49,88 +43,113 @@ class DemoOptions:
     speed: str = "max"
     duration_s: float = 20.0  # of the generated motion
     seed: int = 1
+    controller: Path | None = None  # shown instead of tuned ones
+    practice_s: float = PRACTICE_S  # of the motion that the arm is identified from
+    budget: int | None = None  # of the tuning, evaluations; None: its default
 
 
-def run(options: DemoOptions, progress: Progress | None = None) -> DemoResult:
+def run(options: DemoOptions, progress: Report | None = None) -> DemoResult:
     """Tell the story; everything it shows is in the folder `options.out` afterwards."""
-    report = progress or (lambda what, fraction: None)
+    report = progress or silent
     started = time.monotonic()
     motion = _motion(options)
-    if options.arm is not None:
-        load_arm(options.arm)  # the bench loads it again; a bad one must not leave a folder behind
+    arm = default_arm() if options.arm is None else load_arm(options.arm)
+    if options.controller is not None:
+        controller_file.load(options.controller)
     _make_folder(options.out)
-    played = options.leader or options.out / "leader.csv"
+    leader = options.leader or options.out / "leader.csv"
     if options.leader is None:
-        save_leader(played, motion)
+        save_leader(leader, motion)
     report("starting the bench", 0.0)
-    with BenchProcess(*_bench_options(options, played)) as bench:
+    with BenchProcess(*_bench_options(options)) as bench:
         hello = flash.flash(bench.port, options.board, progress=report)
-        runs = [_one_run(bench, options.out, motion, *names, report) for names in RUNS]
-    title = f"Follower on the bench: {options.leader.name if options.leader else 'generated reaches'}"
-    picture = options.out / "following.png"
+        stage = _Stage(bench, options, arm, report)
+        runs = [stage.follow(leader, "before", "before tuning", paper_table(UNTUNED))]
+        learnt = None if options.controller is not None else stage.learn()
+        if learnt is None:
+            assert options.controller is not None
+            runs.append(stage.follow(leader, "after", options.controller.stem, options.controller))
+        else:
+            runs.append(stage.follow(leader, "after", "tuned", learnt.controller))
     report("drawing", 0.0)
-    draw_following(picture, [trace(read_log(one.log), one.name) for one in runs], title)
     result = DemoResult(
         leader=str(options.leader) if options.leader else f"generated, seed {options.seed}",
         board=hello.board.key,
         firmware=f"{hello.fw_major}.{hello.fw_minor}.{hello.fw_patch}",
         runs=tuple(runs),
-        picture=picture,
-        wall_s=time.monotonic() - started,
+        learnt=learnt,
+        pictures=(_draw(options, runs),),
+        wall_s=0.0,
     )
+    result = replace(result, wall_s=time.monotonic() - started)
     write_text(options.out / "summary.json", json.dumps(result.as_dict(), indent=2) + "\n")
     return result
 
 
+class _Stage:
+    """The bench with what is done on it, told step by step."""
+
+    def __init__(self, bench: BenchProcess, options: DemoOptions, arm: ArmParameters, report: Report) -> None:
+        self._bench = bench
+        self._options = options
+        self._arm = arm
+        self._report = report
+        self._base = self._set_supply()
+
+    def follow(self, leader: Path, file: str, name: str, controller: Path) -> Run:
+        """One recording of the motion that is shown."""
+        recorded = self._record(leader, file, name, controller)
+        return Run(name, recorded, evaluate(recorded.log()))
+
+    def learn(self) -> learn.Learnt:
+        """Record practice, identify, tune."""
+        logs = practise(self._bench, self._options.out, self._options.practice_s, self._report)
+        nominal = load_arm("white_box") if self._options.arm is None else learn.drawn(self._arm)
+        folder, budget = self._options.out, self._options.budget
+        return learn.learn(logs[0], logs[1:], tables(self._base), nominal, folder, budget, progress=self._report)
+
+    def _record(self, leader: Path, file: str, name: str, controller: Path) -> Recorded:
+        def told(what: str, fraction: float) -> None:
+            self._report(f"{name}: {what}", fraction)
+
+        return record_motion(self._bench, leader, self._options.out / f"{file}.csv", controller, told)
+
+    def _set_supply(self) -> tuple[int, ...]:
+        """Tell the board the arm's supply, as a person would; the parameters it then has."""
+        parameter = schema.PARAMETER_BY_NAME["supply_mv"]
+        raw = round(1000 * self._arm.drive.supply)
+        if raw == parameter.default:
+            return tuple(schema.DEFAULTS)
+        parameter.check_raw(raw)
+        with Device(self._bench.port) as device:
+            change_parameters(device, {parameter.index: raw})
+        return tuple(raw if index == parameter.index else value for index, value in enumerate(schema.DEFAULTS))
+
+
 def _motion(options: DemoOptions) -> Trajectory:
+    if options.controller is None:
+        _check("practice", options.practice_s, SHORTEST_PRACTICE_S)
     if options.leader is not None:
         return load_leader(options.leader)
-    if not SHORTEST_S <= options.duration_s <= LONGEST_S:
-        raise UserError(
-            f"the duration is {options.duration_s:g} s; it must be {SHORTEST_S:g} to {LONGEST_S:g} s.", BAD_USAGE
-        )
+    _check("duration", options.duration_s, SHORTEST_S)
     return human_reaches(options.seed, options.duration_s)
 
 
-def _one_run(
-    bench: BenchProcess, out: Path, motion: Trajectory, name: str, file: str, table: str, report: Progress
-) -> Run:
-    """Upload one set of controllers and let the follower follow the whole motion."""
-    log = out / f"{file}.csv"
-
-    def told(what: str, fraction: float) -> None:
-        report(f"{name}: {what}", fraction)
-
-    with Device(bench.port) as device:
-        crc = upload_controller(device, paper_table(table), told).param_crc
-        _wait_for_the_arms(device, motion)
-        recording = record(device, log, LEAD_S + motion.duration_s + SETTLE_S, enable=True, progress=told)
-    return Run(name, log, crc, recording.rows, recording.dropped, evaluate(read_log(log)))
+def _check(what: str, seconds: float, shortest_s: float) -> None:
+    if not shortest_s <= seconds <= LONGEST_S:
+        raise UserError(f"the {what} is {seconds:g} s; it must be {shortest_s:g} to {LONGEST_S:g} s.", BAD_USAGE)
 
 
-def _wait_for_the_arms(device: Device, motion: Trajectory) -> None:
-    """Until the person at the bench has brought both arms to the start of the motion."""
-    scale = schema.Sample.LSB["leader"]
-    home = motion.angles[0]
-    for one in stream(device, 10):
-        arms = np.array([one.sample.leader, one.sample.follower]) * scale
-        if np.abs(arms - home).max() < READY_RAD:
-            device.telemetry(0)
-            return
-        if one.elapsed > READY_WAIT_S * 1000:
-            raise UserError(
-                f"the arms are up to {np.abs(arms - home).max():.2f} rad away from the start of the motion "
-                f"{READY_WAIT_S:g} s after the motors went off; this is a fault of the bench, please report it."
-            )
+def _draw(options: DemoOptions, runs: list[Run]) -> Path:
+    title = f"Follower on the bench: {options.leader.name if options.leader else 'generated reaches'}"
+    picture = options.out / "following.png"
+    draw_following(picture, [trace(one.recorded.log(), one.name) for one in runs], title)
+    return picture
 
 
-def _bench_options(options: DemoOptions, leader: Path) -> list[str]:
+def _bench_options(options: DemoOptions) -> list[str]:
     arm = [] if options.arm is None else ["--arm", str(options.arm)]
-    return [
-        *("--board", options.board, "--blank", "--leader", str(leader), "--speed", options.speed),
-        *("--seed", str(options.seed)),
-        *arm,
-    ]
+    return ["--board", options.board, "--blank", "--speed", options.speed, "--seed", str(options.seed), *arm]
 
 
 def _make_folder(folder: Path) -> None:

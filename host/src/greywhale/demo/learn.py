@@ -1,0 +1,81 @@
+"""From recordings to controllers, as with a real arm: identify, tune on the model, write both files."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from greywhale.arm import ArmParameters, load_arm
+from greywhale.arm.parameters import Friction, Gear
+
+if TYPE_CHECKING:
+    from greywhale.identify import Outcome as Identification
+    from greywhale.identify import Table
+    from greywhale.log import Log
+    from greywhale.tune import Outcome as Tuning
+    from greywhale.tune.progress import Report
+
+
+@dataclass(frozen=True)
+class Learnt:
+    """A model and the controllers tuned on it, each with its file and what it took in wall time."""
+
+    model: Path
+    controller: Path
+    identification: Identification
+    tuning: Tuning
+    identify_s: float
+    tune_s: float
+
+
+def learn(
+    fit: Log,
+    validate: Sequence[Log],
+    tables: Sequence[Table],
+    nominal: ArmParameters,
+    folder: Path,
+    budget: int | None = None,
+    seed: int = 0,
+    progress: Report | None = None,
+) -> Learnt:
+    """Write model.toml and controller.toml into `folder`; an interrupt ends it with KeyboardInterrupt.
+
+    Nothing is known of the arm but `nominal` and the logs; `tables` are the parameters these were recorded with.
+    """
+    # Slow to import, and of no use to those who only want a bench.
+    from greywhale.identify import identify
+    from greywhale.tune import tune
+    from greywhale.tune.model import load_model
+
+    model_file, controller_file = folder / "model.toml", folder / "controller.toml"
+    started = time.monotonic()
+    identification = identify([fit], nominal, validate=validate, tables=tables, seed=seed, report=progress)
+    identification.save(model_file)
+    if not identification.complete:
+        raise KeyboardInterrupt
+    identified = time.monotonic()
+    # The model's doubts are for the caller to show: a demo that stops at one would show nothing.
+    model = load_model(model_file, seed=seed, force=True)
+    tuning = tune(model, budget=budget, seed=seed, report=progress, floors=False)
+    tuning.save(controller_file)
+    if not tuning.complete:
+        raise KeyboardInterrupt
+    tuned = time.monotonic()
+    return Learnt(model_file, controller_file, identification, tuning, identified - started, tuned - identified)
+
+
+def drawn(arm: ArmParameters) -> ArmParameters:
+    """What its drawings say of an arm: geometry, stops, potentiometers and supply, with the paper's white-box motors.
+
+    Motors' true values, friction and backlash are left out: they are what an identification has to find.
+    """
+    white = load_arm("white_box")
+    joints = tuple(
+        joint.model_copy(update={"motor": known.motor, "friction": Friction(), "gear": Gear()})
+        for joint, known in zip(arm.joint, white.joint, strict=True)
+    )
+    name = f"{arm.name}, as drawn"
+    return arm.model_copy(update={"name": name, "motor_equation": white.motor_equation, "joint": joints})

@@ -1,0 +1,83 @@
+"""Records on the bench: the person there takes up a motion, the board its controllers, and the follower follows."""
+
+from __future__ import annotations
+
+import shlex
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from greywhale.demo.bench import BenchProcess
+from greywhale.errors import UserError
+from greywhale.link import schema
+from greywhale.link.device import Device
+from greywhale.link.stream import stream
+from greywhale.link.upload import upload_controller
+from greywhale.log import Log, read_log
+from greywhale.log.record import record
+from greywhale.trajectory import Trajectory, load_leader
+
+Progress = Callable[[str, float], None]
+
+SETTLE_S = 1.0  # recorded after the leader's last movement
+LEAD_S = 0.5  # between the end of the soft start and the leader's first movement
+READY_RAD = 0.05  # both arms are back at the start within this
+READY_WAIT_S = 20.0
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """A log, the CRC of the parameters it was recorded with, what the link lost of it, wall time of the upload."""
+
+    path: Path
+    param_crc: int
+    samples: int
+    dropped: int
+    upload_s: float
+
+    def log(self) -> Log:
+        return read_log(self.path)
+
+
+def record_motion(
+    bench: BenchProcess,
+    leader: Path,
+    log: Path,
+    controller: Path | None = None,
+    progress: Progress | None = None,
+) -> Recorded:
+    """Let the follower follow the whole motion of the file `leader` into `log`, first uploading `controller` if given.
+
+    The log begins LEAD_S before the leader's first movement and ends SETTLE_S after its last.
+    """
+    motion = load_leader(leader)
+    bench.command(f"leader {shlex.quote(str(leader.resolve()))}")
+    started = time.monotonic()
+    with Device(bench.port) as device:
+        if controller is not None:
+            upload_controller(device, controller, progress)
+        uploaded = time.monotonic()
+        _wait_for_the_arms(device, motion)
+        crc = device.greet().param_crc
+        length = LEAD_S + motion.duration_s + SETTLE_S
+        recording = record(device, log, length, enable=True, progress=progress)
+    return Recorded(log, crc, recording.rows, recording.dropped, uploaded - started)
+
+
+def _wait_for_the_arms(device: Device, motion: Trajectory) -> None:
+    """Until the person at the bench has brought both arms to the start of the motion."""
+    scale = schema.Sample.LSB["leader"]
+    home = motion.angles[0]
+    for one in stream(device, 10):
+        arms = np.array([one.sample.leader, one.sample.follower]) * scale
+        if np.abs(arms - home).max() < READY_RAD:
+            device.telemetry(0)
+            return
+        if one.elapsed > READY_WAIT_S * 1000:
+            raise UserError(
+                f"the arms are up to {np.abs(arms - home).max():.2f} rad away from the start of the motion "
+                f"{READY_WAIT_S:g} s after the motors went off; this is a fault of the bench, please report it."
+            )

@@ -1,0 +1,61 @@
+"""Whether tuning works where it counts: the compiled firmware on the bench, with an arm that nobody was told about.
+
+Everything goes through the serial port: practice recordings, identification from them, tuning on the identified
+model, upload; then the same motions as before tuning, measured as `greywhale evaluate` does. The logs stay in
+build/bench_tune for a look.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from greywhale.arm import default_arm, load_arm
+from greywhale.config.paper_tables import paper_table
+from greywhale.demo import BenchProcess, record_motion
+from greywhale.demo.learn import learn
+from greywhale.demo.practice import UNTUNED, practise, tables
+from greywhale.link import schema
+from greywhale.measure import Evaluation, evaluate
+from greywhale.trajectory import Trajectory, save_leader
+from tools.bench.figure import Figure
+from tools.bench.tuning import Judged, figures, motions
+from tools.setup.console import ROOT
+
+FOLDER = ROOT / "build" / "bench_tune"
+REACH_S = 120.0
+
+
+def measured(
+    bench: BenchProcess, wanted: dict[str, Trajectory], controller: Path, suffix: str
+) -> dict[str, tuple[Evaluation, float]]:
+    """Every motion recorded with these controllers; beside each evaluation the wall time of the upload."""
+    found = {}
+    for name, motion in wanted.items():
+        leader = FOLDER / f"{name.replace(' ', '_')}_leader.csv"
+        save_leader(leader, motion)
+        recorded = record_motion(bench, leader, FOLDER / f"{name.replace(' ', '_')}_{suffix}.csv", controller)
+        found[name] = (evaluate(recorded.log()), recorded.upload_s)
+    return found
+
+
+def run() -> list[Figure]:
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    wanted = motions()
+    with BenchProcess("--speed", "max") as bench:
+        before = measured(bench, wanted, paper_table(UNTUNED), "before")
+        logs = practise(bench, FOLDER)
+        learnt = learn(logs[0], logs[1:], tables(schema.DEFAULTS), load_arm("white_box"), FOLDER)
+        after = measured(bench, wanted, learnt.controller, "after")
+    upload_s = next(iter(after.values()))[1]
+    total = learnt.identify_s + learnt.tune_s + upload_s
+    arm = default_arm()
+    judged = {name: Judged.of(name, motion, arm, before[name][0], after[name][0]) for name, motion in wanted.items()}
+    changed = 100 * learnt.identification.verdicts[2].improvement
+    return [
+        Figure("bench: identify, wall time", learnt.identify_s, "s"),
+        Figure("bench: tune, wall time", learnt.tune_s, "s"),
+        Figure("bench: upload, wall time", upload_s, "s"),
+        Figure("bench: identify, tune and upload", total, "s", f"<= {REACH_S:g}", total <= REACH_S),
+        Figure("bench: model better than white box, changed controller", changed, "%"),
+        *figures("bench", judged),
+    ]

@@ -1,0 +1,120 @@
+"""What the benchmarks of the tuning share: the motions it is judged on, and figures from measures before and after."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from greywhale.arm import ArmParameters
+from greywhale.measure import Evaluation
+from greywhale.trajectory import Trajectory, human_reaches, load_leader, multi_steps, steps
+from greywhale.trajectory.motion import Array
+from greywhale.tune.floor import saturation_floor
+from tools.bench.figure import Figure
+
+# A folder of leader recordings (CSV: time_s, leader_0..3) to be judged on as well.
+LEADERS = os.environ.get("GREYWHALE_LEADERS", "")
+
+LOWER = 78.0  # %, of the total MSE
+OF_FLOOR = 1.15
+STEADY_RAD = 0.02
+# Delays are read off logs with a row a millisecond.
+SAME_DELAY_S = 0.001
+# Below this (rad^2) a floor is no floor: the motion never asks for more than the supply gives.
+SATURATED = 1e-4
+
+
+def motions() -> dict[str, Trajectory]:
+    """What nothing was trained on."""
+    found = {"steps": steps(), "multi-steps": multi_steps(), "human reaches": human_reaches(1, 20.0)}
+    if LEADERS:
+        files = sorted(Path(LEADERS).glob("*.csv"))
+        if not files:
+            raise FileNotFoundError(f"GREYWHALE_LEADERS={LEADERS}: there is no .csv in this folder")
+        found |= {file.stem: load_leader(file) for file in files}
+    return found
+
+
+@dataclass(frozen=True)
+class Judged:
+    """One motion before and after tuning; `floor` is the least MSE (4,) that any controller could reach."""
+
+    name: str
+    before: Evaluation
+    after: Evaluation
+    floor: Array
+
+    @classmethod
+    def of(cls, name: str, motion: Trajectory, arm: ArmParameters, before: Evaluation, after: Evaluation) -> Judged:
+        return cls(name, before, after, saturation_floor(motion, arm, resample=True).mse)
+
+    @property
+    def lower(self) -> float:
+        """By how much the total MSE fell, %."""
+        return 100.0 * (1.0 - self.after.total_mse / self.before.total_mse)
+
+    @property
+    def of_floor(self) -> float | None:
+        """The total MSE as a multiple of the floor, where there is one."""
+        total = float(self.floor.sum())
+        return self.after.total_mse / total if total > SATURATED else None
+
+    def mse_ratios(self) -> Array:
+        """After to before, of every joint that moved enough to tell: a joint at rest shows noise only."""
+        pairs = zip(self.after.joints, self.before.joints, strict=True)
+        return np.array([after.mse / before.mse for after, before in pairs if before.mse > 1e-5])
+
+    def steady(self) -> float | None:
+        """The largest steady-state error of a joint, rad."""
+        errors = [joint.steady_state_error for joint in self.after.joints if joint.steady_state_error is not None]
+        return max(errors, default=None)
+
+    def later(self, which: str) -> float | None:
+        """By how much the delay of a joint grew most, s; negative where all got shorter."""
+        grown = []
+        for before, after in zip(self.before.joints, self.after.joints, strict=True):
+            a, b = getattr(before, which), getattr(after, which)
+            if a is not None and b is not None:
+                grown.append(b - a)
+        return max(grown, default=None)
+
+
+def figures(where: str, judged: Mapping[str, Judged]) -> list[Figure]:
+    """The project's bars, motion by motion."""
+    found: list[Figure] = []
+    for name, one in judged.items():
+        head = f"{where}, {name}"
+        found.append(Figure(f"{head}: total MSE before", one.before.total_mse, "rad2"))
+        found.append(Figure(f"{head}: total MSE after", one.after.total_mse, "rad2"))
+        found += _reached(head, name, one)
+        worst = float(one.mse_ratios().max())
+        found.append(Figure(f"{head}: MSE of the worst joint, after / before", worst, "x", "<= 1", worst <= 1.0))
+        steady = one.steady()
+        if steady is not None:
+            found.append(
+                Figure(f"{head}: largest steady-state error", steady, "rad", f"<= {STEADY_RAD}", steady <= STEADY_RAD)
+            )
+        for which, means in (("delay_s", "delay"), ("onset_delay_s", "onset delay")):
+            later = one.later(which)
+            if later is not None:
+                holds = later <= SAME_DELAY_S
+                found.append(Figure(f"{head}: {means}, most grown", 1e3 * later, "ms", "<= 0 (+1)", holds))
+    return found
+
+
+def _reached(head: str, name: str, one: Judged) -> list[Figure]:
+    lower, multiple = one.lower, one.of_floor
+    if name == "steps":
+        assert multiple is not None
+        either = lower >= LOWER or multiple <= OF_FLOOR
+        return [
+            Figure(f"{head}: MSE lower by", lower, "%", f">= {LOWER:g}, or", either),
+            Figure(f"{head}: MSE over the floor", multiple, "x", f"<= {OF_FLOOR}", either),
+            Figure(f"{head}: MSE before over the floor", one.before.total_mse / float(one.floor.sum()), "x"),
+        ]
+    found = [Figure(f"{head}: MSE lower by", lower, "%")]
+    return found if multiple is None else [*found, Figure(f"{head}: MSE over the floor", multiple, "x")]
