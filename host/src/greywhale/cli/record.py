@@ -1,38 +1,118 @@
-"""`greywhale record`: a log of leader, follower and voltages."""
+"""`greywhale record`: a log of leader, follower and voltages; on request of a motion that this host leads."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
-from greywhale.cli.output import json_option, port_option, progress, show
+from greywhale.cli.output import Report, json_option, port_option, progress, show
+from greywhale.errors import BAD_USAGE, UserError
 from greywhale.link.device import Device
 from greywhale.link.ports import choose_port
-from greywhale.log.record import record
+from greywhale.log.record import Recording, pose_of, record, record_led, table_of
+
+if TYPE_CHECKING:
+    from greywhale.excite import Design
+
+RECORDED_S = 10.0
+# Options that say nothing without --excite.
+_OF_EXCITE = {"arm_file": "--arm", "ranges": "--range", "save_motion": "--save-motion", "seed": "--seed"}
 
 
 @click.command("record")
 @click.option(
     "--out", "-o", type=click.Path(path_type=Path), default=Path("log.csv"), show_default=True, help="The log."
 )
-@click.option("--seconds", "-s", type=float, default=10.0, show_default=True, help="Length, by the board's clock.")
+@click.option("--seconds", "-s", type=float, help="Length, by the board's clock.  [default: 10; with --excite: 20]")
 @click.option("--every", type=int, default=1, show_default=True, help="One sample every so many ticks of 1 ms.")
 @click.option("--enable", is_flag=True, help="Turn the motors on: the follower follows while the log is recorded.")
+@click.option(
+    "--excite", is_flag=True, help="Turn the motors on and lead the arm along the motion that tells most about it."
+)
+@click.option("--arm", "arm_file", help="With --excite: your arm.toml or a model.toml.  [default: white_box]")
+@click.option(
+    "--range",
+    "ranges",
+    multiple=True,
+    metavar="J:MIN:MAX",
+    help="With --excite: range of a joint in rad, instead of 1 rad to either side of where it is.",
+)
+@click.option("--seed", type=int, help="With --excite: another seed, another motion.  [default: 0]")
+@click.option(
+    "--save-motion", type=click.Path(path_type=Path), help="With --excite: also write the motion, for `sim --leader`."
+)
 @port_option
 @json_option
-def command(out: Path, seconds: float, every: int, enable: bool, port: str | None, as_json: bool) -> None:
+def command(
+    out: Path,
+    seconds: float | None,
+    every: int,
+    enable: bool,
+    excite: bool,
+    arm_file: str | None,
+    ranges: tuple[str, ...],
+    seed: int | None,
+    save_motion: Path | None,
+    port: str | None,
+    as_json: bool,
+) -> None:
     """Record leader, follower and voltages into a CSV log.
 
     Without --enable the motors stay off and the log shows what the potentiometers say. With it the log begins when the
     soft start is over. Ctrl-C stops the motors and keeps what was recorded, marked as interrupted.
     A recording that is killed leaves a hidden file beside the log, .NAME.*.part, that `evaluate` reads as unfinished.
+
+    With --excite nobody needs to move the leader: this program leads the arm along a motion designed for `identify`,
+    from where the arm is and back. It keeps the joints' limits, but knows of no table and no link in the way: clear the
+    arm's surroundings, or narrow the joints' --range.
     """
+    if not excite:
+        _refuse_without_excite(arm_file=arm_file, ranges=ranges, save_motion=save_motion, seed=seed)
+        with Device(choose_port(port)) as device, progress(as_json) as report:
+            length = RECORDED_S if seconds is None else seconds
+            recording = record(device, out, length, every, enable, report)
+        show(as_json, {"port": device.port, **recording.as_dict()}, _told(recording))
+        return
+    if enable:
+        raise UserError("--excite turns the motors on by itself; leave --enable out.", BAD_USAGE)
     with Device(choose_port(port)) as device, progress(as_json) as report:
-        recording = record(device, out, seconds, every, enable, report)
+        designed = _designed(device, arm_file or "white_box", ranges, seconds, seed or 0, report)
+        if save_motion is not None:
+            from greywhale.trajectory import save_leader
+
+            save_leader(save_motion, designed.motion)
+        recording = record_led(device, out, designed.motion, every, report)
+    saved = {} if save_motion is None else {"motion": str(save_motion)}
+    result = {"port": device.port, **recording.as_dict(), "design": designed.as_dict(), **saved}
+    show(as_json, result, f"{_told(recording)}\n{designed.text()}")
+
+
+def _designed(
+    device: Device, arm_file: str, ranges: tuple[str, ...], seconds: float | None, seed: int, report: Report | None
+) -> Design:
+    """The motion for the arm as it stands and the controllers that it has."""
+    # Scipy and the native simulation take a moment to import.
+    from greywhale.arm import load_arm
+    from greywhale.excite import SECONDS, design, parse_range
+
+    chosen = dict(parse_range(text) for text in ranges)
+    arm, length = load_arm(arm_file), SECONDS if seconds is None else seconds
+    pose, table = pose_of(device), table_of(device, report)
+    return design(arm, pose, parameters=table, ranges=chosen, seconds=length, seed=seed, report=report)
+
+
+def _refuse_without_excite(**given: object) -> None:
+    for name, value in given.items():
+        if value is not None and value != ():
+            raise UserError(f"{_OF_EXCITE[name]} belongs to --excite; add that, or leave it out.", BAD_USAGE)
+
+
+def _told(recording: Recording) -> str:
     lost = f", {recording.dropped} dropped by the link" if recording.dropped else ""
-    show(
-        as_json,
-        {"port": device.port, **recording.as_dict()},
-        f"{out}: {recording.rows} samples{lost}, {recording.duration_s:g} s.",
-    )
+    waits = f", the board waited {recording.waits} times for this host" if recording.waits else ""
+    slow = ""
+    if recording.slowest is not None and recording.slowest < 1.0:
+        slow = f", slowed down to {100 * recording.slowest:.0f} % where a follower lagged"
+    return f"{recording.path}: {recording.rows} samples{lost}, {recording.duration_s:g} s{waits}{slow}."

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
 from greywhale.errors import BAD_USAGE, UserError
 from greywhale.link import schema
@@ -24,6 +25,7 @@ from greywhale.log.writer import LogWriter
 from greywhale.trajectory import JOINTS, Trajectory
 
 Progress = Callable[[str, float], None]
+Floats = npt.NDArray[np.float64]
 
 # The motors go off this long after this host falls silent.
 LEASE_MS = 500
@@ -39,6 +41,8 @@ REST_S = 0.3
 # Within this many ticks of enable the samples must show that the motors started.
 _ENABLE_TICKS = 1000
 _ROWS_PER_REPORT = 50
+_POSE_SAMPLES = 21
+_LIMITS = ("limit_min", "limit_max")
 _MOVING = (schema.State.SOFT_START, schema.State.FOLLOWING)
 _RAD = schema.Sample.LSB["leader"]
 _VOLT = schema.Sample.LSB["voltage"]
@@ -105,28 +109,44 @@ def record_led(
             BAD_USAGE,
         )
     report = progress or (lambda what, fraction: None)
-    table = {name: parameter(device, name) for name in _LED_BY}
-    limits = np.array([[table[f"joint{joint}.{end}"] for joint in range(JOINTS)] for end in ("limit_min", "limit_max")])
+    limits = np.array([[_parameter(device, f"joint{joint}.{end}") for joint in range(JOINTS)] for end in _LIMITS])
+    tracking = _parameter(device, "tracking_limit")
     origin = Origin(device.firmware_version, device.hello.board.key, device.hello.param_crc, _period_ms(device), every)
     with LogWriter(path, origin) as log:
         received = stream(device, every)
         with device.leading(LEASE_MS) as begun:
             pose = np.array(begun.reference) * _RAD
             plan = Plan.of(motion, pose, limits, REST_S)
-            leading = Leading(device, begun, plan, table["tracking_limit"])
+            leading = Leading(device, begun, plan, tracking)
             received = _following(device, received, report, leading)
             duration = _write_led(device, log, received, leading, report)
     device.telemetry(0)
     return Recording(Path(path), log.rows, log.dropped, duration, leading.slowest, leading.starved)
 
 
-_LED_BY = ("tracking_limit", *(f"joint{joint}.{end}" for joint in range(JOINTS) for end in ("limit_min", "limit_max")))
+def pose_of(device: Device) -> Floats:
+    """The followers' angles now (4,), rad: the median of a few samples."""
+    received = stream(device, 1)
+    angles = [next(received).sample.follower for _ in range(_POSE_SAMPLES)]
+    device.telemetry(0)
+    pose: Floats = np.median(np.array(angles), axis=0) * _RAD
+    return pose
 
 
-def parameter(device: Device, name: str) -> float:
+def table_of(device: Device, progress: Progress | None = None) -> tuple[int, ...]:
+    """The whole parameter set that runs, raw, in index order."""
+    report = progress or (lambda what, fraction: None)
+    values = []
+    for one in schema.PARAMETERS:
+        values.append(device.ask(schema.ParamGetRequest(one.index)).value)
+        report("reading the parameters", len(values) / len(schema.PARAMETERS))
+    return tuple(values)
+
+
+def _parameter(device: Device, name: str) -> float:
     """A parameter of the running set in its unit."""
     known = schema.PARAMETER_BY_NAME[name]
-    return device.ask(schema.ParamGetRequest(known.index)).value * known.lsb
+    return known.to_physical(device.ask(schema.ParamGetRequest(known.index)).value)
 
 
 def _check(seconds: float, every: int, enable: bool) -> None:

@@ -1,0 +1,208 @@
+"""Finds the motion that tells most about an arm: the multi-sine of greatest information (D-optimal) that is safe.
+
+The information is that of the follower in the closed loop with the board's own controllers, together with what is known
+before: the covariance of a model.toml, or the doubts of an arm file. So with a model the search goes for what its logs
+left open.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from functools import partial
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.arm import ArmParameters
+from greywhale.errors import BAD_USAGE, UserError
+from greywhale.excite.information import information, natural_sizes, prior
+from greywhale.excite.limits import JOINTS, MARGIN_RAD, Limits, family, limits_of
+from greywhale.excite.multisine import LONGEST_S, SHORTEST_S, Shape
+from greywhale.excite.trial import ROW_S, Tried, try_motion
+from greywhale.identify.space import KINDS, MOTOR, Parameter, Space
+from greywhale.identify.uncertainty import OPEN, OPEN_LOG
+from greywhale.link import schema
+from greywhale.optimise import create
+from greywhale.simulate import plant_row
+from greywhale.trajectory import Trajectory
+
+Floats = npt.NDArray[np.float64]
+Report = Callable[[str, float], None]
+
+BUDGET = 400
+METHOD = "cma-es"
+SECONDS = 20.0
+# What is looked at where an arm file says nothing about what is known: as in a usual identification.
+USUAL = (*MOTOR, "coulomb", "breakaway", "gap")
+# Cost of a lag or an overshoot of twice what is allowed: more than any information is worth.
+PENALTY = 50.0
+# A motion that is not safe on some arm is drawn together towards the pose by this much, again and again.
+SHRINK, SHRINKS = 0.9, 30
+
+
+@dataclass(frozen=True)
+class Problem:
+    """What a motion is judged by: the arm, its family, the parameters and what is known of them."""
+
+    parameters: tuple[Parameter, ...]
+    plants: Floats  # (1 + family, 60)
+    known: Floats  # information before, (n, n)
+    table: tuple[int, ...]  # the board's parameters, raw
+    limits: Limits
+
+    @classmethod
+    def of(
+        cls,
+        arm: ArmParameters,
+        table: Sequence[int],
+        pose: Floats,
+        ranges: Mapping[int, tuple[float, float]],
+        seed: int,
+    ) -> Problem:
+        limits = limits_of(arm, table, pose, ranges)
+        facts = arm.identification
+        if facts is not None and "covariance" in facts:
+            parameters = tuple(_parameter(str(one["name"])) for one in facts["parameter"])
+            space, covariance = Space(arm, parameters, plant_row(arm)), np.array(facts["covariance"])
+        else:
+            space, covariance = Space.of(arm, USUAL, range(JOINTS)), None
+        known = prior(space.parameters, covariance, space.doubts())
+        return cls(space.parameters, family(arm, seed), known, tuple(table), limits)
+
+    def judge(self, angles: Floats) -> Judgement:
+        """Of points (rows, 4) rad, 16 ms apart."""
+        tried = try_motion(angles, self.table, self.plants, threads=1)
+        told = information(self.plants[0], tried.angles[0], ROW_S, self.parameters).matrix + self.known
+        size = natural_sizes(self.parameters)
+        log_det = float(np.linalg.slogdet(told * np.outer(size, size))[1])
+        return Judgement(log_det, np.sqrt(np.diag(np.linalg.inv(told))), tried, self._excess(tried))
+
+    def _excess(self, tried: Tried) -> float:
+        """By which share the worst arm of the family exceeds what it may lag or leave its range by; 0: none does."""
+        beyond = np.maximum(self.limits.low - tried.angles.min(axis=1), tried.angles.max(axis=1) - self.limits.high)
+        lag, overshoot = tried.lag.max() / self.limits.lag, beyond.max() / MARGIN_RAD
+        return max(0.0, float(max(lag, overshoot)) - 1.0)
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """`log_det` of the information, parameters in natural sizes; `deviations` (n,) expected of the searched numbers."""
+
+    log_det: float
+    deviations: Floats
+    tried: Tried = field(repr=False)
+    excess: float
+
+    @property
+    def cost(self) -> float:
+        return -0.5 * self.log_det + PENALTY * self.excess
+
+
+@dataclass(frozen=True)
+class Design:
+    """A motion and what is expected of it."""
+
+    motion: Trajectory
+    problem: Problem = field(repr=False)
+    judgement: Judgement = field(repr=False)
+    evaluations: int
+
+    def as_dict(self) -> dict[str, object]:
+        parameters = self.problem.parameters
+        return {
+            "seconds": self.motion.duration_s,
+            "log_det": round(self.judgement.log_det, 3),
+            "expected_deviation": {
+                one.name: float(f"{value:.3g}")
+                for one, value in zip(parameters, self.judgement.deviations, strict=True)
+            },
+            "left_open": self.left_open(),
+            "largest_lag_rad": round(float(self.judgement.tried.lag.max()), 3),
+            "evaluations": self.evaluations,
+        }
+
+    def left_open(self) -> list[str]:
+        """Names of parameters that even this motion will not settle, by the arm file."""
+        rows = zip(self.problem.parameters, self.judgement.deviations, strict=True)
+        return [one.name for one, deviation in rows if deviation > _enough(one)]
+
+    def text(self) -> str:
+        """One sentence."""
+        rows = zip(self.problem.parameters, self.judgement.deviations, strict=True)
+        motors = [float(deviation) for one, deviation in rows if one.kind in (*MOTOR, "coulomb")]
+        left = self.left_open()
+        return (
+            f"Sensor noise alone leaves motors and friction known to {100 * float(np.median(motors)):.2g} % after this "
+            f"motion, the worst of them to {100 * max(motors):.2g} %"
+            + (f"; it hardly tells {', '.join(left)}" if left else "")
+            + "."
+        )
+
+
+def design(
+    arm: ArmParameters,
+    pose: npt.ArrayLike,
+    *,
+    parameters: Sequence[int] = schema.DEFAULTS,
+    ranges: Mapping[int, tuple[float, float]] | None = None,
+    seconds: float = SECONDS,
+    seed: int = 0,
+    budget: int = BUDGET,
+    report: Report | None = None,
+) -> Design:
+    """Search a motion from `pose` (4,) rad and back to it for a board with this parameter table (raw).
+
+    `ranges` (rad) of single joints narrow or widen the usual: 1 rad to either side of the pose. The result depends on
+    the arguments only. Raises UserError where the arm cannot move like that.
+    """
+    if not SHORTEST_S <= seconds <= LONGEST_S:
+        raise UserError(f"the motion is {seconds:g} s long; it must be {SHORTEST_S:g} to {LONGEST_S:g} s.", BAD_USAGE)
+    if budget < 1:
+        raise UserError(f"the budget is {budget} evaluations, but it must be at least 1.", BAD_USAGE)
+    at = np.asarray(pose, dtype=np.float64)
+    problem = Problem.of(arm, parameters, at, ranges or {}, seed)
+    shape = Shape(problem.limits, seconds)
+    best = _search(problem, shape, seed, budget, report or (lambda what, fraction: None))
+    angles = shape.angles(best)
+    judged = problem.judge(angles)
+    for _ in range(SHRINKS):
+        if judged.excess == 0.0:
+            return Design(shape.trajectory(angles), problem, judged, budget)
+        angles = at + SHRINK * (angles - at)
+        judged = problem.judge(angles)
+    raise UserError(
+        f"no motion was found that every arm like {arm.name} can follow with the controllers on the board: a joint "
+        f"lags by {judged.tried.lag.max():.2f} rad; upload other controllers, or correct the arm file."
+    )
+
+
+def _search(problem: Problem, shape: Shape, seed: int, budget: int, report: Report) -> Floats:
+    """The numbers of the best multi-sine; candidates of a batch are tried side by side."""
+    ones = np.ones(shape.size)
+    cost = partial(_cost, problem, shape)
+    with (
+        create(METHOD, -ones, ones, budget=budget, seed=seed) as optimiser,
+        ThreadPoolExecutor(os.cpu_count()) as pool,
+    ):
+        while not optimiser.done:
+            optimiser.tell(list(pool.map(cost, optimiser.ask())))
+            report("designing the motion", optimiser.evaluations / budget)
+        return optimiser.best.x
+
+
+def _cost(problem: Problem, shape: Shape, numbers: Floats) -> float:
+    return problem.judge(shape.angles(numbers)).cost
+
+
+def _parameter(name: str) -> Parameter:
+    joint, _, kind = name.partition(".")
+    if not (joint.startswith("joint") and joint[5:] in "0123" and kind in KINDS):
+        raise UserError(f'[identification] names a parameter "{name}" that is not known; identify again.')
+    return Parameter(int(joint[5:]), kind)
+
+
+def _enough(one: Parameter) -> float:
+    return OPEN_LOG if KINDS[one.kind].logarithmic else OPEN[one.kind]

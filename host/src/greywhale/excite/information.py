@@ -1,0 +1,167 @@
+"""How much a motion tells about every parameter: the Fisher information of what the identification fits.
+
+The identification drives candidates by the logged voltages over windows of half a second, each started where the log
+was, and compares angles. To first order a wrong parameter acts on a joint as a voltage does (what the parameter's
+own term takes), and that voltage moves the joint as its motor lets it; what a wrong start angle and speed could explain
+as well is taken off. Joints are looked at one by one: what a wrong parameter does to its neighbours is left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.excite.body import Body
+from greywhale.identify.space import KINDS, Parameter, column
+
+Floats = npt.NDArray[np.float64]
+# A reading's standard deviation (rad), and what a start speed may be off beyond noise (rad/s), as when identifying.
+NOISE_RAD = 1.2e-3
+SPEED_DOUBT = 0.05
+WINDOW_S = 0.5
+# Below this speed friction may be anything within its limits and says nothing (rad/s).
+STILL_RAD_S = 0.01
+_STEP = 1e-3  # rad, for the derivative by a zero angle
+
+
+@dataclass(frozen=True)
+class Information:
+    """What motions say about `parameters`: block by block, (n, n) over the searched numbers."""
+
+    parameters: tuple[Parameter, ...]
+    matrix: Floats
+
+    @property
+    def size(self) -> int:
+        return len(self.parameters)
+
+
+def information(plant: Floats, angles: Floats, row_s: float, parameters: Sequence[Parameter]) -> Information:
+    """Of a follower's motion, angles (rows, 4) rad every `row_s` seconds, on a plant (60,)."""
+    chosen = tuple(parameters)
+    velocity = np.gradient(angles, row_s, axis=0)
+    acceleration = np.gradient(velocity, row_s, axis=0)
+    body = Body.of(plant)
+    torque = body.torque(angles, velocity, acceleration)
+    inertia = np.diagonal(body.mass_matrix(angles), axis1=1, axis2=2).mean(axis=0)
+    rows = round(WINDOW_S / row_s)
+    matrix = np.zeros((len(chosen), len(chosen)))
+    for joint in range(4):
+        here = [index for index, one in enumerate(chosen) if one.joint == joint]
+        if not here:
+            continue
+        motion = _Motion(body, plant, joint, angles, velocity, acceleration[:, joint], torque[:, joint])
+        volts = np.column_stack([motion.volts(chosen[index].kind) for index in here])
+        shift = np.column_stack([motion.shift(chosen[index].kind) for index in here])
+        push = _response(plant, joint, float(inertia[joint]), rows, row_s)
+        seen = push @ _windows(volts, rows) + _windows(shift, rows)
+        left = _without_start(plant, joint, float(inertia[joint]), rows, row_s)
+        matrix[np.ix_(here, here)] = (seen.transpose(0, 2, 1) @ (left @ seen)).sum(axis=0)
+    return Information(chosen, matrix)
+
+
+@dataclass(frozen=True)
+class _Motion:
+    """One joint's motion and what each parameter takes of the voltage in it."""
+
+    body: Body
+    plant: Floats
+    joint: int
+    q: Floats
+    v: Floats
+    a: Floats
+    torque: Floats
+
+    def volts(self, kind: str) -> Floats:
+        """(rows,) V by which a unit of the searched number changes what the motion takes."""
+        alpha, speed = 1.0 / self._of("torque_per_volt"), self.v[:, self.joint]
+        sliding: Floats = np.tanh(speed / STILL_RAD_S)
+        coulomb = alpha * self._of("coulomb")
+        excess = max(alpha * self._of("breakaway") - coulomb, 0.0)
+        ratio: Floats = (speed / self._of("stribeck_velocity")) ** 2
+        match kind:
+            case "alpha":
+                return alpha * self.torque
+            case "inertia":
+                return alpha * self._of("inertia") * self.a
+            case "damping":
+                return alpha * self._of("damping") * speed
+            case "coulomb":
+                return coulomb * sliding
+            case "breakaway":
+                return coulomb * sliding / (1.0 + ratio)
+            case "stribeck":
+                return excess * sliding * 2.0 * ratio / (1.0 + ratio) ** 2
+            case "offset":
+                moved = self.q.copy()
+                moved[:, self.joint] += _STEP
+                still = np.zeros_like(self.q)
+                change = self.body.bias(moved, still) - self.body.bias(self.q, still)
+                gained: Floats = alpha * change[:, self.joint] / _STEP
+                return gained
+            case _:
+                return np.zeros(len(speed))
+
+    def _of(self, name: str) -> float:
+        return float(self.plant[column(self.joint, name)])
+
+    def shift(self, kind: str) -> Floats:
+        """(rows,) by which a unit of the searched number moves the joint against its motor: backlash."""
+        if kind != "gap":
+            return np.zeros(len(self.a))
+        side: Floats = np.tanh(self.torque / max(1e-3, 0.02 * float(np.abs(self.torque).max())))
+        return side
+
+
+def _windows(values: Floats, rows: int) -> Floats:
+    """(windows, rows, columns)"""
+    count = len(values) // rows
+    return values[: count * rows].reshape(count, rows, values.shape[1])
+
+
+def _lag(plant: Floats, joint: int, inertia: float) -> float:
+    """Time constant of the joint's speed under a voltage, s."""
+    whole = float(plant[column(joint, "inertia")]) + inertia
+    return whole / float(plant[column(joint, "damping")])
+
+
+def _response(plant: Floats, joint: int, inertia: float, rows: int, row_s: float) -> Floats:
+    """(rows, rows): angle in each row of a window per volt in each row before."""
+    lag = _lag(plant, joint, inertia)
+    gain = float(plant[column(joint, "torque_per_volt")]) / float(plant[column(joint, "damping")])
+    time_s = np.arange(rows) * row_s
+    since = time_s[:, None] - time_s[None, :]
+    pulse = gain * row_s * -np.expm1(-np.maximum(since, 0.0) / lag)
+    return np.where(since > 0.0, pulse, 0.0)
+
+
+def _without_start(plant: Floats, joint: int, inertia: float, rows: int, row_s: float) -> Floats:
+    """(rows, rows): information of readings in a window whose start angle and speed are known poorly."""
+    lag = _lag(plant, joint, inertia)
+    time_s = np.arange(rows) * row_s
+    basis = np.column_stack([np.ones(rows), lag * -np.expm1(-time_s / lag)])
+    doubt = np.diag([NOISE_RAD**-2.0, SPEED_DOUBT**-2.0])
+    # The identification compares every 5 ms; fewer rows here stand for those.
+    weight = row_s / 5e-3 / NOISE_RAD**2
+    normal = weight * basis.T @ basis + doubt
+    return weight * (np.eye(rows) - weight * basis @ np.linalg.solve(normal, basis.T))
+
+
+def prior(parameters: Sequence[Parameter], covariance: Floats | None, doubts: Floats) -> Floats:
+    """Information of what is known before: of a model its covariance, of an arm file `doubts` (deviations)."""
+    if covariance is None:
+        return np.diag(doubts**-2.0)
+    known = np.zeros_like(covariance)
+    for joint in range(4):
+        here = [index for index, one in enumerate(parameters) if one.joint == joint]
+        block = np.ix_(here, here)
+        known[block] = np.linalg.inv(covariance[block] + 1e-12 * np.eye(len(here)))
+    return known + np.diag(doubts**-2.0)
+
+
+def natural_sizes(parameters: Sequence[Parameter]) -> Floats:
+    """What counts as one in each searched number: a factor of e, or ten steps of finite differences."""
+    return np.array([1.0 if KINDS[one.kind].logarithmic else 10.0 * KINDS[one.kind].step for one in parameters])

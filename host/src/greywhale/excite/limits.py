@@ -1,0 +1,142 @@
+"""What a motion may do on this arm: ranges, speeds, accelerations per joint; and arms on which it must be safe too."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.arm import ArmParameters
+from greywhale.errors import BAD_USAGE, UserError
+from greywhale.excite.body import Body
+from greywhale.identify import sampled_plants
+from greywhale.identify.space import MOTOR, Space
+from greywhale.link import schema
+from greywhale.link.lead import FASTEST_RAD_S
+from greywhale.simulate import plant_row
+
+Floats = npt.NDArray[np.float64]
+JOINTS = 4
+# Without --range a joint moves by no more than this to either side of where it is (rad).
+REACH_RAD = 1.0
+# Kept free before a limit of the parameter table or a stop of the arm (rad).
+MARGIN_RAD = 0.1
+# A narrower range shows nothing.
+NARROWEST_RAD = 0.2
+# Of the voltage there is, what speed may take and what acceleration may take.
+SPEED_SHARE, ACCELERATION_SHARE = 0.5, 0.5
+FASTEST = min(4.0, FASTEST_RAD_S / 1.5)
+# Of the board's tracking limit, what the follower may lag in simulation; from half of it on the player slows down.
+LAG_SHARE = 0.4
+USUAL_TRACKING_RAD = 0.9
+# A motor may be wrong by this much in the arm file (logarithm, uniform), for the arms that the motion is tried on.
+DOUBT = 0.7
+FAMILY = 15
+FRICTION_V = (0.2, 0.9)
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Per joint: `low`, `high` (rad), `speed` (rad/s), `acceleration` (rad/s²); `lag` in rad for all."""
+
+    pose: Floats
+    low: Floats
+    high: Floats
+    speed: Floats
+    acceleration: Floats
+    lag: float
+
+
+def limits_of(
+    arm: ArmParameters, parameters: Sequence[int], pose: Floats, ranges: Mapping[int, tuple[float, float]]
+) -> Limits:
+    """Limits for a motion from `pose` (rad) with the board's parameter table (raw) and the user's ranges (rad)."""
+    value = {one.name: parameters[one.index] * one.lsb for one in schema.PARAMETERS}
+    low, high = np.zeros(JOINTS), np.zeros(JOINTS)
+    for joint in range(JOINTS):
+        stops = arm.joint[joint].stops
+        least = max(value[f"joint{joint}.limit_min"], stops.min) + MARGIN_RAD
+        most = min(value[f"joint{joint}.limit_max"], stops.max) - MARGIN_RAD
+        low[joint], high[joint] = _range(joint, pose[joint], ranges.get(joint), least, most)
+    speed, acceleration = _strength(arm, value, low, high)
+    tracking = value["tracking_limit"] or USUAL_TRACKING_RAD
+    return Limits(pose, low, high, speed, acceleration, LAG_SHARE * min(tracking, USUAL_TRACKING_RAD))
+
+
+def _range(
+    joint: int, pose: float, asked: tuple[float, float] | None, least: float, most: float
+) -> tuple[float, float]:
+    low, high = asked if asked is not None else (pose - REACH_RAD, pose + REACH_RAD)
+    low, high = max(low, least), min(high, most)
+    if not low <= pose <= high:
+        raise UserError(
+            f"joint {joint} is at {pose:.2f} rad, outside of the range {low:.2f} to {high:.2f} rad that its limits, "
+            "the arm's stops and --range leave; move it inside, or give another --range."
+        )
+    if high - low < NARROWEST_RAD:
+        raise UserError(
+            f"the range of joint {joint} is {low:.2f} to {high:.2f} rad, less than {NARROWEST_RAD:g} rad; give a wider "
+            "--range, or move the joint away from its limit."
+        )
+    return low, high
+
+
+def _strength(arm: ArmParameters, value: Mapping[str, float], low: Floats, high: Floats) -> tuple[Floats, Floats]:
+    """Speeds and accelerations that a part of the voltage is enough for, by the arm file."""
+    body = Body.of(plant_row(arm))
+    random = np.random.default_rng(0)
+    poses = random.uniform(low, high, (200, JOINTS))
+    still = np.zeros_like(poses)
+    gravity = np.abs(body.bias(poses, still)).max(axis=0)
+    inertia = np.diagonal(body.mass_matrix(poses), axis1=1, axis2=2).max(axis=0)
+    speed, acceleration = np.zeros(JOINTS), np.zeros(JOINTS)
+    for joint in range(JOINTS):
+        motor = arm.actuator(joint)
+        alpha = 1.0 / motor.torque_per_volt
+        volts = min(value["supply_mv"], value[f"joint{joint}.ku_mv"]) / 1000.0
+        free = volts - alpha * gravity[joint]
+        if free <= 0.2 * volts:
+            weight = alpha * gravity[joint]
+            raise UserError(
+                f"by the arm file the motor of joint {joint} can hardly lift its own weight: {weight:.1f} V of "
+                f"{volts:.1f} V; narrow its --range, or correct the arm file."
+            )
+        speed[joint] = min(FASTEST, SPEED_SHARE * free / (alpha * motor.damping))
+        acceleration[joint] = ACCELERATION_SHARE * free / (alpha * (motor.inertia + inertia[joint]))
+    return speed, acceleration
+
+
+def family(arm: ArmParameters, seed: int = 0) -> Floats:
+    """Plants (1 + 15, 60): the arm itself, then arms that it might be.
+
+    Of an identified model they are drawn from its covariance; of an arm file with its motors wrong by up to a factor of
+    two and friction of its own.
+    """
+    if arm.identification is not None and "covariance" in arm.identification:
+        return sampled_plants(arm, 1 + FAMILY, seed)
+    space = Space.of(arm, (*MOTOR, "coulomb"), range(JOINTS))
+    x = space.start()
+    random = np.random.default_rng(seed)
+    points = x + random.uniform(-DOUBT, DOUBT, (FAMILY, len(x)))
+    friction = [index for index, one in enumerate(space.parameters) if one.kind == "coulomb"]
+    points[:, friction] = np.log(random.uniform(*FRICTION_V, (FAMILY, len(friction))))
+    return np.vstack([space.plants(x[None]), space.plants(points)])
+
+
+def parse_range(text: str) -> tuple[int, tuple[float, float]]:
+    """`J:min:max` of the command line."""
+    parts = text.split(":")
+    try:
+        joint, low, high = int(parts[0]), float(parts[1]), float(parts[2])
+        good = len(parts) == 3 and 0 <= joint < JOINTS and -7.0 < low < high < 7.0
+    except (ValueError, IndexError):
+        good = False
+    if not good:
+        raise UserError(
+            f'--range is "{text}", but it must be JOINT:MIN:MAX with a joint 0..{JOINTS - 1} and two angles in rad, '
+            "such as 1:-0.5:0.8.",
+            BAD_USAGE,
+        )
+    return joint, (low, high)
