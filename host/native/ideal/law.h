@@ -100,8 +100,9 @@ class Law {
     const double full = joint.actuator.torque_per_volt * supply_;
     const double stop = full + joint.friction.coulomb + side * (load + joint.actuator.damping * lead);
     const Braking braking{inertia, joint.actuator.damping, std::max(stop, kLeastShare * full)};
-    const double way = std::fabs(error);
-    return lead + side * std::min(approach_speed(braking, way / t.brake), way / t.settle);
+    const double way = std::fabs(error), settling = way / t.settle;
+    const bool near = stopping_distance(braking, settling) * t.brake <= way;
+    return lead + side * (near ? settling : approach_speed(braking, way / t.brake));
   }
 
   // How far the motor stands ahead of a link that hangs in its teeth with this torque.

@@ -12,7 +12,7 @@ enclose the best that is possible, per joint (both in rad^2, over the window of 
   without ever having to brake; only what the leader is ahead of that counts. The other joints move as under the ideal
   controller. It says nothing (0) about leaders that never rest or that a motor can keep up with.
 
-For steps the floor lies 0.1 to 1.2 % above the bound (grey box, default arm), and an optimiser over the voltages
+For steps the floor lies 0.1 to 1.3 % above the bound on the shipped arms, and an optimiser over the voltages
 themselves, which knows what the leader will do, gains less than 1 % on it (tests/oracles/test_floor.py). Where nothing
 saturates the floor is some mrad of backlash, a multiple of it means nothing, and `multiple` gives None.
 """
@@ -40,8 +40,9 @@ Floats = NDArray[np.float64]
 _BACKLASH = 1e-4
 
 # The ideal law's open numbers: brake (share), settle (s), lead (share), pull (share); see host/native/ideal/law.h.
-_GRID = list(itertools.product((0.9, 1.0, 1.1), (0.001, 0.004), (0.0, 1.0), (0.0, 1.0)))
-_BRAKES = (0.8, 0.85, 0.9, 0.95, 1.05, 1.1, 1.2, 1.3)  # tried for one joint after the other
+# A finer search finds 0.1 % at most.
+_GRID = list(itertools.product((1.0,), (0.001, 0.004), (0.0, 1.0), (0.0, 1.0)))
+_BRAKES = (0.85, 0.95, 1.1, 1.25)  # tried for one joint after the other
 _NOTHING_TO_GAIN = 1e-4  # rad^2 in total
 
 _REST_S, _REST_RAD = 0.3, 0.004
@@ -163,7 +164,8 @@ def _best(loop: _Loop) -> Floats:
     """The tunings (4, 4) of least total error."""
     tried = np.repeat(np.array(_GRID)[:, None, :], JOINTS, axis=1)
     totals = loop.run(tried)[0].sum(axis=1)
-    best, least = tried[totals.argmin()], totals.min()
+    best: Floats = tried[totals.argmin()]
+    least = totals.min()
     # The pitches pull at each other most, so they go first.
     for joint in (1, 2, 0, 3) if least > _NOTHING_TO_GAIN else ():
         tried = np.repeat(best[None], len(_BRAKES), axis=0)
