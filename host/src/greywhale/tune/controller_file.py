@@ -15,7 +15,6 @@ from greywhale.link import schema
 from greywhale.simulate import CONTROLLER_COLUMNS
 from greywhale.tune.margins import Margin
 from greywhale.tune.outcome import HeldOut, Outcome
-from greywhale.tune.summary import multiple_of_floor
 
 DIGITS = 4  # significant ones of what is expected
 
@@ -88,7 +87,7 @@ def _change(one: HeldOut, joint: int | None = None) -> str:
     before, after = one.mse_before, one.mse_after
     chosen = slice(None) if joint is None else slice(joint, joint + 1)
     text = f"MSE {before[chosen].sum():.3g} -> {after[chosen].sum():.3g} rad²"
-    multiple = multiple_of_floor(one, joint)
+    multiple = one.multiples[-1 if joint is None else joint]
     return text if multiple is None else f"{text}, {multiple:.2f} x the floor"
 
 
@@ -107,7 +106,7 @@ def _expected(one: HeldOut) -> dict[str, Any]:
             if len(known) == len(values):
                 facts[key] = _rounded(known)
     if one.floor is not None:
-        facts["floor_mse_rad2"] = _rounded(one.floor)
+        facts["floor_mse_rad2"] = _rounded(one.floor.mse)
     return facts
 
 

@@ -13,8 +13,10 @@ enclose the best that is possible, per joint (both in rad^2, over the window of 
   controller. It says nothing (0) about leaders that never rest or that a motor can keep up with.
 
 For steps the floor lies 0.1 to 1.3 % above the bound on the shipped arms, and an optimiser over the voltages
-themselves, which knows what the leader will do, gains less than 1 % on it (tests/oracles/test_floor.py). Where nothing
-saturates the floor is some mrad of backlash, a multiple of it means nothing, and `multiple` gives None.
+themselves, which knows what the leader will do, gains less than 1 % on it (tests/oracles/test_floor.py). Of 64 fuzzy
+controllers on each of 14 random arms none came below the total on multi-steps; one joint's share came out up to 3 %
+lower where its neighbour, moving otherwise, carried it. Where nothing saturates the floor is some mrad of backlash, a
+multiple of it means nothing, and `multiple` gives None.
 """
 
 from __future__ import annotations

@@ -16,6 +16,7 @@ from greywhale.log.layout import Origin
 from greywhale.measure import Evaluation, evaluate
 from greywhale.simulate import Experiment
 from greywhale.trajectory import Trajectory, human_reaches, multi_steps, steps
+from greywhale.tune.floor import saturation_floor
 from greywhale.tune.outcome import HeldOut
 from greywhale.tune.training import reach, within
 
@@ -58,7 +59,7 @@ def judge_held_out(
                 motion=motion,
                 before=_evaluated(name, result.time_s, leader, angles[0]),
                 after=_evaluated(name, result.time_s, leader, angles[1]),
-                floor=_floor(motion, plant, parameters) if floors else None,
+                floor=saturation_floor(motion, plant, wait_s=WAIT_S, threads=threads) if floors else None,
                 time_s=result.time_s,
                 leader=leader,
                 angles_before=angles[0],
@@ -71,11 +72,3 @@ def judge_held_out(
 def _evaluated(name: str, time_s: Floats, leader: Floats, follower: Floats) -> Evaluation:
     state = np.full(len(time_s), "following")
     return evaluate(Log(name, Origin(), time_s, leader, follower, np.zeros_like(leader), state, 0, True))
-
-
-def _floor(motion: Trajectory, plant: Floats, parameters: Sequence[int]) -> Floats | None:
-    try:
-        from greywhale.tune.floor import saturation_floor
-    except ImportError:
-        return None
-    return np.asarray(saturation_floor(motion, plant, wait_s=WAIT_S).mse, dtype=np.float64)

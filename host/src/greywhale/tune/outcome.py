@@ -12,6 +12,7 @@ import numpy.typing as npt
 from greywhale.link import schema
 from greywhale.measure import Evaluation
 from greywhale.trajectory import Trajectory
+from greywhale.tune.floor import Floor
 from greywhale.tune.margins import Margin
 from greywhale.tune.search import Found
 
@@ -40,14 +41,14 @@ def curves_of(found: Found) -> tuple[Curve, ...]:
 class HeldOut:
     """One motion that nothing was tuned on, in the bench's own arithmetic, on the estimated plant, with sensor noise.
 
-    `floor` (4,) is the least MSE that any controller could reach at that supply, None where it was not computed.
+    `floor` is what any controller could reach at that supply, None where it was not computed.
     """
 
     name: str
     motion: Trajectory = field(repr=False)
     before: Evaluation
     after: Evaluation
-    floor: Floats | None
+    floor: Floor | None
     time_s: Floats = field(repr=False)  # (rows,) from the moment the motors go on
     leader: Floats = field(repr=False)  # (rows, 4) rad
     angles_before: Floats = field(repr=False)  # (rows, 4) rad
@@ -61,11 +62,17 @@ class HeldOut:
     def mse_after(self) -> Floats:
         return np.array([joint.mse for joint in self.after.joints])
 
+    @property
+    def multiples(self) -> tuple[float | None, ...]:
+        """The error after tuning as a multiple of the floor, of each joint and all; None where it means nothing."""
+        return (None,) * (len(self.mse_after) + 1) if self.floor is None else self.floor.multiple(self.mse_after)
+
     def as_dict(self) -> dict[str, Any]:
-        floor = None if self.floor is None else self.floor.tolist()
         return {
             "motion": self.name,
-            "floor_mse_rad2": floor,
+            "floor_mse_rad2": None if self.floor is None else self.floor.mse.tolist(),
+            "floor_bound_mse_rad2": None if self.floor is None else self.floor.bound.tolist(),
+            "after_as_multiple_of_floor": list(self.multiples),
             "before": self.before.as_dict(),
             "after": self.after.as_dict(),
         }

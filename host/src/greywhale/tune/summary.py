@@ -5,9 +5,6 @@ from __future__ import annotations
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.tune.outcome import HeldOut, Outcome
 
-# Below this (rad²) what is left of a joint's error is backlash, not lack of voltage.
-UNSATURATED = 1e-5
-
 
 def summary(outcome: Outcome) -> str:
     """For people."""
@@ -39,7 +36,7 @@ def _motion(one: HeldOut) -> list[str]:
         )
     before_sum, after_sum = float(one.mse_before.sum()), float(one.mse_after.sum())
     lines.append(
-        f"{'all joints':24} {_pair(before_sum, after_sum, '.2e'):>22} {_multiple(one, None):>8} "
+        f"{'all joints':24} {_pair(before_sum, after_sum, '.2e'):>22} {_multiple(one, -1):>8} "
         f"  {100.0 * (1.0 - after_sum / before_sum):.1f} % lower"
     )
     return lines
@@ -49,18 +46,9 @@ def _pair(before: float | None, after: float | None, form: str) -> str:
     return " -> ".join("none" if value is None else f"{value:{form}}" for value in (before, after))
 
 
-def multiple_of_floor(one: HeldOut, joint: int | None = None) -> float | None:
-    """The error after tuning as a multiple of the least possible, of a joint or of all; None where the supply is no
-    limit, so that it means nothing.
-    """
-    chosen = slice(None) if joint is None else slice(joint, joint + 1)
-    if one.floor is None or one.floor[chosen].min() < UNSATURATED:
-        return None
-    return float(one.mse_after[chosen].sum() / one.floor[chosen].sum())
-
-
-def _multiple(one: HeldOut, joint: int | None) -> str:
-    multiple = multiple_of_floor(one, joint)
+def _multiple(one: HeldOut, joint: int) -> str:
+    """Of the least possible error; a dash where the supply is no limit, so that it means nothing. -1: all joints."""
+    multiple = one.multiples[joint]
     return "-" if multiple is None else f"{multiple:.2f}"
 
 
