@@ -15,6 +15,7 @@ from greywhale.measure.evaluate import JointMeasures
 from greywhale.simulate import controller_row, default_controller
 from greywhale.trajectory import Trajectory
 from greywhale.tune.controller_file import provenance, save
+from greywhale.tune.floor import Floor
 from greywhale.tune.margins import Margin
 from greywhale.tune.model import load_model
 from greywhale.tune.outcome import Curve, HeldOut, Outcome
@@ -34,9 +35,13 @@ def outcome(tmp_path: Path) -> Outcome:
     after = default_controller()
     after[2, 8] += 1
     motion, rows = Trajectory(np.array([0.0, 1.0]), np.zeros((2, 4))), np.zeros((1, 4))
+    floors = [
+        Floor(mse, bound, 15.0, 0.0, rows[:, 0], rows, rows)
+        for mse, bound in ((np.full(4, 0.002), np.full(4, 0.002)), (np.full(4, 1e-7), np.zeros(4)))
+    ]
     held = [
         HeldOut(name, motion, evaluation(0.01), evaluation(0.002468), floor, rows[:, 0], rows, rows, rows)
-        for name, floor in (("steps", np.full(4, 0.002)), ("reaches", np.array([1e-3, 1e-3, 1e-3, 1e-9])))
+        for name, floor in zip(("steps", "reaches"), floors, strict=True)
     ]
     margins = [Margin("at rest", joint, 0, 0.0, 0, 2) for joint in (1, 0, 2, 3)]
     return Outcome(
@@ -87,7 +92,7 @@ def test_comments_tell_people_what_to_expect(outcome: Outcome, tmp_path: Path) -
     lines = (tmp_path / "controller.toml").read_text(encoding="utf-8").splitlines()
     assert "# For a control period of 1 ms and a supply of 15 V." in lines
     assert "# Expected on steps, all joints: MSE 0.04 -> 0.00987 rad², 1.23 x the floor." in lines
-    # Where a joint does not saturate a multiple of the floor means nothing.
+    # Where nothing saturates a multiple of the floor means nothing.
     assert "# Expected on reaches, all joints: MSE 0.04 -> 0.00987 rad²." in lines
     assert "# Doubt: it was not validated on a second log." in lines
     assert "[[joint]]  # 1: shoulder pitch; on steps MSE 0.01 -> 0.00247 rad², 1.23 x the floor" in lines

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from pathlib import Path
 
 import click
@@ -16,6 +17,7 @@ from greywhale.tune import METHODS, STRATEGIES, check_request, tune
 from greywhale.tune.model import SAMPLES, load_model
 from greywhale.tune.space import GAINS, SETS
 from greywhale.tune.summary import summary
+from greywhale.tune.tables import tables_of
 
 NAMES = {name.lower(): name for name in (*SETS, *GAINS)}
 EXISTING = click.Path(path_type=Path)
@@ -51,7 +53,7 @@ EXISTING = click.Path(path_type=Path)
     metavar="NAME=LOW..HIGH",
     help="Narrow what is searched, in the file's units, for all joints: Ku=3..9. May be given more than once.",
 )
-@click.option("--arm", type=EXISTING, help="Your arm.toml, to make sure that the model is of this arm.")
+@click.option("--arm", help="Your arm.toml, to make sure that the model is of this arm.")
 @click.option(
     "--params", type=EXISTING, help="The board's table (`params backup`); without it, that of the model's logs."
 )
@@ -60,6 +62,7 @@ EXISTING = click.Path(path_type=Path)
 )
 @click.option("--resume", is_flag=True, help="Go on where an interrupted tuning with the same options ended.")
 @click.option("--force", is_flag=True, help="Tune for a model that speaks against itself; the doubts go along.")
+@click.option("--tables", is_flag=True, help="Also print the paper's Tables 8 to 12, ours beside its.")
 @click.option("--pictures", type=EXISTING, help="Folder for pictures of sets, responses and convergence.")
 @json_option
 def command(
@@ -72,11 +75,12 @@ def command(
     workers: int | None,
     start: Path | None,
     bounds: tuple[str, ...],
-    arm: Path | None,
+    arm: str | None,
     params: Path | None,
     samples: int,
     resume: bool,
     force: bool,
+    tables: bool,
     pictures: Path | None,
     as_json: bool,
 ) -> None:
@@ -91,7 +95,7 @@ def command(
         raise UserError(f"workers is {workers}, but it must be at least 1.", BAD_USAGE)
     check_request(strategy=strategy, method=method, budget=budget, seed=seed, bounds=limits)
     journal = out.parent / f"{out.name}.journal"
-    _check_files(out, journal, resume, pictures, [Path(model_file), arm, params])
+    _check_files(out, journal, resume, pictures, [model_file, arm, params])
     model = load_model(model_file, samples=samples, seed=seed, force=force, params=params, arm=arm)
     first = controller_row(controller_file.load(start)) if start is not None else None
     with progress(as_json) as report:
@@ -122,8 +126,12 @@ def command(
         from greywhale.tune.pictures import draw
 
         files += draw(outcome, pictures)
-    written = "\n\nWritten: " + ", ".join(str(path) for path in files)
-    show(as_json, {**outcome.as_dict(), "files": [str(path) for path in files]}, summary(outcome) + written)
+    layouts = tables_of(outcome, paper=True) if tables else ()
+    texts = [summary(outcome), *(table.text() for table in layouts), "Written: " + ", ".join(map(str, files))]
+    facts = outcome.as_dict() | {"doubts": list(model.doubts), "files": [str(path) for path in files]}
+    if tables:
+        facts["tables"] = [table.as_dict() for table in layouts]
+    show(as_json, facts, "\n\n".join(texts))
 
 
 def _bounds(given: tuple[str, ...]) -> dict[str, tuple[float, float]]:
@@ -145,21 +153,33 @@ def _bounds(given: tuple[str, ...]) -> dict[str, tuple[float, float]]:
     return found
 
 
-def _check_files(out: Path, journal: Path, resume: bool, pictures: Path | None, inputs: list[Path | None]) -> None:
+def _check_files(
+    out: Path, journal: Path, resume: bool, pictures: Path | None, inputs: Sequence[str | Path | None]
+) -> None:
     """What is wrong with the files is said before any work, not after it."""
     if not out.parent.is_dir():
         raise UserError(f"{out}: the folder {out.parent} does not exist; create it, or write elsewhere.", BAD_USAGE)
-    for path in inputs:
-        if path is not None and path.exists() and out.exists() and out.samefile(path):
+    for source in inputs:
+        if source is not None and out.exists() and Path(source).exists() and out.samefile(source):
             raise UserError(f"{out}: this file is read from; write the controllers elsewhere with --out.", BAD_USAGE)
-    for path in (out, journal):
-        try:
-            descriptor, name = temporary_beside(path)
-        except OSError as error:
-            raise UserError(f"{path}: cannot be written: {because(error)}.", BAD_USAGE) from None
-        os.close(descriptor)
-        os.unlink(name)
+    _refuse_unwritable(out)
+    _refuse_unwritable(journal)
     if resume and not journal.exists():
         raise UserError(f"{journal}: no interrupted tuning is there to go on with; leave --resume out.", BAD_USAGE)
-    if pictures is not None and pictures.exists() and not pictures.is_dir():
-        raise UserError(f"{pictures}: pictures go into a folder, and this is a file.", BAD_USAGE)
+    if pictures is not None:
+        if pictures.exists() and not pictures.is_dir():
+            raise UserError(f"{pictures}: pictures go into a folder, and this is a file.", BAD_USAGE)
+        try:
+            pictures.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise UserError(f"{pictures}: cannot be made: {because(error)}.", BAD_USAGE) from None
+        _refuse_unwritable(pictures / "sets.png")
+
+
+def _refuse_unwritable(path: Path) -> None:
+    try:
+        descriptor, name = temporary_beside(path)
+    except OSError as error:
+        raise UserError(f"{path}: cannot be written: {because(error)}.", BAD_USAGE) from None
+    os.close(descriptor)
+    os.unlink(name)
