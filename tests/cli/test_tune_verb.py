@@ -1,0 +1,248 @@
+"""`greywhale tune` as people and scripts meet it: refusals before any work, Ctrl-C and --resume, the file it writes."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from greywhale.cli import entry
+from greywhale.cli import tune as verb
+from greywhale.config import controller
+from greywhale.link import schema
+from greywhale.simulate import controller_row
+from greywhale.tune import tune
+from tests.tune.models import log_facts, write_model
+
+Captured = pytest.CaptureFixture[str]
+# Small, but the whole way: a search, its margins, its held-out motions.
+QUICK = ("--method", "random", "--budget", "6", "--samples", "2")
+DEADLINE_S = 120.0
+
+
+@pytest.fixture(autouse=True)
+def _handler_as_it_was() -> Iterator[None]:
+    before = signal.getsignal(signal.SIGTERM)
+    yield
+    signal.signal(signal.SIGTERM, before)
+
+
+@pytest.fixture
+def model(tmp_path: Path) -> Path:
+    return write_model(tmp_path / "model.toml")
+
+
+@pytest.fixture
+def no_work(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever is refused must be refused before the search."""
+
+    def forbidden(*arguments: Any, **options: Any) -> None:
+        raise AssertionError("the search was begun")
+
+    monkeypatch.setattr(verb, "tune", forbidden)
+
+
+@pytest.fixture
+def no_floors(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The least possible errors take seconds and are tested with the floor."""
+    monkeypatch.setattr(verb, "tune", partial(tune, floors=False))
+
+
+# --- refusals -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (("--budget", "0"), "budget is 0, but it must be at least 1."),
+        (("--budget", "-5"), "budget is -5, but it must be at least 1."),
+        (("--budget", "many"), "Invalid value for '--budget': 'many' is not a valid integer."),
+        (("--strategy", "all"), "Invalid value for '--strategy': 'all' is not one of 'mf', 'sf', 'both'."),
+        (("--method", "newton"), "Invalid value for '--method': 'newton' is not one of 'default', 'paper', 'gwo-woa-"),
+        (("--seed", "-1"), "seed is -1, but it must be at least 0."),
+        (("--workers", "-1"), "workers is -1, but it must be at least 1."),
+        (("--samples", "0"), "samples is 0, but it must be at least 1."),
+        (("--bounds", "Ku=9..3"), "the bounds of Ku are 9 and 3; give the lower one first."),
+        (("--bounds", "Ku=3..31"), "the bounds of Ku are 3 and 31, but they must lie within 0.001..30."),
+        (("--bounds", "Ze_c=0.001..0.5"), "the bounds of Ze_c are 0.001 and 0.5, but they must lie within 0.01"),
+        (("--bounds", "Kx=1..2"), "there is no bound for 'Kx'; there are Ne_c, Ze_a,"),
+        (("--bounds", "ku=3..9", "--strategy", "mf"), "Ku is not searched by strategy mf; leave out its bounds."),
+        (("--bounds", "Ku=3-9"), "--bounds Ku=3-9: bounds look like NAME=LOW..HIGH, Ku=3..9 for one."),
+        (("--bounds", "Ku=a..9"), "--bounds Ku=a..9: bounds look like NAME=LOW..HIGH, Ku=3..9 for one."),
+        (("--bounds", "Ku=nan..9"), "the bounds of Ku are nan and 9;"),
+        (("--bounds", "Ku=3..9", "--bounds", "ku=3..8"), "--bounds ku=3..8: Ku has bounds already; give them once."),
+        (
+            ("--out", "nowhere/controller.toml"),
+            "nowhere/controller.toml: the folder nowhere does not exist; create it,",
+        ),
+        (("--out", "model.toml"), "model.toml: this file is read from; write the controllers elsewhere with --out."),
+        (("--out", "."), ".: cannot be written: is a directory."),
+        (("--out", "/dev/null"), "/dev/null: cannot be written: not an ordinary file."),
+        (("--resume",), "controller.toml.journal: no interrupted tuning is there to go on with; leave --resume out."),
+        (("--pictures", "model.toml"), "model.toml: pictures go into a folder, and this is a file."),
+        (("--out", ""), "the value of --out is empty; give one, or leave it out."),
+    ],
+)
+def test_bad_usage_is_one_sentence_and_code_2_before_any_work(
+    no_work: None, model: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured, arguments: tuple[str, ...],
+    sentence: str,
+) -> None:  # fmt: skip
+    monkeypatch.chdir(model.parent)
+    assert entry.run(["tune", "model.toml", *arguments]) == 2
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert said.err.startswith(f"greywhale: {sentence}")
+    assert said.err.count("\n") == 1
+    assert [path.name for path in model.parent.iterdir()] == ["model.toml"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (("none.toml",), "none.toml: cannot be read: no such file or directory."),
+        (("model.toml", "--start", "none.toml"), "none.toml: cannot be read: no such file or directory."),
+        (("model.toml", "--start", "model.toml"), "model.toml: joint[0].kp is missing"),
+        (("model.toml", "--params", "none.toml"), "none.toml: cannot be read: no such file or directory."),
+        (("model.toml", "--arm", "none.toml"), "none.toml: cannot be read: no such file or directory."),
+        (("doubtful.toml",), "doubtful.toml: it was not validated on a second log; record another one and identify"),
+        (("default",), "default: nothing in it was identified: it is an arm file, not a model; make a model from"),
+        (("log.csv",), "log.csv: not valid TOML"),
+    ],
+)
+def test_files_that_will_not_do_are_named_before_any_work(
+    no_work: None, model: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured, arguments: tuple[str, ...],
+    sentence: str,
+) -> None:  # fmt: skip
+    monkeypatch.chdir(model.parent)
+    write_model(Path("doubtful.toml"), log=[log_facts()])
+    Path("log.csv").write_text("time_s,leader_0\n0.0,1.0\n", encoding="utf-8")
+    before = sorted(path.name for path in model.parent.iterdir())
+    assert entry.run(["tune", *arguments]) == 1
+    said = capsys.readouterr()
+    assert said.err.startswith(f"greywhale: {sentence}")
+    assert said.err.count("\n") == 1
+    assert sorted(path.name for path in model.parent.iterdir()) == before
+
+
+# --- what it writes -------------------------------------------------------------------------------------------------
+
+
+def test_json_file_and_upload_speak_of_the_same_controllers(model: Path, capsys: Captured) -> None:
+    out = model.parent / "controller.toml"
+    assert entry.run(["tune", str(model), "--out", str(out), *QUICK, "--json"]) == 0
+    said = capsys.readouterr()
+    assert said.out.count("\n") == 1
+    answer = json.loads(said.out)
+    assert answer["files"] == [str(out)]
+    assert sorted(path.name for path in model.parent.iterdir()) == ["controller.toml", "model.toml"]
+    written = controller.load(out)
+    np.testing.assert_array_equal(controller_row(written), answer["after"])
+    schema.check_parameters([written.raw_values().get(index, raw) for index, raw in enumerate(schema.DEFAULTS)])
+    assert written.tuning is not None
+    assert (written.tuning["status"], written.tuning["method"]) == ("complete", "random")
+
+
+def test_any_number_of_workers_writes_the_same_file(no_floors: None, model: Path) -> None:
+    texts = []
+    for workers in ("1", "3"):
+        out = model.parent / f"{workers}.toml"
+        assert entry.run(["tune", str(model), "-o", str(out), *QUICK, "--workers", workers, "--json"]) == 0
+        texts.append(out.read_bytes())
+    assert texts[0] == texts[1]
+    assert entry.run(["tune", str(model), "-o", str(out), *QUICK, "--seed", "1", "--json"]) == 0
+    assert out.read_bytes() != texts[0]
+
+
+def test_doubts_go_along_into_text_and_file(no_floors: None, tmp_path: Path, capsys: Captured) -> None:
+    model = write_model(tmp_path / "model.toml", log=[log_facts()])
+    out = tmp_path / "controller.toml"
+    assert entry.run(["tune", str(model), "--out", str(out), *QUICK, "--force"]) == 0
+    doubt = "it was not validated on a second log."
+    assert doubt in capsys.readouterr().out
+    tuning = controller.load(out).tuning
+    assert tuning is not None
+    assert tuning["doubts"] == [doubt]
+    assert f"# Doubt: {doubt}" in out.read_text(encoding="utf-8")
+
+
+def test_pictures_are_drawn_on_request(no_floors: None, model: Path, capsys: Captured) -> None:
+    folder = model.parent / "pictures"
+    assert (
+        entry.run(["tune", str(model), "-o", str(model.parent / "c.toml"), *QUICK, "--pictures", str(folder), "--json"])
+        == 0
+    )
+    files = [Path(name) for name in json.loads(capsys.readouterr().out)["files"][1:]]
+    assert files
+    assert all(path.parent == folder and path.read_bytes().startswith(b"\x89PNG") for path in files)
+
+
+# --- Ctrl-C ---------------------------------------------------------------------------------------------------------
+
+LONG = ("--method", "gwo-woa", "--budget", "60", "--samples", "2")
+
+
+def start(model: Path, *arguments: str) -> subprocess.Popen[str]:
+    """The command as a terminal starts it."""
+    return subprocess.Popen(
+        [sys.executable, "-m", "greywhale", "tune", model.name, *arguments],
+        cwd=model.parent,
+        env=os.environ | {"PYTHONUNBUFFERED": "1"},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+def wait_for_batches(process: subprocess.Popen[str], journal: Path, count: int) -> None:
+    """Until the journal holds so many batches; a run that ended before fails the test."""
+    deadline = time.monotonic() + DEADLINE_S
+    while not journal.exists() or journal.read_bytes().count(b"\n") < 1 + count:
+        assert process.poll() is None, process.communicate()
+        assert time.monotonic() < deadline
+        time.sleep(0.002)
+
+
+def test_interrupted_and_resumed_is_the_same_file_as_uninterrupted(no_floors: None, model: Path) -> None:
+    folder = model.parent
+    out, journal = folder / "controller.toml", folder / "controller.toml.journal"
+    for batches, options in ((2, ()), (4, ("--resume",))):
+        process = start(model, *LONG, *options)
+        wait_for_batches(process, journal, batches)
+        process.send_signal(signal.SIGINT)
+        said = process.communicate(timeout=DEADLINE_S)
+        assert process.returncode == 130, said
+        assert said[0] == ""
+        assert "interrupted. The best controllers so far are in controller.toml, marked as unfinished" in said[1]
+        unfinished = controller.load(out)
+        assert unfinished.tuning is not None
+        assert unfinished.tuning["status"].startswith("unfinished")
+        assert unfinished.source.endswith("(unfinished)")
+        assert journal.exists()
+        assert not list(folder.glob(".*.part"))
+    assert entry.run(["tune", str(model), "--out", str(out), *LONG, "--resume", "--json"]) == 0
+    assert not journal.exists()
+    whole = folder / "whole.toml"
+    assert entry.run(["tune", str(model), "--out", str(whole), *LONG, "--json"]) == 0
+    assert out.read_bytes() == whole.read_bytes()
+
+
+def test_a_resumed_tuning_must_be_the_same_one(model: Path, capsys: Captured) -> None:
+    out, journal = model.parent / "controller.toml", model.parent / "controller.toml.journal"
+    process = start(model, *LONG)
+    wait_for_batches(process, journal, 1)
+    process.send_signal(signal.SIGINT)
+    process.communicate(timeout=DEADLINE_S)
+    before = journal.read_bytes(), out.read_bytes()
+    assert entry.run(["tune", str(model), "--out", str(out), *LONG, "--method", "gwo", "--resume"]) != 0
+    assert 'the journal is of another tuning: its method is "gwo-woa", now it is "gwo";' in capsys.readouterr().err
+    assert (journal.read_bytes(), out.read_bytes()) == before
