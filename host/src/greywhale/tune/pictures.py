@@ -75,7 +75,7 @@ def draw(outcome: Outcome, folder: Path) -> list[Path]:
         drawn.append(draw_responses(path, one.time_s, one.leader, responses, f"Response to {one.name}"))
     if outcome.curves and all(curve.cost for curve in outcome.curves):
         curves = [(np.array(one.evaluations), np.array(one.cost)) for one in outcome.curves]
-        title = f"Convergence of the tuning: {outcome.method}, strategy {outcome.strategy}"
+        title = f"Convergence of the tuning: method {outcome.method}, strategy {outcome.strategy}"
         drawn.append(draw_convergence(folder / "convergence.png", curves, title))
     return drawn
 
@@ -201,7 +201,7 @@ def _fit(axes: Axes, time_s: Floats, leader: Floats, curves: Sequence[tuple[Floa
 
 def _convergence_figure(curves: Sequence[tuple[npt.NDArray[np.int64], Floats]], title: str) -> Figure:
     figure, grid = plt.subplots(2, 2, figsize=(9.0, 6.0), sharex=True)
-    figure.subplots_adjust(left=0.085, right=0.985, bottom=0.09, top=0.885, wspace=0.2, hspace=0.24)
+    figure.subplots_adjust(left=0.105, right=0.985, bottom=0.09, top=0.885, wspace=0.24, hspace=0.24)
     figure.suptitle(title, fontsize=12, fontweight="bold", y=0.975)
     for joint, (axes, (evaluations, cost)) in enumerate(zip(grid.flat, curves, strict=True)):
         axes.step(evaluations, cost, where="post", color=_AFTER, linewidth=1.4)
