@@ -46,22 +46,20 @@ def y_of(line: Line2D) -> Floats:
     return np.asarray(line.get_ydata(), dtype=np.float64)
 
 
-def figures() -> dict[str, Figure]:
-    time, leader, followers = motion()
-    evaluations = np.arange(10, 310, 10)
-    costs = [np.maximum(scale / evaluations, 1.2e-3 * scale) for scale in (1e-3, 1.0, 123456.0, 7e5)]
+def figure_of(name: str) -> Figure:
     with pictures._style():
-        return {
-            "sets": pictures._sets_figure(controllers("before_tuning"), controllers("table_10")),
-            "responses": pictures._responses_figure(time, leader, followers, "Response to multi-steps"),
-            "convergence": pictures._convergence_figure([(evaluations, cost) for cost in costs], "Convergence"),
-        }
+        if name == "sets":
+            return pictures._sets_figure(controllers("before_tuning"), controllers("table_10"))
+        if name == "responses":
+            return pictures._responses_figure(*motion(), "Response to multi-steps")
+        evaluations = np.arange(10, 310, 10)
+        costs = [np.maximum(scale / evaluations, 1.2e-3 * scale) for scale in (1e-3, 1.0, 123456.0, 7e5)]
+        return pictures._convergence_figure([(evaluations, cost) for cost in costs], "Convergence")
 
 
 @pytest.mark.parametrize("name", ["sets", "responses", "convergence"])
 def test_no_text_runs_into_another_or_over_the_edge(name: str) -> None:
-    drawn = figures()
-    figure = drawn[name]
+    figure = figure_of(name)
     try:
         renderer = figure.canvas.get_renderer()  # type: ignore[attr-defined]
         figure.draw(renderer)
@@ -94,7 +92,7 @@ def _is_unused_tick(figure: Figure, text: str, box: BboxBase) -> bool:
 
 
 def test_the_sets_have_their_corners_where_the_board_has_them() -> None:
-    figure = figures()["sets"]
+    figure = figure_of("sets")
     try:
         error, change = figure.axes[0], figure.axes[1]
         assert "Joint 0, base yaw: error" in error.get_title()
@@ -109,7 +107,7 @@ def test_the_sets_have_their_corners_where_the_board_has_them() -> None:
 
 def test_responses_show_every_follower_its_error_and_its_figure() -> None:
     time, _, followers = motion()
-    figure = figures()["responses"]
+    figure = figure_of("responses")
     try:
         assert len(figure.axes) == 12
         whole, error, near = figure.axes[:3]
@@ -126,7 +124,7 @@ def test_responses_show_every_follower_its_error_and_its_figure() -> None:
 
 
 def test_convergence_marks_the_last_improvement() -> None:
-    figure = figures()["convergence"]
+    figure = figure_of("convergence")
     try:
         for axes in figure.axes:
             curve, last = axes.get_lines()
