@@ -40,11 +40,11 @@ def measured(
 
 def run() -> list[Figure]:
     FOLDER.mkdir(parents=True, exist_ok=True)
-    wanted = motions()
+    wanted, nominal = motions(), load_arm("white_box")
     with BenchProcess("--speed", "max") as bench:
         before = measured(bench, wanted, paper_table(UNTUNED), "before")
-        logs = practise(bench, FOLDER)
-        learnt = learn(logs[0], logs[1:], tables(schema.DEFAULTS), load_arm("white_box"), FOLDER)
+        logs = practise(bench, nominal, schema.DEFAULTS, FOLDER)
+        learnt = learn(logs[0], logs[1:], tables(schema.DEFAULTS), nominal, FOLDER)
         after = measured(bench, wanted, learnt.controller, "after")
     upload_s = next(iter(after.values()))[1]
     total = learnt.identify_s + learnt.tune_s + upload_s

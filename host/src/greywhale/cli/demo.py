@@ -35,7 +35,7 @@ from greywhale.cli.output import json_option, progress, show
     help="Show this controller.toml instead of identifying and tuning.",
 )
 @click.option(
-    "--practice", type=float, default=30.0, show_default=True, help="Seconds of motion to identify the arm from."
+    "--practice", type=float, default=20.0, show_default=True, help="Seconds of motion to identify the arm from."
 )
 @click.option(
     "--budget",

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from greywhale.arm import ArmParameters, load_arm
 from greywhale.arm.parameters import Friction, Gear
 
@@ -65,6 +67,19 @@ def learn(
         raise KeyboardInterrupt
     tuned = time.monotonic()
     return Learnt(model_file, controller_file, identification, tuning, identified - started, tuned - identified)
+
+
+def draw(learnt: Learnt, folder: Path) -> tuple[Path, ...]:
+    """Draw the fuzzy sets before and after tuning, and how the costs fell; the paths."""
+    # Matplotlib takes a second to import.
+    from greywhale.tune.pictures import draw_convergence, draw_sets
+
+    tuning = learnt.tuning
+    curves = [(np.array(one.evaluations), np.array(one.cost)) for one in tuning.curves]
+    return (
+        draw_sets(folder / "sets.png", tuning.before, tuning.after),
+        draw_convergence(folder / "convergence.png", curves, "Convergence of the tuning"),
+    )
 
 
 def drawn(arm: ArmParameters) -> ArmParameters:

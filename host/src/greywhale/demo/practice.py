@@ -1,58 +1,69 @@
-"""What the bench is asked to do before it is tuned: three motions, of which none is shown or judged later."""
+"""What the bench is asked to do before it is tuned: three motions, of which none is shown or judged later.
+
+The first is the one from which an arm can be identified best, as `greywhale record --excite` does it. On the other two,
+a person's reaches, the model is validated: with the controllers of the first, and with others.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
+from greywhale.arm import ArmParameters
 from greywhale.config import controller as controller_file
 from greywhale.config.paper_tables import paper_table
 from greywhale.demo.bench import BenchProcess
-from greywhale.demo.recorder import record_motion
+from greywhale.demo.recorder import record_excitation, record_motion
+from greywhale.excite import design
 from greywhale.identify.controllers import Table
 from greywhale.log import Log
-from greywhale.trajectory import human_reaches, save_leader
+from greywhale.trajectory import Trajectory, human_reaches, save_leader
 
 Progress = Callable[[str, float], None]
 
 UNTUNED, OTHER = "before_tuning", "table_9"  # of the paper: where tuning starts, and the changed controller
-
-
-@dataclass(frozen=True)
-class Practice:
-    """Generated reaches, with one of the paper's controllers; `share` of the length of the one to fit."""
-
-    name: str
-    share: float
-    controller: str
-
-
-# To fit; to validate; to validate with another controller: was the arm learnt, or the arm with its controller?
-PRACTICE = (
-    Practice("practice", 1.0, UNTUNED),
-    Practice("check", 0.4, UNTUNED),
-    Practice("check_changed", 0.4, OTHER),
-)
-PRACTICE_S = 30.0
-FIRST_SEED = 1000  # far from those that people give
+PRACTICE_S = 20.0
+POSE = (0.0, 0.4, 0.0, 0.0)  # rad, where it begins: the arm off its lower stops, room to both sides
+# The last evaluations of a search would gain little: its motion only has to be a good one.
+DESIGN_BUDGET = 150
+# To validate: with the same controllers, and with others. Was the arm learnt, or the arm with its controllers?
+CHECKS = (("check", UNTUNED), ("check_changed", OTHER))
+CHECK_SHARE = 0.6  # of the length of the practice
+FIRST_SEED = 1000  # of the checks; far from those that people give
 
 
 def practise(
-    bench: BenchProcess, folder: Path, seconds: float = PRACTICE_S, progress: Progress | None = None
+    bench: BenchProcess,
+    nominal: ArmParameters,
+    base: Sequence[int],
+    folder: Path,
+    seconds: float = PRACTICE_S,
+    progress: Progress | None = None,
 ) -> list[Log]:
-    """Record every practice into `folder`: the log to fit, of about `seconds`, then those to validate."""
+    """Record practice of about `seconds` into `folder`, then the checks: the log to fit first, then those to validate.
+
+    `nominal` is what is known of the arm; `base` the parameters (raw) that the board has beside its controllers.
+    """
     report = progress or (lambda what, fraction: None)
-    logs = []
-    for number, practice in enumerate(PRACTICE):
-        leader = folder / f"{practice.name}_leader.csv"
-        save_leader(leader, human_reaches(FIRST_SEED + number, practice.share * seconds))
 
-        def told(what: str, fraction: float, name: str = practice.name) -> None:
-            report(f"{name}: {what}", fraction)
+    def named(name: str) -> Progress:
+        return lambda what, fraction: report(f"{name}: {what}", fraction)
 
-        log = folder / f"{practice.name}.csv"
-        logs.append(record_motion(bench, leader, log, paper_table(practice.controller), told).log())
+    rest, motion = folder / "rest_leader.csv", folder / "practice_leader.csv"
+    save_leader(rest, Trajectory(np.array([0.0, 1.0]), np.array([POSE, POSE])))
+    untuned = tables(base)[0].values
+    designed = design(
+        nominal, POSE, parameters=untuned, seconds=seconds, budget=DESIGN_BUDGET, report=named("practice")
+    )
+    save_leader(motion, designed.motion)
+    path = folder / "practice.csv"
+    logs = [record_excitation(bench, rest, designed.motion, path, paper_table(UNTUNED), named("practice")).log()]
+    for number, (name, controller) in enumerate(CHECKS):
+        leader, path = folder / f"{name}_leader.csv", folder / f"{name}.csv"
+        save_leader(leader, human_reaches(FIRST_SEED + number, CHECK_SHARE * seconds))
+        logs.append(record_motion(bench, leader, path, paper_table(controller), named(name)).log())
     return logs
 
 

@@ -17,7 +17,7 @@ from greywhale.link.device import Device
 from greywhale.link.stream import stream
 from greywhale.link.upload import upload_controller
 from greywhale.log import Log, read_log
-from greywhale.log.record import record
+from greywhale.log.record import Recording, record, record_led
 from greywhale.trajectory import Trajectory, load_leader
 
 Progress = Callable[[str, float], None]
@@ -53,18 +53,48 @@ def record_motion(
 
     The log begins LEAD_S before the leader's first movement and ends SETTLE_S after its last.
     """
-    motion = load_leader(leader)
+    length = LEAD_S + load_leader(leader).duration_s + SETTLE_S
+
+    def play(device: Device) -> Recording:
+        return record(device, log, length, enable=True, progress=progress)
+
+    return _recorded(bench, leader, controller, progress, play)
+
+
+def record_excitation(
+    bench: BenchProcess,
+    rest: Path,
+    motion: Trajectory,
+    log: Path,
+    controller: Path | None = None,
+    progress: Progress | None = None,
+) -> Recorded:
+    """Lead the follower along `motion` into `log`; the person holds the leader still, as the file `rest` says."""
+
+    def play(device: Device) -> Recording:
+        return record_led(device, log, motion, progress=progress)
+
+    return _recorded(bench, rest, controller, progress, play)
+
+
+def _recorded(
+    bench: BenchProcess,
+    leader: Path,
+    controller: Path | None,
+    progress: Progress | None,
+    play: Callable[[Device], Recording],
+) -> Recorded:
+    """Hand the person the motion `leader` and the board the controller, and record."""
     bench.command(f"leader {shlex.quote(str(leader.resolve()))}")
     started = time.monotonic()
     with Device(bench.port) as device:
         if controller is not None:
             upload_controller(device, controller, progress)
         uploaded = time.monotonic()
-        _wait_for_the_arms(device, motion)
+        _wait_for_the_arms(device, load_leader(leader))
         crc = device.greet().param_crc
-        length = LEAD_S + motion.duration_s + SETTLE_S
-        recording = record(device, log, length, enable=True, progress=progress)
-    return Recorded(log, crc, recording.rows, recording.dropped, uploaded - started)
+        recording = play(device)
+    return Recorded(recording.path, crc, recording.rows, recording.dropped, uploaded - started)
 
 
 def _wait_for_the_arms(device: Device, motion: Trajectory) -> None:

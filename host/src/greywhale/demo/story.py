@@ -29,7 +29,8 @@ from greywhale.report.follow import draw_following, trace
 from greywhale.trajectory import Trajectory, human_reaches, load_leader, save_leader
 from greywhale.tune.progress import Report, silent
 
-SHORTEST_S, SHORTEST_PRACTICE_S, LONGEST_S = 4.0, 10.0, 600.0  # of generated motions
+SHORTEST_S, LONGEST_S = 4.0, 600.0  # of generated motions
+SHORTEST_PRACTICE_S, LONGEST_PRACTICE_S = 10.0, 60.0
 
 
 @dataclass(frozen=True)
@@ -78,7 +79,7 @@ def run(options: DemoOptions, progress: Report | None = None) -> DemoResult:
         firmware=f"{hello.fw_major}.{hello.fw_minor}.{hello.fw_patch}",
         runs=tuple(runs),
         learnt=learnt,
-        pictures=(_draw(options, runs),),
+        pictures=(_draw(options, runs), *(() if learnt is None else learn.draw(learnt, options.out))),
         wall_s=0.0,
     )
     result = replace(result, wall_s=time.monotonic() - started)
@@ -103,10 +104,11 @@ class _Stage:
 
     def learn(self) -> learn.Learnt:
         """Record practice, identify, tune."""
-        logs = practise(self._bench, self._options.out, self._options.practice_s, self._report)
-        nominal = load_arm("white_box") if self._options.arm is None else learn.drawn(self._arm)
-        folder, budget = self._options.out, self._options.budget
-        return learn.learn(logs[0], logs[1:], tables(self._base), nominal, folder, budget, progress=self._report)
+        options = self._options
+        nominal = load_arm("white_box") if options.arm is None else learn.drawn(self._arm)
+        logs = practise(self._bench, nominal, self._base, options.out, options.practice_s, self._report)
+        known = tables(self._base)
+        return learn.learn(logs[0], logs[1:], known, nominal, options.out, options.budget, progress=self._report)
 
     def _record(self, leader: Path, file: str, name: str, controller: Path) -> Recorded:
         def told(what: str, fraction: float) -> None:
@@ -128,16 +130,16 @@ class _Stage:
 
 def _motion(options: DemoOptions) -> Trajectory:
     if options.controller is None:
-        _check("practice", options.practice_s, SHORTEST_PRACTICE_S)
+        _check("practice", options.practice_s, SHORTEST_PRACTICE_S, LONGEST_PRACTICE_S)
     if options.leader is not None:
         return load_leader(options.leader)
-    _check("duration", options.duration_s, SHORTEST_S)
+    _check("duration", options.duration_s, SHORTEST_S, LONGEST_S)
     return human_reaches(options.seed, options.duration_s)
 
 
-def _check(what: str, seconds: float, shortest_s: float) -> None:
-    if not shortest_s <= seconds <= LONGEST_S:
-        raise UserError(f"the {what} is {seconds:g} s; it must be {shortest_s:g} to {LONGEST_S:g} s.", BAD_USAGE)
+def _check(what: str, seconds: float, shortest_s: float, longest_s: float) -> None:
+    if not shortest_s <= seconds <= longest_s:
+        raise UserError(f"the {what} is {seconds:g} s; it must be {shortest_s:g} to {longest_s:g} s.", BAD_USAGE)
 
 
 def _draw(options: DemoOptions, runs: list[Run]) -> Path:
