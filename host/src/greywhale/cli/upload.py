@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import click
 
 from greywhale.cli.output import json_option, port_option, progress, show
 from greywhale.config import controller as controller_file
+from greywhale.link import schema
 from greywhale.link.device import Device
 from greywhale.link.ports import choose_port
 from greywhale.link.upload import upload_controller
@@ -26,10 +29,26 @@ def command(controller: Path, port: str | None, as_json: bool) -> None:
     checked = controller_file.load(controller)
     with Device(choose_port(port)) as device, progress(as_json) as report:
         uploaded = upload_controller(device, controller, report)
+        warnings = _warnings(checked.tuning or {}, device)
     count = len(uploaded.changed)
     what = f"{count} parameters changed" if count else "nothing had to change"
-    show(
-        as_json,
-        {"port": device.port, "controller": str(controller), "source": checked.source, **uploaded.as_dict()},
-        f"{controller} runs and is stored on {device.port}: {what}, parameter CRC {uploaded.param_crc:#06x}.",
-    )
+    facts = {"port": device.port, "controller": str(controller), "source": checked.source, "warnings": warnings}
+    text = f"{controller} runs and is stored on {device.port}: {what}, parameter CRC {uploaded.param_crc:#06x}."
+    show(as_json, facts | uploaded.as_dict(), "\n".join([text, *(f"Warning: {warning}" for warning in warnings)]))
+
+
+def _warnings(tuning: Mapping[str, Any], device: Device) -> list[str]:
+    """Where the board is not what `greywhale tune` was told, or its result is not what it should be."""
+    warnings = []
+    if str(tuning.get("status", "complete")) != "complete":
+        warnings.append("the tuning of this controller is not finished.")
+    if tuning.get("margins_hold") is False:
+        warnings.append("its margins do not hold: a joint may swing at rest (its file says which).")
+    for key, name, scale in (("period_ms", "period_ms", 1.0), ("supply_v", "supply_mv", 1e-3)):
+        tuned = tuning.get(key)
+        if not isinstance(tuned, int | float):
+            continue
+        board = device.ask(schema.ParamGetRequest(schema.PARAMETER_BY_NAME[name].index)).value * scale
+        if abs(board - tuned) > 0.02 * board:
+            warnings.append(f"it was tuned for {name} = {tuned / scale:g}, but this board has {board / scale:g}.")
+    return warnings
