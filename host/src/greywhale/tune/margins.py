@@ -1,6 +1,7 @@
-"""Whether a joint comes to rest, and still would with half or twice the loop gain or one control period of delay.
+"""Whether a joint comes to rest, and still would with half or twice the loop gain, one more control period of delay, or
+softer gear teeth than the model knows (stiffness is what recordings tell least of, and backlash hunts on it).
 
-The leader makes small moves and stops. From SETTLE_S after each stop on, the follower must not swing: REVERSALS or more
+The leader makes large moves and stops. From SETTLE_S after each stop on, the follower must not swing: REVERSALS or more
 turning points of its true angle, each more than SWING_RAD from the next, are a limit cycle (a gear that hunts in its
 backlash, an integrator that breaks loose again and again, a loop without phase margin); so are duties that swing by
 more than CHATTER_SHARE of the supply more than CHATTER_HZ times a second (a relay; sensor noise that Kd magnifies). A
@@ -33,18 +34,24 @@ Controllers = npt.NDArray[np.int32]
 SWING_RAD = 0.01
 REVERSALS = 3
 CHATTER_SHARE = 1 / 3
-CHATTER_HZ = 10.0
+CHATTER_HZ = 50.0
 SETTLE_S = 1.0
+SEARCH_SWING_RAD = 0.006
 WAIT_S = 0.2
 
 # Loop gains as factors of every joint's torque per volt.
 GAINS = {"at rest": 1.0, "half the loop gain": 0.5, "twice the loop gain": 2.0}
 DELAY = "one period more delay"
-SCENARIOS = (*GAINS, DELAY)
-# Where the leader stops, as shares of a joint's reach; (here and there joints move together, so that all are shaken).
-STOPS = (0.3, -0.15)
+TEETH = "softer teeth"
+SCENARIOS = (*GAINS, TEETH, DELAY)
+SOFTER, LESS_DAMPED = 4.0, 8.0
+# Where the leader stops, as shares of a joint's reach; all joints move together, so that all are shaken.
+STOPS = (0.8, -0.2)
 REST_S = 2.2  # of which the last 1.2 s are looked at
 REST_LONG_S = 4.0
+# A search keeps clear of the border: gains are further off, and smaller swings and less chatter cost already.
+SEARCH_BEYOND = 1.1
+SEARCH_CHATTER = 0.7
 
 
 @dataclass(frozen=True)
@@ -89,7 +96,9 @@ class Unrest:
         return failing
 
 
-def unrest_of(result: Result, rests: Sequence[tuple[int, int]], every: int, shape: tuple[int, int]) -> Unrest:
+def unrest_of(
+    result: Result, rests: Sequence[tuple[int, int]], every: int, shape: tuple[int, int], band: float = SWING_RAD
+) -> Unrest:
     """From traces of a Mega with a row every `every` ticks; `rests` are first and last tick."""
     reversals = np.zeros((*shape, JOINTS), dtype=np.int32)
     travel = np.zeros((*shape, JOINTS))
@@ -97,7 +106,7 @@ def unrest_of(result: Result, rests: Sequence[tuple[int, int]], every: int, shap
     for first, last in rests:
         seconds = (last - first) * 1e-3
         rows = (first // every, last // every)
-        turned, moved = _native.swings(result.angles, *rows, SWING_RAD)
+        turned, moved = _native.swings(result.angles, *rows, band)
         beats, _ = _native.swings(result.duties, *rows, CHATTER_SHARE * max(PWM_TOP["mega"]))
         reversals = np.maximum(reversals, turned.reshape(*shape, JOINTS))
         travel = np.maximum(travel, np.where(turned >= REVERSALS, moved / seconds, 0.0).reshape(*shape, JOINTS))
@@ -121,6 +130,7 @@ class Margins:
         *,
         threads: int = 0,
         rest_s: float = REST_S,
+        searching: bool = False,
         seed: int = 0,
     ) -> None:
         low, high = reach(arm, parameters, plants)
@@ -128,6 +138,8 @@ class Margins:
         motion = stops(low, high, rest_s)
         self.plants = plants
         self._threads = threads
+        self._band = SEARCH_SWING_RAD if searching else SWING_RAD
+        self._beyond = SEARCH_BEYOND if searching else 1.0
         self._rests = [
             (round(1e3 * (WAIT_S + (number + 1) * rest_s - rest_s + _FIRST_S + EDGE_S + SETTLE_S)),
              round(1e3 * (WAIT_S + _FIRST_S + (number + 1) * rest_s)))
@@ -142,18 +154,21 @@ class Margins:
         self._prompt = Experiment(motion, arm, **common)
         self._late = Experiment(motion, arm, timing=Timing(late=period), **common)
 
-    def unrest(self, controllers: Controllers, *, single: bool = False, every: int = 2) -> dict[str, Unrest]:
+    def unrest(self, controllers: Controllers, *, single: bool = False, every: int = 1) -> dict[str, Unrest]:
         """Every scenario for every candidate (n, 4, 12) on every plant."""
         count, plants = len(controllers), len(self.plants)
-        gains = list(GAINS.values())
-        scaled = np.concatenate([with_gain(self.plants, gain) for gain in gains])
-        prompt = self._run(self._prompt, controllers, scaled, single, every)
+        variants = {name: with_gain(self.plants, self._further(gain)) for name, gain in GAINS.items()}
+        variants[TEETH] = with_softer_teeth(self.plants)
+        prompt = self._run(self._prompt, controllers, np.concatenate(list(variants.values())), single, every)
         found = {
-            name: _part(prompt, slice(number * plants, (number + 1) * plants)) for number, name in enumerate(GAINS)
+            name: _part(prompt, slice(number * plants, (number + 1) * plants)) for number, name in enumerate(variants)
         }
         found[DELAY] = self._run(self._late, controllers, self.plants, single, every)
         assert all(one.reversals.shape == (count, plants, JOINTS) for one in found.values())
         return found
+
+    def _further(self, gain: float) -> float:
+        return gain * self._beyond if gain > 1.0 else gain / self._beyond if gain < 1.0 else gain
 
     def _run(
         self, experiment: Experiment, controllers: Controllers, plants: Floats, single: bool, every: int
@@ -163,7 +178,7 @@ class Margins:
             result = experiment.run_single(laws, arms, every=every, threads=self._threads)
         else:
             result = experiment.run(laws, arms, every=every, threads=self._threads)
-        return unrest_of(result, self._rests, every, (len(controllers), len(plants)))
+        return unrest_of(result, self._rests, every, (len(controllers), len(plants)), self._band)
 
     def check(self, controllers: Controllers) -> tuple[Margin, ...]:
         """One controller (4, 12), in the bench's own arithmetic: a verdict for each scenario and joint."""
@@ -195,7 +210,7 @@ def penalty(found: dict[str, Unrest]) -> Floats:
     """What candidates pay (n, 4), in rad: nothing for quiet ones, else LEAST_PRICE and more for more unrest."""
     total = 0.0
     for one in found.values():
-        excess = np.maximum(one.chatter / CHATTER_HZ - 1.0, 0.0)
+        excess = np.maximum(one.chatter / CHATTER_HZ - SEARCH_CHATTER, 0.0)
         price = TRAVEL_PRICE * one.travel + CHATTER_PRICE * excess + LEAST_PRICE * one.fails + 10.0 * one.lost
         total = total + price.mean(axis=1)
     return np.asarray(total, dtype=np.float64)
@@ -207,6 +222,30 @@ def with_gain(plants: Floats, factor: float) -> Floats:
     for joint in range(JOINTS):
         scaled[:, PLANT_COLUMNS.index(f"joint{joint}.torque_per_volt")] *= factor
     return scaled
+
+
+def with_softer_teeth(plants: Floats) -> Floats:
+    """The same plants with softer gear teeth that damp less; rigid gears stay rigid."""
+    softer = plants.copy()
+    for joint in range(JOINTS):
+        softer[:, PLANT_COLUMNS.index(f"joint{joint}.stiffness")] /= SOFTER
+        softer[:, PLANT_COLUMNS.index(f"joint{joint}.mesh_damping")] /= LESS_DAMPED
+    return softer
+
+
+def loosest(plants: Floats) -> Floats:
+    """The estimate (60,) with the widest gap and the softest, least damped teeth that any of the plants has."""
+    loose: Floats = plants[0].copy()
+    for joint in range(JOINTS):
+        gap, stiffness, damping = (
+            PLANT_COLUMNS.index(f"joint{joint}.{name}") for name in ("half_gap", "stiffness", "mesh_damping")
+        )
+        toothed = plants[plants[:, stiffness] > 0.0]
+        if len(toothed):
+            loose[gap] = toothed[:, gap].max()
+            loose[stiffness] = toothed[:, stiffness].min()
+            loose[damping] = toothed[:, damping].min()
+    return loose
 
 
 def stops(low: Floats, high: Floats, rest_s: float) -> Trajectory:

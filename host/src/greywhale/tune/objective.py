@@ -1,9 +1,14 @@
 """What a controller costs, joint by joint, over all plants and all training motions, with the firmware's own integers.
 
-The cost of a joint is a length (rad): the mean of |e|, weighted with time that restarts at every move of the leader,
-plus EFFORT times the mean of |u| with the same weights, plus what `margins` demands. Over the plants the mean and the
-worst count half each. A controller that does nothing costs the whole distance that the leader goes, some 0.5 rad; the
-effort of a good one costs some thousandths.
+The cost of a joint is a length (rad), the sum of
+
+- the mean of |e|, weighted with time that restarts at every move of the leader (`training.since_moving`);
+- SQUARE times the mean of e^2, without weights: what the paper's tables measure, mostly made while the leader moves;
+- EFFORT times the mean of |u|, weighted like |e|;
+- what `margins` demands of a joint that does not come to rest.
+
+Over the plants, the mean and the worst count half each. A controller that does nothing costs the whole distance that
+the leader goes, some 1 rad; the effort of a good one costs a thousandth of that.
 """
 
 from __future__ import annotations
@@ -22,21 +27,9 @@ Controllers = npt.NDArray[np.int32]
 
 # rad per V: 10 V all the time cost as much as 10 mrad.
 EFFORT = 1e-3
+# 1 per rad: an error of half a radian counts twice, one of 50 mrad a tenth more.
+SQUARE = 2.0
 WORST_SHARE = 0.5
-
-
-@dataclass(frozen=True)
-class Costs:
-    """A row per candidate, a column per joint, in rad."""
-
-    error: Floats
-    effort: Floats  # already times EFFORT
-    penalty: Floats
-
-    @property
-    def total(self) -> Floats:
-        total: Floats = self.error + self.effort + self.penalty
-        return total
 
 
 def combined(values: Floats) -> Floats:
@@ -53,6 +46,15 @@ def crossed(controllers: Controllers, plants: Floats) -> tuple[Controllers, Floa
 
 
 @dataclass(frozen=True)
+class Tracking:
+    """(n, plants, 4) each."""
+
+    error: Floats  # rad, weighted mean of |e|
+    square: Floats  # rad2, mean of e^2
+    volts: Floats  # V, weighted mean of |u|
+
+
+@dataclass(frozen=True)
 class Objective:
     """The training motions and the plants on which candidates are judged."""
 
@@ -60,22 +62,23 @@ class Objective:
     plants: Floats
     threads: int = 0
 
-    def tracking(self, controllers: Controllers, single: bool = False) -> tuple[Floats, Floats]:
-        """Weighted mean of |e| (rad) and of |u| (V), each (n, plants, 4); `single`: in the bench's own arithmetic."""
+    def tracking(self, controllers: Controllers, single: bool = False) -> Tracking:
+        """Of every candidate on every plant; `single`: in the bench's own arithmetic."""
         laws, arms = crossed(controllers, self.plants)
         shape = (len(controllers), len(self.plants), 4)
-        error, volts, weight = np.zeros(shape), np.zeros(shape), 0.0
+        error, square, volts = np.zeros(shape), np.zeros(shape), np.zeros(shape)
         for drill in self.drills:
             result = self._run(drill, laws, arms, single)
             error += result.itae.reshape(shape)
             volts += result.itau.reshape(shape)
-            weight += drill.total_weight
-        return error / weight, volts / weight
+            square += drill.experiment.ticks * result.mse.reshape(shape)
+        weight = sum(drill.total_weight for drill in self.drills)
+        return Tracking(error / weight, square / sum(drill.experiment.ticks for drill in self.drills), volts / weight)
 
-    def costs(self, controllers: Controllers, single: bool = False) -> tuple[Floats, Floats]:
-        """Error and effort (n, 4), both in rad, over all plants."""
-        error, volts = self.tracking(controllers, single)
-        return combined(error), EFFORT * combined(volts)
+    def costs(self, controllers: Controllers, single: bool = False) -> Floats:
+        """(n, 4) in rad, over all plants; without what the margins demand."""
+        found = self.tracking(controllers, single)
+        return combined(found.error + SQUARE * found.square + EFFORT * found.volts)
 
     def _run(self, drill: Drill, laws: Controllers, arms: Floats, single: bool) -> Result:
         if single:

@@ -7,7 +7,7 @@ joints with fewer candidates run their best one in the rows that are left over.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -21,6 +21,10 @@ Floats = npt.NDArray[np.float64]
 Controllers = npt.NDArray[np.int32]
 Costs = Callable[[Controllers], Floats]
 Tick = Callable[["Found"], None]
+
+# Which joints' candidates are tried at the same time.
+TOGETHER = (range(JOINTS),)
+TURNS = ((0, 2), (1, 3))
 
 
 @dataclass
@@ -86,6 +90,7 @@ def lockstep(
     seed: tuple[int, ...],
     starts: Controllers,
     tick: Tick,
+    groups: Sequence[Sequence[int]] = TOGETHER,
     pack: int | None = None,
     **options: object,
 ) -> None:
@@ -107,16 +112,29 @@ def lockstep(
                 )
             )
         while not all(one.done for one in packs):
-            _batch(space, evaluate, found, journal, stage, packs)
-            tick(found)
+            for group in groups:
+                if not all(packs[joint].done for joint in group):
+                    _batch(space, evaluate, found, journal, stage, packs, group)
+                    tick(found)
     finally:
         for one in packs:
             one.close()
 
 
-def _batch(space: Space, evaluate: Costs, found: Found, journal: Journal, stage: str, packs: list[Optimiser]) -> None:
-    """One round of ask and tell."""
-    asked = [np.empty((0, space.dimensions)) if one.done else one.ask() for one in packs]
+def _batch(
+    space: Space,
+    evaluate: Costs,
+    found: Found,
+    journal: Journal,
+    stage: str,
+    packs: list[Optimiser],
+    group: Sequence[int],
+) -> None:
+    """One round of ask and tell for some joints; the others run their best so far."""
+    asked = [
+        packs[joint].ask() if joint in group and not packs[joint].done else np.empty((0, space.dimensions))
+        for joint in range(JOINTS)
+    ]
     counts = [len(one) for one in asked]
     rows = np.repeat(found.best[None], max(counts), axis=0)
     for joint, points in enumerate(asked):

@@ -28,9 +28,11 @@ Controllers = npt.NDArray[np.int32]
 # The paper's names (Tables 8 to 10) in the order of its vector w (section 4), then the scaling factors.
 SETS = ("Ne_c", "Ze_a", "Ze_c", "Pe_b", "Nce_c", "Zce_a", "Zce_c", "Pce_b")
 GAINS = ("Kp", "Kd", "Ki", "Ku")
+_PAIRS = (("Ne_c", "Pe_b"), ("Ze_a", "Ze_c"), ("Nce_c", "Pce_b"), ("Zce_a", "Zce_c"))
 _NEGATIVE = frozenset({"Ne_c", "Ze_a", "Nce_c", "Zce_a"})
 _UNIT = {"Kp": GAIN_UNIT, "Kd": GAIN_UNIT, "Ki": GAIN_UNIT, "Ku": 1000}
 NARROWEST = LEAST_WIDTH / SET_UNIT
+NARROWEST_STATED = 0.01  # as people write it; stored, it is the next width above
 
 # Sizes that the default search may give to a scaling factor. Kp and Kd only stretch the axes of the sets.
 _GAIN_RANGE = {"Kp": (0.1, 10.0), "Kd": (1e-3, 5.0), "Ki": (1e-2, 300.0)}
@@ -41,19 +43,27 @@ _LEAST_KU = 3.0
 _PAPER_GAIN_MAX = {"Kp": 3.0, "Kd": 3.0, "Ki": 3.0, "Ku": 20.0}
 
 
+def _column(name: str) -> int:
+    return CONTROLLER_COLUMNS.index("ku_mv" if name == "Ku" else name.lower())
+
+
 @dataclass(frozen=True)
 class Variable:
-    """One searched number: `low` to `high` in the file's unit and sign, searched by its logarithm or as it is."""
+    """One searched number: `low` to `high` in the file's unit and sign, searched by its logarithm or as it is.
+
+    `mirror` is another corner that gets the same size on the other side of zero.
+    """
 
     name: str
     low: float
     high: float
     logarithmic: bool
+    mirror: str = ""
 
     @property
     def column(self) -> int:
         """Where it stands in a joint's row of the parameter table."""
-        return CONTROLLER_COLUMNS.index("ku_mv" if self.name == "Ku" else self.name.lower())
+        return _column(self.name)
 
     @property
     def unit(self) -> int:
@@ -143,13 +153,47 @@ class Space:
         """Points (n, 4, d) in search units as the firmware stores them: int32 (n, 4, 12)."""
         rows = np.repeat(self.base[None], len(points), axis=0).astype(np.int64)
         for place, variable in enumerate(self.variables):
-            rows[:, :, variable.column] = variable.raw(points[:, :, place])
+            raw = variable.raw(points[:, :, place])
+            rows[:, :, variable.column] = raw
+            if variable.mirror:
+                rows[:, :, _column(variable.mirror)] = -raw
         return rows.astype(np.int32)
 
     def points(self, controllers: Controllers) -> Floats:
         """Controllers (n, 4, 12) as points (n, 4, d), moved into the box where they lie outside."""
         columns = [variable.search_value(controllers[:, :, variable.column]) for variable in self.variables]
         return np.stack(columns, axis=-1)
+
+    def reduced(self) -> Self:
+        """The part of the box that differs in shape: sets the same to both sides of zero; where factors and sets are
+        searched, Kp and Kd as near to 1 as their bounds allow, since they only stretch the axes of the sets.
+        """
+        by_name = {variable.name: variable for variable in self.variables}
+        for left, right in _PAIRS:
+            if left in by_name and right in by_name:
+                both = _mirrored(by_name[left], by_name[right])
+                if both is not None:
+                    by_name[right] = both
+                    del by_name[left]
+        base = self.base.copy()
+        if self.strategy == "both":
+            for name in ("Kp", "Kd"):
+                variable = by_name.pop(name)
+                base[:, variable.column] = round(float(np.clip(1.0, variable.low, variable.high)) * variable.unit)
+        return replace(self, variables=tuple(by_name.values()), base=base)
+
+    def restretched(self, controllers: Controllers) -> Controllers:
+        """The same laws (4, 12) with Kp and Kd of `base` where this space does not search them: the sets stretched."""
+        rows = controllers.astype(np.float64)
+        for gain, sets in (("Kp", SETS[:4]), ("Kd", SETS[4:])):
+            if gain in self.names or not set(self.names) & set(sets):
+                continue
+            factor = self.base[:, _column(gain)] / np.maximum(rows[:, _column(gain)], 1.0)
+            for name in sets:
+                size = np.clip(np.abs(rows[:, _column(name)]) * factor, LEAST_WIDTH, SET_UNIT)
+                rows[:, _column(name)] = np.sign(rows[:, _column(name)]) * size
+            rows[:, _column(gain)] = self.base[:, _column(gain)]
+        return np.rint(rows).astype(np.int32)
 
     def narrowed(self, points: Floats) -> int:
         """How many numbers of these points (n, 4, d) mean a width below 0.01, which `controllers` widens."""
@@ -186,10 +230,16 @@ def check_bounds(strategy: str, bounds: Bounds) -> None:
 def storable(name: str) -> tuple[float, float]:
     """The smallest and the largest value that a search may bound a variable with."""
     if name in SETS:
-        return _ordered(name, NARROWEST, 1.0)
+        return _ordered(name, NARROWEST_STATED, 1.0)
     parameter = schema.PARAMETER_BY_NAME["joint0.ku_mv" if name == "Ku" else f"joint0.{name.lower()}"]
     # A gain is searched by its logarithm, so 0 is no bound; one step of the format is as good.
     return 1.0 / _UNIT[name], parameter.maximum / _UNIT[name]
+
+
+def _mirrored(left: Variable, right: Variable) -> Variable | None:
+    """One variable for both sides, within the bounds of both; None where they have no size in common."""
+    low, high = max(right.low, -left.high), min(right.high, -left.low)
+    return replace(right, low=low, high=high, mirror=left.name) if low < high else None
 
 
 def _ordered(name: str, small: float, large: float) -> tuple[float, float]:

@@ -25,7 +25,7 @@ from greywhale.simulate.tables import check_controllers
 from greywhale.tune import search
 from greywhale.tune.held_out import judge_held_out
 from greywhale.tune.journal import Journal
-from greywhale.tune.margins import Margin, Margins, penalty
+from greywhale.tune.margins import REST_LONG_S, Margin, Margins, loosest, penalty
 from greywhale.tune.objective import Objective
 from greywhale.tune.outcome import Outcome, curves_of
 from greywhale.tune.paper import tune_as_paper
@@ -44,11 +44,11 @@ DEFAULT_STRATEGY = "both"
 METHODS = ("default", "paper", *OPTIMISERS)
 DEFAULT_BUDGET = 2400
 # Of the budget, what the second, narrow search gets; its box is that share of the whole around the best so far.
-NARROW_SHARE = 0.25
-NARROW_BOX = 0.15
+NARROW_SHARE = 0.4
+NARROW_BOX = 0.08
 CHOSEN = "cma-es"  # of the default method
-# Plants on which margins are priced during the search; the check at the end uses all.
-MARGIN_PLANTS = 3
+# Plants that the search tracks on, the estimate among them; the last judgement uses all.
+SEARCH_PLANTS = 4
 NOISE_V = 0.0024  # of a potentiometer of which the model says none: half a step of the board's converter
 
 
@@ -131,14 +131,14 @@ class _Tuning:
         supply = model.parameters[schema.PARAMETER_BY_NAME["supply_mv"].index]
         period = model.parameters[schema.PARAMETER_BY_NAME["period_ms"].index]
         self.space = Space.default(self.strategy, self.before, supply, period).bounded(self.bounds)
-        self.objective = Objective(
-            drills(model.arm, model.parameters, model.plants, self.seed), model.plants, self.threads
-        )
-        self.margins = self._margins(model.plants[:MARGIN_PLANTS])
+        motions = drills(model.arm, model.parameters, model.plants, self.seed)
+        self.objective = Objective(motions, model.plants[:SEARCH_PLANTS], self.threads)
+        self.judge = Objective(motions, model.plants, self.threads)
+        self.margins = self._margins(_spanning(model.plants), searching=True)
         self.found = Found.nothing(self.before)
 
-    def _margins(self, plants: Floats) -> Margins:
-        return Margins(self.model.arm, self.model.parameters, plants, threads=self.threads, seed=self.seed)
+    def _margins(self, plants: Floats, **options: Any) -> Margins:
+        return Margins(self.model.arm, self.model.parameters, plants, threads=self.threads, seed=self.seed, **options)
 
     def request(self) -> dict[str, Any]:
         """What a journal must agree with."""
@@ -167,18 +167,25 @@ class _Tuning:
         return self._outcome(complete, floors)
 
     def _search(self, book: Journal) -> None:
-        narrow = int(NARROW_SHARE * self.budget) if self.method == "default" else 0
-        method = CHOSEN if self.method == "default" else self.method
         common: dict[str, Any] = {"evaluate": self.costs, "found": self.found, "journal": book, "tick": self._tick}
+        if self.method != "default":
+            lockstep(
+                self.space, stage="search", method=self.method, budget=self.budget, seed=(self.seed, 1),
+                starts=self.before[None], **common,
+            )  # fmt: skip
+            return
+        shape = self.space.reduced()
+        self.found.best = shape.restretched(self.before)
+        turns = len(search.TURNS)
+        narrow = int(NARROW_SHARE * self.budget / turns)
         lockstep(
-            self.space, stage="search", method=method, budget=self.budget - narrow, seed=(self.seed, 1),
-            starts=self.before[None], **common,
+            shape, stage="shape", method=CHOSEN, budget=max(1, self.budget // turns - narrow), seed=(self.seed, 1),
+            starts=self.found.best[None], groups=search.TURNS, **common,
         )  # fmt: skip
         if narrow:
-            best = self.found.best.copy()
             lockstep(
-                self.space, stage="narrow search", method=method, budget=narrow, seed=(self.seed, 2),
-                starts=best[None], sigma=NARROW_BOX, **common,
+                self.space, stage="every corner", method=CHOSEN, budget=narrow, seed=(self.seed, 2),
+                starts=self.found.best[None], groups=search.TURNS, sigma=NARROW_BOX, **common,
             )  # fmt: skip
 
     def _tick(self, found: Found) -> None:
@@ -186,19 +193,20 @@ class _Tuning:
 
     def costs(self, controllers: Controllers) -> Floats:
         """Of the search: (n, 4) in rad."""
-        error, effort = self.objective.costs(controllers)
-        return error + effort + penalty(self.margins.unrest(controllers))
+        costs: Floats = self.objective.costs(controllers) + penalty(self.margins.unrest(controllers))
+        return costs
 
     def judged(self, controllers: Controllers) -> Floats:
-        """The same cost in the bench's arithmetic."""
-        error, effort = self.objective.costs(controllers, single=True)
-        return error + effort + penalty(self.margins.unrest(controllers, single=True, every=1))
+        """The same cost on all plants in the bench's arithmetic."""
+        unrest = self.margins.unrest(controllers, single=True)
+        costs: Floats = self.judge.costs(controllers, single=True) + penalty(unrest)
+        return costs
 
     def _outcome(self, complete: bool, floors: bool) -> Outcome:
         self.report("judging", 0.0)
         after, cost_before, cost_after = self._chosen()
         self.report("judging", 0.4)
-        everywhere = self._margins(self.model.plants)
+        everywhere = self._margins(np.vstack([self.model.plants, loosest(self.model.plants)]), rest_s=REST_LONG_S)
         margins_before, margins = everywhere.check(self.before), everywhere.check(after)
         self.report("judging", 0.7)
         held_out = judge_held_out(
@@ -239,6 +247,12 @@ class _Tuning:
 
     def _notes(self, margins: tuple[Margin, ...]) -> tuple[str, ...]:
         return ()
+
+
+def _spanning(plants: Floats) -> Floats:
+    """The estimate, and with it the loosest gears that the samples show, where they differ."""
+    loose = loosest(plants)
+    return plants[:1] if np.array_equal(loose, plants[0]) else np.vstack([plants[0], loose])
 
 
 def _digest(plants: Floats) -> str:
