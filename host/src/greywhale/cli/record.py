@@ -2,23 +2,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from greywhale.cli.output import Report, json_option, port_option, progress, show
+from greywhale.cli.output import json_option, port_option, progress, show
 from greywhale.errors import BAD_USAGE, UserError
 from greywhale.link.device import Device
 from greywhale.link.ports import choose_port
-from greywhale.log.record import Recording, pose_of, record, record_led, table_of
+from greywhale.log.record import Recording, check_every_led, pose_of, record, record_led, table_of
+from greywhale.trajectory import save_leader
 
 if TYPE_CHECKING:
     from greywhale.excite import Design
 
 RECORDED_S = 10.0
 # Options that say nothing without --excite.
-_OF_EXCITE = {"arm_file": "--arm", "ranges": "--range", "save_motion": "--save-motion", "seed": "--seed"}
+_OF_EXCITE = {
+    "arm_file": "--arm",
+    "ranges": "--range",
+    "save_motion": "--save-motion",
+    "seed": "--seed",
+    "budget": "--budget",
+}
 
 
 @click.command("record")
@@ -41,7 +50,12 @@ _OF_EXCITE = {"arm_file": "--arm", "ranges": "--range", "save_motion": "--save-m
 )
 @click.option("--seed", type=int, help="With --excite: another seed, another motion.  [default: 0]")
 @click.option(
-    "--save-motion", type=click.Path(path_type=Path), help="With --excite: also write the motion, for `sim --leader`."
+    "--budget", type=int, help="With --excite: motions to try; more take longer and tell a little more.  [default: 400]"
+)
+@click.option(
+    "--save-motion",
+    type=click.Path(path_type=Path),
+    help="With --excite: also write the motion, for `replay` or `sim --leader`.",
 )
 @port_option
 @json_option
@@ -54,6 +68,7 @@ def command(
     arm_file: str | None,
     ranges: tuple[str, ...],
     seed: int | None,
+    budget: int | None,
     save_motion: Path | None,
     port: str | None,
     as_json: bool,
@@ -69,38 +84,50 @@ def command(
     arm's surroundings, or narrow the joints' --range.
     """
     if not excite:
-        _refuse_without_excite(arm_file=arm_file, ranges=ranges, save_motion=save_motion, seed=seed)
+        _refuse_without_excite(arm_file=arm_file, ranges=ranges, save_motion=save_motion, seed=seed, budget=budget)
         with Device(choose_port(port)) as device, progress(as_json) as report:
             length = RECORDED_S if seconds is None else seconds
             recording = record(device, out, length, every, enable, report)
-        show(as_json, {"port": device.port, **recording.as_dict()}, _told(recording))
+        show(as_json, {"port": device.port, **recording.as_dict()}, told(recording))
         return
     if enable:
         raise UserError("--excite turns the motors on by itself; leave --enable out.", BAD_USAGE)
+    check_every_led(every)
+    require_folders(out, save_motion)
+    plan = _plan(arm_file, ranges, seconds, seed, budget)
     with Device(choose_port(port)) as device, progress(as_json) as report:
-        designed = _designed(device, arm_file or "white_box", ranges, seconds, seed or 0, report)
+        designed = plan(pose_of(device), parameters=table_of(device, report), report=report)
         if save_motion is not None:
-            from greywhale.trajectory import save_leader
-
             save_leader(save_motion, designed.motion)
         recording = record_led(device, out, designed.motion, every, report)
     saved = {} if save_motion is None else {"motion": str(save_motion)}
     result = {"port": device.port, **recording.as_dict(), "design": designed.as_dict(), **saved}
-    show(as_json, result, f"{_told(recording)}\n{designed.text()}")
+    show(as_json, result, f"{told(recording)}\n{designed.text()}")
 
 
-def _designed(
-    device: Device, arm_file: str, ranges: tuple[str, ...], seconds: float | None, seed: int, report: Report | None
-) -> Design:
-    """The motion for the arm as it stands and the controllers that it has."""
+def require_folders(*paths: Path | None) -> None:
+    """Refuse files that could not be written, before anything moves."""
+    for path in paths:
+        if path is not None and not path.parent.is_dir():
+            raise UserError(
+                f"{path}: the folder {path.parent} does not exist; create it, or write elsewhere.", BAD_USAGE
+            )
+
+
+def _plan(
+    arm_file: str | None, ranges: tuple[str, ...], seconds: float | None, seed: int | None, budget: int | None
+) -> Callable[..., Design]:
+    """The design with all that can be refused before a board is asked."""
     # Scipy and the native simulation take a moment to import.
     from greywhale.arm import load_arm
-    from greywhale.excite import SECONDS, design, parse_range
+    from greywhale.excite import BUDGET, SECONDS, check_effort, design, parse_range
 
+    length, effort = SECONDS if seconds is None else seconds, BUDGET if budget is None else budget
+    check_effort(length, effort)
     chosen = dict(parse_range(text) for text in ranges)
-    arm, length = load_arm(arm_file), SECONDS if seconds is None else seconds
-    pose, table = pose_of(device), table_of(device, report)
-    return design(arm, pose, parameters=table, ranges=chosen, seconds=length, seed=seed, report=report)
+    return partial(
+        design, load_arm(arm_file or "white_box"), ranges=chosen, seconds=length, seed=seed or 0, budget=effort
+    )
 
 
 def _refuse_without_excite(**given: object) -> None:
@@ -109,7 +136,8 @@ def _refuse_without_excite(**given: object) -> None:
             raise UserError(f"{_OF_EXCITE[name]} belongs to --excite; add that, or leave it out.", BAD_USAGE)
 
 
-def _told(recording: Recording) -> str:
+def told(recording: Recording) -> str:
+    """A recording in a sentence."""
     lost = f", {recording.dropped} dropped by the link" if recording.dropped else ""
     waits = f", the board waited {recording.waits} times for this host" if recording.waits else ""
     slow = ""

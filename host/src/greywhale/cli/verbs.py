@@ -16,6 +16,7 @@ VERBS = {
     "upload": ("upload", "Run and store the controllers of a controller.toml."),
     "params": ("params", "Read and change a board's parameter table."),
     "record": ("record", "Record leader, follower and voltages into a CSV log."),
+    "replay": ("replay", "Lead the arm along a motion from a file and record it."),
     "stop": ("stop", "Stop the motors; clear a fault."),
     "evaluate": ("evaluate", "Measure how well the follower followed in a log."),
     "identify": ("identify", "Find the arm that made a log: a model with its uncertainties."),

@@ -4,7 +4,7 @@
 >>> save_leader("motion.csv", made.motion)
 """
 
-from greywhale.excite.design import BUDGET, SECONDS, Design, Problem, design
+from greywhale.excite.design import BUDGET, SECONDS, Design, Problem, check_effort, design
 from greywhale.excite.limits import parse_range
 
-__all__ = ["BUDGET", "SECONDS", "Design", "Problem", "design", "parse_range"]
+__all__ = ["BUDGET", "SECONDS", "Design", "Problem", "check_effort", "design", "parse_range"]

@@ -25,7 +25,7 @@ from greywhale.excite.trial import ROW_S, Tried, try_motion
 from greywhale.identify.space import KINDS, MOTOR, Parameter, Space
 from greywhale.identify.uncertainty import OPEN, OPEN_LOG
 from greywhale.link import schema
-from greywhale.optimise import create
+from greywhale.optimise import DEFAULT, create
 from greywhale.simulate import plant_row
 from greywhale.trajectory import Trajectory
 
@@ -33,7 +33,6 @@ Floats = npt.NDArray[np.float64]
 Report = Callable[[str, float], None]
 
 BUDGET = 400
-METHOD = "cma-es"
 SECONDS = 20.0
 # What is looked at where an arm file says nothing about what is known: as in a usual identification.
 USUAL = (*MOTOR, "coulomb", "breakaway", "gap")
@@ -158,10 +157,7 @@ def design(
     `ranges` (rad) of single joints narrow or widen the usual: 1 rad to either side of the pose. The result depends on
     the arguments only. Raises UserError where the arm cannot move like that.
     """
-    if not SHORTEST_S <= seconds <= LONGEST_S:
-        raise UserError(f"the motion is {seconds:g} s long; it must be {SHORTEST_S:g} to {LONGEST_S:g} s.", BAD_USAGE)
-    if budget < 1:
-        raise UserError(f"the budget is {budget} evaluations, but it must be at least 1.", BAD_USAGE)
+    check_effort(seconds, budget)
     at = np.asarray(pose, dtype=np.float64)
     problem = Problem.of(arm, parameters, at, ranges or {}, seed)
     shape = Shape(problem.limits, seconds)
@@ -179,12 +175,20 @@ def design(
     )
 
 
+def check_effort(seconds: float, budget: int) -> None:
+    """Refuse lengths and budgets that make no sense, before anything is done."""
+    if not SHORTEST_S <= seconds <= LONGEST_S:
+        raise UserError(f"the motion is {seconds:g} s long; it must be {SHORTEST_S:g} to {LONGEST_S:g} s.", BAD_USAGE)
+    if budget < 1:
+        raise UserError(f"the budget is {budget} motions to try, but it must be at least 1.", BAD_USAGE)
+
+
 def _search(problem: Problem, shape: Shape, seed: int, budget: int, report: Report) -> Floats:
-    """The numbers of the best multi-sine; candidates of a batch are tried side by side."""
+    """The numbers of the best multi-sine, one of even speeds being the first tried; those of a batch side by side."""
     ones = np.ones(shape.size)
     cost = partial(_cost, problem, shape)
     with (
-        create(METHOD, -ones, ones, budget=budget, seed=seed) as optimiser,
+        create(DEFAULT, -ones, ones, budget=budget, seed=seed, start=np.zeros((1, shape.size))) as optimiser,
         ThreadPoolExecutor(os.cpu_count()) as pool,
     ):
         while not optimiser.done:

@@ -33,7 +33,7 @@ LEASE_MS = 500
 _LONGEST_EVERY_ENABLED = 100
 _LONGEST_EVERY = 65535
 # And above this a host that leads could not send its points in time.
-LONGEST_EVERY_LED = 4
+_LONGEST_EVERY_LED = 4
 _SHORTEST_S = 0.01
 _LONGEST_S = 86400.0
 # After a motion the log goes on for this long.
@@ -102,15 +102,11 @@ def record_led(
     device: Device, path: str | Path, motion: Trajectory, every: int = 1, progress: Progress | None = None
 ) -> Recording:
     """Lead the arm along `motion`, from where it is, and record that."""
-    if not 1 <= every <= LONGEST_EVERY_LED:
-        raise UserError(
-            f"one sample every {every} ticks is out of range; while this host leads it must be 1 to "
-            f"{LONGEST_EVERY_LED}.",
-            BAD_USAGE,
-        )
+    check_every_led(every)
     report = progress or (lambda what, fraction: None)
     limits = np.array([[_parameter(device, f"joint{joint}.{end}") for joint in range(JOINTS)] for end in _LIMITS])
     tracking = _parameter(device, "tracking_limit")
+    Plan.of(motion, motion.angles[0], limits)  # too fast a motion is refused with the motors off
     origin = Origin(device.firmware_version, device.hello.board.key, device.hello.param_crc, _period_ms(device), every)
     with LogWriter(path, origin) as log:
         received = stream(device, every)
@@ -122,6 +118,16 @@ def record_led(
             duration = _write_led(device, log, received, leading, report)
     device.telemetry(0)
     return Recording(Path(path), log.rows, log.dropped, duration, leading.slowest, leading.starved)
+
+
+def check_every_led(every: int) -> None:
+    """Refuse samples too seldom to lead by."""
+    if not 1 <= every <= _LONGEST_EVERY_LED:
+        raise UserError(
+            f"one sample every {every} ticks is out of range; while this host leads it must be 1 to "
+            f"{_LONGEST_EVERY_LED}.",
+            BAD_USAGE,
+        )
 
 
 def pose_of(device: Device) -> Floats:

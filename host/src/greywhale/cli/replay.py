@@ -1,0 +1,38 @@
+"""`greywhale replay`: the arm led along a motion from a file, and a log of it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from greywhale.cli.output import json_option, port_option, progress, show
+from greywhale.cli.record import require_folders, told
+from greywhale.link.device import Device
+from greywhale.link.ports import choose_port
+from greywhale.log.record import check_every_led, record_led
+from greywhale.trajectory import load_leader
+
+
+@click.command("replay")
+@click.argument("motion", metavar="FILE", type=click.Path(path_type=Path))
+@click.option(
+    "--out", "-o", type=click.Path(path_type=Path), default=Path("log.csv"), show_default=True, help="The log."
+)
+@click.option("--every", type=int, default=1, show_default=True, help="One sample every so many ticks of 1 ms.")
+@port_option
+@json_option
+def command(motion: Path, out: Path, every: int, port: str | None, as_json: bool) -> None:
+    """Turn the motors on, lead the arm along the motion in FILE and record that.
+
+    FILE has the columns time_s, leader_0 .. leader_3 (s, rad), or is a log. The arm first goes slowly from where it is
+    to the first pose, and at the end its motors go off. The board keeps the joints' limits; a motion faster than
+    7.7 rad/s is refused.
+    Ctrl-C stops the motors and keeps what was recorded, marked as interrupted.
+    """
+    check_every_led(every)
+    require_folders(out)
+    trajectory = load_leader(motion)
+    with Device(choose_port(port)) as device, progress(as_json) as report:
+        recording = record_led(device, out, trajectory, every, report)
+    show(as_json, {"port": device.port, "motion": str(motion), **recording.as_dict()}, told(recording))
