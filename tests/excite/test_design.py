@@ -95,7 +95,7 @@ def test_what_makes_no_sense_is_refused() -> None:
         ({"budget": 0}, "budget"),
     ):
         with pytest.raises(UserError, match=words) as refused:
-            design(arm, POSE, **options)  # type: ignore[arg-type]
+            design(arm, POSE, **options)
         assert refused.value.exit_code == BAD_USAGE
     facts = {"covariance": [[1.0]], "parameter": [{"name": "joint7.alpha", "value": 1.0}]}
     with pytest.raises(UserError, match="joint7"):

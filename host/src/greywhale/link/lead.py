@@ -31,8 +31,10 @@ ROOM = 12
 # More at once would crowd samples out of the board's transmitter.
 _AT_ONCE = 2
 # No answer for so many ticks: what was sent since the last one is sent again.
-_PATIENCE_TICKS = 64
+_PATIENCE_TICKS = 100
 _RAD = schema.Sample.LSB["leader"]
+# An answer that takes nothing new tells of a gap; but those to points sent before it was mended say the same.
+_RETRY_TICKS = 32
 # From the arm's pose to a motion's first one, at the most (rad/s).
 _APPROACH_RAD_S = 0.5
 # A follower this share of its tracking limit away from the reference slows the motion down, more of it stops it.
@@ -115,6 +117,11 @@ class Leading:
         return min(1.0, self._place / (len(self._plan.angles) - 1))
 
     @property
+    def points(self) -> int:
+        """Made so far."""
+        return len(self._points)
+
+    @property
     def done(self) -> bool:
         """All points have been played."""
         return self._made_all and self._taken == len(self._points) and self._left(self._last_tick) <= -2
@@ -159,6 +166,8 @@ class Leading:
             self.starved += 1
         if taken > self._taken:
             self._since = tick
+        elif self._sent > taken and tick - self._since > _RETRY_TICKS:
+            self._sent, self._since = taken, tick
         self._taken, self._waiting, self._heard = taken, answer.waiting, tick
 
     def _watch(self, sample: schema.Sample) -> None:
