@@ -6,63 +6,12 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-import pytest
 
 from greywhale.config import controller
 from greywhale.link import schema
-from greywhale.measure import Evaluation
-from greywhale.measure.evaluate import JointMeasures
-from greywhale.simulate import controller_row, default_controller
-from greywhale.trajectory import Trajectory
+from greywhale.simulate import controller_row
 from greywhale.tune.controller_file import provenance, save
-from greywhale.tune.floor import Floor
-from greywhale.tune.margins import Margin
-from greywhale.tune.model import load_model
-from greywhale.tune.outcome import Curve, HeldOut, Outcome
-from tests.tune.models import log_facts, write_model
-
-
-def evaluation(mse: float) -> Evaluation:
-    """Joint 3 never rests and never steps."""
-    joints = [JointMeasures(mse, 0.0123456, 0.05, 0.02, 3)] * 3 + [JointMeasures(mse, None, 0.05, None, 0)]
-    return Evaluation(tuple(joints), 4 * mse, 1000, 1.0, True, (1.0,) * 3 + (0.0,))
-
-
-@pytest.fixture
-def outcome(tmp_path: Path) -> Outcome:
-    """An outcome that nobody tuned: two held-out motions, one of which saturates nothing."""
-    model = load_model(write_model(tmp_path / "model.toml", log=[log_facts()]), force=True, samples=2)
-    after = default_controller()
-    after[2, 8] += 1
-    motion, rows = Trajectory(np.array([0.0, 1.0]), np.zeros((2, 4))), np.zeros((1, 4))
-    floors = [
-        Floor(mse, bound, 15.0, 0.0, rows[:, 0], rows, rows)
-        for mse, bound in ((np.full(4, 0.002), np.full(4, 0.002)), (np.full(4, 1e-7), np.zeros(4)))
-    ]
-    held = [
-        HeldOut(name, motion, evaluation(0.01), evaluation(0.002468), floor, rows[:, 0], rows, rows, rows)
-        for name, floor in zip(("steps", "reaches"), floors, strict=True)
-    ]
-    margins = [Margin("at rest", joint, 0, 0.0, 0, 2) for joint in (1, 0, 2, 3)]
-    return Outcome(
-        model=model,
-        parameters=model.parameters,
-        strategy="both",
-        method="default",
-        seed=3,
-        budget=10,
-        evaluations=10,
-        complete=True,
-        before=default_controller(),
-        after=after,
-        cost_before=(1.0,) * 4,
-        cost_after=(0.123456,) * 4,
-        curves=(Curve((10,), (0.1,)),) * 4,
-        margins_before=tuple(margins),
-        margins=tuple(margins),
-        held_out=tuple(held),
-        notes=("a note",),
-    )
+from greywhale.tune.outcome import Outcome
 
 
 def test_it_is_a_controller_file_with_the_very_numbers(outcome: Outcome, tmp_path: Path) -> None:

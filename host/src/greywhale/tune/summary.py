@@ -5,6 +5,9 @@ from __future__ import annotations
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.tune.outcome import HeldOut, Outcome
 
+# A joint's error counts as worse than before from this ratio on; below it is noise.
+WORSE = 1.02
+
 
 def summary(outcome: Outcome) -> str:
     """For people."""
@@ -29,15 +32,17 @@ def _motion(one: HeldOut) -> list[str]:
     """A line for each joint: the paper's three measures, and how far the error is from the least possible."""
     lines = [f"{one.name:24} {'MSE [rad²]':>22} {'x floor':>8} {'steady state [rad]':>20} {'delay [s]':>16}"]
     for joint, (before, after) in enumerate(zip(one.before.joints, one.after.joints, strict=True)):
+        worse = "  WORSE" if after.mse > WORSE * before.mse else ""
         lines.append(
             f"{f'joint {joint} ({JOINT_NAMES[joint]})':24} {_pair(before.mse, after.mse, '.2e'):>22} "
             f"{_multiple(one, joint):>8} {_pair(before.steady_state_error, after.steady_state_error, '.3f'):>20} "
-            f"{_pair(before.delay_s, after.delay_s, '.3f'):>16}"
+            f"{_pair(before.delay_s, after.delay_s, '.3f'):>16}{worse}"
         )
     before_sum, after_sum = float(one.mse_before.sum()), float(one.mse_after.sum())
+    change = 100.0 * (after_sum / before_sum - 1.0)
     lines.append(
         f"{'all joints':24} {_pair(before_sum, after_sum, '.2e'):>22} {_multiple(one, -1):>8} "
-        f"  {100.0 * (1.0 - after_sum / before_sum):.1f} % lower"
+        f"  {abs(change):.1f} % {'lower' if change <= 0.0 else 'HIGHER'}"
     )
     return lines
 

@@ -1,0 +1,53 @@
+"""A tuning that nobody ran, for what is said of one."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from greywhale.simulate import default_controller
+from greywhale.trajectory import Trajectory
+from greywhale.tune.floor import Floor
+from greywhale.tune.margins import Margin
+from greywhale.tune.model import load_model
+from greywhale.tune.outcome import Curve, HeldOut, Outcome
+from tests.tune.models import evaluation, log_facts, write_model
+
+
+@pytest.fixture
+def outcome(tmp_path: Path) -> Outcome:
+    """Two held-out motions, one of which saturates nothing; a model that was not validated."""
+    model = load_model(write_model(tmp_path / "model.toml", log=[log_facts()]), force=True, samples=2)
+    after = default_controller()
+    after[2, 8] += 1
+    motion, rows = Trajectory(np.array([0.0, 1.0]), np.zeros((2, 4))), np.zeros((1, 4))
+    floors = [
+        Floor(mse, bound, 15.0, 0.0, rows[:, 0], rows, rows)
+        for mse, bound in ((np.full(4, 0.002), np.full(4, 0.002)), (np.full(4, 1e-7), np.zeros(4)))
+    ]
+    held = [
+        HeldOut(name, motion, evaluation(0.01), evaluation(0.002468), floor, rows[:, 0], rows, rows, rows)
+        for name, floor in zip(("steps", "reaches"), floors, strict=True)
+    ]
+    margins = [Margin("at rest", joint, 0, 0.0, 0, 2) for joint in (1, 0, 2, 3)]
+    return Outcome(
+        model=model,
+        parameters=model.parameters,
+        strategy="both",
+        method="default",
+        seed=3,
+        budget=10,
+        evaluations=10,
+        complete=True,
+        before=default_controller(),
+        after=after,
+        cost_before=(1.0,) * 4,
+        cost_after=(0.123456,) * 4,
+        curves=(Curve((10,), (0.1,)),) * 4,
+        margins_before=tuple(margins),
+        margins=tuple(margins),
+        held_out=tuple(held),
+        notes=("a note",),
+    )

@@ -1,0 +1,52 @@
+"""A tuning as text: what people must not overlook is there."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from greywhale.tune.outcome import Outcome
+from greywhale.tune.summary import summary
+from tests.tune.models import evaluation
+
+
+def test_it_shows_before_and_after_and_the_multiple_of_the_floor(outcome: Outcome) -> None:
+    lines = summary(outcome).splitlines()
+    assert lines[0].endswith("at 1 ms and 15 V: default, strategy both, seed 3, 10 evaluations.")
+    row = next(line for line in lines if line.startswith("joint 1 (shoulder pitch)"))
+    assert row.split()[4:] == ["1.00e-02", "->", "2.47e-03", "1.23", "0.012", "->", "0.012", "0.050", "->", "0.050"]
+    assert [line.split()[-3:] for line in lines if line.startswith("all joints")] == [["75.3", "%", "lower"]] * 2
+    # Where nothing saturates there is no multiple, and joint 3 never rests.
+    assert [line.split()[7] for line in lines if line.startswith("joint 3")] == ["1.23", "-"]
+    assert "none -> none" in lines[8]
+    assert "WORSE" not in summary(outcome)
+    assert "Margins hold on all 2 plants, no joint swings or chatters: at rest." in lines
+    assert lines[-5:] == [
+        "Notes:",
+        "- a note",
+        "",
+        "Doubts about the model:",
+        "- it was not validated on a second log.",
+    ]
+
+
+def test_what_is_worse_than_before_says_so(outcome: Outcome) -> None:
+    motion = replace(outcome.held_out[0], after=evaluation(0.0103))
+    lines = summary(replace(outcome, held_out=(motion,))).splitlines()
+    assert [line.endswith("  WORSE") for line in lines if line.startswith("joint")] == [True] * 4
+    assert "all joints" in lines[9]
+    assert lines[9].endswith("3.0 % HIGHER")
+
+
+def test_what_does_not_come_to_rest_is_named(outcome: Outcome) -> None:
+    swinging = replace(outcome.margins[0], reversals=9, chatter_hz=12.3, plants_failing=1)
+    text = summary(replace(outcome, margins=(swinging, *outcome.margins[1:])))
+    sentence = "joint 1 (shoulder pitch), at rest: does not come to rest on 1 of 2 plants (9 reversals, 12 Hz chatter)"
+    assert f"NOT STEADY:\n- {sentence}" in text
+    assert "Margins hold" not in text
+
+
+def test_an_unfinished_one_was_not_judged(outcome: Outcome) -> None:
+    text = summary(replace(outcome, complete=False, margins=(), held_out=()))
+    assert text.startswith("UNFINISHED: interrupted; this is the best so far.\n")
+    assert "Expected" not in text
+    assert "argins" not in text
