@@ -86,7 +86,12 @@ class Journal:
     def _write(self, line: dict[str, Any]) -> None:
         assert self._file is not None
         # A single unbuffered write: what is torn by a crash is the last line and nothing else.
-        self._file.write(json.dumps(line, separators=(",", ":")).encode() + b"\n")
+        try:
+            self._file.write(json.dumps(line, separators=(",", ":")).encode() + b"\n")
+        except OSError as error:
+            raise UserError(
+                f"{self._path}: cannot be written: {because(error)}; make room and go on with --resume."
+            ) from None
 
     def _reopened(self, path: Path, heading: dict[str, Any]) -> IO[bytes]:
         refuse_devices(path)

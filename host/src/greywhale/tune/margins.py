@@ -36,7 +36,7 @@ REVERSALS = 3
 CHATTER_SHARE = 1 / 3
 CHATTER_HZ = 50.0
 SETTLE_S = 1.0
-SEARCH_SWING_RAD = 0.006
+SEARCH_SWING_RAD = 0.005
 WAIT_S = 0.2
 
 # Loop gains as factors of every joint's torque per volt.
@@ -50,7 +50,7 @@ STOPS = (0.8, -0.2)
 REST_S = 2.2  # of which the last 1.2 s are looked at
 REST_LONG_S = 4.0
 # A search keeps clear of the border: gains are further off, and smaller swings and less chatter cost already.
-SEARCH_BEYOND = 1.1
+SEARCH_BEYOND = 1.15
 SEARCH_CHATTER = 0.7
 
 
@@ -132,6 +132,7 @@ class Margins:
         rest_s: float = REST_S,
         searching: bool = False,
         seed: int = 0,
+        noise: int = 0,
     ) -> None:
         low, high = reach(arm, parameters, plants)
         period = parameters[schema.PARAMETER_BY_NAME["period_ms"].index]
@@ -147,7 +148,7 @@ class Margins:
         ]  # fmt: skip
         common: dict[str, Any] = {
             "parameters": parameters,
-            "seed": 100 * seed + 31,
+            "seed": 100 * seed + 31 + 2 * noise,
             "wait_s": WAIT_S,
             "soft_start": False,
         }

@@ -3,7 +3,7 @@
 The cost of a joint is a length (rad), the sum of
 
 - the mean of |e|, weighted with time that restarts at every move of the leader (`training.since_moving`);
-- SQUARE times the mean of e^2, without weights: what the paper's tables measure, mostly made while the leader moves;
+- RMS times the root of the mean of e^2, without weights: what the paper's tables measure, mostly made during moves;
 - EFFORT times the mean of |u|, weighted like |e|;
 - what `margins` demands of a joint that does not come to rest.
 
@@ -27,8 +27,7 @@ Controllers = npt.NDArray[np.int32]
 
 # rad per V: 10 V all the time cost as much as 10 mrad.
 EFFORT = 1e-3
-# 1 per rad: an error of half a radian counts twice, one of 50 mrad a tenth more.
-SQUARE = 2.0
+RMS = 1.5
 WORST_SHARE = 0.5
 
 
@@ -78,7 +77,7 @@ class Objective:
     def costs(self, controllers: Controllers, single: bool = False) -> Floats:
         """(n, 4) in rad, over all plants; without what the margins demand."""
         found = self.tracking(controllers, single)
-        return combined(found.error + SQUARE * found.square + EFFORT * found.volts)
+        return combined(found.error + RMS * np.sqrt(found.square) + EFFORT * found.volts)
 
     def _run(self, drill: Drill, laws: Controllers, arms: Floats, single: bool) -> Result:
         if single:

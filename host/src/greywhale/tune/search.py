@@ -67,7 +67,7 @@ class Found:
 
 
 # How many of a joint's best candidates are kept for the last judgement.
-KEPT = 8
+KEPT = 5
 
 
 def _best_few(ranked: list[tuple[float, bytes]]) -> list[tuple[float, bytes]]:
@@ -121,6 +121,21 @@ def lockstep(
             one.close()
 
 
+def first(start: Controllers, evaluate: Costs, found: Found, journal: Journal) -> None:
+    """Try what there is (4, 12), so that whatever comes later has to beat it."""
+    _tried(start[None], [1] * JOINTS, evaluate, found, journal, "start")
+
+
+def _tried(rows: Controllers, counts: list[int], evaluate: Costs, found: Found, journal: Journal, stage: str) -> Floats:
+    """The costs of candidates, from the journal or by simulation."""
+    costs = journal.costs(stage, rows)
+    if costs is None:
+        costs = evaluate(rows)
+        journal.tell(stage, rows, costs)
+    found.take(rows, costs, counts)
+    return costs
+
+
 def _batch(
     space: Space,
     evaluate: Costs,
@@ -142,11 +157,7 @@ def _batch(
             whole = np.repeat(points[:, None], JOINTS, axis=1)
             rows[: len(points), joint] = space.controllers(whole)[:, joint]
             found.narrowed += space.narrowed(points[:, None])
-    costs = journal.costs(stage, rows)
-    if costs is None:
-        costs = evaluate(rows)
-        journal.tell(stage, rows, costs)
-    found.take(rows, costs, counts)
+    costs = _tried(rows, counts, evaluate, found, journal, stage)
     for joint, one in enumerate(packs):
         if counts[joint]:
             one.tell(costs[: counts[joint], joint])

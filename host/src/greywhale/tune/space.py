@@ -36,6 +36,8 @@ NARROWEST_STATED = 0.01  # as people write it; stored, it is the next width abov
 
 # Sizes that the default search may give to a scaling factor. Kp and Kd only stretch the axes of the sets.
 _GAIN_RANGE = {"Kp": (0.1, 10.0), "Kd": (1e-3, 5.0), "Ki": (1e-2, 300.0)}
+# Ku may exceed the supply, at which the voltage is clipped in any case: full voltage then comes before full height.
+KU_BEYOND = 2.0
 # The least Ku (V): enough for friction, and never 0, which would be doing nothing.
 _LEAST_KU = 3.0
 # Upper bounds of the paper's scaling factors: Ku = 20 V is visible in Table 8; for the others the paper prints none,
@@ -105,11 +107,11 @@ class Space:
 
     @classmethod
     def default(cls, strategy: str, base: Controllers, supply_mv: int, period_ms: int) -> Self:
-        """Widths from 0.01 to 1 and factors over decades by their logarithms, Ku up to the supply that is there."""
+        """Widths from 0.01 to 1 and factors over decades by their logarithms, Ku up to twice the supply."""
         highest = {
             **{name: high for name, (_, high) in _GAIN_RANGE.items()},
             "Ki": min(_GAIN_RANGE["Ki"][1], (LARGEST_KI_PERIOD - 1) / GAIN_UNIT / period_ms),
-            "Ku": min(supply_mv, LARGEST_KU_MV) / 1000.0,
+            "Ku": min(KU_BEYOND * supply_mv, LARGEST_KU_MV) / 1000.0,
         }
         lowest = {**{name: low for name, (low, _) in _GAIN_RANGE.items()}, "Ku": min(_LEAST_KU, 0.5 * highest["Ku"])}
         sets = [Variable(name, *_ordered(name, NARROWEST, 1.0), True) for name in SETS]

@@ -2,10 +2,13 @@
 
 The default method:
 
-1. Four searches in lockstep (`search.py`), one a joint, over all plants and training motions, with limit cycles priced.
-2. A second, narrow search from the best of the first, in which all neighbours are nearly what they will be.
-3. The best few of every joint are judged anew in double precision, and the best of them is taken. The controller from
-   before the tuning is always among them, so that no joint can end worse than it began.
+1. `shape`: a search a joint (`search.py`) for sets that are the same to both sides of zero, over several plants and all
+   training motions, with unrest priced. Joints 0 and 2 take turns with 1 and 3: neighbours disturb each other.
+2. `every corner`: a narrow search from there, in which each corner and factor is free.
+3. The best few of every joint are judged anew, on all plants in the bench's own arithmetic (`judgement.py`). The
+   controller from before the tuning is among them, so that no joint can end at a higher cost than it began.
+
+Any other method is one search of all joints together with that optimiser, and then step 3.
 """
 
 from __future__ import annotations
@@ -25,13 +28,14 @@ from greywhale.simulate.tables import check_controllers
 from greywhale.tune import search
 from greywhale.tune.held_out import judge_held_out
 from greywhale.tune.journal import Journal
+from greywhale.tune.judgement import choose
 from greywhale.tune.margins import REST_LONG_S, Margin, Margins, loosest, penalty
 from greywhale.tune.objective import Objective
 from greywhale.tune.outcome import Outcome, curves_of
 from greywhale.tune.paper import tune_as_paper
 from greywhale.tune.progress import Report, silent
 from greywhale.tune.search import Found, lockstep
-from greywhale.tune.space import JOINTS, Bounds, Space, check_bounds, check_strategy
+from greywhale.tune.space import Bounds, Space, check_bounds, check_strategy
 from greywhale.tune.training import drills
 
 if TYPE_CHECKING:
@@ -42,11 +46,11 @@ Controllers = npt.NDArray[np.int32]
 
 DEFAULT_STRATEGY = "both"
 METHODS = ("default", "paper", *OPTIMISERS)
-DEFAULT_BUDGET = 2400
+DEFAULT_BUDGET = 3000
 # Of the budget, what the second, narrow search gets; its box is that share of the whole around the best so far.
 NARROW_SHARE = 0.4
 NARROW_BOX = 0.08
-CHOSEN = "cma-es"  # of the default method
+SHAPE_METHOD, CORNER_METHOD = "cma-es", "cma-es"  # of the default method's two searches
 # Plants that the search tracks on, the estimate among them; the last judgement uses all.
 SEARCH_PLANTS = 4
 NOISE_V = 0.0024  # of a potentiometer of which the model says none: half a step of the board's converter
@@ -90,10 +94,11 @@ def tune(
 ) -> Outcome:
     """Tune the four controllers of a model.
 
-    `budget` counts sets of four candidates, each tried on all plants and motions. `start` int32 (4, 12) is the
-    controller from before (else the one in the model's table). `journal` is a file that keeps every cost, with `resume`
-    to go on from. `threads` (0: all cores) changes no bit. After an interrupt (KeyboardInterrupt) the best so far comes
-    back with `complete` False; only before anything was evaluated it goes on up. Raises UserError.
+    `budget` counts sets of four candidates, each tried on all plants and motions; the first is `start`, the controller
+    from before: int32 (4, 12), by default that of the model's table. `journal` is a file that keeps every cost, with
+    `resume` to go on from. `threads` (0: all cores) changes no bit. `floors` False saves the held-out motions' floors.
+    After an interrupt (KeyboardInterrupt) the best so far comes back at once, with `complete` False and not judged;
+    only before anything was evaluated it goes on up. Raises UserError.
     """
     check_request(strategy=strategy, method=method, budget=budget, seed=seed, threads=threads, bounds=bounds)
     before = check_controllers(model.controllers if start is None else start)[0]
@@ -135,7 +140,11 @@ class _Tuning:
         self.objective = Objective(motions, model.plants[:SEARCH_PLANTS], self.threads)
         self.judge = Objective(motions, model.plants, self.threads)
         self.margins = self._margins(_spanning(model.plants), searching=True)
-        self.found = Found.nothing(self.before)
+        # Longer and with other noise, since a search learns its own by heart.
+        self.judging_margins = self._margins(_spanning(model.plants), searching=True, rest_s=REST_LONG_S, noise=1)
+        # With bounds, what is downloaded keeps within them, whatever ran before.
+        self.start = self.space.controllers(self.space.points(self.before[None]))[0] if self.bounds else self.before
+        self.found = Found.nothing(self.start)
 
     def _margins(self, plants: Floats, **options: Any) -> Margins:
         return Margins(self.model.arm, self.model.parameters, plants, threads=self.threads, seed=self.seed, **options)
@@ -156,40 +165,40 @@ class _Tuning:
         }
 
     def run(self, journal: Path | None, resume: bool, floors: bool) -> Outcome:
-        complete = True
         with Journal(journal, self.request(), resume) as book:
             try:
                 self._search(book)
+                return self._judged_outcome(floors)
             except KeyboardInterrupt:
                 if not self.found.evaluations:
                     raise
-                complete = False
-        return self._outcome(complete, floors)
+                return self._unjudged_outcome()
 
     def _search(self, book: Journal) -> None:
-        common: dict[str, Any] = {"evaluate": self.costs, "found": self.found, "journal": book, "tick": self._tick}
-        if self.method != "default":
-            lockstep(
-                self.space, stage="search", method=self.method, budget=self.budget, seed=(self.seed, 1),
-                starts=self.before[None], **common,
-            )  # fmt: skip
-            return
-        shape = self.space.reduced()
-        self.found.best = shape.restretched(self.before)
-        turns = len(search.TURNS)
-        narrow = int(NARROW_SHARE * self.budget / turns)
-        lockstep(
-            shape, stage="shape", method=CHOSEN, budget=max(1, self.budget // turns - narrow), seed=(self.seed, 1),
-            starts=self.found.best[None], groups=search.TURNS, **common,
-        )  # fmt: skip
-        if narrow:
-            lockstep(
-                self.space, stage="every corner", method=CHOSEN, budget=narrow, seed=(self.seed, 2),
-                starts=self.found.best[None], groups=search.TURNS, sigma=NARROW_BOX, **common,
-            )  # fmt: skip
+        def tick(found: Found) -> None:
+            what = "replaying the journal" if book.replaying else "tuning"
+            self.report(what, min(1.0, found.evaluations / self.budget), note=f"cost {1e3 * found.total:.1f} mrad")
 
-    def _tick(self, found: Found) -> None:
-        self.report("tuning", min(1.0, found.evaluations / self.budget), note=f"cost {1e3 * found.total:.1f} mrad")
+        common: dict[str, Any] = {"evaluate": self.costs, "found": self.found, "journal": book, "tick": tick}
+        search.first(self.start, self.costs, self.found, book)
+        left = self.budget - 1
+        if self.method != "default":
+            self._stage("search", self.space, self.method, left, self.start, 1, **common)
+            return
+        turn = left // len(search.TURNS)
+        narrow = int(NARROW_SHARE * turn)
+        common["groups"] = search.TURNS
+        shape = self.space.reduced()
+        self._stage("shape", shape, SHAPE_METHOD, turn - narrow, shape.restretched(self.start), 1, **common)
+        self._stage("every corner", self.space, CORNER_METHOD, narrow, self.found.best, 2, sigma=NARROW_BOX, **common)
+
+    def _stage(
+        self, name: str, space: Space, method: str, budget: int, start: Controllers, number: int, **options: Any
+    ) -> None:
+        if budget > 0:
+            lockstep(
+                space, stage=name, method=method, budget=budget, starts=start[None], seed=(self.seed, number), **options
+            )
 
     def costs(self, controllers: Controllers) -> Floats:
         """Of the search: (n, 4) in rad."""
@@ -198,21 +207,36 @@ class _Tuning:
 
     def judged(self, controllers: Controllers) -> Floats:
         """The same cost on all plants in the bench's arithmetic."""
-        unrest = self.margins.unrest(controllers, single=True)
+        unrest = self.judging_margins.unrest(controllers, single=True)
         costs: Floats = self.judge.costs(controllers, single=True) + penalty(unrest)
         return costs
 
-    def _outcome(self, complete: bool, floors: bool) -> Outcome:
+    def _judged_outcome(self, floors: bool) -> Outcome:
         self.report("judging", 0.0)
-        after, cost_before, cost_after = self._chosen()
-        self.report("judging", 0.4)
-        everywhere = self._margins(np.vstack([self.model.plants, loosest(self.model.plants)]), rest_s=REST_LONG_S)
+        after, cost_before, cost_after = choose(self.start, self.found.contenders(search.KEPT), self.judged)
+        self.report("judging", 0.5)
+        model = self.model
+        everywhere = self._margins(np.vstack([model.plants, loosest(model.plants)]), rest_s=REST_LONG_S, noise=2)
         margins_before, margins = everywhere.check(self.before), everywhere.check(after)
-        self.report("judging", 0.7)
+        self.report("judging", 0.8)
         held_out = judge_held_out(
-            self.model.arm, self.model.parameters, self.model.plants[0], self.before, after, self.threads, floors
+            model.arm, model.parameters, model.plants[0], self.before, after, self.threads, floors
         )
         self.report("judging", 1.0)
+        return replace(
+            self._unjudged_outcome(),
+            complete=True,
+            after=after,
+            cost_before=tuple(map(float, cost_before)),
+            cost_after=tuple(map(float, cost_after)),
+            margins_before=margins_before,
+            margins=margins,
+            held_out=held_out,
+            notes=_notes(margins),
+        )
+
+    def _unjudged_outcome(self) -> Outcome:
+        """The best so far by the search's own cost."""
         return Outcome(
             model=self.model,
             parameters=self.model.parameters,
@@ -221,32 +245,29 @@ class _Tuning:
             seed=self.seed,
             budget=self.budget,
             evaluations=self.found.evaluations,
-            complete=complete,
+            complete=False,
             before=self.before,
-            after=after,
-            cost_before=cost_before,
-            cost_after=cost_after,
+            after=self.found.best.copy(),
+            cost_before=self.found.curve[0][1],
+            cost_after=self.found.curve[-1][1],
             curves=curves_of(self.found),
-            margins_before=margins_before,
-            margins=margins,
-            held_out=held_out,
-            notes=self._notes(margins),
+            margins_before=(),
+            margins=(),
+            held_out=(),
+            notes=(
+                "interrupted: the best so far by the search's own cost; margins and other motions were not looked at",
+            ),
         )
 
-    def _chosen(self) -> tuple[Controllers, tuple[float, ...], tuple[float, ...]]:
-        """The best of every joint's best few by the last judgement, and the costs before and after."""
-        rows = np.concatenate([self.before[None], self.found.contenders(search.KEPT)])
-        costs = self.judged(rows)
-        mixed = rows[0].copy()
-        for joint in range(JOINTS):
-            mixed[joint] = rows[int(np.argmin(costs[:, joint])), joint]
-        finalists = np.concatenate([rows, mixed[None]])
-        final = np.concatenate([costs, self.judged(mixed[None])])
-        best = int(np.argmin(final.sum(axis=1)))
-        return finalists[best].copy(), tuple(map(float, final[0])), tuple(map(float, final[best]))
 
-    def _notes(self, margins: tuple[Margin, ...]) -> tuple[str, ...]:
-        return ()
+def _notes(margins: tuple[Margin, ...]) -> tuple[str, ...]:
+    """A sentence for every scenario in which a joint does not come to rest."""
+    return tuple(
+        f"joint {margin.joint}, {margin.scenario}: {margin.reversals} reversals in a rest and {margin.chatter_hz:.0f} "
+        f"duty swings a second on {margin.plants_failing} of {margin.plants} plants"
+        for margin in margins
+        if not margin.holds
+    )
 
 
 def _spanning(plants: Floats) -> Floats:
