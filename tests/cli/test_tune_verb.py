@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import itertools
 import json
 import os
 import signal
@@ -19,14 +21,15 @@ import pytest
 from greywhale.cli import entry
 from greywhale.cli import tune as verb
 from greywhale.config import controller
-from greywhale.link import schema
-from greywhale.simulate import controller_row
+from greywhale.link import device, schema
+from greywhale.simulate import CONTROLLER_COLUMNS, controller_row, default_controller
 from greywhale.tune import tune
+from tests.link_device.fake_board import FakeBoard
 from tests.tune.models import log_facts, write_model
 
 Captured = pytest.CaptureFixture[str]
 # Small, but the whole way: a search, its margins, its held-out motions.
-QUICK = ("--method", "random", "--budget", "6", "--samples", "2")
+QUICK = ("--method", "random", "--budget", "4", "--samples", "1")
 DEADLINE_S = 120.0
 
 
@@ -153,14 +156,27 @@ def test_json_file_and_upload_speak_of_the_same_controllers(model: Path, capsys:
 
 
 def test_any_number_of_workers_writes_the_same_file(no_floors: None, model: Path) -> None:
+    many = ("--method", "random", "--budget", "20", "--samples", "2")  # more than one thread would do at a time
     texts = []
-    for workers in ("1", "3"):
-        out = model.parent / f"{workers}.toml"
-        assert entry.run(["tune", str(model), "-o", str(out), *QUICK, "--workers", workers, "--json"]) == 0
+    for options in (("--workers", "1"), ("--workers", "3"), ("--seed", "1")):
+        out = model.parent / "controller.toml"
+        assert entry.run(["tune", str(model), "-o", str(out), *many, *options, "--json"]) == 0
         texts.append(out.read_bytes())
     assert texts[0] == texts[1]
-    assert entry.run(["tune", str(model), "-o", str(out), *QUICK, "--seed", "1", "--json"]) == 0
-    assert out.read_bytes() != texts[0]
+    assert texts[2] != texts[0]
+
+
+def test_bounds_hold_even_for_what_the_board_ran_before(no_floors: None, model: Path, capsys: Captured) -> None:
+    limits = ("--bounds", "Ku=3..5", "--bounds", "ze_c=0.02..0.03")
+    assert entry.run(["tune", str(model), "-o", str(model.parent / "c.toml"), *QUICK, *limits, "--json"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    assert np.array(answer["before"])[:, 11].min() > 5000
+    after = np.array(answer["after"])
+    assert after[:, 11].min() >= 3000
+    assert after[:, 11].max() <= 5000
+    widths = after[:, CONTROLLER_COLUMNS.index("ze_c")] / 16384
+    assert widths.min() >= 0.02 - 1e-4
+    assert widths.max() <= 0.03 + 1e-4
 
 
 def test_doubts_go_along_into_text_and_file(no_floors: None, tmp_path: Path, capsys: Captured) -> None:
@@ -186,9 +202,38 @@ def test_pictures_are_drawn_on_request(no_floors: None, model: Path, capsys: Cap
     assert all(path.parent == folder and path.read_bytes().startswith(b"\x89PNG") for path in files)
 
 
+@pytest.mark.parametrize(
+    ("tuning", "warnings"),
+    [
+        (None, []),
+        ({"status": "complete", "margins_hold": True, "period_ms": 1, "supply_v": 15.0}, []),
+        (
+            {"status": "unfinished", "period_ms": 20, "supply_v": 12.0},
+            [
+                "the tuning of this controller is not finished.",
+                "it was tuned for period_ms = 20, but this board has 1.",
+                "it was tuned for supply_mv = 12000, but this board has 15000.",
+            ],
+        ),
+        ({"margins_hold": False}, ["its margins do not hold: a joint may swing at rest (its file says which)."]),
+    ],
+)
+def test_an_upload_warns_where_board_and_tuning_differ(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured, tuning: dict[str, Any] | None,
+    warnings: list[str],
+) -> None:  # fmt: skip
+    monkeypatch.setattr(device.Device.__init__, "__defaults__", (0.0, 0.5))
+    controller.save(tmp_path / "c.toml", default_controller(), tuning=tuning)
+    with FakeBoard() as board:
+        assert entry.run(["upload", str(tmp_path / "c.toml"), "--port", board.port, "--json"]) == 0
+        assert json.loads(capsys.readouterr().out)["warnings"] == warnings
+        assert entry.run(["upload", str(tmp_path / "c.toml"), "--port", board.port]) == 0
+    assert capsys.readouterr().out.count("Warning: ") == len(warnings)
+
+
 # --- Ctrl-C ---------------------------------------------------------------------------------------------------------
 
-LONG = ("--method", "gwo-woa", "--budget", "60", "--samples", "2")
+LONG = ("--method", "gwo-woa", "--budget", "61", "--samples", "1")
 
 
 def start(model: Path, *arguments: str) -> subprocess.Popen[str]:
@@ -215,7 +260,7 @@ def wait_for_batches(process: subprocess.Popen[str], journal: Path, count: int) 
 def test_interrupted_and_resumed_is_the_same_file_as_uninterrupted(no_floors: None, model: Path) -> None:
     folder = model.parent
     out, journal = folder / "controller.toml", folder / "controller.toml.journal"
-    for batches, options in ((2, ()), (4, ("--resume",))):
+    for batches, options in ((2, ("--workers", "1")), (4, ("--workers", "2", "--resume"))):
         process = start(model, *LONG, *options)
         wait_for_batches(process, journal, batches)
         process.send_signal(signal.SIGINT)
@@ -236,13 +281,40 @@ def test_interrupted_and_resumed_is_the_same_file_as_uninterrupted(no_floors: No
     assert out.read_bytes() == whole.read_bytes()
 
 
-def test_a_resumed_tuning_must_be_the_same_one(model: Path, capsys: Captured) -> None:
+def interrupt_after(monkeypatch: pytest.MonkeyPatch, batches: int) -> None:
+    """Ctrl-C as the progress bar is told of that batch."""
+
+    @contextlib.contextmanager
+    def impatient(as_json: bool) -> Iterator[Any]:
+        told = itertools.count(1)
+
+        def report(what: str, fraction: float, note: str = "") -> None:
+            if next(told) == batches:
+                raise KeyboardInterrupt
+
+        yield report
+
+    monkeypatch.setattr(verb, "progress", impatient)
+
+
+def test_a_resumed_tuning_must_be_the_same_one(
+    no_floors: None, model: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
+) -> None:
     out, journal = model.parent / "controller.toml", model.parent / "controller.toml.journal"
-    process = start(model, *LONG)
-    wait_for_batches(process, journal, 1)
-    process.send_signal(signal.SIGINT)
-    process.communicate(timeout=DEADLINE_S)
+    with monkeypatch.context() as patch:
+        interrupt_after(patch, 2)
+        assert entry.run(["tune", str(model), "--out", str(out), *LONG]) == 130
     before = journal.read_bytes(), out.read_bytes()
-    assert entry.run(["tune", str(model), "--out", str(out), *LONG, "--method", "gwo", "--resume"]) != 0
-    assert 'the journal is of another tuning: its method is "gwo-woa", now it is "gwo";' in capsys.readouterr().err
+    for option, words in (
+        (("--method", "gwo"), 'its method is "gwo-woa", now it is "gwo";'),
+        (("--budget", "70"), "its budget is 61, now it is 70;"),
+        (("--bounds", "Ku=3..9"), 'its bounds is {}, now it is {"Ku": [3.0, 9.0]};'),
+    ):
+        capsys.readouterr()
+        assert entry.run(["tune", str(model), "--out", str(out), *LONG, *option, "--resume"]) != 0
+        assert f"the journal is of another tuning: {words}" in capsys.readouterr().err
+        assert (journal.read_bytes(), out.read_bytes()) == before
+    write_model(model, deviation=0.031)
+    assert entry.run(["tune", str(model), "--out", str(out), *LONG, "--resume"]) != 0
+    assert "the journal is of another tuning: its model_digest is" in capsys.readouterr().err
     assert (journal.read_bytes(), out.read_bytes()) == before

@@ -40,8 +40,7 @@ def test_what_is_worse_than_before_says_so(outcome: Outcome) -> None:
 def test_what_does_not_come_to_rest_is_named(outcome: Outcome) -> None:
     swinging = replace(outcome.margins[0], reversals=9, chatter_hz=12.3, plants_failing=1)
     text = summary(replace(outcome, margins=(swinging, *outcome.margins[1:])))
-    sentence = "joint 1 (shoulder pitch), at rest: does not come to rest on 1 of 2 plants (9 reversals, 12 Hz chatter)"
-    assert f"NOT STEADY:\n- {sentence}" in text
+    assert "\nNOT STEADY: joint 1 (shoulder pitch), at rest.\n" in text
     assert "Margins hold" not in text
 
 

@@ -21,7 +21,7 @@ def summary(outcome: Outcome) -> str:
     for one in outcome.held_out:
         lines += ["", *_motion(one)]
     if outcome.margins:
-        lines += ["", *_margins(outcome)]
+        lines += ["", _margins(outcome)]
     for title, sentences in (("Notes", outcome.notes), ("Doubts about the model", outcome.model.doubts)):
         if sentences:
             lines += ["", f"{title}:", *(f"- {sentence}" for sentence in sentences)]
@@ -57,17 +57,14 @@ def _multiple(one: HeldOut, joint: int) -> str:
     return "-" if multiple is None else f"{multiple:.2f}"
 
 
-def _margins(outcome: Outcome) -> list[str]:
-    scenarios = ", ".join(dict.fromkeys(margin.scenario for margin in outcome.margins))
-    failing = [margin for margin in outcome.margins if not margin.holds]
+def _margins(outcome: Outcome) -> str:
+    """One line; how far a joint swings stands in the notes."""
+    failing = [
+        f"joint {one.joint} ({JOINT_NAMES[one.joint]}), {one.scenario}" for one in outcome.margins if not one.holds
+    ]
+    if failing:
+        return "NOT STEADY: " + "; ".join(failing) + "."
     plants = outcome.margins[0].plants
-    if not failing:
-        arms = f"on all {plants} plants" if plants > 1 else "on the model itself"
-        return [f"Margins hold {arms}, no joint swings or chatters: {scenarios}."]
-    lines = ["NOT STEADY:"]
-    for one in failing:
-        lines.append(
-            f"- joint {one.joint} ({JOINT_NAMES[one.joint]}), {one.scenario}: does not come to rest on "
-            f"{one.plants_failing} of {one.plants} plants ({one.reversals} reversals, {one.chatter_hz:.0f} Hz chatter)"
-        )
-    return lines
+    arms = f"on all {plants} plants" if plants > 1 else "on the model itself"
+    scenarios = ", ".join(dict.fromkeys(margin.scenario for margin in outcome.margins))
+    return f"Margins hold {arms}, no joint swings or chatters: {scenarios}."
