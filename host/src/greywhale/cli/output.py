@@ -12,6 +12,7 @@ import click
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
+WHOLE = 10_000  # parts of a progress bar
 Command = TypeVar("Command", bound=Callable[..., Any])
 
 
@@ -62,9 +63,9 @@ def progress(as_json: bool) -> Iterator[Report | None]:
         def report(what: str, fraction: float, note: str = "") -> None:
             if what not in tasks:
                 for done in tasks.values():
-                    bars.update(done, completed=1.0)
+                    bars.update(done, completed=WHOLE)
                 # What was there at the beginning tells nothing about the speed.
-                tasks[what] = bars.add_task(what, total=1.0, completed=fraction, note=note)
-            bars.update(tasks[what], completed=fraction, note=note)
+                tasks[what] = bars.add_task(what, total=WHOLE, completed=round(WHOLE * fraction), note=note)
+            bars.update(tasks[what], completed=WHOLE * fraction, note=note)
 
         yield report
