@@ -152,3 +152,13 @@ def test_the_joint_is_the_arms_own_with_friction_gear_and_all() -> None:
     assert np.ptp(expected) > 0.5
     np.testing.assert_allclose(found, expected, atol=1e-6)
     assert whole.unsettled_steps == 0
+
+
+def test_what_does_not_fit_together_is_refused() -> None:
+    record = still(0.2)
+    runner = Runner(record, None)
+    pieces = pieces_of(record, 0, 200)
+    with pytest.raises(ValueError, match="a plant has 19 columns"):
+        runner.run(np.zeros((1, 18)), pieces)
+    with pytest.raises(ValueError, match="a window reaches beyond the record"):
+        runner.run(plant_of(SLIDER), replace(pieces, rows=201))

@@ -11,6 +11,7 @@ import pytest
 from greywhale.arm import Arm
 from greywhale.errors import UserError
 from greywhale.one_joint import fit
+from tools.bench import bench_real_data
 from tools.real_data import study
 from tools.real_data.compare import halves
 from tools.real_data.product import arm_of, joint_of, log_of
@@ -109,10 +110,14 @@ def test_a_file_without_a_column_or_with_words_in_it_is_refused_in_a_sentence(tm
         read_servo(tmp_path / "nothing.csv")
 
 
-def test_a_missing_folder_is_told_with_what_to_do(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_a_missing_folder_is_told_with_what_to_do_and_leaves_other_benchmarks_running(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     monkeypatch.setenv(study.VARIABLE, str(tmp_path / "nowhere"))
     with pytest.raises(UserError, match=r"nowhere is not there.*set GREYWHALE_REAL_DATA to the folder"):
         study.data_folder()
+    assert bench_real_data.run() == []
+    assert "nowhere is not there" in capsys.readouterr().err
 
 
 def test_a_pendulum_becomes_a_shoulder_that_hangs_and_weighs_what_is_published(tmp_path: Path) -> None:
