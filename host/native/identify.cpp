@@ -12,14 +12,15 @@
 #include <thread>
 #include <vector>
 
-#include "arm/step.h"
 #include "bindings.h"
 #include "closed_loop/experiment.h"
+#include "windows/windows.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;
 namespace arm = greywhale::arm;
 namespace loop = greywhale::loop;
+namespace windows = greywhale::windows;
 
 namespace {
 
@@ -50,34 +51,30 @@ struct Start {
   Rows offsets, kicks;
 };
 
-void simulate(const Windows& w, const Drive& drive, const arm::Plant<double>& plant, const double* offset, const double* kick,
-              std::size_t window, std::size_t every, double* out) {
-  static constexpr double kNoLoad[kJoints] = {};
-  arm::State<double> s;
-  for (std::size_t i = 0; i < kJoints; ++i) {
-    s.q[i] = w.angles(window, i) + offset[i];
-    s.v[i] = w.velocities(window, i) + kick[i];
-    s.motor_q[i] = s.q[i] + w.sides(window, i) * plant.joints[i].gear.half_gap;
-    s.motor_v[i] = s.v[i];
-  }
-  const auto first = static_cast<std::size_t>(w.first(window));
-  for (std::size_t row = 0; row < w.rows; ++row) {
-    if (row % every == 0) {
-      for (std::size_t i = 0; i < kJoints; ++i) *out++ = s.q[i] - offset[i];
-    }
-    const double dt = drive.spacing(first + row) / static_cast<double>(drive.substeps);
-    for (std::size_t n = 0; n < drive.substeps; ++n) {
-      double volts[kJoints];
-      std::copy_n(&drive.volts((first + row) * drive.substeps + n, 0), kJoints, volts);
-      arm::advance(plant, s, volts, kNoLoad, dt);
-    }
-  }
+using Kernel = void (*)(const windows::Windows&, const windows::Lane*, std::size_t);
+
+struct Width {
+  Kernel kernel;
+  std::size_t lanes;
+};
+
+Width widest() {
+  if (__builtin_cpu_supports("avx2")) return {windows::simulate_4_avx2, 4};
+  return {windows::simulate_2, 2};
 }
 
-arm::Plant<double> plant_of(const Plants& plants, std::size_t n) {
-  loop::PlantRow row;
-  std::copy_n(&plants(n, 0), loop::kPlantColumns, reinterpret_cast<double*>(&row));
-  return row.plant;
+// Runs of at most `most` lanes that can share a kernel call: those of one window, or of windows with the same times between rows.
+std::vector<std::size_t> grouped(const std::vector<windows::Lane>& lanes, const windows::Windows& w, std::size_t most) {
+  const auto spacing = [&](std::size_t lane) { return w.spacing + w.first[lanes[lane].window]; };
+  std::vector<std::size_t> begins;
+  for (std::size_t lane = 0; lane < lanes.size(); ++lane) {
+    const std::size_t begin = begins.empty() ? 0 : begins.back();
+    const bool fits = !begins.empty() && lane - begin < most &&
+                      (lanes[lane].window == lanes[begin].window || std::equal(spacing(begin), spacing(begin) + w.rows, spacing(lane)));
+    if (!fits) begins.push_back(lane);
+  }
+  begins.push_back(lanes.size());
+  return begins;
 }
 
 void check(const Windows& w, const Drive& drive, const Plants& plants, const Start& start, std::size_t every) {
@@ -98,19 +95,30 @@ void check(const Windows& w, const Drive& drive, const Plants& plants, const Sta
   }
 }
 
-// Every (candidate, window) pair once, from as many threads as there are cores or as asked; the order does not matter.
+// Every (candidate, window) pair once, in as many lanes as the processor has, from as many threads as there are cores or as asked;
+// neither changes a bit of the result.
 nb::object run(const Windows& w, const Drive& drive, const Plants& plants, const Start& start, std::size_t every, int threads) {
   check(w, drive, plants, start, every);
-  const std::size_t candidates = plants.shape(0), windows = w.first.shape(0), kept = (w.rows + every - 1) / every;
+  const std::size_t candidates = plants.shape(0), count = w.first.shape(0), kept = (w.rows + every - 1) / every;
   const std::size_t size = kept * kJoints;
-  auto values = std::make_unique<double[]>(candidates * windows * size);
+  auto values = std::make_unique<double[]>(candidates * count * size);
   {
     const nb::gil_scoped_release free;
+    const windows::Windows given{w.first.data(),     w.angles.data(),      w.velocities.data(), w.sides.data(), drive.volts.data(),
+                                 drive.spacing.data(), w.rows, drive.substeps, every};
+    std::vector<windows::Lane> lanes;
+    lanes.reserve(candidates * count);
+    for (std::size_t window = 0; window < count; ++window) {
+      for (std::size_t n = 0; n < candidates; ++n) {
+        lanes.push_back({&plants(n, 0), &start.offsets(n, 0), &start.kicks(n, 0), window, &values[(n * count + window) * size]});
+      }
+    }
+    const Width width = widest();
+    const std::vector<std::size_t> begins = grouped(lanes, given, width.lanes);
     std::atomic<std::size_t> next{0};
     const auto work = [&] {
-      for (std::size_t task = next++; task < candidates * windows; task = next++) {
-        const std::size_t n = task / windows;
-        simulate(w, drive, plant_of(plants, n), &start.offsets(n, 0), &start.kicks(n, 0), task % windows, every, &values[task * size]);
+      for (std::size_t group = next++; group + 1 < begins.size(); group = next++) {
+        width.kernel(given, &lanes[begins[group]], begins[group + 1] - begins[group]);
       }
     };
     const std::size_t cores = threads > 0 ? static_cast<std::size_t>(threads) : std::max(1u, std::thread::hardware_concurrency());
@@ -121,7 +129,7 @@ nb::object run(const Windows& w, const Drive& drive, const Plants& plants, const
   }
   double* raw = values.release();
   nb::capsule owner(raw, [](void* p) noexcept { delete[] static_cast<double*>(p); });
-  return nb::cast(nb::ndarray<nb::numpy, double, nb::c_contig>(raw, {candidates, windows, kept, kJoints}, owner));
+  return nb::cast(nb::ndarray<nb::numpy, double, nb::c_contig>(raw, {candidates, count, kept, kJoints}, owner));
 }
 
 }  // namespace

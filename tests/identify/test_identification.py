@@ -122,7 +122,7 @@ def test_interrupt_before_any_model_is_an_interrupt(
     def interrupted(self: Search) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(Search, "_start", interrupted)
+    monkeypatch.setattr(Search, "_motors", interrupted)
     with pytest.raises(KeyboardInterrupt):
         identify([recorded.fit], white_box)
 

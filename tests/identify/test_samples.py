@@ -69,7 +69,7 @@ def test_draws_have_the_covariance_of_the_file(model: ArmParameters, outcome: Ou
 def test_nothing_is_surer_than_it_is_written_and_nothing_less_sure_than_the_users_arm(outcome: Outcome) -> None:
     """Every searched number has a deviation above 0, and the arm file counts where the readings tell nothing."""
     assert outcome.covariance is not None
-    doubts = {kind: 1.0 if KINDS[kind].logarithmic else 100 * KINDS[kind].step for kind in KINDS}
+    doubts = {name: kind.doubt for name, kind in KINDS.items()}
     for variance, one in zip(np.diag(outcome.covariance), outcome.estimates, strict=True):
         assert 0.0 < np.sqrt(variance) <= 1.001 * doubts[one.name.partition(".")[2]], one.name
     assert np.linalg.eigvalsh(outcome.covariance)[0] > 0.0

@@ -24,7 +24,7 @@ def test_friction_and_gears_of_the_users_arm_are_kept() -> None:
     arm = default_arm()
     space = Space.of(arm, ALL, range(JOINTS))
     np.testing.assert_allclose(space.plants(space.start()[None])[0], plant_row(arm), rtol=1e-12)
-    assert len(space) == 8 * 4 - 2, "only pitch joints have a zero angle that matters"
+    assert len(space) == 10 * 4 - 2, "only pitch joints have a zero angle that matters"
 
 
 def test_each_number_moves_its_own_joint_only() -> None:

@@ -47,6 +47,7 @@ class Loop:
         reference = np.vstack([np.tile(leader[:1], (LEAD_TICKS, 1)), leader])
         target = np.vstack([np.tile(self.follower[:1], (LEAD_TICKS, 1)), self.follower]) + zero
         self.ticks = ticks
+        self.seconds = len(reference) * TICK_S  # simulated for every candidate
         self.time = times
         self.laws = controller_rows(values)
         settings = loop_settings(values)
@@ -104,6 +105,9 @@ class LoopResidual:
         self.loops = loops
         self.joints = list(joints)
         self.whole = whole
+        rows = [loop.rows if whole else len(part_of(loop.rows, ROWS_PER_BLOCK, False)) for loop in loops]
+        self.joint_of = np.tile(np.array(self.joints, dtype=np.intp), sum(rows))
+        self.seconds = sum(loop.seconds for loop in loops)
 
     def __call__(self, space: Space, points: Floats) -> Floats:
         plants = space.plants(points)

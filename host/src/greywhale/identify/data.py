@@ -14,9 +14,11 @@ from greywhale.measure.runs import Run, gap_free_runs
 Floats = NDArray[np.float64]
 JOINTS = 4
 WINDOW_S = 0.5
-SMOOTHING_S = 0.03  # of the angle, to find velocities
-# Longest step of the integration in a window, s.
+SMOOTHING_S = 0.04  # of the angle, to find velocities
+# Longest steps of the integration in a window, s: to search, and to finish with (what a light link does in its gap is
+# over in some milliseconds).
 STEP_S = 1e-3
+FINE_STEP_S = 0.25e-3
 # Windows are compared with the log at this spacing, s; neighbouring readings differ in noise only.
 COMPARED_S = 5e-3
 # Firmware: from a new sample to its voltage, and the mean age of a tick's four conversions (s).
@@ -100,9 +102,11 @@ def _noise(rest: Floats, used: NDArray[np.bool_], size: int) -> Floats:
     return noise
 
 
-def windows_of(prepared: Prepared, part: slice | NDArray[np.intp] | None = None, length_s: float = WINDOW_S) -> Windows:
+def windows_of(
+    prepared: Prepared, part: slice | NDArray[np.intp] | None = None, longest_step: float = STEP_S
+) -> Windows:
     """Windows one after the other over the whole log, or over a `part` of its windows."""
-    rows = max(6, round(length_s / prepared.period))
+    rows = max(6, round(WINDOW_S / prepared.period))
     every = max(1, round(COMPARED_S / prepared.period))
     first = np.array(
         [start for run in prepared.runs for start in range(run.start, run.stop - rows, rows)], dtype=np.int64
@@ -112,7 +116,7 @@ def windows_of(prepared: Prepared, part: slice | NDArray[np.intp] | None = None,
     log = prepared.log
     kept = np.arange(0, rows, every)
     at = first[:, None] + kept[None, :]
-    substeps = max(1, int(np.ceil(prepared.period / STEP_S - 1e-9)))
+    substeps = max(1, int(np.ceil(prepared.period / longest_step - 1e-9)))
     spacing = np.diff(log.time, append=log.time[-1] + prepared.period)
     return Windows(
         first=first,

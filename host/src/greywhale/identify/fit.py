@@ -34,6 +34,14 @@ Residual = Callable[[Space, Floats], Floats]
 
 
 @dataclass(frozen=True)
+class Pattern:
+    """Which searched numbers move which numbers of a residual, so that several can be varied in one simulation."""
+
+    groups: tuple[NDArray[np.intp], ...]  # searched numbers that are varied together
+    moves: NDArray[np.bool_]  # (numbers of the residual, searched numbers)
+
+
+@dataclass(frozen=True)
 class Fit(Generic[Space]):
     """Where least squares ended: half the sum of squares, the residual and its derivatives there."""
 
@@ -52,8 +60,12 @@ def least_squares_fit(
     most_steps: int = 20,
     step_scale: float = 1.0,
     tolerance: float = 1e-4,
+    pattern: Pattern | None = None,
 ) -> Fit[Space]:
-    """Trust-region least squares within the bounds, ended after `most_steps` steps or when little is gained."""
+    """Trust-region least squares within the bounds, ended after `most_steps` steps or when little is gained.
+
+    With a `pattern` derivatives outside of it are taken for 0.
+    """
     low, high = space.bounds()
     inside = np.clip(start, low + 1e-9, high - 1e-9)
     steps = space.steps * step_scale
@@ -69,12 +81,21 @@ def least_squares_fit(
             known[key] = residual(space, x[None])[0]
         return known[key]
 
+    groups = pattern.groups if pattern else tuple(np.array([index]) for index in range(len(space)))
+
     def derivatives(x: Floats) -> Floats:
         nonlocal simulations
         ahead = np.where(x + steps > high, -steps, steps)
-        simulations += len(x)
-        moved = residual(space, x[None, :] + np.diag(ahead))
-        jacobian: Floats = ((moved - values(x)[None, :]) / ahead[:, None]).T
+        points = np.tile(x, (len(groups), 1))
+        for row, group in enumerate(groups):
+            points[row, group] += ahead[group]
+        simulations += len(groups)
+        moved = residual(space, points) - values(x)[None, :]
+        jacobian = np.empty((moved.shape[1], len(x)))
+        for row, group in enumerate(groups):
+            jacobian[:, group] = moved[row][:, None] / ahead[group]
+        if pattern:
+            jacobian *= pattern.moves
         return jacobian
 
     scale = np.array(

@@ -12,7 +12,7 @@ from greywhale.errors import BAD_USAGE, UserError
 from greywhale.identify import checks, controllers, judge
 from greywhale.identify.closed_loop import Loop
 from greywhale.identify.controllers import Table
-from greywhale.identify.data import JOINTS, Prepared, prepare
+from greywhale.identify.data import FINE_STEP_S, JOINTS, Prepared, prepare
 from greywhale.identify.outcome import Outcome, ParameterEstimate
 from greywhale.identify.paper import METHODS as PAPER_METHODS
 from greywhale.identify.paper import VALUES, PaperSearch
@@ -110,9 +110,10 @@ def _default(
     assert best is not None
     report("judging the model", 0.0)
     space = best.space
-    zero, plant = space.zero, space.plants(best.x[None])[0]
-    searched, x = space.with_offsets(best.x)
-    sure = uncertainty(WindowResidual(prepared, arm, joints), searched, x, joints)
+    zero, plant = best.zero, best.plant
+    windows = WindowResidual(prepared, arm, joints, longest_step=FINE_STEP_S)
+    windows.settle(plant, zero)
+    sure = uncertainty(windows, space, best.x, joints)
     verdicts = tuple(judge.judge(subject, arm, plant, zero, joints) for subject in subjects)
     return Outcome(
         white_box=arm,
@@ -122,7 +123,7 @@ def _default(
         zero=zero,
         order=best.order,
         orders=tuple((one.order, float(one.held_out or 0.0)) for one in search.tried),
-        estimates=_estimates(searched, x, sure.deviations),
+        estimates=_estimates(space, best.x, sure.deviations),
         covariance=sure.covariance,
         condition=sure.condition,
         open=sure.open,

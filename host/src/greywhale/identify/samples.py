@@ -58,7 +58,7 @@ def _searched(arm: ArmParameters) -> tuple[Space, Floats, Floats]:
             f"{len(parameters)} parameter tables; identify again."
         )
     x = [KINDS[one.kind].to_search(float(table["value"])) for one, table in zip(parameters, tables, strict=True)]
-    return Space(arm, parameters, plant_row(arm), np.zeros(JOINTS)), np.array(x), covariance
+    return Space(arm, parameters, plant_row(arm)), np.array(x), covariance
 
 
 def _parameter(arm: ArmParameters, name: str) -> Parameter:

@@ -3,25 +3,28 @@ data ask for.
 
 1. GWO-WOA over motors and Coulomb friction, on some windows of the log under its logged voltages.
 2. Least squares from the user's arm and from the best different points of that search; the best of them goes on.
-3. One quantity after the other is added: Stribeck friction, backlash, zero angles. Each is fitted to three quarters
-   of the log, spread all over it, under the logged voltages or (where the controller is known) in the closed loop, and
-   stays only if the other quarter is predicted better with it.
-4. What was chosen is fitted to the whole log.
+3. One group of quantities after the other is added: Stribeck friction, backlash, zero angles. Each is fitted to three
+   quarters of the log's windows, spread all over it, and stays only if the other quarter is predicted better with it.
+4. Where the controller is known, a fit to windows and closed loop together competes with the windows alone, and wins
+   if the held-out part of the closed loop is predicted better.
+5. What was chosen is fitted to the whole log.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
 from greywhale.identify.closed_loop import Loop, LoopResidual
-from greywhale.identify.data import Prepared
-from greywhale.identify.fit import Fit, Residual, least_squares_fit
-from greywhale.identify.space import MOTOR, Space
+from greywhale.identify.data import FINE_STEP_S, Prepared
+from greywhale.identify.fit import Pattern, least_squares_fit
+from greywhale.identify.space import JOINTS, MOTOR, Space
+from greywhale.identify.steps import WindowFit
 from greywhale.identify.windows import WindowResidual
 from greywhale.optimise import DEFAULT, create
 
@@ -33,31 +36,56 @@ ORDERS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("motors", MOTOR),
     ("Coulomb friction", ("coulomb",)),
     ("Stribeck friction", ("breakaway", "stribeck")),
-    ("backlash", ("gap",)),
+    ("backlash", ("gap", "drag", "teeth")),
     ("zero angles", ("offset",)),
 )
 # An order with more quantities must predict the held-out data better by this share.
-WORTH = 0.02
-# A closed-loop difference of this size counts as one standard deviation (rad).
-LOOP_DOUBT = 2e-3
+WORTH = 0.01
+# So must the closed loop, which is rough: chance alone moves its error by a tenth.
+WORTH_CLOSED = 0.2
+# A closed-loop difference of this size counts as one standard deviation (rad): it lasts for many readings.
+LOOP_DOUBT = 1e-2
 GLOBAL_EVALUATIONS = 500
 GLOBAL_WINDOWS = 12
 GLOBAL_SPREAD = 2.5  # the box of the global search: factors e^(+-2.5) around the user's arm
 STARTS = 2  # of the global search's points that least squares starts from, beside the user's arm
-WINDOW_STEPS = 12
+WINDOW_STEPS = 20
 LOOP_STEPS = 10
+# From which side of its gap each motor starts is chosen anew so often at most, each time for some steps of the fit.
+SETTLINGS = 4
+SETTLED_STEPS = 8
 # Readings come in steps, so finite differences in the closed loop are taken wider than in the windows.
 LOOP_STEP_SCALE = 5.0
 
 
+class Observed(Protocol):
+    """A residual that knows of which joint each of its numbers is, and how many seconds a candidate costs."""
+
+    joint_of: NDArray[np.intp]
+    seconds: float
+
+    def __call__(self, space: Space, points: Floats) -> Floats: ...
+
+
 @dataclass(frozen=True)
 class Candidate:
-    """A model on its way; `held_out` is its error on data it was not fitted to, None before it was measured."""
+    """A model on its way; `held_out` is its error on windows that it was not fitted to, None before it was measured."""
 
     space: Space
     x: Floats
     order: str
     held_out: float | None = None
+    closed: bool = False  # fitted to the closed loop too
+
+    @property
+    def plant(self) -> Floats:
+        found: Floats = self.space.plants(self.x[None])[0]
+        return found
+
+    @property
+    def zero(self) -> Floats:
+        found: Floats = self.space.offsets(self.x[None])[0]
+        return found
 
 
 @dataclass
@@ -73,42 +101,62 @@ class Search:
     best: Candidate | None = None
     tried: list[Candidate] = field(default_factory=list)
     simulations: int = 0
+    simulated: float = 0.0  # s
     globally: int = 0
     complete: bool = False
 
+    def __post_init__(self) -> None:
+        self._fitted = WindowResidual(self.logs, self.arm, self.joints, False)
+        self._held = WindowResidual(self.logs, self.arm, self.joints, True)
+
     def run(self) -> None:
-        self._consider(self._refined(self._start()))
-        self._consider(self._refined(self._with_friction()))
+        self._consider(self._motors())
+        self._consider(self._with_friction())
         for number in range(2, len(ORDERS)):
             self.report("choosing the model's order", (number - 2) / (len(ORDERS) - 2))
             assert self.best is not None
             if ORDERS[number][0] != "Stribeck friction" or self.best.order != "motors":
-                self._consider(self._refined(self._with(self.best, number)))
+                self._consider(self._settled(self._fitted, self._with(self.best, number)))
+        if self.loops:
+            self._consider_closed()
         self._whole()
 
     def _consider(self, candidate: Candidate) -> None:
-        measured = self._held_out(candidate)
+        measured = replace(candidate, held_out=self._error(candidate))
         self.tried.append(measured)
-        if self._better(measured):
+        best = self.best
+        if best is None or best.held_out is None or self._error(candidate) < (1.0 - WORTH) * best.held_out:
             self.best = measured
 
-    def _start(self) -> Candidate:
-        """Motors alone, as the user has them, fitted to the windows."""
+    def _error(self, candidate: Candidate) -> float:
+        """Mean squared difference on the held-out windows, rad²; the geometric mean, so that every joint counts."""
+        self._held.settle(candidate.plant, candidate.zero)
+        per_joint = self._held.mse(candidate.plant, candidate.zero)[list(self.joints)]
+        return float(np.exp(np.mean(np.log(per_joint + 1e-12))))
+
+    def _motors(self) -> Candidate:
+        """Motors alone, from where the user has them."""
         space = Space.of(self.arm, MOTOR, self.joints)
-        return Candidate(space, space.start(), ORDERS[0][0])
+        return self._refined(self._some_windows(), Candidate(space, space.start(), ORDERS[0][0]))
 
     def _with_friction(self) -> Candidate:
         """Global search, then least squares from several points; the best by the fitted data."""
         space = Space.of(self.arm, (*MOTOR, "coulomb"), self.joints)
         motors = self.tried[0]
         starts = [space.start(), space.moved(motors.x, motors.space), *self._global(space)]
-        residual = self._prior(self._some_windows())
+        residual = self._some_windows()
         fits = []
         for number, point in enumerate(starts):
             self.report("least squares from several starts", number / len(starts))
-            fits.append(self._fit(residual, space, point, WINDOW_STEPS))
-        chosen = min(fits, key=lambda one: one.cost)
-        return Candidate(space, chosen.x, ORDERS[1][0])
+            fits.append(self._fit_windows(residual, space, point, WINDOW_STEPS))
+        return self._refined(self._fitted, Candidate(space, self._mixed(space, fits), ORDERS[1][0]))
+
+    def _mixed(self, space: Space, fits: Sequence[Floats]) -> Floats:
+        """Of every joint the numbers of the fit that is best for it: one may be stuck where another is not."""
+        zero = np.zeros(JOINTS)
+        errors = [self._fitted.mse(space.plants(x[None])[0], zero) for x in fits]
+        best = np.argmin(errors, axis=0)
+        return np.array([fits[best[one.joint]][index] for index, one in enumerate(space.parameters)])
 
     def _global(self, space: Space) -> list[Floats]:
         """The best points of GWO-WOA that differ from each other."""
@@ -126,6 +174,7 @@ class Search:
                 pack.tell(costs)
                 seen += [(float(cost), point.copy()) for cost, point in zip(costs, points, strict=True)]
                 self.simulations += len(points)
+                self.simulated += len(points) * residual.seconds
                 self.globally += len(points)
                 self.report("global search", self.globally / GLOBAL_EVALUATIONS)
         kept: list[Floats] = []
@@ -139,92 +188,92 @@ class Search:
     def _with(self, candidate: Candidate, number: int) -> Candidate:
         """The same model with the next order's quantities at their usual start."""
         order, added = ORDERS[number]
-        if order == "zero angles":
-            return Candidate(candidate.space, candidate.x, order)
         kinds = dict.fromkeys(parameter.kind for parameter in candidate.space.parameters)
         space = Space.of(self.arm, (*kinds, *added), self.joints)
         return Candidate(space, space.moved(candidate.x, candidate.space), order)
 
-    def _refined(self, candidate: Candidate) -> Candidate:
-        """Least squares on the fitted part: under the logged voltages first, then in the closed loop."""
-        if candidate.order == "zero angles":
-            return self._with_zero_angles(candidate)
-        x = candidate.x
-        if candidate.order == "motors" and self.loops:
-            x = self._fit(self._prior(self._some_windows()), candidate.space, x, WINDOW_STEPS).x
-        elif candidate.order == "Coulomb friction" or not self.loops:
-            # Smooth and long, this is what the closed loop, full of steps, must start from.
-            x = self._fit(self._prior(self._windows(False)), candidate.space, x, WINDOW_STEPS).x
-        if self.loops:
-            inside = LoopResidual(self._loops_of(candidate.space), self.joints, False)
-            x = self._fit(self._prior(_scaled(inside)), candidate.space, x, LOOP_STEPS, LOOP_STEP_SCALE).x
-        return Candidate(candidate.space, x, candidate.order)
+    def _refined(self, windows: WindowResidual, candidate: Candidate, steps: int = WINDOW_STEPS) -> Candidate:
+        return replace(candidate, x=self._fit_windows(windows, candidate.space, candidate.x, steps))
 
-    def _with_zero_angles(self, candidate: Candidate) -> Candidate:
-        """Only gravity shows where zero is, and shows it best where the voltages are given."""
-        space = candidate.space.zero_angles_at(candidate.x)
-        if not len(space):
-            return candidate
-        found = self._fit(self._windows(False), space, space.start(), WINDOW_STEPS)
-        zero = space.offsets(found.x[None])[0]
-        return Candidate(candidate.space.with_zero(zero), candidate.x, candidate.order)
+    def _settled(self, windows: WindowResidual, candidate: Candidate) -> Candidate:
+        """Least squares and the choice of where each window starts in the gaps, in turns until that no longer moves."""
+        found = self._refined(windows, candidate)
+        for _ in range(SETTLINGS):
+            if not windows.settle(found.plant, found.zero):
+                break
+            found = self._refined(windows, found, SETTLED_STEPS)
+        return found
 
-    def _windows(self, held_out: bool) -> WindowResidual:
-        return WindowResidual(self.logs, self.arm, self.joints, held_out)
+    def _consider_closed(self) -> None:
+        """Fit windows and closed loop together; keep that if the held-out part of the closed loop is the better."""
+        assert self.best is not None
+        self.report("comparing with the closed loop", 0.0)
+        closed = self._closed(self._fitted, self.best, whole=False)
+        if self._closed_error(closed) < (1.0 - WORTH_CLOSED) * self._closed_error(self.best):
+            self.best = closed
+
+    def _closed(self, windows: WindowResidual, candidate: Candidate, whole: bool) -> Candidate:
+        both = Both(windows, LoopResidual(self._loops_of(candidate), self.joints, whole), candidate)
+        x = self._fit(both, candidate.space, candidate.x, LOOP_STEPS, LOOP_STEP_SCALE)
+        return replace(candidate, x=x, closed=True)
+
+    def _closed_error(self, candidate: Candidate) -> float:
+        errors = [loop.error(candidate.plant[None], True)[0, list(self.joints)] for loop in self._loops_of(candidate)]
+        return float(np.mean(np.sum(errors, axis=1)))
 
     def _some_windows(self) -> WindowResidual:
         """Every third of the fitted part: enough to come near, for a third of the time."""
         return WindowResidual(self.logs, self.arm, self.joints, False, 3)
 
-    def _loops_of(self, space: Space) -> Sequence[Loop]:
-        return [loop.with_zero(space.zero) for loop in self.loops] if space.zero.any() else self.loops
-
-    def _held_out(self, candidate: Candidate) -> Candidate:
-        plants = candidate.space.plants(candidate.x[None])
-        if self.loops:
-            loops = self._loops_of(candidate.space)
-            errors = [loop.error(plants, True)[0, list(self.joints)] for loop in loops]
-            score = float(np.mean(np.sum(errors, axis=1)))
-        else:
-            score = float(np.mean(self._windows(True)(candidate.space, candidate.x[None]) ** 2))
-        return replace(candidate, held_out=score)
-
-    def _better(self, candidate: Candidate) -> bool:
-        best = self.best
-        if best is None or best.held_out is None:
-            return True
-        assert candidate.held_out is not None
-        return candidate.held_out < (1.0 - WORTH) * best.held_out
+    def _loops_of(self, candidate: Candidate) -> Sequence[Loop]:
+        zero = candidate.zero
+        return [loop.with_zero(zero) for loop in self.loops] if zero.any() else self.loops
 
     def _whole(self) -> None:
         """The chosen order once more, on all data."""
         assert self.best is not None
         self.report("fitting the chosen model to the whole log", 0.0)
-        best = self.best
-        windows = WindowResidual(self.logs, self.arm, self.joints)
-        found = self._fit(self._prior(windows), best.space, best.x, WINDOW_STEPS)
-        if self.loops:
-            inside = self._prior(_scaled(LoopResidual(self._loops_of(best.space), self.joints)))
-            ends = [self._fit(inside, best.space, start, LOOP_STEPS, LOOP_STEP_SCALE) for start in (best.x, found.x)]
-            found = min(ends, key=lambda one: one.cost)
-        self.best = replace(best, x=found.x)
+        windows = WindowResidual(self.logs, self.arm, self.joints, longest_step=FINE_STEP_S)
+        windows.settle(self.best.plant, self.best.zero)
+        found = self._settled(windows, self.best)
+        self.best = self._closed(windows, found, whole=True) if self.best.closed else found
         self.complete = True
 
-    def _fit(
-        self, residual: Residual[Space], space: Space, start: Floats, steps: int, step_scale: float = 1.0
-    ) -> Fit[Space]:
-        found = least_squares_fit(residual, space, start, steps, step_scale)
-        self.simulations += found.simulations
+    def _fit_windows(self, windows: WindowResidual, space: Space, start: Floats, steps: int) -> Floats:
+        """Where least squares on windows ends; counts what was simulated."""
+        fit = WindowFit(windows, space, start)
+        found = fit.run(steps)
+        self.simulations += fit.simulations
+        self.simulated += fit.simulations * windows.seconds
         return found
 
-    def _prior(self, residual: Residual[Space]) -> Residual[Space]:
-        """Add the user's arm as one weak observation of every number searched by its logarithm."""
+    def _fit(self, observed: Observed, space: Space, start: Floats, steps: int, scale: float = 1.0) -> Floats:
+        """Where least squares ends, the user's arm counting as one weak observation; counts what was simulated."""
 
-        def with_prior(space: Space, points: Floats) -> Floats:
-            return np.concatenate([residual(space, points), (points - space.start()) / space.doubts()], axis=1)
+        def residual(space: Space, points: Floats) -> Floats:
+            return np.concatenate([observed(space, points), (points - space.start()) / space.doubts()], axis=1)
 
-        return with_prior
+        own = np.array([one.joint for one in space.parameters], dtype=np.intp)
+        moves = space.moves(np.concatenate([observed.joint_of, own]))
+        moves[len(observed.joint_of) :] = np.eye(len(space), dtype=bool)
+        found = least_squares_fit(residual, space, start, steps, scale, pattern=Pattern(space.groups(), moves))
+        self.simulations += found.simulations
+        self.simulated += found.simulations * observed.seconds
+        return found.x
 
 
-def _scaled(residual: Residual[Space]) -> Residual[Space]:
-    return lambda space, points: residual(space, points) / LOOP_DOUBT
+class Both:
+    """Windows and closed loop in one residual, each in standard deviations of what it cannot help to miss."""
+
+    def __init__(self, windows: WindowResidual, loops: LoopResidual, candidate: Candidate) -> None:
+        self._windows = windows
+        self._loops = loops
+        self.joint_of = np.concatenate([windows.joint_of, loops.joint_of])
+        self.seconds = windows.seconds + loops.seconds
+        # What the model cannot explain in the windows is no noise of single readings, but weighs like it.
+        missed = windows(candidate.space, candidate.x[None])
+        self._scale = max(1.0, float(np.sqrt(np.mean(missed**2))))
+
+    def __call__(self, space: Space, points: Floats) -> Floats:
+        parts = self._windows(space, points) / self._scale, self._loops(space, points) / LOOP_DOUBT
+        return np.concatenate(parts, axis=1)

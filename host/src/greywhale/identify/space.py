@@ -31,6 +31,9 @@ class Kind:
     low: float  # factor of the start where logarithmic, else the value itself
     high: float
     step: float  # of finite differences, in the searched number
+    # How far from the user's arm, or from the usual, it may well be: one standard deviation of the searched number. It
+    # weighs as much as one reading, so it decides only what the log leaves open.
+    doubt: float
 
     def to_search(self, value: float) -> float:
         return math.log(value) if self.logarithmic else value
@@ -40,25 +43,25 @@ class Kind:
 
 
 KINDS = {
-    "alpha": Kind("V/(N m)", "voltage a torque needs, R/(N Kt)", True, 0.0, 1 / 30, 30.0, 2e-3),
-    "inertia": Kind("V s²/rad", "voltage an acceleration needs, R N J/Kt", True, 0.0, 1 / 100, 100.0, 2e-3),
-    "damping": Kind("V s/rad", "voltage a speed needs, N Kt + N Bm R/Kt", True, 0.0, 1 / 30, 30.0, 2e-3),
-    "coulomb": Kind("V", "Coulomb friction at the motor", True, 0.3, 1 / 30, 30.0, 2e-3),
+    "alpha": Kind("V/(N m)", "voltage a torque needs, R/(N Kt)", True, 0.0, 1 / 30, 30.0, 2e-3, 1.0),
+    "inertia": Kind("V s²/rad", "voltage an acceleration needs, R N J/Kt", True, 0.0, 1 / 100, 100.0, 2e-3, 1.0),
+    "damping": Kind("V s/rad", "voltage a speed needs, N Kt + N Bm R/Kt", True, 0.0, 1 / 30, 30.0, 2e-3, 1.0),
+    "coulomb": Kind("V", "Coulomb friction at the motor", True, 0.3, 1 / 30, 30.0, 2e-3, 1.0),
     "breakaway": Kind(
-        "", "excess of friction at rest over sliding friction, a share of it", False, 0.2, 0.0, 2.0, 1e-2
+        "", "excess of friction at rest over sliding friction, a share of it", False, 0.2, 0.0, 2.0, 1e-2, 1.0
     ),
-    "stribeck": Kind("rad/s", "speed at which that excess has halved", True, 0.1, 0.1, 5.0, 1e-2),
-    "gap": Kind("rad", "half of the backlash, at the joint", False, 2e-3, 0.0, 0.03, 1e-4),
-    "offset": Kind("rad", "angle at which the potentiometer reads 0", False, 0.0, -0.3, 0.3, 1e-3),
+    "stribeck": Kind("rad/s", "speed at which that excess has halved", True, 0.1, 0.1, 5.0, 1e-2, 1.0),
+    "gap": Kind("rad", "half of the backlash, at the joint", False, 2e-3, 0.0, 0.03, 1e-4, 1e-2),
+    "drag": Kind("", "drag of the grease between the teeth, a share of the damping", True, 0.1, 1e-2, 10.0, 1e-2, 1.5),
+    "teeth": Kind("rad", "bend of the teeth at the motor's stall torque", True, 1e-2, 3e-2, 30.0, 2e-2, 1.5),
+    "offset": Kind("rad", "angle at which the potentiometer reads 0", False, 0.0, -0.3, 0.3, 1e-3, 0.1),
 }
 MOTOR = ("alpha", "inertia", "damping")
-# The user's arm counts as much as one reading: it decides only what the log leaves open (standard deviation of logs).
-PRIOR = 1.0
-PRIOR_STEPS = 100.0  # the same for what is not searched by its logarithm, in steps of finite differences
+# Joints that feel each other while one of their numbers is varied a little: the pitch joints carry one another; yaw and
+# roll feel the others through their poses only, and each other by a thousandth.
+COUPLED = ((0,), (1, 2), (3,))
 PITCH = (1, 2)  # only these feel gravity, so only they have a zero angle that matters
-# At the motor's stall torque teeth of unknown stiffness bend this far (rad), and their damping lasts this long (s).
-TEETH_BEND = 2e-3
-TEETH_S = 2e-3
+TEETH_S = 2e-3  # how long the damping of teeth of unknown stiffness lasts, s
 
 
 @dataclass(frozen=True)
@@ -80,28 +83,11 @@ class Space:
     arm: ArmParameters
     parameters: tuple[Parameter, ...]
     base: Floats = field(repr=False)
-    zero: Floats = field(repr=False)  # zero angles that are not searched, rad
 
     @classmethod
     def of(cls, arm: ArmParameters, kinds: Sequence[str], joints: Sequence[int]) -> Space:
         chosen = [Parameter(joint, kind) for joint in joints for kind in kinds if kind != "offset" or joint in PITCH]
-        return cls(arm, tuple(chosen), plant_row(arm), np.zeros(JOINTS))
-
-    def zero_angles_at(self, x: Floats) -> Space:
-        """The space of zero angles alone, all else as at `x`."""
-        joints = sorted({parameter.joint for parameter in self.parameters if parameter.joint in PITCH})
-        chosen = tuple(Parameter(joint, "offset") for joint in joints)
-        return Space(self.arm, chosen, self.plants(x[None])[0], np.zeros(JOINTS))
-
-    def with_offsets(self, x: Floats) -> tuple[Space, Floats]:
-        """The same point in a space in which the zero angles, given here, are numbers like all others."""
-        joints = [joint for joint in PITCH if self.zero[joint] != 0.0]
-        more = tuple(Parameter(joint, "offset") for joint in joints)
-        space = Space(self.arm, (*self.parameters, *more), self.base, np.zeros(JOINTS))
-        return space, np.concatenate([x, self.zero[joints]])
-
-    def with_zero(self, zero: Floats) -> Space:
-        return Space(self.arm, self.parameters, self.base, zero)
+        return cls(arm, tuple(chosen), plant_row(arm))
 
     def __len__(self) -> int:
         return len(self.parameters)
@@ -119,9 +105,7 @@ class Space:
 
     def doubts(self) -> Floats:
         """How far from the user's arm a value may well be: standard deviations of the searched numbers."""
-        return np.array(
-            [PRIOR if self.kind(n).logarithmic else PRIOR_STEPS * self.kind(n).step for n in range(len(self))]
-        )
+        return np.array([self.kind(index).doubt for index in range(len(self))])
 
     def start(self) -> Floats:
         """The user's arm; where it is silent (no friction, say), a usual value."""
@@ -145,6 +129,26 @@ class Space:
         start = self.start()
         return np.array([known.get(name, start[index]) for index, name in enumerate(self.names)])
 
+    def groups(self) -> tuple[NDArray[np.intp], ...]:
+        """Numbers that can be varied together, as no two of them belong to joints that feel each other."""
+        columns: list[list[int]] = []
+        for joints in COUPLED:
+            mine = [index for index, one in enumerate(self.parameters) if one.joint in joints]
+            columns += [[] for _ in range(len(mine) - len(columns))]
+            for group, index in zip(columns, mine, strict=False):
+                group.append(index)
+        return tuple(np.array(group, dtype=np.intp) for group in columns)
+
+    def moves(self, joint_of: NDArray[np.intp]) -> NDArray[np.bool_]:
+        """Which searched numbers move the numbers of a residual that are of these joints; (numbers, searched)."""
+        table = np.zeros((JOINTS, len(self)), dtype=bool)
+        for joints in COUPLED:
+            for index, one in enumerate(self.parameters):
+                if one.joint in joints:
+                    table[list(joints), index] = True
+        found: NDArray[np.bool_] = table[joint_of]
+        return found
+
     def plants(self, points: Floats) -> Floats:
         """Plants (rows, 60) of searched points (rows)."""
         rows = np.tile(self.base, (len(points), 1))
@@ -157,8 +161,8 @@ class Space:
         return rows
 
     def offsets(self, points: Floats) -> Floats:
-        """Zero angles (rows, 4) of searched points."""
-        angles = np.tile(self.zero, (len(points), 1))
+        """Zero angles (rows, 4) of searched points, rad; 0 where they are not searched."""
+        angles = np.zeros((len(points), JOINTS))
         for index, parameter in enumerate(self.parameters):
             if parameter.kind == "offset":
                 angles[:, parameter.joint] = points[:, index]
@@ -177,6 +181,10 @@ class Space:
             "breakaway": joint.friction.breakaway / joint.friction.coulomb - 1.0 if joint.friction.coulomb else usual,
             "stribeck": joint.friction.stribeck_velocity,
             "gap": joint.gear.half_gap or usual,
+            "drag": joint.gear.drag / motor.damping or usual,
+            "teeth": motor.torque_per_volt * self.arm.drive.supply / joint.gear.stiffness
+            if joint.gear.stiffness
+            else usual,
             "offset": 0.0,
         }
         return known[parameter.kind]
@@ -205,9 +213,13 @@ def _set_joint(rows: Floats, joint: int, here: dict[str, Floats], supply: float)
     rest[:] = sliding * (1.0 + here.get("breakaway", excess))
     if "stribeck" in here:
         rows[:, column(joint, "stribeck_velocity")] = np.exp(here["stribeck"])
+    if "drag" in here:
+        rows[:, column(joint, "drag")] = np.exp(here["drag"]) * rows[:, column(joint, "damping")]
     if "gap" in here:
         rows[:, column(joint, "half_gap")] = here["gap"]
-        stiffness = rows[:, column(joint, "stiffness")]
-        if not stiffness.any():
-            stiffness[:] = torque * supply / TEETH_BEND
-            rows[:, column(joint, "mesh_damping")] = stiffness * TEETH_S
+    if "gap" in here or "teeth" in here:
+        stiffness, mesh = rows[:, column(joint, "stiffness")], rows[:, column(joint, "mesh_damping")]
+        lasting = np.where(stiffness > 0.0, mesh / np.where(stiffness > 0.0, stiffness, 1.0), TEETH_S)
+        if "teeth" in here or not stiffness.any():
+            stiffness[:] = torque * supply / np.exp(here.get("teeth", math.log(KINDS["teeth"].start)))
+            mesh[:] = stiffness * lasting

@@ -20,6 +20,8 @@ Floats = NDArray[np.float64]
 # A positive quantity known no better than to this factor's logarithm (or any other to this many steps) is left open.
 OPEN_LOG = 0.3
 OPEN = {"breakaway": 0.5, "gap": 2e-3, "offset": 0.05}
+# These matter little: known to a factor of e they are known well enough.
+OPEN_FACTOR = {"drag": 1.0, "teeth": 1.0}
 # Directions of the search space below this share of the largest eigenvalue are not used to invert.
 SMALLEST_EIGENVALUE = 1e-13
 
@@ -32,6 +34,8 @@ EXCITATION = {
     "breakaway": "start from rest slowly, many times",
     "stribeck": "move very slowly, at 0.02 to 0.2 rad/s",
     "gap": "reverse slowly and often without load, so that the teeth change sides",
+    "drag": "reverse a light joint quickly, so that its link crosses the gap alone",
+    "teeth": "reverse with full voltage, so that the teeth bend",
     "offset": "turn the joint through a wide range of poses, so that gravity changes sign",
 }
 
@@ -95,7 +99,8 @@ def _open(space: Space, x: Floats, deviations: Floats, joints: Sequence[int]) ->
     ]
     for index, parameter in enumerate(space.parameters):
         kind = KINDS[parameter.kind]
-        if deviations[index] <= (OPEN_LOG if kind.logarithmic else OPEN[parameter.kind]):
+        most = OPEN_FACTOR.get(parameter.kind, OPEN_LOG) if kind.logarithmic else OPEN[parameter.kind]
+        if deviations[index] <= most:
             continue
         known = (
             f"known to a factor of {np.exp(min(deviations[index], 7.0)):.2g} only"

@@ -8,18 +8,25 @@ nearly linear in them. That keeps the residual smooth in the parameters, and fai
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from greywhale import _native
 from greywhale.arm import ArmParameters
-from greywhale.identify.data import BLOCK_S, WINDOW_S, Prepared, Windows, part_of, windows_of
-from greywhale.identify.space import Space, column
+from greywhale.identify.data import BLOCK_S, STEP_S, WINDOW_S, Prepared, Windows, part_of, windows_of
+from greywhale.identify.space import JOINTS, Space, column
 
 Floats = NDArray[np.float64]
 # What a start speed may be off beyond what noise explains (rad/s): motion within the smoothing.
 SPEED_DOUBT = 0.05
+# Where in its gap a motor may stand at a window's start, as shares of the half gap.
+SIDES = (-1.0, -0.5, 0.0, 0.5, 1.0)
+# Another side is taken only if it leaves less than this share of the squared difference.
+WORTH_A_CHANGE = 0.95
+# The formula for starts is linear, the gap is not.
+START_PASSES = 2
 
 
 class WindowResidual:
@@ -32,15 +39,19 @@ class WindowResidual:
         joints: Sequence[int],
         held_out: bool | None = None,
         every: int = 1,
+        longest_step: float = STEP_S,
     ) -> None:
         """All windows of the logs, or those held out, or the others; of these, one in `every`."""
         self.joints = list(joints)
         self._body = _native.Arm(arm.native()).body
-        self._pieces = [(windows_of(log, _part(log, held_out, every)), log) for log in logs]
+        self._pieces = [(windows_of(log, _part(log, held_out, every), longest_step), log) for log in logs]
         self._pieces = [piece for piece in self._pieces if len(piece[0].first)]
+        self._logged = tuple(self._pieces)
         self._sides = [self._sides_of(windows) for windows, _ in self._pieces]
         self.windows = sum(len(windows.first) for windows, _ in self._pieces)
+        self.seconds = sum(len(windows.first) * windows.rows * log.period for windows, log in self._pieces)
         self.clusters = self._clusters()
+        self.joint_of = self._joint_of()
 
     def __call__(self, space: Space, points: Floats) -> Floats:
         """(candidates, numbers)."""
@@ -51,6 +62,64 @@ class WindowResidual:
             for (windows, log), sides in zip(self._pieces, self._sides, strict=True)
         ]
         return np.concatenate(parts, axis=1)
+
+    def settle(self, plant: Floats, zero: Floats) -> bool:
+        """Choose anew how each window starts, as fits the log best with this plant: angle, speed, and where in its gap
+        the motor stands. True if a motor changed its place.
+
+        Torques tell that place badly where a joint hunts in its gap, and from the wrong side a window is of no use.
+        """
+        changed = False
+        # From the log's own starts again: those of another model would stay where that one wanted them.
+        self._pieces = list(self._logged)
+        for number in range(len(self._pieces)):
+            if any(plant[column(joint, "half_gap")] > 0.0 for joint in self.joints):
+                changed = self._settle_sides(number, plant, zero) or changed
+            for _ in range(START_PASSES):
+                self._settle_starts(number, plant, zero)
+        return changed
+
+    def _settle_sides(self, number: int, plant: Floats, zero: Floats) -> bool:
+        windows, log = self._pieces[number]
+        tried = np.array([self._sides[number], *(np.full_like(windows.angles, side) for side in SIDES)])
+        costs = np.array([self._costs(windows, log, sides, plant, zero)[0] for sides in tried])
+        best = np.where(np.min(costs, axis=0) < WORTH_A_CHANGE * costs[0], np.argmin(costs, axis=0), 0)
+        self._sides[number] = np.take_along_axis(tried, best[None], axis=0)[0]
+        return bool(np.any(best))
+
+    def _settle_starts(self, number: int, plant: Floats, zero: Floats) -> None:
+        """Move starts by what the formula takes off, where the simulation agrees that this is better."""
+        windows, log = self._pieces[number]
+        sides = self._sides[number]
+        before, angles, velocities = self._costs(windows, log, sides, plant, zero)
+        moved = replace(
+            windows,
+            angles=np.ascontiguousarray(windows.angles - angles),
+            velocities=np.ascontiguousarray(windows.velocities - velocities),
+        )
+        better = self._costs(moved, log, sides, plant, zero)[0] < before
+        kept = replace(
+            windows,
+            angles=np.where(better, moved.angles, windows.angles),
+            velocities=np.where(better, moved.velocities, windows.velocities),
+        )
+        self._pieces[number] = kept, log
+
+    def _costs(
+        self, windows: Windows, log: Prepared, sides: Floats, plant: Floats, zero: Floats
+    ) -> tuple[Floats, Floats, Floats]:
+        """Squared difference (windows, 4) of one plant, its best starts taken off, and these: rad and rad/s."""
+        error = self._errors(windows, sides, plant[None], zero[None])
+        count = len(windows.first)
+        costs, angles, velocities = (np.zeros((count, JOINTS)) for _ in range(3))
+        for joint in self.joints:
+            left = self._without_start(error[..., joint], windows, log, plant[None], joint)[0]
+            readings, starts = np.split(left, [windows.measured[..., 0].size])
+            costs[:, joint] = np.sum(readings.reshape(count, -1) ** 2, axis=1)
+            costs[:, joint] += np.sum(starts.reshape(2, -1) ** 2, axis=0)
+            angles[:, joint] = starts[:count] * log.noise[joint]
+            velocities[:, joint] = starts[count:] * SPEED_DOUBT
+        return costs, angles, velocities
 
     def mse(self, plant: Floats, zero: Floats) -> Floats:
         """Mean squared difference per joint, rad², of one plant, with the best start of every window taken off."""
@@ -112,6 +181,15 @@ class WindowResidual:
             readings = np.repeat(number, len(windows.time))
             parts += [np.concatenate([readings, number, number])] * len(self.joints)
             before += len(windows.first)
+        return np.concatenate(parts) if parts else np.zeros(0, dtype=np.intp)
+
+    def _joint_of(self) -> NDArray[np.intp]:
+        """The joint that each number of the residual belongs to."""
+        parts = [
+            np.full(windows.measured[..., 0].size + 2 * len(windows.first), joint)
+            for windows, _ in self._pieces
+            for joint in self.joints
+        ]
         return np.concatenate(parts) if parts else np.zeros(0, dtype=np.intp)
 
     def _sides_of(self, windows: Windows) -> Floats:

@@ -1,0 +1,157 @@
+"""Least squares on windows, joint by joint in lock step: Levenberg-Marquardt with a damping of its own for each set of
+joints that feel each other.
+
+One trust region for all would let a joint that hunts in its gap, whose residual is rough, hold up the others. Several
+dampings are tried at once, as a batch of simulations costs little more than one. Windows that a joint's model misses
+far more than its mean window (as nobody can know how it started in its gap) count with the logarithm of their misfit.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
+
+from greywhale.identify.space import COUPLED, JOINTS, Space
+from greywhale.identify.windows import WindowResidual
+
+Floats = NDArray[np.float64]
+DAMPINGS = (0.02, 0.3, 5.0, 100.0)  # times a block's last
+LARGEST_STEP = 1.0  # of a searched number, in doubts
+MOST_DAMPING = 1e8
+# A window counts as usual up to so many times the mean window of its joint. (The median would be one of rest in many a
+# log, and every motion an exception.)
+USUAL = 4.0
+ENOUGH = 2e-4  # ends when a step gains less than this share of the cost
+
+
+@dataclass
+class _Block:
+    """The numbers of joints that feel each other."""
+
+    joints: tuple[int, ...]
+    numbers: NDArray[np.intp]
+    damping: float = 0.1
+    done: bool = False
+
+
+class WindowFit:
+    """One fit; the misfit that counts as usual is taken where it starts."""
+
+    def __init__(self, residual: WindowResidual, space: Space, start: Floats) -> None:
+        self._residual = residual
+        self._space = space
+        self._nominal = space.start()
+        self._doubts = space.doubts()
+        low, high = space.bounds()
+        self._low, self._high = low, high
+        self.x = np.clip(start, low, high)
+        self.simulations = 0
+        self._joint_of = residual.joint_of
+        self._windows = int(residual.clusters.max()) + 1
+        self._window_of = residual.joint_of * self._windows + residual.clusters
+        self._blocks = [
+            _Block(
+                joints, np.array([n for n, one in enumerate(space.parameters) if one.joint in joints], dtype=np.intp)
+            )
+            for joints in COUPLED
+        ]
+        self._blocks = [block for block in self._blocks if len(block.numbers)]
+        self._numbers = self._simulate(self.x[None])[0]
+        misfit = self._misfit(self._numbers)
+        self._usual: Floats = USUAL * np.maximum(np.mean(misfit, axis=1), 1e-9)
+        self._costs = self._costs_of(self.x, self._numbers)
+
+    def run(self, most_steps: int) -> Floats:
+        """The best point found."""
+        with threadpool_limits(limits=1, user_api="blas"):
+            for _ in range(most_steps):
+                if all(block.done for block in self._blocks):
+                    break
+                self._step()
+        return self.x
+
+    def _step(self) -> None:
+        """One set of derivatives, then a step of every block: the best of several."""
+        jacobian = self._derivatives()
+        weights = self._weights(self._numbers)
+        trials = np.tile(self.x, (len(DAMPINGS), 1))
+        for block in self._blocks:
+            if not block.done:
+                for row, share in enumerate(DAMPINGS):
+                    trials[row, block.numbers] += self._proposed(block, jacobian, weights, share * block.damping)
+        trials = np.clip(trials, self._low, self._high)
+        numbers = self._simulate(trials)
+        costs = np.array([self._costs_of(x, one) for x, one in zip(trials, numbers, strict=True)])
+        for number, block in enumerate(self._blocks):
+            if not block.done:
+                self._accept(number, block, trials, costs[:, number])
+        # The blocks' steps together: what was taken from different trials has not been simulated yet.
+        self._numbers = self._simulate(self.x[None])[0]
+        self._costs = self._costs_of(self.x, self._numbers)
+
+    def _accept(self, number: int, block: _Block, trials: Floats, costs: Floats) -> None:
+        best = int(np.argmin(costs))
+        gained = self._costs[number] - costs[best]
+        if gained > 0.0:
+            self.x[block.numbers] = trials[best, block.numbers]
+            block.damping = max(DAMPINGS[best] * block.damping, 1e-6)
+        else:
+            block.damping *= 1e3
+        block.done = gained < ENOUGH * self._costs[number] if gained > 0.0 else block.damping > MOST_DAMPING
+
+    def _proposed(self, block: _Block, jacobian: Floats, weights: Floats, damping: float) -> Floats:
+        """Levenberg-Marquardt step of one block; numbers at their bounds that would leave stay."""
+        rows = np.isin(self._joint_of, block.joints)
+        part = jacobian[np.ix_(rows, block.numbers)]
+        doubts = self._doubts[block.numbers]
+        weighted = part * weights[rows, None]
+        matrix = weighted.T @ part + np.diag(doubts**-2.0)
+        x = self.x[block.numbers]
+        slope = weighted.T @ self._numbers[rows] + (x - self._nominal[block.numbers]) / doubts**2
+        low, high = self._low[block.numbers], self._high[block.numbers]
+        free = ~(((x <= low) & (slope > 0.0)) | ((x >= high) & (slope < 0.0)))
+        step = np.zeros(len(x))
+        if free.any():
+            inner = matrix[np.ix_(free, free)]
+            step[free] = -np.linalg.solve(inner + damping * np.diag(np.diag(inner)), slope[free])
+        longest = float(np.max(np.abs(step) / doubts))
+        return step * min(1.0, LARGEST_STEP / longest) if longest > 0.0 else step
+
+    def _derivatives(self) -> Floats:
+        """(numbers of the residual, searched numbers); joints that do not feel each other are varied together."""
+        groups, steps = self._space.groups(), self._space.steps
+        ahead = np.where(self.x + steps > self._high, -steps, steps)
+        points = np.tile(self.x, (len(groups), 1))
+        for row, group in enumerate(groups):
+            points[row, group] += ahead[group]
+        moved = self._simulate(points) - self._numbers[None]
+        jacobian = np.zeros((len(self._numbers), len(self.x)))
+        for row, group in enumerate(groups):
+            jacobian[:, group] = moved[row][:, None] / ahead[group]
+        return jacobian
+
+    def _simulate(self, points: Floats) -> Floats:
+        self.simulations += len(points)
+        return self._residual(self._space, points)
+
+    def _misfit(self, numbers: Floats) -> Floats:
+        """Sums of squares (joints, windows)."""
+        size = JOINTS * self._windows
+        sums = np.bincount(self._window_of, numbers**2, size).astype(np.float64)
+        return sums.reshape(JOINTS, self._windows)
+
+    def _weights(self, numbers: Floats) -> Floats:
+        """Derivative of a window's cost by its sum of squares, for every number."""
+        weights: Floats = (1.0 / (1.0 + self._misfit(numbers) / self._usual[:, None])).ravel()[self._window_of]
+        return weights
+
+    def _costs_of(self, x: Floats, numbers: Floats) -> Floats:
+        """Half of what each block is to minimise, doubts about the user's arm included."""
+        usual = self._usual[:, None]
+        per_joint = np.sum(usual * np.log1p(self._misfit(numbers) / usual), axis=1)
+        nominal = ((x - self._nominal) / self._doubts) ** 2
+        costs = [per_joint[list(block.joints)].sum() + nominal[block.numbers].sum() for block in self._blocks]
+        return np.array(costs) / 2.0
