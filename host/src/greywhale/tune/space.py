@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from greywhale.errors import BAD_USAGE, UserError
-from greywhale.fuzzy.settings import GAIN_UNIT, LARGEST_KI_PERIOD, LARGEST_KU_MV, LEAST_WIDTH, SET_UNIT
+from greywhale.fuzzy.settings import GAIN_UNIT, LARGEST_KI, LARGEST_KI_PERIOD, LARGEST_KU_MV, LEAST_WIDTH, SET_UNIT
 from greywhale.link import schema
 from greywhale.simulate import CONTROLLER_COLUMNS
 
@@ -110,7 +110,7 @@ class Space:
         """Widths from 0.01 to 1 and factors over decades by their logarithms, Ku up to twice the supply."""
         highest = {
             **{name: high for name, (_, high) in _GAIN_RANGE.items()},
-            "Ki": min(_GAIN_RANGE["Ki"][1], (LARGEST_KI_PERIOD - 1) / GAIN_UNIT / period_ms),
+            "Ki": min(_GAIN_RANGE["Ki"][1], largest_ki(period_ms)),
             "Ku": min(KU_BEYOND * supply_mv, LARGEST_KU_MV) / 1000.0,
         }
         lowest = {**{name: low for name, (low, _) in _GAIN_RANGE.items()}, "Ku": min(_LEAST_KU, 0.5 * highest["Ku"])}
@@ -125,8 +125,15 @@ class Space:
         gains = [Variable(name, 0.0, _PAPER_GAIN_MAX[name], False) for name in GAINS]
         return cls(strategy, _chosen(strategy, sets, gains), base)
 
-    def bounded(self, bounds: Bounds) -> Self:
+    def bounded(self, bounds: Bounds, period_ms: int = 1) -> Self:
         """The same box with other bounds for some variables, which `check_bounds` must have passed."""
+        most = largest_ki(period_ms)
+        if "Ki" in bounds and bounds["Ki"][1] > most:
+            raise UserError(
+                f"the bounds of Ki reach to {bounds['Ki'][1]:g}, but at a control period of {period_ms} ms the firmware "
+                f"takes at most {most:g}.",
+                BAD_USAGE,
+            )
         changed = [
             replace(variable, low=bounds[variable.name][0], high=bounds[variable.name][1])
             if variable.name in bounds
@@ -204,6 +211,11 @@ class Space:
             if variable.name in SETS and not variable.logarithmic:
                 count += int((np.rint(np.abs(points[:, :, place]) * SET_UNIT) < LEAST_WIDTH).sum())
         return count
+
+
+def largest_ki(period_ms: int) -> float:
+    """The largest Ki that the firmware's arithmetic holds at a control period."""
+    return min((LARGEST_KI_PERIOD - 1) // period_ms, LARGEST_KI) / GAIN_UNIT
 
 
 def check_strategy(strategy: str) -> None:

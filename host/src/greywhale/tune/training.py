@@ -31,6 +31,8 @@ HOLD_S = 1.2
 REACH_RAD = 1.0
 # Kept clear of limits and stops (rad).
 CLEAR_RAD = 0.15
+# What must be left of a joint's range (rad).
+LEAST_RANGE_RAD = 0.2
 HUMAN_SEED = 1001  # not one of those that anything is judged on
 HUMAN_S = 9.0
 WAIT_S = 0.2
@@ -76,7 +78,7 @@ def reach(arm: ArmParameters, parameters: Sequence[int], plants: Floats) -> tupl
         stops = [plants[:, _stop(joint, side)] for side in ("min", "max")]
         low.append(max(limits[0], float(stops[0].max())) + CLEAR_RAD)
         high.append(min(limits[1], float(stops[1].min())) - CLEAR_RAD)
-        if not low[-1] < high[-1]:
+        if high[-1] - low[-1] < LEAST_RANGE_RAD:
             raise UserError(
                 f"joint {joint} has no room to move: limits {limits[0]:g} to {limits[1]:g} rad, stops "
                 f"{arm.joint[joint].stops.min:g} to {arm.joint[joint].stops.max:g} rad; correct them.",

@@ -135,7 +135,7 @@ class _Tuning:
         model = self.model
         supply = model.parameters[schema.PARAMETER_BY_NAME["supply_mv"].index]
         period = model.parameters[schema.PARAMETER_BY_NAME["period_ms"].index]
-        self.space = Space.default(self.strategy, self.before, supply, period).bounded(self.bounds)
+        self.space = Space.default(self.strategy, self.before, supply, period).bounded(self.bounds, period)
         motions = drills(model.arm, model.parameters, model.plants, self.seed)
         self.objective = Objective(motions, model.plants[:SEARCH_PLANTS], self.threads)
         self.judge = Objective(motions, model.plants, self.threads)

@@ -1,0 +1,156 @@
+"""What counts as a limit cycle, and whether a controller still comes to rest with other loop gains, delay or teeth."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from greywhale import _native
+from greywhale.arm import default_arm
+from greywhale.config import controller
+from greywhale.link import schema
+from greywhale.simulate import PLANT_COLUMNS, controller_row, default_controller, plant_row
+from greywhale.tune.margins import (
+    DELAY,
+    SCENARIOS,
+    TEETH,
+    Margins,
+    loosest,
+    penalty,
+    with_gain,
+    with_softer_teeth,
+)
+from tools.setup.console import ROOT
+
+ARM = default_arm()
+PLANTS = plant_row(ARM)[None]
+BEFORE = default_controller()
+TABLE_9 = controller_row(controller.load(ROOT / "shared" / "fuzzy_tables" / "table_9.toml"))
+
+
+def columns(name: str) -> list[int]:
+    return [PLANT_COLUMNS.index(f"joint{joint}.{name}") for joint in range(4)]
+
+
+def turning_points(signal: np.ndarray, band: float) -> list[float]:
+    """The definition, slowly: extremes between legs longer than the band, found by going through all values."""
+    points: list[float] = []
+    extreme, direction = [signal[0], signal[0]], 0
+    for value in signal[1:]:
+        extreme = [min(extreme[0], value), max(extreme[1], value)]
+        if direction >= 0 and value < extreme[1] - band:
+            points += [extreme[1]] if direction else []
+            direction, extreme = -1, [value, value]
+        elif direction <= 0 and value > extreme[0] + band:
+            points += [extreme[0]] if direction else []
+            direction, extreme = 1, [value, value]
+    return points
+
+
+@pytest.mark.parametrize("kind", [np.float32, np.int16])
+def test_swings_are_counted_as_defined(kind: type) -> None:
+    random = np.random.default_rng(4)
+    signals = np.cumsum(random.normal(size=(5, 400, 4)), axis=1) * 3.0
+    signals[0, :, 0] = 7.0
+    signals[0, :, 1] = np.arange(400)
+    traces = np.ascontiguousarray(signals.astype(kind))
+    reversals, travel = _native.swings(traces, 50, 380, 5.0)
+    for n in range(5):
+        for joint in range(4):
+            points = turning_points(traces[n, 50:380, joint].astype(np.float64), 5.0)
+            assert reversals[n, joint] == len(points)
+            assert travel[n, joint] == pytest.approx(np.abs(np.diff(points)).sum())
+    assert reversals[0, :2].tolist() == [0, 0]
+    assert reversals.max() > 5
+
+
+def test_swings_refuses_rows_that_are_not_there() -> None:
+    with pytest.raises(ValueError, match="rows must lie within the traces"):
+        _native.swings(np.zeros((1, 10, 4), dtype=np.float32), 5, 11, 1.0)
+
+
+@pytest.fixture(scope="module")
+def margins() -> Margins:
+    return Margins(ARM, schema.DEFAULTS, PLANTS)
+
+
+def test_the_default_controller_comes_to_rest_in_every_scenario(margins: Margins) -> None:
+    verdicts = margins.check(BEFORE)
+    assert {(one.scenario, one.joint) for one in verdicts} == {
+        (name, joint) for name in SCENARIOS for joint in range(4)
+    }
+    assert all(one.holds for one in verdicts)
+
+
+def test_table_9_swings_at_rest(margins: Margins) -> None:
+    """The paper's sets and factors together: the roll joint goes to and fro by 17 mrad, and its duty with it."""
+    at_rest = {one.joint: one for one in margins.check(TABLE_9) if one.scenario == "at rest"}
+    assert not at_rest[3].holds
+    assert at_rest[3].reversals > 10
+    assert at_rest[2].holds
+
+
+def test_more_gain_and_more_delay_bring_instability_nearer(margins: Margins) -> None:
+    """Of a loop with little left, at the border: what is quiet as it is swings in the scenarios meant for that."""
+    bold = BEFORE.copy()
+    bold[3, 8] *= 4
+    bold[3, 9] *= 2
+    found = margins.unrest(bold[None])
+    assert found["at rest"].reversals[0, 0, 3] < 3
+    assert found["half the loop gain"].reversals[0, 0, 3] < 3
+    assert found["twice the loop gain"].reversals[0, 0, 3] > 3
+    assert found["twice the loop gain"].travel[0, 0, 3] > 0.05
+
+
+def test_the_quiet_pay_nothing_and_the_others_more_the_more_they_swing(margins: Margins) -> None:
+    wilder = TABLE_9.copy()
+    wilder[3, 8] *= 4
+    prices = penalty(margins.unrest(np.stack([BEFORE, TABLE_9, wilder])))
+    assert (prices[0] == 0.0).all()
+    assert 0.02 < prices[1, 3] < prices[2, 3]
+
+
+def test_a_search_stops_short_of_the_border() -> None:
+    """Whatever the check takes for a limit cycle costs a search something, and more scenarios besides."""
+    searching = Margins(ARM, schema.DEFAULTS, PLANTS, searching=True)
+    random = np.random.default_rng(1)
+    rows = np.repeat(BEFORE[None], 24, axis=0).astype(np.float64)
+    rows[:, :, 8:10] *= np.exp(random.uniform(-0.5, 1.2, (24, 4, 2)))
+    candidates = rows.astype(np.int32)
+    strict = penalty(searching.unrest(candidates)) > 0.0
+    failing = np.any(
+        [one.fails[:, 0] for one in Margins(ARM, schema.DEFAULTS, PLANTS).unrest(candidates).values()], axis=0
+    )
+    assert 5 < failing.sum() < 80
+    assert strict[failing].mean() > 0.97
+    assert strict.sum() > failing.sum()
+
+
+def test_scenarios_change_what_they_say() -> None:
+    doubled = with_gain(PLANTS, 2.0)
+    changed = np.flatnonzero((doubled != PLANTS)[0]).tolist()
+    assert changed == sorted(columns("torque_per_volt"))
+    np.testing.assert_allclose(doubled[:, changed], 2.0 * PLANTS[:, changed])
+    softer = with_softer_teeth(PLANTS)
+    assert np.flatnonzero((softer != PLANTS)[0]).tolist() == sorted(columns("stiffness") + columns("mesh_damping"))
+    np.testing.assert_allclose(softer[:, columns("stiffness")], PLANTS[:, columns("stiffness")] / 4)
+    assert {DELAY, TEETH} < set(SCENARIOS)
+
+
+def test_the_loosest_gears_of_all_plants_come_together() -> None:
+    plants = np.repeat(PLANTS, 3, axis=0)
+    plants[1, columns("half_gap")] *= 3.0
+    plants[2, columns("stiffness")] *= 0.2
+    plants[2, columns("torque_per_volt")] *= 9.0
+    loose = loosest(plants)
+    np.testing.assert_array_equal(loose[columns("half_gap")], plants[1, columns("half_gap")])
+    np.testing.assert_array_equal(loose[columns("stiffness")], plants[2, columns("stiffness")])
+    np.testing.assert_array_equal(loose[columns("torque_per_volt")], plants[0, columns("torque_per_volt")])
+
+
+def test_rigid_gears_stay_rigid() -> None:
+    rigid = PLANTS.copy()
+    rigid[:, columns("half_gap") + columns("stiffness") + columns("mesh_damping")] = 0.0
+    np.testing.assert_array_equal(loosest(rigid), rigid[0])
+    found = Margins(ARM, schema.DEFAULTS, rigid).unrest(BEFORE[None])
+    assert not any(one.lost.any() for one in found.values())

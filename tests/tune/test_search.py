@@ -1,0 +1,185 @@
+"""Four searches in lockstep and the last judgement, on costs that can be worked out by hand."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from greywhale.simulate import default_controller
+from greywhale.tune import search
+from greywhale.tune.journal import Journal
+from greywhale.tune.judgement import choose
+from greywhale.tune.search import KEPT, TOGETHER, TURNS, Found, first, lockstep
+from greywhale.tune.space import Space
+
+BEFORE = default_controller()
+SPACE = Space.default("both", BEFORE, 15_000, 1)
+# Where each joint's hill is lowest, in shares of the box.
+AIMS = np.array([0.2, 0.4, 0.6, 0.8])
+
+
+class Hills:
+    """A cost a joint: its distance from its aim; `rows` holds all that was evaluated."""
+
+    def __init__(self) -> None:
+        self.rows: list[np.ndarray] = []
+
+    def __call__(self, rows: np.ndarray) -> np.ndarray:
+        self.rows.append(rows.copy())
+        share = (SPACE.points(rows) - SPACE.lower) / (SPACE.upper - SPACE.lower)
+        return np.asarray(((share - AIMS[:, None]) ** 2).sum(axis=2))
+
+
+def run(method: str = "gwo-woa-relative", budget: int = 400, groups: object = TOGETHER) -> tuple[Found, Hills]:
+    found, hills = Found.nothing(BEFORE), Hills()
+    with Journal(None, {}) as book:
+        first(BEFORE, hills, found, book)
+        lockstep(
+            SPACE, hills, found, book, stage="test", method=method, budget=budget, seed=(1,), starts=BEFORE[None],
+            tick=lambda _: None, groups=groups,  # type: ignore[arg-type]
+        )  # fmt: skip
+    return found, hills
+
+
+@pytest.mark.parametrize("groups", [TOGETHER, TURNS])
+def test_every_joint_finds_its_own_aim(groups: object) -> None:
+    found, hills = run(budget=600, groups=groups)
+    assert (found.cost < 0.1 * hills(BEFORE[None])[0]).all()
+    np.testing.assert_allclose(hills(found.best[None])[0], found.cost)
+
+
+@pytest.mark.parametrize("method", ["cma-es", "de", "gwo-woa", "random"])
+def test_the_budget_is_spent_exactly_by_every_joint(method: str) -> None:
+    found, hills = run(method, budget=57)
+    assert found.evaluations == 58, "the start and 57 more"
+    assert sum(len(rows) for rows in hills.rows) == 58
+
+
+def test_turns_leave_the_others_at_their_best() -> None:
+    _, hills = run(budget=40, groups=TURNS)
+    for rows in hills.rows[1:]:
+        still = [joint for joint in range(4) if len(np.unique(rows[:, joint], axis=0)) == 1]
+        assert still in ([0, 2], [1, 3])
+
+
+def test_restarts_with_other_packs_keep_the_joints_apart() -> None:
+    """CMA-ES doubles its pack when it has converged, at another time on every joint."""
+    found, hills = run("cma-es", budget=3000)
+    sizes = {len(rows) for rows in hills.rows}
+    assert len(sizes) > 2, "no joint restarted"
+    assert (found.cost < 1e-3).all()
+
+
+def test_the_curve_never_rises() -> None:
+    found, _ = run(budget=200)
+    costs = np.array([costs for _, costs in found.curve])
+    assert (np.diff(costs, axis=0) <= 0.0).all()
+    assert found.curve[-1][0] == found.evaluations
+
+
+def test_contenders_are_the_best_different_ones_in_order() -> None:
+    found, hills = run(budget=200)
+    costs = hills(found.contenders(KEPT))
+    assert (np.diff(costs, axis=0) >= 0.0).all()
+    for joint in range(4):
+        assert len(np.unique(found.contenders(KEPT)[:, joint], axis=0)) == KEPT
+    np.testing.assert_array_equal(found.contenders(1)[0], found.best)
+
+
+def test_the_same_seed_gives_the_same_search() -> None:
+    one, other = run(budget=100)[0], run(budget=100)[0]
+    np.testing.assert_array_equal(one.best, other.best)
+    assert one.curve == other.curve
+
+
+def test_optimisers_are_given_back_when_a_search_is_cut_off(monkeypatch: pytest.MonkeyPatch) -> None:
+    closed = []
+    create = search.create
+
+    def watched(*args: object, **options: object) -> object:
+        made = create(*args, **options)  # type: ignore[arg-type]
+        close = made.close
+        monkeypatch.setattr(made, "close", lambda: (closed.append(made), close()), raising=False)
+        return made
+
+    def interrupted(_: np.ndarray) -> np.ndarray:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(search, "create", watched)
+    with pytest.raises(KeyboardInterrupt), Journal(None, {}) as book:
+        lockstep(
+            SPACE, interrupted, Found.nothing(BEFORE), book, stage="test", method="de", budget=10, seed=(1,),
+            starts=BEFORE[None], tick=lambda _: None,
+        )  # fmt: skip
+    assert len(closed) == 4
+
+
+def marked(*marks: int) -> np.ndarray:
+    """A controller whose joint j carries marks[j]."""
+    row = BEFORE.copy()
+    row[:, 11] = marks
+    return row
+
+
+class Table:
+    """Costs by the joints' marks: 10 for the start's mark 0, else 10 - mark; more in bad company."""
+
+    def __init__(self, *feuds: tuple[tuple[int, int], tuple[int, int]]) -> None:
+        self.feuds = feuds
+
+    def __call__(self, rows: np.ndarray) -> np.ndarray:
+        costs = 10.0 - rows[:, :, 11].astype(np.float64)
+        for (joint, mark), (other, its) in self.feuds:
+            together = (rows[:, joint, 11] == mark) & (rows[:, other, 11] == its)
+            costs[together, joint] += 50.0
+        return np.asarray(costs)
+
+
+def test_the_judgement_takes_every_joints_best() -> None:
+    after, before, costs = choose(marked(0, 0, 0, 0), np.stack([marked(1, 2, 1, 2), marked(3, 1, 2, 1)]), Table())
+    assert after[:, 11].tolist() == [3, 2, 2, 2]
+    assert before.tolist() == [10, 10, 10, 10]
+    assert costs.tolist() == [7, 8, 8, 8]
+
+
+def test_the_judgement_parts_neighbours_that_quarrel() -> None:
+    """Joint 1's best and joint 2's best are good alone, and bad together, which no row had shown."""
+    rows = np.stack([marked(4, 4, 1, 4), marked(3, 1, 4, 3), marked(2, 3, 3, 2)])
+    after, _, costs = choose(marked(0, 0, 0, 0), rows, Table(((1, 4), (2, 4))))
+    assert after[:, 11].tolist() in ([4, 3, 4, 4], [4, 4, 3, 4])
+    assert costs.sum() == 40 - 15
+
+
+def test_no_joint_pays_for_the_others() -> None:
+    """Where every new neighbour makes joint 0 worse than it was, nothing changes that would."""
+    feuds = [((0, 0), (other, mark)) for other in (1, 2, 3) for mark in (1, 2)]
+    worse = [((0, own), (other, mark)) for own in (1, 2) for other in (1, 2, 3) for mark in (1, 2)]
+    rows = np.stack([marked(1, 1, 1, 1), marked(2, 2, 2, 2)])
+    after, before, costs = choose(marked(0, 0, 0, 0), rows, Table(*feuds, *worse))
+    assert (costs <= before).all()
+    assert after[:, 11].tolist() == [0, 0, 0, 0]
+
+
+def test_a_found_of_nothing_costs_infinitely_much() -> None:
+    assert np.isinf(Found.nothing(BEFORE).total)
+
+
+def test_the_journal_is_asked_before_anything_is_simulated(tmp_path: Path) -> None:
+    path = tmp_path / "journal"
+    for resume, evaluate in ((False, Hills()), (True, None)):
+        found = Found.nothing(BEFORE)
+        with Journal(path, {"budget": 30}, resume) as book:
+            lockstep(
+                SPACE, evaluate or _never, found, book, stage="test", method="cma-es", budget=30, seed=(1,),
+                starts=BEFORE[None], tick=lambda _: None,
+            )  # fmt: skip
+        if not resume:
+            expected = found
+    assert found.curve == expected.curve
+    np.testing.assert_array_equal(found.best, expected.best)
+
+
+def _never(_: np.ndarray) -> np.ndarray:
+    raise AssertionError("simulated, although the journal knows")
