@@ -14,17 +14,17 @@ import numpy as np
 
 from greywhale.arm import ArmParameters, load_arm
 from greywhale.demo.learn import learn
-from greywhale.demo.practice import CHECK_SHARE, DESIGN_BUDGET, POSE, PRACTICE_S, tables
-from greywhale.excite import design
+from greywhale.demo.practice import tables
 from greywhale.link import schema
 from greywhale.simulate import Experiment, default_controller, plant_row
 from greywhale.simulate.tables import Controllers
-from greywhale.trajectory import Trajectory, human_reaches, multi_steps, steps
+from greywhale.trajectory import human_reaches, multi_steps, steps
 from greywhale.trajectory.motion import Array
 from greywhale.tune.floor import saturation_floor
 from greywhale.tune.margins import Margin, Margins
 from tools.bench.figure import Figure
-from tools.bench.recordings import random_arm, record
+from tools.bench.recordings import random_arm
+from tools.bench.tuning import practised
 
 ARMS = range(1, 11)
 MOTIONS = {"steps": steps(), "multi-steps": multi_steps(), "human reaches": human_reaches(1, 20.0)}
@@ -51,17 +51,11 @@ class Verdict:
         return float(self.after[motion].sum() / self.before[motion].sum())
 
 
-def judged(seed: int, practice: Trajectory) -> Verdict:
+def judged(seed: int) -> Verdict:
     arm = random_arm(seed)
-    known = tables(schema.DEFAULTS)
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        fit = record(arm, practice, folder / "practice.csv", known[0].values, 10 * seed)
-        checks = []
-        for number, table in enumerate(known, 1):
-            motion = human_reaches(10 * seed + number, CHECK_SHARE * PRACTICE_S)
-            checks.append(record(arm, motion, folder / f"{table.name}.csv", table.values, 10 * seed + number))
-        learnt = learn(fit, checks, known, load_arm("white_box"), folder)
+    with tempfile.TemporaryDirectory() as folder:
+        fit, *checks = practised(arm, Path(folder), seed)
+        learnt = learn(fit, checks, tables(schema.DEFAULTS), load_arm("white_box"), Path(folder))
     return on_the_true_arm(seed, arm, learnt.tuning.after)
 
 
@@ -109,9 +103,7 @@ def reversals(path: Array) -> int:
 
 
 def run() -> list[Figure]:
-    # All that is known of every arm is the white box, so all practise the same motion.
-    practice = design(load_arm("white_box"), POSE, seconds=PRACTICE_S, budget=DESIGN_BUDGET).motion
-    verdicts = [judged(seed, practice) for seed in ARMS]
+    verdicts = [judged(seed) for seed in ARMS]
     figures = []
     for one in verdicts:
         head = f"random arm {one.seed}"

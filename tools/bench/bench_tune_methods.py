@@ -14,13 +14,14 @@ import numpy as np
 from scipy.stats import mannwhitneyu, rankdata
 
 from greywhale.arm import default_arm, load_arm
+from greywhale.demo.practice import tables
 from greywhale.identify import identify
+from greywhale.link import schema
 from greywhale.trajectory.motion import Array
 from greywhale.tune import tune
 from greywhale.tune.model import Model, load_model
-from tools.bench.bench_identify import tables
 from tools.bench.figure import Figure
-from tools.bench.recordings import record_three
+from tools.bench.tuning import practised
 from tools.setup.console import ROOT
 
 METHODS = ("gwo-woa-relative", "gwo-woa", "gwo-woa-printed", "gwo", "woa", "pso", "de", "cma-es", "random")
@@ -34,17 +35,24 @@ TABLE = ROOT / "build" / "bench_tune_methods.md"
 def identified() -> Model:
     """The default arm as its recordings show it."""
     with tempfile.TemporaryDirectory() as folder:
-        recorded = record_three(default_arm(), Path(folder), 1)
-        logs = [recorded.second, recorded.changed]
+        fit, *checks = practised(default_arm(), Path(folder), 1)
         path = Path(folder) / "model.toml"
-        identify([recorded.fit], load_arm("white_box"), validate=logs, tables=tables()).save(path)
+        identify([fit], load_arm("white_box"), validate=checks, tables=tables(schema.DEFAULTS)).save(path)
         return load_model(path, force=True)
 
 
 def cost(model: Model, method: str, seed: int) -> float:
     """mrad, of all joints, as the search saw it."""
-    outcome = tune(model, method=method, budget=BUDGET, seed=seed, floors=False)
+    outcome = tune(model, method=method, budget=BUDGET, seed=seed, report=searched, floors=False)
+    if outcome.evaluations != BUDGET:
+        raise RuntimeError(f"{method} spent {outcome.evaluations} evaluations instead of {BUDGET}")
     return 1e3 * sum(curve.cost[-1] for curve in outcome.curves)
+
+
+def searched(what: str, fraction: float, note: str = "") -> None:
+    """Ends a tuning when its search is over: the last judgement takes as long again and changes no curve."""
+    if what == "judging":
+        raise KeyboardInterrupt
 
 
 def verdict(own: Array, other: Array) -> tuple[str, float]:

@@ -5,16 +5,22 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 
-from greywhale.arm import ArmParameters
+from greywhale.arm import ArmParameters, load_arm
+from greywhale.demo.practice import CHECK_SHARE, DESIGN_BUDGET, POSE, PRACTICE_S, tables
+from greywhale.excite import design
+from greywhale.link import schema
+from greywhale.log import Log
 from greywhale.measure import Evaluation
 from greywhale.trajectory import Trajectory, human_reaches, load_leader, multi_steps, steps
 from greywhale.trajectory.motion import Array
 from greywhale.tune.floor import saturation_floor
 from tools.bench.figure import Figure
+from tools.bench.recordings import record
 
 # A folder of leader recordings (CSV: time_s, leader_0..3) to be judged on as well.
 LEADERS = os.environ.get("GREYWHALE_LEADERS", "")
@@ -37,6 +43,23 @@ def motions() -> dict[str, Trajectory]:
             raise FileNotFoundError(f"GREYWHALE_LEADERS={LEADERS}: there is no .csv in this folder")
         found |= {file.stem: load_leader(file) for file in files}
     return found
+
+
+def practised(arm: ArmParameters, folder: Path, seed: int) -> list[Log]:
+    """What `greywhale.demo.practice` records on the bench, here by the native loop: the log to fit, two to validate."""
+    # All that is known of any arm is the white box, so all practise the same motion.
+    known = tables(schema.DEFAULTS)
+    logs = [record(arm, excitation(), folder / "practice.csv", known[0].values, 10 * seed)]
+    for number, table in enumerate(known, 1):
+        motion = human_reaches(10 * seed + number, CHECK_SHARE * PRACTICE_S)
+        logs.append(record(arm, motion, folder / f"{table.name}.csv", table.values, 10 * seed + number))
+    return logs
+
+
+@cache
+def excitation() -> Trajectory:
+    """The motion that tells most about an arm of which the white box is all that is known."""
+    return design(load_arm("white_box"), POSE, seconds=PRACTICE_S, budget=DESIGN_BUDGET).motion
 
 
 @dataclass(frozen=True)
