@@ -30,6 +30,8 @@ OF_FLOOR = 1.15
 STEADY_RAD = 0.02
 # Delays are read off logs with a row a millisecond.
 SAME_DELAY_S = 0.001
+# How late the board hears of the leader: the mean age of a tick's conversions, the low-pass, and half a tick of hold.
+LATE_S = 0.5e-3 + 1e-3 + 0.5e-3
 # Below this (rad^2) a floor is no floor: the motion never asks for more than the supply gives.
 SATURATED = 1e-4
 
@@ -70,10 +72,12 @@ class Judged:
     before: Evaluation
     after: Evaluation
     floor: Array
+    late_floor: Array | None = None  # the same where a controller hears of the leader as late as the board does
 
     @classmethod
     def of(cls, name: str, motion: Trajectory, arm: ArmParameters, before: Evaluation, after: Evaluation) -> Judged:
-        return cls(name, before, after, saturation_floor(motion, arm, resample=True).mse)
+        floor, late = (saturation_floor(motion, arm, resample=True, delay_s=delay).mse for delay in (0.0, LATE_S))
+        return cls(name, before, after, floor, late)
 
     @property
     def lower(self) -> float:
@@ -138,6 +142,16 @@ def _reached(head: str, name: str, one: Judged) -> list[Figure]:
             Figure(f"{head}: MSE lower by", lower, "%", f">= {LOWER:g}, or", either),
             Figure(f"{head}: MSE over the floor", multiple, "x", f"<= {OF_FLOOR}", either),
             Figure(f"{head}: MSE before over the floor", one.before.total_mse / float(one.floor.sum()), "x"),
+            *_late(head, one),
         ]
     found = [Figure(f"{head}: MSE lower by", lower, "%")]
-    return found if multiple is None else [*found, Figure(f"{head}: MSE over the floor", multiple, "x")]
+    if multiple is None:
+        return found
+    return [*found, Figure(f"{head}: MSE over the floor", multiple, "x"), *_late(head, one)]
+
+
+def _late(head: str, one: Judged) -> list[Figure]:
+    if one.late_floor is None:
+        return []
+    late = one.after.total_mse / float(one.late_floor.sum())
+    return [Figure(f"{head}: MSE over the floor of a controller {1e3 * LATE_S:g} ms late", late, "x")]
