@@ -15,6 +15,7 @@ from greywhale.cli.entry import run
 from greywhale.demo import BenchProcess
 from greywhale.errors import UserError
 from greywhale.identify import identify
+from greywhale.identify.model_file import to_toml
 from greywhale.link.device import Device
 from greywhale.link.lead import STEP_RAD, Plan
 from greywhale.link.schema import Fault, State, StopReason
@@ -99,6 +100,23 @@ def test_a_line_that_loses_bytes_changes_nothing_of_the_motion(bench: BenchProce
     shown = np.interp(later, log.time, log.leader[:, 0])
     assert np.abs(shown - motion.angles[:, 0]).max(axis=1).min() < 0.03
     assert np.allclose(log.leader[-1], motion.angles[-1], atol=STEP_RAD)
+
+
+def test_an_arm_far_weaker_than_its_file_is_led_more_slowly_and_without_a_fault(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A quarter of the voltage that the board believes in: a motion designed for the whole cannot be followed."""
+    arm = default_arm()
+    weak = arm.model_copy(update={"drive": arm.drive.model_copy(update={"supply": 3.75})})
+    (tmp_path / "weak.toml").write_text(to_toml(weak, {}).replace("[identification]\n", ""), encoding="utf-8")
+    with BenchProcess("--speed", "max", "--arm", str(tmp_path / "weak.toml")) as bench:
+        arguments = ("-o", str(tmp_path / "log.csv"), "--seconds", "10", "--budget", "10")
+        answer = told(capsys, "record", "--excite", "-p", bench.port, *arguments)
+    assert answer["slowest_pace"] < 0.9
+    assert answer["duration_s"] > 10.5
+    log = read_log(tmp_path / "log.csv")
+    assert log.complete
+    assert np.allclose(log.leader[-1], log.leader[0], atol=2 * STEP_RAD), "it came back to where it began"
 
 
 def test_ctrl_c_stops_the_motors_and_keeps_the_log(bench: BenchProcess, tmp_path: Path) -> None:

@@ -34,10 +34,6 @@ class Information:
     parameters: tuple[Parameter, ...]
     matrix: Floats
 
-    @property
-    def size(self) -> int:
-        return len(self.parameters)
-
 
 def information(plant: Floats, angles: Floats, row_s: float, parameters: Sequence[Parameter]) -> Information:
     """Of a follower's motion, angles (rows, 4) rad every `row_s` seconds, on a plant (60,)."""
