@@ -23,7 +23,7 @@ from greywhale.excite.limits import JOINTS, MARGIN_RAD, Limits, family, limits_o
 from greywhale.excite.multisine import LONGEST_S, SHORTEST_S, Shape
 from greywhale.excite.trial import ROW_S, Tried, try_motion
 from greywhale.identify.space import KINDS, MOTOR, Parameter, Space
-from greywhale.identify.uncertainty import OPEN, OPEN_LOG
+from greywhale.identify.uncertainty import OPEN, OPEN_FACTOR, OPEN_LOG
 from greywhale.link import schema
 from greywhale.optimise import DEFAULT, create
 from greywhale.simulate import plant_row
@@ -35,7 +35,7 @@ Report = Callable[[str, float], None]
 BUDGET = 400
 SECONDS = 20.0
 # What is looked at where an arm file says nothing about what is known: as in a usual identification.
-USUAL = (*MOTOR, "coulomb", "breakaway", "gap")
+USUAL = (*MOTOR, "coulomb", "breakaway", "gap", "teeth")
 # Cost of a lag or an overshoot of twice what is allowed: more than any information is worth.
 PENALTY = 50.0
 # A motion that is not safe on some arm is drawn together towards the pose by this much, again and again.
@@ -47,7 +47,8 @@ class Problem:
     """What a motion is judged by: the arm, its family, the parameters and what is known of them."""
 
     parameters: tuple[Parameter, ...]
-    plants: Floats  # (1 + family, 60)
+    plants: Floats  # (1 + family, 60), that the motion is tried on
+    nominal: Floats  # (60,), whose parameters the information is about
     known: Floats  # information before, (n, n)
     table: tuple[int, ...]  # the board's parameters, raw
     limits: Limits
@@ -66,15 +67,17 @@ class Problem:
         if facts is not None and "covariance" in facts:
             parameters = tuple(_parameter(str(one["name"])) for one in facts["parameter"])
             space, covariance = Space(arm, parameters, plant_row(arm)), np.array(facts["covariance"])
+            nominal = plant_row(arm)
         else:
             space, covariance = Space.of(arm, USUAL, range(JOINTS)), None
+            nominal = space.plants(space.start()[None])[0]
         known = prior(space.parameters, covariance, space.doubts())
-        return cls(space.parameters, family(arm, seed), known, tuple(table), limits)
+        return cls(space.parameters, family(arm, seed), nominal, known, tuple(table), limits)
 
     def judge(self, angles: Floats) -> Judgement:
         """Of points (rows, 4) rad, 16 ms apart."""
         tried = try_motion(angles, self.table, self.plants, threads=1)
-        told = information(self.plants[0], tried.angles[0], ROW_S, self.parameters).matrix + self.known
+        told = information(self.nominal, tried.angles[0], ROW_S, self.parameters).matrix + self.known
         size = natural_sizes(self.parameters)
         log_det = float(np.linalg.slogdet(told * np.outer(size, size))[1])
         return Judgement(log_det, np.sqrt(np.diag(np.linalg.inv(told))), tried, self._excess(tried))
@@ -209,4 +212,4 @@ def _parameter(name: str) -> Parameter:
 
 
 def _enough(one: Parameter) -> float:
-    return OPEN_LOG if KINDS[one.kind].logarithmic else OPEN[one.kind]
+    return OPEN_FACTOR.get(one.kind, OPEN_LOG) if KINDS[one.kind].logarithmic else OPEN[one.kind]

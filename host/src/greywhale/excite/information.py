@@ -98,14 +98,18 @@ class _Motion:
                 change = self.body.bias(moved, still) - self.body.bias(self.q, still)
                 gained: Floats = alpha * change[:, self.joint] / _STEP
                 return gained
-            case _:
+            case _:  # gap and teeth move the joint without a voltage; drag is felt inside of the gap only, hardly
                 return np.zeros(len(speed))
 
     def _of(self, name: str) -> float:
         return float(self.plant[column(self.joint, name)])
 
     def shift(self, kind: str) -> Floats:
-        """(rows,) by which a unit of the searched number moves the joint against its motor: backlash."""
+        """(rows,) by which a unit of the searched number moves the joint against its motor: backlash, bending teeth."""
+        stiffness = self._of("stiffness")
+        if kind == "teeth" and stiffness > 0.0:
+            bend: Floats = -self.torque / stiffness
+            return bend
         if kind != "gap":
             return np.zeros(len(self.a))
         side: Floats = np.tanh(self.torque / max(1e-3, 0.02 * float(np.abs(self.torque).max())))
