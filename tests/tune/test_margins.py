@@ -53,7 +53,7 @@ def test_swings_are_counted_as_defined(kind: type) -> None:
     signals = np.cumsum(random.normal(size=(5, 400, 4)), axis=1) * 3.0
     signals[0, :, 0] = 7.0
     signals[0, :, 1] = np.arange(400)
-    traces = np.ascontiguousarray(signals.astype(kind))
+    traces: np.ndarray = np.ascontiguousarray(signals.astype(kind))
     reversals, travel = _native.swings(traces, 50, 380, 5.0)
     for n in range(5):
         for joint in range(4):

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
+from greywhale.optimise import Optimiser, create
 from greywhale.simulate import default_controller
 from greywhale.tune import search
 from greywhale.tune.journal import Journal
@@ -95,13 +97,11 @@ def test_the_same_seed_gives_the_same_search() -> None:
 
 
 def test_optimisers_are_given_back_when_a_search_is_cut_off(monkeypatch: pytest.MonkeyPatch) -> None:
-    closed = []
-    create = search.create
+    closed: list[Optimiser] = []
 
-    def watched(*args: object, **options: object) -> object:
-        made = create(*args, **options)  # type: ignore[arg-type]
-        close = made.close
-        monkeypatch.setattr(made, "close", lambda: (closed.append(made), close()), raising=False)
+    def watched(*args: Any, **options: Any) -> Optimiser:
+        made = create(*args, **options)
+        monkeypatch.setattr(made, "close", lambda: closed.append(made))
         return made
 
     def interrupted(_: np.ndarray) -> np.ndarray:
@@ -110,7 +110,7 @@ def test_optimisers_are_given_back_when_a_search_is_cut_off(monkeypatch: pytest.
     monkeypatch.setattr(search, "create", watched)
     with pytest.raises(KeyboardInterrupt), Journal(None, {}) as book:
         lockstep(
-            SPACE, interrupted, Found.nothing(BEFORE), book, stage="test", method="de", budget=10, seed=(1,),
+            SPACE, interrupted, Found.nothing(BEFORE), book, stage="test", method="gwo-woa", budget=10, seed=(1,),
             starts=BEFORE[None], tick=lambda _: None,
         )  # fmt: skip
     assert len(closed) == 4

@@ -163,7 +163,8 @@ def alone(motion: Trajectory, joint: int) -> Trajectory:
 
 def since_step(motion: Trajectory, wait_s: float) -> Floats:
     """The k of Eqs. 19 and 20 at every tick: the time since the leader left its first angle, 0 before."""
-    leaves = float(motion.time_s[int(np.argmax(np.abs(motion.angles - motion.angles[0]).max(axis=1) > 1e-9))])
+    elsewhere = np.flatnonzero(np.abs(motion.angles - motion.angles[0]).max(axis=1) > 1e-9)
+    leaves = float(motion.time_s[elsewhere[0] - 1])
     ticks = int(np.ceil((wait_s + motion.duration_s) / 1e-3 - 1e-9))
     since: Floats = np.maximum(np.arange(ticks) * 1e-3 - wait_s - leaves, 0.0)
     return since

@@ -130,8 +130,8 @@ class Space:
         most = largest_ki(period_ms)
         if "Ki" in bounds and bounds["Ki"][1] > most:
             raise UserError(
-                f"the bounds of Ki reach to {bounds['Ki'][1]:g}, but at a control period of {period_ms} ms the firmware "
-                f"takes at most {most:g}.",
+                f"the bounds of Ki reach to {bounds['Ki'][1]:g}, but at a control period of {period_ms} ms the "
+                f"firmware takes at most {most:g}.",
                 BAD_USAGE,
             )
         changed = [

@@ -1,0 +1,215 @@
+"""A whole tuning on a known arm: better and at rest, the same for any threads, whole after any interruption."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from greywhale.errors import UserError
+from greywhale.fuzzy.settings import JointSettings
+from greywhale.link.schema import Refusal
+from greywhale.optimise import METHODS as OPTIMISERS
+from greywhale.simulate import plant_row
+from greywhale.tune import METHODS, Outcome, check_request, search, tune, tuning
+from greywhale.tune.model import Model, load_model
+from greywhale.tune.tuning import NOISE_V, with_noise
+
+BUDGET = 60
+
+
+@pytest.fixture(scope="module")
+def model() -> Model:
+    """The default arm as if it were identified, and a likely other one."""
+    known = load_model("default", force=True)
+    other = plant_row(known.arm) * np.where(np.arange(60) == 12, 1.1, 1.0)
+    return replace(known, plants=np.vstack([known.plants[0], other]))
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _fewer_finalists() -> Iterator[None]:
+    """The last judgement takes most of a short tuning's time; two candidates a joint are enough to try it."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(search, "KEPT", 2)
+        yield
+
+
+def run(model: Model, **options: Any) -> Outcome:
+    return tune(model, **({"budget": BUDGET, "floors": False} | options))
+
+
+@pytest.fixture(scope="module")
+def tuned(model: Model, tmp_path_factory: pytest.TempPathFactory) -> tuple[Outcome, Path]:
+    journal = tmp_path_factory.mktemp("tuning") / "journal"
+    return run(model, journal=journal, threads=1), journal
+
+
+def same(one: Outcome, other: Outcome) -> None:
+    assert json.dumps(one.as_dict()) == json.dumps(other.as_dict())
+
+
+def test_a_short_search_already_follows_much_better(tuned: tuple[Outcome, Path]) -> None:
+    outcome, _ = tuned
+    assert outcome.complete
+    assert outcome.evaluations <= BUDGET
+    assert all(after <= before for before, after in zip(outcome.cost_before, outcome.cost_after, strict=True))
+    by_name = {one.name: one for one in outcome.held_out}
+    assert by_name["steps"].mse_after.sum() < 0.92 * by_name["steps"].mse_before.sum()
+    assert by_name["multi-steps"].mse_after.sum() < 0.95 * by_name["multi-steps"].mse_before.sum()
+    assert by_name["human-like reaches"].mse_after.sum() < 0.5 * by_name["human-like reaches"].mse_before.sum()
+
+
+def test_every_joint_comes_to_rest(tuned: tuple[Outcome, Path]) -> None:
+    outcome, _ = tuned
+    assert len(outcome.margins) == len(outcome.margins_before) == 5 * 4
+    assert outcome.steady
+    assert all(margin.plants == 3 for margin in outcome.margins), "both plants and their loosest gears"
+
+
+def test_the_board_takes_what_comes_out(tuned: tuple[Outcome, Path]) -> None:
+    outcome, _ = tuned
+    assert outcome.after.dtype == np.int32
+    for row in outcome.after:
+        assert JointSettings(*(int(value) for value in row)).refusal(outcome.period_ms) is Refusal.NONE
+
+
+def test_the_outcome_is_plain_json(tuned: tuple[Outcome, Path]) -> None:
+    facts = json.loads(json.dumps(tuned[0].as_dict(), allow_nan=False))
+    assert facts["after"] == tuned[0].after.tolist()
+    assert len(facts["curves"]) == 4
+    assert facts["curves"][0]["evaluations"][-1] == facts["evaluations"]
+
+
+def test_threads_change_no_bit(model: Model, tuned: tuple[Outcome, Path]) -> None:
+    same(run(model, threads=2), tuned[0])
+
+
+def test_an_interrupted_tuning_goes_on_to_the_same_bytes(
+    model: Model, tuned: tuple[Outcome, Path], tmp_path: Path
+) -> None:
+    outcome, journal = tuned
+    path = tmp_path / "journal"
+
+    def impatient(what: str, fraction: float, note: str = "") -> None:
+        if what == "tuning" and fraction > 0.4:
+            raise KeyboardInterrupt
+
+    first = run(model, journal=path, report=impatient)
+    assert not first.complete
+    assert first.held_out == ()
+    assert 0.4 * BUDGET < first.evaluations < 0.8 * BUDGET
+    assert all(after <= before for before, after in zip(first.cost_before, first.cost_after, strict=True))
+    assert journal.read_bytes().startswith(path.read_bytes())
+    with path.open("ab") as file:
+        file.write(b'{"stage":"sha')  # torn by the crash that came after the interrupt
+    said = []
+    second = run(model, journal=path, resume=True, report=lambda what, fraction, note="": said.append(what))
+    same(second, outcome)
+    assert path.read_bytes() == journal.read_bytes()
+    assert list(dict.fromkeys(said)) == ["replaying the journal", "tuning", "judging"]
+
+
+def test_a_finished_journal_needs_no_simulation(
+    model: Model, tuned: tuple[Outcome, Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def never(self: object, controllers: object) -> None:
+        raise AssertionError("simulated although the journal knows")
+
+    monkeypatch.setattr(tuning._Tuning, "costs", never)
+    same(run(model, journal=tuned[1], resume=True), tuned[0])
+
+
+def test_a_journal_of_another_tuning_is_refused(model: Model, tuned: tuple[Outcome, Path]) -> None:
+    with pytest.raises(UserError, match="its seed is 0, now it is 1"):
+        run(model, journal=tuned[1], resume=True, seed=1)
+    with pytest.raises(UserError, match=r"its bounds is {}, now it is {.Ku.: \[3.0, 5.0\]}"):
+        run(model, journal=tuned[1], resume=True, bounds={"Ku": (3.0, 5.0)})
+
+
+def test_an_interrupt_while_judging_keeps_the_best_so_far(model: Model, tuned: tuple[Outcome, Path]) -> None:
+    def impatient(what: str, fraction: float, note: str = "") -> None:
+        if what == "judging":
+            raise KeyboardInterrupt
+
+    outcome = run(model, journal=tuned[1], resume=True, report=impatient)
+    assert not outcome.complete
+    assert (outcome.after != outcome.before).any()
+    assert "interrupted" in outcome.notes[0]
+
+
+def test_an_interrupt_before_anything_was_tried_goes_on_up(model: Model, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(self: object, controllers: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(tuning._Tuning, "costs", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        run(model)
+
+
+def test_bounds_hold_for_what_comes_out_although_the_start_lies_outside(model: Model) -> None:
+    outcome = run(model, method="random", budget=6, bounds={"Ku": (3.0, 5.0)})
+    assert outcome.after[:, 11].max() <= 5_000
+    assert (outcome.before[:, 11] > 5_000).all()
+
+
+@pytest.mark.parametrize("strategy", ["mf", "sf"])
+def test_strategies_keep_to_their_numbers(model: Model, strategy: str) -> None:
+    outcome = run(model, strategy=strategy, budget=40)
+    kept = slice(8, 12) if strategy == "mf" else slice(0, 8)
+    np.testing.assert_array_equal(outcome.after[:, kept], outcome.before[:, kept])
+    assert sum(outcome.cost_after) < sum(outcome.cost_before)
+
+
+@pytest.mark.parametrize("method", ["de", "gwo-woa"])
+def test_any_optimiser_serves_at_the_same_budget(model: Model, method: str) -> None:
+    outcome = run(model, method=method, budget=25)
+    assert outcome.evaluations == 25
+    assert sum(outcome.cost_after) <= sum(outcome.cost_before)
+    assert set(METHODS) == {"default", "paper", *OPTIMISERS}
+
+
+def test_a_budget_of_one_gives_the_start_back(model: Model) -> None:
+    outcome = run(model, budget=1)
+    assert outcome.complete
+    np.testing.assert_array_equal(outcome.after, outcome.before)
+
+
+def test_silent_potentiometers_get_the_noise_of_ordinary_ones(model: Model) -> None:
+    bank = model.arm.follower_pots
+    quiet = bank.model_copy(update={"joint": tuple(pot.model_copy(update={"noise": 0.0}) for pot in bank.joint)})
+    loud = bank.model_copy(update={"joint": tuple(pot.model_copy(update={"noise": 0.01}) for pot in bank.joint)})
+    arm = with_noise(model.arm.model_copy(update={"follower_pots": quiet, "leader_pots": loud}))
+    assert [pot.noise for pot in arm.follower_pots.joint] == [NOISE_V] * 4
+    assert [pot.noise for pot in arm.leader_pots.joint] == [0.01] * 4
+
+
+@pytest.mark.parametrize(
+    ("request_", "sentence"),
+    [
+        ({"strategy": "all"}, "there is no strategy 'all'"),
+        ({"method": "magic"}, "there is no method 'magic'; there are default, paper, gwo-woa-relative"),
+        ({"budget": 0}, "budget is 0, but it must be at least 1"),
+        ({"seed": -1}, "seed is -1"),
+        ({"threads": -1}, "threads is -1"),
+        ({"bounds": {"Ku": (5.0, 3.0)}}, "give the lower one first"),
+        ({"method": "paper", "bounds": {"Ku": (3.0, 5.0)}}, "the paper's method has bounds of its own"),
+    ],
+)
+def test_wrong_requests_are_bad_usage(request_: dict[str, Any], sentence: str) -> None:
+    with pytest.raises(UserError, match=sentence) as caught:
+        check_request(**request_)
+    assert caught.value.exit_code == 2
+
+
+def test_a_ki_that_the_period_forbids_is_bad_usage(model: Model) -> None:
+    values = list(model.parameters)
+    values[0] = 20
+    with pytest.raises(
+        UserError, match="Ki reach to 500, but at a control period of 20 ms the firmware takes at most 204"
+    ):
+        run(replace(model, parameters=tuple(values)), bounds={"Ki": (1.0, 500.0)})
