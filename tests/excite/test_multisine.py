@@ -76,3 +76,13 @@ def test_the_boards_curve_is_smooth_and_stays_in_the_hull_of_its_points() -> Non
     bend = np.abs(np.diff(points, 2, axis=0)).max(axis=0) / POINT_S**2
     bend = np.maximum(bend, np.abs(np.diff(points, axis=0))[[0, -1]].max(axis=0) / POINT_S**2)  # its rest at the ends
     assert (np.abs(np.diff(speed, axis=0)) / 1e-3 <= bend * (1 + 1e-6)).all()
+
+
+def test_now_and_then_everything_stands_still() -> None:
+    shape = Shape(LIMITS, 20.0)
+    angles = shape.angles(np.random.default_rng(7).uniform(-1, 1, shape.size))
+    still = (np.abs(np.diff(angles, axis=0)) < 1e-12).all(axis=1)
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], still, [False]]).astype(int)))
+    lengths = (edges[1::2] - edges[::2]) * POINT_S
+    assert (lengths[1:-1] > 0.5).all()
+    assert len(lengths) == 4 + 2, "four pauses, and the ends"

@@ -50,7 +50,7 @@ _OF_EXCITE = {
 )
 @click.option("--seed", type=int, help="With --excite: another seed, another motion.  [default: 0]")
 @click.option(
-    "--budget", type=int, help="With --excite: motions to try; more take longer and tell a little more.  [default: 400]"
+    "--budget", type=int, help="With --excite: motions to try; more take longer and tell a little more.  [default: 300]"
 )
 @click.option(
     "--save-motion",

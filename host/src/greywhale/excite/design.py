@@ -32,7 +32,7 @@ from greywhale.trajectory import Trajectory
 Floats = npt.NDArray[np.float64]
 Report = Callable[[str, float], None]
 
-BUDGET = 400
+BUDGET = 300
 SECONDS = 20.0
 # What is looked at where an arm file says nothing about what is known: as in a usual identification.
 USUAL = (*MOTOR, "coulomb", "breakaway", "gap", "teeth")

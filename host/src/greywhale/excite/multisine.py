@@ -27,6 +27,9 @@ LOWEST_HZ, HIGHEST_HZ = 0.1, 3.0
 FADE_S, FADE_SHARE = 1.5, 0.2
 # At rest before and after (s).
 REST_S = 0.3
+# Now and then everything stands still, for friction at rest, creeping and hunting to show: so often (1/s), so long (s)
+# from slowing down to being at speed again.
+PAUSES_PER_S, PAUSE_S = 0.2, 1.2
 # Amplitudes differ by up to e to the power of this, before frequency.
 SPREAD = 3.0
 SHORTEST_S, LONGEST_S = 4.0, 600.0
@@ -58,11 +61,10 @@ class Shape:
     def angles(self, numbers: Floats) -> Floats:
         """(points, 4) rad, 16 ms apart."""
         numbers = np.clip(numbers, -1.0, 1.0).reshape(2, JOINTS, SINES)
-        time_s = self.time_s
-        fade = self._fade(time_s)
+        fade, time_s = self._fade(self.time_s), self._played
         weights = np.exp(SPREAD * numbers[0]) / self.frequencies
         phases = np.pi * numbers[1]
-        angles = np.zeros((len(time_s), JOINTS))
+        angles = np.zeros((len(fade), JOINTS))
         limits = self.limits
         for joint in range(JOINTS):
             turns = 2.0 * np.pi * self.frequencies[joint][:, None] * time_s + phases[joint][:, None]
@@ -72,6 +74,18 @@ class Shape:
             way = fade * (within - limits.pose[joint])
             angles[:, joint] = limits.pose[joint] + way * self._calm(way, joint)
         return angles
+
+    @property
+    def _played(self) -> Floats:
+        """Time on the multi-sine's own clock, which stands still in the pauses, (points,) s."""
+        time_s = self.time_s
+        pace = np.ones(len(time_s))
+        count = int(PAUSES_PER_S * self.seconds)
+        for middle in self.seconds * (np.arange(count) + 0.5) / max(count, 1):
+            near = np.abs(time_s - middle) / (PAUSE_S / 2.0)
+            pace *= minimum_jerk(2.0 * near - 1.0)
+        played: Floats = np.cumsum(pace) * POINT_S
+        return played
 
     def trajectory(self, angles: Floats) -> Trajectory:
         return Trajectory(self.time_s, angles)
