@@ -22,7 +22,7 @@ def figures_of(comparison: Comparison) -> list[Figure]:
     """Physics in the loop, beside the better of the two lags from leader to follower."""
     return [
         Figure(
-            f"real data, {comparison.title} -> {score.record}"[:60],
+            _name(comparison.title if comparison.title != score.record else "first half", score.record),
             100 * score.physics_loop,
             "% of range",
             f"< {100 * score.best_naive:.2f} (naive)",
@@ -33,8 +33,12 @@ def figures_of(comparison: Comparison) -> list[Figure]:
 
 
 def figure_of(score: ProductScore) -> Figure:
-    name = f"real data, greywhale identify, {score.fitted} -> {score.judged}"[:60]
-    return Figure(name, 100 * score.loop, "% of range")
+    fitted = score.fitted if score.fitted != score.judged else "first half"
+    return Figure(_name(f"greywhale identify, {fitted}", score.judged), 100 * score.loop, "% of range")
+
+
+def _name(fitted: str, judged: str) -> str:
+    return f"{fitted} -> {judged}"
 
 
 def run() -> list[Figure]:

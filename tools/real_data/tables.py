@@ -40,9 +40,13 @@ def model_table(comparisons: Sequence[Comparison]) -> str:
     """What was found, a row a fit."""
     rows = ["| fitted to | model |", "|---|---|"]
     for comparison in comparisons:
-        values = ", ".join(f"{name} {value:.3g}" for name, value in comparison.model.values.items())
+        values = ", ".join(f"{name} {_rounded(value)}" for name, value in comparison.model.values.items())
         rows.append(f"| {comparison.title} | {values} |")
     return "\n".join(rows)
+
+
+def _rounded(value: float) -> str:
+    return f"{value:.3g}" if abs(value) > 1e-6 else "0"
 
 
 def percent(share: float) -> str:
