@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from greywhale.arm import Arm
+from greywhale.arm import Arm, ArmParameters
 from greywhale.errors import UserError
-from greywhale.one_joint import fit
+from greywhale.log import Log
+from greywhale.one_joint import Runner, fit, pieces_of, plants
+from greywhale.simulate import plant_row
 from tools.bench import bench_real_data
-from tools.real_data import study
+from tools.real_data import product, study
 from tools.real_data.compare import halves
 from tools.real_data.product import arm_of, joint_of, log_of
 from tools.real_data.rigs import LEVER_RIG, POT_RIG, SERVO_RIG, read_lever, read_pot, read_servo
@@ -133,6 +136,24 @@ def test_a_pendulum_becomes_a_shoulder_that_hangs_and_weighs_what_is_published(t
     assert 1 / motor.torque_per_volt == pytest.approx(SERVO_RIG.alpha)
     assert motor.damping / motor.torque_per_volt == pytest.approx(SERVO_RIG.damping)
     assert motor.inertia / motor.torque_per_volt == pytest.approx(SERVO_RIG.inertia)
+
+
+def test_an_identified_shoulder_swings_as_the_one_joint_that_it_is(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    source = read_servo(servo_file(tmp_path))
+
+    def found(logs: list[Log], arm: ArmParameters) -> SimpleNamespace:
+        # The white box itself, but for a potentiometer that reads 0 at 0.1 rad.
+        return SimpleNamespace(plant=plant_row(arm), zero=np.array([0.0, 0.1, 0.0, 0.0]))
+
+    monkeypatch.setattr(product, "identify", found)
+    pieces = pieces_of(source.record, 0, len(source.record.time))
+    runner = Runner(source.record, None)
+    moved = runner.run(product.identified(source), pieces).angles
+    expected = runner.run(plants(SERVO_RIG, {"hanging": np.array([-0.1])}), pieces).angles
+    assert np.ptp(expected) > 0.3
+    np.testing.assert_allclose(moved, expected, atol=1e-9)
 
 
 def test_models_fitted_to_one_half_are_judged_on_the_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
