@@ -58,16 +58,18 @@ class Found:
         self.curve.append((self.evaluations, tuple(float(cost) for cost in self.cost)))
 
     def contenders(self, count: int) -> Controllers:
-        """(count, 4, 12): the k-th row holds the k-th best of every joint, or its best where there are no more."""
+        """(count, 4, 12): every joint's best, then others from further down its list, whose first are much alike."""
         rows = np.repeat(self.best[None], count, axis=0)
         for joint, ranked in enumerate(self.ranking):
-            for place, (_, raw) in enumerate(ranked[:count]):
-                rows[place, joint] = np.frombuffer(raw, dtype=np.int32)
+            for place, rank in enumerate(RANKS[:count]):
+                if ranked:
+                    rows[place, joint] = np.frombuffer(ranked[min(rank, len(ranked) - 1)][1], dtype=np.int32)
         return rows
 
 
-# How many of a joint's best candidates are kept for the last judgement.
-KEPT = 5
+# Which of a joint's candidates, the best first, go into the last judgement.
+RANKS = (0, 1, 4, 12, 30)
+KEPT = len(RANKS)
 
 
 def _best_few(ranked: list[tuple[float, bytes]]) -> list[tuple[float, bytes]]:
@@ -75,7 +77,7 @@ def _best_few(ranked: list[tuple[float, bytes]]) -> list[tuple[float, bytes]]:
     kept: dict[bytes, float] = {}
     for cost, raw in sorted(ranked):
         kept.setdefault(raw, cost)
-    return [(cost, raw) for raw, cost in list(kept.items())[:KEPT]]
+    return [(cost, raw) for raw, cost in list(kept.items())[: RANKS[-1] + 1]]
 
 
 def lockstep(

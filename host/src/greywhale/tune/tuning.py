@@ -48,11 +48,13 @@ DEFAULT_STRATEGY = "both"
 METHODS = ("default", "paper", *OPTIMISERS)
 DEFAULT_BUDGET = 3000
 # Of the budget, what the second, narrow search gets; its box is that share of the whole around the best so far.
-NARROW_SHARE = 0.4
-NARROW_BOX = 0.08
+NARROW_SHARE = 0.3
+NARROW_BOX = 0.03
 SHAPE_METHOD, CORNER_METHOD = "cma-es", "cma-es"  # of the default method's two searches
 # Plants that the search tracks on, the estimate among them; the last judgement uses all.
 SEARCH_PLANTS = 4
+# The last judgement prices unrest so much higher that a joint which does not rest is taken for want of any other only.
+DEARER = 3.0
 NOISE_V = 0.0024  # of a potentiometer of which the model says none: half a step of the board's converter
 
 
@@ -208,7 +210,7 @@ class _Tuning:
     def judged(self, controllers: Controllers) -> Floats:
         """The same cost on all plants in the bench's arithmetic."""
         unrest = self.judging_margins.unrest(controllers, single=True)
-        costs: Floats = self.judge.costs(controllers, single=True) + penalty(unrest)
+        costs: Floats = self.judge.costs(controllers, single=True) + DEARER * penalty(unrest)
         return costs
 
     def _judged_outcome(self, floors: bool) -> Outcome:
