@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.signal import savgol_filter
 
 from greywhale.log import Log
-from greywhale.measure.runs import Run, gap_free_runs
+from greywhale.measure.runs import Run
 
 Floats = NDArray[np.float64]
 JOINTS = 4
@@ -21,10 +21,14 @@ STEP_S = 1e-3
 FINE_STEP_S = 0.25e-3
 # Windows are compared with the log at this spacing, s; neighbouring readings differ in noise only.
 COMPARED_S = 5e-3
+# That step is kept in so many percent of the spacings between rows.
+MOST_SPACINGS = 99.0
 # Firmware: from a new sample to its voltage, and the mean age of a tick's four conversions (s).
 ACTUATION_S = 0.3e-3
 CONVERSION_S = 0.5e-3
 TICK_S = 1e-3
+# Rows further apart than this (s) end a stretch, or than one and a half periods of a slower log.
+LONGEST_GAP_S = 0.02
 # Of every four blocks of this length (s) the last is held out: shorter than a motion, so that each is in both parts.
 BLOCK_S = 0.5
 BLOCKS = 4
@@ -71,16 +75,16 @@ def prepare(log: Log, filter_shift: int | None) -> Prepared:
     """Find the usable stretches; velocities by local quadratic fits, noise from the most quiet moments."""
     following = log.state == "following"
     wanted = following if following.any() else np.ones(len(log.time), dtype=bool)
-    runs = tuple(run for run in gap_free_runs(log.time, wanted) if run.stop - run.start >= 8)
     period = float(np.median(np.diff(log.time)))
+    runs = tuple(_runs(log.time, wanted, period))
     size = max(5, 2 * round(SMOOTHING_S / period / 2) + 1)
     velocity, acceleration, smooth = (np.zeros_like(log.follower) for _ in range(3))
     for run in runs:
-        piece = log.follower[run.slice]
-        if len(piece) >= size:
-            smooth[run.slice] = savgol_filter(piece, size, 2, axis=0)
-            velocity[run.slice] = savgol_filter(piece, size, 2, deriv=1, delta=run.period, axis=0)
-            acceleration[run.slice] = savgol_filter(piece, size, 2, deriv=2, delta=run.period, axis=0)
+        time = log.time[run.slice]
+        even = np.linspace(time[0], time[-1], len(time))
+        piece = _at(even, time, log.follower[run.slice])
+        for found, order in ((smooth, 0), (velocity, 1), (acceleration, 2)):
+            found[run.slice] = _at(time, even, savgol_filter(piece, size, 2, deriv=order, delta=run.period, axis=0))
     used = np.zeros(len(log.time), dtype=bool)
     for run in runs:
         used[run.slice] = True
@@ -88,6 +92,22 @@ def prepare(log: Log, filter_shift: int | None) -> Prepared:
     noise = _noise(log.follower - smooth, used, size)
     moving = np.array([bool(used.any() and np.ptp(log.follower[used, joint]) > 0.1) for joint in range(JOINTS)])
     return Prepared(log, runs, period, delay, velocity, acceleration, noise, moving)
+
+
+def _runs(time: Floats, wanted: NDArray[np.bool_], period: float) -> list[Run]:
+    """Stretches long enough for a window; a few rows may be missing or late, as voltages change little meanwhile."""
+    joined = (np.diff(time) <= max(1.5 * period, LONGEST_GAP_S)) & wanted[1:] & wanted[:-1]
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], joined, [False])).astype(np.int8)))
+    least = max(8, round(WINDOW_S / period) + 2)
+    return [
+        Run(int(start), int(stop) + 1, float(time[stop] - time[start]) / int(stop - start))
+        for start, stop in zip(edges[::2], edges[1::2], strict=True)
+        if stop + 1 - start >= least
+    ]
+
+
+def _at(times: Floats, known: Floats, angles: Floats) -> Floats:
+    return np.column_stack([np.interp(times, known, angles[:, joint]) for joint in range(JOINTS)])
 
 
 def _noise(rest: Floats, used: NDArray[np.bool_], size: int) -> Floats:
@@ -116,8 +136,11 @@ def windows_of(
     log = prepared.log
     kept = np.arange(0, rows, every)
     at = first[:, None] + kept[None, :]
-    substeps = max(1, int(np.ceil(prepared.period / longest_step - 1e-9)))
     spacing = np.diff(log.time, append=log.time[-1] + prepared.period)
+    # Rounded, so that windows of even rows can share a processor's vector; between stretches nothing is simulated.
+    longest = max(1.5 * prepared.period, LONGEST_GAP_S)
+    spacing = np.round(np.minimum(spacing, longest), 9).astype(np.float64)
+    substeps = max(1, int(np.ceil(np.percentile(spacing, MOST_SPACINGS) / longest_step - 1e-6)))
     return Windows(
         first=first,
         rows=rows,
@@ -149,6 +172,11 @@ def _volts(prepared: Prepared, substeps: int, spacing: Floats) -> Floats:
     moments = (log.time[:, None] + share[None, :] * spacing[:, None]).ravel() - prepared.delay - ACTUATION_S
     period_ms = log.origin.period_ms or 0
     if prepared.period > 1.5e-3 * max(period_ms, 1):
-        return np.column_stack([np.interp(moments, log.time, log.voltage[:, joint]) for joint in range(JOINTS)])
+        return _at(moments, log.time, log.voltage)
     held = np.clip(np.searchsorted(log.time, moments + 1e-9, side="right") - 1, 0, len(log.time) - 1)
-    return np.ascontiguousarray(log.voltage[held])
+    volts = log.voltage[held]
+    # Where rows are missing the line between their neighbours is the better guess.
+    missing = np.repeat(spacing > 1.5 * prepared.period, substeps)
+    if missing.any():
+        volts[missing] = _at(moments[missing], log.time, log.voltage)
+    return np.ascontiguousarray(volts)

@@ -71,9 +71,9 @@ def _subjects(
     crcs = {log.origin.param_crc for log in logs}
     for log in (*logs, *validate):
         table = controllers.table_of(log, tables)
-        shift = None
-        if table is not None and log.origin.firmware is not None:
-            shift = table.values[schema.PARAMETER_BY_NAME["filter_shift"].index]
+        shift = None  # of another tool's readings nobody knows how old they are
+        if log.origin.firmware is not None:
+            shift = (table or controllers.DEFAULTS).values[schema.PARAMETER_BY_NAME["filter_shift"].index]
         prepared = prepare(log, shift)
         doubts += checks.check(prepared, arm, table)
         if any(log is one for one in logs):

@@ -47,6 +47,7 @@ WORTH_CLOSED = 0.2
 LOOP_DOUBT = 1e-2
 GLOBAL_EVALUATIONS = 500
 GLOBAL_WINDOWS = 12
+SOME_WINDOWS = 20
 GLOBAL_SPREAD = 2.5  # the box of the global search: factors e^(+-2.5) around the user's arm
 STARTS = 2  # of the global search's points that least squares starts from, beside the user's arm
 WINDOW_STEPS = 20
@@ -222,8 +223,8 @@ class Search:
         return float(np.mean(np.sum(errors, axis=1)))
 
     def _some_windows(self) -> WindowResidual:
-        """Every third of the fitted part: enough to come near, for a third of the time."""
-        return WindowResidual(self.logs, self.arm, self.joints, False, 3)
+        """Of the fitted part as many as it takes to come near, in less time."""
+        return WindowResidual(self.logs, self.arm, self.joints, False, max(1, self._fitted.windows // SOME_WINDOWS))
 
     def _loops_of(self, candidate: Candidate) -> Sequence[Loop]:
         zero = candidate.zero

@@ -1,0 +1,113 @@
+"""Logs as they come: rows missing, late or few, long rest, full voltage, and people who press Ctrl-C."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from greywhale.arm import ArmParameters, load_arm
+from greywhale.arm.parameters import Drive
+from greywhale.errors import UserError
+from greywhale.identify import Outcome, Table, identify
+from greywhale.identify.checks import check
+from greywhale.identify.data import LONGEST_GAP_S, prepare, windows_of
+from greywhale.link import schema
+from greywhale.log import Log
+from greywhale.trajectory import human_reaches, multi_steps
+from tools.bench.recordings import Recorded, record
+
+WEAK_V = 5.0
+
+
+def rows(log: Log, kept: np.ndarray | slice) -> Log:
+    columns = {name: getattr(log, name)[kept] for name in ("time", "leader", "follower", "voltage", "state")}
+    return replace(log, **columns)
+
+
+def without(log: Log, share: float) -> Log:
+    return rows(log, np.random.default_rng(1).random(len(log.time)) >= share)
+
+
+def only(log: Log, joint: int) -> Log:
+    """As from a one-joint rig: nothing of the others."""
+    mask = np.arange(4) == joint
+    return replace(log, leader=log.leader * mask, follower=log.follower * mask, voltage=log.voltage * mask)
+
+
+def test_rows_that_are_few_uneven_and_partly_missing_will_do(
+    recorded: Recorded, white_box: ArmParameters, tables: list[Table]
+) -> None:
+    """Every third row or so, one to five ticks apart, a twentieth of them lost."""
+    chosen = np.cumsum(np.random.default_rng(3).integers(1, 6, len(recorded.fit.time)))
+    log = without(rows(recorded.fit, chosen[chosen < len(recorded.fit.time)]), 0.05)
+    outcome = identify([log], white_box, validate=[recorded.second], tables=tables)
+    assert outcome.verdicts[1].improvement > 0.9
+
+
+def test_a_log_of_steps_on_a_weak_supply_full_voltage_or_rest_will_do(
+    hidden: ArmParameters, white_box: ArmParameters, tables: list[Table], tmp_path: Path
+) -> None:
+    values = list(tables[0].values)
+    values[schema.PARAMETER_BY_NAME["supply_mv"].index] = round(1000 * WEAK_V)
+    table = Table("weak", tuple(values))
+    arm, user = (one.model_copy(update={"drive": Drive(supply=WEAK_V)}) for one in (hidden, white_box))
+    log = record(arm, multi_steps(), tmp_path / "steps.csv", table.values)
+    second = record(arm, human_reaches(7, 8.0), tmp_path / "second.csv", table.values, 3)
+    moving = np.abs(prepare(log, 1).velocity) > 0.2
+    assert np.mean(np.abs(log.voltage[moving]) > 0.99 * WEAK_V) > 0.4
+    assert np.mean(moving.any(axis=1)) < 0.5
+    outcome = identify([log], user, validate=[second], tables=[table])
+    assert outcome.verdicts[1].improvement > 0.9
+
+
+def test_lost_rows_neither_end_a_stretch_nor_look_like_another_period(
+    recorded: Recorded, white_box: ArmParameters
+) -> None:
+    whole, log = prepare(recorded.fit, 1), prepare(without(recorded.fit, 0.1), 1)
+    assert len(log.runs) == len(whole.runs) == 1
+    np.testing.assert_allclose(log.noise, whole.noise, rtol=0.15)
+    inside = slice(100, -100)
+    truth = np.interp(log.log.time, whole.log.time, whole.velocity[:, 1])
+    assert np.std((log.velocity[:, 1] - truth)[inside]) < 0.1 * np.std(truth)
+    ten = rows(recorded.fit, slice(0, None, 1))
+    held = np.repeat(ten.voltage[::10], 10, axis=0)[: len(ten.time)]
+    slow = replace(ten, voltage=held, origin=replace(ten.origin, period_ms=10, param_crc=None))
+    assert check(prepare(without(slow, 0.02), 1), white_box, None) == []
+    with pytest.raises(UserError, match=r"changes every 10 ms, but the control period is stated as 7 ms"):
+        check(prepare(replace(slow, origin=replace(slow.origin, period_ms=7)), 1), white_box, None)
+
+
+def test_a_long_gap_ends_a_stretch_and_no_window_crosses_it(recorded: Recorded) -> None:
+    gap = round(2 * LONGEST_GAP_S * 1000)
+    kept = np.ones(len(recorded.fit.time), dtype=bool)
+    kept[4000 : 4000 + gap] = False
+    prepared = prepare(rows(recorded.fit, kept), 1)
+    assert [run.stop for run in prepared.runs] == [4000, len(prepared.log.time)]
+    windows = windows_of(prepared)
+    assert not any(first < 4000 < first + windows.rows for first in windows.first)
+    shredded = np.arange(len(recorded.fit.time)) % 400 > gap
+    with pytest.raises(UserError, match=r"only 0\.0 s of it can be used"):
+        check(prepare(rows(recorded.fit, shredded), 1), load_arm("white_box"), None)
+
+
+@pytest.mark.parametrize(
+    "moment", ["global search", "choosing the model's order", "comparing with", "fitting the chosen"]
+)
+def test_ctrl_c_at_any_moment_keeps_the_best_model_so_far(
+    recorded: Recorded, white_box: ArmParameters, tables: list[Table], tmp_path: Path, moment: str
+) -> None:
+    def interrupt(what: str, fraction: float) -> None:
+        if what.startswith(moment):
+            raise KeyboardInterrupt
+
+    outcome: Outcome = identify([only(rows(recorded.fit, slice(5000)), 1)], white_box, tables=tables, report=interrupt)
+    assert not outcome.complete
+    outcome.save(tmp_path / "model.toml")
+    facts = load_arm(tmp_path / "model.toml").identification
+    assert facts is not None
+    assert facts["status"].startswith("unfinished")
+    # Motors alone are worse than nothing without their friction; from then on there is a model worth keeping.
+    assert (outcome.verdicts[0].improvement > 0.8) is (moment != "global search")

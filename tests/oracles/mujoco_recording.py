@@ -1,0 +1,93 @@
+"""An arm that MuJoCo simulates, in closed loop with the firmware's own controller, recorded as a log.
+
+Friction is MuJoCo's frictionloss (a soft constraint), the rotor its armature, integration its own; sampling, filter and
+noise of the potentiometers are written out here. Nothing of greywhale's plant takes part.
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import mujoco
+import numpy as np
+
+from greywhale.arm import ArmParameters
+from greywhale.arm.export import mjcf
+from greywhale.fuzzy.settings import JointSettings
+from greywhale.link import schema
+from greywhale.log import Log, LogWriter, read_log
+from greywhale.log.layout import Origin
+from greywhale.simulate import CONTROLLER_COLUMNS
+from greywhale.trajectory import Trajectory
+
+JOINTS = 4
+STEP_S = 1e-4
+STEPS = 10  # of MuJoCo in a tick of 1 ms
+CONVERSIONS = (1, 3, 5, 7)  # steps into a tick at which a potentiometer is converted
+NEW_DUTY = 3  # steps into a tick from which its voltage drives
+TRACK = math.radians(300.0)
+LSB = 1.0 / 4096.0
+SETTLING_S = 1.5
+
+
+class Board:
+    """What the firmware does with four conversions a tick: filter, scale, control."""
+
+    def __init__(self, values: tuple[int, ...]) -> None:
+        index = schema.PARAMETER_BY_NAME
+        self._period = values[index["period_ms"].index]
+        self._supply = values[index["supply_mv"].index]
+        self._share = 1.0 / (1 << values[index["filter_shift"].index])
+        self._laws = [
+            JointSettings(*(values[index[f"joint{joint}.{key}"].index] for key in CONTROLLER_COLUMNS)).controller(
+                self._period
+            )
+            for joint in range(JOINTS)
+        ]
+        self._filtered: np.ndarray | None = None
+        self.reading = np.zeros(JOINTS, dtype=np.int16)
+        self.volts = np.zeros(JOINTS)
+
+    def tick(self, leader: np.ndarray, conversions: np.ndarray) -> None:
+        """`leader` in 1/4096 rad, `conversions` (4, joints) in counts."""
+        mean = conversions.mean(axis=0)
+        self._filtered = mean if self._filtered is None else self._filtered + (mean - self._filtered) * self._share
+        self.reading = np.round((self._filtered + 0.5 - 512.0) / 1024.0 * TRACK / LSB).astype(np.int16)
+        limit = np.array([self._supply], dtype=np.uint16)
+        for joint, law in enumerate(self._laws):
+            out = law.run(leader[joint : joint + 1], self.reading[joint : joint + 1], limit)
+            self.volts[joint] = out["volts_mv"][0] / 1000.0
+
+
+def record(
+    arm: ArmParameters, motion: Trajectory, path: Path, values: tuple[int, ...], noise_v: float, seed: int
+) -> Log:
+    """Play `motion` (rad) on MuJoCo's arm and write the log `path` from 1.5 s after the motors went on."""
+    model = mujoco.MjModel.from_xml_string(mjcf(arm, motors=True))
+    model.opt.timestep = STEP_S
+    model.opt.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    data = mujoco.MjData(model)
+    random = np.random.default_rng(seed)
+    before = round(SETTLING_S * 1000)
+    ticks = int(motion.time_s[-1] * 1000)
+    leader = np.column_stack([np.interp(np.arange(ticks) / 1000, motion.time_s, angles) for angles in motion.angles.T])
+    leader = np.round(np.vstack([np.tile(leader[:1], (before, 1)), leader]) / LSB).astype(np.int16)
+    data.qpos[:] = leader[0] * LSB
+    board = Board(values)
+    noise = noise_v / 5.0 * 1024.0
+    counts = np.zeros((len(CONVERSIONS), JOINTS))
+    origin = Origin("0.1.0", "mega2560", schema.param_crc(values), 1, 1)
+    with LogWriter(path, origin) as log:
+        for tick, target in enumerate(leader):
+            for step in range(STEPS):
+                if step == NEW_DUTY:
+                    data.ctrl[:] = board.volts
+                if step in CONVERSIONS:
+                    ideal = (data.qpos / TRACK + 0.5) * 1024.0
+                    counts[CONVERSIONS.index(step)] = np.floor(ideal + noise * random.standard_normal(JOINTS))
+                mujoco.mj_step(model, data)
+            board.tick(target, counts)
+            if tick >= before:
+                log.append((tick - before) / 1000, target * LSB, board.reading * LSB, board.volts, "following")
+    return read_log(path)
