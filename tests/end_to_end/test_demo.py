@@ -21,20 +21,11 @@ def test_the_demo_tells_its_story(tmp_path: Path) -> None:
     out = tmp_path / "new" / "demo"
     options = DemoOptions(out, duration_s=8.0, practice_s=12.0, budget=150)
     result = run(options, lambda what, fraction, note="": told.append(what))
-    recordings = ["practice", "check", "check_changed"]
+    recordings = ["before", "after", "practice", "check", "check_changed"]
+    leaders = ["leader", "rest_leader", "practice_leader", "check_leader", "check_changed_leader"]
+    pictures = ["following.png", "sets.png", "convergence.png"]
     assert sorted(path.name for path in out.iterdir()) == sorted(
-        [
-            *(
-                "leader.csv",
-                "before.csv",
-                "after.csv",
-                "model.toml",
-                "controller.toml",
-                "following.png",
-                "summary.json",
-            ),
-            *(f"{name}{kind}.csv" for name in recordings for kind in ("", "_leader")),
-        ]
+        ["model.toml", "controller.toml", "summary.json", *pictures, *(f"{name}.csv" for name in recordings + leaders)]
     )
     assert json.loads((out / "summary.json").read_text()) == result.as_dict()
     for picture in result.pictures:
