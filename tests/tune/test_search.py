@@ -153,13 +153,24 @@ def test_the_judgement_parts_neighbours_that_quarrel() -> None:
 
 
 def test_no_joint_pays_for_the_others() -> None:
-    """Where every new neighbour makes joint 0 worse than it was, nothing changes that would."""
+    """Where every new neighbour makes joint 0 worse than it was, only joint 0 itself changes."""
     feuds = [((0, 0), (other, mark)) for other in (1, 2, 3) for mark in (1, 2)]
     worse = [((0, own), (other, mark)) for own in (1, 2) for other in (1, 2, 3) for mark in (1, 2)]
     rows = np.stack([marked(1, 1, 1, 1), marked(2, 2, 2, 2)])
     after, before, costs = choose(marked(0, 0, 0, 0), rows, Table(*feuds, *worse))
     assert (costs <= before).all()
-    assert after[:, 11].tolist() == [0, 0, 0, 0]
+    assert after[:, 11].tolist() == [2, 0, 0, 0]
+
+
+def test_one_bad_joint_does_not_spoil_the_others_tuning() -> None:
+    """Whatever joint 1 tries makes joint 3 swing, which then costs joint 3 too: 1 stays, the others change."""
+    feuds = [((3, its), (1, mark)) for mark in (1, 2) for its in (0, 1, 2)] + [
+        ((1, mark), (1, mark)) for mark in (1, 2)
+    ]
+    rows = np.stack([marked(2, 2, 2, 2), marked(1, 1, 1, 1)])
+    after, before, costs = choose(marked(0, 0, 0, 0), rows, Table(*feuds))
+    assert (costs <= before).all()
+    assert after[:, 11].tolist() == [2, 0, 2, 2]
 
 
 def test_a_found_of_nothing_costs_infinitely_much() -> None:

@@ -14,16 +14,22 @@ Judge = Callable[[Controllers], Floats]
 # A joint whose cost in company is this much above its best elsewhere is exchanged for its other candidates.
 WORSE = 1.03
 ROUNDS = 3
-ALTERNATIVES = 4
+# If less than this share of what every joint could gain alone is gained together, another way is tried.
+ENOUGH = 0.5
 
 
 def choose(start: Controllers, contenders: Controllers, judge: Judge) -> tuple[Controllers, Floats, Floats]:
     """The best combination (4, 12) with the costs of `start` and of itself (4,); no joint costs more than in `start`.
 
-    `contenders` (k, 4, 12) hold the k-th best of every joint. Each row is judged as it stands, then the best of every
-    joint together; where a joint turns out worse among its new neighbours, its other candidates are tried there.
+    `contenders` (k, 4, 12) hold the k-th best of every joint. Each row is judged as it stands, every joint's best also
+    among the neighbours of `start`, and then the best of every joint together; where a joint turns out worse among its
+    new neighbours, its other candidates are tried there, also the one that it had in `start`. If little comes of that,
+    joint after joint is exchanged in `start` instead.
     """
-    rows = np.concatenate([start[None], contenders])
+    alone = np.repeat(start[None], len(start), axis=0)
+    for joint in range(len(start)):
+        alone[joint, joint] = contenders[0, joint]
+    rows = np.concatenate([start[None], contenders, alone])
     costs = judge(rows)
     before = costs[0]
     mixed = _best_of_each(rows, costs)
@@ -33,13 +39,32 @@ def choose(start: Controllers, contenders: Controllers, judge: Judge) -> tuple[C
         disappointing = np.flatnonzero(now > WORSE * costs.min(axis=0))
         if not disappointing.size:
             break
-        tried = _exchanged(mixed, contenders, disappointing)
+        tried = _exchanged(mixed, np.concatenate([contenders, start[None]]), disappointing)
         outcome = judge(tried)
         rows, costs = np.concatenate([rows, tried]), np.concatenate([costs, outcome])
         mixed = tried[int(np.argmin(outcome.sum(axis=1)))]
     fair = (costs <= before).all(axis=1)
     best = int(np.argmin(np.where(fair, costs.sum(axis=1), np.inf)))
-    return rows[best].copy(), before, costs[best]
+    chosen, cost = rows[best].copy(), costs[best]
+    hoped_for = before.sum() - costs.min(axis=0).sum()
+    if before.sum() - cost.sum() < ENOUGH * hoped_for:
+        built, its = _built_up(start, before, contenders, judge)
+        if its.sum() < cost.sum():
+            chosen, cost = built, its
+    return chosen, before, cost
+
+
+def _built_up(start: Controllers, before: Floats, contenders: Controllers, judge: Judge) -> tuple[Controllers, Floats]:
+    """`start` with one joint after the other exchanged for what lowers the sum most and raises no joint's cost."""
+    chosen, cost = start.copy(), before
+    for joint in range(len(start)):
+        tried = _exchanged(chosen, contenders, np.array([joint]))
+        costs = judge(tried)
+        sums = np.where((costs <= before).all(axis=1), costs.sum(axis=1), np.inf)
+        best = int(np.argmin(sums))
+        if sums[best] < cost.sum():
+            chosen, cost = tried[best], costs[best]
+    return chosen, cost
 
 
 def _best_of_each(rows: Controllers, costs: Floats) -> Controllers:
@@ -49,11 +74,11 @@ def _best_of_each(rows: Controllers, costs: Floats) -> Controllers:
     return best
 
 
-def _exchanged(mixed: Controllers, contenders: Controllers, joints: npt.NDArray[np.intp]) -> Controllers:
+def _exchanged(mixed: Controllers, others: Controllers, joints: npt.NDArray[np.intp]) -> Controllers:
     """Copies of `mixed` with one of these joints replaced by each of its other candidates."""
     tried = []
     for joint in joints:
-        for other in contenders[:ALTERNATIVES, joint]:
+        for other in np.unique(others[:, joint], axis=0):
             if not np.array_equal(other, mixed[joint]):
                 row = mixed.copy()
                 row[joint] = other

@@ -68,7 +68,7 @@ class Found:
 
 
 # Which of a joint's candidates, the best first, go into the last judgement.
-RANKS = (0, 1, 4, 12, 30)
+RANKS = (0, 2, 8, 24)
 KEPT = len(RANKS)
 
 

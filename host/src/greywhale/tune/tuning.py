@@ -143,7 +143,7 @@ class _Tuning:
         self.judge = Objective(motions, model.plants, self.threads)
         self.margins = self._margins(_spanning(model.plants), searching=True)
         # Longer and with other noise, since a search learns its own by heart.
-        self.judging_margins = self._margins(_spanning(model.plants), searching=True, rest_s=REST_LONG_S, noise=1)
+        self.judging_margins = self._margins(_spanning(model.plants), rest_s=REST_LONG_S, noise=1)
         # With bounds, what is downloaded keeps within them, whatever ran before.
         self.start = self.space.controllers(self.space.points(self.before[None]))[0] if self.bounds else self.before
         self.found = Found.nothing(self.start)
