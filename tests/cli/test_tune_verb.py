@@ -215,7 +215,10 @@ def test_pictures_are_drawn_on_request(no_floors: None, model: Path, capsys: Cap
                 "it was tuned for supply_mv = 12000, but this board has 15000.",
             ],
         ),
-        ({"margins_hold": False}, ["its margins do not hold: a joint may swing at rest (its file says which)."]),
+        (
+            {"margins_hold": False},
+            ["not all margins hold: a joint may swing if the arm is not quite as its model (the file says which)."],
+        ),
     ],
 )
 def test_an_upload_warns_where_board_and_tuning_differ(

@@ -52,7 +52,11 @@ def test_what_is_unfinished_or_not_steady_says_so_on_top(outcome: Outcome, tmp_p
     swinging = replace(outcome.margins[0], reversals=9, plants_failing=1)
     save(replace(outcome, complete=False, margins=(swinging, *outcome.margins[1:])), tmp_path / "controller.toml")
     text = (tmp_path / "controller.toml").read_text(encoding="utf-8")
-    assert text.index("# UNFINISHED: interrupted") < text.index("# NOT STEADY: joint 1, at rest.") < text.index("[[jo")
+    assert (
+        text.index("# UNFINISHED: interrupted")
+        < text.index("# NOT STEADY: joint 1 (shoulder pitch), at rest.")
+        < text.index("[[jo")
+    )
     tuning = controller.load(tmp_path / "controller.toml").tuning
     assert tuning is not None
     assert (tuning["status"], tuning["margins_hold"]) == ("unfinished: interrupted; the best so far", False)

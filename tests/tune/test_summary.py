@@ -42,6 +42,11 @@ def test_what_does_not_come_to_rest_is_named(outcome: Outcome) -> None:
     text = summary(replace(outcome, margins=(swinging, *outcome.margins[1:])))
     assert "\nNOT STEADY: joint 1 (shoulder pitch), at rest.\n" in text
     assert "Margins hold" not in text
+    assert "Margins that" not in text
+    delayed = replace(swinging, scenario="one period more delay")
+    text = summary(replace(outcome, margins=(*outcome.margins, delayed)))
+    assert "\nMargins that do not hold: joint 1 (shoulder pitch), one period more delay.\n" in text
+    assert "NOT STEADY" not in text
 
 
 def test_an_unfinished_one_was_not_judged(outcome: Outcome) -> None:

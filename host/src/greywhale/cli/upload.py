@@ -43,7 +43,9 @@ def _warnings(tuning: Mapping[str, Any], device: Device) -> list[str]:
     if str(tuning.get("status", "complete")) != "complete":
         warnings.append("the tuning of this controller is not finished.")
     if tuning.get("margins_hold") is False:
-        warnings.append("its margins do not hold: a joint may swing at rest (its file says which).")
+        warnings.append(
+            "not all margins hold: a joint may swing if the arm is not quite as its model (the file says which)."
+        )
     for key, name, scale in (("period_ms", "period_ms", 1.0), ("supply_v", "supply_mv", 1e-3)):
         tuned = tuning.get(key)
         if not isinstance(tuned, int | float):

@@ -15,6 +15,7 @@ from greywhale.link import schema
 from greywhale.simulate import CONTROLLER_COLUMNS
 from greywhale.tune.margins import Margin
 from greywhale.tune.outcome import HeldOut, Outcome
+from greywhale.tune.summary import failing_margins
 
 DIGITS = 4  # significant ones of what is expected
 
@@ -69,10 +70,7 @@ def _header(outcome: Outcome) -> list[str]:
     if not outcome.complete:
         lines.append("UNFINISHED: interrupted; these are the best so far. The same command with --resume goes on.")
     lines += [f"Expected on {one.name}, all joints: {_change(one)}." for one in outcome.held_out]
-    failing = [margin for margin in outcome.margins if not margin.holds]
-    if failing:
-        lines.append("NOT STEADY: " + "; ".join(f"joint {one.joint}, {one.scenario}" for one in failing) + ".")
-    return [*lines, *(f"Doubt: {doubt}" for doubt in outcome.model.doubts)]
+    return [*lines, *failing_margins(outcome), *(f"Doubt: {doubt}" for doubt in outcome.model.doubts)]
 
 
 def _note(outcome: Outcome, joint: int) -> str:

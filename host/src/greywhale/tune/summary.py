@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from greywhale.arm.parameters import JOINT_NAMES
+from greywhale.tune.margins import GAINS, Margin
 from greywhale.tune.outcome import HeldOut, Outcome
 
 # A joint's error counts as worse than before from this ratio on; below it is noise.
 WORSE = 1.02
+(AS_IT_IS,) = (name for name, gain in GAINS.items() if gain == 1.0)
 
 
 def summary(outcome: Outcome) -> str:
@@ -21,7 +23,7 @@ def summary(outcome: Outcome) -> str:
     for one in outcome.held_out:
         lines += ["", *_motion(one)]
     if outcome.margins:
-        lines += ["", _margins(outcome)]
+        lines += ["", *_margins(outcome)]
     for title, sentences in (("Notes", outcome.notes), ("Doubts about the model", outcome.model.doubts)):
         if sentences:
             lines += ["", f"{title}:", *(f"- {sentence}" for sentence in sentences)]
@@ -57,14 +59,25 @@ def _multiple(one: HeldOut, joint: int) -> str:
     return "-" if multiple is None else f"{multiple:.2f}"
 
 
-def _margins(outcome: Outcome) -> str:
-    """One line; how far a joint swings stands in the notes."""
-    failing = [
-        f"joint {one.joint} ({JOINT_NAMES[one.joint]}), {one.scenario}" for one in outcome.margins if not one.holds
-    ]
-    if failing:
-        return "NOT STEADY: " + "; ".join(failing) + "."
+def _margins(outcome: Outcome) -> list[str]:
+    """Whether all hold, or which do not; how far a joint swings stands in the notes."""
+    if failing := failing_margins(outcome):
+        return failing
     plants = outcome.margins[0].plants
     arms = f"on all {plants} plants" if plants > 1 else "on the model itself"
     scenarios = ", ".join(dict.fromkeys(margin.scenario for margin in outcome.margins))
-    return f"Margins hold {arms}, no joint swings or chatters: {scenarios}."
+    return [f"Margins hold {arms}, no joint swings or chatters: {scenarios}."]
+
+
+def failing_margins(outcome: Outcome) -> list[str]:
+    """A sentence for joints that are not steady, one for those that would not be on a slightly different arm."""
+    failing = [margin for margin in outcome.margins if not margin.holds]
+    groups = {
+        "NOT STEADY": [one for one in failing if one.scenario == AS_IT_IS],
+        "Margins that do not hold": [one for one in failing if one.scenario != AS_IT_IS],
+    }
+    return [f"{title}: {'; '.join(_named(one) for one in some)}." for title, some in groups.items() if some]
+
+
+def _named(margin: Margin) -> str:
+    return f"joint {margin.joint} ({JOINT_NAMES[margin.joint]}), {margin.scenario}"
