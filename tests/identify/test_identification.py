@@ -44,7 +44,7 @@ def test_order_is_chosen_by_held_out_data(outcome: Outcome) -> None:
     """Coulomb friction must be seen to be worth it: this arm has a lot."""
     errors = dict(outcome.orders)
     assert errors["Coulomb friction"] < 0.5 * errors["motors"]
-    assert errors[outcome.order] <= min(errors.values()) / 0.98
+    assert errors[outcome.order] <= min(errors.values()) + 0.01
 
 
 def test_model_file_is_an_arm_file(outcome: Outcome, tables: list[Table], tmp_path: Path) -> None:

@@ -131,6 +131,7 @@ def _default(
         warnings=(*doubts, *judge.warnings_of(verdicts)),
         subjects=tuple(subjects),
         simulations=search.simulations,
+        simulated=search.simulated,
         complete=search.complete,
         curve=(),
     )
@@ -196,6 +197,7 @@ def _paper(
         warnings=(*doubts, *judge.warnings_of(verdicts)),
         subjects=tuple(subjects),
         simulations=search.simulations,
+        simulated=search.simulations * sum(loop.seconds for loop in loops),
         complete=search.complete,
         curve=tuple(search.curve),
     )

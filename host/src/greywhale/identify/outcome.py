@@ -53,6 +53,7 @@ class Outcome:
     warnings: tuple[str, ...]
     subjects: tuple[Subject, ...] = field(repr=False)
     simulations: int
+    simulated: float  # s, of arms, in windows and closed loops together
     complete: bool
     curve: tuple[float, ...]
 
@@ -74,6 +75,7 @@ class Outcome:
             "seed": self.seed,
             "white_box": self.white_box.name,
             "simulations": self.simulations,
+            "simulated_s": self.simulated,
             "order": self.order,
         }
         if self.condition is not None:

@@ -23,7 +23,7 @@ from greywhale.arm import ArmParameters
 from greywhale.identify.closed_loop import Loop, LoopResidual
 from greywhale.identify.data import FINE_STEP_S, Prepared
 from greywhale.identify.fit import Pattern, least_squares_fit
-from greywhale.identify.space import JOINTS, MOTOR, Space
+from greywhale.identify.space import COUPLED, MOTOR, Space
 from greywhale.identify.steps import WindowFit
 from greywhale.identify.windows import WindowResidual
 from greywhale.optimise import DEFAULT, create
@@ -39,7 +39,7 @@ ORDERS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("backlash", ("gap", "drag", "teeth")),
     ("zero angles", ("offset",)),
 )
-# An order with more quantities must predict the held-out data better by this share.
+# An order with more quantities must predict the held-out data better by this share of 1 + squares over noise.
 WORTH = 0.01
 # So must the closed loop, which is rough: chance alone moves its error by a tenth.
 WORTH_CLOSED = 0.2
@@ -55,6 +55,8 @@ LOOP_STEPS = 10
 # From which side of its gap each motor starts is chosen anew so often at most, each time for some steps of the fit.
 SETTLINGS = 4
 SETTLED_STEPS = 8
+# Searched numbers that differ by so much are another optimum, worth a fit of its own.
+ELSEWHERE = 0.3
 # Readings come in steps, so finite differences in the closed loop are taken wider than in the windows.
 LOOP_STEP_SCALE = 5.0
 
@@ -113,27 +115,44 @@ class Search:
     def run(self) -> None:
         self._consider(self._motors())
         self._consider(self._with_friction())
-        for number in range(2, len(ORDERS)):
-            self.report("choosing the model's order", (number - 2) / (len(ORDERS) - 2))
-            assert self.best is not None
-            if ORDERS[number][0] != "Stribeck friction" or self.best.order != "motors":
-                self._consider(self._settled(self._fitted, self._with(self.best, number)))
+        # What was of no use before backlash was known may be of use with it.
+        for step, number in enumerate((2, 3, 2, 4)):
+            self.report("choosing the model's order", step / 4)
+            self._consider_order(number)
         if self.loops:
             self._consider_closed()
         self._whole()
 
+    def _consider_order(self, number: int) -> None:
+        best = self.best
+        assert best is not None
+        order, added = ORDERS[number]
+        kinds = {parameter.kind for parameter in best.space.parameters}
+        # Without Coulomb friction there is none at rest; and what is there need not be tried.
+        if added[0] in kinds or (order == "Stribeck friction" and "coulomb" not in kinds):
+            return
+        candidate = self._with(best, number)
+        if order == "Stribeck friction" and "gap" in kinds:
+            candidate = replace(candidate, order=f"{order} with {best.order}")
+        elif number == 2 and any(one.order == order for one in self.tried):
+            return
+        self._consider(self._settled(self._fitted, candidate))
+
     def _consider(self, candidate: Candidate) -> None:
-        measured = replace(candidate, held_out=self._error(candidate))
+        error = self._error(candidate)
+        measured = replace(candidate, held_out=error)
         self.tried.append(measured)
         best = self.best
-        if best is None or best.held_out is None or self._error(candidate) < (1.0 - WORTH) * best.held_out:
+        if best is None or best.held_out is None or error < best.held_out - WORTH:
             self.best = measured
 
     def _error(self, candidate: Candidate) -> float:
-        """Mean squared difference on the held-out windows, rad²; the geometric mean, so that every joint counts."""
+        """Misfit of the held-out windows: the mean over windows and joints of log(1 + squares over noise).
+
+        Log, as else the one motion that the fitted part lacks would outweigh all that it has.
+        """
         self._held.settle(candidate.plant, candidate.zero)
-        per_joint = self._held.mse(candidate.plant, candidate.zero)[list(self.joints)]
-        return float(np.exp(np.mean(np.log(per_joint + 1e-12))))
+        return float(np.mean(np.log1p(self._held.misfit(candidate.plant, candidate.zero))))
 
     def _motors(self) -> Candidate:
         """Motors alone, from where the user has them."""
@@ -150,14 +169,17 @@ class Search:
         for number, point in enumerate(starts):
             self.report("least squares from several starts", number / len(starts))
             fits.append(self._fit_windows(residual, space, point, WINDOW_STEPS))
-        return self._refined(self._fitted, Candidate(space, self._mixed(space, fits), ORDERS[1][0]))
+        return self._refined(self._fitted, Candidate(space, self._mixed(self._fitted, space, fits), ORDERS[1][0]))
 
-    def _mixed(self, space: Space, fits: Sequence[Floats]) -> Floats:
-        """Of every joint the numbers of the fit that is best for it: one may be stuck where another is not."""
-        zero = np.zeros(JOINTS)
-        errors = [self._fitted.mse(space.plants(x[None])[0], zero) for x in fits]
-        best = np.argmin(errors, axis=0)
-        return np.array([fits[best[one.joint]][index] for index, one in enumerate(space.parameters)])
+    def _mixed(self, windows: WindowResidual, space: Space, fits: Sequence[Floats]) -> Floats:
+        """Of joints that feel each other the numbers of the fit that is best for them: others may be stuck."""
+        errors = np.array([windows.mse(space.plants(x[None])[0], space.offsets(x[None])[0]) for x in fits])
+        mixed = fits[0].copy()
+        for joints in COUPLED:
+            best = fits[int(np.argmin(errors[:, list(joints)].sum(axis=1)))]
+            mine = [index for index, one in enumerate(space.parameters) if one.joint in joints]
+            mixed[mine] = best[mine]
+        return mixed
 
     def _global(self, space: Space) -> list[Floats]:
         """The best points of GWO-WOA that differ from each other."""
@@ -234,11 +256,27 @@ class Search:
         """The chosen order once more, on all data."""
         assert self.best is not None
         self.report("fitting the chosen model to the whole log", 0.0)
+        self.best = self._unstuck(self.best)
         windows = WindowResidual(self.logs, self.arm, self.joints, longest_step=FINE_STEP_S)
         windows.settle(self.best.plant, self.best.zero)
         found = self._settled(windows, self.best)
         self.best = self._closed(windows, found, whole=True) if self.best.closed else found
         self.complete = True
+
+    def _unstuck(self, candidate: Candidate) -> Candidate:
+        """The motion that tells a joint's optimum from another may be in the part that was held out: try that again."""
+        windows = WindowResidual(self.logs, self.arm, self.joints)
+        space = Space.of(self.arm, (*MOTOR, "coulomb"), self.joints)
+        starts = (space.start(), space.moved(candidate.x, candidate.space))
+        simple = self._mixed(windows, space, [self._fit_windows(windows, space, x, WINDOW_STEPS) for x in starts])
+        names = dict(zip(space.names, simple, strict=True))
+        other = np.array([names.get(name, x) for name, x in zip(candidate.space.names, candidate.x, strict=True)])
+        # A joint that feels no gravity hardly knows its alpha: that one alone is no other optimum.
+        told = np.array([parameter.kind != "alpha" for parameter in candidate.space.parameters])
+        if np.max(np.abs(other - candidate.x)[told]) < ELSEWHERE:
+            return candidate
+        tried = [self._settled(windows, replace(candidate, x=x)).x for x in (candidate.x, other)]
+        return replace(candidate, x=self._mixed(windows, candidate.space, tried))
 
     def _fit_windows(self, windows: WindowResidual, space: Space, start: Floats, steps: int) -> Floats:
         """Where least squares on windows ends; counts what was simulated."""

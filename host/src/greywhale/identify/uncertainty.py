@@ -19,6 +19,7 @@ from greywhale.identify.windows import WindowResidual
 Floats = NDArray[np.float64]
 # A positive quantity known no better than to this factor's logarithm (or any other to this many steps) is left open.
 OPEN_LOG = 0.3
+WIDE = 0.1  # of the user's arm's doubts
 OPEN = {"breakaway": 0.5, "gap": 2e-3, "offset": 0.05}
 # These matter little: known to a factor of e they are known well enough.
 OPEN_FACTOR = {"drag": 1.0, "teeth": 1.0}
@@ -57,7 +58,8 @@ class Uncertainty:
 
 def uncertainty(residual: WindowResidual, space: Space, x: Floats, joints: Sequence[int]) -> Uncertainty:
     """Evaluate at a found point; what the readings leave open is as uncertain as the user's arm file."""
-    steps = space.steps * 2.0
+    # Wide differences: a joint that hunts makes the residual rough, and roughness is no knowledge.
+    steps = WIDE * space.doubts()
     _, high = space.bounds()
     ahead = np.where(x + steps > high, -steps, steps)
     numbers = residual(space, np.vstack([x[None], x[None, :] + np.diag(ahead)]))

@@ -121,6 +121,15 @@ class WindowResidual:
             velocities[:, joint] = starts[count:] * SPEED_DOUBT
         return costs, angles, velocities
 
+    def misfit(self, plant: Floats, zero: Floats) -> Floats:
+        """Squares per reading over the noise's (windows, joints) of one plant, as `mse`."""
+        parts = [
+            self._costs(windows, log, sides, plant, zero)[0] / len(windows.time)
+            for (windows, log), sides in zip(self._pieces, self._sides, strict=True)
+        ]
+        found: Floats = np.concatenate(parts)[:, self.joints]
+        return found
+
     def mse(self, plant: Floats, zero: Floats) -> Floats:
         """Mean squared difference per joint, rad², of one plant, with the best start of every window taken off."""
         total, count = np.zeros(4), 0
