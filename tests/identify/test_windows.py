@@ -11,6 +11,7 @@ from greywhale import _native
 from greywhale.arm import Arm, ArmParameters, default_arm
 from greywhale.identify.data import prepare, windows_of
 from greywhale.identify.space import MOTOR, Space
+from greywhale.identify.steps import WindowFit
 from greywhale.identify.windows import WindowResidual
 from greywhale.simulate import plant_row
 from tools.bench.recordings import Recorded
@@ -133,3 +134,32 @@ def test_windows_with_different_times_between_rows_do_not_disturb_each_other(whi
         single = np.asarray(_native.simulate_windows(**(given | {"spacing": spacing} | alone)))
         np.testing.assert_array_equal(together[:, window : window + 1], single)
     assert np.max(np.abs(together[0, 0] - np.asarray(_native.simulate_windows(**given))[0, 0])) > 1e-6
+
+
+def test_joints_that_do_not_feel_each_other_share_a_simulation(recorded: Recorded, white_box: ArmParameters) -> None:
+    """Derivatives with joints varied together are those of one number at a time, but for what coupling leaves out."""
+    log = prepare(recorded.fit, 1)
+    residual = WindowResidual([log], white_box, range(4))
+    space = Space.of(white_box, (*MOTOR, "coulomb"), range(4))
+    groups = space.groups()
+    assert sorted(np.concatenate(groups)) == list(range(16))
+    assert len(groups) == 8
+    fit = WindowFit(residual, space, space.start())
+    jacobian = fit._derivatives()
+    moved = residual(space, space.start() + np.diag(space.steps)) - residual(space, space.start()[None])
+    alone = (moved / space.steps[:, None]).T * space.moves(residual.joint_of)
+    together = jacobian * space.moves(residual.joint_of)
+    for index in range(len(space)):
+        scale = np.linalg.norm(alone[:, index])
+        assert np.linalg.norm(together[:, index] - alone[:, index]) < 0.15 * scale, space.names[index]
+
+
+def test_the_side_of_the_gap_is_found(recorded: Recorded, white_box: ArmParameters, hidden: ArmParameters) -> None:
+    """With the true arm and the sides that torques suggest, hunting joints look noisier than they are."""
+    residual = WindowResidual([prepare(recorded.fit, 1)], white_box, range(4))
+    plant, zero = plant_row(hidden), np.zeros(4)
+    before = residual.mse(plant, zero)
+    assert residual.settle(plant, zero)
+    after = residual.mse(plant, zero)
+    assert np.all(after <= 1.02 * before)
+    assert after.sum() < 0.8 * before.sum()

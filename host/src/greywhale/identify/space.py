@@ -58,7 +58,7 @@ KINDS = {
 }
 MOTOR = ("alpha", "inertia", "damping")
 # Joints that feel each other while one of their numbers is varied a little: the pitch joints carry one another; yaw and
-# roll feel the others through their poses only, and each other by a thousandth.
+# roll feel the others through their poses only, and each other by a few per cent at most.
 COUPLED = ((0,), (1, 2), (3,))
 PITCH = (1, 2)  # only these feel gravity, so only they have a zero angle that matters
 TEETH_S = 2e-3  # how long the damping of teeth of unknown stiffness lasts, s
