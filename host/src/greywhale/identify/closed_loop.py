@@ -5,7 +5,6 @@ It cannot be fooled by where a window starts, and it is what a model is for: the
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -14,6 +13,7 @@ from numpy.typing import NDArray
 from greywhale import _native
 from greywhale.arm import ArmParameters
 from greywhale.identify.data import BLOCK_S, Prepared, part_of
+from greywhale.identify.noise import TRACK, pot_noise
 from greywhale.identify.space import JOINTS, Space
 from greywhale.link import schema
 from greywhale.simulate import CONTROLLER_COLUMNS, Timing
@@ -165,15 +165,10 @@ def _home(angles: Floats, arm: ArmParameters) -> list[float]:
 
 def _pots(log: Prepared, arm: ArmParameters, values: Sequence[int], zero: Floats) -> list[_native.Potentiometer]:
     """Ideal 300 degree potentiometers as noisy as the log: the noise lets joints creep that would stick without it."""
-    share = 1.0 / (1 << _value(values, "filter_shift"))
-    track = math.radians(300.0)
-    step = track / 1024.0
-    pots = []
-    for joint in range(JOINTS):
-        one = log.noise[joint] ** 2 * 4.0 * (2.0 - share) / share
-        left = math.sqrt(max(one - step**2 / 12.0, 0.0))
-        volts = left / track * arm.follower_pots.supply
-        pots.append(
-            _native.Potentiometer(track=track, centre=float(zero[joint]), direction=1.0, noise=volts, linearity=0.0)
+    noise = pot_noise(log, _value(values, "filter_shift"), arm.follower_pots.supply)
+    return [
+        _native.Potentiometer(
+            track=TRACK, centre=float(zero[joint]), direction=1.0, noise=float(noise[joint]), linearity=0.0
         )
-    return pots
+        for joint in range(JOINTS)
+    ]

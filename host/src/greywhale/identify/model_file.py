@@ -10,15 +10,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
+from greywhale.identify.noise import TRACK
 from greywhale.identify.space import JOINTS, column
 
 Floats = NDArray[np.float64]
 # Of a motor's damping at most this share may be back-EMF, so that viscous friction stays positive.
 BACK_EMF_SHARE = 0.95
+MOST_NOISE_V = 0.5  # an arm file holds no more
 
 
-def arm_of(arm: ArmParameters, plant: Floats, zero: Floats, name: str, source: str) -> ArmParameters:
-    """An identified plant as an arm: the user's file with other motors, friction, gears and zero angles."""
+def arm_of(
+    arm: ArmParameters, plant: Floats, zero: Floats, name: str, source: str, noise: Floats | None = None
+) -> ArmParameters:
+    """An identified plant as an arm: the user's file with other motors, friction, gears and zero angles.
+
+    `noise` (4,) is that of the follower's potentiometers, V rms, if they turn 300 degrees. The leader's are taken to be
+    of the same make, and no better: the log of a led arm tells nothing of them.
+    """
     data = arm.model_dump(exclude={"identification"})
     data |= {"name": name, "source": source}
     for joint in range(JOINTS):
@@ -37,6 +45,10 @@ def arm_of(arm: ArmParameters, plant: Floats, zero: Floats, name: str, source: s
         }
         pot = data["follower_pots"]["joint"][joint]
         pot["centre"] = float(pot["centre"] + zero[joint])
+        if noise is not None:
+            pot["noise"] = min(float(noise[joint]) * TRACK / pot["track"], MOST_NOISE_V)
+            of_leader = data["leader_pots"]["joint"][joint]
+            of_leader["noise"] = max(of_leader["noise"], pot["noise"])
     return ArmParameters.model_validate(data, strict=False)
 
 

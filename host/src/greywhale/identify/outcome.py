@@ -13,8 +13,11 @@ from greywhale.arm import ArmParameters
 from greywhale.files import write_text
 from greywhale.identify.judge import FIT, Subject, Verdict
 from greywhale.identify.model_file import arm_of, to_toml
+from greywhale.identify.noise import pot_noise
+from greywhale.link import schema
 
 Floats = NDArray[np.float64]
+_FILTER_SHIFT = schema.PARAMETER_BY_NAME["filter_shift"].index
 
 
 @dataclass(frozen=True)
@@ -61,7 +64,18 @@ class Outcome:
     def arm(self) -> ArmParameters:
         """The model as an arm that can be simulated."""
         name = f"{self.white_box.name}, identified" + ("" if self.complete else " (unfinished)")
-        return arm_of(self.white_box, self.plant, self.zero, name, f"greywhale identify, method {self.method}")
+        source = f"greywhale identify, method {self.method}"
+        return arm_of(self.white_box, self.plant, self.zero, name, source, self._noise())
+
+    def _noise(self) -> Floats | None:
+        """Of the potentiometers, V rms, where a fitted log tells it: the noisiest one counts."""
+        supply = self.white_box.follower_pots.supply
+        found = [
+            pot_noise(one.log, one.table.values[_FILTER_SHIFT], supply)
+            for one in self.subjects
+            if one.role == FIT and one.table is not None and one.log.log.origin.firmware is not None
+        ]
+        return np.max(found, axis=0) if found else None
 
     def save(self, path: str | Path) -> None:
         """Write model.toml."""
