@@ -2,12 +2,11 @@
 #include "closed_loop/batch.h"
 
 #include <algorithm>
-#include <atomic>
 #include <stdexcept>
-#include <thread>
 
 #include "arm/random.h"
 #include "closed_loop/block.h"
+#include "share_out.h"
 
 namespace greywhale::loop {
 
@@ -36,20 +35,6 @@ const InstructionSet& chosen(const std::string& name) {
     if ((name.empty() || name == set.name) && set.available()) return set;
   }
   throw std::invalid_argument("the instruction set \"" + name + "\" is not known or not in this processor.");
-}
-
-// Calls work(0) .. work(pieces - 1), each once, from as many threads.
-template <class Work>
-void share_out(std::size_t pieces, int threads, const Work& work) {
-  const std::size_t cores = threads > 0 ? static_cast<std::size_t>(threads) : std::max(1u, std::thread::hardware_concurrency());
-  std::atomic<std::size_t> next{0};
-  const auto take = [&] {
-    for (std::size_t piece = next++; piece < pieces; piece = next++) work(piece);
-  };
-  std::vector<std::thread> helpers;
-  for (std::size_t n = 1; n < std::min(cores, pieces); ++n) helpers.emplace_back(take);
-  take();
-  for (std::thread& helper : helpers) helper.join();
 }
 
 void store(const Measures& m, std::size_t n, const Outputs& out) {

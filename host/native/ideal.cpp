@@ -3,19 +3,18 @@
 #include <nanobind/ndarray.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
 #include <memory>
 #include <stdexcept>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include "bindings.h"
 #include "closed_loop/experiment.h"
 #include "ideal/law.h"
+#include "share_out.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -120,15 +119,7 @@ nb::tuple run(const Task& task, bool keep, int threads) {
   auto angles = std::make_unique<double[]>(count * size);
   {
     const nb::gil_scoped_release free;
-    std::atomic<std::size_t> next{0};
-    const auto work = [&] {
-      for (std::size_t n = next++; n < count; n = next++) simulate(task, n, &mse[n * kJoints], keep ? &angles[n * size] : nullptr);
-    };
-    const std::size_t cores = threads > 0 ? static_cast<std::size_t>(threads) : std::max(1u, std::thread::hardware_concurrency());
-    std::vector<std::thread> helpers;
-    for (std::size_t n = 1; n < std::min(cores, count); ++n) helpers.emplace_back(work);
-    work();
-    for (std::thread& helper : helpers) helper.join();
+    greywhale::share_out(count, threads, [&](std::size_t n) { simulate(task, n, &mse[n * kJoints], keep ? &angles[n * size] : nullptr); });
   }
   return nb::make_tuple(array_of(std::move(mse), {count, kJoints}), array_of(std::move(angles), {count, ticks, kJoints}));
 }

@@ -4,16 +4,15 @@
 #include <nanobind/ndarray.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <stdexcept>
-#include <thread>
 #include <vector>
 
 #include "bindings.h"
 #include "closed_loop/experiment.h"
+#include "share_out.h"
 #include "windows/windows.h"
 
 namespace nb = nanobind;
@@ -115,17 +114,8 @@ nb::object run(const Windows& w, const Drive& drive, const Plants& plants, const
     }
     const Width width = widest();
     const std::vector<std::size_t> begins = grouped(lanes, given, width.lanes);
-    std::atomic<std::size_t> next{0};
-    const auto work = [&] {
-      for (std::size_t group = next++; group + 1 < begins.size(); group = next++) {
-        width.kernel(given, &lanes[begins[group]], begins[group + 1] - begins[group]);
-      }
-    };
-    const std::size_t cores = threads > 0 ? static_cast<std::size_t>(threads) : std::max(1u, std::thread::hardware_concurrency());
-    std::vector<std::thread> helpers;
-    for (std::size_t n = 1; n < cores; ++n) helpers.emplace_back(work);
-    work();
-    for (std::thread& helper : helpers) helper.join();
+    const auto work = [&](std::size_t group) { width.kernel(given, &lanes[begins[group]], begins[group + 1] - begins[group]); };
+    greywhale::share_out(begins.empty() ? 0 : begins.size() - 1, threads, work);
   }
   double* raw = values.release();
   nb::capsule owner(raw, [](void* p) noexcept { delete[] static_cast<double*>(p); });

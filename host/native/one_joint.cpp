@@ -8,17 +8,16 @@
 #include <nanobind/ndarray.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <stdexcept>
-#include <thread>
 #include <vector>
 
 #include "arm/conditions.h"
 #include "bindings.h"
+#include "share_out.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -263,19 +262,11 @@ nb::tuple run(const Record& r, const Law& law, const Windows& w, const Matrix& p
   {
     const nb::gil_scoped_release free;
     const Grid grid(r);
-    std::atomic<std::size_t> next{0};
-    const auto work = [&] {
-      for (std::size_t task = next++; task < candidates * windows; task = next++) {
-        Plant plant;
-        std::copy_n(&plants(task / windows, 0), kColumns, reinterpret_cast<double*>(&plant));
-        simulate(r, grid, law, w, plant, task % windows, &angles[task * kept], &volts[task * kept]);
-      }
-    };
-    const std::size_t cores = threads > 0 ? static_cast<std::size_t>(threads) : std::max(1u, std::thread::hardware_concurrency());
-    std::vector<std::thread> helpers;
-    for (std::size_t n = 1; n < cores; ++n) helpers.emplace_back(work);
-    work();
-    for (std::thread& helper : helpers) helper.join();
+    greywhale::share_out(candidates * windows, threads, [&](std::size_t task) {
+      Plant plant;
+      std::copy_n(&plants(task / windows, 0), kColumns, reinterpret_cast<double*>(&plant));
+      simulate(r, grid, law, w, plant, task % windows, &angles[task * kept], &volts[task * kept]);
+    });
   }
   return nb::make_tuple(as_array(std::move(angles), candidates, windows, kept), as_array(std::move(volts), candidates, windows, kept));
 }

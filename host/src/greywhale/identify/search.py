@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from greywhale.arm import ArmParameters
 from greywhale.identify.closed_loop import Loop, LoopResidual
 from greywhale.identify.data import FINE_STEP_S, Prepared
-from greywhale.identify.fit import Pattern, least_squares_fit
+from greywhale.identify.fit import Pattern, differing, least_squares_fit
 from greywhale.identify.space import COUPLED, MOTOR, Space
 from greywhale.identify.steps import WindowFit
 from greywhale.identify.windows import WindowResidual
@@ -200,13 +200,7 @@ class Search:
                 self.simulated += len(points) * residual.seconds
                 self.globally += len(points)
                 self.report("global search", self.globally / GLOBAL_EVALUATIONS)
-        kept: list[Floats] = []
-        for _, point in sorted(seen, key=lambda one: one[0]):
-            if all(np.max(np.abs(point - other)) > 0.5 for other in kept):
-                kept.append(point)
-            if len(kept) == STARTS:
-                break
-        return kept
+        return differing(seen, STARTS)
 
     def _with(self, candidate: Candidate, number: int) -> Candidate:
         """The same model with the next order's quantities at their usual start."""

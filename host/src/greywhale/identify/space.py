@@ -42,6 +42,13 @@ class Kind:
         return math.exp(number) if self.logarithmic else number
 
 
+def ranges(kinds: Sequence[Kind], start: Floats) -> tuple[Floats, Floats]:
+    """Lowest and highest searched number of each quantity."""
+    low = [at + math.log(kind.low) if kind.logarithmic else kind.low for kind, at in zip(kinds, start, strict=True)]
+    high = [at + math.log(kind.high) if kind.logarithmic else kind.high for kind, at in zip(kinds, start, strict=True)]
+    return np.array(low), np.array(high)
+
+
 KINDS = {
     "alpha": Kind("V/(N m)", "voltage a torque needs, R/(N Kt)", True, 0.0, 1 / 30, 30.0, 2e-3, 1.0),
     "inertia": Kind("V s²/rad", "voltage an acceleration needs, R N J/Kt", True, 0.0, 1 / 100, 100.0, 2e-3, 1.0),
@@ -112,12 +119,7 @@ class Space:
         return np.array([self.kind(n).to_search(self._known(one)) for n, one in enumerate(self.parameters)])
 
     def bounds(self) -> tuple[Floats, Floats]:
-        low, high = [], []
-        for index, start in enumerate(self.start()):
-            kind = self.kind(index)
-            low.append(start + math.log(kind.low) if kind.logarithmic else kind.low)
-            high.append(start + math.log(kind.high) if kind.logarithmic else kind.high)
-        return np.array(low), np.array(high)
+        return ranges([self.kind(index) for index in range(len(self))], self.start())
 
     def values(self, x: Floats) -> Floats:
         """In physical units."""

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greywhale.errors import BAD_USAGE, UserError
-from greywhale.identify.fit import Fit, least_squares_fit
+from greywhale.identify.fit import Fit, differing, least_squares_fit
 from greywhale.one_joint.law import Law
 from greywhale.one_joint.plant import JointSpace, Rig
 from greywhale.one_joint.record import Record
@@ -196,13 +196,7 @@ class _Search:
 
         start = np.clip([middle, *known], low, high)
         minimise(cost, low, high, budget=GLOBAL_EVALUATIONS, seed=self.seed, start=start)
-        kept: list[Floats] = []
-        for _, point in sorted(seen, key=lambda one: one[0]):
-            if all(np.max(np.abs(point - other)) > 0.5 for other in kept):
-                kept.append(point)
-            if len(kept) == STARTS:
-                break
-        return kept
+        return differing(seen, STARTS)
 
 
 def identify_joint(

@@ -6,7 +6,6 @@ greywhale.identify. To these come what a foreign rig may have: load friction, de
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -15,7 +14,7 @@ from numpy.typing import NDArray
 
 from greywhale import _native
 from greywhale.identify.space import KINDS as ARM_KINDS
-from greywhale.identify.space import TEETH_S, Kind
+from greywhale.identify.space import TEETH_S, Kind, ranges
 
 Floats = NDArray[np.float64]
 
@@ -112,12 +111,7 @@ class JointSpace:
         return np.array([self.kind(n).to_search(self._usual(name)) for n, name in enumerate(self.names)])
 
     def bounds(self) -> tuple[Floats, Floats]:
-        low, high = [], []
-        for index, start in enumerate(self.start()):
-            kind = self.kind(index)
-            low.append(start + math.log(kind.low) if kind.logarithmic else kind.low)
-            high.append(start + math.log(kind.high) if kind.logarithmic else kind.high)
-        return np.array(low), np.array(high)
+        return ranges([self.kind(index) for index in range(len(self))], self.start())
 
     def values(self, x: Floats) -> dict[str, float]:
         """In physical units."""
