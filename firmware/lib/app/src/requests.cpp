@@ -151,7 +151,10 @@ void App::handle_motors(uint8_t type) {
   switch (type) {
     case wire::EnableRequest::type: {
       wire::EnableRequest request;
-      if (decode(request)) answer(supervisor_.enable(request.lease_ms, seen_));
+      if (!decode(request)) break;
+      // While the host leads the leader arm cannot take over: it may be anywhere.
+      if (lead_.on()) return refuse(wire::NackCode::not_disabled, static_cast<uint8_t>(supervisor_.state()));
+      answer(supervisor_.enable(request.lease_ms, seen_));
       break;
     }
     case wire::StopRequest::type: {
@@ -164,6 +167,9 @@ void App::handle_motors(uint8_t type) {
     case wire::RenewRequest::type: {
       wire::RenewRequest request;
       if (!decode(request)) break;
+      if (lead_.on() && request.lease_ms == 0) {   // would hold the arm for ever with nobody leading it
+        return refuse(wire::NackCode::lead_refused, pair(0, static_cast<uint8_t>(wire::LeadRefusal::no_lease)));
+      }
       supervisor_.renew(request.lease_ms);
       reply(wire::RenewReply{on_link(supervisor_.state())});
       break;
@@ -333,7 +339,9 @@ void App::send_sample() {
   sample.state = on_link(supervisor_.state());
   sample.fault = static_cast<wire::Fault>(supervisor_.fault());
   for (uint8_t i = 0; i < hal::joint_count; ++i) {
-    sample.leader[i] = sampling_.leader(i);
+    // A led reference is already the next tick's; the controllers' own error tells what this tick's was.
+    sample.leader[i] =
+        lead_.on() ? static_cast<int16_t>(sampling_.follower(i) + sampling_.error(i)) : sampling_.leader(i);
     sample.follower[i] = sampling_.follower(i);
     sample.voltage[i] = controllers_.volts_mv(i);
   }

@@ -57,6 +57,7 @@ uint16_t Sampling::distance(uint8_t joint) const {
 
 void Sampling::lead(uint8_t joint, int16_t angle) {
   Pot& pot = signals_.joint[joint].leader;
+  signals_.joint[joint].error = static_cast<int16_t>(angle - follower(joint));
   pot.scale = 0;
   pot.offset = hal::make_offset(static_cast<int32_t>(angle) * 0x8000 + 0x4000);
 }

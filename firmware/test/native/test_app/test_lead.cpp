@@ -1,6 +1,8 @@
 // The host leads: where the reference goes, what is refused, and that the leader arm has it back afterwards.
 #include "bench.h"
 
+#include <fuzzy_pdi.h>
+
 using bench::Bench;
 using bench::board;
 
@@ -14,7 +16,8 @@ struct Led : Bench {
   wire::LeadPointReply send(std::uint8_t number, int step) {
     return get<wire::LeadPointReply>(wire::LeadPointRequest{number, {static_cast<std::int8_t>(step), 0, 0, 0}});
   }
-  wire::LeadRefusal why(const wire::LeadPointRequest& request) {
+  template <class Request>
+  wire::LeadRefusal why(const Request& request) {
     const wire::Nack nack = refused(request);
     CHECK(nack.code == wire::NackCode::lead_refused);
     where = nack.detail >> 8;
@@ -103,6 +106,62 @@ TEST_CASE("the reference is the B-spline of the points to the last bit, and rest
   CHECK(wrong == 0);
   CHECK(wanted.size() > 900);
   for (std::size_t i = first + wanted.size(); i < seen.size(); ++i) CHECK(seen[i] == control.back());
+}
+
+TEST_CASE("samples tell the error and voltage of one and the same tick, whoever leads") {
+  for (const bool led : {false, true}) {
+    CAPTURE(led);
+    Led arm;
+    arm.speed = 3.0;
+    arm.boot();
+    arm.sampling();
+    std::uint8_t next = 0;
+    if (led) next = arm.lead().next;
+    else arm.enable();
+    arm.samples.clear();
+    arm.run(1100);   // past the soft start
+    double angle = 0.0;
+    for (int k = 0; k < 60; ++k) {
+      const int step = static_cast<int>(std::lround(60.0 * std::sin(k * 0.21)));
+      if (led) next = arm.send(next, step).next;
+      for (int i = 0; i < piece; ++i) {
+        angle += step / 1024.0 / piece;
+        if (!led) arm.set_leader(0, angle);
+        arm.tick();
+      }
+    }
+    fuzzy_pdi::Joint law{};
+    params::Table table;
+    params::load_defaults(table);
+    const auto& p = table.joint[0];
+    const fuzzy_pdi::Settings settings = {p.ne_c, p.ze_a, p.ze_c, p.pe_b, p.nce_c, p.zce_a, p.zce_c, p.pce_b, p.kp, p.kd, p.ki, p.ku_mv};
+    REQUIRE(fuzzy_pdi::compile(settings, table.period_ms, law.coefficients) == fuzzy_pdi::Refusal::none);
+    fuzzy_pdi::reset(law.state);
+    int moved = 0, wrong = 0;
+    for (const wire::Sample& sample : arm.samples) {
+      if (sample.state != wire::State::following && sample.state != wire::State::soft_start) continue;
+      const auto error = static_cast<std::int16_t>(sample.leader[0] - sample.follower[0]);
+      const fuzzy_pdi::Output out = fuzzy_pdi::step_error(law, error, 15000);
+      if (sample.state != wire::State::following) continue;
+      moved += sample.voltage[0] != 0;
+      wrong += out.volts_mv != sample.voltage[0];
+    }
+    CHECK(moved > 700);
+    CHECK(wrong == 0);
+  }
+}
+
+TEST_CASE("while the host leads its lease cannot be taken away, and the leader arm cannot take over") {
+  Led arm;
+  arm.set_leader(0, 2.0);
+  arm.boot();
+  arm.lead(300);
+  CHECK(arm.why(wire::RenewRequest{0}) == wire::LeadRefusal::no_lease);
+  CHECK(arm.refused(wire::EnableRequest{0}).code == wire::NackCode::not_disabled);
+  CHECK(arm.refused(wire::EnableRequest{500}).code == wire::NackCode::not_disabled);
+  CHECK(board.drivers);
+  arm.run(300);
+  CHECK(!board.drivers);   // none of it renewed the lease
 }
 
 TEST_CASE("a host that sends nothing more brings the reference to rest within two pieces, where its last point is") {
