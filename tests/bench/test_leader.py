@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from greywhale.trajectory import Trajectory
 from greywhale_sim.leader import BRING_BACK_S, LET_GO_S, LeaderPlayer
@@ -67,6 +68,22 @@ def test_a_short_break_starts_the_motion_over_from_where_the_hand_is(motion: Tra
     advance(player, LET_GO_S / 2, enabled=False)
     advance(player, START, enabled=True)
     np.testing.assert_allclose(player.angles, motion.angles[0], atol=0.02)
+
+
+@pytest.mark.parametrize("off_s", [LET_GO_S + 0.3 * BRING_BACK_S, LET_GO_S / 2])
+def test_the_leader_never_jumps_when_the_motors_go_on_before_it_is_back(motion: Trajectory, off_s: float) -> None:
+    player = LeaderPlayer(motion, SLICE, START)
+    advance(player, START + motion.duration_s + 0.05, enabled=True)
+    advance(player, off_s, enabled=False)
+    fastest, before = 0.0, player.angles
+    for _ in range(round((START + 0.5) / SLICE)):
+        advance(player, SLICE, enabled=True)
+        fastest = max(fastest, float(np.abs(player.angles - before).max()) / SLICE)
+        before = player.angles
+    own = float(np.abs(np.diff(motion.at(np.arange(0.0, 0.5, SLICE)), axis=0)).max()) / SLICE
+    distance = float(np.abs(motion.angles[-1] - motion.angles[0]).max())
+    assert distance > 0.1
+    assert fastest <= max(own, distance / START) * 1.01
 
 
 def test_a_long_motion_is_read_in_pieces() -> None:

@@ -34,6 +34,7 @@ class LeaderPlayer:
         self._off = self._let_go + self._bring_back  # slices since they went off
         self._left_at = (self._row(0), self._row(0))  # both arms when the hand takes them
         self.angles: Array = self.home
+        self._taken_at: Array = self.home  # the leader arm when the motors went on
         self.hold: Array | None = self.home
         self.plays = 0
 
@@ -77,8 +78,11 @@ class LeaderPlayer:
         if self._on == 0:
             self._off = 0
             self.hold = None
+            self._taken_at = self.angles
         self._on += 1
         row = self._on - self._start
+        if row < 0:  # the motors may have gone on while the arms were being brought back
+            self.angles = self._taken_at + self._on / self._start * (self.home - self._taken_at)
         if row == self._rows:
             self.plays += 1
         if 0 <= row <= self._rows:
