@@ -88,7 +88,7 @@ def no_floors(monkeypatch: pytest.MonkeyPatch) -> None:
             ("--out", "nowhere/controller.toml"),
             "nowhere/controller.toml: the folder nowhere does not exist; create it,",
         ),
-        (("--out", "model.toml"), "model.toml: this file is read from; write the controllers elsewhere with --out."),
+        (("--out", "model.toml"), "model.toml: this file is read from; write elsewhere."),
         (("--out", "."), ".: cannot be written: is a directory."),
         (("--out", "/dev/null"), "/dev/null: cannot be written: not an ordinary file."),
         (("--resume",), "controller.toml.journal: no interrupted tuning is there to go on with; leave --resume out."),

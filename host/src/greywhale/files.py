@@ -11,7 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import IO
 
-from greywhale.errors import UserError, because
+from greywhale.errors import BAD_USAGE, UserError, because
 
 
 def refuse_devices(path: str | Path) -> None:
@@ -19,6 +19,13 @@ def refuse_devices(path: str | Path) -> None:
     mode = os.stat(path).st_mode
     if not stat.S_ISREG(mode) and not stat.S_ISDIR(mode):
         raise OSError(errno.EINVAL, "not an ordinary file", str(path))
+
+
+def refuse_inputs(out: Path | None, *inputs: str | Path | None) -> None:
+    """Nothing is written over a file that is read from. (A name of an arm that comes with greywhale is no file.)"""
+    for source in inputs:
+        if out is not None and source is not None and out.exists() and Path(source).exists() and out.samefile(source):
+            raise UserError(f"{out}: this file is read from; write elsewhere.", BAD_USAGE)
 
 
 def temporary_beside(path: Path) -> tuple[int, str]:

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from greywhale.cli.output import json_option, show
+from greywhale.files import refuse_inputs
 from greywhale.log import Log, read_log
 from greywhale.measure import Evaluation, evaluate
 
@@ -23,6 +24,7 @@ def command(logs: tuple[Path, ...], picture: Path | None, as_json: bool) -> None
     resembles the leader most; for steps out of a rest also the time between both onsets, as the paper measures it).
     Several logs are measured one by one and drawn into one picture.
     """
+    refuse_inputs(picture, *logs)
     read = [read_log(path) for path in logs]
     evaluations = [evaluate(log) for log in read]
     results = [

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from greywhale.cli.output import json_option, show
-from greywhale.files import write_text
+from greywhale.files import refuse_inputs, write_text
 
 
 @click.command("export")
@@ -42,6 +42,7 @@ def _export_fis(source: Path, out: Path, joint: int | None) -> list[Path]:
     written = []
     for number in range(len(joints)) if joint is None else (joint,):
         path = out if joint is not None else stem.with_name(f"{stem.name}_joint{number}.fis")
+        refuse_inputs(path, source)
         sets = {key: float(value) for key, value in joints[number].set_values().items()}
         export_fis(path, f"{source.stem}, joint {number}", sets)
         written.append(path)
@@ -51,6 +52,7 @@ def _export_fis(source: Path, out: Path, joint: int | None) -> list[Path]:
 def _export_arm(urdf: str | None, mjcf: str | None, out: Path) -> Path:
     from greywhale.arm import export, load_arm
 
+    refuse_inputs(out, urdf, mjcf)
     text = export.urdf(load_arm(urdf)) if urdf is not None else export.mjcf(load_arm(str(mjcf)))
     write_text(out, text)
     return out

@@ -9,6 +9,7 @@ import click
 from greywhale.arm import load_arm
 from greywhale.cli.output import json_option, progress, show
 from greywhale.errors import BAD_USAGE, UserError
+from greywhale.files import refuse_inputs
 from greywhale.identify import METHODS, identify, load_table
 from greywhale.log import read_log
 
@@ -56,6 +57,7 @@ def command(
     """
     if not out.parent.is_dir():
         raise UserError(f"{out}: the folder {out.parent} does not exist; create it, or write elsewhere.", BAD_USAGE)
+    refuse_inputs(out, *logs, *validate, arm_file, *controllers)
     arm = load_arm(arm_file)
     tables = [load_table(path) for path in controllers]
     fit, second = [read_log(path) for path in logs], [read_log(path) for path in validate]

@@ -11,6 +11,7 @@ import click
 
 from greywhale.cli.output import json_option, port_option, progress, show
 from greywhale.errors import BAD_USAGE, UserError
+from greywhale.files import refuse_inputs
 from greywhale.link.device import Device
 from greywhale.link.ports import choose_port
 from greywhale.log.record import Recording, check_every_led, pose_of, record, record_led, table_of
@@ -94,6 +95,10 @@ def command(
         raise UserError("--excite turns the motors on by itself; leave --enable out.", BAD_USAGE)
     check_every_led(every)
     require_folders(out, save_motion)
+    refuse_inputs(out, arm_file)
+    refuse_inputs(save_motion, arm_file)
+    if save_motion is not None and save_motion.resolve() == out.resolve():
+        raise UserError(f"{out}: the log and the motion cannot be one file; give --save-motion another.", BAD_USAGE)
     plan = _plan(arm_file, ranges, seconds, seed, budget)
     with Device(choose_port(port)) as device, progress(as_json) as report:
         designed = plan(pose_of(device), parameters=table_of(device, report), report=report)

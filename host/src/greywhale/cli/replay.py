@@ -8,6 +8,7 @@ import click
 
 from greywhale.cli.output import json_option, port_option, progress, show
 from greywhale.cli.record import require_folders, told
+from greywhale.files import refuse_inputs
 from greywhale.link.device import Device
 from greywhale.link.ports import choose_port
 from greywhale.log.record import check_every_led, record_led
@@ -32,6 +33,7 @@ def command(motion: Path, out: Path, every: int, port: str | None, as_json: bool
     """
     check_every_led(every)
     require_folders(out)
+    refuse_inputs(out, motion)
     trajectory = load_leader(motion)
     with Device(choose_port(port)) as device, progress(as_json) as report:
         recording = record_led(device, out, trajectory, every, report)

@@ -11,7 +11,7 @@ import click
 from greywhale.cli.output import json_option, progress, show
 from greywhale.config import controller as controller_file
 from greywhale.errors import BAD_USAGE, UserError, because
-from greywhale.files import temporary_beside
+from greywhale.files import refuse_inputs, temporary_beside
 from greywhale.simulate import controller_row
 from greywhale.tune import METHODS, STRATEGIES, check_request, tune
 from greywhale.tune.model import SAMPLES, load_model
@@ -159,9 +159,7 @@ def _check_files(
     """What is wrong with the files is said before any work, not after it."""
     if not out.parent.is_dir():
         raise UserError(f"{out}: the folder {out.parent} does not exist; create it, or write elsewhere.", BAD_USAGE)
-    for source in inputs:
-        if source is not None and out.exists() and Path(source).exists() and out.samefile(source):
-            raise UserError(f"{out}: this file is read from; write the controllers elsewhere with --out.", BAD_USAGE)
+    refuse_inputs(out, *inputs)
     _refuse_unwritable(out)
     _refuse_unwritable(journal)
     if resume and not journal.exists():

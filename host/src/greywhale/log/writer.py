@@ -111,6 +111,8 @@ class LogWriter:
             os.fsync(self._file.fileno())
             self._file.close()
             os.replace(self._temporary, self.path)
+            if isinstance(raised, KeyboardInterrupt):
+                raised.add_note(f"What was recorded is in {self.path}, marked as interrupted.")
         except OSError as error:
             with contextlib.suppress(OSError):
                 self._file.close()

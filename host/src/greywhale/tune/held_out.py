@@ -24,7 +24,7 @@ Floats = npt.NDArray[np.float64]
 Controllers = npt.NDArray[np.int32]
 
 WAIT_S = 1.5
-SEED = 1
+SEED = 2001  # of reaches that nobody plays elsewhere
 EVERY = 2  # ticks between the rows of the traces
 
 

@@ -24,6 +24,7 @@ Floats = npt.NDArray[np.float64]
 Controllers = npt.NDArray[np.int32]
 
 VERSION = 1
+_CHOSEN = ("strategy", "method", "budget", "seed", "bounds", "before")
 
 
 class Journal:
@@ -143,7 +144,8 @@ def _require_same(path: Path, found: dict[str, Any], wanted: dict[str, Any]) -> 
     # As it looks after a way through the file: tuples are lists there.
     now = json.loads(json.dumps(wanted["request"]))
     then = found["request"]
-    for key in sorted({*now, *then}):
+    # What the user chose says more than what follows from it.
+    for key in sorted({*now, *then}, key=lambda name: (name not in _CHOSEN, name)):
         if now.get(key) != then.get(key):
             raise UserError(
                 f"{path}: the journal is of another tuning: its {key} is {_short(then.get(key))}, now it is "

@@ -30,7 +30,7 @@ JOINTS = len(JOINT_NAMES)
 # error. Slow reaches show friction and gravity, quick moves inertia and damping.
 SPREAD = {"slow reaches": 0.5, "quick moves": 0.25}
 SPREAD_SAMPLES, ONE_BY_ONE_SAMPLES = 33, 9
-REACHES_SEED, REACHES_S, WAIT_TICKS = 1, 6.0, 200
+REACHES_SEED, REACHES_S, WAIT_TICKS = 2002, 6.0, 200
 # How far numbers that should agree may differ: supplies, potentiometers' slopes, an arm and its own table (relative);
 # its gaps (rad).
 SAME_SUPPLY, SAME_SLOPE, SAME_VALUE, SAME_GAP = 0.02, 0.1, 1e-3, 1e-5

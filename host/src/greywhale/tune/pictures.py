@@ -163,7 +163,7 @@ def _responses_figure(time_s: Floats, leader: Floats, responses: Mapping[str, Re
         whole.set_xlim(time_s[0], time_s[-1])
         near.set_xlim(*close)
         _fit(near, time_s, leader[:, joint], [(one.time_s, one.angles[:, joint]) for one in responses.values()])
-        near.set_title("largest move, close up", fontsize=9, loc="left")
+        near.set_title("quickest moment of all joints, close up", fontsize=9, loc="left")
         low, high = error.get_ylim()
         error.set_ylim(max(low, -_LARGEST_ERROR), min(high, _LARGEST_ERROR))
         figure.align_ylabels([whole, error])
