@@ -162,6 +162,19 @@ def test_no_joint_pays_for_the_others() -> None:
     assert after[:, 11].tolist() == [2, 0, 0, 0]
 
 
+@pytest.mark.parametrize(("rise", "taken"), [(0.09, [2, 2, 2, 2]), (0.5, [0, 2, 2, 2])])
+def test_a_joint_that_stays_may_feel_its_neighbours_a_little(rise: float, taken: list[int]) -> None:
+    """Joint 1, for which nothing better was found, costs a little more beside joint 0's best."""
+
+    def costs(rows: np.ndarray) -> np.ndarray:
+        found = 10.0 - rows[:, :, 11].astype(np.float64)
+        found[:, 1] = np.where(rows[:, 0, 11] > 0, 10.0 + rise, 10.0)
+        return np.asarray(found)
+
+    after, _, _ = choose(marked(0, 0, 0, 0), np.stack([marked(2, 2, 2, 2), marked(1, 1, 1, 1)]), costs)
+    assert [after[joint, 11] for joint in (0, 2, 3)] == [taken[joint] for joint in (0, 2, 3)]
+
+
 def test_one_bad_joint_does_not_spoil_the_others_tuning() -> None:
     """Whatever joint 1 tries makes joint 3 swing, which then costs joint 3 too: 1 stays, the others change."""
     feuds = [((3, its), (1, mark)) for mark in (1, 2) for its in (0, 1, 2)] + [

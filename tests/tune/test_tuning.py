@@ -18,6 +18,8 @@ from greywhale.optimise import METHODS as OPTIMISERS
 from greywhale.simulate import plant_row
 from greywhale.tune import METHODS, Outcome, check_request, search, tune, tuning
 from greywhale.tune.model import Model, load_model
+from greywhale.tune.objective import Objective
+from greywhale.tune.search import KEPT
 from greywhale.tune.tuning import NOISE_V, with_noise
 
 BUDGET = 60
@@ -177,6 +179,26 @@ def test_a_budget_of_one_gives_the_start_back(model: Model) -> None:
     outcome = run(model, budget=1)
     assert outcome.complete
     np.testing.assert_array_equal(outcome.after, outcome.before)
+
+
+def test_a_joint_whose_best_would_shake_its_gear_gets_less_voltage(
+    model: Model, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The last judgement refuses every candidate of the search, here by its Ku, but not one with less."""
+    searched: list[int] = []
+
+    def judged(self: Any, controllers: np.ndarray) -> np.ndarray:
+        costs = Objective.costs(self.judge, controllers)
+        if not searched:
+            searched.extend(self.found.contenders(KEPT)[:, 1, tuning.KU].tolist())
+        refused = np.isin(controllers[:, 1, tuning.KU], searched)
+        costs[refused, 1] += 10.0
+        return np.asarray(costs)
+
+    monkeypatch.setattr(tuning._Tuning, "judged", judged)
+    outcome = tune(model, budget=60, floors=False)
+    assert outcome.after[1, tuning.KU] not in searched
+    assert outcome.after[1, tuning.KU] in [round(share * searched[0]) for share in tuning.WEAKER]
 
 
 def test_silent_potentiometers_get_the_noise_of_ordinary_ones(model: Model) -> None:

@@ -14,12 +14,15 @@ Judge = Callable[[Controllers], Floats]
 # A joint whose cost in company is this much above its best elsewhere is exchanged for its other candidates.
 WORSE = 1.03
 ROUNDS = 3
+# A joint that stays as it was feels its neighbours' new moves a little; more than this no joint may lose.
+FAIR = 1.01
 # If less than this share of what every joint could gain alone is gained together, another way is tried.
 ENOUGH = 0.5
 
 
 def choose(start: Controllers, contenders: Controllers, judge: Judge) -> tuple[Controllers, Floats, Floats]:
-    """The best combination (4, 12) with the costs of `start` and of itself (4,); no joint costs more than in `start`.
+    """The best combination (4, 12) with the costs of `start` and of itself (4,); no joint costs more than FAIR times
+    what it does in `start`.
 
     `contenders` (k, 4, 12) hold the k-th best of every joint. Each row is judged as it stands, every joint's best also
     among the neighbours of `start`, and then the best of every joint together; where a joint turns out worse among its
@@ -43,24 +46,32 @@ def choose(start: Controllers, contenders: Controllers, judge: Judge) -> tuple[C
         outcome = judge(tried)
         rows, costs = np.concatenate([rows, tried]), np.concatenate([costs, outcome])
         mixed = tried[int(np.argmin(outcome.sum(axis=1)))]
-    fair = (costs <= before).all(axis=1)
+    fair = _fair(costs, before)
     best = int(np.argmin(np.where(fair, costs.sum(axis=1), np.inf)))
     chosen, cost = rows[best].copy(), costs[best]
     hoped_for = before.sum() - costs.min(axis=0).sum()
     if before.sum() - cost.sum() < ENOUGH * hoped_for:
-        built, its = _built_up(start, before, contenders, judge)
+        built, its = _built_up(start, before, before, contenders, judge)
         if its.sum() < cost.sum():
             chosen, cost = built, its
+    # Once more: what a joint could not take up among neighbours as they were it may now.
+    chosen, cost = _built_up(chosen, cost, before, contenders, judge)
     return chosen, before, cost
 
 
-def _built_up(start: Controllers, before: Floats, contenders: Controllers, judge: Judge) -> tuple[Controllers, Floats]:
-    """`start` with one joint after the other exchanged for what lowers the sum most and raises no joint's cost."""
-    chosen, cost = start.copy(), before
-    for joint in range(len(start)):
+def _fair(costs: Floats, before: Floats) -> npt.NDArray[np.bool_]:
+    fair: npt.NDArray[np.bool_] = np.all(costs <= FAIR * before, axis=1)
+    return fair
+
+
+def _built_up(
+    chosen: Controllers, cost: Floats, before: Floats, contenders: Controllers, judge: Judge
+) -> tuple[Controllers, Floats]:
+    """`chosen` with one joint after the other exchanged for what lowers the sum most and is fair."""
+    for joint in range(len(chosen)):
         tried = _exchanged(chosen, contenders, np.array([joint]))
         costs = judge(tried)
-        sums = np.where((costs <= before).all(axis=1), costs.sum(axis=1), np.inf)
+        sums = np.where(_fair(costs, before), costs.sum(axis=1), np.inf)
         best = int(np.argmin(sums))
         if sums[best] < cost.sum():
             chosen, cost = tried[best], costs[best]
