@@ -16,7 +16,9 @@ from greywhale.demo.learn import learn
 from greywhale.demo.practice import UNTUNED, practise, tables
 from greywhale.link import schema
 from greywhale.measure import Evaluation, evaluate
+from greywhale.simulate import plant_row
 from greywhale.trajectory import Trajectory, save_leader
+from greywhale.tune.margins import Margins
 from tools.bench.figure import Figure
 from tools.bench.tuning import Judged, figures, motions
 from tools.setup.console import ROOT
@@ -51,11 +53,14 @@ def run() -> list[Figure]:
     arm = default_arm()
     judged = {name: Judged.of(name, motion, arm, before[name][0], after[name][0]) for name, motion in wanted.items()}
     changed = 100 * learnt.identification.verdicts[2].improvement
+    margins = Margins(arm, schema.DEFAULTS, plant_row(arm)[None]).check(learnt.tuning.after)
+    missing = sum(not margin.holds for margin in margins)
     return [
         Figure("bench: identify, wall time", learnt.identify_s, "s"),
         Figure("bench: tune, wall time", learnt.tune_s, "s"),
         Figure("bench: upload, wall time", upload_s, "s"),
         Figure("bench: identify, tune and upload", total, "s", f"<= {REACH_S:g}", total <= REACH_S),
         Figure("bench: model better than white box, changed controller", changed, "%"),
+        Figure(f"bench: margins missing on the true arm, of {len(margins)}", missing, "", "0", missing == 0),
         *figures("bench", judged),
     ]
