@@ -27,7 +27,7 @@ def outputs(declaration: Declaration) -> dict[str, str]:
         "firmware/lib/params/src/params/table.h": cpp_parameters.header(declaration),
         "firmware/lib/params/src/params/table.cpp": cpp_parameters.source(declaration),
         "firmware/test/native/test_link/golden.h": golden.header(declaration),
-        "host/src/greywhale/link/schema.py": python_module.module(declaration),
+        "host/src/greywhale/protocol/schema.py": python_module.module(declaration),
         "shared/link/golden.toml": golden.toml(declaration),
         "docs/link.md": page.page(declaration),
     }

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from greywhale.arm import ArmParameters, load_arm
+from greywhale.arm import ArmParameters
 from greywhale.arm.printed import ERRATA, PrintedBody, motor_equation
+from greywhale.files.arm import load_arm
 
 SWING_S, SWING_DT = 5.0, 5e-4
 LOOP_S, LOOP_DT, PERIOD = 12.0, 1e-3, 20  # controllers every 20 ms

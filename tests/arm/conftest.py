@@ -8,8 +8,9 @@ from typing import Any
 
 import pytest
 
-from greywhale.arm import ArmParameters, load_arm
-from greywhale.config import toml_file
+from greywhale.arm import ArmParameters
+from greywhale.files.arm import load_arm
+from greywhale.formats import toml_file
 
 Change = Callable[..., ArmParameters]
 

@@ -7,8 +7,8 @@ from xml.etree import ElementTree as xml
 
 import pytest
 
-from greywhale.arm import default_arm
 from greywhale.arm.export import JOINT_IDS, LINK_NAMES, mjcf, urdf
+from greywhale.files.arm import default_arm
 
 
 def test_urdf_is_a_chain_of_four_limited_joints() -> None:

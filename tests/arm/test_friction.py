@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from greywhale.arm import Arm, default_arm
+from greywhale.arm import Arm
+from greywhale.files.arm import default_arm
 
 
 def test_rest_is_exact_below_breakaway_and_ends_above() -> None:

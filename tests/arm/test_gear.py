@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from greywhale.arm import Arm, default_arm
+from greywhale.arm import Arm
+from greywhale.files.arm import default_arm
 
 
 def test_link_moves_freely_by_the_gap_and_then_against_the_teeth(make_arm: Any) -> None:

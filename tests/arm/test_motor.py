@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from greywhale.arm import Arm, load_arm
+from greywhale.arm import Arm
+from greywhale.files.arm import load_arm
 
 
 def test_physical_equation(make_arm: Any) -> None:

@@ -7,8 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from greywhale.arm import PotentiometerBank, Potentiometers, Wiring, default_arm
+from greywhale.arm import PotentiometerBank, Potentiometers, Wiring
 from greywhale.arm.parameters import Potentiometer
+from greywhale.files.arm import default_arm
 
 
 def bank(**values: float) -> PotentiometerBank:

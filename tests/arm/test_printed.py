@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from greywhale.arm import Arm, ArmParameters, load_arm
+from greywhale.arm import Arm, ArmParameters
 from greywhale.arm.printed import BODY_ERRATA, ERRATA, PrintedBody, motor_equation
 from greywhale.errors import UserError
+from greywhale.files.arm import load_arm
 
 
 @pytest.fixture(scope="module")

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from greywhale._native import RigidBody
-from greywhale.arm import Arm, default_arm
+from greywhale.arm import Arm
+from greywhale.files.arm import default_arm
 
 Vector = NDArray[np.float64]
 GOLDEN = json.loads(Path(__file__).with_name("golden_dynamics.json").read_text(encoding="utf-8"))

@@ -11,8 +11,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from greywhale.arm import Arm, ArmParameters, default_arm, load_arm
-from greywhale.config import toml_file
+from greywhale.arm import Arm, ArmParameters
+from greywhale.files.arm import default_arm, load_arm
+from greywhale.formats import toml_file
 
 Vector = NDArray[np.float64]
 

@@ -12,7 +12,8 @@ import serial
 
 from greywhale.arm import Wiring
 from greywhale.errors import UserError
-from greywhale.trajectory import Trajectory, save_leader
+from greywhale.files.leader import save_leader
+from greywhale.trajectory import Trajectory
 from greywhale_sim import commands
 from greywhale_sim.bench import Bench
 from greywhale_sim.pacing import Pacer

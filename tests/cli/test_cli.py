@@ -13,13 +13,14 @@ from typing import Any
 
 import pytest
 
+from greywhale.board import device
 from greywhale.cli import entry
 from greywhale.cli.verbs import VERBS
-from greywhale.link import device, schema
-from greywhale.link.schema import State
-from greywhale.log import LogWriter, read_log
-from greywhale.log.layout import Origin
-from tests.link_device.fake_board import FakeBoard
+from greywhale.files.log import LogWriter, read_log
+from greywhale.files.log.layout import Origin
+from greywhale.protocol import schema
+from greywhale.protocol.schema import State
+from tests.board.fake_board import FakeBoard
 
 ROOT = Path(__file__).parents[2]
 TABLE_10 = str(ROOT / "shared" / "fuzzy_tables" / "table_10.toml")
@@ -30,7 +31,7 @@ Captured = pytest.CaptureFixture[str]
 def _quick_and_alone(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """No wait for a bootloader, no port of this machine, and the signal handler as it was."""
     monkeypatch.setattr(device.Device.__init__, "__defaults__", (0.0, 0.5))
-    monkeypatch.setattr("greywhale.link.ports.find_ports", list)
+    monkeypatch.setattr("greywhale.protocol.ports.find_ports", list)
     monkeypatch.delenv("GREYWHALE_PORT", raising=False)
     before = signal.getsignal(signal.SIGTERM)
     yield

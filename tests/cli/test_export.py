@@ -10,7 +10,7 @@ import pytest
 from click.testing import CliRunner
 
 from greywhale.cli.export import command
-from greywhale.config.paper_tables import paper_table
+from greywhale.files.paper_tables import paper_table
 from greywhale.fuzzy.export_fis import fis_text
 from greywhale.fuzzy.settings import load_joints
 

@@ -18,13 +18,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+from greywhale.board import device
 from greywhale.cli import entry
 from greywhale.cli import tune as verb
-from greywhale.config import controller
-from greywhale.link import device, schema
-from greywhale.simulate import CONTROLLER_COLUMNS, controller_row, default_controller
+from greywhale.files import controller
+from greywhale.loop import CONTROLLER_COLUMNS, controller_row, default_controller
+from greywhale.protocol import schema
 from greywhale.tune import tune
-from tests.link_device.fake_board import FakeBoard
+from tests.board.fake_board import FakeBoard
 from tests.tune.models import log_facts, write_model
 
 Captured = pytest.CaptureFixture[str]

@@ -10,10 +10,11 @@ import numpy as np
 import pytest
 
 from greywhale.demo import BenchProcess
-from greywhale.link import schema
-from greywhale.link.declared import Reply_co, Request
-from greywhale.link.frames import FrameDecoder, encode_frame
-from greywhale.trajectory import Trajectory, save_leader
+from greywhale.files.leader import save_leader
+from greywhale.protocol import schema
+from greywhale.protocol.declared import Reply_co, Request
+from greywhale.protocol.frames import FrameDecoder, encode_frame
+from greywhale.trajectory import Trajectory
 from greywhale_sim.assemble import BenchOptions, build_bench
 from greywhale_sim.bench import Bench
 

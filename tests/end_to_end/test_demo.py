@@ -10,8 +10,8 @@ import pytest
 
 from greywhale.demo import BenchProcess, DemoOptions, run
 from greywhale.errors import UserError
-from greywhale.link import schema
-from greywhale.log import Log
+from greywhale.files.log import Log
+from greywhale.protocol import schema
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from greywhale import flash
+from greywhale.board import flash
+from greywhale.board.device import Device
 from greywhale.demo import BenchProcess
 from greywhale.errors import UserError
-from greywhale.link import schema
-from greywhale.link.device import Device
-from greywhale.link.frames import encode_frame
+from greywhale.protocol import schema
+from greywhale.protocol.frames import encode_frame
 
 Start = Callable[..., BenchProcess]
 

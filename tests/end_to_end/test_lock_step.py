@@ -10,11 +10,12 @@ import numpy as np
 import pytest
 
 from greywhale.arm import Wiring
-from greywhale.config import controller
-from greywhale.config.paper_tables import paper_table
-from greywhale.link import schema
-from greywhale.link.schema import Fault, NackCode, State, StopReason
-from greywhale.trajectory import multi_steps, save_leader
+from greywhale.files import controller
+from greywhale.files.leader import save_leader
+from greywhale.files.paper_tables import paper_table
+from greywhale.protocol import schema
+from greywhale.protocol.schema import Fault, NackCode, State, StopReason
+from greywhale.trajectory import multi_steps
 
 RAD = schema.Sample.LSB["leader"]
 

@@ -12,15 +12,15 @@ from typing import Any
 
 import pytest
 
+from greywhale.board.device import Device
+from greywhale.board.record import record
+from greywhale.board.upload import upload_controller
 from greywhale.demo import BenchProcess
 from greywhale.errors import UserError
-from greywhale.link import schema
-from greywhale.link.device import Device
-from greywhale.link.schema import Fault, State, StopReason
-from greywhale.link.upload import upload_controller
-from greywhale.log import read_log
-from greywhale.log.record import record
+from greywhale.files.log import read_log
 from greywhale.measure import evaluate
+from greywhale.protocol import schema
+from greywhale.protocol.schema import Fault, State, StopReason
 
 ROOT = Path(__file__).resolve().parents[2]
 TABLES = ROOT / "shared" / "fuzzy_tables"

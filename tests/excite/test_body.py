@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from greywhale import _native
-from greywhale.arm import arm_names, load_arm
 from greywhale.excite.body import Body
-from greywhale.simulate import plant_row
+from greywhale.files.arm import arm_names, load_arm
+from greywhale.loop import plant_row
 
 
 @pytest.mark.parametrize("name", sorted(arm_names()))

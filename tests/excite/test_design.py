@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from greywhale.arm import load_arm
 from greywhale.errors import BAD_USAGE, UserError
 from greywhale.excite import Problem, design
 from greywhale.excite.limits import MARGIN_RAD
-from greywhale.link import schema
+from greywhale.files.arm import load_arm
+from greywhale.protocol import schema
 from greywhale.trajectory import human_reaches
 from tools.bench.recordings import random_arm
 

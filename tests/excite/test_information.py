@@ -6,19 +6,19 @@ import numpy as np
 import pytest
 
 from greywhale import _native
-from greywhale.arm import load_arm
 from greywhale.excite.information import information, natural_sizes, prior
 from greywhale.excite.limits import limits_of
 from greywhale.excite.multisine import Shape, board_reference
 from greywhale.excite.trial import ROW_S, try_motion
+from greywhale.files.arm import load_arm
+from greywhale.files.log import Log
+from greywhale.files.log.layout import Origin
 from greywhale.identify.closed_loop import controller_rows, loop_settings
 from greywhale.identify.data import prepare
 from greywhale.identify.space import MOTOR, Space
 from greywhale.identify.windows import WindowResidual
-from greywhale.link import schema
-from greywhale.log import Log
-from greywhale.log.layout import Origin
-from greywhale.simulate import Timing
+from greywhale.loop import Timing
+from greywhale.protocol import schema
 from greywhale.trajectory import human_reaches
 
 SECONDS = 12.0

@@ -8,10 +8,10 @@ from typing import cast
 import numpy as np
 import pytest
 
+from greywhale.board.device import Device
+from greywhale.board.lead import FASTEST_RAD_S, POINT_S, ROOM, STEP_RAD, Leading, Plan
 from greywhale.errors import UserError
-from greywhale.link import schema
-from greywhale.link.device import Device
-from greywhale.link.lead import FASTEST_RAD_S, POINT_S, ROOM, STEP_RAD, Leading, Plan
+from greywhale.protocol import schema
 from greywhale.trajectory import Trajectory, human_reaches
 
 LIMITS = np.array([np.full(4, -2.5), np.full(4, 2.5)])

@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from greywhale.arm import ArmParameters, load_arm
+from greywhale.arm import ArmParameters
 from greywhale.errors import BAD_USAGE, UserError
 from greywhale.excite.limits import MARGIN_RAD, REACH_RAD, family, limits_of, parse_range
-from greywhale.link import schema
-from greywhale.simulate import plant_row
+from greywhale.files.arm import load_arm
+from greywhale.loop import plant_row
+from greywhale.protocol import schema
 
 POSE = np.array([0.0, 0.45, -0.1, 0.0])
 

@@ -10,18 +10,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-from greywhale.arm import default_arm, load_arm
+from greywhale.board.device import Device
+from greywhale.board.lead import STEP_RAD, Plan
+from greywhale.board.record import record, record_led
 from greywhale.cli.entry import run
 from greywhale.demo import BenchProcess
 from greywhale.errors import UserError
+from greywhale.files.arm import default_arm, load_arm
+from greywhale.files.leader import load_leader, save_leader
+from greywhale.files.log import read_log
+from greywhale.files.model import to_toml
 from greywhale.identify import identify
-from greywhale.identify.model_file import to_toml
-from greywhale.link.device import Device
-from greywhale.link.lead import STEP_RAD, Plan
-from greywhale.link.schema import Fault, State, StopReason
-from greywhale.log import read_log
-from greywhale.log.record import record, record_led
-from greywhale.trajectory import Trajectory, human_reaches, load_leader, save_leader
+from greywhale.protocol.schema import Fault, State, StopReason
+from greywhale.trajectory import Trajectory, human_reaches
 from greywhale.trajectory.motion import JOINTS
 
 

@@ -6,7 +6,7 @@ import struct
 
 import pytest
 
-from greywhale.link import frames, schema
+from greywhale.protocol import frames, schema
 from tools.bench.bench_tick import BOARDS, Bench, memory
 
 BYTES_A_MS = 100  # what the wire carries at 1 Mbaud

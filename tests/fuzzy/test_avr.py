@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from greywhale.fuzzy import twin
 from greywhale.fuzzy.settings import JointSettings
-from greywhale.link.schema import Refusal
+from greywhale.protocol.schema import Refusal
 from tools.bench.fuzzy_on_board import FuzzyOnBoard
 
 Case = tuple[JointSettings, int]

@@ -18,7 +18,7 @@ from greywhale import _native
 from greywhale.fuzzy import exact, twin
 from greywhale.fuzzy.rules import OUTPUTS, RULES
 from greywhale.fuzzy.settings import GAIN_UNIT, JointSettings
-from greywhale.link.schema import Refusal
+from greywhale.protocol.schema import Refusal
 
 Case = tuple[JointSettings, int]
 Points = Callable[[JointSettings, int, int], tuple[NDArray[np.int64], NDArray[np.int64]]]

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from greywhale.arm import ArmParameters, load_arm
+from greywhale.arm import ArmParameters
+from greywhale.files.arm import load_arm
 from greywhale.identify import Outcome, Table, identify
 from tools.bench.recordings import Recorded, random_arm, record_three, table_of
 

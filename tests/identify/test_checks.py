@@ -8,15 +8,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from greywhale.arm import ArmParameters, load_arm
+from greywhale.arm import ArmParameters
 from greywhale.errors import UserError
+from greywhale.files.arm import load_arm
+from greywhale.files.log import Log
+from greywhale.files.log.layout import Origin
 from greywhale.identify import Table, identify
 from greywhale.identify.checks import check
 from greywhale.identify.controllers import DEFAULTS, load_table, table_of
 from greywhale.identify.data import prepare
-from greywhale.link import schema
-from greywhale.log import Log
-from greywhale.log.layout import Origin
+from greywhale.protocol import schema
 from tools.bench.recordings import TABLES, Recorded
 from tools.bench.recordings import table_of as values_of
 
@@ -104,7 +105,7 @@ def test_another_controller_than_the_logs_is_refused(recorded: Recorded, white_b
 
 
 def test_tables_come_from_controller_files_and_backups(tmp_path_factory: pytest.TempPathFactory) -> None:
-    from greywhale.config import parameter_file
+    from greywhale.files import parameter_file
 
     path = tmp_path_factory.mktemp("tables") / "backup.toml"
     parameter_file.save(path, values_of("table_10"))
@@ -114,7 +115,7 @@ def test_tables_come_from_controller_files_and_backups(tmp_path_factory: pytest.
 def test_a_table_tells_what_it_changes_and_a_file_keeps_it(tables: list[Table]) -> None:
     import tomllib
 
-    from greywhale.identify.model_file import to_toml
+    from greywhale.files.model import to_toml
 
     changed = tables[1].changed()
     assert changed

@@ -8,14 +8,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from greywhale.arm import ArmParameters, load_arm
+from greywhale.arm import ArmParameters
 from greywhale.errors import UserError
+from greywhale.files.arm import load_arm
+from greywhale.files.log import Log
 from greywhale.identify import Outcome, Table, identify
 from greywhale.identify.judge import CHANGED, FIT, SECOND, Verdict, warnings_of
 from greywhale.identify.search import Search
 from greywhale.identify.space import column
-from greywhale.log import Log
-from greywhale.simulate import plant_row
+from greywhale.loop import plant_row
 from tools.bench.recordings import Recorded
 
 

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from greywhale.arm import load_arm
 from greywhale.cli import identify as verb
 from greywhale.cli.entry import run
+from greywhale.files.arm import load_arm
 from greywhale.identify import Outcome
 from tools.bench.recordings import TABLES, Recorded
 

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from greywhale.arm import default_arm, load_arm
+from greywhale.files.arm import default_arm, load_arm
+from greywhale.files.model import arm_of
 from greywhale.identify.data import prepare
-from greywhale.identify.model_file import arm_of
 from greywhale.identify.noise import pot_noise
-from greywhale.simulate import plant_row
+from greywhale.loop import plant_row
 from greywhale.trajectory import human_reaches
 from tools.bench.recordings import random_arm, record, table_of
 

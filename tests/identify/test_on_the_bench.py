@@ -7,11 +7,12 @@ from pathlib import Path
 import pytest
 
 from greywhale.arm import ArmParameters
+from greywhale.files.leader import save_leader
+from greywhale.files.log import Log, LogWriter, read_log
+from greywhale.files.log.layout import Origin
 from greywhale.identify import identify
-from greywhale.link import schema
-from greywhale.log import Log, LogWriter, read_log
-from greywhale.log.layout import Origin
-from greywhale.trajectory import human_reaches, save_leader
+from greywhale.protocol import schema
+from greywhale.trajectory import human_reaches
 from greywhale_sim.assemble import BenchOptions, build_bench
 from tests.end_to_end.conftest import LockStep
 

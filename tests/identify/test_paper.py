@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from greywhale.arm import ArmParameters, load_arm
+from greywhale.arm import ArmParameters
+from greywhale.files.arm import load_arm
 from greywhale.identify import paper
 from greywhale.identify.closed_loop import Loop
 from greywhale.identify.data import prepare
 from greywhale.identify.identification import identify
-from greywhale.link import schema
-from greywhale.simulate import plant_row
+from greywhale.loop import plant_row
+from greywhale.protocol import schema
 from tools.bench.recordings import Recorded
 
 

@@ -8,14 +8,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from greywhale.arm import ArmParameters, load_arm
+from greywhale.arm import ArmParameters
 from greywhale.arm.parameters import Drive
 from greywhale.errors import UserError
+from greywhale.files.arm import load_arm
+from greywhale.files.log import Log
 from greywhale.identify import Outcome, Table, identify
 from greywhale.identify.checks import check
 from greywhale.identify.data import LONGEST_GAP_S, prepare, windows_of
-from greywhale.link import schema
-from greywhale.log import Log
+from greywhale.protocol import schema
 from greywhale.trajectory import human_reaches, multi_steps
 from tools.bench.recordings import Recorded, record
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from greywhale.arm import ArmParameters, load_arm
+from greywhale.arm import ArmParameters
 from greywhale.errors import UserError
+from greywhale.files.arm import load_arm
 from greywhale.identify import Outcome, sampled_plants
 from greywhale.identify.space import KINDS, Space, column
-from greywhale.simulate import plant_row
-from greywhale.simulate.tables import check_plants
+from greywhale.loop import plant_row
+from greywhale.loop.tables import check_plants
 
 
 @pytest.fixture(scope="module")

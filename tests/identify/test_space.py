@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from greywhale.arm import ArmParameters, default_arm, load_arm
-from greywhale.identify.model_file import arm_of, to_toml
+from greywhale.arm import ArmParameters
+from greywhale.files.arm import default_arm, load_arm
+from greywhale.files.model import arm_of, to_toml
 from greywhale.identify.space import JOINTS, KINDS, MOTOR, Space, column
-from greywhale.simulate import plant_row
+from greywhale.loop import plant_row
 
 ALL = tuple(KINDS)
 

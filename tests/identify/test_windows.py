@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 
 from greywhale import _native
-from greywhale.arm import Arm, ArmParameters, default_arm
+from greywhale.arm import Arm, ArmParameters
+from greywhale.files.arm import default_arm
 from greywhale.identify.data import prepare, windows_of
 from greywhale.identify.space import MOTOR, Space
 from greywhale.identify.steps import WindowFit
 from greywhale.identify.windows import WindowResidual
-from greywhale.simulate import plant_row
+from greywhale.loop import plant_row
 from tools.bench.recordings import Recorded
 
 H = 0.25e-3

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from greywhale.errors import UserError
-from greywhale.log import Log
-from greywhale.log.layout import Origin
+from greywhale.files.log import Log
+from greywhale.files.log.layout import Origin
 from greywhale.measure import Settings, evaluate
 from greywhale.measure.runs import gap_free_runs, resting
 

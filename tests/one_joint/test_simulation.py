@@ -10,10 +10,11 @@ import pytest
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from greywhale.arm import Arm, default_arm
+from greywhale.arm import Arm
+from greywhale.files.arm import default_arm
+from greywhale.loop import PLANT_COLUMNS, plant_row
 from greywhale.one_joint import COLUMNS, Law, Record, Rig, Runner, pieces_of, plants, proportional, relay
 from greywhale.one_joint.law import trapezoidal_pid
-from greywhale.simulate import PLANT_COLUMNS, plant_row
 from tests.one_joint.records import still
 
 Floats = NDArray[np.float64]

@@ -6,8 +6,9 @@ import mujoco
 import numpy as np
 import pinocchio
 
-from greywhale.arm import ArmParameters, default_arm
+from greywhale.arm import ArmParameters
 from greywhale.arm.export import mjcf, urdf
+from greywhale.files.arm import default_arm
 
 TIP_MASS = 0.07  # kg, so that the tip's terms are in the comparison
 

@@ -14,11 +14,11 @@ import numpy as np
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.export import mjcf
+from greywhale.files.log import Log, LogWriter, read_log
+from greywhale.files.log.layout import Origin
 from greywhale.fuzzy.settings import JointSettings
-from greywhale.link import schema
-from greywhale.log import Log, LogWriter, read_log
-from greywhale.log.layout import Origin
-from greywhale.simulate import CONTROLLER_COLUMNS
+from greywhale.loop import CONTROLLER_COLUMNS
+from greywhale.protocol import schema
 from greywhale.trajectory import Trajectory
 
 JOINTS = 4

@@ -12,8 +12,9 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parent))
 from arm_engines import MuJoCo, Pinocchio, arm_with_tip, random_states
 
-from greywhale.arm import Arm, ArmParameters, default_arm, load_arm
+from greywhale.arm import Arm, ArmParameters
 from greywhale.arm.export import mjcf
+from greywhale.files.arm import default_arm, load_arm
 
 STATES = 500
 TOLERANCE = 1e-9

@@ -8,8 +8,8 @@ from scipy.linalg import expm, toeplitz
 from scipy.optimize import lsq_linear, minimize
 
 from greywhale import _native
-from greywhale.arm import default_arm, load_arm
-from greywhale.simulate import PLANT_COLUMNS, leader_slices, plant_row
+from greywhale.files.arm import default_arm, load_arm
+from greywhale.loop import PLANT_COLUMNS, leader_slices, plant_row
 from greywhale.trajectory import steps
 from greywhale.tune.floor import Floats, saturation_floor
 

@@ -11,7 +11,8 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parent))
 from mujoco_recording import record
 
-from greywhale.arm import ArmParameters, load_arm
+from greywhale.arm import ArmParameters
+from greywhale.files.arm import load_arm
 from greywhale.identify import Outcome, Table, identify
 from greywhale.trajectory import human_reaches
 from tools.bench.recordings import random_arm, table_of

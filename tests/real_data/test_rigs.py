@@ -11,9 +11,9 @@ import pytest
 
 from greywhale.arm import Arm, ArmParameters
 from greywhale.errors import UserError
-from greywhale.log import Log
+from greywhale.files.log import Log
+from greywhale.loop import plant_row
 from greywhale.one_joint import Runner, fit, pieces_of, plants
-from greywhale.simulate import plant_row
 from tools.bench import bench_real_data
 from tools.real_data import product, study
 from tools.real_data.compare import halves

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from greywhale.errors import UserError
-from greywhale.log import Log
-from greywhale.log.layout import Origin
+from greywhale.files.log import Log
+from greywhale.files.log.layout import Origin
 from greywhale.report import Trace, draw_following, follow, trace
 
 

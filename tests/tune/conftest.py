@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from greywhale.simulate import default_controller
+from greywhale.loop import default_controller
 from greywhale.trajectory import Trajectory
 from greywhale.tune.floor import Floor
 from greywhale.tune.margins import Margin

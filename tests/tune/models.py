@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from greywhale.arm import ArmParameters, default_arm
-from greywhale.identify.model_file import to_toml
+from greywhale.arm import ArmParameters
+from greywhale.files.arm import default_arm
+from greywhale.files.model import to_toml
 from greywhale.identify.space import JOINTS, KINDS, Space
 from greywhale.measure import Evaluation
 from greywhale.measure.evaluate import JointMeasures

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from greywhale.config import controller
-from greywhale.link import schema
-from greywhale.simulate import controller_row
+from greywhale.files import controller
+from greywhale.loop import controller_row
+from greywhale.protocol import schema
 from greywhale.tune.controller_file import provenance, save
 from greywhale.tune.outcome import Outcome
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from greywhale import _native
-from greywhale.arm import default_arm, load_arm
 from greywhale.errors import UserError
-from greywhale.simulate import PLANT_COLUMNS, Experiment, leader_slices, plant_row
+from greywhale.files.arm import default_arm, load_arm
+from greywhale.loop import PLANT_COLUMNS, Experiment, leader_slices, plant_row
 from greywhale.trajectory import Trajectory, human_reaches, multi_steps, steps
 from greywhale.tune.floor import Floats, saturation_floor
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from greywhale.errors import UserError
-from greywhale.simulate import default_controller
+from greywhale.loop import default_controller
 from greywhale.tune.journal import Journal
 
 ROWS = np.repeat(default_controller()[None], 2, axis=0)

@@ -6,20 +6,11 @@ import numpy as np
 import pytest
 
 from greywhale import _native
-from greywhale.arm import default_arm
-from greywhale.config import controller
-from greywhale.link import schema
-from greywhale.simulate import PLANT_COLUMNS, controller_row, default_controller, plant_row
-from greywhale.tune.margins import (
-    DELAY,
-    SCENARIOS,
-    TEETH,
-    Margins,
-    loosest,
-    penalty,
-    with_gain,
-    with_softer_teeth,
-)
+from greywhale.files import controller
+from greywhale.files.arm import default_arm
+from greywhale.loop import PLANT_COLUMNS, controller_row, default_controller, plant_row
+from greywhale.protocol import schema
+from greywhale.tune.margins import DELAY, SCENARIOS, TEETH, Margins, loosest, penalty, with_gain, with_softer_teeth
 from tools.setup.console import ROOT
 
 ARM = default_arm()

@@ -9,13 +9,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from greywhale.arm import ArmParameters, default_arm, load_arm
-from greywhale.config import parameter_file
+from greywhale.arm import ArmParameters
 from greywhale.errors import BAD_USAGE, FAILED, UserError
+from greywhale.files import parameter_file
+from greywhale.files.arm import default_arm, load_arm
+from greywhale.files.model import to_toml
 from greywhale.identify import sampled_plants
-from greywhale.identify.model_file import to_toml
-from greywhale.link import schema
-from greywhale.simulate import default_controller, plant_row
+from greywhale.loop import default_controller, plant_row
+from greywhale.protocol import schema
 from greywhale.tune.model import load_model
 from tests.tune.models import facts_of, log_facts, write_model
 

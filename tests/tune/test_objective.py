@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from greywhale.arm import default_arm
 from greywhale.errors import UserError
-from greywhale.link import schema
-from greywhale.simulate import PLANT_COLUMNS, default_controller, plant_row
+from greywhale.files.arm import default_arm
+from greywhale.loop import PLANT_COLUMNS, default_controller, plant_row
+from greywhale.protocol import schema
 from greywhale.trajectory import Trajectory
 from greywhale.tune.objective import EFFORT, RMS, Objective, combined, crossed
 from greywhale.tune.training import LEVELS, SOON_S, drills, moves, reach, since_moving

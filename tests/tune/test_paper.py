@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from greywhale.link import schema
-from greywhale.simulate import PLANT_COLUMNS, Experiment, default_controller
+from greywhale.loop import PLANT_COLUMNS, Experiment, default_controller
+from greywhale.protocol import schema
 from greywhale.trajectory import multi_steps, steps
 from greywhale.tune import Outcome, tune
 from greywhale.tune.model import Model, load_model

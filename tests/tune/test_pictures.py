@@ -14,10 +14,10 @@ from matplotlib.lines import Line2D
 from matplotlib.text import Text
 from matplotlib.transforms import BboxBase
 
-from greywhale.config.controller import load
-from greywhale.config.paper_tables import paper_table
 from greywhale.errors import UserError
-from greywhale.simulate import controller_row
+from greywhale.files.controller import load
+from greywhale.files.paper_tables import paper_table
+from greywhale.loop import controller_row
 from greywhale.trajectory import multi_steps
 from greywhale.tune import pictures
 from greywhale.tune.outcome import Outcome

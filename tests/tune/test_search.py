@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from greywhale.loop import default_controller
 from greywhale.optimise import Optimiser, create
-from greywhale.simulate import default_controller
 from greywhale.tune import search
 from greywhale.tune.journal import Journal
 from greywhale.tune.judgement import choose

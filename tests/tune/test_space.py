@@ -9,8 +9,8 @@ import pytest
 
 from greywhale.errors import UserError
 from greywhale.fuzzy.settings import LEAST_WIDTH, SET_UNIT, JointSettings
-from greywhale.link.schema import Refusal
-from greywhale.simulate import CONTROLLER_COLUMNS, default_controller
+from greywhale.loop import CONTROLLER_COLUMNS, default_controller
+from greywhale.protocol.schema import Refusal
 from greywhale.tune.space import GAINS, SETS, STRATEGIES, Space, check_bounds, check_strategy
 
 BEFORE = default_controller()

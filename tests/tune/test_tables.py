@@ -9,10 +9,10 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from greywhale.config.controller import load
-from greywhale.config.paper_tables import paper_table
+from greywhale.files.controller import load
+from greywhale.files.paper_tables import paper_table
+from greywhale.loop import controller_row
 from greywhale.measure import Evaluation, JointMeasures
-from greywhale.simulate import controller_row
 from greywhale.tune import tables
 from greywhale.tune.outcome import Outcome
 from greywhale.tune.tables import Controllers, Table

@@ -13,9 +13,9 @@ import pytest
 
 from greywhale.errors import UserError
 from greywhale.fuzzy.settings import JointSettings
-from greywhale.link.schema import Refusal
+from greywhale.loop import plant_row
 from greywhale.optimise import METHODS as OPTIMISERS
-from greywhale.simulate import plant_row
+from greywhale.protocol.schema import Refusal
 from greywhale.tune import METHODS, Outcome, check_request, search, tune, tuning
 from greywhale.tune.model import Model, load_model
 from greywhale.tune.objective import Objective

@@ -6,7 +6,8 @@ import timeit
 
 import numpy as np
 
-from greywhale.arm import Arm, Potentiometers, default_arm
+from greywhale.arm import Arm, Potentiometers
+from greywhale.files.arm import default_arm
 from tools.bench.figure import Figure
 
 CALLS = 20_000

@@ -20,9 +20,9 @@ from typing import Any
 
 import numpy as np
 
-from greywhale.arm import default_arm
 from greywhale.arm.export import mjcf
-from greywhale.simulate import Experiment, default_controller, plant_row
+from greywhale.files.arm import default_arm
+from greywhale.loop import Experiment, default_controller, plant_row
 from greywhale.trajectory import human_reaches
 from tools.bench.figure import Figure
 from tools.setup.console import ROOT

@@ -10,8 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
-from greywhale.arm import ArmParameters, default_arm, load_arm
+from greywhale.arm import ArmParameters
 from greywhale.excite import Design, design
+from greywhale.files.arm import default_arm, load_arm
 from greywhale.identify import Outcome, identify
 from greywhale.identify.space import MOTOR, Space
 from greywhale.trajectory import Trajectory, human_reaches

@@ -10,15 +10,16 @@ from pathlib import Path
 
 import numpy as np
 
-from greywhale.arm import ArmParameters, default_arm, load_arm
+from greywhale.arm import ArmParameters
+from greywhale.files.arm import default_arm, load_arm
 from greywhale.identify import Outcome, Table, identify
 from greywhale.identify.closed_loop import Loop, LoopResidual
 from greywhale.identify.data import prepare
 from greywhale.identify.fit import least_squares_fit
 from greywhale.identify.paper import PaperSearch
 from greywhale.identify.space import MOTOR, Space
+from greywhale.loop import plant_row
 from greywhale.optimise import minimise
-from greywhale.simulate import plant_row
 from tools.bench.figure import Figure
 from tools.bench.recordings import Recorded, random_arm, record_three, table_of
 

@@ -7,12 +7,13 @@ import time
 from pathlib import Path
 from typing import Any
 
+from greywhale.board.device import Device
+from greywhale.board.record import record
 from greywhale.demo import BenchProcess
-from greywhale.link import schema
-from greywhale.link.device import Device
-from greywhale.link.frames import encode_frame
-from greywhale.log.record import record
-from greywhale.trajectory import human_reaches, save_leader
+from greywhale.files.leader import save_leader
+from greywhale.protocol import schema
+from greywhale.protocol.frames import encode_frame
+from greywhale.trajectory import human_reaches
 from greywhale_sim.assemble import BenchOptions, build_bench
 from greywhale_sim.wiring import BOARDS
 from tools.bench.figure import Figure

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from greywhale.link import frames, schema
-from greywhale.link.declared import Message
+from greywhale.protocol import frames, schema
+from greywhale.protocol.declared import Message
 from greywhale_sim._board import Board
 from greywhale_sim.symbols import Symbol, read_symbols
 from tools.bench.figure import Figure

@@ -9,15 +9,16 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from greywhale.arm import default_arm, load_arm
-from greywhale.config.paper_tables import paper_table
 from greywhale.demo import BenchProcess, record_motion
 from greywhale.demo.learn import learn
 from greywhale.demo.practice import UNTUNED, practise, tables
-from greywhale.link import schema
+from greywhale.files.arm import default_arm, load_arm
+from greywhale.files.leader import save_leader
+from greywhale.files.paper_tables import paper_table
+from greywhale.loop import plant_row
 from greywhale.measure import Evaluation, evaluate
-from greywhale.simulate import plant_row
-from greywhale.trajectory import Trajectory, save_leader
+from greywhale.protocol import schema
+from greywhale.trajectory import Trajectory
 from greywhale.tune.margins import Margins
 from tools.bench.figure import Figure
 from tools.bench.tuning import Judged, figures, motions

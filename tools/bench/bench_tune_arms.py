@@ -1,7 +1,7 @@
 """Ten arms drawn at random: each practises, is identified, is tuned on that model, and is judged as it truly is.
 
 The recordings and the verdicts come from the native closed loop, which repeats the firmware on the bench duty by duty
-(tests/simulate); the true arm is known to nobody but this judge.
+(tests/loop); the true arm is known to nobody but this judge.
 """
 
 from __future__ import annotations
@@ -12,12 +12,13 @@ from pathlib import Path
 
 import numpy as np
 
-from greywhale.arm import ArmParameters, load_arm
+from greywhale.arm import ArmParameters
 from greywhale.demo.learn import learn
 from greywhale.demo.practice import tables
-from greywhale.link import schema
-from greywhale.simulate import Experiment, default_controller, plant_row
-from greywhale.simulate.tables import Controllers
+from greywhale.files.arm import load_arm
+from greywhale.loop import Experiment, default_controller, plant_row
+from greywhale.loop.tables import Controllers
+from greywhale.protocol import schema
 from greywhale.trajectory import human_reaches, multi_steps, steps
 from greywhale.trajectory.motion import Array
 from greywhale.tune.floor import saturation_floor

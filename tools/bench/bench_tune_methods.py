@@ -13,10 +13,10 @@ from pathlib import Path
 import numpy as np
 from scipy.stats import mannwhitneyu, rankdata
 
-from greywhale.arm import default_arm, load_arm
 from greywhale.demo.practice import tables
+from greywhale.files.arm import default_arm, load_arm
 from greywhale.identify import identify
-from greywhale.link import schema
+from greywhale.protocol import schema
 from greywhale.trajectory.motion import Array
 from greywhale.tune import tune
 from greywhale.tune.model import Model, load_model

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from greywhale.config import controller
-from greywhale.config.paper_tables import paper_table
-from greywhale.simulate import Experiment, controller_row
-from greywhale.simulate.tables import PLANT_COLUMNS, Controllers
+from greywhale.files import controller
+from greywhale.files.paper_tables import paper_table
+from greywhale.loop import Experiment, controller_row
+from greywhale.loop.tables import PLANT_COLUMNS, Controllers
 from greywhale.trajectory import multi_steps, steps
 from greywhale.trajectory.motion import Array
 from greywhale.tune import Outcome, tune

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from greywhale.fuzzy.settings import JointSettings
-from greywhale.link.schema import Refusal
+from greywhale.protocol.schema import Refusal
 from greywhale_sim._board import Board
 from greywhale_sim.symbols import read_symbols
 

@@ -12,12 +12,13 @@ from pathlib import Path
 
 import numpy as np
 
-from greywhale.arm import ArmParameters, Potentiometers, load_arm
-from greywhale.config import controller
-from greywhale.link import schema
-from greywhale.log import Log, LogWriter, read_log
-from greywhale.log.layout import Origin
-from greywhale.simulate import Experiment
+from greywhale.arm import ArmParameters, Potentiometers
+from greywhale.files import controller
+from greywhale.files.arm import load_arm
+from greywhale.files.log import Log, LogWriter, read_log
+from greywhale.files.log.layout import Origin
+from greywhale.loop import Experiment
+from greywhale.protocol import schema
 from greywhale.trajectory import Trajectory, human_reaches
 from greywhale.trajectory.motion import Array
 from tools.setup.console import ROOT
@@ -72,7 +73,7 @@ def record(
 
 
 def _controllers(values: tuple[int, ...]) -> np.ndarray:
-    from greywhale.simulate import CONTROLLER_COLUMNS
+    from greywhale.loop import CONTROLLER_COLUMNS
 
     index = schema.PARAMETER_BY_NAME
     rows = [[values[index[f"joint{joint}.{key}"].index] for key in CONTROLLER_COLUMNS] for joint in range(4)]

@@ -10,13 +10,15 @@ from pathlib import Path
 
 import numpy as np
 
-from greywhale.arm import ArmParameters, load_arm
+from greywhale.arm import ArmParameters
 from greywhale.demo.practice import CHECK_SHARE, DESIGN_BUDGET, POSE, PRACTICE_S, tables
 from greywhale.excite import design
-from greywhale.link import schema
-from greywhale.log import Log
+from greywhale.files.arm import load_arm
+from greywhale.files.leader import load_leader
+from greywhale.files.log import Log
 from greywhale.measure import Evaluation
-from greywhale.trajectory import Trajectory, human_reaches, load_leader, multi_steps, steps
+from greywhale.protocol import schema
+from greywhale.trajectory import Trajectory, human_reaches, multi_steps, steps
 from greywhale.trajectory.motion import Array
 from greywhale.tune.floor import saturation_floor
 from tools.bench.figure import Figure

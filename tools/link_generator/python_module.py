@@ -11,7 +11,7 @@ CODES = {"u8": "B", "i8": "b", "u16": "H", "i16": "h", "u32": "I", "i32": "i"}
 
 
 def module(declaration: Declaration) -> str:
-    """Text of greywhale/link/schema.py."""
+    """Text of greywhale/protocol/schema.py."""
     parts = [
         f'"""Messages, enums and parameters of the serial link.\n\n{NOTICE}\n"""',
         "# ruff: noqa: E501\n# fmt: off",

@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
+from greywhale.files.log import Log
+from greywhale.files.log.layout import JOINTS, Origin
 from greywhale.identify import identify
-from greywhale.log import Log
-from greywhale.log.layout import JOINTS, Origin
+from greywhale.loop import PLANT_COLUMNS
 from greywhale.one_joint import COLUMNS, Rig
-from greywhale.simulate import PLANT_COLUMNS
 from tools.real_data.rigs import Source
 
 Floats = NDArray[np.float64]

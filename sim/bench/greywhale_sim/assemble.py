@@ -8,9 +8,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from greywhale import arm
+from greywhale.arm import Arm, Potentiometers
 from greywhale.errors import UserError
-from greywhale.trajectory import human_reaches, load_leader
+from greywhale.files.arm import load_arm
+from greywhale.files.leader import load_leader
+from greywhale.trajectory import human_reaches
 from greywhale_sim import eeprom_file
 from greywhale_sim.bench import SLICE_S, Bench, Plant
 from greywhale_sim.leader import LeaderPlayer
@@ -64,15 +66,15 @@ def build_board(options: BenchOptions) -> Any:
 
 def build_bench(options: BenchOptions, plant: Plant | None = None) -> Bench:
     """The whole bench; `plant` may be any object with step(voltages, dt) -> angles instead of the built-in arm."""
-    parameters = arm.default_arm() if options.arm is None else arm.load_arm(options.arm)
+    parameters = load_arm(options.arm or "default")
     motion = human_reaches(options.seed) if options.leader is None else load_leader(options.leader)
     return Bench(
         board=build_board(options),
         wiring=wiring_of(options.board),
-        plant=arm.Arm(parameters, seed=options.seed) if plant is None else plant,
+        plant=Arm(parameters, seed=options.seed) if plant is None else plant,
         leader=LeaderPlayer(motion, SLICE_S),
-        leader_pots=arm.Potentiometers(parameters.leader_pots, options.seed),
-        follower_pots=arm.Potentiometers(parameters.follower_pots, options.seed + 1),
+        leader_pots=Potentiometers(parameters.leader_pots, options.seed),
+        follower_pots=Potentiometers(parameters.follower_pots, options.seed + 1),
         supply_v=parameters.drive.supply,
     )
 

@@ -16,7 +16,7 @@ from typing import Any
 
 from greywhale import arm
 from greywhale.errors import UserError
-from greywhale.trajectory import load_leader
+from greywhale.files.leader import load_leader
 from greywhale_sim.server import Server
 
 Answer = dict[str, Any]

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import IO
 
 from greywhale.errors import UserError, because
-from greywhale.files import write_whole
+from greywhale.formats.whole import write_whole
 
 
 def load(path: Path, size: int) -> bytes | None:

@@ -17,7 +17,7 @@ from pathlib import Path
 from types import FrameType
 
 from greywhale.errors import UserError, because
-from greywhale.link.ports import bench_directory
+from greywhale.protocol.ports import bench_directory
 from greywhale_sim import commands
 from greywhale_sim.assemble import BenchOptions, build_bench, wiring_of
 from greywhale_sim.serial_port import SerialPort

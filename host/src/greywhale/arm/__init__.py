@@ -5,7 +5,6 @@
 """
 
 from greywhale._native import Wiring
-from greywhale.arm.files import arm_names, default_arm, load_arm
 from greywhale.arm.parameters import ArmParameters, PotentiometerBank
 from greywhale.arm.plant import Arm, Potentiometers
 from greywhale.arm.printed import ERRATA, PrintedBody
@@ -18,7 +17,4 @@ __all__ = [
     "Potentiometers",
     "PrintedBody",
     "Wiring",
-    "arm_names",
-    "default_arm",
-    "load_arm",
 ]

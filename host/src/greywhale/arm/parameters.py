@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal, TypeVar
 from pydantic import AfterValidator, Field, model_validator
 
 from greywhale import _native
-from greywhale.config.toml_file import Table
+from greywhale.formats.toml_file import Table
 
 JOINT_NAMES = ("base yaw", "shoulder pitch", "wrist pitch", "wrist roll")
 PAPER_IYY0 = 8.26e-3  # as printed in the paper's Table 3

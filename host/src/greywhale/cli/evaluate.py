@@ -7,8 +7,8 @@ from pathlib import Path
 import click
 
 from greywhale.cli.output import json_option, show
-from greywhale.files import refuse_inputs
-from greywhale.log import Log, read_log
+from greywhale.files.log import Log, read_log
+from greywhale.formats.whole import refuse_inputs
 from greywhale.measure import Evaluation, evaluate
 
 

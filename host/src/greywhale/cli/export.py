@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from greywhale.cli.output import json_option, show
-from greywhale.files import refuse_inputs, write_text
+from greywhale.formats.whole import refuse_inputs, write_text
 
 
 @click.command("export")
@@ -50,7 +50,8 @@ def _export_fis(source: Path, out: Path, joint: int | None) -> list[Path]:
 
 
 def _export_arm(urdf: str | None, mjcf: str | None, out: Path) -> Path:
-    from greywhale.arm import export, load_arm
+    from greywhale.arm import export
+    from greywhale.files.arm import load_arm
 
     refuse_inputs(out, urdf, mjcf)
     text = export.urdf(load_arm(urdf)) if urdf is not None else export.mjcf(load_arm(str(mjcf)))

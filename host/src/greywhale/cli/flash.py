@@ -6,10 +6,10 @@ from pathlib import Path
 
 import click
 
+from greywhale.board.device import version
+from greywhale.board.flash import BOARDS, flash
 from greywhale.cli.output import json_option, port_option, progress, show
-from greywhale.flash import BOARDS, flash
-from greywhale.link.device import version
-from greywhale.link.ports import board_of, choose_port
+from greywhale.protocol.ports import board_of, choose_port
 
 
 @click.command("flash")

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import click
 
-from greywhale.arm import load_arm
 from greywhale.cli.output import json_option, progress, show
 from greywhale.errors import BAD_USAGE, UserError
-from greywhale.files import refuse_inputs
+from greywhale.files.arm import load_arm
+from greywhale.files.log import read_log
+from greywhale.formats.whole import refuse_inputs
 from greywhale.identify import METHODS, identify, load_table
-from greywhale.log import read_log
 
 
 @click.command("identify")

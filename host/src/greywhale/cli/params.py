@@ -8,14 +8,14 @@ from pathlib import Path
 
 import click
 
+from greywhale.board.device import Device
+from greywhale.board.upload import change_parameters, read_parameters
 from greywhale.cli.output import json_option, port_option, progress, show
-from greywhale.config import parameter_file
 from greywhale.errors import BAD_USAGE, UserError
-from greywhale.link import schema
-from greywhale.link.declared import Parameter
-from greywhale.link.device import Device
-from greywhale.link.ports import choose_port
-from greywhale.link.upload import change_parameters, read_parameters
+from greywhale.files import parameter_file
+from greywhale.protocol import schema
+from greywhale.protocol.declared import Parameter
+from greywhale.protocol.ports import choose_port
 
 
 @click.group("params")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from greywhale.cli.output import json_option, show
-from greywhale.link.ports import find_ports
+from greywhale.protocol.ports import find_ports
 
 
 @click.command("ports")

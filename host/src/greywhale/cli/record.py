@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 
 import click
 
+from greywhale.board.device import Device
+from greywhale.board.record import Recording, check_every_led, pose_of, record, record_led, table_of
 from greywhale.cli.output import json_option, port_option, progress, show
 from greywhale.errors import BAD_USAGE, UserError
-from greywhale.files import refuse_inputs
-from greywhale.link.device import Device
-from greywhale.link.ports import choose_port
-from greywhale.log.record import Recording, check_every_led, pose_of, record, record_led, table_of
-from greywhale.trajectory import save_leader
+from greywhale.files.leader import save_leader
+from greywhale.formats.whole import refuse_inputs
+from greywhale.protocol.ports import choose_port
 
 if TYPE_CHECKING:
     from greywhale.excite import Design
@@ -124,8 +124,8 @@ def _plan(
 ) -> Callable[..., Design]:
     """The design with all that can be refused before a board is asked."""
     # Scipy and the native simulation take a moment to import.
-    from greywhale.arm import load_arm
     from greywhale.excite import BUDGET, SECONDS, check_effort, design, parse_range
+    from greywhale.files.arm import load_arm
 
     length, effort = SECONDS if seconds is None else seconds, BUDGET if budget is None else budget
     check_effort(length, effort)

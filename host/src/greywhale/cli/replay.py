@@ -6,13 +6,13 @@ from pathlib import Path
 
 import click
 
+from greywhale.board.device import Device
+from greywhale.board.record import check_every_led, record_led
 from greywhale.cli.output import json_option, port_option, progress, show
 from greywhale.cli.record import require_folders, told
-from greywhale.files import refuse_inputs
-from greywhale.link.device import Device
-from greywhale.link.ports import choose_port
-from greywhale.log.record import check_every_led, record_led
-from greywhale.trajectory import load_leader
+from greywhale.files.leader import load_leader
+from greywhale.formats.whole import refuse_inputs
+from greywhale.protocol.ports import choose_port
 
 
 @click.command("replay")

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import click
 
+from greywhale.board.device import Device
 from greywhale.cli.output import json_option, port_option, show
-from greywhale.link import schema
-from greywhale.link.device import Device
-from greywhale.link.ports import choose_port
+from greywhale.protocol import schema
+from greywhale.protocol.ports import choose_port
 
 
 @click.command("stop")

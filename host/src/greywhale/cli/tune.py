@@ -9,10 +9,10 @@ from pathlib import Path
 import click
 
 from greywhale.cli.output import json_option, progress, show
-from greywhale.config import controller as controller_file
 from greywhale.errors import BAD_USAGE, UserError, because
-from greywhale.files import refuse_inputs, temporary_beside
-from greywhale.simulate import controller_row
+from greywhale.files import controller as controller_file
+from greywhale.formats.whole import refuse_inputs, temporary_beside
+from greywhale.loop import controller_row
 from greywhale.tune import METHODS, STRATEGIES, check_request, tune
 from greywhale.tune.model import SAMPLES, load_model
 from greywhale.tune.space import GAINS, SETS

@@ -8,12 +8,12 @@ from typing import Any
 
 import click
 
+from greywhale.board.device import Device
+from greywhale.board.upload import upload_controller
 from greywhale.cli.output import json_option, port_option, progress, show
-from greywhale.config import controller as controller_file
-from greywhale.link import schema
-from greywhale.link.device import Device
-from greywhale.link.ports import choose_port
-from greywhale.link.upload import upload_controller
+from greywhale.files import controller as controller_file
+from greywhale.protocol import schema
+from greywhale.protocol.ports import choose_port
 
 
 @click.command("upload")

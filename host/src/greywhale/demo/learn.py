@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from greywhale.arm import ArmParameters, load_arm
+from greywhale.arm import ArmParameters
 from greywhale.arm.parameters import Friction, Gear
+from greywhale.files.arm import load_arm
 
 if TYPE_CHECKING:
+    from greywhale.files.log import Log
     from greywhale.identify import Outcome as Identification
     from greywhale.identify import Table
-    from greywhale.log import Log
     from greywhale.tune import Outcome as Tuning
     from greywhale.tune.progress import Report
 

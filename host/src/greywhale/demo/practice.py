@@ -12,14 +12,15 @@ from pathlib import Path
 import numpy as np
 
 from greywhale.arm import ArmParameters
-from greywhale.config import controller as controller_file
-from greywhale.config.paper_tables import paper_table
 from greywhale.demo.bench import BenchProcess
 from greywhale.demo.recorder import record_excitation, record_motion
 from greywhale.excite import design
+from greywhale.files import controller as controller_file
+from greywhale.files.leader import save_leader
+from greywhale.files.log import Log
+from greywhale.files.paper_tables import paper_table
 from greywhale.identify.controllers import Table
-from greywhale.log import Log
-from greywhale.trajectory import Trajectory, human_reaches, save_leader
+from greywhale.trajectory import Trajectory, human_reaches
 
 Progress = Callable[[str, float], None]
 

@@ -10,15 +10,16 @@ from pathlib import Path
 
 import numpy as np
 
+from greywhale.board.device import Device
+from greywhale.board.record import Recording, record, record_led
+from greywhale.board.stream import stream
+from greywhale.board.upload import upload_controller
 from greywhale.demo.bench import BenchProcess
 from greywhale.errors import UserError
-from greywhale.link import schema
-from greywhale.link.device import Device
-from greywhale.link.stream import stream
-from greywhale.link.upload import upload_controller
-from greywhale.log import Log, read_log
-from greywhale.log.record import Recording, record, record_led
-from greywhale.trajectory import Trajectory, load_leader
+from greywhale.files.leader import load_leader
+from greywhale.files.log import Log, read_log
+from greywhale.protocol import schema
+from greywhale.trajectory import Trajectory
 
 Progress = Callable[[str, float], None]
 

@@ -10,23 +10,25 @@ import time
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from greywhale import flash
-from greywhale.arm import ArmParameters, default_arm, load_arm
-from greywhale.config import controller as controller_file
-from greywhale.config.paper_tables import paper_table
+from greywhale.arm import ArmParameters
+from greywhale.board import flash
+from greywhale.board.device import Device
+from greywhale.board.upload import change_parameters
 from greywhale.demo import learn
 from greywhale.demo.bench import BenchProcess
 from greywhale.demo.practice import PRACTICE_S, UNTUNED, practise, tables
 from greywhale.demo.recorder import Recorded, record_motion
 from greywhale.demo.result import DemoResult, Run
 from greywhale.errors import BAD_USAGE, UserError, because
-from greywhale.files import write_text
-from greywhale.link import schema
-from greywhale.link.device import Device
-from greywhale.link.upload import change_parameters
+from greywhale.files import controller as controller_file
+from greywhale.files.arm import default_arm, load_arm
+from greywhale.files.leader import load_leader, save_leader
+from greywhale.files.paper_tables import paper_table
+from greywhale.formats.whole import write_text
 from greywhale.measure import evaluate
+from greywhale.protocol import schema
 from greywhale.report.follow import draw_following, trace
-from greywhale.trajectory import Trajectory, human_reaches, load_leader, save_leader
+from greywhale.trajectory import Trajectory, human_reaches
 from greywhale.tune.progress import Report, silent
 
 SHORTEST_S, LONGEST_S = 4.0, 600.0  # of generated motions

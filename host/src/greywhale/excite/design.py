@@ -24,9 +24,9 @@ from greywhale.excite.multisine import LONGEST_S, SHORTEST_S, Shape
 from greywhale.excite.trial import ROW_S, Tried, try_motion
 from greywhale.identify.space import KINDS, MOTOR, Parameter, Space
 from greywhale.identify.uncertainty import OPEN, OPEN_FACTOR, OPEN_LOG
-from greywhale.link import schema
+from greywhale.loop import plant_row
 from greywhale.optimise import DEFAULT, create
-from greywhale.simulate import plant_row
+from greywhale.protocol import schema
 from greywhale.trajectory import Trajectory
 
 Floats = npt.NDArray[np.float64]

@@ -9,13 +9,13 @@ import numpy as np
 import numpy.typing as npt
 
 from greywhale.arm import ArmParameters
+from greywhale.board.lead import FASTEST_RAD_S
 from greywhale.errors import BAD_USAGE, UserError
 from greywhale.excite.body import Body
 from greywhale.identify import sampled_plants
 from greywhale.identify.space import MOTOR, Space
-from greywhale.link import schema
-from greywhale.link.lead import FASTEST_RAD_S
-from greywhale.simulate import plant_row
+from greywhale.loop import plant_row
+from greywhale.protocol import schema
 
 Floats = npt.NDArray[np.float64]
 JOINTS = 4

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from greywhale.board.lead import POINT_S
 from greywhale.excite.limits import JOINTS, Limits
-from greywhale.link.lead import POINT_S
 from greywhale.trajectory import Trajectory
 from greywhale.trajectory.generate import minimum_jerk
 

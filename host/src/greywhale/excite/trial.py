@@ -12,7 +12,7 @@ import numpy.typing as npt
 from greywhale import _native
 from greywhale.excite.multisine import board_reference
 from greywhale.identify.closed_loop import controller_rows, loop_settings
-from greywhale.simulate import Timing
+from greywhale.loop import Timing
 
 Floats = npt.NDArray[np.float64]
 RAD = 1.0 / 4096.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from greywhale.files import write_text
+from greywhale.formats.whole import write_text
 from greywhale.fuzzy.rules import OUTPUTS, RULES
 
 # MATLAB samples the output at 101 points; triangles as narrow as their distance make of the peaks what they stand for.

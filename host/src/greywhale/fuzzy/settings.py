@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Self
 
 from greywhale import _native
-from greywhale.config.controller import JointController, load
-from greywhale.link.schema import Refusal
+from greywhale.files.controller import JointController, load
+from greywhale.protocol.schema import Refusal
 
 SET_UNIT = 1 << 14
 GAIN_UNIT = 1 << 16

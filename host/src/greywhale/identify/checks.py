@@ -11,7 +11,7 @@ from greywhale.arm import ArmParameters
 from greywhale.errors import UserError
 from greywhale.identify.controllers import Table
 from greywhale.identify.data import JOINTS, Prepared
-from greywhale.link import schema
+from greywhale.protocol import schema
 
 Floats = NDArray[np.float64]
 SHORTEST_S = 4.0

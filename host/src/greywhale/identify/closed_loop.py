@@ -15,8 +15,8 @@ from greywhale.arm import ArmParameters
 from greywhale.identify.data import BLOCK_S, Prepared, part_of
 from greywhale.identify.noise import TRACK, pot_noise
 from greywhale.identify.space import JOINTS, Space
-from greywhale.link import schema
-from greywhale.simulate import CONTROLLER_COLUMNS, Timing
+from greywhale.loop import CONTROLLER_COLUMNS, Timing
+from greywhale.protocol import schema
 
 Floats = NDArray[np.float64]
 TICK_S = 1e-3

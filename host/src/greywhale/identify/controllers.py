@@ -6,10 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from greywhale.config import controller, parameter_file, toml_file
 from greywhale.errors import UserError
-from greywhale.link import schema
-from greywhale.log import Log
+from greywhale.files import controller, parameter_file
+from greywhale.files.log import Log
+from greywhale.formats import toml_file
+from greywhale.protocol import schema
 
 
 @dataclass(frozen=True)

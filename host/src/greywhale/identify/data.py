@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import savgol_filter
 
-from greywhale.log import Log
+from greywhale.files.log import Log
 from greywhale.measure.runs import Run
 
 Floats = NDArray[np.float64]

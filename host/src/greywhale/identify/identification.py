@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
 from greywhale.errors import BAD_USAGE, UserError
+from greywhale.files.log import Log
 from greywhale.identify import checks, controllers, judge
 from greywhale.identify.closed_loop import Loop
 from greywhale.identify.controllers import Table
@@ -20,8 +21,7 @@ from greywhale.identify.search import Search
 from greywhale.identify.space import KINDS, Space
 from greywhale.identify.uncertainty import uncertainty
 from greywhale.identify.windows import WindowResidual
-from greywhale.link import schema
-from greywhale.log import Log
+from greywhale.protocol import schema
 
 Floats = NDArray[np.float64]
 Report = Callable[[str, float], None]

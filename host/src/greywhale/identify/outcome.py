@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
-from greywhale.files import write_text
+from greywhale.files.model import arm_of, to_toml
+from greywhale.formats.whole import write_text
 from greywhale.identify.judge import FIT, Subject, Verdict
-from greywhale.identify.model_file import arm_of, to_toml
 from greywhale.identify.noise import pot_noise
-from greywhale.link import schema
+from greywhale.protocol import schema
 
 Floats = NDArray[np.float64]
 _FILTER_SHIFT = schema.PARAMETER_BY_NAME["filter_shift"].index

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from greywhale.arm import ArmParameters
 from greywhale.identify.closed_loop import Loop
 from greywhale.identify.space import JOINTS, column
+from greywhale.loop import plant_row
 from greywhale.optimise import create
-from greywhale.simulate import plant_row
 
 Floats = NDArray[np.float64]
 Report = Callable[[str, float], None]

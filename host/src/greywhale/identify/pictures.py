@@ -12,12 +12,12 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from greywhale.errors import UserError, because
-from greywhale.files import write_whole
+from greywhale.formats.whole import write_whole
 from greywhale.identify.closed_loop import COMPARED_TICKS, Loop
 from greywhale.identify.judge import Subject, Verdict
 from greywhale.identify.outcome import Outcome
+from greywhale.loop import plant_row
 from greywhale.report.follow import JOINT_NAMES
-from greywhale.simulate import plant_row
 
 _RECORDED, _WHITE, _MODEL = "#222222", "#D55E00", "#0072B2"
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from greywhale.arm import ArmParameters
 from greywhale.errors import BAD_USAGE, UserError
 from greywhale.identify.space import JOINTS, KINDS, Parameter, Space
-from greywhale.simulate import plant_row
+from greywhale.loop import plant_row
 
 Floats = NDArray[np.float64]
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
-from greywhale.simulate import PLANT_COLUMNS, plant_row
+from greywhale.loop import PLANT_COLUMNS, plant_row
 
 Floats = NDArray[np.float64]
 JOINTS = 4

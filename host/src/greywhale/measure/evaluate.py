@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from greywhale.errors import UserError
-from greywhale.log import Log
+from greywhale.files.log import Log
 from greywhale.measure.delay import correlation_delay, onset_delays
 from greywhale.measure.runs import Run, gap_free_runs, resting
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from greywhale.errors import BAD_USAGE, UserError
-from greywhale.files import write_text, write_whole
+from greywhale.formats.whole import write_text, write_whole
 from greywhale.optimise.comparison import Comparison
 from greywhale.optimise.functions import Setting
 

@@ -21,8 +21,8 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from greywhale.errors import UserError
-from greywhale.files import write_whole
-from greywhale.log import Log
+from greywhale.files.log import Log
+from greywhale.formats.whole import write_whole
 from greywhale.measure import evaluate
 
 Floats = NDArray[np.float64]

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from greywhale.arm.parameters import JOINT_NAMES
-from greywhale.config import controller
-from greywhale.link import schema
-from greywhale.simulate import CONTROLLER_COLUMNS
+from greywhale.files import controller
+from greywhale.loop import CONTROLLER_COLUMNS
+from greywhale.protocol import schema
 from greywhale.tune.margins import Margin
 from greywhale.tune.outcome import HeldOut, Outcome
 from greywhale.tune.summary import failing_margins

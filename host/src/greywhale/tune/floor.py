@@ -30,10 +30,10 @@ from numpy.typing import NDArray
 from greywhale import _native
 from greywhale.arm import ArmParameters
 from greywhale.errors import BAD_USAGE, UserError
+from greywhale.loop import PLANT_COLUMNS, leader_slices, plant_row
+from greywhale.loop.leader import SLICE_S, SLICES_PER_TICK
+from greywhale.loop.tables import check_plants
 from greywhale.measure.runs import resting
-from greywhale.simulate import PLANT_COLUMNS, leader_slices, plant_row
-from greywhale.simulate.leader import SLICE_S, SLICES_PER_TICK
-from greywhale.simulate.tables import check_plants
 from greywhale.trajectory import JOINTS, Trajectory
 
 Floats = NDArray[np.float64]

@@ -11,10 +11,10 @@ import numpy as np
 import numpy.typing as npt
 
 from greywhale.arm import ArmParameters
-from greywhale.log import Log
-from greywhale.log.layout import Origin
+from greywhale.files.log import Log
+from greywhale.files.log.layout import Origin
+from greywhale.loop import Experiment
 from greywhale.measure import Evaluation, evaluate
-from greywhale.simulate import Experiment
 from greywhale.trajectory import Trajectory, human_reaches, multi_steps, steps
 from greywhale.tune.floor import saturation_floor
 from greywhale.tune.outcome import HeldOut

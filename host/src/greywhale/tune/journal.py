@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from greywhale.errors import UserError, because
-from greywhale.files import refuse_devices
+from greywhale.formats.whole import refuse_devices
 
 Floats = npt.NDArray[np.float64]
 Controllers = npt.NDArray[np.int32]

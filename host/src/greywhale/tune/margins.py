@@ -19,9 +19,9 @@ import numpy.typing as npt
 
 from greywhale import _native
 from greywhale.arm import ArmParameters
-from greywhale.link import schema
-from greywhale.simulate import PLANT_COLUMNS, Experiment, Result, Timing
-from greywhale.simulate.experiment import PWM_TOP
+from greywhale.loop import PLANT_COLUMNS, Experiment, Result, Timing
+from greywhale.loop.experiment import PWM_TOP
+from greywhale.protocol import schema
 from greywhale.trajectory import Trajectory
 from greywhale.trajectory.generate import minimum_jerk
 from greywhale.tune.objective import crossed

@@ -7,18 +7,18 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import dataclass, field
-from importlib import resources
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from greywhale.arm import ArmParameters, arm_names, load_arm
+from greywhale.arm import ArmParameters
 from greywhale.errors import BAD_USAGE, UserError
+from greywhale.files.arm import content_of, load_arm
 from greywhale.identify import load_table, sampled_plants
-from greywhale.link import schema
-from greywhale.simulate import plant_row
-from greywhale.simulate.tables import controllers_of
+from greywhale.loop import plant_row
+from greywhale.loop.tables import controllers_of
+from greywhale.protocol import schema
 from greywhale.tune import model_checks as checks
 from greywhale.tune.model_checks import Doubt, Identification
 
@@ -87,7 +87,7 @@ def load_model(
         plants=plants,
         doubts=(*(doubt.reason + "." for doubt in doubts), *remarks),
         file=str(path),
-        digest=hashlib.sha256(_content(path)).hexdigest(),
+        digest=hashlib.sha256(content_of(path)).hexdigest(),
     )
 
 
@@ -134,9 +134,3 @@ def _refusal(path: str, doubts: list[Doubt]) -> str:
     more = len(doubts) - 1
     others = f" ({more} more reason{'s' if more > 1 else ''} would come after this one)" if more else ""
     return f"{path}: {doubts[0].reason}; {doubts[0].remedy}, or go on with --force{others}."
-
-
-def _content(path: str | Path) -> bytes:
-    if path in arm_names():
-        return resources.files("greywhale.arm").joinpath("data", f"{path}.toml").read_bytes()
-    return Path(path).read_bytes()

@@ -16,10 +16,10 @@ from greywhale.errors import UserError
 from greywhale.identify import sampled_plants
 from greywhale.identify.judge import FIT, Verdict, warnings_of
 from greywhale.identify.uncertainty import EXCITATION
-from greywhale.link import schema
-from greywhale.simulate import PLANT_COLUMNS, Experiment, plant_row
-from greywhale.simulate.experiment import TICK_S
-from greywhale.simulate.tables import controllers_of
+from greywhale.loop import PLANT_COLUMNS, Experiment, plant_row
+from greywhale.loop.experiment import TICK_S
+from greywhale.loop.tables import controllers_of
+from greywhale.protocol import schema
 from greywhale.trajectory import human_reaches
 from greywhale.tune.training import moves, reach, within
 

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from greywhale.simulate import Result
+from greywhale.loop import Result
 from greywhale.tune.training import Drill
 
 Floats = npt.NDArray[np.float64]

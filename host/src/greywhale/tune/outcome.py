@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from greywhale.link import schema
 from greywhale.measure import Evaluation
+from greywhale.protocol import schema
 from greywhale.trajectory import Trajectory
 from greywhale.tune.floor import Floor
 from greywhale.tune.margins import Margin

@@ -25,8 +25,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from greywhale.link import schema
-from greywhale.simulate import PLANT_COLUMNS, Experiment
+from greywhale.loop import PLANT_COLUMNS, Experiment
+from greywhale.protocol import schema
 from greywhale.trajectory import Trajectory, steps
 from greywhale.tune.held_out import judge_held_out
 from greywhale.tune.journal import Journal

@@ -24,9 +24,9 @@ from matplotlib.lines import Line2D
 
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.errors import UserError, because
-from greywhale.files import write_whole
+from greywhale.formats.whole import write_whole
 from greywhale.fuzzy.settings import SET_UNIT
-from greywhale.simulate import CONTROLLER_COLUMNS
+from greywhale.loop import CONTROLLER_COLUMNS
 
 if TYPE_CHECKING:
     from greywhale.tune.outcome import Outcome

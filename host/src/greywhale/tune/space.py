@@ -15,8 +15,8 @@ import numpy.typing as npt
 
 from greywhale.errors import BAD_USAGE, UserError
 from greywhale.fuzzy.settings import GAIN_UNIT, LARGEST_KI, LARGEST_KI_PERIOD, LARGEST_KU_MV, LEAST_WIDTH, SET_UNIT
-from greywhale.link import schema
-from greywhale.simulate import CONTROLLER_COLUMNS
+from greywhale.loop import CONTROLLER_COLUMNS
+from greywhale.protocol import schema
 
 JOINTS = 4
 STRATEGIES = ("mf", "sf", "both")

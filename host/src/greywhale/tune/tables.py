@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from greywhale.config.controller import load
-from greywhale.config.paper_tables import paper_table
+from greywhale.files.controller import load
+from greywhale.files.paper_tables import paper_table
 from greywhale.fuzzy.settings import GAIN_UNIT, SET_UNIT
+from greywhale.loop import CONTROLLER_COLUMNS, controller_row
 from greywhale.measure import Evaluation
-from greywhale.simulate import CONTROLLER_COLUMNS, controller_row
 
 if TYPE_CHECKING:
     from greywhale.tune.outcome import Outcome

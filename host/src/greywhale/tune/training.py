@@ -15,8 +15,8 @@ import numpy.typing as npt
 
 from greywhale.arm import ArmParameters
 from greywhale.errors import BAD_USAGE, UserError
-from greywhale.link import schema
-from greywhale.simulate import Experiment
+from greywhale.loop import Experiment
+from greywhale.protocol import schema
 from greywhale.trajectory import Trajectory, human_reaches
 from greywhale.trajectory.generate import minimum_jerk
 
@@ -88,7 +88,7 @@ def reach(arm: ArmParameters, parameters: Sequence[int], plants: Floats) -> tupl
 
 
 def _stop(joint: int, side: str) -> int:
-    from greywhale.simulate import PLANT_COLUMNS
+    from greywhale.loop import PLANT_COLUMNS
 
     return PLANT_COLUMNS.index(f"joint{joint}.stop_{side}")
 

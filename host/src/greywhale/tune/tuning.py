@@ -22,9 +22,9 @@ import numpy.typing as npt
 
 from greywhale.arm import ArmParameters
 from greywhale.errors import BAD_USAGE, UserError
-from greywhale.link import schema
+from greywhale.loop.tables import CONTROLLER_COLUMNS, check_controllers
 from greywhale.optimise import METHODS as OPTIMISERS
-from greywhale.simulate.tables import CONTROLLER_COLUMNS, check_controllers
+from greywhale.protocol import schema
 from greywhale.tune import search
 from greywhale.tune.held_out import judge_held_out
 from greywhale.tune.journal import Journal

@@ -1,0 +1,1 @@
+"""A connected board: requests, samples, recordings, parameter sets, flashing."""

@@ -1,0 +1,314 @@
+"""A greywhale board on a serial port: greeting, requests with retries, motors that never stay on by accident.
+
+An Arduino resets when its port is opened, and its bootloader listens first, for up to two seconds. The Mega's
+bootloader stays for several seconds more once it has seen any byte, so this side keeps quiet until the firmware has
+been heard (it sends one hello by itself when it starts) or the bootloader must have gone.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import signal
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Iterator
+from types import TracebackType
+from typing import Self
+
+from greywhale.board.refusal import RefusedError
+from greywhale.errors import UserError
+from greywhale.protocol import schema
+from greywhale.protocol.declared import Reply_co, Request
+from greywhale.protocol.frames import Frame, FrameDecoder, encode_frame
+from greywhale.protocol.transport import Transport
+
+# A request is repeated, unchanged, after this long without an answer. Every request may be repeated safely.
+REPLY_WAIT_S = 0.3
+ATTEMPTS = 5
+# By then a bootloader to which nobody spoke has started the firmware.
+QUIET_S = 2.0
+# How long to go on greeting a port that says nothing, counted from its opening.
+PATIENCE_S = 5.0
+
+# Requests count 1..255; the hello that a starting board sends by itself has this sequence number.
+_UNASKED = 0
+
+
+class NoAnswerError(UserError):
+    """The board stayed silent through all repeats of a request."""
+
+
+class Device:
+    """An open and greeted board; leaving the context, for whatever reason, stops the motors if they may run."""
+
+    def __init__(self, port: str, quiet_s: float = QUIET_S, patience_s: float = PATIENCE_S) -> None:
+        self.port = port
+        self.lease_ms = 0
+        self._transport = Transport(port)
+        self._decoder = FrameDecoder()
+        self._replies: deque[Frame] = deque(maxlen=32)
+        self._samples: list[schema.Sample] = []
+        self._lead_progress: schema.LeadPointReply | None = None
+        self._lead_refused: schema.Nack | None = None
+        self._sequence = _UNASKED
+        self._heard_bytes = False
+        self._started: bytes | None = None
+        self._greeted = False
+        self._motors_may_run = False
+        try:
+            self.hello: schema.HelloReply = self._greet(quiet_s, patience_s)
+        except BaseException:
+            self._transport.close()
+            raise
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        try:
+            self.close()
+        except UserError as problem:
+            if error is None:
+                raise
+            error.add_note(problem.message)
+
+    def close(self) -> None:
+        """Stop the motors if they may run, then close the port."""
+        try:
+            if self._motors_may_run:
+                self.stop()
+        finally:
+            self._transport.close()
+
+    @property
+    def firmware_version(self) -> str:
+        return version(self.hello)
+
+    def ask(self, request: Request[Reply_co]) -> Reply_co:
+        """Send a request until it is answered, and return the answer; a refusal is a UserError with its remedy."""
+        payload = self._exchange(request.TYPE, request.NAME, request.pack(), ATTEMPTS)
+        try:
+            return request.reply(payload)
+        except UserError as error:
+            raise UserError(f"{self.port}: {error.message}") from None
+
+    def greet(self) -> schema.HelloReply:
+        """Say hello again: `hello` then tells the CRC of the set that runs now."""
+        self.hello = self.ask(schema.HelloRequest())
+        return self.hello
+
+    def status(self) -> schema.StatusReply:
+        return self.ask(schema.StatusRequest())
+
+    def telemetry(self, every: int) -> None:
+        """Ask for a sample every so many ticks; 0 turns them off. Samples of before are forgotten."""
+        echoed = self.ask(schema.TelemetryRequest(every)).every
+        if echoed != every:
+            raise UserError(
+                f"{self.port}: the board set telemetry to every {echoed} ticks instead of {every}; try again."
+            )
+        self._samples.clear()
+
+    def enable(self, lease_ms: int) -> None:
+        """Start the motors; they go off by themselves when the lease is not renewed in time (0: only on stop)."""
+        self._motors_may_run = True
+        self.lease_ms = lease_ms
+        self.ask(schema.EnableRequest(lease_ms))
+
+    def lead(self, lease_ms: int) -> schema.LeadReply:
+        """Start the motors with this host in the leader's place; points of the reference go out by `lead_point`."""
+        self._motors_may_run = True
+        self.lease_ms = lease_ms
+        self._lead_progress = self._lead_refused = None
+        return self.ask(schema.LeadRequest(lease_ms))
+
+    def lead_point(self, number: int, step: tuple[int, int, int, int]) -> None:
+        """Send a point of the reference without waiting for the answer, which `lead_progress` tells."""
+        request = schema.LeadPointRequest(number, step)
+        self._transport.write(encode_frame(request.TYPE, self._next_sequence(), request.pack()))
+
+    def lead_progress(self) -> schema.LeadPointReply | None:
+        """The last answer to a point, None before the first; a refusal is raised."""
+        if self._lead_refused is not None:
+            raise RefusedError(self.port, schema.LeadPointRequest.NAME, self._lead_refused)
+        return self._lead_progress
+
+    @contextlib.contextmanager
+    def enabled(self, lease_ms: int) -> Iterator[None]:
+        """Motors on inside, off afterwards, also when an error or Ctrl-C ends it."""
+        with self._motors_on(lambda: self.enable(lease_ms)):
+            yield
+
+    @contextlib.contextmanager
+    def leading(self, lease_ms: int) -> Iterator[schema.LeadReply]:
+        """The same with this host in the leader's place."""
+        begun: list[schema.LeadReply] = []
+        with self._motors_on(lambda: begun.append(self.lead(lease_ms))):
+            yield begun[0]
+
+    @contextlib.contextmanager
+    def _motors_on(self, start: Callable[[], None]) -> Iterator[None]:
+        try:
+            start()
+            yield
+        except BaseException as error:
+            try:
+                self.stop()
+            except UserError as problem:
+                error.add_note(problem.message)
+            raise
+        self.stop()
+
+    def renew(self) -> None:
+        """Renew the lease without waiting for the answer: a lost one is made good by the next renewal."""
+        request = schema.RenewRequest(self.lease_ms)
+        self._transport.write(encode_frame(request.TYPE, self._next_sequence(), request.pack()))
+
+    def stop(self) -> None:
+        """Motors off, confirmed by the board. A further Ctrl-C does not keep the request from going out."""
+        with _ctrl_c_waits():
+            try:
+                self.ask(schema.StopRequest())
+            except UserError as error:
+                # After one failed attempt closing need not try again; after a restart the motors are off anyway.
+                self._motors_may_run = False
+                if self._started is None:
+                    raise UserError(f"{error.message} {self._unconfirmed_stop()}") from None
+        self._motors_may_run = False
+
+    def samples(self) -> list[schema.Sample]:
+        """The samples received since the last call; waits a moment when there are none."""
+        if not self._samples:
+            self._receive()
+            self._check_restart()
+        taken = self._samples
+        self._samples = []
+        return taken
+
+    def _exchange(self, kind: int, name: str, payload: bytes, attempts: int) -> bytes:
+        """The payload of the answer to a request."""
+        message = encode_frame(kind, self._next_sequence(), payload)
+        for _ in range(attempts):
+            self._transport.write(message)
+            deadline = time.monotonic() + REPLY_WAIT_S
+            while time.monotonic() < deadline:
+                self._receive()
+                self._check_restart()
+                for frame in self._answers():
+                    if frame.type == kind | schema.REPLY_BIT:
+                        return frame.payload
+                    if frame.type == schema.Nack.TYPE:
+                        raise RefusedError(self.port, name, schema.Nack.unpack(frame.payload))
+        raise NoAnswerError(
+            f"{self.port}: the board did not answer {name}, sent {attempts} times in {attempts * REPLY_WAIT_S:.1f} s; "
+            "check the cable, reset the board and try again."
+        )
+
+    def _next_sequence(self) -> int:
+        self._sequence = self._sequence % 255 + 1
+        return self._sequence
+
+    def _receive(self) -> None:
+        """Read what there is and sort the frames."""
+        data = self._transport.read()
+        if not data:
+            return
+        self._heard_bytes = True
+        for frame in self._decoder.feed(data):
+            if frame.type == schema.Sample.TYPE:
+                self._samples.append(schema.Sample.unpack(frame.payload))
+            elif frame.type == schema.HelloReply.TYPE and frame.seq == _UNASKED:
+                self._started = frame.payload
+            elif frame.type == schema.LeadPointReply.TYPE:
+                self._lead_progress = schema.LeadPointReply.unpack(frame.payload)
+            elif frame.type == schema.Nack.TYPE and frame.payload[:1] == bytes([schema.LeadPointRequest.TYPE]):
+                self._lead_refused = schema.Nack.unpack(frame.payload)
+            elif frame.type & schema.REPLY_BIT:
+                self._replies.append(frame)
+
+    def _answers(self) -> Iterator[Frame]:
+        """Answers to the current request; those to earlier ones come late and are dropped."""
+        while self._replies:
+            frame = self._replies.popleft()
+            if frame.seq == self._sequence:
+                yield frame
+
+    def _check_restart(self) -> None:
+        if self._started is not None and self._greeted:
+            self._motors_may_run = False
+            cause = schema.HelloReply.unpack(self._started).reset_cause
+            raise UserError(
+                f"{self.port}: the board restarted in the middle ({cause.description}) and its motors are off; "
+                "check its supply and try again."
+            )
+
+    def _unconfirmed_stop(self) -> str:
+        if self.lease_ms:
+            return f"The stop is not confirmed; the board stops by itself within {self.lease_ms} ms."
+        return "The stop is not confirmed: switch the motors' supply off."
+
+    def _greet(self, quiet_s: float, patience_s: float) -> schema.HelloReply:
+        opened = time.monotonic()
+        while self._started is None and not self._samples and time.monotonic() < opened + quiet_s:
+            self._receive()
+        while True:
+            try:
+                payload = self._exchange(schema.HelloRequest.TYPE, schema.HelloRequest.NAME, b"", attempts=1)
+                break
+            except NoAnswerError:
+                if time.monotonic() >= opened + patience_s:
+                    raise self._silent(patience_s) from None
+        self._started = None
+        self._greeted = True
+        return self._same_language(payload)
+
+    def _same_language(self, payload: bytes) -> schema.HelloReply:
+        """The hello, if its sender was built from the declarations that this host was built from."""
+        remedy = f"flash the firmware that belongs to this host with `greywhale flash --port {self.port}`."
+        if not payload or payload[0] != schema.PROTOCOL:
+            spoken = payload[0] if payload else "none"
+            raise UserError(
+                f"{self.port}: the board speaks protocol version {spoken}, this host version {schema.PROTOCOL}; "
+                f"{remedy}"
+            )
+        try:
+            hello = schema.HelloReply.unpack(payload)
+        except UserError as error:
+            raise UserError(f"{self.port}: {error.message}") from None
+        if hello.schema_hash != schema.SCHEMA_HASH:
+            raise UserError(
+                f"{self.port}: firmware {version(hello)} was built with schema {hello.schema_hash:#010x}, "
+                f"this host with {schema.SCHEMA_HASH:#010x}; {remedy}"
+            )
+        return hello
+
+    def _silent(self, patience_s: float) -> UserError:
+        if self._heard_bytes:
+            return UserError(
+                f"{self.port}: something sends data, but no greywhale firmware answers within {patience_s:g} s; "
+                f"flash the board with `greywhale flash --port {self.port}`, or name another port."
+            )
+        return UserError(
+            f"{self.port}: nothing answers within {patience_s:g} s; the board has probably no greywhale firmware: "
+            f"flash it with `greywhale flash --port {self.port}`, or name another port."
+        )
+
+
+def version(hello: schema.HelloReply) -> str:
+    return f"{hello.fw_major}.{hello.fw_minor}.{hello.fw_patch}"
+
+
+@contextlib.contextmanager
+def _ctrl_c_waits() -> Iterator[None]:
+    """Hold Ctrl-C back for the second that a stop takes at most (only the main thread receives it)."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)

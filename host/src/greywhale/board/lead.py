@@ -1,0 +1,198 @@
+"""Leads a board along a motion: control points go out ahead of their time, lost ones again, and the pace falls when a
+follower does not keep up.
+
+Everything is timed by the board's own ticks, as in `stream`: a simulated board may live faster than this machine.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.board.device import Device
+from greywhale.board.refusal import RefusedError
+from greywhale.board.stream import why_stopped
+from greywhale.errors import UserError
+from greywhale.protocol import schema
+from greywhale.trajectory.generate import minimum_jerk
+from greywhale.trajectory.motion import JOINTS, Trajectory
+
+Floats = npt.NDArray[np.float64]
+
+POINT_TICKS = 16
+POINT_S = POINT_TICKS / 1000
+STEP_RAD = schema.LeadPointRequest.LSB["step"]
+LONGEST_STEP = 127
+FASTEST_RAD_S = LONGEST_STEP * STEP_RAD / POINT_S
+# Points that the board can keep.
+ROOM = 12
+# More at once would crowd samples out of the board's transmitter.
+_AT_ONCE = 2
+# No answer for so many ticks: what was sent since the last one is sent again.
+_PATIENCE_TICKS = 100
+_RAD = schema.Sample.LSB["leader"]
+# An answer that takes nothing new tells of a gap; but those to points sent before it was mended say the same.
+_RETRY_TICKS = 32
+# From the arm's pose to a motion's first one, at the most (rad/s).
+_APPROACH_RAD_S = 0.5
+# A follower this share of its tracking limit away from the reference slows the motion down, more of it stops it.
+_SLOWS, _STOPS = 0.5, 0.8
+# By so much the pace may change from point to point: from full to none in a sixth of a second.
+_PACE_STEP = 0.1
+# A motion that takes this many times its length is not one that this arm can follow.
+_PATIENCE = 3.0
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A motion as the board will be told it: `angles` (rad, rows 16 ms apart), from one pose at rest to another."""
+
+    angles: Floats
+
+    @classmethod
+    def of(cls, motion: Trajectory, start: Floats, limits: Floats, rest_s: float = 0.0) -> Plan:
+        """From `start` (rad) at rest to the motion's first pose, the motion, and `rest_s` at its last pose; all within
+        the joints' `limits` (2, 4), to which the board holds a leader arm as well.
+        """
+        low, high = limits[0] + STEP_RAD, limits[1] - STEP_RAD  # points are rounded to steps
+        first = np.clip(motion.angles[0], low, high)
+        way = float(np.abs(first - start).max())
+        # A minimum-jerk path is 1.875 times as fast in its middle as on average.
+        approach = int(np.ceil(1.875 * way / _APPROACH_RAD_S / POINT_S)) if way > STEP_RAD else 0
+        share = minimum_jerk(np.arange(1, approach + 1) / max(approach, 1))
+        times = np.arange(0.0, motion.duration_s + POINT_S, POINT_S)
+        parts = [
+            start[None] + share[:, None] * (first - start)[None],
+            motion.at(times),
+            np.tile(motion.angles[-1], (2 + round(rest_s / POINT_S), 1)),
+        ]
+        plan = cls(np.clip(np.vstack(parts), low, high))
+        speed = np.abs(np.diff(plan.angles, axis=0)).max(axis=0) / POINT_S
+        joint = int(speed.argmax())
+        if speed[joint] > FASTEST_RAD_S:
+            raise UserError(
+                f"the motion moves joint {joint} at {speed[joint]:.3g} rad/s, but a board can be led at "
+                f"{FASTEST_RAD_S:.3g} rad/s at most; give it more time."
+            )
+        return plan
+
+    @property
+    def duration_s(self) -> float:
+        return (len(self.angles) - 1) * POINT_S
+
+    def at(self, place: float) -> Floats:
+        """The angles at any place, counted in rows."""
+        row = min(int(place), len(self.angles) - 2)
+        share = min(place - row, 1.0)
+        angles: Floats = (1.0 - share) * self.angles[row] + share * self.angles[row + 1]
+        return angles
+
+
+class Leading:
+    """Feeds a plan to a board that this host leads; call `keep_ahead` with every sample."""
+
+    def __init__(self, device: Device, begun: schema.LeadReply, plan: Plan, tracking_limit: float) -> None:
+        """`tracking_limit` in rad, 0 for none."""
+        self._device = device
+        self._plan = plan
+        self._limit = tracking_limit or float("inf")
+        self._first = begun.next
+        self._origin = np.array(begun.reference) * _RAD
+        self._told = np.zeros(JOINTS, dtype=np.int64)  # steps from the origin, of all points made
+        self._points: list[tuple[int, int, int, int]] = []
+        self._sent = self._taken = 0  # points; self._points[self._taken:] are not known to have arrived
+        self._waiting = self._heard = 0  # what the board had to play, and at which tick it said so
+        self._since = 0  # tick of the last progress
+        self._answer: schema.LeadPointReply | None = None
+        self._place, self._pace, self._wanted = 0.0, 1.0, 1.0
+        self._last_tick = 0
+        self._made_all, self._resting = False, True
+        self.slowest = 1.0
+        self.starved = 0
+
+    @property
+    def fraction(self) -> float:
+        return min(1.0, self._place / (len(self._plan.angles) - 1))
+
+    @property
+    def points(self) -> int:
+        """Made so far."""
+        return len(self._points)
+
+    @property
+    def done(self) -> bool:
+        """All points have been played."""
+        return self._made_all and self._taken == len(self._points) and self._left(self._last_tick) <= -2
+
+    def keep_ahead(self, tick: int, sample: schema.Sample) -> None:
+        """Hear the board's answers and send what it has room for; `tick` counts the board's ticks from anywhere.
+
+        The motion begins once the soft start is over; before that the board is told to rest, so that its queue is full.
+        """
+        self._last_tick = tick
+        self._resting = sample.state is not schema.State.FOLLOWING
+        self._hear(tick)
+        self._watch(sample)
+        if self._taken < self._sent and tick - self._since > _PATIENCE_TICKS:
+            self._sent, self._since = self._taken, tick
+        room = min(_AT_ONCE, ROOM - max(0, self._left(tick)) - (self._sent - self._taken))
+        while room > 0 and self._make(self._sent + 1):
+            if self._sent == self._taken:
+                self._since = tick
+            self._device.lead_point((self._first + self._sent) % 256, self._points[self._sent])
+            self._sent += 1
+            room -= 1
+
+    def _left(self, tick: int) -> int:
+        """Points that the board has yet to play, by its last answer and the time since."""
+        return self._waiting - (tick - self._heard) // POINT_TICKS
+
+    def _hear(self, tick: int) -> None:
+        try:
+            answer = self._device.lead_progress()
+        except RefusedError as refused:
+            if refused.detail == schema.LeadRefusal.NOT_LEADING:
+                raise why_stopped(self._device) from None
+            raise
+        if answer is None or answer is self._answer:
+            return
+        self._answer = answer
+        taken = self._taken + (answer.next - self._first - self._taken) % 256
+        if taken > self._sent:
+            return  # an answer to what was sent twice, older than one that was heard before
+        if answer.waiting <= 1 and self._taken and not self._made_all:
+            self.starved += 1
+        if taken > self._taken:
+            self._since = tick
+        elif self._sent > taken and tick - self._since > _RETRY_TICKS:
+            self._sent, self._since = taken, tick
+        self._taken, self._waiting, self._heard = taken, answer.waiting, tick
+
+    def _watch(self, sample: schema.Sample) -> None:
+        """Let the pace fall when a follower is far from the reference."""
+        far = max(abs(a - b) for a, b in zip(sample.leader, sample.follower, strict=True)) * _RAD / self._limit
+        self._wanted = min(1.0, max(0.0, (_STOPS - far) / (_STOPS - _SLOWS)))
+
+    def _make(self, count: int) -> bool:
+        """Make points until there are `count`; False when the plan has ended before."""
+        end = len(self._plan.angles) - 1
+        while len(self._points) < count and not self._made_all:
+            if self._resting:
+                self._points.append((0, 0, 0, 0))
+                continue
+            self._pace += min(max(self._wanted - self._pace, -_PACE_STEP), _PACE_STEP)
+            self.slowest = min(self.slowest, self._pace)
+            self._place = min(self._place + self._pace, float(end))
+            if len(self._points) > _PATIENCE * end + 1000:
+                raise UserError(
+                    f"{self._device.port}: the arm cannot follow this motion: it would take more than {_PATIENCE:g} "
+                    "times its length; check that every joint moves freely, or lower its range."
+                )
+            target = np.round((self._plan.at(self._place) - self._origin) / STEP_RAD).astype(np.int64)
+            step = np.clip(target - self._told, -LONGEST_STEP, LONGEST_STEP)
+            self._told += step
+            self._points.append((int(step[0]), int(step[1]), int(step[2]), int(step[3])))
+            self._made_all = self._place >= end and bool((target == self._told).all())
+        return len(self._points) >= count

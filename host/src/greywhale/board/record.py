@@ -1,0 +1,242 @@
+"""Records a board's samples into a log; with `enable`, lets the follower follow meanwhile.
+
+The log begins with the first sample in state `following` (without `enable`: with the first sample) and is as long as
+asked by the board's clock; with a motion, which this host then leads, as long as that takes. Whatever ends it early,
+the motors are stopped and what was recorded stays, marked as interrupted.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.board.device import Device
+from greywhale.board.lead import Leading, Plan
+from greywhale.board.stream import Received, stream, why_stopped
+from greywhale.errors import BAD_USAGE, UserError
+from greywhale.files.log.layout import Origin
+from greywhale.files.log.writer import LogWriter
+from greywhale.protocol import schema
+from greywhale.trajectory import JOINTS, Trajectory
+
+Progress = Callable[[str, float], None]
+Floats = npt.NDArray[np.float64]
+
+# The motors go off this long after this host falls silent.
+LEASE_MS = 500
+# Above this the lease could not be renewed in time from the samples alone.
+_LONGEST_EVERY_ENABLED = 100
+_LONGEST_EVERY = 65535
+# And above this a host that leads could not send its points in time.
+_LONGEST_EVERY_LED = 4
+_SHORTEST_S = 0.01
+_LONGEST_S = 86400.0
+# After a motion the log goes on for this long.
+REST_S = 0.3
+# Within this many ticks of enable the samples must show that the motors started.
+_ENABLE_TICKS = 1000
+_ROWS_PER_REPORT = 50
+_POSE_SAMPLES = 21
+_LIMITS = ("limit_min", "limit_max")
+_MOVING = (schema.State.SOFT_START, schema.State.FOLLOWING)
+_RAD = schema.Sample.LSB["leader"]
+_VOLT = schema.Sample.LSB["voltage"]
+
+
+@dataclass(frozen=True)
+class Recording:
+    """What was recorded: rows in the log, samples that the link lost, duration by the board's clock.
+
+    Of a motion that this host led also its `slowest` pace (1: as planned), and how often the board had to wait for it.
+    """
+
+    path: Path
+    rows: int
+    dropped: int
+    duration_s: float
+    slowest: float | None = None
+    waits: int | None = None
+
+    def as_dict(self) -> dict[str, object]:
+        led = {} if self.slowest is None else {"slowest_pace": round(self.slowest, 2), "waits": self.waits}
+        return {
+            "log": str(self.path),
+            "samples": self.rows,
+            "dropped": self.dropped,
+            "duration_s": self.duration_s,
+            **led,
+        }
+
+
+def record(
+    device: Device,
+    path: str | Path,
+    seconds: float,
+    every: int = 1,
+    enable: bool = False,
+    progress: Progress | None = None,
+) -> Recording:
+    """Record `seconds` of samples, one every `every` ticks of 1 ms."""
+    _check(seconds, every, enable)
+    report = progress or (lambda what, fraction: None)
+    origin = Origin(device.firmware_version, device.hello.board.key, device.hello.param_crc, _period_ms(device), every)
+    length = round(seconds * 1000)
+    with LogWriter(path, origin) as log:
+        received = stream(device, every)
+        if enable:
+            with device.enabled(max(LEASE_MS, 20 * every)):
+                received = _following(device, received, report)
+                duration = _write(device, log, received, length, True, report)
+        else:
+            duration = _write(device, log, received, length, False, report)
+    device.telemetry(0)
+    return Recording(Path(path), log.rows, log.dropped, duration)
+
+
+def record_led(
+    device: Device, path: str | Path, motion: Trajectory, every: int = 1, progress: Progress | None = None
+) -> Recording:
+    """Lead the arm along `motion`, from where it is, and record that."""
+    check_every_led(every)
+    report = progress or (lambda what, fraction: None)
+    limits = np.array([[_parameter(device, f"joint{joint}.{end}") for joint in range(JOINTS)] for end in _LIMITS])
+    tracking = _parameter(device, "tracking_limit")
+    Plan.of(motion, motion.angles[0], limits)  # too fast a motion is refused with the motors off
+    origin = Origin(device.firmware_version, device.hello.board.key, device.hello.param_crc, _period_ms(device), every)
+    with LogWriter(path, origin) as log:
+        received = stream(device, every)
+        with device.leading(LEASE_MS) as begun:
+            pose = np.array(begun.reference) * _RAD
+            plan = Plan.of(motion, pose, limits, REST_S)
+            leading = Leading(device, begun, plan, tracking)
+            received = _following(device, received, report, leading)
+            duration = _write_led(device, log, received, leading, report)
+    device.telemetry(0)
+    return Recording(Path(path), log.rows, log.dropped, duration, leading.slowest, leading.starved)
+
+
+def check_every_led(every: int) -> None:
+    """Refuse samples too seldom to lead by."""
+    if not 1 <= every <= _LONGEST_EVERY_LED:
+        raise UserError(
+            f"one sample every {every} ticks is out of range; while this host leads it must be 1 to "
+            f"{_LONGEST_EVERY_LED}.",
+            BAD_USAGE,
+        )
+
+
+def pose_of(device: Device) -> Floats:
+    """The followers' angles now (4,), rad: the median of a few samples."""
+    received = stream(device, 1)
+    angles = [next(received).sample.follower for _ in range(_POSE_SAMPLES)]
+    device.telemetry(0)
+    pose: Floats = np.median(np.array(angles), axis=0) * _RAD
+    return pose
+
+
+def table_of(device: Device, progress: Progress | None = None) -> tuple[int, ...]:
+    """The whole parameter set that runs, raw, in index order."""
+    report = progress or (lambda what, fraction: None)
+    values = []
+    for one in schema.PARAMETERS:
+        values.append(device.ask(schema.ParamGetRequest(one.index)).value)
+        report("reading the parameters", len(values) / len(schema.PARAMETERS))
+    return tuple(values)
+
+
+def _parameter(device: Device, name: str) -> float:
+    """A parameter of the running set in its unit."""
+    known = schema.PARAMETER_BY_NAME[name]
+    return known.to_physical(device.ask(schema.ParamGetRequest(known.index)).value)
+
+
+def _check(seconds: float, every: int, enable: bool) -> None:
+    if not _SHORTEST_S <= seconds <= _LONGEST_S:
+        raise UserError(f"the duration is {seconds:g} s; it must be {_SHORTEST_S:g} to {_LONGEST_S:g} s.", BAD_USAGE)
+    longest = _LONGEST_EVERY_ENABLED if enable else _LONGEST_EVERY
+    if not 1 <= every <= longest:
+        motors = " while the motors are on" if enable else ""
+        raise UserError(
+            f"one sample every {every} ticks is out of range; it must be 1 to {longest}{motors}.", BAD_USAGE
+        )
+
+
+def _period_ms(device: Device) -> int:
+    return device.ask(schema.ParamGetRequest(schema.PARAMETER_BY_NAME["period_ms"].index)).value
+
+
+def _following(
+    device: Device, received: Iterator[Received], report: Progress, leading: Leading | None = None
+) -> Iterator[Received]:
+    """Wait until the soft start is over; the samples from then on."""
+    report("starting the motors", 0.0)
+    moved = False
+    for one in received:
+        state = one.sample.state
+        if state is schema.State.FOLLOWING:
+            return itertools.chain((one,), received)
+        if state is schema.State.SOFT_START:
+            moved = True
+            if leading is not None:
+                leading.keep_ahead(one.elapsed, one.sample)
+        # Samples from before the request may still be on their way, but not for long.
+        if state is schema.State.FAULT or (state not in _MOVING and (moved or one.elapsed > _ENABLE_TICKS)):
+            raise why_stopped(device)
+    raise AssertionError("a stream of samples has no end")
+
+
+def _write(
+    device: Device, log: LogWriter, received: Iterator[Received], length: int, enabled: bool, report: Progress
+) -> float:
+    """Fill the log for `length` ticks; its duration in s."""
+    start: int | None = None
+    for one in received:
+        if enabled and one.sample.state is not schema.State.FOLLOWING:
+            raise why_stopped(device)
+        if start is None:
+            start = one.elapsed
+        else:
+            log.drop(one.lost)
+        ticks = one.elapsed - start
+        if ticks >= length:
+            return ticks / 1000
+        _append(log, ticks / 1000, one.sample)
+        if log.rows % _ROWS_PER_REPORT == 0:
+            report("recording", ticks / length)
+    raise AssertionError("a stream of samples has no end")
+
+
+def _write_led(
+    device: Device, log: LogWriter, received: Iterator[Received], leading: Leading, report: Progress
+) -> float:
+    """Fill the log until the motion is over; its duration in s."""
+    start: int | None = None
+    for one in received:
+        if one.sample.state is not schema.State.FOLLOWING:
+            raise why_stopped(device)
+        if start is None:
+            start = one.elapsed
+        else:
+            log.drop(one.lost)
+        leading.keep_ahead(one.elapsed, one.sample)
+        if leading.done:
+            return (one.elapsed - start) / 1000
+        _append(log, (one.elapsed - start) / 1000, one.sample)
+        if log.rows % _ROWS_PER_REPORT == 0:
+            report("recording", leading.fraction)
+    raise AssertionError("a stream of samples has no end")
+
+
+def _append(log: LogWriter, time_s: float, sample: schema.Sample) -> None:
+    log.append(
+        time_s,
+        [value * _RAD for value in sample.leader],
+        [value * _RAD for value in sample.follower],
+        [value * _VOLT for value in sample.voltage],
+        sample.state.key,
+    )

@@ -1,0 +1,91 @@
+"""The board's samples as they come: gaps counted by the board's own ticks, the lease of the motors kept alive
+meanwhile.
+
+The lease is renewed by the time in the samples rather than by this machine's clock: a simulated board may live many
+times faster than real time, but never runs ahead of samples that nobody has read.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from greywhale.board.device import Device
+from greywhale.board.refusal import fault_text, lower_first
+from greywhale.errors import UserError
+from greywhale.protocol import schema
+
+_TICKS = 1 << 32
+# No sample for this long, and at least five sample periods, means that something is wrong.
+_SILENCE_S = 2.0
+_RENEWALS_PER_LEASE = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Received:
+    """A sample, its time since the first one in ms ticks of the board, and how many were lost just before it."""
+
+    sample: schema.Sample
+    elapsed: int
+    lost: int
+
+
+def stream(device: Device, every: int) -> Iterator[Received]:
+    """Turn telemetry on, then yield samples for as long as the caller takes them; the caller turns telemetry off."""
+    device.telemetry(every)
+    return _samples(device, every)
+
+
+def _samples(device: Device, every: int) -> Iterator[Received]:
+    silence_s = max(_SILENCE_S, 5 * every / 1000)
+    last: int | None = None
+    elapsed = renewed = 0
+    heard = time.monotonic()
+    while True:
+        samples = device.samples()
+        now = time.monotonic()
+        if samples:
+            heard = now
+        elif now > heard + silence_s:
+            raise _silence(device, last, silence_s)
+        for sample in samples:
+            step = every if last is None else (sample.tick - last) % _TICKS
+            if step > _TICKS // 2:
+                raise UserError(
+                    f"{device.port}: the board's clock went backwards: it restarted in the middle; try again."
+                )
+            lost = max(0, round(step / every) - 1) if last is not None else 0
+            elapsed += step if last is not None else 0
+            last = sample.tick
+            if device.lease_ms and elapsed - renewed >= device.lease_ms // _RENEWALS_PER_LEASE:
+                device.renew()
+                renewed = elapsed
+            yield Received(sample, elapsed, lost)
+
+
+def _silence(device: Device, last: int | None, silence_s: float) -> UserError:
+    status = device.status()
+    if last is not None and status.tick < last:
+        return UserError(
+            f"{device.port}: the board restarted in the middle and its motors are off; check its supply and try again."
+        )
+    return UserError(
+        f"{device.port}: the board answers but sent no sample for {silence_s:g} s (state {status.state.key}); "
+        "reset it and try again."
+    )
+
+
+def why_stopped(device: Device) -> UserError:
+    """After the motors went off by themselves: the board's reason in words."""
+    status = device.status()
+    if status.state is schema.State.FAULT or status.stop_reason is schema.StopReason.FAULT:
+        return UserError(f"{device.port}: the board stopped the motors: {fault_text(status)}")
+    if status.stop_reason is schema.StopReason.LEASE:
+        return UserError(
+            f"{device.port}: the board stopped the motors because this host did not renew the lease of "
+            f"{device.lease_ms} ms; close other programs, or use a larger --every."
+        )
+    return UserError(
+        f"{device.port}: the motors went off in the middle: {lower_first(status.stop_reason.description)}; try again."
+    )

@@ -1,0 +1,135 @@
+"""Moves whole parameter sets: reads the running one, stages, applies and saves another, and proves that it arrived.
+
+The board changes nothing until the whole staged set has passed its checks under the CRC that this host computed; then
+all of it changes between two ticks. A broken upload therefore leaves the running and the stored set as they were.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from greywhale.board.device import Device
+from greywhale.board.refusal import RefusedError
+from greywhale.errors import UserError
+from greywhale.files import controller as controller_file
+from greywhale.protocol import schema
+
+Progress = Callable[[str, float], None]
+
+# A whole set takes 0.7 s to write into the EEPROM of an Arduino.
+_SAVE_WAIT_S = 10.0
+_POLL_S = 0.02
+
+
+@dataclass(frozen=True)
+class Uploaded:
+    """What an upload did: CRC of the set that runs and is stored, names of the parameters that changed."""
+
+    param_crc: int
+    changed: tuple[str, ...]
+
+    def as_dict(self) -> dict[str, object]:
+        return {"parameter_crc": f"0x{self.param_crc:04x}", "changed": list(self.changed)}
+
+
+def read_parameters(device: Device, progress: Progress | None = None) -> tuple[int, ...]:
+    """The running set, raw values in index order, proven whole by its CRC."""
+    report = progress or _silent
+    values = []
+    for parameter in schema.PARAMETERS:
+        report("reading parameters", parameter.index / len(schema.PARAMETERS))
+        reply = device.ask(schema.ParamGetRequest(parameter.index))
+        if reply.index != parameter.index:
+            raise UserError(
+                f"{device.port}: asked for parameter {parameter.index}, the board answered {reply.index}; try again."
+            )
+        values.append(reply.value)
+    expected = device.greet().param_crc
+    computed = schema.param_crc(values)
+    if computed != expected:
+        raise UserError(
+            f"{device.port}: the parameters read have CRC {computed:#06x}, the board's set has {expected:#06x}; "
+            "try again."
+        )
+    return tuple(values)
+
+
+def upload_controller(device: Device, path: str | Path, progress: Progress | None = None) -> Uploaded:
+    """Run and store the controllers of a controller.toml; every other parameter keeps its value."""
+    controller = controller_file.load(path)
+    return change_parameters(device, controller.raw_values(), progress)
+
+
+def change_parameters(device: Device, changes: Mapping[int, int], progress: Progress | None = None) -> Uploaded:
+    """Run and store the running set with `changes` (index -> raw value) made to it."""
+    running = read_parameters(device, progress)
+    wanted = tuple(changes.get(index, value) for index, value in enumerate(running))
+    upload_set(device, wanted, progress)
+    changed = tuple(
+        parameter.name for parameter in schema.PARAMETERS if running[parameter.index] != wanted[parameter.index]
+    )
+    return Uploaded(schema.param_crc(wanted), changed)
+
+
+def upload_set(device: Device, values: Sequence[int], progress: Progress | None = None) -> None:
+    """Stage, apply and save a whole set, then check that the board runs it."""
+    report = progress or _silent
+    schema.check_parameters(values)
+    crc = schema.param_crc(values)
+    for index, value in enumerate(values):
+        report("uploading parameters", index / len(values))
+        echo = device.ask(schema.ParamSetRequest(index, value))
+        if (echo.index, echo.value) != (index, value):
+            raise UserError(
+                f"{device.port}: sent {schema.PARAMETERS[index].name} = {value}, the board understood parameter "
+                f"{echo.index} = {echo.value}; nothing was changed, try again."
+            )
+    _when_not_saving(device, lambda: device.ask(schema.ParamApplyRequest(crc)))
+    _when_not_saving(device, lambda: device.ask(schema.ParamSaveRequest()))
+    report("saving parameters", 0.0)
+    _wait_until_saved(device)
+    running = device.greet().param_crc
+    if running != crc:
+        raise UserError(
+            f"{device.port}: after the upload the board runs a set with CRC {running:#06x} instead of {crc:#06x}; "
+            "upload again."
+        )
+
+
+def _when_not_saving(device: Device, request: Callable[[], object]) -> None:
+    """Repeat a request that the board puts off while it still writes an earlier set."""
+    deadline = time.monotonic() + _SAVE_WAIT_S
+    while True:
+        try:
+            request()
+            return
+        except RefusedError as error:
+            if error.code is not schema.NackCode.BUSY_SAVING or time.monotonic() > deadline:
+                raise
+        time.sleep(_POLL_S)
+
+
+def _wait_until_saved(device: Device) -> None:
+    deadline = time.monotonic() + _SAVE_WAIT_S
+    while True:
+        state = device.status().save_state
+        if state is schema.SaveState.SAVED:
+            return
+        if state is schema.SaveState.FAILED:
+            raise UserError(
+                f"{device.port}: the new parameters run, but could not be stored: {state.description}; "
+                "try again, and replace the board if it happens again."
+            )
+        if time.monotonic() > deadline:
+            raise UserError(
+                f"{device.port}: the new parameters run, but storing them has not ended after {_SAVE_WAIT_S:g} s; "
+                "reset the board and upload again."
+            )
+        time.sleep(_POLL_S)
+
+
+def _silent(what: str, fraction: float) -> None:
+    """Progress that nobody watches."""

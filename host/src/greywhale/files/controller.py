@@ -1,0 +1,165 @@
+"""controller.toml: the fuzzy sets and gains of four joints, checked before anything of them reaches a board; and
+written so that reading it back gives the board's own numbers.
+
+The sets are named as in the paper: NE [-1,-1,Ne_c,0], ZE [Ze_a,0,Ze_c], PE [0,Pe_b,1,1], and the same for the change of
+error with Nce_c, Zce_a, Zce_c, Pce_b.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from operator import index
+from pathlib import Path
+from typing import Any, Self
+
+from pydantic import Field, model_validator
+
+from greywhale.errors import UserError
+from greywhale.formats import toml_file, toml_text
+from greywhale.formats.whole import write_text
+from greywhale.protocol import schema
+from greywhale.protocol.declared import Parameter
+
+JOINTS = 4
+# No flank of a fuzzy set may be narrower than this.
+NARROWEST = 0.01
+GAINS = ("kp", "kd", "ki", "ku")
+
+
+def _left() -> float:
+    """A corner left of zero."""
+    return Field(ge=-1.0, le=-NARROWEST)  # type: ignore[no-any-return]
+
+
+def _right() -> float:
+    """A corner right of zero."""
+    return Field(ge=NARROWEST, le=1.0)  # type: ignore[no-any-return]
+
+
+class Sets(toml_file.Table):
+    """The corners of one joint's fuzzy sets; every flank has zero at its other end."""
+
+    Ne_c: float = _left()
+    Ze_a: float = _left()
+    Ze_c: float = _right()
+    Pe_b: float = _right()
+    Nce_c: float = _left()
+    Zce_a: float = _left()
+    Zce_c: float = _right()
+    Pce_b: float = _right()
+
+
+class JointController(toml_file.Table):
+    """One joint: scaling factors kp (1/rad), kd (1/rad over 20 ms), ki (V/(rad s)), ku (V), and the sets."""
+
+    kp: float
+    kd: float
+    ki: float
+    ku: float
+    sets: Sets
+
+    @model_validator(mode="after")
+    def _fits_the_firmware(self) -> Self:
+        for key, parameter, value in self.parameters():
+            lowest, highest = (parameter.to_physical(raw) for raw in (parameter.minimum, parameter.maximum))
+            if not lowest <= value <= highest:
+                scale = 1000.0 if key == "ku" else 1.0
+                raise ValueError(
+                    f"{key} is {value / scale:g}, but it must lie within {lowest / scale:g}..{highest / scale:g}"
+                )
+        return self
+
+    def parameters(self, joint: int = 0) -> list[tuple[str, Parameter, float]]:
+        """Key in the file, parameter of the board and value in the parameter's unit."""
+        values = {"kp": self.kp, "kd": self.kd, "ki": self.ki, "ku": 1000.0 * self.ku, **self.sets.model_dump()}
+        return [
+            (key, schema.PARAMETER_BY_NAME[f"joint{joint}.{'ku_mv' if key == 'ku' else key.lower()}"], value)
+            for key, value in values.items()
+        ]
+
+
+class Controller(toml_file.Table):
+    """Controllers of joint 0..3, and where their numbers come from."""
+
+    source: str = ""
+    joint: tuple[JointController, ...] = Field(min_length=JOINTS, max_length=JOINTS)
+    tuning: dict[str, Any] | None = None  # how `greywhale tune` found it and what it expects; no board gets it
+
+    def raw_values(self) -> dict[int, int]:
+        """Parameter index -> raw value, for everything that a controller file says."""
+        return {
+            parameter.index: parameter.to_raw(value)
+            for number, joint in enumerate(self.joint)
+            for _, parameter, value in joint.parameters(number)
+        }
+
+
+def load(path: str | Path) -> Controller:
+    """Read and check a controller file."""
+    controller = toml_file.load(path, Controller)
+    try:
+        controller.raw_values()
+    except UserError as error:
+        raise UserError(f"{path}: {error.message}") from None
+    for number, joint in enumerate(controller.joint):
+        for key, parameter, value in joint.parameters(number):
+            if value != 0.0 and parameter.to_raw(value) == 0:
+                scale = 1000.0 if key == "ku" else 1.0
+                raise UserError(
+                    f"{path}: joint[{number}].{key} is {value / scale:g}, which the board would store as 0; "
+                    f"give 0, or at least {parameter.lsb / scale:g}."
+                )
+    return controller
+
+
+def save(
+    path: str | Path,
+    rows: Iterable[Iterable[int]],
+    source: str = "",
+    *,
+    header: Sequence[str] = (),
+    notes: Sequence[str] = ("",) * JOINTS,
+    tuning: Mapping[str, Any] | None = None,
+) -> None:
+    """Write a controller file, or nothing at all where a board would refuse it.
+
+    `rows` are raw as a board stores them: (4, 12), a joint's keys in the order of its parameters (sets 1/16384, gains
+    1/65536, mV), an int32 array for one. `load` gives the same raw values back. `header` are lines of comment on top,
+    `notes` one for each joint.
+    """
+    text = to_text(rows, source, header=header, notes=notes, tuning=tuning)
+    toml_file.loads(text, Controller, str(path))
+    write_text(path, text)
+
+
+def to_text(
+    rows: Iterable[Iterable[int]],
+    source: str = "",
+    *,
+    header: Sequence[str] = (),
+    notes: Sequence[str] = ("",) * JOINTS,
+    tuning: Mapping[str, Any] | None = None,
+) -> str:
+    """The text of a controller file; see `save`."""
+    lines = [*(f"# {line}".rstrip() for line in header), f"source = {toml_text.value(source)}"]
+    for joint, (row, note) in enumerate(zip(rows, notes, strict=True)):
+        values = _in_file(joint, row)
+        lines += ["", f"[[joint]]  # {joint}" + (f": {note}" if note else "")]
+        lines += [f"{key} = {toml_text.value(values[key])}" for key in GAINS]
+        lines += ["[joint.sets]", *(f"{key} = {toml_text.value(values[key])}" for key in Sets.model_fields)]
+    if tuning is not None:
+        lines += ["", *toml_text.table("tuning", tuning)]
+    return "\n".join(lines) + "\n"
+
+
+def _in_file(joint: int, row: Iterable[int]) -> dict[str, float]:
+    """A joint's raw values by their keys in the file, exactly what the board will use."""
+    raw = dict(zip((*(key.lower() for key in Sets.model_fields), "kp", "kd", "ki", "ku_mv"), row, strict=True))
+    found = {}
+    for key in (*Sets.model_fields, *GAINS):
+        name = "ku_mv" if key == "ku" else key.lower()
+        parameter = schema.PARAMETER_BY_NAME[f"joint{joint}.{name}"]
+        value = index(raw[name])
+        parameter.check_raw(value)
+        found[key] = parameter.to_physical(value) / (1000.0 if key == "ku" else 1.0)
+    return found

@@ -1,0 +1,8 @@
+"""Logs of leader, follower and motor voltages as CSV: written whole or not at all, read back with every doubt
+refused.
+"""
+
+from greywhale.files.log.reader import Log, read_log
+from greywhale.files.log.writer import LogWriter
+
+__all__ = ["Log", "LogWriter", "read_log"]

@@ -1,0 +1,139 @@
+"""Writes a log so that the named file is only ever whole: into a temporary file beside it, renamed when closed.
+
+Whatever ends the recording, an error or Ctrl-C included, the samples received so far are kept and the header says
+`interrupted`. Only when nothing at all was recorded is no file left. Dropped samples are counted, never filled in.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from greywhale.errors import UserError, because
+from greywhale.files.log.layout import COMPLETE, HEADING, INTERRUPTED, STATES, TITLE, UNFINISHED, Origin
+from greywhale.formats.whole import temporary_beside
+
+_ROWS_PER_WRITE = 256
+# The two facts known only at the end keep this many characters free in the header.
+_ROOM = 12
+
+
+class LogWriter:
+    """Use as a context manager; `rows` and `dropped` count what went in and what the link lost."""
+
+    def __init__(self, path: str | Path, origin: Origin) -> None:
+        self.path = Path(path)
+        self.origin = origin
+        self.rows = 0
+        self.dropped = 0
+        self._last_us: int | None = None
+
+    def __enter__(self) -> Self:
+        try:
+            descriptor, self._temporary = temporary_beside(self.path)
+        except OSError as error:
+            raise self._cannot_be_written(error) from None
+        self._file = open(descriptor, "r+b", buffering=0)
+        self._waiting = [self._header(UNFINISHED), HEADING + "\n"]
+        try:
+            self.flush()
+        except UserError:
+            self._file.close()
+            os.unlink(self._temporary)
+            raise
+        return self
+
+    def append(
+        self,
+        time_s: float,
+        leader: Sequence[float],
+        follower: Sequence[float],
+        voltage: Sequence[float],
+        state: str,
+    ) -> None:
+        """Add one sample: s, rad, rad, V."""
+        numbers = (time_s, *leader, *follower, *voltage)
+        if len(numbers) != 13 or state not in STATES:
+            raise ValueError(
+                f"a sample has 13 numbers and one of the states {STATES}, not {len(numbers)} and {state!r}"
+            )
+        if not all(map(math.isfinite, numbers)):
+            raise ValueError(f"samples are finite numbers, not {numbers}")
+        time_us = round(time_s * 1e6)
+        if self._last_us is not None and time_us <= self._last_us:
+            raise ValueError(f"time must increase by whole microseconds, but {time_us} us follows {self._last_us} us")
+        self._last_us = time_us
+        self.rows += 1
+        angles = ",".join([f"{value:.6f}" for value in (*leader, *follower)])
+        volts = ",".join([f"{value:.3f}" for value in voltage])
+        self._waiting.append(f"{time_us / 1e6:.6f},{angles},{volts},{state}\n")
+        if len(self._waiting) >= _ROWS_PER_WRITE:
+            self.flush()
+
+    def flush(self) -> None:
+        """Write what waits. Where the disk takes a part of it only, the lines that are whole stay."""
+        data = "".join(self._waiting).encode("ascii")
+        self._waiting.clear()
+        end = self._file.seek(0, os.SEEK_END)
+        done = 0
+        try:
+            while done < len(data):
+                done += self._file.write(data[done:])
+        except OSError as error:
+            self._file.truncate(end + data.rfind(b"\n", 0, done) + 1)
+            raise self._cannot_be_written(error) from None
+
+    def drop(self, samples: int) -> None:
+        """Count samples that the board sent, or should have sent, and that never arrived."""
+        self.dropped += samples
+
+    def __exit__(
+        self, kind: type[BaseException] | None, raised: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self.rows == 0:
+            self._file.close()
+            os.unlink(self._temporary)
+            return
+        problem: UserError | None = None
+        try:
+            self.flush()
+        except UserError as full:
+            problem = full
+        try:
+            self._file.seek(0)
+            complete = kind is None and problem is None
+            self._file.write(self._header(COMPLETE if complete else INTERRUPTED).encode("ascii"))
+            os.fsync(self._file.fileno())
+            self._file.close()
+            os.replace(self._temporary, self.path)
+            if isinstance(raised, KeyboardInterrupt):
+                raised.add_note(f"What was recorded is in {self.path}, marked as interrupted.")
+        except OSError as error:
+            with contextlib.suppress(OSError):
+                self._file.close()
+                os.unlink(self._temporary)
+            raise self._cannot_be_written(error) from None
+        if problem is not None and kind is None:
+            raise problem
+
+    def _cannot_be_written(self, error: OSError) -> UserError:
+        return UserError(f"{self.path}: cannot be written: {because(error)}.")
+
+    def _header(self, ending: str) -> str:
+        """Always the same length, so that the end of a recording can rewrite it in place."""
+        origin = self.origin
+        facts = {
+            "firmware": origin.firmware,
+            "board": origin.board,
+            "parameter_crc": None if origin.param_crc is None else f"0x{origin.param_crc:04x}",
+            "period_ms": origin.period_ms,
+            "every_ticks": origin.every_ticks,
+        }
+        lines = [f"# {TITLE}", *(f"# {key}: {value}" for key, value in facts.items() if value is not None)]
+        lines += [f"# dropped_samples: {self.dropped:<{_ROOM}d}", f"# recording: {ending:<{_ROOM}}"]
+        return "\n".join(lines) + "\n"

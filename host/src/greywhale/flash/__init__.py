@@ -1,5 +1,0 @@
-"""Builds the firmware with PlatformIO and flashes it through the board's bootloader."""
-
-from greywhale.flash.flasher import BOARDS, flash
-
-__all__ = ["BOARDS", "flash"]

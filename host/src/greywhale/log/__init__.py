@@ -1,8 +1,0 @@
-"""Logs of leader, follower and motor voltages as CSV: written whole or not at all, read back with every doubt
-refused.
-"""
-
-from greywhale.log.reader import Log, read_log
-from greywhale.log.writer import LogWriter
-
-__all__ = ["Log", "LogWriter", "read_log"]

@@ -1,0 +1,255 @@
+"""The device against a board that misbehaves: every way ends in an answer or in one sentence, with the motors off."""
+
+from __future__ import annotations
+
+import errno
+import math
+import os
+from pathlib import Path
+
+import pytest
+
+from greywhale.board.device import Device, NoAnswerError
+from greywhale.board.refusal import RefusedError
+from greywhale.errors import UserError
+from greywhale.protocol import schema, transport
+from greywhale.protocol.frames import encode_frame
+from greywhale.protocol.schema import Fault, NackCode, Refusal, State
+from tests.board.fake_board import FakeBoard, Faults
+
+
+def open_device(board: FakeBoard) -> Device:
+    """A device that does not wait for a bootloader."""
+    return Device(board.port, quiet_s=0.0, patience_s=0.5)
+
+
+def test_greeting_tells_who_is_there() -> None:
+    with FakeBoard() as board, open_device(board) as device:
+        assert device.firmware_version == "0.1.0"
+        assert device.hello.param_crc == schema.param_crc(schema.DEFAULTS)
+        assert device.status().state is State.DISABLED
+
+
+@pytest.mark.timeout(60)
+def test_nothing_is_sent_before_the_firmware_is_heard() -> None:
+    # The Mega's bootloader would stay for seconds if it saw a byte. Without end, the quiet time can only be ended by
+    # the board's own hello.
+    board = FakeBoard()
+    board.faults.chatter = board.own_hello()
+    with board, Device(board.port, quiet_s=math.inf) as device:
+        assert board.asked(schema.HelloRequest) == 1
+        assert device.status().state is State.DISABLED
+
+
+def test_garbage_of_a_bootloader_is_no_greeting() -> None:
+    with FakeBoard(Faults(garbage=b"\x14\x10avrdude\x00\xff\xff\x00")) as board, open_device(board) as device:
+        assert device.status().state is State.DISABLED
+
+
+@pytest.mark.parametrize("lost", [1, 4])
+def test_lost_answers_are_asked_for_again_under_the_same_number(lost: int) -> None:
+    with FakeBoard() as board, open_device(board) as device:
+        board.faults.lose[schema.ParamSetRequest.TYPE] = lost
+        reply = device.ask(schema.ParamSetRequest(0, 5))
+        assert (reply.index, reply.value) == (0, 5)
+        numbers = [seq for kind, seq in board.requests if kind == schema.ParamSetRequest.TYPE]
+        assert len(numbers) == lost + 1
+        assert len(set(numbers)) == 1
+
+
+def test_a_board_that_falls_silent_is_named() -> None:
+    with FakeBoard() as board, open_device(board) as device:
+        board.faults.silent = True
+        with pytest.raises(NoAnswerError, match=rf"^{board.port}: the board did not answer status, sent 5 times"):
+            device.status()
+        assert board.asked(schema.StatusRequest) == 5
+
+
+def test_answers_to_earlier_requests_are_not_taken_for_this_one() -> None:
+    with FakeBoard() as board, open_device(board) as device:
+        stale = schema.StatusReply(
+            State.FOLLOWING, schema.StopReason.NONE, Fault.NONE, 255, 0, 0, 0, 0, 0, 0, 0, schema.SaveState.IDLE
+        )
+        board.say(encode_frame(schema.StatusReply.TYPE, 200, stale.pack()))
+        assert device.status().state is State.DISABLED
+
+
+def test_sequence_numbers_wrap_without_the_number_of_unasked_hellos() -> None:
+    with FakeBoard() as board, open_device(board) as device:
+        for _ in range(260):
+            device.status()
+        numbers = [seq for kind, seq in board.requests if kind == schema.StatusRequest.TYPE]
+        assert 0 not in numbers
+        assert numbers[:3] == [2, 3, 4]
+        assert len(set(numbers)) == 255
+
+
+def test_silent_port_suggests_flashing() -> None:
+    with FakeBoard(Faults(silent=True)) as board, pytest.raises(UserError) as caught:
+        open_device(board)
+    assert "nothing answers" in caught.value.message
+    assert f"greywhale flash --port {board.port}" in caught.value.message
+
+
+def test_other_firmware_is_told_from_silence() -> None:
+    faults = Faults(silent=True, chatter=b"Hello from some other sketch\r\n")
+    with FakeBoard(faults) as board, pytest.raises(UserError, match="sends data, but no greywhale firmware answers"):
+        Device(board.port, quiet_s=0.1, patience_s=0.5)
+
+
+def test_other_protocol_names_both_versions() -> None:
+    with (
+        FakeBoard(Faults(hello=bytes([9, 1]))) as board,
+        pytest.raises(UserError, match=rf"protocol version 9, this host version {schema.PROTOCOL}; flash"),
+    ):
+        open_device(board)
+
+
+def test_other_schema_names_both_hashes_and_the_firmware() -> None:
+    with FakeBoard() as board:
+        payload = bytearray(board._hello())
+        payload[1:8] = bytes([3, 2, 1]) + (0x11223344).to_bytes(4, "little")
+        board.faults.hello = bytes(payload)
+        with pytest.raises(UserError, match=rf"firmware 3\.2\.1 .*0x11223344.*{schema.SCHEMA_HASH:#010x}; flash"):
+            open_device(board)
+
+
+def test_malformed_hello_is_one_sentence() -> None:
+    with (
+        FakeBoard(Faults(hello=bytes([schema.PROTOCOL, 1, 2]))) as board,
+        pytest.raises(UserError, match=rf"^{board.port}: .*3 bytes"),
+    ):
+        open_device(board)
+
+
+@pytest.mark.parametrize(
+    ("code", "detail", "words"),
+    [
+        (NackCode.OUT_OF_RANGE, schema.PARAMETER_BY_NAME["joint2.kp"].index, "joint2.kp"),
+        (NackCode.OUT_OF_RANGE, 9999, "index 9999"),
+        (NackCode.SET_REFUSED, 3 << 8 | Refusal.WIDTH, "joint 3, a flank of a fuzzy set is narrower than 0.01"),
+        (NackCode.NOT_DISABLED, State.FOLLOWING, "state following"),
+        (NackCode.ERROR_TOO_LARGE, 1 << 8 | 64, "joint 1, 2.00 rad"),
+        (NackCode.ERROR_TOO_LARGE, 1 << 8 | 255, "7.97 rad or more"),
+        (NackCode.IN_FAULT, Fault.TRACKING, Fault.TRACKING.description),
+        (NackCode.POT_BAD, 5 << 8 | Fault.POT_LOW, "follower potentiometer 1, a potentiometer reads at the lower rail"),
+        (NackCode.POT_BAD, 2 << 8 | Fault.POT_HIGH, "leader potentiometer 2"),
+    ],
+)
+def test_refusals_say_what_where_and_the_remedy(code: NackCode, detail: int, words: str) -> None:
+    with FakeBoard() as board, open_device(board) as device:
+        board.faults.refuse[schema.EnableRequest.TYPE] = (code, int(detail))
+        with pytest.raises(RefusedError) as caught:
+            device.enable(500)
+    remedy = Refusal.WIDTH.remedy if code is NackCode.SET_REFUSED else code.remedy
+    assert caught.value.message.startswith(f"{board.port}: the board refused enable: {code.description}")
+    assert words in caught.value.message
+    assert remedy[1:] in caught.value.message
+
+
+def enable_and_fail(board: FakeBoard) -> None:
+    with open_device(board) as device:
+        device.enable(0)
+        assert board.state is State.SOFT_START
+        raise ZeroDivisionError
+
+
+def test_leaving_stops_motors_that_an_error_left_on() -> None:
+    with FakeBoard() as board:
+        with pytest.raises(ZeroDivisionError):
+            enable_and_fail(board)
+        assert board.state is State.DISABLED
+        assert board.asked(schema.StopRequest) == 1
+
+
+def test_motors_that_never_ran_are_not_stopped() -> None:
+    with FakeBoard() as board:
+        with open_device(board):
+            pass
+        assert board.asked(schema.StopRequest) == 0
+
+
+def test_enabled_stops_on_ctrl_c_and_after_a_refusal() -> None:
+    with FakeBoard() as board, open_device(board) as device:
+        with pytest.raises(KeyboardInterrupt), device.enabled(500):
+            raise KeyboardInterrupt
+        assert board.state is State.DISABLED
+        board.faults.lose[schema.EnableRequest.TYPE] = 99  # the motors run, but the host does not learn it
+        with pytest.raises(NoAnswerError), device.enabled(500):
+            pass
+        assert board.state is State.DISABLED
+
+
+def fall_silent_and_fail(board: FakeBoard, device: Device) -> None:
+    with device.enabled(700):
+        board.faults.silent = True
+        raise ZeroDivisionError
+
+
+def test_an_unconfirmed_stop_is_told_with_the_error() -> None:
+    with FakeBoard() as board, open_device(board) as device:
+        with pytest.raises(ZeroDivisionError) as caught:
+            fall_silent_and_fail(board, device)
+        assert "not confirmed; the board stops by itself within 700 ms" in caught.value.__notes__[0]
+
+
+def test_an_unconfirmed_stop_without_lease_says_what_to_do() -> None:
+    with FakeBoard() as board, open_device(board) as device:
+        device.enable(0)
+        board.faults.silent = True
+        with pytest.raises(UserError, match="switch the motors' supply off"):
+            device.stop()
+
+
+def test_a_restart_during_a_request_is_named() -> None:
+    with FakeBoard() as board, open_device(board) as device:
+        board.faults.silent = True
+        board.say(board.own_hello())
+        with pytest.raises(UserError, match=r"restarted in the middle \(the reset pin.*motors are off"):
+            device.status()
+
+
+def read_for_ever(device: Device) -> None:
+    while True:
+        device.samples()
+
+
+def test_an_unplugged_cable_is_one_sentence() -> None:
+    with FakeBoard() as board, open_device(board) as device:
+        board.faults.unplug_at = 1
+        device.telemetry(1)
+        with pytest.raises(UserError, match=rf"^{board.port}: the port went away in the middle"):
+            read_for_ever(device)
+
+
+def test_wrong_telemetry_echo_is_noticed() -> None:
+    with FakeBoard() as board, open_device(board) as device:
+        board._reply = lambda kind, payload: schema.TelemetryReply(3).pack()  # type: ignore[method-assign]
+        with pytest.raises(UserError, match="every 3 ticks instead of 4"):
+            device.telemetry(4)
+
+
+def test_ports_that_cannot_be_opened(tmp_path: Path) -> None:
+    with pytest.raises(UserError, match="there is no such port; `greywhale ports`"):
+        Device(str(tmp_path / "ttyNONE"))
+    plain = tmp_path / "file"
+    plain.write_text("")
+    with pytest.raises(UserError, match="not a serial port"):
+        Device(str(plain))
+    with pytest.raises(UserError, match="not a serial port"):
+        Device(str(tmp_path))
+    with FakeBoard() as board, open_device(board), pytest.raises(UserError, match="in use by another program"):
+        Device(board.port)
+
+
+@pytest.mark.parametrize(
+    ("number", "words"),
+    [
+        (errno.EACCES, "usermod -aG dialout"),
+        (errno.EBUSY, "in use by another program"),
+        (errno.ENODEV, "no such port any more"),
+        (errno.EIO, "cannot be opened: input/output error"),
+    ],
+)
+def test_open_errors_have_their_remedies(number: int, words: str) -> None:
+    assert words in transport._why_not_open("/dev/ttyX", OSError(number, os.strerror(number)))

@@ -1,0 +1,102 @@
+"""Finding ports: benches by their links, boards by what USB says, and one choice or one sentence."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+from serial.tools import list_ports
+
+from greywhale.errors import UserError
+from greywhale.protocol import ports
+from greywhale.protocol.ports import Port
+
+
+@pytest.fixture(autouse=True)
+def _no_real_ports(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tempfile, "gettempdir", lambda: str(tmp_path))
+    monkeypatch.setattr(list_ports, "comports", list)
+
+
+def usb(device: str, vid: int | None, pid: int | None) -> SimpleNamespace:
+    return SimpleNamespace(device=device, vid=vid, pid=pid, description="what the system says")
+
+
+def plug(monkeypatch: pytest.MonkeyPatch, *found: SimpleNamespace) -> None:
+    class Sortable(SimpleNamespace):
+        def __lt__(self, other: SimpleNamespace) -> bool:
+            return bool(self.device < other.device)
+
+    monkeypatch.setattr(list_ports, "comports", lambda: [Sortable(**vars(one)) for one in found])
+
+
+def bench(name: str, target: str) -> Path:
+    folder = ports.bench_directory()
+    folder.mkdir(exist_ok=True)
+    link = folder / name
+    link.symlink_to(target)
+    return link
+
+
+def test_benches_are_found_by_their_links_and_dead_ones_are_not() -> None:
+    link = bench(f"nano-{os.getpid()}", "/dev/null")
+    bench(f"mega-{os.getpid()}", "/dev/nowhere")
+    bench("something", "/dev/null")
+    assert ports.find_ports() == [
+        Port(str(link), "bench, simulated Arduino Nano (ATmega328P)", "nano", bench=True, usb=False)
+    ]
+    assert ports.board_of(str(link)) == ports.board_of("/dev/null") == "nano"
+    assert ports.board_of("/dev/zero") is None
+
+
+def test_the_link_of_a_killed_bench_may_lead_to_somebody_elses_terminal() -> None:
+    killed = subprocess.Popen([sys.executable, "-c", ""])
+    killed.wait()
+    bench(f"nano-{killed.pid}", "/dev/null")
+    bench("mega-no-number", "/dev/null")
+    assert ports.find_ports() == []
+
+
+def test_a_folder_of_somebody_else_is_not_trusted(monkeypatch: pytest.MonkeyPatch) -> None:
+    bench(f"mega-{os.getpid()}", "/dev/null")
+    folder = ports.bench_directory()
+    monkeypatch.setattr(ports, "bench_directory", lambda: folder)
+    monkeypatch.setattr(os, "getuid", lambda: os.geteuid() + 1)
+    assert ports.find_ports() == []
+
+
+def test_boards_are_known_by_their_usb_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
+    plug(
+        monkeypatch,
+        usb("/dev/ttyUSB0", 0x1A86, 0x7523),
+        usb("/dev/ttyACM0", 0x2341, 0x0042),
+        usb("/dev/ttyS0", None, None),
+    )
+    found = ports.find_ports()
+    assert [(one.device, one.board, one.likely) for one in found] == [
+        ("/dev/ttyACM0", "mega", True),
+        ("/dev/ttyS0", None, False),
+        ("/dev/ttyUSB0", None, True),
+    ]
+    assert "USB serial bridge" in found[2].description
+
+
+def test_the_only_likely_port_is_chosen(monkeypatch: pytest.MonkeyPatch) -> None:
+    plug(monkeypatch, usb("/dev/ttyS0", None, None), usb("/dev/ttyACM0", 0x2341, 0x0042))
+    assert ports.choose_port(None) == "/dev/ttyACM0"
+    assert ports.choose_port("/dev/mine") == "/dev/mine"
+
+
+def test_no_port_or_several_are_one_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
+    plug(monkeypatch, usb("/dev/ttyS0", None, None))
+    with pytest.raises(UserError, match="no board was found.*greywhale sim.*--port") as caught:
+        ports.choose_port(None)
+    assert caught.value.exit_code == 2
+    plug(monkeypatch, usb("/dev/ttyACM0", 0x2341, 0x0042), usb("/dev/ttyACM1", 0x2341, 0x0042))
+    with pytest.raises(UserError, match="/dev/ttyACM0, /dev/ttyACM1; choose one with --port"):
+        ports.choose_port(None)

@@ -1,0 +1,168 @@
+"""Recording: what the board sent is what the log holds, losses are counted, and every bad end leaves a whole file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from greywhale.board.device import Device
+from greywhale.board.record import LEASE_MS, record
+from greywhale.errors import UserError
+from greywhale.files.log import read_log
+from greywhale.protocol import schema
+from greywhale.protocol.schema import Fault, State
+from tests.board.fake_board import FakeBoard, Faults
+
+
+def open_device(board: FakeBoard) -> Device:
+    return Device(board.port, quiet_s=0.0, patience_s=0.5)
+
+
+def parts(folder: Path) -> list[Path]:
+    return [path for path in folder.iterdir() if path.name.startswith(".")]
+
+
+def test_listening_records_every_sample_and_leaves_the_motors_alone(tmp_path: Path) -> None:
+    out = tmp_path / "log.csv"
+    with FakeBoard() as board:
+        with open_device(board) as device:
+            recording = record(device, out, seconds=0.5)
+        assert board.asked(schema.EnableRequest) == 0
+    log = read_log(out)
+    assert (recording.rows, recording.dropped, recording.duration_s) == (500, 0, 0.5)
+    assert np.array_equal(log.time, np.arange(500) / 1000)
+    first = round(log.leader[0, 0] * 4096)
+    assert np.array_equal(np.round(log.leader[:, 0] * 4096), first + np.arange(500))
+    assert np.allclose(log.follower[0], np.array([1, 2, 3, 4]) / 4096, atol=1e-6)
+    assert list(log.voltage[0]) == [15.0, -15.0, 0.0, 0.001]
+    assert set(log.state) == {"disabled"}
+    assert log.complete
+    assert log.origin.firmware == "0.1.0"
+    assert log.origin.board == "mega2560"
+    assert log.origin.param_crc == schema.param_crc(schema.DEFAULTS)
+    assert (log.origin.period_ms, log.origin.every_ticks) == (1, 1)
+
+
+def test_following_is_recorded_from_the_end_of_the_soft_start(tmp_path: Path) -> None:
+    out = tmp_path / "log.csv"
+    seconds = 5 * LEASE_MS / 1000  # the lease must be renewed meanwhile
+    with FakeBoard() as board:
+        with open_device(board) as device:
+            record(device, out, seconds, enable=True)
+            assert board.state is State.DISABLED
+        renewals = board.asked(schema.RenewRequest)
+    log = read_log(out)
+    assert set(log.state) == {"following"}
+    assert len(log.time) == 5 * LEASE_MS
+    assert 4 * 5 - 2 <= renewals <= 4 * 5 + 2
+
+
+def test_every_thins_the_samples(tmp_path: Path) -> None:
+    with FakeBoard() as board, open_device(board) as device:
+        record(device, tmp_path / "log.csv", 1.0, every=20)
+    log = read_log(tmp_path / "log.csv")
+    assert len(log.time) == 50
+    assert np.allclose(np.diff(log.time), 0.02)
+
+
+def test_lost_samples_are_counted_and_not_invented(tmp_path: Path) -> None:
+    lost = frozenset({150, 151, 152, 300})
+    with FakeBoard(Faults(lose_ticks=lost)) as board, open_device(board) as device:
+        recording = record(device, tmp_path / "log.csv", 0.5)
+    log = read_log(tmp_path / "log.csv")
+    assert recording.dropped == log.dropped == 4
+    assert len(log.time) == 500 - 4
+    steps = np.round(np.diff(log.time) * 1000)
+    assert sorted(steps[steps != 1]) == [2, 4]
+
+
+@pytest.mark.parametrize(
+    ("faults", "words"),
+    [
+        (Faults(restart_at=200), "restarted in the middle"),
+        (Faults(unplug_at=200), "went away in the middle"),
+        (Faults(fault_at=(200, Fault.POT_HIGH, 6)), r"upper rail \(follower potentiometer 2\): check"),
+        (Faults(fault_at=(200, Fault.TRACKING, 1)), r"too far from its leader for too long \(joint 1\): check"),
+    ],
+)
+def test_a_bad_end_keeps_what_was_recorded_and_says_why(tmp_path: Path, faults: Faults, words: str) -> None:
+    out = tmp_path / "log.csv"
+    with FakeBoard(faults) as board:
+        with pytest.raises(UserError, match=words), open_device(board) as device:
+            record(device, out, 10.0, enable=True)
+        assert board.state in (State.DISABLED, State.FAULT) or faults.unplug_at
+    log = read_log(out)
+    assert not log.complete
+    assert 100 < len(log.time) < 200
+    assert parts(tmp_path) == []
+
+
+def test_a_restart_without_a_word_is_found(tmp_path: Path) -> None:
+    faults = Faults(restart_at=200, restart_says_hello=False)
+    with (
+        FakeBoard(faults) as board,
+        pytest.raises(UserError, match="restarted in the middle"),
+        open_device(board) as device,
+    ):
+        record(device, tmp_path / "log.csv", 10.0)
+
+
+def test_samples_that_stop_coming_are_named(tmp_path: Path) -> None:
+    with (
+        FakeBoard(Faults(stop_sampling_at=100)) as board,
+        open_device(board) as device,
+        pytest.raises(UserError, match=r"answers but sent no sample for 2 s \(state disabled\)"),
+    ):
+        record(device, tmp_path / "log.csv", 10.0)
+
+
+def test_ctrl_c_stops_the_motors_and_marks_the_log(tmp_path: Path) -> None:
+    out = tmp_path / "log.csv"
+
+    def interrupt(what: str, fraction: float) -> None:
+        if what == "recording" and fraction > 0.02:
+            raise KeyboardInterrupt
+
+    with FakeBoard() as board:
+        with pytest.raises(KeyboardInterrupt), open_device(board) as device:
+            record(device, out, 10.0, enable=True, progress=interrupt)
+        assert board.state is State.DISABLED
+    assert not read_log(out).complete
+
+
+def test_a_refused_enable_leaves_no_file(tmp_path: Path) -> None:
+    faults = Faults(refuse={schema.EnableRequest.TYPE: (schema.NackCode.ERROR_TOO_LARGE, 2 << 8 | 40)})
+    with (
+        FakeBoard(faults) as board,
+        pytest.raises(UserError, match=r"joint 2, 1\.25 rad"),
+        open_device(board) as device,
+    ):
+        record(device, tmp_path / "log.csv", 1.0, enable=True)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("seconds", "every", "enable", "words"),
+    [
+        (0.0, 1, False, "duration is 0 s"),
+        (float("nan"), 1, False, "duration is nan s"),
+        (1e9, 1, False, r"0.01 to 86400 s"),
+        (1.0, 0, False, "every 0 ticks"),
+        (1.0, 101, True, "1 to 100 while the motors are on"),
+    ],
+)
+def test_bad_settings_are_bad_usage(tmp_path: Path, seconds: float, every: int, enable: bool, words: str) -> None:
+    with FakeBoard() as board, open_device(board) as device, pytest.raises(UserError, match=words) as caught:
+        record(device, tmp_path / "log.csv", seconds, every, enable)
+    assert caught.value.exit_code == 2
+
+
+def test_the_lease_running_out_is_named(tmp_path: Path) -> None:
+    with FakeBoard() as board, open_device(board) as device:
+        device.renew = lambda: None  # type: ignore[method-assign]
+        with pytest.raises(UserError, match="did not renew the lease of 500 ms"):
+            record(device, tmp_path / "log.csv", 10.0, enable=True)
+    log = read_log(tmp_path / "log.csv")
+    assert len(log.time) <= LEASE_MS

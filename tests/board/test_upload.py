@@ -1,0 +1,131 @@
+"""Uploads change all or nothing, are stored, and are proven by the board's own CRC."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from greywhale.board import upload
+from greywhale.board.device import Device
+from greywhale.errors import UserError
+from greywhale.protocol import schema
+from greywhale.protocol.schema import NackCode, Refusal, SaveState
+from tests.board.fake_board import FakeBoard, Faults
+
+ROOT = Path(__file__).parents[2]
+TABLE_10 = ROOT / "shared" / "fuzzy_tables" / "table_10.toml"
+
+
+def open_device(board: FakeBoard) -> Device:
+    return Device(board.port, quiet_s=0.0, patience_s=0.5)
+
+
+def index(name: str) -> int:
+    return schema.PARAMETER_BY_NAME[name].index
+
+
+def test_a_controller_replaces_its_own_parameters_and_no_others() -> None:
+    with FakeBoard() as board:
+        board.running[index("leader1.zero")] = 8000
+        board.running[index("joint0.motor_sign")] = -1
+        before = list(board.running)
+        with open_device(board) as device:
+            done = upload.upload_controller(device, TABLE_10)
+        assert board.running == board.stored
+        assert done.param_crc == schema.param_crc(board.running)
+        changed = {p.name for p in schema.PARAMETERS if before[p.index] != board.running[p.index]}
+    assert set(done.changed) == changed
+    assert changed
+    assert all(name.startswith("joint") for name in changed)
+    raw = dict(zip([p.name for p in schema.PARAMETERS], board.running, strict=True))
+    assert (raw["leader1.zero"], raw["joint0.motor_sign"]) == (8000, -1)
+    assert raw["joint0.ne_c"] == round(-0.0785 * 16384)
+    assert raw["joint0.kp"] == round(0.513 * 65536)
+    assert raw["joint0.ku_mv"] == 15000
+
+
+def test_uploading_twice_changes_nothing_the_second_time() -> None:
+    with FakeBoard() as board, open_device(board) as device:
+        first = upload.upload_controller(device, TABLE_10)
+        second = upload.upload_controller(device, TABLE_10)
+    assert second.param_crc == first.param_crc
+    assert second.changed == ()
+
+
+def test_lost_answers_do_not_harm_an_upload() -> None:
+    with FakeBoard() as board, open_device(board) as device:
+        for request in (schema.ParamSetRequest, schema.ParamApplyRequest, schema.ParamSaveRequest):
+            board.faults.lose[request.TYPE] = 2
+        done = upload.upload_controller(device, TABLE_10)
+        assert board.stored == board.running
+        assert done.param_crc == schema.param_crc(board.running)
+
+
+def test_a_wrong_echo_changes_nothing() -> None:
+    with FakeBoard(Faults(echo_error=1)) as board, open_device(board) as device:
+        with pytest.raises(UserError, match=r"sent period_ms = 1, the board understood parameter 0 = 2; nothing was"):
+            upload.upload_controller(device, TABLE_10)
+        assert board.running == list(schema.DEFAULTS)
+        assert board.asked(schema.ParamApplyRequest) == 0
+
+
+def test_a_refused_set_changes_nothing_and_names_the_joint() -> None:
+    refusal = (NackCode.SET_REFUSED, 1 << 8 | Refusal.GAIN)
+    with FakeBoard(Faults(refuse={schema.ParamApplyRequest.TYPE: refusal})) as board, open_device(board) as device:
+        with pytest.raises(UserError, match=r"\(joint 1, a gain"):
+            upload.upload_controller(device, TABLE_10)
+        assert board.running == board.stored == list(schema.DEFAULTS)
+        assert board.asked(schema.ParamSaveRequest) == 0
+
+
+def test_a_board_still_saving_is_waited_for() -> None:
+    busy = (NackCode.BUSY_SAVING, 0)
+    faults = Faults(refuse={schema.ParamApplyRequest.TYPE: busy})
+    faults.refuse_times[schema.ParamApplyRequest.TYPE] = 3
+    with FakeBoard(faults) as board, open_device(board) as device:
+        upload.upload_controller(device, TABLE_10)
+        assert board.asked(schema.ParamApplyRequest) == 4
+        assert board.stored == board.running
+
+
+def test_a_failed_save_says_that_the_set_runs_but_is_not_stored() -> None:
+    with (
+        FakeBoard(Faults(save_result=SaveState.FAILED)) as board,
+        open_device(board) as device,
+        pytest.raises(UserError, match="the new parameters run, but could not be stored"),
+    ):
+        upload.upload_controller(device, TABLE_10)
+
+
+def test_a_save_without_end_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(upload, "_SAVE_WAIT_S", 0.2)
+    with (
+        FakeBoard(Faults(save_result=SaveState.SAVING)) as board,
+        open_device(board) as device,
+        pytest.raises(UserError, match=r"has not ended after 0\.2 s"),
+    ):
+        upload.upload_controller(device, TABLE_10)
+
+
+def test_another_running_set_after_the_upload_is_noticed() -> None:
+    with (
+        FakeBoard(Faults(wrong_crc_after_apply=True)) as board,
+        open_device(board) as device,
+        pytest.raises(UserError, match="after the upload the board runs a set with CRC"),
+    ):
+        upload.upload_controller(device, TABLE_10)
+
+
+def test_parameters_read_wrong_are_noticed() -> None:
+    default = schema.param_crc(schema.DEFAULTS)
+    with FakeBoard() as board, open_device(board) as device:
+        board._hello = lambda: _with_crc(device.hello, 0x1234)  # type: ignore[method-assign]
+        with pytest.raises(UserError, match=f"parameters read have CRC {default:#06x}, the board's set has 0x1234"):
+            upload.read_parameters(device)
+
+
+def _with_crc(hello: schema.HelloReply, crc: int) -> bytes:
+    payload = bytearray(hello.pack())
+    payload[9:11] = crc.to_bytes(2, "little")
+    return bytes(payload)

@@ -1,0 +1,215 @@
+"""Logs: what is written is what is read, whole or marked, and doubt is refused."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import resource
+import stat
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from greywhale.errors import UserError
+from greywhale.files.log import Log, LogWriter, read_log
+from greywhale.files.log.layout import HEADING, STATES, Origin
+
+ORIGIN = Origin("1.2.3", "mega2560", 0xBEEF, 20, 5)
+ROW = ([0.1, 0.2, 0.3, 0.4], [-0.1, -0.2, -0.3, -0.4], [1.0, -2.0, 15.0, 0.001], "following")
+
+raw_angle = st.integers(-32768, 32767)
+samples = st.tuples(
+    st.integers(1, 60_000),  # ticks since the sample before
+    st.tuples(*[raw_angle] * 8),
+    st.tuples(*[st.integers(-32768, 32767)] * 4),
+    st.sampled_from(STATES),
+)
+
+
+def write(path: Path, count: int = 3, dropped: int = 0) -> None:
+    with LogWriter(path, ORIGIN) as log:
+        for row in range(count):
+            log.append(row * 0.005, *ROW)
+        log.drop(dropped)
+
+
+@given(st.lists(samples, min_size=2, max_size=30), st.integers(0, 10**9))
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_every_count_of_the_board_survives(
+    tmp_path: Path, rows: list[tuple[int, tuple[int, ...], tuple[int, ...], str]], dropped: int
+) -> None:
+    ticks = np.cumsum([row[0] for row in rows])
+    with LogWriter(tmp_path / "log.csv", ORIGIN) as log:
+        for tick, (_, angles, volts, state) in zip(ticks, rows, strict=True):
+            radians = [angle / 4096 for angle in angles]
+            log.append(tick / 1000, radians[:4], radians[4:], [volt / 1000 for volt in volts], state)
+        log.drop(dropped)
+    read = read_log(tmp_path / "log.csv")
+    assert np.array_equal(np.round(read.time * 1000), ticks)
+    assert np.array_equal(np.round(np.hstack([read.leader, read.follower]) * 4096), [row[1] for row in rows])
+    assert np.array_equal(np.round(read.voltage * 1000), [row[2] for row in rows])
+    assert list(read.state) == [row[3] for row in rows]
+    assert (read.dropped, read.complete, read.origin) == (dropped, True, ORIGIN)
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt, UserError("gone"), SystemExit])
+def test_what_was_recorded_before_an_interruption_is_kept_and_marked(
+    tmp_path: Path, error: BaseException | type[BaseException]
+) -> None:
+    path = tmp_path / "log.csv"
+
+    def interrupted() -> None:
+        with LogWriter(path, ORIGIN) as log:
+            for row in range(7):
+                log.append(row * 0.001, *ROW)
+            log.drop(2)
+            raise error
+
+    with pytest.raises(BaseException) as caught:  # noqa: PT011
+        interrupted()
+    assert caught.type is (error if isinstance(error, type) else type(error))
+    log = read_log(path)
+    assert (len(log.time), log.dropped, log.complete) == (7, 2, False)
+    assert os.listdir(tmp_path) == ["log.csv"]
+
+
+@contextlib.contextmanager
+def disk_for(size: int) -> Iterator[None]:
+    """Files end at this many bytes, in the middle of a write, as they do on a full disk."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+
+
+@pytest.mark.parametrize("rows", [300, 10_000])
+def test_on_a_full_disk_the_lines_that_are_whole_stay(tmp_path: Path, rows: int) -> None:
+    path = tmp_path / "log.csv"
+    with disk_for(20_000), pytest.raises(UserError, match=r"log\.csv: cannot be written: "):
+        write(path, rows)
+    log = read_log(path)
+    assert 100 < len(log.time) < 300
+    assert not log.complete
+    assert 19_800 < path.stat().st_size <= 20_000
+    assert os.listdir(tmp_path) == ["log.csv"]
+
+
+def test_without_room_for_the_header_nothing_stays(tmp_path: Path) -> None:
+    with disk_for(50), pytest.raises(UserError, match=r"log\.csv: cannot be written: "):
+        write(tmp_path / "log.csv", 10)
+    assert os.listdir(tmp_path) == []
+
+
+def test_folders_and_devices_are_refused_before_anything_is_recorded(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "device")
+    for name, words in (("device", "not an ordinary file"), (".", "is a directory")):
+        with pytest.raises(UserError, match=f"cannot be written: {words}"):
+            LogWriter(tmp_path / name, ORIGIN).__enter__()
+    assert stat.S_ISFIFO((tmp_path / "device").stat().st_mode)
+    assert os.listdir(tmp_path) == ["device"]
+
+
+def test_the_old_file_stays_until_the_new_one_is_whole(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text("precious")
+    with LogWriter(path, ORIGIN) as log:
+        log.append(0.0, *ROW)
+        assert path.read_text() == "precious"
+        log.append(0.1, *ROW)
+    assert len(read_log(path).time) == 2
+
+
+def test_an_empty_recording_leaves_the_old_file_and_nothing_else(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text("precious")
+    with LogWriter(path, ORIGIN):
+        pass
+    assert path.read_text() == "precious"
+    assert os.listdir(tmp_path) == ["log.csv"]
+
+
+def test_a_killed_recording_can_be_told_from_a_whole_one(tmp_path: Path) -> None:
+    log = LogWriter(tmp_path / "log.csv", ORIGIN).__enter__()
+    for row in range(3):
+        log.append(row * 0.001, *ROW)
+    log.flush()  # the process dies here
+    (part,) = tmp_path.iterdir()
+    assert not read_log(part).complete
+    log.__exit__(None, None, None)
+
+
+def test_the_file_has_the_rights_of_any_new_file(tmp_path: Path) -> None:
+    write(tmp_path / "log.csv")
+    other = tmp_path / "other"
+    other.touch()
+    assert stat.S_IMODE((tmp_path / "log.csv").stat().st_mode) == stat.S_IMODE(other.stat().st_mode)
+
+
+@pytest.mark.parametrize(
+    ("time", "leader", "state"),
+    [
+        (0.0, ROW[0], "following"),
+        (-1.0, ROW[0], "following"),
+        (1.0, ROW[0][:3], "following"),
+        (1.0, [float("nan"), *ROW[0][1:]], "following"),
+        (float("inf"), ROW[0], "following"),
+        (1.0, ROW[0], "dancing"),
+    ],
+)
+def test_the_writer_refuses_what_the_reader_would(tmp_path: Path, time: float, leader: list[float], state: str) -> None:
+    with LogWriter(tmp_path / "log.csv", ORIGIN) as log:
+        log.append(0.0, *ROW)
+        with pytest.raises((ValueError, OverflowError)):
+            log.append(time, leader, ROW[1], ROW[2], state)
+
+
+def test_a_folder_that_is_not_there_is_named(tmp_path: Path) -> None:
+    with pytest.raises(UserError, match=r"none/log\.csv: cannot be written: no such file or directory"):
+        write(tmp_path / "none" / "log.csv")
+
+
+def changed(folder: Path, old: str, new: str) -> Log:
+    path = folder / "log.csv"
+    write(path)
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new, 1))
+    return read_log(path)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("following\n", "dancing\n", "line 10, column state: 'dancing' is not one of boot, disabled"),
+        ("0.005000,", "0.000000,", "line 11, column time_s: time must increase"),
+        ("-0.300000,", "nan,", "line 10, column follower_2: nan is not a finite number"),
+        ("0.400000,-", "-", "line 10: 13 values where 14 columns are named"),
+        ("-0.300000,", "-57.3,", "line 10, column follower_2: -57.3 rad is beyond 8 rad; logs are in rad"),
+        ("0.200000,", "8.001,", "line 10, column leader_1: 8.001 rad is beyond 8 rad"),
+        (",15.000,", ",15000,", "line 10, column voltage_2: 15000 V is beyond 33 V; logs are in V"),
+        ("greywhale log 1", "greywhale log 2", 'is a "greywhale log 2", but this greywhale reads "greywhale log 1"'),
+        ("voltage_3", "volts_3", "line 9: column voltage_3 is missing"),
+        ("parameter_crc: 0xbeef", "parameter_crc: beef", "parameter_crc is 'beef' in the header"),
+        ("dropped_samples: 0", "dropped_samples: -1", "dropped_samples is '-1' in the header"),
+        ("recording: complete", "recording: perhaps", "recording is 'perhaps' in the header"),
+    ],
+)
+def test_a_spoiled_log_is_refused_by_line_and_column(tmp_path: Path, old: str, new: str, words: str) -> None:
+    with pytest.raises(UserError) as caught:
+        changed(tmp_path, old, new)
+    assert str(tmp_path / "log.csv") in caught.value.message
+    assert words in caught.value.message
+
+
+def test_a_log_of_another_tool_needs_no_header(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    row = ",".join(["0"] * 12) + ",disabled"
+    path.write_text(f"{HEADING}\n0,{row}\n1,{row}\n")
+    log = read_log(path)
+    assert (log.origin, log.dropped, log.complete) == (Origin(), 0, True)

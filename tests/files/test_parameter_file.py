@@ -1,0 +1,68 @@
+"""A backup gives back exactly the parameters that went in."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from greywhale.errors import UserError
+from greywhale.files import parameter_file
+from greywhale.protocol import schema
+from greywhale.protocol.declared import Parameter
+
+
+@st.composite
+def tables(draw: st.DrawFn) -> tuple[int, ...]:
+    """Raw values that the table's own rules accept."""
+    values = []
+    for parameter in schema.PARAMETERS:
+        number = st.integers(parameter.minimum, parameter.maximum)
+        values.append(draw(number.filter(bool) if parameter.nonzero else number))
+    for parameter in schema.PARAMETERS:
+        if parameter.below is not None:
+            other = schema.PARAMETER_BY_NAME[f"{parameter.group}{parameter.element}.{parameter.below}"]
+            values[parameter.index], values[other.index] = parameter.minimum, other.maximum
+    return tuple(values)
+
+
+@given(tables())
+@settings(max_examples=30, suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture])
+def test_every_raw_value_survives(tmp_path: Path, values: tuple[int, ...]) -> None:
+    path = tmp_path / "backup.toml"
+    parameter_file.save(path, values)
+    assert parameter_file.load(path) == values
+
+
+@pytest.mark.parametrize("parameter", schema.PARAMETERS, ids=lambda p: p.name)
+def test_neighbouring_raw_values_stay_apart_at_the_ends_of_the_range(parameter: Parameter) -> None:
+    for raw in {parameter.minimum, parameter.minimum + 1, parameter.maximum - 1, parameter.maximum} - {0}:
+        assert parameter.to_raw(parameter_file.physical(parameter, raw)) == raw
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("period_ms = 1", "period_ms = 51", "period_ms is 51 ms, which is out of range"),
+        ("period_ms = 1", "period_ms = 1.5", "period_ms is 1.5 ms, but it must be a whole number"),
+        ("kp = 0.513", "kp = 1e-9", "joint0.kp is 1e-09 1/rad, which the board would store as 0"),
+        ("period_ms = 1", "", "period_ms is missing"),
+        ("period_ms = 1", "period_ms = 1\nperiod = 2", "unknown key period"),
+        ("period_ms = 1", "period_ms = true", "period_ms is True, but it must be a number"),
+        ("period_ms = 1", "period_ms = inf", "period_ms is inf"),
+        ("period_ms = 1", "period_ms =", "not valid TOML"),
+        ("limit_min = -2.5", "limit_min = 2.6", "joint0.limit_min is 2.6"),
+    ],
+)
+def test_a_spoiled_backup_is_refused(tmp_path: Path, old: str, new: str, words: str) -> None:
+    path = tmp_path / "backup.toml"
+    parameter_file.save(path, schema.DEFAULTS)
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new, 1))
+    with pytest.raises(UserError) as caught:
+        parameter_file.load(path)
+    assert caught.value.message.startswith(f"{path}: ")
+    assert words in caught.value.message

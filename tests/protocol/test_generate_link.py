@@ -1,0 +1,111 @@
+"""The generator: committed files are current, stale ones are noticed, contradicting declarations are refused."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from .conftest import ROOT
+
+GENERATED = [
+    "firmware/lib/link/src/link/schema.h",
+    "firmware/lib/params/src/params/table.h",
+    "firmware/lib/params/src/params/table.cpp",
+    "firmware/test/native/test_link/golden.h",
+    "host/src/greywhale/protocol/schema.py",
+    "shared/link/golden.toml",
+    "docs/link.md",
+]
+
+
+def generate(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, ROOT / "tools/generate_link.py", *arguments]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+@pytest.fixture
+def copy(tmp_path: Path) -> Path:
+    """A root with the declarations and everything generated from them."""
+    shutil.copytree(ROOT / "shared/link", tmp_path / "shared/link")
+    for path in GENERATED:
+        (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(ROOT / path, tmp_path / path)
+    return tmp_path
+
+
+def edit(path: Path, old: str, new: str) -> None:
+    text = path.read_text(encoding="utf-8")
+    assert old in text
+    path.write_text(text.replace(old, new, 1), encoding="utf-8")
+
+
+def test_committed_files_are_current() -> None:
+    result = generate("--check")
+    assert (result.returncode, result.stderr) == (0, "")
+
+
+@pytest.mark.parametrize("path", GENERATED)
+def test_a_stale_or_missing_file_is_named(copy: Path, path: str) -> None:
+    with (copy / path).open("a", encoding="utf-8") as file:
+        file.write("edited\n")
+    result = generate("--check", "--root", copy)
+    assert result.returncode == 1
+    assert result.stderr.splitlines() == [f"{path} does not match shared/link; run `python tools/generate_link.py`."]
+    (copy / path).unlink()
+    assert generate("--check", "--root", copy).returncode == 1
+    assert generate("--root", copy).stdout == f"wrote {path}\n"
+    assert generate("--check", "--root", copy).returncode == 0
+    assert (copy / path).read_bytes() == (ROOT / path).read_bytes()
+
+
+def test_a_changed_declaration_makes_both_sides_stale(copy: Path) -> None:
+    edit(copy / "shared/link/messages.toml", "type = 0x0C", "type = 0x0F")
+    stale = generate("--check", "--root", copy).stderr
+    assert "schema.h" in stale
+    assert "schema.py" in stale
+    assert "link.md" in stale
+
+
+def test_a_changed_description_leaves_the_schema_hash_alone(copy: Path) -> None:
+    edit(copy / "shared/link/messages.toml", "Motors off. Works in every state.", "Motors off, always.")
+    generate("--root", copy)
+    line = next(line for line in (ROOT / GENERATED[0]).read_text().splitlines() if "schema_hash" in line)
+    text = (copy / GENERATED[0]).read_text()
+    assert line in text
+    assert "Motors off, always." in text
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "sentence"),
+    [
+        ("messages.toml", 'type = "u32", unit = "ticks"', 'type = "u24", unit = "ticks"', "tick has the type u24"),
+        ("messages.toml", "type = 0x0C", "type = 0x0B", "share a name or a type"),
+        ("messages.toml", "max_payload = 48", "max_payload = 20", "more than max_payload"),
+        ("messages.toml", 'enum = "Board"', 'enum = "Bord"', "names the enum Bord"),
+        ("messages.toml", "protocol = 1", "protokoll = 1", "lacks the key 'protocol'"),
+        ("messages.toml", "[[message]]", "[[message]", "messages.toml"),
+        ("enums.toml", 'name = "disabled", value = 1', 'name = "disabled", value = 0', "State repeats a value"),
+        ("parameters.toml", "min = 3000, max = 30000", "min = 3000, max = 70000", "supply_mv does not fit its type"),
+        ("parameters.toml", "default = 15000", "default = 2000", "supply_mv does not fit its type"),
+        ("parameters.toml", '"0.630", "0.782"]', '"0.630"]', "kp does not fit its type"),
+        ("parameters.toml", 'below = "limit_max"', 'below = "limit"', "limit_min is below limit, which"),
+        (
+            "parameters.toml",
+            'name = "rail_counts", type = "u8"',
+            'name = "rail_counts", type = "u16"',
+            "layout_hash = 0x",
+        ),
+        ("parameters.toml", "layout = 1", "layout = 2", "layout_hash = 0x"),
+    ],
+)
+def test_a_declaration_that_cannot_be_is_refused(copy: Path, file: str, old: str, new: str, sentence: str) -> None:
+    edit(copy / "shared/link" / file, old, new)
+    result = generate("--root", copy)
+    assert result.returncode == 1
+    assert sentence in result.stderr
+    assert "Traceback" not in result.stderr
+    assert result.stdout == ""

@@ -1,0 +1,159 @@
+"""The parameter table: order, ranges, units and CRC, the same on the host as in the firmware."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from typing import TYPE_CHECKING
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from greywhale.errors import UserError
+from greywhale.protocol.declared import Parameter
+from greywhale.protocol.schema import (
+    DEFAULTS,
+    PARAMETER_BY_NAME,
+    PARAMETERS,
+    TABLE,
+    check_parameters,
+    pack_parameters,
+    param_crc,
+    unpack_parameters,
+)
+
+from .conftest import ROOT
+
+if TYPE_CHECKING:
+    from .conftest import Firmware
+
+
+def raw_values(parameter: Parameter) -> st.SearchStrategy[int]:
+    values = st.integers(parameter.minimum, parameter.maximum)
+    return values.filter(bool) if parameter.nonzero else values
+
+
+tables = st.tuples(*map(raw_values, PARAMETERS))
+
+
+def test_names_and_flat_indices() -> None:
+    assert [parameter.index for parameter in PARAMETERS] == list(range(84))
+    assert PARAMETERS[0].name == "period_ms"
+    assert PARAMETER_BY_NAME["joint0.ne_c"].index == 8
+    assert PARAMETER_BY_NAME["joint3.limit_max"].index == 67
+    assert PARAMETER_BY_NAME["leader2.zero"].index == 72
+    assert PARAMETER_BY_NAME["follower3.scale"].index == 83
+    assert TABLE.size == 185
+
+
+def test_defaults_are_the_golden_bytes(firmware: Firmware) -> None:
+    golden = tomllib.loads((ROOT / "shared/link/golden.toml").read_text(encoding="utf-8"))["parameters"]
+    assert pack_parameters(DEFAULTS) == bytes.fromhex(golden["defaults"]) == firmware.defaults()
+    assert param_crc(DEFAULTS) == golden["crc"]
+    check_parameters(DEFAULTS)
+
+
+def test_defaults_are_the_paper_before_tuning() -> None:
+    def physical(name: str) -> float:
+        parameter = PARAMETER_BY_NAME[name]
+        return parameter.to_physical(parameter.default)
+
+    assert [physical(f"joint{j}.kp") for j in range(4)] == pytest.approx([0.513, 0.590, 0.630, 0.782], abs=1e-5)
+    assert [physical(f"joint{j}.kd") for j in range(4)] == pytest.approx([0.160, 0.147, 0.244, 0.169], abs=1e-5)
+    assert [physical(f"joint{j}.ki") for j in range(4)] == pytest.approx([0.313, 0.201, 0.251, 0.233], abs=1e-5)
+    assert [physical(f"joint{j}.ku_mv") for j in range(4)] == [15000, 11550, 13150, 14500]
+    sets = ["ne_c", "ze_a", "ze_c", "pe_b", "nce_c", "zce_a", "zce_c", "pce_b"]
+    assert [physical(f"joint2.{name}") for name in sets] == pytest.approx(
+        [-0.3, -0.3, 0.3, 0.3, -0.1, -0.1, 0.1, 0.1], abs=1 / 16384
+    )
+
+
+def test_the_default_potentiometer_turns_300_degrees() -> None:
+    scale = PARAMETER_BY_NAME["leader0.scale"]
+    assert scale.to_physical(scale.default) * 16368 == pytest.approx(math.radians(300), rel=1e-4)
+
+
+@given(tables)
+def test_both_sides_pack_and_sum_alike(firmware: Firmware, raw: tuple[int, ...]) -> None:
+    table = firmware.defaults()
+    for parameter, value in zip(PARAMETERS, raw, strict=True):
+        assert firmware.set(table, parameter.index, value) == "ok"
+    assert bytes(table) == pack_parameters(raw)
+    assert unpack_parameters(bytes(table)) == raw
+    assert tuple(firmware.get(table, parameter.index) for parameter in PARAMETERS) == raw
+    assert firmware.crc(table) == param_crc(raw)
+
+
+@given(st.sampled_from(PARAMETERS), st.integers(-(2**31), 2**31 - 1) | st.integers(-70000, 70000) | st.integers(-2, 2))
+def test_both_sides_draw_the_ranges_alike(firmware: Firmware, parameter: Parameter, value: int) -> None:
+    accepted = firmware.set(firmware.defaults(), parameter.index, value) == "ok"
+    if accepted:
+        parameter.check_raw(value)
+    else:
+        with pytest.raises(UserError, match=parameter.name):
+            parameter.check_raw(value)
+
+
+@given(st.sampled_from(PARAMETERS), st.sampled_from(["minimum", "maximum"]))
+def test_both_sides_end_the_ranges_at_the_same_value(firmware: Firmware, parameter: Parameter, end: str) -> None:
+    limit = getattr(parameter, end)
+    beyond = limit + (1 if end == "maximum" else -1)
+    assert firmware.set(firmware.defaults(), parameter.index, limit) == "ok"
+    assert firmware.set(firmware.defaults(), parameter.index, beyond) == "out_of_range"
+
+
+@given(tables)
+def test_both_sides_find_the_same_contradictions(firmware: Firmware, raw: tuple[int, ...]) -> None:
+    invalid = firmware.first_invalid(bytearray(pack_parameters(raw)))
+    if invalid is None:
+        check_parameters(raw)
+    else:
+        with pytest.raises(UserError, match=PARAMETERS[invalid].name):
+            check_parameters(raw)
+
+
+@given(st.sampled_from(PARAMETERS), st.data())
+def test_raw_to_physical_and_back(parameter: Parameter, data: st.DataObject) -> None:
+    raw = data.draw(raw_values(parameter))
+    assert parameter.to_raw(parameter.to_physical(raw)) == raw
+
+
+@given(st.sampled_from([p for p in PARAMETERS if not p.nonzero]), st.floats(0, 1))
+def test_to_raw_takes_the_nearest(parameter: Parameter, share: float) -> None:
+    low, high = parameter.to_physical(parameter.minimum), parameter.to_physical(parameter.maximum)
+    physical = min(max(low + share * (high - low), low), high)
+    assert abs(parameter.to_physical(parameter.to_raw(physical)) - physical) <= parameter.lsb * 0.5000001
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "sentence"),
+    [
+        ("joint1.kp", 64.1, r"joint1\.kp is 64\.1 1/rad, which is out of range; choose a value from 0 to 64 1/rad\."),
+        ("joint1.kp", -0.001, r"joint1\.kp is -0\.001"),
+        ("supply_mv", 2999, r"supply_mv is 2999 mV.*from 3000 to 30000 mV"),
+        ("joint0.ne_c", math.nan, r"joint0\.ne_c is nan, but it must be a finite number"),
+        ("joint0.ne_c", math.inf, r"joint0\.ne_c is inf"),
+        ("joint0.motor_sign", 0, r"joint0\.motor_sign is 0.*from -1 to 1, other than 0"),
+        ("leader3.scale", 1e-12, r"leader3\.scale is 1e-12.*other than 0"),
+    ],
+)
+def test_values_out_of_range_are_refused_with_the_range(name: str, value: float, sentence: str) -> None:
+    with pytest.raises(UserError, match=sentence) as refused:
+        PARAMETER_BY_NAME[name].to_raw(value)
+    assert refused.value.exit_code == 2
+
+
+def test_contradicting_limits_are_named() -> None:
+    raw = list(DEFAULTS)
+    raw[PARAMETER_BY_NAME["joint2.limit_min"].index] = 4096
+    raw[PARAMETER_BY_NAME["joint2.limit_max"].index] = 4096
+    with pytest.raises(UserError, match=r"joint2\.limit_min is 1 and joint2\.limit_max is 1 rad; choose .* below"):
+        check_parameters(raw)
+
+
+def test_a_set_that_is_not_whole_is_refused() -> None:
+    with pytest.raises(UserError, match=r"84 values, but 83"):
+        param_crc(DEFAULTS[:-1])
+    with pytest.raises(UserError, match=r"185 bytes, but 184"):
+        unpack_parameters(bytes(184))

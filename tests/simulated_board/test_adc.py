@@ -1,0 +1,192 @@
+"""ADC: conversion time, the moment of sampling, what is latched when, flags and the result lock."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from tests.simulated_board.avr import MakeProgram
+
+CHIPS = ["atmega2560", "atmega328p"]
+
+
+def millivolts(*values: float) -> NDArray[np.float64]:
+    return np.array([*values, *[0.0] * (8 - len(values))])
+
+
+SPACING = """
+volatile uint16_t stamp[5]; volatile uint8_t count;
+ISR(ADC_vect) {{ stamp[count++] = TCNT1; if (count == 5) DONE(); }}
+int main(void) {{
+    TCCR1B = 1; ADMUX = 0x40; ADCSRB = 0;
+    ADCSRA = _BV(ADEN) | _BV(ADSC) | _BV(ADATE) | _BV(ADIE) | {select};
+    stamp[0] = TCNT1; count = 1; sei(); for (;;);
+}}
+"""
+
+
+@pytest.mark.parametrize("chip", CHIPS)
+@pytest.mark.parametrize(("select", "prescaler"), [(4, 16), (5, 32), (6, 64), (7, 128)])
+def test_free_running_conversions_take_13_adc_clocks_and_the_first_25(
+    program: MakeProgram, chip: str, select: int, prescaler: int
+) -> None:
+    run = program(SPACING.format(select=select), chip).finish()
+    stamps = run.u16("stamp")
+    steps = [later - earlier for earlier, later in pairwise(stamps)]
+    assert 25 * prescaler <= steps[0] + 10 <= 25 * prescaler + 60  # to inside the handler, from a store before
+    assert all(abs(step - 13 * prescaler) <= 2 for step in steps[1:]), steps
+
+
+SINGLE = """
+volatile uint16_t took, result[3];
+ISR(ADC_vect) { took = TCNT1; }
+static void convert(uint8_t i) {
+    took = 0; TCNT1 = 0; ADCSRA |= _BV(ADSC);
+    while (!took); result[i] = took;
+}
+int main(void) {
+    TCCR1B = 1; ADMUX = 0x40; ADCSRA = _BV(ADEN) | _BV(ADIE) | 5; sei();
+    for (uint8_t i = 0; i < 3; ++i) convert(i);
+    DONE();
+}
+"""
+
+
+def test_a_single_conversion_starts_at_the_next_adc_clock(program: MakeProgram) -> None:
+    """13 clocks of 32 cycles, up to one clock of waiting before, and the way into the handler after."""
+    first, *others = program(SINGLE).finish().u16("result")
+    assert 25 * 32 <= first <= 26 * 32 + 40
+    for took in others:
+        assert 13 * 32 <= took <= 14 * 32 + 40
+
+
+@pytest.mark.parametrize("chip", CHIPS)
+@pytest.mark.parametrize(
+    ("input_mv", "count"),
+    [(0, 0), (4.8, 0), (4.9, 1), (1234.5, 252), (2500, 512), (4995, 1022), (5000, 1023), (6000, 1023)],
+)
+def test_the_result_is_the_input_over_the_reference(
+    program: MakeProgram, chip: str, input_mv: float, count: int
+) -> None:
+    source = """
+    volatile uint16_t result[8];
+    int main(void) {
+        ADCSRA = _BV(ADEN) | 5;
+        for (uint8_t i = 0; i < 8; ++i) {
+            ADMUX = 0x40 | i; ADCSRA |= _BV(ADSC); while (ADCSRA & _BV(ADSC)); result[i] = ADC;
+        }
+        DONE();
+    }
+    """
+    run = program(source, chip)
+    for channel in range(8):
+        volts = np.zeros(8)
+        volts[channel] = input_mv
+        run.board.set_millivolts(volts)
+        run.finish()
+        expected = [0] * 8
+        expected[channel] = count
+        assert run.u16("result") == expected
+
+
+HOLD = """
+volatile uint8_t go; volatile uint16_t result;
+int main(void) {
+    DDRB = 1; ADMUX = 0x40; ADCSRA = _BV(ADEN) | _BV(ADSC) | 7;
+    while (ADCSRA & _BV(ADSC));
+    go = 0; PORTB = 2;
+    while (!go);
+    ADCSRA |= _BV(ADSC); PORTB = 1;
+    while (ADCSRA & _BV(ADSC));
+    result = ADC;
+    DONE();
+}
+"""
+
+
+def converted(program: MakeProgram, wait: int) -> int:
+    """The result when the input goes from 1000 mV to 4000 mV so many cycles after the start of a conversion."""
+    run = program(HOLD).start()
+    run.board.set_millivolts(millivolts(1000))
+    run.run(10_000)
+    run.set_u8("go", 1)
+    while not run.board.pin("B", 0):
+        run.run(1)
+    run.run(wait)
+    run.board.set_millivolts(millivolts(4000))
+    assert run.run(10_000) == 1
+    return run.u16("result")[0]
+
+
+def test_the_input_is_sampled_one_and_a_half_adc_clocks_after_the_start_and_held(program: MakeProgram) -> None:
+    """Prescaler 128: the sample is taken 192 cycles after a clock edge, which comes 0..128 cycles after the start."""
+    old, new = 204, 819
+    assert converted(program, 100) == new
+    assert converted(program, 340) == old
+    assert converted(program, 1500) == old
+
+
+MUX = """
+volatile uint16_t result[2];
+int main(void) {
+    ADMUX = 0x40; ADCSRA = _BV(ADEN) | _BV(ADSC) | 7; while (ADCSRA & _BV(ADSC));
+    ADCSRA |= _BV(ADSC); __builtin_avr_delay_cycles(150);
+    ADMUX = 0x41;
+    while (ADCSRA & _BV(ADSC));
+    result[0] = ADC;
+    ADCSRA |= _BV(ADSC); while (ADCSRA & _BV(ADSC));
+    result[1] = ADC;
+    DONE();
+}
+"""
+
+
+def test_the_channel_is_fixed_when_the_conversion_starts(program: MakeProgram) -> None:
+    run = program(MUX)
+    run.board.set_millivolts(millivolts(1000, 4000))
+    assert run.finish().u16("result") == [204, 819]
+
+
+FLAG = """
+volatile uint8_t seen[4];
+int main(void) {
+    ADMUX = 0x40; ADCSRA = _BV(ADEN) | _BV(ADSC) | 5; while (ADCSRA & _BV(ADSC));
+    seen[0] = ADCSRA; ADCSRA = _BV(ADEN) | 5; seen[1] = ADCSRA;
+    (void)ADC; seen[2] = ADCSRA;
+    ADCSRA = _BV(ADEN) | _BV(ADIF) | 5; seen[3] = ADCSRA;
+    DONE();
+}
+"""
+
+
+def test_adif_is_cleared_by_writing_one_and_by_nothing_else(program: MakeProgram) -> None:
+    assert [bool(value & 0x10) for value in program(FLAG).finish().u8("seen")] == [True, True, True, False]
+
+
+LOCK = """
+volatile uint8_t low, high, low_after, high_after, ready, go;
+int main(void) {
+    ADMUX = 0x40; ADCSRB = 0; ADCSRA = _BV(ADEN) | _BV(ADSC) | _BV(ADATE) | 4;
+    __builtin_avr_delay_cycles(1000);
+    low = ADCL; ready = 1;
+    while (!go);
+    high = ADCH; __builtin_avr_delay_cycles(1000); low_after = ADCL; high_after = ADCH;
+    DONE();
+}
+"""
+
+
+def test_reading_adcl_locks_the_result_until_adch_is_read(program: MakeProgram) -> None:
+    run = program(LOCK).start()
+    run.board.set_millivolts(millivolts(5000))
+    run.run(5000)
+    assert run.u8("ready") == [1]
+    run.board.set_millivolts(millivolts(0))
+    run.run(5000)
+    run.set_u8("go", 1)
+    assert run.run(5000) == 1
+    assert (run.u8("high")[0] << 8 | run.u8("low")[0]) == 1023
+    assert (run.u8("high_after")[0] << 8 | run.u8("low_after")[0]) == 0

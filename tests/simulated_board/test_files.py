@@ -1,0 +1,111 @@
+"""Program files: what is loaded where, and one sentence for everything that can be wrong with one."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from greywhale_sim._board import Board, BoardError
+from greywhale_sim.symbols import read_symbols
+from tests.simulated_board.avr import Compile, MakeProgram
+
+END = ":00000001FF\n"
+
+
+def record(address: int, kind: int, data: bytes) -> str:
+    body = bytes([len(data), address >> 8, address & 255, kind]) + data
+    return f":{body.hex().upper()}{-sum(body) & 255:02X}\n"
+
+
+def write(folder: Path, text: str) -> str:
+    path = folder / "firmware.hex"
+    path.write_text(text)
+    return str(path)
+
+
+def test_hex_data_goes_where_its_base_address_says(tmp_path: Path) -> None:
+    board = Board("atmega2560")
+    text = record(0x10, 0, b"low") + record(0, 2, b"\x10\x00") + record(0x20, 0, b"segment") + record(0, 4, b"\x00\x03")
+    board.load_hex(write(tmp_path, text + record(0x30, 0, b"linear") + END))
+    flash = board.flash()
+    assert len(flash) == 256 * 1024
+    assert flash[0x10:0x13] == b"low"
+    assert flash[0x10020:0x10027] == b"segment"
+    assert flash[0x30030:0x30036] == b"linear"
+    assert flash.count(b"\xff") == len(flash) - 16
+    board.erase_flash()
+    assert board.flash() == b"\xff" * len(flash)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "stops before its end-of-file record"),
+        (END, "holds no program bytes"),
+        (record(0, 0, b"abc"), "stops before its end-of-file record"),
+        ("hello\n", "line 1: a record must begin with a colon"),
+        (record(0, 0, b"abc") + ":0300\n", "line 2: the record is cut short"),
+        (":0300000061626XD7\n", 'line 1: "6X" is not a hexadecimal byte'),
+        (record(0, 0, b"abc")[:-3] + "00\n", "line 1: the checksum is wrong"),
+        (":04000000616263D7\n", "line 1: the record announces 4 data bytes, but holds 3"),
+        (record(0, 7, b"abc") + END, "line 1: record type 7 is not one of Intel HEX"),
+        (record(0, 4, b"abc") + END, "line 1: a base address record must hold 2 bytes"),
+        (record(0x8000, 0, b"abc") + END, "up to address 0x8002, but the ATmega328P has 32 KB of flash"),
+    ],
+)
+def test_a_bad_hex_file_is_one_sentence_and_loads_nothing(tmp_path: Path, text: str, words: str) -> None:
+    board = Board("atmega328p")
+    path = write(tmp_path, text)
+    with pytest.raises(BoardError) as error:
+        board.load_hex(path)
+    assert words in str(error.value)
+    assert str(error.value).startswith(path)
+    assert "; " in str(error.value)  # the remedy
+    assert board.flash() == b"\xff" * 32768
+
+
+def test_an_elf_is_loaded_to_flash_and_eeprom_and_runs(program: MakeProgram) -> None:
+    run = program(
+        '#include <avr/eeprom.h>\n uint8_t EEMEM stored[3] = {1, 2, 3}; const char text[] = "in flash";\n'
+        "volatile uint8_t data = 42, copy; int main(void) { copy = data + text[0]; DONE(); }"
+    )
+    assert run.board.eeprom()[:4] == b"\x01\x02\x03\xff"
+    run.finish()
+    assert run.u8("copy") == [(42 + ord("i")) % 256]
+    assert run.symbols["main"].in_flash
+    assert not run.symbols["data"].in_flash
+    assert "stored" not in run.symbols
+
+
+def test_a_bad_elf_is_one_sentence(compile_avr: Compile, tmp_path: Path) -> None:
+    good = compile_avr("int main(void) { DONE(); }", "atmega328p").read_bytes()
+    cases = {
+        b"not an ELF file, although it is long enough to be one, isn't it?": "does not begin like an ELF file",
+        b"\x7fELF": "ends inside the ELF header",
+        good[:100]: "ends inside a program header|ends inside a segment",
+        good[:18] + b"\x3e\x00" + good[20:]: "not a program for an AVR",
+        good[:16] + b"\x01\x00" + good[18:]: "is not linked",
+    }
+    path = tmp_path / "firmware.elf"
+    for content, words in cases.items():
+        path.write_bytes(content)
+        with pytest.raises(BoardError) as error:
+            Board("atmega328p").load_elf(str(path))
+        assert re.search(words, str(error.value))
+        assert str(error.value).startswith(str(path))
+
+
+def test_a_program_for_another_chip_or_without_symbols_or_missing_is_refused(
+    compile_avr: Compile, tmp_path: Path
+) -> None:
+    nano = compile_avr("int main(void) { DONE(); }", "atmega328p")
+    with pytest.raises(BoardError, match=r"built for another chip family \(avr5\), but the ATmega2560 is avr6"):
+        Board("atmega2560").load_elf(str(nano))
+    missing = tmp_path / "missing"
+    for load in (Board("atmega328p").load_elf, Board("atmega328p").load_hex, read_symbols):
+        with pytest.raises(BoardError, match=r"missing.* cannot be"):
+            load(str(missing))
+    with pytest.raises(BoardError, match='"atmega32u4" is not simulated; use atmega2560 or atmega328p'):
+        Board("atmega32u4")

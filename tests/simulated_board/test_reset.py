@@ -1,0 +1,127 @@
+"""Power, the RESET pin, the watchdog: what each leaves in MCUSR, RAM and the registers."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.simulated_board.avr import MakeProgram
+
+PORF, EXTRF, WDRF = 1, 2, 8
+
+CAUSE = """
+volatile uint8_t cause __attribute__((section(".noinit"))), kept __attribute__((section(".noinit")));
+int main(void) { cause = MCUSR; if (CLEAR) MCUSR = 0; DDRB = 1; PORTB = 1; for (;;); }
+"""
+
+
+@pytest.mark.parametrize("chip", ["atmega2560", "atmega328p"])
+def test_power_on_and_reset_pin_report_their_cause_and_reset_keeps_ram(program: MakeProgram, chip: str) -> None:
+    run = program(CAUSE.replace("CLEAR", "1"), chip).start()
+    run.run(1000)
+    assert run.u8("cause") == [PORF]
+    assert run.board.pin("B", 0)
+    run.set_u8("kept", 0xA7)
+    run.board.reset()
+    assert not run.board.pin("B", 0)
+    assert run.board.pc == 0
+    run.run(1000)
+    assert run.u8("cause") == [EXTRF]
+    assert run.u8("kept") == [0xA7]
+
+
+def test_causes_collect_until_they_are_cleared(program: MakeProgram) -> None:
+    run = program(CAUSE.replace("CLEAR", "0")).start()
+    run.run(1000)
+    run.board.reset()
+    run.run(1000)
+    assert run.u8("cause") == [PORF | EXTRF]
+    run.start()
+    run.run(1000)
+    assert run.u8("cause") == [PORF]
+
+
+def test_ram_after_power_on_is_garbage_made_from_the_seed(program: MakeProgram) -> None:
+    run = program(CAUSE.replace("CLEAR", "1"))
+    memories = []
+    for seed in (1, 2, 1):
+        run.start(seed)
+        memories.append(run.board.peek(0x400, 4096))
+    assert memories[0] != memories[1]
+    assert memories[0] == memories[2]
+    assert len(set(memories[0])) == 256
+
+
+def test_without_power_only_time_passes(program: MakeProgram) -> None:
+    run = program(CAUSE.replace("CLEAR", "1")).start()
+    run.run(1000)
+    run.board.power_off()
+    at = run.board.cycle
+    assert run.run(5000) == 0
+    assert run.board.cycle == at + 5000
+    assert not run.board.pin("B", 0)
+    assert not run.board.powered
+    run.board.reset()
+    assert not run.board.powered
+
+
+WATCHDOG = """
+volatile uint8_t causes[2] __attribute__((section(".noinit"))), count __attribute__((section(".noinit")));
+int main(void) {
+    uint8_t cause = MCUSR; MCUSR = 0; wdt_disable();
+    if (cause & _BV(PORF)) count = 0;
+    causes[count++] = cause;
+    if (count == 2) DONE();
+    wdt_enable(WDTO_60MS);
+    for (uint8_t i = 0; i < 20; ++i) { wdt_reset(); __builtin_avr_delay_cycles(160000); }
+    for (;;);
+}
+"""
+
+
+@pytest.mark.parametrize("chip", ["atmega2560", "atmega328p"])
+def test_the_watchdog_resets_a_hung_program_after_its_time(program: MakeProgram, chip: str) -> None:
+    run = program(WATCHDOG, chip).finish(limit=6_000_000)
+    assert run.u8("causes") == [PORF, WDRF]
+    stats = run.board.stats()
+    assert (stats.watchdog_resets, stats.resets) == (1, 2)
+    assert run.board.cycle == pytest.approx(19 * 160_000 + 64e-3 * 16e6, rel=0.01)
+
+
+def test_the_watchdog_stays_on_after_its_reset_until_the_program_turns_it_off(program: MakeProgram) -> None:
+    source = """
+    volatile uint8_t resets __attribute__((section(".noinit")));
+    int main(void) {
+        if (MCUSR & _BV(PORF)) { MCUSR = 0; resets = 0; wdt_enable(WDTO_15MS); } else ++resets;
+        if (resets == 3) { MCUSR = 0; wdt_disable(); DONE(); }
+        for (;;);
+    }
+    """
+    run = program(source).finish()
+    assert run.board.stats().watchdog_resets == 3
+    assert run.board.cycle == pytest.approx(3 * 16e-3 * 16e6, rel=0.01)
+
+
+def test_a_watchdog_reset_comes_at_the_same_cycle_however_the_run_is_cut(program: MakeProgram) -> None:
+    hashes = set()
+    for chunk in (977, 50_000, 6_000_000):
+        run = program(WATCHDOG).start()
+        while run.run(chunk) == 0:
+            pass
+        hashes.add((run.board.trace_hash, run.board.cycle))
+    assert len(hashes) == 1
+
+
+@pytest.mark.parametrize(
+    ("body", "words"),
+    [
+        ("*(volatile uint8_t *)0x5000 = 1;", "a write beyond the end of RAM, to 0x5000"),
+        ('__asm__ volatile(".word 0x9404");', "an invalid instruction, 0x9404"),
+    ],
+)
+def test_a_program_that_does_the_impossible_has_crashed(program: MakeProgram, body: str, words: str) -> None:
+    run = program("int main(void) { " + body + " for (;;); }").start()
+    assert run.run(10_000) == 2
+    assert words in run.board.crash_reason
+    at = run.board.cycle
+    assert run.run(10_000) == 2
+    assert run.board.cycle == at
