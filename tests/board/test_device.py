@@ -217,8 +217,8 @@ def read_for_ever(device: Device) -> None:
 def test_an_unplugged_cable_is_one_sentence() -> None:
     with FakeBoard() as board, open_device(board) as device:
         board.faults.unplug_at = 1
-        device.telemetry(1)
         with pytest.raises(UserError, match=rf"^{board.port}: the port went away in the middle"):
+            device.telemetry(1)
             read_for_ever(device)
 
 

@@ -194,7 +194,7 @@ def test_the_papers_steps_are_no_runaway(lock_step: Any, tmp_path: Path, table: 
     save_leader(tmp_path / "steps.csv", multi_steps())
     host = lock_step(leader=tmp_path / "steps.csv")
     controllers = controller.load(paper_table(table)).raw_values()
-    set_parameters(host, {schema.PARAMETERS[index].name: raw for index, raw in controllers.items()})
+    set_parameters(host, controllers)
     host.ask(schema.TelemetryRequest(1))
     host.follow()
     host.run(multi_steps().duration_s)

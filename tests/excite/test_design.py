@@ -9,7 +9,7 @@ from greywhale.errors import BAD_USAGE, UserError
 from greywhale.excite import Problem, design
 from greywhale.excite.limits import MARGIN_RAD
 from greywhale.files.arm import load_arm
-from greywhale.protocol import schema
+from greywhale.table import ParameterTable
 from greywhale.trajectory import human_reaches
 from tools.bench.recordings import random_arm
 
@@ -67,7 +67,9 @@ def test_with_a_model_the_motion_that_settles_what_is_open_wins() -> None:
         ]
         deviations = np.repeat([0.5 if joint == open_joint else 1e-4 for joint in (0, 3)], 2)
         facts = {"covariance": np.diag(deviations**2).tolist(), "parameter": tables}
-        problem = Problem.of(arm.model_copy(update={"identification": facts}), schema.DEFAULTS, np.array(POSE), {}, 0)
+        problem = Problem.of(
+            arm.model_copy(update={"identification": facts}), ParameterTable.defaults(), np.array(POSE), {}, 0
+        )
         return max(only, key=lambda joint: problem.judge(only[joint]).log_det)
 
     assert better(open_joint=0) == 0
@@ -76,12 +78,10 @@ def test_with_a_model_the_motion_that_settles_what_is_open_wins() -> None:
 
 def test_an_arm_that_would_lag_is_moved_less() -> None:
     """With weak controllers the follower is far behind; the motion is drawn together until it is not."""
-    table = list(schema.DEFAULTS)
-    for joint in range(4):
-        table[schema.PARAMETER_BY_NAME[f"joint{joint}.kp"].index] //= 3
+    defaults = ParameterTable.defaults()
+    lazy = defaults.with_raw({f"joint{joint}.kp": defaults[f"joint{joint}.kp"] // 3 for joint in range(4)})
     strong, weak = (
-        design(load_arm("white_box"), POSE, parameters=parameters, seconds=5.0, budget=8)
-        for parameters in (schema.DEFAULTS, table)
+        design(load_arm("white_box"), POSE, table=table, seconds=5.0, budget=8) for table in (defaults, lazy)
     )
     assert weak.judgement.tried.lag.max() <= weak.problem.limits.lag
     assert np.ptp(weak.motion.angles, axis=0).sum() < 0.9 * np.ptp(strong.motion.angles, axis=0).sum()

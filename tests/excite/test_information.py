@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from greywhale import _native
+from greywhale.arm.parameters import usual_pots
 from greywhale.excite.information import information, natural_sizes, prior
 from greywhale.excite.limits import limits_of
 from greywhale.excite.multisine import Shape, board_reference
@@ -13,17 +13,18 @@ from greywhale.excite.trial import ROW_S, try_motion
 from greywhale.files.arm import load_arm
 from greywhale.files.log import Log
 from greywhale.files.log.layout import Origin
-from greywhale.identify.closed_loop import controller_rows, loop_settings
 from greywhale.identify.data import prepare
 from greywhale.identify.space import MOTOR, Space
 from greywhale.identify.windows import WindowResidual
-from greywhale.loop import Timing
-from greywhale.protocol import schema
+from greywhale.loop.closed_loop import ClosedLoop, known_readings
+from greywhale.loop.controllers import controllers_of
+from greywhale.table import ParameterTable
 from greywhale.trajectory import human_reaches
 
 SECONDS = 12.0
 POSE = np.array([0.0, 0.45, -0.1, 0.0])
 ARM = load_arm("white_box")
+TABLE = ParameterTable.defaults()
 SPACE = Space.of(ARM, (*MOTOR, "coulomb"), range(4))
 X = SPACE.start()
 
@@ -31,29 +32,17 @@ X = SPACE.start()
 def simulated_log(points: np.ndarray) -> Log:
     """What a board would log of the arm led through the points, with a reading's noise."""
     reference = np.vstack([np.tile(points[:1], (304, 1)), board_reference(points)])
-    quiet = _native.Potentiometer(track=np.radians(300.0), centre=0.0, direction=1.0, noise=0.002, linearity=0.0)
-    loop = _native.ClosedLoop(
-        settings=loop_settings(schema.DEFAULTS),
-        timing=Timing().native(),
-        pots=[quiet] * 4,
-        pot_supply=5.0,
+    loop = ClosedLoop(
+        TABLE,
+        known_readings(reference),
+        usual_pots(),
         seed=1,
-        home=[float(angle) for angle in points[0]],
+        home=points[0].tolist(),
         gap=[0.0] * 4,
-        reference=np.ascontiguousarray(np.round(reference * 4096).astype(np.int16)),
-        leader=np.ascontiguousarray(reference),
-        weight=np.zeros(len(reference)),
+        weight_s=np.zeros(len(reference)),
     )
-    outcome = loop.run(
-        controllers=controller_rows(schema.DEFAULTS)[None],
-        plants=SPACE.plants(X[None]),
-        substeps=2,
-        threads=1,
-        every=1,
-        single=False,
-        instructions="",
-    )
-    angles, volts = outcome[4][0, 304:].astype(np.float64), outcome[5][0, 304:] / 400 * 15.0
+    result = loop.run(controllers_of(TABLE)[None], SPACE.plants(X[None]), substeps=2, threads=1, every=1)
+    angles, volts = result.angles[0, 304:].astype(np.float64), result.duties[0, 304:] / 400 * 15.0
     readings = angles + np.random.default_rng(1).normal(0.0, 1.2e-3, angles.shape)
     times, state = np.arange(len(angles)) / 1000, np.array(["following"] * len(angles))
     return Log("log", Origin(), times, reference[304:], readings, volts, state, 0, True)
@@ -71,12 +60,12 @@ def seen_by_the_identification(points: np.ndarray) -> np.ndarray:
 
 def expected(points: np.ndarray) -> np.ndarray:
     plant = SPACE.plants(X[None])
-    tried = try_motion(points, schema.DEFAULTS, plant, threads=1)
+    tried = try_motion(points, TABLE, plant, threads=1)
     return information(plant[0], tried.angles[0], ROW_S, SPACE.parameters).matrix
 
 
 def motions() -> dict[str, np.ndarray]:
-    shape = Shape(limits_of(ARM, schema.DEFAULTS, POSE, {}), SECONDS)
+    shape = Shape(limits_of(ARM, TABLE, POSE, {}), SECONDS)
     random = np.random.default_rng(4)
     return {
         "human": human_reaches(2, SECONDS).at(np.arange(0.0, SECONDS, 0.016)),

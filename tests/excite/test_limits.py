@@ -10,20 +10,20 @@ from greywhale.errors import BAD_USAGE, UserError
 from greywhale.excite.limits import MARGIN_RAD, REACH_RAD, family, limits_of, parse_range
 from greywhale.files.arm import load_arm
 from greywhale.loop import plant_row
-from greywhale.protocol import schema
+from greywhale.table import ParameterTable
 
 POSE = np.array([0.0, 0.45, -0.1, 0.0])
 
 
-def table(**values: int) -> list[int]:
-    changed = list(schema.DEFAULTS)
-    for key, value in values.items():
-        changed[schema.PARAMETER_BY_NAME[key.replace("__", ".")].index] = value
-    return changed
+DEFAULTS = ParameterTable.defaults()
+
+
+def table(**values: int) -> ParameterTable:
+    return DEFAULTS.with_raw({key.replace("__", "."): value for key, value in values.items()})
 
 
 def test_a_joint_moves_by_a_radian_to_either_side_unless_told_otherwise() -> None:
-    limits = limits_of(load_arm("white_box"), schema.DEFAULTS, POSE, {2: (-0.4, 0.6)})
+    limits = limits_of(load_arm("white_box"), DEFAULTS, POSE, {2: (-0.4, 0.6)})
     assert np.allclose(limits.low, [-REACH_RAD, 0.45 - REACH_RAD, -0.4, -REACH_RAD])
     assert np.allclose(limits.high, [REACH_RAD, 0.45 + REACH_RAD, 0.6, REACH_RAD])
 
@@ -40,7 +40,7 @@ def test_the_boards_limits_and_the_arms_stops_are_kept_with_a_margin() -> None:
 
 def test_a_weaker_supply_means_slower_motion() -> None:
     arm = load_arm("default")
-    strong = limits_of(arm, schema.DEFAULTS, POSE, {})
+    strong = limits_of(arm, DEFAULTS, POSE, {})
     weak = limits_of(arm, table(supply_mv=7000), POSE, {})
     assert (weak.acceleration < 0.6 * strong.acceleration).all()
     assert (weak.speed <= strong.speed).all()
@@ -49,9 +49,9 @@ def test_a_weaker_supply_means_slower_motion() -> None:
 def test_a_pose_outside_its_range_and_a_range_without_width_are_refused() -> None:
     arm = load_arm("white_box")
     with pytest.raises(UserError, match=r"joint 1 is at 0\.45 rad, outside of the range -0\.50 to 0\.30 rad"):
-        limits_of(arm, schema.DEFAULTS, POSE, {1: (-0.5, 0.3)})
+        limits_of(arm, DEFAULTS, POSE, {1: (-0.5, 0.3)})
     with pytest.raises(UserError, match="range of joint 3 is -0.05 to 0.05 rad"):
-        limits_of(arm, schema.DEFAULTS, POSE, {3: (-0.05, 0.05)})
+        limits_of(arm, DEFAULTS, POSE, {3: (-0.05, 0.05)})
 
 
 def test_a_motor_that_cannot_lift_its_arm_is_named() -> None:

@@ -20,10 +20,10 @@ from greywhale.files.arm import default_arm, load_arm
 from greywhale.files.leader import load_leader, save_leader
 from greywhale.files.log import read_log
 from greywhale.files.model import to_toml
+from greywhale.firmware import JOINTS
 from greywhale.identify import identify
 from greywhale.protocol.schema import Fault, State, StopReason
 from greywhale.trajectory import Trajectory, human_reaches
-from greywhale.trajectory.motion import JOINTS
 
 
 @pytest.fixture

@@ -14,6 +14,7 @@ from greywhale.files import controller
 from greywhale.formats import toml_file
 from greywhale.loop import CONTROLLER_COLUMNS, controller_row, default_controller
 from greywhale.protocol import schema
+from greywhale.table import ParameterTable
 
 ROOT = Path(__file__).parents[2]
 TABLES = sorted((ROOT / "shared" / "fuzzy_tables").glob("table_*.toml"))
@@ -46,13 +47,13 @@ def test_the_papers_controllers_load(path: Path) -> None:
     loaded = controller.load(path)
     values = loaded.raw_values()
     assert len(values) == 4 * 12
-    for index, raw in values.items():
-        schema.PARAMETERS[index].check_raw(raw)
+    for name, raw in values.items():
+        schema.PARAMETER_BY_NAME[name].check_raw(raw)
 
 
 def test_before_tuning_is_what_the_firmware_starts_with() -> None:
     values = controller.load(ROOT / "shared" / "fuzzy_tables" / "before_tuning.toml").raw_values()
-    assert {index: schema.DEFAULTS[index] for index in values} == values
+    assert {name: ParameterTable.defaults()[name] for name in values} == values
 
 
 @pytest.mark.parametrize(
@@ -105,7 +106,7 @@ def test_whatever_is_accepted_fits_the_board_to_half_a_count(values: dict[str, f
     for key, value in values.items():
         parameter = schema.PARAMETER_BY_NAME[f"joint3.{'ku_mv' if key == 'ku' else key.lower()}"]
         physical = value * 1000 if key == "ku" else value
-        stored = raw[parameter.index]
+        stored = raw[parameter.name]
         assert parameter.minimum <= stored <= parameter.maximum
         assert abs(parameter.to_physical(stored) - physical) <= parameter.lsb * 0.5000001
         if key in SETS:  # the firmware refuses flanks below 0.01 in its own counts

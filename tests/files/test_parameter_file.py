@@ -12,6 +12,7 @@ from greywhale.errors import UserError
 from greywhale.files import parameter_file
 from greywhale.protocol import schema
 from greywhale.protocol.declared import Parameter
+from greywhale.table import ParameterTable
 
 
 @st.composite
@@ -32,8 +33,9 @@ def tables(draw: st.DrawFn) -> tuple[int, ...]:
 @settings(max_examples=30, suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture])
 def test_every_raw_value_survives(tmp_path: Path, values: tuple[int, ...]) -> None:
     path = tmp_path / "backup.toml"
-    parameter_file.save(path, values)
-    assert parameter_file.load(path) == values
+    table = ParameterTable(values)
+    parameter_file.save(path, table)
+    assert parameter_file.load(path) == table
 
 
 @pytest.mark.parametrize("parameter", schema.PARAMETERS, ids=lambda p: p.name)
@@ -58,7 +60,7 @@ def test_neighbouring_raw_values_stay_apart_at_the_ends_of_the_range(parameter: 
 )
 def test_a_spoiled_backup_is_refused(tmp_path: Path, old: str, new: str, words: str) -> None:
     path = tmp_path / "backup.toml"
-    parameter_file.save(path, schema.DEFAULTS)
+    parameter_file.save(path, ParameterTable.defaults())
     text = path.read_text()
     assert old in text
     path.write_text(text.replace(old, new, 1))

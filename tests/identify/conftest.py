@@ -8,7 +8,8 @@ import pytest
 
 from greywhale.arm import ArmParameters
 from greywhale.files.arm import load_arm
-from greywhale.identify import Outcome, Table, identify
+from greywhale.identify import Outcome, identify
+from greywhale.table import ParameterTable
 from tools.bench.recordings import Recorded, random_arm, record_three, table_of
 
 HIDDEN_SEED = 2
@@ -37,10 +38,10 @@ def recorded(hidden: ArmParameters, log_folder: Path) -> Recorded:
 
 
 @pytest.fixture(scope="session")
-def tables() -> list[Table]:
-    return [Table(name, table_of(name)) for name in ("before_tuning", "table_10")]
+def tables() -> list[ParameterTable]:
+    return [table_of(name) for name in ("before_tuning", "table_10")]
 
 
 @pytest.fixture(scope="session")
-def outcome(recorded: Recorded, white_box: ArmParameters, tables: list[Table]) -> Outcome:
+def outcome(recorded: Recorded, white_box: ArmParameters, tables: list[ParameterTable]) -> Outcome:
     return identify([recorded.fit], white_box, validate=[recorded.second, recorded.changed], tables=tables)

@@ -13,11 +13,14 @@ from greywhale.errors import UserError
 from greywhale.files.arm import load_arm
 from greywhale.files.log import Log
 from greywhale.files.log.layout import Origin
-from greywhale.identify import Table, identify
+from greywhale.files.parameter_file import load_table
+from greywhale.identify import identify
 from greywhale.identify.checks import check
-from greywhale.identify.controllers import DEFAULTS, load_table, table_of
+from greywhale.identify.controllers import table_of
 from greywhale.identify.data import prepare
 from greywhale.protocol import schema
+from greywhale.protocol.schema import Board
+from greywhale.table import ParameterTable
 from tools.bench.recordings import TABLES, Recorded
 from tools.bench.recordings import table_of as values_of
 
@@ -72,7 +75,9 @@ def test_useless_logs_are_refused(
         identify([replace(log, origin=replace(log.origin, param_crc=None))], white_box)
 
 
-def test_good_logs_pass_without_doubt(recorded: Recorded, white_box: ArmParameters, tables: list[Table]) -> None:
+def test_good_logs_pass_without_doubt(
+    recorded: Recorded, white_box: ArmParameters, tables: list[ParameterTable]
+) -> None:
     for log in (recorded.fit, recorded.second, recorded.changed):
         assert check(prepare(log, 1), white_box, table_of(log, tables)) == []
 
@@ -84,17 +89,19 @@ def test_full_voltage_most_of_the_time_is_a_doubt_only(recorded: Recorded, white
     assert all("full voltage" in one for one in doubts)
 
 
-def test_controllers_are_found_by_their_crc(recorded: Recorded, tables: list[Table]) -> None:
-    assert table_of(recorded.changed, tables) is tables[1]
-    assert table_of(recorded.fit, tables) is tables[0]
-    assert table_of(replace(recorded.fit, origin=Origin(param_crc=DEFAULTS.crc)), []) is DEFAULTS
+def test_controllers_are_found_by_their_crc(recorded: Recorded, tables: list[ParameterTable]) -> None:
+    defaults = ParameterTable.defaults()
+    assert table_of(recorded.changed, tables) == tables[1]
+    assert table_of(recorded.fit, tables) == tables[0]
+    assert table_of(replace(recorded.fit, origin=Origin(board="nano328", param_crc=defaults.crc)), []) == defaults.on(
+        Board.NANO328
+    )
     assert table_of(recorded.changed, []) is None
 
 
 def test_another_controller_than_the_logs_is_refused(recorded: Recorded, white_box: ArmParameters) -> None:
-    values = list(values_of("table_10"))
-    values[schema.PARAMETER_BY_NAME["joint1.ku_mv"].index] -= 1
-    other = Table("other.toml", tuple(values))
+    paper = values_of("table_10")
+    other = paper.with_raw({"joint1.ku_mv": paper["joint1.ku_mv"] - 1}).named("other.toml")
     with pytest.raises(UserError, match=r"recorded with parameter set 0x\w{4}, but there are only other.toml 0x\w{4}"):
         identify([recorded.changed], white_box, tables=[other])
     without = replace(recorded.fit, origin=Origin(period_ms=20))
@@ -109,18 +116,18 @@ def test_tables_come_from_controller_files_and_backups(tmp_path_factory: pytest.
 
     path = tmp_path_factory.mktemp("tables") / "backup.toml"
     parameter_file.save(path, values_of("table_10"))
-    assert load_table(path).values == load_table(TABLES / "table_10.toml").values == values_of("table_10")
+    assert load_table(path) == load_table(TABLES / "table_10.toml") == values_of("table_10")
 
 
-def test_a_table_tells_what_it_changes_and_a_file_keeps_it(tables: list[Table]) -> None:
+def test_a_table_tells_what_it_changes_and_a_file_keeps_it(tables: list[ParameterTable]) -> None:
     import tomllib
 
     from greywhale.files.model import to_toml
 
     changed = tables[1].changed()
     assert changed
-    assert tuple(changed.get(one.name, one.default) for one in schema.PARAMETERS) == tables[1].values
-    assert DEFAULTS.changed() == {}
+    assert tuple(changed.get(one.name, one.default) for one in schema.PARAMETERS) == tables[1].raw
+    assert ParameterTable.defaults().changed() == {}
     for pairs in (changed, {}):
         text = to_toml(load_arm("white_box"), {"parameters": pairs})
         assert tomllib.loads(text)["identification"] == {"parameters": pairs}

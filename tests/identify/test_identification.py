@@ -9,14 +9,15 @@ import numpy as np
 import pytest
 
 from greywhale.arm import ArmParameters
+from greywhale.arm.plants import column
 from greywhale.errors import UserError
 from greywhale.files.arm import load_arm
 from greywhale.files.log import Log
-from greywhale.identify import Outcome, Table, identify
+from greywhale.identify import Outcome, identify
 from greywhale.identify.judge import CHANGED, FIT, SECOND, Verdict, warnings_of
 from greywhale.identify.search import Search
-from greywhale.identify.space import column
 from greywhale.loop import plant_row
+from greywhale.table import ParameterTable
 from tools.bench.recordings import Recorded
 
 
@@ -48,7 +49,7 @@ def test_order_is_chosen_by_held_out_data(outcome: Outcome) -> None:
     assert errors[outcome.order] <= min(errors.values()) + 0.01
 
 
-def test_model_file_is_an_arm_file(outcome: Outcome, tables: list[Table], tmp_path: Path) -> None:
+def test_model_file_is_an_arm_file(outcome: Outcome, tables: list[ParameterTable], tmp_path: Path) -> None:
     outcome.save(tmp_path / "model.toml")
     arm = load_arm(tmp_path / "model.toml")
     np.testing.assert_allclose(plant_row(arm), outcome.plant, rtol=1e-9, atol=1e-12)
@@ -84,7 +85,7 @@ def test_what_is_not_known_is_said_with_a_remedy(outcome: Outcome) -> None:
 def test_joints_that_did_not_move_keep_the_users_values(recorded: Recorded, white_box: ArmParameters) -> None:
     outcome = identify([_without_joints(recorded.fit, (2, 3))], white_box)
     for joint in (2, 3):
-        start = column(joint, "torque_per_volt")
+        start = column("torque_per_volt", joint)
         np.testing.assert_array_equal(outcome.plant[start : start + 12], plant_row(white_box)[start : start + 12])
         assert any(f"joint {joint} " in sentence and "did not move" in sentence for sentence in outcome.open)
     assert {one.name[5] for one in outcome.estimates} == {"0", "1"}

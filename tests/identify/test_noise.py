@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from greywhale.arm.from_plant import arm_of
 from greywhale.files.arm import default_arm, load_arm
-from greywhale.files.model import arm_of
 from greywhale.identify.data import prepare
 from greywhale.identify.noise import pot_noise
 from greywhale.loop import plant_row

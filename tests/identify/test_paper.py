@@ -12,7 +12,7 @@ from greywhale.identify.closed_loop import Loop
 from greywhale.identify.data import prepare
 from greywhale.identify.identification import identify
 from greywhale.loop import plant_row
-from greywhale.protocol import schema
+from greywhale.table import ParameterTable
 from tools.bench.recordings import Recorded
 
 
@@ -43,7 +43,7 @@ def test_search_stays_within_table_2_and_never_gets_worse(
 
 def test_cost_is_equation_5(recorded: Recorded, white_box: ArmParameters) -> None:
     """The sum over the joints of the mean squared difference of model and recorded follower."""
-    loop = Loop(prepare(recorded.fit, 1), schema.DEFAULTS, white_box)
+    loop = Loop(prepare(recorded.fit, 1), ParameterTable.defaults(), white_box)
     plant = plant_row(white_box)[None]
     difference = loop.angles(plant)[0] - loop.follower[::5]
     assert loop.error(plant).sum() == pytest.approx(np.mean(difference**2, axis=0).sum())

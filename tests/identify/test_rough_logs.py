@@ -13,10 +13,10 @@ from greywhale.arm.parameters import Drive
 from greywhale.errors import UserError
 from greywhale.files.arm import load_arm
 from greywhale.files.log import Log
-from greywhale.identify import Outcome, Table, identify
+from greywhale.identify import Outcome, identify
 from greywhale.identify.checks import check
 from greywhale.identify.data import LONGEST_GAP_S, prepare, windows_of
-from greywhale.protocol import schema
+from greywhale.table import ParameterTable
 from greywhale.trajectory import human_reaches, multi_steps
 from tools.bench.recordings import Recorded, record
 
@@ -39,7 +39,7 @@ def only(log: Log, joint: int) -> Log:
 
 
 def test_rows_that_are_few_uneven_and_partly_missing_will_do(
-    recorded: Recorded, white_box: ArmParameters, tables: list[Table]
+    recorded: Recorded, white_box: ArmParameters, tables: list[ParameterTable]
 ) -> None:
     """Every third row or so, one to five ticks apart, a twentieth of them lost."""
     chosen = np.cumsum(np.random.default_rng(3).integers(1, 6, len(recorded.fit.time)))
@@ -49,14 +49,12 @@ def test_rows_that_are_few_uneven_and_partly_missing_will_do(
 
 
 def test_a_log_of_steps_on_a_weak_supply_full_voltage_or_rest_will_do(
-    hidden: ArmParameters, white_box: ArmParameters, tables: list[Table], tmp_path: Path
+    hidden: ArmParameters, white_box: ArmParameters, tables: list[ParameterTable], tmp_path: Path
 ) -> None:
-    values = list(tables[0].values)
-    values[schema.PARAMETER_BY_NAME["supply_mv"].index] = round(1000 * WEAK_V)
-    table = Table("weak", tuple(values))
+    table = tables[0].with_raw({"supply_mv": round(1000 * WEAK_V)})
     arm, user = (one.model_copy(update={"drive": Drive(supply=WEAK_V)}) for one in (hidden, white_box))
-    log = record(arm, multi_steps(), tmp_path / "steps.csv", table.values)
-    second = record(arm, human_reaches(7, 8.0), tmp_path / "second.csv", table.values, 3)
+    log = record(arm, multi_steps(), tmp_path / "steps.csv", table)
+    second = record(arm, human_reaches(7, 8.0), tmp_path / "second.csv", table, 3)
     moving = np.abs(prepare(log, 1).velocity) > 0.2
     assert np.mean(np.abs(log.voltage[moving]) > 0.99 * WEAK_V) > 0.4
     assert np.mean(moving.any(axis=1)) < 0.5
@@ -98,7 +96,7 @@ def test_a_long_gap_ends_a_stretch_and_no_window_crosses_it(recorded: Recorded) 
     "moment", ["global search", "choosing the model's order", "comparing with", "fitting the chosen"]
 )
 def test_ctrl_c_at_any_moment_keeps_the_best_model_so_far(
-    recorded: Recorded, white_box: ArmParameters, tables: list[Table], tmp_path: Path, moment: str
+    recorded: Recorded, white_box: ArmParameters, tables: list[ParameterTable], tmp_path: Path, moment: str
 ) -> None:
     def interrupt(what: str, fraction: float) -> None:
         if what.startswith(moment):

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from greywhale.arm import ArmParameters
+from greywhale.arm.plants import check_plants, column
 from greywhale.errors import UserError
 from greywhale.files.arm import load_arm
 from greywhale.identify import Outcome, sampled_plants
-from greywhale.identify.space import KINDS, Space, column
+from greywhale.identify.space import KINDS, Space
 from greywhale.loop import plant_row
-from greywhale.loop.tables import check_plants
 
 
 @pytest.fixture(scope="module")
@@ -50,11 +50,11 @@ def test_draws_have_the_covariance_of_the_file(model: ArmParameters, outcome: Ou
     assert outcome.covariance is not None
     assert outcome.covariance.shape == (len(names), len(names))
     for parameter in columns.parameters:
-        torque = np.log(plants[:, column(parameter.joint, "torque_per_volt")])
+        torque = np.log(plants[:, column("torque_per_volt", parameter.joint)])
         if parameter.kind == "alpha":
             taken.append(-torque)
         else:
-            taken.append(np.log(plants[:, column(parameter.joint, parameter.kind)]) - torque)
+            taken.append(np.log(plants[:, column(parameter.kind, parameter.joint)]) - torque)
         index = names.index(parameter.name)
         expected.append(index)
         assert np.sqrt(outcome.covariance[index, index]) * outcome.estimates[index].value == pytest.approx(

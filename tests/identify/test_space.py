@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 
 from greywhale.arm import ArmParameters
+from greywhale.arm.from_plant import arm_of
+from greywhale.arm.plants import column
 from greywhale.files.arm import default_arm, load_arm
-from greywhale.files.model import arm_of, to_toml
-from greywhale.identify.space import JOINTS, KINDS, MOTOR, Space, column
+from greywhale.files.model import to_toml
+from greywhale.firmware import JOINTS
+from greywhale.identify.space import KINDS, MOTOR, Space
 from greywhale.loop import plant_row
 
 ALL = tuple(KINDS)
@@ -37,7 +40,7 @@ def test_each_number_moves_its_own_joint_only() -> None:
     base = space.plants(start[None])[0]
     for index, parameter in enumerate(space.parameters):
         changed = np.flatnonzero(~np.isclose(rows[index], base, rtol=1e-9, atol=0))
-        first = column(parameter.joint, "torque_per_volt")
+        first = column("torque_per_volt", parameter.joint)
         assert np.all((changed >= first) & (changed < first + 12))
         assert bool(len(changed)) is (parameter.kind != "offset")
 
@@ -49,10 +52,10 @@ def test_more_torque_per_volt_alone_leaves_speed_and_friction_per_volt() -> None
     moved = start.copy()
     moved[space.names.index("joint0.alpha")] += 0.7
     before, after = (space.plants(x[None])[0] for x in (start, moved))
-    torque = column(0, "torque_per_volt")
+    torque = column("torque_per_volt", 0)
     assert after[torque] == pytest.approx(before[torque] * np.exp(-0.7))
     for name in ("inertia", "damping", "coulomb", "breakaway"):
-        here = column(0, name)
+        here = column(name, 0)
         assert after[here] / after[torque] == pytest.approx(before[here] / before[torque])
 
 
@@ -73,9 +76,9 @@ def test_identified_plants_become_motors(name: str, damping: float) -> None:
     arm = load_arm(name)
     plant = plant_row(arm)
     for joint in range(JOINTS):
-        plant[column(joint, "damping")] *= damping
-        plant[column(joint, "torque_per_volt")] *= 1.3
-        plant[column(joint, "coulomb")] = plant[column(joint, "breakaway")] = 0.1
+        plant[column("damping", joint)] *= damping
+        plant[column("torque_per_volt", joint)] *= 1.3
+        plant[column("coulomb", joint)] = plant[column("breakaway", joint)] = 0.1
     model = arm_of(arm, plant, np.array([0.0, 0.1, -0.2, 0.0]), "model", "test")
     np.testing.assert_allclose(plant_row(model), plant, rtol=1e-12)
     assert model.follower_pots.joint[1].centre == pytest.approx(arm.follower_pots.joint[1].centre + 0.1)

@@ -7,6 +7,7 @@ import numpy.typing as npt
 import pytest
 
 from greywhale import _native
+from greywhale.arm.plants import column
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.loop import PLANT_COLUMNS, Experiment, Result, default_controller, plant_row
 from greywhale.trajectory import human_reaches
@@ -16,7 +17,7 @@ INTEGERS = npt.NDArray[np.int32]
 
 
 def columns(name: str) -> list[int]:
-    return [PLANT_COLUMNS.index(f"joint{joint}.{name}") for joint in range(4)]
+    return [column(name, joint) for joint in range(4)]
 
 
 def search_box(arm: str, count: int, spread: float, seed: int) -> tuple[INTEGERS, Array]:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from greywhale.arm.plants import column
 from greywhale.errors import UserError
 from greywhale.files.arm import default_arm
-from greywhale.loop import PLANT_COLUMNS, Experiment, Timing, plant_row
+from greywhale.loop import Experiment, Timing, plant_row
 from greywhale.trajectory import human_reaches
 from tests.loop.on_the_bench import quiet
 
@@ -19,7 +20,7 @@ def stuck() -> np.ndarray:
     plant = plant_row(default_arm())
     for joint in range(4):
         for name in ("coulomb", "breakaway"):
-            plant[PLANT_COLUMNS.index(f"joint{joint}.{name}")] = 1e6
+            plant[column(name, joint)] = 1e6
     return plant
 
 

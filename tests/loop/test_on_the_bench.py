@@ -8,6 +8,8 @@ import pytest
 from greywhale.arm import ArmParameters
 from greywhale.files.arm import default_arm
 from greywhale.loop import Experiment
+from greywhale.protocol.schema import Board
+from greywhale.table import ParameterTable
 from greywhale.trajectory import human_reaches, multi_steps
 from tests.loop.on_the_bench import Recording, quiet, record
 
@@ -21,7 +23,7 @@ def native(recording: Recording, parameters: ArmParameters, board: str = "mega",
     return Experiment(
         np.ascontiguousarray(recording.leader[:slices]),
         parameters,
-        board="nano" if board == "nano" else "mega",
+        table=ParameterTable.defaults(Board.NANO328 if board == "nano" else Board.MEGA2560),
         noise=noise,
         timing=recording.timing,
         gap_position=list(recording.gap_position),

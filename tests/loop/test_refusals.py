@@ -75,7 +75,6 @@ def test_wrong_candidates_are_refused(experiment: Experiment, arguments: dict[st
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
-        ({"board": "uno"}, 'board is "uno"'),
         ({"weight_s": np.ones(3)}, "one weight for each of the"),
         ({"leader": np.zeros((7, 4))}, r"shape \(7, 4\), but \(4 x ticks, 4\)"),
         ({"leader": np.full((8, 4), np.nan)}, "joint 0 in slice 0 is nan; it must be finite"),

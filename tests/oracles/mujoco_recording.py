@@ -16,35 +16,26 @@ from greywhale.arm import ArmParameters
 from greywhale.arm.export import mjcf
 from greywhale.files.log import Log, LogWriter, read_log
 from greywhale.files.log.layout import Origin
+from greywhale.firmware import ANGLE_LSB, JOINTS
 from greywhale.fuzzy.settings import JointSettings
-from greywhale.loop import CONTROLLER_COLUMNS
-from greywhale.protocol import schema
+from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory
 
-JOINTS = 4
 STEP_S = 1e-4
 STEPS = 10  # of MuJoCo in a tick of 1 ms
 CONVERSIONS = (1, 3, 5, 7)  # steps into a tick at which a potentiometer is converted
 NEW_DUTY = 3  # steps into a tick from which its voltage drives
 TRACK = math.radians(300.0)
-LSB = 1.0 / 4096.0
 SETTLING_S = 1.5
 
 
 class Board:
     """What the firmware does with four conversions a tick: filter, scale, control."""
 
-    def __init__(self, values: tuple[int, ...]) -> None:
-        index = schema.PARAMETER_BY_NAME
-        self._period = values[index["period_ms"].index]
-        self._supply = values[index["supply_mv"].index]
-        self._share = 1.0 / (1 << values[index["filter_shift"].index])
-        self._laws = [
-            JointSettings(*(values[index[f"joint{joint}.{key}"].index] for key in CONTROLLER_COLUMNS)).controller(
-                self._period
-            )
-            for joint in range(JOINTS)
-        ]
+    def __init__(self, table: ParameterTable) -> None:
+        self._supply = table["supply_mv"]
+        self._share = 1.0 / (1 << table["filter_shift"])
+        self._laws = [JointSettings(*row).controller(table.period_ms) for row in table.controllers]
         self._filtered: np.ndarray | None = None
         self.reading = np.zeros(JOINTS, dtype=np.int16)
         self.volts = np.zeros(JOINTS)
@@ -53,16 +44,14 @@ class Board:
         """`leader` in 1/4096 rad, `conversions` (4, joints) in counts."""
         mean = conversions.mean(axis=0)
         self._filtered = mean if self._filtered is None else self._filtered + (mean - self._filtered) * self._share
-        self.reading = np.round((self._filtered + 0.5 - 512.0) / 1024.0 * TRACK / LSB).astype(np.int16)
+        self.reading = np.round((self._filtered + 0.5 - 512.0) / 1024.0 * TRACK / ANGLE_LSB).astype(np.int16)
         limit = np.array([self._supply], dtype=np.uint16)
         for joint, law in enumerate(self._laws):
             out = law.run(leader[joint : joint + 1], self.reading[joint : joint + 1], limit)
             self.volts[joint] = out["volts_mv"][0] / 1000.0
 
 
-def record(
-    arm: ArmParameters, motion: Trajectory, path: Path, values: tuple[int, ...], noise_v: float, seed: int
-) -> Log:
+def record(arm: ArmParameters, motion: Trajectory, path: Path, table: ParameterTable, noise_v: float, seed: int) -> Log:
     """Play `motion` (rad) on MuJoCo's arm and write the log `path` from 1.5 s after the motors went on."""
     model = mujoco.MjModel.from_xml_string(mjcf(arm, motors=True))
     model.opt.timestep = STEP_S
@@ -72,12 +61,12 @@ def record(
     before = round(SETTLING_S * 1000)
     ticks = int(motion.time_s[-1] * 1000)
     leader = np.column_stack([np.interp(np.arange(ticks) / 1000, motion.time_s, angles) for angles in motion.angles.T])
-    leader = np.round(np.vstack([np.tile(leader[:1], (before, 1)), leader]) / LSB).astype(np.int16)
-    data.qpos[:] = leader[0] * LSB
-    board = Board(values)
+    leader = np.round(np.vstack([np.tile(leader[:1], (before, 1)), leader]) / ANGLE_LSB).astype(np.int16)
+    data.qpos[:] = leader[0] * ANGLE_LSB
+    board = Board(table)
     noise = noise_v / 5.0 * 1024.0
     counts = np.zeros((len(CONVERSIONS), JOINTS))
-    origin = Origin("0.1.0", "mega2560", schema.param_crc(values), 1, 1)
+    origin = Origin("0.1.0", "mega2560", table.crc, 1, 1)
     with LogWriter(path, origin) as log:
         for tick, target in enumerate(leader):
             for step in range(STEPS):
@@ -89,5 +78,7 @@ def record(
                 mujoco.mj_step(model, data)
             board.tick(target, counts)
             if tick >= before:
-                log.append((tick - before) / 1000, target * LSB, board.reading * LSB, board.volts, "following")
+                log.append(
+                    (tick - before) / 1000, target * ANGLE_LSB, board.reading * ANGLE_LSB, board.volts, "following"
+                )
     return read_log(path)

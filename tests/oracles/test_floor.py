@@ -8,6 +8,7 @@ from scipy.linalg import expm, toeplitz
 from scipy.optimize import lsq_linear, minimize
 
 from greywhale import _native
+from greywhale.arm.plants import column
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.loop import PLANT_COLUMNS, leader_slices, plant_row
 from greywhale.trajectory import steps
@@ -20,10 +21,10 @@ def decoupled(inertia: float, damping: float, torque: float, supply: float) -> F
     """A plant row of four joints without gravity, friction or gaps, whose links weigh nothing beside their motors."""
     row = plant_row(load_arm("grey_box"))
     values = {"torque_per_volt": torque, "inertia": inertia, "damping": damping, "coulomb": 0.0, "breakaway": 0.0}
-    for index, column in enumerate(PLANT_COLUMNS):
-        name = column.split(".")[-1]
-        row[index] = values.get(name, row[index] if "." in column else 1e-9)
-    row[PLANT_COLUMNS.index("supply")] = supply
+    for index, place in enumerate(PLANT_COLUMNS):
+        name = place.split(".")[-1]
+        row[index] = values.get(name, row[index] if "." in place else 1e-9)
+    row[column("supply")] = supply
     return row
 
 
@@ -72,7 +73,7 @@ class WholeArm:
         self.holds = round(HORIZON_S / HOLD_S)
         start = round(2.5 / SLICE_S)
         self.leader = leader_slices(steps(), 1.5)[start : start + self.slices]
-        self.supply = float(plant[PLANT_COLUMNS.index("supply")])
+        self.supply = float(plant[column("supply")])
 
     def costs(self, voltages: Floats) -> Floats:
         """Integrals of e^2 (rad^2 s), (n, 4), for n candidates; a pitch rests on the tooth that carries it."""

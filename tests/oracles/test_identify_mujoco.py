@@ -13,7 +13,7 @@ from mujoco_recording import record
 
 from greywhale.arm import ArmParameters
 from greywhale.files.arm import load_arm
-from greywhale.identify import Outcome, Table, identify
+from greywhale.identify import Outcome, identify
 from greywhale.trajectory import human_reaches
 from tools.bench.recordings import random_arm, table_of
 
@@ -30,12 +30,11 @@ def arm() -> ArmParameters:
 @pytest.fixture(scope="module")
 def outcome(arm: ArmParameters, tmp_path_factory: pytest.TempPathFactory) -> Outcome:
     folder = tmp_path_factory.mktemp("mujoco")
-    values = [table_of(name) for name in NAMES]
+    tables = [table_of(name) for name in NAMES]
     logs = [
         record(arm, human_reaches(seed, SECONDS), folder / f"{seed}.csv", table, 0.0024, seed)
-        for seed, table in ((31, values[0]), (32, values[0]), (33, values[1]))
+        for seed, table in ((31, tables[0]), (32, tables[0]), (33, tables[1]))
     ]
-    tables = [Table(name, table) for name, table in zip(NAMES, values, strict=True)]
     return identify(logs[:1], load_arm("white_box"), validate=logs[1:], tables=tables)
 
 

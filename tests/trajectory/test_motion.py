@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from greywhale.trajectory import JOINTS, POT_RANGE_RAD, Trajectory
+from greywhale.firmware import JOINTS
+from greywhale.trajectory import POT_RANGE_RAD, Trajectory
 
 ANGLES = st.integers(-24000, 24000).map(lambda count: count * (POT_RANGE_RAD / 24000))
 

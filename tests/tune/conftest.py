@@ -34,7 +34,7 @@ def outcome(tmp_path: Path) -> Outcome:
     margins = [Margin("at rest", joint, 0, 0.0, 0, 2) for joint in (1, 0, 2, 3)]
     return Outcome(
         model=model,
-        parameters=model.parameters,
+        table=model.table,
         strategy="both",
         method="default",
         seed=3,

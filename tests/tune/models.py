@@ -11,7 +11,8 @@ import numpy as np
 from greywhale.arm import ArmParameters
 from greywhale.files.arm import default_arm
 from greywhale.files.model import to_toml
-from greywhale.identify.space import JOINTS, KINDS, Space
+from greywhale.firmware import JOINTS
+from greywhale.identify.space import KINDS, Space
 from greywhale.measure import Evaluation
 from greywhale.measure.evaluate import JointMeasures
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from greywhale.files import controller
 from greywhale.loop import controller_row
-from greywhale.protocol import schema
+from greywhale.table import ParameterTable
 from greywhale.tune.controller_file import provenance, save
 from greywhale.tune.outcome import Outcome
 
@@ -23,9 +23,9 @@ def test_it_is_a_controller_file_with_the_very_numbers(outcome: Outcome, tmp_pat
 
 
 def test_it_tells_the_crc_that_the_board_will_have(outcome: Outcome) -> None:
-    values = list(schema.DEFAULTS)
-    values[schema.PARAMETER_BY_NAME["joint2.kp"].index] += 1
-    assert provenance(outcome)["parameter_crc"] == f"0x{schema.param_crc(values):04x}"
+    defaults = ParameterTable.defaults()
+    changed = defaults.with_raw({"joint2.kp": defaults["joint2.kp"] + 1})
+    assert provenance(outcome)["parameter_crc"] == f"0x{changed.crc:04x}"
 
 
 def test_a_measure_that_not_every_joint_has_is_left_out(outcome: Outcome) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from greywhale import _native
+from greywhale.arm.plants import column
 from greywhale.errors import UserError
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.loop import PLANT_COLUMNS, Experiment, leader_slices, plant_row
@@ -21,15 +22,15 @@ FASTEST = TORQUE * SUPPLY / INERTIA  # rad/s^2
 def double_integrators() -> Floats:
     """A plant row of four joints that are nothing but inertia: motors so heavy that their links do not matter."""
     row = plant_row(load_arm("grey_box"))
-    for index, column in enumerate(PLANT_COLUMNS):
-        name = column.split(".")[-1]
+    for index, place in enumerate(PLANT_COLUMNS):
+        name = place.split(".")[-1]
         if name in ("damping", "coulomb", "breakaway", "gravity1", "gravity2", "coupling"):
             row[index] = 0.0
         elif name in ("torque_per_volt", "inertia"):
             row[index] = {"torque_per_volt": TORQUE, "inertia": INERTIA}[name]
-        elif "." not in column:
+        elif "." not in place:
             row[index] = 1e-9
-    row[PLANT_COLUMNS.index("supply")] = SUPPLY
+    row[column("supply")] = SUPPLY
     return row
 
 

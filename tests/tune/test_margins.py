@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from greywhale import _native
+from greywhale.arm.plants import column
 from greywhale.files import controller
 from greywhale.files.arm import default_arm
-from greywhale.loop import PLANT_COLUMNS, controller_row, default_controller, plant_row
-from greywhale.protocol import schema
+from greywhale.loop import controller_row, default_controller, plant_row
+from greywhale.table import ParameterTable
 from greywhale.tune.margins import DELAY, SCENARIOS, TEETH, Margins, loosest, penalty, with_gain, with_softer_teeth
 from tools.setup.console import ROOT
 
@@ -20,7 +21,7 @@ TABLE_9 = controller_row(controller.load(ROOT / "shared" / "fuzzy_tables" / "tab
 
 
 def columns(name: str) -> list[int]:
-    return [PLANT_COLUMNS.index(f"joint{joint}.{name}") for joint in range(4)]
+    return [column(name, joint) for joint in range(4)]
 
 
 def turning_points(signal: np.ndarray, band: float) -> list[float]:
@@ -62,7 +63,7 @@ def test_swings_refuses_rows_that_are_not_there() -> None:
 
 @pytest.fixture(scope="module")
 def margins() -> Margins:
-    return Margins(ARM, schema.DEFAULTS, PLANTS)
+    return Margins(ARM, ParameterTable.defaults(), PLANTS)
 
 
 def test_the_default_controller_comes_to_rest_in_every_scenario(margins: Margins) -> None:
@@ -103,14 +104,14 @@ def test_the_quiet_pay_nothing_and_the_others_more_the_more_they_swing(margins: 
 
 def test_a_search_stops_short_of_the_border() -> None:
     """Whatever the check takes for a limit cycle costs a search something, and more scenarios besides."""
-    searching = Margins(ARM, schema.DEFAULTS, PLANTS, searching=True)
+    searching = Margins(ARM, ParameterTable.defaults(), PLANTS, searching=True)
     random = np.random.default_rng(1)
     rows = np.repeat(BEFORE[None], 24, axis=0).astype(np.float64)
     rows[:, :, 8:10] *= np.exp(random.uniform(-0.5, 1.2, (24, 4, 2)))
     candidates = rows.astype(np.int32)
     strict = penalty(searching.unrest(candidates)) > 0.0
     failing = np.any(
-        [one.fails[:, 0] for one in Margins(ARM, schema.DEFAULTS, PLANTS).unrest(candidates).values()], axis=0
+        [one.fails[:, 0] for one in Margins(ARM, ParameterTable.defaults(), PLANTS).unrest(candidates).values()], axis=0
     )
     assert 5 < failing.sum() < 80
     assert strict[failing].mean() > 0.97
@@ -143,5 +144,5 @@ def test_rigid_gears_stay_rigid() -> None:
     rigid = PLANTS.copy()
     rigid[:, columns("half_gap") + columns("stiffness") + columns("mesh_damping")] = 0.0
     np.testing.assert_array_equal(loosest(rigid), rigid[0])
-    found = Margins(ARM, schema.DEFAULTS, rigid).unrest(BEFORE[None])
+    found = Margins(ARM, ParameterTable.defaults(), rigid).unrest(BEFORE[None])
     assert not any(one.lost.any() for one in found.values())

@@ -16,19 +16,14 @@ from greywhale.files.arm import default_arm, load_arm
 from greywhale.files.model import to_toml
 from greywhale.identify import sampled_plants
 from greywhale.loop import default_controller, plant_row
-from greywhale.protocol import schema
+from greywhale.table import ParameterTable
 from greywhale.tune.model import load_model
 from tests.tune.models import facts_of, log_facts, write_model
 
-INDEX = {parameter.name: parameter.index for parameter in schema.PARAMETERS}
 
-
-def table(**changes: int) -> list[int]:
+def table(**changes: int) -> ParameterTable:
     """The firmware's defaults, but for some raw values (`joint0__kp` for joint0.kp)."""
-    values = list(schema.DEFAULTS)
-    for name, raw in changes.items():
-        values[INDEX[name.replace("__", ".")]] = raw
-    return values
+    return ParameterTable.defaults().with_raw({name.replace("__", "."): raw for name, raw in changes.items()})
 
 
 def refused(path: Path, **options: Any) -> str:
@@ -51,7 +46,7 @@ def test_a_validated_model_has_no_doubts_and_is_its_arm(tmp_path: Path) -> None:
     path = write_model(tmp_path / "model.toml")
     model = load_model(path)
     assert (model.doubts, model.file) == ((), str(path))
-    assert model.parameters == tuple(schema.DEFAULTS)
+    assert model.table == ParameterTable.defaults()
     assert model.digest == hashlib.sha256(path.read_bytes()).hexdigest()
     np.testing.assert_array_equal(model.controllers, default_controller())
     np.testing.assert_allclose(model.plants[0], plant_row(default_arm()), rtol=1e-12)
@@ -70,23 +65,23 @@ def test_plants_are_drawn_from_the_covariance_and_follow_from_the_seed(tmp_path:
 def test_the_table_is_that_of_the_logs(tmp_path: Path) -> None:
     changed = {"joint0.kp": 40_000, "filter_shift": 2}
     model = load_model(write_model(tmp_path / "model.toml", parameters=changed))
-    assert model.parameters == tuple(table(joint0__kp=40_000, filter_shift=2))
+    assert model.table == table(joint0__kp=40_000, filter_shift=2)
     assert model.controllers[0, 8] == 40_000
     assert model.period_ms == 1
 
 
 def test_a_model_without_table_whose_logs_name_the_defaults_has_the_defaults(tmp_path: Path) -> None:
-    crc = f"0x{schema.param_crc(schema.DEFAULTS):04x}"
+    crc = f"0x{ParameterTable.defaults().crc:04x}"
     logs = [log_facts(parameter_crc=crc), log_facts("validation")]
     model = load_model(write_model(tmp_path / "model.toml", parameters=None, log=logs))
-    assert model.parameters == tuple(schema.DEFAULTS)
+    assert model.table == ParameterTable.defaults()
 
 
 def test_a_backup_of_the_board_comes_before_the_logs(tmp_path: Path) -> None:
     backup = tmp_path / "backup.toml"
     parameter_file.save(backup, table(joint1__kp=50_000, joint2__limit_max=4096, soft_start_ms=500))
     model = load_model(write_model(tmp_path / "model.toml", parameters={"joint1.kp": 1}), params=backup)
-    assert model.parameters == parameter_file.load(backup)
+    assert model.table == parameter_file.load(backup)
     assert not model.doubts
 
 
@@ -138,7 +133,7 @@ def test_a_bare_arm_file_is_no_model_but_can_be_forced(tmp_path: Path) -> None:
 def test_a_shipped_arm_can_be_forced_by_its_name_at_its_own_supply() -> None:
     model = load_model("grey_box", force=True)
     assert model.arm == load_arm("grey_box")
-    assert model.parameters[INDEX["supply_mv"]] == round(1000 * model.arm.drive.supply)
+    assert model.table["supply_mv"] == round(1000 * model.arm.drive.supply)
     assert len(model.digest) == 64
 
 

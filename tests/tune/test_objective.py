@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from greywhale.arm.plants import column
 from greywhale.errors import UserError
 from greywhale.files.arm import default_arm
-from greywhale.loop import PLANT_COLUMNS, default_controller, plant_row
-from greywhale.protocol import schema
+from greywhale.loop import default_controller, plant_row
+from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory
 from greywhale.tune.objective import EFFORT, RMS, Objective, combined, crossed
 from greywhale.tune.training import LEVELS, SOON_S, drills, moves, reach, since_moving
@@ -20,7 +21,7 @@ BEFORE = default_controller()
 
 @pytest.fixture(scope="module")
 def objective() -> Objective:
-    return Objective(drills(ARM, schema.DEFAULTS, PLANTS), PLANTS)
+    return Objective(drills(ARM, ParameterTable.defaults(), PLANTS), PLANTS)
 
 
 def test_doing_nothing_costs_more_than_anything_sensible(objective: Objective) -> None:
@@ -101,12 +102,11 @@ def test_a_trembling_hand_is_at_rest() -> None:
 
 
 def test_motions_keep_within_limits_and_stops() -> None:
-    values = list(schema.DEFAULTS)
-    values[schema.PARAMETER_BY_NAME["joint1.limit_max"].index] = round(0.5 * 4096)
+    table = ParameterTable.defaults().with_raw({"joint1.limit_max": round(0.5 * 4096)})
     plants = PLANTS.copy()
-    plants[0, PLANT_COLUMNS.index("joint3.stop_min")] = -0.4
-    low, high = reach(ARM, values, plants)
-    for drill in drills(ARM, values, plants):
+    plants[0, column("stop_min", 3)] = -0.4
+    low, high = reach(ARM, table, plants)
+    for drill in drills(ARM, table, plants):
         leader = drill.experiment.leader
         assert (leader >= low - 1e-9).all()
         assert (leader <= high + 1e-9).all()
@@ -116,7 +116,6 @@ def test_motions_keep_within_limits_and_stops() -> None:
 
 
 def test_a_joint_without_room_is_refused() -> None:
-    values = list(schema.DEFAULTS)
-    values[schema.PARAMETER_BY_NAME["joint2.limit_max"].index] = -9000
+    table = ParameterTable.defaults().with_raw({"joint2.limit_max": -9000})
     with pytest.raises(UserError, match="joint 2 has no room to move: limits -2.5 to -2.19"):
-        reach(ARM, values, PLANTS)
+        reach(ARM, table, PLANTS)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from greywhale.loop import PLANT_COLUMNS, Experiment, default_controller
-from greywhale.protocol import schema
+from greywhale.arm.plants import column
+from greywhale.loop import Experiment, default_controller
 from greywhale.trajectory import multi_steps, steps
 from greywhale.tune import Outcome, tune
 from greywhale.tune.model import Model, load_model
@@ -38,9 +38,7 @@ def test_ten_agents_move_thirty_times(tuned: Outcome) -> None:
 def test_j_is_itae_plus_itau_of_the_joint_that_moves(model: Model) -> None:
     """Eqs. 19 to 21, integrated here from the trace of one joint's own step."""
     loops = Loops(model, "mf", BEFORE, 1)
-    experiment = Experiment(
-        alone(steps(), 2), model.arm, parameters=loops.parameters, noise=False, wait_s=0.1, soft_start=False
-    )
+    experiment = Experiment(alone(steps(), 2), model.arm, table=loops.table, noise=False, wait_s=0.1, soft_start=False)
     trace = experiment.run(BEFORE, loops.plant, every=1)
     k = np.maximum(trace.time_s - 1.1, 0.0)
     error = np.abs(experiment.leader[:, 2] - trace.angles[0, :, 2])
@@ -71,7 +69,7 @@ def test_joints_are_tuned_on_their_own(model: Model) -> None:
 def test_the_period_is_20_ms_and_the_supply_the_models(tuned: Outcome, model: Model) -> None:
     assert tuned.period_ms == 20
     assert tuned.supply_v == 15.0
-    assert model.parameters[schema.PARAMETER_BY_NAME["period_ms"].index] == 1
+    assert model.table.period_ms == 1
 
 
 def test_only_sets_change_and_none_is_too_narrow(tuned: Outcome) -> None:
@@ -97,7 +95,7 @@ def test_no_set_lets_its_grey_box_reach_the_papers_improvement(tuned: Outcome) -
 @pytest.mark.parametrize("strategy", ["sf", "both"])
 def test_factors_are_tuned_at_the_20_volts_of_table_8(model: Model, strategy: str) -> None:
     loops = Loops(model, strategy, BEFORE, 1)
-    assert loops.plant[PLANT_COLUMNS.index("supply")] == 20.0
+    assert loops.plant[column("supply")] == 20.0
     outcome = tune(model, method="paper", strategy=strategy, budget=20, floors=False)
     assert outcome.supply_v == 20.0
     assert outcome.evaluations == 20
@@ -113,7 +111,7 @@ def test_two_sided_training_would_be_won_by_doing_nothing(model: Model) -> None:
     idle[:, 11] = 0
     loops = Loops(model, "mf", BEFORE, 1)
     motion = multi_steps([0.0, 1.0, -1.0, 1.0, -1.0, 1.0], [1.0, 0.5, 0.5, 0.5, 0.5, 0.5])
-    experiment = Experiment(motion, model.arm, parameters=loops.parameters, noise=False, wait_s=0.1, soft_start=False)
+    experiment = Experiment(motion, model.arm, table=loops.table, noise=False, wait_s=0.1, soft_start=False)
     result = experiment.run(np.stack([BEFORE, idle]), loops.plant)
     cost = (result.itae + result.itau).sum(axis=1)
     assert cost[1] < 0.5 * cost[0]

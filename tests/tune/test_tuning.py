@@ -229,9 +229,8 @@ def test_wrong_requests_are_bad_usage(request_: dict[str, Any], sentence: str) -
 
 
 def test_a_ki_that_the_period_forbids_is_bad_usage(model: Model) -> None:
-    values = list(model.parameters)
-    values[0] = 20
+    slow = replace(model, table=model.table.with_raw({"period_ms": 20}))
     with pytest.raises(
         UserError, match="Ki reach to 500, but at a control period of 20 ms the firmware takes at most 204"
     ):
-        run(replace(model, parameters=tuple(values)), bounds={"Ki": (1.0, 500.0)})
+        run(slow, bounds={"Ki": (1.0, 500.0)})

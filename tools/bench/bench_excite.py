@@ -70,7 +70,7 @@ def half_log_det(made: Design, motion: Trajectory) -> float:
 
 
 def run() -> list[Figure]:
-    made = design(load_arm("white_box"), POSE, parameters=table_of("before_tuning"), seconds=SECONDS)
+    made = design(load_arm("white_box"), POSE, table=table_of("before_tuning"), seconds=SECONDS)
     count = len(made.problem.parameters)
     hands = [half_log_det(made, human_reaches(seed, SECONDS)) for seed in range(1, 6)]
     gain = 0.5 * made.judgement.log_det - float(np.median(hands))

@@ -12,7 +12,7 @@ import numpy as np
 
 from greywhale.arm import ArmParameters
 from greywhale.files.arm import default_arm, load_arm
-from greywhale.identify import Outcome, Table, identify
+from greywhale.identify import Outcome, identify
 from greywhale.identify.closed_loop import Loop, LoopResidual
 from greywhale.identify.data import prepare
 from greywhale.identify.fit import least_squares_fit
@@ -20,6 +20,7 @@ from greywhale.identify.paper import PaperSearch
 from greywhale.identify.space import MOTOR, Space
 from greywhale.loop import plant_row
 from greywhale.optimise import minimise
+from greywhale.table import ParameterTable
 from tools.bench.figure import Figure
 from tools.bench.recordings import Recorded, random_arm, record_three, table_of
 
@@ -28,8 +29,8 @@ PAPER_BUDGET = 500
 NAMES = ("before_tuning", "table_10")
 
 
-def tables() -> list[Table]:
-    return [Table(name, table_of(name)) for name in NAMES]
+def tables() -> list[ParameterTable]:
+    return [table_of(name) for name in NAMES]
 
 
 def identified(recorded: Recorded) -> tuple[Outcome, float]:
@@ -95,7 +96,7 @@ def truth(outcome: Outcome, arm: ArmParameters) -> float:
     """What the true arm itself reaches on the changed record: where joints hunt, no model repeats every swing."""
     subject, verdict = outcome.subjects[2], outcome.verdicts[2]
     assert subject.table is not None
-    loop = Loop(subject.log, subject.table.values, outcome.white_box)
+    loop = Loop(subject.log, subject.table, outcome.white_box)
     return 1.0 - float(loop.error(plant_row(arm)[None]).sum()) / sum(verdict.white_box)
 
 

@@ -17,7 +17,7 @@ from greywhale.files.leader import save_leader
 from greywhale.files.paper_tables import paper_table
 from greywhale.loop import plant_row
 from greywhale.measure import Evaluation, evaluate
-from greywhale.protocol import schema
+from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory
 from greywhale.tune.margins import Margins
 from tools.bench.figure import Figure
@@ -46,15 +46,15 @@ def run() -> list[Figure]:
     wanted, nominal = motions(), load_arm("white_box")
     with BenchProcess("--speed", "max") as bench:
         before = measured(bench, wanted, paper_table(UNTUNED), "before")
-        logs = practise(bench, nominal, schema.DEFAULTS, FOLDER)
-        learnt = learn(logs[0], logs[1:], tables(schema.DEFAULTS), nominal, FOLDER)
+        logs = practise(bench, nominal, ParameterTable.defaults(), FOLDER)
+        learnt = learn(logs[0], logs[1:], tables(ParameterTable.defaults()), nominal, FOLDER)
         after = measured(bench, wanted, learnt.controller, "after")
     upload_s = next(iter(after.values()))[1]
     total = learnt.identify_s + learnt.tune_s + upload_s
     arm = default_arm()
     judged = {name: Judged.of(name, motion, arm, before[name][0], after[name][0]) for name, motion in wanted.items()}
     changed = 100 * learnt.identification.verdicts[2].improvement
-    margins = Margins(arm, schema.DEFAULTS, plant_row(arm)[None]).check(learnt.tuning.after)
+    margins = Margins(arm, ParameterTable.defaults(), plant_row(arm)[None]).check(learnt.tuning.after)
     missing = sum(not margin.holds for margin in margins)
     return [
         Figure("bench: identify, wall time", learnt.identify_s, "s"),

@@ -17,8 +17,8 @@ from greywhale.demo.learn import learn
 from greywhale.demo.practice import tables
 from greywhale.files.arm import load_arm
 from greywhale.loop import Experiment, default_controller, plant_row
-from greywhale.loop.tables import Controllers
-from greywhale.protocol import schema
+from greywhale.loop.controllers import Controllers
+from greywhale.table import ParameterTable
 from greywhale.trajectory import human_reaches, multi_steps, steps
 from greywhale.trajectory.motion import Array
 from greywhale.tune.floor import saturation_floor
@@ -56,7 +56,7 @@ def judged(seed: int) -> Verdict:
     arm = random_arm(seed)
     with tempfile.TemporaryDirectory() as folder:
         fit, *checks = practised(arm, Path(folder), seed)
-        learnt = learn(fit, checks, tables(schema.DEFAULTS), load_arm("white_box"), Path(folder))
+        learnt = learn(fit, checks, tables(ParameterTable.defaults()), load_arm("white_box"), Path(folder))
     return on_the_true_arm(seed, arm, learnt.tuning.after)
 
 
@@ -73,7 +73,7 @@ def on_the_true_arm(seed: int, arm: ArmParameters, tuned: Controllers) -> Verdic
         before=before,
         after=after,
         floor=saturation_floor(MOTIONS["steps"], arm).mse,
-        margins=Margins(arm, schema.DEFAULTS, plant[None]).check(tuned),
+        margins=Margins(arm, ParameterTable.defaults(), plant[None]).check(tuned),
         cycling=cycling,
     )
 

@@ -16,7 +16,7 @@ from scipy.stats import mannwhitneyu, rankdata
 from greywhale.demo.practice import tables
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.identify import identify
-from greywhale.protocol import schema
+from greywhale.table import ParameterTable
 from greywhale.trajectory.motion import Array
 from greywhale.tune import tune
 from greywhale.tune.model import Model, load_model
@@ -37,7 +37,7 @@ def identified() -> Model:
     with tempfile.TemporaryDirectory() as folder:
         fit, *checks = practised(default_arm(), Path(folder), 1)
         path = Path(folder) / "model.toml"
-        identify([fit], load_arm("white_box"), validate=checks, tables=tables(schema.DEFAULTS)).save(path)
+        identify([fit], load_arm("white_box"), validate=checks, tables=tables(ParameterTable.defaults())).save(path)
         return load_model(path, force=True)
 
 

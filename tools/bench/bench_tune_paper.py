@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from greywhale.arm.plants import column
 from greywhale.files import controller
 from greywhale.files.paper_tables import paper_table
 from greywhale.loop import Experiment, controller_row
-from greywhale.loop.tables import PLANT_COLUMNS, Controllers
+from greywhale.loop.controllers import Controllers
 from greywhale.trajectory import multi_steps, steps
 from greywhale.trajectory.motion import Array
 from greywhale.tune import Outcome, tune
@@ -30,10 +31,10 @@ TABLES = ROOT / "build" / "bench_tune_paper.txt"
 def errors(outcome: Outcome, rows: Controllers) -> tuple[Array, Array]:
     """Total MSE of controllers (n, 4, 12) on the steps and the multi-steps, (n,) each."""
     plant = outcome.model.plants[0].copy()
-    plant[PLANT_COLUMNS.index("supply")] = outcome.supply_v
+    plant[column("supply")] = outcome.supply_v
     found = []
     for motion in (steps(), multi_steps()):
-        experiment = Experiment(motion, outcome.model.arm, parameters=outcome.parameters, noise=False)
+        experiment = Experiment(motion, outcome.model.arm, table=outcome.table, noise=False)
         found.append(experiment.run_single(rows, plant).mse.sum(axis=1))
     return found[0], found[1]
 

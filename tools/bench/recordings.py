@@ -17,17 +17,16 @@ from greywhale.files import controller
 from greywhale.files.arm import load_arm
 from greywhale.files.log import Log, LogWriter, read_log
 from greywhale.files.log.layout import Origin
+from greywhale.firmware import ANGLE_LSB, pwm_steps
 from greywhale.loop import Experiment
-from greywhale.protocol import schema
+from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory, human_reaches
 from greywhale.trajectory.motion import Array
 from tools.setup.console import ROOT
 
 TABLES = ROOT / "shared" / "fuzzy_tables"
-LSB = 1.0 / 4096.0
 # Within a tick, when the four conversions of a follower's potentiometer hold their input (ms).
 MOMENTS = (0.1, 0.3, 0.5, 0.7)
-PWM_TOP = 400
 SUPPLY = 15.0
 START_S = 1.5  # the log begins that long after the motors went on, as `greywhale record` does
 
@@ -41,49 +40,40 @@ class Recorded:
     changed: Log
 
 
-def table_of(name: str) -> tuple[int, ...]:
+def table_of(name: str) -> ParameterTable:
     """A whole parameter table with the controllers of shared/fuzzy_tables/`name`.toml."""
-    raw = controller.load(TABLES / f"{name}.toml").raw_values()
-    return tuple(raw.get(index, value) for index, value in enumerate(schema.DEFAULTS))
+    return controller.load(TABLES / f"{name}.toml").table().named(name)
 
 
 def record(
     arm: ArmParameters,
     motion: Trajectory,
     path: Path,
-    values: tuple[int, ...] = schema.DEFAULTS,
+    table: ParameterTable | None = None,
     seed: int = 1,
     every: int = 1,
 ) -> Log:
-    """Record `motion` into the log `path`, a row every `every` ticks."""
-    experiment = Experiment(motion, arm, parameters=values, seed=seed, wait_s=START_S + 0.1)
-    result = experiment.run_single(controllers=_controllers(values), every=1)
+    """Record `motion` on the table's board into the log `path`, a row every `every` ticks."""
+    table = ParameterTable.defaults() if table is None else table
+    experiment = Experiment(motion, arm, table=table, seed=seed, wait_s=START_S + 0.1)
+    result = experiment.run_single(every=1)
     if result.diverged[0]:
         raise RuntimeError("the recorded arm left the range of numbers")
-    follower = _readings(np.asarray(result.angles[0], dtype=np.float64), arm, values, seed)
-    volts = result.duties[0].astype(np.float64) / PWM_TOP * arm.drive.supply
-    period = values[schema.PARAMETER_BY_NAME["period_ms"].index]
-    origin = Origin("0.1.0", "mega2560", schema.param_crc(values), period, every)
+    follower = _readings(np.asarray(result.angles[0], dtype=np.float64), arm, table, seed)
+    volts = result.duties[0].astype(np.float64) / pwm_steps(table.board) * arm.drive.supply
+    origin = Origin("0.1.0", table.board.key, table.crc, table.period_ms, every)
     first = round(START_S * 1000)
     with LogWriter(path, origin) as log:
         for row, tick in enumerate(range(first, len(volts), every)):
-            leader = [float(value) * LSB for value in experiment.reference[tick]]
+            leader = [float(value) * ANGLE_LSB for value in experiment.reference[tick]]
             log.append(row * every / 1000, leader, list(follower[tick]), list(volts[tick]), "following")
     return read_log(path)
 
 
-def _controllers(values: tuple[int, ...]) -> np.ndarray:
-    from greywhale.loop import CONTROLLER_COLUMNS
-
-    index = schema.PARAMETER_BY_NAME
-    rows = [[values[index[f"joint{joint}.{key}"].index] for key in CONTROLLER_COLUMNS] for joint in range(4)]
-    return np.array(rows, dtype=np.int32)
-
-
-def _readings(angles: Array, arm: ArmParameters, values: tuple[int, ...], seed: int) -> Array:
+def _readings(angles: Array, arm: ArmParameters, table: ParameterTable, seed: int) -> Array:
     """What the firmware makes of the true angles at every tick."""
     pots = Potentiometers(arm.follower_pots, seed + 1)
-    shift = values[schema.PARAMETER_BY_NAME["filter_shift"].index]
+    shift = table["filter_shift"]
     before = np.vstack([angles[:1], angles[:-1]])
     sums = np.zeros_like(angles)
     for moment in MOMENTS:
@@ -92,10 +82,8 @@ def _readings(angles: Array, arm: ArmParameters, values: tuple[int, ...], seed: 
     filtered = sums * 4.0
     for tick in range(1, len(filtered)):
         filtered[tick] = filtered[tick - 1] + (filtered[tick] - filtered[tick - 1]) / (1 << shift)
-    index = schema.PARAMETER_BY_NAME
-    zero = np.array([values[index[f"follower{joint}.zero"].index] for joint in range(4)])
-    scale = np.array([values[index[f"follower{joint}.scale"].index] for joint in range(4)])
-    readings: Array = np.floor((filtered - zero) * scale / 8192.0 + 0.5) * LSB
+    zero, scale = np.array(table.each("follower", "zero")), np.array(table.each("follower", "scale"))
+    readings: Array = np.floor((filtered - zero) * scale / 8192.0 + 0.5) * ANGLE_LSB
     return readings
 
 

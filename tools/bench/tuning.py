@@ -17,7 +17,7 @@ from greywhale.files.arm import load_arm
 from greywhale.files.leader import load_leader
 from greywhale.files.log import Log
 from greywhale.measure import Evaluation
-from greywhale.protocol import schema
+from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory, human_reaches, multi_steps, steps
 from greywhale.trajectory.motion import Array
 from greywhale.tune.floor import saturation_floor
@@ -52,11 +52,11 @@ def motions() -> dict[str, Trajectory]:
 def practised(arm: ArmParameters, folder: Path, seed: int) -> list[Log]:
     """What `greywhale.demo.practice` records on the bench, here by the native loop: the log to fit, two to validate."""
     # All that is known of any arm is the white box, so all practise the same motion.
-    known = tables(schema.DEFAULTS)
-    logs = [record(arm, excitation(), folder / "practice.csv", known[0].values, 10 * seed)]
+    known = tables(ParameterTable.defaults())
+    logs = [record(arm, excitation(), folder / "practice.csv", known[0], 10 * seed)]
     for number, table in enumerate(known, 1):
         motion = human_reaches(10 * seed + number, CHECK_SHARE * PRACTICE_S)
-        logs.append(record(arm, motion, folder / f"{table.name}.csv", table.values, 10 * seed + number))
+        logs.append(record(arm, motion, folder / f"{table.name}.csv", table, 10 * seed + number))
     return logs
 
 

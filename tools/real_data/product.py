@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
 from greywhale.files.log import Log
-from greywhale.files.log.layout import JOINTS, Origin
+from greywhale.files.log.layout import Origin
+from greywhale.firmware import JOINTS
 from greywhale.identify import identify
 from greywhale.loop import PLANT_COLUMNS
 from greywhale.one_joint import COLUMNS, Rig

@@ -10,6 +10,10 @@ from pydantic import AfterValidator, Field, model_validator
 from greywhale import _native
 from greywhale.formats.toml_file import Table
 
+# Of the usual potentiometer: a track of 300 degrees, and noise of half a step of the board's converter (V rms).
+USUAL_TRACK_RAD = math.radians(300.0)
+USUAL_NOISE_V = 0.0024
+MOST_NOISE_V = 0.5
 JOINT_NAMES = ("base yaw", "shoulder pitch", "wrist pitch", "wrist roll")
 PAPER_IYY0 = 8.26e-3  # as printed in the paper's Table 3
 
@@ -149,10 +153,10 @@ class Drive(Table):
 class Potentiometer(Table):
     """One joint potentiometer across the board's supply."""
 
-    track: Annotated[float, Field(gt=0, le=10 * math.tau)] = math.radians(300)  # rad, end to end
+    track: Annotated[float, Field(gt=0, le=10 * math.tau)] = USUAL_TRACK_RAD  # rad, end to end
     centre: float = 0.0  # rad, joint angle at mid-track
     direction: Literal[1, -1] = 1  # sign of the voltage's slope
-    noise: Annotated[float, Field(ge=0, le=0.5)] = 0.0  # V rms
+    noise: Annotated[float, Field(ge=0, le=MOST_NOISE_V)] = 0.0  # V rms
     linearity: Annotated[float, Field(ge=0, le=0.05)] = 0.0  # largest deviation, share of full scale
 
 
@@ -161,6 +165,11 @@ class PotentiometerBank(Table):
 
     supply: Positive = 5.0  # V, also the converter's reference
     joint: Annotated[tuple[Potentiometer, ...], AfterValidator(_one_per_joint)] = (Potentiometer(),) * 4
+
+
+def usual_pots() -> PotentiometerBank:
+    """Potentiometers as most arms have them, of which nothing special is known."""
+    return PotentiometerBank(joint=(Potentiometer(noise=USUAL_NOISE_V),) * 4)
 
 
 class ArmParameters(Table):

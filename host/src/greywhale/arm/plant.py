@@ -24,11 +24,19 @@ class Potentiometers(_native.Potentiometers):
     """The four potentiometers of one arm: `millivolts(angles)`, or `counts(angles)` through a 10-bit converter."""
 
     def __init__(self, bank: PotentiometerBank, seed: int = 0) -> None:
-        pots = [
-            _native.Potentiometer(
-                track=pot.track, centre=pot.centre, direction=pot.direction, noise=pot.noise, linearity=pot.linearity
-            )
-            for pot in bank.joint
-        ]
-        super().__init__(pots, bank.supply, seed)
+        super().__init__(native_potentiometers(bank), bank.supply, seed)
         self.bank = bank
+
+
+def native_potentiometers(bank: PotentiometerBank, noise: bool = True) -> list[_native.Potentiometer]:
+    """The four potentiometers for the native code, on request without noise."""
+    return [
+        _native.Potentiometer(
+            track=pot.track,
+            centre=pot.centre,
+            direction=pot.direction,
+            noise=pot.noise if noise else 0.0,
+            linearity=pot.linearity,
+        )
+        for pot in bank.joint
+    ]

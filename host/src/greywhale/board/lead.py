@@ -15,9 +15,10 @@ from greywhale.board.device import Device
 from greywhale.board.refusal import RefusedError
 from greywhale.board.stream import why_stopped
 from greywhale.errors import UserError
+from greywhale.firmware import JOINTS
 from greywhale.protocol import schema
 from greywhale.trajectory.generate import minimum_jerk
-from greywhale.trajectory.motion import JOINTS, Trajectory
+from greywhale.trajectory.motion import Trajectory
 
 Floats = npt.NDArray[np.float64]
 

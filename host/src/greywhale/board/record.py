@@ -18,11 +18,14 @@ import numpy.typing as npt
 from greywhale.board.device import Device
 from greywhale.board.lead import Leading, Plan
 from greywhale.board.stream import Received, stream, why_stopped
+from greywhale.board.upload import read_parameter, read_parameters
 from greywhale.errors import BAD_USAGE, UserError
 from greywhale.files.log.layout import Origin
 from greywhale.files.log.writer import LogWriter
+from greywhale.firmware import ANGLE_LSB
 from greywhale.protocol import schema
-from greywhale.trajectory import JOINTS, Trajectory
+from greywhale.table import ParameterTable
+from greywhale.trajectory import Trajectory
 
 Progress = Callable[[str, float], None]
 Floats = npt.NDArray[np.float64]
@@ -44,7 +47,6 @@ _ROWS_PER_REPORT = 50
 _POSE_SAMPLES = 21
 _LIMITS = ("limit_min", "limit_max")
 _MOVING = (schema.State.SOFT_START, schema.State.FOLLOWING)
-_RAD = schema.Sample.LSB["leader"]
 _VOLT = schema.Sample.LSB["voltage"]
 
 
@@ -84,7 +86,7 @@ def record(
     """Record `seconds` of samples, one every `every` ticks of 1 ms."""
     _check(seconds, every, enable)
     report = progress or (lambda what, fraction: None)
-    origin = Origin(device.firmware_version, device.hello.board.key, device.hello.param_crc, _period_ms(device), every)
+    origin = _origin(device, read_parameter(device, "period_ms"), every)
     length = round(seconds * 1000)
     with LogWriter(path, origin) as log:
         received = stream(device, every)
@@ -99,21 +101,26 @@ def record(
 
 
 def record_led(
-    device: Device, path: str | Path, motion: Trajectory, every: int = 1, progress: Progress | None = None
+    device: Device,
+    path: str | Path,
+    motion: Trajectory,
+    every: int = 1,
+    progress: Progress | None = None,
+    table: ParameterTable | None = None,
 ) -> Recording:
-    """Lead the arm along `motion`, from where it is, and record that."""
+    """Lead the arm along `motion`, from where it is, and record that; `table` is what runs, where that is known."""
     check_every_led(every)
     report = progress or (lambda what, fraction: None)
-    limits = np.array([[_parameter(device, f"joint{joint}.{end}") for joint in range(JOINTS)] for end in _LIMITS])
-    tracking = _parameter(device, "tracking_limit")
+    running = read_parameters(device, report) if table is None else table
+    limits = np.array([running.each("joint", end) for end in _LIMITS]) * ANGLE_LSB
     Plan.of(motion, motion.angles[0], limits)  # too fast a motion is refused with the motors off
-    origin = Origin(device.firmware_version, device.hello.board.key, device.hello.param_crc, _period_ms(device), every)
+    origin = _origin(device, running.period_ms, every)
     with LogWriter(path, origin) as log:
         received = stream(device, every)
         with device.leading(LEASE_MS) as begun:
-            pose = np.array(begun.reference) * _RAD
+            pose = np.array(begun.reference) * ANGLE_LSB
             plan = Plan.of(motion, pose, limits, REST_S)
-            leading = Leading(device, begun, plan, tracking)
+            leading = Leading(device, begun, plan, running.physical("tracking_limit"))
             received = _following(device, received, report, leading)
             duration = _write_led(device, log, received, leading, report)
     device.telemetry(0)
@@ -135,24 +142,8 @@ def pose_of(device: Device) -> Floats:
     received = stream(device, 1)
     angles = [next(received).sample.follower for _ in range(_POSE_SAMPLES)]
     device.telemetry(0)
-    pose: Floats = np.median(np.array(angles), axis=0) * _RAD
+    pose: Floats = np.median(np.array(angles), axis=0) * ANGLE_LSB
     return pose
-
-
-def table_of(device: Device, progress: Progress | None = None) -> tuple[int, ...]:
-    """The whole parameter set that runs, raw, in index order."""
-    report = progress or (lambda what, fraction: None)
-    values = []
-    for one in schema.PARAMETERS:
-        values.append(device.ask(schema.ParamGetRequest(one.index)).value)
-        report("reading the parameters", len(values) / len(schema.PARAMETERS))
-    return tuple(values)
-
-
-def _parameter(device: Device, name: str) -> float:
-    """A parameter of the running set in its unit."""
-    known = schema.PARAMETER_BY_NAME[name]
-    return known.to_physical(device.ask(schema.ParamGetRequest(known.index)).value)
 
 
 def _check(seconds: float, every: int, enable: bool) -> None:
@@ -166,8 +157,8 @@ def _check(seconds: float, every: int, enable: bool) -> None:
         )
 
 
-def _period_ms(device: Device) -> int:
-    return device.ask(schema.ParamGetRequest(schema.PARAMETER_BY_NAME["period_ms"].index)).value
+def _origin(device: Device, period_ms: int, every: int) -> Origin:
+    return Origin(device.firmware_version, device.hello.board.key, device.hello.param_crc, period_ms, every)
 
 
 def _following(
@@ -235,8 +226,8 @@ def _write_led(
 def _append(log: LogWriter, time_s: float, sample: schema.Sample) -> None:
     log.append(
         time_s,
-        [value * _RAD for value in sample.leader],
-        [value * _RAD for value in sample.follower],
+        [value * ANGLE_LSB for value in sample.leader],
+        [value * ANGLE_LSB for value in sample.follower],
         [value * _VOLT for value in sample.voltage],
         sample.state.key,
     )

@@ -7,7 +7,7 @@ all of it changes between two ticks. A broken upload therefore leaves the runnin
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,6 +16,7 @@ from greywhale.board.refusal import RefusedError
 from greywhale.errors import UserError
 from greywhale.files import controller as controller_file
 from greywhale.protocol import schema
+from greywhale.table import ParameterTable
 
 Progress = Callable[[str, float], None]
 
@@ -26,27 +27,35 @@ _POLL_S = 0.02
 
 @dataclass(frozen=True)
 class Uploaded:
-    """What an upload did: CRC of the set that runs and is stored, names of the parameters that changed."""
+    """What an upload did: the set that runs and is stored, names of the parameters that changed."""
 
-    param_crc: int
+    table: ParameterTable
     changed: tuple[str, ...]
+
+    @property
+    def param_crc(self) -> int:
+        return self.table.crc
 
     def as_dict(self) -> dict[str, object]:
         return {"parameter_crc": f"0x{self.param_crc:04x}", "changed": list(self.changed)}
 
 
-def read_parameters(device: Device, progress: Progress | None = None) -> tuple[int, ...]:
-    """The running set, raw values in index order, proven whole by its CRC."""
+def read_parameter(device: Device, name: str) -> int:
+    """The raw value of one parameter of the running set."""
+    index = schema.PARAMETER_BY_NAME[name].index
+    reply = device.ask(schema.ParamGetRequest(index))
+    if reply.index != index:
+        raise UserError(f"{device.port}: asked for parameter {index}, the board answered {reply.index}; try again.")
+    return reply.value
+
+
+def read_parameters(device: Device, progress: Progress | None = None) -> ParameterTable:
+    """The running set, proven whole by its CRC."""
     report = progress or _silent
     values = []
     for parameter in schema.PARAMETERS:
         report("reading parameters", parameter.index / len(schema.PARAMETERS))
-        reply = device.ask(schema.ParamGetRequest(parameter.index))
-        if reply.index != parameter.index:
-            raise UserError(
-                f"{device.port}: asked for parameter {parameter.index}, the board answered {reply.index}; try again."
-            )
-        values.append(reply.value)
+        values.append(read_parameter(device, parameter.name))
     expected = device.greet().param_crc
     computed = schema.param_crc(values)
     if computed != expected:
@@ -54,33 +63,29 @@ def read_parameters(device: Device, progress: Progress | None = None) -> tuple[i
             f"{device.port}: the parameters read have CRC {computed:#06x}, the board's set has {expected:#06x}; "
             "try again."
         )
-    return tuple(values)
+    return ParameterTable(tuple(values), device.hello.board, device.port)
 
 
 def upload_controller(device: Device, path: str | Path, progress: Progress | None = None) -> Uploaded:
     """Run and store the controllers of a controller.toml; every other parameter keeps its value."""
-    controller = controller_file.load(path)
-    return change_parameters(device, controller.raw_values(), progress)
+    return change_parameters(device, controller_file.load(path).raw_values(), progress)
 
 
-def change_parameters(device: Device, changes: Mapping[int, int], progress: Progress | None = None) -> Uploaded:
-    """Run and store the running set with `changes` (index -> raw value) made to it."""
+def change_parameters(device: Device, changes: Mapping[str, int], progress: Progress | None = None) -> Uploaded:
+    """Run and store the running set with `changes` (name -> raw value) made to it."""
     running = read_parameters(device, progress)
-    wanted = tuple(changes.get(index, value) for index, value in enumerate(running))
+    wanted = running.with_raw(changes)
     upload_set(device, wanted, progress)
-    changed = tuple(
-        parameter.name for parameter in schema.PARAMETERS if running[parameter.index] != wanted[parameter.index]
-    )
-    return Uploaded(schema.param_crc(wanted), changed)
+    pairs = zip(schema.PARAMETERS, running.raw, wanted.raw, strict=True)
+    return Uploaded(wanted, tuple(parameter.name for parameter, before, after in pairs if before != after))
 
 
-def upload_set(device: Device, values: Sequence[int], progress: Progress | None = None) -> None:
+def upload_set(device: Device, table: ParameterTable, progress: Progress | None = None) -> None:
     """Stage, apply and save a whole set, then check that the board runs it."""
     report = progress or _silent
-    schema.check_parameters(values)
-    crc = schema.param_crc(values)
-    for index, value in enumerate(values):
-        report("uploading parameters", index / len(values))
+    crc = table.crc
+    for index, value in enumerate(table.raw):
+        report("uploading parameters", index / len(table.raw))
         echo = device.ask(schema.ParamSetRequest(index, value))
         if (echo.index, echo.value) != (index, value):
             raise UserError(

@@ -10,8 +10,9 @@ from greywhale.cli.output import json_option, progress, show
 from greywhale.errors import BAD_USAGE, UserError
 from greywhale.files.arm import load_arm
 from greywhale.files.log import read_log
+from greywhale.files.parameter_file import load_table
 from greywhale.formats.whole import refuse_inputs
-from greywhale.identify import METHODS, identify, load_table
+from greywhale.identify import METHODS, identify
 
 
 @click.command("identify")

@@ -34,8 +34,8 @@ def get(names: tuple[str, ...], port: str | None, as_json: bool) -> None:
     """Show parameters; without names, all of them."""
     wanted = [_parameter(name) for name in names] or list(schema.PARAMETERS)
     with Device(choose_port(port)) as device, progress(as_json) as report:
-        values = read_parameters(device, report)
-    facts = {parameter.name: parameter_file.physical(parameter, values[parameter.index]) for parameter in wanted}
+        table = read_parameters(device, report)
+    facts = {parameter.name: parameter_file.physical(parameter, table[parameter.name]) for parameter in wanted}
     lines = [f"{name:<16} {value:>12g} {schema.PARAMETER_BY_NAME[name].unit}" for name, value in facts.items()]
     show(as_json, {"port": device.port, "parameters": facts}, "\n".join(line.rstrip() for line in lines))
 
@@ -49,10 +49,7 @@ def set_(settings: tuple[str, ...], port: str | None, as_json: bool) -> None:
     changes = dict(_setting(setting) for setting in settings)
     with Device(choose_port(port)) as device, progress(as_json) as report:
         done = change_parameters(device, changes, report)
-    stored = {
-        schema.PARAMETERS[index].name: parameter_file.physical(schema.PARAMETERS[index], raw)
-        for index, raw in changes.items()
-    }
+    stored = {name: parameter_file.physical(schema.PARAMETER_BY_NAME[name], raw) for name, raw in changes.items()}
     lines = [f"  {name} = {value:.9g} {schema.PARAMETER_BY_NAME[name].unit}".rstrip() for name, value in stored.items()]
     show(
         as_json,
@@ -68,13 +65,12 @@ def set_(settings: tuple[str, ...], port: str | None, as_json: bool) -> None:
 def backup(file: Path, port: str | None, as_json: bool) -> None:
     """Write all parameters of a board into a TOML file."""
     with Device(choose_port(port)) as device, progress(as_json) as report:
-        values = read_parameters(device, report)
-    parameter_file.save(file, values)
-    crc = schema.param_crc(values)
+        table = read_parameters(device, report)
+    parameter_file.save(file, table)
     show(
         as_json,
-        {"port": device.port, "file": str(file), "parameter_crc": f"0x{crc:04x}"},
-        f"{file}: {len(values)} parameters, CRC {crc:#06x}.",
+        {"port": device.port, "file": str(file), "parameter_crc": f"0x{table.crc:04x}"},
+        f"{file}: {len(table.raw)} parameters, CRC {table.crc:#06x}.",
     )
 
 
@@ -86,7 +82,7 @@ def restore(file: Path, port: str | None, as_json: bool) -> None:
     """Run and store the parameters of a backup."""
     wanted = parameter_file.load(file)
     with Device(choose_port(port)) as device, progress(as_json) as report:
-        done = change_parameters(device, dict(enumerate(wanted)), report)
+        done = change_parameters(device, wanted.by_name(), report)
     show(as_json, {"port": device.port, **done.as_dict()}, _changed(device.port, done.changed))
 
 
@@ -101,11 +97,11 @@ def diff(file: Path, port: str | None, as_json: bool) -> None:
         running = read_parameters(device, report)
     differences = {
         parameter.name: {
-            "board": parameter_file.physical(parameter, running[parameter.index]),
-            "file": parameter_file.physical(parameter, wanted[parameter.index]),
+            "board": parameter_file.physical(parameter, running[parameter.name]),
+            "file": parameter_file.physical(parameter, wanted[parameter.name]),
         }
         for parameter in schema.PARAMETERS
-        if running[parameter.index] != wanted[parameter.index]
+        if running[parameter.name] != wanted[parameter.name]
     }
     lines = [f"{name:<16} board {both['board']:g}, file {both['file']:g}" for name, both in differences.items()]
     show(
@@ -124,7 +120,7 @@ def _parameter(name: str) -> Parameter:
         ) from None
 
 
-def _setting(text: str) -> tuple[int, int]:
+def _setting(text: str) -> tuple[str, int]:
     name, equals, value = text.partition("=")
     if not equals:
         raise UserError(f"{json.dumps(text)} is not NAME=VALUE, such as joint0.kp=0.5.", BAD_USAGE)
@@ -133,7 +129,7 @@ def _setting(text: str) -> tuple[int, int]:
         number = float(value)
     except ValueError:
         raise UserError(f"{name} is {json.dumps(value)}, but it must be a number.", BAD_USAGE) from None
-    return parameter.index, parameter.to_raw_as_given(number)
+    return parameter.name, parameter.to_raw_as_given(number)
 
 
 def _changed(port: str, names: Sequence[str]) -> str:

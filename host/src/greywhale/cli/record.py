@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 import click
 
 from greywhale.board.device import Device
-from greywhale.board.record import Recording, check_every_led, pose_of, record, record_led, table_of
+from greywhale.board.record import Recording, check_every_led, pose_of, record, record_led
+from greywhale.board.upload import read_parameters
 from greywhale.cli.output import json_option, port_option, progress, show
 from greywhale.errors import BAD_USAGE, UserError
 from greywhale.files.leader import save_leader
@@ -101,10 +102,11 @@ def command(
         raise UserError(f"{out}: the log and the motion cannot be one file; give --save-motion another.", BAD_USAGE)
     plan = _plan(arm_file, ranges, seconds, seed, budget)
     with Device(choose_port(port)) as device, progress(as_json) as report:
-        designed = plan(pose_of(device), parameters=table_of(device, report), report=report)
+        running = read_parameters(device, report)
+        designed = plan(pose_of(device), table=running, report=report)
         if save_motion is not None:
             save_leader(save_motion, designed.motion)
-        recording = record_led(device, out, designed.motion, every, report)
+        recording = record_led(device, out, designed.motion, every, report, running)
     saved = {} if save_motion is None else {"motion": str(save_motion)}
     result = {"port": device.port, **recording.as_dict(), "design": designed.as_dict(), **saved}
     show(as_json, result, f"{told(recording)}\n{designed.text()}")

@@ -12,8 +12,8 @@ from greywhale.board.device import Device
 from greywhale.board.upload import upload_controller
 from greywhale.cli.output import json_option, port_option, progress, show
 from greywhale.files import controller as controller_file
-from greywhale.protocol import schema
 from greywhale.protocol.ports import choose_port
+from greywhale.table import ParameterTable
 
 
 @click.command("upload")
@@ -29,7 +29,7 @@ def command(controller: Path, port: str | None, as_json: bool) -> None:
     checked = controller_file.load(controller)
     with Device(choose_port(port)) as device, progress(as_json) as report:
         uploaded = upload_controller(device, controller, report)
-        warnings = _warnings(checked.tuning or {}, device)
+    warnings = _warnings(checked.tuning or {}, uploaded.table)
     count = len(uploaded.changed)
     what = f"{count} parameters changed" if count else "nothing had to change"
     facts = {"port": device.port, "controller": str(controller), "source": checked.source, "warnings": warnings}
@@ -37,7 +37,7 @@ def command(controller: Path, port: str | None, as_json: bool) -> None:
     show(as_json, facts | uploaded.as_dict(), "\n".join([text, *(f"Warning: {warning}" for warning in warnings)]))
 
 
-def _warnings(tuning: Mapping[str, Any], device: Device) -> list[str]:
+def _warnings(tuning: Mapping[str, Any], table: ParameterTable) -> list[str]:
     """Where the board is not what `greywhale tune` was told, or its result is not what it should be."""
     warnings = []
     if str(tuning.get("status", "complete")) != "complete":
@@ -46,11 +46,14 @@ def _warnings(tuning: Mapping[str, Any], device: Device) -> list[str]:
         warnings.append(
             "not all margins hold: a joint may swing if the arm is not quite as its model (the file says which)."
         )
+    made_for = tuning.get("board")
+    if isinstance(made_for, str) and made_for != table.board.key:
+        warnings.append(f"it was tuned for the board {made_for}, but this board is a {table.board.key}.")
     for key, name, scale in (("period_ms", "period_ms", 1.0), ("supply_v", "supply_mv", 1e-3)):
         tuned = tuning.get(key)
         if not isinstance(tuned, int | float):
             continue
-        board = device.ask(schema.ParamGetRequest(schema.PARAMETER_BY_NAME[name].index)).value * scale
+        board = table[name] * scale
         if abs(board - tuned) > 0.02 * board:
             warnings.append(f"it was tuned for {name} = {tuned / scale:g}, but this board has {board / scale:g}.")
     return warnings

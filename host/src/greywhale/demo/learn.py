@@ -17,7 +17,7 @@ from greywhale.files.arm import load_arm
 if TYPE_CHECKING:
     from greywhale.files.log import Log
     from greywhale.identify import Outcome as Identification
-    from greywhale.identify import Table
+    from greywhale.table import ParameterTable
     from greywhale.tune import Outcome as Tuning
     from greywhale.tune.progress import Report
 
@@ -37,7 +37,7 @@ class Learnt:
 def learn(
     fit: Log,
     validate: Sequence[Log],
-    tables: Sequence[Table],
+    tables: Sequence[ParameterTable],
     nominal: ArmParameters,
     folder: Path,
     budget: int | None = None,

@@ -6,7 +6,7 @@ a person's reaches, the model is validated: with the controllers of the first, a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +19,7 @@ from greywhale.files import controller as controller_file
 from greywhale.files.leader import save_leader
 from greywhale.files.log import Log
 from greywhale.files.paper_tables import paper_table
-from greywhale.identify.controllers import Table
+from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory, human_reaches
 
 Progress = Callable[[str, float], None]
@@ -38,14 +38,14 @@ FIRST_SEED = 1000  # of the checks; far from those that people give
 def practise(
     bench: BenchProcess,
     nominal: ArmParameters,
-    base: Sequence[int],
+    base: ParameterTable,
     folder: Path,
     seconds: float = PRACTICE_S,
     progress: Progress | None = None,
 ) -> list[Log]:
     """Record practice of about `seconds` into `folder`, then the checks: the log to fit first, then those to validate.
 
-    `nominal` is what is known of the arm; `base` the parameters (raw) that the board has beside its controllers.
+    `nominal` is what is known of the arm; `base` the parameters that the board has beside its controllers.
     """
     report = progress or (lambda what, fraction: None)
 
@@ -54,10 +54,8 @@ def practise(
 
     rest, motion = folder / "rest_leader.csv", folder / "practice_leader.csv"
     save_leader(rest, Trajectory(np.array([0.0, 1.0]), np.array([POSE, POSE])))
-    untuned = tables(base)[0].values
-    designed = design(
-        nominal, POSE, parameters=untuned, seconds=seconds, budget=DESIGN_BUDGET, report=named("practice")
-    )
+    untuned = tables(base)[0]
+    designed = design(nominal, POSE, table=untuned, seconds=seconds, budget=DESIGN_BUDGET, report=named("practice"))
     save_leader(motion, designed.motion)
     path = folder / "practice.csv"
     logs = [record_excitation(bench, rest, designed.motion, path, paper_table(UNTUNED), named("practice")).log()]
@@ -68,10 +66,6 @@ def practise(
     return logs
 
 
-def tables(base: Sequence[int]) -> list[Table]:
+def tables(base: ParameterTable) -> list[ParameterTable]:
     """The parameters of the practice's logs: its controllers on a board that otherwise has `base`."""
-    found = []
-    for name in (UNTUNED, OTHER):
-        raw = controller_file.load(paper_table(name)).raw_values()
-        found.append(Table(name, tuple(raw.get(index, value) for index, value in enumerate(base))))
-    return found
+    return [controller_file.load(paper_table(name)).table(base).named(name) for name in (UNTUNED, OTHER)]

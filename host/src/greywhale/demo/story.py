@@ -26,8 +26,9 @@ from greywhale.files.leader import load_leader, save_leader
 from greywhale.files.paper_tables import paper_table
 from greywhale.formats.whole import write_text
 from greywhale.measure import evaluate
-from greywhale.protocol import schema
+from greywhale.protocol.schema import Board
 from greywhale.report.follow import draw_following, trace
+from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory, human_reaches
 from greywhale.tune.progress import Report, silent
 
@@ -118,16 +119,14 @@ class _Stage:
 
         return record_motion(self._bench, leader, self._options.out / f"{file}.csv", controller, told)
 
-    def _set_supply(self) -> tuple[int, ...]:
+    def _set_supply(self) -> ParameterTable:
         """Tell the board the arm's supply, as a person would; the parameters it then has."""
-        parameter = schema.PARAMETER_BY_NAME["supply_mv"]
-        raw = round(1000 * self._arm.drive.supply)
-        if raw == parameter.default:
-            return tuple(schema.DEFAULTS)
-        parameter.check_raw(raw)
-        with Device(self._bench.port) as device:
-            change_parameters(device, {parameter.index: raw})
-        return tuple(raw if index == parameter.index else value for index, value in enumerate(schema.DEFAULTS))
+        defaults = ParameterTable.defaults(Board.NANO328 if self._options.board == "nano" else Board.MEGA2560)
+        table = defaults.with_raw({"supply_mv": round(1000 * self._arm.drive.supply)})
+        if table != defaults:
+            with Device(self._bench.port) as device:
+                change_parameters(device, {"supply_mv": table["supply_mv"]})
+        return table
 
 
 def _motion(options: DemoOptions) -> Trajectory:

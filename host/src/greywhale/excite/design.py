@@ -8,7 +8,7 @@ left open.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import partial
@@ -19,14 +19,16 @@ import numpy.typing as npt
 from greywhale.arm import ArmParameters
 from greywhale.errors import BAD_USAGE, UserError
 from greywhale.excite.information import information, natural_sizes, prior
-from greywhale.excite.limits import JOINTS, MARGIN_RAD, Limits, family, limits_of
+from greywhale.excite.limits import MARGIN_RAD, Limits, family, limits_of
 from greywhale.excite.multisine import LONGEST_S, SHORTEST_S, Shape
 from greywhale.excite.trial import ROW_S, Tried, try_motion
+from greywhale.firmware import JOINTS
+from greywhale.identify.samples import searched
 from greywhale.identify.space import KINDS, MOTOR, Parameter, Space
 from greywhale.identify.uncertainty import OPEN, OPEN_FACTOR, OPEN_LOG
 from greywhale.loop import plant_row
 from greywhale.optimise import DEFAULT, create
-from greywhale.protocol import schema
+from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory
 
 Floats = npt.NDArray[np.float64]
@@ -50,14 +52,14 @@ class Problem:
     plants: Floats  # (1 + family, 60), that the motion is tried on
     nominal: Floats  # (60,), whose parameters the information is about
     known: Floats  # information before, (n, n)
-    table: tuple[int, ...]  # the board's parameters, raw
+    table: ParameterTable
     limits: Limits
 
     @classmethod
     def of(
         cls,
         arm: ArmParameters,
-        table: Sequence[int],
+        table: ParameterTable,
         pose: Floats,
         ranges: Mapping[int, tuple[float, float]],
         seed: int,
@@ -65,14 +67,15 @@ class Problem:
         limits = limits_of(arm, table, pose, ranges)
         facts = arm.identification
         if facts is not None and "covariance" in facts:
-            parameters = tuple(_parameter(str(one["name"])) for one in facts["parameter"])
-            space, covariance = Space(arm, parameters, plant_row(arm)), np.array(facts["covariance"])
+            space, _, known_covariance = searched(arm)
+            covariance: Floats | None = known_covariance
             nominal = plant_row(arm)
         else:
-            space, covariance = Space.of(arm, USUAL, range(JOINTS)), None
+            space = Space.of(arm, USUAL, range(JOINTS))
             nominal = space.plants(space.start()[None])[0]
+            covariance = None
         known = prior(space.parameters, covariance, space.doubts())
-        return cls(space.parameters, family(arm, seed), nominal, known, tuple(table), limits)
+        return cls(space.parameters, family(arm, seed), nominal, known, table, limits)
 
     def judge(self, angles: Floats) -> Judgement:
         """Of points (rows, 4) rad, 16 ms apart."""
@@ -148,21 +151,21 @@ def design(
     arm: ArmParameters,
     pose: npt.ArrayLike,
     *,
-    parameters: Sequence[int] = schema.DEFAULTS,
+    table: ParameterTable | None = None,
     ranges: Mapping[int, tuple[float, float]] | None = None,
     seconds: float = SECONDS,
     seed: int = 0,
     budget: int = BUDGET,
     report: Report | None = None,
 ) -> Design:
-    """Search a motion from `pose` (4,) rad and back to it for a board with this parameter table (raw).
+    """Search a motion from `pose` (4,) rad and back to it for a board with this parameter table.
 
     `ranges` (rad) of single joints narrow or widen the usual: 1 rad to either side of the pose. The result depends on
     the arguments only. Raises UserError where the arm cannot move like that.
     """
     check_effort(seconds, budget)
     at = np.asarray(pose, dtype=np.float64)
-    problem = Problem.of(arm, parameters, at, ranges or {}, seed)
+    problem = Problem.of(arm, table or ParameterTable.defaults(), at, ranges or {}, seed)
     shape = Shape(problem.limits, seconds)
     best = _search(problem, shape, seed, budget, report or (lambda what, fraction: None))
     angles = shape.angles(best)
@@ -202,13 +205,6 @@ def _search(problem: Problem, shape: Shape, seed: int, budget: int, report: Repo
 
 def _cost(problem: Problem, shape: Shape, numbers: Floats) -> float:
     return problem.judge(shape.angles(numbers)).cost
-
-
-def _parameter(name: str) -> Parameter:
-    joint, _, kind = name.partition(".")
-    if not (joint.startswith("joint") and joint[5:] in "0123" and kind in KINDS):
-        raise UserError(f'[identification] names a parameter "{name}" that is not known; identify again.')
-    return Parameter(int(joint[5:]), kind)
 
 
 def _enough(one: Parameter) -> float:

@@ -8,18 +8,22 @@ as well is taken off. Joints are looked at one by one: what a wrong parameter do
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
+from greywhale.arm.parameters import USUAL_NOISE_V, USUAL_TRACK_RAD
+from greywhale.arm.plants import column
 from greywhale.excite.body import Body
-from greywhale.identify.space import KINDS, Parameter, column
+from greywhale.firmware import CONVERSIONS, JOINTS
+from greywhale.identify.space import KINDS, Parameter
 
 Floats = npt.NDArray[np.float64]
 # A reading's standard deviation (rad), and what a start speed may be off beyond noise (rad/s), as when identifying.
-NOISE_RAD = 1.2e-3
+NOISE_RAD = USUAL_NOISE_V / 5.0 * USUAL_TRACK_RAD / math.sqrt(CONVERSIONS)
 SPEED_DOUBT = 0.05
 WINDOW_S = 0.5
 # Below this speed friction may be anything within its limits and says nothing (rad/s).
@@ -45,7 +49,7 @@ def information(plant: Floats, angles: Floats, row_s: float, parameters: Sequenc
     inertia = np.diagonal(body.mass_matrix(angles), axis1=1, axis2=2).mean(axis=0)
     rows = round(WINDOW_S / row_s)
     matrix = np.zeros((len(chosen), len(chosen)))
-    for joint in range(4):
+    for joint in range(JOINTS):
         here = [index for index, one in enumerate(chosen) if one.joint == joint]
         if not here:
             continue
@@ -102,7 +106,7 @@ class _Motion:
                 return np.zeros(len(speed))
 
     def _of(self, name: str) -> float:
-        return float(self.plant[column(self.joint, name)])
+        return float(self.plant[column(name, self.joint)])
 
     def shift(self, kind: str) -> Floats:
         """(rows,) by which a unit of the searched number moves the joint against its motor: backlash, bending teeth."""
@@ -124,14 +128,14 @@ def _windows(values: Floats, rows: int) -> Floats:
 
 def _lag(plant: Floats, joint: int, inertia: float) -> float:
     """Time constant of the joint's speed under a voltage, s."""
-    whole = float(plant[column(joint, "inertia")]) + inertia
-    return whole / float(plant[column(joint, "damping")])
+    whole = float(plant[column("inertia", joint)]) + inertia
+    return whole / float(plant[column("damping", joint)])
 
 
 def _response(plant: Floats, joint: int, inertia: float, rows: int, row_s: float) -> Floats:
     """(rows, rows): angle in each row of a window per volt in each row before."""
     lag = _lag(plant, joint, inertia)
-    gain = float(plant[column(joint, "torque_per_volt")]) / float(plant[column(joint, "damping")])
+    gain = float(plant[column("torque_per_volt", joint)]) / float(plant[column("damping", joint)])
     time_s = np.arange(rows) * row_s
     since = time_s[:, None] - time_s[None, :]
     pulse = gain * row_s * -np.expm1(-np.maximum(since, 0.0) / lag)
@@ -155,7 +159,7 @@ def prior(parameters: Sequence[Parameter], covariance: Floats | None, doubts: Fl
     if covariance is None:
         return np.diag(doubts**-2.0)
     known = np.zeros_like(covariance)
-    for joint in range(4):
+    for joint in range(JOINTS):
         here = [index for index, one in enumerate(parameters) if one.joint == joint]
         block = np.ix_(here, here)
         known[block] = np.linalg.inv(covariance[block] + 1e-12 * np.eye(len(here)))

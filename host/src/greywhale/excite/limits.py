@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,13 +12,13 @@ from greywhale.arm import ArmParameters
 from greywhale.board.lead import FASTEST_RAD_S
 from greywhale.errors import BAD_USAGE, UserError
 from greywhale.excite.body import Body
+from greywhale.firmware import JOINTS
 from greywhale.identify import sampled_plants
 from greywhale.identify.space import MOTOR, Space
 from greywhale.loop import plant_row
-from greywhale.protocol import schema
+from greywhale.table import ParameterTable
 
 Floats = npt.NDArray[np.float64]
-JOINTS = 4
 # Without --range a joint moves by no more than this to either side of where it is (rad).
 REACH_RAD = 1.0
 # Kept free before a limit of the parameter table or a stop of the arm (rad).
@@ -50,18 +50,17 @@ class Limits:
 
 
 def limits_of(
-    arm: ArmParameters, parameters: Sequence[int], pose: Floats, ranges: Mapping[int, tuple[float, float]]
+    arm: ArmParameters, table: ParameterTable, pose: Floats, ranges: Mapping[int, tuple[float, float]]
 ) -> Limits:
-    """Limits for a motion from `pose` (rad) with the board's parameter table (raw) and the user's ranges (rad)."""
-    value = {one.name: parameters[one.index] * one.lsb for one in schema.PARAMETERS}
+    """Limits for a motion from `pose` (rad) with the board's parameter table and the user's ranges (rad)."""
     low, high = np.zeros(JOINTS), np.zeros(JOINTS)
     for joint in range(JOINTS):
         stops = arm.joint[joint].stops
-        least = max(value[f"joint{joint}.limit_min"], stops.min) + MARGIN_RAD
-        most = min(value[f"joint{joint}.limit_max"], stops.max) - MARGIN_RAD
+        least = max(table.physical(f"joint{joint}.limit_min"), stops.min) + MARGIN_RAD
+        most = min(table.physical(f"joint{joint}.limit_max"), stops.max) - MARGIN_RAD
         low[joint], high[joint] = _range(joint, pose[joint], ranges.get(joint), least, most)
-    speed, acceleration = _strength(arm, value, low, high)
-    tracking = value["tracking_limit"] or USUAL_TRACKING_RAD
+    speed, acceleration = _strength(arm, table, low, high)
+    tracking = table.physical("tracking_limit") or USUAL_TRACKING_RAD
     return Limits(pose, low, high, speed, acceleration, LAG_SHARE * min(tracking, USUAL_TRACKING_RAD))
 
 
@@ -83,7 +82,7 @@ def _range(
     return low, high
 
 
-def _strength(arm: ArmParameters, value: Mapping[str, float], low: Floats, high: Floats) -> tuple[Floats, Floats]:
+def _strength(arm: ArmParameters, table: ParameterTable, low: Floats, high: Floats) -> tuple[Floats, Floats]:
     """Speeds and accelerations that a part of the voltage is enough for, by the arm file."""
     body = Body.of(plant_row(arm))
     random = np.random.default_rng(0)
@@ -95,7 +94,7 @@ def _strength(arm: ArmParameters, value: Mapping[str, float], low: Floats, high:
     for joint in range(JOINTS):
         motor = arm.actuator(joint)
         alpha = 1.0 / motor.torque_per_volt
-        volts = min(value["supply_mv"], value[f"joint{joint}.ku_mv"]) / 1000.0
+        volts = min(table["supply_mv"], table[f"joint{joint}.ku_mv"]) / 1000.0
         free = volts - alpha * gravity[joint]
         if free <= 0.2 * volts:
             weight = alpha * gravity[joint]

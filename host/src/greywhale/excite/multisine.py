@@ -15,7 +15,8 @@ import numpy as np
 import numpy.typing as npt
 
 from greywhale.board.lead import POINT_S
-from greywhale.excite.limits import JOINTS, Limits
+from greywhale.excite.limits import Limits
+from greywhale.firmware import JOINTS
 from greywhale.trajectory import Trajectory
 from greywhale.trajectory.generate import minimum_jerk
 

@@ -15,12 +15,13 @@ from typing import Any, Self
 from pydantic import Field, model_validator
 
 from greywhale.errors import UserError
+from greywhale.firmware import JOINTS
 from greywhale.formats import toml_file, toml_text
 from greywhale.formats.whole import write_text
 from greywhale.protocol import schema
 from greywhale.protocol.declared import Parameter
+from greywhale.table import CONTROLLER_COLUMNS, ParameterTable
 
-JOINTS = 4
 # No flank of a fuzzy set may be narrower than this.
 NARROWEST = 0.01
 GAINS = ("kp", "kd", "ki", "ku")
@@ -85,13 +86,17 @@ class Controller(toml_file.Table):
     joint: tuple[JointController, ...] = Field(min_length=JOINTS, max_length=JOINTS)
     tuning: dict[str, Any] | None = None  # how `greywhale tune` found it and what it expects; no board gets it
 
-    def raw_values(self) -> dict[int, int]:
-        """Parameter index -> raw value, for everything that a controller file says."""
+    def raw_values(self) -> dict[str, int]:
+        """Parameter name -> raw value, for everything that a controller file says."""
         return {
-            parameter.index: parameter.to_raw(value)
+            parameter.name: parameter.to_raw(value)
             for number, joint in enumerate(self.joint)
             for _, parameter, value in joint.parameters(number)
         }
+
+    def table(self, rest: ParameterTable | None = None) -> ParameterTable:
+        """A whole parameter table with these controllers; the rest as given, else the firmware's defaults."""
+        return (ParameterTable.defaults() if rest is None else rest).with_raw(self.raw_values())
 
 
 def load(path: str | Path) -> Controller:
@@ -154,7 +159,7 @@ def to_text(
 
 def _in_file(joint: int, row: Iterable[int]) -> dict[str, float]:
     """A joint's raw values by their keys in the file, exactly what the board will use."""
-    raw = dict(zip((*(key.lower() for key in Sets.model_fields), "kp", "kd", "ki", "ku_mv"), row, strict=True))
+    raw = dict(zip(CONTROLLER_COLUMNS, row, strict=True))
     found = {}
     for key in (*Sets.model_fields, *GAINS):
         name = "ku_mv" if key == "ku" else key.lower()

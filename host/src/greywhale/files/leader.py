@@ -10,9 +10,10 @@ from pathlib import Path
 import numpy as np
 
 from greywhale.files.log.layout import COLUMNS as LOG_COLUMNS
+from greywhale.firmware import JOINTS
 from greywhale.formats import csv_file
 from greywhale.formats.whole import refuse_devices, write_text
-from greywhale.trajectory.motion import JOINTS, POT_RANGE_RAD, Array, Trajectory
+from greywhale.trajectory.motion import POT_RANGE_RAD, Array, Trajectory
 
 LONGEST_S = 3600.0
 # Far beyond a hand (some 30 rad/s), but a step of `multi_steps` over the whole range, 40 ms long, stays below it.

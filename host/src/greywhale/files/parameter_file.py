@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from pathlib import Path
 
 from greywhale.errors import UserError
+from greywhale.files import controller
 from greywhale.formats import toml_file
 from greywhale.formats.whole import write_text
 from greywhale.protocol import schema
 from greywhale.protocol.declared import Parameter
+from greywhale.table import ParameterTable
 
 
 def physical(parameter: Parameter, raw: int) -> float:
@@ -20,22 +21,22 @@ def physical(parameter: Parameter, raw: int) -> float:
     return int(value) if parameter.lsb == 1.0 else value
 
 
-def save(path: str | Path, values: Sequence[int]) -> None:
-    """Write every parameter; `load` gives the same raw values back."""
-    lines = [f"# greywhale parameters, CRC {schema.param_crc(values):#06x}"]
-    table = ""
+def save(path: str | Path, table: ParameterTable) -> None:
+    """Write every parameter; `load` gives the same table back."""
+    lines = [f"# greywhale parameters, CRC {table.crc:#06x}"]
+    heading = ""
     for parameter in schema.PARAMETERS:
         group, _, name = parameter.name.rpartition(".")
-        if group != table:
-            table = group
+        if group != heading:
+            heading = group
             lines += ["", f"[{group}]"]
         unit = f"  # {parameter.unit}" if parameter.unit else ""
-        lines.append(f"{name} = {physical(parameter, values[parameter.index])}{unit}")
+        lines.append(f"{name} = {physical(parameter, table.raw[parameter.index])}{unit}")
     write_text(path, "\n".join(lines) + "\n")
 
 
-def load(path: str | Path) -> tuple[int, ...]:
-    """Raw values in index order; every parameter must be there, in range, and nothing else."""
+def load(path: str | Path) -> ParameterTable:
+    """A whole table; every parameter must be there, in range, and nothing else."""
     found = _flat(toml_file.read(path), path)
     unknown = [name for name in found if name not in schema.PARAMETER_BY_NAME]
     if unknown:
@@ -52,10 +53,16 @@ def load(path: str | Path) -> tuple[int, ...]:
         except UserError as error:
             raise UserError(f"{path}: {error.message}") from None
     try:
-        schema.check_parameters(values)
+        return ParameterTable(tuple(values), name=str(path))
     except UserError as error:
         raise UserError(f"{path}: {error.message}") from None
-    return tuple(values)
+
+
+def load_table(path: str | Path) -> ParameterTable:
+    """A file of `greywhale params backup`, or a controller.toml on top of the firmware's defaults."""
+    if isinstance(toml_file.read(path).get("joint"), list):
+        return controller.load(path).table().named(str(path))
+    return load(path)
 
 
 def _flat(data: dict[str, object], path: str | Path) -> dict[str, object]:

@@ -4,9 +4,8 @@
 >>> outcome.save("model.toml")
 """
 
-from greywhale.identify.controllers import Table, load_table
 from greywhale.identify.identification import METHODS, identify
 from greywhale.identify.outcome import Outcome, ParameterEstimate
 from greywhale.identify.samples import sampled_plants
 
-__all__ = ["METHODS", "Outcome", "ParameterEstimate", "Table", "identify", "load_table", "sampled_plants"]
+__all__ = ["METHODS", "Outcome", "ParameterEstimate", "identify", "sampled_plants"]

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
 from greywhale.errors import UserError
-from greywhale.identify.controllers import Table
-from greywhale.identify.data import JOINTS, Prepared
-from greywhale.protocol import schema
+from greywhale.firmware import JOINTS
+from greywhale.identify.data import Prepared
+from greywhale.table import ParameterTable
 
 Floats = NDArray[np.float64]
 SHORTEST_S = 4.0
@@ -26,7 +26,7 @@ SATURATED = 0.5
 FITTING = 0.7
 
 
-def check(prepared: Prepared, arm: ArmParameters, table: Table | None) -> list[str]:
+def check(prepared: Prepared, arm: ArmParameters, table: ParameterTable | None) -> list[str]:
     """Refuse what cannot be used; doubts that do not forbid it come back as sentences."""
     log = prepared.log
     used = _used(prepared)
@@ -95,12 +95,12 @@ def _supply(where: str, voltage: Floats, arm: ArmParameters) -> list[str]:
     return []
 
 
-def _refuse_other_period(prepared: Prepared, table: Table | None, used: NDArray[np.bool_]) -> None:
+def _refuse_other_period(prepared: Prepared, table: ParameterTable | None, used: NDArray[np.bool_]) -> None:
     """With a row every tick the voltage shows the control period: it changes then and only then."""
     log = prepared.log
     stated = log.origin.period_ms
     if table is not None:
-        stated = table.values[schema.PARAMETER_BY_NAME["period_ms"].index]
+        stated = table.period_ms
     if stated is None or prepared.period > 1.5e-3:
         return
     joint = int(np.argmax([np.std(log.voltage[used, joint]) for joint in range(JOINTS)]))

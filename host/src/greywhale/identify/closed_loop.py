@@ -10,20 +10,19 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from greywhale import _native
-from greywhale.arm import ArmParameters
+from greywhale.arm import ArmParameters, PotentiometerBank
+from greywhale.arm.parameters import MOST_NOISE_V, Potentiometer
+from greywhale.firmware import JOINTS, TICK_S
 from greywhale.identify.data import BLOCK_S, Prepared, part_of
-from greywhale.identify.noise import TRACK, pot_noise
-from greywhale.identify.space import JOINTS, Space
-from greywhale.loop import CONTROLLER_COLUMNS, Timing
-from greywhale.protocol import schema
+from greywhale.identify.noise import pot_noise
+from greywhale.identify.space import Space
+from greywhale.loop.closed_loop import ClosedLoop, known_readings, with_ideal_follower
+from greywhale.loop.controllers import controllers_of
+from greywhale.table import ParameterTable
 
 Floats = NDArray[np.float64]
-TICK_S = 1e-3
-LSB = 1.0 / 4096.0
 # The loop stands still at the first pose for so long before the log begins (ticks), so that it is not let go from rest.
 LEAD_TICKS = 500
-PWM_TOP = {"mega2560": 400, "nano328": 400}
 COMPARED_TICKS = 5
 STEPS_PER_TICK = 2
 ROWS_PER_BLOCK = round(BLOCK_S / (COMPARED_TICKS * TICK_S))
@@ -33,10 +32,10 @@ SEED = 1
 class Loop:
     """The controller, leader and readings of one log, for any number of candidate arms."""
 
-    def __init__(self, log: Prepared, values: Sequence[int], arm: ArmParameters, offsets: Floats | None = None) -> None:
+    def __init__(self, log: Prepared, table: ParameterTable, arm: ArmParameters, offsets: Floats | None = None) -> None:
         self.log = log
         zero = np.zeros(JOINTS) if offsets is None else offsets
-        self._made_of = (log, values, arm)
+        self._made_of = (log, table, arm)
         run = max(log.runs, key=lambda one: one.stop - one.start)
         recorded = log.log
         start, end = float(recorded.time[run.start]), float(recorded.time[run.stop - 1])
@@ -49,21 +48,15 @@ class Loop:
         self.ticks = ticks
         self.seconds = len(reference) * TICK_S  # simulated for every candidate
         self.time = times
-        self.laws = controller_rows(values)
-        settings = loop_settings(values)
-        moments = Timing().native()
-        noisy = _pots(log, arm, values, zero)
-        self._loop = _native.ClosedLoop(
-            settings=settings,
-            timing=moments,
-            pots=noisy,
-            pot_supply=arm.follower_pots.supply,
+        self.laws = controllers_of(table)
+        self._loop = ClosedLoop(
+            with_ideal_follower(table),
+            known_readings(reference, target),
+            _pots(log, arm, table, zero),
             seed=SEED,
             home=_home(self.follower[0] + zero, arm),
             gap=[0.0] * JOINTS,
-            reference=np.ascontiguousarray(np.clip(np.round(reference / LSB), -32768, 32767).astype(np.int16)),
-            leader=np.ascontiguousarray(target),
-            weight=np.zeros(len(target)),
+            weight_s=np.zeros(len(target)),
         )
         self._zero = zero
         self.rows = len(self.follower[::COMPARED_TICKS])
@@ -74,8 +67,10 @@ class Loop:
 
     def angles(self, plants: Floats, every: int = COMPARED_TICKS, threads: int = 0) -> Floats:
         """What the candidates' potentiometers show, (candidates, rows, 4), every so many ticks of the log."""
-        outcome = self._run(plants, every, threads)
-        shown: Floats = outcome[4][:, LEAD_TICKS // every :].astype(np.float64) - self._zero
+        result = self._loop.run(
+            self.laws[None], np.ascontiguousarray(plants), substeps=STEPS_PER_TICK, every=every, threads=threads
+        )
+        shown: Floats = result.angles[:, LEAD_TICKS // every :].astype(np.float64) - self._zero
         return shown[:, : len(self.follower[::every])]
 
     def error(self, plants: Floats, held_out: bool | None = None) -> Floats:
@@ -84,18 +79,6 @@ class Loop:
         kept = difference if held_out is None else difference[:, part_of(self.rows, ROWS_PER_BLOCK, held_out)]
         mse: Floats = np.mean(np.nan_to_num(kept, nan=10.0, posinf=10.0, neginf=-10.0) ** 2, axis=1)
         return mse
-
-    def _run(self, plants: Floats, every: int, threads: int) -> tuple[Floats, ...]:
-        outcome: tuple[Floats, ...] = self._loop.run(
-            controllers=self.laws[None],
-            plants=np.ascontiguousarray(plants),
-            substeps=STEPS_PER_TICK,
-            threads=threads,
-            every=every,
-            single=False,
-            instructions="",
-        )
-        return outcome
 
 
 class LoopResidual:
@@ -121,38 +104,6 @@ class LoopResidual:
         return np.concatenate(rows, axis=1)
 
 
-def controller_rows(values: Sequence[int]) -> NDArray[np.int32]:
-    """The controllers of a whole parameter table."""
-    rows = [[_value(values, f"joint{joint}.{key}") for key in CONTROLLER_COLUMNS] for joint in range(JOINTS)]
-    return np.array(rows, dtype=np.int32)
-
-
-def loop_settings(values: Sequence[int]) -> _native.LoopSettings:
-    """What the firmware does around the law; the log begins after the soft start."""
-
-    def four(group: str, key: str) -> list[int]:
-        return [_value(values, f"{group}{joint}.{key}") for joint in range(JOINTS)]
-
-    return _native.LoopSettings(
-        period_ms=_value(values, "period_ms"),
-        supply_mv=_value(values, "supply_mv"),
-        soft_start_ms=0,
-        filter_shift=_value(values, "filter_shift"),
-        limit_min=four("joint", "limit_min"),
-        limit_max=four("joint", "limit_max"),
-        motor_sign=[1] * JOINTS,
-        pwm_top=[400] * JOINTS,
-        leader_zero=four("leader", "zero"),
-        leader_scale=four("leader", "scale"),
-        follower_zero=[8184] * JOINTS,
-        follower_scale=[10734] * JOINTS,
-    )
-
-
-def _value(values: Sequence[int], name: str) -> int:
-    return values[schema.PARAMETER_BY_NAME[name].index]
-
-
 def _at(times: Floats, known: Floats, angles: Floats) -> Floats:
     return np.column_stack([np.interp(times, known, angles[:, joint]) for joint in range(JOINTS)])
 
@@ -163,12 +114,8 @@ def _home(angles: Floats, arm: ArmParameters) -> list[float]:
     ]
 
 
-def _pots(log: Prepared, arm: ArmParameters, values: Sequence[int], zero: Floats) -> list[_native.Potentiometer]:
-    """Ideal 300 degree potentiometers as noisy as the log: the noise lets joints creep that would stick without it."""
-    noise = pot_noise(log, _value(values, "filter_shift"), arm.follower_pots.supply)
-    return [
-        _native.Potentiometer(
-            track=TRACK, centre=float(zero[joint]), direction=1.0, noise=float(noise[joint]), linearity=0.0
-        )
-        for joint in range(JOINTS)
-    ]
+def _pots(log: Prepared, arm: ArmParameters, table: ParameterTable, zero: Floats) -> PotentiometerBank:
+    """Usual potentiometers as noisy as the log: the noise lets joints creep that would stick without it."""
+    noise = np.minimum(pot_noise(log, table["filter_shift"], arm.follower_pots.supply), MOST_NOISE_V)
+    pots = [Potentiometer(centre=float(zero[joint]), noise=float(noise[joint])) for joint in range(JOINTS)]
+    return PotentiometerBank(supply=arm.follower_pots.supply, joint=tuple(pots))

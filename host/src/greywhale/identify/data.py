@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 from scipy.signal import savgol_filter
 
 from greywhale.files.log import Log
+from greywhale.firmware import JOINTS
 from greywhale.measure.runs import Run
 
 Floats = NDArray[np.float64]
-JOINTS = 4
 WINDOW_S = 0.5
 SMOOTHING_S = 0.04  # of the angle, to find velocities
 # Longest steps of the integration in a window, s: to search, and to finish with (what a light link does in its gap is

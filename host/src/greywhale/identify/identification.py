@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from greywhale.arm import ArmParameters
 from greywhale.errors import BAD_USAGE, UserError
 from greywhale.files.log import Log
+from greywhale.firmware import JOINTS
 from greywhale.identify import checks, controllers, judge
 from greywhale.identify.closed_loop import Loop
-from greywhale.identify.controllers import Table
-from greywhale.identify.data import FINE_STEP_S, JOINTS, Prepared, prepare
+from greywhale.identify.data import FINE_STEP_S, Prepared, prepare
 from greywhale.identify.outcome import Outcome, ParameterEstimate
 from greywhale.identify.paper import METHODS as PAPER_METHODS
 from greywhale.identify.paper import VALUES, PaperSearch
@@ -21,7 +21,7 @@ from greywhale.identify.search import Search
 from greywhale.identify.space import KINDS, Space
 from greywhale.identify.uncertainty import uncertainty
 from greywhale.identify.windows import WindowResidual
-from greywhale.protocol import schema
+from greywhale.table import ParameterTable
 
 Floats = NDArray[np.float64]
 Report = Callable[[str, float], None]
@@ -33,7 +33,7 @@ def identify(
     arm: ArmParameters,
     *,
     validate: Sequence[Log] = (),
-    tables: Sequence[Table] = (),
+    tables: Sequence[ParameterTable] = (),
     method: str = "default",
     seed: int = 0,
     report: Report | None = None,
@@ -52,7 +52,7 @@ def identify(
     fitted = [subject for subject in subjects if subject.role == judge.FIT]
     joints = [joint for joint in range(JOINTS) if any(subject.log.moving[joint] for subject in fitted)]
     known = all(subject.table is not None for subject in fitted)
-    loops = [Loop(subject.log, subject.table.values, arm) for subject in fitted if subject.table] if known else []
+    loops = [Loop(subject.log, subject.table, arm) for subject in fitted if subject.table] if known else []
     if method == "default":
         return _default(fitted, subjects, doubts, arm, loops, joints, seed, tell)
     if not loops:
@@ -64,7 +64,7 @@ def identify(
 
 
 def _subjects(
-    logs: Sequence[Log], validate: Sequence[Log], arm: ArmParameters, tables: Sequence[Table]
+    logs: Sequence[Log], validate: Sequence[Log], arm: ArmParameters, tables: Sequence[ParameterTable]
 ) -> tuple[list[judge.Subject], list[str]]:
     """Every log made ready and checked."""
     subjects, doubts = [], []
@@ -73,7 +73,7 @@ def _subjects(
         table = controllers.table_of(log, tables)
         shift = None  # of another tool's readings nobody knows how old they are
         if log.origin.firmware is not None:
-            shift = (table or controllers.DEFAULTS).values[schema.PARAMETER_BY_NAME["filter_shift"].index]
+            shift = (table or ParameterTable.defaults())["filter_shift"]
         prepared = prepare(log, shift)
         doubts += checks.check(prepared, arm, table)
         if any(log is one for one in logs):

@@ -11,11 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
+from greywhale.firmware import JOINTS
 from greywhale.identify.closed_loop import Loop
-from greywhale.identify.controllers import Table
-from greywhale.identify.data import JOINTS, Prepared
+from greywhale.identify.data import Prepared
 from greywhale.identify.space import Space
 from greywhale.identify.windows import WindowResidual
+from greywhale.table import ParameterTable
 
 Floats = NDArray[np.float64]
 FIT, SECOND, CHANGED = "fit", "validation", "validation, changed controller"
@@ -26,7 +27,7 @@ class Subject:
     """A log to be judged on."""
 
     log: Prepared
-    table: Table | None
+    table: ParameterTable | None
     role: str
 
 
@@ -62,7 +63,7 @@ def judge(subject: Subject, arm: ArmParameters, plant: Floats, zero: Floats, joi
     white = Space.of(arm, (), ())
     kept = np.isin(np.arange(JOINTS), list(joints))
     if subject.table is not None:
-        loop = Loop(subject.log, subject.table.values, arm)
+        loop = Loop(subject.log, subject.table, arm)
         before = loop.error(white.base[None])[0]
         after = (loop.with_zero(zero) if zero.any() else loop).error(plant[None])[0]
         measure = "closed loop"

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
+from greywhale.arm.parameters import USUAL_TRACK_RAD
+from greywhale.firmware import CONVERSIONS
 from greywhale.identify.data import Prepared
 
 Floats = NDArray[np.float64]
-CONVERSIONS = 4  # that the firmware adds up in a tick
-TRACK = math.radians(300.0)  # rad, from end to end
 STEPS = 1024  # of the converter
 
 
@@ -23,5 +21,6 @@ def pot_noise(log: Prepared, filter_shift: int, supply: float) -> Floats:
     """
     share = 1.0 / (1 << filter_shift)
     conversion = log.noise**2 * CONVERSIONS * (2.0 - share) / share
-    noise: Floats = np.sqrt(np.maximum(conversion - (TRACK / STEPS) ** 2 / 12.0, 0.0)) / TRACK * supply
+    analog = np.maximum(conversion - (USUAL_TRACK_RAD / STEPS) ** 2 / 12.0, 0.0)
+    noise: Floats = np.sqrt(analog) / USUAL_TRACK_RAD * supply
     return noise

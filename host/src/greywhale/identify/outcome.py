@@ -10,14 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
-from greywhale.files.model import arm_of, to_toml
+from greywhale.arm.from_plant import arm_of
+from greywhale.files.model import to_toml
 from greywhale.formats.whole import write_text
 from greywhale.identify.judge import FIT, Subject, Verdict
 from greywhale.identify.noise import pot_noise
-from greywhale.protocol import schema
 
 Floats = NDArray[np.float64]
-_FILTER_SHIFT = schema.PARAMETER_BY_NAME["filter_shift"].index
 
 
 @dataclass(frozen=True)
@@ -71,7 +70,7 @@ class Outcome:
         """Of the potentiometers, V rms, where a fitted log tells it: the noisiest one counts."""
         supply = self.white_box.follower_pots.supply
         found = [
-            pot_noise(one.log, one.table.values[_FILTER_SHIFT], supply)
+            pot_noise(one.log, one.table["filter_shift"], supply)
             for one in self.subjects
             if one.role == FIT and one.table is not None and one.log.log.origin.firmware is not None
         ]
@@ -99,6 +98,9 @@ class Outcome:
         table = next((one.table for one in self.subjects if one.role == FIT and one.table is not None), None)
         if table is not None:
             facts["parameters"] = table.changed()
+        board = next((one.log.log.origin.board for one in self.subjects if one.role == FIT), None)
+        if board is not None:
+            facts["board"] = board
         facts["not_identified"] = list(self.open)
         facts["warnings"] = list(self.warnings)
         facts["log"] = [self._log(*pair) for pair in zip(self.subjects, self.verdicts, strict=True)]

@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
+from greywhale.arm.plants import column
+from greywhale.firmware import JOINTS
 from greywhale.identify.closed_loop import Loop
-from greywhale.identify.space import JOINTS, column
 from greywhale.loop import plant_row
 from greywhale.optimise import create
 
@@ -72,9 +73,9 @@ class PaperSearch:
         for joint in range(JOINTS):
             inertia, resistance, constant, viscous, ratio = points[:, 5 * joint : 5 * joint + 5].T
             torque = constant / resistance
-            rows[:, column(joint, "torque_per_volt")] = torque
-            rows[:, column(joint, "inertia")] = inertia * ratio
-            rows[:, column(joint, "damping")] = torque * constant * ratio + viscous
+            rows[:, column("torque_per_volt", joint)] = torque
+            rows[:, column("inertia", joint)] = inertia * ratio
+            rows[:, column("damping", joint)] = torque * constant * ratio + viscous
             for name in ("coulomb", "breakaway", "half_gap", "stiffness", "mesh_damping", "drag"):
-                rows[:, column(joint, name)] = 0.0
+                rows[:, column(name, joint)] = 0.0
         return rows

@@ -49,7 +49,7 @@ def _convergence(outcome: Outcome) -> Figure:
 
 def _responses(outcome: Outcome, subject: Subject, verdict: Verdict) -> Figure:
     assert subject.table is not None
-    loop = Loop(subject.log, subject.table.values, outcome.white_box)
+    loop = Loop(subject.log, subject.table, outcome.white_box)
     white = loop.angles(plant_row(outcome.white_box)[None])[0]
     shifted = loop.with_zero(outcome.zero) if outcome.zero.any() else loop
     model = shifted.angles(outcome.plant[None])[0]

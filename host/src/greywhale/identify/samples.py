@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
 from greywhale.errors import BAD_USAGE, UserError
-from greywhale.identify.space import JOINTS, KINDS, Parameter, Space
+from greywhale.identify.space import KINDS, Parameter, Space
 from greywhale.loop import plant_row
 
 Floats = NDArray[np.float64]
@@ -30,7 +30,7 @@ def sampled_plants(arm: ArmParameters, count: int, seed: int = 0) -> Floats:
     estimate = plant_row(arm)[None]
     if count == 1:
         return estimate
-    space, x, covariance = _searched(arm)
+    space, x, covariance = searched(arm)
     scale = np.sqrt(np.diag(covariance))
     # A root that is the same on every computer: eigenvectors have free signs, a Cholesky factor has none.
     root = np.linalg.cholesky(covariance / np.outer(scale, scale) + 1e-9 * np.eye(len(x))) * scale[:, None]
@@ -41,8 +41,11 @@ def sampled_plants(arm: ArmParameters, count: int, seed: int = 0) -> Floats:
     return np.concatenate([estimate, space.plants(points)])
 
 
-def _searched(arm: ArmParameters) -> tuple[Space, Floats, Floats]:
-    """What [identification] says was searched: space, point (n,) and covariance (n, n) in searched numbers."""
+def searched(arm: ArmParameters) -> tuple[Space, Floats, Floats]:
+    """What [identification] says was searched: space, point (n,) and covariance (n, n) in searched numbers.
+
+    Raises UserError where it says nothing of that, or names what is not known.
+    """
     facts = arm.identification
     if facts is None or "covariance" not in facts:
         raise UserError(
@@ -62,12 +65,12 @@ def _searched(arm: ArmParameters) -> tuple[Space, Floats, Floats]:
 
 
 def _parameter(arm: ArmParameters, name: str) -> Parameter:
-    joint, _, kind = name.partition(".")
-    if kind not in KINDS or joint not in {f"joint{number}" for number in range(JOINTS)}:
+    try:
+        return Parameter.named(name)
+    except KeyError:
         raise UserError(
             f"{arm.name}: [identification] names the parameter {name!r}, which greywhale does not know; identify again."
-        )
-    return Parameter(int(joint.removeprefix("joint")), kind)
+        ) from None
 
 
 def _ranges(space: Space) -> tuple[Floats, Floats]:

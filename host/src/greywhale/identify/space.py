@@ -9,15 +9,16 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
-from greywhale.loop import PLANT_COLUMNS, plant_row
+from greywhale.arm.plants import column, plant_row
+from greywhale.firmware import JOINTS
 
 Floats = NDArray[np.float64]
-JOINTS = 4
 
 
 @dataclass(frozen=True)
@@ -71,6 +72,9 @@ PITCH = (1, 2)  # only these feel gravity, so only they have a zero angle that m
 TEETH_S = 2e-3  # how long the damping of teeth of unknown stiffness lasts, s
 
 
+_JOINT_NUMBERS = {f"joint{number}": number for number in range(JOINTS)}
+
+
 @dataclass(frozen=True)
 class Parameter:
     """One searched number."""
@@ -81,6 +85,14 @@ class Parameter:
     @property
     def name(self) -> str:
         return f"joint{self.joint}.{self.kind}"
+
+    @classmethod
+    def named(cls, name: str) -> Self:
+        """The searched number of a name such as "joint2.coulomb"; KeyError where there is none."""
+        joint, _, kind = name.partition(".")
+        if kind not in KINDS:
+            raise KeyError(name)
+        return cls(_JOINT_NUMBERS[joint], kind)
 
 
 @dataclass(frozen=True)
@@ -155,7 +167,7 @@ class Space:
         """Plants (rows, 60) of searched points (rows)."""
         rows = np.tile(self.base, (len(points), 1))
         found = {name: points[:, index] for index, name in enumerate(self.names)}
-        supply = self.base[_COLUMN["supply"]]
+        supply = self.base[column("supply")]
         for joint in range(JOINTS):
             here = {kind: found[f"joint{joint}.{kind}"] for kind in KINDS if f"joint{joint}.{kind}" in found}
             if here:
@@ -192,35 +204,28 @@ class Space:
         return known[parameter.kind]
 
 
-_COLUMN = {name: index for index, name in enumerate(PLANT_COLUMNS)}
-
-
-def column(joint: int, name: str) -> int:
-    return _COLUMN[f"joint{joint}.{name}"]
-
-
 def _set_joint(rows: Floats, joint: int, here: dict[str, Floats], supply: float) -> None:
     """Write searched numbers of one joint into its columns."""
-    torque = rows[:, column(joint, "torque_per_volt")]
+    torque = rows[:, column("torque_per_volt", joint)]
     volts_before = 1.0 / torque.copy()
     if "alpha" in here:
         torque[:] = np.exp(-here["alpha"])
     for kind in ("inertia", "damping"):
-        values = rows[:, column(joint, kind)]
+        values = rows[:, column(kind, joint)]
         # What is not searched keeps its volts, as that is what moves the joint.
         values[:] = (np.exp(here[kind]) if kind in here else values * volts_before) * torque
-    sliding, rest = rows[:, column(joint, "coulomb")], rows[:, column(joint, "breakaway")]
+    sliding, rest = rows[:, column("coulomb", joint)], rows[:, column("breakaway", joint)]
     excess = np.where(sliding > 0.0, rest / np.where(sliding > 0.0, sliding, 1.0) - 1.0, 0.0)
     sliding[:] = (np.exp(here["coulomb"]) if "coulomb" in here else sliding * volts_before) * torque
     rest[:] = sliding * (1.0 + here.get("breakaway", excess))
     if "stribeck" in here:
-        rows[:, column(joint, "stribeck_velocity")] = np.exp(here["stribeck"])
+        rows[:, column("stribeck_velocity", joint)] = np.exp(here["stribeck"])
     if "drag" in here:
-        rows[:, column(joint, "drag")] = np.exp(here["drag"]) * rows[:, column(joint, "damping")]
+        rows[:, column("drag", joint)] = np.exp(here["drag"]) * rows[:, column("damping", joint)]
     if "gap" in here:
-        rows[:, column(joint, "half_gap")] = here["gap"]
+        rows[:, column("half_gap", joint)] = here["gap"]
     if "gap" in here or "teeth" in here:
-        stiffness, mesh = rows[:, column(joint, "stiffness")], rows[:, column(joint, "mesh_damping")]
+        stiffness, mesh = rows[:, column("stiffness", joint)], rows[:, column("mesh_damping", joint)]
         lasting = np.where(stiffness > 0.0, mesh / np.where(stiffness > 0.0, stiffness, 1.0), TEETH_S)
         if "teeth" in here or not stiffness.any():
             stiffness[:] = torque * supply / np.exp(here.get("teeth", math.log(KINDS["teeth"].start)))

@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from greywhale.identify.space import COUPLED, JOINTS, Space
+from greywhale.firmware import JOINTS
+from greywhale.identify.space import COUPLED, Space
 from greywhale.identify.windows import WindowResidual
 
 Floats = NDArray[np.float64]

@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greywhale.arm.parameters import JOINT_NAMES
-from greywhale.identify.space import JOINTS, KINDS, Space
+from greywhale.firmware import JOINTS
+from greywhale.identify.space import KINDS, Space
 from greywhale.identify.windows import WindowResidual
 
 Floats = NDArray[np.float64]

@@ -15,8 +15,10 @@ from numpy.typing import NDArray
 
 from greywhale import _native
 from greywhale.arm import ArmParameters
+from greywhale.arm.plants import column
+from greywhale.firmware import JOINTS
 from greywhale.identify.data import BLOCK_S, STEP_S, WINDOW_S, Prepared, Windows, part_of, windows_of
-from greywhale.identify.space import JOINTS, Space, column
+from greywhale.identify.space import Space
 
 Floats = NDArray[np.float64]
 # What a start speed may be off beyond what noise explains (rad/s): motion within the smoothing.
@@ -73,7 +75,7 @@ class WindowResidual:
         # From the log's own starts again: those of another model would stay where that one wanted them.
         self._pieces = list(self._logged)
         for number in range(len(self._pieces)):
-            if any(plant[column(joint, "half_gap")] > 0.0 for joint in self.joints):
+            if any(plant[column("half_gap", joint)] > 0.0 for joint in self.joints):
                 changed = self._settle_sides(number, plant, zero) or changed
             for _ in range(START_PASSES):
                 self._settle_starts(number, plant, zero)
@@ -172,7 +174,7 @@ class WindowResidual:
         """Take off the best start angle and speed of every window; their sizes become residuals of their own."""
         noise = log.noise[joint]
         count = len(error)
-        lag = (plants[:, column(joint, "inertia")] / plants[:, column(joint, "damping")])[:, None]
+        lag = (plants[:, column("inertia", joint)] / plants[:, column("damping", joint)])[:, None]
         speed = lag * -np.expm1(-windows.time[None, :] / lag)
         basis = np.stack([np.ones_like(speed), speed], axis=2)  # (n, rows, 2)
         doubt = np.array([noise, SPEED_DOUBT])

@@ -5,9 +5,12 @@
 >>> result.mse  # (n, 4), rad^2
 """
 
-from greywhale.loop.experiment import Experiment, Result, Timing
+from greywhale.arm.plants import PLANT_COLUMNS, plant_row
+from greywhale.loop.closed_loop import Result, Timing
+from greywhale.loop.controllers import controller_row, controllers_of, default_controller
+from greywhale.loop.experiment import Experiment
 from greywhale.loop.leader import leader_slices
-from greywhale.loop.tables import CONTROLLER_COLUMNS, PLANT_COLUMNS, controller_row, default_controller, plant_row
+from greywhale.table import CONTROLLER_COLUMNS
 
 __all__ = [
     "CONTROLLER_COLUMNS",
@@ -16,6 +19,7 @@ __all__ = [
     "Result",
     "Timing",
     "controller_row",
+    "controllers_of",
     "default_controller",
     "leader_slices",
     "plant_row",

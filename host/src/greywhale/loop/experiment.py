@@ -3,89 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
-from greywhale import _native
-from greywhale.arm import ArmParameters, PotentiometerBank
+from greywhale.arm import ArmParameters
+from greywhale.arm.plants import check_plants, column, plant_row
 from greywhale.errors import UserError
+from greywhale.firmware import JOINTS, TICK_S
+from greywhale.loop.closed_loop import DEFAULT_TIMING, ClosedLoop, Result, Timing, read_leader
+from greywhale.loop.controllers import check_controllers, controllers_of
 from greywhale.loop.leader import SLICES_PER_TICK, leader_slices
-from greywhale.loop.tables import JOINTS, PLANT_COLUMNS, check_controllers, check_plants, controllers_of, plant_row
-from greywhale.protocol import schema
+from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory
 from greywhale.trajectory.motion import Array
 
-TICK_S = 1e-3
-PWM_TOP = {"mega": (400, 400, 400, 400), "nano": (400, 400, 255, 255)}
-LATEST_CHAIN = 7000  # cycles: a chain takes 12,944 and must end before the next tick
 STEPS_PER_TICK = (1, 2, 4)
-LONGEST_DELAY = 1000  # ticks
-
-
-@dataclass(frozen=True)
-class Timing:
-    """When things happen within a tick of 1 ms, which spans four slices of 250 us and begins somewhere in the first.
-
-    `chain_start`: cycles (16 MHz) from the beginning of that slice to the first of the tick's 32 conversions.
-    `acts`: the slice (1..3) from whose beginning each joint's new voltage acts.
-    `drivers_on`: the slice (1..4, of tick 0) in which the drivers are first found on; a slice later the hand lets go of
-    the follower, and the controllers run from tick 1 on.
-    On the bench all depend on the cycle at which the board was switched on; the defaults are those of a tick that
-    begins with its slice and is done within it.
-    `late`: ticks by which every duty acts later than the firmware gives it. No board does that; a controller with a
-    margin bears it.
-    """
-
-    chain_start: int = 2208
-    acts: tuple[int, int, int, int] = (1, 1, 1, 1)
-    drivers_on: int = 1
-    late: int = 0
-
-    def __post_init__(self) -> None:
-        if not 0 <= self.chain_start <= LATEST_CHAIN:
-            raise UserError(
-                f"chain_start is {self.chain_start}, but it must be a number of cycles in 0..{LATEST_CHAIN}."
-            )
-        if not 0 <= self.late <= LONGEST_DELAY:
-            raise UserError(f"late is {self.late}, but it must be a number of ticks in 0..{LONGEST_DELAY}.")
-        if self.drivers_on not in (1, 2, 3, 4):
-            raise UserError(f"drivers_on is {self.drivers_on}, but it must name a slice from 1 to 4.")
-        if len(self.acts) != JOINTS or not all(1 <= slice_number < SLICES_PER_TICK for slice_number in self.acts):
-            raise UserError(f"acts is {self.acts}, but it must name a slice from 1 to 3 for each of the four joints.")
-
-    def native(self) -> _native.LoopTiming:
-        return _native.LoopTiming(start=self.chain_start, acts=self.acts, on=self.drivers_on, late=self.late)
-
-
-DEFAULT_TIMING = Timing()
-
-
-@dataclass(frozen=True)
-class Result:
-    """A row per candidate and a column per joint. Measures are taken with the true angles, e = leader - follower.
-
-    A candidate whose motion leaves the range of numbers has `diverged` set and 1e9 in every measure.
-    """
-
-    mse: Array  # (n, 4) rad^2, mean of e^2 over the ticks
-    itae: Array  # (n, 4) rad s^2, integral of weight |e|
-    itau: Array  # (n, 4) V s^2, integral of weight |u|, u the voltage at the motor
-    diverged: npt.NDArray[np.bool_]  # (n,)
-    time_s: Array  # (rows,) of the traces
-    angles: npt.NDArray[np.float32]  # (n, rows, 4) rad, the follower's
-    duties: npt.NDArray[np.int16]  # (n, rows, 4) PWM compare values with their direction
 
 
 class Experiment:
     """Leader, sensors and board settings, shared by all candidates; `run` simulates any number of them.
 
-    `leader` is a motion, or angles (rad) in every slice of 250 us as float64 (slices, 4). `parameters` is a whole
-    parameter table, raw, in index order; its controllers are the candidate unless others are given. `noise` False:
-    quiet potentiometers. `weight_s` (ticks,) weighs |e| and |u| in ITAE and ITAU; by default the time since the leader
-    may move.
+    `leader` is a motion, or angles (rad) in every slice of 250 us as float64 (slices, 4). `table` is the parameter
+    table of the board; its controllers are the candidate unless others are given. `noise` False: quiet potentiometers.
+    `weight_s` (ticks,) weighs |e| and |u| in ITAE and ITAU; by default the time since the leader may move.
     """
 
     def __init__(
@@ -93,8 +34,7 @@ class Experiment:
         leader: Trajectory | Array,
         arm: ArmParameters,
         *,
-        parameters: Sequence[int] = schema.DEFAULTS,
-        board: Literal["mega", "nano"] = "mega",
+        table: ParameterTable | None = None,
         noise: bool = True,
         seed: int = 1,
         wait_s: float = 1.5,
@@ -105,42 +45,32 @@ class Experiment:
         timing: Timing = DEFAULT_TIMING,
         gap_position: Sequence[float] | None = None,
     ) -> None:
-        if board not in PWM_TOP:
-            raise UserError(f'board is "{board}", but it must be one of {", ".join(PWM_TOP)}.')
         self.arm = arm
-        self.parameters = tuple(parameters)
-        schema.check_parameters(list(self.parameters))
+        self.table = ParameterTable.defaults() if table is None else table
         if isinstance(leader, Trajectory):
             slices = leader_slices(leader, wait_s, after_s, resample)
         else:
             slices = _checked_slices(leader)
-        self.ticks = len(slices) // SLICES_PER_TICK
-        self.time_s: Array = np.arange(self.ticks, dtype=np.float64) * TICK_S
-        settings = self._settings(board, soft_start)
-        moments = timing.native()
-        self.reference, self.leader = _native.leader_readings(
-            settings=settings,
-            timing=moments,
-            pots=_pots(arm.leader_pots, noise),
-            pot_supply=arm.leader_pots.supply,
-            seed=seed,
-            angles=slices,
-        )
-        self.weight_s = _checked_weight(weight_s, self.time_s, wait_s)
         self.home = slices[0].copy()
+        readings = read_leader(self.table, arm.leader_pots, slices, seed=seed, noise=noise, timing=timing)
+        self.reference, self.leader = readings.reference, readings.leader
+        time_s = np.arange(len(self.leader), dtype=np.float64) * TICK_S
+        self.weight_s = _checked_weight(weight_s, time_s, wait_s)
         gap = np.random.default_rng(seed).uniform(-1.0, 1.0, JOINTS) if gap_position is None else np.array(gap_position)
-        self._loop = _native.ClosedLoop(
-            settings=settings,
-            timing=moments,
-            pots=_pots(arm.follower_pots, noise),
-            pot_supply=arm.follower_pots.supply,
+        self._loop = ClosedLoop(
+            self.table,
+            readings,
+            arm.follower_pots,
             seed=seed + 1,
-            home=[float(angle) for angle in self.home],
-            gap=[float(share) for share in gap],
-            reference=self.reference,
-            leader=self.leader,
-            weight=self.weight_s,
+            home=self.home.tolist(),
+            gap=gap.tolist(),
+            weight_s=self.weight_s,
+            noise=noise,
+            timing=timing,
+            soft_start=soft_start,
         )
+        self.time_s = self._loop.time_s
+        self.ticks = self._loop.ticks
 
     def run(
         self,
@@ -186,7 +116,7 @@ class Experiment:
         single: bool,
         instructions: str,
     ) -> Result:
-        laws = check_controllers(controllers_of(self.parameters) if controllers is None else controllers)
+        laws = check_controllers(controllers_of(self.table) if controllers is None else controllers)
         rows = check_plants(plant_row(self.arm) if plants is None else plants)
         if len(laws) != len(rows) and 1 not in (len(laws), len(rows)):
             raise UserError(
@@ -195,24 +125,19 @@ class Experiment:
         self._require_home(rows)
         if every < 0 or threads < 0:
             raise UserError(f"every is {every} and threads is {threads}, but neither may be negative.")
-        try:
-            mse, itae, itau, diverged, angles, duties = self._loop.run(
-                controllers=laws,
-                plants=rows,
-                substeps=substeps,
-                threads=threads,
-                every=every,
-                single=single,
-                instructions=instructions,
-            )
-        except ValueError as error:
-            raise UserError(str(error)) from None
-        time_s = self.time_s[::every] if every else self.time_s[:0]
-        return Result(mse, itae, itau, diverged, time_s, angles, duties)
+        return self._loop.run(
+            laws,
+            rows,
+            substeps=substeps,
+            every=every,
+            threads=threads,
+            single=single,
+            instructions=instructions,
+        )
 
     def _require_home(self, plants: Array) -> None:
         for joint, angle in enumerate(self.home):
-            low, high = (PLANT_COLUMNS.index(f"joint{joint}.stop_{side}") for side in ("min", "max"))
+            low, high = (column(f"stop_{side}", joint) for side in ("min", "max"))
             outside = np.flatnonzero((plants[:, low] > angle) | (plants[:, high] < angle))
             if outside.size:
                 row = int(outside[0])
@@ -220,41 +145,6 @@ class Experiment:
                     f"the leader starts with joint {joint} at {angle:g} rad, beyond the follower's stops of "
                     f"plants[{row}], {plants[row, low]:g} to {plants[row, high]:g} rad."
                 )
-
-    def _settings(self, board: str, soft_start: bool) -> _native.LoopSettings:
-        def value(name: str) -> int:
-            return self.parameters[schema.PARAMETER_BY_NAME[name].index]
-
-        def four(group: str, key: str) -> list[int]:
-            return [value(f"{group}{joint}.{key}") for joint in range(JOINTS)]
-
-        return _native.LoopSettings(
-            period_ms=value("period_ms"),
-            supply_mv=value("supply_mv"),
-            soft_start_ms=value("soft_start_ms") if soft_start else 0,
-            filter_shift=value("filter_shift"),
-            limit_min=four("joint", "limit_min"),
-            limit_max=four("joint", "limit_max"),
-            motor_sign=four("joint", "motor_sign"),
-            pwm_top=PWM_TOP[board],
-            leader_zero=four("leader", "zero"),
-            leader_scale=four("leader", "scale"),
-            follower_zero=four("follower", "zero"),
-            follower_scale=four("follower", "scale"),
-        )
-
-
-def _pots(bank: PotentiometerBank, noise: bool) -> list[_native.Potentiometer]:
-    return [
-        _native.Potentiometer(
-            track=pot.track,
-            centre=pot.centre,
-            direction=pot.direction,
-            noise=pot.noise if noise else 0.0,
-            linearity=pot.linearity,
-        )
-        for pot in bank.joint
-    ]
 
 
 def _checked_slices(slices: Array) -> Array:

@@ -1,10 +1,9 @@
 """Leader motion: what a person's hand does to the leader arm, as it is or generated."""
 
 from greywhale.trajectory.generate import human_reaches, multi_steps, steps
-from greywhale.trajectory.motion import JOINTS, POT_RANGE_RAD, Trajectory
+from greywhale.trajectory.motion import POT_RANGE_RAD, Trajectory
 
 __all__ = [
-    "JOINTS",
     "POT_RANGE_RAD",
     "Trajectory",
     "human_reaches",

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from greywhale.trajectory.motion import JOINTS, Array, Trajectory
+from greywhale.firmware import JOINTS
+from greywhale.trajectory.motion import Array, Trajectory
 
 RATE_HZ = 200.0
 REACH_S = (0.55, 1.1)

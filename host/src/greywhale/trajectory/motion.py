@@ -14,7 +14,8 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-JOINTS = 4
+from greywhale.firmware import JOINTS
+
 POT_RANGE_RAD = (
     2.4  # a 300 degree potentiometer covers +-2.62 rad; its last few degrees are the rails that mean a broken wire
 )

@@ -11,8 +11,6 @@ from typing import Any
 
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.files import controller
-from greywhale.loop import CONTROLLER_COLUMNS
-from greywhale.protocol import schema
 from greywhale.tune.margins import Margin
 from greywhale.tune.outcome import HeldOut, Outcome
 from greywhale.tune.summary import failing_margins
@@ -41,9 +39,10 @@ def provenance(outcome: Outcome) -> dict[str, Any]:
         "model": model.name,
         "model_sha256": model.digest,
         "plants": len(model.plants),
+        "board": outcome.table.board.key,
         "period_ms": outcome.period_ms,
         "supply_v": outcome.supply_v,
-        "parameter_crc": f"0x{schema.param_crc(_whole_table(outcome)):04x}",
+        "parameter_crc": f"0x{outcome.table.with_controllers(outcome.after).crc:04x}",
         "doubts": list(model.doubts),
         "notes": list(outcome.notes),
         "cost_before": _rounded(outcome.cost_before),
@@ -123,15 +122,6 @@ def _margins(margins: tuple[Margin, ...]) -> list[dict[str, Any]]:
             }
         )
     return rows
-
-
-def _whole_table(outcome: Outcome) -> list[int]:
-    """The parameter table of a board that runs these controllers."""
-    values = list(outcome.parameters)
-    for joint, row in enumerate(outcome.after):
-        for key, raw in zip(CONTROLLER_COLUMNS, row, strict=True):
-            values[schema.PARAMETER_BY_NAME[f"joint{joint}.{key}"].index] = int(raw)
-    return values
 
 
 def _rounded(values: Iterable[float]) -> list[float]:

@@ -27,14 +27,15 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from greywhale import _native
 from greywhale.arm import ArmParameters
+from greywhale.arm.plants import check_plants, column
 from greywhale.errors import BAD_USAGE, UserError
-from greywhale.loop import PLANT_COLUMNS, leader_slices, plant_row
+from greywhale.firmware import JOINTS
+from greywhale.loop import leader_slices, plant_row
+from greywhale.loop.ideal import simulate_ideal
 from greywhale.loop.leader import SLICE_S, SLICES_PER_TICK
-from greywhale.loop.tables import check_plants
 from greywhale.measure.runs import resting
-from greywhale.trajectory import JOINTS, Trajectory
+from greywhale.trajectory import Trajectory
 
 Floats = NDArray[np.float64]
 
@@ -140,14 +141,14 @@ class _Loop:
     def chase(self, joint: int, tunings: Floats, direction: NDArray[np.int8], until: Floats) -> Floats:
         """A joint's angles (ticks,), its gear without a gap, at full voltage in `direction` as far as `until`."""
         tight = self.plant.copy()
-        tight[PLANT_COLUMNS.index(f"joint{joint}.half_gap")] = 0.0
+        tight[column("half_gap", joint)] = 0.0
         angles: Floats = self._simulate(tight, tunings[None], joint, direction, until, True)[1][0, :, joint]
         return angles
 
     def _simulate(
         self, plant: Floats, tunings: Floats, chased: int, direction: NDArray[np.int8], until: Floats, keep: bool
     ) -> tuple[Floats, Floats]:
-        mse, angles = _native.simulate_ideal(
+        mse, angles = simulate_ideal(
             leader=self.slices,
             late=self.late,
             plant=plant,
@@ -212,7 +213,7 @@ def _bound(loop: _Loop, joint: int, tunings: Floats) -> float:
     leader = loop.leader[:, joint]
     moves = _moves(leader)
     direction, until = np.zeros(len(leader), dtype=np.int8), np.zeros(len(leader))
-    stops = [loop.plant[PLANT_COLUMNS.index(f"joint{joint}.stop_{side}")] for side in ("min", "max")]
+    stops = [loop.plant[column(f"stop_{side}", joint)] for side in ("min", "max")]
     for move in moves:
         direction[move.start : move.stop] = move.side
         until[move.start : move.stop] = np.clip(move.furthest, *stops)
@@ -245,7 +246,7 @@ def _checked(slices: Floats) -> Floats:
 
 
 def _supply(plant: Floats, supply_v: float | None) -> float:
-    full = float(plant[PLANT_COLUMNS.index("supply")])
+    full = float(plant[column("supply")])
     if supply_v is None:
         return full
     if not 0.0 < supply_v < np.inf:
@@ -261,7 +262,7 @@ def _late(delay_s: float) -> int:
 
 def _require_reach(loop: _Loop) -> None:
     for joint, angle in enumerate(loop.slices[0]):
-        low, high = (loop.plant[PLANT_COLUMNS.index(f"joint{joint}.stop_{side}")] for side in ("min", "max"))
+        low, high = (loop.plant[column(f"stop_{side}", joint)] for side in ("min", "max"))
         if not low <= angle <= high:
             raise UserError(
                 f"the leader starts with joint {joint} at {angle:g} rad, beyond the follower's stops, "

@@ -5,8 +5,6 @@ The measures run from the moment the motors go on, as a log's do: WAIT_S of soft
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 import numpy.typing as npt
 
@@ -15,6 +13,7 @@ from greywhale.files.log import Log
 from greywhale.files.log.layout import Origin
 from greywhale.loop import Experiment
 from greywhale.measure import Evaluation, evaluate
+from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory, human_reaches, multi_steps, steps
 from greywhale.tune.floor import saturation_floor
 from greywhale.tune.outcome import HeldOut
@@ -39,7 +38,7 @@ def motions(low: Floats, high: Floats) -> dict[str, Trajectory]:
 
 def judge_held_out(
     arm: ArmParameters,
-    parameters: Sequence[int],
+    table: ParameterTable,
     plant: Floats,
     before: Controllers,
     after: Controllers,
@@ -48,8 +47,8 @@ def judge_held_out(
 ) -> tuple[HeldOut, ...]:
     """Both controllers (4, 12) on one plant (60,), in the bench's own arithmetic and with sensor noise."""
     judged = []
-    for name, motion in motions(*reach(arm, parameters, plant[None])).items():
-        experiment = Experiment(motion, arm, parameters=parameters, seed=7, wait_s=WAIT_S)
+    for name, motion in motions(*reach(arm, table, plant[None])).items():
+        experiment = Experiment(motion, arm, table=table, seed=7, wait_s=WAIT_S)
         result = experiment.run_single(np.stack([before, after]), plant, every=EVERY, threads=threads)
         leader = experiment.leader[::EVERY]
         angles = result.angles.astype(np.float64)

@@ -17,15 +17,17 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from greywhale import _native
 from greywhale.arm import ArmParameters
-from greywhale.loop import PLANT_COLUMNS, Experiment, Result, Timing
-from greywhale.loop.experiment import PWM_TOP
-from greywhale.protocol import schema
+from greywhale.arm.plants import column, columns
+from greywhale.firmware import JOINTS, pwm_steps
+from greywhale.loop import Experiment, Result, Timing
+from greywhale.loop.closed_loop import count_swings
+from greywhale.protocol.schema import Board
+from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory
 from greywhale.trajectory.generate import minimum_jerk
 from greywhale.tune.objective import crossed
-from greywhale.tune.training import EDGE_S, JOINTS, RATE_HZ, centre, reach
+from greywhale.tune.training import EDGE_S, RATE_HZ, centre, reach
 
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int32]
@@ -97,22 +99,34 @@ class Unrest:
 
 
 def unrest_of(
-    result: Result, rests: Sequence[tuple[int, int]], every: int, shape: tuple[int, int], band: float = SWING_RAD
+    result: Result,
+    rests: Sequence[tuple[int, int]],
+    every: int,
+    shape: tuple[int, int],
+    board: Board,
+    band: float = SWING_RAD,
 ) -> Unrest:
-    """From traces of a Mega with a row every `every` ticks; `rests` are first and last tick."""
+    """From traces of a board with a row every `every` ticks; `rests` are first and last tick."""
     reversals = np.zeros((*shape, JOINTS), dtype=np.int32)
     travel = np.zeros((*shape, JOINTS))
     chatter = np.zeros((*shape, JOINTS))
     for first, last in rests:
         seconds = (last - first) * 1e-3
         rows = (first // every, last // every)
-        turned, moved = _native.swings(result.angles, *rows, band)
-        beats, _ = _native.swings(result.duties, *rows, CHATTER_SHARE * max(PWM_TOP["mega"]))
+        turned, moved = count_swings(result.angles, *rows, band)
+        beats = _duty_swings(result, rows, board)
         reversals = np.maximum(reversals, turned.reshape(*shape, JOINTS))
         travel = np.maximum(travel, np.where(turned >= REVERSALS, moved / seconds, 0.0).reshape(*shape, JOINTS))
         chatter = np.maximum(chatter, (beats / seconds).reshape(*shape, JOINTS))
     lost = np.repeat(result.diverged.reshape(shape)[:, :, None], JOINTS, axis=2)
     return Unrest(reversals, travel, chatter, lost)
+
+
+def _duty_swings(result: Result, rows: tuple[int, int], board: Board) -> Integers:
+    """Of every row and joint (n, 4): swings by more than CHATTER_SHARE of what that joint's PWM can give."""
+    steps = pwm_steps(board)
+    counted = {top: count_swings(result.duties, *rows, CHATTER_SHARE * top)[0] for top in set(steps)}
+    return np.stack([counted[top][:, joint] for joint, top in enumerate(steps)], axis=1)
 
 
 def _part(found: Unrest, plants: slice) -> Unrest:
@@ -125,7 +139,7 @@ class Margins:
     def __init__(
         self,
         arm: ArmParameters,
-        parameters: Sequence[int],
+        table: ParameterTable,
         plants: Floats,
         *,
         threads: int = 0,
@@ -134,10 +148,11 @@ class Margins:
         seed: int = 0,
         noise: int = 0,
     ) -> None:
-        low, high = reach(arm, parameters, plants)
-        period = parameters[schema.PARAMETER_BY_NAME["period_ms"].index]
+        low, high = reach(arm, table, plants)
+        period = table.period_ms
         motion = stops(low, high, rest_s)
         self.plants = plants
+        self._board = table.board
         self._threads = threads
         self._band = SEARCH_SWING_RAD if searching else SWING_RAD
         self._beyond = SEARCH_BEYOND if searching else 1.0
@@ -147,7 +162,7 @@ class Margins:
             for number in range(len(STOPS))
         ]  # fmt: skip
         common: dict[str, Any] = {
-            "parameters": parameters,
+            "table": table,
             "seed": 100 * seed + 31 + 2 * noise,
             "wait_s": WAIT_S,
             "soft_start": False,
@@ -179,7 +194,7 @@ class Margins:
             result = experiment.run_single(laws, arms, every=every, threads=self._threads)
         else:
             result = experiment.run(laws, arms, every=every, threads=self._threads)
-        return unrest_of(result, self._rests, every, (len(controllers), len(plants)), self._band)
+        return unrest_of(result, self._rests, every, (len(controllers), len(plants)), self._board, self._band)
 
     def check(self, controllers: Controllers) -> tuple[Margin, ...]:
         """One controller (4, 12), in the bench's own arithmetic: a verdict for each scenario and joint."""
@@ -220,17 +235,15 @@ def penalty(found: dict[str, Unrest]) -> Floats:
 def with_gain(plants: Floats, factor: float) -> Floats:
     """The same plants with another torque per volt on every joint."""
     scaled = plants.copy()
-    for joint in range(JOINTS):
-        scaled[:, PLANT_COLUMNS.index(f"joint{joint}.torque_per_volt")] *= factor
+    scaled[:, columns("torque_per_volt")] *= factor
     return scaled
 
 
 def with_softer_teeth(plants: Floats) -> Floats:
     """The same plants with softer gear teeth that damp less; rigid gears stay rigid."""
     softer = plants.copy()
-    for joint in range(JOINTS):
-        softer[:, PLANT_COLUMNS.index(f"joint{joint}.stiffness")] /= SOFTER
-        softer[:, PLANT_COLUMNS.index(f"joint{joint}.mesh_damping")] /= LESS_DAMPED
+    softer[:, columns("stiffness")] /= SOFTER
+    softer[:, columns("mesh_damping")] /= LESS_DAMPED
     return softer
 
 
@@ -238,9 +251,7 @@ def loosest(plants: Floats) -> Floats:
     """The estimate (60,) with the widest gap and the softest, least damped teeth that any of the plants has."""
     loose: Floats = plants[0].copy()
     for joint in range(JOINTS):
-        gap, stiffness, damping = (
-            PLANT_COLUMNS.index(f"joint{joint}.{name}") for name in ("half_gap", "stiffness", "mesh_damping")
-        )
+        gap, stiffness, damping = (column(name, joint) for name in ("half_gap", "stiffness", "mesh_damping"))
         toothed = plants[plants[:, stiffness] > 0.0]
         if len(toothed):
             loose[gap] = toothed[:, gap].max()

@@ -15,10 +15,12 @@ from numpy.typing import NDArray
 from greywhale.arm import ArmParameters
 from greywhale.errors import BAD_USAGE, UserError
 from greywhale.files.arm import content_of, load_arm
-from greywhale.identify import load_table, sampled_plants
+from greywhale.files.parameter_file import load_table
+from greywhale.identify import sampled_plants
 from greywhale.loop import plant_row
-from greywhale.loop.tables import controllers_of
-from greywhale.protocol import schema
+from greywhale.loop.controllers import controllers_of
+from greywhale.protocol.schema import Board
+from greywhale.table import ParameterTable
 from greywhale.tune import model_checks as checks
 from greywhale.tune.model_checks import Doubt, Identification
 
@@ -33,7 +35,7 @@ class Model:
 
     name: str
     arm: ArmParameters
-    parameters: tuple[int, ...]  # the board's whole parameter table, raw, in index order
+    table: ParameterTable  # of the board that it is tuned for
     plants: Floats = field(repr=False)  # (k, 60): the estimate, then arms drawn from its covariance; k = 1 without one
     doubts: tuple[str, ...]
     file: str
@@ -42,12 +44,12 @@ class Model:
     @property
     def controllers(self) -> NDArray[np.int32]:
         """What the board runs now: int32 (4, 12)."""
-        return controllers_of(self.parameters)
+        return controllers_of(self.table)
 
     @property
     def period_ms(self) -> int:
         """The control period."""
-        return self.parameters[schema.PARAMETER_BY_NAME["period_ms"].index]
+        return self.table.period_ms
 
 
 def load_model(
@@ -83,7 +85,7 @@ def load_model(
     return Model(
         name=identified.name,
         arm=identified,
-        parameters=table,
+        table=table,
         plants=plants,
         doubts=(*(doubt.reason + "." for doubt in doubts), *remarks),
         file=str(path),
@@ -92,7 +94,7 @@ def load_model(
 
 
 def _doubts(
-    arm: ArmParameters, facts: Identification | None, table: tuple[int, ...], wanted: str | Path | None
+    arm: ArmParameters, facts: Identification | None, table: ParameterTable, wanted: str | Path | None
 ) -> list[Doubt]:
     """All that speaks against the model, the gravest first."""
     doubts = checks.identified(facts)
@@ -107,27 +109,27 @@ def _doubts(
 
 def _table(
     arm: ArmParameters, facts: Identification | None, params: str | Path | None
-) -> tuple[tuple[int, ...], list[Doubt]]:
+) -> tuple[ParameterTable, list[Doubt]]:
     """The parameter table to tune for, and what speaks against it."""
+    board = facts.made_on if facts is not None else Board.MEGA2560
     logged = facts.table() if facts is not None else None
     if params is not None:
-        given = load_table(params).values
+        given = load_table(params).on(board)
         return given, checks.same_table(given, logged, str(params))
     if logged is not None:
         return logged, []
     # The best guess: as shipped, but for what the model does say.
-    values = list(schema.DEFAULTS)
-    values[schema.PARAMETER_BY_NAME["supply_mv"].index] = round(1000.0 * arm.drive.supply)
+    known = {"supply_mv": round(1000.0 * arm.drive.supply)}
     if facts is not None and facts.log and facts.log[0].period_ms is not None:
-        values[schema.PARAMETER_BY_NAME["period_ms"].index] = facts.log[0].period_ms
-    schema.check_parameters(values)
+        known["period_ms"] = facts.log[0].period_ms
+    guess = ParameterTable.defaults(board).with_raw(known)
     if facts is None:
-        return tuple(values), []
+        return guess, []
     doubt = Doubt(
         "the parameter table of its logs is not known",
         "give the board's own (greywhale params backup) with --params",
     )
-    return tuple(values), [doubt]
+    return guess, [doubt]
 
 
 def _refusal(path: str, doubts: list[Doubt]) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,18 +13,19 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from greywhale.arm import ArmParameters
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.errors import UserError
+from greywhale.firmware import JOINTS, TICK_S
 from greywhale.identify import sampled_plants
 from greywhale.identify.judge import FIT, Verdict, warnings_of
 from greywhale.identify.uncertainty import EXCITATION
 from greywhale.loop import PLANT_COLUMNS, Experiment, plant_row
-from greywhale.loop.experiment import TICK_S
-from greywhale.loop.tables import controllers_of
+from greywhale.loop.controllers import controllers_of
 from greywhale.protocol import schema
+from greywhale.protocol.schema import Board
+from greywhale.table import ParameterTable, board_named, refuse_unknown
 from greywhale.trajectory import human_reaches
 from greywhale.tune.training import moves, reach, within
 
 Floats = NDArray[np.float64]
-JOINTS = len(JOINT_NAMES)
 
 # Half of the arms that the logs allow may follow a motion differently from the estimate by this share of its tracking
 # error. Slow reaches show friction and gravity, quick moves inertia and damping.
@@ -81,14 +82,20 @@ class Identification(_Facts):
     warnings: tuple[str, ...] = ()
     covariance: tuple[tuple[float, ...], ...] | None = None
     parameters: dict[str, int] | None = None
+    board: str | None = None
 
-    def table(self) -> tuple[int, ...] | None:
+    @property
+    def made_on(self) -> Board:
+        """The board that made the logs; models from before they named it are of a Mega."""
+        return Board.MEGA2560 if self.board is None else board_named(self.board)
+
+    def table(self) -> ParameterTable | None:
         """The whole parameter table that the fitted log was recorded with, or None where it is not known."""
+        defaults = ParameterTable.defaults(self.made_on)
         if self.parameters is not None:
-            changed = {schema.PARAMETER_BY_NAME[name].index: raw for name, raw in self.parameters.items()}
-            return tuple(changed.get(index, value) for index, value in enumerate(schema.DEFAULTS))
+            return defaults.with_raw(self.parameters)
         crcs = {log.parameter_crc for log in self.log if log.role == FIT}
-        return tuple(schema.DEFAULTS) if crcs == {f"0x{schema.param_crc(schema.DEFAULTS):04x}"} else None
+        return defaults if crcs == {f"0x{defaults.crc:04x}"} else None
 
     def remarks(self) -> tuple[str, ...]:
         """The identification's warnings, but for those that follow from the logs' numbers, which are judged here."""
@@ -109,14 +116,11 @@ def identification_of(arm: ArmParameters, name: str) -> Identification | None:
         first = error.errors()[0]
         where = ".".join(["identification", *(str(part) for part in first["loc"])])
         raise UserError(f"{name}: {where}: {first['msg'].lower()}; identify again.") from None
-    for key in facts.parameters or {}:
-        if key not in schema.PARAMETER_BY_NAME:
-            raise UserError(f"{name}: identification.parameters: {key} is no parameter of a board; identify again.")
-    if (table := facts.table()) is not None:
-        try:
-            schema.check_parameters(table)
-        except UserError as error:
-            raise UserError(f"{name}: identification.parameters: {error.message}") from None
+    refuse_unknown(facts.parameters or (), f"{name}: identification.parameters", "identify again")
+    try:
+        facts.table()
+    except UserError as error:
+        raise UserError(f"{name}: identification.parameters: {error.message}") from None
     return facts
 
 
@@ -191,17 +195,17 @@ def untouched(arm: ArmParameters, facts: Identification) -> list[Doubt]:
     differs = np.abs(now - then) > SAME_VALUE * np.maximum(np.abs(now), np.abs(then)) + least
     if not differs.any():
         return []
-    column = int(np.argmax(differs))
+    place = int(np.argmax(differs))
     return [
         Doubt(
-            f"its numbers are not those that were identified ({PLANT_COLUMNS[column]} is {now[column]:.4g}, was "
-            f"{then[column]:.4g}), as if it was edited or put together from two arms",
+            f"its numbers are not those that were identified ({PLANT_COLUMNS[place]} is {now[place]:.4g}, was "
+            f"{then[place]:.4g}), as if it was edited or put together from two arms",
             "identify again",
         )
     ]
 
 
-def spread(arm: ArmParameters, table: Sequence[int]) -> list[Doubt]:
+def spread(arm: ArmParameters, table: ParameterTable) -> list[Doubt]:
     """Whether all arms that the logs allow follow alike, inside the board's present controllers.
 
     Single parameters may be known poorly without harm (torque per volt of a joint that carries nothing), so what counts
@@ -234,17 +238,17 @@ def spread(arm: ArmParameters, table: Sequence[int]) -> list[Doubt]:
     ]
 
 
-def _motions(arm: ArmParameters, table: Sequence[int]) -> dict[str, Experiment]:
+def _motions(arm: ArmParameters, table: ParameterTable) -> dict[str, Experiment]:
     low, high = reach(arm, table, plant_row(arm)[None])
     slow, quick = SPREAD
     motions = {slow: within(human_reaches(REACHES_SEED, REACHES_S), low, high), quick: moves(low, high)}
     return {
-        name: Experiment(motion, arm, parameters=table, noise=False, soft_start=False, wait_s=WAIT_TICKS * TICK_S)
+        name: Experiment(motion, arm, table=table, noise=False, soft_start=False, wait_s=WAIT_TICKS * TICK_S)
         for name, motion in motions.items()
     }
 
 
-def _shares(experiment: Experiment, table: Sequence[int], plants: Floats) -> Floats:
+def _shares(experiment: Experiment, table: ParameterTable, plants: Floats) -> Floats:
     """Per joint: how differently the median plant follows from the first one, as a share of its tracking error, rms."""
     result = experiment.run(controllers_of(table), plants, every=10, threads=1)
     angles = result.angles[:, WAIT_TICKS // 10 :].astype(np.float64)
@@ -312,7 +316,7 @@ def _leaves(data: object, name: str = "") -> Iterator[tuple[str, Any]]:
         yield name, data
 
 
-def same_table(given: Sequence[int], logged: Sequence[int] | None, name: str) -> list[Doubt]:
+def same_table(given: ParameterTable, logged: ParameterTable | None, name: str) -> list[Doubt]:
     """Whether a board's table differs from the logs' in more than its controllers and limits."""
     if logged is None:
         return []
@@ -320,7 +324,7 @@ def same_table(given: Sequence[int], logged: Sequence[int] | None, name: str) ->
         matters = parameter.name in ("supply_mv", "filter_shift") or parameter.name.endswith(
             (".zero", ".scale", ".motor_sign")
         )
-        here, there = given[parameter.index], logged[parameter.index]
+        here, there = given[parameter.name], logged[parameter.name]
         if matters and here != there:
             was, now = (f"{parameter.to_physical(raw):g} {parameter.unit}".rstrip() for raw in (there, here))
             return [
@@ -333,13 +337,13 @@ def same_table(given: Sequence[int], logged: Sequence[int] | None, name: str) ->
     return []
 
 
-def same_board(arm: ArmParameters, facts: Identification | None, table: Sequence[int]) -> list[Doubt]:
+def same_board(arm: ArmParameters, facts: Identification | None, table: ParameterTable) -> list[Doubt]:
     """Whether the table's period, supply and potentiometers are those of the model and its logs."""
     return [*_same_period(facts, table), *_same_supply(arm, table), *_same_slopes(arm, table)]
 
 
-def _same_period(facts: Identification | None, table: Sequence[int]) -> list[Doubt]:
-    period = table[schema.PARAMETER_BY_NAME["period_ms"].index]
+def _same_period(facts: Identification | None, table: ParameterTable) -> list[Doubt]:
+    period = table.period_ms
     logged = sorted({log.period_ms for log in facts.log if log.period_ms is not None}) if facts is not None else []
     if not logged or period in logged:
         return []
@@ -352,8 +356,8 @@ def _same_period(facts: Identification | None, table: Sequence[int]) -> list[Dou
     ]
 
 
-def _same_supply(arm: ArmParameters, table: Sequence[int]) -> list[Doubt]:
-    supply = table[schema.PARAMETER_BY_NAME["supply_mv"].index] / 1000.0
+def _same_supply(arm: ArmParameters, table: ParameterTable) -> list[Doubt]:
+    supply = table.supply_v
     if abs(supply - arm.drive.supply) <= SAME_SUPPLY * arm.drive.supply:
         return []
     return [
@@ -364,17 +368,17 @@ def _same_supply(arm: ArmParameters, table: Sequence[int]) -> list[Doubt]:
     ]
 
 
-def _same_slopes(arm: ArmParameters, table: Sequence[int]) -> list[Doubt]:
+def _same_slopes(arm: ArmParameters, table: ParameterTable) -> list[Doubt]:
     for side, bank in (("leader", arm.leader_pots), ("follower", arm.follower_pots)):
         for joint, pot in enumerate(bank.joint):
-            parameter = schema.PARAMETER_BY_NAME[f"{side}{joint}.scale"]
-            track = parameter.to_physical(table[parameter.index]) * CONVERTER_SPAN
+            scale = f"{side}{joint}.scale"
+            track = table.physical(scale) * CONVERTER_SPAN
             wanted = pot.direction * pot.track
             if abs(track - wanted) > SAME_SLOPE * abs(wanted):
                 return [
                     Doubt(
                         f"its {side} potentiometer {joint} turns {wanted:.3g} rad from end to end, but the board's "
-                        f"{parameter.name} makes it {track:.3g} rad",
+                        f"{scale} makes it {track:.3g} rad",
                         "correct the one that is wrong",
                     )
                 ]

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from greywhale.measure import Evaluation
-from greywhale.protocol import schema
+from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory
 from greywhale.tune.floor import Floor
 from greywhale.tune.margins import Margin
@@ -82,12 +82,12 @@ class HeldOut:
 class Outcome:
     """`before` and `after` are int32 (4, 12), exactly what a board stores; costs are joints', judged like the winners.
 
-    `parameters` is the table that everything was simulated with: the model's, but for the paper's method, whose control
+    `table` is the one that everything was simulated with: the model's, but for the paper's method, whose control
     period is 20 ms.
     """
 
     model: Model
-    parameters: tuple[int, ...] = field(repr=False)
+    table: ParameterTable = field(repr=False)
     strategy: str
     method: str
     seed: int
@@ -107,12 +107,12 @@ class Outcome:
     @property
     def period_ms(self) -> int:
         """The control period that the controllers were simulated with."""
-        return self.parameters[schema.PARAMETER_BY_NAME["period_ms"].index]
+        return self.table.period_ms
 
     @property
     def supply_v(self) -> float:
         """The supply that they were simulated with."""
-        return self.parameters[schema.PARAMETER_BY_NAME["supply_mv"].index] / 1000.0
+        return self.table.supply_v
 
     @property
     def steady(self) -> bool:

@@ -25,8 +25,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from greywhale.loop import PLANT_COLUMNS, Experiment
-from greywhale.protocol import schema
+from greywhale.arm.plants import column
+from greywhale.firmware import JOINTS
+from greywhale.loop import Experiment
 from greywhale.trajectory import Trajectory, steps
 from greywhale.tune.held_out import judge_held_out
 from greywhale.tune.journal import Journal
@@ -34,7 +35,7 @@ from greywhale.tune.margins import Margins
 from greywhale.tune.outcome import Outcome, curves_of
 from greywhale.tune.progress import Report
 from greywhale.tune.search import Found, lockstep
-from greywhale.tune.space import JOINTS, Space
+from greywhale.tune.space import Space
 
 if TYPE_CHECKING:
     from greywhale.tune.model import Model
@@ -57,16 +58,16 @@ class Loops:
 
     def __init__(self, model: Model, strategy: str, before: Controllers, threads: int) -> None:
         supply_v = LARGEST_SUPPLY_V if strategy != "mf" else model.arm.drive.supply
-        self.parameters = _with(model.parameters, period_ms=PERIOD_MS, supply_mv=round(1000 * supply_v))
+        self.table = model.table.with_raw({"period_ms": PERIOD_MS, "supply_mv": round(1000 * supply_v)})
         self.plant = model.plants[0].copy()
-        self.plant[PLANT_COLUMNS.index("supply")] = supply_v
+        self.plant[column("supply")] = supply_v
         self.before = before
         self._threads = threads
         self._experiments = [
             Experiment(
                 alone(steps(), joint),
                 model.arm,
-                parameters=self.parameters,
+                table=self.table,
                 noise=False,
                 wait_s=WAIT_S,
                 soft_start=False,
@@ -105,7 +106,7 @@ def tune_as_paper(
     request = {
         "model": model.name,
         "model_digest": model.digest,
-        "parameters": list(loops.parameters),
+        "parameters": list(loops.table.raw),
         "strategy": strategy,
         "method": "paper",
         "budget": spent,
@@ -128,14 +129,14 @@ def tune_as_paper(
                 raise
             complete = False
     report("judging", 0.0)
-    margins = Margins(model.arm, loops.parameters, loops.plant[None], threads=threads)
+    margins = Margins(model.arm, loops.table, loops.plant[None], threads=threads)
     margins_before, margins_after = margins.check(before), margins.check(found.best)
     report("judging", 0.5)
-    held_out = judge_held_out(model.arm, loops.parameters, loops.plant, before, found.best, threads, floors)
+    held_out = judge_held_out(model.arm, loops.table, loops.plant, before, found.best, threads, floors)
     report("judging", 1.0)
     return Outcome(
         model=model,
-        parameters=loops.parameters,
+        table=loops.table,
         strategy=strategy,
         method="paper",
         seed=seed,
@@ -170,15 +171,9 @@ def since_step(motion: Trajectory, wait_s: float) -> Floats:
     return since
 
 
-def _with(parameters: tuple[int, ...], **changed: int) -> tuple[int, ...]:
-    values = list(parameters)
-    for name, value in changed.items():
-        values[schema.PARAMETER_BY_NAME[name].index] = value
-    return tuple(values)
-
-
 def _notes(found: Found, strategy: str, loops: Loops) -> tuple[str, ...]:
-    notes = [f"simulated with a control period of {PERIOD_MS} ms and {loops.plant[-1]:g} V, each joint alone"]
+    supply = loops.plant[column("supply")]
+    notes = [f"simulated with a control period of {PERIOD_MS} ms and {supply:g} V, each joint alone"]
     if strategy != "sf":
         notes.append(f"{found.narrowed} of the searched widths were below 0.01 and became 0.01; none was out of order")
     return tuple(notes)

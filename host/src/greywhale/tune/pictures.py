@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING
 
 import matplotlib
 
+from greywhale.firmware import JOINTS
+
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
@@ -34,7 +36,6 @@ if TYPE_CHECKING:
 Floats = npt.NDArray[np.float64]
 Controllers = npt.NDArray[np.int32]
 
-JOINTS = 4
 # Okabe and Ito's palette: told apart by colour-blind readers too.
 _LEADER, _BEFORE, _AFTER, _FLOOR = "#222222", "#D55E00", "#0072B2", "#009E73"
 _SET_COLOURS = ("#D55E00", "#222222", "#0072B2")

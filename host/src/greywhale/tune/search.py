@@ -13,9 +13,10 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from greywhale.firmware import JOINTS
 from greywhale.optimise import Optimiser, create
 from greywhale.tune.journal import Journal
-from greywhale.tune.space import JOINTS, Space
+from greywhale.tune.space import Space
 
 Floats = npt.NDArray[np.float64]
 Controllers = npt.NDArray[np.int32]

@@ -18,7 +18,6 @@ from greywhale.fuzzy.settings import GAIN_UNIT, LARGEST_KI, LARGEST_KI_PERIOD, L
 from greywhale.loop import CONTROLLER_COLUMNS
 from greywhale.protocol import schema
 
-JOINTS = 4
 STRATEGIES = ("mf", "sf", "both")
 
 Bounds = Mapping[str, tuple[float, float]]

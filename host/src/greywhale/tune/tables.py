@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from greywhale.files.controller import load
 from greywhale.files.paper_tables import paper_table
+from greywhale.firmware import JOINTS
 from greywhale.fuzzy.settings import GAIN_UNIT, SET_UNIT
 from greywhale.loop import CONTROLLER_COLUMNS, controller_row
 from greywhale.measure import Evaluation
@@ -26,7 +27,6 @@ Floats = npt.NDArray[np.float64]
 Controllers = npt.NDArray[np.int32]
 Numbers = Sequence[float | None]
 
-JOINTS = 4
 _JOINT_COLUMNS = tuple(f"Joint {joint}" for joint in range(JOINTS))
 _ALL = (*_JOINT_COLUMNS, "All joints")
 

@@ -7,20 +7,20 @@ record weighs as much as the first.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from greywhale.arm import ArmParameters
+from greywhale.arm.plants import column
 from greywhale.errors import BAD_USAGE, UserError
+from greywhale.firmware import JOINTS
 from greywhale.loop import Experiment
-from greywhale.protocol import schema
+from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory, human_reaches
 from greywhale.trajectory.generate import minimum_jerk
 
-JOINTS = 4
 Floats = npt.NDArray[np.float64]
 
 RATE_HZ = 200.0
@@ -50,9 +50,9 @@ class Drill:
     total_weight: float  # s2, the integral of the weights
 
 
-def drills(arm: ArmParameters, parameters: Sequence[int], plants: Floats, seed: int = 0) -> tuple[Drill, ...]:
+def drills(arm: ArmParameters, table: ParameterTable, plants: Floats, seed: int = 0) -> tuple[Drill, ...]:
     """The training motions within the range of this arm and table, with sensor noise."""
-    low, high = reach(arm, parameters, plants)
+    low, high = reach(arm, table, plants)
     motions = {
         "moves to both sides": moves(low, high),
         "human-like reaches": within(human_reaches(HUMAN_SEED, HUMAN_S), low, high),
@@ -61,21 +61,19 @@ def drills(arm: ArmParameters, parameters: Sequence[int], plants: Floats, seed: 
     for number, (name, motion) in enumerate(motions.items()):
         weight = since_moving(motion, WAIT_S)
         experiment = Experiment(
-            motion, arm, parameters=parameters, seed=100 * seed + number + 11, wait_s=WAIT_S, soft_start=False,
+            motion, arm, table=table, seed=100 * seed + number + 11, wait_s=WAIT_S, soft_start=False,
             weight_s=weight,
         )  # fmt: skip
         made.append(Drill(name, experiment, float(weight.sum()) * 1e-3))
     return tuple(made)
 
 
-def reach(arm: ArmParameters, parameters: Sequence[int], plants: Floats) -> tuple[Floats, Floats]:
+def reach(arm: ArmParameters, table: ParameterTable, plants: Floats) -> tuple[Floats, Floats]:
     """Lowest and highest angle (4,) that the table's limits and all plants' stops allow, with some distance kept."""
     low, high = [], []
     for joint in range(JOINTS):
-        limits = [
-            parameters[schema.PARAMETER_BY_NAME[f"joint{joint}.limit_{side}"].index] / 4096 for side in ("min", "max")
-        ]
-        stops = [plants[:, _stop(joint, side)] for side in ("min", "max")]
+        limits = [table.physical(f"joint{joint}.limit_{side}") for side in ("min", "max")]
+        stops = [plants[:, column(f"stop_{side}", joint)] for side in ("min", "max")]
         low.append(max(limits[0], float(stops[0].max())) + CLEAR_RAD)
         high.append(min(limits[1], float(stops[1].min())) - CLEAR_RAD)
         if high[-1] - low[-1] < LEAST_RANGE_RAD:
@@ -85,12 +83,6 @@ def reach(arm: ArmParameters, parameters: Sequence[int], plants: Floats) -> tupl
                 BAD_USAGE,
             )
     return np.array(low), np.array(high)
-
-
-def _stop(joint: int, side: str) -> int:
-    from greywhale.loop import PLANT_COLUMNS
-
-    return PLANT_COLUMNS.index(f"joint{joint}.stop_{side}")
 
 
 def moves(low: Floats, high: Floats, hold_s: float = HOLD_S) -> Trajectory:

@@ -22,9 +22,9 @@ import numpy.typing as npt
 
 from greywhale.arm import ArmParameters
 from greywhale.errors import BAD_USAGE, UserError
-from greywhale.loop.tables import CONTROLLER_COLUMNS, check_controllers
+from greywhale.loop.controllers import check_controllers
 from greywhale.optimise import METHODS as OPTIMISERS
-from greywhale.protocol import schema
+from greywhale.table import CONTROLLER_COLUMNS
 from greywhale.tune import search
 from greywhale.tune.held_out import judge_held_out
 from greywhale.tune.journal import Journal
@@ -138,10 +138,10 @@ class _Tuning:
 
     def __post_init__(self) -> None:
         model = self.model
-        supply = model.parameters[schema.PARAMETER_BY_NAME["supply_mv"].index]
-        period = model.parameters[schema.PARAMETER_BY_NAME["period_ms"].index]
+        supply = model.table["supply_mv"]
+        period = model.table.period_ms
         self.space = Space.default(self.strategy, self.before, supply, period).bounded(self.bounds, period)
-        motions = drills(model.arm, model.parameters, model.plants, self.seed)
+        motions = drills(model.arm, model.table, model.plants, self.seed)
         self.objective = Objective(motions, model.plants[:SEARCH_PLANTS], self.threads)
         self.judge = Objective(motions, model.plants, self.threads)
         self.margins = self._margins(_spanning(model.plants), searching=True)
@@ -152,14 +152,15 @@ class _Tuning:
         self.found = Found.nothing(self.start)
 
     def _margins(self, plants: Floats, **options: Any) -> Margins:
-        return Margins(self.model.arm, self.model.parameters, plants, threads=self.threads, seed=self.seed, **options)
+        return Margins(self.model.arm, self.model.table, plants, threads=self.threads, seed=self.seed, **options)
 
     def request(self) -> dict[str, Any]:
         """What a journal must agree with."""
         return {
             "model": self.model.name,
             "model_digest": self.model.digest,
-            "parameters": list(self.model.parameters),
+            "parameters": list(self.model.table.raw),
+            "board": self.model.table.board.key,
             "plants": _digest(self.model.plants),
             "strategy": self.strategy,
             "method": self.method,
@@ -232,9 +233,7 @@ class _Tuning:
         everywhere = self._margins(np.vstack([model.plants, loosest(model.plants)]), rest_s=REST_LONG_S, noise=2)
         margins_before, margins = everywhere.check(self.before), everywhere.check(after)
         self.report("judging", 0.8)
-        held_out = judge_held_out(
-            model.arm, model.parameters, model.plants[0], self.before, after, self.threads, floors
-        )
+        held_out = judge_held_out(model.arm, model.table, model.plants[0], self.before, after, self.threads, floors)
         self.report("judging", 1.0)
         return replace(
             self._unjudged_outcome(),
@@ -252,7 +251,7 @@ class _Tuning:
         """The best so far by the search's own cost."""
         return Outcome(
             model=self.model,
-            parameters=self.model.parameters,
+            table=self.model.table,
             strategy=self.strategy,
             method=self.method,
             seed=self.seed,

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-JOINTS = 4
+from greywhale.firmware import JOINTS
+
 TITLE = "greywhale log 1"
 STATES = ("boot", "disabled", "soft_start", "following", "fault")
 COLUMNS = (

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greywhale.errors import UserError
-from greywhale.files.log.layout import COLUMNS, COMPLETE, ENDINGS, JOINTS, STATES, TITLE, Origin
+from greywhale.files.log.layout import COLUMNS, COMPLETE, ENDINGS, STATES, TITLE, Origin
+from greywhale.firmware import JOINTS
 from greywhale.formats import csv_file
 
 # Sizes that no board sends, 16 bits of 1/4096 rad and of mV: degrees or millivolts of another tool.

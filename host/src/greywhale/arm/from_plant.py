@@ -1,0 +1,70 @@
+"""An identified plant back as an arm file has it: motors, friction, gears, and where the potentiometers read 0."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from greywhale.arm.parameters import MOST_NOISE_V, USUAL_TRACK_RAD, ArmParameters
+from greywhale.arm.plants import column
+from greywhale.firmware import JOINTS
+
+Floats = NDArray[np.float64]
+# Of a motor's damping at most this share may be back-EMF, so that viscous friction stays positive.
+BACK_EMF_SHARE = 0.95
+
+
+def arm_of(
+    arm: ArmParameters, plant: Floats, zero: Floats, name: str, source: str, noise: Floats | None = None
+) -> ArmParameters:
+    """An identified plant as an arm: the user's file with other motors, friction, gears and zero angles.
+
+    `noise` (4,) is that of the follower's potentiometers, V rms, if they turn 300 degrees. The leader's are taken to be
+    of the same make, and no better: the log of a led arm tells nothing of them.
+    """
+    data = arm.model_dump(exclude={"identification"})
+    data |= {"name": name, "source": source}
+    for joint in range(JOINTS):
+        one = data["joint"][joint]
+        one["motor"] = _motor(arm, joint, plant)
+        one["friction"] = {
+            "coulomb": _cell(plant, joint, "coulomb"),
+            "breakaway": max(_cell(plant, joint, "breakaway"), _cell(plant, joint, "coulomb")),
+            "stribeck_velocity": _cell(plant, joint, "stribeck_velocity"),
+        }
+        one["gear"] = {
+            "half_gap": _cell(plant, joint, "half_gap"),
+            "stiffness": _cell(plant, joint, "stiffness"),
+            "damping": _cell(plant, joint, "mesh_damping"),
+            "drag": _cell(plant, joint, "drag"),
+        }
+        pot = data["follower_pots"]["joint"][joint]
+        pot["centre"] = float(pot["centre"] + zero[joint])
+        if noise is not None:
+            pot["noise"] = min(float(noise[joint]) * USUAL_TRACK_RAD / pot["track"], MOST_NOISE_V)
+            of_leader = data["leader_pots"]["joint"][joint]
+            of_leader["noise"] = max(of_leader["noise"], pot["noise"])
+    return ArmParameters.model_validate(data, strict=False)
+
+
+def _cell(plant: Floats, joint: int, name: str) -> float:
+    return float(plant[column(name, joint)])
+
+
+def _motor(arm: ArmParameters, joint: int, plant: Floats) -> dict[str, float]:
+    """Five motor values with the three identified combinations; gear ratio and, if possible, Kt are the user's."""
+    known = arm.joint[joint].motor
+    torque, inertia, damping = (_cell(plant, joint, name) for name in ("torque_per_volt", "inertia", "damping"))
+    ratio = known.gear_ratio
+    physical = arm.motor_equation == "physical"
+    # Back-EMF's part of the damping is N Kt x torque per volt in both equations.
+    constant = min(known.torque_constant, BACK_EMF_SHARE * damping / (torque * ratio))
+    left = damping - torque * constant * ratio
+    squared = ratio * ratio
+    return {
+        "inertia": inertia / squared if physical else inertia / ratio,
+        "resistance": (ratio * constant if physical else constant) / torque,
+        "torque_constant": constant,
+        "viscous": left / squared if physical else left,
+        "gear_ratio": ratio,
+    }

@@ -1,0 +1,94 @@
+"""Arms as rows of numbers, as the arm's equations use them: SI units at the joints' output shafts (docs/closed_loop.md
+says what each is). Columns go by name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale import _native
+from greywhale.arm.parameters import ArmParameters
+from greywhale.errors import UserError
+from greywhale.firmware import JOINTS
+
+Plants = npt.NDArray[np.float64]
+
+BODY_COLUMNS = ("yaw", "ixx1", "iyy1", "ixx23", "iyy23", "izz23", "ixx3", "izz1", "coupling", "gravity1", "gravity2")
+JOINT_COLUMNS = (
+    *("torque_per_volt", "inertia", "damping", "coulomb", "breakaway", "stribeck_velocity"),
+    *("half_gap", "stiffness", "mesh_damping", "drag", "stop_min", "stop_max"),
+)
+PLANT_COLUMNS = (
+    *BODY_COLUMNS,
+    *(f"joint{joint}.{name}" for joint in range(JOINTS) for name in JOINT_COLUMNS),
+    "supply",
+)
+assert len(PLANT_COLUMNS) == _native.PLANT_COLUMNS
+
+_INDEX = {name: index for index, name in enumerate(PLANT_COLUMNS)}
+_POSITIVE = (
+    *("yaw", "ixx1", "iyy1", "ixx23", "iyy23", "izz23", "ixx3", "izz1", "supply"),
+    "inertia",
+    "stribeck_velocity",
+)
+_NOT_NEGATIVE = ("coulomb", "damping", "half_gap", "stiffness", "mesh_damping", "drag")
+
+
+def column(name: str, joint: int | None = None) -> int:
+    """The place of a column: column("supply"), column("half_gap", joint=2)."""
+    return _INDEX[name if joint is None else f"joint{joint}.{name}"]
+
+
+def columns(name: str) -> list[int]:
+    """The places of a column of all four joints: plants[:, columns("half_gap")]."""
+    return [column(name, joint) for joint in range(JOINTS)]
+
+
+def plant_row(parameters: ArmParameters) -> Plants:
+    """An arm as one row: float64 (60,), in the order of PLANT_COLUMNS."""
+    return np.asarray(_native.plant_row(parameters.native()), dtype=np.float64)
+
+
+def check_plants(plants: Plants) -> Plants:
+    """One row or many with numbers that an arm can have; with the first axis added where it was missing."""
+    check_type("plants", plants, np.float64)
+    rows = plants[None] if plants.ndim == 1 else plants
+    if rows.ndim != 2 or rows.shape[1] != len(PLANT_COLUMNS):
+        raise UserError(f"plants have the shape {plants.shape}, but (n, 60) or (60,) is needed.")
+    _refuse(rows, ~np.isfinite(rows), "it must be a finite number")
+    named = np.array([name.split(".")[-1] for name in PLANT_COLUMNS])
+    _refuse(rows, np.isin(named, _POSITIVE) & (rows <= 0.0), "it must be above 0")
+    _refuse(rows, np.isin(named, _NOT_NEGATIVE) & (rows < 0.0), "it must not be negative")
+    for name, below in (("breakaway", "coulomb"), ("stop_max", "stop_min")):
+        lower = rows[:, columns(name)] < rows[:, columns(below)]
+        _refuse(rows, _marked(rows, name, lower), f"it must not be below {below}")
+    toothless = (rows[:, columns("stiffness")] == 0.0) & (rows[:, columns("half_gap")] > 0.0)
+    _refuse(rows, _marked(rows, "stiffness", toothless), "a gear with a gap needs teeth with some")
+    return np.ascontiguousarray(rows)
+
+
+def check_type(name: str, array: object, wanted: type) -> None:
+    """Raise UserError unless the argument of this name is a numpy array of the wanted type."""
+    if not isinstance(array, np.ndarray):
+        raise UserError(f"{name} must be a numpy array of {np.dtype(wanted)}, not a {type(array).__name__}.")
+    if array.dtype != wanted:
+        raise UserError(
+            f"{name} are of type {array.dtype}, but {np.dtype(wanted)} is needed; nothing is converted unasked."
+        )
+
+
+def _marked(rows: Plants, name: str, wrong: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+    """A mask over all columns from one over the four joints of a column."""
+    mask = np.zeros(rows.shape, dtype=bool)
+    mask[:, columns(name)] = wrong
+    return mask
+
+
+def _refuse(rows: Plants, wrong: npt.NDArray[np.bool_], need: str) -> None:
+    found: Sequence[Sequence[int]] = np.argwhere(wrong).tolist()
+    if found:
+        row, place = found[0]
+        raise UserError(f"plants[{row}]: {PLANT_COLUMNS[place]} is {rows[row, place]:g}, but {need}.")

@@ -1,0 +1,20 @@
+"""What the firmware fixes and no parameter changes: joints, ticks, and the steps of each board's PWM."""
+
+from __future__ import annotations
+
+from greywhale.protocol.schema import Board, Sample
+
+JOINTS = 4
+# One tick, s: the firmware samples the potentiometers a thousand times a second.
+TICK_S = 1e-3
+# Of each potentiometer in a tick; the firmware adds them up.
+CONVERSIONS = 4
+# Of an angle in samples and limits, rad.
+ANGLE_LSB = Sample.LSB["leader"]
+# Duty steps from 0 to full of each joint's motor. A Nano's last two motors are on an 8-bit timer.
+PWM_STEPS = {Board.MEGA2560: (400, 400, 400, 400), Board.NANO328: (400, 400, 255, 255)}
+
+
+def pwm_steps(board: Board) -> tuple[int, int, int, int]:
+    """Of all four joints; a board that is no Arduino we know (another tool's log) counts as a Mega."""
+    return PWM_STEPS.get(board, PWM_STEPS[Board.MEGA2560])

@@ -1,0 +1,115 @@
+"""A board's whole parameter table: values by name, its CRC, and the board that it is for.
+
+Values are raw, the integers that a board stores, unless a name says otherwise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Self
+
+from greywhale.errors import UserError
+from greywhale.firmware import JOINTS
+from greywhale.protocol import schema
+from greywhale.protocol.schema import Board
+
+# One joint's controller as the table holds it: sets q14, gains q16, mV.
+CONTROLLER_COLUMNS = ("ne_c", "ze_a", "ze_c", "pe_b", "nce_c", "zce_a", "zce_c", "pce_b", "kp", "kd", "ki", "ku_mv")
+
+
+@dataclass(frozen=True)
+class ParameterTable:
+    """`raw` values in index order that a board would accept; `name` says where they come from.
+
+    Raises UserError where a value is out of range or values contradict each other.
+    """
+
+    raw: tuple[int, ...]
+    board: Board = Board.MEGA2560
+    name: str = field(default="the parameter table", compare=False)
+
+    def __post_init__(self) -> None:
+        schema.check_parameters(self.raw)
+
+    @classmethod
+    def defaults(cls, board: Board = Board.MEGA2560) -> Self:
+        """What a board runs as it is shipped."""
+        return cls(schema.DEFAULTS, board, "the firmware's defaults")
+
+    def __getitem__(self, name: str) -> int:
+        """The raw value of a parameter: table["joint0.kp"]."""
+        return self.raw[schema.PARAMETER_BY_NAME[name].index]
+
+    def physical(self, name: str) -> float:
+        """The value of a parameter in its unit."""
+        return schema.PARAMETER_BY_NAME[name].to_physical(self[name])
+
+    def each(self, group: str, key: str) -> tuple[int, ...]:
+        """The raw values of a key of all four joints or potentiometers: table.each("joint", "limit_min")."""
+        return tuple(self[f"{group}{number}.{key}"] for number in range(JOINTS))
+
+    @property
+    def crc(self) -> int:
+        """The CRC that the board computes over the same set."""
+        return schema.param_crc(self.raw)
+
+    @property
+    def period_ms(self) -> int:
+        """The control period."""
+        return self["period_ms"]
+
+    @property
+    def supply_v(self) -> float:
+        """The motors' supply."""
+        return self["supply_mv"] / 1000.0
+
+    @property
+    def controllers(self) -> tuple[tuple[int, ...], ...]:
+        """(4, 12) raw: a row a joint, in the order of CONTROLLER_COLUMNS."""
+        return tuple(tuple(self[f"joint{joint}.{key}"] for key in CONTROLLER_COLUMNS) for joint in range(JOINTS))
+
+    def by_name(self) -> dict[str, int]:
+        """All raw values."""
+        return {one.name: raw for one, raw in zip(schema.PARAMETERS, self.raw, strict=True)}
+
+    def changed(self) -> dict[str, int]:
+        """By name, raw, what differs from the firmware's defaults."""
+        return {one.name: raw for one, raw in zip(schema.PARAMETERS, self.raw, strict=True) if raw != one.default}
+
+    def with_raw(self, changes: Mapping[str, int]) -> Self:
+        """The same table with other raw values, by name."""
+        values = list(self.raw)
+        for name, raw in changes.items():
+            values[schema.PARAMETER_BY_NAME[name].index] = raw
+        return replace(self, raw=tuple(values))
+
+    def with_controllers(self, rows: Iterable[Iterable[int]]) -> Self:
+        """The same table with other controllers, (4, 12) raw."""
+        return self.with_raw(
+            {
+                f"joint{joint}.{key}": int(raw)
+                for joint, row in enumerate(rows)
+                for key, raw in zip(CONTROLLER_COLUMNS, row, strict=True)
+            }
+        )
+
+    def on(self, board: Board) -> Self:
+        """The same values on another board."""
+        return replace(self, board=board)
+
+    def named(self, name: str) -> Self:
+        """The same table, from elsewhere."""
+        return replace(self, name=name)
+
+
+def board_named(key: str | None) -> Board:
+    """The board that a file names by its key, such as nano328; UNKNOWN where it names none that we know."""
+    return next((board for board in Board if board.key == key), Board.UNKNOWN)
+
+
+def refuse_unknown(names: Iterable[str], where: str, remedy: str) -> None:
+    """Raise UserError where one of the names is no parameter."""
+    for name in names:
+        if name not in schema.PARAMETER_BY_NAME:
+            raise UserError(f"{where}: {name} is no parameter of a board; {remedy}.")

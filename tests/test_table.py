@@ -1,0 +1,68 @@
+"""The parameter table by name: what it refuses, how it changes, and what it tells of its board."""
+
+from __future__ import annotations
+
+import pytest
+
+from greywhale.errors import UserError
+from greywhale.protocol import schema
+from greywhale.protocol.schema import Board
+from greywhale.table import CONTROLLER_COLUMNS, ParameterTable, board_named, refuse_unknown
+
+DEFAULTS = ParameterTable.defaults()
+
+
+def test_values_go_by_name_raw_or_in_their_unit() -> None:
+    for parameter in schema.PARAMETERS:
+        assert DEFAULTS[parameter.name] == parameter.default
+        assert DEFAULTS.physical(parameter.name) == parameter.to_physical(parameter.default)
+    assert DEFAULTS.each("joint", "ku_mv") == (15000, 11550, 13150, 14500)
+    assert (DEFAULTS.period_ms, DEFAULTS.supply_v) == (1, 15.0)
+    assert DEFAULTS.crc == schema.param_crc(schema.DEFAULTS)
+
+
+def test_a_change_leaves_the_rest_the_board_and_the_name() -> None:
+    nano = DEFAULTS.on(Board.NANO328).named("mine")
+    changed = nano.with_raw({"joint2.kp": 77, "supply_mv": 9000})
+    assert changed.changed() == {"supply_mv": 9000, "joint2.kp": 77}
+    assert (changed.board, changed.name) == (Board.NANO328, "mine")
+    assert nano.changed() == {}
+    assert changed.with_raw(DEFAULTS.by_name()) == nano
+
+
+def test_controllers_are_rows_of_the_table_and_back() -> None:
+    rows = [list(row) for row in DEFAULTS.controllers]
+    rows[3][CONTROLLER_COLUMNS.index("ki")] = 5
+    assert DEFAULTS.with_controllers(rows).changed() == {"joint3.ki": 5}
+    assert DEFAULTS.with_controllers(DEFAULTS.controllers) == DEFAULTS
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"period_ms": 51}, "period_ms is 51 ms, which is out of range"),
+        ({"joint1.limit_min": 10240}, r"joint1.limit_min is 2.5 and joint1.limit_max is 2.5 rad"),
+        ({"leader0.scale": 0}, "leader0.scale is 0"),
+    ],
+)
+def test_what_no_board_would_run_is_no_table(changes: dict[str, int], words: str) -> None:
+    with pytest.raises(UserError, match=words):
+        DEFAULTS.with_raw(changes)
+
+
+def test_equal_values_on_another_board_are_another_table() -> None:
+    assert DEFAULTS.named("elsewhere") == DEFAULTS
+    assert DEFAULTS.on(Board.NANO328) != DEFAULTS
+
+
+@pytest.mark.parametrize(
+    ("key", "board"), [("nano328", Board.NANO328), ("esp32", Board.UNKNOWN), (None, Board.UNKNOWN)]
+)
+def test_boards_go_by_the_key_of_a_log(key: str | None, board: Board) -> None:
+    assert board_named(key) is board
+
+
+def test_an_unknown_name_is_told_with_its_place() -> None:
+    refuse_unknown(("joint0.kp",), "model.toml", "identify again")
+    with pytest.raises(UserError, match=r"model.toml: joint0.kq is no parameter of a board; identify again\."):
+        refuse_unknown(("joint0.kp", "joint0.kq"), "model.toml", "identify again")
