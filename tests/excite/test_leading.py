@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from greywhale.board.device import Device
-from greywhale.board.lead import FASTEST_RAD_S, POINT_S, ROOM, STEP_RAD, Leading, Plan
+from greywhale.board.lead import ROOM, Leading, Plan
 from greywhale.errors import UserError
+from greywhale.firmware import FASTEST_LED_RAD_S, POINT_S, STEP_LSB
 from greywhale.protocol import schema
 from greywhale.trajectory import Trajectory, human_reaches
 
@@ -62,7 +63,7 @@ class Board:
         if self.tick % 16 == 0:
             if self.queue:
                 self.point = self.point + np.array(self.queue.popleft())
-            self.played.append(self.point * STEP_RAD)
+            self.played.append(self.point * STEP_LSB)
 
 
 def sample(tick: int, far: float = 0.0, state: schema.State = schema.State.FOLLOWING) -> schema.Sample:
@@ -89,8 +90,8 @@ def moved(points: list[np.ndarray]) -> np.ndarray:
 
 
 def wanted(plan: Plan) -> np.ndarray:
-    steps = np.round((plan.angles - START) / STEP_RAD)
-    return moved(list(START + steps * STEP_RAD))
+    steps = np.round((plan.angles - START) / STEP_LSB)
+    return moved(list(START + steps * STEP_LSB))
 
 
 PLAN = Plan.of(human_reaches(2, 6.0), START, LIMITS, 0.1)
@@ -176,7 +177,7 @@ def test_a_plan_goes_slowly_to_its_first_pose_and_keeps_the_limits() -> None:
     speed = np.abs(np.diff(plan.angles[:, 0])) / POINT_S
     first = int(np.argmax(plan.angles[:, 0] >= 1.0 - 1e-9))
     assert speed[:first].max() <= 0.51
-    assert plan.angles[:, 0].max() == pytest.approx(1.1 - STEP_RAD)
+    assert plan.angles[:, 0].max() == pytest.approx(1.1 - STEP_LSB)
     assert plan.duration_s == pytest.approx(first * POINT_S + 2.0 + 0.5, abs=0.1)
     assert np.allclose(plan.angles[-30:], motion.angles[-1])
 
@@ -185,4 +186,4 @@ def test_a_motion_faster_than_the_link_can_say_is_refused() -> None:
     quick = Trajectory(np.array([0.0, 0.1, 1.0]), np.array([[0.0] * 4, [0, 0, 1.0, 0], [0, 0, 1.0, 0]]))
     with pytest.raises(UserError, match=r"moves joint 2 at .* rad/s, but a board can be led at 7\.75 rad/s"):
         Plan.of(quick, np.zeros(4), LIMITS)
-    assert pytest.approx(7.75, abs=0.01) == FASTEST_RAD_S
+    assert pytest.approx(7.75, abs=0.01) == FASTEST_LED_RAD_S

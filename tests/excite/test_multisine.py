@@ -6,9 +6,9 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from greywhale.board.lead import POINT_S
 from greywhale.excite.limits import Limits
 from greywhale.excite.multisine import Shape, board_reference
+from greywhale.firmware import POINT_S
 
 LIMITS = Limits(
     pose=np.array([0.0, 0.9, -0.3, 1.0]),

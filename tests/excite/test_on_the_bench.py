@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from greywhale.board.device import Device
-from greywhale.board.lead import STEP_RAD, Plan
+from greywhale.board.lead import Plan
 from greywhale.board.record import record, record_led
 from greywhale.cli.entry import run
 from greywhale.demo import BenchProcess
@@ -20,7 +20,7 @@ from greywhale.files.arm import default_arm, load_arm
 from greywhale.files.leader import load_leader, save_leader
 from greywhale.files.log import read_log
 from greywhale.files.model import to_toml
-from greywhale.firmware import JOINTS
+from greywhale.firmware import JOINTS, STEP_LSB
 from greywhale.identify import identify
 from greywhale.protocol.schema import Fault, State, StopReason
 from greywhale.trajectory import Trajectory, human_reaches
@@ -54,8 +54,8 @@ def test_an_excited_log_identifies_the_arm(
         [np.interp(planned.time_s, log.time - delay, log.leader[:, 0]) for delay in np.arange(0, 0.6, 4e-3)]
     )
     assert np.abs(shown - planned.angles[:, 0]).max(axis=1).min() < 0.01, "the board was led along the motion"
-    assert log.leader[:, 0].min() >= -0.8 - STEP_RAD
-    assert log.leader[:, 0].max() <= 0.9 + STEP_RAD
+    assert log.leader[:, 0].min() >= -0.8 - STEP_LSB
+    assert log.leader[:, 0].max() <= 0.9 + STEP_LSB
     assert np.abs(log.leader - log.follower).max() < 0.45
 
     outcome = identify([log], load_arm("white_box"))
@@ -99,7 +99,7 @@ def test_a_line_that_loses_bytes_changes_nothing_of_the_motion(bench: BenchProce
     later = motion.time_s[None, :] + np.arange(0.0, 2.0, 4e-3)[:, None]
     shown = np.interp(later, log.time, log.leader[:, 0])
     assert np.abs(shown - motion.angles[:, 0]).max(axis=1).min() < 0.03
-    assert np.allclose(log.leader[-1], motion.angles[-1], atol=STEP_RAD)
+    assert np.allclose(log.leader[-1], motion.angles[-1], atol=STEP_LSB)
 
 
 def test_an_arm_far_weaker_than_its_file_is_led_more_slowly_and_without_a_fault(
@@ -116,7 +116,7 @@ def test_an_arm_far_weaker_than_its_file_is_led_more_slowly_and_without_a_fault(
     assert answer["duration_s"] > 10.5
     log = read_log(tmp_path / "log.csv")
     assert log.complete
-    assert np.allclose(log.leader[-1], log.leader[0], atol=2 * STEP_RAD), "it came back to where it began"
+    assert np.allclose(log.leader[-1], log.leader[0], atol=2 * STEP_LSB), "it came back to where it began"
 
 
 def test_ctrl_c_stops_the_motors_and_keeps_the_log(bench: BenchProcess, tmp_path: Path) -> None:

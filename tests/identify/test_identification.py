@@ -38,15 +38,15 @@ def test_motors_come_out_as_they_are(outcome: Outcome, hidden: ArmParameters) ->
         friction = hidden.joint[joint].friction.coulomb / true.torque_per_volt
         assert found[f"joint{joint}.coulomb"] == pytest.approx(friction, rel=0.35)
     assert all(one.deviation is not None and one.deviation >= 0.0 for one in outcome.estimates)
-    assert outcome.condition is not None
-    assert outcome.condition > 1.0
+    assert outcome.found.condition is not None
+    assert outcome.found.condition > 1.0
 
 
 def test_order_is_chosen_by_held_out_data(outcome: Outcome) -> None:
     """Coulomb friction must be seen to be worth it: this arm has a lot."""
-    errors = dict(outcome.orders)
+    errors = dict(outcome.found.orders)
     assert errors["Coulomb friction"] < 0.5 * errors["motors"]
-    assert errors[outcome.order] <= min(errors.values()) + 0.01
+    assert errors[outcome.found.order] <= min(errors.values()) + 0.01
 
 
 def test_model_file_is_an_arm_file(outcome: Outcome, tables: list[ParameterTable], tmp_path: Path) -> None:
@@ -78,8 +78,8 @@ def test_what_is_not_known_is_said_with_a_remedy(outcome: Outcome) -> None:
     ]
     for name in wide:
         joint, _, kind = name.partition(".")
-        assert any(f"joint {joint[5:]} " in sentence and kind in sentence for sentence in outcome.open)
-    assert all(";" in sentence for sentence in outcome.open)
+        assert any(f"joint {joint[5:]} " in sentence and kind in sentence for sentence in outcome.found.open)
+    assert all(";" in sentence for sentence in outcome.found.open)
 
 
 def test_joints_that_did_not_move_keep_the_users_values(recorded: Recorded, white_box: ArmParameters) -> None:
@@ -87,7 +87,7 @@ def test_joints_that_did_not_move_keep_the_users_values(recorded: Recorded, whit
     for joint in (2, 3):
         start = column("torque_per_volt", joint)
         np.testing.assert_array_equal(outcome.plant[start : start + 12], plant_row(white_box)[start : start + 12])
-        assert any(f"joint {joint} " in sentence and "did not move" in sentence for sentence in outcome.open)
+        assert any(f"joint {joint} " in sentence and "did not move" in sentence for sentence in outcome.found.open)
     assert {one.name[5] for one in outcome.estimates} == {"0", "1"}
     assert outcome.verdicts[0].improvement > 0.9
     assert outcome.verdicts[0].model[2:] == (0.0, 0.0)

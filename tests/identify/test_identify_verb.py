@@ -59,7 +59,8 @@ def test_interrupt_writes_the_model_and_says_so(
 ) -> None:
     from dataclasses import replace
 
-    monkeypatch.setattr(verb, "identify", lambda *logs, **options: replace(outcome, complete=False))
+    unfinished = replace(outcome, found=replace(outcome.found, complete=False))
+    monkeypatch.setattr(verb, "identify", lambda *logs, **options: unfinished)
     assert run(arguments(recorded, tmp_path)) == 130
     assert "marked as unfinished" in capsys.readouterr().err
     model = load_arm(tmp_path / "model.toml")

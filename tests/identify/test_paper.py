@@ -33,10 +33,10 @@ def test_search_stays_within_table_2_and_never_gets_worse(
     values = np.array([one.value for one in outcome.estimates]).reshape(4, 5)
     assert np.all(values >= paper.LOWER)
     assert np.all(values <= paper.UPPER)
-    assert outcome.simulations == 60
-    assert len(outcome.curve) == 6
-    assert np.all(np.diff(outcome.curve) <= 0.0)
-    assert outcome.curve[-1] == pytest.approx(sum(outcome.verdicts[0].model), rel=1e-6)
+    assert outcome.found.simulations == 60
+    assert len(outcome.found.curve) == 6
+    assert np.all(np.diff(outcome.found.curve) <= 0.0)
+    assert outcome.found.curve[-1] == pytest.approx(sum(outcome.verdicts[0].model), rel=1e-6)
     assert "joint 3" in outcome.text()
     assert "all joints" in outcome.text()
 

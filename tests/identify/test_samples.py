@@ -47,8 +47,8 @@ def test_draws_have_the_covariance_of_the_file(model: ArmParameters, outcome: Ou
     columns = Space.of(model, ("alpha", "inertia", "damping"), range(4))
     taken, expected = [], []
     names = [one.name for one in outcome.estimates]
-    assert outcome.covariance is not None
-    assert outcome.covariance.shape == (len(names), len(names))
+    assert outcome.found.covariance is not None
+    assert outcome.found.covariance.shape == (len(names), len(names))
     for parameter in columns.parameters:
         torque = np.log(plants[:, column("torque_per_volt", parameter.joint)])
         if parameter.kind == "alpha":
@@ -57,10 +57,10 @@ def test_draws_have_the_covariance_of_the_file(model: ArmParameters, outcome: Ou
             taken.append(np.log(plants[:, column(parameter.kind, parameter.joint)]) - torque)
         index = names.index(parameter.name)
         expected.append(index)
-        assert np.sqrt(outcome.covariance[index, index]) * outcome.estimates[index].value == pytest.approx(
+        assert np.sqrt(outcome.found.covariance[index, index]) * outcome.estimates[index].value == pytest.approx(
             outcome.estimates[index].deviation
         )
-    wanted = outcome.covariance[np.ix_(expected, expected)]
+    wanted = outcome.found.covariance[np.ix_(expected, expected)]
     scale = np.sqrt(np.diag(wanted))
     np.testing.assert_allclose(
         np.cov(np.array(taken)) / np.outer(scale, scale), wanted / np.outer(scale, scale), atol=0.1
@@ -69,11 +69,11 @@ def test_draws_have_the_covariance_of_the_file(model: ArmParameters, outcome: Ou
 
 def test_nothing_is_surer_than_it_is_written_and_nothing_less_sure_than_the_users_arm(outcome: Outcome) -> None:
     """Every searched number has a deviation above 0, and the arm file counts where the readings tell nothing."""
-    assert outcome.covariance is not None
+    assert outcome.found.covariance is not None
     doubts = {name: kind.doubt for name, kind in KINDS.items()}
-    for variance, one in zip(np.diag(outcome.covariance), outcome.estimates, strict=True):
+    for variance, one in zip(np.diag(outcome.found.covariance), outcome.estimates, strict=True):
         assert 0.0 < np.sqrt(variance) <= 1.001 * doubts[one.name.partition(".")[2]], one.name
-    assert np.linalg.eigvalsh(outcome.covariance)[0] > 0.0
+    assert np.linalg.eigvalsh(outcome.found.covariance)[0] > 0.0
 
 
 def test_an_arm_without_a_covariance_and_a_wrong_count_are_refused(model: ArmParameters) -> None:

@@ -12,7 +12,7 @@ from greywhale.arm.plants import column
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.loop import PLANT_COLUMNS, leader_slices, plant_row
 from greywhale.trajectory import steps
-from greywhale.tune.floor import Floats, saturation_floor
+from greywhale.tune.judge.floor import Floats, saturation_floor
 
 SLICE_S = 250e-6
 

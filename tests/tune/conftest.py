@@ -9,10 +9,11 @@ import pytest
 
 from greywhale.loop import default_controller
 from greywhale.trajectory import Trajectory
-from greywhale.tune.floor import Floor
-from greywhale.tune.margins import Margin
+from greywhale.tune.judge.floor import Floor
+from greywhale.tune.judge.held_out import HeldOut
+from greywhale.tune.judge.margins import Margin
 from greywhale.tune.model import load_model
-from greywhale.tune.outcome import Curve, HeldOut, Outcome
+from greywhale.tune.outcome import Curve, Outcome
 from tests.tune.models import evaluation, log_facts, write_model
 
 

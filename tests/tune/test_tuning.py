@@ -11,16 +11,18 @@ from typing import Any
 import numpy as np
 import pytest
 
+from greywhale.arm.parameters import USUAL_NOISE_V, with_usual_noise
 from greywhale.errors import UserError
 from greywhale.fuzzy.settings import JointSettings
 from greywhale.loop import plant_row
 from greywhale.optimise import METHODS as OPTIMISERS
 from greywhale.protocol.schema import Refusal
-from greywhale.tune import METHODS, Outcome, check_request, search, tune, tuning
+from greywhale.tune import METHODS, Outcome, check_request, tune
+from greywhale.tune.default import KU, WEAKER, DefaultMethod
 from greywhale.tune.model import Model, load_model
-from greywhale.tune.objective import Objective
-from greywhale.tune.search import KEPT
-from greywhale.tune.tuning import NOISE_V, with_noise
+from greywhale.tune.search import lockstep as search
+from greywhale.tune.search.lockstep import KEPT
+from greywhale.tune.search.objective import Objective
 
 BUDGET = 60
 
@@ -122,7 +124,7 @@ def test_a_finished_journal_needs_no_simulation(
     def never(self: object, controllers: object) -> None:
         raise AssertionError("simulated although the journal knows")
 
-    monkeypatch.setattr(tuning._Tuning, "costs", never)
+    monkeypatch.setattr(DefaultMethod, "costs", never)
     same(run(model, journal=tuned[1], resume=True), tuned[0])
 
 
@@ -148,7 +150,7 @@ def test_an_interrupt_before_anything_was_tried_goes_on_up(model: Model, monkeyp
     def interrupted(self: object, controllers: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(tuning._Tuning, "costs", interrupted)
+    monkeypatch.setattr(DefaultMethod, "costs", interrupted)
     with pytest.raises(KeyboardInterrupt):
         run(model)
 
@@ -188,25 +190,25 @@ def test_a_joint_whose_best_would_shake_its_gear_gets_less_voltage(
     searched: list[int] = []
 
     def judged(self: Any, controllers: np.ndarray) -> np.ndarray:
-        costs = Objective.costs(self.judge, controllers)
+        costs = Objective.costs(self.judging, controllers)
         if not searched:
-            searched.extend(self.found.contenders(KEPT)[:, 1, tuning.KU].tolist())
-        refused = np.isin(controllers[:, 1, tuning.KU], searched)
+            searched.extend(self.found.contenders(KEPT)[:, 1, KU].tolist())
+        refused = np.isin(controllers[:, 1, KU], searched)
         costs[refused, 1] += 10.0
         return np.asarray(costs)
 
-    monkeypatch.setattr(tuning._Tuning, "judged", judged)
+    monkeypatch.setattr(DefaultMethod, "judged", judged)
     outcome = tune(model, budget=60, floors=False)
-    assert outcome.after[1, tuning.KU] not in searched
-    assert outcome.after[1, tuning.KU] in [round(share * searched[0]) for share in tuning.WEAKER]
+    assert outcome.after[1, KU] not in searched
+    assert outcome.after[1, KU] in [round(share * searched[0]) for share in WEAKER]
 
 
 def test_silent_potentiometers_get_the_noise_of_ordinary_ones(model: Model) -> None:
     bank = model.arm.follower_pots
     quiet = bank.model_copy(update={"joint": tuple(pot.model_copy(update={"noise": 0.0}) for pot in bank.joint)})
     loud = bank.model_copy(update={"joint": tuple(pot.model_copy(update={"noise": 0.01}) for pot in bank.joint)})
-    arm = with_noise(model.arm.model_copy(update={"follower_pots": quiet, "leader_pots": loud}))
-    assert [pot.noise for pot in arm.follower_pots.joint] == [NOISE_V] * 4
+    arm = with_usual_noise(model.arm.model_copy(update={"follower_pots": quiet, "leader_pots": loud}))
+    assert [pot.noise for pot in arm.follower_pots.joint] == [USUAL_NOISE_V] * 4
     assert [pot.noise for pot in arm.leader_pots.joint] == [0.01] * 4
 
 

@@ -50,7 +50,7 @@ def side_by_side(recorded: Recorded, outcome: Outcome) -> list[Figure]:
     logs = [prepare(log, 1) for log in (recorded.fit, recorded.second, recorded.changed)]
     first, second, changed = (Loop(log, values[n], white) for log, n in zip(logs, (0, 0, 1), strict=True))
     before = [float(loop.error(Space.of(white, (), ()).base[None]).sum()) for loop in (second, changed)]
-    budget = round(outcome.simulated / first.seconds)
+    budget = round(outcome.found.simulated / first.seconds)
 
     def better(plants: np.ndarray) -> list[float]:
         return [

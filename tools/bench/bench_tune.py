@@ -19,7 +19,7 @@ from greywhale.loop import plant_row
 from greywhale.measure import Evaluation, evaluate
 from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory
-from greywhale.tune.margins import Margins
+from greywhale.tune.judge.margins import Margins
 from tools.bench.figure import Figure
 from tools.bench.tuning import Judged, figures, motions
 from tools.setup.console import ROOT

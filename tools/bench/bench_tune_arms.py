@@ -21,8 +21,8 @@ from greywhale.loop.controllers import Controllers
 from greywhale.table import ParameterTable
 from greywhale.trajectory import human_reaches, multi_steps, steps
 from greywhale.trajectory.motion import Array
-from greywhale.tune.floor import saturation_floor
-from greywhale.tune.margins import Margin, Margins
+from greywhale.tune.judge.floor import saturation_floor
+from greywhale.tune.judge.margins import Margin, Margins
 from tools.bench.figure import Figure
 from tools.bench.recordings import random_arm
 from tools.bench.tuning import practised

@@ -17,7 +17,7 @@ from greywhale.trajectory import multi_steps, steps
 from greywhale.trajectory.motion import Array
 from greywhale.tune import Outcome, tune
 from greywhale.tune.model import load_model
-from greywhale.tune.tables import tables_of
+from greywhale.tune.report.tables import tables_of
 from tools.bench.figure import Figure
 from tools.setup.console import ROOT
 

@@ -20,7 +20,7 @@ from greywhale.measure import Evaluation
 from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory, human_reaches, multi_steps, steps
 from greywhale.trajectory.motion import Array
-from greywhale.tune.floor import saturation_floor
+from greywhale.tune.judge.floor import saturation_floor
 from tools.bench.figure import Figure
 from tools.bench.recordings import record
 

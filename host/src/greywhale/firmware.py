@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from greywhale.protocol.schema import Board, Sample
+from greywhale.protocol.schema import Board, LeadPointRequest, Sample
 
 JOINTS = 4
 # One tick, s: the firmware samples the potentiometers a thousand times a second.
@@ -11,6 +11,12 @@ TICK_S = 1e-3
 CONVERSIONS = 4
 # Of an angle in samples and limits, rad.
 ANGLE_LSB = Sample.LSB["leader"]
+# While the host leads: a point of the reference every so many ticks, each at most one longest step from the last.
+POINT_TICKS = 16
+POINT_S = POINT_TICKS * TICK_S
+STEP_LSB = LeadPointRequest.LSB["step"]  # rad
+LONGEST_STEP = 127  # in STEP_LSB
+FASTEST_LED_RAD_S = LONGEST_STEP * STEP_LSB / POINT_S
 # Duty steps from 0 to full of each joint's motor. A Nano's last two motors are on an 8-bit timer.
 PWM_STEPS = {Board.MEGA2560: (400, 400, 400, 400), Board.NANO328: (400, 400, 255, 255)}
 

@@ -231,3 +231,13 @@ def _native_link(link: Link) -> _native.Link:
     return _native.Link(
         mass=link.mass, length=link.length, centre=link.centre, ixx=inertia.xx, iyy=inertia.yy, izz=inertia.zz
     )
+
+
+def with_usual_noise(arm: ArmParameters) -> ArmParameters:
+    """The same arm with the noise of a usual potentiometer on every one that has none."""
+    banks = {}
+    for name in ("leader_pots", "follower_pots"):
+        bank = getattr(arm, name)
+        pots = tuple(pot if pot.noise > 0.0 else pot.model_copy(update={"noise": USUAL_NOISE_V}) for pot in bank.joint)
+        banks[name] = bank.model_copy(update={"joint": pots})
+    return arm.model_copy(update=banks)

@@ -15,25 +15,19 @@ from greywhale.board.device import Device
 from greywhale.board.refusal import RefusedError
 from greywhale.board.stream import why_stopped
 from greywhale.errors import UserError
-from greywhale.firmware import JOINTS
+from greywhale.firmware import ANGLE_LSB, FASTEST_LED_RAD_S, JOINTS, LONGEST_STEP, POINT_S, POINT_TICKS, STEP_LSB
 from greywhale.protocol import schema
 from greywhale.trajectory.generate import minimum_jerk
 from greywhale.trajectory.motion import Trajectory
 
 Floats = npt.NDArray[np.float64]
 
-POINT_TICKS = 16
-POINT_S = POINT_TICKS / 1000
-STEP_RAD = schema.LeadPointRequest.LSB["step"]
-LONGEST_STEP = 127
-FASTEST_RAD_S = LONGEST_STEP * STEP_RAD / POINT_S
 # Points that the board can keep.
 ROOM = 12
 # More at once would crowd samples out of the board's transmitter.
 _AT_ONCE = 2
 # No answer for so many ticks: what was sent since the last one is sent again.
 _PATIENCE_TICKS = 100
-_RAD = schema.Sample.LSB["leader"]
 # An answer that takes nothing new tells of a gap; but those to points sent before it was mended say the same.
 _RETRY_TICKS = 32
 # From the arm's pose to a motion's first one, at the most (rad/s).
@@ -57,11 +51,11 @@ class Plan:
         """From `start` (rad) at rest to the motion's first pose, the motion, and `rest_s` at its last pose; all within
         the joints' `limits` (2, 4), to which the board holds a leader arm as well.
         """
-        low, high = limits[0] + STEP_RAD, limits[1] - STEP_RAD  # points are rounded to steps
+        low, high = limits[0] + STEP_LSB, limits[1] - STEP_LSB  # points are rounded to steps
         first = np.clip(motion.angles[0], low, high)
         way = float(np.abs(first - start).max())
         # A minimum-jerk path is 1.875 times as fast in its middle as on average.
-        approach = int(np.ceil(1.875 * way / _APPROACH_RAD_S / POINT_S)) if way > STEP_RAD else 0
+        approach = int(np.ceil(1.875 * way / _APPROACH_RAD_S / POINT_S)) if way > STEP_LSB else 0
         share = minimum_jerk(np.arange(1, approach + 1) / max(approach, 1))
         times = np.arange(0.0, motion.duration_s + POINT_S, POINT_S)
         parts = [
@@ -72,10 +66,10 @@ class Plan:
         plan = cls(np.clip(np.vstack(parts), low, high))
         speed = np.abs(np.diff(plan.angles, axis=0)).max(axis=0) / POINT_S
         joint = int(speed.argmax())
-        if speed[joint] > FASTEST_RAD_S:
+        if speed[joint] > FASTEST_LED_RAD_S:
             raise UserError(
                 f"the motion moves joint {joint} at {speed[joint]:.3g} rad/s, but a board can be led at "
-                f"{FASTEST_RAD_S:.3g} rad/s at most; give it more time."
+                f"{FASTEST_LED_RAD_S:.3g} rad/s at most; give it more time."
             )
         return plan
 
@@ -100,7 +94,7 @@ class Leading:
         self._plan = plan
         self._limit = tracking_limit or float("inf")
         self._first = begun.next
-        self._origin = np.array(begun.reference) * _RAD
+        self._origin = np.array(begun.reference) * ANGLE_LSB
         self._told = np.zeros(JOINTS, dtype=np.int64)  # steps from the origin, of all points made
         self._points: list[tuple[int, int, int, int]] = []
         self._sent = self._taken = 0  # points; self._points[self._taken:] are not known to have arrived
@@ -173,7 +167,7 @@ class Leading:
 
     def _watch(self, sample: schema.Sample) -> None:
         """Let the pace fall when a follower is far from the reference."""
-        far = max(abs(a - b) for a, b in zip(sample.leader, sample.follower, strict=True)) * _RAD / self._limit
+        far = max(abs(a - b) for a, b in zip(sample.leader, sample.follower, strict=True)) * ANGLE_LSB / self._limit
         self._wanted = min(1.0, max(0.0, (_STOPS - far) / (_STOPS - _SLOWS)))
 
     def _make(self, count: int) -> bool:
@@ -191,7 +185,7 @@ class Leading:
                     f"{self._device.port}: the arm cannot follow this motion: it would take more than {_PATIENCE:g} "
                     "times its length; check that every joint moves freely, or lower its range."
                 )
-            target = np.round((self._plan.at(self._place) - self._origin) / STEP_RAD).astype(np.int64)
+            target = np.round((self._plan.at(self._place) - self._origin) / STEP_LSB).astype(np.int64)
             step = np.clip(target - self._told, -LONGEST_STEP, LONGEST_STEP)
             self._told += step
             self._points.append((int(step[0]), int(step[1]), int(step[2]), int(step[3])))

@@ -15,9 +15,10 @@ from greywhale.formats.whole import refuse_inputs, temporary_beside
 from greywhale.loop import controller_row
 from greywhale.tune import METHODS, STRATEGIES, check_request, tune
 from greywhale.tune.model import SAMPLES, load_model
-from greywhale.tune.space import GAINS, SETS
-from greywhale.tune.summary import summary
-from greywhale.tune.tables import tables_of
+from greywhale.tune.report.controller_file import save
+from greywhale.tune.report.summary import summary
+from greywhale.tune.report.tables import tables_of
+from greywhale.tune.search.space import GAINS, SETS
 
 NAMES = {name.lower(): name for name in (*SETS, *GAINS)}
 EXISTING = click.Path(path_type=Path)
@@ -112,7 +113,7 @@ def command(
             resume=resume,
             report=report,
         )
-    outcome.save(out)
+    save(outcome, out)
     if not outcome.complete:
         interrupted = KeyboardInterrupt()
         interrupted.add_note(
@@ -123,7 +124,7 @@ def command(
     files = [out]
     if pictures is not None:
         # Matplotlib takes a second to import.
-        from greywhale.tune.pictures import draw
+        from greywhale.tune.report.pictures import draw
 
         files += draw(outcome, pictures)
     layouts = tables_of(outcome, paper=True) if tables else ()

@@ -52,6 +52,7 @@ def learn(
     from greywhale.identify import identify
     from greywhale.tune import tune
     from greywhale.tune.model import load_model
+    from greywhale.tune.report.controller_file import save
 
     model_file, controller_file = folder / "model.toml", folder / "controller.toml"
     started = time.monotonic()
@@ -63,7 +64,7 @@ def learn(
     # The model's doubts are for the caller to show: a demo that stops at one would show nothing.
     model = load_model(model_file, seed=seed, force=True)
     tuning = tune(model, budget=budget, seed=seed, report=progress, floors=False)
-    tuning.save(controller_file)
+    save(tuning, controller_file)
     if not tuning.complete:
         raise KeyboardInterrupt
     tuned = time.monotonic()
@@ -73,7 +74,7 @@ def learn(
 def draw(learnt: Learnt, folder: Path) -> tuple[Path, ...]:
     """Draw the fuzzy sets before and after tuning, and how the costs fell; the paths."""
     # Matplotlib takes a second to import.
-    from greywhale.tune.pictures import draw_convergence, draw_sets
+    from greywhale.tune.report.pictures import draw_convergence, draw_sets
 
     tuning = learnt.tuning
     curves = [(np.array(one.evaluations), np.array(one.cost)) for one in tuning.curves]

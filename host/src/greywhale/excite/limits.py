@@ -9,10 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from greywhale.arm import ArmParameters
-from greywhale.board.lead import FASTEST_RAD_S
 from greywhale.errors import BAD_USAGE, UserError
 from greywhale.excite.body import Body
-from greywhale.firmware import JOINTS
+from greywhale.firmware import FASTEST_LED_RAD_S, JOINTS
 from greywhale.identify import sampled_plants
 from greywhale.identify.space import MOTOR, Space
 from greywhale.loop import plant_row
@@ -27,7 +26,7 @@ MARGIN_RAD = 0.1
 NARROWEST_RAD = 0.2
 # Of the voltage there is, what speed may take and what acceleration may take.
 SPEED_SHARE, ACCELERATION_SHARE = 0.5, 0.5
-FASTEST = min(4.0, FASTEST_RAD_S / 1.5)
+FASTEST = min(4.0, FASTEST_LED_RAD_S / 1.5)
 # Of the board's tracking limit, what the follower may lag in simulation; from half of it on the player slows down.
 LAG_SHARE = 0.4
 USUAL_TRACKING_RAD = 0.9

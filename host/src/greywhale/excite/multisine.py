@@ -14,9 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from greywhale.board.lead import POINT_S
 from greywhale.excite.limits import Limits
-from greywhale.firmware import JOINTS
+from greywhale.firmware import JOINTS, POINT_S
 from greywhale.trajectory import Trajectory
 from greywhale.trajectory.generate import minimum_jerk
 

@@ -4,8 +4,9 @@
 >>> outcome.save("model.toml")
 """
 
+from greywhale.identify.found import ParameterEstimate
 from greywhale.identify.identification import METHODS, identify
-from greywhale.identify.outcome import Outcome, ParameterEstimate
+from greywhale.identify.outcome import Outcome
 from greywhale.identify.samples import sampled_plants
 
 __all__ = ["METHODS", "Outcome", "ParameterEstimate", "identify", "sampled_plants"]

@@ -13,27 +13,11 @@ from greywhale.arm import ArmParameters
 from greywhale.arm.from_plant import arm_of
 from greywhale.files.model import to_toml
 from greywhale.formats.whole import write_text
+from greywhale.identify.found import Found, ParameterEstimate
 from greywhale.identify.judge import FIT, Subject, Verdict
 from greywhale.identify.noise import pot_noise
 
 Floats = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class ParameterEstimate:
-    """One identified number; `deviation` is its standard deviation, None where the method knows none."""
-
-    name: str
-    means: str
-    unit: str
-    white_box: float
-    value: float
-    deviation: float | None
-
-    def as_dict(self) -> dict[str, Any]:
-        facts = {"name": self.name, "means": self.means, "unit": self.unit}
-        numbers = {"white_box": self.white_box, "value": self.value}
-        return facts | numbers | ({} if self.deviation is None else {"standard_deviation": self.deviation})
 
 
 @dataclass(frozen=True)
@@ -43,21 +27,30 @@ class Outcome:
     white_box: ArmParameters
     method: str
     seed: int
-    plant: Floats = field(repr=False)
-    zero: Floats = field(repr=False)
-    order: str
-    orders: tuple[tuple[str, float], ...]
-    estimates: tuple[ParameterEstimate, ...]
-    covariance: Floats | None = field(repr=False)  # of the searched numbers, in the order of the estimates
-    condition: float | None
-    open: tuple[str, ...]
+    found: Found
     verdicts: tuple[Verdict, ...]
     warnings: tuple[str, ...]
     subjects: tuple[Subject, ...] = field(repr=False)
-    simulations: int
-    simulated: float  # s, of arms, in windows and closed loops together
-    complete: bool
-    curve: tuple[float, ...]
+
+    @property
+    def plant(self) -> Floats:
+        """(60,)"""
+        return self.found.plant
+
+    @property
+    def zero(self) -> Floats:
+        """(4,) rad, where the follower's potentiometers read 0."""
+        return self.found.zero
+
+    @property
+    def estimates(self) -> tuple[ParameterEstimate, ...]:
+        """The searched numbers in physical units."""
+        return self.found.estimates
+
+    @property
+    def complete(self) -> bool:
+        """Whether nobody interrupted the search."""
+        return self.found.complete
 
     @property
     def arm(self) -> ArmParameters:
@@ -87,25 +80,25 @@ class Outcome:
             "method": self.method,
             "seed": self.seed,
             "white_box": self.white_box.name,
-            "simulations": self.simulations,
-            "simulated_s": self.simulated,
-            "order": self.order,
+            "simulations": self.found.simulations,
+            "simulated_s": self.found.simulated,
+            "order": self.found.order,
         }
-        if self.condition is not None:
-            facts["fisher_condition"] = self.condition
-        if self.covariance is not None:
-            facts["covariance"] = self.covariance.tolist()
+        if self.found.condition is not None:
+            facts["fisher_condition"] = self.found.condition
+        if self.found.covariance is not None:
+            facts["covariance"] = self.found.covariance.tolist()
         table = next((one.table for one in self.subjects if one.role == FIT and one.table is not None), None)
         if table is not None:
             facts["parameters"] = table.changed()
         board = next((one.log.log.origin.board for one in self.subjects if one.role == FIT), None)
         if board is not None:
             facts["board"] = board
-        facts["not_identified"] = list(self.open)
+        facts["not_identified"] = list(self.found.open)
         facts["warnings"] = list(self.warnings)
         facts["log"] = [self._log(*pair) for pair in zip(self.subjects, self.verdicts, strict=True)]
-        if self.orders:
-            facts["orders_tried"] = [{"order": order, "held_out_error": error} for order, error in self.orders]
+        if self.found.orders:
+            facts["orders_tried"] = [{"order": order, "held_out_error": error} for order, error in self.found.orders]
         facts["parameter"] = [one.as_dict() for one in self.estimates]
         return facts
 
@@ -120,24 +113,24 @@ class Outcome:
         return facts | {key: value for key, value in verdict.as_dict().items() if key not in ("log", "role")}
 
     def as_dict(self) -> dict[str, Any]:
-        return self.identification() | {"convergence": list(self.curve)}
+        return self.identification() | {"convergence": list(self.found.curve)}
 
     def text(self) -> str:
         """For people: the layout of the paper's Table 5, then what is known and what is not."""
         lines = [] if self.complete else ["UNFINISHED: interrupted; this is the best model so far.", ""]
         for verdict in self.verdicts:
             lines += _table(verdict)
-        if self.condition is not None:
-            lines.append(f"Model order: up to {self.order} (by held-out data).")
-            lines.append(f"Condition number of the Fisher information: {self.condition:.2g}.")
+        if self.found.condition is not None:
+            lines.append(f"Model order: up to {self.found.order} (by held-out data).")
+            lines.append(f"Condition number of the Fisher information: {self.found.condition:.2g}.")
             lines += ["", f"{'parameter':18} {'white box':>11} {'model':>11} {'std':>9}  unit"]
             for one in self.estimates:
                 deviation = "" if one.deviation is None else f"{one.deviation:.2g}"
                 lines.append(
                     f"{one.name:18} {one.white_box:>11.4g} {one.value:>11.4g} {deviation:>9}  {one.unit}".rstrip()
                 )
-        if self.open:
-            lines += ["", "Not identified by these logs:", *(f"- {sentence}" for sentence in self.open)]
+        if self.found.open:
+            lines += ["", "Not identified by these logs:", *(f"- {sentence}" for sentence in self.found.open)]
         if self.warnings:
             lines += ["", "Warnings:", *(f"- {sentence}" for sentence in self.warnings)]
         return "\n".join(lines)

@@ -7,7 +7,7 @@ inside the same controller it is.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -17,11 +17,11 @@ from greywhale.arm import ArmParameters
 from greywhale.arm.plants import column
 from greywhale.firmware import JOINTS
 from greywhale.identify.closed_loop import Loop
+from greywhale.identify.found import Found, ParameterEstimate, Report, Task
 from greywhale.loop import plant_row
 from greywhale.optimise import create
 
 Floats = NDArray[np.float64]
-Report = Callable[[str, float], None]
 
 AGENTS = 10
 ITERATIONS = 50
@@ -79,3 +79,36 @@ class PaperSearch:
             for name in ("coulomb", "breakaway", "half_gap", "stiffness", "mesh_damping", "drag"):
                 rows[:, column(name, joint)] = 0.0
         return rows
+
+
+def find_as_paper(task: Task, method: str) -> Found:
+    """Search; an interrupt after the first pack ends it early, before that it goes on up."""
+    loops = task.required_loops()
+    search = PaperSearch(task.white_box, loops, task.seed, task.report, method)
+    try:
+        search.run()
+    except KeyboardInterrupt:
+        if search.x is None:
+            raise
+    assert search.x is not None
+    return Found(
+        plant=search.plants(search.x[None])[0],
+        zero=np.zeros(JOINTS),
+        joints=tuple(range(JOINTS)),
+        order="motors",
+        estimates=tuple(_estimates(task.white_box, search.x)),
+        open=("two of the five motor values of every joint: motion shows three combinations of them only",),
+        simulations=search.simulations,
+        simulated=search.simulations * sum(loop.seconds for loop in loops),
+        complete=search.complete,
+        curve=tuple(search.curve),
+    )
+
+
+def _estimates(white_box: ArmParameters, x: Floats) -> Iterator[ParameterEstimate]:
+    """The 20 values of Table 4 before and after."""
+    for joint in range(JOINTS):
+        before = white_box.joint[joint].motor.model_dump()
+        for n, name in enumerate(VALUES):
+            value = float(x[len(VALUES) * joint + n])
+            yield ParameterEstimate(f"joint{joint}.{name}", "motor value of Table 4", "", before[name], value, None)

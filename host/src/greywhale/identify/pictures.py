@@ -29,7 +29,7 @@ def draw(outcome: Outcome, folder: Path) -> list[Path]:
     except OSError as error:
         raise UserError(f"{folder}: cannot be made: {because(error)}.") from None
     written = []
-    if outcome.curve:
+    if outcome.found.curve:
         written.append(_save(_convergence(outcome), folder / "convergence.png"))
     for number, (subject, verdict) in enumerate(zip(outcome.subjects, outcome.verdicts, strict=True), 1):
         if subject.table is not None:
@@ -39,7 +39,7 @@ def draw(outcome: Outcome, folder: Path) -> list[Path]:
 
 def _convergence(outcome: Outcome) -> Figure:
     figure, axes = plt.subplots(figsize=(7.0, 4.0))
-    axes.semilogy(np.arange(1, len(outcome.curve) + 1), outcome.curve, color=_MODEL)
+    axes.semilogy(np.arange(1, len(outcome.found.curve) + 1), outcome.found.curve, color=_MODEL)
     axes.set_xlabel("iteration")
     axes.set_ylabel("best mean squared error [rad²]")
     axes.set_title(f"Convergence of the identification, method {outcome.method}")

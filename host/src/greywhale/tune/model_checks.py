@@ -23,7 +23,7 @@ from greywhale.protocol import schema
 from greywhale.protocol.schema import Board
 from greywhale.table import ParameterTable, board_named, refuse_unknown
 from greywhale.trajectory import human_reaches
-from greywhale.tune.training import moves, reach, within
+from greywhale.tune.search.training import moves, reach, within
 
 Floats = NDArray[np.float64]
 

@@ -3,23 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from greywhale.measure import Evaluation
 from greywhale.table import ParameterTable
-from greywhale.trajectory import Trajectory
-from greywhale.tune.floor import Floor
-from greywhale.tune.margins import Margin
-from greywhale.tune.search import Found
+from greywhale.tune.judge.held_out import HeldOut
+from greywhale.tune.judge.margins import Margin
+from greywhale.tune.model import Model
+from greywhale.tune.search.lockstep import Found
 
-if TYPE_CHECKING:
-    from greywhale.tune.model import Model
-
-Floats = npt.NDArray[np.float64]
 Controllers = npt.NDArray[np.int32]
 
 
@@ -35,47 +29,6 @@ def curves_of(found: Found) -> tuple[Curve, ...]:
     """One a joint, from the search's books."""
     at = tuple(evaluations for evaluations, _ in found.curve)
     return tuple(Curve(at, tuple(costs[joint] for _, costs in found.curve)) for joint in range(len(found.cost)))
-
-
-@dataclass(frozen=True)
-class HeldOut:
-    """One motion that nothing was tuned on, in the bench's own arithmetic, on the estimated plant, with sensor noise.
-
-    `floor` is what any controller could reach at that supply, None where it was not computed.
-    """
-
-    name: str
-    motion: Trajectory = field(repr=False)
-    before: Evaluation
-    after: Evaluation
-    floor: Floor | None
-    time_s: Floats = field(repr=False)  # (rows,) from the moment the motors go on
-    leader: Floats = field(repr=False)  # (rows, 4) rad
-    angles_before: Floats = field(repr=False)  # (rows, 4) rad
-    angles_after: Floats = field(repr=False)  # (rows, 4) rad
-
-    @property
-    def mse_before(self) -> Floats:
-        return np.array([joint.mse for joint in self.before.joints])
-
-    @property
-    def mse_after(self) -> Floats:
-        return np.array([joint.mse for joint in self.after.joints])
-
-    @property
-    def multiples(self) -> tuple[float | None, ...]:
-        """The error after tuning as a multiple of the floor, of each joint and all; None where it means nothing."""
-        return (None,) * (len(self.mse_after) + 1) if self.floor is None else self.floor.multiple(self.mse_after)
-
-    def as_dict(self) -> dict[str, Any]:
-        return {
-            "motion": self.name,
-            "floor_mse_rad2": None if self.floor is None else self.floor.mse.tolist(),
-            "floor_bound_mse_rad2": None if self.floor is None else self.floor.bound.tolist(),
-            "after_as_multiple_of_floor": list(self.multiples),
-            "before": self.before.as_dict(),
-            "after": self.after.as_dict(),
-        }
 
 
 @dataclass(frozen=True)
@@ -118,12 +71,6 @@ class Outcome:
     def steady(self) -> bool:
         """Whether every joint comes to rest in every scenario."""
         return all(margin.holds for margin in self.margins)
-
-    def save(self, path: str | Path) -> None:
-        """Write controller.toml."""
-        from greywhale.tune.controller_file import save
-
-        save(self, path)
 
     def as_dict(self) -> dict[str, Any]:
         """For JSON; numbers of the controllers raw, as in the parameter table."""

@@ -19,8 +19,7 @@ began by any other measure; `default` is what to use.
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -29,16 +28,13 @@ from greywhale.arm.plants import column
 from greywhale.firmware import JOINTS
 from greywhale.loop import Experiment
 from greywhale.trajectory import Trajectory, steps
-from greywhale.tune.held_out import judge_held_out
-from greywhale.tune.journal import Journal
-from greywhale.tune.margins import Margins
-from greywhale.tune.outcome import Outcome, curves_of
-from greywhale.tune.progress import Report
-from greywhale.tune.search import Found, lockstep
-from greywhale.tune.space import Space
-
-if TYPE_CHECKING:
-    from greywhale.tune.model import Model
+from greywhale.tune.judge.held_out import judge_held_out
+from greywhale.tune.judge.margins import Margins
+from greywhale.tune.method import Costs, Judged, Task
+from greywhale.tune.model import Model
+from greywhale.tune.search.journal import Journal
+from greywhale.tune.search.lockstep import Found, lockstep
+from greywhale.tune.search.space import Space
 
 Floats = npt.NDArray[np.float64]
 Controllers = npt.NDArray[np.int32]
@@ -87,72 +83,52 @@ class Loops:
         return costs
 
 
-def tune_as_paper(
-    model: Model,
-    strategy: str,
-    budget: int | None,
-    seed: int,
-    threads: int,
-    before: Controllers,
-    journal: Path | None,
-    resume: bool,
-    report: Report,
-    floors: bool,
-) -> Outcome:
-    """See the head of this file; the arguments are those of `tune`."""
-    spent = BUDGET if budget is None else budget
-    loops = Loops(model, strategy, before, threads)
-    found = Found.nothing(before)
-    request = {
-        "model": model.name,
-        "model_digest": model.digest,
-        "parameters": list(loops.table.raw),
-        "strategy": strategy,
-        "method": "paper",
-        "budget": spent,
-        "seed": seed,
-        "before": before.tolist(),
-    }
+class PaperMethod:
+    """See the head of this file."""
 
-    def tick(now: Found) -> None:
-        report("tuning", min(1.0, now.evaluations / spent), note=f"J {now.total:.2f}")
+    def __init__(self, task: Task) -> None:
+        self.task = task
+        self.loops = Loops(task.model, task.strategy, task.before, task.threads)
+        self.table = self.loops.table
+        self.found = Found.nothing(task.before)
 
-    complete = True
-    with Journal(journal, request, resume) as book:
-        try:
-            lockstep(
-                Space.paper(strategy, before), loops.costs, found, book, stage="paper", method=METHOD, budget=spent,
-                seed=(seed,), starts=np.empty((0, JOINTS, before.shape[1]), dtype=np.int32), tick=tick, pack=AGENTS,
-            )  # fmt: skip
-        except KeyboardInterrupt:
-            if not found.evaluations:
-                raise
-            complete = False
-    report("judging", 0.0)
-    margins = Margins(model.arm, loops.table, loops.plant[None], threads=threads)
-    margins_before, margins_after = margins.check(before), margins.check(found.best)
-    report("judging", 0.5)
-    held_out = judge_held_out(model.arm, loops.table, loops.plant, before, found.best, threads, floors)
-    report("judging", 1.0)
-    return Outcome(
-        model=model,
-        table=loops.table,
-        strategy=strategy,
-        method="paper",
-        seed=seed,
-        budget=spent,
-        evaluations=found.evaluations,
-        complete=complete,
-        before=before,
-        after=found.best.copy(),
-        cost_before=tuple(map(float, loops.costs(before[None])[0])),
-        cost_after=tuple(map(float, found.cost)),
-        curves=curves_of(found),
-        margins_before=margins_before,
-        margins=margins_after,
-        held_out=held_out,
-        notes=_notes(found, strategy, loops),
-    )
+    def request(self) -> dict[str, Any]:
+        return {"parameters": list(self.table.raw), "board": self.table.board.key}
+
+    def search(self, journal: Journal) -> None:
+        """GWO-WOA for every joint on its own."""
+        task = self.task
+
+        def tick(now: Found) -> None:
+            task.report("tuning", min(1.0, now.evaluations / task.budget), note=f"J {now.total:.2f}")
+
+        lockstep(
+            Space.paper(task.strategy, task.before), self.loops.costs, self.found, journal, stage="paper",
+            method=METHOD, budget=task.budget, seed=(task.seed,),
+            starts=np.empty((0, JOINTS, task.before.shape[1]), dtype=np.int32), tick=tick, pack=AGENTS,
+        )  # fmt: skip
+
+    def cost_before(self) -> Costs:
+        return tuple(map(float, self.loops.costs(self.task.before[None])[0]))
+
+    def judge(self) -> Judged:
+        task, table, plant = self.task, self.table, self.loops.plant
+        best = self.found.best
+        task.report("judging", 0.0)
+        margins = Margins(task.model.arm, table, plant[None], threads=task.threads)
+        margins_before, margins_after = margins.check(task.before), margins.check(best)
+        task.report("judging", 0.5)
+        held_out = judge_held_out(task.model.arm, table, plant, task.before, best, task.threads, task.floors)
+        task.report("judging", 1.0)
+        return Judged(
+            after=best.copy(),
+            cost_before=self.cost_before(),
+            cost_after=tuple(map(float, self.found.cost)),
+            notes=_notes(self.found, task.strategy, self.loops),
+            margins_before=margins_before,
+            margins=margins_after,
+            held_out=held_out,
+        )
 
 
 def alone(motion: Trajectory, joint: int) -> Trajectory:

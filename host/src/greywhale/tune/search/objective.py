@@ -20,7 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from greywhale.loop import Result
-from greywhale.tune.training import Drill
+from greywhale.tune.search.training import Drill
 
 Floats = npt.NDArray[np.float64]
 Controllers = npt.NDArray[np.int32]

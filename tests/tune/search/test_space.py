@@ -11,7 +11,7 @@ from greywhale.errors import UserError
 from greywhale.fuzzy.settings import LEAST_WIDTH, SET_UNIT, JointSettings
 from greywhale.loop import CONTROLLER_COLUMNS, default_controller
 from greywhale.protocol.schema import Refusal
-from greywhale.tune.space import GAINS, SETS, STRATEGIES, Space, check_bounds, check_strategy
+from greywhale.tune.search.space import GAINS, SETS, STRATEGIES, Space, check_bounds, check_strategy
 
 BEFORE = default_controller()
 

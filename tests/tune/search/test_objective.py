@@ -11,8 +11,8 @@ from greywhale.files.arm import default_arm
 from greywhale.loop import default_controller, plant_row
 from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory
-from greywhale.tune.objective import EFFORT, RMS, Objective, combined, crossed
-from greywhale.tune.training import LEVELS, SOON_S, drills, moves, reach, since_moving
+from greywhale.tune.search.objective import EFFORT, RMS, Objective, combined, crossed
+from greywhale.tune.search.training import LEVELS, SOON_S, drills, moves, reach, since_moving
 
 ARM = default_arm()
 PLANTS = plant_row(ARM)[None]

@@ -10,11 +10,11 @@ import pytest
 
 from greywhale.loop import default_controller
 from greywhale.optimise import Optimiser, create
-from greywhale.tune import search
-from greywhale.tune.journal import Journal
-from greywhale.tune.judgement import choose
-from greywhale.tune.search import KEPT, TOGETHER, TURNS, Found, first, lockstep
-from greywhale.tune.space import Space
+from greywhale.tune.judge.choose import choose
+from greywhale.tune.search import lockstep as search
+from greywhale.tune.search.journal import Journal
+from greywhale.tune.search.lockstep import KEPT, TOGETHER, TURNS, Found, first, lockstep
+from greywhale.tune.search.space import Space
 
 BEFORE = default_controller()
 SPACE = Space.default("both", BEFORE, 15_000, 1)

@@ -11,9 +11,10 @@ from typing import Any
 
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.files import controller
-from greywhale.tune.margins import Margin
-from greywhale.tune.outcome import HeldOut, Outcome
-from greywhale.tune.summary import failing_margins
+from greywhale.tune.judge.held_out import HeldOut
+from greywhale.tune.judge.margins import Margin
+from greywhale.tune.outcome import Outcome
+from greywhale.tune.report.summary import failing_margins
 
 DIGITS = 4  # significant ones of what is expected
 

@@ -15,8 +15,8 @@ import numpy.typing as npt
 
 from greywhale.firmware import JOINTS
 from greywhale.optimise import Optimiser, create
-from greywhale.tune.journal import Journal
-from greywhale.tune.space import Space
+from greywhale.tune.search.journal import Journal
+from greywhale.tune.search.space import Space
 
 Floats = npt.NDArray[np.float64]
 Controllers = npt.NDArray[np.int32]

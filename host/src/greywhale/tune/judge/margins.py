@@ -26,8 +26,8 @@ from greywhale.protocol.schema import Board
 from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory
 from greywhale.trajectory.generate import minimum_jerk
-from greywhale.tune.objective import crossed
-from greywhale.tune.training import EDGE_S, RATE_HZ, centre, reach
+from greywhale.tune.search.objective import crossed
+from greywhale.tune.search.training import EDGE_S, RATE_HZ, centre, reach
 
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int32]

@@ -5,6 +5,9 @@ The measures run from the moment the motors go on, as a log's do: WAIT_S of soft
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
+from typing import Any
+
 import numpy as np
 import numpy.typing as npt
 
@@ -15,9 +18,8 @@ from greywhale.loop import Experiment
 from greywhale.measure import Evaluation, evaluate
 from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory, human_reaches, multi_steps, steps
-from greywhale.tune.floor import saturation_floor
-from greywhale.tune.outcome import HeldOut
-from greywhale.tune.training import reach, within
+from greywhale.tune.judge.floor import Floor, saturation_floor
+from greywhale.tune.search.training import reach, within
 
 Floats = npt.NDArray[np.float64]
 Controllers = npt.NDArray[np.int32]
@@ -25,6 +27,47 @@ Controllers = npt.NDArray[np.int32]
 WAIT_S = 1.5
 SEED = 2001  # of reaches that nobody plays elsewhere
 EVERY = 2  # ticks between the rows of the traces
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """One motion that nothing was tuned on, in the bench's own arithmetic, on the estimated plant, with sensor noise.
+
+    `floor` is what any controller could reach at that supply, None where it was not computed.
+    """
+
+    name: str
+    motion: Trajectory = field(repr=False)
+    before: Evaluation
+    after: Evaluation
+    floor: Floor | None
+    time_s: Floats = field(repr=False)  # (rows,) from the moment the motors go on
+    leader: Floats = field(repr=False)  # (rows, 4) rad
+    angles_before: Floats = field(repr=False)  # (rows, 4) rad
+    angles_after: Floats = field(repr=False)  # (rows, 4) rad
+
+    @property
+    def mse_before(self) -> Floats:
+        return np.array([joint.mse for joint in self.before.joints])
+
+    @property
+    def mse_after(self) -> Floats:
+        return np.array([joint.mse for joint in self.after.joints])
+
+    @property
+    def multiples(self) -> tuple[float | None, ...]:
+        """The error after tuning as a multiple of the floor, of each joint and all; None where it means nothing."""
+        return (None,) * (len(self.mse_after) + 1) if self.floor is None else self.floor.multiple(self.mse_after)
+
+    def as_dict(self) -> dict[str, Any]:
+        return {
+            "motion": self.name,
+            "floor_mse_rad2": None if self.floor is None else self.floor.mse.tolist(),
+            "floor_bound_mse_rad2": None if self.floor is None else self.floor.bound.tolist(),
+            "after_as_multiple_of_floor": list(self.multiples),
+            "before": self.before.as_dict(),
+            "after": self.after.as_dict(),
+        }
 
 
 def motions(low: Floats, high: Floats) -> dict[str, Trajectory]:

@@ -11,7 +11,16 @@ from greywhale.files import controller
 from greywhale.files.arm import default_arm
 from greywhale.loop import controller_row, default_controller, plant_row
 from greywhale.table import ParameterTable
-from greywhale.tune.margins import DELAY, SCENARIOS, TEETH, Margins, loosest, penalty, with_gain, with_softer_teeth
+from greywhale.tune.judge.margins import (
+    DELAY,
+    SCENARIOS,
+    TEETH,
+    Margins,
+    loosest,
+    penalty,
+    with_gain,
+    with_softer_teeth,
+)
 from tools.setup.console import ROOT
 
 ARM = default_arm()

@@ -10,8 +10,8 @@ import numpy as np
 from greywhale.files import controller
 from greywhale.loop import controller_row
 from greywhale.table import ParameterTable
-from greywhale.tune.controller_file import provenance, save
 from greywhale.tune.outcome import Outcome
+from greywhale.tune.report.controller_file import provenance, save
 
 
 def test_it_is_a_controller_file_with_the_very_numbers(outcome: Outcome, tmp_path: Path) -> None:

@@ -13,7 +13,7 @@ from greywhale.errors import UserError
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.loop import PLANT_COLUMNS, Experiment, leader_slices, plant_row
 from greywhale.trajectory import Trajectory, human_reaches, multi_steps, steps
-from greywhale.tune.floor import Floats, saturation_floor
+from greywhale.tune.judge.floor import Floats, saturation_floor
 
 TORQUE, INERTIA, SUPPLY = 0.5, 0.05, 10.0
 FASTEST = TORQUE * SUPPLY / INERTIA  # rad/s^2

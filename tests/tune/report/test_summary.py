@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from greywhale.tune.outcome import Outcome
-from greywhale.tune.summary import summary
+from greywhale.tune.report.summary import summary
 from tests.tune.models import evaluation
 
 

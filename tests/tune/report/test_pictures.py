@@ -19,9 +19,9 @@ from greywhale.files.controller import load
 from greywhale.files.paper_tables import paper_table
 from greywhale.loop import controller_row
 from greywhale.trajectory import multi_steps
-from greywhale.tune import pictures
 from greywhale.tune.outcome import Outcome
-from greywhale.tune.pictures import Controllers, Floats, Response
+from greywhale.tune.report import pictures
+from greywhale.tune.report.pictures import Controllers, Floats, Response
 
 
 def controllers(name: str) -> Controllers:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from greywhale.arm.parameters import JOINT_NAMES
-from greywhale.tune.margins import GAINS, Margin
-from greywhale.tune.outcome import HeldOut, Outcome
+from greywhale.tune.judge.held_out import HeldOut
+from greywhale.tune.judge.margins import GAINS, Margin
+from greywhale.tune.outcome import Outcome
 
 # A joint's error counts as worse than before from this ratio on; below it is noise.
 WORSE = 1.02

@@ -11,7 +11,7 @@ import pytest
 
 from greywhale.errors import UserError
 from greywhale.loop import default_controller
-from greywhale.tune.journal import Journal
+from greywhale.tune.search.journal import Journal
 
 ROWS = np.repeat(default_controller()[None], 2, axis=0)
 COSTS = np.array([[0.1, 1 / 3, 1e9, 2.0], [5e-324, 0.2, 0.3, 1e300]])

@@ -1,0 +1,59 @@
+"""The default method: windows of the logs, then the closed loop, with as much structure as held-out data admit."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from greywhale.identify.data import FINE_STEP_S
+from greywhale.identify.found import Found, ParameterEstimate, Task
+from greywhale.identify.search import Search
+from greywhale.identify.space import KINDS, Space
+from greywhale.identify.uncertainty import uncertainty
+from greywhale.identify.windows import WindowResidual
+
+Floats = NDArray[np.float64]
+
+
+def find_default(task: Task) -> Found:
+    """Search; an interrupt after the first model ends it early, before that it goes on up."""
+    arm, joints = task.white_box, task.moving
+    prepared = [subject.log for subject in task.fitted]
+    search = Search(arm, prepared, task.loops(), joints, task.seed, task.report)
+    try:
+        search.run()
+    except KeyboardInterrupt:
+        if search.best is None:
+            raise
+    best = search.best
+    assert best is not None
+    task.report("judging the model", 0.0)
+    windows = WindowResidual(prepared, arm, joints, longest_step=FINE_STEP_S)
+    windows.settle(best.plant, best.zero)
+    sure = uncertainty(windows, best.space, best.x, joints)
+    return Found(
+        plant=best.plant,
+        zero=best.zero,
+        joints=joints,
+        order=best.order,
+        orders=tuple((one.order, float(one.held_out or 0.0)) for one in search.tried),
+        estimates=_estimates(best.space, best.x, sure.deviations),
+        covariance=sure.covariance,
+        condition=sure.condition,
+        open=sure.open,
+        simulations=search.simulations,
+        simulated=search.simulated,
+        complete=search.complete,
+    )
+
+
+def _estimates(space: Space, x: Floats, deviations: Floats) -> tuple[ParameterEstimate, ...]:
+    """Values and standard deviations as people read them: a logarithm's deviation is a share of the value."""
+    start, values = space.values(space.start()), space.values(x)
+    estimates = []
+    for index, parameter in enumerate(space.parameters):
+        kind = KINDS[parameter.kind]
+        deviation = float(deviations[index]) * (float(values[index]) if kind.logarithmic else 1.0)
+        before, after = float(start[index]), float(values[index])
+        estimates.append(ParameterEstimate(parameter.name, kind.means, kind.unit, before, after, deviation))
+    return tuple(estimates)

@@ -1,0 +1,95 @@
+"""What an identification is asked to do, and what any method of it finds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from greywhale.arm import ArmParameters
+from greywhale.errors import UserError
+from greywhale.firmware import JOINTS
+from greywhale.identify.closed_loop import Loop
+from greywhale.identify.judge import FIT, Subject
+
+Floats = NDArray[np.float64]
+Report = Callable[[str, float], None]
+
+
+@dataclass(frozen=True)
+class Task:
+    """The white box to start from, logs made ready, and where random numbers start."""
+
+    white_box: ArmParameters
+    subjects: tuple[Subject, ...]
+    seed: int
+    report: Report
+
+    @property
+    def fitted(self) -> tuple[Subject, ...]:
+        return tuple(subject for subject in self.subjects if subject.role == FIT)
+
+    @property
+    def moving(self) -> tuple[int, ...]:
+        """Joints that at least one fitted log moves."""
+        return tuple(joint for joint in range(JOINTS) if any(one.log.moving[joint] for one in self.fitted))
+
+    def loops(self) -> list[Loop]:
+        """The fitted logs' closed loops; none where the controller of one is not known."""
+        tables = [subject.table for subject in self.fitted]
+        if any(table is None for table in tables):
+            return []
+        return [Loop(one.log, one.table, self.white_box) for one in self.fitted if one.table is not None]
+
+    def required_loops(self) -> list[Loop]:
+        """The same for a method that cannot do without."""
+        loops = self.loops()
+        if not loops:
+            raise UserError(
+                f"{self.fitted[0].log.log.name}: the paper's method needs the controller that the log was recorded "
+                "with; give it with --controller."
+            )
+        return loops
+
+
+@dataclass(frozen=True)
+class ParameterEstimate:
+    """One identified number; `deviation` is its standard deviation, None where the method knows none."""
+
+    name: str
+    means: str
+    unit: str
+    white_box: float
+    value: float
+    deviation: float | None
+
+    def as_dict(self) -> dict[str, Any]:
+        facts = {"name": self.name, "means": self.means, "unit": self.unit}
+        numbers = {"white_box": self.white_box, "value": self.value}
+        return facts | numbers | ({} if self.deviation is None else {"standard_deviation": self.deviation})
+
+
+@dataclass(frozen=True)
+class Found:
+    """A plant (60,), zero angles (4,) rad, and how sure the method is of them.
+
+    `joints` are those that were identified; `orders` the structures tried with their held-out errors; `covariance` is
+    of the searched numbers, in the order of the estimates; `open` are sentences on what the logs cannot tell.
+    """
+
+    plant: Floats = field(repr=False)
+    zero: Floats = field(repr=False)
+    joints: tuple[int, ...]
+    order: str
+    estimates: tuple[ParameterEstimate, ...]
+    open: tuple[str, ...]
+    simulations: int
+    simulated: float  # s, of arms, in windows and closed loops together
+    complete: bool
+    orders: tuple[tuple[str, float], ...] = ()
+    covariance: Floats | None = field(default=None, repr=False)
+    condition: float | None = None
+    curve: tuple[float, ...] = ()

@@ -1,0 +1,84 @@
+"""What any method of tuning is asked, offers and leaves: the default and the paper's are two of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.table import ParameterTable
+from greywhale.tune.judge.held_out import HeldOut
+from greywhale.tune.judge.margins import Margin
+from greywhale.tune.model import Model
+from greywhale.tune.progress import Report
+from greywhale.tune.search.journal import Journal
+from greywhale.tune.search.lockstep import Found
+
+Controllers = npt.NDArray[np.int32]
+Costs = tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Task:
+    """A model to tune for, and how: `budget` evaluations, controllers `before` (4, 12), bounds in a file's units."""
+
+    model: Model
+    strategy: str
+    method: str
+    budget: int
+    seed: int
+    threads: int
+    before: Controllers
+    bounds: dict[str, tuple[float, float]]
+    report: Report
+    floors: bool  # whether to work out what is possible at all
+
+    def request(self) -> dict[str, Any]:
+        """What every journal must agree with."""
+        return {
+            "model": self.model.name,
+            "model_digest": self.model.digest,
+            "strategy": self.strategy,
+            "method": self.method,
+            "budget": self.budget,
+            "seed": self.seed,
+            "before": self.before.tolist(),
+        }
+
+
+@dataclass(frozen=True)
+class Judged:
+    """The chosen controllers (4, 12), and what speaks for and against them and those from before."""
+
+    after: Controllers
+    cost_before: Costs
+    cost_after: Costs
+    notes: tuple[str, ...]
+    margins_before: tuple[Margin, ...] = field(default=(), repr=False)
+    margins: tuple[Margin, ...] = field(default=(), repr=False)
+    held_out: tuple[HeldOut, ...] = ()
+
+
+class Method(Protocol):
+    """A way to tune: it simulates with `table`, and keeps what is best so far in `found`."""
+
+    table: ParameterTable
+    found: Found
+
+    def request(self) -> dict[str, Any]:
+        """What a journal must agree with, beside the task's own."""
+        ...
+
+    def search(self, journal: Journal) -> None:
+        """Spend the budget."""
+        ...
+
+    def cost_before(self) -> Costs:
+        """Of the controllers from before, as the search sees them; asked only after something was evaluated."""
+        ...
+
+    def judge(self) -> Judged:
+        """Look at the best more closely than the search could."""
+        ...

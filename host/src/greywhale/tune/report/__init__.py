@@ -1,0 +1,1 @@
+"""What people get of a tuning: controller.toml, a summary, the paper's tables, pictures."""
