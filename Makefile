@@ -30,7 +30,7 @@ lint: setup ## ruff, mypy --strict, cppcheck, clang-tidy, generated files
 	ruff format --check
 	mypy
 	$(CPPCHECK) --std=c++14 '-DISR(vector,...)=void vector()' firmware/lib firmware/src
-	$(CPPCHECK) --std=c++17 --suppress=assignBoolToPointer:sim/board/binding.cpp sim host/native
+	$(CPPCHECK) --std=c++17 --suppress=assignBoolToPointer:sim/board/binding.cpp sim host/native tools/studies
 	clang-tidy --quiet $(PORTABLE) -- -std=gnu++14 $(FIRMWARE_ROOMS) 2>build/clang-tidy.log || { cat build/clang-tidy.log; exit 1; }
 	$(PYTHON) -m tools.generate_link --check
 
@@ -56,4 +56,4 @@ lock: ## resolve and pin the Python packages anew
 	python3 -m tools.lock
 
 clean: ## remove everything that was built; .venv stays
-	rm -rf build firmware/.pio host/src/greywhale/_native.pyi sim/bench/greywhale_sim/_board.pyi
+	rm -rf build firmware/.pio host/src/greywhale/_native.pyi sim/bench/greywhale_sim/_board.pyi tools/studies/one_joint/native/one_joint_native.pyi

@@ -8,4 +8,3 @@ void bind_closed_loop(nanobind::module_& m);
 void bind_fuzzy(nanobind::module_& m);
 void bind_ideal(nanobind::module_& m);
 void bind_identify(nanobind::module_& m);
-void bind_one_joint(nanobind::module_& m);

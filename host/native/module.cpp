@@ -8,5 +8,4 @@ NB_MODULE(_native, m) {
   bind_fuzzy(m);
   bind_ideal(m);
   bind_identify(m);
-  bind_one_joint(m);
 }

@@ -10,10 +10,10 @@ import sys
 
 from greywhale.errors import UserError
 from tools.bench.figure import Figure
-from tools.real_data.compare import Comparison
-from tools.real_data.study import ProductScore, by_halves, by_product, by_records, data_folder, read_sources
-from tools.real_data.tables import comparison_table, model_table, product_table
 from tools.setup.console import ROOT
+from tools.studies.real_data.compare import Comparison
+from tools.studies.real_data.study import ProductScore, by_halves, by_product, by_records, data_folder, read_sources
+from tools.studies.real_data.tables import comparison_table, model_table, product_table
 
 PAGE = ROOT / "build" / "real_data.md"
 

@@ -1,4 +1,4 @@
-"""Builds and installs the two packages, greywhale and greywhale-sim, editable and with their native extensions."""
+"""Builds and installs greywhale, greywhale-sim and the fast part of a study, editable and with native extensions."""
 
 from __future__ import annotations
 
@@ -10,8 +10,13 @@ NATIVE = ("pyproject.toml", "host/native", "sim/arm", "firmware/lib/fuzzy_pdi")
 BOARD = ("sim/pyproject.toml", "sim/CMakeLists.txt", "sim/board")
 
 
-def install(name: str, place: str, stub: str, sources: tuple[str, ...]) -> None:
-    wanted = stamps.digest(stamps.files_below(*SHARED, *sources))
+STUDY = ("tools/studies/one_joint/native", "sim/arm", "host/native/share_out.h")
+
+
+def install(name: str, place: str, stub: str, sources: tuple[str, ...], modules: str | None = None) -> None:
+    """Install what is not current. An editable package finds only the modules below `modules` that it was made with."""
+    names = [] if modules is None else [str(path) for path in stamps.files_below(modules) if path.suffix == ".py"]
+    wanted = stamps.digest(stamps.files_below(*SHARED, *sources), *names)
     if stamps.is_current(name, wanted) and (ROOT / stub).exists():
         return
     say(f"building {name}")
@@ -20,5 +25,7 @@ def install(name: str, place: str, stub: str, sources: tuple[str, ...]) -> None:
 
 
 def step() -> None:
-    install("greywhale", ".", "host/src/greywhale/_native.pyi", NATIVE)
-    install("greywhale-sim", "sim", "sim/bench/greywhale_sim/_board.pyi", BOARD)
+    install("greywhale", ".", "host/src/greywhale/_native.pyi", NATIVE, "host/src/greywhale")
+    install("greywhale-sim", "sim", "sim/bench/greywhale_sim/_board.pyi", BOARD, "sim/bench/greywhale_sim")
+    native = "tools/studies/one_joint/native"
+    install("one_joint_native", native, f"{native}/one_joint_native.pyi", STUDY)

@@ -66,7 +66,7 @@ def _refuse_clipped(where: str, follower: Floats) -> None:
         if abs(extreme) > CLIPPED_FROM and share > CLIPPED_SHARE:
             raise UserError(
                 f"{where} is clipped: its follower reads exactly {extreme:.4f} rad in {100 * share:.0f} % of the rows, "
-                "as a potentiometer at its end does; calibrate it, or keep the motion within its range."
+                "as a potentiometer at its end does; keep the motion within its range, or correct its zero."
             )
 
 

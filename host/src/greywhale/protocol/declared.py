@@ -13,7 +13,7 @@ from dataclasses import dataclass, fields
 from enum import IntEnum
 from typing import ClassVar, Protocol, Self, TypeVar
 
-from greywhale.errors import UserError
+from greywhale.errors import BAD_USAGE, UserError
 
 CRC_START = 0xFFFF
 _CODES = {"u8": "B", "i8": "b", "u16": "H", "i16": "h", "u32": "I", "i32": "i"}
@@ -78,7 +78,7 @@ class Message:
         except struct.error as error:
             shown = ", ".join(f"{field.name} = {getattr(self, field.name)}" for field in fields(self))  # type: ignore[arg-type]
             raise MessageError(
-                f"The message {self.NAME} cannot carry {shown}: {error}; choose values that fit.", 2
+                f"The message {self.NAME} cannot carry {shown}: {error}; choose values that fit.", BAD_USAGE
             ) from error
 
 
@@ -153,7 +153,7 @@ class Parameter:
     def to_raw(self, physical: float) -> int:
         """The nearest raw value; UserError when it is not finite or out of range."""
         if not math.isfinite(physical):
-            raise UserError(f"{self.name} is {physical}, but it must be a finite number; {self._advice()}", 2)
+            raise UserError(f"{self.name} is {physical}, but it must be a finite number; {self._advice()}", BAD_USAGE)
         raw = math.floor(physical / self.lsb + 0.5)
         self._check(raw, physical)
         return raw
@@ -162,12 +162,12 @@ class Parameter:
         """As to_raw, for a number that a person gave: refused where rounding would make something else of it."""
         raw = self.to_raw(physical)
         if self.lsb == 1.0 and raw != physical:
-            raise UserError(f"{self.name} is {physical:.6g}{self._unit()}, but it must be a whole number.", 2)
+            raise UserError(f"{self.name} is {physical:.6g}{self._unit()}, but it must be a whole number.", BAD_USAGE)
         if raw == 0 and physical != 0.0:
             raise UserError(
                 f"{self.name} is {physical:.6g}{self._unit()}, which the board would store as 0; "
                 f"choose 0, or a size from {self.lsb:.6g}{self._unit()}.",
-                2,
+                BAD_USAGE,
             )
         return raw
 
@@ -177,7 +177,9 @@ class Parameter:
 
     def _check(self, raw: int, physical: float) -> None:
         if not self.minimum <= raw <= self.maximum or (self.nonzero and raw == 0):
-            raise UserError(f"{self.name} is {physical:.6g}{self._unit()}, which is out of range; {self._advice()}", 2)
+            raise UserError(
+                f"{self.name} is {physical:.6g}{self._unit()}, which is out of range; {self._advice()}", BAD_USAGE
+            )
 
     def _unit(self) -> str:
         return f" {self.unit}" if self.unit else ""
@@ -227,7 +229,7 @@ class Table:
                 raise UserError(
                     f"{parameter.name} is {low:.6g} and {other.name} is {high:.6g}{other._unit()}; "
                     f"choose {parameter.name} below {other.name}.",
-                    2,
+                    BAD_USAGE,
                 )
 
 

@@ -20,7 +20,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from greywhale.errors import UserError
+from greywhale.errors import BAD_USAGE, UserError
 from greywhale.files.log import Log
 from greywhale.formats.whole import write_whole
 from greywhale.measure import evaluate
@@ -65,9 +65,9 @@ def draw_following(path: str | Path, traces: Sequence[Trace], title: str) -> Non
     """Write the picture; the ending of `path` chooses PNG, SVG or PDF."""
     target = Path(path)
     if target.suffix.lower() not in FORMATS:
-        raise UserError(f"{path}: pictures end in {', '.join(FORMATS)}.", exit_code=2)
+        raise UserError(f"{path}: pictures end in {', '.join(FORMATS)}.", exit_code=BAD_USAGE)
     if not 1 <= len(traces) <= _MOST_LOGS:
-        raise UserError(f"a picture shows 1 to {_MOST_LOGS} logs, not {len(traces)}.", exit_code=2)
+        raise UserError(f"a picture shows 1 to {_MOST_LOGS} logs, not {len(traces)}.", exit_code=BAD_USAGE)
     with _style():
         figure = _figure(traces, title)
         kind = target.suffix.lower()

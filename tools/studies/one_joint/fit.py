@@ -20,11 +20,11 @@ from numpy.typing import NDArray
 
 from greywhale.errors import BAD_USAGE, UserError
 from greywhale.identify.fit import Fit, differing, least_squares_fit
-from greywhale.one_joint.law import Law
-from greywhale.one_joint.plant import JointSpace, Rig
-from greywhale.one_joint.record import Record
-from greywhale.one_joint.residual import JointResidual, Part, left_out, part_of
 from greywhale.optimise import minimise
+from tools.studies.one_joint.law import Law
+from tools.studies.one_joint.plant import JointSpace, Rig
+from tools.studies.one_joint.record import Record
+from tools.studies.one_joint.residual import JointResidual, Part, left_out, part_of
 
 Floats = NDArray[np.float64]
 Report = Callable[[str, float], None]

@@ -4,8 +4,8 @@
 >>> Runner(other, other_law).run(model.plant, pieces_of(other, 0, len(other.time))).angles
 """
 
-from greywhale.one_joint.fit import Example, JointModel, fit_joint, identify_joint
-from greywhale.one_joint.law import (
+from tools.studies.one_joint.fit import Example, JointModel, fit_joint, identify_joint
+from tools.studies.one_joint.law import (
     Law,
     proportional,
     proportional_derivative,
@@ -13,10 +13,10 @@ from greywhale.one_joint.law import (
     relay,
     trapezoidal_pid,
 )
-from greywhale.one_joint.loop import Run, Runner
-from greywhale.one_joint.naive import Lag, fit_lag
-from greywhale.one_joint.plant import COLUMNS, JointSpace, Rig, plants
-from greywhale.one_joint.record import Pieces, Record, pieces_of
+from tools.studies.one_joint.loop import Run, Runner
+from tools.studies.one_joint.naive import Lag, fit_lag
+from tools.studies.one_joint.plant import COLUMNS, JointSpace, Rig, plants
+from tools.studies.one_joint.record import Pieces, Record, pieces_of
 
 __all__ = [
     "COLUMNS",

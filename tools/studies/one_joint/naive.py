@@ -15,7 +15,7 @@ from scipy.optimize import least_squares
 from scipy.signal import cont2discrete, lfilter, lfiltic
 from threadpoolctl import threadpool_limits
 
-from greywhale.one_joint.record import Record
+from tools.studies.one_joint.record import Record
 
 Floats = NDArray[np.float64]
 GRID_S = 1e-3

@@ -1,5 +1,5 @@
 // One joint with its motor inside any linear controller, or under logged voltages, for many candidate plants at a time.
-// greywhale.one_joint prepares experiments and compares the outcome with a record; use that, not this.
+// tools.studies.one_joint prepares experiments and compares the outcome with a record; use that, not this.
 //
 // Motor, friction, gear and stops are those of the arm (sim/arm/conditions.h), with one body behind the gear instead of four
 // links. To these come what a foreign rig may have: gravity about any angle, a constant pull, a gear whose friction grows with
@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "arm/conditions.h"
-#include "bindings.h"
 #include "share_out.h"
 
 namespace nb = nanobind;
@@ -33,7 +32,7 @@ using Indices = nb::ndarray<const std::int64_t, nb::shape<-1>, nb::c_contig, nb:
 
 constexpr int kPasses = 8;
 
-// A candidate; greywhale.one_joint names these columns in the same order.
+// A candidate; tools.studies.one_joint names these columns in the same order.
 struct Plant {
   double link_inertia;    // kg m^2, behind the gear
   double weight;          // N m, gravity's torque a quarter turn from where the link hangs
@@ -273,10 +272,11 @@ nb::tuple run(const Record& r, const Law& law, const Windows& w, const Matrix& p
 
 }  // namespace
 
-void bind_one_joint(nb::module_& m) {
-  m.attr("ONE_JOINT_COLUMNS") = kColumns;
+NB_MODULE(one_joint_native, m) {
+  m.doc() = "One joint in any linear controller, or under logged voltages, for many candidates at a time.";
+  m.attr("COLUMNS") = kColumns;
   m.def(
-      "simulate_one_joint",
+      "simulate",
       [](const Matrix& plants, const Vector& spacing, const Vector& leader, const Vector& load, const Vector& volts, std::size_t substeps,
          bool leader_lines, bool volts_lines, const Matrix& a, const Matrix& b, const Vector& c, const Vector& d, double limit, double hysteresis,
          double resolution, std::size_t control_every, bool closed, const Indices& first, const Vector& angles, const Vector& velocities,

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import one_joint_native
 from numpy.typing import NDArray
 
-from greywhale import _native
-from greywhale.one_joint.law import Law, proportional
-from greywhale.one_joint.record import Pieces, Record
+from tools.studies.one_joint.law import Law, proportional
+from tools.studies.one_joint.record import Pieces, Record
 
 Floats = NDArray[np.float64]
 # Longest step of the integration, s.
@@ -39,7 +39,7 @@ class Runner:
     def run(self, plants: Floats, pieces: Pieces, every: int = 1, threads: int = 0) -> Run:
         """Candidates (rows, 19) along some pieces, each started where the record says the joint was."""
         record, law = self.record, self.law
-        angles, volts = _native.simulate_one_joint(
+        angles, volts = one_joint_native.simulate(
             plants=np.ascontiguousarray(plants),
             spacing=record.spacing,
             leader=np.ascontiguousarray(record.leader),

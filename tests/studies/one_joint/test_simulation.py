@@ -13,9 +13,9 @@ from scipy.integrate import solve_ivp
 from greywhale.arm import Arm
 from greywhale.files.arm import default_arm
 from greywhale.loop import PLANT_COLUMNS, plant_row
-from greywhale.one_joint import COLUMNS, Law, Record, Rig, Runner, pieces_of, plants, proportional, relay
-from greywhale.one_joint.law import trapezoidal_pid
-from tests.one_joint.records import still
+from tests.studies.one_joint.records import still
+from tools.studies.one_joint import COLUMNS, Law, Record, Rig, Runner, pieces_of, plants, proportional, relay
+from tools.studies.one_joint.law import trapezoidal_pid
 
 Floats = NDArray[np.float64]
 PENDULUM = Rig("pendulum", supply=7.4, alpha=10.0, inertia=0.02, damping=0.4, link_inertia=0.005, weight=0.48)

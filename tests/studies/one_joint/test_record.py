@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from greywhale.errors import UserError
-from greywhale.one_joint import Record, pieces_of
-from tests.one_joint.records import still
+from tests.studies.one_joint.records import still
+from tools.studies.one_joint import Record, pieces_of
 
 
 def parabola() -> Record:

@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from greywhale.one_joint import Example, JointModel, Record, Runner, fit_joint, fit_lag, identify_joint, pieces_of
-from tools.real_data.rigs import Source
+from tools.studies.one_joint import Example, JointModel, Record, Runner, fit_joint, fit_lag, identify_joint, pieces_of
+from tools.studies.real_data.rigs import Source
 
 Floats = NDArray[np.float64]
 # A motor without dry friction or gravity: to the speed it is a first-order lag with dead time.

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from greywhale.one_joint import Law, Record, Runner, pieces_of
+from tools.studies.one_joint import Law, Record, Runner, pieces_of
 
 
 def still(seconds: float, period: float = 1e-3, leader: float = 0.0, volts: float = 0.0, angle: float = 0.0) -> Record:

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greywhale.identify.fit import Fit
-from greywhale.one_joint.law import Law
-from greywhale.one_joint.loop import Runner
-from greywhale.one_joint.plant import JointSpace
-from greywhale.one_joint.record import Pieces, Record, pieces_of
+from tools.studies.one_joint.law import Law
+from tools.studies.one_joint.loop import Runner
+from tools.studies.one_joint.plant import JointSpace
+from tools.studies.one_joint.record import Pieces, Record, pieces_of
 
 Floats = NDArray[np.float64]
 BLOCK_S = 0.5  # left out at a time

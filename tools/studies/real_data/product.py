@@ -17,8 +17,8 @@ from greywhale.files.log.layout import Origin
 from greywhale.firmware import JOINTS
 from greywhale.identify import identify
 from greywhale.loop import PLANT_COLUMNS
-from greywhale.one_joint import COLUMNS, Rig
-from tools.real_data.rigs import Source
+from tools.studies.one_joint import COLUMNS, Rig
+from tools.studies.real_data.rigs import Source
 
 Floats = NDArray[np.float64]
 STOP = 2 * math.pi  # no stop is known

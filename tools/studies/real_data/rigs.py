@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from greywhale.one_joint.law import (
+from tools.studies.one_joint.law import (
     Law,
     proportional,
     proportional_derivative,
@@ -18,9 +18,9 @@ from greywhale.one_joint.law import (
     relay,
     trapezoidal_pid,
 )
-from greywhale.one_joint.plant import Rig
-from greywhale.one_joint.record import Record
-from tools.real_data.columns import Columns, read_columns
+from tools.studies.one_joint.plant import Rig
+from tools.studies.one_joint.record import Record
+from tools.studies.real_data.columns import Columns, read_columns
 
 Floats = NDArray[np.float64]
 

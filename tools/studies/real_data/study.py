@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from greywhale.errors import FAILED, UserError
-from tools.real_data.compare import Comparison, across, halves, loop_error, window_error
-from tools.real_data.product import identified, shortened
-from tools.real_data.rigs import COLLECTIONS, Source
 from tools.setup.console import ROOT
+from tools.studies.real_data.compare import Comparison, across, halves, loop_error, window_error
+from tools.studies.real_data.product import identified, shortened
+from tools.studies.real_data.rigs import COLLECTIONS, Source
 
 VARIABLE = "GREYWHALE_REAL_DATA"
 # Fitted to the first, judged on the second: another controller, or another motion.

@@ -10,9 +10,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import one_joint_native
 from numpy.typing import NDArray
 
-from greywhale import _native
 from greywhale.identify.space import KINDS as ARM_KINDS
 from greywhale.identify.space import TEETH_S, Kind, ranges
 
@@ -24,7 +24,7 @@ COLUMNS = (
     *("half_gap", "stiffness", "mesh_damping", "drag", "stop_min", "stop_max"),
     *("load_friction", "delay", "leader_delay"),
 )
-assert len(COLUMNS) == _native.ONE_JOINT_COLUMNS
+assert len(COLUMNS) == one_joint_native.COLUMNS
 _COLUMN = {name: index for index, name in enumerate(COLUMNS)}
 STOP = 1e3  # rad, where no stop is known
 TEETH_BEND = 1e-2  # rad, of teeth of unknown stiffness at the motor's stall torque

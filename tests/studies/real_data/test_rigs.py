@@ -13,13 +13,13 @@ from greywhale.arm import Arm, ArmParameters
 from greywhale.errors import UserError
 from greywhale.files.log import Log
 from greywhale.loop import plant_row
-from greywhale.one_joint import Runner, fit, pieces_of, plants
 from tools.bench import bench_real_data
-from tools.real_data import product, study
-from tools.real_data.compare import halves
-from tools.real_data.product import arm_of, joint_of, log_of
-from tools.real_data.rigs import LEVER_RIG, POT_RIG, SERVO_RIG, read_lever, read_pot, read_servo
-from tools.real_data.tables import comparison_table
+from tools.studies.one_joint import Runner, fit, pieces_of, plants
+from tools.studies.real_data import product, study
+from tools.studies.real_data.compare import halves
+from tools.studies.real_data.product import arm_of, joint_of, log_of
+from tools.studies.real_data.rigs import LEVER_RIG, POT_RIG, SERVO_RIG, read_lever, read_pot, read_servo
+from tools.studies.real_data.tables import comparison_table
 
 DEGREE = math.pi / 180
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tools.real_data.compare import Comparison
-from tools.real_data.study import ProductScore
+from tools.studies.real_data.compare import Comparison
+from tools.studies.real_data.study import ProductScore
 
 HEAD = (
     "| fitted to | judged on | range, rad | first order | second order | linear motor | physics "

@@ -1,0 +1,130 @@
+"""How the package is built: imports point one way, and each thing that must have one owner has one."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Mapping
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+SOURCE = ROOT / "host" / "src"
+# What each room may import of ours, beside itself. A room that is not named here may import any.
+ALLOWED = {
+    "errors": set(),
+    "formats": {"errors"},
+    "protocol": {"errors"},
+    "firmware": {"protocol"},
+    "table": {"errors", "firmware", "protocol"},
+    "trajectory": {"firmware"},
+    "arm": {"errors", "firmware", "formats"},
+    "files": {"arm", "errors", "firmware", "formats", "protocol", "table", "trajectory"},
+    "board": {"errors", "files", "firmware", "formats", "protocol", "table", "trajectory"},
+    "loop": {"arm", "errors", "files", "firmware", "protocol", "table", "trajectory"},
+    "optimise": {"errors", "formats"},
+}
+
+
+def modules(source: Path) -> dict[str, Path]:
+    """Every module below a folder by its dotted name."""
+    found = {}
+    for path in sorted(source.rglob("*.py")):
+        parts = path.relative_to(source).with_suffix("").parts
+        found[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = path
+    return found
+
+
+def imports(name: str, path: Path, known: Mapping[str, Path]) -> Iterator[str]:
+    """The modules of ours that a module imports, anywhere in it: in functions and for type checkers too."""
+    package = name if path.name == "__init__.py" else name.rpartition(".")[0]
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            targets = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            above = package.split(".")[: len(package.split(".")) - node.level + 1] if node.level else []
+            base = ".".join([*above, *([node.module] if node.module else [])])
+            targets = [f"{base}.{alias.name}" if f"{base}.{alias.name}" in known else base for alias in node.names]
+        else:
+            continue
+        yield from (target for target in targets if target in known and "." in target and target != name)
+
+
+def graph(source: Path) -> dict[str, set[str]]:
+    known = modules(source)
+    return {name: set(imports(name, path, known)) for name, path in known.items()}
+
+
+def folder_of(name: str, source: Path) -> str:
+    """The package that a module lies in."""
+    return name if (source / Path(*name.split(".")) / "__init__.py").exists() else name.rpartition(".")[0]
+
+
+def circle(edges: Mapping[str, set[str]]) -> list[str]:
+    try:
+        TopologicalSorter(edges).prepare()
+    except CycleError as error:
+        return list(error.args[1])
+    return []
+
+
+@pytest.mark.parametrize("source", ["host/src", "sim/bench"])
+def test_no_module_imports_in_a_circle(source: str) -> None:
+    assert circle(graph(ROOT / source)) == []
+
+
+@pytest.mark.parametrize("source", ["host/src", "sim/bench"])
+def test_no_folder_imports_in_a_circle(source: str) -> None:
+    """A module at the top of a package counts as a room of its own, as do the modules in each folder together."""
+    top = {"host/src": "greywhale", "sim/bench": "greywhale_sim"}[source]
+    rooms: dict[str, set[str]] = {}
+    for name, targets in graph(ROOT / source).items():
+        here = folder_of(name, ROOT / source)
+        here = name if here == top else here
+        for target in targets:
+            there = folder_of(target, ROOT / source)
+            there = target if there == top else there
+            if there != here:
+                rooms.setdefault(here, set()).add(there)
+    assert circle(rooms) == []
+
+
+def test_lower_rooms_import_only_what_lies_below() -> None:
+    edges = graph(SOURCE)
+    for name, targets in edges.items():
+        room, *_ = (*name.split(".")[1:], "")
+        allowed = ALLOWED.get(room)
+        if allowed is not None:
+            beyond = {target for target in targets if target.split(".")[1] not in {*allowed, room}}
+            assert not beyond, f"{name} imports {', '.join(sorted(beyond))}"
+    assert set(ALLOWED) <= {name.split(".")[1] for name in edges if "." in name}
+
+
+def test_a_circle_would_be_found(tmp_path: Path) -> None:
+    """Also one that only a function or a type checker closes."""
+    package = tmp_path / "ours"
+    package.mkdir()
+    (package / "__init__.py").write_text("")
+    (package / "one.py").write_text("from ours import two\n")
+    (package / "two.py").write_text("def late() -> None:\n    from ours.three import x\n")
+    (package / "three.py").write_text("from . import one\nx = 1\n")
+    assert set(circle(graph(tmp_path))) == {"ours.one", "ours.two", "ours.three"}
+
+
+@pytest.mark.parametrize(
+    ("word", "owner"),
+    [
+        ("_native.ClosedLoop", "greywhale/loop/closed_loop.py"),
+        ("_native.leader_readings", "greywhale/loop/closed_loop.py"),
+        ("_native.simulate_ideal", "greywhale/loop/ideal.py"),
+        ("_native.simulate_windows", "greywhale/identify/windows.py"),
+        ("_native.plant_row", "greywhale/arm/plants.py"),
+        ("PARAMETERS[", "greywhale/board/upload.py greywhale/board/refusal.py"),
+        ("serial.Serial(", "greywhale/protocol/transport.py"),
+    ],
+)
+def test_each_thing_has_its_owner(word: str, owner: str) -> None:
+    """The native code, the table by index and the port are touched where they belong and nowhere else."""
+    users = {str(path.relative_to(SOURCE)) for path in SOURCE.rglob("*.py") if word in path.read_text("utf-8")}
+    assert users == set(owner.split())
