@@ -10,7 +10,8 @@ constexpr uint8_t pot_count = 8;             // 0..3 leader, 4..7 follower
 constexpr uint8_t conversions_per_pot = 4;   // summed each tick
 constexpr uint16_t ticks_per_second = 1000;
 
-enum class Board : uint8_t { mega2560 = 1, nano328 = 2, native = 3 };
+// unknown: a board that has no name yet.
+enum class Board : uint8_t { unknown, mega2560, nano328, native };
 Board board_id();
 
 // unknown: a bootloader has cleared the chip's own record.
