@@ -62,7 +62,7 @@ class App {
   void work_on_apply();
   void send_hello(uint8_t seq);
   void send_status();
-  void send_sample();
+  __attribute__((noinline)) void send_sample();   // its variables would lie under those of everything that service() calls
   wire::State state_on_link() const;
   void refuse_unless_disabled();
   void refuse_lead(wire::LeadRefusal why, uint8_t joint);
