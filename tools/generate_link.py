@@ -14,7 +14,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from tools.link_generator import cpp_messages, cpp_parameters, golden, page, python_module
+from tools.link_generator import cpp_enum_copies, cpp_messages, cpp_parameters, golden, page, python_module
 from tools.link_generator.declaration import Declaration, DeclarationError, load
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -24,6 +24,7 @@ def outputs(declaration: Declaration) -> dict[str, str]:
     """Path below the root -> text of every generated file."""
     return {
         "firmware/lib/link/src/link/schema.h": cpp_messages.header(declaration),
+        "firmware/lib/link/src/link/enum_copies.h": cpp_enum_copies.header(declaration),
         "firmware/lib/params/src/params/table.h": cpp_parameters.header(declaration),
         "firmware/lib/params/src/params/table.cpp": cpp_parameters.source(declaration),
         "firmware/test/native/test_link/golden.h": golden.header(declaration),

@@ -29,8 +29,9 @@ def _constants(declaration: Declaration) -> str:
         f"constexpr uint8_t max_payload = {declaration.max_payload};",
         f"constexpr uint8_t reply_bit = 0x{REPLY_BIT:02X};",
         "",
-        "enum class MessageType : uint8_t {",
-        *(f"  {name} = 0x{number:02X}," for name, number in declaration.types),
+        "// Every request. A switch over them without a default lets the compiler name the one that has no case.",
+        "enum class RequestType : uint8_t {",
+        *(f"  {m.name} = 0x{m.type:02X}," for m in declaration.messages if m.reply is not None),
         "};",
     ]
     return "\n".join(lines) + "\n"

@@ -104,7 +104,6 @@ class Declaration:
     max_payload: int
     enums: tuple[Enum, ...]
     messages: tuple[Message, ...]
-    types: tuple[tuple[str, int], ...]
     layout: int
     groups: tuple[Group, ...]
     schema_hash: int
@@ -131,14 +130,13 @@ def load(folder: Path) -> Declaration:
     table = _read(folder / "parameters.toml")
     try:
         enums = tuple(_enum(entry) for entry in lists["enum"])
-        messages, types = _messages(links["message"], {enum.name for enum in enums})
+        messages = _messages(links["message"], {enum.name for enum in enums})
         groups = tuple(_group(entry) for entry in table["group"])
         declaration = Declaration(
             protocol=links["protocol"],
             max_payload=links["frame"]["max_payload"],
             enums=enums,
             messages=messages,
-            types=types,
             layout=table["layout"],
             groups=groups,
             schema_hash=_schema_hash(links["protocol"], enums, messages, groups),
@@ -182,9 +180,7 @@ def _field(entry: dict[str, Any], enums: set[str]) -> Field:
     return Field(entry["name"], match[1], count, enum, entry.get("unit", ""), lsb, entry["description"])
 
 
-def _messages(
-    entries: list[dict[str, Any]], enums: set[str]
-) -> tuple[tuple[Message, ...], tuple[tuple[str, int], ...]]:
+def _messages(entries: list[dict[str, Any]], enums: set[str]) -> tuple[Message, ...]:
     messages: list[Message] = []
     for entry in entries:
         name, number = entry["name"], entry["type"]
@@ -200,7 +196,7 @@ def _messages(
         else:
             messages.append(make("request", "Request", number, camel + "Reply"))
             messages.append(make("reply", "Reply", number | REPLY_BIT, None))
-    return tuple(messages), tuple((entry["name"], entry["type"]) for entry in entries)
+    return tuple(messages)
 
 
 def _raw(value: Any, lsb: Fraction) -> int:

@@ -6,7 +6,7 @@ from tools.setup import stamps, venv
 from tools.setup.console import ROOT, say
 
 SHARED = ("requirements.txt", "LICENSE")
-NATIVE = ("pyproject.toml", "host/native", "sim/arm", "firmware/lib/fuzzy_pdi")
+NATIVE = ("pyproject.toml", "host/native", "sim/arm", "firmware/lib/fuzzy_pdi", "firmware/lib/signal_chain")
 BOARD = ("sim/pyproject.toml", "sim/CMakeLists.txt", "sim/board")
 
 

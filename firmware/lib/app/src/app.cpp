@@ -74,7 +74,7 @@ __attribute__((noinline)) void App::switch_drivers() {
 void App::control() {
   if (--until_control_) return;
   until_control_ = sets_.running().period_ms;
-  const uint16_t limit_mv = controllers_.limit_mv(supervisor_.ramp_q15());
+  const uint16_t limit_mv = controllers_.limit_mv(supervisor_.share_q15());
   control_joint<0>(limit_mv);
   control_joint<1>(limit_mv);
   control_joint<2>(limit_mv);

@@ -40,27 +40,38 @@ class App {
   // requests.cpp: the link
   void receive();
   void handle_frame();
-  void handle_parameters(uint8_t type);
-  void handle_motors(uint8_t type);
-  void handle_lead();
-  void handle_lead_point();
-  void reply_lead();
+  template <class Request>
+  void handle();
+  void serve(const wire::HelloRequest& request);
+  void serve(const wire::StatusRequest& request);
+  void serve(const wire::ParamGetRequest& request);
+  void serve(const wire::ParamSetRequest& request);
+  void serve(const wire::ParamApplyRequest& request);
+  void serve(const wire::ParamSaveRequest& request);
+  void serve(const wire::ParamDefaultsRequest& request);
+  void serve(const wire::EnableRequest& request);
+  void serve(const wire::StopRequest& request);
+  void serve(const wire::RenewRequest& request);
+  void serve(const wire::ClearFaultRequest& request);
+  void serve(const wire::TelemetryRequest& request);
+  void serve(const wire::LeadRequest& request);
+  void serve(const wire::LeadPointRequest& request);
+  bool granted(const supervisor::Reply& result);
   bool work_on_lead();
   void see_distances();
-  void begin_apply(uint16_t crc);
   void work_on_apply();
   void send_hello(uint8_t seq);
   void send_status();
-  void send_sample();
-  void answer(const supervisor::Reply& reply);
+  __attribute__((noinline)) void send_sample();   // its variables would lie under those of everything that service() calls
+  wire::State state_on_link() const;
+  void refuse_unless_disabled();
+  void refuse_lead(wire::LeadRefusal why, uint8_t joint);
   void refuse_set();
   void refuse(wire::NackCode code, uint16_t detail);
   template <class Message>
   void send(uint8_t seq, const Message& message);
   template <class Message>
   void reply(const Message& message) { send(seq_, message); }
-  template <class Request>
-  bool decode(Request& request);
 
   Sampling sampling_;
   Controllers controllers_;

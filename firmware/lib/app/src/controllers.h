@@ -2,8 +2,8 @@
 #pragma once
 #include <fuzzy_pdi.h>
 #include <hal.h>
-#include <multiply.h>
 #include <params/table.h>
+#include <signal_chain/duty.h>
 #include <stdint.h>
 
 namespace app {
@@ -50,10 +50,8 @@ class Controllers {
   fuzzy_pdi::Refusal take(const params::Table& table, uint8_t joint);
 
   void reset();
-  // The voltage that may be used now; ramp_q15 is the share of the supply, 32768 all of it.
-  uint16_t limit_mv(uint16_t ramp_q15) const {
-    return hal::upper_product(static_cast<uint16_t>(supply_mv_ * 2), ramp_q15);   // (supply * ramp) >> 15
-  }
+  // The voltage that may be used now, for a share of the supply.
+  uint16_t limit_mv(uint16_t share_q15) const { return signal_chain::limit_mv(supply_mv_, share_q15); }
   // One control period of a joint: the voltage for its motor.
   Outcome step(uint8_t joint, int16_t error, uint16_t limit_mv) {
     const Outcome out = step_in_registers(joints_[joint], error, limit_mv);

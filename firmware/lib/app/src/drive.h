@@ -1,8 +1,8 @@
 // From motor voltages to duties: division by the supply as a product, and the motors' signs.
 #pragma once
 #include <hal.h>
-#include <multiply.h>
 #include <params/table.h>
+#include <signal_chain/duty.h>
 #include <stdint.h>
 
 namespace app {
@@ -17,16 +17,15 @@ class Drive {
 
  private:
   struct Motor {
-    uint16_t scale;   // 2^18 * full duty / supply: at most 34,953
+    uint16_t scale;   // see signal_chain::duty_scale()
     int8_t sign;      // below 0: the motor turns the other way
   };
   Motor motors_[hal::joint_count] = {};
 };
 
-// duty = size * full duty / supply = (size * scale) >> 18, rounded
 template <uint8_t joint>
 inline __attribute__((always_inline)) void Drive::set(uint16_t size_mv, uint8_t sign) const {
-  const uint16_t duty = static_cast<uint16_t>(hal::upper_product(size_mv, motors_[joint].scale) + 2u) >> 2;
+  const uint16_t duty = signal_chain::duty(size_mv, motors_[joint].scale);
   const auto direction = static_cast<int8_t>(sign ^ static_cast<uint8_t>(motors_[joint].sign));
   hal::set_duty<joint>(direction >= 0, duty);
 }

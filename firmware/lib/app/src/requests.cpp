@@ -2,6 +2,7 @@
 #include <hal.h>
 
 #include "app.h"
+#include "on_link.h"
 #include "version.h"
 
 namespace app {
@@ -14,30 +15,6 @@ constexpr uint8_t bytes_per_piece = 16;
 
 // Farther than two angles can be apart: with it no tick has judged the pots by the running set yet.
 constexpr uint16_t not_seen = UINT16_MAX;
-
-// The supervisor and the parts below it know nothing of the link; their numbers are the link's all the same.
-template <class A, class B>
-constexpr bool same(A a, B b) { return static_cast<uint8_t>(a) == static_cast<uint8_t>(b); }
-static_assert(same(supervisor::State::fault, wire::State::fault) && same(supervisor::State::boot, wire::State::boot) &&
-         same(supervisor::State::soft_start, wire::State::soft_start),
-       "states");
-static_assert(same(supervisor::Fault::params, wire::Fault::params) &&
-         same(supervisor::Fault::pot_low, wire::Fault::pot_low) &&
-         same(supervisor::Fault::tracking, wire::Fault::tracking),
-       "faults");
-static_assert(same(supervisor::StopReason::reset, wire::StopReason::reset) &&
-         same(supervisor::StopReason::host, wire::StopReason::host),
-       "stop reasons");
-static_assert(same(hal::ResetCause::watchdog, wire::ResetCause::watchdog) &&
-         same(hal::ResetCause::external, wire::ResetCause::external),
-       "reset causes");
-static_assert(same(hal::Board::native, wire::Board::native) && same(hal::Board::mega2560, wire::Board::mega2560),
-       "boards");
-static_assert(same(fuzzy_pdi::Refusal::period, wire::Refusal::period) &&
-         same(fuzzy_pdi::Refusal::order, wire::Refusal::order),
-       "refusals");
-
-wire::State on_link(supervisor::State state) { return static_cast<wire::State>(state); }
 
 // |error| in 1/32 rad, as error_too_large carries it
 uint8_t coarse(uint16_t distance_q12) {
@@ -107,180 +84,135 @@ void App::receive() {
   }
 }
 
+// One case for each declared request and no default, so that the compiler names a request without a case (-Wswitch).
 void App::handle_frame() {
   request_ = decoder_.type();
   seq_ = decoder_.seq();
-  switch (request_) {
-    case wire::HelloRequest::type: {
-      wire::HelloRequest request;
-      if (decode(request)) send_hello(seq_);
-      break;
-    }
-    case wire::StatusRequest::type: {
-      wire::StatusRequest request;
-      if (decode(request)) send_status();
-      break;
-    }
-    case wire::TelemetryRequest::type: {
-      wire::TelemetryRequest request;
-      if (!decode(request)) break;
-      every_ = until_sample_ = request.every;
-      sample_due_ = false;
-      reply(wire::TelemetryReply{request.every});
-      break;
-    }
-    case wire::ParamGetRequest::type:
-    case wire::ParamSetRequest::type:
-    case wire::ParamApplyRequest::type:
-    case wire::ParamSaveRequest::type:
-    case wire::ParamDefaultsRequest::type: handle_parameters(request_); break;
-    case wire::EnableRequest::type:
-    case wire::StopRequest::type:
-    case wire::RenewRequest::type:
-    case wire::ClearFaultRequest::type:
-    case wire::LeadRequest::type:
-      handle_motors(request_);
-      follow_supervisor();
-      break;
-    case wire::LeadPointRequest::type: handle_lead_point(); break;
-    default: refuse(wire::NackCode::unknown_type, request_); break;
+  switch (static_cast<wire::RequestType>(request_)) {
+    case wire::RequestType::hello: return handle<wire::HelloRequest>();
+    case wire::RequestType::status: return handle<wire::StatusRequest>();
+    case wire::RequestType::param_get: return handle<wire::ParamGetRequest>();
+    case wire::RequestType::param_set: return handle<wire::ParamSetRequest>();
+    case wire::RequestType::param_apply: return handle<wire::ParamApplyRequest>();
+    case wire::RequestType::param_save: return handle<wire::ParamSaveRequest>();
+    case wire::RequestType::param_defaults: return handle<wire::ParamDefaultsRequest>();
+    case wire::RequestType::enable: return handle<wire::EnableRequest>();
+    case wire::RequestType::stop: return handle<wire::StopRequest>();
+    case wire::RequestType::renew: return handle<wire::RenewRequest>();
+    case wire::RequestType::clear_fault: return handle<wire::ClearFaultRequest>();
+    case wire::RequestType::telemetry: return handle<wire::TelemetryRequest>();
+    case wire::RequestType::lead: return handle<wire::LeadRequest>();
+    case wire::RequestType::lead_point: return handle<wire::LeadPointRequest>();
   }
+  refuse(wire::NackCode::unknown_type, request_);
 }
 
-void App::handle_motors(uint8_t type) {
-  switch (type) {
-    case wire::EnableRequest::type: {
-      wire::EnableRequest request;
-      if (!decode(request)) break;
-      // While the host leads the leader arm cannot take over: it may be anywhere.
-      if (lead_.on()) return refuse(wire::NackCode::not_disabled, static_cast<uint8_t>(supervisor_.state()));
-      answer(supervisor_.enable(request.lease_ms, seen_));
-      break;
-    }
-    case wire::StopRequest::type: {
-      wire::StopRequest request;
-      if (!decode(request)) break;
-      supervisor_.stop();
-      reply(wire::StopReply{on_link(supervisor_.state())});
-      break;
-    }
-    case wire::RenewRequest::type: {
-      wire::RenewRequest request;
-      if (!decode(request)) break;
-      if (lead_.on() && request.lease_ms == 0) {   // would hold the arm for ever with nobody leading it
-        return refuse(wire::NackCode::lead_refused, pair(0, static_cast<uint8_t>(wire::LeadRefusal::no_lease)));
-      }
-      supervisor_.renew(request.lease_ms);
-      reply(wire::RenewReply{on_link(supervisor_.state())});
-      break;
-    }
-    case wire::LeadRequest::type: handle_lead(); break;
-    default: {
-      wire::ClearFaultRequest request;
-      if (decode(request)) answer(supervisor_.clear_fault(seen_));
-      break;
-    }
-  }
+template <class Request>
+void App::handle() {
+  Request request;
+  if (Request::decode(decoder_.payload(), decoder_.payload_size(), request)) return serve(request);
+  refuse(wire::NackCode::bad_length, decoder_.payload_size());
 }
 
-// When it is refused the motors stay off, and the leader arm leads again before anything else is done.
-void App::handle_lead() {
-  wire::LeadRequest request;
-  if (!decode(request)) return;
-  if (request.lease_ms == 0) return refuse(wire::NackCode::lead_refused, pair(0, static_cast<uint8_t>(wire::LeadRefusal::no_lease)));
-  if (supervisor_.motors_on() && !lead_.on()) {
-    return refuse(wire::NackCode::not_disabled, static_cast<uint8_t>(supervisor_.state()));
-  }
+void App::serve(const wire::HelloRequest&) { send_hello(seq_); }
+
+void App::serve(const wire::StatusRequest&) { send_status(); }
+
+void App::serve(const wire::TelemetryRequest& request) {
+  every_ = until_sample_ = request.every;
+  sample_due_ = false;
+  reply(wire::TelemetryReply{request.every});
+}
+
+void App::serve(const wire::EnableRequest& request) {
+  // While the host leads, the leader arm cannot take over: it may be anywhere.
+  if (lead_.on()) return refuse_unless_disabled();
+  if (granted(supervisor_.enable(request.lease_ms, seen_))) reply(wire::EnableReply{state_on_link()});
+}
+
+void App::serve(const wire::StopRequest&) {
+  supervisor_.stop();
+  follow_supervisor();
+  reply(wire::StopReply{state_on_link()});
+}
+
+void App::serve(const wire::RenewRequest& request) {
+  // Without a lease the motors would hold the arm for ever after the host has gone.
+  if (lead_.on() && request.lease_ms == 0) return refuse_lead(wire::LeadRefusal::no_lease, 0);
+  supervisor_.renew(request.lease_ms);
+  reply(wire::RenewReply{state_on_link()});
+}
+
+void App::serve(const wire::ClearFaultRequest&) {
+  if (granted(supervisor_.clear_fault(seen_))) reply(wire::ClearFaultReply{state_on_link()});
+}
+
+// When the supervisor refuses, the motors stay off, and the leader arm leads again before anything else is done.
+void App::serve(const wire::LeadRequest& request) {
+  if (request.lease_ms == 0) return refuse_lead(wire::LeadRefusal::no_lease, 0);
+  if (supervisor_.motors_on() && !lead_.on()) return refuse_unless_disabled();
   if (!supervisor_.motors_on()) {
     lead_.begin(sampling_);
     see_distances();
   }
-  answer(supervisor_.enable(request.lease_ms, seen_));
-}
-
-void App::handle_lead_point() {
-  wire::LeadPointRequest request;
-  if (!decode(request)) return;
-  const Lead::Verdict verdict = lead_.take(request, sampling_);
-  if (verdict.refusal != wire::LeadRefusal::none) {
-    return refuse(wire::NackCode::lead_refused, pair(verdict.joint, static_cast<uint8_t>(verdict.refusal)));
-  }
-  reply(wire::LeadPointReply{lead_.next(), lead_.waiting()});
-}
-
-void App::reply_lead() {
+  if (!granted(supervisor_.enable(request.lease_ms, seen_))) return;
   wire::LeadReply out;
-  out.state = on_link(supervisor_.state());
+  out.state = state_on_link();
   out.next = lead_.next();
   for (uint8_t i = 0; i < hal::joint_count; ++i) out.reference[i] = lead_.last(i);
   reply(out);
 }
 
-// The answer to enable, lead and clear_fault.
-void App::answer(const supervisor::Reply& result) {
+void App::serve(const wire::LeadPointRequest& request) {
+  const Lead::Verdict verdict = lead_.take(request, sampling_);
+  if (verdict.refusal != wire::LeadRefusal::none) return refuse_lead(verdict.refusal, verdict.joint);
+  reply(wire::LeadPointReply{lead_.next(), lead_.waiting()});
+}
+
+// Switches the drivers as the supervisor has decided. When it has refused, the host is told why.
+bool App::granted(const supervisor::Reply& result) {
   using supervisor::Answer;
+  follow_supervisor();
   switch (result.answer) {
-    case Answer::ok:
-      if (request_ == wire::EnableRequest::type) reply(wire::EnableReply{on_link(supervisor_.state())});
-      else if (request_ == wire::LeadRequest::type) reply_lead();
-      else reply(wire::ClearFaultReply{on_link(supervisor_.state())});
-      break;
+    case Answer::ok: return true;
     case Answer::booting: refuse(wire::NackCode::booting, 0); break;
     case Answer::in_fault: refuse(wire::NackCode::in_fault, result.detail); break;
     case Answer::pot_bad: refuse(wire::NackCode::pot_bad, pair(result.where, result.detail)); break;
-    case Answer::too_far:
-      refuse(wire::NackCode::error_too_large, pair(result.where, coarse(result.detail)));
-      break;
+    case Answer::too_far: refuse(wire::NackCode::error_too_large, pair(result.where, coarse(result.detail))); break;
     case Answer::params: refuse_set(); break;
   }
+  return false;
 }
 
-void App::handle_parameters(uint8_t type) {
-  switch (type) {
-    case wire::ParamGetRequest::type: {
-      wire::ParamGetRequest request;
-      int32_t value = 0;
-      if (!decode(request)) break;
-      const params::Access access = params::get(sets_.running(), request.index, value);
-      if (access == params::Access::bad_index) refuse(wire::NackCode::bad_index, request.index);
-      else reply(wire::ParamGetReply{request.index, value});
-      break;
-    }
-    case wire::ParamSetRequest::type: {
-      wire::ParamSetRequest request;
-      if (!decode(request)) break;
-      const params::Access access = sets_.stage(request.index, request.value);
-      if (access == params::Access::bad_index) refuse(wire::NackCode::bad_index, request.index);
-      else if (access == params::Access::out_of_range) refuse(wire::NackCode::out_of_range, request.index);
-      else reply(wire::ParamSetReply{request.index, request.value});
-      break;
-    }
-    case wire::ParamApplyRequest::type: {
-      wire::ParamApplyRequest request;
-      if (decode(request)) begin_apply(request.crc);
-      break;
-    }
-    case wire::ParamSaveRequest::type: {
-      wire::ParamSaveRequest request;
-      if (!decode(request)) break;
-      sets_.save();
-      reply(wire::ParamSaveReply{sets_.crc()});
-      break;
-    }
-    default: {
-      wire::ParamDefaultsRequest request;
-      if (!decode(request)) break;
-      sets_.stage_defaults();
-      reply(wire::ParamDefaultsReply{});
-      break;
-    }
+void App::serve(const wire::ParamGetRequest& request) {
+  int32_t value = 0;
+  const params::Access access = params::get(sets_.running(), request.index, value);
+  if (access == params::Access::ok) reply(wire::ParamGetReply{request.index, value});
+  else refuse(wire::NackCode::bad_index, request.index);
+}
+
+void App::serve(const wire::ParamSetRequest& request) {
+  switch (sets_.stage(request.index, request.value)) {
+    case params::Access::ok: return reply(wire::ParamSetReply{request.index, request.value});
+    case params::Access::bad_index: return refuse(wire::NackCode::bad_index, request.index);
+    case params::Access::out_of_range: return refuse(wire::NackCode::out_of_range, request.index);
   }
 }
 
-void App::begin_apply(uint16_t crc) {
-  if (supervisor_.motors_on()) return refuse(wire::NackCode::not_disabled, static_cast<uint8_t>(supervisor_.state()));
+void App::serve(const wire::ParamSaveRequest&) {
+  sets_.save();
+  reply(wire::ParamSaveReply{sets_.crc()});
+}
+
+void App::serve(const wire::ParamDefaultsRequest&) {
+  sets_.stage_defaults();
+  reply(wire::ParamDefaultsReply{});
+}
+
+void App::serve(const wire::ParamApplyRequest& request) {
+  if (supervisor_.motors_on()) return refuse_unless_disabled();
   if (sets_.save_state() == wire::SaveState::saving) return refuse(wire::NackCode::busy_saving, 0);
-  sets_.begin_apply(crc);
+  sets_.begin_apply(request.crc);
 }
 
 // No request is taken while a set is being applied (a few ms, motors off), so request_ and seq_ still are those of
@@ -308,18 +240,18 @@ void App::send_hello(uint8_t seq) {
   hello.fw_minor = version_minor;
   hello.fw_patch = version_patch;
   hello.schema_hash = wire::schema_hash;
-  hello.board = static_cast<wire::Board>(hal::board_id());
+  hello.board = on_link(hal::board_id());
   hello.param_crc = sets_.crc();
   hello.param_source = sets_.source();
-  hello.reset_cause = static_cast<wire::ResetCause>(hal::reset_cause());
+  hello.reset_cause = on_link(hal::reset_cause());
   send(seq, hello);
 }
 
 void App::send_status() {
   wire::StatusReply status;
-  status.state = on_link(supervisor_.state());
-  status.stop_reason = static_cast<wire::StopReason>(supervisor_.stop_reason());
-  status.fault = static_cast<wire::Fault>(supervisor_.fault());
+  status.state = state_on_link();
+  status.stop_reason = on_link(supervisor_.stop_reason());
+  status.fault = on_link(supervisor_.fault());
   status.fault_where = supervisor_.fault_where();
   status.tick = tick_;
   status.late_ticks = late_ticks_;
@@ -336,8 +268,8 @@ void App::send_sample() {
   sample_due_ = false;
   wire::Sample sample;
   sample.tick = tick_;
-  sample.state = on_link(supervisor_.state());
-  sample.fault = static_cast<wire::Fault>(supervisor_.fault());
+  sample.state = state_on_link();
+  sample.fault = on_link(supervisor_.fault());
   for (uint8_t i = 0; i < hal::joint_count; ++i) {
     // A led reference is already the next tick's; the controllers' own error tells what this tick's was.
     sample.leader[i] =
@@ -348,19 +280,20 @@ void App::send_sample() {
   send(sample_seq_, sample);
 }
 
+wire::State App::state_on_link() const { return on_link(supervisor_.state()); }
+
+void App::refuse_unless_disabled() { refuse(wire::NackCode::not_disabled, static_cast<uint8_t>(state_on_link())); }
+
+void App::refuse_lead(wire::LeadRefusal why, uint8_t joint) {
+  refuse(wire::NackCode::lead_refused, pair(joint, static_cast<uint8_t>(why)));
+}
+
 void App::refuse_set() {
   const Unfit unfit = sets_.unfit();
-  refuse(wire::NackCode::set_refused, pair(unfit.joint, static_cast<uint8_t>(unfit.refusal)));
+  refuse(wire::NackCode::set_refused, pair(unfit.joint, static_cast<uint8_t>(on_link(unfit.refusal))));
 }
 
 void App::refuse(wire::NackCode code, uint16_t detail) { reply(wire::Nack{request_, code, detail}); }
-
-template <class Request>
-bool App::decode(Request& request) {
-  if (Request::decode(decoder_.payload(), decoder_.payload_size(), request)) return true;
-  refuse(wire::NackCode::bad_length, decoder_.payload_size());
-  return false;
-}
 
 // service() has seen to it that the ring has room for the largest frame.
 template <class Message>

@@ -6,23 +6,16 @@ namespace {
 
 constexpr uint16_t full_count = 1023;
 
-// angle = ((count14 - zero) * scale + 4096) >> 13 with filtered = 4 count14, multiplied out. The ranges of zero and scale keep
-// every term within 31 bits and the angle within 16.
-void calibrate(Pot& pot, const params::PotParameters& parameters) {
+void calibrate(signal_chain::Pot& pot, const params::PotParameters& parameters) {
   pot.scale = parameters.scale;
-  pot.offset = hal::make_offset(0x4000 - static_cast<int32_t>(parameters.zero) * 4 * parameters.scale);
+  pot.offset = signal_chain::offset(parameters.zero, parameters.scale);
 }
 
 }  // namespace
 
-void Sampling::start_filter() {
-  signals_.keep = static_cast<uint8_t>(256 - (256 >> shift_));
-  signals_.gain = static_cast<uint8_t>(16 >> shift_);
-}
-
 void Sampling::configure(const params::Table& table) {
   shift_ = table.filter_shift;
-  if (primed_) start_filter();
+  if (primed_) signals_.low_pass = signal_chain::low_pass(shift_);
   const uint8_t rail = table.rail_counts;
   const uint16_t lowest = rail ? static_cast<uint16_t>(rail * hal::conversions_per_pot + 1) : 0;
   const uint16_t highest = static_cast<uint16_t>((full_count - rail) * hal::conversions_per_pot - 1);
@@ -42,29 +35,25 @@ void Sampling::tick(const uint16_t* sums, supervisor::Observation& seen) {
   follow_pots(sums, &signals_, &seen);
   if (primed_) return;
   primed_ = true;
-  start_filter();
+  signals_.low_pass = signal_chain::low_pass(shift_);
 }
 
 int16_t Sampling::within_limits(uint8_t joint, int16_t angle) const {
   const JointSignals& signals = signals_.joint[joint];
-  return angle < signals.limit_min ? signals.limit_min : angle > signals.limit_max ? signals.limit_max : angle;
+  return signal_chain::clamp(angle, signals.limit_min, signals.limit_max);
 }
 
 uint16_t Sampling::distance(uint8_t joint) const {
-  const int16_t wanted = within_limits(joint, leader(joint)), is = follower(joint);
-  return static_cast<uint16_t>(wanted > is ? wanted - is : is - wanted);
+  return signal_chain::distance(within_limits(joint, leader(joint)), follower(joint));
 }
 
 void Sampling::lead(uint8_t joint, int16_t angle) {
-  Pot& pot = signals_.joint[joint].leader;
+  signal_chain::Pot& pot = signals_.joint[joint].leader;
   signals_.joint[joint].error = static_cast<int16_t>(angle - follower(joint));
   pot.scale = 0;
-  pot.offset = hal::make_offset(static_cast<int32_t>(angle) * 0x8000 + 0x4000);
+  pot.offset = static_cast<int32_t>(angle) * 0x8000 + 0x4000;
 }
 
-void Sampling::move_lead(uint8_t joint, int32_t by) {
-  hal::Offset& offset = signals_.joint[joint].leader.offset;
-  offset = hal::make_offset(hal::whole(offset) + by);
-}
+void Sampling::move_lead(uint8_t joint, int32_t by) { signals_.joint[joint].leader.offset += by; }
 
 }  // namespace app

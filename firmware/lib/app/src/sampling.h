@@ -15,7 +15,7 @@ class Sampling {
   void tick(const uint16_t* sums, supervisor::Observation& seen);
 
   // The leader's angle, or what the host leads.
-  int16_t leader(uint8_t joint) const { return angle(signals_.joint[joint].leader); }   // q12 rad
+  int16_t leader(uint8_t joint) const { return signal_chain::angle(signals_.joint[joint].leader); }   // q12 rad
   int16_t follower(uint8_t joint) const { return signals_.joint[joint].follower_angle; }
   // From the follower to the leader within the joint's limits.
   int16_t error(uint8_t joint) const { return signals_.joint[joint].error; }
@@ -29,9 +29,7 @@ class Sampling {
   void move_lead(uint8_t joint, int32_t by);
 
  private:
-  void start_filter();
-
-  Signals signals_ = {0, 16, 0, 0xffff, {}};   // takes the first sample whole
+  Signals signals_ = {signal_chain::low_pass(0), 0, 0xffff, {}};   // takes the first sample whole
   uint8_t shift_ = 0;
   bool primed_ = false;
 };

@@ -1,29 +1,21 @@
 // A tick's pass over the potentiometers: from sums of conversions to angles, errors, distances and rails.
 #pragma once
 #include <hal.h>
-#include <multiply.h>
+#include <signal_chain/pot.h>
 #include <stdint.h>
 #include <supervisor.h>
 
 namespace app {
 
-struct Pot {
-  uint16_t filtered;    // the 10-bit count x 64
-  int16_t scale;
-  hal::Offset offset;   // angle = (filtered * scale + offset) / 2^15, q12 rad
-};
-
-inline int16_t angle(const Pot& pot) { return hal::line(pot.filtered, pot.scale, pot.offset); }
-
 struct JointSignals {
-  Pot leader, follower;
+  signal_chain::Pot leader, follower;
   int16_t follower_angle;         // q12 rad
   int16_t limit_min, limit_max;   // of the reference, which is the leader within them
   int16_t error;                  // reference - follower, saturated at +-32767
 };
 
 struct Signals {
-  uint8_t keep, gain;       // the low-pass: filtered = filtered * keep / 2^8 + sum * gain
+  signal_chain::LowPass low_pass;
   uint16_t lowest, span;    // sums within lowest .. lowest + span are not at a rail
   JointSignals joint[hal::joint_count];
 };
@@ -33,10 +25,8 @@ void follow_pots_portable(const uint16_t* sums, Signals* signals, supervisor::Ob
 
 #if defined(__AVR__)
 
-// The same bits in assembly: signals_avr.S, which counts on this layout. It saves no registers but Y: the tick has saved them
-// once, for this and for the controllers.
-static_assert(sizeof(Pot) == 8 && sizeof(JointSignals) == 24 && sizeof(Signals) == 6 + 4 * 24, "signals_avr.S");
-static_assert(sizeof(supervisor::Observation) == 11 && hal::pot_count == 8, "signals_avr.S");
+// The same bits in assembly: signals_avr.S. It saves no registers but Y: the tick has saved them once, for this and for the
+// controllers.
 inline void follow_pots(const uint16_t* sums, Signals* signals, supervisor::Observation* seen) {
   register const uint16_t* r24 __asm__("r24") = sums;
   register Signals* r22 __asm__("r22") = signals;

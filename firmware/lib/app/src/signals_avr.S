@@ -5,6 +5,7 @@
 //
 // For follow_pots() of signals.h only: uses every register from r8 on and keeps none but Y.
 #ifdef __AVR__
+#include "signals_layout.h"
 
 #define ZERO r17
 #define KEEP r16
@@ -14,15 +15,13 @@
 #define SPAN_LOW r11
 #define SPAN_HIGH r12
 
-// In the joint's record at Z, and in Observation
-#define LEADER 0
-#define FOLLOWER 8
-#define FOLLOWER_ANGLE 16
-#define LIMIT_MIN 18
-#define LIMIT_MAX 20
-#define ERROR 22
-#define RECORD 24
-#define RAIL_LOW 8
+// Of the joint in turn. Z is at Signals for the first joint, and goes on by a joint each time.
+#define LEADER (SIGNALS_JOINT + JOINT_LEADER)
+#define FOLLOWER (SIGNALS_JOINT + JOINT_FOLLOWER)
+#define FOLLOWER_ANGLE (SIGNALS_JOINT + JOINT_FOLLOWER_ANGLE)
+#define LIMIT_MIN (SIGNALS_JOINT + JOINT_LIMIT_MIN)
+#define LIMIT_MAX (SIGNALS_JOINT + JOINT_LIMIT_MAX)
+#define ERROR (SIGNALS_JOINT + JOINT_ERROR)
 
 // filtered (r19:r18) = (filtered * KEEP + 128) / 256 + sum (r25:r24) * GAIN
 .macro low_pass
@@ -52,7 +51,7 @@
   add r19, r0
 .endm
 
-// The angle of a pot into r25:r24. `pot` is 0..7, `at` the place of its record after Z; X is at distance[joint].
+// The angle of a pot into r25:r24. `pot` is 0..7, `at` the place of its Pot after Z; X is at distance[joint].
 .macro angle pot, at, joint, filter
   ldd r24, Y+2*(\pot)
   ldd r25, Y+2*(\pot)+1
@@ -63,21 +62,21 @@
   cpc SPAN_HIGH, r19
   brcc 1f
   ldi r22, 1 << (\pot)
-  ldi r23, RAIL_LOW - 2*(\joint)
+  ldi r23, SEEN_RAIL_LOW - SEEN_DISTANCE - 2*(\joint)
   rcall .Lat_a_rail
 1:
-  ldd r18, Z+(\at)
-  ldd r19, Z+(\at)+1
+  ldd r18, Z+(\at)+POT_FILTERED
+  ldd r19, Z+(\at)+POT_FILTERED+1
   \filter
-  std Z+(\at), r18
-  std Z+(\at)+1, r19
+  std Z+(\at)+POT_FILTERED, r18
+  std Z+(\at)+POT_FILTERED+1, r19
   // r25:r24:r23:r22 = offset + filtered * scale (r21:r20)
-  ldd r20, Z+(\at)+2
-  ldd r21, Z+(\at)+3
-  ldd r22, Z+(\at)+4
-  ldd r23, Z+(\at)+5
-  ldd r24, Z+(\at)+6
-  ldd r25, Z+(\at)+7
+  ldd r20, Z+(\at)+POT_SCALE
+  ldd r21, Z+(\at)+POT_SCALE+1
+  ldd r22, Z+(\at)+POT_OFFSET
+  ldd r23, Z+(\at)+POT_OFFSET+1
+  ldd r24, Z+(\at)+POT_OFFSET+2
+  ldd r25, Z+(\at)+POT_OFFSET+3
   mul r18, r20
   add r22, r0
   adc r23, r1
@@ -137,11 +136,11 @@
 
 .macro joints filter
   joint 0, \filter
-  adiw r30, RECORD
+  adiw r30, JOINT_SIZE
   joint 1, \filter
-  adiw r30, RECORD
+  adiw r30, JOINT_SIZE
   joint 2, \filter
-  adiw r30, RECORD
+  adiw r30, JOINT_SIZE
   joint 3, \filter
 .endm
 
@@ -153,14 +152,14 @@ app_follow_pots:
   push r29
   movw r28, r24
   movw r30, r22
-  movw r26, r20
+  movw r26, r20   // at the first distance
   clr ZERO
-  ld KEEP, Z+
-  ld GAIN, Z+
-  ld LOWEST_LOW, Z+
-  ld LOWEST_HIGH, Z+
-  ld SPAN_LOW, Z+
-  ld SPAN_HIGH, Z+
+  ldd KEEP, Z+SIGNALS_KEEP
+  ldd GAIN, Z+SIGNALS_GAIN
+  ldd LOWEST_LOW, Z+SIGNALS_LOWEST
+  ldd LOWEST_HIGH, Z+SIGNALS_LOWEST+1
+  ldd SPAN_LOW, Z+SIGNALS_SPAN
+  ldd SPAN_HIGH, Z+SIGNALS_SPAN+1
   cpi KEEP, 128
   brne 1f
   rjmp .Lhalving

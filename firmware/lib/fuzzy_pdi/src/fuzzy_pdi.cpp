@@ -11,14 +11,19 @@ void reset(State& state) { state = {0, 0, 0, false}; }
 
 #if defined(__AVR__) && !defined(FUZZY_PDI_PORTABLE)
 
-// What the assembly takes for granted.
-static_assert(sizeof(Side) == 9 && offsetof(Side, outer) == 4 && offsetof(Side, short_ramps) == 8, "memberships_avr.inc");
-static_assert(offsetof(Coefficients, ce) == 18 && offsetof(Coefficients, integral) == 36 && offsetof(Coefficients, ku_mv) == 40,
+// Every place that the assembly reads or writes.
+static_assert(sizeof(Side) == 9 && offsetof(Side, zero) == 0 && offsetof(Side, outer) == 4 && offsetof(Side, short_ramps) == 8,
+              "memberships_avr.inc");
+static_assert(offsetof(Coefficients, e) == 0 && offsetof(Coefficients, ce) == 18 && offsetof(Coefficients, integral) == 36 &&
+                  offsetof(Coefficients, ku_mv) == 40,
               "step_avr.S");
-static_assert(offsetof(State, fraction) == 4 && offsetof(State, previous_e) == 6 && offsetof(State, started) == 8,
+static_assert(offsetof(State, integral) == 0 && offsetof(State, fraction) == 4 && offsetof(State, previous_e) == 6 &&
+                  offsetof(State, started) == 8,
               "step_avr.S");
-static_assert(offsetof(Joint, state) == 42, "step_avr.S");
-static_assert(sizeof(Output) == 6, "returned in registers");
+static_assert(offsetof(Joint, coefficients) == 0 && offsetof(Joint, state) == 42, "step_avr.S");
+static_assert(sizeof(Output) == 6 && offsetof(Output, u_fuzzy) == 0 && offsetof(Output, volts_mv) == 2 &&
+                  offsetof(Output, saturated) == 4 && offsetof(Output, no_rule) == 5,
+              "returned in r18..r23");
 
 #else
 

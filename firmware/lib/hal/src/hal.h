@@ -10,7 +10,8 @@ constexpr uint8_t pot_count = 8;             // 0..3 leader, 4..7 follower
 constexpr uint8_t conversions_per_pot = 4;   // summed each tick
 constexpr uint16_t ticks_per_second = 1000;
 
-enum class Board : uint8_t { mega2560 = 1, nano328 = 2, native = 3 };
+// unknown: a board that has no name yet.
+enum class Board : uint8_t { unknown, mega2560, nano328, native };
 Board board_id();
 
 // unknown: a bootloader has cleared the chip's own record.
@@ -28,6 +29,7 @@ struct TickStart {
 bool tick_pending();
 TickStart tick_begin();
 void tick_end();
+void run_tick();          // calls firmware_tick(), which main.cpp defines; no other caller may
 uint16_t tick_age_us();   // time since the timer started this tick, resolution 4 us
 
 // Sums of four 10-bit conversions for every pot, all taken during the last tick; null when there are no new ones. They
@@ -68,6 +70,8 @@ void idle();
 #ifdef __AVR__
 #include "avr/inline.h"
 #else
+extern "C" void firmware_tick();
+inline void hal::run_tick() { firmware_tick(); }
 template <uint8_t joint>
 inline void hal::set_duty(bool positive, uint16_t size) { set_duty(joint, positive, size); }
 #endif

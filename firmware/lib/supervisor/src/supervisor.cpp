@@ -22,7 +22,6 @@ void Supervisor::begin(bool after_watchdog, bool params_ok) {
 
 void Supervisor::set_limits(const Limits& limits) {
   limits_ = limits;
-  ramp_step_ = full_ramp / limits.soft_start_ms;
   tracking_limit_ = limits.tracking_limit ? limits.tracking_limit : UINT16_MAX;
 }
 
@@ -39,12 +38,7 @@ void Supervisor::tick(const Observation& seen) {
     return;
   }
   if (motors_on()) watch(seen);
-  if (state_ != State::soft_start) return;
-  ramp_ += ramp_step_;
-  if (--ramp_left_ == 0) {
-    ramp_ = full_ramp;
-    state_ = State::following;
-  }
+  if (state_ == State::soft_start && soft_start_.advance()) state_ = State::following;
 }
 
 // Faults before the lease, and the gravest first: only one is reported.
@@ -101,7 +95,7 @@ __attribute__((noinline)) uint8_t Supervisor::count_lost(uint8_t far) {
 void Supervisor::switch_off(State next, StopReason reason) {
   state_ = next;
   stop_reason_ = reason;
-  ramp_ = 0;
+  soft_start_.stop();
   lease_ = 0;
 }
 
@@ -127,8 +121,7 @@ Reply Supervisor::enable(uint16_t lease_ms, const Observation& seen) {
     lost_ticks_[i] = 0;
   }
   state_ = State::soft_start;
-  ramp_ = 0;
-  ramp_left_ = limits_.soft_start_ms;
+  soft_start_.start(limits_.soft_start_ms);
   lease_ = lease_ms;
   return {Answer::ok, nowhere, 0};
 }

@@ -1,5 +1,6 @@
 // When the motors may run: states, faults, soft start and lease. A pure state machine, one call a tick.
 #pragma once
+#include <signal_chain/soft_start.h>
 #include <stdint.h>
 
 namespace supervisor {
@@ -57,7 +58,7 @@ class Supervisor {
   uint8_t fault_where() const { return fault_where_; }
   bool motors_on() const { return state_ == State::soft_start || state_ == State::following; }
   // Share of the supply that the controllers may use now; 32768 is all of it.
-  uint16_t ramp_q15() const { return static_cast<uint16_t>(ramp_ >> 16); }
+  uint16_t share_q15() const { return soft_start_.share_q15(); }
 
  private:
   void switch_off(State next, StopReason reason);
@@ -69,7 +70,6 @@ class Supervisor {
   void remember_rails(const Observation& seen);
 
   static constexpr uint8_t boot_ticks = 20;          // the filters settle and pots are judged
-  static constexpr uint32_t full_ramp = 1UL << 31;
 
   Limits limits_ = {};
   uint8_t low_[2] = {}, high_[2] = {};               // rail masks of the two ticks before
@@ -78,8 +78,7 @@ class Supervisor {
   uint16_t tracking_limit_ = UINT16_MAX;             // without a check no distance is beyond it
   uint16_t lost_ticks_[joint_count] = {};            // time beyond the tracking limit
   uint8_t far_ = 0;                                  // joints whose lost_ticks_ count
-  uint32_t ramp_ = 0, ramp_step_ = 0;
-  uint16_t ramp_left_ = 0;                           // ticks
+  signal_chain::SoftStart soft_start_;
   uint16_t lease_ = 0;                               // ticks, 0 = until stop
   uint8_t boot_left_ = boot_ticks;
   bool params_ok_ = true;

@@ -81,10 +81,21 @@ class Bench {
 
   // Sends a request and waits for the frame that answers it.
   template <class Request>
-  Frame ask(const Request& request, unsigned patience = 40) {
+  Frame ask(const Request& request) {
+    std::vector<std::uint8_t> payload(Request::size);
+    request.encode(payload.data());
+    return ask_raw(Request::type, payload);
+  }
+
+  // The same for any type and payload.
+  Frame ask_raw(std::uint8_t type, const std::vector<std::uint8_t>& payload) {
+    constexpr unsigned patience = 40;   // ticks
     const std::uint8_t seq = ++seq_;
+    wire::Encoder encoder;
+    std::copy(payload.begin(), payload.end(), encoder.payload());
+    encoder.finish(type, seq, static_cast<std::uint8_t>(payload.size()));
     frames.clear();
-    send_raw(frame(request, seq));
+    send_raw({encoder.data(), encoder.data() + encoder.size()});
     service();   // a reply need not wait for the next tick
     collect();
     for (unsigned waited = 0; frames.empty() && waited < patience; ++waited) tick();

@@ -103,6 +103,7 @@ TEST_CASE("stop turns the drivers off before it is answered, in soft start and i
   starting.send_raw(Bench::frame(wire::StopRequest{}, 77));
   starting.service();   // no tick in between
   CHECK_FALSE(board.drivers);
+  CHECK_FALSE(board.drivers_when_sending);
   CHECK(bench::joint_max(board.duty) == 0);
   starting.tick();
   CHECK(starting.status().stop_reason == wire::StopReason::host);
@@ -111,6 +112,7 @@ TEST_CASE("stop turns the drivers off before it is answered, in soft start and i
   following.follow();
   CHECK(following.stop() == wire::State::disabled);
   CHECK_FALSE(board.drivers);
+  CHECK_FALSE(board.drivers_when_sending);
 }
 
 TEST_CASE("stop is answered in every other state too, and gets through while samples fill the wire") {

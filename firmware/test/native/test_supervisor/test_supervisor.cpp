@@ -128,31 +128,31 @@ TEST_CASE("soft start rises evenly from 0 to the whole supply in soft_start_ms")
     Arm arm;
     arm.set_limits({3277, 10240, 500, ms});
     arm.enabled();
-    CHECK(arm.ramp_q15() == 0);
+    CHECK(arm.share_q15() == 0);
     int before = 0, widest = 0, narrowest = 32768;
     unsigned ticks = 0;
     while (arm.state() == State::soft_start && ticks < 20000) {
       arm.run(1);
       ++ticks;
-      const int step = arm.ramp_q15() - before;
+      const int step = arm.share_q15() - before;
       widest = step > widest ? step : widest;
       narrowest = step < narrowest ? step : narrowest;
-      before = arm.ramp_q15();
+      before = arm.share_q15();
     }
     CHECK(ticks == ms);
     CHECK(widest - narrowest <= 1);
     CHECK(arm.state() == State::following);
-    CHECK(arm.ramp_q15() == 32768);
+    CHECK(arm.share_q15() == 32768);
   }
 }
 
 TEST_CASE("a second enable ramps from zero again") {
   Arm arm;
   arm.following().stop();
-  CHECK(arm.ramp_q15() == 0);
+  CHECK(arm.share_q15() == 0);
   CHECK(arm.enable(0).answer == Answer::ok);
   CHECK(arm.state() == State::soft_start);
-  CHECK(arm.ramp_q15() == 0);
+  CHECK(arm.share_q15() == 0);
 }
 
 TEST_CASE("stop works in every state") {

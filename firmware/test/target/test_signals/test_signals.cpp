@@ -19,24 +19,23 @@ uint16_t next_random() {   // xorshift, full period
   return state;
 }
 
-void calibrate(app::Pot& pot) {
+void calibrate(signal_chain::Pot& pot) {
   constexpr int16_t scales[] = {10734, -10734, 1, -1, 16384, -16384};
   const uint16_t zero = next_random() % 16369;
   pot.scale = next_random() & 1 ? scales[next_random() % 6] : static_cast<int16_t>(next_random()) / 2;
-  pot.offset = hal::make_offset(0x4000 - static_cast<int32_t>(zero) * 4 * pot.scale);
+  pot.offset = signal_chain::offset(zero, pot.scale);
   pot.filtered = next_random() % 65473;
 }
 
 // As a reference that the host leads: a line of slope 0 anywhere.
-void lead(app::Pot& pot) {
+void lead(signal_chain::Pot& pot) {
   pot.scale = 0;
-  pot.offset = {next_random(), static_cast<int16_t>(static_cast<int16_t>(next_random()) / 4)};
+  pot.offset = static_cast<int32_t>(static_cast<int16_t>(next_random()) / 4) * 0x10000 + next_random();
 }
 
 void configure(Signals& signals, uint8_t shift) {
   memset(&signals, 0, sizeof signals);
-  signals.keep = static_cast<uint8_t>(256 - (256 >> shift));
-  signals.gain = static_cast<uint8_t>(16 >> shift);
+  signals.low_pass = signal_chain::low_pass(shift);
   const uint16_t rail = next_random() % 101;
   signals.lowest = rail ? rail * 4 + 1 : 0;
   signals.span = rail ? (1023 - rail) * 4 - 1 - signals.lowest : 0xffff;
@@ -78,7 +77,7 @@ void setup() {
       low += by_portable.rail_low != 0;
       high += by_portable.rail_high != 0;
       for (const app::JointSignals& joint : portable.joint) {
-        const int16_t leader = app::angle(joint.leader);
+        const int16_t leader = signal_chain::angle(joint.leader);
         clamped += leader < joint.limit_min || leader > joint.limit_max;
         saturated += joint.error == 32767 || joint.error == -32767;
       }

@@ -1,9 +1,24 @@
-// What is inlined into the tick. Included by hal.h.
+// The parts of the hardware's interface that are inlined: into the tick, and around it. hal.h includes this.
 #pragma once
 #ifdef __AVR__
 #include "pins.h"
 
+// The tick saves no registers (OS_task): the controllers need nearly all of them, and loop() has nothing in them to keep.
+extern "C" __attribute__((OS_task, noinline, used, externally_visible)) void firmware_tick();
+
 namespace hal {
+
+inline __attribute__((always_inline)) void run_tick() {
+  __asm__ volatile("push r28\n\t"
+      "push r29\n\t"
+      "%~call firmware_tick\n\t"
+      "pop r29\n\t"
+      "pop r28"
+      :
+      :
+      : "r2", "r3", "r4", "r5", "r6", "r7", "r8", "r9", "r10", "r11", "r12", "r13", "r14", "r15", "r16", "r17", "r18", "r19", "r20",
+        "r21", "r22", "r23", "r24", "r25", "r26", "r27", "r30", "r31", "memory");
+}
 
 template <uint8_t joint>
 inline void set_duty(bool positive, uint16_t size) {

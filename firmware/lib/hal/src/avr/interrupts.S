@@ -5,15 +5,8 @@
 #include <avr/io.h>
 #include <avr/interrupt.h>
 
+#include "pins.h"
 #include "shared_state.h"
-
-#ifdef USART_RX_vect   /* the ATmega328P has one USART and no number in the vector's name */
-#define RECEIVED USART_RX_vect
-#define SENDABLE USART_UDRE_vect
-#else
-#define RECEIVED USART0_RX_vect
-#define SENDABLE USART0_UDRE_vect
-#endif
 
 .section .bss.hal, "aw", @nobits
 .balign 32                      ; the address of a sum changes in its low byte only
@@ -100,8 +93,8 @@ ADC_vect:
     rjmp 3b
 
 ; The transmitter takes a byte; without one left it is silenced.
-.global SENDABLE
-SENDABLE:
+.global SENDABLE_vect
+SENDABLE_vect:
     enter
     in   r24, TX_TAIL
     point hal_tx_ring, r24
@@ -119,8 +112,8 @@ SENDABLE:
 
 ; A byte has come. When the ring is full it stays in the chip and the receiver is silenced until there is room again: a
 ; babbling host then costs no more time than the main loop spends reading it. What the chip drops meanwhile, it tells.
-.global RECEIVED
-RECEIVED:
+.global RECEIVED_vect
+RECEIVED_vect:
     enter
     lds  r24, hal_rx_head
     mov  r25, r24

@@ -1,7 +1,20 @@
-// Pins, ports and timers of the two boards; the only file that differs between them.
+// Names, interrupts, pins, ports and timers of the two boards. Only this file asks which board it is built for.
 #pragma once
 #ifdef __AVR__
 #include <avr/io.h>
+
+// The ATmega328P has one USART and no number in the names of its interrupts.
+#if defined(__AVR_ATmega2560__)
+#define RECEIVED_vect USART0_RX_vect
+#define SENDABLE_vect USART0_UDRE_vect
+#elif defined(__AVR_ATmega328P__)
+#define RECEIVED_vect USART_RX_vect
+#define SENDABLE_vect USART_UDRE_vect
+#else
+#error "greywhale's hal knows the ATmega2560 and the ATmega328P"
+#endif
+
+#ifndef __ASSEMBLER__   // hal.h includes what follows, at its end
 #include <stdint.h>
 
 namespace hal {
@@ -14,6 +27,7 @@ inline void drivers_off();
 
 #if defined(__AVR_ATmega2560__)
 
+constexpr Board board = Board::mega2560;
 constexpr uint8_t enable_bit = 1 << PH6, led_bit = 1 << PB7;
 constexpr uint8_t direction_bits[4] = {1 << PA0, 1 << PA2, 1 << PA4, 1 << PA6};
 constexpr uint8_t pwm_e = 1 << PE3, pwm_h = (1 << PH3) | (1 << PH4) | (1 << PH5);
@@ -67,8 +81,9 @@ inline void compare(uint8_t joint, uint16_t value) {
   }
 }
 
-#elif defined(__AVR_ATmega328P__)
+#else
 
+constexpr Board board = Board::nano328;
 constexpr uint8_t enable_bit = 1 << PB4, led_bit = 1 << PB5;
 constexpr uint8_t directions_d = (1 << PD2) | (1 << PD4) | (1 << PD7), direction_b = 1 << PB0;
 constexpr uint16_t pwm_top8 = 255;
@@ -122,10 +137,9 @@ inline void compare(uint8_t joint, uint16_t value) {
   }
 }
 
-#else
-#error "greywhale's hal knows the ATmega2560 and the ATmega328P"
 #endif
 
 }  // namespace pins
 }  // namespace hal
+#endif  // __ASSEMBLER__
 #endif  // __AVR__

@@ -7,7 +7,6 @@
 
 #include "../hal.h"
 #include "internal.h"
-#include "pins.h"
 
 namespace hal {
 namespace internal {
@@ -42,13 +41,7 @@ extern "C" void hal_early_start() {
   reset_flags = flags;
 }
 
-Board board_id() {
-#ifdef __AVR_ATmega2560__
-  return Board::mega2560;
-#else
-  return Board::nano328;
-#endif
-}
+Board board_id() { return pins::board; }
 
 // Power-on and brown-out set several flags: the most telling first.
 ResetCause reset_cause() {

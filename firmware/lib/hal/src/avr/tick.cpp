@@ -5,7 +5,6 @@
 
 #include "../hal.h"
 #include "internal.h"
-#include "pins.h"
 #include "shared_state.h"
 
 namespace hal {

@@ -73,6 +73,7 @@ std::uint8_t tx_free() { return fake::board.tx_room; }
 
 void tx_write(const std::uint8_t* bytes, std::uint8_t count) {
   if (count == 0 || count > fake::board.tx_room) ++fake::board.tx_misuse;
+  fake::board.drivers_when_sending = fake::board.drivers;
   fake::board.sent.insert(fake::board.sent.end(), bytes, bytes + count);
   fake::board.tx_room = static_cast<std::uint8_t>(fake::board.tx_room - count);
 }

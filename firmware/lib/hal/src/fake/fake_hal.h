@@ -31,6 +31,7 @@ struct FakeBoard {
   std::uint8_t tx_room = tx_capacity;            // places left; sending takes them, the test gives them back
   std::array<int, joint_count> duty = {};        // -full_duty..full_duty
   bool drivers = false;
+  bool drivers_when_sending = false;             // at the last tx_write()
   bool led = false;
   bool watchdog_on = false;
   unsigned watchdog_kicks = 0;

@@ -13,7 +13,8 @@ constexpr uint32_t schema_hash = 0xC648C927;
 constexpr uint8_t max_payload = 48;
 constexpr uint8_t reply_bit = 0x80;
 
-enum class MessageType : uint8_t {
+// Every request. A switch over them without a default lets the compiler name the one that has no case.
+enum class RequestType : uint8_t {
   hello = 0x01,
   status = 0x02,
   param_get = 0x03,
@@ -28,8 +29,6 @@ enum class MessageType : uint8_t {
   telemetry = 0x0C,
   lead = 0x0D,
   lead_point = 0x0E,
-  sample = 0x40,
-  nack = 0xFF,
 };
 
 // States of the supervisor.

@@ -1,0 +1,27 @@
+// Where signals_avr.S finds what it reads and writes. signals.cpp checks every place against the C++ structures.
+#pragma once
+
+// In Signals
+#define SIGNALS_KEEP 0
+#define SIGNALS_GAIN 1
+#define SIGNALS_LOWEST 2
+#define SIGNALS_SPAN 4
+#define SIGNALS_JOINT 6
+
+// In JointSignals, which are in a row
+#define JOINT_LEADER 0
+#define JOINT_FOLLOWER 8
+#define JOINT_FOLLOWER_ANGLE 16
+#define JOINT_LIMIT_MIN 18
+#define JOINT_LIMIT_MAX 20
+#define JOINT_ERROR 22
+#define JOINT_SIZE 24
+
+// In Pot
+#define POT_FILTERED 0
+#define POT_SCALE 2
+#define POT_OFFSET 4
+
+// In Observation: the distances of all joints in a row, the upper rails just behind the lower ones
+#define SEEN_DISTANCE 0
+#define SEEN_RAIL_LOW 8
