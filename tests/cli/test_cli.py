@@ -7,7 +7,6 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -28,14 +27,11 @@ Captured = pytest.CaptureFixture[str]
 
 
 @pytest.fixture(autouse=True)
-def _quick_and_alone(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """No wait for a bootloader, no port of this machine, and the signal handler as it was."""
+def _quick_and_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No wait for a bootloader, and no port of this machine."""
     monkeypatch.setattr(device.Device.__init__, "__defaults__", (0.0, 0.5))
     monkeypatch.setattr("greywhale.protocol.ports.find_ports", list)
     monkeypatch.delenv("GREYWHALE_PORT", raising=False)
-    before = signal.getsignal(signal.SIGTERM)
-    yield
-    signal.signal(signal.SIGTERM, before)
 
 
 def ask(captured: Captured, *arguments: str) -> tuple[int, dict[str, Any]]:

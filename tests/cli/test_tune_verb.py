@@ -33,13 +33,6 @@ QUICK = ("--method", "random", "--budget", "4", "--samples", "1")
 DEADLINE_S = 120.0
 
 
-@pytest.fixture(autouse=True)
-def _handler_as_it_was() -> Iterator[None]:
-    before = signal.getsignal(signal.SIGTERM)
-    yield
-    signal.signal(signal.SIGTERM, before)
-
-
 @pytest.fixture
 def model(tmp_path: Path) -> Path:
     return write_model(tmp_path / "model.toml")

@@ -9,7 +9,6 @@ import select
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -19,13 +18,6 @@ from greywhale.cli import entry
 Captured = pytest.CaptureFixture[str]
 QUICK = ("compare", "--functions", "sphere,ackley", "--methods", "gwo, de", "--dimensions", "3", "--seeds", "3")
 BUDGET = ("--budget", "40")
-
-
-@pytest.fixture(autouse=True)
-def _handler_as_it_was() -> Iterator[None]:
-    before = signal.getsignal(signal.SIGTERM)
-    yield
-    signal.signal(signal.SIGTERM, before)
 
 
 def test_json_is_one_object_the_same_with_any_number_of_processes(capsys: Captured) -> None:

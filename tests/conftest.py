@@ -1,0 +1,37 @@
+"""What holds for every test: children hear signals, and nobody else's temporary files are in sight."""
+
+from __future__ import annotations
+
+import signal
+import tempfile
+from collections.abc import Iterator
+
+import pytest
+
+
+def pytest_configure() -> None:
+    """A suite in the background of a script, or under nohup, was started with these signals ignored, and every child
+    would inherit that. A child does not inherit a handler: for it the signal is as in a terminal."""
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+    if signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
+        signal.signal(signal.SIGHUP, lambda number, frame: None)  # the suite itself outlives its terminal
+
+
+@pytest.fixture(autouse=True)
+def _signal_handlers_as_they_were() -> Iterator[None]:
+    """The command line installs its own."""
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)}
+    yield
+    for number, handler in before.items():
+        signal.signal(number, handler)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _temporary_folder_of_our_own(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """Running benches are found in the temporary folder: nobody shall see ours, and we shall see nobody else's."""
+    folder = str(tmp_path_factory.mktemp("tmp"))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("TMPDIR", folder)  # for children
+        patch.setattr(tempfile, "tempdir", folder)
+        yield
