@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from greywhale.link.ports import bench_directory
+from greywhale.protocol.ports import bench_directory
 
 ROOT = Path(__file__).parents[2]
 HEARD = (signal.SIGINT, signal.SIGHUP)

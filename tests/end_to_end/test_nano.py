@@ -1,0 +1,96 @@
+"""A Nano from the first recording to the tuned controllers: it is identified, excited and tuned as what it is.
+
+Its last two motors have 255 PWM steps where a Mega has 400; the log's header says which board it was.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from greywhale.cli.entry import run
+from greywhale.demo import BenchProcess
+from greywhale.files.arm import load_arm
+from greywhale.files.log import read_log
+from greywhale.identify import controllers
+from greywhale.identify.closed_loop import Loop
+from greywhale.identify.data import prepare
+from greywhale.loop import plant_row
+from greywhale.loop.closed_loop import ClosedLoop, Result
+from greywhale.protocol.schema import Board
+from greywhale.table import ParameterTable
+from greywhale.tune.model import load_model
+
+FULL = [400, 400, 255, 255]
+
+
+def told(capsys: pytest.CaptureFixture[str], *arguments: str | Path) -> dict[str, Any]:
+    assert run([*map(str, arguments), "--json"]) == 0
+    answer: dict[str, Any] = json.loads(capsys.readouterr().out)
+    return answer
+
+
+def test_a_nano_is_excited_identified_and_tuned_as_a_nano(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fit, second, model, controller, after = (
+        tmp_path / name for name in ("fit.csv", "second.csv", "model.toml", "controller.toml", "after.csv")
+    )
+    largest = full_duties_of_every_loop(monkeypatch)
+    with BenchProcess("--board", "nano", "--speed", "max") as bench:
+        port = ("-p", bench.port)
+        told(capsys, "record", "--excite", *port, "-o", fit, "--seconds", "10", "--budget", "10")
+        told(capsys, "record", "--enable", *port, "-o", second, "--seconds", "10")
+        assert read_log(fit).origin.board == read_log(second).origin.board == "nano328"
+        found = told(capsys, "identify", fit, "-v", second, "-o", model)
+        assert found["board"] == "nano328"
+        assert found["log"][1]["improvement"] > 0.9
+        assert load_model(model, force=True).table.board is Board.NANO328
+        told(capsys, "tune", model, "-o", controller, "--budget", "60", "--samples", "2", "--force")
+        assert 'board = "nano328"' in controller.read_text()
+        assert told(capsys, "upload", controller, *port)["warnings"] == []
+        told(capsys, "record", "--enable", *port, "-o", after, "--seconds", "10")
+    before, now = (log["total_mse_rad2"] for log in told(capsys, "evaluate", second, after)["logs"])
+    assert now < 0.7 * before
+    assert largest == FULL, "excitation, identification and tuning simulated other timers than the board's"
+
+
+def full_duties_of_every_loop(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """The largest duty of every joint in all closed loops to come, in PWM steps; they keep no traces otherwise."""
+    largest = [0, 0, 0, 0]
+    simulate = ClosedLoop.run
+
+    def watched(self: ClosedLoop, controllers: Any, plants: Any, **options: Any) -> Result:
+        result = simulate(self, controllers, plants, **options | {"every": options.get("every") or 50})
+        if result.duties.size:
+            seen = np.abs(result.duties.astype(int)).max(axis=(0, 1))
+            largest[:] = [max(one, int(other)) for one, other in zip(largest, seen, strict=True)]
+        return result
+
+    monkeypatch.setattr(ClosedLoop, "run", watched)
+    return largest
+
+
+def test_the_very_voltages_of_a_nanos_log_come_in_its_steps(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Told by the log alone: 15 V in 255 steps on the last two joints, in 400 on the first two."""
+    path = tmp_path / "log.csv"
+    with BenchProcess("--board", "nano", "--speed", "max") as bench:
+        told(capsys, "record", "--enable", "-p", bench.port, "-o", path, "--seconds", "4")
+    log = read_log(path)
+    table = controllers.table_of(log, [])
+    assert table == ParameterTable.defaults(Board.NANO328)
+    loop = Loop(prepare(log, table["filter_shift"]), table, load_arm("default"))
+    assert loop.error(plant_row(load_arm("default"))[None]).sum() < 1e-4, "the true arm in its own loop repeats the log"
+
+
+def test_a_controller_for_a_nano_is_doubted_on_a_mega(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    table = Path(__file__).parents[2] / "shared" / "fuzzy_tables" / "table_10.toml"
+    controller = tmp_path / "controller.toml"
+    controller.write_text(table.read_text() + '\n[tuning]\nboard = "nano328"\n')
+    with BenchProcess("--speed", "max") as bench:
+        warnings = told(capsys, "upload", controller, "-p", bench.port)["warnings"]
+    assert warnings == ["it was tuned for the board nano328, but this board is a mega2560."]
