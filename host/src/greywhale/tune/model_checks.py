@@ -1,4 +1,4 @@
-"""What speaks against tuning for a model: each doubt says what was found and what would mend it."""
+"""The doubts about tuning for a model: each says what was found and what would mend it."""
 
 from __future__ import annotations
 
@@ -28,19 +28,19 @@ from greywhale.tune.search.training import moves, reach, within
 Floats = NDArray[np.float64]
 
 # Half of the arms that the logs allow may follow a motion differently from the estimate by this share of its tracking
-# error. Slow reaches show friction and gravity, quick moves inertia and damping.
+# error. Slow reaches show friction and gravity, quick moves show inertia and damping.
 SPREAD = {"slow reaches": 0.5, "quick moves": 0.25}
 SPREAD_SAMPLES, ONE_BY_ONE_SAMPLES = 33, 9
 REACHES_SEED, REACHES_S, WAIT_TICKS = 2002, 6.0, 200
-# How far numbers that should agree may differ: supplies, potentiometers' slopes, an arm and its own table (relative);
-# its gaps (rad).
+# How far numbers that should agree may differ: supplies, potentiometers' slopes, an arm and its own table (relative),
+# and its gaps (rad).
 SAME_SUPPLY, SAME_SLOPE, SAME_VALUE, SAME_GAP = 0.02, 0.1, 1e-3, 1e-5
 CERTAIN = 1e-20  # a variance of next to nothing
 CONVERTER_SPAN = 16368  # four conversions of 10 bits, as the board counts a potentiometer's whole track
 
 
 class Doubt(NamedTuple):
-    """A clause each, without a full stop."""
+    """A reason and a remedy: one clause each, without a full stop."""
 
     reason: str
     remedy: str
@@ -73,7 +73,7 @@ class ParameterFacts(_Facts):
 
 
 class Identification(_Facts):
-    """What of a model's [identification] matters for tuning."""
+    """The part of a model's [identification] that matters for tuning."""
 
     status: str
     method: str
@@ -86,11 +86,11 @@ class Identification(_Facts):
 
     @property
     def made_on(self) -> Board:
-        """The board that made the logs; models from before they named it are of a Mega."""
+        """The board that made the logs. A model that names no board is from an older version, and of a Mega."""
         return Board.MEGA2560 if self.board is None else board_named(self.board)
 
     def table(self) -> ParameterTable | None:
-        """The whole parameter table that the fitted log was recorded with, or None where it is not known."""
+        """The whole parameter table with which the fitted log was recorded, or None where it is not known."""
         defaults = ParameterTable.defaults(self.made_on)
         if self.parameters is not None:
             return defaults.with_raw(self.parameters)
@@ -98,7 +98,7 @@ class Identification(_Facts):
         return defaults if crcs == {f"0x{defaults.crc:04x}"} else None
 
     def remarks(self) -> tuple[str, ...]:
-        """The identification's warnings, but for those that follow from the logs' numbers, which are judged here."""
+        """The identification's warnings, without those that follow from the logs' numbers, which are judged here."""
         verdicts = [
             Verdict(log.name, log.role, log.measure, log.white_box_mse_rad2, log.model_mse_rad2) for log in self.log
         ]
@@ -125,7 +125,7 @@ def identification_of(arm: ArmParameters, name: str) -> Identification | None:
 
 
 def identified(facts: Identification | None) -> list[Doubt]:
-    """Whether the arm was identified at all, and to the end."""
+    """Doubt an arm that was not identified at all, or not to the end."""
     if facts is None:
         return [
             Doubt(
@@ -139,7 +139,7 @@ def identified(facts: Identification | None) -> list[Doubt]:
 
 
 def validated(facts: Identification) -> list[Doubt]:
-    """Whether logs that were not fitted speak for the model."""
+    """Doubt a model for which no log speaks but the fitted ones."""
     others = [log for log in facts.log if log.role != FIT]
     if not others:
         return [
@@ -165,7 +165,7 @@ def validated(facts: Identification) -> list[Doubt]:
 
 
 def sure(facts: Identification) -> list[Doubt]:
-    """Whether the model says how uncertain it is, of every joint."""
+    """Doubt a model that does not say, for every joint, how uncertain it is."""
     if facts.covariance is None:
         return [
             Doubt(
@@ -186,11 +186,11 @@ def sure(facts: Identification) -> list[Doubt]:
 
 
 def untouched(arm: ArmParameters, facts: Identification) -> list[Doubt]:
-    """Whether the arm's numbers are still those that were identified."""
+    """Doubt an arm whose numbers are no longer those that were identified."""
     if facts.covariance is None or not facts.parameter:
         return []
     now, then = sampled_plants(_only(arm, facts, None), 2)
-    # A gap of next to nothing is none, whatever its digits.
+    # A gap of next to nothing is no gap, whatever its digits.
     least = np.array([SAME_GAP if name.endswith("half_gap") else 1e-12 for name in PLANT_COLUMNS])
     differs = np.abs(now - then) > SAME_VALUE * np.maximum(np.abs(now), np.abs(then)) + least
     if not differs.any():
@@ -206,10 +206,10 @@ def untouched(arm: ArmParameters, facts: Identification) -> list[Doubt]:
 
 
 def spread(arm: ArmParameters, table: ParameterTable) -> list[Doubt]:
-    """Whether all arms that the logs allow follow alike, inside the board's present controllers.
+    """Doubt a model if the arms that its logs allow follow differently under the board's present controllers.
 
-    Single parameters may be known poorly without harm (torque per volt of a joint that carries nothing), so what counts
-    is what they do to the motion.
+    Single parameters may be known poorly without harm (torque per volt of a joint that carries nothing). So the effect
+    on the motion decides.
     """
     experiments = _motions(arm, table)
     plants = sampled_plants(arm, SPREAD_SAMPLES)
@@ -249,7 +249,7 @@ def _motions(arm: ArmParameters, table: ParameterTable) -> dict[str, Experiment]
 
 
 def _shares(experiment: Experiment, table: ParameterTable, plants: Floats) -> Floats:
-    """Per joint: how differently the median plant follows from the first one, as a share of its tracking error, rms."""
+    """Per joint: how differently the median plant follows from the first one, rms, as a share of its error."""
     result = experiment.run(controllers_of(table), plants, every=10, threads=1)
     angles = result.angles[:, WAIT_TICKS // 10 :].astype(np.float64)
     apart = np.sqrt(((angles[1:] - angles[0]) ** 2).mean(axis=1))
@@ -259,7 +259,7 @@ def _shares(experiment: Experiment, table: ParameterTable, plants: Floats) -> Fl
 
 
 def _only(arm: ArmParameters, facts: Identification, index: int | None) -> ArmParameters:
-    """The arm with only one of its numbers uncertain, or none; never quite certain, so that there is a distribution."""
+    """The arm with one uncertain number, or none. The others keep a tiny variance, so that there is a distribution."""
     assert facts.covariance is not None
     assert arm.identification is not None
     variances = np.full(len(facts.covariance), CERTAIN)
@@ -274,7 +274,7 @@ def _parameters_of(facts: Identification, joint: int) -> list[ParameterFacts]:
 
 
 def same_arm(model: ArmParameters, arm: ArmParameters, name: str) -> list[Doubt]:
-    """Whether the model is of this arm file: geometry, gears, stops and supply are the user's in both."""
+    """Doubt a model of another arm file: geometry, gears, stops and supply must be the user's in both."""
     ours, theirs = (dict(_leaves(_fixed(one))) for one in (model, arm))
     for key, value in ours.items():
         other = theirs.get(key)
@@ -293,7 +293,7 @@ def same_arm(model: ArmParameters, arm: ArmParameters, name: str) -> list[Doubt]
 
 
 def _fixed(arm: ArmParameters) -> dict[str, Any]:
-    """What an identification leaves as it was."""
+    """The values that an identification does not change."""
     data = arm.model_dump(exclude={"name", "source", "identification"})
     for joint in data["joint"]:
         joint["motor"] = {"gear_ratio": joint["motor"]["gear_ratio"]}
@@ -317,7 +317,7 @@ def _leaves(data: object, name: str = "") -> Iterator[tuple[str, Any]]:
 
 
 def same_table(given: ParameterTable, logged: ParameterTable | None, name: str) -> list[Doubt]:
-    """Whether a board's table differs from the logs' in more than its controllers and limits."""
+    """Doubt a board's table that differs from the logs' in more than its controllers and limits."""
     if logged is None:
         return []
     for parameter in schema.PARAMETERS:
@@ -338,7 +338,7 @@ def same_table(given: ParameterTable, logged: ParameterTable | None, name: str) 
 
 
 def same_board(arm: ArmParameters, facts: Identification | None, table: ParameterTable) -> list[Doubt]:
-    """Whether the table's period, supply and potentiometers are those of the model and its logs."""
+    """Doubt a table whose period, supply or potentiometers are not those of the model and its logs."""
     return [*_same_period(facts, table), *_same_supply(arm, table), *_same_slopes(arm, table)]
 
 

@@ -1,19 +1,20 @@
 """The paper's tuning: GWO-WOA, 10 agents, 30 iterations, every joint's controller on its own (section 4, Table 7).
 
-J = ITAE + ITAU with weights 1 (Eqs. 19 to 21), time counted from the leader's step to the end of the record, on the
-model as given: its estimate, no other plants, no sensor noise. What the paper leaves open is filled in like this:
+J = ITAE + ITAU with weights 1 (Eqs. 19 to 21). Time counts from the leader's step to the end of the record. The model
+is taken as given: its estimate, no other plants, no sensor noise. The paper leaves some things open; they are chosen as
+follows:
 
 - Training motion: the paper's 1 rad step (section 5.1) of the joint that is tuned. The other joints' leaders rest, and
   the other joints keep the controller from before.
 - Control period: 20 ms, to which the paper's Kd belongs.
 - Voltage: the model's supply for strategy mf. Where Ku is tuned too, 20 V: Ku = 20 of Table 8 is its bound.
 - Bounds of Kp, Kd, Ki: 0 to 3 (`space.py`). The sets of strategy sf and the factors of strategy mf stay as they are.
-- Table 7's bounds let a flank of a set have no width. No board takes that, so widths below 0.01 become 0.01; how often
-  that happened is among the notes. Out of order no set can be: each corner has a side of zero to itself.
+- Table 7's bounds let a flank of a set have no width. No board takes that, so widths below 0.01 become 0.01; a note
+  says how often that happened. The corners of a set cannot be out of order: each has a side of zero to itself.
 - No joint's search knows the controller from before; the first pack is random.
 
-On an objective that is mostly effort a controller that moves little does well. So this method may end worse than it
-began by any other measure; `default` is what to use.
+This objective is mostly effort, so a controller that moves little does well. By any other measure this method may
+therefore end worse than it began; use `default` instead.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ Controllers = npt.NDArray[np.int32]
 METHOD = "gwo-woa"
 AGENTS = 10
 ITERATIONS = 30
-# The first pack and then as many moves as iterations, a joint.
+# For each joint the first pack, and then as many moves as iterations.
 BUDGET = AGENTS * (ITERATIONS + 1)
 PERIOD_MS = 20
 LARGEST_SUPPLY_V = 20.0

@@ -1,4 +1,4 @@
-"""Tuning as a whole: a method searches and judges; its journal and its outcome are the same for all."""
+"""Tuning as a whole: a method searches and judges; journal and outcome are the same for all methods."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def check_request(
     threads: int = 0,
     bounds: Bounds | None = None,
 ) -> None:
-    """Refuse, with exit code 2, what no model could make right."""
+    """Refuse, with exit code 2, a request that fits no model at all."""
     check_strategy(strategy)
     if method not in METHODS:
         raise UserError(f"there is no method {method!r}; there are {', '.join(METHODS)}.", BAD_USAGE)
@@ -66,11 +66,11 @@ def tune(
 ) -> Outcome:
     """Tune the four controllers of a model.
 
-    `budget` counts sets of four candidates, each tried on all plants and motions; the first is `start`, the controller
-    from before: int32 (4, 12), by default that of the model's table. `journal` is a file that keeps every cost, with
-    `resume` to go on from. `threads` (0: all cores) changes no bit. `floors` False saves the held-out motions' floors.
-    After an interrupt (KeyboardInterrupt) the best so far comes back at once, with `complete` False and not judged;
-    only before anything was evaluated it goes on up. Raises UserError.
+    `budget` counts sets of four candidates, each tried on all plants and motions. The first set is `start`, the
+    controller from before: int32 (4, 12), by default that of the model's table. `journal` is a file that keeps every
+    cost; with `resume` the tuning goes on from it. `threads` (0: all cores) changes no bit. `floors` False leaves out
+    the held-out motions' floors. After an interrupt (KeyboardInterrupt) the best so far comes back at once, with
+    `complete` False and not judged; if nothing was evaluated yet, the interrupt is raised again. Raises UserError.
     """
     check_request(strategy=strategy, method=method, budget=budget, seed=seed, threads=threads, bounds=bounds)
     usual = paper.BUDGET if method == "paper" else DEFAULT_BUDGET

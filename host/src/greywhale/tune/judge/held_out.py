@@ -1,4 +1,4 @@
-"""Motions that nothing was tuned on: the paper's steps and multi-steps, and a human-like motion of another seed.
+"""Motions on which nothing was tuned: the paper's steps and multi-steps, and a human-like motion of another seed.
 
 The measures run from the moment the motors go on, as a log's do: WAIT_S of soft start and rest, then the motion.
 """
@@ -25,15 +25,15 @@ Floats = npt.NDArray[np.float64]
 Controllers = npt.NDArray[np.int32]
 
 WAIT_S = 1.5
-SEED = 2001  # of reaches that nobody plays elsewhere
+SEED = 2001  # of reaches that are played nowhere else
 EVERY = 2  # ticks between the rows of the traces
 
 
 @dataclass(frozen=True)
 class HeldOut:
-    """One motion that nothing was tuned on, in the bench's own arithmetic, on the estimated plant, with sensor noise.
+    """One motion on which nothing was tuned, in the bench's own arithmetic, on the estimated plant, with sensor noise.
 
-    `floor` is what any controller could reach at that supply, None where it was not computed.
+    `floor` is the least error that any controller could reach at that supply, None where it was not computed.
     """
 
     name: str
@@ -71,7 +71,7 @@ class HeldOut:
 
 
 def motions(low: Floats, high: Floats) -> dict[str, Trajectory]:
-    """By name, within the range of the joints."""
+    """Steps, multi-steps and reaches by name, within the range of the joints."""
     return {
         "steps": within(steps(), low, high),
         "multi-steps": within(multi_steps(), low, high),
@@ -88,7 +88,7 @@ def judge_held_out(
     threads: int = 0,
     floors: bool = True,
 ) -> tuple[HeldOut, ...]:
-    """Both controllers (4, 12) on one plant (60,), in the bench's own arithmetic and with sensor noise."""
+    """Evaluate both controllers (4, 12) on one plant (60,), in the bench's own arithmetic and with sensor noise."""
     judged = []
     for name, motion in motions(*reach(arm, table, plant[None])).items():
         experiment = Experiment(motion, arm, table=table, seed=7, wait_s=WAIT_S)
