@@ -1,6 +1,6 @@
 """The one exception that carries a sentence for the person at the keyboard.
 
-Library code raises it, only the command line prints it: what went wrong, where, which value, and what to do about it.
+Library code raises it, and only the command line prints it: what went wrong, where, which value, and what to do.
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ Floats = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Body:
-    """The eleven constants of the links, as the first columns of a plant have them (kg m², and N m for gravity)."""
+    """The eleven constants of the links, as in the first columns of a plant (kg m², and N m for gravity)."""
 
     yaw: float
     ixx1: float
@@ -28,7 +28,7 @@ class Body:
 
     @classmethod
     def of(cls, plant: Floats) -> Body:
-        """Of a plant (60,)."""
+        """The constants of a plant (60,)."""
         return cls(*(float(value) for value in plant[:11]))
 
     def mass_matrix(self, q: Floats) -> Floats:

@@ -15,21 +15,23 @@ from greywhale.loop.controllers import controllers_of
 from greywhale.table import ParameterTable
 
 Floats = npt.NDArray[np.float64]
-EVERY = 16  # ticks from row to row of the traces
+EVERY = 16  # ticks between rows of the traces
 ROW_S = EVERY / 1000
 STEPS_PER_TICK = 1
-# The arm stands at the first pose for so long before the motion (ticks).
+# The arm stands at the first pose for so many ticks before the motion.
 STILL_TICKS = 304
 
 
 @dataclass(frozen=True)
 class Tried:
-    """`angles` (plants, rows, 4) rad, 16 ms apart, `lag` (plants,) rad: the most that a joint is behind for 50 ms."""
+    """A motion tried: `angles` (plants, rows, 4) rad, 16 ms apart. `lag` (plants,) rad is the largest delay that a
+    joint keeps for 50 ms.
+    """
 
     angles: Floats
     reference: Floats  # (rows, 4) rad
     lag: Floats
-    outside: Floats  # (plants, 4) rad: how far the angles leave what the reference spans
+    outside: Floats  # (plants, 4) rad: how far the angles leave the range of the reference
 
 
 def try_motion(angles: Floats, table: ParameterTable, plants: Floats, threads: int = 0) -> Tried:

@@ -1,4 +1,4 @@
-"""Which controller a log was recorded with: found by the CRC in its header, never assumed."""
+"""Finds the controller with which a log was recorded, by the CRC in the log's header. It never assumes one."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from greywhale.table import ParameterTable, board_named
 
 
 def table_of(log: Log, given: Sequence[ParameterTable]) -> ParameterTable | None:
-    """The table of this log, on the board of this log, or None where the log does not say and the user did not."""
+    """The table of this log, on its board, or None where neither the log nor the user gives it."""
     found = _found(log, given)
     if found is None or log.origin.board is None:
         return found

@@ -1,4 +1,4 @@
-"""One experiment with the closed loop: what all candidates share, and what comes out for each."""
+"""One experiment with the closed loop: what all candidates share, and a result for each."""
 
 from __future__ import annotations
 
@@ -25,8 +25,9 @@ class Experiment:
     """Leader, sensors and board settings, shared by all candidates; `run` simulates any number of them.
 
     `leader` is a motion, or angles (rad) in every slice of 250 us as float64 (slices, 4). `table` is the parameter
-    table of the board; its controllers are the candidate unless others are given. `noise` False: quiet potentiometers.
-    `weight_s` (ticks,) weighs |e| and |u| in ITAE and ITAU; by default the time since the leader may move.
+    table of the board; its controllers are the candidate unless others are given. With `noise` False the potentiometers
+    are quiet. `weight_s` (ticks,) weighs |e| and |u| in ITAE and ITAU; by default it is the time since the leader may
+    move.
     """
 
     def __init__(
@@ -84,9 +85,9 @@ class Experiment:
     ) -> Result:
         """Simulate a batch: controllers int32 (n, 4, 12), plants float64 (n, 60), or one row of either for all.
 
-        Sixteen candidates at a time in single precision, on `threads` threads (0: one per core); the result does not
-        depend on their number. `every` > 0 keeps angles and duties of every so many ticks. `steps_per_tick` 1, 2 or 4
-        trades speed for accuracy: docs/closed_loop.md has the errors.
+        Sixteen candidates run at a time in single precision, on `threads` threads (0: one per core); the result does
+        not depend on their number. `every` > 0 keeps angles and duties of every so many ticks. `steps_per_tick` 1, 2 or
+        4 trades speed for accuracy: docs/closed_loop.md has the errors.
         """
         if steps_per_tick not in STEPS_PER_TICK:
             raise UserError(f"steps_per_tick is {steps_per_tick}, but it must be 1, 2 or 4.")
@@ -101,7 +102,7 @@ class Experiment:
         threads: int = 0,
         steps_per_slice: int = 1,
     ) -> Result:
-        """The same one by one in double precision, as the bench does it, bit for bit; finer steps give a reference."""
+        """Simulate one by one in double precision, as the bench does, bit for bit; finer steps give a reference."""
         if steps_per_slice < 1:
             raise UserError(f"steps_per_slice is {steps_per_slice}, but it must be 1 or more.")
         return self._run(controllers, plants, every, threads, steps_per_slice, True, "")
