@@ -1,5 +1,6 @@
-"""Arms as rows of numbers, as the arm's equations use them: SI units at the joints' output shafts (docs/closed_loop.md
-says what each is). Columns go by name.
+"""Arms as rows of numbers, in the form that the arm's equations use: SI units at the joints' output shafts.
+
+docs/closed_loop.md explains each column. Columns go by name.
 """
 
 from __future__ import annotations
@@ -53,7 +54,7 @@ def plant_row(parameters: ArmParameters) -> Plants:
 
 
 def check_plants(plants: Plants) -> Plants:
-    """One row or many with numbers that an arm can have; with the first axis added where it was missing."""
+    """Check one row or many with numbers that an arm can have; the first axis is added where it was missing."""
     check_type("plants", plants, np.float64)
     rows = plants[None] if plants.ndim == 1 else plants
     if rows.ndim != 2 or rows.shape[1] != len(PLANT_COLUMNS):
@@ -81,7 +82,7 @@ def check_type(name: str, array: object, wanted: type) -> None:
 
 
 def _marked(rows: Plants, name: str, wrong: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
-    """A mask over all columns from one over the four joints of a column."""
+    """A mask over all columns, from a mask over the four joints of one column."""
     mask = np.zeros(rows.shape, dtype=bool)
     mask[:, columns(name)] = wrong
     return mask

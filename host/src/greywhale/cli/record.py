@@ -1,4 +1,4 @@
-"""`greywhale record`: a log of leader, follower and voltages; on request of a motion that this host leads."""
+"""`greywhale record`: a log of leader, follower and voltages; with --excite, of a motion that this host leads."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from greywhale.excite import Design
 
 RECORDED_S = 10.0
-# Options that say nothing without --excite.
+# Options that mean nothing without --excite.
 _OF_EXCITE = {
     "arm_file": "--arm",
     "ranges": "--range",
@@ -124,7 +124,7 @@ def require_folders(*paths: Path | None) -> None:
 def _plan(
     arm_file: str | None, ranges: tuple[str, ...], seconds: float | None, seed: int | None, budget: int | None
 ) -> Callable[..., Design]:
-    """The design with all that can be refused before a board is asked."""
+    """Make the design, and refuse whatever can be refused before a board is asked."""
     # Scipy and the native simulation take a moment to import.
     from greywhale.excite import BUDGET, SECONDS, check_effort, design, parse_range
     from greywhale.files.arm import load_arm
@@ -144,7 +144,7 @@ def _refuse_without_excite(**given: object) -> None:
 
 
 def told(recording: Recording) -> str:
-    """A recording in a sentence."""
+    """Describe a recording in a sentence."""
     lost = f", {recording.dropped} dropped by the link" if recording.dropped else ""
     waits = f", the board waited {recording.waits} times for this host" if recording.waits else ""
     slow = ""

@@ -1,4 +1,4 @@
-"""`greywhale replay`: the arm led along a motion from a file, and a log of it."""
+"""`greywhale replay`: leads the arm along a motion from a file, and records a log of it."""
 
 from __future__ import annotations
 

@@ -136,7 +136,7 @@ def command(
 
 
 def _bounds(given: tuple[str, ...]) -> dict[str, tuple[float, float]]:
-    """`NAME=LOW..HIGH` as numbers; what the names are and what the firmware can store is checked by the search."""
+    """Read `NAME=LOW..HIGH` as numbers. The search checks the names, and what the firmware can store."""
     found: dict[str, tuple[float, float]] = {}
     for one in given:
         given_name, equals, interval = one.partition("=")
@@ -157,7 +157,7 @@ def _bounds(given: tuple[str, ...]) -> dict[str, tuple[float, float]]:
 def _check_files(
     out: Path, journal: Path, resume: bool, pictures: Path | None, inputs: Sequence[str | Path | None]
 ) -> None:
-    """What is wrong with the files is said before any work, not after it."""
+    """Refuse wrong files before any work, not after it."""
     if not out.parent.is_dir():
         raise UserError(f"{out}: the folder {out.parent} does not exist; create it, or write elsewhere.", BAD_USAGE)
     refuse_inputs(out, *inputs)

@@ -91,7 +91,7 @@ def run(options: DemoOptions, progress: Report | None = None) -> DemoResult:
 
 
 class _Stage:
-    """The bench with what is done on it, told step by step."""
+    """The bench and the steps on it, each reported as it happens."""
 
     def __init__(self, bench: BenchProcess, options: DemoOptions, arm: ArmParameters, report: Report) -> None:
         self._bench = bench
@@ -101,7 +101,7 @@ class _Stage:
         self._base = self._set_supply()
 
     def follow(self, leader: Path, file: str, name: str, controller: Path) -> Run:
-        """One recording of the motion that is shown."""
+        """Record the motion that is shown once."""
         recorded = self._record(leader, file, name, controller)
         return Run(name, recorded, evaluate(recorded.log()))
 
@@ -120,7 +120,7 @@ class _Stage:
         return record_motion(self._bench, leader, self._options.out / f"{file}.csv", controller, told)
 
     def _set_supply(self) -> ParameterTable:
-        """Tell the board the arm's supply, as a person would; the parameters it then has."""
+        """Tell the board the arm's supply, as a person would; return the parameters that it then has."""
         defaults = ParameterTable.defaults(Board.NANO328 if self._options.board == "nano" else Board.MEGA2560)
         table = defaults.with_raw({"supply_mv": round(1000 * self._arm.drive.supply)})
         if table != defaults:

@@ -21,7 +21,7 @@ STEP_S = 1e-3
 FINE_STEP_S = 0.25e-3
 # Windows are compared with the log at this spacing, s; readings that are closer differ in noise only.
 COMPARED_S = 5e-3
-# In so many percent of the spacings between rows no step is longer than that.
+# The longest step holds in so many percent of the spacings between rows; the few longer spacings may exceed it.
 MOST_SPACINGS = 99.0
 # Firmware: from a new sample to its voltage, and the mean age of a tick's four conversions (s).
 ACTUATION_S = 0.3e-3

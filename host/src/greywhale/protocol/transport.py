@@ -1,4 +1,4 @@
-"""The serial port as bytes: opened exclusively at 1 Mbaud; whatever happens to it is one sentence."""
+"""The serial port as bytes: opened exclusively at 1 Mbaud; every failure of it becomes one sentence."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Transport:
         self._serial = open_serial(port, BAUD, _READ_WAIT_S)
 
     def read(self) -> bytes:
-        """What has arrived; waits a moment when nothing has, and may then return nothing."""
+        """Return what has arrived; wait a moment when nothing has, and then return perhaps nothing."""
         try:
             return bytes(self._serial.read(self._serial.in_waiting or 1))
         except (OSError, TypeError) as error:  # pyserial reads from a port closed under it as a TypeError
@@ -51,7 +51,7 @@ class Transport:
 
 
 def open_serial(port: str, baud: int, read_wait_s: float) -> serial.Serial:
-    """The port, for this process alone."""
+    """Open the port for this process alone."""
     if not os.path.exists(port):
         raise UserError(f"{port}: there is no such port; `greywhale ports` lists those there are.")
     try:
