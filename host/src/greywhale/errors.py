@@ -18,7 +18,7 @@ class UserError(Exception):
         self.exit_code = exit_code
 
 
-def because(error: OSError) -> str:
+def os_reason(error: OSError) -> str:
     """The operating system's own reason, in lower case, ready to stand inside a sentence."""
     reason = error.strerror or str(error) or type(error).__name__
     return reason[:1].lower() + reason[1:]

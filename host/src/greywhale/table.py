@@ -73,7 +73,7 @@ class ParameterTable:
         """All raw values."""
         return {one.name: raw for one, raw in zip(schema.PARAMETERS, self.raw, strict=True)}
 
-    def changed(self) -> dict[str, int]:
+    def changes(self) -> dict[str, int]:
         """The raw values that differ from the firmware's defaults, by name."""
         return {one.name: raw for one, raw in zip(schema.PARAMETERS, self.raw, strict=True) if raw != one.default}
 
@@ -94,16 +94,16 @@ class ParameterTable:
             }
         )
 
-    def on(self, board: Board) -> Self:
+    def for_board(self, board: Board) -> Self:
         """The same values on another board."""
         return replace(self, board=board)
 
-    def named(self, name: str) -> Self:
+    def with_name(self, name: str) -> Self:
         """The same table under another name."""
         return replace(self, name=name)
 
 
-def board_named(key: str | None) -> Board:
+def find_board(key: str | None) -> Board:
     """The board that a file names by its key, such as nano328; UNKNOWN where it names none, or an unknown one."""
     return next((board for board in Board if board.key == key), Board.UNKNOWN)
 

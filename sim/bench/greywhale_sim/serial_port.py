@@ -17,7 +17,7 @@ import tty
 from collections.abc import Sequence
 from pathlib import Path
 
-from greywhale.errors import UserError, because
+from greywhale.errors import UserError, os_reason
 
 IN_OPEN = 0x20
 IN_CLOSE = 0x08 | 0x10
@@ -122,7 +122,7 @@ class SerialPort:
             partial.symlink_to(self.path)
             partial.replace(link)
         except OSError as error:
-            raise UserError(f"{link}: the link to the port cannot be made: {because(error)}.") from None
+            raise UserError(f"{link}: the link to the port cannot be made: {os_reason(error)}.") from None
 
 
 def _watch(path: str) -> int:

@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from types import FrameType
 
-from greywhale.errors import UserError, because
+from greywhale.errors import UserError, os_reason
 from greywhale.protocol.ports import bench_directory
 from greywhale_sim import commands
 from greywhale_sim.assemble import BenchOptions, build_bench, wiring_of
@@ -92,7 +92,7 @@ def _links(options: ServeOptions) -> list[Path]:
     try:
         directory.mkdir(mode=0o700, exist_ok=True)
     except OSError as error:
-        raise UserError(f"{directory}: cannot be made: {because(error)}.") from None
+        raise UserError(f"{directory}: cannot be made: {os_reason(error)}.") from None
     announced = directory / f"{options.board}-{os.getpid()}"
     return [announced] if options.link is None else [announced, options.link]
 

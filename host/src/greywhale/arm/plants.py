@@ -65,9 +65,9 @@ def check_plants(plants: Plants) -> Plants:
     _refuse(rows, np.isin(named, _NOT_NEGATIVE) & (rows < 0.0), "it must not be negative")
     for name, below in (("breakaway", "coulomb"), ("stop_max", "stop_min")):
         lower = rows[:, columns(name)] < rows[:, columns(below)]
-        _refuse(rows, _marked(rows, name, lower), f"it must not be below {below}")
+        _refuse(rows, _mark_column(rows, name, lower), f"it must not be below {below}")
     toothless = (rows[:, columns("stiffness")] == 0.0) & (rows[:, columns("half_gap")] > 0.0)
-    _refuse(rows, _marked(rows, "stiffness", toothless), "a gear with a gap needs teeth with some")
+    _refuse(rows, _mark_column(rows, "stiffness", toothless), "a gear with a gap needs teeth with some")
     return np.ascontiguousarray(rows)
 
 
@@ -81,7 +81,7 @@ def check_type(name: str, array: object, wanted: type) -> None:
         )
 
 
-def _marked(rows: Plants, name: str, wrong: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+def _mark_column(rows: Plants, name: str, wrong: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
     """A mask over all columns, from a mask over the four joints of one column."""
     mask = np.zeros(rows.shape, dtype=bool)
     mask[:, columns(name)] = wrong

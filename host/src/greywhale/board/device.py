@@ -169,7 +169,7 @@ class Device:
 
     def stop(self) -> None:
         """Turn the motors off, confirmed by the board. A further Ctrl-C does not hold the request back."""
-        with _ctrl_c_waits():
+        with _hold_ctrl_c():
             try:
                 self.ask(schema.StopRequest())
             except UserError as error:
@@ -263,9 +263,9 @@ class Device:
                     raise self._silent(patience_s) from None
         self._started = None
         self._greeted = True
-        return self._same_language(payload)
+        return self._check_language(payload)
 
-    def _same_language(self, payload: bytes) -> schema.HelloReply:
+    def _check_language(self, payload: bytes) -> schema.HelloReply:
         """Return the hello if its sender was built from the same declarations as this host."""
         remedy = f"flash the firmware that belongs to this host with `greywhale flash --port {self.port}`."
         if not payload or payload[0] != schema.PROTOCOL:
@@ -302,7 +302,7 @@ def version(hello: schema.HelloReply) -> str:
 
 
 @contextlib.contextmanager
-def _ctrl_c_waits() -> Iterator[None]:
+def _hold_ctrl_c() -> Iterator[None]:
     """Hold Ctrl-C back for the second that a stop takes at most (only the main thread receives it)."""
     if threading.current_thread() is not threading.main_thread():
         yield

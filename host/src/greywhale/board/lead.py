@@ -120,7 +120,7 @@ class Leading:
     @property
     def done(self) -> bool:
         """Whether all points have been played."""
-        return self._made_all and self._taken == len(self._points) and self._left(self._last_tick) <= -2
+        return self._made_all and self._taken == len(self._points) and self._points_left(self._last_tick) <= -2
 
     def keep_ahead(self, tick: int, sample: schema.Sample) -> None:
         """Read the board's answers and send as many points as it has room for; `tick` counts the board's ticks from
@@ -134,15 +134,15 @@ class Leading:
         self._watch(sample)
         if self._taken < self._sent and tick - self._since > _PATIENCE_TICKS:
             self._sent, self._since = self._taken, tick
-        room = min(_AT_ONCE, ROOM - max(0, self._left(tick)) - (self._sent - self._taken))
-        while room > 0 and self._make(self._sent + 1):
+        room = min(_AT_ONCE, ROOM - max(0, self._points_left(tick)) - (self._sent - self._taken))
+        while room > 0 and self._make_points(self._sent + 1):
             if self._sent == self._taken:
                 self._since = tick
             self._device.lead_point((self._first + self._sent) % 256, self._points[self._sent])
             self._sent += 1
             room -= 1
 
-    def _left(self, tick: int) -> int:
+    def _points_left(self, tick: int) -> int:
         """How many points the board has yet to play, by its last answer and the time since."""
         return self._waiting - (tick - self._heard) // POINT_TICKS
 
@@ -172,7 +172,7 @@ class Leading:
         far = max(abs(a - b) for a, b in zip(sample.leader, sample.follower, strict=True)) * ANGLE_LSB / self._limit
         self._wanted = min(1.0, max(0.0, (_STOPS - far) / (_STOPS - _SLOWS)))
 
-    def _make(self, count: int) -> bool:
+    def _make_points(self, count: int) -> bool:
         """Make points until there are `count`; False when the plan ends before."""
         end = len(self._plan.angles) - 1
         while len(self._points) < count and not self._made_all:

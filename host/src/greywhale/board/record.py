@@ -92,7 +92,7 @@ def record(
         received = stream(device, every)
         if enable:
             with device.enabled(max(LEASE_MS, 20 * every)):
-                received = _following(device, received, report)
+                received = _await_following(device, received, report)
                 duration = _write(device, log, received, length, True, report)
         else:
             duration = _write(device, log, received, length, False, report)
@@ -123,7 +123,7 @@ def record_led(
             pose = np.array(begun.reference) * ANGLE_LSB
             plan = Plan.of(motion, pose, limits, REST_S)
             leading = Leading(device, begun, plan, running.physical("tracking_limit"))
-            received = _following(device, received, report, leading)
+            received = _await_following(device, received, report, leading)
             duration = _write_led(device, log, received, leading, report)
     device.telemetry(0)
     return Recording(Path(path), log.rows, log.dropped, duration, leading.slowest, leading.starved)
@@ -163,7 +163,7 @@ def _origin(device: Device, period_ms: int, every: int) -> Origin:
     return Origin(device.firmware_version, device.hello.board.key, device.hello.param_crc, period_ms, every)
 
 
-def _following(
+def _await_following(
     device: Device, received: Iterator[Received], report: Progress, leading: Leading | None = None
 ) -> Iterator[Received]:
     """Wait until the soft start is over, and yield the samples from then on."""

@@ -51,7 +51,7 @@ def read_parameter(device: Device, name: str) -> int:
 
 def read_parameters(device: Device, progress: Progress | None = None) -> ParameterTable:
     """Read the running set; its CRC proves that it is whole."""
-    report = progress or _silent
+    report = progress or _report_nothing
     values = []
     for parameter in schema.PARAMETERS:
         report("reading parameters", parameter.index / len(schema.PARAMETERS))
@@ -82,7 +82,7 @@ def change_parameters(device: Device, changes: Mapping[str, int], progress: Prog
 
 def upload_set(device: Device, table: ParameterTable, progress: Progress | None = None) -> None:
     """Stage, apply and save a whole set, then check that the board runs it."""
-    report = progress or _silent
+    report = progress or _report_nothing
     crc = table.crc
     for index, value in enumerate(table.raw):
         report("uploading parameters", index / len(table.raw))
@@ -136,5 +136,5 @@ def _wait_until_saved(device: Device) -> None:
         time.sleep(_POLL_S)
 
 
-def _silent(what: str, fraction: float) -> None:
+def _report_nothing(what: str, fraction: float) -> None:
     """Report nothing: nobody looks."""

@@ -17,7 +17,7 @@ from typing import NoReturn
 import click
 
 from greywhale.cli.verbs import greywhale
-from greywhale.errors import BAD_USAGE, FAILED, UserError, because
+from greywhale.errors import BAD_USAGE, FAILED, UserError, os_reason
 
 INTERRUPTED = 130
 
@@ -52,7 +52,7 @@ def run(arguments: Sequence[str]) -> int:
         return FAILED
     except OSError as error:
         named = f"{error.filename}: " if error.filename else ""
-        return _failed(f"{named}{because(error)}.", FAILED, as_json)
+        return _failed(f"{named}{os_reason(error)}.", FAILED, as_json)
 
 
 def _refuse_empty(arguments: Sequence[str]) -> None:

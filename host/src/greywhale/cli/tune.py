@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 
 from greywhale.cli.output import json_option, progress, show
-from greywhale.errors import BAD_USAGE, UserError, because
+from greywhale.errors import BAD_USAGE, UserError, os_reason
 from greywhale.files import controller as controller_file
 from greywhale.formats.whole import refuse_inputs, temporary_beside
 from greywhale.loop import controller_row
@@ -171,7 +171,7 @@ def _check_files(
         try:
             pictures.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise UserError(f"{pictures}: cannot be made: {because(error)}.", BAD_USAGE) from None
+            raise UserError(f"{pictures}: cannot be made: {os_reason(error)}.", BAD_USAGE) from None
         _refuse_unwritable(pictures / "sets.png")
 
 
@@ -179,6 +179,6 @@ def _refuse_unwritable(path: Path) -> None:
     try:
         descriptor, name = temporary_beside(path)
     except OSError as error:
-        raise UserError(f"{path}: cannot be written: {because(error)}.", BAD_USAGE) from None
+        raise UserError(f"{path}: cannot be written: {os_reason(error)}.", BAD_USAGE) from None
     os.close(descriptor)
     os.unlink(name)

@@ -68,4 +68,4 @@ def practise(
 
 def tables(base: ParameterTable) -> list[ParameterTable]:
     """The parameters of the practice's logs: its controllers on a board that otherwise has `base`."""
-    return [controller_file.load(paper_table(name)).table(base).named(name) for name in (UNTUNED, OTHER)]
+    return [controller_file.load(paper_table(name)).table(base).with_name(name) for name in (UNTUNED, OTHER)]

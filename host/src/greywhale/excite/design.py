@@ -21,9 +21,9 @@ from greywhale.errors import BAD_USAGE, UserError
 from greywhale.excite.information import information, natural_sizes, prior
 from greywhale.excite.limits import MARGIN_RAD, Limits, family, limits_of
 from greywhale.excite.multisine import LONGEST_S, SHORTEST_S, Shape
-from greywhale.excite.trial import ROW_S, Tried, try_motion
+from greywhale.excite.trial import ROW_S, Trial, try_motion
 from greywhale.firmware import JOINTS
-from greywhale.identify.samples import searched
+from greywhale.identify.samples import read_search
 from greywhale.identify.space import KINDS, MOTOR, Parameter, Space
 from greywhale.identify.uncertainty import OPEN, OPEN_FACTOR, OPEN_LOG
 from greywhale.loop import plant_row
@@ -67,7 +67,7 @@ class Problem:
         limits = limits_of(arm, table, pose, ranges)
         facts = arm.identification
         if facts is not None and "covariance" in facts:
-            space, _, known_covariance = searched(arm)
+            space, _, known_covariance = read_search(arm)
             covariance: Floats | None = known_covariance
             nominal = plant_row(arm)
         else:
@@ -85,7 +85,7 @@ class Problem:
         log_det = float(np.linalg.slogdet(told * np.outer(size, size))[1])
         return Judgement(log_det, np.sqrt(np.diag(np.linalg.inv(told))), tried, self._excess(tried))
 
-    def _excess(self, tried: Tried) -> float:
+    def _excess(self, tried: Trial) -> float:
         """The share by which the worst arm of the family exceeds its allowed lag or range; 0 where none does."""
         beyond = np.maximum(self.limits.low - tried.angles.min(axis=1), tried.angles.max(axis=1) - self.limits.high)
         lag, overshoot = tried.lag.max() / self.limits.lag, beyond.max() / MARGIN_RAD
@@ -98,7 +98,7 @@ class Judgement:
 
     log_det: float
     deviations: Floats
-    tried: Tried = field(repr=False)
+    tried: Trial = field(repr=False)
     excess: float
 
     @property

@@ -61,7 +61,7 @@ class Shape:
     def angles(self, numbers: Floats) -> Floats:
         """(points, 4) rad, 16 ms apart."""
         numbers = np.clip(numbers, -1.0, 1.0).reshape(2, JOINTS, SINES)
-        fade, time_s = self._fade(self.time_s), self._played
+        fade, time_s = self._fade(self.time_s), self._played_time
         weights = np.exp(SPREAD * numbers[0]) / self.frequencies
         phases = np.pi * numbers[1]
         angles = np.zeros((len(fade), JOINTS))
@@ -72,11 +72,11 @@ class Shape:
             stretched = (wave - wave.min()) / np.ptp(wave)
             within = limits.low[joint] + (limits.high[joint] - limits.low[joint]) * stretched
             way = fade * (within - limits.pose[joint])
-            angles[:, joint] = limits.pose[joint] + way * self._calm(way, joint)
+            angles[:, joint] = limits.pose[joint] + way * self._shrink_factor(way, joint)
         return angles
 
     @property
-    def _played(self) -> Floats:
+    def _played_time(self) -> Floats:
         """Time on the multi-sine's own clock, which stands still in the pauses, (points,) s."""
         time_s = self.time_s
         pace = np.ones(len(time_s))
@@ -94,7 +94,7 @@ class Shape:
         fade_s = min(FADE_S, FADE_SHARE * self.seconds)
         return minimum_jerk((time_s - REST_S) / fade_s) * minimum_jerk((self.seconds - REST_S - time_s) / fade_s)
 
-    def _calm(self, way: Floats, joint: int) -> float:
+    def _shrink_factor(self, way: Floats, joint: int) -> float:
         """The factor, at most 1, that keeps speed and acceleration."""
         speed = float(np.abs(np.diff(way)).max()) / POINT_S
         acceleration = float(np.abs(np.diff(way, 2)).max()) / POINT_S**2

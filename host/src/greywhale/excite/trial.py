@@ -23,7 +23,7 @@ STILL_TICKS = 304
 
 
 @dataclass(frozen=True)
-class Tried:
+class Trial:
     """A motion tried: `angles` (plants, rows, 4) rad, 16 ms apart. `lag` (plants,) rad is the largest delay that a
     joint keeps for 50 ms.
     """
@@ -34,7 +34,7 @@ class Tried:
     outside: Floats  # (plants, 4) rad: how far the angles leave the range of the reference
 
 
-def try_motion(angles: Floats, table: ParameterTable, plants: Floats, threads: int = 0) -> Tried:
+def try_motion(angles: Floats, table: ParameterTable, plants: Floats, threads: int = 0) -> Trial:
     """Play points (rows, 4) to arms (n, 60) with the board's parameter table."""
     reference = np.vstack([np.tile(angles[:1], (STILL_TICKS, 1)), board_reference(angles)])
     loop = ClosedLoop(
@@ -60,4 +60,4 @@ def try_motion(angles: Floats, table: ParameterTable, plants: Floats, threads: i
     behind = np.abs(shown - wanted[None]).max(axis=2)
     held = np.lib.stride_tricks.sliding_window_view(behind, round(0.05 / ROW_S), axis=1).min(axis=2)
     outside = np.maximum(shown.max(axis=1) - wanted.max(axis=0), wanted.min(axis=0) - shown.min(axis=1))
-    return Tried(shown, wanted, held.max(axis=1), np.maximum(outside, 0.0))
+    return Trial(shown, wanted, held.max(axis=1), np.maximum(outside, 0.0))

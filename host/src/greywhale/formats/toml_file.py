@@ -15,7 +15,7 @@ from typing import Any, NamedTuple, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from greywhale.errors import UserError, because
+from greywhale.errors import UserError, os_reason
 from greywhale.formats.whole import refuse_devices
 
 Model = TypeVar("Model", bound=BaseModel)
@@ -45,7 +45,7 @@ def read(path: str | Path) -> dict[str, Any]:
         refuse_devices(path)
         text = Path(path).read_text(encoding="utf-8")
     except OSError as error:
-        raise UserError(f"{path}: cannot be read: {because(error)}.") from None
+        raise UserError(f"{path}: cannot be read: {os_reason(error)}.") from None
     except UnicodeDecodeError as error:
         raise UserError(f"{path}: byte {error.start} is not UTF-8; TOML files must be UTF-8 text.") from None
     return _parse(text, str(path))

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import IO
 
-from greywhale.errors import BAD_USAGE, UserError, because
+from greywhale.errors import BAD_USAGE, UserError, os_reason
 
 
 def refuse_devices(path: str | Path) -> None:
@@ -50,14 +50,14 @@ def write_whole(path: str | Path, write: Callable[[IO[bytes]], None]) -> None:
     try:
         descriptor, name = temporary_beside(target)
     except OSError as error:
-        raise UserError(f"{path}: cannot be written: {because(error)}.") from None
+        raise UserError(f"{path}: cannot be written: {os_reason(error)}.") from None
     try:
         with open(descriptor, "wb") as file:
             write(file)
         os.replace(name, target)
     except OSError as error:
         _discard(name)
-        raise UserError(f"{path}: cannot be written: {because(error)}.") from None
+        raise UserError(f"{path}: cannot be written: {os_reason(error)}.") from None
     except BaseException:
         _discard(name)
         raise

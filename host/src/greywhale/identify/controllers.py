@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from greywhale.errors import UserError
 from greywhale.files.log import Log
-from greywhale.table import ParameterTable, board_named
+from greywhale.table import ParameterTable, find_board
 
 
 def table_of(log: Log, given: Sequence[ParameterTable]) -> ParameterTable | None:
@@ -14,7 +14,7 @@ def table_of(log: Log, given: Sequence[ParameterTable]) -> ParameterTable | None
     found = _found(log, given)
     if found is None or log.origin.board is None:
         return found
-    return found.on(board_named(log.origin.board))
+    return found.for_board(find_board(log.origin.board))
 
 
 def _found(log: Log, given: Sequence[ParameterTable]) -> ParameterTable | None:

@@ -117,7 +117,7 @@ def least_squares_fit(
     return Fit(space, found.x, float(found.cost), found.fun, found.jac, simulations)
 
 
-def differing(seen: Sequence[tuple[float, Floats]], count: int) -> list[Floats]:
+def pick_different(seen: Sequence[tuple[float, Floats]], count: int) -> list[Floats]:
     """The best `count` of points with their costs that differ from each other by more than half a unit somewhere."""
     kept: list[Floats] = []
     for _, point in sorted(seen, key=lambda one: one[0]):

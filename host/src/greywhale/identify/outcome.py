@@ -90,7 +90,7 @@ class Outcome:
             facts["covariance"] = self.found.covariance.tolist()
         table = next((one.table for one in self.subjects if one.role == FIT and one.table is not None), None)
         if table is not None:
-            facts["parameters"] = table.changed()
+            facts["parameters"] = table.changes()
         board = next((one.log.log.origin.board for one in self.subjects if one.role == FIT), None)
         if board is not None:
             facts["board"] = board

@@ -31,7 +31,7 @@ def sampled_plants(arm: ArmParameters, count: int, seed: int = 0) -> Floats:
     estimate = plant_row(arm)[None]
     if count == 1:
         return estimate
-    space, x, covariance = searched(arm)
+    space, x, covariance = read_search(arm)
     scale = np.sqrt(np.diag(covariance))
     # A root that is the same on every computer: eigenvectors have free signs, a Cholesky factor does not.
     root = np.linalg.cholesky(covariance / np.outer(scale, scale) + 1e-9 * np.eye(len(x))) * scale[:, None]
@@ -42,7 +42,7 @@ def sampled_plants(arm: ArmParameters, count: int, seed: int = 0) -> Floats:
     return np.concatenate([estimate, space.plants(points)])
 
 
-def searched(arm: ArmParameters) -> tuple[Space, Floats, Floats]:
+def read_search(arm: ArmParameters) -> tuple[Space, Floats, Floats]:
     """The search that [identification] states: space, point (n,) and covariance (n, n) in searched numbers.
 
     Raises UserError where it states none, or names an unknown number.
@@ -67,7 +67,7 @@ def searched(arm: ArmParameters) -> tuple[Space, Floats, Floats]:
 
 def _parameter(arm: ArmParameters, name: str) -> Parameter:
     try:
-        return Parameter.named(name)
+        return Parameter.from_name(name)
     except KeyError:
         raise UserError(
             f"{arm.name}: [identification] names the parameter {name!r}, which greywhale does not know; identify again."

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from greywhale.arm import ArmParameters
 from greywhale.identify.closed_loop import Loop, LoopResidual
 from greywhale.identify.data import FINE_STEP_S, Prepared
-from greywhale.identify.fit import Pattern, differing, least_squares_fit
+from greywhale.identify.fit import Pattern, least_squares_fit, pick_different
 from greywhale.identify.space import COUPLED, MOTOR, Space
 from greywhale.identify.steps import WindowFit
 from greywhale.identify.windows import WindowResidual
@@ -114,15 +114,15 @@ class Search:
         self._held = WindowResidual(self.logs, self.arm, self.joints, True)
 
     def run(self) -> None:
-        self._consider(self._motors())
-        self._consider(self._with_friction())
+        self._consider(self._fit_motors())
+        self._consider(self._fit_friction())
         # A group that did not help before backlash was known may help with it.
         for step, number in enumerate((2, 3, 2, 4)):
             self.report("choosing the model's order", step / 4)
             self._consider_order(number)
         if self.loops:
             self._consider_closed()
-        self._whole()
+        self._fit_whole()
 
     def _consider_order(self, number: int) -> None:
         best = self.best
@@ -132,12 +132,12 @@ class Search:
         # Without Coulomb friction there is no friction at rest; and an order that is already there need not be tried.
         if added[0] in kinds or (order == "Stribeck friction" and "coulomb" not in kinds):
             return
-        candidate = self._with(best, number)
+        candidate = self._extend(best, number)
         if order == "Stribeck friction" and "gap" in kinds:
             candidate = replace(candidate, order=f"{order} with {best.order}")
         elif number == 2 and any(one.order == order for one in self.tried):
             return
-        self._consider(self._settled(self._fitted, candidate))
+        self._consider(self._settle(self._fitted, candidate))
 
     def _consider(self, candidate: Candidate) -> None:
         error = self._error(candidate)
@@ -155,24 +155,24 @@ class Search:
         self._held.settle(candidate.plant, candidate.zero)
         return float(np.mean(np.log1p(self._held.misfit(candidate.plant, candidate.zero))))
 
-    def _motors(self) -> Candidate:
+    def _fit_motors(self) -> Candidate:
         """Motors alone, starting from the user's values."""
         space = Space.of(self.arm, MOTOR, self.joints)
-        return self._refined(self._some_windows(), Candidate(space, space.start(), ORDERS[0][0]))
+        return self._refine(self._some_windows(), Candidate(space, space.start(), ORDERS[0][0]))
 
-    def _with_friction(self) -> Candidate:
+    def _fit_friction(self) -> Candidate:
         """Global search, then least squares from several points; the best by the fitted data."""
         space = Space.of(self.arm, (*MOTOR, "coulomb"), self.joints)
         motors = self.tried[0]
-        starts = [space.start(), space.moved(motors.x, motors.space), *self._global(space)]
+        starts = [space.start(), space.translate(motors.x, motors.space), *self._search_globally(space)]
         residual = self._some_windows()
         fits = []
         for number, point in enumerate(starts):
             self.report("least squares from several starts", number / len(starts))
             fits.append(self._fit_windows(residual, space, point, WINDOW_STEPS))
-        return self._refined(self._fitted, Candidate(space, self._mixed(self._fitted, space, fits), ORDERS[1][0]))
+        return self._refine(self._fitted, Candidate(space, self._mix_blocks(self._fitted, space, fits), ORDERS[1][0]))
 
-    def _mixed(self, windows: WindowResidual, space: Space, fits: Sequence[Floats]) -> Floats:
+    def _mix_blocks(self, windows: WindowResidual, space: Space, fits: Sequence[Floats]) -> Floats:
         """For each group of joints that feel each other, the numbers of the fit that is best for them: others may be
         stuck.
         """
@@ -184,7 +184,7 @@ class Search:
             mixed[mine] = best[mine]
         return mixed
 
-    def _global(self, space: Space) -> list[Floats]:
+    def _search_globally(self, space: Space) -> list[Floats]:
         """The best points of GWO-WOA that differ from each other."""
         count = WindowResidual(self.logs, self.arm, self.joints).windows
         residual = WindowResidual(self.logs, self.arm, self.joints, False, max(1, count // GLOBAL_WINDOWS))
@@ -203,27 +203,27 @@ class Search:
                 self.simulated += len(points) * residual.seconds
                 self.globally += len(points)
                 self.report("global search", self.globally / GLOBAL_EVALUATIONS)
-        return differing(seen, STARTS)
+        return pick_different(seen, STARTS)
 
-    def _with(self, candidate: Candidate, number: int) -> Candidate:
+    def _extend(self, candidate: Candidate, number: int) -> Candidate:
         """The same model with the quantities of the next order at their usual start."""
         order, added = ORDERS[number]
         kinds = dict.fromkeys(parameter.kind for parameter in candidate.space.parameters)
         space = Space.of(self.arm, (*kinds, *added), self.joints)
-        return Candidate(space, space.moved(candidate.x, candidate.space), order)
+        return Candidate(space, space.translate(candidate.x, candidate.space), order)
 
-    def _refined(self, windows: WindowResidual, candidate: Candidate, steps: int = WINDOW_STEPS) -> Candidate:
+    def _refine(self, windows: WindowResidual, candidate: Candidate, steps: int = WINDOW_STEPS) -> Candidate:
         return replace(candidate, x=self._fit_windows(windows, candidate.space, candidate.x, steps))
 
-    def _settled(self, windows: WindowResidual, candidate: Candidate) -> Candidate:
+    def _settle(self, windows: WindowResidual, candidate: Candidate) -> Candidate:
         """Least squares and the choice of where each window starts in the gaps, in turns until that choice no longer
         changes.
         """
-        found = self._refined(windows, candidate)
+        found = self._refine(windows, candidate)
         for _ in range(SETTLINGS):
             if not windows.settle(found.plant, found.zero):
                 break
-            found = self._refined(windows, found, SETTLED_STEPS)
+            found = self._refine(windows, found, SETTLED_STEPS)
         return found
 
     def _consider_closed(self) -> None:
@@ -232,12 +232,12 @@ class Search:
         """
         assert self.best is not None
         self.report("comparing with the closed loop", 0.0)
-        closed = self._closed(self._fitted, self.best, whole=False)
+        closed = self._fit_closed(self._fitted, self.best, whole=False)
         if self._closed_error(closed) < (1.0 - WORTH_CLOSED) * self._closed_error(self.best):
             self.best = closed
 
-    def _closed(self, windows: WindowResidual, candidate: Candidate, whole: bool) -> Candidate:
-        both = Both(windows, LoopResidual(self._loops_of(candidate), self.joints, whole), candidate)
+    def _fit_closed(self, windows: WindowResidual, candidate: Candidate, whole: bool) -> Candidate:
+        both = WindowsAndLoop(windows, LoopResidual(self._loops_of(candidate), self.joints, whole), candidate)
         x = self._fit(both, candidate.space, candidate.x, LOOP_STEPS, LOOP_STEP_SCALE)
         return replace(candidate, x=x, closed=True)
 
@@ -253,31 +253,31 @@ class Search:
         zero = candidate.zero
         return [loop.with_zero(zero) for loop in self.loops] if zero.any() else self.loops
 
-    def _whole(self) -> None:
+    def _fit_whole(self) -> None:
         """Fit the chosen order once more, on all data."""
         assert self.best is not None
         self.report("fitting the chosen model to the whole log", 0.0)
-        self.best = self._unstuck(self.best)
+        self.best = self._retry_optima(self.best)
         windows = WindowResidual(self.logs, self.arm, self.joints, longest_step=FINE_STEP_S)
         windows.settle(self.best.plant, self.best.zero)
-        found = self._settled(windows, self.best)
-        self.best = self._closed(windows, found, whole=True) if self.best.closed else found
+        found = self._settle(windows, self.best)
+        self.best = self._fit_closed(windows, found, whole=True) if self.best.closed else found
         self.complete = True
 
-    def _unstuck(self, candidate: Candidate) -> Candidate:
+    def _retry_optima(self, candidate: Candidate) -> Candidate:
         """Try another optimum again: the motion that tells a joint's optima apart may be in the held-out part."""
         windows = WindowResidual(self.logs, self.arm, self.joints)
         space = Space.of(self.arm, (*MOTOR, "coulomb"), self.joints)
-        starts = (space.start(), space.moved(candidate.x, candidate.space))
-        simple = self._mixed(windows, space, [self._fit_windows(windows, space, x, WINDOW_STEPS) for x in starts])
+        starts = (space.start(), space.translate(candidate.x, candidate.space))
+        simple = self._mix_blocks(windows, space, [self._fit_windows(windows, space, x, WINDOW_STEPS) for x in starts])
         names = dict(zip(space.names, simple, strict=True))
         other = np.array([names.get(name, x) for name, x in zip(candidate.space.names, candidate.x, strict=True)])
         # A joint that feels no gravity hardly shows its alpha: a difference in alpha alone is no other optimum.
         told = np.array([parameter.kind != "alpha" for parameter in candidate.space.parameters])
         if np.max(np.abs(other - candidate.x)[told]) < ELSEWHERE:
             return candidate
-        tried = [self._settled(windows, replace(candidate, x=x)).x for x in (candidate.x, other)]
-        return replace(candidate, x=self._mixed(windows, candidate.space, tried))
+        tried = [self._settle(windows, replace(candidate, x=x)).x for x in (candidate.x, other)]
+        return replace(candidate, x=self._mix_blocks(windows, candidate.space, tried))
 
     def _fit_windows(self, windows: WindowResidual, space: Space, start: Floats, steps: int) -> Floats:
         """Run least squares on windows, and count what was simulated."""
@@ -302,7 +302,7 @@ class Search:
         return found.x
 
 
-class Both:
+class WindowsAndLoop:
     """Windows and closed loop in one residual, each in standard deviations of the error that the model cannot avoid."""
 
     def __init__(self, windows: WindowResidual, loops: LoopResidual, candidate: Candidate) -> None:

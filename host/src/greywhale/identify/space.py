@@ -87,7 +87,7 @@ class Parameter:
         return f"joint{self.joint}.{self.kind}"
 
     @classmethod
-    def named(cls, name: str) -> Self:
+    def from_name(cls, name: str) -> Self:
         """The searched number of a name such as "joint2.coulomb"; KeyError where there is none."""
         joint, _, kind = name.partition(".")
         if kind not in KINDS:
@@ -137,7 +137,7 @@ class Space:
         """The values in physical units."""
         return np.array([self.kind(index).from_search(float(number)) for index, number in enumerate(x)])
 
-    def moved(self, x: Floats, source: Space) -> Floats:
+    def translate(self, x: Floats, source: Space) -> Floats:
         """A vector of another space in this one; a number that the other does not have starts as usual."""
         known = dict(zip(source.names, x, strict=True))
         start = self.start()

@@ -73,11 +73,11 @@ def uncertainty(residual: WindowResidual, space: Space, x: Floats, joints: Seque
     condition = float(values[-1]) / max(float(values[0]), SMALLEST_EIGENVALUE * float(values[-1]))
     gradients = np.zeros((residual.clusters.max() + 1, len(space)))
     np.add.at(gradients, residual.clusters, jacobian * numbers[0][:, None])
-    covariance = _combined(information, gradients.T @ gradients, np.diag(space.doubts() ** -2.0))
-    return Uncertainty(covariance, condition, tuple(_open(space, x, np.sqrt(np.diag(covariance)), joints)))
+    covariance = _combine(information, gradients.T @ gradients, np.diag(space.doubts() ** -2.0))
+    return Uncertainty(covariance, condition, tuple(_describe_open(space, x, np.sqrt(np.diag(covariance)), joints)))
 
 
-def _combined(information: Floats, scatter: Floats, nominal: Floats) -> Floats:
+def _combine(information: Floats, scatter: Floats, nominal: Floats) -> Floats:
     """The covariance from three sources.
 
     `information` is what the readings would tell if only noise were in them. `scatter`, of the clusters' gradients, is
@@ -94,7 +94,7 @@ def _combined(information: Floats, scatter: Floats, nominal: Floats) -> Floats:
     return symmetric
 
 
-def _open(space: Space, x: Floats, deviations: Floats, joints: Sequence[int]) -> list[str]:
+def _describe_open(space: Space, x: Floats, deviations: Floats, joints: Sequence[int]) -> list[str]:
     sentences = [
         f"joint {joint} ({JOINT_NAMES[joint]}): it did not move, so nothing of it was identified and the values of the "
         "arm file stay; move it by half a radian or more"

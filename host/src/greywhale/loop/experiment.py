@@ -51,12 +51,12 @@ class Experiment:
         if isinstance(leader, Trajectory):
             slices = leader_slices(leader, wait_s, after_s, resample)
         else:
-            slices = _checked_slices(leader)
+            slices = _check_slices(leader)
         self.home = slices[0].copy()
         readings = read_leader(self.table, arm.leader_pots, slices, seed=seed, noise=noise, timing=timing)
         self.reference, self.leader = readings.reference, readings.leader
         time_s = np.arange(len(self.leader), dtype=np.float64) * TICK_S
-        self.weight_s = _checked_weight(weight_s, time_s, wait_s)
+        self.weight_s = _check_weight(weight_s, time_s, wait_s)
         gap = np.random.default_rng(seed).uniform(-1.0, 1.0, JOINTS) if gap_position is None else np.array(gap_position)
         self._loop = ClosedLoop(
             self.table,
@@ -148,7 +148,7 @@ class Experiment:
                 )
 
 
-def _checked_slices(slices: Array) -> Array:
+def _check_slices(slices: Array) -> Array:
     if not isinstance(slices, np.ndarray) or slices.dtype != np.float64:
         raise UserError("the leader must be a Trajectory, or a numpy array of float64 angles in every slice of 250 us.")
     if slices.ndim != 2 or slices.shape[1] != JOINTS or len(slices) < SLICES_PER_TICK or len(slices) % SLICES_PER_TICK:
@@ -161,7 +161,7 @@ def _checked_slices(slices: Array) -> Array:
     return np.ascontiguousarray(slices)
 
 
-def _checked_weight(weight: Array | None, time_s: Array, wait_s: float) -> Array:
+def _check_weight(weight: Array | None, time_s: Array, wait_s: float) -> Array:
     if weight is None:
         since: Array = np.maximum(time_s - wait_s, 0.0)
         return since

@@ -151,7 +151,7 @@ def compare(plan: Plan, jobs: int = 1, progress: Progress | None = None) -> Comp
         for cell in np.ndindex(*shape)
         for first in range(0, plan.runs, length)
     ]
-    results = _here(plan, parts) if min(jobs, len(parts)) <= 1 else _in_processes(plan, parts, jobs)
+    results = _run_here(plan, parts) if min(jobs, len(parts)) <= 1 else _run_in_processes(plan, parts, jobs)
     with contextlib.closing(results):
         for done, (part, values) in enumerate(results, start=1):
             costs[part.cell][part.runs] = values
@@ -171,17 +171,17 @@ class Part:
 Results = Generator[tuple[Part, list[float]], None, None]
 
 
-def _here(plan: Plan, parts: list[Part]) -> Results:
+def _run_here(plan: Plan, parts: list[Part]) -> Results:
     for part in parts:
         yield part, _run_part(plan, part)
 
 
-def _in_processes(plan: Plan, parts: list[Part], jobs: int) -> Results:
+def _run_in_processes(plan: Plan, parts: list[Part], jobs: int) -> Results:
     # Spawned, not forked: a fork would copy the state of other threads (a progress bar's, for example) with their
     # locks.
     pool = ProcessPoolExecutor(min(jobs, len(parts)), mp_context=multiprocessing.get_context("spawn"))
     try:
-        with _interrupts_held_back():
+        with _hold_interrupts():
             futures = {pool.submit(_run_part, plan, part): part for part in parts}
         for future in as_completed(futures):
             yield futures[future], future.result()
@@ -190,7 +190,7 @@ def _in_processes(plan: Plan, parts: list[Part], jobs: int) -> Results:
 
 
 @contextlib.contextmanager
-def _interrupts_held_back() -> Iterator[None]:
+def _hold_interrupts() -> Iterator[None]:
     """Hold Ctrl-C back while the other processes are started.
 
     Ctrl-C reaches all processes of a terminal, but only this one may answer it. The others inherit the mask. This

@@ -72,7 +72,7 @@ class RelativeWolfWhale(Optimiser):
         moved = hunt(
             self._pack, leaders, self._a, draw, alpha=alpha, origin=self._pack.mean(axis=0), weights=self._weights
         )
-        self._tried = self._back_inside(self._keep_some(moved))
+        self._tried = self._bring_back(self._keep_some(moved))
         return self.box.from_unit(self._tried)
 
     def _keep_some(self, moved: Floats) -> Floats:
@@ -82,7 +82,7 @@ class RelativeWolfWhale(Optimiser):
         kept[np.arange(wolves), changes] = False
         return np.where(kept, self._pack, moved)
 
-    def _back_inside(self, moved: Floats) -> Floats:
+    def _bring_back(self, moved: Floats) -> Floats:
         part = self._source.random(moved.shape)
         moved = np.where(moved < 0, self._pack * part, moved)
         return np.where(moved > 1, 1 - (1 - self._pack) * part, moved)

@@ -7,7 +7,7 @@ import os
 
 import serial
 
-from greywhale.errors import UserError, because
+from greywhale.errors import UserError, os_reason
 
 BAUD = 1_000_000
 
@@ -44,7 +44,7 @@ class Transport:
         self._serial.close()
 
     def _gone(self, error: Exception) -> UserError:
-        reason = because(error) if isinstance(error, OSError) else "it was closed"
+        reason = os_reason(error) if isinstance(error, OSError) else "it was closed"
         return UserError(
             f"{self.port}: the port went away in the middle ({reason.rstrip('.')}); check the cable and try again."
         )
@@ -74,4 +74,4 @@ def _why_not_open(port: str, error: OSError) -> str:
         return f"{port}: there is no such port any more; `greywhale ports` lists those there are."
     if error.errno in (errno.ENOTTY, errno.EISDIR, errno.EINVAL) or error.errno is None:
         return f"{port}: this is not a serial port; `greywhale ports` lists those there are."
-    return f"{port}: the port cannot be opened: {because(error)}."
+    return f"{port}: the port cannot be opened: {os_reason(error)}."

@@ -23,8 +23,8 @@ from greywhale.arm.parameters import with_usual_noise
 from greywhale.table import CONTROLLER_COLUMNS
 from greywhale.tune.judge.choose import choose
 from greywhale.tune.judge.held_out import judge_held_out
-from greywhale.tune.judge.margins import REST_LONG_S, Margin, Margins, loosest, penalty
-from greywhale.tune.method import Costs, Judged, Task
+from greywhale.tune.judge.margins import REST_LONG_S, Margin, Margins, loosest_plant, penalty
+from greywhale.tune.method import Costs, Judgement, Task
 from greywhale.tune.model import Model
 from greywhale.tune.search import lockstep
 from greywhale.tune.search.journal import Journal
@@ -56,17 +56,17 @@ class DefaultMethod:
 
     def __init__(self, task: Task) -> None:
         self.task = task
-        self.model = model = with_heard_noise(task.model)
+        self.model = model = give_usual_noise(task.model)
         self.table = model.table
         supply = self.table["supply_mv"]
         period = self.table.period_ms
-        self.space = Space.default(task.strategy, task.before, supply, period).bounded(task.bounds, period)
+        self.space = Space.default(task.strategy, task.before, supply, period).with_bounds(task.bounds, period)
         motions = drills(model.arm, self.table, model.plants, task.seed)
         self.objective = Objective(motions, model.plants[:SEARCH_PLANTS], task.threads)
         self.judging = Objective(motions, model.plants, task.threads)
-        self.margins = self._margins(_spanning(model.plants), searching=True)
+        self.margins = self._margins(_extreme_plants(model.plants), searching=True)
         # Longer and with other noise, since a search learns its own noise by heart.
-        self.judging_margins = self._margins(_spanning(model.plants), rest_s=REST_LONG_S, noise=1)
+        self.judging_margins = self._margins(_extreme_plants(model.plants), rest_s=REST_LONG_S, noise=1)
         # With bounds, what is uploaded keeps within them, whatever ran before.
         self.start = self.space.controllers(self.space.points(task.before[None]))[0] if task.bounds else task.before
         self.found = Found.nothing(self.start)
@@ -95,7 +95,7 @@ class DefaultMethod:
             task.report(what, min(1.0, found.evaluations / task.budget), note=f"cost {1e3 * found.total:.1f} mrad")
 
         common: dict[str, Any] = {"evaluate": self.costs, "found": self.found, "journal": journal, "tick": tick}
-        lockstep.first(self.start, self.costs, self.found, journal)
+        lockstep.try_start(self.start, self.costs, self.found, journal)
         left = task.budget - 1
         if task.method != "default":
             self._stage("search", self.space, task.method, left, self.start, 1, **common)
@@ -103,15 +103,15 @@ class DefaultMethod:
         turn = left // len(lockstep.TURNS)
         narrow = int(NARROW_SHARE * turn)
         common["groups"] = lockstep.TURNS
-        shape = self.space.reduced()
-        self._stage("shape", shape, SHAPE_METHOD, turn - narrow, shape.restretched(self.start), 1, **common)
+        shape = self.space.reduce()
+        self._stage("shape", shape, SHAPE_METHOD, turn - narrow, shape.restretch(self.start), 1, **common)
         self._stage("every corner", self.space, CORNER_METHOD, narrow, self.found.best, 2, sigma=NARROW_BOX, **common)
 
     def _stage(
         self, name: str, space: Space, method: str, budget: int, start: Controllers, number: int, **options: Any
     ) -> None:
         if budget > 0:
-            lockstep.lockstep(
+            lockstep.search_in_lockstep(
                 space,
                 stage=name,
                 method=method,
@@ -126,7 +126,7 @@ class DefaultMethod:
         costs: Floats = self.objective.costs(controllers) + penalty(self.margins.unrest(controllers))
         return costs
 
-    def judged(self, controllers: Controllers) -> Floats:
+    def judge_costs(self, controllers: Controllers) -> Floats:
         """The same cost on all plants in the bench's arithmetic."""
         unrest = self.judging_margins.unrest(controllers, single=True)
         costs: Floats = self.judging.costs(controllers, single=True) + DEARER * penalty(unrest)
@@ -140,17 +140,17 @@ class DefaultMethod:
         # Within what is searched: this changes nothing where Ku is not searched, or where its bounds are narrower.
         return np.concatenate([kept, self.space.controllers(self.space.points(weaker))])
 
-    def judge(self) -> Judged:
+    def judge(self) -> Judgement:
         task, model = self.task, self.model
         task.report("judging", 0.0)
-        after, cost_before, cost_after = choose(self.start, self._contenders(), self.judged)
+        after, cost_before, cost_after = choose(self.start, self._contenders(), self.judge_costs)
         task.report("judging", 0.5)
-        everywhere = self._margins(np.vstack([model.plants, loosest(model.plants)]), rest_s=REST_LONG_S, noise=2)
+        everywhere = self._margins(np.vstack([model.plants, loosest_plant(model.plants)]), rest_s=REST_LONG_S, noise=2)
         margins_before, margins = everywhere.check(task.before), everywhere.check(after)
         task.report("judging", 0.8)
         held_out = judge_held_out(model.arm, self.table, model.plants[0], task.before, after, task.threads, task.floors)
         task.report("judging", 1.0)
-        return Judged(
+        return Judgement(
             after=after,
             cost_before=tuple(map(float, cost_before)),
             cost_after=tuple(map(float, cost_after)),
@@ -171,9 +171,9 @@ def _notes(margins: tuple[Margin, ...]) -> tuple[str, ...]:
     )
 
 
-def _spanning(plants: Floats) -> Floats:
+def _extreme_plants(plants: Floats) -> Floats:
     """The estimate, and the same with the loosest gears that the samples show, where they differ."""
-    loose = loosest(plants)
+    loose = loosest_plant(plants)
     return plants[:1] if np.array_equal(loose, plants[0]) else np.vstack([plants[0], loose])
 
 
@@ -181,7 +181,7 @@ def _digest(plants: Floats) -> str:
     return hashlib.sha256(np.ascontiguousarray(plants, dtype="<f8").tobytes()).hexdigest()[:16]
 
 
-def with_heard_noise(model: Model) -> Model:
+def give_usual_noise(model: Model) -> Model:
     """The same model, with the noise of a usual potentiometer where it states none.
 
     Without noise the search would choose a Kd that magnifies the noise of a real board.

@@ -49,7 +49,7 @@ class Task:
 
 
 @dataclass(frozen=True)
-class Judged:
+class Judgement:
     """The chosen controllers (4, 12), and how they and those from before did."""
 
     after: Controllers
@@ -79,6 +79,6 @@ class Method(Protocol):
         """The cost of the controllers from before, as the search sees it; called only after something was evaluated."""
         ...
 
-    def judge(self) -> Judged:
+    def judge(self) -> Judgement:
         """Judge the best more exactly than the search could."""
         ...

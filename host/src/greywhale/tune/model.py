@@ -77,7 +77,7 @@ def load_model(
     plants = plant_row(identified)[None]
     if facts is not None and facts.covariance is not None:
         plants = sampled_plants(identified, samples, seed)
-        doubts += checks.spread(identified, table)
+        doubts += checks.doubt_precision(identified, table)
     doubts += table_doubts
     if doubts and not force:
         raise UserError(_refusal(str(path), doubts))
@@ -97,14 +97,14 @@ def _doubts(
     arm: ArmParameters, facts: Identification | None, table: ParameterTable, wanted: str | Path | None
 ) -> list[Doubt]:
     """Everything that speaks against the model, the gravest first."""
-    doubts = checks.identified(facts)
+    doubts = checks.doubt_completeness(facts)
     if facts is not None:
-        doubts += checks.untouched(arm, facts)
-        doubts += checks.validated(facts)
-        doubts += checks.sure(facts)
+        doubts += checks.doubt_edits(arm, facts)
+        doubts += checks.doubt_validation(facts)
+        doubts += checks.doubt_missing_covariance(facts)
     if wanted is not None:
-        doubts += checks.same_arm(arm, load_arm(wanted), str(wanted))
-    return doubts + checks.same_board(arm, facts, table)
+        doubts += checks.doubt_other_arm(arm, load_arm(wanted), str(wanted))
+    return doubts + checks.doubt_other_board(arm, facts, table)
 
 
 def _table(
@@ -114,8 +114,8 @@ def _table(
     board = facts.made_on if facts is not None else Board.MEGA2560
     logged = facts.table() if facts is not None else None
     if params is not None:
-        given = load_table(params).on(board)
-        return given, checks.same_table(given, logged, str(params))
+        given = load_table(params).for_board(board)
+        return given, checks.doubt_other_table(given, logged, str(params))
     if logged is not None:
         return logged, []
     # The best guess: the shipped values, with what the model does state.

@@ -21,9 +21,9 @@ from greywhale.loop import PLANT_COLUMNS, Experiment, plant_row
 from greywhale.loop.controllers import controllers_of
 from greywhale.protocol import schema
 from greywhale.protocol.schema import Board
-from greywhale.table import ParameterTable, board_named, refuse_unknown
+from greywhale.table import ParameterTable, find_board, refuse_unknown
 from greywhale.trajectory import human_reaches
-from greywhale.tune.search.training import moves, reach, within
+from greywhale.tune.search.training import clip_motion, moves, reach
 
 Floats = NDArray[np.float64]
 
@@ -87,7 +87,7 @@ class Identification(_Facts):
     @property
     def made_on(self) -> Board:
         """The board that made the logs. A model that names no board is from an older version, and of a Mega."""
-        return Board.MEGA2560 if self.board is None else board_named(self.board)
+        return Board.MEGA2560 if self.board is None else find_board(self.board)
 
     def table(self) -> ParameterTable | None:
         """The whole parameter table with which the fitted log was recorded, or None where it is not known."""
@@ -124,7 +124,7 @@ def identification_of(arm: ArmParameters, name: str) -> Identification | None:
     return facts
 
 
-def identified(facts: Identification | None) -> list[Doubt]:
+def doubt_completeness(facts: Identification | None) -> list[Doubt]:
     """Doubt an arm that was not identified at all, or not to the end."""
     if facts is None:
         return [
@@ -138,7 +138,7 @@ def identified(facts: Identification | None) -> list[Doubt]:
     return []
 
 
-def validated(facts: Identification) -> list[Doubt]:
+def doubt_validation(facts: Identification) -> list[Doubt]:
     """Doubt a model for which no log speaks but the fitted ones."""
     others = [log for log in facts.log if log.role != FIT]
     if not others:
@@ -164,7 +164,7 @@ def validated(facts: Identification) -> list[Doubt]:
     ]
 
 
-def sure(facts: Identification) -> list[Doubt]:
+def doubt_missing_covariance(facts: Identification) -> list[Doubt]:
     """Doubt a model that does not say, for every joint, how uncertain it is."""
     if facts.covariance is None:
         return [
@@ -185,11 +185,11 @@ def sure(facts: Identification) -> list[Doubt]:
     ]
 
 
-def untouched(arm: ArmParameters, facts: Identification) -> list[Doubt]:
+def doubt_edits(arm: ArmParameters, facts: Identification) -> list[Doubt]:
     """Doubt an arm whose numbers are no longer those that were identified."""
     if facts.covariance is None or not facts.parameter:
         return []
-    now, then = sampled_plants(_only(arm, facts, None), 2)
+    now, then = sampled_plants(_with_one_uncertain(arm, facts, None), 2)
     # A gap of next to nothing is no gap, whatever its digits.
     least = np.array([SAME_GAP if name.endswith("half_gap") else 1e-12 for name in PLANT_COLUMNS])
     differs = np.abs(now - then) > SAME_VALUE * np.maximum(np.abs(now), np.abs(then)) + least
@@ -205,7 +205,7 @@ def untouched(arm: ArmParameters, facts: Identification) -> list[Doubt]:
     ]
 
 
-def spread(arm: ArmParameters, table: ParameterTable) -> list[Doubt]:
+def doubt_precision(arm: ArmParameters, table: ParameterTable) -> list[Doubt]:
     """Doubt a model if the arms that its logs allow follow differently under the board's present controllers.
 
     Single parameters may be known poorly without harm (torque per volt of a joint that carries nothing). So the effect
@@ -213,7 +213,7 @@ def spread(arm: ArmParameters, table: ParameterTable) -> list[Doubt]:
     """
     experiments = _motions(arm, table)
     plants = sampled_plants(arm, SPREAD_SAMPLES)
-    shares = {name: _shares(one, table, plants) for name, one in experiments.items()}
+    shares = {name: _share_of_error(one, table, plants) for name, one in experiments.items()}
     motion = max(shares, key=lambda name: float(np.max(shares[name])) / SPREAD[name])
     joint = int(np.argmax(shares[motion]))
     if shares[motion][joint] <= SPREAD[motion]:
@@ -221,7 +221,9 @@ def spread(arm: ArmParameters, table: ParameterTable) -> list[Doubt]:
     facts = identification_of(arm, arm.name)
     assert facts is not None
     harm = {
-        index: _shares(experiments[motion], table, sampled_plants(_only(arm, facts, index), ONE_BY_ONE_SAMPLES))[joint]
+        index: _share_of_error(
+            experiments[motion], table, sampled_plants(_with_one_uncertain(arm, facts, index), ONE_BY_ONE_SAMPLES)
+        )[joint]
         for index, one in enumerate(facts.parameter)
         if one.name.startswith(f"joint{joint}.")
     }
@@ -241,14 +243,14 @@ def spread(arm: ArmParameters, table: ParameterTable) -> list[Doubt]:
 def _motions(arm: ArmParameters, table: ParameterTable) -> dict[str, Experiment]:
     low, high = reach(arm, table, plant_row(arm)[None])
     slow, quick = SPREAD
-    motions = {slow: within(human_reaches(REACHES_SEED, REACHES_S), low, high), quick: moves(low, high)}
+    motions = {slow: clip_motion(human_reaches(REACHES_SEED, REACHES_S), low, high), quick: moves(low, high)}
     return {
         name: Experiment(motion, arm, table=table, noise=False, soft_start=False, wait_s=WAIT_TICKS * TICK_S)
         for name, motion in motions.items()
     }
 
 
-def _shares(experiment: Experiment, table: ParameterTable, plants: Floats) -> Floats:
+def _share_of_error(experiment: Experiment, table: ParameterTable, plants: Floats) -> Floats:
     """Per joint: how differently the median plant follows from the first one, rms, as a share of its error."""
     result = experiment.run(controllers_of(table), plants, every=10, threads=1)
     angles = result.angles[:, WAIT_TICKS // 10 :].astype(np.float64)
@@ -258,7 +260,7 @@ def _shares(experiment: Experiment, table: ParameterTable, plants: Floats) -> Fl
     return shares
 
 
-def _only(arm: ArmParameters, facts: Identification, index: int | None) -> ArmParameters:
+def _with_one_uncertain(arm: ArmParameters, facts: Identification, index: int | None) -> ArmParameters:
     """The arm with one uncertain number, or none. The others keep a tiny variance, so that there is a distribution."""
     assert facts.covariance is not None
     assert arm.identification is not None
@@ -273,7 +275,7 @@ def _parameters_of(facts: Identification, joint: int) -> list[ParameterFacts]:
     return [one for one in facts.parameter if one.name.startswith(f"joint{joint}.")]
 
 
-def same_arm(model: ArmParameters, arm: ArmParameters, name: str) -> list[Doubt]:
+def doubt_other_arm(model: ArmParameters, arm: ArmParameters, name: str) -> list[Doubt]:
     """Doubt a model of another arm file: geometry, gears, stops and supply must be the user's in both."""
     ours, theirs = (dict(_leaves(_fixed(one))) for one in (model, arm))
     for key, value in ours.items():
@@ -316,7 +318,7 @@ def _leaves(data: object, name: str = "") -> Iterator[tuple[str, Any]]:
         yield name, data
 
 
-def same_table(given: ParameterTable, logged: ParameterTable | None, name: str) -> list[Doubt]:
+def doubt_other_table(given: ParameterTable, logged: ParameterTable | None, name: str) -> list[Doubt]:
     """Doubt a board's table that differs from the logs' in more than its controllers and limits."""
     if logged is None:
         return []
@@ -337,12 +339,12 @@ def same_table(given: ParameterTable, logged: ParameterTable | None, name: str) 
     return []
 
 
-def same_board(arm: ArmParameters, facts: Identification | None, table: ParameterTable) -> list[Doubt]:
+def doubt_other_board(arm: ArmParameters, facts: Identification | None, table: ParameterTable) -> list[Doubt]:
     """Doubt a table whose period, supply or potentiometers are not those of the model and its logs."""
-    return [*_same_period(facts, table), *_same_supply(arm, table), *_same_slopes(arm, table)]
+    return [*_doubt_period(facts, table), *_doubt_supply(arm, table), *_doubt_slopes(arm, table)]
 
 
-def _same_period(facts: Identification | None, table: ParameterTable) -> list[Doubt]:
+def _doubt_period(facts: Identification | None, table: ParameterTable) -> list[Doubt]:
     period = table.period_ms
     logged = sorted({log.period_ms for log in facts.log if log.period_ms is not None}) if facts is not None else []
     if not logged or period in logged:
@@ -356,7 +358,7 @@ def _same_period(facts: Identification | None, table: ParameterTable) -> list[Do
     ]
 
 
-def _same_supply(arm: ArmParameters, table: ParameterTable) -> list[Doubt]:
+def _doubt_supply(arm: ArmParameters, table: ParameterTable) -> list[Doubt]:
     supply = table.supply_v
     if abs(supply - arm.drive.supply) <= SAME_SUPPLY * arm.drive.supply:
         return []
@@ -368,7 +370,7 @@ def _same_supply(arm: ArmParameters, table: ParameterTable) -> list[Doubt]:
     ]
 
 
-def _same_slopes(arm: ArmParameters, table: ParameterTable) -> list[Doubt]:
+def _doubt_slopes(arm: ArmParameters, table: ParameterTable) -> list[Doubt]:
     for side, bank in (("leader", arm.leader_pots), ("follower", arm.follower_pots)):
         for joint, pot in enumerate(bank.joint):
             scale = f"{side}{joint}.scale"

@@ -31,10 +31,10 @@ from greywhale.loop import Experiment
 from greywhale.trajectory import Trajectory, steps
 from greywhale.tune.judge.held_out import judge_held_out
 from greywhale.tune.judge.margins import Margins
-from greywhale.tune.method import Costs, Judged, Task
+from greywhale.tune.method import Costs, Judgement, Task
 from greywhale.tune.model import Model
 from greywhale.tune.search.journal import Journal
-from greywhale.tune.search.lockstep import Found, lockstep
+from greywhale.tune.search.lockstep import Found, search_in_lockstep
 from greywhale.tune.search.space import Space
 
 Floats = npt.NDArray[np.float64]
@@ -62,13 +62,13 @@ class Loops:
         self._threads = threads
         self._experiments = [
             Experiment(
-                alone(steps(), joint),
+                move_one_joint(steps(), joint),
                 model.arm,
                 table=self.table,
                 noise=False,
                 wait_s=WAIT_S,
                 soft_start=False,
-                weight_s=since_step(steps(), WAIT_S),
+                weight_s=time_since_step(steps(), WAIT_S),
             )
             for joint in range(JOINTS)
         ]
@@ -103,7 +103,7 @@ class PaperMethod:
         def tick(now: Found) -> None:
             task.report("tuning", min(1.0, now.evaluations / task.budget), note=f"J {now.total:.2f}")
 
-        lockstep(
+        search_in_lockstep(
             Space.paper(task.strategy, task.before), self.loops.costs, self.found, journal, stage="paper",
             method=METHOD, budget=task.budget, seed=(task.seed,),
             starts=np.empty((0, JOINTS, task.before.shape[1]), dtype=np.int32), tick=tick, pack=AGENTS,
@@ -112,7 +112,7 @@ class PaperMethod:
     def cost_before(self) -> Costs:
         return tuple(map(float, self.loops.costs(self.task.before[None])[0]))
 
-    def judge(self) -> Judged:
+    def judge(self) -> Judgement:
         task, table, plant = self.task, self.table, self.loops.plant
         best = self.found.best
         task.report("judging", 0.0)
@@ -121,7 +121,7 @@ class PaperMethod:
         task.report("judging", 0.5)
         held_out = judge_held_out(task.model.arm, table, plant, task.before, best, task.threads, task.floors)
         task.report("judging", 1.0)
-        return Judged(
+        return Judgement(
             after=best.copy(),
             cost_before=self.cost_before(),
             cost_after=tuple(map(float, self.found.cost)),
@@ -132,14 +132,14 @@ class PaperMethod:
         )
 
 
-def alone(motion: Trajectory, joint: int) -> Trajectory:
+def move_one_joint(motion: Trajectory, joint: int) -> Trajectory:
     """The motion of one joint; the others rest where it begins."""
     angles = np.repeat(motion.angles[:1], len(motion.angles), axis=0)
     angles[:, joint] = motion.angles[:, joint]
     return replace(motion, angles=angles)
 
 
-def since_step(motion: Trajectory, wait_s: float) -> Floats:
+def time_since_step(motion: Trajectory, wait_s: float) -> Floats:
     """The k of Eqs. 19 and 20 at every tick: the time since the leader left its first angle, 0 before."""
     elsewhere = np.flatnonzero(np.abs(motion.angles - motion.angles[0]).max(axis=1) > 1e-9)
     leaves = float(motion.time_s[elsewhere[0] - 1])

@@ -11,5 +11,5 @@ class Report(Protocol):
     def __call__(self, what: str, fraction: float, note: str = "") -> None: ...
 
 
-def silent(what: str, fraction: float, note: str = "") -> None:
+def report_nothing(what: str, fraction: float, note: str = "") -> None:
     """Report nothing: nobody looks."""

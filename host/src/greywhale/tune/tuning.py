@@ -12,11 +12,11 @@ from greywhale.loop.controllers import check_controllers
 from greywhale.optimise import METHODS as OPTIMISERS
 from greywhale.tune import default, paper
 from greywhale.tune.default import DefaultMethod
-from greywhale.tune.method import Judged, Method, Task
+from greywhale.tune.method import Judgement, Method, Task
 from greywhale.tune.model import Model
 from greywhale.tune.outcome import Outcome, curves_of
 from greywhale.tune.paper import PaperMethod
-from greywhale.tune.progress import Report, silent
+from greywhale.tune.progress import Report, report_nothing
 from greywhale.tune.search.journal import Journal
 from greywhale.tune.search.space import Bounds, check_bounds, check_strategy
 
@@ -83,7 +83,7 @@ def tune(
         threads=threads,
         before=check_controllers(model.controllers if start is None else start)[0],
         bounds=dict(bounds or {}),
-        report=report or silent,
+        report=report or report_nothing,
         floors=floors,
     )
     return _run(task, PaperMethod(task) if method == "paper" else DefaultMethod(task), journal, resume)
@@ -100,11 +100,11 @@ def _run(task: Task, method: Method, journal: Path | None, resume: bool) -> Outc
                 raise
     found = method.found
     cost = tuple(map(float, found.cost))
-    best = Judged(found.best.copy(), method.cost_before(), cost, (_UNFINISHED,))
+    best = Judgement(found.best.copy(), method.cost_before(), cost, (_UNFINISHED,))
     return _outcome(task, method, best, complete=False)
 
 
-def _outcome(task: Task, method: Method, judged: Judged, complete: bool) -> Outcome:
+def _outcome(task: Task, method: Method, judged: Judgement, complete: bool) -> Outcome:
     return Outcome(
         model=task.model,
         table=method.table,

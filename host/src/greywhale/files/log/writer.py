@@ -14,7 +14,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from greywhale.errors import UserError, because
+from greywhale.errors import UserError, os_reason
 from greywhale.files.log.layout import COMPLETE, HEADING, INTERRUPTED, STATES, TITLE, UNFINISHED, Origin
 from greywhale.formats.whole import temporary_beside
 
@@ -122,7 +122,7 @@ class LogWriter:
             raise problem
 
     def _cannot_be_written(self, error: OSError) -> UserError:
-        return UserError(f"{self.path}: cannot be written: {because(error)}.")
+        return UserError(f"{self.path}: cannot be written: {os_reason(error)}.")
 
     def _header(self, ending: str) -> str:
         """The header. Its length is always the same, so that the end of a recording can rewrite it in place."""

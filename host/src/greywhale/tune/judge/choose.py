@@ -35,57 +35,57 @@ def choose(start: Controllers, contenders: Controllers, judge: Judge) -> tuple[C
     rows = np.concatenate([start[None], contenders, alone])
     costs = judge(rows)
     before = costs[0]
-    mixed = _best_of_each(rows, costs)
+    mixed = _take_best_of_each(rows, costs)
     for _ in range(ROUNDS):
         now = judge(mixed[None])[0]
         rows, costs = np.concatenate([rows, mixed[None]]), np.concatenate([costs, now[None]])
         disappointing = np.flatnonzero(now > WORSE * costs.min(axis=0))
         if not disappointing.size:
             break
-        tried = _exchanged(mixed, np.concatenate([contenders, start[None]]), disappointing)
+        tried = _exchange(mixed, np.concatenate([contenders, start[None]]), disappointing)
         outcome = judge(tried)
         rows, costs = np.concatenate([rows, tried]), np.concatenate([costs, outcome])
         mixed = tried[int(np.argmin(outcome.sum(axis=1)))]
-    fair = _fair(costs, before)
+    fair = _is_fair(costs, before)
     best = int(np.argmin(np.where(fair, costs.sum(axis=1), np.inf)))
     chosen, cost = rows[best].copy(), costs[best]
     hoped_for = before.sum() - costs.min(axis=0).sum()
     if before.sum() - cost.sum() < ENOUGH * hoped_for:
-        built, its = _built_up(start, before, before, contenders, judge)
+        built, its = _build_up(start, before, before, contenders, judge)
         if its.sum() < cost.sum():
             chosen, cost = built, its
     # Once more: a joint may now accept a candidate that it could not accept among its old neighbours.
-    chosen, cost = _built_up(chosen, cost, before, contenders, judge)
+    chosen, cost = _build_up(chosen, cost, before, contenders, judge)
     return chosen, before, cost
 
 
-def _fair(costs: Floats, before: Floats) -> npt.NDArray[np.bool_]:
+def _is_fair(costs: Floats, before: Floats) -> npt.NDArray[np.bool_]:
     fair: npt.NDArray[np.bool_] = np.all(costs <= FAIR * before, axis=1)
     return fair
 
 
-def _built_up(
+def _build_up(
     chosen: Controllers, cost: Floats, before: Floats, contenders: Controllers, judge: Judge
 ) -> tuple[Controllers, Floats]:
     """`chosen`, with one joint after the other exchanged for the fair candidate that lowers the sum most."""
     for joint in range(len(chosen)):
-        tried = _exchanged(chosen, contenders, np.array([joint]))
+        tried = _exchange(chosen, contenders, np.array([joint]))
         costs = judge(tried)
-        sums = np.where(_fair(costs, before), costs.sum(axis=1), np.inf)
+        sums = np.where(_is_fair(costs, before), costs.sum(axis=1), np.inf)
         best = int(np.argmin(sums))
         if sums[best] < cost.sum():
             chosen, cost = tried[best], costs[best]
     return chosen, cost
 
 
-def _best_of_each(rows: Controllers, costs: Floats) -> Controllers:
+def _take_best_of_each(rows: Controllers, costs: Floats) -> Controllers:
     best: Controllers = rows[0].copy()
     for joint, row in enumerate(np.argmin(costs, axis=0)):
         best[joint] = rows[row, joint]
     return best
 
 
-def _exchanged(mixed: Controllers, others: Controllers, joints: npt.NDArray[np.intp]) -> Controllers:
+def _exchange(mixed: Controllers, others: Controllers, joints: npt.NDArray[np.intp]) -> Controllers:
     """Copies of `mixed` with one of these joints replaced by each of its other candidates."""
     tried = []
     for joint in joints:

@@ -113,7 +113,7 @@ def saturation_floor(
     if len(plant) != 1:
         raise UserError(f"the floor is of one plant, not of {len(plant)}; call it for each.", BAD_USAGE)
     slices = leader_slices(motion, wait_s, after_s, resample) if isinstance(motion, Trajectory) else _checked(motion)
-    loop = _Loop(slices, plant[0], _supply(plant[0], supply_v), _late(delay_s), threads)
+    loop = _Loop(slices, plant[0], _supply(plant[0], supply_v), _delay_slices(delay_s), threads)
     _require_reach(loop)
     tunings = _best(loop)
     mse, angles = loop.run(tunings[None], keep=True)
@@ -226,10 +226,10 @@ def _bound(loop: _Loop, joint: int, tunings: Floats) -> float:
     late = loop.late // SLICES_PER_TICK  # rounded down: the joint may leave earlier, which only lowers the bound
     each = np.repeat(np.roll(direction, late), SLICES_PER_TICK), np.repeat(np.roll(until, late), SLICES_PER_TICK)
     angles = loop.chase(joint, tunings, *each)
-    return sum(_ahead(move, leader, angles) for move in moves) / len(leader)
+    return sum(_sum_lead(move, leader, angles) for move in moves) / len(leader)
 
 
-def _ahead(move: _Move, leader: Floats, angles: Floats) -> float:
+def _sum_lead(move: _Move, leader: Floats, angles: Floats) -> float:
     """The sum of squares (rad^2) by which the leader of one move is ahead; 0 where the joint was not waiting for it."""
     start = move.start
     speed = (angles[start] - angles[start - 1]) / (SLICE_S * SLICES_PER_TICK) if start else 0.0
@@ -258,7 +258,7 @@ def _supply(plant: Floats, supply_v: float | None) -> float:
     return min(supply_v, full)
 
 
-def _late(delay_s: float) -> int:
+def _delay_slices(delay_s: float) -> int:
     if not 0.0 <= delay_s <= 1.0:
         raise UserError(f"delay_s is {delay_s:g}, but it must lie within 0..1 s.", BAD_USAGE)
     return round(delay_s / SLICE_S)

@@ -19,7 +19,7 @@ from greywhale.measure import Evaluation, evaluate
 from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory, human_reaches, multi_steps, steps
 from greywhale.tune.judge.floor import Floor, saturation_floor
-from greywhale.tune.search.training import reach, within
+from greywhale.tune.search.training import clip_motion, reach
 
 Floats = npt.NDArray[np.float64]
 Controllers = npt.NDArray[np.int32]
@@ -73,9 +73,9 @@ class HeldOut:
 def motions(low: Floats, high: Floats) -> dict[str, Trajectory]:
     """Steps, multi-steps and reaches by name, within the range of the joints."""
     return {
-        "steps": within(steps(), low, high),
-        "multi-steps": within(multi_steps(), low, high),
-        "human-like reaches": within(human_reaches(SEED, 20.0), low, high),
+        "steps": clip_motion(steps(), low, high),
+        "multi-steps": clip_motion(multi_steps(), low, high),
+        "human-like reaches": clip_motion(human_reaches(SEED, 20.0), low, high),
     }
 
 
@@ -99,8 +99,8 @@ def judge_held_out(
             HeldOut(
                 name=name,
                 motion=motion,
-                before=_evaluated(name, result.time_s, leader, angles[0]),
-                after=_evaluated(name, result.time_s, leader, angles[1]),
+                before=_evaluate(name, result.time_s, leader, angles[0]),
+                after=_evaluate(name, result.time_s, leader, angles[1]),
                 floor=saturation_floor(motion, plant, wait_s=WAIT_S, threads=threads) if floors else None,
                 time_s=result.time_s,
                 leader=leader,
@@ -111,6 +111,6 @@ def judge_held_out(
     return tuple(judged)
 
 
-def _evaluated(name: str, time_s: Floats, leader: Floats, follower: Floats) -> Evaluation:
+def _evaluate(name: str, time_s: Floats, leader: Floats, follower: Floats) -> Evaluation:
     state = np.full(len(time_s), "following")
     return evaluate(Log(name, Origin(), time_s, leader, follower, np.zeros_like(leader), state, 0, True))

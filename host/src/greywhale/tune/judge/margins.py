@@ -28,7 +28,7 @@ from greywhale.protocol.schema import Board
 from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory
 from greywhale.trajectory.generate import minimum_jerk
-from greywhale.tune.search.objective import crossed
+from greywhale.tune.search.objective import pair_with_plants
 from greywhale.tune.search.training import EDGE_S, RATE_HZ, centre, reach
 
 Floats = npt.NDArray[np.float64]
@@ -175,7 +175,7 @@ class Margins:
     def unrest(self, controllers: Controllers, *, single: bool = False, every: int = 1) -> dict[str, Unrest]:
         """Run every scenario for every candidate (n, 4, 12) on every plant."""
         count, plants = len(controllers), len(self.plants)
-        variants = {name: with_gain(self.plants, self._further(gain)) for name, gain in GAINS.items()}
+        variants = {name: with_gain(self.plants, self._widen(gain)) for name, gain in GAINS.items()}
         variants[TEETH] = with_softer_teeth(self.plants)
         prompt = self._run(self._prompt, controllers, np.concatenate(list(variants.values())), single, every)
         found = {
@@ -185,13 +185,13 @@ class Margins:
         assert all(one.reversals.shape == (count, plants, JOINTS) for one in found.values())
         return found
 
-    def _further(self, gain: float) -> float:
+    def _widen(self, gain: float) -> float:
         return gain * self._beyond if gain > 1.0 else gain / self._beyond if gain < 1.0 else gain
 
     def _run(
         self, experiment: Experiment, controllers: Controllers, plants: Floats, single: bool, every: int
     ) -> Unrest:
-        laws, arms = crossed(controllers, plants)
+        laws, arms = pair_with_plants(controllers, plants)
         if single:
             result = experiment.run_single(laws, arms, every=every, threads=self._threads)
         else:
@@ -250,7 +250,7 @@ def with_softer_teeth(plants: Floats) -> Floats:
     return softer
 
 
-def loosest(plants: Floats) -> Floats:
+def loosest_plant(plants: Floats) -> Floats:
     """The estimate (60,), with the widest gap and the softest, least damped teeth of any of the plants."""
     loose: Floats = plants[0].copy()
     for joint in range(JOINTS):

@@ -25,7 +25,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from greywhale.arm.parameters import JOINT_NAMES
-from greywhale.errors import UserError, because
+from greywhale.errors import UserError, os_reason
 from greywhale.formats.whole import write_whole
 from greywhale.fuzzy.settings import SET_UNIT
 from greywhale.loop import CONTROLLER_COLUMNS
@@ -225,7 +225,7 @@ def _save(figure: Figure, path: Path) -> Path:
         path.parent.mkdir(parents=True, exist_ok=True)
         write_whole(path, lambda file: figure.savefig(file, format="png", dpi=150, metadata={"Software": None}))
     except OSError as error:
-        raise UserError(f"{path}: cannot be written: {because(error)}.") from None
+        raise UserError(f"{path}: cannot be written: {os_reason(error)}.") from None
     finally:
         plt.close(figure)
     return path

@@ -17,7 +17,7 @@ from typing import IO, Any, Self
 import numpy as np
 import numpy.typing as npt
 
-from greywhale.errors import UserError, because
+from greywhale.errors import UserError, os_reason
 from greywhale.formats.whole import refuse_devices
 
 Floats = npt.NDArray[np.float64]
@@ -45,7 +45,7 @@ class Journal:
                 self._file = path.open("wb", buffering=0)
                 self._write(heading)
         except OSError as error:
-            raise UserError(f"{path}: cannot be used as a journal: {because(error)}.") from None
+            raise UserError(f"{path}: cannot be used as a journal: {os_reason(error)}.") from None
 
     @property
     def replaying(self) -> bool:
@@ -91,7 +91,7 @@ class Journal:
             self._file.write(json.dumps(line, separators=(",", ":")).encode() + b"\n")
         except OSError as error:
             raise UserError(
-                f"{self._path}: cannot be written: {because(error)}; make room and go on with --resume."
+                f"{self._path}: cannot be written: {os_reason(error)}; make room and go on with --resume."
             ) from None
 
     def _reopened(self, path: Path, heading: dict[str, Any]) -> IO[bytes]:

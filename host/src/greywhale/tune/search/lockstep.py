@@ -81,7 +81,7 @@ def _best_few(ranked: list[tuple[float, bytes]]) -> list[tuple[float, bytes]]:
     return [(cost, raw) for raw, cost in list(kept.items())[: RANKS[-1] + 1]]
 
 
-def lockstep(
+def search_in_lockstep(
     space: Space,
     evaluate: Costs,
     found: Found,
@@ -117,19 +117,21 @@ def lockstep(
         while not all(one.done for one in packs):
             for group in groups:
                 if not all(packs[joint].done for joint in group):
-                    _batch(space, evaluate, found, journal, stage, packs, group)
+                    _run_batch(space, evaluate, found, journal, stage, packs, group)
                     tick(found)
     finally:
         for one in packs:
             one.close()
 
 
-def first(start: Controllers, evaluate: Costs, found: Found, journal: Journal) -> None:
+def try_start(start: Controllers, evaluate: Costs, found: Found, journal: Journal) -> None:
     """Try the controllers that there are (4, 12), so that every later candidate must beat them."""
-    _tried(start[None], [1] * JOINTS, evaluate, found, journal, "start")
+    _evaluate(start[None], [1] * JOINTS, evaluate, found, journal, "start")
 
 
-def _tried(rows: Controllers, counts: list[int], evaluate: Costs, found: Found, journal: Journal, stage: str) -> Floats:
+def _evaluate(
+    rows: Controllers, counts: list[int], evaluate: Costs, found: Found, journal: Journal, stage: str
+) -> Floats:
     """Take the costs of candidates from the journal, or simulate them."""
     costs = journal.costs(stage, rows)
     if costs is None:
@@ -139,7 +141,7 @@ def _tried(rows: Controllers, counts: list[int], evaluate: Costs, found: Found, 
     return costs
 
 
-def _batch(
+def _run_batch(
     space: Space,
     evaluate: Costs,
     found: Found,
@@ -159,8 +161,8 @@ def _batch(
         if len(points):
             whole = np.repeat(points[:, None], JOINTS, axis=1)
             rows[: len(points), joint] = space.controllers(whole)[:, joint]
-            found.narrowed += space.narrowed(points[:, None])
-    costs = _tried(rows, counts, evaluate, found, journal, stage)
+            found.narrowed += space.count_narrow(points[:, None])
+    costs = _evaluate(rows, counts, evaluate, found, journal, stage)
     for joint, one in enumerate(packs):
         if counts[joint]:
             one.tell(costs[: counts[joint], joint])

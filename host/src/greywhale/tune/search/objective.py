@@ -2,7 +2,7 @@
 
 The cost of a joint is a length (rad), the sum of
 
-- the mean of |e|, weighted with time that restarts at every move of the leader (`training.since_moving`);
+- the mean of |e|, weighted with time that restarts at every move of the leader (`training.time_since_move`);
 - RMS times the root of the mean of e^2, without weights: this is what the paper's tables measure, and it arises mostly
   during moves;
 - EFFORT times the mean of |u|, weighted like |e|;
@@ -32,13 +32,13 @@ RMS = 1.5
 WORST_SHARE = 0.5
 
 
-def combined(values: Floats) -> Floats:
+def combine_plants(values: Floats) -> Floats:
     """Combine values (n, k, 4) over k plants to (n, 4): half the mean and half the worst."""
     mixed: Floats = (1.0 - WORST_SHARE) * values.mean(axis=1) + WORST_SHARE * values.max(axis=1)
     return mixed
 
 
-def crossed(controllers: Controllers, plants: Floats) -> tuple[Controllers, Floats]:
+def pair_with_plants(controllers: Controllers, plants: Floats) -> tuple[Controllers, Floats]:
     """Pair every controller with every plant: n k rows of both, the plants of one controller beside each other."""
     laws = np.repeat(controllers, len(plants), axis=0)
     arms = np.tile(plants, (len(controllers), 1))
@@ -64,7 +64,7 @@ class Objective:
 
     def tracking(self, controllers: Controllers, single: bool = False) -> Tracking:
         """Simulate every candidate on every plant; `single`: in the bench's own arithmetic."""
-        laws, arms = crossed(controllers, self.plants)
+        laws, arms = pair_with_plants(controllers, self.plants)
         shape = (len(controllers), len(self.plants), 4)
         error, square, volts = np.zeros(shape), np.zeros(shape), np.zeros(shape)
         for drill in self.drills:
@@ -78,7 +78,7 @@ class Objective:
     def costs(self, controllers: Controllers, single: bool = False) -> Floats:
         """(n, 4) in rad, over all plants; without the price of unrest."""
         found = self.tracking(controllers, single)
-        return combined(found.error + RMS * np.sqrt(found.square) + EFFORT * found.volts)
+        return combine_plants(found.error + RMS * np.sqrt(found.square) + EFFORT * found.volts)
 
     def _run(self, drill: Drill, laws: Controllers, arms: Floats, single: bool) -> Result:
         if single:

@@ -124,7 +124,7 @@ class Space:
         gains = [Variable(name, 0.0, _PAPER_GAIN_MAX[name], False) for name in GAINS]
         return cls(strategy, _chosen(strategy, sets, gains), base)
 
-    def bounded(self, bounds: Bounds, period_ms: int = 1) -> Self:
+    def with_bounds(self, bounds: Bounds, period_ms: int = 1) -> Self:
         """The same box with other bounds for some variables, which `check_bounds` must have passed."""
         most = largest_ki(period_ms)
         if "Ki" in bounds and bounds["Ki"][1] > most:
@@ -172,7 +172,7 @@ class Space:
         columns = [variable.search_value(controllers[:, :, variable.column]) for variable in self.variables]
         return np.stack(columns, axis=-1)
 
-    def reduced(self) -> Self:
+    def reduce(self) -> Self:
         """The part of the box in which the shape of the law differs.
 
         Sets are the same on both sides of zero. Where factors and sets are both searched, Kp and Kd are as near to 1 as
@@ -192,7 +192,7 @@ class Space:
                 base[:, variable.column] = round(float(np.clip(1.0, variable.low, variable.high)) * variable.unit)
         return replace(self, variables=tuple(by_name.values()), base=base)
 
-    def restretched(self, controllers: Controllers) -> Controllers:
+    def restretch(self, controllers: Controllers) -> Controllers:
         """The same laws (4, 12) with Kp and Kd of `base` where this space does not search them: the sets are stretched
         instead.
         """
@@ -207,7 +207,7 @@ class Space:
             rows[:, _column(gain)] = self.base[:, _column(gain)]
         return np.rint(rows).astype(np.int32)
 
-    def narrowed(self, points: Floats) -> int:
+    def count_narrow(self, points: Floats) -> int:
         """How many numbers of these points (n, 4, d) have a width below 0.01, which `controllers` widens."""
         count = 0
         for place, variable in enumerate(self.variables):
@@ -236,7 +236,7 @@ def check_bounds(strategy: str, bounds: Bounds) -> None:
             raise UserError(f"{name} is not searched by strategy {strategy}; leave out its bounds.", BAD_USAGE)
         if not low < high:
             raise UserError(f"the bounds of {name} are {low:g} and {high:g}; give the lower one first.", BAD_USAGE)
-        least, most = storable(name)
+        least, most = storable_range(name)
         if not (least <= low and high <= most):
             raise UserError(
                 f"the bounds of {name} are {low:g} and {high:g}, but they must lie within {least:g}..{most:g}.",
@@ -244,7 +244,7 @@ def check_bounds(strategy: str, bounds: Bounds) -> None:
             )
 
 
-def storable(name: str) -> tuple[float, float]:
+def storable_range(name: str) -> tuple[float, float]:
     """The smallest and the largest value that may bound a variable in a search."""
     if name in SETS:
         return _ordered(name, NARROWEST_STATED, 1.0)

@@ -55,11 +55,11 @@ def drills(arm: ArmParameters, table: ParameterTable, plants: Floats, seed: int 
     low, high = reach(arm, table, plants)
     motions = {
         "moves to both sides": moves(low, high),
-        "human-like reaches": within(human_reaches(HUMAN_SEED, HUMAN_S), low, high),
+        "human-like reaches": clip_motion(human_reaches(HUMAN_SEED, HUMAN_S), low, high),
     }
     made = []
     for number, (name, motion) in enumerate(motions.items()):
-        weight = since_moving(motion, WAIT_S)
+        weight = time_since_move(motion, WAIT_S)
         experiment = Experiment(
             motion, arm, table=table, seed=100 * seed + number + 11, wait_s=WAIT_S, soft_start=False,
             weight_s=weight,
@@ -115,12 +115,12 @@ def centre(low: Floats, high: Floats) -> tuple[Floats, Floats]:
     return np.clip(0.0, low + size, high - size), size
 
 
-def within(motion: Trajectory, low: Floats, high: Floats) -> Trajectory:
+def clip_motion(motion: Trajectory, low: Floats, high: Floats) -> Trajectory:
     """The motion with its angles clipped to the range."""
     return Trajectory(motion.time_s, np.clip(motion.angles, low, high))
 
 
-def since_moving(motion: Trajectory, wait_s: float) -> Floats:
+def time_since_move(motion: Trajectory, wait_s: float) -> Floats:
     """The weight (s) of every tick of an Experiment that waits `wait_s`; 0 while it waits."""
     ticks = int(np.ceil((wait_s + motion.duration_s) / 1e-3 - 1e-9))
     time_s: Floats = np.arange(ticks, dtype=np.float64) * 1e-3 - wait_s
