@@ -42,6 +42,8 @@ class Faults:
     garbage: bytes = b""  # before every answer
     hello: bytes | None = None  # instead of the right payload
     echo_error: int = 0  # added to the echoed value of param_set
+    read_error: int = 0  # added to the index that param_get answers
+    read_garbled: int | None = None  # index of a parameter of which another value is answered
     lose_ticks: frozenset[int] = frozenset()  # samples that get lost
     restart_at: int | None = None  # tick at which the board restarts
     restart_says_hello: bool = True
@@ -229,7 +231,8 @@ class FakeBoard:
                 return self._status()
             case schema.ParamGetRequest.TYPE:
                 index = schema.ParamGetRequest.unpack(payload).index
-                return schema.ParamGetReply(index, self.running[index]).pack()
+                value = self.running[index] + (index == self.faults.read_garbled)
+                return schema.ParamGetReply(index + self.faults.read_error, value).pack()
             case schema.ParamSetRequest.TYPE:
                 request = schema.ParamSetRequest.unpack(payload)
                 self.staged[request.index] = request.value
