@@ -24,8 +24,8 @@ Z = sp.Matrix([0, 0, 1])
 X = sp.Matrix([1, 0, 0])
 
 
-def derived() -> tuple[sp.Matrix, sp.Matrix]:
-    """Lagrange's equations: links as rigid bodies, y up, gravity along -y."""
+def derive() -> tuple[sp.Matrix, sp.Matrix]:
+    """Mass matrix and bias by Lagrange's equations: links as rigid bodies, y up, gravity along -y."""
     turn0 = sp.rot_ccw_axis2(q[0])
     turn1 = turn0 * sp.rot_ccw_axis3(q[1])
     turn2 = turn1 * sp.rot_ccw_axis3(q[2])
@@ -64,7 +64,7 @@ def derived() -> tuple[sp.Matrix, sp.Matrix]:
 
 
 def closed_form() -> tuple[sp.Matrix, sp.Matrix]:
-    """docs/arm.md, in its own words."""
+    """Mass matrix and bias as docs/arm.md states them."""
     carried = m[2] + m[3] + M
     second1 = m[1] * cg[1] ** 2 + carried * L[1] ** 2
     second2 = m[2] * cg[2] ** 2 + m[3] * (L[2] + cg[3]) ** 2 + M * (L[2] + L[3]) ** 2
@@ -108,8 +108,8 @@ def closed_form() -> tuple[sp.Matrix, sp.Matrix]:
     return mass, bias
 
 
-def vanishes(expression: sp.Expr) -> bool:
-    """Zero as a trigonometric polynomial: with exponentials every identity of sines and cosines becomes expansion."""
+def is_zero(expression: sp.Expr) -> bool:
+    """Whether it is zero for all angles: in exponentials, every identity of sines and cosines is an expansion."""
     turns = sp.symbols("t0:4")
     exponential = {}
     for angle, turn in zip(q, turns, strict=True):
@@ -119,14 +119,14 @@ def vanishes(expression: sp.Expr) -> bool:
 
 
 def main() -> None:
-    mass, bias = derived()
+    mass, bias = derive()
     mass_closed, bias_closed = closed_form()
     for i in range(4):
         for j in range(i, 4):
-            if not vanishes(mass[i, j] - mass_closed[i, j]):
+            if not is_zero(mass[i, j] - mass_closed[i, j]):
                 raise SystemExit(f"M[{i},{j}] of docs/arm.md differs from the derivation.")
             print(f"M[{i},{j}] =", mass_closed[i, j])
-        if not vanishes(bias[i] - bias_closed[i]):
+        if not is_zero(bias[i] - bias_closed[i]):
             raise SystemExit(f"bias[{i}] of docs/arm.md differs from the derivation.")
         print(f"bias[{i}] =", bias_closed[i])
     print("The closed form equals the derivation.")

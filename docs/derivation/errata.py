@@ -1,7 +1,7 @@
-"""What each erratum of the printed equations does: prints the table of docs/errata.md.
+"""Prints the table of docs/errata.md: what each erratum of the printed equations does.
 
-Three figures for each, with everything else corrected: the energy that a frictionless arm without motors gains or
-loses in 5 s, and by how much a motion under the paper's controllers changes (largest angle, total mean squared error).
+Everything else is corrected. Three figures show the effect: the energy that a frictionless arm without motors gains or
+loses in 5 s, and the change of a motion under the paper's controllers (largest angle, total mean squared error).
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ GAINS = np.array(
 )
 
 
-def drift(body: PrintedBody) -> float:
-    """J: largest change of energy of a free arm, Runge-Kutta 4; infinite when it runs away."""
+def energy_drift(body: PrintedBody) -> float:
+    """J: largest change of energy of a free arm, Runge-Kutta 4; infinite when the arm runs away."""
 
     def rate(state: np.ndarray) -> np.ndarray:
         q, v = state[:4], state[4:]
@@ -57,7 +57,7 @@ def fuzzy(x: float, y: float) -> float:
 
 
 def follow(arm: ArmParameters, wrong: set[str]) -> tuple[np.ndarray, float]:
-    """Angles and total MSE over a multi-step, motor damping implicit."""
+    """Angles and total MSE of a simulated multi-step with the errata in `wrong`; motor damping is implicit."""
     right = set(ERRATA) - wrong
     body = PrintedBody(arm, right)
     inertia, push, share, drag = motor_equation([joint.motor for joint in arm.joint], right)
@@ -85,9 +85,9 @@ def follow(arm: ArmParameters, wrong: set[str]) -> tuple[np.ndarray, float]:
 def main() -> None:
     arms = {name: load_arm(name) for name in ("white_box", "grey_box")}
     reference = {name: follow(arm, set()) for name, arm in arms.items()}
-    print("corrected", drift(PrintedBody(arms["white_box"], ERRATA)), {n: r[1] for n, r in reference.items()})
+    print("corrected", energy_drift(PrintedBody(arms["white_box"], ERRATA)), {n: r[1] for n, r in reference.items()})
     for wrong in [*({name} for name in ERRATA), set(ERRATA) - {"E14"}, set(ERRATA)]:
-        swing = drift(PrintedBody(arms["white_box"], set(ERRATA) - wrong)) if wrong != {"E14"} else 0.0
+        swing = energy_drift(PrintedBody(arms["white_box"], set(ERRATA) - wrong)) if wrong != {"E14"} else 0.0
         cells = []
         for name, arm in arms.items():
             angles, mse = follow(arm, wrong)
