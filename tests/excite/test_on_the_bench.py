@@ -115,7 +115,8 @@ def test_an_arm_far_weaker_than_its_file_is_led_more_slowly_and_without_a_fault(
     assert answer["duration_s"] > 10.5
     log = read_log(tmp_path / "log.csv")
     assert log.complete
-    assert np.allclose(log.leader[-1], log.leader[0], atol=2 * STEP_RAD), "it came back to where it began"
+    noise = 4 * STEP_RAD  # of the two readings of the pots that its begin and its end come from
+    assert np.allclose(log.leader[-1], log.leader[0], atol=noise), "it came back to where it began"
 
 
 def test_ctrl_c_stops_the_motors_and_keeps_the_log(bench: BenchProcess, tmp_path: Path) -> None:
