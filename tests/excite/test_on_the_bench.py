@@ -37,6 +37,7 @@ def told(capsys: pytest.CaptureFixture[str], *arguments: str) -> dict[str, Any]:
     return answer
 
 
+@pytest.mark.slow
 def test_an_excited_log_identifies_the_arm(
     bench: BenchProcess, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -69,6 +70,7 @@ def test_an_excited_log_identifies_the_arm(
         assert found[f"joint{joint}.alpha"] == pytest.approx(1.0 / arm.actuator(joint).torque_per_volt, rel=0.05)
 
 
+@pytest.mark.slow
 def test_a_replayed_motion_is_the_motion_wherever_the_arm_starts(
     bench: BenchProcess, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -87,6 +89,7 @@ def test_a_replayed_motion_is_the_motion_wherever_the_arm_starts(
     assert np.abs(np.diff(log.leader, axis=0)).max() < 8.0 * 1e-3
 
 
+@pytest.mark.slow
 def test_a_line_that_loses_bytes_changes_nothing_of_the_motion(bench: BenchProcess, tmp_path: Path) -> None:
     bench.command("line lose 0.001")
     motion = human_reaches(5, 4.0)
@@ -101,6 +104,7 @@ def test_a_line_that_loses_bytes_changes_nothing_of_the_motion(bench: BenchProce
     assert np.allclose(log.leader[-1], motion.angles[-1], atol=STEP_RAD)
 
 
+@pytest.mark.slow
 def test_an_arm_far_weaker_than_its_file_is_led_more_slowly_and_without_a_fault(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -119,6 +123,7 @@ def test_an_arm_far_weaker_than_its_file_is_led_more_slowly_and_without_a_fault(
     assert np.allclose(log.leader[-1], log.leader[0], atol=noise), "it came back to where it began"
 
 
+@pytest.mark.slow
 def test_ctrl_c_stops_the_motors_and_keeps_the_log(bench: BenchProcess, tmp_path: Path) -> None:
     def press(what: str, fraction: float) -> None:
         if what == "recording" and fraction > 0.3:
@@ -134,6 +139,7 @@ def test_ctrl_c_stops_the_motors_and_keeps_the_log(bench: BenchProcess, tmp_path
     assert log.time[-1] > 1.0
 
 
+@pytest.mark.slow
 def test_a_fault_ends_the_motion_and_is_named_and_the_pots_lead_again(bench: BenchProcess, tmp_path: Path) -> None:
     broken: list[str] = []
 
