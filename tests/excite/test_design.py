@@ -45,6 +45,7 @@ def test_the_same_seed_makes_the_same_motion_and_another_one_another() -> None:
     assert not np.array_equal(angles(1), angles(2))
 
 
+@pytest.mark.slow
 def test_searching_pays() -> None:
     little, more = (design(load_arm("white_box"), POSE, seconds=5.0, budget=budget) for budget in (1, 100))
     assert more.judgement.log_det > little.judgement.log_det + 4.0

@@ -74,6 +74,7 @@ BOUNDS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("arm", "spread"), list(BOUNDS))
 def test_error_against_a_fine_reference(arm: str, spread: float) -> None:
     experiment = Experiment(human_reaches(4, 4.0), default_arm())

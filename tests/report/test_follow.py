@@ -22,6 +22,7 @@ def log(gain: float, seed: int = 1) -> Log:
     return Log("x.csv", Origin(), time, leader + noise, gain * leader, 0 * leader, state, 0, True)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ending", [".png", ".svg", ".pdf"])
 def test_the_same_logs_give_the_same_bytes(tmp_path: Path, ending: str) -> None:
     for name in ("a", "b"):

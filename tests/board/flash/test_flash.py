@@ -218,6 +218,7 @@ def test_the_speed_of_a_nanos_bootloader_is_found(baud: int, tmp_path: Path, mon
     assert (tmp_path / "told").read_text() == str(baud)
 
 
+@pytest.mark.slow
 def test_a_board_without_bootloader_is_named() -> None:
     with Bootloader(9600) as line:
         with pytest.raises(UserError, match="no bootloader answers at 115200 and 57600 baud"):
