@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,7 +16,6 @@ from greywhale.files.arm import load_arm
 from greywhale.files.log import Log
 from greywhale.identify import Outcome, identify
 from greywhale.identify.judge import CHANGED, FIT, SECOND, Verdict, warnings_of
-from greywhale.identify.search import Search
 from greywhale.loop import plant_row
 from greywhale.table import ParameterTable
 from tools.bench.recordings import Recorded
@@ -109,15 +109,20 @@ def test_without_its_controller_a_log_is_still_worth_something(recorded: Recorde
     assert any("controller is not known" in warning for warning in outcome.warnings)
 
 
-def test_interrupt_keeps_the_best_model(
-    recorded: Recorded, white_box: ArmParameters, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def interrupted(self: Search) -> None:
-        raise KeyboardInterrupt
+def interrupt_at(stage: str) -> Callable[[str, float], None]:
+    """Progress whose reader presses Ctrl-C when this stage begins."""
 
-    monkeypatch.setattr(Search, "_with_friction", interrupted)
-    outcome = identify([_first(recorded.fit, 5.0)], white_box)
+    def report(what: str, fraction: float) -> None:
+        if what == stage:
+            raise KeyboardInterrupt
+
+    return report
+
+
+def test_interrupt_keeps_the_best_model(recorded: Recorded, white_box: ArmParameters, tmp_path: Path) -> None:
+    outcome = identify([_first(recorded.fit, 5.0)], white_box, report=interrupt_at("global search"))
     assert not outcome.complete
+    assert outcome.found.order == "motors"
     outcome.save(tmp_path / "model.toml")
     facts = load_arm(tmp_path / "model.toml").identification
     assert facts is not None
@@ -125,15 +130,9 @@ def test_interrupt_keeps_the_best_model(
     assert outcome.text().startswith("UNFINISHED")
 
 
-def test_interrupt_before_any_model_is_an_interrupt(
-    recorded: Recorded, white_box: ArmParameters, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def interrupted(self: Search) -> None:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(Search, "_motors", interrupted)
+def test_interrupt_before_any_model_is_an_interrupt(recorded: Recorded, white_box: ArmParameters) -> None:
     with pytest.raises(KeyboardInterrupt):
-        identify([recorded.fit], white_box)
+        identify([recorded.fit], white_box, report=interrupt_at("fitting the motors"))
 
 
 def test_model_that_learnt_its_controller_is_warned_about() -> None:

@@ -47,14 +47,14 @@ def y_of(line: Line2D) -> Floats:
 
 
 def figure_of(name: str) -> Figure:
-    with pictures._style():
+    with pictures.set_style():
         if name == "sets":
-            return pictures._sets_figure(controllers("before_tuning"), controllers("table_10"))
+            return pictures.plot_sets(controllers("before_tuning"), controllers("table_10"))
         if name == "responses":
-            return pictures._responses_figure(*motion(), "Response to multi-steps")
+            return pictures.plot_responses(*motion(), "Response to multi-steps")
         evaluations = np.arange(10, 310, 10)
         costs = [np.maximum(scale / evaluations, 1.2e-3 * scale) for scale in (1e-3, 1.0, 123456.0, 7e5)]
-        return pictures._convergence_figure([(evaluations, cost) for cost in costs], "Convergence")
+        return pictures.plot_convergence([(evaluations, cost) for cost in costs], "Convergence")
 
 
 @pytest.mark.slow

@@ -113,6 +113,7 @@ class Search:
         self._held = WindowResidual(self.logs, self.arm, self.joints, True)
 
     def run(self) -> None:
+        self.report("fitting the motors", 0.0)
         self._consider(self._motors())
         self._consider(self._with_friction())
         # What was of no use before backlash was known may be of use with it.
