@@ -1,14 +1,25 @@
 # Every target makes itself ready first; repeating one costs seconds. `make` alone lists them.
+# READY= leaves that out: for what runs inside another target or before a commit.
 
 PYTHON := .venv/bin/python
 export PATH := $(CURDIR)/.venv/bin:$(PATH)
+READY := setup
 
 CPPCHECK := cppcheck --quiet --error-exitcode=1 --inline-suppr --enable=warning,performance,portability -j2
 PORTABLE := $(shell find firmware/lib -name '*.cpp' -not -path '*/hal/src/*')
+TIDY := $(PORTABLE:%=build/tidy/%.ok)
+FIRMWARE_SOURCES := $(shell find firmware/lib -name '*.h' -o -name '*.inc')
 FIRMWARE_ROOMS := $(patsubst %,-Ifirmware/lib/%/src,$(notdir $(wildcard firmware/lib/*)))
 
+# Parts of the targets below, the longest first. They run side by side on all cores, and what one says stays together.
+LINT := mypy clang-tidy cppcheck-host cppcheck-firmware ruff ruff-format generated
+UNIT_TESTS := firmware-tests-native
+IMAGES := firmware-tests-sim gates
+SIDE_BY_SIDE := $(MAKE) READY= --no-print-directory --jobs=$(shell nproc) --output-sync=target
+PYTEST := $(PYTHON) -m pytest -n auto
+
 .DEFAULT_GOAL := help
-.PHONY: help setup build firmware demo test lint oracles bench docs lock clean
+.PHONY: help setup build firmware demo check test lint oracles bench docs lock clean $(LINT) $(UNIT_TESTS) $(IMAGES)
 
 help: ## list the targets
 	@sed -n 's/^\([a-z]*\):[^#]*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12
@@ -18,28 +29,54 @@ setup: ## install and build everything that is missing (Debian packages, .venv, 
 
 build: setup ## the same, under the name people look for
 
-firmware: setup ## build the firmware for both boards, show its size, check its tick and its stack
-	@$(PYTHON) -m tools.firmware_gate
-	@$(PYTHON) -m tools.gates
+firmware: gates ## build the firmware for both boards, show its size, check its tick and its stack
 
 demo: setup ## the whole story on the simulated bench; options in ARGS, e.g. ARGS="--leader motion.csv"
 	@$(PYTHON) -m greywhale demo --out build/demo $(ARGS)
 
-lint: setup ## ruff, mypy --strict, cppcheck, clang-tidy, generated files
+lint: $(READY) ## ruff, mypy --strict, cppcheck, clang-tidy, generated files
+	@$(SIDE_BY_SIDE) $(LINT)
+
+check: $(READY) ## before each commit: lint, unit tests, the short way through the simulated bench; pytest without what is slow
+	@$(SIDE_BY_SIDE) $(LINT) $(UNIT_TESTS)
+	$(PYTEST) -m 'not slow' $(ARGS)
+
+test: $(READY) ## everything: lint, unit tests here and on the simulated board, gates on size, tick and stack, pytest
+	@$(SIDE_BY_SIDE) $(LINT) $(UNIT_TESTS) $(IMAGES)
+	$(PYTEST) $(ARGS)
+
+ruff: $(READY)
 	ruff check
+
+ruff-format: $(READY)
 	ruff format --check
+
+mypy: $(READY)
 	mypy
+
+cppcheck-firmware: $(READY)
 	$(CPPCHECK) --std=c++14 '-DISR(vector,...)=void vector()' firmware/lib firmware/src
+
+cppcheck-host: $(READY)
 	$(CPPCHECK) --std=c++17 --suppress=assignBoolToPointer:sim/board/binding.cpp sim host/native tools/studies
-	clang-tidy --quiet $(PORTABLE) -- -std=gnu++14 $(FIRMWARE_ROOMS) 2>build/clang-tidy.log || { cat build/clang-tidy.log; exit 1; }
+
+clang-tidy: $(TIDY)
+
+build/tidy/%.ok: % $(FIRMWARE_SOURCES) .clang-tidy Makefile | $(READY)
+	@mkdir -p $(@D)
+	@echo clang-tidy $<
+	@clang-tidy --quiet $< -- -std=gnu++14 $(FIRMWARE_ROOMS) 2>$@.log || { cat $@.log; exit 1; }
+	@touch $@
+
+generated: $(READY)
 	$(PYTHON) -m tools.generate_link --check
 
-test: lint ## everything: lint, unit tests here and on the simulated board, gates on size, tick and stack, pytest
-	$(PYTHON) -m tools.firmware_tests native
-	$(PYTHON) -m tools.firmware_tests sim
-	$(PYTHON) -m tools.firmware_gate
-	$(PYTHON) -m tools.gates
-	$(PYTHON) -m pytest $(ARGS)
+firmware-tests-native firmware-tests-sim: firmware-tests-%: $(READY)
+	$(PYTHON) -m tools.firmware_tests $*
+
+gates: $(READY)
+	@$(PYTHON) -m tools.firmware_gate
+	@$(PYTHON) -m tools.gates
 
 oracles: setup ## tests against heavy outside references (installs them first)
 	@python3 -m tools.oracles

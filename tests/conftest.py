@@ -1,4 +1,6 @@
-"""What holds for every test: children hear signals, and nobody else's temporary files are in sight."""
+"""What holds for every test: children hear signals, and nobody else's temporary files are in sight. Under `-n`: how
+rooms of tests are shared out among workers.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +9,7 @@ import tempfile
 from collections.abc import Iterator
 
 import pytest
+from xdist.scheduler import LoadScopeScheduling
 
 
 def pytest_configure() -> None:
@@ -35,3 +38,29 @@ def _temporary_folder_of_our_own(tmp_path_factory: pytest.TempPathFactory) -> It
         patch.setenv("TMPDIR", folder)  # for children
         patch.setattr(tempfile, "tempdir", folder)
         yield
+
+
+# Workers begin with these rooms, in this order, so that they end at about the same time.
+LONGEST = ("end_to_end", "tune", "cli", "identify", "fuzzy", "excite", "optimise")
+
+
+def _room(nodeid: str) -> str:
+    """tune/judge of tests/tune/judge/test_floor.py::test_a_floor."""
+    return nodeid.partition("::")[0].rpartition("/")[0].removeprefix("tests").removeprefix("/")
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    if hasattr(config, "workerinput"):
+        order = {room: place for place, room in enumerate(LONGEST)}
+        items.sort(key=lambda item: order.get(_room(item.nodeid).partition("/")[0], len(order)))
+
+
+def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> object:
+    """A worker takes a room at a time: what its tests share is built once, and PlatformIO, which builds in one folder,
+    has one user.
+    """
+    rooms = LoadScopeScheduling(config, log)
+    rooms._split_scope = _room
+    config.option.loadscopereorder = False  # it would begin with the room that holds most tests
+    return rooms

@@ -6,6 +6,7 @@ import ast
 from collections.abc import Iterator, Mapping
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
+from textwrap import dedent
 
 import pytest
 
@@ -25,6 +26,8 @@ ALLOWED = {
     "loop": {"arm", "errors", "files", "firmware", "protocol", "table", "trajectory"},
     "optimise": {"errors", "formats"},
 }
+# Extension modules whose names begin with an underscore. Both are rooms of their own with public classes and functions.
+EXTENSIONS = {"_native", "_board"}
 
 
 def modules(source: Path) -> dict[str, Path]:
@@ -128,3 +131,47 @@ def test_each_thing_has_its_owner(word: str, owner: str) -> None:
     """The native code, the table by index and the port are touched where they belong and nowhere else."""
     users = {str(path.relative_to(SOURCE)) for path in SOURCE.rglob("*.py") if word in path.read_text("utf-8")}
     assert users == set(owner.split())
+
+
+def is_private(name: str) -> bool:
+    """Whether a dotted name goes through a private one, dunders and the extension modules apart."""
+    parts = set(name.split(".")) - EXTENSIONS
+    return any(part.startswith("_") and not part.startswith("__") for part in parts)
+
+
+def private_uses(tree: ast.AST) -> Iterator[tuple[int, str]]:
+    """Lines where a module uses what another keeps to itself: as an attribute, imported, or named in a string."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Attribute):
+            own = isinstance(node.value, ast.Name) and node.value.id in {"self", "cls"}
+            names = [] if own else [node.attr]
+        elif isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            names = [node.module or "", *(alias.name for alias in node.names)]
+        elif isinstance(node, ast.Call):  # getattr(x, "_y"), monkeypatch.setattr("x._y", ...) and their like
+            called = node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
+            words = [one.value for one in node.args[:2] if isinstance(one, ast.Constant) and isinstance(one.value, str)]
+            names = words if called in {"getattr", "setattr", "delattr", "hasattr"} else []
+        else:
+            continue
+        yield from ((node.lineno, name) for name in names if is_private(name))
+
+
+def test_tests_use_what_is_public() -> None:
+    example = """
+        from ours import _one
+        import ours._two
+        ours.thing()._three = ours.__version__ + self._own
+        patch.setattr(ours, "_four", 4)
+        patch.setattr("ours._five", 5)
+        from greywhale import _native
+        """
+    found = [name for _, name in private_uses(ast.parse(dedent(example)))]
+    assert sorted(found) == ["_four", "_one", "_three", "ours._five", "ours._two"]
+    uses = {
+        f"{path.relative_to(ROOT)}:{line}: {name}"
+        for path in (ROOT / "tests").rglob("*.py")
+        for line, name in private_uses(ast.parse(path.read_text(encoding="utf-8")))
+    }
+    assert uses == set()

@@ -18,6 +18,7 @@
 #include "bindings.h"
 #include "closed_loop/batch.h"
 #include "closed_loop/block.h"
+#include "closed_loop/controllers.h"
 #include "closed_loop/experiment.h"
 #include "closed_loop/swings.h"
 
@@ -37,8 +38,7 @@ using Out = nb::ndarray<nb::numpy, T, nb::c_contig>;
 template <class T>
 using Each = std::array<T, kJoints>;
 
-constexpr std::size_t kSettingColumns = 12;
-using ControllerTable = In<std::int32_t, nb::shape<-1, kJoints, kSettingColumns>>;
+using ControllerTable = In<std::int32_t, nb::shape<-1, kJoints, loop::kControllerColumns>>;
 using PlantTable = In<double, nb::shape<-1, loop::kPlantColumns>>;
 
 // A fresh array that numpy will own.
@@ -61,26 +61,6 @@ class Array {
   std::vector<std::size_t> shape_;
   std::unique_ptr<T[]> values_;
 };
-
-fuzzy_pdi::Settings settings_of(const std::int32_t* c) {
-  const auto set = [c](std::size_t i) { return static_cast<std::int16_t>(c[i]); };
-  const auto gain = [c](std::size_t i) { return static_cast<std::uint32_t>(c[i]); };
-  return {set(0), set(1), set(2), set(3), set(4), set(5), set(6), set(7), gain(8), gain(9), gain(10), static_cast<std::uint16_t>(c[11])};
-}
-
-std::vector<loop::Controllers> compiled(const ControllerTable& table, int period_ms) {
-  std::vector<loop::Controllers> all(table.shape(0));
-  for (std::size_t n = 0; n < all.size(); ++n) {
-    for (std::size_t i = 0; i < kJoints; ++i) {
-      const fuzzy_pdi::Settings settings = settings_of(&table(n, i, 0));
-      const fuzzy_pdi::Refusal refusal = fuzzy_pdi::compile(settings, static_cast<std::uint8_t>(period_ms), all[n][i]);
-      if (refusal == fuzzy_pdi::Refusal::none) continue;
-      throw std::invalid_argument("controllers[" + std::to_string(n) + ", " + std::to_string(i) +
-                                  "] is refused by the firmware with reason " + std::to_string(static_cast<int>(refusal)) + ".");
-    }
-  }
-  return all;
-}
 
 // The experiment with the arrays that it looks into.
 struct ClosedLoop {
@@ -152,7 +132,7 @@ nb::tuple run(const ClosedLoop& self, const ControllerTable& controllers, const 
   Array<bool> diverged({count});
   Array<float> angles({count, rows, kJoints});
   Array<std::int16_t> duties({count, rows, kJoints});
-  const std::vector<loop::Controllers> laws = compiled(controllers, self.x.settings.period_ms);
+  const std::vector<loop::Controllers> laws = loop::compiled(controllers.data(), controllers.shape(0), self.x.settings.period_ms);
   const auto* plant_rows = reinterpret_cast<const loop::PlantRow*>(plants.data());
   {
     const nb::gil_scoped_release free;
@@ -173,7 +153,7 @@ nb::tuple leader_readings(const loop::Settings& settings, const loop::Timing& ti
 }
 
 // The vector form of the law for sixteen controllers side by side; tests compare it with the firmware's own.
-nb::object sixteen_laws(const In<std::int32_t, nb::shape<loop::kBlock, kSettingColumns>>& controllers, int period_ms,
+nb::object sixteen_laws(const In<std::int32_t, nb::shape<loop::kBlock, loop::kControllerColumns>>& controllers, int period_ms,
                         const In<std::int32_t, nb::shape<-1, loop::kBlock>>& leader,
                         const In<std::int32_t, nb::shape<-1, loop::kBlock>>& follower, const In<std::uint16_t, nb::shape<-1>>& limit_mv,
                         const std::string& instructions) {
@@ -181,8 +161,7 @@ nb::object sixteen_laws(const In<std::int32_t, nb::shape<loop::kBlock, kSettingC
   if (follower.shape(0) != n || limit_mv.shape(0) != n) throw std::invalid_argument("leader, follower and limit_mv differ in length.");
   std::array<fuzzy_pdi::Coefficients, loop::kBlock> laws;
   for (std::size_t lane = 0; lane < loop::kBlock; ++lane) {
-    const fuzzy_pdi::Settings settings = settings_of(&controllers(lane, 0));
-    if (fuzzy_pdi::compile(settings, static_cast<std::uint8_t>(period_ms), laws[lane]) != fuzzy_pdi::Refusal::none) {
+    if (loop::compile(&controllers(lane, 0), period_ms, laws[lane]) != fuzzy_pdi::Refusal::none) {
       throw std::invalid_argument("controllers[" + std::to_string(lane) + "] is refused by the firmware.");
     }
   }

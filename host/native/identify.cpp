@@ -3,7 +3,6 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -12,7 +11,6 @@
 
 #include "bindings.h"
 #include "closed_loop/experiment.h"
-#include "share_out.h"
 #include "windows/windows.h"
 
 namespace nb = nanobind;
@@ -50,32 +48,6 @@ struct Start {
   Rows offsets, kicks;
 };
 
-using Kernel = void (*)(const windows::Windows&, const windows::Lane*, std::size_t);
-
-struct Width {
-  Kernel kernel;
-  std::size_t lanes;
-};
-
-Width widest() {
-  if (__builtin_cpu_supports("avx2")) return {windows::simulate_4_avx2, 4};
-  return {windows::simulate_2, 2};
-}
-
-// Runs of at most `most` lanes that can share a kernel call: those of one window, or of windows with the same times between rows.
-std::vector<std::size_t> grouped(const std::vector<windows::Lane>& lanes, const windows::Windows& w, std::size_t most) {
-  const auto spacing = [&](std::size_t lane) { return w.spacing + w.first[lanes[lane].window]; };
-  std::vector<std::size_t> begins;
-  for (std::size_t lane = 0; lane < lanes.size(); ++lane) {
-    const std::size_t begin = begins.empty() ? 0 : begins.back();
-    const bool fits = !begins.empty() && lane - begin < most &&
-                      (lanes[lane].window == lanes[begin].window || std::equal(spacing(begin), spacing(begin) + w.rows, spacing(lane)));
-    if (!fits) begins.push_back(lane);
-  }
-  begins.push_back(lanes.size());
-  return begins;
-}
-
 void check(const Windows& w, const Drive& drive, const Plants& plants, const Start& start, std::size_t every) {
   const std::size_t rows = drive.spacing.shape(0);
   if (every == 0 || drive.substeps == 0) throw std::invalid_argument("every and substeps must be 1 or more.");
@@ -94,8 +66,7 @@ void check(const Windows& w, const Drive& drive, const Plants& plants, const Sta
   }
 }
 
-// Every (candidate, window) pair once, in as many lanes as the processor has, from as many threads as there are cores or as asked;
-// neither changes a bit of the result.
+// Every (candidate, window) pair once.
 nb::object run(const Windows& w, const Drive& drive, const Plants& plants, const Start& start, std::size_t every, int threads) {
   check(w, drive, plants, start, every);
   const std::size_t candidates = plants.shape(0), count = w.first.shape(0), kept = (w.rows + every - 1) / every;
@@ -105,17 +76,14 @@ nb::object run(const Windows& w, const Drive& drive, const Plants& plants, const
     const nb::gil_scoped_release free;
     const windows::Windows given{w.first.data(),     w.angles.data(),      w.velocities.data(), w.sides.data(), drive.volts.data(),
                                  drive.spacing.data(), w.rows, drive.substeps, every};
-    std::vector<windows::Lane> lanes;
-    lanes.reserve(candidates * count);
+    std::vector<windows::Task> tasks;
+    tasks.reserve(candidates * count);
     for (std::size_t window = 0; window < count; ++window) {
       for (std::size_t n = 0; n < candidates; ++n) {
-        lanes.push_back({&plants(n, 0), &start.offsets(n, 0), &start.kicks(n, 0), window, &values[(n * count + window) * size]});
+        tasks.push_back({&plants(n, 0), &start.offsets(n, 0), &start.kicks(n, 0), window, &values[(n * count + window) * size]});
       }
     }
-    const Width width = widest();
-    const std::vector<std::size_t> begins = grouped(lanes, given, width.lanes);
-    const auto work = [&](std::size_t group) { width.kernel(given, &lanes[begins[group]], begins[group + 1] - begins[group]); };
-    greywhale::share_out(begins.empty() ? 0 : begins.size() - 1, threads, work);
+    windows::simulate(given, tasks, threads);
   }
   double* raw = values.release();
   nb::capsule owner(raw, [](void* p) noexcept { delete[] static_cast<double*>(p); });

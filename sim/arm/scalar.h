@@ -3,6 +3,9 @@
 
 #include <cmath>
 
+// Lanes must not be passed to functions and back, as that costs more than most functions do.
+#define GREYWHALE_INLINE inline __attribute__((always_inline))
+
 namespace greywhale::arm {
 
 // A constant in every lane. T may be a GCC vector type, which has no conversion from a number but does broadcast in sums.

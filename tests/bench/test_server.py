@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -23,13 +23,15 @@ from greywhale_sim.wiring import MEGA
 
 
 class Wall:
-    """A wall clock that only waiting moves."""
+    """A wall clock that only waiting moves; `meanwhile` is what else happens while the bench waits."""
 
     def __init__(self) -> None:
         self.now = 0.0
+        self.meanwhile: Callable[[], None] = lambda: None
 
     def wait(self, seconds: float) -> None:
         self.now += seconds
+        self.meanwhile()
 
 
 @pytest.fixture
@@ -42,10 +44,14 @@ def eeprom(tmp_path: Path) -> Path:
     return tmp_path / "eeprom.bin"
 
 
+def serve(board: Any, bench: Bench, wall: Wall, eeprom: Path) -> Server:
+    pacer = Pacer(lambda: wall.now, wall.wait)
+    return Server(bench, board, MEGA, SerialPort(), fast=True, eeprom=eeprom, pacer=pacer)
+
+
 @pytest.fixture
 def server(board: Any, bench: Bench, wall: Wall, eeprom: Path) -> Iterator[Server]:
-    port = SerialPort()
-    server = Server(bench, board, MEGA, port, fast=True, eeprom=eeprom, pacer=Pacer(lambda: wall.now, wall.wait))
+    server = serve(board, bench, wall, eeprom)
     yield server
     server.close()
 
@@ -118,21 +124,21 @@ def test_simulated_time_waits_for_a_slow_reader(board: Any, server: Server, wall
         board.to_send += bytes(2000)
         waits: list[float] = []
 
-        def reads_at_last(seconds: float) -> None:
-            waits.append(seconds)
+        def read_at_last() -> None:
+            waits.append(wall.now)
             if len(waits) == 3:
                 host.read(2000)
 
-        server._pacer._wait = reads_at_last
+        wall.meanwhile = read_at_last
         server.turn()
         assert len(waits) == 3
 
 
-def test_a_host_that_dies_with_bytes_unread_does_not_stop_the_bench(board: Any, server: Server) -> None:
+def test_a_host_that_dies_with_bytes_unread_does_not_stop_the_bench(board: Any, server: Server, wall: Wall) -> None:
     host = serial.Serial(server.port.path, 1_000_000)
     server.turn()
     board.to_send += bytes(2000)
-    server._pacer._wait = lambda seconds: host.close()
+    wall.meanwhile = host.close
     server.turn()
     assert not server.port.connected
     assert server.port.unread() == 0
@@ -153,10 +159,11 @@ def test_eeprom_reaches_its_file_when_it_changes(board: Any, server: Server, eep
     assert [path.name for path in eeprom.parent.iterdir()] == [eeprom.name]
 
 
-def test_the_last_byte_is_kept_when_the_bench_ends(board: Any, server: Server, eeprom: Path) -> None:
+def test_the_last_byte_is_kept_when_the_bench_ends(board: Any, bench: Bench, wall: Wall, eeprom: Path) -> None:
+    server = serve(board, bench, wall, eeprom)
     server.turn()
     board.memory = b"\x77" * 4096
-    server._keep_eeprom(now=True)
+    server.close()
     assert eeprom.read_bytes() == b"\x77" * 4096
 
 

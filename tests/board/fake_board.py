@@ -41,7 +41,10 @@ class Faults:
     refuse_times: Counter[int] = field(default_factory=Counter)  # request type -> how often (0: always)
     garbage: bytes = b""  # before every answer
     hello: bytes | None = None  # instead of the right payload
+    replies: dict[int, bytes] = field(default_factory=dict)  # request type -> payload instead of the right one
     echo_error: int = 0  # added to the echoed value of param_set
+    read_error: int = 0  # added to the index that param_get answers
+    read_garbled: int | None = None  # index of a parameter of which another value is answered
     lose_ticks: frozenset[int] = frozenset()  # samples that get lost
     restart_at: int | None = None  # tick at which the board restarts
     restart_says_hello: bool = True
@@ -114,7 +117,17 @@ class FakeBoard:
 
     def own_hello(self) -> bytes:
         """The frame that a board sends by itself when it has started."""
-        return encode_frame(schema.HelloReply.TYPE, 0, self._hello())
+        return encode_frame(schema.HelloReply.TYPE, 0, self.hello())
+
+    def hello(self) -> bytes:
+        """The payload with which the board tells who it is."""
+        if self.faults.hello is not None:
+            return self.faults.hello
+        crc = schema.param_crc(self.running)
+        return schema.HelloReply(
+            schema.PROTOCOL, 0, 1, 0, schema.SCHEMA_HASH, schema.Board.MEGA2560, crc, schema.ParamSource.DEFAULTS,
+            schema.ResetCause.EXTERNAL,
+        ).pack()  # fmt: skip
 
     def say(self, data: bytes) -> None:
         """Bytes to the host, whatever they mean."""
@@ -212,7 +225,8 @@ class FakeBoard:
             self.faults.refuse_times[kind] -= 1
             self._answer(schema.Nack.TYPE, seq, schema.Nack(kind, code, detail).pack())
             return
-        reply = self._reply(kind, payload)
+        spoilt = self.faults.replies.get(kind)
+        reply = self._reply(kind, payload) if spoilt is None else spoilt
         if self.faults.lose[kind] > 0:
             self.faults.lose[kind] -= 1
             return
@@ -224,12 +238,13 @@ class FakeBoard:
     def _reply(self, kind: int, payload: bytes) -> bytes:
         match kind:
             case schema.HelloRequest.TYPE:
-                return self._hello()
+                return self.hello()
             case schema.StatusRequest.TYPE:
                 return self._status()
             case schema.ParamGetRequest.TYPE:
                 index = schema.ParamGetRequest.unpack(payload).index
-                return schema.ParamGetReply(index, self.running[index]).pack()
+                value = self.running[index] + (index == self.faults.read_garbled)
+                return schema.ParamGetReply(index + self.faults.read_error, value).pack()
             case schema.ParamSetRequest.TYPE:
                 request = schema.ParamSetRequest.unpack(payload)
                 self.staged[request.index] = request.value
@@ -260,15 +275,6 @@ class FakeBoard:
         self._lease_ms = lease_ms
         self._lease_end = self.tick + lease_ms
         return schema.EnableReply(self.state).pack()
-
-    def _hello(self) -> bytes:
-        if self.faults.hello is not None:
-            return self.faults.hello
-        crc = schema.param_crc(self.running)
-        return schema.HelloReply(
-            schema.PROTOCOL, 0, 1, 0, schema.SCHEMA_HASH, schema.Board.MEGA2560, crc, schema.ParamSource.DEFAULTS,
-            schema.ResetCause.EXTERNAL,
-        ).pack()  # fmt: skip
 
     def _status(self) -> bytes:
         if self._save_state is SaveState.SAVING:

@@ -8,11 +8,12 @@ import os
 from pathlib import Path
 
 import pytest
+import serial
 
 from greywhale.board.device import Device, NoAnswerError
 from greywhale.board.refusal import RefusedError
 from greywhale.errors import UserError
-from greywhale.protocol import schema, transport
+from greywhale.protocol import schema
 from greywhale.protocol.frames import encode_frame
 from greywhale.protocol.schema import Fault, NackCode, Refusal, State
 from tests.board.fake_board import FakeBoard, Faults
@@ -107,7 +108,7 @@ def test_other_protocol_names_both_versions() -> None:
 
 def test_other_schema_names_both_hashes_and_the_firmware() -> None:
     with FakeBoard() as board:
-        payload = bytearray(board._hello())
+        payload = bytearray(board.hello())
         payload[1:8] = bytes([3, 2, 1]) + (0x11223344).to_bytes(4, "little")
         board.faults.hello = bytes(payload)
         with pytest.raises(UserError, match=rf"firmware 3\.2\.1 .*0x11223344.*{schema.SCHEMA_HASH:#010x}; flash"):
@@ -224,7 +225,7 @@ def test_an_unplugged_cable_is_one_sentence() -> None:
 
 def test_wrong_telemetry_echo_is_noticed() -> None:
     with FakeBoard() as board, open_device(board) as device:
-        board._reply = lambda kind, payload: schema.TelemetryReply(3).pack()  # type: ignore[method-assign]
+        board.faults.replies[schema.TelemetryRequest.TYPE] = schema.TelemetryReply(3).pack()
         with pytest.raises(UserError, match="every 3 ticks instead of 4"):
             device.telemetry(4)
 
@@ -251,5 +252,15 @@ def test_ports_that_cannot_be_opened(tmp_path: Path) -> None:
         (errno.EIO, "cannot be opened: input/output error"),
     ],
 )
-def test_open_errors_have_their_remedies(number: int, words: str) -> None:
-    assert words in transport._why_not_open("/dev/ttyX", OSError(number, os.strerror(number)))
+def test_open_errors_have_their_remedies(
+    number: int, words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: object, **__: object) -> None:
+        raise OSError(number, os.strerror(number))
+
+    monkeypatch.setattr(serial, "Serial", refuse)
+    port = tmp_path / "ttyX"
+    port.touch()
+    with pytest.raises(UserError, match=words) as caught:
+        Device(str(port))
+    assert caught.value.message.startswith(f"{port}: ")

@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 from greywhale.board.device import Device
-from greywhale.board.record import LEASE_MS, record
+from greywhale.board.record import LEASE_MS, record, record_led
 from greywhale.errors import UserError
 from greywhale.files.log import read_log
 from greywhale.protocol import schema
 from greywhale.protocol.schema import Fault, State
+from greywhale.trajectory import Trajectory
 from tests.board.fake_board import FakeBoard, Faults
 
 
@@ -43,6 +44,30 @@ def test_listening_records_every_sample_and_leaves_the_motors_alone(tmp_path: Pa
     assert log.origin.board == "mega2560"
     assert log.origin.param_crc == schema.param_crc(schema.DEFAULTS)
     assert (log.origin.period_ms, log.origin.every_ticks) == (1, 1)
+
+
+@pytest.mark.parametrize(
+    ("faults", "words"),
+    [
+        (Faults(read_error=1), "asked for parameter 0, the board answered 1"),
+        (Faults(read_garbled=schema.PARAMETER_BY_NAME["joint1.limit_max"].index), "the parameters read have CRC"),
+    ],
+)
+def test_a_motion_is_never_planned_from_limits_that_were_read_wrong(tmp_path: Path, faults: Faults, words: str) -> None:
+    """The joints' limits come from a table that its CRC proves; else the motors stay off."""
+    motion = Trajectory(np.array([0.0, 1.0]), np.zeros((2, 4)))
+    with FakeBoard(faults) as board:
+        with open_device(board) as device, pytest.raises(UserError, match=words):
+            record_led(device, tmp_path / "log.csv", motion)
+        assert board.asked(schema.LeadRequest) == 0
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_period_that_was_read_wrong_is_in_no_log(tmp_path: Path) -> None:
+    with FakeBoard(Faults(read_error=1)) as board, open_device(board) as device:
+        with pytest.raises(UserError, match="asked for parameter 0, the board answered 1"):
+            record(device, tmp_path / "log.csv", 0.1)
+    assert not list(tmp_path.iterdir())
 
 
 def test_following_is_recorded_from_the_end_of_the_soft_start(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ from greywhale.board.device import Device
 from greywhale.errors import UserError
 from greywhale.protocol import schema
 from greywhale.protocol.schema import NackCode, Refusal, SaveState
+from greywhale.table import ParameterTable
 from tests.board.fake_board import FakeBoard, Faults
 
 ROOT = Path(__file__).parents[2]
@@ -98,14 +99,13 @@ def test_a_failed_save_says_that_the_set_runs_but_is_not_stored() -> None:
         upload.upload_controller(device, TABLE_10)
 
 
-def test_a_save_without_end_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(upload, "_SAVE_WAIT_S", 0.2)
+def test_a_save_without_end_is_given_up() -> None:
     with (
         FakeBoard(Faults(save_result=SaveState.SAVING)) as board,
         open_device(board) as device,
         pytest.raises(UserError, match=r"has not ended after 0\.2 s"),
     ):
-        upload.upload_controller(device, TABLE_10)
+        upload.upload_set(device, ParameterTable.defaults(), save_wait_s=0.2)
 
 
 def test_another_running_set_after_the_upload_is_noticed() -> None:
@@ -120,7 +120,7 @@ def test_another_running_set_after_the_upload_is_noticed() -> None:
 def test_parameters_read_wrong_are_noticed() -> None:
     default = schema.param_crc(schema.DEFAULTS)
     with FakeBoard() as board, open_device(board) as device:
-        board._hello = lambda: _with_crc(device.hello, 0x1234)  # type: ignore[method-assign]
+        board.faults.hello = _with_crc(device.hello, 0x1234)
         with pytest.raises(UserError, match=f"parameters read have CRC {default:#06x}, the board's set has 0x1234"):
             upload.read_parameters(device)
 

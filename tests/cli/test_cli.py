@@ -259,7 +259,7 @@ def test_a_missing_bench_is_one_sentence(capsys: Captured, monkeypatch: pytest.M
 
 RUN = """
 import sys
-from greywhale.link import device
+from greywhale.board import device
 device.Device.__init__.__defaults__ = (0.0, 0.5)
 from greywhale.cli import main
 main(sys.argv[1:])

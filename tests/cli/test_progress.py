@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import pty
 import sys
@@ -9,6 +10,16 @@ import sys
 import pytest
 
 from greywhale.cli.output import progress
+
+
+def everything(seen: int) -> str:
+    """What was written to a terminal whose other end is closed by now; it comes in pieces of any size."""
+    text = b""
+    with contextlib.suppress(OSError):  # nothing more to come
+        while piece := os.read(seen, 65536):
+            text += piece
+    os.close(seen)
+    return text.decode()
 
 
 def test_a_terminal_sees_the_share_done_the_time_left_and_the_note(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -23,8 +34,7 @@ def test_a_terminal_sees_the_share_done_the_time_left_and_the_note(monkeypatch: 
             report("tuning", 0.5, "cost 0.0625")
         with progress(as_json=True) as report:
             assert report is None
-        text = os.read(seen, 65536).decode()
-    os.close(seen)
+    text = everything(seen)
     for words in ("tuning", "50 %", " left", "cost 0.0625"):
         assert words in text
 

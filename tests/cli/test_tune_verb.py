@@ -133,6 +133,7 @@ def test_files_that_will_not_do_are_named_before_any_work(
 # --- what it writes -------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_json_file_and_upload_speak_of_the_same_controllers(model: Path, capsys: Captured) -> None:
     out = model.parent / "controller.toml"
     assert entry.run(["tune", str(model), "--out", str(out), *QUICK, "--json"]) == 0
@@ -148,6 +149,7 @@ def test_json_file_and_upload_speak_of_the_same_controllers(model: Path, capsys:
     assert (written.tuning["status"], written.tuning["method"]) == ("complete", "random")
 
 
+@pytest.mark.slow
 def test_any_number_of_workers_writes_the_same_file(no_floors: None, model: Path) -> None:
     many = ("--method", "random", "--budget", "20", "--samples", "2")  # more than one thread would do at a time
     texts = []
@@ -159,6 +161,7 @@ def test_any_number_of_workers_writes_the_same_file(no_floors: None, model: Path
     assert texts[2] != texts[0]
 
 
+@pytest.mark.slow
 def test_bounds_hold_even_for_what_the_board_ran_before(no_floors: None, model: Path, capsys: Captured) -> None:
     limits = ("--bounds", "Ku=3..5", "--bounds", "ze_c=0.02..0.03")
     assert entry.run(["tune", str(model), "-o", str(model.parent / "c.toml"), *QUICK, *limits, "--json"]) == 0
@@ -172,6 +175,7 @@ def test_bounds_hold_even_for_what_the_board_ran_before(no_floors: None, model: 
     assert widths.max() <= 0.03 + 1e-4
 
 
+@pytest.mark.slow
 def test_doubts_go_along_into_text_and_file(no_floors: None, tmp_path: Path, capsys: Captured) -> None:
     model = write_model(tmp_path / "model.toml", log=[log_facts()])
     out = tmp_path / "controller.toml"
@@ -184,6 +188,7 @@ def test_doubts_go_along_into_text_and_file(no_floors: None, tmp_path: Path, cap
     assert f"# Doubt: {doubt}" in out.read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_pictures_are_drawn_on_request(no_floors: None, model: Path, capsys: Captured) -> None:
     folder = model.parent / "pictures"
     assert (
@@ -253,6 +258,7 @@ def wait_for_batches(process: subprocess.Popen[str], journal: Path, count: int) 
         time.sleep(0.002)
 
 
+@pytest.mark.slow
 def test_interrupted_and_resumed_is_the_same_file_as_uninterrupted(no_floors: None, model: Path) -> None:
     folder = model.parent
     out, journal = folder / "controller.toml", folder / "controller.toml.journal"

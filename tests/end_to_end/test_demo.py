@@ -16,6 +16,7 @@ from greywhale.protocol import schema
 ROOT = Path(__file__).resolve().parents[2]
 
 
+@pytest.mark.slow
 def test_the_demo_tells_its_story(tmp_path: Path) -> None:
     told: list[str] = []
     out = tmp_path / "new" / "demo"
@@ -59,6 +60,7 @@ def test_the_demo_tells_its_story(tmp_path: Path) -> None:
         assert word in text
 
 
+@pytest.mark.slow
 def test_the_demo_shows_a_controller_that_it_is_given(tmp_path: Path) -> None:
     table = ROOT / "shared" / "fuzzy_tables" / "table_10.toml"
     result = run(DemoOptions(tmp_path, duration_s=5.0, controller=table))
@@ -103,6 +105,7 @@ def test_a_folder_that_cannot_be_made(tmp_path: Path) -> None:
         run(DemoOptions(tmp_path / "taken"))
 
 
+@pytest.mark.slow
 def test_a_bench_that_dies_is_told_with_its_reason() -> None:
     with pytest.raises(UserError, match="nowhere.csv: cannot be read"):
         BenchProcess("--leader", "nowhere.csv")

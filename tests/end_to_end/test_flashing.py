@@ -18,6 +18,7 @@ from greywhale.protocol.frames import encode_frame
 Start = Callable[..., BenchProcess]
 
 
+@pytest.mark.slow
 def test_flash_a_blank_board(start_bench: Start, board_name: str) -> None:
     bench = start_bench("--blank", board=board_name)
     assert bench.command("status")["in_bootloader"]
@@ -56,6 +57,7 @@ int main(void) {
 """
 
 
+@pytest.mark.slow
 def test_a_firmware_of_another_protocol_version_is_named(start_bench: Start, tmp_path: Path) -> None:
     payload = bytes([schema.PROTOCOL + 1]) + b"a later hello"
     rows = []

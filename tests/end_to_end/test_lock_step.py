@@ -189,6 +189,7 @@ def test_a_motor_with_the_wrong_sign_is_switched_off(lock_step: Any, joint: int)
     assert np.count_nonzero(np.abs(volts) > 10.0) < 350, "ms at more than 10 V"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("table", ["before_tuning", "table_10"])
 def test_the_papers_steps_are_no_runaway(lock_step: Any, tmp_path: Path, table: str) -> None:
     save_leader(tmp_path / "steps.csv", multi_steps())

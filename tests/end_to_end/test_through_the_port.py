@@ -28,6 +28,7 @@ TABLES = ROOT / "shared" / "fuzzy_tables"
 Start = Callable[..., BenchProcess]
 
 
+@pytest.mark.slow
 def test_every_open_resets_the_board(start_bench: Start) -> None:
     bench = start_bench()
     with Device(bench.port) as device:
@@ -61,6 +62,7 @@ def test_upload_record_evaluate(start_bench: Start, tmp_path: Path) -> None:
     assert abs(log.voltage).max() > 1.0
 
 
+@pytest.mark.slow
 def test_uploaded_controllers_survive_a_restart(start_bench: Start, tmp_path: Path) -> None:
     eeprom = ("--eeprom", str(tmp_path / "eeprom.bin"))
     bench = start_bench(*eeprom)
@@ -74,6 +76,7 @@ def test_uploaded_controllers_survive_a_restart(start_bench: Start, tmp_path: Pa
         assert device.hello.param_source is not schema.ParamSource.DEFAULTS
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("writes", [1, 60, 150])
 def test_a_power_cut_during_a_save_keeps_the_old_set(start_bench: Start, tmp_path: Path, writes: int) -> None:
     bench = start_bench("--eeprom", str(tmp_path / "eeprom.bin"))
@@ -91,6 +94,7 @@ def test_a_power_cut_during_a_save_keeps_the_old_set(start_bench: Start, tmp_pat
         assert device.hello.param_crc == new != old
 
 
+@pytest.mark.slow
 def test_a_broken_potentiometer_ends_the_recording(start_bench: Start, tmp_path: Path) -> None:
     bench = start_bench()
     reported: list[str] = []
@@ -107,6 +111,7 @@ def test_a_broken_potentiometer_ends_the_recording(start_bench: Start, tmp_path:
     assert not read_log(tmp_path / "log.csv").complete
 
 
+@pytest.mark.slow
 def test_ctrl_c_stops_the_motors(start_bench: Start, tmp_path: Path) -> None:
     bench = start_bench()
 
@@ -123,8 +128,8 @@ def test_ctrl_c_stops_the_motors(start_bench: Start, tmp_path: Path) -> None:
 
 HOST_THAT_DIES = """
 import sys
-from greywhale.link.device import Device
-from greywhale.link.stream import stream
+from greywhale.board.device import Device
+from greywhale.board.stream import stream
 with Device(sys.argv[1]) as device:
     samples = stream(device, 1)
     device.enable(500)
@@ -137,6 +142,7 @@ with Device(sys.argv[1]) as device:
 """
 
 
+@pytest.mark.slow
 def test_a_killed_host_leaves_no_motor_on(start_bench: Start) -> None:
     bench = start_bench()
     with subprocess.Popen([sys.executable, "-c", HOST_THAT_DIES, bench.port], stdout=subprocess.PIPE) as host:
@@ -162,6 +168,7 @@ def test_a_second_host_is_turned_away(start_bench: Start) -> None:
         assert device.status().state is State.DISABLED
 
 
+@pytest.mark.slow
 def test_noise_on_the_line_delays_but_corrupts_nothing(start_bench: Start) -> None:
     bench = start_bench()
     with Device(bench.port) as device:
@@ -177,12 +184,14 @@ def test_noise_on_the_line_delays_but_corrupts_nothing(start_bench: Start) -> No
         assert device.hello.param_crc == crc
 
 
+@pytest.mark.slow
 def test_a_board_without_firmware_is_silent_and_that_is_said(start_bench: Start) -> None:
     bench = start_bench("--blank")
     with pytest.raises(UserError, match="flash"):
         Device(bench.port, quiet_s=0.5, patience_s=1.0)
 
 
+@pytest.mark.slow
 def test_the_bench_ends_with_its_parent_and_leaves_no_link(start_bench: Start, tmp_path: Path) -> None:
     link = tmp_path / "bench"
     bench = start_bench("--link", str(link))
@@ -229,6 +238,7 @@ def test_signals_end_the_bench_cleanly(leader_file: Path, tmp_path: Path, number
     assert not link.is_symlink()
 
 
+@pytest.mark.slow
 def test_threads_can_watch_a_bench_while_it_is_used(start_bench: Start, tmp_path: Path) -> None:
     """The control line and the serial port do not wait for each other."""
     bench = start_bench()

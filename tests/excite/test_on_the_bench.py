@@ -38,6 +38,7 @@ def told(capsys: pytest.CaptureFixture[str], *arguments: str) -> dict[str, Any]:
     return answer
 
 
+@pytest.mark.slow
 def test_an_excited_log_identifies_the_arm(
     bench: BenchProcess, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -70,6 +71,7 @@ def test_an_excited_log_identifies_the_arm(
         assert found[f"joint{joint}.alpha"] == pytest.approx(1.0 / arm.actuator(joint).torque_per_volt, rel=0.05)
 
 
+@pytest.mark.slow
 def test_a_replayed_motion_is_the_motion_wherever_the_arm_starts(
     bench: BenchProcess, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -88,6 +90,7 @@ def test_a_replayed_motion_is_the_motion_wherever_the_arm_starts(
     assert np.abs(np.diff(log.leader, axis=0)).max() < 8.0 * 1e-3
 
 
+@pytest.mark.slow
 def test_a_line_that_loses_bytes_changes_nothing_of_the_motion(bench: BenchProcess, tmp_path: Path) -> None:
     bench.command("line lose 0.001")
     motion = human_reaches(5, 4.0)
@@ -102,6 +105,7 @@ def test_a_line_that_loses_bytes_changes_nothing_of_the_motion(bench: BenchProce
     assert np.allclose(log.leader[-1], motion.angles[-1], atol=STEP_LSB)
 
 
+@pytest.mark.slow
 def test_an_arm_far_weaker_than_its_file_is_led_more_slowly_and_without_a_fault(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -116,9 +120,11 @@ def test_an_arm_far_weaker_than_its_file_is_led_more_slowly_and_without_a_fault(
     assert answer["duration_s"] > 10.5
     log = read_log(tmp_path / "log.csv")
     assert log.complete
-    assert np.allclose(log.leader[-1], log.leader[0], atol=2 * STEP_LSB), "it came back to where it began"
+    noise = 4 * STEP_LSB  # of the two readings of the pots that its begin and its end come from
+    assert np.allclose(log.leader[-1], log.leader[0], atol=noise), "it came back to where it began"
 
 
+@pytest.mark.slow
 def test_ctrl_c_stops_the_motors_and_keeps_the_log(bench: BenchProcess, tmp_path: Path) -> None:
     def press(what: str, fraction: float) -> None:
         if what == "recording" and fraction > 0.3:
@@ -134,6 +140,7 @@ def test_ctrl_c_stops_the_motors_and_keeps_the_log(bench: BenchProcess, tmp_path
     assert log.time[-1] > 1.0
 
 
+@pytest.mark.slow
 def test_a_fault_ends_the_motion_and_is_named_and_the_pots_lead_again(bench: BenchProcess, tmp_path: Path) -> None:
     broken: list[str] = []
 

@@ -32,6 +32,7 @@ def board(request: pytest.FixtureRequest) -> FuzzyOnBoard:
 
 
 # 300 controllers x 200 points on each of two boards, and 150 x 100 periods.
+@pytest.mark.slow
 @settings(max_examples=300, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
 def test_inference(cases: st.SearchStrategy[Case], points: Points, board: FuzzyOnBoard, data: st.DataObject) -> None:
@@ -49,6 +50,7 @@ def test_inference(cases: st.SearchStrategy[Case], points: Points, board: FuzzyO
         assert not got.no_rule
 
 
+@pytest.mark.slow
 @settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
 def test_whole_periods(

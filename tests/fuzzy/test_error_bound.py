@@ -29,6 +29,7 @@ def _check(joint: JointSettings, period: int, e: NDArray[np.int64], ce: NDArray[
         assert abs(difference) < 1, (joint, period, error, change, float(difference))
 
 
+@pytest.mark.slow
 @settings(max_examples=200)
 @given(data=st.data())
 def test_u_fuzzy_is_within_one_lsb(cases: st.SearchStrategy[Case], points: Points, data: st.DataObject) -> None:
@@ -44,6 +45,7 @@ def test_u_fuzzy_of_the_paper_s_controllers(paper_joints: tuple[JointSettings, .
             _check(joint, period, e, ce)
 
 
+@pytest.mark.slow
 @settings(max_examples=200)
 @given(data=st.data())
 def test_volts_of_one_step(cases: st.SearchStrategy[Case], data: st.DataObject) -> None:

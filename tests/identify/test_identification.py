@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,12 +16,12 @@ from greywhale.files.arm import load_arm
 from greywhale.files.log import Log
 from greywhale.identify import Outcome, identify
 from greywhale.identify.judge import CHANGED, FIT, SECOND, Verdict, warnings_of
-from greywhale.identify.search import Search
 from greywhale.loop import plant_row
 from greywhale.table import ParameterTable
 from tools.bench.recordings import Recorded
 
 
+@pytest.mark.slow
 def test_model_predicts_other_logs_far_better_than_the_white_box(outcome: Outcome) -> None:
     assert [verdict.role for verdict in outcome.verdicts] == [FIT, SECOND, CHANGED]
     assert outcome.verdicts[1].improvement > 0.97
@@ -29,6 +30,7 @@ def test_model_predicts_other_logs_far_better_than_the_white_box(outcome: Outcom
     assert outcome.warnings == ()
 
 
+@pytest.mark.slow
 def test_motors_come_out_as_they_are(outcome: Outcome, hidden: ArmParameters) -> None:
     """Speed per volt and friction in volts are what such logs show best; torque per volt only where gravity acts."""
     for joint in range(4):
@@ -42,6 +44,7 @@ def test_motors_come_out_as_they_are(outcome: Outcome, hidden: ArmParameters) ->
     assert outcome.found.condition > 1.0
 
 
+@pytest.mark.slow
 def test_order_is_chosen_by_held_out_data(outcome: Outcome) -> None:
     """Coulomb friction must be seen to be worth it: this arm has a lot."""
     errors = dict(outcome.found.orders)
@@ -49,6 +52,7 @@ def test_order_is_chosen_by_held_out_data(outcome: Outcome) -> None:
     assert errors[outcome.found.order] <= min(errors.values()) + 0.01
 
 
+@pytest.mark.slow
 def test_model_file_is_an_arm_file(outcome: Outcome, tables: list[ParameterTable], tmp_path: Path) -> None:
     outcome.save(tmp_path / "model.toml")
     arm = load_arm(tmp_path / "model.toml")
@@ -67,6 +71,7 @@ def test_model_file_is_an_arm_file(outcome: Outcome, tables: list[ParameterTable
     assert isinstance(facts["fisher_condition"], float)
 
 
+@pytest.mark.slow
 def test_what_is_not_known_is_said_with_a_remedy(outcome: Outcome) -> None:
     """Yaw and roll feel no gravity; whatever is named open must name its joint and a motion that would settle it."""
     wide = [
@@ -82,6 +87,7 @@ def test_what_is_not_known_is_said_with_a_remedy(outcome: Outcome) -> None:
     assert all(";" in sentence for sentence in outcome.found.open)
 
 
+@pytest.mark.slow
 def test_joints_that_did_not_move_keep_the_users_values(recorded: Recorded, white_box: ArmParameters) -> None:
     outcome = identify([_without_joints(recorded.fit, (2, 3))], white_box)
     for joint in (2, 3):
@@ -93,6 +99,7 @@ def test_joints_that_did_not_move_keep_the_users_values(recorded: Recorded, whit
     assert outcome.verdicts[0].model[2:] == (0.0, 0.0)
 
 
+@pytest.mark.slow
 def test_without_its_controller_a_log_is_still_worth_something(recorded: Recorded, white_box: ArmParameters) -> None:
     """Only the logged voltages remain; at a tenth of the rows, as another tool may log."""
     origin = replace(recorded.fit.origin, param_crc=None, firmware=None, every_ticks=10)
@@ -102,15 +109,20 @@ def test_without_its_controller_a_log_is_still_worth_something(recorded: Recorde
     assert any("controller is not known" in warning for warning in outcome.warnings)
 
 
-def test_interrupt_keeps_the_best_model(
-    recorded: Recorded, white_box: ArmParameters, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def interrupted(self: Search) -> None:
-        raise KeyboardInterrupt
+def interrupt_at(stage: str) -> Callable[[str, float], None]:
+    """Progress whose reader presses Ctrl-C when this stage begins."""
 
-    monkeypatch.setattr(Search, "_with_friction", interrupted)
-    outcome = identify([_first(recorded.fit, 5.0)], white_box)
+    def report(what: str, fraction: float) -> None:
+        if what == stage:
+            raise KeyboardInterrupt
+
+    return report
+
+
+def test_interrupt_keeps_the_best_model(recorded: Recorded, white_box: ArmParameters, tmp_path: Path) -> None:
+    outcome = identify([_first(recorded.fit, 5.0)], white_box, report=interrupt_at("global search"))
     assert not outcome.complete
+    assert outcome.found.order == "motors"
     outcome.save(tmp_path / "model.toml")
     facts = load_arm(tmp_path / "model.toml").identification
     assert facts is not None
@@ -118,15 +130,9 @@ def test_interrupt_keeps_the_best_model(
     assert outcome.text().startswith("UNFINISHED")
 
 
-def test_interrupt_before_any_model_is_an_interrupt(
-    recorded: Recorded, white_box: ArmParameters, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def interrupted(self: Search) -> None:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(Search, "_motors", interrupted)
+def test_interrupt_before_any_model_is_an_interrupt(recorded: Recorded, white_box: ArmParameters) -> None:
     with pytest.raises(KeyboardInterrupt):
-        identify([recorded.fit], white_box)
+        identify([recorded.fit], white_box, report=interrupt_at("fitting the motors"))
 
 
 def test_model_that_learnt_its_controller_is_warned_about() -> None:

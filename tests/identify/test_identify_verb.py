@@ -27,6 +27,7 @@ def arguments(recorded: Recorded, folder: Path) -> list[str]:
     return ["identify", *logs, *controllers, "--out", str(folder / "model.toml")]
 
 
+@pytest.mark.slow
 def test_text_model_and_pictures(
     found: Outcome, recorded: Recorded, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

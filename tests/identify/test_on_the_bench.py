@@ -43,6 +43,7 @@ def record(folder: Path, seed: int) -> Log:
     return read_log(path)
 
 
+@pytest.mark.slow
 def test_logs_of_the_real_firmware_give_the_default_arm(
     tmp_path_factory: pytest.TempPathFactory, white_box: ArmParameters
 ) -> None:

@@ -38,6 +38,7 @@ def only(log: Log, joint: int) -> Log:
     return replace(log, leader=log.leader * mask, follower=log.follower * mask, voltage=log.voltage * mask)
 
 
+@pytest.mark.slow
 def test_rows_that_are_few_uneven_and_partly_missing_will_do(
     recorded: Recorded, white_box: ArmParameters, tables: list[ParameterTable]
 ) -> None:
@@ -48,6 +49,7 @@ def test_rows_that_are_few_uneven_and_partly_missing_will_do(
     assert outcome.verdicts[1].improvement > 0.9
 
 
+@pytest.mark.slow
 def test_a_log_of_steps_on_a_weak_supply_full_voltage_or_rest_will_do(
     hidden: ArmParameters, white_box: ArmParameters, tables: list[ParameterTable], tmp_path: Path
 ) -> None:

@@ -7,6 +7,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 from tools.bench.recordings import TABLES, Recorded
 
 WATCHED = """
@@ -23,6 +25,7 @@ print(json.dumps({"code": code, "opened": opened, "bench": bench}))
 PROGRAM = (".py", ".pyc", ".so", ".pyi", ".pth", ".json", ".dist-info")
 
 
+@pytest.mark.slow
 def test_only_the_logs_and_the_users_files_are_opened(recorded: Recorded, log_folder: Path, tmp_path: Path) -> None:
     arm, controller = tmp_path / "arm.toml", tmp_path / "controller.toml"
     source = Path(__file__).parents[2] / "host" / "src" / "greywhale" / "arm" / "data" / "white_box.toml"

@@ -13,7 +13,7 @@ from greywhale.files.arm import default_arm
 from greywhale.identify.data import prepare, windows_of
 from greywhale.identify.space import MOTOR, Space
 from greywhale.identify.steps import WindowFit
-from greywhale.identify.windows import WindowResidual
+from greywhale.identify.windows import WindowResidual, take_off_starts
 from greywhale.loop import plant_row
 from tools.bench.recordings import Recorded
 
@@ -120,7 +120,7 @@ def test_start_of_a_window_is_not_held_against_a_candidate(recorded: Recorded, w
     windows = windows_of(log, slice(0, 1))
     plants = plant_row(white_box)[None]
     error = np.full((1, 1, len(windows.time)), 3.0 * log.noise[0])
-    left = WindowResidual._without_start(error, windows, log, plants, 0)[0]
+    left = take_off_starts(error, windows, log, plants, 0)[0]
     assert np.sum(left**2) < 12.0
     assert np.sum((error / log.noise[0]) ** 2) > 500.0
 
@@ -146,7 +146,7 @@ def test_joints_that_do_not_feel_each_other_share_a_simulation(recorded: Recorde
     assert sorted(np.concatenate(groups)) == list(range(16))
     assert len(groups) == 8
     fit = WindowFit(residual, space, space.start())
-    jacobian = fit._derivatives()
+    jacobian = fit.derivatives()
     moved = residual(space, space.start() + np.diag(space.steps)) - residual(space, space.start()[None])
     alone = (moved / space.steps[:, None]).T * space.moves(residual.joint_of)
     together = jacobian * space.moves(residual.joint_of)

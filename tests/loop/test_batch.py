@@ -7,17 +7,13 @@ import numpy.typing as npt
 import pytest
 
 from greywhale import _native
-from greywhale.arm.plants import column
+from greywhale.arm.plants import columns
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.loop import PLANT_COLUMNS, Experiment, Result, default_controller, plant_row
 from greywhale.trajectory import human_reaches
 
 Array = npt.NDArray[np.float64]
 INTEGERS = npt.NDArray[np.int32]
-
-
-def columns(name: str) -> list[int]:
-    return [column(name, joint) for joint in range(4)]
 
 
 def search_box(arm: str, count: int, spread: float, seed: int) -> tuple[INTEGERS, Array]:
@@ -78,6 +74,7 @@ BOUNDS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("arm", "spread"), list(BOUNDS))
 def test_error_against_a_fine_reference(arm: str, spread: float) -> None:
     experiment = Experiment(human_reaches(4, 4.0), default_arm())

@@ -30,6 +30,7 @@ def native(recording: Recording, parameters: ArmParameters, board: str = "mega",
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("board", ["mega", "nano"])
 def test_without_noise_the_duties_are_the_same_from_enable_on(board: str) -> None:
     """Soft start, large and small motions, stiction and backlash of the default arm: every duty of every tick."""
@@ -47,6 +48,7 @@ def test_without_noise_the_duties_are_the_same_from_enable_on(board: str) -> Non
     np.testing.assert_allclose(bench_angles, result.angles[0], rtol=0, atol=1e-6)
 
 
+@pytest.mark.slow
 def test_with_noise_the_errors_are_the_same_within_two_percent() -> None:
     parameters = default_arm()
     recording = record(parameters, multi_steps([0.0, 0.8, -0.4, 0.5], [1.0, 2.0, 2.0, 2.0]), 1.5 + HAND_S + 6.0)

@@ -57,6 +57,7 @@ def test_the_delay_is_found_between_samples_whatever_gain_and_offset(
     assert result.joints[0].delay_s == pytest.approx(delay, abs=0.0005)
 
 
+@pytest.mark.slow
 @given(st.integers(0, 2**32 - 1), st.floats(0.0, 0.4))
 @settings(max_examples=25, deadline=None)
 def test_noise_moves_the_delay_by_little(seed: int, delay: float) -> None:

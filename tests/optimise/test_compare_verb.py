@@ -20,6 +20,7 @@ QUICK = ("compare", "--functions", "sphere,ackley", "--methods", "gwo, de", "--d
 BUDGET = ("--budget", "40")
 
 
+@pytest.mark.slow
 def test_json_is_one_object_the_same_with_any_number_of_processes(capsys: Captured) -> None:
     answers = []
     for jobs in ("1", "2"):
@@ -86,6 +87,7 @@ def test_folder_that_is_not_there(capsys: Captured, tmp_path: Path) -> None:
 
 
 # Interrupted while only the first process of the three has started, and with all of them there.
+@pytest.mark.slow
 @pytest.mark.parametrize("started", [1, 3])
 def test_interrupt_ends_all_processes_and_writes_nothing(tmp_path: Path, started: int) -> None:
     command = [sys.executable, "-m", "greywhale", "compare", "--budget", "2000", "--seeds", "500", "--jobs", "2"]

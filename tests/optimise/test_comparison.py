@@ -22,6 +22,7 @@ def small() -> Comparison:
     return compare(SMALL)
 
 
+@pytest.mark.slow
 def test_processes_change_nothing_and_progress_ends_at_one(small: Comparison) -> None:
     seen: list[float] = []
     parallel = compare(SMALL, jobs=2, progress=lambda what, fraction: seen.append(fraction))
@@ -122,6 +123,7 @@ def test_pictures_are_the_same_byte_for_byte(small: Comparison, tmp_path: Path, 
     assert len(first.read_bytes()) > 5_000
 
 
+@pytest.mark.slow
 def test_default_is_ahead_of_differential_evolution_on_shifted_functions() -> None:
     names = ("sphere", "elliptic", "schwefel221", "rosenbrock", "ackley", "griewank", "levy")
     ahead = compare(Plan(names, ("shifted",), (DEFAULT, "gwo-woa", "de"), runs=15, seed=1234))

@@ -126,6 +126,7 @@ def test_batch_and_map_and_threads_give_the_same_run(method: str) -> None:
             assert one_by_one.x.tolist() == whole.x.tolist()
 
 
+@pytest.mark.slow
 def test_processes_give_the_same_run() -> None:
     whole = minimise(bowl, LOWER, UPPER, budget=55, seed=2)
     with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:

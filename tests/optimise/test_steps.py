@@ -167,14 +167,19 @@ def test_whale_encircles_the_prey_or_another_or_swims_the_spiral() -> None:
 def test_whales_prey(elitist: bool, prey: float) -> None:
     # First pack 2, 8; then p = 0.9 with l = 0.25, whose cosine is 0: all whales land on the prey, here 2.
     onto_the_prey = ([[0.5, 0.5], [0.5, 0.5], [0.9, 0.9], [0.625, 0.625]], 0.0)
+    # a = 4/3 makes A = -0.625 and -0.9375 of r1; r2 = 0.9 is C = 1.8, so 2 - A |3.6 - 2| = 3 and 3.5: off the prey.
+    away = ([[0.265625, 0.1484375], [0.9, 0.9], [0.1, 0.1], [0.5, 0.5]], 0.0)
     # r1 = 0.5 is A = 0, encircling: again the prey itself.
-    source = Scripted(column(0.6, 0.9), *onto_the_prey, [[0.5, 0.5], [0.5, 0.5], [0.1, 0.1], [0.5, 0.5]], 0.0)
-    optimiser = Whale(Box([-10.0], [10.0]), 6, source, pack=2, elitist=elitist)
+    source = Scripted(column(0.6, 0.9), *onto_the_prey, *away, [[0.5, 0.5], [0.5, 0.5], [0.1, 0.1], [0.5, 0.5]], 0.0)
+    optimiser = Whale(Box([-10.0], [10.0]), 8, source, pack=2, elitist=elitist)
     optimiser.ask()
     optimiser.tell([1, 2])
     assert optimiser.ask() == pytest.approx(column(2, 2))
-    optimiser._learn(column(3, 5), np.array([4.0, 6.0]))
-    assert optimiser._propose() == pytest.approx(column(prey, prey))
+    optimiser.tell([1, 1])
+    assert optimiser.ask() == pytest.approx(column(3, 3.5))
+    optimiser.tell([4, 6])
+    assert optimiser.ask() == pytest.approx(column(prey, prey))
+    assert source.used_up
 
 
 def test_particle_is_pulled_to_its_own_best_and_the_swarms() -> None:

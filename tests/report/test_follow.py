@@ -22,6 +22,7 @@ def log(gain: float, seed: int = 1) -> Log:
     return Log("x.csv", Origin(), time, leader + noise, gain * leader, 0 * leader, state, 0, True)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ending", [".png", ".svg", ".pdf"])
 def test_the_same_logs_give_the_same_bytes(tmp_path: Path, ending: str) -> None:
     for name in ("a", "b"):
@@ -40,7 +41,7 @@ def test_only_the_measured_part_is_drawn_and_starts_at_zero() -> None:
 
 
 def labels(traces: list[Trace]) -> list[str]:
-    figure = follow._figure(traces, "Title")
+    figure = follow.plot_following(traces, "Title")
     try:
         return [text.get_text() for text in figure.legends[0].get_texts()]
     finally:
@@ -55,7 +56,7 @@ def test_leaders_of_the_same_motion_are_one_line_and_others_two() -> None:
 
 
 def test_axes_have_units_and_titles_their_figures() -> None:
-    figure = follow._figure([trace(log(0.8), "before")], "A title")
+    figure = follow.plot_following([trace(log(0.8), "before")], "A title")
     try:
         axes = figure.get_axes()
         assert len(axes) == 8
@@ -73,8 +74,8 @@ def test_no_label_is_cut_off_or_runs_into_the_next_panel(size: float) -> None:
     time = np.arange(0, 20, 0.01)
     leader = np.column_stack([reach * np.sin(time + reach) - 0.1 for reach in (1.0, 0.65, 0.8, 1.2)])
     error = size * np.column_stack([np.sin(3 * time + joint) for joint in range(4)])
-    with follow._style():
-        figure = follow._figure([Trace("log", time, leader, leader - error, (0.1,) * 4)], "A title")
+    with follow.set_style():
+        figure = follow.plot_following([Trace("log", time, leader, leader - error, (0.1,) * 4)], "A title")
         try:
             renderer = figure.canvas.get_renderer()  # type: ignore[attr-defined]
             figure.draw(renderer)

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from greywhale.protocol.ports import bench_directory
+from tests.conftest import LONGEST
 
 ROOT = Path(__file__).parents[2]
 HEARD = (signal.SIGINT, signal.SIGHUP)
@@ -31,6 +32,7 @@ def ignore_signals() -> None:
         signal.signal(number, signal.SIG_IGN)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("options", [(), ("-n", "1")], ids=["alone", "worker"])
 def test_a_suite_that_ignores_signals_has_children_that_hear_them(options: tuple[str, ...]) -> None:
     """As `nohup make test` and a script's background job start it."""
@@ -48,3 +50,7 @@ def test_benches_of_this_session_are_out_of_sight_of_others(tmp_path_factory: py
     assert bench_directory().is_relative_to(ours)
     ask = [sys.executable, "-c", "import tempfile; print(tempfile.gettempdir())"]
     assert subprocess.run(ask, capture_output=True, text=True, check=True).stdout.strip() == tempfile.gettempdir()
+
+
+def test_the_rooms_that_workers_begin_with_are_there() -> None:
+    assert all((ROOT / "tests" / room).is_dir() for room in LONGEST)

@@ -119,6 +119,7 @@ def test_two_sided_training_would_be_won_by_doing_nothing(model: Model) -> None:
     assert cost[1] < 0.5 * cost[0]
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_controllers(model: Model) -> None:
     one, other = (
         tune(model, method="paper", strategy="mf", budget=40, seed=3, floors=False, threads=n) for n in (1, 2)

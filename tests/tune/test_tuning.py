@@ -57,6 +57,7 @@ def same(one: Outcome, other: Outcome) -> None:
     assert json.dumps(one.as_dict()) == json.dumps(other.as_dict())
 
 
+@pytest.mark.slow
 def test_a_short_search_already_follows_much_better(tuned: tuple[Outcome, Path]) -> None:
     outcome, _ = tuned
     assert outcome.complete
@@ -68,6 +69,7 @@ def test_a_short_search_already_follows_much_better(tuned: tuple[Outcome, Path])
     assert by_name["human-like reaches"].mse_after.sum() < 0.5 * by_name["human-like reaches"].mse_before.sum()
 
 
+@pytest.mark.slow
 def test_every_joint_comes_to_rest(tuned: tuple[Outcome, Path]) -> None:
     outcome, _ = tuned
     assert len(outcome.margins) == len(outcome.margins_before) == 5 * 4
@@ -75,6 +77,7 @@ def test_every_joint_comes_to_rest(tuned: tuple[Outcome, Path]) -> None:
     assert all(margin.plants == 3 for margin in outcome.margins), "both plants and their loosest gears"
 
 
+@pytest.mark.slow
 def test_the_board_takes_what_comes_out(tuned: tuple[Outcome, Path]) -> None:
     outcome, _ = tuned
     assert outcome.after.dtype == np.int32
@@ -82,6 +85,7 @@ def test_the_board_takes_what_comes_out(tuned: tuple[Outcome, Path]) -> None:
         assert JointSettings(*(int(value) for value in row)).refusal(outcome.period_ms) is Refusal.NONE
 
 
+@pytest.mark.slow
 def test_the_outcome_is_plain_json(tuned: tuple[Outcome, Path]) -> None:
     facts = json.loads(json.dumps(tuned[0].as_dict(), allow_nan=False))
     assert facts["after"] == tuned[0].after.tolist()
@@ -89,10 +93,12 @@ def test_the_outcome_is_plain_json(tuned: tuple[Outcome, Path]) -> None:
     assert facts["curves"][0]["evaluations"][-1] == facts["evaluations"]
 
 
+@pytest.mark.slow
 def test_threads_change_no_bit(model: Model, tuned: tuple[Outcome, Path]) -> None:
     same(run(model, threads=2), tuned[0])
 
 
+@pytest.mark.slow
 def test_an_interrupted_tuning_goes_on_to_the_same_bytes(
     model: Model, tuned: tuple[Outcome, Path], tmp_path: Path
 ) -> None:
@@ -118,6 +124,7 @@ def test_an_interrupted_tuning_goes_on_to_the_same_bytes(
     assert list(dict.fromkeys(said)) == ["replaying the journal", "tuning", "judging"]
 
 
+@pytest.mark.slow
 def test_a_finished_journal_needs_no_simulation(
     model: Model, tuned: tuple[Outcome, Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -128,6 +135,7 @@ def test_a_finished_journal_needs_no_simulation(
     same(run(model, journal=tuned[1], resume=True), tuned[0])
 
 
+@pytest.mark.slow
 def test_a_journal_of_another_tuning_is_refused(model: Model, tuned: tuple[Outcome, Path]) -> None:
     with pytest.raises(UserError, match="its seed is 0, now it is 1"):
         run(model, journal=tuned[1], resume=True, seed=1)
@@ -135,6 +143,7 @@ def test_a_journal_of_another_tuning_is_refused(model: Model, tuned: tuple[Outco
         run(model, journal=tuned[1], resume=True, bounds={"Ku": (3.0, 5.0)})
 
 
+@pytest.mark.slow
 def test_an_interrupt_while_judging_keeps_the_best_so_far(model: Model, tuned: tuple[Outcome, Path]) -> None:
     def impatient(what: str, fraction: float, note: str = "") -> None:
         if what == "judging":
@@ -155,12 +164,14 @@ def test_an_interrupt_before_anything_was_tried_goes_on_up(model: Model, monkeyp
         run(model)
 
 
+@pytest.mark.slow
 def test_bounds_hold_for_what_comes_out_although_the_start_lies_outside(model: Model) -> None:
     outcome = run(model, method="random", budget=6, bounds={"Ku": (3.0, 5.0)})
     assert outcome.after[:, 11].max() <= 5_000
     assert (outcome.before[:, 11] > 5_000).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("strategy", ["mf", "sf"])
 def test_strategies_keep_to_their_numbers(model: Model, strategy: str) -> None:
     outcome = run(model, strategy=strategy, budget=40)
@@ -169,6 +180,7 @@ def test_strategies_keep_to_their_numbers(model: Model, strategy: str) -> None:
     assert sum(outcome.cost_after) < sum(outcome.cost_before)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["de", "gwo-woa"])
 def test_any_optimiser_serves_at_the_same_budget(model: Model, method: str) -> None:
     outcome = run(model, method=method, budget=25)
@@ -177,12 +189,14 @@ def test_any_optimiser_serves_at_the_same_budget(model: Model, method: str) -> N
     assert set(METHODS) == {"default", "paper", *OPTIMISERS}
 
 
+@pytest.mark.slow
 def test_a_budget_of_one_gives_the_start_back(model: Model) -> None:
     outcome = run(model, budget=1)
     assert outcome.complete
     np.testing.assert_array_equal(outcome.after, outcome.before)
 
 
+@pytest.mark.slow
 def test_a_joint_whose_best_would_shake_its_gear_gets_less_voltage(
     model: Model, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -14,6 +14,8 @@ DEBIAN = (
     "libnewlib-arm-none-eabi",
     "libstdc++-arm-none-eabi-newlib",
     "qemu-system-arm",
+    "g++-aarch64-linux-gnu",  # the native code on 64-bit ARM
+    "qemu-user",
 )
 REQUIREMENTS = ROOT / "tools" / "oracles" / "requirements.txt"
 

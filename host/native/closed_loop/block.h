@@ -16,6 +16,7 @@ struct Block {
   const PlantRow* plants[kBlock];
   Trace traces[kBlock];
   std::size_t count;
+  std::int32_t* waiting;  // scratch: the duties commanded and not acting yet, late ticks x 4 joints x 16 candidates, zero
 };
 
 // Converter counts of the follower's potentiometers: gain x (angle in 2^-30 turns) + offset, and the noise of every slice.
@@ -25,11 +26,13 @@ struct Pots {
   const float* noise;        // (4 x ticks + 1) x 4, or null
 };
 
-using Kernel = void (*)(const Experiment& experiment, const Pots& pots, const Block& block, int steps_per_tick, Measures* measures);
-
-void run_block_avx512(const Experiment&, const Pots&, const Block&, int steps_per_tick, Measures*);
-void run_block_avx2(const Experiment&, const Pots&, const Block&, int steps_per_tick, Measures*);
-void run_block_baseline(const Experiment&, const Pots&, const Block&, int steps_per_tick, Measures*);
+// What all blocks share, worked out once.
+struct Shared {
+  Pots pots;
+  std::int32_t turns[kJoints][kSlices + 1];  // how many of a pot's four conversions fall into each slice of a tick and the next's first
+  std::int32_t duty_scale[kJoints];
+  const std::uint16_t* limit_mv;  // ticks: the voltage limit of the soft start
+};
 
 // The laws of sixteen joints side by side, for tests: inputs and outputs are n x 16.
 struct LawCheck {
@@ -40,8 +43,20 @@ struct LawCheck {
   const std::uint16_t* limit_mv;  // n
   std::int32_t* millivolts;
 };
-void check_law_avx512(const LawCheck&);
-void check_law_avx2(const LawCheck&);
-void check_law_baseline(const LawCheck&);
+
+// One instruction set's code. core.cmake says which of them a build has.
+struct Kernel {
+  void (*run_block)(const Experiment& experiment, const Shared& shared, const Block& block, int steps_per_tick, Measures* measures);
+  void (*check_law)(const LawCheck& check);
+};
+namespace baseline {
+extern const Kernel kKernel;
+}
+namespace avx2 {
+extern const Kernel kKernel;
+}
+namespace avx512 {
+extern const Kernel kKernel;
+}
 
 }  // namespace greywhale::loop

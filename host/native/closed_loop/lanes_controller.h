@@ -4,7 +4,7 @@
 
 #include "fuzzy_pdi.h"
 
-namespace greywhale::loop::lanes {
+namespace greywhale::loop::GREYWHALE_INSTRUCTIONS {
 
 // One side of one input; a short ramp's size is scaled up by 2^8.
 struct Side {
@@ -165,4 +165,4 @@ GREYWHALE_INLINE Int compare_value(Int millivolts, std::int32_t scale, std::int3
   return choose(negative(millivolts * all(sign)), all(0) - compare, compare);
 }
 
-}  // namespace greywhale::loop::lanes
+}  // namespace greywhale::loop::GREYWHALE_INSTRUCTIONS

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace greywhale::loop::lanes {
+namespace greywhale::loop::GREYWHALE_INSTRUCTIONS {
 
 constexpr int kQuarterBits = 28;  // a quarter turn is 2^28
 constexpr float kRadian = static_cast<float>(1073741824.0 / 6.283185307179586);
@@ -233,7 +233,7 @@ GREYWHALE_INLINE Float finished(const Row& r, Float slip, Float v) {
 }
 
 // With stops: the same, for the few steps in which a link is at one.
-__attribute__((noinline)) void advance_at_stops(const Plant& plant, const Geometry& g, State (&s)[4], const Float (&duty)[4]) {
+inline __attribute__((noinline)) void advance_at_stops(const Plant& plant, const Geometry& g, State (&s)[4], const Float (&duty)[4]) {
   Trial t[4];
   Row r[4];
   Float momentum[4];
@@ -321,4 +321,4 @@ GREYWHALE_INLINE void advance(const Plant& plant, const Geometry& g, State (&s)[
   }
 }
 
-}  // namespace greywhale::loop::lanes
+}  // namespace greywhale::loop::GREYWHALE_INSTRUCTIONS

@@ -1,15 +1,17 @@
-// Sixteen lanes of single precision or 32-bit integers in as many of GCC's vectors as the registers' width asks for.
+// Sixteen lanes of single precision or 32-bit integers, in as many of the compiler's vectors as the registers' width asks for.
 // Conditions are lanes of all ones or zeros. The same operations with the same results as lanes_avx512.h.
 #pragma once
-
-#include <emmintrin.h>
 
 #include <cstdint>
 #include <cstring>
 
-#define GREYWHALE_INLINE inline __attribute__((always_inline))
+#ifdef __SSE2__
+#include <immintrin.h>
+#endif
 
-namespace greywhale::loop::lanes {
+#include "arm/scalar.h"
+
+namespace greywhale::loop::GREYWHALE_INSTRUCTIONS {
 
 constexpr int kLanes = 16;
 #ifdef __AVX2__
@@ -149,25 +151,31 @@ GREYWHALE_INLINE Int shift_right(Int a, Int by) {
 GREYWHALE_INLINE Float to_float(Int a) {
   return parts<Float>([&](int p) { return __builtin_convertvector(a.v[p], FloatPart); });
 }
-// The processor's own instructions, so that NaN and numbers too large for an integer give the same as anywhere.
-template <class Convert>
-GREYWHALE_INLINE Int in_quarters(Float a, const Convert& convert) {
-  __m128 from[4];
-  __m128i to[4];
-  std::memcpy(from, &a, sizeof a);
-  for (int i = 0; i < 4; ++i) to[i] = convert(from[i]);
-  Int result;
-  std::memcpy(&result, to, sizeof result);
-  return result;
+// Towards 0, of numbers that a lane can hold.
+GREYWHALE_INLINE Int to_int(Float a) {
+  return parts<Int>([&](int p) { return __builtin_convertvector(a.v[p], IntPart); });
 }
-GREYWHALE_INLINE Int to_int(Float a) {  // towards 0
-  return in_quarters(a, [](__m128 x) { return _mm_cvttps_epi32(x); });
+// Halves to even. What is no number or does not fit is INT32_MIN, as x86's own instruction has it.
+#ifdef __AVX2__
+GREYWHALE_INLINE Int to_nearest(Float a) {
+  return parts<Int>([&](int p) { return reinterpret_cast<IntPart>(_mm256_cvtps_epi32(a.v[p])); });
 }
-GREYWHALE_INLINE Int to_nearest(Float a) {  // halves to even
-  return in_quarters(a, [](__m128 x) { return _mm_cvtps_epi32(x); });
+#elif defined(__SSE2__)
+GREYWHALE_INLINE Int to_nearest(Float a) {
+  return parts<Int>([&](int p) { return reinterpret_cast<IntPart>(_mm_cvtps_epi32(a.v[p])); });
 }
+#else
+GREYWHALE_INLINE Int to_nearest(Float a) {
+  const Float size = float_of_bits(bits_of(a) & all(INT32_MAX));
+  const Float whole = all(8388608.0f);  // 2^23: from here on all numbers are whole, so adding it rounds
+  const Float rounded = choose(size < whole, (size + whole) - whole, size);
+  const Mask fits = size < all(2147483648.0f);
+  const Int result = to_int(choose(fits, rounded, all(0.0f)));
+  return choose(fits, choose(negative(bits_of(a)), all(0) - result, result), all(INT32_MIN));
+}
+#endif
 
 // Position of the highest bit set, 0..23, of numbers 1..2^24-1: they are exact in single precision.
 GREYWHALE_INLINE Int highest_bit(Int a) { return shift_right<23>(bits_of(to_float(a))) - all(127); }
 
-}  // namespace greywhale::loop::lanes
+}  // namespace greywhale::loop::GREYWHALE_INSTRUCTIONS

@@ -1,12 +1,11 @@
-// Short windows of a log for candidate arms, as plain pointers: what the kernels of every instruction set take.
+// Short windows of a log, each started from its own state and driven by the logged voltages, for many candidate arms at a time.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace greywhale::windows {
-
-constexpr std::size_t kMostLanes = 4;
 
 // The log on the integration's grid, and where its windows begin; rows of four joints where not said otherwise.
 struct Windows {
@@ -18,15 +17,27 @@ struct Windows {
 };
 
 // One candidate in one window.
-struct Lane {
+struct Task {
   const double* plant;                         // a row of plants
   const double *offset, *kick;
   std::size_t window;
   double* out;                                 // (rows kept, 4)
 };
 
-// `count` lanes, at most as many as the kernel's name says, whose windows have the same spacing.
-void simulate_2(const Windows& windows, const Lane* lanes, std::size_t count);
-void simulate_4_avx2(const Windows& windows, const Lane* lanes, std::size_t count);
+// All of them, from `threads` threads (0: one per core), in as many lanes as the processor has; neither changes a bit of the result.
+// Neighbours that share a window go well together.
+void simulate(const Windows& windows, const std::vector<Task>& tasks, int threads);
+
+// One instruction set's code: it takes up to so many lanes whose windows have the same spacing.
+struct Kernel {
+  void (*simulate)(const Windows& windows, const Task* tasks, std::size_t count);
+  std::size_t lanes;
+};
+namespace baseline {
+extern const Kernel kKernel;
+}
+namespace avx2 {
+extern const Kernel kKernel;
+}
 
 }  // namespace greywhale::windows

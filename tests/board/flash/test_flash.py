@@ -11,6 +11,7 @@ import sys
 import termios
 import threading
 import tty
+from collections.abc import Callable
 from pathlib import Path
 from typing import Self
 
@@ -18,7 +19,6 @@ import pytest
 
 from greywhale.board.device import Device
 from greywhale.board.flash import flasher as module
-from greywhale.board.flash import runner
 from greywhale.board.flash.bootloader import find_speed
 from greywhale.board.flash.runner import Tool, run_tool
 from greywhale.errors import UserError
@@ -42,6 +42,13 @@ def tool(*command: str, limit_s: float = 60.0) -> Tool:
 def quick_device(monkeypatch: pytest.MonkeyPatch) -> None:
     """A device that does not wait for a bootloader."""
     monkeypatch.setattr(module, "Device", lambda port: Device(port, quiet_s=0.0, patience_s=0.5))
+
+
+@pytest.fixture
+def image(tmp_path: Path) -> Path:
+    path = tmp_path / "firmware.hex"
+    path.write_text(":00000001FF\n")
+    return path
 
 
 def test_output_is_watched_and_returned() -> None:
@@ -77,15 +84,21 @@ def test_a_tool_that_is_not_there_is_named() -> None:
         run_tool(tool("/nowhere/tool"), lambda text: None)
 
 
-def test_a_tool_that_hangs_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
-    started: list[subprocess.Popen[bytes]] = []
+@pytest.fixture
+def started(monkeypatch: pytest.MonkeyPatch) -> list[subprocess.Popen[bytes]]:
+    """Every process that is started from now on."""
+    processes: list[subprocess.Popen[bytes]] = []
     real = subprocess.Popen
 
     def start(*args: object, **options: object) -> subprocess.Popen[bytes]:
-        started.append(real(*args, **options))  # type: ignore[call-overload]
-        return started[-1]
+        processes.append(real(*args, **options))  # type: ignore[call-overload]
+        return processes[-1]
 
     monkeypatch.setattr(subprocess, "Popen", start)
+    return processes
+
+
+def test_a_tool_that_hangs_is_ended(started: list[subprocess.Popen[bytes]]) -> None:
     with pytest.raises(UserError, match=r"has not ended after 0\.3 s; reset the board"):
         run_tool(
             tool(sys.executable, "-c", "import threading; threading.Event().wait()", limit_s=0.3), lambda text: None
@@ -109,22 +122,13 @@ def test_what_the_tool_started_ends_with_it() -> None:
         os.close(started[0])
 
 
-def test_ctrl_c_ends_the_tool_too(monkeypatch: pytest.MonkeyPatch) -> None:
-    ended = threading.Event()
-
-    def end(process: subprocess.Popen[bytes]) -> None:
-        process.kill()
-        process.wait()
-        ended.set()
-
-    monkeypatch.setattr(runner, "_end", end)
-
+def test_ctrl_c_ends_the_tool_too(started: list[subprocess.Popen[bytes]]) -> None:
     def interrupt(text: str) -> None:
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
         run_tool(tool(sys.executable, "-c", "import threading; threading.Event().wait()"), interrupt)
-    assert ended.is_set()
+    assert started[0].returncode == -signal.SIGTERM
 
 
 def test_a_port_that_is_not_there_stops_before_any_tool(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -218,6 +222,7 @@ def test_the_speed_of_a_nanos_bootloader_is_found(baud: int, tmp_path: Path, mon
     assert (tmp_path / "told").read_text() == str(baud)
 
 
+@pytest.mark.slow
 def test_a_board_without_bootloader_is_named() -> None:
     with Bootloader(9600) as line:
         with pytest.raises(UserError, match="no bootloader answers at 115200 and 57600 baud"):
@@ -256,19 +261,34 @@ def test_platformio_builds_first_and_then_uploads(tmp_path: Path, monkeypatch: p
         assert environment["PLATFORMIO_SETTING_ENABLE_TELEMETRY"] == "no"
 
 
-def test_avrdudes_rows_become_fractions() -> None:
+@pytest.mark.usefixtures("quick_device")
+def test_avrdudes_rows_become_fractions(image: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def write_rows(tool: Tool, look: Callable[[str], None]) -> None:
+        look("avrdude: writing flash\n\nWriting | #########################")
+        look("Writing | ################################################## | 100% 1.2s\n\nReading | #####")
+
+    monkeypatch.setattr(module, "run_tool", write_rows)
     seen: list[tuple[str, float]] = []
-    look = module._avrdude_progress("COM3", lambda what, fraction: seen.append((what, fraction)))
-    look("avrdude: writing flash\n\nWriting | #########################")
-    look("Writing | ################################################## | 100% 1.2s\n\nReading | #####")
-    assert seen == [("writing", 0.5), ("writing", 1.0), ("verifying", 0.1)]
+    with FakeBoard() as board:
+        module.flash(board.port, "mega", hex_file=image, progress=lambda what, fraction: seen.append((what, fraction)))
+    assert seen[0][0] == "looking for the bootloader"
+    assert seen[1:-1] == [("writing", 0.5), ("writing", 1.0), ("verifying", 0.1)]
+    assert seen[-1][0] == "greeting the firmware"
 
 
-def test_a_port_that_goes_away_ends_the_upload(tmp_path: Path) -> None:
+def test_a_port_that_goes_away_ends_the_upload(tmp_path: Path, image: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     port = tmp_path / "port"
-    port.touch()
-    look = module._avrdude_progress(str(port), lambda what, fraction: None)
-    look("Writing | ####")
-    port.unlink()
-    with pytest.raises(UserError, match="port went away while it was being flashed; connect the board"):
-        look("Writing | ####")
+    looks: list[str] = []
+
+    def lose_the_port(tool: Tool, look: Callable[[str], None]) -> None:
+        for text in ("Writing | ####", "Writing | #####"):
+            look(text)
+            looks.append(text)
+            port.unlink()
+
+    monkeypatch.setattr(module, "run_tool", lose_the_port)
+    with FakeBoard() as board:
+        port.symlink_to(board.port)
+        with pytest.raises(UserError, match="port went away while it was being flashed; connect the board"):
+            module.flash(str(port), "mega", hex_file=image)
+    assert looks == ["Writing | ####"]

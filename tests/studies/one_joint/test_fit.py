@@ -46,6 +46,7 @@ def swings() -> Record:
     return made(led(8.0), proportional(4.0, 7.4), plant(SERVO, **TRUE), noise=1e-3)
 
 
+@pytest.mark.slow
 def test_a_fit_finds_motor_and_load_friction_of_a_servo_that_swings_a_weight(swings: Record) -> None:
     law = proportional(4.0, 7.4)
     model = fit_joint(SERVO, [Example(swings, law, 0, swings.middle)], tuple(TRUE))
@@ -67,6 +68,7 @@ def test_a_model_holds_in_a_controller_that_it_was_not_fitted_in(swings: Record)
     assert np.sqrt(np.mean(Runner(other, stiff).errors(model.plant, pieces_of(other, 0, 800)) ** 2)) < 0.01
 
 
+@pytest.mark.slow
 def test_identification_adds_what_the_record_shows_and_nothing_else(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(fit, "GLOBAL_EVALUATIONS", 60)
     law = proportional(15.0, 12.0)

@@ -19,6 +19,7 @@ def led_by_steps() -> Record:
     return replace(record, leader=np.sign(np.sin(2.0 * record.time + 0.1)) + 0.3 * np.sin(7.0 * record.time))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("lag", [FIRST, SECOND])
 def test_a_fit_finds_the_lag_that_made_the_record(lag: Lag) -> None:
     record = led_by_steps()

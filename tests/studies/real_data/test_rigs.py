@@ -156,6 +156,7 @@ def test_an_identified_shoulder_swings_as_the_one_joint_that_it_is(
     np.testing.assert_allclose(moved, expected, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_models_fitted_to_one_half_are_judged_on_the_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(fit, "EXTRAS", ())
     source = read_lever(lever_file(tmp_path, "m2_b_free_motion_500hz.csv"))

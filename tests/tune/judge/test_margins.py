@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from greywhale import _native
-from greywhale.arm.plants import column
+from greywhale.arm.plants import columns
 from greywhale.files import controller
 from greywhale.files.arm import default_arm
 from greywhale.loop import controller_row, default_controller, plant_row
@@ -27,10 +27,6 @@ ARM = default_arm()
 PLANTS = plant_row(ARM)[None]
 BEFORE = default_controller()
 TABLE_9 = controller_row(controller.load(ROOT / "shared" / "fuzzy_tables" / "table_9.toml"))
-
-
-def columns(name: str) -> list[int]:
-    return [column(name, joint) for joint in range(4)]
 
 
 def turning_points(signal: np.ndarray, band: float) -> list[float]:

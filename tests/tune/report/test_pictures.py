@@ -47,16 +47,17 @@ def y_of(line: Line2D) -> Floats:
 
 
 def figure_of(name: str) -> Figure:
-    with pictures._style():
+    with pictures.set_style():
         if name == "sets":
-            return pictures._sets_figure(controllers("before_tuning"), controllers("table_10"))
+            return pictures.plot_sets(controllers("before_tuning"), controllers("table_10"))
         if name == "responses":
-            return pictures._responses_figure(*motion(), "Response to multi-steps")
+            return pictures.plot_responses(*motion(), "Response to multi-steps")
         evaluations = np.arange(10, 310, 10)
         costs = [np.maximum(scale / evaluations, 1.2e-3 * scale) for scale in (1e-3, 1.0, 123456.0, 7e5)]
-        return pictures._convergence_figure([(evaluations, cost) for cost in costs], "Convergence")
+        return pictures.plot_convergence([(evaluations, cost) for cost in costs], "Convergence")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["sets", "responses", "convergence"])
 def test_no_text_runs_into_another_or_over_the_edge(name: str) -> None:
     figure = figure_of(name)
@@ -136,6 +137,7 @@ def test_convergence_marks_the_last_improvement() -> None:
         plt.close("all")
 
 
+@pytest.mark.slow
 def test_the_same_numbers_give_the_same_bytes(tmp_path: Path) -> None:
     for name in ("a", "b"):
         pictures.draw_sets(tmp_path / name / "sets.png", controllers("before_tuning"), controllers("table_9"))
@@ -150,6 +152,7 @@ def test_a_folder_that_cannot_be_made_is_refused(tmp_path: Path) -> None:
         pictures.draw_sets(tmp_path / "file" / "sets.png", controllers("before_tuning"), controllers("table_9"))
 
 
+@pytest.mark.slow
 def test_a_tuning_gets_all_its_pictures_and_an_unfinished_one_those_there_are(tmp_path: Path) -> None:
     time, leader, followers = motion()
     before, after, floor = followers.values()

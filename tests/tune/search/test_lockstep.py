@@ -66,6 +66,7 @@ def test_turns_leave_the_others_at_their_best() -> None:
         assert still in ([0, 2], [1, 3])
 
 
+@pytest.mark.slow
 def test_restarts_with_other_packs_keep_the_joints_apart() -> None:
     """CMA-ES doubles its pack when it has converged, at another time on every joint."""
     found, hills = run("cma-es", budget=3000)

@@ -1,4 +1,4 @@
-// The tick: samples, supervisor, controllers, duties. requests.cpp has the other half of App.
+// The tick: samples, supervisor, controllers, duties. The other half of App is in requests.cpp.
 #include "app.h"
 
 #include <hal.h>
@@ -20,7 +20,7 @@ void App::begin() {
   hal::watchdog_start();
 }
 
-// The parts of the running set that the tick keeps in its own form; the controllers have taken theirs joint by joint.
+// Hands the running set to those who keep parts of it in a form of their own. The controllers have taken theirs joint by joint.
 void App::take_running_set() {
   const params::Table& table = sets_.running();
   sampling_.configure(table);
@@ -70,7 +70,7 @@ __attribute__((noinline)) void App::switch_drivers() {
   if (drivers_on_) hal::set_drivers(true);
 }
 
-// Joint by joint, like Sampling::tick.
+// Each joint is written out: its number, known at compile time, makes its registers constants.
 void App::control() {
   if (--until_control_) return;
   until_control_ = sets_.running().period_ms;
@@ -87,7 +87,7 @@ inline __attribute__((always_inline)) void App::control_joint(uint16_t limit_mv)
   drive_.set<joint>(out.size_mv, out.sign);
 }
 
-// A sample that could not be sent before the next one is due is dropped; its sequence number stays out.
+// A sample is dropped when it could not be sent before the next one is due. Its sequence number is then never sent.
 void App::schedule_sample() {
   if (every_ == 0 || --until_sample_) return;
   until_sample_ = every_;
@@ -96,7 +96,7 @@ void App::schedule_sample() {
   sample_due_ = true;
 }
 
-// LED, looked after every 32 ms: on while following, quick while starting, a short flash a second while disabled, 4 Hz in fault.
+// Sets the LED every 32 ms: on while following, quick while starting, a short flash each second while disabled, 4 Hz in fault.
 void App::show_state() {
   if (static_cast<uint8_t>(tick_) & 31) return;
   const auto ms = static_cast<uint16_t>(tick_);

@@ -1,4 +1,4 @@
-// The firmware's work: one tick a millisecond, and the link in between. Owns everything; main() has one of it.
+// The firmware's work: a tick each millisecond, and the link in between. App owns everything; main.cpp has one App.
 #pragma once
 #include <link/frame.h>
 #include <link/schema.h>
@@ -15,17 +15,17 @@ namespace app {
 
 class App {
  public:
-  // Not inlined into main(), where their variables would stay on the stack for ever.
+  // begin() and service() are not inlined into main(): their variables would stay on the stack for ever.
   __attribute__((noinline)) void begin();
   void tick();   // when hal::tick_pending()
-  // One bounded piece of other work; false when there is nothing to do until the next interrupt.
+  // Does one bounded piece of other work; false when there is nothing to do until the next interrupt.
   __attribute__((noinline)) bool service();
 
  private:
   // app.cpp: the tick
   void count_ticks(hal::TickStart start);
   void supervise(bool late);
-  // The drivers go on from rest and off at once; called wherever the supervisor may have changed its mind.
+  // Switches the drivers as the supervisor has decided. Call it wherever the supervisor may have changed its mind.
   void follow_supervisor() {
     if (supervisor_.motors_on() != drivers_on_) switch_drivers();
   }
@@ -62,9 +62,9 @@ class App {
   void work_on_apply();
   void send_hello(uint8_t seq);
   void send_status();
-  __attribute__((noinline)) void send_sample();   // its variables would lie under those of everything that service() calls
+  __attribute__((noinline)) void send_sample();   // inlined, its variables would take stack in all of service()
   wire::State state_on_link() const;
-  void refuse_unless_disabled();
+  void refuse_not_disabled();
   void refuse_lead(wire::LeadRefusal why, uint8_t joint);
   void refuse_set();
   void refuse(wire::NackCode code, uint16_t detail);
@@ -77,23 +77,23 @@ class App {
   Controllers controllers_;
   Drive drive_;
   supervisor::Supervisor supervisor_;
-  supervisor::Observation seen_ = {};   // by the last tick
+  supervisor::Observation seen_ = {};   // what the last tick has seen
   ParameterSets sets_;
   wire::Decoder decoder_;
   wire::Encoder encoder_;
 
   uint32_t tick_ = 0;
-  uint16_t late_ticks_ = 0, rx_overruns_ = 0, telemetry_dropped_ = 0, tick_us_max_ = 0;   // stop at 65535
+  uint16_t late_ticks_ = 0, rx_overruns_ = 0, telemetry_dropped_ = 0, tick_us_max_ = 0;   // they stop at 65535
   uint16_t every_ = 0, until_sample_ = 0;
   uint8_t until_control_ = 1;      // ticks
   uint8_t sample_seq_ = 0;
   bool sample_due_ = false;
   bool heard_this_tick_ = false;
-  bool excused_ = false;   // applying a set (motors off) holds up the next tick: its lateness does not count. No request until then
+  bool excused_ = false;   // the next tick may be late without being counted, because a set is being applied
   bool hello_due_ = false;
   bool drivers_on_ = false;
-  uint8_t request_ = 0, seq_ = 0;              // of the frame being answered
-  Lead lead_;                      // last: the tick has no use for it, and finds near at hand what it needs
+  uint8_t request_ = 0, seq_ = 0;  // of the frame that is being answered
+  Lead lead_;
 };
 
 }  // namespace app

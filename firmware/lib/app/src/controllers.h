@@ -1,4 +1,4 @@
-// The four fuzzy PD+I controllers and what they need of the parameter table.
+// The four fuzzy PD+I controllers and what they take from the parameter table.
 #pragma once
 #include <fuzzy_pdi.h>
 #include <hal.h>
@@ -8,7 +8,7 @@
 
 namespace app {
 
-// What the app wants of a fuzzy_pdi::Output.
+// The part of fuzzy_pdi::Output that the app uses.
 struct Outcome {
   uint16_t size_mv;
   uint8_t sign;      // bit 7: the voltage is negative
@@ -17,8 +17,8 @@ struct Outcome {
 
 #if defined(__AVR__) && !defined(FUZZY_PDI_PORTABLE)
 
-// fuzzy_pdi::step_error() called by hand. Its bare entry saves no registers, they are saved once a tick or not at all, and leaves
-// size and sign of the voltage apart, as the duty wants them.
+// Calls the bare entry of fuzzy_pdi::step_error(). It saves no registers: hal::run_tick() lets the tick use all of them. It returns the
+// size and the sign of the voltage apart, as the duty needs them.
 inline __attribute__((always_inline)) Outcome step_in_registers(fuzzy_pdi::Joint& joint, int16_t error, uint16_t limit) {
   register uint16_t r30 __asm__("r30") = reinterpret_cast<uint16_t>(&joint);
   register int16_t r24 __asm__("r24") = error;
@@ -46,7 +46,7 @@ inline Outcome step_in_registers(fuzzy_pdi::Joint& joint, int16_t error, uint16_
 
 class Controllers {
  public:
-  // Takes a joint's settings over, unless they cannot be run; only while the motors are off. Costs most of a tick.
+  // Takes a joint's settings, unless they cannot be run. Only while the motors are off. It takes most of a tick.
   fuzzy_pdi::Refusal take(const params::Table& table, uint8_t joint);
 
   void reset();

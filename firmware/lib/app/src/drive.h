@@ -1,4 +1,4 @@
-// From motor voltages to duties: division by the supply as a product, and the motors' signs.
+// From motor voltages to duties and directions.
 #pragma once
 #include <hal.h>
 #include <params/table.h>

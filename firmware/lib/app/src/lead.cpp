@@ -50,9 +50,9 @@ void Lead::begin_piece() {
   --waiting_;
 }
 
-// A piece of the curve leads from the middle of one step to the middle of the next, at a speed that goes evenly from the one's to the
-// other's. Tick n = 0..15 of it moves the reference by (32 before + (2 n + 1)(after - before)) / 512; the sum of all is exactly
-// (before + after) / 2, so that nothing is ever lost.
+// A piece of the curve leads from the middle of one step to the middle of the next. Its speed changes evenly from that of the first
+// step to that of the second. Its tick n = 0..15 moves the reference by (32 before + (2 n + 1)(after - before)) / 512. The sum of all
+// is exactly (before + after) / 2, so nothing is lost.
 void Lead::advance(uint8_t tick, Sampling& sampling) {
   tick_ = tick;
   if (done_ == ticks_per_point) begin_piece();

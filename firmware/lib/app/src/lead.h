@@ -1,5 +1,5 @@
-// The reference that a host leads in the leader arm's place: a uniform quadratic B-spline through a short queue of points.
-// All of it is done between ticks; a tick only sees leader angles, as ever.
+// The reference when the host leads in place of the leader arm: a uniform quadratic B-spline whose control points wait in a short queue.
+// It is computed between ticks; a tick sees leader angles only, as it always does.
 #pragma once
 #include <hal.h>
 #include <link/schema.h>
@@ -12,7 +12,7 @@ namespace app {
 class Lead {
  public:
   static constexpr uint8_t room = 12;              // points that can wait
-  static constexpr uint8_t ticks_per_point = 16;   // the arithmetic of advance() counts on it
+  static constexpr uint8_t ticks_per_point = 16;   // the arithmetic of advance() depends on it
 
   bool on() const { return on_; }
   // From now on the reference rests at the followers' pose, within the joints' limits.
@@ -23,7 +23,7 @@ class Lead {
     wire::LeadRefusal refusal;
     uint8_t joint;
   };
-  // Takes a point if it is the next one and there is room; a refused one changes nothing.
+  // Takes a point if it is the next one and there is room. A point that is refused changes nothing.
   Verdict take(const wire::LeadPointRequest& point, const Sampling& sampling);
   uint8_t next() const { return next_; }
   uint8_t waiting() const { return waiting_; }
@@ -38,12 +38,12 @@ class Lead {
 
   using Step = int8_t[hal::joint_count];     // 2^-10 rad
   Step steps_[room] = {};
-  Step before_ = {}, after_ = {};            // the steps to and from the point that the curve bends around
+  Step before_ = {}, after_ = {};            // the steps to and from the point around which the curve bends
   int16_t last_[hal::joint_count] = {};      // q12 rad, the last point taken
   uint8_t first_ = 0, waiting_ = 0;          // in steps_
   uint8_t next_ = 0;
   uint8_t done_ = ticks_per_point;           // ticks of this piece
-  uint8_t tick_ = 0;                         // lower byte of the tick in which it last advanced
+  uint8_t tick_ = 0;                         // lower byte of the tick of the last advance()
   bool on_ = false;
 };
 

@@ -3,7 +3,7 @@
 
 namespace app {
 
-// Loaded where it will be staged: a third table, on the stack, would be a tenth of a Nano's memory.
+// Loads the table where it will be staged. A third table, on the stack, would take a tenth of a Nano's memory.
 bool ParameterSets::begin(Controllers& controllers) {
   params::Table& table = sets_.staged();
   source_ = store_.load(table);

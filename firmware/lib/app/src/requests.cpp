@@ -1,4 +1,4 @@
-// The link's half of App: requests, replies and samples, one bounded piece at a time.
+// The link's half of App: requests, replies and samples, in pieces of bounded length.
 #include <hal.h>
 
 #include "app.h"
@@ -8,15 +8,15 @@
 namespace app {
 namespace {
 
-// A piece of work is not begun this late in a tick, so that the next tick starts in time even while bytes pour in.
+// After this time of a tick no piece of work is begun, so that the next tick starts in time even while bytes pour in.
 constexpr uint16_t latest_start_us = 800;
 constexpr uint16_t latest_apply_us = 300;   // a joint's compilation takes most of a tick
 constexpr uint8_t bytes_per_piece = 16;
 
-// Farther than two angles can be apart: with it no tick has judged the pots by the running set yet.
+// Farther than two angles can be apart. It stands until a tick has seen the pots through the new set.
 constexpr uint16_t not_seen = UINT16_MAX;
 
-// |error| in 1/32 rad, as error_too_large carries it
+// A distance in 1/32 rad, as error_too_large carries it.
 uint8_t coarse(uint16_t distance_q12) {
   const uint16_t steps = static_cast<uint16_t>((distance_q12 + 64UL) >> 7);
   return steps > 255 ? uint8_t{255} : static_cast<uint8_t>(steps);
@@ -33,15 +33,15 @@ bool App::service() {
   if (late_in_tick && heard_this_tick_) return false;
   const uint8_t lost = hal::rx_lost();
   if (lost) rx_overruns_ = rx_overruns_ > UINT16_MAX - lost ? UINT16_MAX : static_cast<uint16_t>(rx_overruns_ + lost);
-  if (hal::tx_free() < wire::max_wire) return false;   // what waits stays where it is until there is room to answer
+  if (hal::tx_free() < wire::max_wire) return false;   // requests wait until there is room for the answer
   if (sets_.applying()) {
     if (age_us > latest_apply_us) return false;
     work_on_apply();
     return true;
   }
-  if (excused_) return false;   // an enable must be judged by what a tick has seen with the new set
+  if (excused_) return false;   // a set was applied: the next request must be judged by what a tick has seen with it
   if (!heard_this_tick_ && hal::rx_available()) {
-    receive();   // at least once a tick, whatever else there is: a stop must get through
+    receive();   // once in every tick, whatever else there is to do: a stop must get through
     return true;
   }
   if (late_in_tick) return false;
@@ -49,7 +49,7 @@ bool App::service() {
     send_sample();
   } else if (hello_due_) {
     hello_due_ = false;
-    send_hello(0);   // unasked, so that a host that waits for the bootloader to end can go on
+    send_hello(0);   // after boot, without a request: the host waits for the bootloader to end
   } else if (hal::rx_available()) {
     receive();
   } else {
@@ -58,8 +58,8 @@ bool App::service() {
   return true;
 }
 
-// Once a tick, before anything else: moves the host's reference on. Once the motors are off, for whatever reason, the leader arm leads
-// again, and no request is taken before that.
+// Moves the host's reference on, once in each tick and before anything else. When the motors have gone off, for whatever reason, the
+// leader arm leads again before any request is taken.
 bool App::work_on_lead() {
   const auto tick = static_cast<uint8_t>(tick_);
   if (drivers_on_) {
@@ -126,7 +126,7 @@ void App::serve(const wire::TelemetryRequest& request) {
 
 void App::serve(const wire::EnableRequest& request) {
   // While the host leads, the leader arm cannot take over: it may be anywhere.
-  if (lead_.on()) return refuse_unless_disabled();
+  if (lead_.on()) return refuse_not_disabled();
   if (granted(supervisor_.enable(request.lease_ms, seen_))) reply(wire::EnableReply{state_on_link()});
 }
 
@@ -147,10 +147,10 @@ void App::serve(const wire::ClearFaultRequest&) {
   if (granted(supervisor_.clear_fault(seen_))) reply(wire::ClearFaultReply{state_on_link()});
 }
 
-// When the supervisor refuses, the motors stay off, and the leader arm leads again before anything else is done.
+// When the supervisor refuses, the motors stay off; service() then gives the lead back to the leader arm before it does anything else.
 void App::serve(const wire::LeadRequest& request) {
   if (request.lease_ms == 0) return refuse_lead(wire::LeadRefusal::no_lease, 0);
-  if (supervisor_.motors_on() && !lead_.on()) return refuse_unless_disabled();
+  if (supervisor_.motors_on() && !lead_.on()) return refuse_not_disabled();
   if (!supervisor_.motors_on()) {
     lead_.begin(sampling_);
     see_distances();
@@ -210,13 +210,13 @@ void App::serve(const wire::ParamDefaultsRequest&) {
 }
 
 void App::serve(const wire::ParamApplyRequest& request) {
-  if (supervisor_.motors_on()) return refuse_unless_disabled();
+  if (supervisor_.motors_on()) return refuse_not_disabled();
   if (sets_.save_state() == wire::SaveState::saving) return refuse(wire::NackCode::busy_saving, 0);
   sets_.begin_apply(request.crc);
 }
 
-// No request is taken while a set is being applied (a few ms, motors off), so request_ and seq_ still are those of
-// the param_apply.
+// While a set is being applied (a few ms, motors off) no request is taken, so request_ and seq_ are still those of the
+// param_apply.
 void App::work_on_apply() {
   excused_ = true;
   switch (sets_.work_on_apply(controllers_)) {
@@ -271,7 +271,7 @@ void App::send_sample() {
   sample.state = state_on_link();
   sample.fault = on_link(supervisor_.fault());
   for (uint8_t i = 0; i < hal::joint_count; ++i) {
-    // A led reference is already the next tick's; the controllers' own error tells what this tick's was.
+    // When the host leads, the reference is already that of the next tick. This tick's follows from the controllers' error.
     sample.leader[i] =
         lead_.on() ? static_cast<int16_t>(sampling_.follower(i) + sampling_.error(i)) : sampling_.leader(i);
     sample.follower[i] = sampling_.follower(i);
@@ -282,7 +282,7 @@ void App::send_sample() {
 
 wire::State App::state_on_link() const { return on_link(supervisor_.state()); }
 
-void App::refuse_unless_disabled() { refuse(wire::NackCode::not_disabled, static_cast<uint8_t>(state_on_link())); }
+void App::refuse_not_disabled() { refuse(wire::NackCode::not_disabled, static_cast<uint8_t>(state_on_link())); }
 
 void App::refuse_lead(wire::LeadRefusal why, uint8_t joint) {
   refuse(wire::NackCode::lead_refused, pair(joint, static_cast<uint8_t>(why)));
@@ -295,7 +295,7 @@ void App::refuse_set() {
 
 void App::refuse(wire::NackCode code, uint16_t detail) { reply(wire::Nack{request_, code, detail}); }
 
-// service() has seen to it that the ring has room for the largest frame.
+// The ring has room: service() has checked that the largest frame fits.
 template <class Message>
 void App::send(uint8_t seq, const Message& message) {
   encoder_.encode(seq, message);

@@ -16,17 +16,16 @@ struct JointSignals {
 
 struct Signals {
   signal_chain::LowPass low_pass;
-  uint16_t lowest, span;    // sums within lowest .. lowest + span are not at a rail
+  uint16_t lowest, span;          // a sum from lowest to lowest + span is not at a rail
   JointSignals joint[hal::joint_count];
 };
 
-// `sums` of every pot as hal::pot_sums() has them. Sets all of `seen` but `late`; its rails must be 0 before.
+// `sums` are those of all pots, as hal::pot_sums() gives them. Writes all of `seen` but `late`; its rails must be 0 before.
 void follow_pots_portable(const uint16_t* sums, Signals* signals, supervisor::Observation* seen);
 
 #if defined(__AVR__)
 
-// The same bits in assembly: signals_avr.S. It saves no registers but Y: the tick has saved them once, for this and for the
-// controllers.
+// The same bits in assembly: signals_avr.S. It saves only Y: hal::run_tick() lets the tick use all registers.
 inline void follow_pots(const uint16_t* sums, Signals* signals, supervisor::Observation* seen) {
   register const uint16_t* r24 __asm__("r24") = sums;
   register Signals* r22 __asm__("r22") = signals;

@@ -3,7 +3,7 @@
 //   void app_follow_pots(const uint16_t* sums, Signals* signals, Observation* seen)
 //                        r25:r24               r23:r22           r21:r20
 //
-// For follow_pots() of signals.h only: uses every register from r8 on and keeps none but Y.
+// For follow_pots() of signals.h only: it uses every register from r8 on, saves only Y, and leaves r1 = 0.
 #ifdef __AVR__
 #include "signals_layout.h"
 
@@ -15,7 +15,7 @@
 #define SPAN_LOW r11
 #define SPAN_HIGH r12
 
-// Of the joint in turn. Z is at Signals for the first joint, and goes on by a joint each time.
+// Places in the record of one joint, from Z. Z is at Signals for joint 0 and one record further for each next joint.
 #define LEADER (SIGNALS_JOINT + JOINT_LEADER)
 #define FOLLOWER (SIGNALS_JOINT + JOINT_FOLLOWER)
 #define FOLLOWER_ANGLE (SIGNALS_JOINT + JOINT_FOLLOWER_ANGLE)
@@ -174,7 +174,7 @@ app_follow_pots:
   joints halving_low_pass
   rjmp .Ldone
 
-// The error is beyond 16 bits, positive if N is set: it saturates, the distance in r19:r18 does not.
+// The error has more than 16 bits; it is positive if N is set. It saturates; the distance, in r19:r18, does not.
 .Lfar_apart:
   ldi r24, 0xff
   ldi r25, 0x7f
@@ -190,7 +190,7 @@ app_follow_pots:
   std Z+ERROR+1, r25
   ret
 
-// The sum in r25:r24 is outside: sets bit r22 of the rail below or above. X + r23 is the rail below.
+// The sum in r25:r24 is at a rail: sets the bit r22 of rail_low or rail_high. rail_low is at X + r23.
 .Lat_a_rail:
   movw r18, r26
   add r26, r23

@@ -1,4 +1,4 @@
-// The few wide operations the law is made of, without a software multiply or divide.
+// The few wide operations of the law: products of at most 32 bits, and a quotient without a division.
 #pragma once
 
 #include <stdint.h>

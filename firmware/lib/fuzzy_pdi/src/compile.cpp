@@ -1,4 +1,5 @@
-// Derives a joint's coefficients from its stored settings, or says why not. Runs when parameters are applied, never in the tick.
+// Derives a joint's coefficients from its stored settings, or says why it cannot. It runs when parameters are applied, never in the
+// tick.
 #include "fuzzy_pdi.h"
 
 namespace fuzzy_pdi {
@@ -88,7 +89,7 @@ uint32_t width(int value, uint8_t period_ms) { return static_cast<uint32_t>(valu
 }  // namespace
 
 #ifdef __AVR__
-__attribute__((noinline, noclone))  // stays a function of its own in the image, for the tests that call it there
+__attribute__((noinline, noclone))  // the tests call this function in the image
 #endif
 Refusal compile(const Settings& s, uint8_t period_ms, Coefficients& out) {
   if (period_ms < 1 || period_ms > longest_period_ms) return Refusal::period;

@@ -1,4 +1,4 @@
-// The fuzzy PD+I law of one joint in fixed point: what to store, what to derive from it, one control period.
+// The fuzzy PD+I law of one joint in fixed point: its settings, the coefficients derived from them, and one control period.
 //
 // Portable C++14: no heap, no float, no division outside compile(). docs/fuzzy.md derives formats, roundings and the error bound.
 // A host twin (greywhale.fuzzy.twin) and a rational reference (greywhale.fuzzy.exact) pin every bit and the bound.
@@ -17,7 +17,7 @@ struct Settings {
   uint16_t ku_mv;       // volts at full output, in mV
 };
 
-// Why compile() refuses. The numbers travel over the link, so they never change their meaning.
+// Why compile() refuses. The numbers go over the link, so none of them ever gets another meaning.
 enum class Refusal : uint8_t {
   none = 0,
   order = 1,   // a set on the wrong side of zero: ne_c, ze_a, nce_c, zce_a < 0 < ze_c, pe_b, zce_c, pce_b
@@ -50,7 +50,7 @@ struct State {
   bool started;       // false until the first step: its change of error is 0
 };
 
-// A joint's controller, together because the assembly reaches both from one address.
+// A joint's controller. Both parts are together because the assembly reaches both from one address.
 struct Joint {
   Coefficients coefficients;
   State state;
@@ -59,7 +59,7 @@ struct Joint {
 struct Output {
   int16_t u_fuzzy;   // q15; 1.0 is 32767 here, 32768 inside
   int16_t volts_mv;
-  bool saturated;    // the law asked for more than limit_mv
+  bool saturated;    // the law wanted more than limit_mv
   bool no_rule;      // no rule fired, u_fuzzy is 0
 };
 

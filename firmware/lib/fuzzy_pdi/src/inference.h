@@ -1,4 +1,4 @@
-// From the two inputs to u_fuzzy: memberships, rules, defuzzification. On AVR memberships_avr.inc and rules_avr.inc stand for it.
+// From the two inputs to u_fuzzy: memberships, rules, defuzzification. On AVR memberships_avr.inc and rules_avr.inc replace it.
 //
 // Heights are 24-bit fractions of `one`. Each input is taken as size and sign: on either side of zero only two sets are active,
 // so the nine rules of Table 6 become three (same signs) or four (opposite signs) minima.
@@ -18,7 +18,7 @@ struct Input {
 
 struct Memberships {
   uint32_t zero;   // ZE or ZCE
-  uint32_t outer;  // PE or NE, PCE or NCE: the one on the input's side
+  uint32_t outer;  // PE or NE (PCE or NCE), whichever is on the input's side
 };
 
 // Heights of the output sets, seen from e's side: `with` is PU for e >= 0 and NU for e < 0, `against` the other.

@@ -1,4 +1,4 @@
-// The hardware as the rest of the firmware sees it: plain functions, one implementation linked per target.
+// The hardware as the rest of the firmware sees it: plain functions. Each target links one implementation of them.
 // avr/ serves the two boards and holds every register access; fake/ serves unit tests on a computer.
 #pragma once
 #include <stdint.h>
@@ -8,23 +8,22 @@ namespace hal {
 constexpr uint8_t joint_count = 4;
 constexpr uint8_t pot_count = 8;             // 0..3 leader, 4..7 follower
 constexpr uint8_t conversions_per_pot = 4;   // summed each tick
-constexpr uint16_t ticks_per_second = 1000;
 
 // unknown: a board that has no name yet.
 enum class Board : uint8_t { unknown, mega2560, nano328, native };
 Board board_id();
 
-// unknown: a bootloader has cleared the chip's own record.
+// unknown: a bootloader has cleared the chip's record.
 enum class ResetCause : uint8_t { unknown, power_on, external, brown_out, watchdog };
 ResetCause reset_cause();
 
-// Takes over timers, ADC and serial port from the framework. Outputs are low and the drivers off since reset.
+// Takes timers, ADC and serial port over from the framework. Outputs have been low and drivers off since the reset.
 void begin();
 
-// --- The tick: a 1 kHz timer interrupt. It turns the drivers off by itself when a tick is not finished in time.
+// --- The tick, from a 1 kHz timer interrupt. The interrupt itself turns the drivers off when a tick is not finished in time.
 struct TickStart {
   uint8_t elapsed;   // ticks since the last tick_begin(): 1 unless some were missed
-  bool late;         // the tick before this one was not finished in time, or its samples were not complete
+  bool late;         // the tick before this one was not finished in time, or samples were not complete
 };
 bool tick_pending();
 TickStart tick_begin();
@@ -32,8 +31,8 @@ void tick_end();
 void run_tick();          // calls firmware_tick(), which main.cpp defines; no other caller may
 uint16_t tick_age_us();   // time since the timer started this tick, resolution 4 us
 
-// Sums of four 10-bit conversions for every pot, all taken during the last tick; null when there are no new ones. They
-// stand until they are released, before tick_end().
+// For every pot the sum of four 10-bit conversions, all made during the last tick; null when there are no new sums. Release the
+// sums before tick_end(): until then they stay as they are.
 const uint16_t* pot_sums();
 void release_pots();
 
@@ -53,9 +52,9 @@ bool rx_available();
 uint8_t rx_read();              // only when rx_available()
 uint8_t tx_free();
 void tx_write(const uint8_t* bytes, uint8_t count);   // 1..tx_free() of them
-uint8_t rx_lost();              // times since the last call that bytes were lost, at most 255
+uint8_t rx_lost();              // how often bytes were lost since the last call, at most 255
 
-// --- EEPROM, one byte at a time; a write goes on in the background for about 3.4 ms.
+// --- EEPROM, one byte at a time. A write takes about 3.4 ms in the background.
 bool eeprom_busy();
 uint8_t eeprom_read(uint16_t address);                    // only when not busy
 void eeprom_begin_write(uint16_t address, uint8_t value); // only when not busy

@@ -41,7 +41,7 @@ void Supervisor::tick(const Observation& seen) {
   if (state_ == State::soft_start && soft_start_.advance()) state_ = State::following;
 }
 
-// Faults before the lease, and the gravest first: only one is reported.
+// Faults come before the lease, the gravest first: only one is reported.
 void Supervisor::watch(const Observation& seen) {
   if (seen.late) return raise(Fault::late_tick, nowhere);
   if (steady_low_) return raise(Fault::pot_low, lowest_bit(steady_low_));
@@ -51,7 +51,7 @@ void Supervisor::watch(const Observation& seen) {
   if (lease_ && --lease_ == 0) switch_off(State::disabled, StopReason::lease);
 }
 
-// One tick at a rail may be noise; three in a row are a broken wire. Most ticks see no rail and remember none.
+// One tick at a rail may be noise; three in a row are a broken wire. Most ticks see no rail and have none to remember.
 void Supervisor::debounce(const Observation& seen) {
   if ((seen.rail_low | seen.rail_high | any_rail_) != 0) remember_rails(seen);
 }
@@ -66,7 +66,7 @@ __attribute__((noinline)) void Supervisor::remember_rails(const Observation& see
   any_rail_ = low_[0] | low_[1] | high_[0] | high_[1];
 }
 
-// The joint that has been beyond the tracking limit for too long, or nowhere.
+// The joint that has been beyond the tracking limit for too long, if there is one.
 uint8_t Supervisor::lost_joint(const Observation& seen) {
   static_assert(joint_count == 4, "joints 0..3 below");
   const uint16_t limit = tracking_limit_;
@@ -78,7 +78,7 @@ uint8_t Supervisor::lost_joint(const Observation& seen) {
   return (far | far_) != 0 ? count_lost(far) : nowhere;
 }
 
-// Apart, because most ticks do not come here.
+// A function of its own, because most ticks do not need it.
 __attribute__((noinline)) uint8_t Supervisor::count_lost(uint8_t far) {
   far_ = far;
   if (!(far & 1)) lost_ticks_[0] = 0;

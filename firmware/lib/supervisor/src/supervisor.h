@@ -1,4 +1,4 @@
-// When the motors may run: states, faults, soft start and lease. A pure state machine, one call a tick.
+// When the motors may run: states, faults, soft start and lease. A pure state machine that is called once in each tick.
 #pragma once
 #include <signal_chain/soft_start.h>
 #include <stdint.h>
@@ -6,9 +6,9 @@
 namespace supervisor {
 
 constexpr uint8_t joint_count = 4;
-constexpr uint8_t nowhere = 255;   // fault_where when no pot or joint is to blame
+constexpr uint8_t nowhere = 255;   // fault_where when the fault has no pot or joint
 
-// The numbers go over the link; app checks that they are the same there.
+// The numbers go over the link; app/src/on_link.h checks that they are the same there.
 enum class State : uint8_t { boot, disabled, soft_start, following, fault };
 enum class StopReason : uint8_t { none, host, lease, fault, reset };
 enum class Fault : uint8_t { none, pot_low, pot_high, late_tick, tracking, watchdog, params };
@@ -20,8 +20,8 @@ struct Limits {
   uint16_t soft_start_ms;
 };
 
-// What a tick has seen. The distance of a joint is that between its reference (the leader within the joint's limits)
-// and the follower, q12 rad. Bit i of a rail mask is pot i: 0..3 leader, 4..7 follower.
+// What a tick has seen. A joint's distance is between its reference (the leader within the joint's limits) and its follower, in
+// q12 rad. Bit i of a rail mask is pot i: 0..3 leader, 4..7 follower.
 struct Observation {
   uint16_t distance[joint_count];
   uint8_t rail_low;
@@ -39,15 +39,15 @@ struct Reply {
 
 class Supervisor {
  public:
-  // Until both say so: the reason for a fault that stands from the start, and whether the set can be run.
+  // A reset by the watchdog, or a stored set that cannot be run, is a fault that stands from the start.
   void begin(bool after_watchdog, bool params_ok);
   void set_limits(const Limits& limits);   // only while the motors are off
   void params_mended() { params_ok_ = true; }
 
   void tick(const Observation& seen);
 
-  // Both judge by what the last tick has seen.
-  Reply enable(uint16_t lease_ms, const Observation& seen);   // while already on: renews the lease
+  // enable() and clear_fault() judge by what the last tick has seen. enable() renews the lease when the motors are on.
+  Reply enable(uint16_t lease_ms, const Observation& seen);
   Reply clear_fault(const Observation& seen);
   void stop();
   void renew(uint16_t lease_ms);
@@ -69,11 +69,11 @@ class Supervisor {
   void debounce(const Observation& seen);
   void remember_rails(const Observation& seen);
 
-  static constexpr uint8_t boot_ticks = 20;          // the filters settle and pots are judged
+  static constexpr uint8_t boot_ticks = 20;          // meanwhile the filters settle and bad pots are found
 
   Limits limits_ = {};
   uint8_t low_[2] = {}, high_[2] = {};               // rail masks of the two ticks before
-  uint8_t any_rail_ = 0;                             // some bit in them
+  uint8_t any_rail_ = 0;                             // not 0 when one of them has a bit set
   uint8_t steady_low_ = 0, steady_high_ = 0;         // at the rail for three ticks
   uint16_t tracking_limit_ = UINT16_MAX;             // without a check no distance is beyond it
   uint16_t lost_ticks_[joint_count] = {};            // time beyond the tracking limit

@@ -21,7 +21,7 @@ from greywhale.table import ParameterTable
 Progress = Callable[[str, float], None]
 
 # A whole set takes 0.7 s to write into the EEPROM of an Arduino.
-_SAVE_WAIT_S = 10.0
+SAVE_WAIT_S = 10.0
 _POLL_S = 0.02
 
 
@@ -80,8 +80,10 @@ def change_parameters(device: Device, changes: Mapping[str, int], progress: Prog
     return Uploaded(wanted, tuple(parameter.name for parameter, before, after in pairs if before != after))
 
 
-def upload_set(device: Device, table: ParameterTable, progress: Progress | None = None) -> None:
-    """Stage, apply and save a whole set, then check that the board runs it."""
+def upload_set(
+    device: Device, table: ParameterTable, progress: Progress | None = None, save_wait_s: float = SAVE_WAIT_S
+) -> None:
+    """Stage, apply and save a whole set, then check that the board runs it. A save may take `save_wait_s`."""
     report = progress or _report_nothing
     crc = table.crc
     for index, value in enumerate(table.raw):
@@ -92,10 +94,10 @@ def upload_set(device: Device, table: ParameterTable, progress: Progress | None 
                 f"{device.port}: sent {schema.PARAMETERS[index].name} = {value}, the board understood parameter "
                 f"{echo.index} = {echo.value}; nothing was changed, try again."
             )
-    _when_not_saving(device, lambda: device.ask(schema.ParamApplyRequest(crc)))
-    _when_not_saving(device, lambda: device.ask(schema.ParamSaveRequest()))
+    _when_not_saving(save_wait_s, lambda: device.ask(schema.ParamApplyRequest(crc)))
+    _when_not_saving(save_wait_s, lambda: device.ask(schema.ParamSaveRequest()))
     report("saving parameters", 0.0)
-    _wait_until_saved(device)
+    _wait_until_saved(device, save_wait_s)
     running = device.greet().param_crc
     if running != crc:
         raise UserError(
@@ -104,9 +106,9 @@ def upload_set(device: Device, table: ParameterTable, progress: Progress | None 
         )
 
 
-def _when_not_saving(device: Device, request: Callable[[], object]) -> None:
+def _when_not_saving(wait_s: float, request: Callable[[], object]) -> None:
     """Repeat a request that the board refuses while it still writes an earlier set."""
-    deadline = time.monotonic() + _SAVE_WAIT_S
+    deadline = time.monotonic() + wait_s
     while True:
         try:
             request()
@@ -117,8 +119,8 @@ def _when_not_saving(device: Device, request: Callable[[], object]) -> None:
         time.sleep(_POLL_S)
 
 
-def _wait_until_saved(device: Device) -> None:
-    deadline = time.monotonic() + _SAVE_WAIT_S
+def _wait_until_saved(device: Device, wait_s: float) -> None:
+    deadline = time.monotonic() + wait_s
     while True:
         state = device.status().save_state
         if state is schema.SaveState.SAVED:
@@ -130,7 +132,7 @@ def _wait_until_saved(device: Device) -> None:
             )
         if time.monotonic() > deadline:
             raise UserError(
-                f"{device.port}: the new parameters run, but storing them has not ended after {_SAVE_WAIT_S:g} s; "
+                f"{device.port}: the new parameters run, but storing them has not ended after {wait_s:g} s; "
                 "reset the board and upload again."
             )
         time.sleep(_POLL_S)

@@ -114,6 +114,7 @@ class Search:
         self._held = WindowResidual(self.logs, self.arm, self.joints, True)
 
     def run(self) -> None:
+        self.report("fitting the motors", 0.0)
         self._consider(self._fit_motors())
         self._consider(self._fit_friction())
         # A group that did not help before backlash was known may help with it.

@@ -76,7 +76,7 @@ class WindowFit:
 
     def _step(self) -> None:
         """Work out one set of derivatives, then take a step of every block: the best of several."""
-        jacobian = self._derivatives()
+        jacobian = self.derivatives()
         weights = self._weights(self._numbers)
         trials = np.tile(self.x, (len(DAMPINGS), 1))
         for block in self._blocks:
@@ -121,8 +121,11 @@ class WindowFit:
         longest = float(np.max(np.abs(step) / doubts))
         return step * min(1.0, LARGEST_STEP / longest) if longest > 0.0 else step
 
-    def _derivatives(self) -> Floats:
-        """(numbers of the residual, searched numbers); joints that do not feel each other are varied together."""
+    def derivatives(self) -> Floats:
+        """Of the residual where the fit stands, (numbers of the residual, searched numbers), by finite differences.
+
+        Joints that do not feel each other are varied together.
+        """
         groups, steps = self._space.groups(), self._space.steps
         ahead = np.where(self.x + steps > self._high, -steps, steps)
         points = np.tile(self.x, (len(groups), 1))

@@ -118,7 +118,7 @@ class WindowResidual:
         count = len(windows.first)
         costs, angles, velocities = (np.zeros((count, JOINTS)) for _ in range(3))
         for joint in self.joints:
-            left = self._without_start(error[..., joint], windows, log, plant[None], joint)[0]
+            left = take_off_starts(error[..., joint], windows, log, plant[None], joint)[0]
             readings, starts = np.split(left, [windows.measured[..., 0].size])
             costs[:, joint] = np.sum(readings.reshape(count, -1) ** 2, axis=1)
             costs[:, joint] += np.sum(starts.reshape(2, -1) ** 2, axis=0)
@@ -143,7 +143,7 @@ class WindowResidual:
         for (windows, log), sides in zip(self._pieces, self._sides, strict=True):
             error = self._errors(windows, sides, plant[None], zero[None])
             for joint in self.joints:
-                left = self._without_start(error[..., joint], windows, log, plant[None], joint)[0]
+                left = take_off_starts(error[..., joint], windows, log, plant[None], joint)[0]
                 total[joint] += log.noise[joint] ** 2 * float(np.sum(left[: windows.measured[..., 0].size] ** 2))
             count += windows.measured[..., 0].size
         mse: Floats = total / max(count, 1)
@@ -151,7 +151,7 @@ class WindowResidual:
 
     def _compare(self, windows: Windows, log: Prepared, sides: Floats, plants: Floats, offsets: Floats) -> Floats:
         error = self._errors(windows, sides, plants, offsets)
-        rows = [self._without_start(error[..., joint], windows, log, plants, joint) for joint in self.joints]
+        rows = [take_off_starts(error[..., joint], windows, log, plants, joint) for joint in self.joints]
         return np.concatenate(rows, axis=1)
 
     @staticmethod
@@ -173,21 +173,6 @@ class WindowResidual:
         )
         error: Floats = np.nan_to_num(angles - windows.measured[None], nan=1e3, posinf=1e3, neginf=-1e3)
         return error
-
-    @staticmethod
-    def _without_start(error: Floats, windows: Windows, log: Prepared, plants: Floats, joint: int) -> Floats:
-        """Remove the best start angle and speed of every window; their sizes become residuals of their own."""
-        noise = log.noise[joint]
-        count = len(error)
-        lag = (plants[:, column("inertia", joint)] / plants[:, column("damping", joint)])[:, None]
-        speed = lag * -np.expm1(-windows.time[None, :] / lag)
-        basis = np.stack([np.ones_like(speed), speed], axis=2)  # (n, rows, 2)
-        doubt = np.array([noise, SPEED_DOUBT])
-        normal = np.einsum("nki,nkj->nij", basis, basis) / noise**2 + np.diag(1.0 / doubt**2)
-        right = np.einsum("nki,nwk->niw", basis, error) / noise**2
-        best = np.linalg.solve(normal, right)  # (n, 2, windows)
-        left = (error - np.einsum("nki,niw->nwk", basis, best)) / noise
-        return np.concatenate([left.reshape(count, -1), (best / doubt[None, :, None]).reshape(count, -1)], axis=1)
 
     def _clusters(self) -> NDArray[np.intp]:
         """The window that each number of the residual belongs to, counted over all logs."""
@@ -217,6 +202,25 @@ class WindowResidual:
             still = (np.abs(torque) < 1e-3) & (np.abs(windows.velocities[row]) < 0.05)
             sides[row] = np.where(still, 0.0, np.sign(torque))
         return sides
+
+
+def take_off_starts(error: Floats, windows: Windows, log: Prepared, plants: Floats, joint: int) -> Floats:
+    """Take the best start angle and speed of every window off its error; their sizes become residuals of their own.
+
+    `error` of one joint is (candidates, windows, rows) in rad. The result is (candidates, numbers) in standard
+    deviations: every row of every window, then the start angles and the start speeds of the windows.
+    """
+    noise = log.noise[joint]
+    count = len(error)
+    lag = (plants[:, column("inertia", joint)] / plants[:, column("damping", joint)])[:, None]
+    speed = lag * -np.expm1(-windows.time[None, :] / lag)
+    basis = np.stack([np.ones_like(speed), speed], axis=2)  # (n, rows, 2)
+    doubt = np.array([noise, SPEED_DOUBT])
+    normal = np.einsum("nki,nkj->nij", basis, basis) / noise**2 + np.diag(1.0 / doubt**2)
+    right = np.einsum("nki,nwk->niw", basis, error) / noise**2
+    best = np.linalg.solve(normal, right)  # (n, 2, windows)
+    left = (error - np.einsum("nki,niw->nwk", basis, best)) / noise
+    return np.concatenate([left.reshape(count, -1), (best / doubt[None, :, None]).reshape(count, -1)], axis=1)
 
 
 def _part(log: Prepared, held_out: bool | None, every: int) -> NDArray[np.intp]:

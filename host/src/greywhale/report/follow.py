@@ -68,8 +68,8 @@ def draw_following(path: str | Path, traces: Sequence[Trace], title: str) -> Non
         raise UserError(f"{path}: pictures end in {', '.join(FORMATS)}.", exit_code=BAD_USAGE)
     if not 1 <= len(traces) <= _MOST_LOGS:
         raise UserError(f"a picture shows 1 to {_MOST_LOGS} logs, not {len(traces)}.", exit_code=BAD_USAGE)
-    with _style():
-        figure = _figure(traces, title)
+    with set_style():
+        figure = plot_following(traces, title)
         kind = target.suffix.lower()
         try:
             write_whole(
@@ -80,11 +80,13 @@ def draw_following(path: str | Path, traces: Sequence[Trace], title: str) -> Non
             plt.close(figure)
 
 
-def _style() -> AbstractContextManager[None]:
+def set_style() -> AbstractContextManager[None]:
+    """Matplotlib's settings for this picture, for as long as the context lasts."""
     return matplotlib.rc_context({"svg.hashsalt": "greywhale", "font.size": 9, "axes.grid": True, "grid.alpha": 0.3})
 
 
-def _figure(traces: Sequence[Trace], title: str) -> Figure:
+def plot_following(traces: Sequence[Trace], title: str) -> Figure:
+    """What `draw_following` writes, as a figure of pyplot's that the caller closes."""
     # Fixed margins: a layout solver's result differs in the last digits from run to run.
     figure = plt.figure(figsize=(11.0, 8.6))
     figure.suptitle(title, fontsize=12, fontweight="bold", y=0.98)

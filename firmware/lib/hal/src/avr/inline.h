@@ -3,7 +3,7 @@
 #ifdef __AVR__
 #include "pins.h"
 
-// The tick saves no registers (OS_task): the controllers need nearly all of them, and loop() has nothing in them to keep.
+// The tick saves no registers (OS_task): the controllers need nearly all of them, and loop() keeps nothing in them.
 extern "C" __attribute__((OS_task, noinline, used, externally_visible)) void firmware_tick();
 
 namespace hal {

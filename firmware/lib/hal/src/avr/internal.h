@@ -9,8 +9,8 @@ namespace internal {
 void start_tick();
 void start_uart();
 
-// Ticks that started while one was unfinished. Kept over a reset: many of them mean that the watchdog did it, which
-// a bootloader hides by clearing MCUSR.
+// Ticks that started while another was unfinished. The count survives a reset: a high one means that the watchdog caused the
+// reset. A bootloader that clears MCUSR would hide that.
 extern volatile uint8_t missed_ticks;
 
 }  // namespace internal

@@ -1,5 +1,5 @@
-/* The interrupts that come often: a conversion every 416 cycles, a byte every 160 each way. In assembler because
-   avr-gcc saves twice the registers they need. */
+/* The interrupts that come often: a conversion every 416 cycles, a byte every 160 cycles each way. They are in assembly
+   because avr-gcc saves twice the registers that they need. */
 #ifdef __AVR__
 #define __SFR_OFFSET 0
 #include <avr/io.h>
@@ -31,7 +31,7 @@ hal_rx_lost: .skip 1
     push r25
 .endm
 
-; Z := ring + position (subtracts the negative: there is no addition of a constant)
+; Z := ring + position. AVR cannot add a constant, so this subtracts its negative.
 .macro point ring, position
     mov  r30, \position
     ldi  r31, 0
@@ -49,8 +49,8 @@ hal_rx_lost: .skip 1
     reti
 .endm
 
-; Conversion n is in ADC, n + 1 is under way with its channel latched: this chooses the channel of n + 2.
-; Pots are visited in turn, not four times in a row, so that all eight are averaged over the same time.
+; Conversion n is in ADC. Conversion n + 1 is under way, its channel latched. This chooses the channel of n + 2.
+; Pots are read in turn, not four times in a row, so that all eight are averaged over the same time.
 .global ADC_vect
 ADC_vect:
     enter
@@ -92,7 +92,7 @@ ADC_vect:
     sts  ADCSRA, r24
     rjmp 3b
 
-; The transmitter takes a byte; without one left it is silenced.
+; The transmitter takes a byte. After the last byte, this interrupt is turned off.
 .global SENDABLE_vect
 SENDABLE_vect:
     enter
@@ -110,8 +110,8 @@ SENDABLE_vect:
     sts  UCSR0B, r25
 1:  leave
 
-; A byte has come. When the ring is full it stays in the chip and the receiver is silenced until there is room again: a
-; babbling host then costs no more time than the main loop spends reading it. What the chip drops meanwhile, it tells.
+; A byte has come. When the ring is full, the byte stays in the chip and this interrupt is turned off until there is room
+; again. A babbling host then takes no more time than the main loop spends on reading. The chip reports the bytes it drops.
 .global RECEIVED_vect
 RECEIVED_vect:
     enter

@@ -100,7 +100,7 @@ inline void all_outputs_low() {
   DDRD = pwm_d | directions_d;
 }
 
-// Timer 1 at 20 kHz like the Mega's; timer 2 has 8 bits and no room for both: 31.4 kHz, top 255.
+// Timer 1 runs at 20 kHz, as on the Mega. Timer 2 has 8 bits only, and both its compare registers drive pins: 31.4 kHz, top 255.
 inline void start_pwm() {
   TIMSK1 = TIMSK2 = 0;
   TCCR1B = TCCR2B = 0;

@@ -5,11 +5,11 @@
 #define RING_SIZE 128
 #define CONVERSIONS 32
 
-// The first pot of each round: the followers before the leaders, whose readings are then the younger ones.
+// The first pot of each round. Followers come before leaders, so the leaders' readings are the younger ones.
 #define FIRST_POT 4
 
-// The chip's general purpose registers, one cycle away. CONVERSION counts from -8, so that bit 7 tells the first round, whose
-// conversions replace what the sums hold, and ends at CHAIN_END.
+// The chip's general purpose registers, which take one cycle to read. CONVERSION counts from -8 to CHAIN_END. Bit 7 is set during the
+// first round, whose conversions replace the sums; later ones are added.
 #define CONVERSION GPIOR0
 #define CHAIN_START 0xf8
 #define CHAIN_END (CONVERSIONS - 8)
@@ -18,7 +18,7 @@
 
 #define UART_ON ((1 << RXEN0) | (1 << TXEN0) | (1 << RXCIE0))
 
-// Prescaler 32: 500 kHz ADC clock. Free-running, a conversion takes exactly 13 ADC clocks (416 cycles) however late the
+// Prescaler 32: an ADC clock of 500 kHz. A free-running conversion takes exactly 13 ADC clocks (416 cycles), however late its
 // interrupt is, so the chain takes 13,312 of a tick's 16,000 cycles.
 #define ADC_SINGLE ((1 << ADEN) | (1 << ADIE) | (1 << ADPS2) | (1 << ADPS0))
 #define ADC_CHAIN (ADC_SINGLE | (1 << ADATE) | (1 << ADSC) | (1 << ADIF))

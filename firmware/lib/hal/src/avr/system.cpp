@@ -17,24 +17,24 @@ volatile uint8_t missed_ticks __attribute__((section(".noinit")));
 
 namespace {
 
-// Survive a reset; random after power-on, hence the mark.
+// These survive a reset. After power-on they are random, so a mark tells whether they hold anything.
 volatile uint16_t watchdog_mark __attribute__((section(".noinit")));
 uint8_t reset_flags __attribute__((section(".noinit")));   // MCUSR
 
 constexpr uint16_t watchdog_is_on = 0x57a7;
-constexpr uint8_t hung_ticks = 40;   // of the 60 that the watchdog waits
+constexpr uint8_t hung_ticks = 40;   // the watchdog waits for 60
 
 }  // namespace
 
-// Runs before main() and before variables are set up: outputs off, reset cause kept, watchdog off (it stays on, at
-// its shortest time, after a watchdog reset). No registers are saved: section .init3 is straight-line start-up code.
+// Runs before main() and before variables are set up. Turns outputs off, keeps the reset cause, and turns the watchdog off, which a
+// watchdog reset leaves on at its shortest time. It saves no registers: section .init3 is straight-line start-up code.
 extern "C" void hal_early_start() __attribute__((naked, used, section(".init3")));
 extern "C" void hal_early_start() {
   pins::all_outputs_low();
   uint8_t flags = MCUSR;
   MCUSR = 0;
   wdt_disable();
-  // A bootloader that clears MCUSR hides the watchdog; a tick that hung for most of its time betrays it.
+  // A bootloader that clears MCUSR hides a watchdog reset. Many missed ticks before the reset show it all the same.
   if (flags == 0 && watchdog_mark == watchdog_is_on && internal::missed_ticks >= hung_ticks) flags = 1 << WDRF;
   watchdog_mark = 0;
   internal::missed_ticks = 0;
@@ -43,7 +43,7 @@ extern "C" void hal_early_start() {
 
 Board board_id() { return pins::board; }
 
-// Power-on and brown-out set several flags: the most telling first.
+// Power-on and brown-out set several flags, so the order of these questions matters.
 ResetCause reset_cause() {
   if (reset_flags & (1 << WDRF)) return ResetCause::watchdog;
   if (reset_flags & (1 << PORF)) return ResetCause::power_on;
@@ -69,7 +69,7 @@ void set_duty(uint8_t joint, bool positive, uint16_t size) {
   pins::compare(joint, size);
 }
 
-// The tick interrupt may turn the drivers off at any moment, hence no interrupt between read and write.
+// The tick's interrupt may turn the drivers off at any moment, so there must be none between read and write.
 void set_drivers(bool on) {
   cli();
   if (on) pins::drivers_on();
@@ -104,7 +104,7 @@ void watchdog_start() {
 
 void watchdog_kick() { wdt_reset(); }
 
-// Conversions and sent bytes interrupt the sleep; there is nothing to do for the main loop then.
+// Conversions and sent bytes end the sleep too, but then the main loop has nothing to do.
 void idle() {
   for (;;) {
     cli();

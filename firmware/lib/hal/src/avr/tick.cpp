@@ -15,12 +15,12 @@ static_assert(FIRST_POT == pot_count - joint_count, "a round ends with the leade
 
 constexpr uint8_t channel(uint8_t n) { return static_cast<uint8_t>((1 << REFS0) | (n & 7)); }   // reference AVcc
 
-// When the chain starts, in steps of 4 us after the tick: as late as it safely can, so that what the next tick uses is young.
-// It takes 834 us; other interrupts may hold up its start and its last conversion by 9 us each.
+// When the chain starts, in steps of 4 us after the tick: as late as is safe, so that the next tick gets young readings. The chain
+// takes 834 us; other interrupts may delay its start and its last conversion by 9 us each.
 constexpr uint8_t chain_start = 33;
 
-volatile uint8_t filling = 0;   // of the two sets of sums; the interrupt adds there, the other one is the main loop's
-volatile uint8_t full = 0;      // the main loop's one holds sums that it has not released
+volatile uint8_t filling = 0;   // the set of sums to which the interrupt adds; the main loop has the other one
+volatile uint8_t full = 0;      // the main loop's set holds sums that it has not released
 volatile uint8_t running = 0;   // a tick has started and tick_end() has not been called
 volatile uint8_t late = 0;
 
@@ -51,17 +51,17 @@ ISR(TIMER0_COMPA_vect) {
   running = 1;
 }
 
-// The first conversion is started before anything else: its moment does not depend on the work below. A chain that has not
-// ended by now was unfinished at the tick, which has told; this one replaces it.
+// A chain that has not ended by now is given up; the tick's interrupt has already reported it as late. The first conversion is
+// started before all other work, so that its moment does not depend on that work.
 ISR(TIMER0_COMPB_vect) {
   if (CONVERSION != CHAIN_END) {
     ADCSRA = 0;
     ADMUX = channel(FIRST_POT);
   }
-  ADCSRA = ADC_CHAIN;   // its channel was chosen by the last interrupt of the chain before
+  ADCSRA = ADC_CHAIN;   // the last interrupt of the chain before has chosen the channel
   CONVERSION = CHAIN_START;
   SUM_POSITION = static_cast<uint8_t>(reinterpret_cast<uint16_t>(&hal_sums[filling ? 1 : 0][FIRST_POT]));
-  __builtin_avr_delay_cycles(16);   // the channel of conversion 1: allowed one ADC clock (32 cycles) after the start
+  __builtin_avr_delay_cycles(16);   // conversion 1's channel may be set one ADC clock (32 cycles) after the start, not before
   ADMUX = channel(FIRST_POT + 1);
 }
 
@@ -73,7 +73,7 @@ void start_tick() {
   TCCR0B = (1 << CS01) | (1 << CS00);   // prescaler 64
   OCR0A = 249;
   OCR0B = chain_start;
-  TCNT0 = chain_start - 2;   // the first tick comes with samples
+  TCNT0 = chain_start - 2;   // a chain starts at once, so that the first tick has samples
   TIFR0 = (1 << OCF0A) | (1 << OCF0B) | (1 << TOV0);
   TIMSK0 = (1 << OCIE0A) | (1 << OCIE0B);
 

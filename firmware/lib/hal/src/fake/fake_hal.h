@@ -1,4 +1,4 @@
-// A board without hardware: what the tests put in, and what the firmware did with it.
+// A board without hardware: what the tests put in, and what the firmware did.
 #pragma once
 #ifndef __AVR__
 #include <array>

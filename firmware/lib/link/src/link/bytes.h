@@ -1,5 +1,5 @@
-// Little-endian integers in byte buffers, whatever the machine. Written in halves because avr-gcc makes plain stores of
-// these, but shifts 32-bit values byte by byte in loops.
+// Little-endian integers in byte buffers, on every machine. Each is written in halves: avr-gcc makes plain stores of them, but
+// would shift a 32-bit value in loops.
 #pragma once
 
 #include <stdint.h>

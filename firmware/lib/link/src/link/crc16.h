@@ -5,11 +5,11 @@
 
 namespace wire {
 
-// Kept as two bytes because an 8-bit machine pays for every wide shift; needs no table.
+// Kept as two bytes, because a wide shift is slow on an 8-bit machine. It needs no table.
 class Crc16 {
  public:
-  // One byte more. With t = high byte ^ data, folded by four bits, the eight steps of the polynomial come to
-  // t << 12 ^ t << 5 ^ t, added to the low byte moved up.
+  // Adds a byte. t is the high byte ^ data, folded by four bits. The eight steps of the polynomial then make
+  // t << 12 ^ t << 5 ^ t, which is added to the low byte moved up.
   void add(uint8_t byte) {
     uint8_t t = static_cast<uint8_t>(high_ ^ byte);
     t = static_cast<uint8_t>(t ^ (t >> 4));

@@ -15,7 +15,7 @@ bool Decoder::push(uint8_t byte) {
     return false;
   }
   if (broken_) return false;
-  // A block's code byte, which is not the first, stands where the data had a zero.
+  // Only the first code byte is extra. Every later one stands where the data had a zero.
   const bool code = run_ == 0;
   if (size_ == max_frame) {
     broken_ = true;
@@ -33,19 +33,14 @@ bool Decoder::finish() {
     const uint8_t body = static_cast<uint8_t>(size_ - 2);
     if (crc_over(buffer_, body) == get_u16(buffer_ + body)) return true;
   }
-  size_ = frame_overhead;  // an empty payload, should anyone look
+  size_ = frame_overhead;  // payload_size() is then 0
   if (bad_ != UINT16_MAX) ++bad_;
   return false;
 }
 
-void Decoder::lose() {
-  started_ = true;
-  broken_ = true;
-}
-
 namespace {
 
-// Where the zeros of a frame go: each is replaced by the distance to the next one.
+// Replaces each zero of a frame by the distance to the next one.
 struct Stuffer {
   uint8_t *code;  // the byte that will hold the distance
   uint8_t distance;

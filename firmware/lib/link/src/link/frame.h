@@ -13,11 +13,11 @@ constexpr uint8_t max_frame = max_payload + frame_overhead;
 constexpr uint8_t max_wire = max_frame + 2;  // code byte in front, zero behind
 static_assert(max_frame < 254, "longer frames would need more than one COBS code byte");
 
-// Takes bytes as they come. Whatever they are, it neither overflows nor stalls: anything that is not a frame is counted
-// once, and the next zero byte starts afresh.
+// Takes bytes as they come. Whatever they are, it neither overflows nor stalls. It counts what is not a frame once, and starts
+// afresh after the next zero byte.
 class Decoder {
  public:
-  // True when this byte completes a frame; type(), seq() and payload() then hold until the next push.
+  // True when this byte completes a frame. type(), seq() and payload() are then valid until the next push.
   bool push(uint8_t byte);
 
   uint8_t type() const { return buffer_[0]; }
@@ -25,11 +25,8 @@ class Decoder {
   const uint8_t *payload() const { return buffer_ + 2; }
   uint8_t payload_size() const { return static_cast<uint8_t>(size_ - frame_overhead); }
 
-  // Runs of bytes between zeros that were no frame; stops at 65535.
+  // How many runs of bytes between zeros were no frame; stops at 65535.
   uint16_t bad() const { return bad_; }
-
-  // Drops a piece of a frame, as after bytes were lost: what follows up to the next zero is counted as bad.
-  void lose();
 
  private:
   bool finish();
@@ -38,11 +35,11 @@ class Decoder {
   uint8_t size_ = 0;        // bytes decoded; kept after a frame for payload_size()
   uint8_t run_ = 0;         // bytes left of the current COBS block
   bool started_ = false;    // something came since the last zero
-  bool broken_ = false;     // and it cannot become a frame any more
+  bool broken_ = false;     // what came cannot become a frame any more
   uint16_t bad_ = 0;
 };
 
-// Builds one frame at a time in its own buffer, which is ready for the wire as it stands.
+// Builds one frame at a time in its own buffer, ready for the wire.
 class Encoder {
  public:
   template <class Message>

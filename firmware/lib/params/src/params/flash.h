@@ -1,4 +1,4 @@
-// Constants in flash: avr-libc's PROGMEM on the boards, ordinary memory elsewhere.
+// Constants in flash: PROGMEM of avr-libc on the boards, ordinary memory elsewhere.
 #pragma once
 
 #if defined(__AVR__)

@@ -1,4 +1,4 @@
-// Walks the generated descriptors. Loops subtract where others divide: the boards have no divider, the tables are short.
+// Walks the generated descriptors. Loops subtract instead of dividing: the boards have no divider, and the tables are short.
 #include "params/params.h"
 
 #include "link/bytes.h"
@@ -71,7 +71,7 @@ bool locate(uint16_t index, Field &field, uint8_t &offset) {
   return false;
 }
 
-// An in-range 32-bit value may still be a u32 above INT32_MAX in a damaged table; it reads as negative, below minimum.
+// A damaged table may hold a u32 above INT32_MAX. It reads as a negative number, which is below every u32's minimum.
 bool holds(const uint8_t *element, const Group &group, const Field &field, bool ranges) {
   const int32_t value = read(element + field.offset, field.kind);
   if (ranges && !in_range(field, value)) return false;

@@ -1,4 +1,4 @@
-// The parameter table at work: access by flat index, ranges, defaults, CRC, and what one value demands of another.
+// Work with the parameter table: access by flat index, ranges, defaults, CRC, and the rules between parameters.
 #pragma once
 
 #include <stdint.h>
@@ -11,7 +11,7 @@ enum class Access : uint8_t { ok, bad_index, out_of_range };
 
 constexpr uint8_t none = 0xFF;  // no index
 
-// The value of one parameter; leaves `value` alone when there is no such index.
+// Reads one parameter. Does not touch `value` when there is no such index.
 Access get(const Table &table, uint16_t index, int32_t &value);
 
 // Changes one parameter, if the value is within its range.
@@ -22,15 +22,15 @@ void load_defaults(Table &table);
 // CRC over the packed table, as the host computes it. About 4,000 cycles: not for the tick.
 uint16_t crc(const Table &table);
 
-// Flat index of the first parameter that contradicts another one (limit_min not below limit_max), or none. Enough for a
-// table that was filled through set() alone. Whether the fuzzy controllers can run the set is for their owner to say.
+// Flat index of the first parameter that contradicts another one (limit_min not below limit_max), or none. This check is enough
+// for a table that was filled through set() alone. Whether the fuzzy controllers can run the set, their owner decides.
 uint8_t first_inconsistent(const Table &table);
 
-// The same, and every range: for a table that came from storage.
+// Checks the same and every range: for a table that came from storage.
 uint8_t first_invalid(const Table &table);
 
-// What runs and what is being prepared. All changes go to `staged`; apply() makes them effective at once. Both are
-// used from the main loop only, so between two ticks is where the loop calls apply().
+// The set that runs and the set that is being prepared. All changes go to `staged`; apply() makes them effective at once. The main
+// loop calls apply() between two ticks.
 class Sets {
  public:
   // Starts both from one table.

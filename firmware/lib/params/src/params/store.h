@@ -1,13 +1,14 @@
-// The parameter set in EEPROM: two banks, written in turn one byte at a time from the main loop, so that a power cut at
-// any moment leaves the old or the new set whole.
+// The parameter set in EEPROM: two banks, written in turn from the main loop, one byte at a time. A power cut at any moment
+// leaves the old or the new set whole.
 //
 // A bank: magic u16 | layout u8 | length u16 | sequence u16 | packed table | crc u16, the CRC over layout to table. A
-// save spoils the first magic byte of the older bank, writes and reads back all the rest, and puts that byte right last:
-// a bank with its magic is a finished bank, whatever a byte that was being written at the cut has become. The bank with
-// the newer sequence wins at boot. Bytes that are right already are not written. A save of a set that is already stored
-// writes nothing; any other wears each cell at most once, the magic byte twice per two saves: 100,000 saves.
+// save spoils the first magic byte of the older bank, writes all the rest and reads it back, and puts the magic byte right
+// last. A bank with its magic is thus a finished bank, whatever a power cut made of the byte that was being written. At boot
+// the bank with the newer sequence wins. Bytes that are already right are not written. A save of a set that is already stored
+// writes nothing. Any other save writes each cell of one bank at most once, but the first magic byte twice. The banks take
+// turns, so even that byte is written once per save on average: it lasts for 100,000 saves.
 //
-// Eeprom has `uint8_t read(uint16_t)`, `void begin_write(uint16_t, uint8_t)` and `bool busy()`; while busy, neither of the
+// Eeprom has `uint8_t read(uint16_t)`, `void begin_write(uint16_t, uint8_t)` and `bool busy()`. While it is busy, neither of the
 // other two is called.
 #pragma once
 
@@ -28,7 +29,7 @@ constexpr uint8_t payload_at = 7;
 constexpr uint8_t crc_at = payload_at + table_size;
 constexpr uint8_t size = crc_at + 2;
 static_assert(payload_at + table_size + 2 <= 255, "positions within a bank are bytes");
-// Not at address 0, the cell that a brown-out is most likely to spoil.
+// Address 0 is not used: a brown-out is most likely to spoil that cell.
 constexpr uint16_t start_a = 16;
 constexpr uint16_t start_b = start_a + 256;
 }  // namespace bank
@@ -38,13 +39,13 @@ class Store {
  public:
   explicit Store(Eeprom &eeprom) : eeprom_(eeprom) {}
 
-  // Boot: the newest bank that is whole and in range, or else the defaults. Waits for a write that a reset left behind.
+  // At boot: loads the newest bank that is whole and in range, or else the defaults. Waits for a write that a reset left behind.
   wire::ParamSource load(Table &table);
 
-  // Starts to save; `table` must stay as it is until state() is no longer saving. Does nothing while saving.
+  // Starts to save. `table` must stay as it is until state() is no longer saving. Does nothing while saving.
   void save(const Table &table);
 
-  // One step of at most one byte; call it again and again from the main loop.
+  // Does one step, which writes at most one byte. Call it again and again from the main loop.
   void poll();
 
   wire::SaveState state() const { return state_; }
@@ -67,10 +68,10 @@ class Store {
 
   Eeprom &eeprom_;
   const Table *table_ = nullptr;
-  uint16_t sequence_ = 0;   // newest in EEPROM, or the one being written
+  uint16_t sequence_ = 0;   // the newest in EEPROM, or the one that is being written
   wire::Crc16 crc_;         // over the positions walked so far
   uint8_t position_ = 0;
-  uint8_t current_ = no_bank;  // holds the set that a boot would find
+  uint8_t current_ = no_bank;  // the bank that a boot would load
   uint8_t target_ = 0;
   Phase phase_ = Phase::idle;
   wire::SaveState state_ = wire::SaveState::idle;
@@ -130,7 +131,7 @@ void Store<Eeprom>::save(const Table &table) {
   }
 }
 
-// Turns to the bank that may be lost, under the next sequence number.
+// Chooses the bank that may be overwritten, and the next sequence number.
 template <class Eeprom>
 void Store<Eeprom>::retarget() {
   target_ = current_ == 0 ? 1 : 0;
@@ -152,7 +153,7 @@ void Store<Eeprom>::finish(wire::SaveState state) {
   if (state == wire::SaveState::saved) current_ = target_;
 }
 
-// The byte that belongs at a position; positions from layout_at on must be asked for in order, for the CRC.
+// The byte that belongs at a position. Ask for positions from layout_at on in their order, because of the CRC.
 template <class Eeprom>
 uint8_t Store<Eeprom>::image(uint8_t position) {
   uint8_t byte = 0;
@@ -187,7 +188,7 @@ uint8_t Store<Eeprom>::image(uint8_t position) {
   return byte;
 }
 
-// One position of a walk: true when the EEPROM held the right byte, else writes it if asked to.
+// One position of a walk. True when the EEPROM held the right byte; otherwise `write` says whether it is written.
 template <class Eeprom>
 bool Store<Eeprom>::step(uint8_t b, bool write) {
   const uint8_t byte = image(position_);

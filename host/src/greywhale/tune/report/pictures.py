@@ -83,8 +83,8 @@ def draw(outcome: Outcome, folder: Path) -> list[Path]:
 
 def draw_sets(path: Path, before: Controllers, after: Controllers) -> Path:
     """Draw the input sets of controllers as a board stores them, int32 (4, 12): before dashed, after solid."""
-    with _style():
-        return _save(_sets_figure(before, after), path)
+    with set_style():
+        return _save(plot_sets(before, after), path)
 
 
 def draw_responses(path: Path, time_s: Floats, leader: Floats, responses: Mapping[str, Response], title: str) -> Path:
@@ -92,21 +92,23 @@ def draw_responses(path: Path, time_s: Floats, leader: Floats, responses: Mappin
 
     The first word of a response's name stands before its error in the titles.
     """
-    with _style():
-        return _save(_responses_figure(time_s, leader, responses, title), path)
+    with set_style():
+        return _save(plot_responses(time_s, leader, responses, title), path)
 
 
 def draw_convergence(path: Path, curves: Sequence[tuple[npt.NDArray[np.int64], Floats]], title: str) -> Path:
     """A panel a joint: best cost so far over evaluations."""
-    with _style():
-        return _save(_convergence_figure(curves, title), path)
+    with set_style():
+        return _save(plot_convergence(curves, title), path)
 
 
-def _style() -> AbstractContextManager[None]:
+def set_style() -> AbstractContextManager[None]:
+    """Matplotlib's settings for these pictures, for as long as the context lasts."""
     return matplotlib.rc_context({"font.size": 9, "axes.grid": True, "grid.alpha": 0.3, "axes.axisbelow": True})
 
 
-def _sets_figure(before: Controllers, after: Controllers) -> Figure:
+def plot_sets(before: Controllers, after: Controllers) -> Figure:
+    """What `draw_sets` writes, as a figure of pyplot's that the caller closes."""
     figure, grid = plt.subplots(JOINTS, 2, figsize=(9.0, 9.4), sharex=True, sharey=True)
     figure.subplots_adjust(left=0.075, right=0.985, bottom=0.095, top=0.925, wspace=0.07, hspace=0.34)
     figure.suptitle("Input membership functions before and after tuning", fontsize=12, fontweight="bold", y=0.985)
@@ -141,7 +143,8 @@ def _draw_sets(axes: Axes, corners: Sequence[float], style: str) -> None:
         axes.plot(x, y, style, color=colour, linewidth=1.5 if style == "-" else 0.9)
 
 
-def _responses_figure(time_s: Floats, leader: Floats, responses: Mapping[str, Response], title: str) -> Figure:
+def plot_responses(time_s: Floats, leader: Floats, responses: Mapping[str, Response], title: str) -> Figure:
+    """What `draw_responses` writes, as a figure of pyplot's that the caller closes."""
     figure = plt.figure(figsize=(11.0, 12.6))
     figure.suptitle(title, fontsize=12, fontweight="bold", y=0.988)
     grid = figure.add_gridspec(JOINTS, 1, left=0.07, right=0.985, bottom=0.07, top=0.945, hspace=0.36)
@@ -200,7 +203,8 @@ def _fit(axes: Axes, time_s: Floats, leader: Floats, curves: Sequence[tuple[Floa
     axes.set_ylim(values.min() - margin, values.max() + margin)
 
 
-def _convergence_figure(curves: Sequence[tuple[npt.NDArray[np.int64], Floats]], title: str) -> Figure:
+def plot_convergence(curves: Sequence[tuple[npt.NDArray[np.int64], Floats]], title: str) -> Figure:
+    """What `draw_convergence` writes, as a figure of pyplot's that the caller closes."""
     figure, grid = plt.subplots(2, 2, figsize=(9.0, 6.0), sharex=True)
     figure.subplots_adjust(left=0.105, right=0.985, bottom=0.09, top=0.885, wspace=0.24, hspace=0.24)
     figure.suptitle(title, fontsize=12, fontweight="bold", y=0.975)

@@ -17,7 +17,8 @@ using Four = double[kJoints];
 
 std::uint16_t count_of(double millivolts) {
   const double count = millivolts * 1024.0 / kConverterMillivolts;
-  return static_cast<std::uint16_t>(std::clamp(count, 0.0, double{kTopCount}));
+  if (!(count > 0.0)) return 0;  // also where an arm's motion has left the range of numbers
+  return static_cast<std::uint16_t>(std::min(count, double{kTopCount}));
 }
 
 // The converter's sums of one side's pots, from the slices' voltages as they come.

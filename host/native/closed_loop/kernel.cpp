@@ -1,125 +1,17 @@
-// The closed loop of sixteen candidates over the whole experiment. Include after one of the lanes_*.h.
-#pragma once
-
-#include <xmmintrin.h>
-
-#include <vector>
+// The closed loop of sixteen candidates over the whole experiment. core.cmake compiles it once for each instruction set.
+#include <cstddef>
+#include <cstdint>
 
 #include "block.h"
-#include "firmware_tick.h"
-#include "lanes_controller.h"
-#include "lanes_plant.h"
+#include "lanes.h"
+#include "lanes_gather.h"
+#include "no_denormals.h"
 
-namespace greywhale::loop::lanes {
+namespace greywhale::loop::GREYWHALE_INSTRUCTIONS {
+
+namespace {
 
 constexpr std::size_t kFlush = 256;  // ticks between additions to the sums in double precision
-
-template <class Value>
-GREYWHALE_INLINE Float gather(const Block& block, const Value& value) {
-  float lanes[kBlock];
-  for (std::size_t n = 0; n < kBlock; ++n) lanes[n] = static_cast<float>(value(*block.plants[n]));
-  return load(lanes);
-}
-
-template <class Value>
-GREYWHALE_INLINE Int gather_int(const Value& value) {
-  std::int32_t lanes[kBlock];
-  for (std::size_t n = 0; n < kBlock; ++n) lanes[n] = static_cast<std::int32_t>(value(n));
-  return load(lanes);
-}
-
-inline double units(double radians) { return radians * (1073741824.0 / 6.283185307179586); }
-
-inline Body body_of(const Block& block) {
-  const auto of = [&](double arm::RigidBody<double>::*member) {
-    return gather(block, [member](const PlantRow& row) { return row.plant.body.*member; });
-  };
-  using Rigid = arm::RigidBody<double>;
-  Body b;
-  b.yaw = of(&Rigid::yaw);
-  b.ixx1 = of(&Rigid::ixx1);
-  b.iyy1 = of(&Rigid::iyy1);
-  b.ixx23 = of(&Rigid::ixx23);
-  b.iyy23 = of(&Rigid::iyy23);
-  b.izz23 = of(&Rigid::izz23);
-  b.ixx3 = of(&Rigid::ixx3);
-  b.izz1 = of(&Rigid::izz1);
-  b.coupling = of(&Rigid::coupling);
-  b.gravity1 = of(&Rigid::gravity1);
-  b.gravity2 = of(&Rigid::gravity2);
-  b.d1 = b.ixx1 - b.iyy1;
-  b.across = b.ixx23 - b.iyy23;
-  b.m11 = b.izz1 + b.izz23;
-  return b;
-}
-
-inline Joint joint_of(const Block& block, std::size_t i, double h, int top) {
-  using Source = arm::Joint<double>;
-  const auto of = [&](auto value) { return gather(block, [&](const PlantRow& row) { return value(row.plant.joints[i]); }); };
-  const auto rotor_damped = [h](const Source& s) { return s.actuator.inertia + h * s.actuator.damping; };
-  const auto mesh = [h](const Source& s) { return s.gear.stiffness > 0.0 ? h * (h * s.gear.stiffness + s.gear.damping) : arm::kRigid; };
-  Joint j;
-  j.rotor = of([](const Source& s) { return s.actuator.inertia; });
-  j.impulse = gather(block, [&](const PlantRow& r) { return h * r.plant.joints[i].actuator.torque_per_volt * r.supply / top; });
-  j.coulomb = of([h](const Source& s) { return h * s.friction.coulomb; });
-  j.stribeck = of([h](const Source& s) { return h * (s.friction.breakaway - s.friction.coulomb); });
-  j.per_stribeck_velocity = of([](const Source& s) { return 1.0 / s.friction.stribeck_velocity; });
-  j.breakaway = of([h](const Source& s) { return h * s.friction.breakaway; });
-  j.spring = of([h](const Source& s) { return h * s.gear.stiffness; });
-  j.gap_push = of([h](const Source& s) { return h * s.gear.stiffness * s.gear.half_gap; });
-  j.no_pull = of([h](const Source& s) { return 1e-6 * h * (s.gear.stiffness * s.gear.half_gap + 1e-3); });
-  j.gap = of([](const Source& s) { return s.gear.half_gap; });
-  j.mesh = of(mesh);
-  for (int touching = 0; touching < 2; ++touching) {
-    const auto stiff = [=](const Source& s) { return h * s.gear.drag + (touching ? mesh(s) : 0.0); };
-    j.stiff[touching] = of(stiff);
-    j.give[touching] = of([=](const Source& s) { return 1.0 / (rotor_damped(s) + stiff(s)); });
-    j.share[touching] = of([=](const Source& s) { return stiff(s) / (rotor_damped(s) + stiff(s)); });
-    j.inertia[touching] = of([=](const Source& s) { return rotor_damped(s) * (stiff(s) / (rotor_damped(s) + stiff(s))); });
-  }
-  const auto stop = [&](double arm::Stops<double>::*side) {
-    return gather_int([&](std::size_t n) { return units(block.plants[n]->plant.joints[i].stops.*side); });
-  };
-  j.stop_min = stop(&arm::Stops<double>::min);
-  j.stop_max = stop(&arm::Stops<double>::max);
-  return j;
-}
-
-inline Side side_of(const Block& block, std::size_t joint, fuzzy_pdi::Side (fuzzy_pdi::Coefficients::*input)[2], std::size_t below) {
-  const auto of = [&](auto value) {
-    return gather_int([&](std::size_t n) { return value((block.controllers[n][joint].*input)[below]); });
-  };
-  return {of([](const fuzzy_pdi::Side& s) { return s.zero; }), of([](const fuzzy_pdi::Side& s) { return s.outer; }),
-          of([](const fuzzy_pdi::Side& s) { return s.short_ramps & 1 ? 8 : 0; }),
-          of([](const fuzzy_pdi::Side& s) { return s.short_ramps & 2 ? 8 : 0; })};
-}
-
-inline Law law_of(const Block& block, std::size_t joint, bool& short_ramps) {
-  using fuzzy_pdi::Coefficients;
-  Law law;
-  for (std::size_t below = 0; below < 2; ++below) {
-    law.e[below] = side_of(block, joint, &Coefficients::e, below);
-    law.ce[below] = side_of(block, joint, &Coefficients::ce, below);
-    for (std::size_t n = 0; n < kBlock; ++n) {
-      const Coefficients& c = block.controllers[n][joint];
-      short_ramps = short_ramps || (c.e[below].short_ramps | c.ce[below].short_ramps) != 0;
-    }
-  }
-  law.integral = gather_int([&](std::size_t n) { return block.controllers[n][joint].integral; });
-  law.ku = gather_int([&](std::size_t n) { return block.controllers[n][joint].ku_mv; });
-  return law;
-}
-
-// How many of a pot's four conversions fall into each slice of a tick and the first of the next.
-struct Turns {
-  std::int32_t in[kSlices + 1];
-};
-
-inline Turns turns_of(const Timing& timing, std::size_t joint) {
-  Turns t{};
-  for (std::size_t turn = 0; turn < kConversions; ++turn) ++t.in[slice_of(timing, turn, kFollower + joint)];
-  return t;
-}
 
 struct Totals {
   Float mse[kJoints], itae[kJoints], itau[kJoints];
@@ -127,10 +19,9 @@ struct Totals {
 
 class Run {
  public:
-  Run(const Experiment& x, const Pots& pots, const Block& block, int steps)
-      : x_(x), pots_(pots), block_(block), steps_(static_cast<std::size_t>(steps)),
-        ramp_(x.settings.soft_start_ms), traced_(block.traces[0].every != 0),
-        waiting_(static_cast<std::size_t>(x.timing.late) * kJoints * kBlock) {
+  Run(const Experiment& x, const Shared& shared, const Block& block, int steps)
+      : x_(x), shared_(shared), pots_(shared.pots), block_(block), steps_(static_cast<std::size_t>(steps)),
+        traced_(block.traces[0].every != 0) {
     const double h = kTick / steps;
     plant_.body = body_of(block);
     plant_.step = all(static_cast<float>(h));
@@ -140,17 +31,15 @@ class Run {
       plant_.joints[i] = joint_of(block, i, h, x.settings.pwm_top[i]);
       laws_[i] = law_of(block, i, short_ramps_);
       memories_[i] = {all(0), all(0), all(0)};
-      turns_[i] = turns_of(x.timing, i);
       state_[i] = {all(static_cast<std::int32_t>(units(x.home[i]))), all(0.0f), plant_.joints[i].gap * all(static_cast<float>(x.gap[i])),
                    all(0.0f)};
       const Int count = count_of<true>(i, counts(i, state_[i].q), 0.0f);
-      curved_ = curved_ || pots.linearity[i] != 0.0f;
+      curved_ = curved_ || pots_.linearity[i] != 0.0f;
       sum_[i] = shift_left<2>(count);
       filtered_[i] = shift_left<4>(sum_[i]);
       commanded_[i] = all(0);
       compare_[i] = all(0);
       duty_[i] = all(0.0f);
-      duty_scale_[i] = duty_scale(x.settings.pwm_top[i], x.settings.supply_mv);
     }
   }
 
@@ -197,7 +86,6 @@ class Run {
   GREYWHALE_INLINE void control(std::size_t tick) {
     const Settings& s = x_.settings;
     const bool on = tick > 0;
-    const std::uint16_t limit = on ? ramp_.next_limit_mv(s.supply_mv) : std::uint16_t{0};
     const bool due = on && (tick - 1) % static_cast<std::size_t>(s.period_ms) == 0;
     for (std::size_t i = 0; i < kJoints; ++i) filtered_[i] = low_pass(filtered_[i], sum_[i], s.filter_shift);
     if (!due) return;
@@ -207,8 +95,8 @@ class Run {
       leader[i] = all(is < s.limit_min[i] ? s.limit_min[i] : is > s.limit_max[i] ? s.limit_max[i] : is);
       follower[i] = to_angle(filtered_[i], s.follower.zero[i], s.follower.scale[i]);
     }
-    step(laws_, memories_, leader, follower, limit, tick == 1, short_ramps_, millivolts);
-    for (std::size_t i = 0; i < kJoints; ++i) commanded_[i] = compare_value(millivolts[i], duty_scale_[i], s.motor_sign[i]);
+    step(laws_, memories_, leader, follower, shared_.limit_mv[tick], tick == 1, short_ramps_, millivolts);
+    for (std::size_t i = 0; i < kJoints; ++i) commanded_[i] = compare_value(millivolts[i], shared_.duty_scale[i], s.motor_sign[i]);
   }
 
   // The duties that the firmware commands, or those of `late` ticks ago.
@@ -216,7 +104,7 @@ class Run {
     for (std::size_t i = 0; i < kJoints; ++i) {
       compare_[i] = commanded_[i];
       if (x_.timing.late != 0) {
-        std::int32_t* const then = waiting_.data() + (tick % static_cast<std::size_t>(x_.timing.late) * kJoints + i) * kBlock;
+        std::int32_t* const then = block_.waiting + (tick % static_cast<std::size_t>(x_.timing.late) * kJoints + i) * kBlock;
         compare_[i] = load(then);
         store(then, commanded_[i]);
       }
@@ -248,7 +136,7 @@ class Run {
     for (std::size_t i = 0; i < kJoints; ++i) {
       Int sum = all(0);
       for (std::size_t slice = 0; slice <= kSlices; ++slice) {
-        const std::int32_t turns = turns_[i].in[slice];
+        const std::int32_t turns = shared_.turns[i][slice];
         if (turns == 0) continue;
         const float noise = pots_.noise ? pots_.noise[(kSlices * tick + slice) * kJoints + i] : 0.0f;
         const Int count = count_of<kCurved>(i, place[slice][i], noise);
@@ -321,42 +209,27 @@ class Run {
   }
 
   const Experiment& x_;
+  const Shared& shared_;
   const Pots& pots_;
   const Block& block_;
   const std::size_t steps_;
-  SoftStart ramp_;
   const bool traced_;
   bool short_ramps_ = false;
   bool curved_ = false;  // some potentiometer's line is not straight
   Plant plant_;
   Law laws_[kJoints];
   Memory memories_[kJoints];
-  Turns turns_[kJoints];
   State state_[kJoints];
   Int sum_[kJoints], filtered_[kJoints], commanded_[kJoints], compare_[kJoints];
   Float duty_[kJoints];
-  std::int32_t duty_scale_[kJoints];
-  std::vector<std::int32_t> waiting_;  // commanded, not acting yet: late ticks x 4 joints x 16 lanes
 };
 
-// Numbers too small to matter are 0, as they slow a processor down.
-class NoDenormals {
- public:
-  NoDenormals() : before_(_mm_getcsr()) { _mm_setcsr(before_ | 0x8040u); }
-  ~NoDenormals() { _mm_setcsr(before_); }
-  NoDenormals(const NoDenormals&) = delete;
-  NoDenormals& operator=(const NoDenormals&) = delete;
-
- private:
-  unsigned before_;
-};
-
-inline void run_block(const Experiment& x, const Pots& pots, const Block& block, int steps, Measures* measures) {
+void run_block(const Experiment& x, const Shared& shared, const Block& block, int steps, Measures* measures) {
   const NoDenormals here;
-  Run(x, pots, block, steps).through(measures);
+  Run(x, shared, block, steps).through(measures);
 }
 
-inline void check_law(const LawCheck& c) {
+void check_law(const LawCheck& c) {
   Block block{};
   for (std::size_t n = 0; n < kBlock; ++n) block.controllers[n] = c.laws + n;
   bool short_ramps = false;
@@ -370,4 +243,8 @@ inline void check_law(const LawCheck& c) {
   }
 }
 
-}  // namespace greywhale::loop::lanes
+}  // namespace
+
+const Kernel kKernel = {run_block, check_law};
+
+}  // namespace greywhale::loop::GREYWHALE_INSTRUCTIONS

@@ -2,10 +2,13 @@
 #include "closed_loop/batch.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <stdexcept>
 
 #include "arm/random.h"
 #include "closed_loop/block.h"
+#include "closed_loop/firmware_tick.h"
+#include "instructions.h"
 #include "share_out.h"
 
 namespace greywhale::loop {
@@ -15,24 +18,21 @@ namespace {
 struct InstructionSet {
   const char* name;
   bool (*available)();
-  Kernel kernel;
-  void (*check_law)(const LawCheck&);
+  const Kernel* kernel;
 };
 
-bool has_avx512() {
-  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd") &&
-         __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
-}
-
+// The best first.
 constexpr InstructionSet kInstructionSets[] = {
-    {"avx512", has_avx512, run_block_avx512, check_law_avx512},
-    {"avx2", [] { return __builtin_cpu_supports("avx2") != 0; }, run_block_avx2, check_law_avx2},
-    {"baseline", [] { return true; }, run_block_baseline, check_law_baseline},
+#ifdef GREYWHALE_X86
+    {"avx512", has_avx512, &avx512::kKernel},
+    {"avx2", has_avx2, &avx2::kKernel},
+#endif
+    {"baseline", [] { return true; }, &baseline::kKernel},
 };
 
-const InstructionSet& chosen(const std::string& name) {
+const Kernel& chosen(const std::string& name) {
   for (const InstructionSet& set : kInstructionSets) {
-    if ((name.empty() || name == set.name) && set.available()) return set;
+    if ((name.empty() || name == set.name) && set.available()) return *set.kernel;
   }
   throw std::invalid_argument("the instruction set \"" + name + "\" is not known or not in this processor.");
 }
@@ -78,16 +78,38 @@ Pots pots_of(const Experiment& x, const std::vector<float>& noise) {
   return pots;
 }
 
+// The limits of the soft start's ramp: the controllers run from tick 1 on.
+std::vector<std::uint16_t> limits_of(const Experiment& x) {
+  std::vector<std::uint16_t> limits(x.ticks);
+  SoftStart ramp(x.settings.soft_start_ms);
+  for (std::size_t tick = 1; tick < x.ticks; ++tick) limits[tick] = ramp.next_limit_mv(x.settings.supply_mv);
+  return limits;
+}
+
+Shared shared_of(const Experiment& x, const std::vector<float>& noise, const std::vector<std::uint16_t>& limits) {
+  Shared shared{};
+  shared.pots = pots_of(x, noise);
+  for (std::size_t i = 0; i < kJoints; ++i) {
+    for (std::size_t turn = 0; turn < kConversions; ++turn) ++shared.turns[i][slice_of(x.timing, turn, kFollower + i)];
+    shared.duty_scale[i] = duty_scale(x.settings.pwm_top[i], x.settings.supply_mv);
+  }
+  shared.limit_mv = limits.data();
+  return shared;
+}
+
 const Controllers& controllers_of(const Batch& batch, std::size_t n) { return batch.controllers[batch.controller_count == 1 ? 0 : n]; }
 const PlantRow& plant_of(const Batch& batch, std::size_t n) { return batch.plants[batch.plant_count == 1 ? 0 : n]; }
 
 void run_lanes(const Experiment& x, const Batch& batch, const How& how, const Outputs& out) {
-  const Kernel kernel = chosen(how.instructions).kernel;
+  const Kernel& kernel = chosen(how.instructions);
   const std::vector<float> noise = noise_of(x);
-  const Pots pots = pots_of(x, noise);
+  const std::vector<std::uint16_t> limits = limits_of(x);
+  const Shared shared = shared_of(x, noise, limits);
   share_out((batch.count + kBlock - 1) / kBlock, how.threads, [&](std::size_t piece) {
     const std::size_t first = piece * kBlock;
+    std::vector<std::int32_t> waiting(static_cast<std::size_t>(x.timing.late) * kJoints * kBlock);
     Block block{};
+    block.waiting = waiting.data();
     block.count = std::min(kBlock, batch.count - first);
     for (std::size_t n = 0; n < kBlock; ++n) {
       const std::size_t candidate = first + std::min(n, block.count - 1);
@@ -96,7 +118,7 @@ void run_lanes(const Experiment& x, const Batch& batch, const How& how, const Ou
       block.traces[n] = trace_of(candidate, out);
     }
     Measures measures[kBlock];
-    kernel(x, pots, block, how.substeps, measures);
+    kernel.run_block(x, shared, block, how.substeps, measures);
     for (std::size_t n = 0; n < block.count; ++n) store(measures[n], first + n, out);
   });
 }

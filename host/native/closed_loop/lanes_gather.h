@@ -1,0 +1,111 @@
+// Plants and controllers of a block, side by side in lanes.
+#pragma once
+
+#include "block.h"
+#include "lanes_controller.h"
+#include "lanes_plant.h"
+
+namespace greywhale::loop::GREYWHALE_INSTRUCTIONS {
+
+template <class Value>
+GREYWHALE_INLINE Float gather(const Block& block, const Value& value) {
+  float lanes[kBlock];
+  for (std::size_t n = 0; n < kBlock; ++n) lanes[n] = static_cast<float>(value(*block.plants[n]));
+  return load(lanes);
+}
+
+template <class Value>
+GREYWHALE_INLINE Int gather_int(const Value& value) {
+  std::int32_t lanes[kBlock];
+  for (std::size_t n = 0; n < kBlock; ++n) lanes[n] = static_cast<std::int32_t>(value(n));
+  return load(lanes);
+}
+
+// 2^-30 turns, as far as lanes can count.
+inline double units(double radians) {
+  constexpr double kMost = INT32_MAX;
+  const double exact = radians * (1073741824.0 / 6.283185307179586);
+  return exact < -kMost ? -kMost : exact > kMost ? kMost : exact;
+}
+
+inline Body body_of(const Block& block) {
+  const auto of = [&](double arm::RigidBody<double>::*member) {
+    return gather(block, [member](const PlantRow& row) { return row.plant.body.*member; });
+  };
+  using Rigid = arm::RigidBody<double>;
+  Body b;
+  b.yaw = of(&Rigid::yaw);
+  b.ixx1 = of(&Rigid::ixx1);
+  b.iyy1 = of(&Rigid::iyy1);
+  b.ixx23 = of(&Rigid::ixx23);
+  b.iyy23 = of(&Rigid::iyy23);
+  b.izz23 = of(&Rigid::izz23);
+  b.ixx3 = of(&Rigid::ixx3);
+  b.izz1 = of(&Rigid::izz1);
+  b.coupling = of(&Rigid::coupling);
+  b.gravity1 = of(&Rigid::gravity1);
+  b.gravity2 = of(&Rigid::gravity2);
+  b.d1 = b.ixx1 - b.iyy1;
+  b.across = b.ixx23 - b.iyy23;
+  b.m11 = b.izz1 + b.izz23;
+  return b;
+}
+
+inline Joint joint_of(const Block& block, std::size_t i, double h, int top) {
+  using Source = arm::Joint<double>;
+  const auto of = [&](auto value) { return gather(block, [&](const PlantRow& row) { return value(row.plant.joints[i]); }); };
+  const auto rotor_damped = [h](const Source& s) { return s.actuator.inertia + h * s.actuator.damping; };
+  const auto mesh = [h](const Source& s) { return s.gear.stiffness > 0.0 ? h * (h * s.gear.stiffness + s.gear.damping) : arm::kRigid; };
+  Joint j;
+  j.rotor = of([](const Source& s) { return s.actuator.inertia; });
+  j.impulse = gather(block, [&](const PlantRow& r) { return h * r.plant.joints[i].actuator.torque_per_volt * r.supply / top; });
+  j.coulomb = of([h](const Source& s) { return h * s.friction.coulomb; });
+  j.stribeck = of([h](const Source& s) { return h * (s.friction.breakaway - s.friction.coulomb); });
+  j.per_stribeck_velocity = of([](const Source& s) { return 1.0 / s.friction.stribeck_velocity; });
+  j.breakaway = of([h](const Source& s) { return h * s.friction.breakaway; });
+  j.spring = of([h](const Source& s) { return h * s.gear.stiffness; });
+  j.gap_push = of([h](const Source& s) { return h * s.gear.stiffness * s.gear.half_gap; });
+  j.no_pull = of([h](const Source& s) { return 1e-6 * h * (s.gear.stiffness * s.gear.half_gap + 1e-3); });
+  j.gap = of([](const Source& s) { return s.gear.half_gap; });
+  j.mesh = of(mesh);
+  for (int touching = 0; touching < 2; ++touching) {
+    const auto stiff = [=](const Source& s) { return h * s.gear.drag + (touching ? mesh(s) : 0.0); };
+    j.stiff[touching] = of(stiff);
+    j.give[touching] = of([=](const Source& s) { return 1.0 / (rotor_damped(s) + stiff(s)); });
+    j.share[touching] = of([=](const Source& s) { return stiff(s) / (rotor_damped(s) + stiff(s)); });
+    j.inertia[touching] = of([=](const Source& s) { return rotor_damped(s) * (stiff(s) / (rotor_damped(s) + stiff(s))); });
+  }
+  const auto stop = [&](double arm::Stops<double>::*side) {
+    return gather_int([&](std::size_t n) { return units(block.plants[n]->plant.joints[i].stops.*side); });
+  };
+  j.stop_min = stop(&arm::Stops<double>::min);
+  j.stop_max = stop(&arm::Stops<double>::max);
+  return j;
+}
+
+inline Side side_of(const Block& block, std::size_t joint, fuzzy_pdi::Side (fuzzy_pdi::Coefficients::*input)[2], std::size_t below) {
+  const auto of = [&](auto value) {
+    return gather_int([&](std::size_t n) { return value((block.controllers[n][joint].*input)[below]); });
+  };
+  return {of([](const fuzzy_pdi::Side& s) { return s.zero; }), of([](const fuzzy_pdi::Side& s) { return s.outer; }),
+          of([](const fuzzy_pdi::Side& s) { return s.short_ramps & 1 ? 8 : 0; }),
+          of([](const fuzzy_pdi::Side& s) { return s.short_ramps & 2 ? 8 : 0; })};
+}
+
+inline Law law_of(const Block& block, std::size_t joint, bool& short_ramps) {
+  using fuzzy_pdi::Coefficients;
+  Law law;
+  for (std::size_t below = 0; below < 2; ++below) {
+    law.e[below] = side_of(block, joint, &Coefficients::e, below);
+    law.ce[below] = side_of(block, joint, &Coefficients::ce, below);
+    for (std::size_t n = 0; n < kBlock; ++n) {
+      const Coefficients& c = block.controllers[n][joint];
+      short_ramps = short_ramps || (c.e[below].short_ramps | c.ce[below].short_ramps) != 0;
+    }
+  }
+  law.integral = gather_int([&](std::size_t n) { return block.controllers[n][joint].integral; });
+  law.ku = gather_int([&](std::size_t n) { return block.controllers[n][joint].ku_mv; });
+  return law;
+}
+
+}  // namespace greywhale::loop::GREYWHALE_INSTRUCTIONS

@@ -1,0 +1,61 @@
+// The arm's number type in lanes of double precision: as many as a vector of the instruction set has.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+
+#include "arm/scalar.h"
+
+namespace greywhale::windows::GREYWHALE_INSTRUCTIONS {
+
+#ifdef __AVX2__
+constexpr std::size_t kLanes = 4;
+#else
+constexpr std::size_t kLanes = 2;
+#endif
+
+typedef double Vector __attribute__((vector_size(kLanes * sizeof(double))));
+
+// Lanes of all ones or zeros.
+struct Condition {
+  decltype(Vector{} < Vector{}) v;
+};
+
+// A class of this namespace, so that all that the arm's templates become with it belongs to this namespace too.
+struct Lanes {
+  Vector v;
+
+  Lanes() = default;  // cppcheck-suppress uninitMemberVar // open, as a double is
+  GREYWHALE_INLINE Lanes(Vector lanes) : v(lanes) {}
+  GREYWHALE_INLINE Lanes(double all) : v(Vector{} + all) {}
+  double operator[](std::size_t lane) const { return v[lane]; }
+  void set(std::size_t lane, double value) { v[lane] = value; }
+
+  friend GREYWHALE_INLINE Lanes operator-(Lanes a) { return -a.v; }
+  friend GREYWHALE_INLINE Lanes operator+(Lanes a, Lanes b) { return a.v + b.v; }
+  friend GREYWHALE_INLINE Lanes operator-(Lanes a, Lanes b) { return a.v - b.v; }
+  friend GREYWHALE_INLINE Lanes operator*(Lanes a, Lanes b) { return a.v * b.v; }
+  friend GREYWHALE_INLINE Lanes operator/(Lanes a, Lanes b) { return a.v / b.v; }
+  friend GREYWHALE_INLINE Condition operator<(Lanes a, Lanes b) { return {a.v < b.v}; }
+  friend GREYWHALE_INLINE Condition operator>(Lanes a, Lanes b) { return {a.v > b.v}; }
+  friend GREYWHALE_INLINE Condition operator<=(Lanes a, Lanes b) { return {a.v <= b.v}; }
+  friend GREYWHALE_INLINE Condition operator>=(Lanes a, Lanes b) { return {a.v >= b.v}; }
+  friend GREYWHALE_INLINE Condition operator!=(Lanes a, Lanes b) { return {a.v != b.v}; }
+};
+
+GREYWHALE_INLINE Lanes choose(Condition mask, Lanes yes, Lanes no) { return mask.v ? yes.v : no.v; }
+
+GREYWHALE_INLINE bool any(Condition mask) {
+  bool found = false;
+  for (std::size_t n = 0; n < kLanes; ++n) found = found || mask.v[n] != 0;
+  return found;
+}
+
+GREYWHALE_INLINE void sine_cosine(Lanes angle, Lanes& sine, Lanes& cosine) {
+  for (std::size_t n = 0; n < kLanes; ++n) {
+    sine.v[n] = std::sin(angle.v[n]);
+    cosine.v[n] = std::cos(angle.v[n]);
+  }
+}
+
+}  // namespace greywhale::windows::GREYWHALE_INSTRUCTIONS

@@ -1,0 +1,200 @@
+"""The native code compiled for 64-bit ARM and run under qemu gives the same bits as on this machine.
+
+The library greywhale_core is compiled, by the package's own CMake file; tests/oracles/aarch64/driver.cpp repeats the
+calls that the package makes of its native module here.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from greywhale import _native
+from greywhale.arm import ArmParameters
+from greywhale.arm.plants import column, columns
+from greywhale.files.arm import default_arm, load_arm
+from greywhale.loop import CONTROLLER_COLUMNS, PLANT_COLUMNS, Experiment, Timing, plant_row
+from greywhale.loop.leader import leader_slices
+from greywhale.protocol.schema import Board
+from greywhale.table import ParameterTable
+from greywhale.trajectory import human_reaches
+from tests.identify.test_windows import arguments as windows_of_test
+from tests.loop.test_batch import search_box
+from tests.loop.test_law_in_lanes import LANES, random_angles, random_controllers
+from tests.oracles.native_calls import Calls, array, read, wholes, written
+
+SOURCE = Path(__file__).with_name("aarch64")
+BUILD = Path(__file__).parents[2] / "build" / "oracles" / "aarch64"
+CROSS = (
+    "-DCMAKE_SYSTEM_NAME=Linux",
+    "-DCMAKE_SYSTEM_PROCESSOR=aarch64",
+    "-DCMAKE_CXX_COMPILER=aarch64-linux-gnu-g++",
+    "-DCMAKE_BUILD_TYPE=Release",
+)
+QEMU = ("qemu-aarch64", "-L", "/usr/aarch64-linux-gnu")
+
+
+@pytest.fixture(scope="session")
+def driver() -> Path:
+    cmake = str(Path(sys.executable).with_name("cmake"))
+    ninja = str(Path(sys.executable).with_name("ninja"))
+    configure = [cmake, "-S", str(SOURCE), "-B", str(BUILD), "-G", "Ninja", f"-DCMAKE_MAKE_PROGRAM={ninja}", *CROSS]
+    for command in (configure, [cmake, "--build", str(BUILD)]):
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stdout + done.stderr
+    return BUILD / "driver"
+
+
+@pytest.fixture
+def calls(monkeypatch: pytest.MonkeyPatch) -> Calls:
+    return Calls(monkeypatch)
+
+
+def require_same_bits(calls: Calls, driver: Path, folder: Path) -> None:
+    """Repeats all calls on the other processor."""
+    given, found = folder / "calls", folder / "results"
+    given.write_bytes(written(calls.kept))
+    subprocess.run([*QEMU, str(driver), str(given), str(found)], check=True, timeout=300)
+    for number, (call, there) in enumerate(zip(calls.kept, read(calls.kept, found.read_bytes()), strict=True)):
+        for name, here in call.results.items():
+            if here.tobytes() == there[name].tobytes():
+                continue
+            differ = np.argwhere(np.asarray(here != there[name]))
+            largest = np.abs(here.astype(np.float64) - there[name]).max()
+            raise AssertionError(
+                f"call {number}, {call.name}: {name} differs in {len(differ)} of {here.size} values, "
+                f"first at {differ[0] if len(differ) else None}, at most by {largest}."
+            )
+
+
+def with_curved_pots(arm: ArmParameters) -> ArmParameters:
+    """The last one so short that the arm passes its ends."""
+    pots = [pot.model_copy(update={"linearity": 0.02}) for pot in arm.follower_pots.joint]
+    pots[3] = pots[3].model_copy(update={"track": 0.4})
+    return arm.model_copy(update={"follower_pots": arm.follower_pots.model_copy(update={"joint": tuple(pots)})})
+
+
+def experiment(name: str) -> Experiment:
+    leader, arm = human_reaches(4, 2.0), default_arm()
+    if name == "mega":
+        return Experiment(leader, arm, wait_s=0.2)
+    if name == "nano, no noise, no soft start":
+        return Experiment(
+            leader, arm, table=ParameterTable.defaults(Board.NANO328), noise=False, soft_start=False, wait_s=0.2
+        )
+    if name == "curved pots, slow controllers":
+        return Experiment(
+            leader, with_curved_pots(arm), table=ParameterTable.defaults().with_raw({"period_ms": 5}), wait_s=0.2
+        )
+    timing = Timing(late=7, chain_start=5000, acts=(1, 2, 3, 1), drivers_on=3)
+    return Experiment(leader, load_arm("white_box"), timing=timing, wait_s=0.2)
+
+
+STEPS_PER_TICK = {
+    "mega": (1, 2, 4),
+    "nano, no noise, no soft start": (1,),
+    "curved pots, slow controllers": (2,),
+    "late and off the slice": (4,),
+}
+
+
+def candidates() -> tuple[Any, Any]:
+    """Of three arms; some against a stop all the time, some with short ramps, some that cannot be.
+
+    The last but one is a shadow of an arm: its inertias and torques are so small that many a product is no normal
+    number. The last is lost at once.
+    """
+    boxes = [search_box("default", 7, 1.0, 1), search_box("white_box", 6, 0.4, 3), search_box("grey_box", 6, 2.0, 3)]
+    controllers, plants = (np.concatenate(parts) for parts in zip(*boxes, strict=True))
+    plants[::5, columns("stop_max")] = 0.5
+    controllers[3::7, :, CONTROLLER_COLUMNS.index("ze_c")] = 200
+    controllers[3::7, :, CONTROLLER_COLUMNS.index("nce_c")] = -300
+    plants[-4:-2, column("ixx3")] = 10.0
+    lasting = [column("supply")]
+    for name in ("stribeck_velocity", "half_gap", "stop_min", "stop_max"):
+        lasting += columns(name)
+    plants[-2, [place for place in range(len(PLANT_COLUMNS)) if place not in lasting]] *= 1e-35
+    plants[-1, columns("torque_per_volt")] *= 1e36
+    return controllers, plants
+
+
+@pytest.mark.parametrize("name", STEPS_PER_TICK)
+def test_batch(name: str, calls: Calls, driver: Path, tmp_path: Path) -> None:
+    steps, loop = STEPS_PER_TICK[name], experiment(name)
+    controllers, plants = candidates()
+    results = [loop.run(controllers, plants, every=5, steps_per_tick=number) for number in steps]
+    assert [call.name for call in calls.kept] == ["leader_readings"] + ["run"] * len(steps)
+    assert name != "mega" or all(result.diverged[-1] for result in results)
+    assert all(len(np.unique(result.duties)) > 100 for result in results)
+    require_same_bits(calls, driver, tmp_path)
+
+
+@pytest.mark.parametrize("name", STEPS_PER_TICK)
+def test_single_runs(name: str, calls: Calls, driver: Path, tmp_path: Path) -> None:
+    loop = experiment(name)
+    controllers, plants = candidates()
+    result = loop.run_single(controllers[::3], plants[::3], every=5)
+    loop.run_single(controllers[1], plants[1], every=5, steps_per_slice=3)
+    assert len(np.unique(result.duties)) > 100
+    require_same_bits(calls, driver, tmp_path)
+
+
+def test_identification_windows(calls: Calls, driver: Path, tmp_path: Path) -> None:
+    spacing = 1e-3 * np.random.default_rng(2).uniform(0.5, 1.5, 150)
+    for arm in ("default", "white_box", "grey_box"):
+        for count in (1, 3, 5):
+            given = windows_of_test(load_arm(arm), count)
+            angles = np.asarray(_native.simulate_windows(**given))
+            assert np.abs(angles[:, :, -1] - angles[:, :, 0]).max() > 1e-3
+            _native.simulate_windows(**(given | {"spacing": spacing, "kicks": np.full((count, 4), 0.5)}))
+    require_same_bits(calls, driver, tmp_path)
+
+
+def test_ideal_law(calls: Calls, driver: Path, tmp_path: Path) -> None:
+    slices = leader_slices(human_reaches(4, 2.0), 0.5, 0.0, False)
+    tunings = np.tile([1.1, 0.02, 1.0, 1.0], (3, 4, 1)) * np.array([1.0, 1.1, 1.2])[:, None, None]
+    direction = np.where(np.arange(len(slices)) % 4000 < 1500, 1, 0).astype(np.int8)
+    for arm in ("default", "white_box"):
+        for chased in (-1, 1):
+            _, angles = _native.simulate_ideal(
+                leader=slices,
+                late=4,
+                plant=plant_row(load_arm(arm)),
+                supply=12.0,
+                tunings=tunings,
+                chased=chased,
+                direction=direction,
+                until=np.full(len(slices), 0.5),
+                keep=True,
+                threads=0,
+            )
+            assert np.ptp(angles) > 0.1
+    require_same_bits(calls, driver, tmp_path)
+
+
+@pytest.mark.parametrize("period_ms", [1, 5])
+def test_fuzzy_law_alone_and_in_lanes(period_ms: int, calls: Calls, driver: Path, tmp_path: Path) -> None:
+    random = np.random.default_rng(period_ms)
+    controllers = random_controllers(random, period_ms)
+    leader, follower = random_angles(random), random_angles(random)
+    limit = random.choice(np.array([0, 100, 5000, 15000, 30000, 32767], dtype=np.uint16), len(leader))
+    _native.sixteen_laws(
+        controllers=controllers, period_ms=period_ms, leader=leader, follower=follower, limit_mv=limit, instructions=""
+    )
+    for lane in range(LANES):
+        settings = _native.FuzzySettings()
+        for place, name in enumerate(CONTROLLER_COLUMNS):
+            setattr(settings, name, int(controllers[lane, place]))
+        angles = (leader[:, lane].astype(np.int16), follower[:, lane].astype(np.int16))
+        run = _native.FuzzyController(settings, period_ms).run(*angles, limit)
+        arguments = array(controllers[lane], np.int32) + wholes(period_ms)
+        arguments += b"".join(array(np.ascontiguousarray(side), np.int16) for side in angles) + array(limit, np.uint16)
+        names = ("u_fuzzy", "volts_mv", "integral")
+        calls.keep("fuzzy_run", arguments, {name: np.asarray(run[name]) for name in names})
+    assert len(calls.kept) == 1 + LANES
+    require_same_bits(calls, driver, tmp_path)
