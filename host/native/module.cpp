@@ -9,4 +9,5 @@ NB_MODULE(_native, m) {
   bind_ideal(m);
   bind_identify(m);
   bind_one_joint(m);
+  bind_rigid_body(m);
 }
