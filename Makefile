@@ -49,8 +49,9 @@ bench: setup ## measure the figures of the design beside others; a table here, J
 	@python3 -m tools.oracles
 	@$(PYTHON) -m tools.bench $(ARGS)
 
-docs: setup ## write the generated files (link schema, reference page) again
+docs: setup ## write the generated files (link schema, reference page, copies of the version) again
 	$(PYTHON) -m tools.generate_link
+	$(PYTHON) -m tools.version
 
 lock: ## resolve and pin the Python packages anew
 	python3 -m tools.lock
