@@ -8,7 +8,7 @@ PORTABLE := $(shell find firmware/lib -name '*.cpp' -not -path '*/hal/src/*')
 FIRMWARE_ROOMS := $(patsubst %,-Ifirmware/lib/%/src,$(notdir $(wildcard firmware/lib/*)))
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build firmware demo test lint oracles bench docs lock clean
+.PHONY: help setup build firmware demo test lint oracles bench docs dist lock clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z]*\):[^#]*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12
@@ -52,6 +52,9 @@ bench: setup ## measure the figures of the design beside others; a table here, J
 docs: setup ## write the generated files (link schema, reference page, copies of the version) again
 	$(PYTHON) -m tools.generate_link
 	$(PYTHON) -m tools.version
+
+dist: setup ## build source distributions and wheels of both packages for this machine, in build/dist
+	$(PYTHON) -m tools.dist $(ARGS)
 
 lock: ## resolve and pin the Python packages anew
 	python3 -m tools.lock
