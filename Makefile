@@ -21,7 +21,7 @@ SIDE_BY_SIDE := $(MAKE) READY= --no-print-directory --jobs=$(shell nproc) --outp
 PYTEST := $(PYTHON) -m pytest -n auto
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build firmware demo check test lint oracles bench docs format lock hooks clean clang-format $(LINT) $(UNIT_TESTS) $(IMAGES)
+.PHONY: help setup build firmware demo check test lint oracles bench docs dist format lock hooks clean clang-format $(LINT) $(UNIT_TESTS) $(IMAGES)
 
 help: ## list the targets
 	@sed -n 's/^\([a-z]*\):[^#]*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12
@@ -92,8 +92,12 @@ bench: setup ## measure the figures of the design beside others; a table here, J
 	@python3 -m tools.oracles
 	@$(PYTHON) -m tools.bench $(ARGS)
 
-docs: setup ## write the generated files (link schema, reference page) again
+docs: setup ## write the generated files (link schema, reference page, copies of the version) again
 	$(PYTHON) -m tools.generate_link
+	$(PYTHON) -m tools.version
+
+dist: setup ## build source distributions and wheels of both packages for this machine, in build/dist
+	$(PYTHON) -m tools.dist $(ARGS)
 
 format: setup ## write all Python and C++ in the project's style
 	ruff format
