@@ -11,6 +11,8 @@ TIDY := $(PORTABLE:%=build/tidy/%.ok)
 FIRMWARE_SOURCES := $(shell find firmware/lib -name '*.h' -o -name '*.inc')
 FIRMWARE_ROOMS := $(patsubst %,-Ifirmware/lib/%/src,$(notdir $(wildcard firmware/lib/*)))
 
+CXX_FILES := $(shell find firmware/lib firmware/src firmware/test host/native sim tests tools -name '*.cpp' -o -name '*.h')
+
 # Parts of the targets below, the longest first. They run side by side on all cores, and what one says stays together.
 LINT := mypy clang-tidy cppcheck-host cppcheck-firmware ruff ruff-format generated
 UNIT_TESTS := firmware-tests-native
@@ -19,7 +21,7 @@ SIDE_BY_SIDE := $(MAKE) READY= --no-print-directory --jobs=$(shell nproc) --outp
 PYTEST := $(PYTHON) -m pytest -n auto
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build firmware demo check test lint oracles bench docs lock clean $(LINT) $(UNIT_TESTS) $(IMAGES)
+.PHONY: help setup build firmware demo check test lint oracles bench docs dist format lock hooks clean clang-format $(LINT) $(UNIT_TESTS) $(IMAGES)
 
 help: ## list the targets
 	@sed -n 's/^\([a-z]*\):[^#]*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12
@@ -50,6 +52,10 @@ ruff: $(READY)
 
 ruff-format: $(READY)
 	ruff format --check
+
+clang-format: $(READY)
+	@echo clang-format
+	@clang-format --dry-run --Werror $(CXX_FILES)
 
 mypy: $(READY)
 	mypy
@@ -86,11 +92,22 @@ bench: setup ## measure the figures of the design beside others; a table here, J
 	@python3 -m tools.oracles
 	@$(PYTHON) -m tools.bench $(ARGS)
 
-docs: setup ## write the generated files (link schema, reference page) again
+docs: setup ## write the generated files (link schema, reference page, copies of the version) again
 	$(PYTHON) -m tools.generate_link
+	$(PYTHON) -m tools.version
+
+dist: setup ## build source distributions and wheels of both packages for this machine, in build/dist
+	$(PYTHON) -m tools.dist $(ARGS)
+
+format: setup ## write all Python and C++ in the project's style
+	ruff format
+	clang-format -i $(CXX_FILES)
 
 lock: ## resolve and pin the Python packages anew
 	python3 -m tools.lock
+
+hooks: setup ## let git run `make lint` before each commit (pre-commit uninstall takes that back)
+	pre-commit install
 
 clean: ## remove everything that was built; .venv stays
 	rm -rf build firmware/.pio host/src/greywhale/_native.pyi sim/bench/greywhale_sim/_board.pyi tools/studies/one_joint/native/one_joint_native.pyi

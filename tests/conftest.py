@@ -56,11 +56,15 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         items.sort(key=lambda item: order.get(_room(item.nodeid).partition("/")[0], len(order)))
 
 
-def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> object:
+class Rooms(LoadScopeScheduling):  # type: ignore[misc] # xdist has no types
     """A worker takes a room at a time: what its tests share is built once, and PlatformIO, which builds in one folder,
     has one user.
     """
-    rooms = LoadScopeScheduling(config, log)
-    rooms._split_scope = _room
+
+    def _split_scope(self, nodeid: str) -> str:
+        return _room(nodeid)
+
+
+def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> object:
     config.option.loadscopereorder = False  # it would begin with the room that holds most tests
-    return rooms
+    return Rooms(config, log)

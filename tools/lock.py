@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 import tempfile
@@ -13,12 +14,26 @@ OWN = {"greywhale", "greywhale-sim"}
 HEADER = "# Every Python package of the project, pinned. Written by `make lock` from the two pyproject.toml files.\n"
 
 
+def runtime() -> list[str]:
+    """What the two packages ask for when they are installed."""
+    asked = (_project(file)["dependencies"] for file in ("pyproject.toml", "sim/pyproject.toml"))
+    return _foreign([name for names in asked for name in names])
+
+
 def wanted() -> list[str]:
     """What the packages ask for to be built, run, checked and tested."""
     host = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    sim = tomllib.loads((ROOT / "sim/pyproject.toml").read_text(encoding="utf-8"))
-    names = host["project"]["dependencies"] + sim["project"]["dependencies"] + host["dependency-groups"]["dev"]
-    return sorted(name for name in set(names) if name not in OWN)
+    extras = [name for names in host["project"]["optional-dependencies"].values() for name in names]
+    return _foreign([*runtime(), *extras, *host["dependency-groups"]["dev"]])
+
+
+def _project(file: str) -> dict[str, list[str]]:
+    project: dict[str, list[str]] = tomllib.loads((ROOT / file).read_text(encoding="utf-8"))["project"]
+    return project
+
+
+def _foreign(requirements: list[str]) -> list[str]:
+    return sorted(name for name in set(requirements) if re.split(r"[^\w-]", name)[0] not in OWN)
 
 
 def main() -> None:

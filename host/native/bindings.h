@@ -8,3 +8,4 @@ void bind_closed_loop(nanobind::module_& m);
 void bind_fuzzy(nanobind::module_& m);
 void bind_ideal(nanobind::module_& m);
 void bind_identify(nanobind::module_& m);
+void bind_rigid_body(nanobind::module_& m);

@@ -20,6 +20,7 @@
 #include "closed_loop/block.h"
 #include "closed_loop/controllers.h"
 #include "closed_loop/experiment.h"
+#include "closed_loop/plant_columns.h"
 #include "closed_loop/swings.h"
 
 namespace nb = nanobind;
@@ -231,4 +232,5 @@ void bind_closed_loop(nb::module_& m) {
   m.def("plant_row", &plant_row, "parameters"_a, "An arm as one row of numbers.");
   m.def("instruction_sets", &loop::instruction_sets, "Those of the batch kernel that this processor runs, the best first.");
   m.attr("PLANT_COLUMNS") = loop::kPlantColumns;
+  m.attr("PLANT_COLUMN_NAMES") = nb::tuple(nb::cast(loop::plant_column_names()));
 }

@@ -8,4 +8,5 @@ NB_MODULE(_native, m) {
   bind_fuzzy(m);
   bind_ideal(m);
   bind_identify(m);
+  bind_rigid_body(m);
 }

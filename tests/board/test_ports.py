@@ -86,6 +86,13 @@ def test_boards_are_known_by_their_usb_numbers(monkeypatch: pytest.MonkeyPatch) 
     assert "USB serial bridge" in found[2].description
 
 
+def test_a_nano_every_is_no_nano(monkeypatch: pytest.MonkeyPatch) -> None:
+    plug(monkeypatch, usb("/dev/ttyACM0", 0x2341, 0x0058))
+    (found,) = ports.find_ports()
+    assert found.board is None
+    assert found.description == "Arduino Nano Every, which greywhale does not run on"
+
+
 def test_the_only_likely_port_is_chosen(monkeypatch: pytest.MonkeyPatch) -> None:
     plug(monkeypatch, usb("/dev/ttyS0", None, None), usb("/dev/ttyACM0", 0x2341, 0x0042))
     assert ports.choose_port(None) == "/dev/ttyACM0"

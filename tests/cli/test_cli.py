@@ -247,12 +247,16 @@ def test_ports_without_any(capsys: Captured, monkeypatch: pytest.MonkeyPatch) ->
     assert "greywhale sim" in capsys.readouterr().out
 
 
-def test_a_missing_bench_is_one_sentence(capsys: Captured, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("verb", ["sim", "demo"])
+def test_a_missing_bench_is_one_sentence(capsys: Captured, monkeypatch: pytest.MonkeyPatch, verb: str) -> None:
     monkeypatch.setitem(sys.modules, "greywhale_sim", None)
     monkeypatch.setitem(sys.modules, "greywhale_sim.serve", None)
-    code, answer = ask(capsys, "sim")
+    code, answer = ask(capsys, verb)
     assert code == 1
-    assert answer["error"].startswith("the simulated bench is not installed; run `make setup`")
+    assert answer["error"] == (
+        "the simulated bench is a package of its own, greywhale-sim, and is not installed; "
+        "run `pip install greywhale-sim`, or `make setup` in a checkout."
+    )
 
 
 # --- signals and pipes, in a process of its own ---------------------------------------------------------------------

@@ -10,11 +10,13 @@ import pytest
 
 from greywhale.board import flash
 from greywhale.board.device import Device
+from greywhale.board.flash.bootloader import Bootloader, Dialect, find_bootloader
 from greywhale.demo import BenchProcess
 from greywhale.errors import UserError
 from greywhale.protocol import schema
 from greywhale.protocol.frames import encode_frame
 
+ROOT = Path(__file__).resolve().parents[2]
 Start = Callable[..., BenchProcess]
 
 
@@ -27,6 +29,36 @@ def test_flash_a_blank_board(start_bench: Start, board_name: str) -> None:
     with Device(bench.port) as device:
         assert device.hello.board.key == {"mega": "mega2560", "nano": "nano328"}[board_name]
     assert not bench.command("status")["in_bootloader"]
+
+
+@pytest.mark.parametrize(
+    ("board", "expected"),
+    [
+        ("mega", Bootloader(Dialect("wiring", 115200), b"\x1e\x98\x01")),
+        ("nano", Bootloader(Dialect("arduino", 57600), b"\x1e\x95\x0f")),
+    ],
+)
+def test_the_real_bootloaders_tell_their_board(start_bench: Start, board: str, expected: Bootloader) -> None:
+    bench = start_bench("--blank", board=board)
+    dialects = [Dialect("wiring", 115200), Dialect("arduino", 115200), Dialect("arduino", 57600)]
+    assert find_bootloader(bench.port, dialects, []) == expected
+
+
+def test_neither_a_wrong_name_nor_the_other_boards_image_reaches_a_board(
+    start_bench: Start, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    nano = ROOT / "firmware" / ".pio" / "build" / "nanoatmega328" / "firmware.hex"
+    bench = start_bench("--blank")
+    with pytest.raises(UserError, match="this port belongs to an Arduino Mega 2560"):
+        flash.flash(bench.port, "nano")
+    with pytest.raises(UserError, match="this image is for an Arduino Nano"):
+        flash.flash(bench.port, hex_file=nano)
+    monkeypatch.setattr(flash.flasher, "board_of", lambda port: None)  # as a clone that does not say what it is
+    with pytest.raises(UserError, match="the bootloader of an Arduino Mega 2560 answers"):
+        flash.flash(bench.port, "nano", hex_file=nano)
+    with pytest.raises(UserError, match="this image is for an Arduino Nano"):
+        flash.flash(bench.port, hex_file=nano)
+    assert bench.command("status")["in_bootloader"]
 
 
 OTHER_PROTOCOL = """

@@ -71,12 +71,12 @@ class Calls:
         class ClosedLoop:
             def __init__(self, **arguments: Any) -> None:
                 self._real = real(**arguments)
-                self._packed = calls._experiment(**arguments)
+                self._packed = calls.pack_experiment(**arguments)
 
             def run(self, **arguments: Any) -> Any:
                 result = self._real.run(**arguments)
                 names = ("mse", "itae", "itau", "diverged", "angles", "duties")
-                calls.keep("run", self._packed + calls._run(**arguments), dict(zip(names, result, strict=True)))
+                calls.keep("run", self._packed + calls.pack_run(**arguments), dict(zip(names, result, strict=True)))
                 return result
 
         return ClosedLoop
@@ -101,14 +101,14 @@ class Calls:
     def _leader_readings(self, *, angles: Array, **board: Any) -> bytes:
         return self._board(**board) + array(angles, np.float64)
 
-    def _experiment(
+    def pack_experiment(
         self, *, home: Any, gap: Any, reference: Array, leader: Array, weight: Array, **board: Any
     ) -> bytes:
         arrays = array(reference, np.int16) + array(leader, np.float64) + array(weight, np.float64)
         return self._board(**board) + reals(home) + reals(gap) + arrays
 
     @staticmethod
-    def _run(*, controllers: Array, plants: Array, substeps: int, every: int, single: bool, **_: Any) -> bytes:
+    def pack_run(*, controllers: Array, plants: Array, substeps: int, every: int, single: bool, **_: Any) -> bytes:
         return array(controllers, np.int32) + array(plants, np.float64) + wholes([substeps, every, single])
 
     @staticmethod

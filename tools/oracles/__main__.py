@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 
+from tools.oracles import wheelhouse
 from tools.setup import debian, stamps, venv
 from tools.setup.console import ROOT, SetupError, say
 
@@ -28,6 +29,7 @@ def main() -> int:
             say("installing the outside references (some hundred megabytes)")
             venv.pip_install("--requirement", REQUIREMENTS, "--constraint", venv.REQUIREMENTS, what="Installing them")
             stamps.set_current("oracles", wanted)
+        wheelhouse.step()
     except SetupError as error:
         print(f"set-up: {error}", file=sys.stderr)
         return 1

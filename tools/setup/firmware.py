@@ -9,7 +9,8 @@ from tools.setup.console import ROOT, run, say
 
 BOARDS = ("megaatmega2560", "nanoatmega328")
 BUILD = ROOT / "firmware" / ".pio" / "build"
-SOURCES = ("firmware/src", "firmware/lib", "firmware/platformio.ini", "firmware/strict_warnings.py")
+SCRIPTS = ("firmware/image_record.py", "firmware/source_digest.py", "firmware/strict_warnings.py")
+SOURCES = ("firmware/src", "firmware/lib", "firmware/platformio.ini", *SCRIPTS)
 
 
 def step() -> None:

@@ -23,7 +23,10 @@ def parser() -> argparse.ArgumentParser:
     text.add_argument("--arm", type=Path, metavar="FILE.toml", help="the follower arm (default: the built-in one)")
     text.add_argument("--speed", choices=("1", "max"), default="1", help="real time, or as fast as possible")
     text.add_argument(
-        "--firmware", type=Path, metavar="FILE.hex", help="firmware to start with (default: the last build)"
+        "--firmware",
+        type=Path,
+        metavar="FILE.hex",
+        help="firmware to start with (default: the last build, or what came with greywhale)",
     )
     text.add_argument("--blank", action="store_true", help="start with nothing but the bootloader")
     text.add_argument("--eeprom", type=Path, metavar="FILE", help="keep the EEPROM in this file")

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from greywhale.arm import Arm, Potentiometers
+from greywhale.board.flash import packaged_image
 from greywhale.errors import UserError
 from greywhale.files.arm import load_arm
 from greywhale.files.leader import load_leader
@@ -26,7 +27,7 @@ class BenchOptions:
     board: str = "mega"
     leader: Path | None = None  # CSV of the leader's motion; None: generated human-like reaches
     arm: Path | None = None  # TOML of the arm; None: the default one
-    firmware: Path | None = None  # HEX to start with; None: the last build
+    firmware: Path | None = None  # HEX to start with; None: the last build, or what came with greywhale
     blank: bool = False  # a board with nothing but its bootloader
     eeprom: Path | None = None  # file that keeps the EEPROM; None: forgotten at the end
     seed: int = 1  # of everything random
@@ -83,6 +84,9 @@ def _firmware(options: BenchOptions, wiring: Wiring) -> Path:
             raise UserError(f"{options.firmware}: there is no such firmware file.")
         return options.firmware
     built = BUILDS / wiring.environment / "firmware.hex"
-    if not built.is_file():
+    if built.is_file():
+        return built
+    packaged = packaged_image(options.board)
+    if packaged is None:
         raise UserError(f"{built}: the firmware is not built; run: make firmware, or start with --blank and flash it.")
-    return built
+    return packaged

@@ -9,7 +9,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-ARDUINO_BOOTLOADERS = Path("/usr/share/arduino/hardware/arduino/avr/bootloaders")  # Debian package arduino-core-avr
+_PACKAGED_BOOTLOADERS = Path(__file__).resolve().parent / "bootloaders"
+_DEBIAN_BOOTLOADERS = Path("/usr/share/arduino/hardware/arduino/avr/bootloaders")  # Debian package arduino-core-avr
+
+
+def _bootloader(board: str, debian: str) -> Path:
+    """The bootloader that an installed package brings along; a checkout has Debian's."""
+    packaged = _PACKAGED_BOOTLOADERS / f"{board}.hex"
+    return packaged if packaged.is_file() else _DEBIAN_BOOTLOADERS / debian
 
 
 @dataclass(frozen=True)
@@ -51,7 +58,7 @@ MEGA = Wiring(
     title="Arduino Mega 2560",
     mcu="atmega2560",
     environment="megaatmega2560",
-    bootloader=ARDUINO_BOOTLOADERS / "stk500v2" / "stk500boot_v2_mega2560.hex",
+    bootloader=_bootloader("mega", "stk500v2/stk500boot_v2_mega2560.hex"),
     bootloader_baud=115200,
     motors=(
         Motor("D5", 3, "A", Pin("D22", "A", 0)),
@@ -69,7 +76,7 @@ NANO = Wiring(
     mcu="atmega328p",
     environment="nanoatmega328",
     # The older of the Nano's two bootloaders: Debian's build of the newer one (optiboot) is too large for the chip.
-    bootloader=ARDUINO_BOOTLOADERS / "atmega" / "ATmegaBOOT_168_atmega328.hex",
+    bootloader=_bootloader("nano", "atmega/ATmegaBOOT_168_atmega328.hex"),
     bootloader_baud=57600,
     motors=(
         Motor("D9", 1, "A", Pin("D2", "D", 2)),

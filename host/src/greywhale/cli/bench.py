@@ -16,5 +16,6 @@ def need_bench(module: str) -> Any:
         if (error.name or "").split(".")[0] != "greywhale_sim":
             raise
         raise UserError(
-            "the simulated bench is not installed; run `make setup` in the source tree, or `pip install ./sim` there."
+            "the simulated bench is a package of its own, greywhale-sim, and is not installed; "
+            "run `pip install greywhale-sim`, or `make setup` in a checkout."
         ) from None

@@ -9,29 +9,31 @@ import click
 from greywhale.board.device import version
 from greywhale.board.flash import BOARDS, flash
 from greywhale.cli.output import json_option, port_option, progress, show
-from greywhale.protocol.ports import board_of, choose_port
+from greywhale.protocol.ports import choose_port
 
 
 @click.command("flash")
-@click.option("--board", type=click.Choice(list(BOARDS)), help="The board; without it, what the port says, else mega.")
 @click.option(
-    "--firmware", type=click.Path(path_type=Path), help="Folder of the firmware's source (with platformio.ini)."
+    "--board", type=click.Choice(list(BOARDS)), help="The board; without it, the port or the bootloader tells."
 )
-@click.option("--hex", "hex_file", type=click.Path(path_type=Path), help="Upload this HEX file instead of building.")
+@click.option(
+    "--firmware", type=click.Path(path_type=Path), help="Folder of firmware source (with platformio.ini) to build."
+)
+@click.option("--hex", "hex_file", type=click.Path(path_type=Path), help="Upload this HEX file.")
 @port_option
 @json_option
 def command(board: str | None, firmware: Path | None, hex_file: Path | None, port: str | None, as_json: bool) -> None:
-    """Build the firmware and flash it onto a board.
+    """Put the firmware onto a board.
 
-    PlatformIO builds and uploads; a simulated board is flashed through its bootloader exactly as a real one. Afterwards
-    the new firmware is greeted, so success means that it runs.
+    An installed greywhale writes the firmware that came with it; in a checkout, PlatformIO builds it first. A simulated
+    board is flashed through its bootloader exactly as a real one. Afterwards the new firmware is greeted, so success
+    means that it runs.
     """
     if firmware is not None and hex_file is not None:
         raise click.UsageError("--firmware and --hex exclude each other.")
     chosen = choose_port(port)
-    target = board or board_of(chosen) or "mega"
     with progress(as_json) as report:
-        hello = flash(chosen, target, firmware, hex_file, report)
+        hello = flash(chosen, board, firmware, hex_file, report)
     facts = {
         "port": chosen,
         "board": hello.board.key,

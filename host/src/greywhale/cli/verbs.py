@@ -11,7 +11,7 @@ VERBS = {
     "demo": ("demo", "The whole story on the simulated bench in one go, pictures at the end."),
     "sim": ("sim", "Start the simulated bench and print its serial port."),
     "ports": ("ports", "List the serial ports and what is behind them."),
-    "flash": ("flash", "Build the firmware and flash it onto a board."),
+    "flash": ("flash", "Put the firmware onto a board."),
     "info": ("info", "Tell a board's version, state, faults and counters."),
     "upload": ("upload", "Run and store the controllers of a controller.toml."),
     "params": ("params", "Read and change a board's parameter table."),

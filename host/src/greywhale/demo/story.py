@@ -66,7 +66,7 @@ def run(options: DemoOptions, progress: Report | None = None) -> DemoResult:
         save_leader(leader, motion)
     report("starting the bench", 0.0)
     with BenchProcess(*_bench_options(options)) as bench:
-        hello = flash.flash(bench.port, options.board, progress=report)
+        hello = _put_firmware_on(bench, options, report)
         stage = _Stage(bench, options, arm, report)
         runs = [stage.follow(leader, "before", "before tuning", paper_table(UNTUNED))]
         learnt = None if options.controller is not None else stage.learn()
@@ -150,9 +150,19 @@ def _draw(options: DemoOptions, runs: list[Run]) -> Path:
     return picture
 
 
+def _put_firmware_on(bench: BenchProcess, options: DemoOptions, report: Report) -> schema.HelloReply:
+    """Flash the board, as with a real one; its greeting."""
+    if flash.find_avrdude() is not None:
+        return flash.flash(bench.port, options.board, progress=report)
+    report("avrdude is not installed: the board comes with its firmware", 0.0)
+    with Device(bench.port) as device:
+        return device.hello
+
+
 def _bench_options(options: DemoOptions) -> list[str]:
     arm = [] if options.arm is None else ["--arm", str(options.arm)]
-    return ["--board", options.board, "--blank", "--speed", options.speed, "--seed", str(options.seed), *arm]
+    blank = [] if flash.find_avrdude() is None else ["--blank"]
+    return ["--board", options.board, *blank, "--speed", options.speed, "--seed", str(options.seed), *arm]
 
 
 def _make_folder(folder: Path) -> None:

@@ -20,8 +20,9 @@ _KNOWN = {
     (0x2341, 0x0242): "mega",
     (0x2A03, 0x0010): "mega",
     (0x2A03, 0x0042): "mega",
-    (0x2341, 0x0058): "nano",
 }
+# Their names mislead: the chip is another one.
+_OTHERS = {(0x2341, 0x0058): "Arduino Nano Every, which greywhale does not run on"}
 _BRIDGES = {0x1A86, 0x0403, 0x10C4, 0x067B}
 
 
@@ -107,7 +108,8 @@ def _hardware() -> list[Port]:
     ports = []
     for found in sorted(list_ports.comports()):
         board = _KNOWN.get((found.vid or 0, found.pid or 0))
-        description = BOARDS[board] if board else found.description or "serial port"
+        other = _OTHERS.get((found.vid or 0, found.pid or 0))
+        description = BOARDS[board] if board else other or found.description or "serial port"
         if board is None and found.vid in _BRIDGES:
             description = f"USB serial bridge, as many Arduino boards have ({found.description})"
         ports.append(Port(found.device, description, board, bench=False, usb=found.vid is not None))

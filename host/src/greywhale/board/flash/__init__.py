@@ -1,5 +1,8 @@
-"""Builds the firmware with PlatformIO and flashes it through the board's bootloader."""
+"""Puts the firmware onto a board through its bootloader: one that PlatformIO builds, or the one that came along."""
 
-from greywhale.board.flash.flasher import BOARDS, flash
+from greywhale.board.flash.avrdude import find_avrdude
+from greywhale.board.flash.flasher import flash
+from greywhale.board.flash.images import packaged_image
+from greywhale.board.flash.targets import BOARDS
 
-__all__ = ["BOARDS", "flash"]
+__all__ = ["BOARDS", "find_avrdude", "flash", "packaged_image"]

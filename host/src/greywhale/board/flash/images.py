@@ -1,0 +1,124 @@
+"""Firmware images (Intel HEX): those that come with greywhale, and what an image says about itself.
+
+Every image of greywhale holds a record that firmware/src/image_record.cpp wrote; images of others do not.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from greywhale.board.flash.targets import BOARDS, FlashBoard
+from greywhale.errors import BAD_USAGE, UserError, because
+
+_PACKAGED = Path(__file__).resolve().parents[2] / "data" / "firmware"
+
+_MAGIC = b"greywhale image\0"
+_RECORD = struct.Struct("<16sB3s3BI17s")
+_LAYOUT = 1
+_LARGEST = 1 << 20  # bytes; no board has as much
+
+# Types of Intel HEX records.
+_DATA, _END, _SEGMENT, _LINEAR = 0, 1, 2, 4
+
+
+@dataclass(frozen=True)
+class Record:
+    """For which chip the image is, its firmware's version and schema, and the digest of its sources."""
+
+    signature: bytes
+    version: str
+    schema_hash: int
+    sources: str
+
+
+@dataclass(frozen=True)
+class Image:
+    """A HEX file: one past its last address, and its record, None where it has none."""
+
+    path: Path
+    end: int
+    record: Record | None
+
+
+def packaged_image(board: str) -> Path | None:
+    """The image that came with this installation; a checkout has none, it builds its own."""
+    path = _PACKAGED / f"{board}.hex"
+    return path if path.is_file() else None
+
+
+def read_image(path: Path) -> Image:
+    """Read a HEX file."""
+    if not path.is_file():
+        raise UserError(f"{path}: there is no such file; build one with `pio run`, or leave --hex out.", BAD_USAGE)
+    try:
+        lines = path.read_text(encoding="ascii", errors="replace").splitlines()
+    except OSError as error:
+        raise UserError(f"{path}: cannot be read: {because(error)}.", BAD_USAGE) from None
+    memory = bytearray()
+    for address, data in _chunks(path, lines):
+        end = address + len(data)
+        if end > _LARGEST:
+            raise UserError(f"{path}: data at address {address:#x}; no board has as much memory.", BAD_USAGE)
+        memory.extend(b"\xff" * (end - len(memory)))
+        memory[address:end] = data
+    if not memory:
+        raise UserError(f"{path}: the file holds no data; give the .hex that PlatformIO built.", BAD_USAGE)
+    return Image(path, len(memory), _find_record(memory))
+
+
+def check_image(image: Image, board: FlashBoard, port: str) -> None:
+    """Refuse an image that is plainly for another board."""
+    if image.record is not None and image.record.signature != board.signature:
+        others = [other.title for other in BOARDS.values() if other.signature == image.record.signature]
+        meant = f"an {others[0]}" if others else f"a chip with signature {image.record.signature.hex()}"
+        raise UserError(
+            f"{image.path}: this image is for {meant}, but the board on {port} is an {board.title}; "
+            "choose another file.",
+            BAD_USAGE,
+        )
+    if image.end > board.space:
+        raise UserError(
+            f"{image.path}: the image reaches up to byte {image.end}, but an {board.title} has room for "
+            f"{board.space}; choose another file.",
+            BAD_USAGE,
+        )
+
+
+def _chunks(path: Path, lines: list[str]) -> Iterator[tuple[int, bytes]]:
+    """Address and bytes of each data record, until the record that ends the file."""
+    base = 0
+    for number, line in enumerate(lines, start=1):
+        if not line.strip():
+            continue
+        kind, address, data = _parse(line.strip(), f"{path}, line {number}")
+        if kind == _DATA:
+            yield base + address, data
+        elif kind == _END:
+            return
+        elif kind in (_SEGMENT, _LINEAR):
+            base = int.from_bytes(data, "big") << (4 if kind == _SEGMENT else 16)
+    raise UserError(f"{path}: the file ends too early; copy or build it again.", BAD_USAGE)
+
+
+def _parse(line: str, where: str) -> tuple[int, int, bytes]:
+    """Type, address and data of one record."""
+    try:
+        content = bytes.fromhex(line[1:])
+    except ValueError:
+        content = b""
+    if line[0] != ":" or len(content) < 5 or len(content) != content[0] + 5 or sum(content) % 256:
+        raise UserError(f"{where}: this is no Intel HEX record; give the .hex that PlatformIO built.", BAD_USAGE)
+    return content[3], int.from_bytes(content[1:3], "big"), content[4:-1]
+
+
+def _find_record(memory: bytearray) -> Record | None:
+    start = memory.find(_MAGIC)
+    if start < 0 or start + _RECORD.size > len(memory):
+        return None
+    _, layout, signature, *version, schema_hash, sources = _RECORD.unpack_from(memory, start)
+    if layout != _LAYOUT:
+        return None
+    return Record(signature, ".".join(map(str, version)), schema_hash, sources.rstrip(b"\0").decode("ascii", "replace"))

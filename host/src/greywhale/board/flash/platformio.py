@@ -1,0 +1,81 @@
+"""Builds the firmware from its source tree with PlatformIO, and uploads what was built."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import shutil
+import sys
+from pathlib import Path
+
+from greywhale.board.flash.avrdude import UPLOAD_LIMIT_S, Progress, watch_upload
+from greywhale.board.flash.runner import Tool, run_tool
+from greywhale.board.flash.targets import FlashBoard
+from greywhale.errors import BAD_USAGE, UserError
+
+_CHECKOUT = Path(__file__).resolve().parents[5] / "firmware"
+_BUILD_LIMIT_S = 600.0  # of a first build on a slow machine
+
+
+def find_sources(named: str | Path | None) -> Path | None:
+    """The firmware's source tree: the one named, else that of the checkout this package runs from, if it does."""
+    if named is None:
+        return _CHECKOUT if (_CHECKOUT / "platformio.ini").is_file() else None
+    if not (Path(named) / "platformio.ini").is_file():
+        raise UserError(
+            f"{named} holds no platformio.ini; name the firmware folder of a checkout with --firmware, "
+            "or a file with --hex.",
+            BAD_USAGE,
+        )
+    return Path(named)
+
+
+def build(firmware: Path, board: FlashBoard, report: Progress) -> Path:
+    """Build for the board; the HEX file."""
+    environment = platformio_environment(firmware)
+    tool = Tool("PlatformIO's build", _run_command(firmware, board), environment, _BUILD_LIMIT_S)
+    run_tool(tool, lambda text: report("building", 0.0))
+    return _build_folder(firmware, environment) / board.environment / "firmware.hex"
+
+
+def upload(firmware: Path, board: FlashBoard, port: str, report: Progress) -> None:
+    """Upload what was built, at the speed that PlatformIO knows for the board."""
+    command = [*_run_command(firmware, board), "--target", "upload", "--upload-port", port]
+    tool = Tool("the upload", command, platformio_environment(firmware), UPLOAD_LIMIT_S)
+    run_tool(tool, watch_upload(port, report))
+
+
+def platformio_environment(firmware: Path) -> dict[str, str]:
+    """Environment for PlatformIO, with the project's own core folder where the set-up assembled one."""
+    environment = dict(os.environ)
+    environment["PLATFORMIO_SETTING_ENABLE_TELEMETRY"] = "no"
+    environment["PLATFORMIO_DISABLE_UPGRADE_CHECK"] = "true"
+    environment["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), environment.get("PATH", os.defpath)])
+    core = firmware.resolve().parent / "build" / "platformio"
+    if (core / "assembled").exists():
+        environment["PLATFORMIO_CORE_DIR"] = str(core)
+    return environment
+
+
+def _run_command(firmware: Path, board: FlashBoard) -> list[str]:
+    return [*_platformio(), "run", "--project-dir", str(firmware), "--environment", board.environment]
+
+
+def _platformio() -> list[str]:
+    """PlatformIO as a package of this Python, else as a program of the system."""
+    if importlib.util.find_spec("platformio") is not None:
+        return [sys.executable, "-m", "platformio"]
+    found = shutil.which("platformio")
+    if found is None:
+        raise UserError(
+            "PlatformIO, which builds the firmware from its source, is not installed; "
+            "run `pip install 'greywhale[build]'`, or name a file with --hex."
+        )
+    return [found]
+
+
+def _build_folder(firmware: Path, environment: dict[str, str]) -> Path:
+    """Where PlatformIO builds, which its environment variables may move."""
+    if "PLATFORMIO_BUILD_DIR" in environment:
+        return Path(environment["PLATFORMIO_BUILD_DIR"])
+    return Path(environment.get("PLATFORMIO_WORKSPACE_DIR", firmware / ".pio")) / "build"

@@ -1,0 +1,67 @@
+"""A plant's columns by name: each holds what its name says of the arm."""
+
+from __future__ import annotations
+
+import pytest
+
+from greywhale import _native
+from greywhale.arm import ArmParameters, load_arm
+from greywhale.simulate import PLANT_COLUMNS, plant_row
+
+
+def named(arm: ArmParameters) -> dict[str, float]:
+    return dict(zip(_native.PLANT_COLUMN_NAMES, map(float, plant_row(arm)), strict=True))
+
+
+def test_names_are_those_of_the_python_tables() -> None:
+    assert isinstance(_native.PLANT_COLUMN_NAMES, tuple)
+    assert tuple(PLANT_COLUMNS) == _native.PLANT_COLUMN_NAMES
+    assert len(set(_native.PLANT_COLUMN_NAMES)) == _native.PLANT_COLUMNS
+
+
+@pytest.mark.parametrize("name", ["default", "white_box", "grey_box"])
+def test_columns_hold_what_they_are_called(name: str) -> None:
+    arm = load_arm(name)
+    columns = named(arm)
+    assert columns["supply"] == arm.drive.supply
+    for index, joint in enumerate(arm.joint):
+        actuator = arm.actuator(index)
+        expected = {
+            "torque_per_volt": actuator.torque_per_volt,
+            "inertia": actuator.inertia,
+            "damping": actuator.damping,
+            **joint.friction.model_dump(),
+            "half_gap": joint.gear.half_gap,
+            "stiffness": joint.gear.stiffness,
+            "mesh_damping": joint.gear.damping,
+            "drag": joint.gear.drag,
+            "stop_min": joint.stops.min,
+            "stop_max": joint.stops.max,
+        }
+        found = {column.split(".")[1]: columns[column] for column in columns if column.startswith(f"joint{index}.")}
+        assert found == expected
+
+
+def test_body_columns_hold_masses_and_lengths() -> None:
+    """The constants of docs/arm.md, worked out from the arm's links."""
+    arm = load_arm("default")
+    columns = named(arm)
+    one, two, three = arm.link[1:]
+    tip = arm.tip.mass
+    carried = two.mass + three.mass + tip
+    first1 = one.mass * one.centre + carried * one.length
+    first2 = two.mass * two.centre + three.mass * (two.length + three.centre) + tip * (two.length + three.length)
+    expected = {
+        "yaw": arm.link[0].inertia.yy,
+        "ixx1": one.inertia.xx,
+        "iyy1": one.inertia.yy + one.mass * one.centre**2 + carried * one.length**2,
+        "izz1": one.inertia.zz + one.mass * one.centre**2 + carried * one.length**2,
+        "ixx3": three.inertia.xx,
+        "ixx23": two.inertia.xx + three.inertia.xx,
+        "coupling": one.length * first2,
+        "gravity1": arm.gravity * first1,
+        "gravity2": arm.gravity * first2,
+    }
+    for name, value in expected.items():
+        assert columns[name] == pytest.approx(value, rel=1e-12), name
+    assert columns["iyy23"] - columns["izz23"] == pytest.approx(two.inertia.yy - two.inertia.zz, rel=1e-9)

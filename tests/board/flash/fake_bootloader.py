@@ -1,0 +1,92 @@
+"""The two kinds of bootloader on pseudo-terminals: each answers in its own way, at its own speed only."""
+
+from __future__ import annotations
+
+import os
+import select
+import termios
+import threading
+import tty
+from functools import reduce
+from operator import xor
+from typing import Self
+
+MEGA2560 = b"\x1e\x98\x01"
+ATMEGA328P = b"\x1e\x95\x0f"
+
+
+class FakeBootloader(threading.Thread):
+    """The other end of a line; `port` is what a host opens, `heard` is the speeds at which it was spoken to."""
+
+    def __init__(self, baud: int, signature: bytes) -> None:
+        super().__init__(daemon=True)
+        self.signature = signature
+        self.master, self.slave = os.openpty()
+        tty.setraw(self.slave)
+        self.port = os.ttyname(self.slave)
+        self.heard: set[int] = set()
+        self._speed: int = getattr(termios, f"B{baud}")
+        self._buffer = b""
+        self._ending = threading.Event()
+        self.start()
+
+    def answer(self, data: bytes) -> tuple[bytes, bytes]:
+        """What to say to `data`, and what of it is kept until more comes."""
+        raise NotImplementedError
+
+    def run(self) -> None:
+        while not self._ending.is_set():
+            if not select.select([self.master], [], [], 0.02)[0]:
+                continue
+            speed: int = termios.tcgetattr(self.slave)[5]
+            self.heard.add(speed)
+            data = os.read(self.master, 64)
+            if speed != self._speed:
+                continue  # at another speed it hears noise
+            said, self._buffer = self.answer(self._buffer + data)
+            os.write(self.master, said)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._ending.set()
+        self.join(10)
+        os.close(self.master)
+        os.close(self.slave)
+
+
+class Version1(FakeBootloader):
+    """The Nano's: commands of one letter and a space."""
+
+    def answer(self, data: bytes) -> tuple[bytes, bytes]:
+        said = b""
+        while len(data) >= 2:
+            command, data = data[:2], data[2:]
+            said += {b"0 ": b"\x14\x10", b"u ": b"\x14" + self.signature + b"\x10"}.get(command, b"")
+        return said, data
+
+
+class Version2(FakeBootloader):
+    """The Mega's: framed messages; everything else is skipped."""
+
+    def answer(self, data: bytes) -> tuple[bytes, bytes]:
+        said = b""
+        while (start := data.find(b"\x1b")) >= 0:
+            data = data[start:]
+            end = 6 + int.from_bytes(data[2:4], "big")
+            if len(data) < 4 or len(data) < end:
+                return said, data
+            message, data = data[:end], data[end:]
+            assert reduce(xor, message) == 0
+            said += self._reply(message[1], message[5:-1])
+        return said, b""
+
+    def _reply(self, sequence: int, body: bytes) -> bytes:
+        if body == b"\x01":
+            answer = b"\x01\x00\x08AVRISP_2"
+        else:
+            assert body[:6] == b"\x1d\x04\x04\x00\x30\x00", "only the signature is read"
+            answer = bytes([0x1D, 0, 0, 0x30, 0, self.signature[body[6]], 0])
+        message = bytes([0x1B, sequence]) + len(answer).to_bytes(2, "big") + b"\x0e" + answer
+        return message + bytes([reduce(xor, message)])

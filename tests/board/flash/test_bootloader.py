@@ -1,0 +1,48 @@
+"""Who answers on a port: kind of bootloader, speed and chip are found out by asking, and nothing is written."""
+
+from __future__ import annotations
+
+import termios
+
+import pytest
+
+from greywhale.board.flash.bootloader import Bootloader, Dialect, find_bootloader
+from greywhale.errors import UserError
+from tests.board.flash.fake_bootloader import ATMEGA328P, MEGA2560, FakeBootloader, Version1, Version2
+
+MEGA = Dialect("wiring", 115200)
+NEW_NANO, OLD_NANO = Dialect("arduino", 115200), Dialect("arduino", 57600)
+
+
+@pytest.mark.parametrize(
+    ("kind", "signature", "dialect"),
+    [(Version2, MEGA2560, MEGA), (Version1, ATMEGA328P, NEW_NANO), (Version1, ATMEGA328P, OLD_NANO)],
+    ids=["mega", "new nano", "old nano"],
+)
+def test_each_bootloader_is_found_with_its_speed_and_its_chip(
+    kind: type[FakeBootloader], signature: bytes, dialect: Dialect
+) -> None:
+    with kind(dialect.baud, signature) as line:
+        assert find_bootloader(line.port, [MEGA, NEW_NANO, OLD_NANO], []) == Bootloader(dialect, signature)
+
+
+def test_another_bootloader_than_the_likely_one_is_found_last() -> None:
+    with Version2(115200, MEGA2560) as line:
+        assert find_bootloader(line.port, [OLD_NANO], [MEGA]).dialect == MEGA
+        assert line.heard == {termios.B57600, termios.B115200}
+
+
+def test_a_bootloader_that_does_not_tell_its_chip_is_found_all_the_same() -> None:
+    class Silent(Version1):
+        def answer(self, data: bytes) -> tuple[bytes, bytes]:
+            return super().answer(data.replace(b"u ", b""))
+
+    with Silent(57600, ATMEGA328P) as line:
+        assert find_bootloader(line.port, [OLD_NANO], []) == Bootloader(OLD_NANO, None)
+
+
+def test_a_board_without_bootloader_is_named() -> None:
+    with Version1(9600, ATMEGA328P) as line:
+        with pytest.raises(UserError, match="no bootloader answers at 115200 and 57600 baud"):
+            find_bootloader(line.port, [NEW_NANO, OLD_NANO], [])
+        assert line.heard == {termios.B115200, termios.B57600}

@@ -1,0 +1,81 @@
+"""HEX files as people hand them over: whole, damaged, foreign, for the other board."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from greywhale.board.flash.images import Record, check_image, read_image
+from greywhale.board.flash.targets import BOARDS
+from greywhale.errors import UserError
+from greywhale.protocol import schema
+from tests.board.flash.hex_files import hex_text, image_record, record, write_image
+
+MEGA, NANO = BOARDS["mega"], BOARDS["nano"]
+
+
+def test_an_image_tells_chip_version_schema_and_sources(tmp_path: Path) -> None:
+    image = read_image(write_image(tmp_path / "a.hex", MEGA.signature))
+    assert image.end == 600
+    assert image.record == Record(MEGA.signature, "3.2.1", schema.SCHEMA_HASH, "0123456789abcdef")
+
+
+def test_addresses_above_64_kilobytes_are_understood(tmp_path: Path) -> None:
+    path = tmp_path / "high.hex"
+    path.write_text(hex_text(b"x" * 300, start=0x1FFF0))
+    assert read_image(path).end == 0x1FFF0 + 300
+    path.write_text(record(2, 0, b"\x10\x00") + record(0, 4, b"abc") + record(1, 0, b""))
+    assert read_image(path).end == 0x10000 + 7
+
+
+def test_an_image_of_somebody_else_has_no_record(tmp_path: Path) -> None:
+    assert read_image(write_image(tmp_path / "a.hex")).record is None
+    later = tmp_path / "later.hex"
+    later.write_text(hex_text(image_record(NANO.signature, layout=2)))
+    assert read_image(later).record is None
+    cut = tmp_path / "cut.hex"
+    cut.write_text(hex_text(image_record(NANO.signature)[:-1]))
+    assert read_image(cut).record is None
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"", "ends too early"),
+        (b":00000001FF\n", "holds no data"),
+        (hex_text(b"some bytes").rsplit(":", 1)[0].encode(), "ends too early"),
+        (b"\x7fELF\x01\x01\n:00000001FF\n", "line 1: this is no Intel HEX record"),
+        (hex_text(b"some bytes").replace("73", "74", 1).encode(), "line 2: this is no Intel HEX record"),
+        (b":0400\n", "line 1: this is no Intel HEX record"),
+        ((record(4, 0, b"\x00\x10") + record(0, 0, b"x") + record(1, 0, b"")).encode(), "no board has as much memory"),
+    ],
+    ids=["empty", "only an end", "cut off", "an ELF", "a flipped digit", "a short line", "far too high"],
+)
+def test_a_damaged_file_is_named_with_its_line(content: bytes, words: str, tmp_path: Path) -> None:
+    path = tmp_path / "bad.hex"
+    path.write_bytes(content)
+    with pytest.raises(UserError, match=rf"bad\.hex.*{words}") as caught:
+        read_image(path)
+    assert caught.value.exit_code == 2
+
+
+def test_an_image_for_the_other_board_is_refused(tmp_path: Path) -> None:
+    nano = read_image(write_image(tmp_path / "nano.hex", NANO.signature))
+    check_image(nano, NANO, "/dev/ttyUSB0")
+    with pytest.raises(UserError) as caught:
+        check_image(nano, MEGA, "/dev/ttyUSB0")
+    assert caught.value.message == (
+        f"{nano.path}: this image is for an Arduino Nano (ATmega328P), but the board on /dev/ttyUSB0 is an "
+        "Arduino Mega 2560; choose another file."
+    )
+    other = read_image(write_image(tmp_path / "other.hex", b"\x1e\x97\x03"))
+    with pytest.raises(UserError, match="is for a chip with signature 1e9703"):
+        check_image(other, MEGA, "/dev/ttyUSB0")
+
+
+def test_an_image_that_does_not_fit_is_refused_whoever_made_it(tmp_path: Path) -> None:
+    image = read_image(write_image(tmp_path / "large.hex", size=NANO.space + 1))
+    check_image(image, MEGA, "/dev/ttyUSB0")
+    with pytest.raises(UserError, match="reaches up to byte 30721, but an Arduino Nano .* has room for 30720"):
+        check_image(image, NANO, "/dev/ttyUSB0")

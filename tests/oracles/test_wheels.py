@@ -1,0 +1,269 @@
+"""What a user installs with pip is whole: in an empty environment without compiler, PlatformIO and checkout, it works.
+
+The wheels are built from the source distributions, as a stranger's pip would do it, and nothing is fetched.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tarfile
+import venv as python_venv
+import zipfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from greywhale.board.flash.targets import BOARDS
+from greywhale.cli.verbs import VERBS
+from greywhale.demo import BenchProcess
+from tools import dist
+from tools.oracles.wheelhouse import WHEELHOUSE
+from tools.setup import platformio
+
+ROOT = Path(__file__).resolve().parents[2]
+CONTROLLERS = {"before_tuning", "rules", "table_8", "table_9", "table_10"}
+pytestmark = pytest.mark.timeout(1200)  # of which building the extensions takes the most
+
+
+@dataclass(frozen=True)
+class Installation:
+    """An environment with greywhale in it, away from everything else; `tools` is all that is on the PATH besides."""
+
+    folder: Path
+    tools: Path
+
+    @property
+    def package(self) -> Path:
+        (found,) = self.folder.glob("lib/python*/site-packages/greywhale")
+        return found
+
+    def run(self, *command: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+        """Run a program of the environment."""
+        environment = {"PATH": f"{self.folder / 'bin'}{os.pathsep}{self.tools}", "HOME": str(self.folder)}
+        program = str(self.folder / "bin" / command[0])
+        return subprocess.run(
+            [program, *command[1:]],
+            cwd=cwd or self.folder,
+            env=environment,
+            capture_output=True,
+            text=True,
+            timeout=120,
+            check=False,
+        )
+
+    def ask(self, *arguments: str) -> dict[str, object]:
+        """The JSON of a verb that must succeed."""
+        answer = self.run("greywhale", *arguments, "--json")
+        assert answer.returncode == 0, answer.stdout + answer.stderr
+        facts: dict[str, object] = json.loads(answer.stdout)
+        return facts
+
+
+@pytest.fixture(scope="session")
+def built(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
+    """The source distributions and wheels of both packages."""
+    return dist.build_all(tmp_path_factory.mktemp("dist"), [dist.venv.PYTHON])
+
+
+@pytest.fixture(scope="session")
+def wheels(built: list[Path]) -> tuple[Path, Path]:
+    greywhale, bench = sorted(path for path in built if path.suffix == ".whl")
+    return greywhale, bench
+
+
+def install(folder: Path, *wheels: Path) -> Installation:
+    """A new environment with these wheels and what they depend on; avrdude is the only other program."""
+    python_venv.create(folder / "env", with_pip=True)
+    pip = [folder / "env/bin/python", "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-index"]
+    subprocess.run([*pip, "--find-links", WHEELHOUSE, *wheels], check=True)
+    avrdude = shutil.which("avrdude")
+    assert avrdude is not None
+    tools = folder / "tools"
+    tools.mkdir()
+    (tools / "avrdude").write_text(f'#!/bin/sh\n: > "{tools}/used"\nexec {avrdude} "$@"\n')
+    (tools / "avrdude").chmod(0o755)
+    return Installation(folder / "env", tools)
+
+
+@pytest.fixture(scope="session")
+def alone(wheels: tuple[Path, Path], tmp_path_factory: pytest.TempPathFactory) -> Installation:
+    """greywhale without the bench."""
+    return install(tmp_path_factory.mktemp("alone"), wheels[0])
+
+
+@pytest.fixture(scope="session")
+def with_bench(wheels: tuple[Path, Path], tmp_path_factory: pytest.TempPathFactory) -> Installation:
+    return install(tmp_path_factory.mktemp("with-bench"), *wheels)
+
+
+def names_in(archive: Path) -> set[str]:
+    """Files of a wheel; of a source distribution without its outermost folder."""
+    if archive.suffix == ".whl":
+        with zipfile.ZipFile(archive) as wheel:
+            return {name for name in wheel.namelist() if not name.endswith("/")}
+    with tarfile.open(archive) as sources:
+        return {name.partition("/")[2] for name in sources.getnames()}
+
+
+def read(wheel: Path, ending: str) -> str:
+    """The one file of a wheel whose name ends so."""
+    with zipfile.ZipFile(wheel) as archive:
+        (name,) = (name for name in archive.namelist() if name.endswith(ending))
+        return archive.read(name).decode()
+
+
+def test_the_wheel_holds_code_firmware_and_controllers_and_nothing_else(wheels: tuple[Path, Path]) -> None:
+    names = names_in(wheels[0])
+    data = {name.removeprefix("greywhale/data/") for name in names if name.startswith("greywhale/data/")}
+    assert data == {"firmware/mega.hex", "firmware/nano.hex", *(f"fuzzy_tables/{name}.toml" for name in CONTROLLERS)}
+    assert len([name for name in names if name.startswith("greywhale/_native.") and name.endswith(".so")]) == 1
+    assert {"greywhale/_native.pyi", "greywhale/py.typed", "greywhale/cli/flash.py"} <= names
+    assert {Path(name).parts[0].split("-")[0] for name in names} == {"greywhale"}
+    assert not [name for name in names if "test" in name or "greywhale_sim" in name]
+    licences = {Path(name).name for name in names if "/licenses/" in name}
+    assert licences == {"LICENSE", "NOTICE"}
+    assert "Apache License" in read(wheels[0], "/LICENSE")
+    assert "License-Expression: Apache-2.0" in read(wheels[0], "/METADATA")
+
+
+def test_the_bench_is_a_wheel_of_its_own_and_brings_its_library_along(wheels: tuple[Path, Path]) -> None:
+    names = names_in(wheels[1])
+    assert {Path(name).parts[0].split("-")[0].split(".")[0] for name in names} == {"greywhale_sim"}
+    assert {"greywhale_sim/bootloaders/mega.hex", "greywhale_sim/bootloaders/nano.hex"} <= names
+    libraries = {Path(name).name.split("-")[0] for name in names if name.startswith("greywhale_sim.libs/lib")}
+    assert libraries == {"libsimavr", "libelf"}
+    assert "License-Expression: GPL-3.0-or-later" in read(wheels[1], "/METADATA")
+
+
+def test_tags_say_for_which_python_and_which_linux_a_wheel_is(wheels: tuple[Path, Path]) -> None:
+    minor = sys.version_info.minor
+    python = "cp312-abi3" if minor >= 12 else f"cp3{minor}-cp3{minor}"
+    extension = ".abi3.so" if minor >= 12 else f".cpython-3{minor}-x86_64-linux-gnu.so"
+    for wheel, module in zip(wheels, ("greywhale/_native", "greywhale_sim/_board"), strict=True):
+        assert f"-{python}-manylinux_2_" in wheel.name
+        assert f"{module}{extension}" in names_in(wheel)
+
+
+def test_the_sources_hold_both_images_and_the_bench_no_sources_of_the_arm(built: list[Path]) -> None:
+    greywhale, bench = sorted(path for path in built if path.name.endswith(".tar.gz"))
+    names = names_in(greywhale)
+    assert {f"firmware/.pio/build/{board.environment}/firmware.hex" for board in BOARDS.values()} <= names
+    assert {"firmware/src/main.cpp", "firmware/platformio.ini", "sim/arm/step.h", "pyproject.toml"} <= names
+    assert not [name for name in names if name.startswith(("tests/", "sim/board/", "sim/bench/"))]
+    names = names_in(bench)
+    assert {"bootloaders/mega/stk500boot.c", "bootloaders/nano/ATmegaBOOT_168.c", "board/board.cpp"} <= names
+    assert not [name for name in names if name.startswith("arm/")]
+
+
+def test_the_images_are_those_of_this_source_byte_for_byte(alone: Installation, tmp_path: Path) -> None:
+    firmware = tmp_path / "somewhere" / "else"
+    shutil.copytree(ROOT / "firmware", firmware, ignore=shutil.ignore_patterns(".pio", "test"))
+    environments = [word for board in BOARDS.values() for word in ("--environment", board.environment)]
+    command = [sys.executable, "-m", "platformio", "run", "--project-dir", str(firmware), *environments]
+    subprocess.run(command, env=platformio.full_environment(), check=True, capture_output=True)
+    for name, board in BOARDS.items():
+        fresh = firmware / ".pio" / "build" / board.environment / "firmware.hex"
+        assert (alone.package / "data" / "firmware" / f"{name}.hex").read_bytes() == fresh.read_bytes()
+
+
+def test_no_wheel_is_built_with_an_image_of_other_sources(built: list[Path], tmp_path: Path) -> None:
+    sdist, _ = sorted(path for path in built if path.name.endswith(".tar.gz"))
+    with tarfile.open(sdist) as archive:
+        archive.extractall(tmp_path, filter="data")
+    (folder,) = tmp_path.iterdir()
+    with (folder / "firmware" / "src" / "main.cpp").open("a") as source:
+        source.write("\n")
+    pip = [sys.executable, "-m", "pip", "wheel", "--disable-pip-version-check", "--no-deps", "--no-build-isolation"]
+    answer = subprocess.run(
+        [*pip, "--wheel-dir", str(tmp_path / "out"), str(folder)], capture_output=True, text=True, check=False
+    )
+    assert answer.returncode != 0
+    assert "was built from other sources; run `make firmware`" in " ".join((answer.stdout + answer.stderr).split())
+    assert not (tmp_path / "out").exists() or not list((tmp_path / "out").iterdir())
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_every_verb_explains_itself(alone: Installation, verb: str) -> None:
+    answer = alone.run("greywhale", verb, "--help")
+    assert answer.returncode == 0, answer.stderr
+    assert answer.stdout.startswith(f"Usage: greywhale {verb} ")
+
+
+def test_the_package_itself_runs_and_not_the_checkout(alone: Installation) -> None:
+    code = "import greywhale, greywhale._native as n; print(greywhale.__file__, n.__file__, greywhale.__version__)"
+    package, native, version = alone.run("python", "-c", code).stdout.split()
+    assert Path(package).parent == Path(native).parent == alone.package
+    assert alone.run("greywhale", "--version").stdout == f"greywhale, version {version}\n"
+    assert alone.run("python", "-c", "import platformio").returncode == 1
+    assert not any((alone.tools / name).exists() for name in ("cc", "gcc", "g++", "c++", "avr-gcc", "pio"))
+
+
+@pytest.mark.parametrize("verb", ["sim", "demo"])
+def test_without_the_bench_one_sentence_says_what_to_install(alone: Installation, verb: str) -> None:
+    answer = alone.run("greywhale", verb)
+    assert answer.returncode == 1
+    assert answer.stdout == ""
+    assert answer.stderr == (
+        "greywhale: the simulated bench is a package of its own, greywhale-sim, and is not installed; "
+        "run `pip install greywhale-sim`, or `make setup` in a checkout.\n"
+    )
+
+
+@pytest.mark.parametrize("board", BOARDS)
+def test_a_board_is_flashed_tuned_and_recorded(alone: Installation, board: str, tmp_path: Path) -> None:
+    """The board is simulated by the checkout, in a process of its own; the real avrdude writes the packaged image."""
+    with BenchProcess("--board", board, "--blank", "--speed", "max") as bench:
+        version = alone.run("greywhale", "--version").stdout.split()[-1]
+        flashed = alone.ask("flash", "--port", bench.port)
+        assert flashed["firmware"] == version
+        assert alone.ask("info", "--port", bench.port)["board"] == BOARDS[board].identity.key
+        table = alone.package / "data" / "fuzzy_tables" / "table_10.toml"
+        alone.ask("upload", "--port", bench.port, str(table))
+        log = tmp_path / "log.csv"
+        alone.ask("record", "--port", bench.port, "--enable", "--seconds", "2", "--out", str(log))
+        assert len(log.read_text().splitlines()) > 2000
+        alone.ask("evaluate", str(log))
+
+
+def test_without_avrdude_flash_says_what_to_install(alone: Installation, tmp_path: Path) -> None:
+    bare = Installation(alone.folder, tmp_path)
+    answer = bare.run("greywhale", "flash", "--port", "/dev/null")
+    assert answer.returncode == 1
+    assert answer.stderr.startswith("greywhale: avrdude, which writes the firmware onto a board, is not installed;")
+
+
+def test_building_ones_own_firmware_says_what_to_install(alone: Installation) -> None:
+    with BenchProcess("--blank", "--speed", "max") as bench:
+        answer = alone.run("greywhale", "flash", "--port", bench.port, "--firmware", str(ROOT / "firmware"))
+    assert answer.returncode == 1
+    assert "PlatformIO, which builds the firmware from its source, is not installed" in answer.stderr
+
+
+def test_the_bench_runs_from_its_wheel_with_its_own_library(with_bench: Installation) -> None:
+    code = """
+import greywhale_sim._board
+for line in open("/proc/self/maps"):
+    if "libsimavr" in line or "libelf" in line:
+        print(line.split()[-1])
+"""
+    loaded = set(with_bench.run("python", "-c", code).stdout.split())
+    assert len(loaded) == 2
+    assert all(Path(library).is_relative_to(with_bench.folder) for library in loaded)
+
+
+@pytest.mark.parametrize("tools", ["avrdude", "nothing"])
+def test_the_demo_runs_in_an_empty_environment(with_bench: Installation, tools: str, tmp_path: Path) -> None:
+    """With avrdude the board is flashed; without it, it starts with its firmware."""
+    bench = with_bench if tools == "avrdude" else Installation(with_bench.folder, tmp_path)
+    (bench.tools / "used").unlink(missing_ok=True)
+    table = bench.package / "data" / "fuzzy_tables" / "table_10.toml"
+    out = tmp_path / "out"
+    facts = bench.ask("demo", "--duration", "4", "--controller", str(table), "--out", str(out))
+    assert facts["board"] == "mega2560"
+    assert (bench.tools / "used").exists() == (tools == "avrdude")
+    assert (out / "following.png").stat().st_size > 10_000

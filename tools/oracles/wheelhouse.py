@@ -1,0 +1,24 @@
+"""What greywhale and greywhale-sim depend on, as wheels in build/wheelhouse: for installations in a test."""
+
+from __future__ import annotations
+
+import shutil
+
+from tools import lock
+from tools.setup import stamps, venv
+from tools.setup.console import ROOT, run, say
+
+WHEELHOUSE = ROOT / "build" / "wheelhouse"
+
+
+def step() -> None:
+    needed = lock.runtime()
+    wanted = stamps.digest([venv.REQUIREMENTS], *needed)
+    if stamps.is_current("wheelhouse", wanted) and WHEELHOUSE.is_dir():
+        return
+    say("fetching what the packages depend on, for installations without a network")
+    shutil.rmtree(WHEELHOUSE, ignore_errors=True)
+    pip = [str(venv.PYTHON), "-m", "pip", "wheel", "--quiet", "--disable-pip-version-check", "--no-input"]
+    constraint = ["--constraint", str(venv.REQUIREMENTS), "--wheel-dir", str(WHEELHOUSE)]
+    run([*pip, *constraint, *needed], what="Fetching wheels", env=venv.environment())
+    stamps.set_current("wheelhouse", wanted)
