@@ -7,7 +7,7 @@ import pytest
 from greywhale.errors import UserError
 from greywhale.protocol import schema
 from greywhale.protocol.schema import Board
-from greywhale.table import CONTROLLER_COLUMNS, ParameterTable, board_named, refuse_unknown
+from greywhale.table import CONTROLLER_COLUMNS, ParameterTable, find_board, refuse_unknown
 
 DEFAULTS = ParameterTable.defaults()
 
@@ -22,18 +22,18 @@ def test_values_go_by_name_raw_or_in_their_unit() -> None:
 
 
 def test_a_change_leaves_the_rest_the_board_and_the_name() -> None:
-    nano = DEFAULTS.on(Board.NANO328).named("mine")
+    nano = DEFAULTS.for_board(Board.NANO328).with_name("mine")
     changed = nano.with_raw({"joint2.kp": 77, "supply_mv": 9000})
-    assert changed.changed() == {"supply_mv": 9000, "joint2.kp": 77}
+    assert changed.changes() == {"supply_mv": 9000, "joint2.kp": 77}
     assert (changed.board, changed.name) == (Board.NANO328, "mine")
-    assert nano.changed() == {}
+    assert nano.changes() == {}
     assert changed.with_raw(DEFAULTS.by_name()) == nano
 
 
 def test_controllers_are_rows_of_the_table_and_back() -> None:
     rows = [list(row) for row in DEFAULTS.controllers]
     rows[3][CONTROLLER_COLUMNS.index("ki")] = 5
-    assert DEFAULTS.with_controllers(rows).changed() == {"joint3.ki": 5}
+    assert DEFAULTS.with_controllers(rows).changes() == {"joint3.ki": 5}
     assert DEFAULTS.with_controllers(DEFAULTS.controllers) == DEFAULTS
 
 
@@ -51,15 +51,15 @@ def test_what_no_board_would_run_is_no_table(changes: dict[str, int], words: str
 
 
 def test_equal_values_on_another_board_are_another_table() -> None:
-    assert DEFAULTS.named("elsewhere") == DEFAULTS
-    assert DEFAULTS.on(Board.NANO328) != DEFAULTS
+    assert DEFAULTS.with_name("elsewhere") == DEFAULTS
+    assert DEFAULTS.for_board(Board.NANO328) != DEFAULTS
 
 
 @pytest.mark.parametrize(
     ("key", "board"), [("nano328", Board.NANO328), ("esp32", Board.UNKNOWN), (None, Board.UNKNOWN)]
 )
 def test_boards_go_by_the_key_of_a_log(key: str | None, board: Board) -> None:
-    assert board_named(key) is board
+    assert find_board(key) is board
 
 
 def test_an_unknown_name_is_told_with_its_place() -> None:

@@ -93,15 +93,15 @@ def test_controllers_are_found_by_their_crc(recorded: Recorded, tables: list[Par
     defaults = ParameterTable.defaults()
     assert table_of(recorded.changed, tables) == tables[1]
     assert table_of(recorded.fit, tables) == tables[0]
-    assert table_of(replace(recorded.fit, origin=Origin(board="nano328", param_crc=defaults.crc)), []) == defaults.on(
-        Board.NANO328
-    )
+    assert table_of(
+        replace(recorded.fit, origin=Origin(board="nano328", param_crc=defaults.crc)), []
+    ) == defaults.for_board(Board.NANO328)
     assert table_of(recorded.changed, []) is None
 
 
 def test_another_controller_than_the_logs_is_refused(recorded: Recorded, white_box: ArmParameters) -> None:
     paper = values_of("table_10")
-    other = paper.with_raw({"joint1.ku_mv": paper["joint1.ku_mv"] - 1}).named("other.toml")
+    other = paper.with_raw({"joint1.ku_mv": paper["joint1.ku_mv"] - 1}).with_name("other.toml")
     with pytest.raises(UserError, match=r"recorded with parameter set 0x\w{4}, but there are only other.toml 0x\w{4}"):
         identify([recorded.changed], white_box, tables=[other])
     without = replace(recorded.fit, origin=Origin(period_ms=20))
@@ -124,10 +124,10 @@ def test_a_table_tells_what_it_changes_and_a_file_keeps_it(tables: list[Paramete
 
     from greywhale.files.model import to_toml
 
-    changed = tables[1].changed()
+    changed = tables[1].changes()
     assert changed
     assert tuple(changed.get(one.name, one.default) for one in schema.PARAMETERS) == tables[1].raw
-    assert ParameterTable.defaults().changed() == {}
+    assert ParameterTable.defaults().changes() == {}
     for pairs in (changed, {}):
         text = to_toml(load_arm("white_box"), {"parameters": pairs})
         assert tomllib.loads(text)["identification"] == {"parameters": pairs}

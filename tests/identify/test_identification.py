@@ -65,7 +65,7 @@ def test_model_file_is_an_arm_file(outcome: Outcome, tables: list[ParameterTable
     assert facts["log"][0]["parameter_crc"].startswith("0x")
     assert facts["log"][0]["period_ms"] == 1
     assert facts["log"][0]["model_mse_rad2"] == pytest.approx(outcome.verdicts[0].model)
-    assert facts["parameters"] == tables[0].changed()
+    assert facts["parameters"] == tables[0].changes()
     named = {one["name"]: one for one in facts["parameter"]}
     assert named["joint0.damping"]["standard_deviation"] > 0.0
     assert isinstance(facts["fisher_condition"], float)

@@ -63,7 +63,7 @@ def test_a_vector_moves_to_a_larger_space() -> None:
     arm = load_arm("white_box")
     small, large = Space.of(arm, MOTOR, (0, 1)), Space.of(arm, (*MOTOR, "coulomb"), (0, 1))
     x = small.start() + np.arange(6) / 10
-    y = large.moved(x, small)
+    y = large.translate(x, small)
     known = dict(zip(large.names, y, strict=True))
     assert all(known[name] == value for name, value in zip(small.names, x, strict=True))
     assert np.exp(known["joint0.coulomb"]) == pytest.approx(KINDS["coulomb"].start)

@@ -10,7 +10,7 @@ from greywhale.loop import Experiment, default_controller
 from greywhale.trajectory import multi_steps, steps
 from greywhale.tune import Outcome, tune
 from greywhale.tune.model import Model, load_model
-from greywhale.tune.paper import AGENTS, BUDGET, ITERATIONS, Loops, alone, since_step
+from greywhale.tune.paper import AGENTS, BUDGET, ITERATIONS, Loops, move_one_joint, time_since_step
 
 BEFORE = default_controller()
 
@@ -38,7 +38,9 @@ def test_ten_agents_move_thirty_times(tuned: Outcome) -> None:
 def test_j_is_itae_plus_itau_of_the_joint_that_moves(model: Model) -> None:
     """Eqs. 19 to 21, integrated here from the trace of one joint's own step."""
     loops = Loops(model, "mf", BEFORE, 1)
-    experiment = Experiment(alone(steps(), 2), model.arm, table=loops.table, noise=False, wait_s=0.1, soft_start=False)
+    experiment = Experiment(
+        move_one_joint(steps(), 2), model.arm, table=loops.table, noise=False, wait_s=0.1, soft_start=False
+    )
     trace = experiment.run(BEFORE, loops.plant, every=1)
     k = np.maximum(trace.time_s - 1.1, 0.0)
     error = np.abs(experiment.leader[:, 2] - trace.angles[0, :, 2])
@@ -48,7 +50,7 @@ def test_j_is_itae_plus_itau_of_the_joint_that_moves(model: Model) -> None:
 
 
 def test_time_counts_from_the_step() -> None:
-    weight = since_step(steps(), 0.1)
+    weight = time_since_step(steps(), 0.1)
     assert len(weight) == 5100
     assert (weight[:1101] == 0.0).all()
     assert weight[1102] == pytest.approx(0.002)
@@ -62,7 +64,7 @@ def test_joints_are_tuned_on_their_own(model: Model) -> None:
     other[:3, 8] *= 7
     np.testing.assert_array_equal(loops.costs(other[None])[0, 3], loops.costs(BEFORE[None])[0, 3])
     assert (loops.costs(other[None])[0, :3] != loops.costs(BEFORE[None])[0, :3]).all()
-    motion = alone(multi_steps(), 1)
+    motion = move_one_joint(multi_steps(), 1)
     assert np.ptp(motion.angles, axis=0).tolist() == [0.0, 2.0, 0.0, 0.0]
 
 

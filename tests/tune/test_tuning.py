@@ -203,7 +203,7 @@ def test_a_joint_whose_best_would_shake_its_gear_gets_less_voltage(
     """The last judgement refuses every candidate of the search, here by its Ku, but not one with less."""
     searched: list[int] = []
 
-    def judged(self: Any, controllers: np.ndarray) -> np.ndarray:
+    def judge_costs(self: Any, controllers: np.ndarray) -> np.ndarray:
         costs = Objective.costs(self.judging, controllers)
         if not searched:
             searched.extend(self.found.contenders(KEPT)[:, 1, KU].tolist())
@@ -211,7 +211,7 @@ def test_a_joint_whose_best_would_shake_its_gear_gets_less_voltage(
         costs[refused, 1] += 10.0
         return np.asarray(costs)
 
-    monkeypatch.setattr(DefaultMethod, "judged", judged)
+    monkeypatch.setattr(DefaultMethod, "judge_costs", judge_costs)
     outcome = tune(model, budget=60, floors=False)
     assert outcome.after[1, KU] not in searched
     assert outcome.after[1, KU] in [round(share * searched[0]) for share in WEAKER]

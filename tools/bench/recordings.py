@@ -42,7 +42,7 @@ class Recorded:
 
 def table_of(name: str) -> ParameterTable:
     """A whole parameter table with the controllers of shared/fuzzy_tables/`name`.toml."""
-    return controller.load(TABLES / f"{name}.toml").table().named(name)
+    return controller.load(TABLES / f"{name}.toml").table().with_name(name)
 
 
 def record(

@@ -1,6 +1,6 @@
 """The one exception that carries a sentence for the person at the keyboard.
 
-Library code raises it, only the command line prints it: what went wrong, where, which value, and what to do about it.
+Library code raises it, and only the command line prints it: what went wrong, where, which value, and what to do.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ class UserError(Exception):
         self.exit_code = exit_code
 
 
-def because(error: OSError) -> str:
+def os_reason(error: OSError) -> str:
     """The operating system's own reason, in lower case, ready to stand inside a sentence."""
     reason = error.strerror or str(error) or type(error).__name__
     return reason[:1].lower() + reason[1:]

@@ -34,7 +34,7 @@ class ParameterTable:
 
     @classmethod
     def defaults(cls, board: Board = Board.MEGA2560) -> Self:
-        """What a board runs as it is shipped."""
+        """The table of a board as it is shipped."""
         return cls(schema.DEFAULTS, board, "the firmware's defaults")
 
     def __getitem__(self, name: str) -> int:
@@ -73,8 +73,8 @@ class ParameterTable:
         """All raw values."""
         return {one.name: raw for one, raw in zip(schema.PARAMETERS, self.raw, strict=True)}
 
-    def changed(self) -> dict[str, int]:
-        """By name, raw, what differs from the firmware's defaults."""
+    def changes(self) -> dict[str, int]:
+        """The raw values that differ from the firmware's defaults, by name."""
         return {one.name: raw for one, raw in zip(schema.PARAMETERS, self.raw, strict=True) if raw != one.default}
 
     def with_raw(self, changes: Mapping[str, int]) -> Self:
@@ -94,17 +94,17 @@ class ParameterTable:
             }
         )
 
-    def on(self, board: Board) -> Self:
+    def for_board(self, board: Board) -> Self:
         """The same values on another board."""
         return replace(self, board=board)
 
-    def named(self, name: str) -> Self:
-        """The same table, from elsewhere."""
+    def with_name(self, name: str) -> Self:
+        """The same table under another name."""
         return replace(self, name=name)
 
 
-def board_named(key: str | None) -> Board:
-    """The board that a file names by its key, such as nano328; UNKNOWN where it names none that we know."""
+def find_board(key: str | None) -> Board:
+    """The board that a file names by its key, such as nano328; UNKNOWN where it names none, or an unknown one."""
     return next((board for board in Board if board.key == key), Board.UNKNOWN)
 
 

@@ -1,6 +1,4 @@
-"""Puts a bench together: board with bootloader and firmware, arm, potentiometers and leader, ready to be
-powered.
-"""
+"""Puts a bench together: board with bootloader and firmware, arm, potentiometers and leader, ready for power."""
 
 from __future__ import annotations
 

@@ -1,9 +1,8 @@
 """The bench: board, arm and leader in lock step on one simulated clock.
 
-Time advances in slices of 250 us. In each slice the bench reads the driver pins, moves the arm under the
-voltages they mean, puts all eight potentiometers on the converter's inputs and lets the processor run.
-Nothing here looks at the wall clock: the same bytes into the serial port at the same cycles give the same
-trace.
+Time advances in slices of 250 us. In each slice the bench reads the driver pins, moves the arm under the voltages that
+they mean, puts all eight potentiometers on the converter's inputs and lets the processor run. Nothing here looks at the
+wall clock: the same bytes into the serial port at the same cycles give the same trace.
 """
 
 from __future__ import annotations
@@ -57,7 +56,7 @@ class Potentiometers(Protocol):
 
 
 class CrashError(UserError):
-    """The program did what no program should: an invalid instruction, an access outside the memory."""
+    """The program did what no program should do: an invalid instruction, or an access outside the memory."""
 
 
 # Called after every slice: cycle reached, pins at its beginning, follower's angles. The arrays are reused.
@@ -106,7 +105,7 @@ class Bench:
         return bool(self.board.outputs()[0])
 
     def place(self, angles: Array) -> None:
-        """Hold the follower in a pose by hand, if the plant can be (it offers `reset`)."""
+        """Hold the follower in a pose by hand, if the plant allows that (it has `reset`)."""
         reset = getattr(self.plant, "reset", None)
         if reset is not None:
             reset(angles)
@@ -144,7 +143,7 @@ class Bench:
                 self.trace(target, pins, angles)
 
     def _stepper(self) -> Callable[[Array, float, Array], object]:
-        """The plant's step, writing into an array: the built-in arm can do that itself, which saves time."""
+        """The plant's step, which writes into an array; the built-in arm can do that itself, which saves time."""
         plant = self.plant
         if isinstance(plant, arm.Arm):
             return plant.step

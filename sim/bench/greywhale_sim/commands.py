@@ -1,4 +1,4 @@
-"""What can be done to a running bench, one command a line; every answer is one JSON object.
+"""The commands to a running bench, one a line; every answer is one JSON object.
 
 status                             time, motors, voltages, angles, resets, EEPROM, serial line
 leader FILE                        the person takes up another motion, while the motors are off

@@ -8,7 +8,7 @@ import os
 from pathlib import Path
 from typing import IO
 
-from greywhale.errors import UserError, because
+from greywhale.errors import UserError, os_reason
 from greywhale.formats.whole import write_whole
 
 
@@ -19,7 +19,7 @@ def load(path: Path, size: int) -> bytes | None:
     except FileNotFoundError:
         return None
     except OSError as error:
-        raise UserError(f"{path}: the EEPROM file cannot be read: {because(error)}.") from None
+        raise UserError(f"{path}: the EEPROM file cannot be read: {os_reason(error)}.") from None
     if len(data) != size:
         raise UserError(
             f"{path}: has {len(data)} bytes, but this board's EEPROM has {size}; "

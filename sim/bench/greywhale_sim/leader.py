@@ -1,10 +1,9 @@
-"""The person at the bench: moves the leader arm along a motion, and lifts the follower back when the motors
-are off.
+"""The person at the bench: moves the leader arm along a motion, and lifts the follower back when the motors are off.
 
-The person waits for the drivers' enable pin (the LED says the same), lets the soft start pass, plays the
-motion once and holds the last pose. A while after the motors went off both arms are brought back to the first
-pose and held there, so that the next enable is accepted; before that the follower is left alone, so that a
-fall or coasting after a stop shows.
+The person waits for the drivers' enable pin (a board's LED shows the same), lets the soft start pass, plays the motion
+once and holds the last pose. A while after the motors went off, the person brings both arms back to the first pose and
+holds them there, so that the next enable is accepted. Until then nobody touches the follower, so that a fall or
+coasting after a stop shows.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ BRING_BACK_S = 1.0
 
 
 class LeaderPlayer:
-    """Leader angles for every slice; `hold` is the pose the follower is held in by hand, or None when it is free."""
+    """Leader angles for every slice; `hold` is the pose in which the hand holds the follower, None when it is free."""
 
     def __init__(self, motion: Trajectory, slice_s: float, start_s: float = START_S) -> None:
         self._slice_s = slice_s

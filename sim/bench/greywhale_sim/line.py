@@ -10,11 +10,13 @@ import random
 
 from greywhale.errors import UserError
 
-SAME = 0.02  # closer than this no bit can be missed: skip the bit model
+SAME = 0.02  # closer rates cannot miss a bit: skip the bit model
 
 
 def resample(data: bytes, sender_baud: float, receiver_baud: float) -> bytes:
-    """What a receiver at another baud rate makes of `data` sent without gaps (8N1, each bit sampled in its middle)."""
+    """The bytes that a receiver at another baud rate makes of `data` sent without gaps (8N1, each bit sampled in its
+    middle).
+    """
     if sender_baud <= 0.0 or receiver_baud <= 0.0:
         return b""
     ratio = sender_baud / receiver_baud  # sent bits in one of the receiver's
@@ -35,7 +37,7 @@ def resample(data: bytes, sender_baud: float, receiver_baud: float) -> bytes:
             at = int(begin + (1.5 + bit) * ratio)
             byte |= (levels[at] if at < len(levels) else 1) << bit
         received.append(byte)
-        position = begin + 9.5 * ratio  # half a bit into the stop bit the receiver looks for the next start
+        position = begin + 9.5 * ratio  # the receiver looks for the next start from half a bit into the stop bit on
 
 
 class Noise:

@@ -1,10 +1,8 @@
-"""How fast simulated time may run: real time, or as fast as the machine and the host on the serial port can
-go.
+"""How fast simulated time may run: in real time, or as fast as the machine and the host on the serial port can go.
 
-As fast as possible has three exceptions: the host's flashing tool has time-outs on the wall clock, so the
-bootloader runs in real time while it is spoken to; a bench nobody is connected to idles in real time; and
-time stands still while the host has not yet read what the board sent, so that it never finds itself seconds
-behind the board.
+As fast as possible has three exceptions. The host's flashing tool has time-outs on the wall clock, so the bootloader
+runs in real time while a host speaks to it. A bench to which nobody is connected idles in real time. Time stands still
+while the host has not yet read what the board sent, so that it is never seconds behind the board.
 """
 
 from __future__ import annotations
@@ -13,7 +11,7 @@ import time
 from collections.abc import Callable
 
 UNREAD_LIMIT = 1024  # bytes: about 30 samples of telemetry
-GIVE_UP_S = 0.05  # a lag beyond this (the machine was busy) is not made up for
+GIVE_UP_S = 0.05  # a longer lag (the machine was busy) is not made up for
 
 
 def wants_real_time(fast: bool, connected: bool, in_bootloader: bool, host_baud: float, bootloader_baud: float) -> bool:

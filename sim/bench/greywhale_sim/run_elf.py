@@ -2,8 +2,8 @@
 
     python -m greywhale_sim.run_elf PROGRAM.elf [--mcu atmega2560] [--millivolts 2500,0,...] [--limit-s 60] [--loopback]
 
-The program ends by sleeping with interrupts off. Exit code 0 then, 1 when it crashes or the time limit is reached, and
-2 for a program or an option that makes no sense.
+The program ends when it sleeps with interrupts off. The exit code is then 0. It is 1 when the program crashes or the
+time limit is reached, and 2 for a program or an option that makes no sense.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def parse_arguments(arguments: Sequence[str] | None) -> argparse.Namespace:
 
 
 def run(program: str, mcu: str, millivolts: Sequence[float], limit_s: float, loopback: bool = False) -> int:
-    """Runs the program to its end, copying USART0 to standard output. The exit code."""
+    """Run the program to its end, copy USART0 to standard output, and return the exit code."""
     board = Board(mcu)
     board.load_elf(program)
     board.power_on()

@@ -1,8 +1,7 @@
 """The host's end of the serial line: a pseudo-terminal that behaves like the USB port of an Arduino.
 
-An Arduino resets when its port is opened (the DTR edge). A pseudo-terminal has no modem lines, so opening and
-closing are watched with inotify on its path; the bench keeps one descriptor of its own open, so that the port
-outlives its users.
+An Arduino resets when its port is opened (the DTR edge). A pseudo-terminal has no modem lines, so inotify on its path
+watches for opening and closing. The bench keeps one descriptor of its own open, so that the port outlives its users.
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ import tty
 from collections.abc import Sequence
 from pathlib import Path
 
-from greywhale.errors import UserError, because
+from greywhale.errors import UserError, os_reason
 
 IN_OPEN = 0x20
 IN_CLOSE = 0x08 | 0x10
@@ -80,7 +79,9 @@ class SerialPort:
             return b""
 
     def write(self, data: bytes) -> int:
-        """Hand `data` to the host; what the system's queue has no room for is lost. Returns how many bytes fitted."""
+        """Hand `data` to the host. Bytes that do not fit into the system's queue are lost. Returns how many bytes
+        fitted.
+        """
         try:
             fitted = os.write(self._master, data)
         except BlockingIOError:
@@ -90,13 +91,13 @@ class SerialPort:
 
     def unread(self) -> int:
         """How many bytes lie ready for the host; 0 only if it has read everything that was written."""
-        # The kernel carries bytes to the host's side in its own time; looking for them makes it do so at once.
+        # The kernel carries bytes to the host's side in its own time. Looking for them makes it do so at once.
         select.select([self._slave], [], [], 0)
         count: int = struct.unpack("i", fcntl.ioctl(self._slave, termios.FIONREAD, bytes(4)))[0]
         return count
 
     def backlog(self, limit: int) -> int:
-        """An upper bound of what the host has not read; exact enough to tell whether it is above `limit`."""
+        """An upper bound of the bytes that the host has not read; exact enough to compare it with `limit`."""
         if self._unseen > limit and self.unread() == 0:
             self._unseen = 0
         return self._unseen
@@ -121,7 +122,7 @@ class SerialPort:
             partial.symlink_to(self.path)
             partial.replace(link)
         except OSError as error:
-            raise UserError(f"{link}: the link to the port cannot be made: {because(error)}.") from None
+            raise UserError(f"{link}: the link to the port cannot be made: {os_reason(error)}.") from None
 
 
 def _watch(path: str) -> int:

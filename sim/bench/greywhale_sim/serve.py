@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from types import FrameType
 
-from greywhale.errors import UserError, because
+from greywhale.errors import UserError, os_reason
 from greywhale.protocol.ports import bench_directory
 from greywhale_sim import commands
 from greywhale_sim.assemble import BenchOptions, build_bench, wiring_of
@@ -28,7 +28,7 @@ TURNS_PER_COMMAND = 16  # turns between two looks at the standard input
 
 @dataclass(frozen=True)
 class ServeOptions(BenchOptions):
-    """A bench and how it is offered."""
+    """A bench and how it is served."""
 
     speed: str = "1"  # "1" real time, "max" as fast as possible
     link: Path | None = None  # a lasting name for the port
@@ -37,7 +37,7 @@ class ServeOptions(BenchOptions):
 
 @contextmanager
 def running(options: ServeOptions) -> Iterator[Server]:
-    """A server whose port is open; cleaned up whatever happens."""
+    """A server with an open port; it is cleaned up whatever happens."""
     if options.speed not in ("1", "max"):
         raise UserError(f'speed "{options.speed}" is not known; say 1 (real time) or max.', 2)
     bench = build_bench(options)
@@ -52,7 +52,9 @@ def running(options: ServeOptions) -> Iterator[Server]:
 
 
 def serve(options: ServeOptions, on_ready: Callable[[str], None]) -> None:
-    """Serve until Ctrl-C, a request to terminate or, with control, the end of standard input; all are normal ends."""
+    """Serve until Ctrl-C, a request to terminate or, with control, the end of standard input; all these ends are
+    normal.
+    """
     with running(options) as server, _ending_on_signals(server):
         on_ready(server.port.path if options.link is None else str(options.link))
         if options.control:
@@ -65,7 +67,7 @@ def serve(options: ServeOptions, on_ready: Callable[[str], None]) -> None:
 
 @contextmanager
 def _ending_on_signals(server: Server) -> Iterator[None]:
-    """Let the running turn come to its end, so that nothing is left half done; only the main thread hears signals."""
+    """On a signal, let the running turn end, so that nothing is left half done; only the main thread gets signals."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -75,7 +77,7 @@ def _ending_on_signals(server: Server) -> Iterator[None]:
 
     before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)}
     for number, handler in before.items():
-        if handler is not signal.SIG_IGN:  # nohup and background jobs mean what they say
+        if handler is not signal.SIG_IGN:  # nohup and background jobs ignore signals on purpose
             signal.signal(number, end)
     try:
         yield
@@ -85,12 +87,12 @@ def _ending_on_signals(server: Server) -> Iterator[None]:
 
 
 def _links(options: ServeOptions) -> list[Path]:
-    """Names of the port: where `greywhale ports` looks for benches, and the one asked for."""
+    """Names of the port: the one that `greywhale ports` looks for, and the one asked for."""
     directory = bench_directory()
     try:
         directory.mkdir(mode=0o700, exist_ok=True)
     except OSError as error:
-        raise UserError(f"{directory}: cannot be made: {because(error)}.") from None
+        raise UserError(f"{directory}: cannot be made: {os_reason(error)}.") from None
     announced = directory / f"{options.board}-{os.getpid()}"
     return [announced] if options.link is None else [announced, options.link]
 

@@ -65,7 +65,7 @@ class Server:
         self._pacer.pace(self.bench.time_s, real_time)
 
     def power_off(self, after_writes: int = 0) -> None:
-        """Cut the supply, also in the middle of an EEPROM write: at once, or when the EEPROM has taken more bytes."""
+        """Cut the supply, at once or when the EEPROM has taken more bytes, also in the middle of an EEPROM write."""
         if after_writes > 0:
             self._cut_at = self.board.stats().eeprom_writes + after_writes
             return
@@ -85,7 +85,7 @@ class Server:
 
     def _receive(self) -> None:
         data = self.port.read()
-        self._notice_host()  # after the read: bytes written right after an open must meet the board already reset
+        self._notice_host()  # after the read: bytes that follow an open at once must meet a board that was reset
         if data and self.board.powered:
             self.board.uart_send(self.noise(line.resample(data, self.port.baud(), self.board.baud)))
 
@@ -122,7 +122,7 @@ class Server:
         if self._eeprom is None or not (now or self.bench.time_s >= self._eeprom_check_at):
             return
         self._eeprom_check_at = self.bench.time_s + EEPROM_CHECK_S
-        content = self.board.eeprom()  # rather than a count of writes, which runs ahead of what a busy cell holds
+        content = self.board.eeprom()  # not a count of writes, which is ahead of a busy cell
         if content != self._eeprom_kept:
             eeprom_file.save(self._eeprom, content)
             self._eeprom_kept = content

@@ -1,4 +1,4 @@
-"""Which wire of the arm sits on which pin of the board: one table per board, the same as in README.md.
+"""Which wire of the arm is on which pin of the board: one table per board, the same as in README.md.
 
 Leader potentiometers are on A0..A3 and follower potentiometers on A4..A7 of both boards.
 """

@@ -13,7 +13,7 @@ from greywhale.optimise import Optimiser, create
 from greywhale.tune.judge.choose import choose
 from greywhale.tune.search import lockstep as search
 from greywhale.tune.search.journal import Journal
-from greywhale.tune.search.lockstep import KEPT, TOGETHER, TURNS, Found, first, lockstep
+from greywhale.tune.search.lockstep import KEPT, TOGETHER, TURNS, Found, search_in_lockstep, try_start
 from greywhale.tune.search.space import Space
 
 BEFORE = default_controller()
@@ -37,8 +37,8 @@ class Hills:
 def run(method: str = "gwo-woa-relative", budget: int = 400, groups: object = TOGETHER) -> tuple[Found, Hills]:
     found, hills = Found.nothing(BEFORE), Hills()
     with Journal(None, {}) as book:
-        first(BEFORE, hills, found, book)
-        lockstep(
+        try_start(BEFORE, hills, found, book)
+        search_in_lockstep(
             SPACE, hills, found, book, stage="test", method=method, budget=budget, seed=(1,), starts=BEFORE[None],
             tick=lambda _: None, groups=groups,  # type: ignore[arg-type]
         )  # fmt: skip
@@ -110,7 +110,7 @@ def test_optimisers_are_given_back_when_a_search_is_cut_off(monkeypatch: pytest.
 
     monkeypatch.setattr(search, "create", watched)
     with pytest.raises(KeyboardInterrupt), Journal(None, {}) as book:
-        lockstep(
+        search_in_lockstep(
             SPACE, interrupted, Found.nothing(BEFORE), book, stage="test", method="gwo-woa", budget=10, seed=(1,),
             starts=BEFORE[None], tick=lambda _: None,
         )  # fmt: skip
@@ -196,7 +196,7 @@ def test_the_journal_is_asked_before_anything_is_simulated(tmp_path: Path) -> No
     for resume, evaluate in ((False, Hills()), (True, None)):
         found = Found.nothing(BEFORE)
         with Journal(path, {"budget": 30}, resume) as book:
-            lockstep(
+            search_in_lockstep(
                 SPACE, evaluate or _never, found, book, stage="test", method="cma-es", budget=30, seed=(1,),
                 starts=BEFORE[None], tick=lambda _: None,
             )  # fmt: skip

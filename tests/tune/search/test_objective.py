@@ -11,8 +11,8 @@ from greywhale.files.arm import default_arm
 from greywhale.loop import default_controller, plant_row
 from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory
-from greywhale.tune.search.objective import EFFORT, RMS, Objective, combined, crossed
-from greywhale.tune.search.training import LEVELS, SOON_S, drills, moves, reach, since_moving
+from greywhale.tune.search.objective import EFFORT, RMS, Objective, combine_plants, pair_with_plants
+from greywhale.tune.search.training import LEVELS, SOON_S, drills, moves, reach, time_since_move
 
 ARM = default_arm()
 PLANTS = plant_row(ARM)[None]
@@ -54,11 +54,11 @@ def test_the_bench_s_own_arithmetic_agrees(objective: Objective) -> None:
 
 def test_the_plants_mean_and_worst_count_half_each() -> None:
     values = np.array([[[1.0, 0.0, 2.0, 4.0], [3.0, 0.0, 2.0, 0.0]]])
-    np.testing.assert_allclose(combined(values), [[0.5 * 2 + 0.5 * 3, 0.0, 2.0, 0.5 * 2 + 0.5 * 4]])
+    np.testing.assert_allclose(combine_plants(values), [[0.5 * 2 + 0.5 * 3, 0.0, 2.0, 0.5 * 2 + 0.5 * 4]])
 
 
 def test_every_controller_meets_every_plant() -> None:
-    laws, arms = crossed(np.stack([BEFORE, BEFORE + 1]), np.array([[1.0], [2.0], [3.0]]))
+    laws, arms = pair_with_plants(np.stack([BEFORE, BEFORE + 1]), np.array([[1.0], [2.0], [3.0]]))
     assert arms[:, 0].tolist() == [1, 2, 3, 1, 2, 3]
     assert (laws[:3] == BEFORE).all()
     assert (laws[3:] == BEFORE + 1).all()
@@ -83,7 +83,7 @@ def test_moves_go_to_both_sides_in_several_sizes() -> None:
 def test_the_weight_starts_again_with_every_move() -> None:
     time_s = np.arange(601) / 200.0
     angle = np.where(time_s < 1.0, 0.0, np.where(time_s < 2.0, 0.5, 1.0))
-    weight = since_moving(Trajectory(time_s, np.tile(angle[:, None], 4)), 0.5)
+    weight = time_since_move(Trajectory(time_s, np.tile(angle[:, None], 4)), 0.5)
     assert len(weight) == 3500
     assert (weight[:500] == 0.0).all()
     assert weight[500] == pytest.approx(SOON_S)
@@ -97,7 +97,7 @@ def test_the_weight_starts_again_with_every_move() -> None:
 def test_a_trembling_hand_is_at_rest() -> None:
     time_s = np.arange(401) / 200.0
     tremor = 0.003 * np.sin(2 * np.pi * 10.0 * time_s)
-    weight = since_moving(Trajectory(time_s, np.tile(tremor[:, None], 4)), 0.0)
+    weight = time_since_move(Trajectory(time_s, np.tile(tremor[:, None], 4)), 0.0)
     assert weight[-1] == pytest.approx(SOON_S + 2.0, abs=0.01)
 
 

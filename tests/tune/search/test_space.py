@@ -73,27 +73,27 @@ def test_the_papers_box_is_table_7() -> None:
 def test_widths_that_no_board_takes_are_widened_and_counted() -> None:
     space = box("mf", "paper")
     points = np.full((1, 4, 8), 0.5) * np.where(space.upper > 0, 1.0, -1.0)
-    assert space.narrowed(points) == 0
+    assert space.count_narrow(points) == 0
     points[0, 2, :3] = [-0.0099, 0.0, 0.01]  # 0.01 is stored as the next width above: 163.84 becomes 164
-    assert space.narrowed(points) == 2
+    assert space.count_narrow(points) == 2
     assert space.controllers(points)[0, 2, :3].tolist() == [-LEAST_WIDTH, -LEAST_WIDTH, LEAST_WIDTH]
 
 
 def test_the_reduced_box_is_the_same_to_both_sides_and_lets_kp_and_kd_be() -> None:
-    space = box("both").reduced()
+    space = box("both").reduce()
     assert space.names == ("Ze_c", "Pe_b", "Zce_c", "Pce_b", "Ki", "Ku")
     rows = space.controllers(anywhere(space))
     for left, right in (("ne_c", "pe_b"), ("ze_a", "ze_c"), ("nce_c", "pce_b"), ("zce_a", "zce_c")):
         assert (rows[..., CONTROLLER_COLUMNS.index(left)] == -rows[..., CONTROLLER_COLUMNS.index(right)]).all()
     assert (rows[..., 8:10] == 1 << 16).all()
-    assert box("sf").reduced().names == GAINS
-    assert box("mf").reduced().names == ("Ze_c", "Pe_b", "Zce_c", "Pce_b")
+    assert box("sf").reduce().names == GAINS
+    assert box("mf").reduce().names == ("Ze_c", "Pe_b", "Zce_c", "Pce_b")
 
 
 def test_restretching_keeps_the_law() -> None:
     """Sets half as wide with half the factor mean the same voltage for the same error."""
-    space = box("both").reduced()
-    stretched = space.restretched(BEFORE)
+    space = box("both").reduce()
+    stretched = space.restretch(BEFORE)
     assert (stretched[:, 8] == 1 << 16).all()
     for old, new in zip(BEFORE, stretched, strict=True):
         one, other = (JointSettings(*(int(value) for value in row)).controller(1) for row in (old, new))
@@ -103,7 +103,7 @@ def test_restretching_keeps_the_law() -> None:
 
 def test_bounds_hold() -> None:
     bounds = {"Ku": (3.0, 5.0), "Ze_c": (0.1, 0.2), "Ne_c": (-0.5, -0.4)}
-    for space in (box("both").bounded(bounds), box("both").bounded(bounds).reduced()):
+    for space in (box("both").with_bounds(bounds), box("both").with_bounds(bounds).reduce()):
         rows = space.controllers(anywhere(space))
         assert rows[..., 11].min() >= 3_000
         assert rows[..., 11].max() <= 5_000
@@ -114,7 +114,7 @@ def test_bounds_hold() -> None:
 
 
 def test_opposite_sides_with_nothing_in_common_stay_two_variables() -> None:
-    space = box("mf").bounded({"Ze_a": (-0.2, -0.1), "Ze_c": (0.3, 0.4)}).reduced()
+    space = box("mf").with_bounds({"Ze_a": (-0.2, -0.1), "Ze_c": (0.3, 0.4)}).reduce()
     assert {"Ze_a", "Ze_c"} <= set(space.names)
 
 

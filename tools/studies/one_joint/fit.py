@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greywhale.errors import BAD_USAGE, UserError
-from greywhale.identify.fit import Fit, differing, least_squares_fit
+from greywhale.identify.fit import Fit, least_squares_fit, pick_different
 from greywhale.optimise import minimise
 from tools.studies.one_joint.law import Law
 from tools.studies.one_joint.plant import JointSpace, Rig
@@ -172,7 +172,7 @@ class _Search:
 
     def _measured(self, names: Sequence[str], source: JointSpace, x: Floats) -> _Found:
         space = JointSpace.of(self.rig, names)
-        fit = self.fit(space, [space.moved(x, source)])
+        fit = self.fit(space, [space.translate(x, source)])
         mse = left_out(fit, self.parts, self.sizes)
         if self.usual is None:
             self.usual = mse
@@ -196,7 +196,7 @@ class _Search:
 
         start = np.clip([middle, *known], low, high)
         minimise(cost, low, high, budget=GLOBAL_EVALUATIONS, seed=self.seed, start=start)
-        return differing(seen, STARTS)
+        return pick_different(seen, STARTS)
 
 
 def identify_joint(

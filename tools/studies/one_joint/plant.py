@@ -117,7 +117,7 @@ class JointSpace:
         """In physical units."""
         return {name: self.kind(n).from_search(float(x[n])) for n, name in enumerate(self.names)}
 
-    def moved(self, x: Floats, source: JointSpace) -> Floats:
+    def translate(self, x: Floats, source: JointSpace) -> Floats:
         """A vector of another space in this one; what that one does not have starts as usual."""
         known = dict(zip(source.names, x, strict=True))
         start = self.start()

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from greywhale.errors import FAILED, UserError, because
+from greywhale.errors import FAILED, UserError, os_reason
 
 Floats = NDArray[np.float64]
 Columns = dict[str, Floats]
@@ -21,7 +21,7 @@ def read_columns(path: Path, needed: Sequence[str]) -> Columns:
         with path.open(newline="", encoding="utf-8") as file:
             rows = list(csv.reader(file))
     except OSError as error:
-        raise UserError(f"{path} cannot be read: {because(error)}.", FAILED) from error
+        raise UserError(f"{path} cannot be read: {os_reason(error)}.", FAILED) from error
     names = rows[0] if rows else []
     missing = [name for name in needed if name not in names]
     if missing:

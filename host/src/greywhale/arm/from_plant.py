@@ -1,4 +1,6 @@
-"""An identified plant back as an arm file has it: motors, friction, gears, and where the potentiometers read 0."""
+"""Turns an identified plant back into an arm file's terms: motors, friction, gears, and where the potentiometers read
+0.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +12,7 @@ from greywhale.arm.plants import column
 from greywhale.firmware import JOINTS
 
 Floats = NDArray[np.float64]
-# Of a motor's damping at most this share may be back-EMF, so that viscous friction stays positive.
+# Back-EMF may be at most this share of a motor's damping, so that viscous friction stays positive.
 BACK_EMF_SHARE = 0.95
 
 
@@ -19,8 +21,8 @@ def arm_of(
 ) -> ArmParameters:
     """An identified plant as an arm: the user's file with other motors, friction, gears and zero angles.
 
-    `noise` (4,) is that of the follower's potentiometers, V rms, if they turn 300 degrees. The leader's are taken to be
-    of the same make, and no better: the log of a led arm tells nothing of them.
+    `noise` (4,) is that of the follower's potentiometers, V rms, if they turn 300 degrees. The leader's are assumed to
+    be of the same make and no better: the log of a led arm shows nothing of them.
     """
     data = arm.model_dump(exclude={"identification"})
     data |= {"name": name, "source": source}

@@ -1,4 +1,4 @@
-"""What an arm.toml may say: geometry, motors, friction, gears, stops, potentiometers; checked as physics."""
+"""The content of an arm.toml: geometry, motors, friction, gears, stops, potentiometers; checked as physics."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pydantic import AfterValidator, Field, model_validator
 from greywhale import _native
 from greywhale.formats.toml_file import Table
 
-# Of the usual potentiometer: a track of 300 degrees, and noise of half a step of the board's converter (V rms).
+# The usual potentiometer: a track of 300 degrees, and noise of half a step of the board's converter (V rms).
 USUAL_TRACK_RAD = math.radians(300.0)
 USUAL_NOISE_V = 0.0024
 MOST_NOISE_V = 0.5
@@ -168,7 +168,7 @@ class PotentiometerBank(Table):
 
 
 def usual_pots() -> PotentiometerBank:
-    """Potentiometers as most arms have them, of which nothing special is known."""
+    """Potentiometers as most arms have them, for an arm whose own are not known."""
     return PotentiometerBank(joint=(Potentiometer(noise=USUAL_NOISE_V),) * 4)
 
 

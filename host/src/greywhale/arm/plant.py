@@ -1,4 +1,4 @@
-"""The arm and the potentiometers that move and measure; the work is done in C++ (sim/arm)."""
+"""The arm and its potentiometers, which move and measure; C++ (sim/arm) does the work."""
 
 from __future__ import annotations
 

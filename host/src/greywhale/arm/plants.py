@@ -1,5 +1,6 @@
-"""Arms as rows of numbers, as the arm's equations use them: SI units at the joints' output shafts (docs/closed_loop.md
-says what each is). Columns go by name.
+"""Arms as rows of numbers, in the form that the arm's equations use: SI units at the joints' output shafts.
+
+docs/closed_loop.md explains each column. Columns go by name.
 """
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ def plant_row(parameters: ArmParameters) -> Plants:
 
 
 def check_plants(plants: Plants) -> Plants:
-    """One row or many with numbers that an arm can have; with the first axis added where it was missing."""
+    """Check one row or many with numbers that an arm can have; the first axis is added where it was missing."""
     check_type("plants", plants, np.float64)
     rows = plants[None] if plants.ndim == 1 else plants
     if rows.ndim != 2 or rows.shape[1] != len(PLANT_COLUMNS):
@@ -55,9 +56,9 @@ def check_plants(plants: Plants) -> Plants:
     _refuse(rows, np.isin(named, _NOT_NEGATIVE) & (rows < 0.0), "it must not be negative")
     for name, below in (("breakaway", "coulomb"), ("stop_max", "stop_min")):
         lower = rows[:, columns(name)] < rows[:, columns(below)]
-        _refuse(rows, _marked(rows, name, lower), f"it must not be below {below}")
+        _refuse(rows, _mark_column(rows, name, lower), f"it must not be below {below}")
     toothless = (rows[:, columns("stiffness")] == 0.0) & (rows[:, columns("half_gap")] > 0.0)
-    _refuse(rows, _marked(rows, "stiffness", toothless), "a gear with a gap needs teeth with some")
+    _refuse(rows, _mark_column(rows, "stiffness", toothless), "a gear with a gap needs teeth with some")
     return np.ascontiguousarray(rows)
 
 
@@ -71,8 +72,8 @@ def check_type(name: str, array: object, wanted: type) -> None:
         )
 
 
-def _marked(rows: Plants, name: str, wrong: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
-    """A mask over all columns from one over the four joints of a column."""
+def _mark_column(rows: Plants, name: str, wrong: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+    """A mask over all columns, from a mask over the four joints of one column."""
     mask = np.zeros(rows.shape, dtype=bool)
     mask[:, columns(name)] = wrong
     return mask

@@ -1,7 +1,7 @@
-"""The links' equations as Obadina et al. 2022 print them (Eqs. 2 to 4), with every erratum correctable by itself.
+"""The links' equations as Obadina et al. 2022 print them (Eqs. 2 to 4); every erratum can be corrected by itself.
 
-With all corrections they are the equations of sim/arm. docs/errata.md says what each is and what it does. For study
-only: plain Python, and as printed they do not conserve energy.
+With all corrections they are the equations of sim/arm. docs/errata.md explains each erratum and its effect. They are
+for study only: plain Python, and as printed they do not conserve energy.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def _checked(corrected: Iterable[str]) -> frozenset[str]:
 
 
 class PrintedBody:
-    """`mass_matrix(q)` and `bias(q, v)` as printed, but for the errata named in `corrected`; rad, SI units."""
+    """`mass_matrix(q)` and `bias(q, v)` as printed, except for the errata named in `corrected`; rad, SI units."""
 
     def __init__(self, arm: ArmParameters, corrected: Iterable[str] = ()) -> None:
         fixed = _checked(corrected)

@@ -1,8 +1,8 @@
 """A greywhale board on a serial port: greeting, requests with retries, motors that never stay on by accident.
 
-An Arduino resets when its port is opened, and its bootloader listens first, for up to two seconds. The Mega's
-bootloader stays for several seconds more once it has seen any byte, so this side keeps quiet until the firmware has
-been heard (it sends one hello by itself when it starts) or the bootloader must have gone.
+An Arduino resets when its port is opened. Its bootloader then listens first, for up to two seconds. The Mega's
+bootloader stays for several seconds more once it has seen any byte. So this side keeps quiet until it has heard the
+firmware (which sends one hello by itself when it starts) or until the bootloader must have ended.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from greywhale.protocol.declared import Reply_co, Request
 from greywhale.protocol.frames import Frame, FrameDecoder, encode_frame
 from greywhale.protocol.transport import Transport
 
-# A request is repeated, unchanged, after this long without an answer. Every request may be repeated safely.
+# After this long without an answer a request is repeated, unchanged. Every request may be repeated safely.
 REPLY_WAIT_S = 0.3
 ATTEMPTS = 5
-# By then a bootloader to which nobody spoke has started the firmware.
+# A bootloader to which nobody spoke has started the firmware by then.
 QUIET_S = 2.0
-# How long to go on greeting a port that says nothing, counted from its opening.
+# A port that says nothing is greeted for this long, counted from its opening.
 PATIENCE_S = 5.0
 
 # Requests count 1..255; the hello that a starting board sends by itself has this sequence number.
@@ -40,7 +40,7 @@ class NoAnswerError(UserError):
 
 
 class Device:
-    """An open and greeted board; leaving the context, for whatever reason, stops the motors if they may run."""
+    """An open and greeted board. Leaving the context, for whatever reason, stops the motors if they may be on."""
 
     def __init__(self, port: str, quiet_s: float = QUIET_S, patience_s: float = PATIENCE_S) -> None:
         self.port = port
@@ -96,7 +96,7 @@ class Device:
             raise UserError(f"{self.port}: {error.message}") from None
 
     def greet(self) -> schema.HelloReply:
-        """Say hello again: `hello` then tells the CRC of the set that runs now."""
+        """Say hello again: `hello` then holds the CRC of the set that runs now."""
         self.hello = self.ask(schema.HelloRequest())
         return self.hello
 
@@ -104,7 +104,7 @@ class Device:
         return self.ask(schema.StatusRequest())
 
     def telemetry(self, every: int) -> None:
-        """Ask for a sample every so many ticks; 0 turns them off. Samples of before are forgotten."""
+        """Ask for a sample every so many ticks; 0 turns them off. Earlier samples are forgotten."""
         echoed = self.ask(schema.TelemetryRequest(every)).every
         if echoed != every:
             raise UserError(
@@ -113,32 +113,32 @@ class Device:
         self._samples.clear()
 
     def enable(self, lease_ms: int) -> None:
-        """Start the motors; they go off by themselves when the lease is not renewed in time (0: only on stop)."""
+        """Start the motors. They go off by themselves when the lease is not renewed in time (0: only on stop)."""
         self._motors_may_run = True
         self.lease_ms = lease_ms
         self.ask(schema.EnableRequest(lease_ms))
 
     def lead(self, lease_ms: int) -> schema.LeadReply:
-        """Start the motors with this host in the leader's place; points of the reference go out by `lead_point`."""
+        """Start the motors with this host in the leader's place; `lead_point` sends the points of the reference."""
         self._motors_may_run = True
         self.lease_ms = lease_ms
         self._lead_progress = self._lead_refused = None
         return self.ask(schema.LeadRequest(lease_ms))
 
     def lead_point(self, number: int, step: tuple[int, int, int, int]) -> None:
-        """Send a point of the reference without waiting for the answer, which `lead_progress` tells."""
+        """Send a point of the reference without waiting for the answer; `lead_progress` returns that later."""
         request = schema.LeadPointRequest(number, step)
         self._transport.write(encode_frame(request.TYPE, self._next_sequence(), request.pack()))
 
     def lead_progress(self) -> schema.LeadPointReply | None:
-        """The last answer to a point, None before the first; a refusal is raised."""
+        """The last answer to a point, None before the first. Raises where the board refused it."""
         if self._lead_refused is not None:
             raise RefusedError(self.port, schema.LeadPointRequest.NAME, self._lead_refused)
         return self._lead_progress
 
     @contextlib.contextmanager
     def enabled(self, lease_ms: int) -> Iterator[None]:
-        """Motors on inside, off afterwards, also when an error or Ctrl-C ends it."""
+        """Motors on inside the context, off afterwards, also when an error or Ctrl-C ends it."""
         with self._motors_on(lambda: self.enable(lease_ms)):
             yield
 
@@ -163,17 +163,17 @@ class Device:
         self.stop()
 
     def renew(self) -> None:
-        """Renew the lease without waiting for the answer: a lost one is made good by the next renewal."""
+        """Renew the lease without waiting for the answer; the next renewal replaces a lost one."""
         request = schema.RenewRequest(self.lease_ms)
         self._transport.write(encode_frame(request.TYPE, self._next_sequence(), request.pack()))
 
     def stop(self) -> None:
-        """Motors off, confirmed by the board. A further Ctrl-C does not keep the request from going out."""
-        with _ctrl_c_waits():
+        """Turn the motors off, confirmed by the board. A further Ctrl-C does not hold the request back."""
+        with _hold_ctrl_c():
             try:
                 self.ask(schema.StopRequest())
             except UserError as error:
-                # After one failed attempt closing need not try again; after a restart the motors are off anyway.
+                # After one failed attempt, closing need not try again. After a restart the motors are off anyway.
                 self._motors_may_run = False
                 if self._started is None:
                     raise UserError(f"{error.message} {self._unconfirmed_stop()}") from None
@@ -212,7 +212,7 @@ class Device:
         return self._sequence
 
     def _receive(self) -> None:
-        """Read what there is and sort the frames."""
+        """Read what has arrived and sort the frames."""
         data = self._transport.read()
         if not data:
             return
@@ -230,7 +230,7 @@ class Device:
                 self._replies.append(frame)
 
     def _answers(self) -> Iterator[Frame]:
-        """Answers to the current request; those to earlier ones come late and are dropped."""
+        """Take answers to the current request; late answers to earlier requests are dropped."""
         while self._replies:
             frame = self._replies.popleft()
             if frame.seq == self._sequence:
@@ -263,10 +263,10 @@ class Device:
                     raise self._silent(patience_s) from None
         self._started = None
         self._greeted = True
-        return self._same_language(payload)
+        return self._check_language(payload)
 
-    def _same_language(self, payload: bytes) -> schema.HelloReply:
-        """The hello, if its sender was built from the declarations that this host was built from."""
+    def _check_language(self, payload: bytes) -> schema.HelloReply:
+        """Return the hello if its sender was built from the same declarations as this host."""
         remedy = f"flash the firmware that belongs to this host with `greywhale flash --port {self.port}`."
         if not payload or payload[0] != schema.PROTOCOL:
             spoken = payload[0] if payload else "none"
@@ -302,7 +302,7 @@ def version(hello: schema.HelloReply) -> str:
 
 
 @contextlib.contextmanager
-def _ctrl_c_waits() -> Iterator[None]:
+def _hold_ctrl_c() -> Iterator[None]:
     """Hold Ctrl-C back for the second that a stop takes at most (only the main thread receives it)."""
     if threading.current_thread() is not threading.main_thread():
         yield

@@ -1,7 +1,7 @@
-"""Leads a board along a motion: control points go out ahead of their time, lost ones again, and the pace falls when a
-follower does not keep up.
+"""Leads a board along a motion.
 
-Everything is timed by the board's own ticks, as in `stream`: a simulated board may live faster than this machine.
+Control points go out ahead of their time. A lost point is sent again. The pace falls when a follower does not keep up.
+The board's own ticks time everything, as in `stream`: a simulated board may live faster than this machine.
 """
 
 from __future__ import annotations
@@ -22,34 +22,35 @@ from greywhale.trajectory.motion import Trajectory
 
 Floats = npt.NDArray[np.float64]
 
-# Points that the board can keep.
+# The board can keep so many points.
 ROOM = 12
 # More at once would crowd samples out of the board's transmitter.
 _AT_ONCE = 2
-# No answer for so many ticks: what was sent since the last one is sent again.
+# After so many ticks without an answer, the points since the last answer are sent again.
 _PATIENCE_TICKS = 100
-# An answer that takes nothing new tells of a gap; but those to points sent before it was mended say the same.
+# An answer that takes nothing new shows a gap. But answers to points that were sent before the repair say the same.
 _RETRY_TICKS = 32
-# From the arm's pose to a motion's first one, at the most (rad/s).
+# The largest speed from the arm's pose to a motion's first pose (rad/s).
 _APPROACH_RAD_S = 0.5
-# A follower this share of its tracking limit away from the reference slows the motion down, more of it stops it.
+# A follower this share of its tracking limit away from the reference slows the motion down; at the second it stops it.
 _SLOWS, _STOPS = 0.5, 0.8
-# By so much the pace may change from point to point: from full to none in a sixth of a second.
+# The pace may change by so much from point to point: from full to none in a sixth of a second.
 _PACE_STEP = 0.1
-# A motion that takes this many times its length is not one that this arm can follow.
+# If a motion takes this many times its length, the arm cannot follow it.
 _PATIENCE = 3.0
 
 
 @dataclass(frozen=True)
 class Plan:
-    """A motion as the board will be told it: `angles` (rad, rows 16 ms apart), from one pose at rest to another."""
+    """A motion in the form that the board gets: `angles` (rad, rows 16 ms apart), from one pose at rest to another."""
 
     angles: Floats
 
     @classmethod
     def of(cls, motion: Trajectory, start: Floats, limits: Floats, rest_s: float = 0.0) -> Plan:
-        """From `start` (rad) at rest to the motion's first pose, the motion, and `rest_s` at its last pose; all within
-        the joints' `limits` (2, 4), to which the board holds a leader arm as well.
+        """From `start` (rad) at rest to the motion's first pose, then the motion, then `rest_s` at its last pose.
+
+        All is within the joints' `limits` (2, 4), which the board also sets for a leader arm.
         """
         low, high = limits[0] + STEP_LSB, limits[1] - STEP_LSB  # points are rounded to steps
         first = np.clip(motion.angles[0], low, high)
@@ -98,7 +99,7 @@ class Leading:
         self._told = np.zeros(JOINTS, dtype=np.int64)  # steps from the origin, of all points made
         self._points: list[tuple[int, int, int, int]] = []
         self._sent = self._taken = 0  # points; self._points[self._taken:] are not known to have arrived
-        self._waiting = self._heard = 0  # what the board had to play, and at which tick it said so
+        self._waiting = self._heard = 0  # points that the board had to play, and the tick at which it said so
         self._since = 0  # tick of the last progress
         self._answer: schema.LeadPointReply | None = None
         self._place, self._pace, self._wanted = 0.0, 1.0, 1.0
@@ -113,18 +114,19 @@ class Leading:
 
     @property
     def points(self) -> int:
-        """Made so far."""
+        """How many points were made so far."""
         return len(self._points)
 
     @property
     def done(self) -> bool:
-        """All points have been played."""
-        return self._made_all and self._taken == len(self._points) and self._left(self._last_tick) <= -2
+        """Whether all points have been played."""
+        return self._made_all and self._taken == len(self._points) and self._points_left(self._last_tick) <= -2
 
     def keep_ahead(self, tick: int, sample: schema.Sample) -> None:
-        """Hear the board's answers and send what it has room for; `tick` counts the board's ticks from anywhere.
+        """Read the board's answers and send as many points as it has room for; `tick` counts the board's ticks from
+        anywhere.
 
-        The motion begins once the soft start is over; before that the board is told to rest, so that its queue is full.
+        The motion begins once the soft start is over. Before that the board is told to rest, so that its queue is full.
         """
         self._last_tick = tick
         self._resting = sample.state is not schema.State.FOLLOWING
@@ -132,16 +134,16 @@ class Leading:
         self._watch(sample)
         if self._taken < self._sent and tick - self._since > _PATIENCE_TICKS:
             self._sent, self._since = self._taken, tick
-        room = min(_AT_ONCE, ROOM - max(0, self._left(tick)) - (self._sent - self._taken))
-        while room > 0 and self._make(self._sent + 1):
+        room = min(_AT_ONCE, ROOM - max(0, self._points_left(tick)) - (self._sent - self._taken))
+        while room > 0 and self._make_points(self._sent + 1):
             if self._sent == self._taken:
                 self._since = tick
             self._device.lead_point((self._first + self._sent) % 256, self._points[self._sent])
             self._sent += 1
             room -= 1
 
-    def _left(self, tick: int) -> int:
-        """Points that the board has yet to play, by its last answer and the time since."""
+    def _points_left(self, tick: int) -> int:
+        """How many points the board has yet to play, by its last answer and the time since."""
         return self._waiting - (tick - self._heard) // POINT_TICKS
 
     def _hear(self, tick: int) -> None:
@@ -156,7 +158,7 @@ class Leading:
         self._answer = answer
         taken = self._taken + (answer.next - self._first - self._taken) % 256
         if taken > self._sent:
-            return  # an answer to what was sent twice, older than one that was heard before
+            return  # an old answer to a point that was sent twice
         if answer.waiting <= 1 and self._taken and not self._made_all:
             self.starved += 1
         if taken > self._taken:
@@ -170,8 +172,8 @@ class Leading:
         far = max(abs(a - b) for a, b in zip(sample.leader, sample.follower, strict=True)) * ANGLE_LSB / self._limit
         self._wanted = min(1.0, max(0.0, (_STOPS - far) / (_STOPS - _SLOWS)))
 
-    def _make(self, count: int) -> bool:
-        """Make points until there are `count`; False when the plan has ended before."""
+    def _make_points(self, count: int) -> bool:
+        """Make points until there are `count`; False when the plan ends before."""
         end = len(self._plan.angles) - 1
         while len(self._points) < count and not self._made_all:
             if self._resting:

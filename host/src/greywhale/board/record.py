@@ -1,8 +1,8 @@
-"""Records a board's samples into a log; with `enable`, lets the follower follow meanwhile.
+"""Records a board's samples into a log; with `enable`, the follower follows meanwhile.
 
-The log begins with the first sample in state `following` (without `enable`: with the first sample) and is as long as
-asked by the board's clock; with a motion, which this host then leads, as long as that takes. Whatever ends it early,
-the motors are stopped and what was recorded stays, marked as interrupted.
+The log begins with the first sample in state `following` (without `enable`: with the first sample). It is as long as
+asked, by the board's clock. With a motion, which this host then leads, it is as long as the motion takes. Whatever ends
+it early, the motors are stopped, and what was recorded is kept and marked as interrupted.
 """
 
 from __future__ import annotations
@@ -32,10 +32,10 @@ Floats = npt.NDArray[np.float64]
 
 # The motors go off this long after this host falls silent.
 LEASE_MS = 500
-# Above this the lease could not be renewed in time from the samples alone.
+# With rarer samples the lease could not be renewed in time from the samples alone.
 _LONGEST_EVERY_ENABLED = 100
 _LONGEST_EVERY = 65535
-# And above this a host that leads could not send its points in time.
+# With rarer samples a host that leads could not send its points in time.
 _LONGEST_EVERY_LED = 4
 _SHORTEST_S = 0.01
 _LONGEST_S = 86400.0
@@ -54,7 +54,7 @@ _VOLT = schema.Sample.LSB["voltage"]
 class Recording:
     """What was recorded: rows in the log, samples that the link lost, duration by the board's clock.
 
-    Of a motion that this host led also its `slowest` pace (1: as planned), and how often the board had to wait for it.
+    For a motion that this host led also its `slowest` pace (1: as planned), and how often the board had to wait for it.
     """
 
     path: Path
@@ -92,7 +92,7 @@ def record(
         received = stream(device, every)
         if enable:
             with device.enabled(max(LEASE_MS, 20 * every)):
-                received = _following(device, received, report)
+                received = _await_following(device, received, report)
                 duration = _write(device, log, received, length, True, report)
         else:
             duration = _write(device, log, received, length, False, report)
@@ -108,7 +108,9 @@ def record_led(
     progress: Progress | None = None,
     table: ParameterTable | None = None,
 ) -> Recording:
-    """Lead the arm along `motion`, from where it is, and record that; `table` is what runs, where that is known."""
+    """Lead the arm along `motion`, from where it is, and record that; `table` is the table that runs, where it is
+    known.
+    """
     check_every_led(every)
     report = progress or (lambda what, fraction: None)
     running = read_parameters(device, report) if table is None else table
@@ -121,14 +123,14 @@ def record_led(
             pose = np.array(begun.reference) * ANGLE_LSB
             plan = Plan.of(motion, pose, limits, REST_S)
             leading = Leading(device, begun, plan, running.physical("tracking_limit"))
-            received = _following(device, received, report, leading)
+            received = _await_following(device, received, report, leading)
             duration = _write_led(device, log, received, leading, report)
     device.telemetry(0)
     return Recording(Path(path), log.rows, log.dropped, duration, leading.slowest, leading.starved)
 
 
 def check_every_led(every: int) -> None:
-    """Refuse samples too seldom to lead by."""
+    """Refuse samples that are too rare to lead by."""
     if not 1 <= every <= _LONGEST_EVERY_LED:
         raise UserError(
             f"one sample every {every} ticks is out of range; while this host leads it must be 1 to "
@@ -161,10 +163,10 @@ def _origin(device: Device, period_ms: int, every: int) -> Origin:
     return Origin(device.firmware_version, device.hello.board.key, device.hello.param_crc, period_ms, every)
 
 
-def _following(
+def _await_following(
     device: Device, received: Iterator[Received], report: Progress, leading: Leading | None = None
 ) -> Iterator[Received]:
-    """Wait until the soft start is over; the samples from then on."""
+    """Wait until the soft start is over, and yield the samples from then on."""
     report("starting the motors", 0.0)
     moved = False
     for one in received:
@@ -175,7 +177,7 @@ def _following(
             moved = True
             if leading is not None:
                 leading.keep_ahead(one.elapsed, one.sample)
-        # Samples from before the request may still be on their way, but not for long.
+        # Samples from before the request may still arrive, but not for long.
         if state is schema.State.FAULT or (state not in _MOVING and (moved or one.elapsed > _ENABLE_TICKS)):
             raise why_stopped(device)
     raise AssertionError("a stream of samples has no end")
@@ -184,7 +186,7 @@ def _following(
 def _write(
     device: Device, log: LogWriter, received: Iterator[Received], length: int, enabled: bool, report: Progress
 ) -> float:
-    """Fill the log for `length` ticks; its duration in s."""
+    """Fill the log for `length` ticks, and return its duration in s."""
     start: int | None = None
     for one in received:
         if enabled and one.sample.state is not schema.State.FOLLOWING:
@@ -205,7 +207,7 @@ def _write(
 def _write_led(
     device: Device, log: LogWriter, received: Iterator[Received], leading: Leading, report: Progress
 ) -> float:
-    """Fill the log until the motion is over; its duration in s."""
+    """Fill the log until the motion is over, and return its duration in s."""
     start: int | None = None
     for one in received:
         if one.sample.state is not schema.State.FOLLOWING:

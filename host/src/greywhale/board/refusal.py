@@ -1,4 +1,4 @@
-"""Words for what a board refuses and for its faults: what, which joint or parameter, and the remedy."""
+"""Words for a board's refusals and faults: what is wrong, with which joint or parameter, and the remedy."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ _ENABLE_ERROR_PER_COUNT = 1.0 / 32.0  # rad; see error_too_large in the declarat
 
 
 class RefusedError(UserError):
-    """The board understood a request and said no; `code` tells why."""
+    """The board understood a request and said no; `code` is the reason."""
 
     def __init__(self, port: str, request: str, nack: schema.Nack) -> None:
         self.code = nack.code
@@ -66,5 +66,5 @@ def fault_text(status: schema.StatusReply) -> str:
 
 
 def lower_first(text: str) -> str:
-    """For a sentence that goes on inside another; a first word such as EEPROM keeps its capitals."""
+    """Make a sentence fit inside another; a first word such as EEPROM keeps its capitals."""
     return text if text[1:2].isupper() else text[:1].lower() + text[1:]

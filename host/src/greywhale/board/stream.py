@@ -1,8 +1,7 @@
-"""The board's samples as they come: gaps counted by the board's own ticks, the lease of the motors kept alive
-meanwhile.
+"""The board's samples as they come. The board's own ticks count the gaps, and the lease of the motors is kept alive.
 
-The lease is renewed by the time in the samples rather than by this machine's clock: a simulated board may live many
-times faster than real time, but never runs ahead of samples that nobody has read.
+The lease is renewed by the time in the samples, not by this machine's clock: a simulated board may live many times
+faster than real time, but never runs ahead of samples that nobody has read.
 """
 
 from __future__ import annotations
@@ -77,7 +76,7 @@ def _silence(device: Device, last: int | None, silence_s: float) -> UserError:
 
 
 def why_stopped(device: Device) -> UserError:
-    """After the motors went off by themselves: the board's reason in words."""
+    """The board's reason in words, after the motors went off by themselves."""
     status = device.status()
     if status.state is schema.State.FAULT or status.stop_reason is schema.StopReason.FAULT:
         return UserError(f"{device.port}: the board stopped the motors: {fault_text(status)}")

@@ -1,7 +1,7 @@
 """Moves whole parameter sets: reads the running one, stages, applies and saves another, and proves that it arrived.
 
-The board changes nothing until the whole staged set has passed its checks under the CRC that this host computed; then
-all of it changes between two ticks. A broken upload therefore leaves the running and the stored set as they were.
+The board changes nothing until the whole staged set has passed its checks under the CRC that this host computed. Then
+all of it changes between two ticks. So a broken upload leaves the running and the stored set as they were.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _POLL_S = 0.02
 
 @dataclass(frozen=True)
 class Uploaded:
-    """What an upload did: the set that runs and is stored, names of the parameters that changed."""
+    """The result of an upload: the set that runs and is stored, names of the parameters that changed."""
 
     table: ParameterTable
     changed: tuple[str, ...]
@@ -50,8 +50,8 @@ def read_parameter(device: Device, name: str) -> int:
 
 
 def read_parameters(device: Device, progress: Progress | None = None) -> ParameterTable:
-    """The running set, proven whole by its CRC."""
-    report = progress or _silent
+    """Read the running set; its CRC proves that it is whole."""
+    report = progress or _report_nothing
     values = []
     for parameter in schema.PARAMETERS:
         report("reading parameters", parameter.index / len(schema.PARAMETERS))
@@ -72,7 +72,7 @@ def upload_controller(device: Device, path: str | Path, progress: Progress | Non
 
 
 def change_parameters(device: Device, changes: Mapping[str, int], progress: Progress | None = None) -> Uploaded:
-    """Run and store the running set with `changes` (name -> raw value) made to it."""
+    """Take the running set, make the `changes` (name -> raw value), then run and store it."""
     running = read_parameters(device, progress)
     wanted = running.with_raw(changes)
     upload_set(device, wanted, progress)
@@ -84,7 +84,7 @@ def upload_set(
     device: Device, table: ParameterTable, progress: Progress | None = None, save_wait_s: float = SAVE_WAIT_S
 ) -> None:
     """Stage, apply and save a whole set, then check that the board runs it. A save may take `save_wait_s`."""
-    report = progress or _silent
+    report = progress or _report_nothing
     crc = table.crc
     for index, value in enumerate(table.raw):
         report("uploading parameters", index / len(table.raw))
@@ -107,7 +107,7 @@ def upload_set(
 
 
 def _when_not_saving(wait_s: float, request: Callable[[], object]) -> None:
-    """Repeat a request that the board puts off while it still writes an earlier set."""
+    """Repeat a request that the board refuses while it still writes an earlier set."""
     deadline = time.monotonic() + wait_s
     while True:
         try:
@@ -138,5 +138,5 @@ def _wait_until_saved(device: Device, wait_s: float) -> None:
         time.sleep(_POLL_S)
 
 
-def _silent(what: str, fraction: float) -> None:
-    """Progress that nobody watches."""
+def _report_nothing(what: str, fraction: float) -> None:
+    """Report nothing: nobody looks."""

@@ -9,7 +9,7 @@ from greywhale.errors import UserError
 
 
 def need_bench(module: str) -> Any:
-    """A module that needs greywhale_sim; without that, one sentence with the remedy."""
+    """Import a module that needs greywhale_sim; without that package, one sentence with the remedy."""
     try:
         return importlib.import_module(module)
     except ImportError as error:

@@ -14,7 +14,7 @@ from greywhale.optimise.comparison_report import as_dict, check_format, text, wr
 from greywhale.optimise.functions import FUNCTIONS, Setting
 from greywhale.optimise.methods import METHODS
 
-# Below this many evaluations in all, other processes take longer to start than they save.
+# With fewer evaluations in all, starting other processes takes longer than they save.
 SMALL = 300_000
 
 

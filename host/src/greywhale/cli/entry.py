@@ -17,7 +17,7 @@ from typing import NoReturn
 import click
 
 from greywhale.cli.verbs import greywhale
-from greywhale.errors import BAD_USAGE, FAILED, UserError, because
+from greywhale.errors import BAD_USAGE, FAILED, UserError, os_reason
 
 INTERRUPTED = 130
 
@@ -47,16 +47,16 @@ def run(arguments: Sequence[str]) -> int:
     except (KeyboardInterrupt, click.Abort) as error:
         return _failed(_with_notes("interrupted.", error.__cause__ or error), INTERRUPTED, as_json)
     except BrokenPipeError:
-        # Whoever read our output has gone; nothing is left to say, and Python must not try to at exit.
+        # The reader of our output has gone. Nothing is left to say, and Python must not try to say it at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return FAILED
     except OSError as error:
         named = f"{error.filename}: " if error.filename else ""
-        return _failed(f"{named}{because(error)}.", FAILED, as_json)
+        return _failed(f"{named}{os_reason(error)}.", FAILED, as_json)
 
 
 def _refuse_empty(arguments: Sequence[str]) -> None:
-    """An empty name, mostly of a shell variable that is not set, would be taken for the current folder."""
+    """Refuse an empty name, mostly of an unset shell variable: it would be taken for the current folder."""
     for before, argument in zip(["", *arguments], arguments, strict=False):
         if argument == "" or (argument.startswith("--") and argument.endswith("=")):
             option = argument.rstrip("=") or before
@@ -65,7 +65,7 @@ def _refuse_empty(arguments: Sequence[str]) -> None:
 
 
 def _terminated(number: int, frame: FrameType | None) -> None:
-    """SIGTERM, and SIGHUP of a terminal that is closed, end a verb as Ctrl-C does: motors off, files whole."""
+    """End a verb on SIGTERM, and on SIGHUP of a closed terminal, as Ctrl-C does: motors off, files whole."""
     raise KeyboardInterrupt
 
 

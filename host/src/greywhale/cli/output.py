@@ -17,7 +17,7 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 
 
 class Report(Protocol):
-    """Takes what is being done, the fraction done and, where it helps, how good the result is so far."""
+    """Takes what is being done, the share of it that is done and, where it helps, how good the result is so far."""
 
     def __call__(self, what: str, fraction: float, note: str = "") -> None: ...
 
@@ -64,7 +64,7 @@ def progress(as_json: bool) -> Iterator[Report | None]:
             if what not in tasks:
                 for done in tasks.values():
                     bars.update(done, completed=WHOLE)
-                # What was there at the beginning tells nothing about the speed.
+                # What was done at the beginning shows nothing about the speed.
                 tasks[what] = bars.add_task(what, total=WHOLE, completed=round(WHOLE * fraction), note=note)
             bars.update(tasks[what], completed=WHOLE * fraction, note=note)
 

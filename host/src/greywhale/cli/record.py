@@ -1,4 +1,4 @@
-"""`greywhale record`: a log of leader, follower and voltages; on request of a motion that this host leads."""
+"""`greywhale record`: a log of leader, follower and voltages; with --excite, of a motion that this host leads."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from greywhale.excite import Design
 
 RECORDED_S = 10.0
-# Options that say nothing without --excite.
+# Options that mean nothing without --excite.
 _OF_EXCITE = {
     "arm_file": "--arm",
     "ranges": "--range",
@@ -90,7 +90,7 @@ def command(
         with Device(choose_port(port)) as device, progress(as_json) as report:
             length = RECORDED_S if seconds is None else seconds
             recording = record(device, out, length, every, enable, report)
-        show(as_json, {"port": device.port, **recording.as_dict()}, told(recording))
+        show(as_json, {"port": device.port, **recording.as_dict()}, describe(recording))
         return
     if enable:
         raise UserError("--excite turns the motors on by itself; leave --enable out.", BAD_USAGE)
@@ -109,7 +109,7 @@ def command(
         recording = record_led(device, out, designed.motion, every, report, running)
     saved = {} if save_motion is None else {"motion": str(save_motion)}
     result = {"port": device.port, **recording.as_dict(), "design": designed.as_dict(), **saved}
-    show(as_json, result, f"{told(recording)}\n{designed.text()}")
+    show(as_json, result, f"{describe(recording)}\n{designed.text()}")
 
 
 def require_folders(*paths: Path | None) -> None:
@@ -124,7 +124,7 @@ def require_folders(*paths: Path | None) -> None:
 def _plan(
     arm_file: str | None, ranges: tuple[str, ...], seconds: float | None, seed: int | None, budget: int | None
 ) -> Callable[..., Design]:
-    """The design with all that can be refused before a board is asked."""
+    """Make the design, and refuse whatever can be refused before a board is asked."""
     # Scipy and the native simulation take a moment to import.
     from greywhale.excite import BUDGET, SECONDS, check_effort, design, parse_range
     from greywhale.files.arm import load_arm
@@ -143,8 +143,8 @@ def _refuse_without_excite(**given: object) -> None:
             raise UserError(f"{_OF_EXCITE[name]} belongs to --excite; add that, or leave it out.", BAD_USAGE)
 
 
-def told(recording: Recording) -> str:
-    """A recording in a sentence."""
+def describe(recording: Recording) -> str:
+    """Describe a recording in a sentence."""
     lost = f", {recording.dropped} dropped by the link" if recording.dropped else ""
     waits = f", the board waited {recording.waits} times for this host" if recording.waits else ""
     slow = ""

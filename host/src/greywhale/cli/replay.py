@@ -1,4 +1,4 @@
-"""`greywhale replay`: the arm led along a motion from a file, and a log of it."""
+"""`greywhale replay`: leads the arm along a motion from a file, and records a log of it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import click
 from greywhale.board.device import Device
 from greywhale.board.record import check_every_led, record_led
 from greywhale.cli.output import json_option, port_option, progress, show
-from greywhale.cli.record import require_folders, told
+from greywhale.cli.record import describe, require_folders
 from greywhale.files.leader import load_leader
 from greywhale.formats.whole import refuse_inputs
 from greywhale.protocol.ports import choose_port
@@ -37,4 +37,4 @@ def command(motion: Path, out: Path, every: int, port: str | None, as_json: bool
     trajectory = load_leader(motion)
     with Device(choose_port(port)) as device, progress(as_json) as report:
         recording = record_led(device, out, trajectory, every, report)
-    show(as_json, {"port": device.port, "motion": str(motion), **recording.as_dict()}, told(recording))
+    show(as_json, {"port": device.port, "motion": str(motion), **recording.as_dict()}, describe(recording))

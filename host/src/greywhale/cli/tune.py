@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 
 from greywhale.cli.output import json_option, progress, show
-from greywhale.errors import BAD_USAGE, UserError, because
+from greywhale.errors import BAD_USAGE, UserError, os_reason
 from greywhale.files import controller as controller_file
 from greywhale.formats.whole import refuse_inputs, temporary_beside
 from greywhale.loop import controller_row
@@ -136,7 +136,7 @@ def command(
 
 
 def _bounds(given: tuple[str, ...]) -> dict[str, tuple[float, float]]:
-    """`NAME=LOW..HIGH` as numbers; what the names are and what the firmware can store is checked by the search."""
+    """Read `NAME=LOW..HIGH` as numbers. The search checks the names, and what the firmware can store."""
     found: dict[str, tuple[float, float]] = {}
     for one in given:
         given_name, equals, interval = one.partition("=")
@@ -157,7 +157,7 @@ def _bounds(given: tuple[str, ...]) -> dict[str, tuple[float, float]]:
 def _check_files(
     out: Path, journal: Path, resume: bool, pictures: Path | None, inputs: Sequence[str | Path | None]
 ) -> None:
-    """What is wrong with the files is said before any work, not after it."""
+    """Refuse wrong files before any work, not after it."""
     if not out.parent.is_dir():
         raise UserError(f"{out}: the folder {out.parent} does not exist; create it, or write elsewhere.", BAD_USAGE)
     refuse_inputs(out, *inputs)
@@ -171,7 +171,7 @@ def _check_files(
         try:
             pictures.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise UserError(f"{pictures}: cannot be made: {because(error)}.", BAD_USAGE) from None
+            raise UserError(f"{pictures}: cannot be made: {os_reason(error)}.", BAD_USAGE) from None
         _refuse_unwritable(pictures / "sets.png")
 
 
@@ -179,6 +179,6 @@ def _refuse_unwritable(path: Path) -> None:
     try:
         descriptor, name = temporary_beside(path)
     except OSError as error:
-        raise UserError(f"{path}: cannot be written: {because(error)}.", BAD_USAGE) from None
+        raise UserError(f"{path}: cannot be written: {os_reason(error)}.", BAD_USAGE) from None
     os.close(descriptor)
     os.unlink(name)

@@ -38,7 +38,7 @@ def command(controller: Path, port: str | None, as_json: bool) -> None:
 
 
 def _warnings(tuning: Mapping[str, Any], table: ParameterTable) -> list[str]:
-    """Where the board is not what `greywhale tune` was told, or its result is not what it should be."""
+    """Warn where the board is not the one that was tuned for, or where the tuning's result is not what it should be."""
     warnings = []
     if str(tuning.get("status", "complete")) != "complete":
         warnings.append("the tuning of this controller is not finished.")

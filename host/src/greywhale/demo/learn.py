@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Learnt:
-    """A model and the controllers tuned on it, each with its file and what it took in wall time."""
+    """A model and the controllers tuned on it, each with its file and its wall time."""
 
     model: Path
     controller: Path
@@ -46,9 +46,9 @@ def learn(
 ) -> Learnt:
     """Write model.toml and controller.toml into `folder`; an interrupt ends it with KeyboardInterrupt.
 
-    Nothing is known of the arm but `nominal` and the logs; `tables` are the parameters these were recorded with.
+    It knows nothing of the arm but `nominal` and the logs; `tables` are the parameters with which these were recorded.
     """
-    # Slow to import, and of no use to those who only want a bench.
+    # Slow to import, and useless to those who only want a bench.
     from greywhale.identify import identify
     from greywhale.tune import tune
     from greywhale.tune.model import load_model
@@ -61,7 +61,7 @@ def learn(
     if not identification.complete:
         raise KeyboardInterrupt
     identified = time.monotonic()
-    # The model's doubts are for the caller to show: a demo that stops at one would show nothing.
+    # The caller shows the model's doubts: a demo that stopped at one would show nothing.
     model = load_model(model_file, seed=seed, force=True)
     tuning = tune(model, budget=budget, seed=seed, report=progress, floors=False)
     save(tuning, controller_file)
@@ -84,10 +84,10 @@ def draw(learnt: Learnt, folder: Path) -> tuple[Path, ...]:
     )
 
 
-def drawn(arm: ArmParameters) -> ArmParameters:
-    """What its drawings say of an arm: geometry, stops, potentiometers and supply, with the paper's white-box motors.
+def arm_as_drawn(arm: ArmParameters) -> ArmParameters:
+    """What an arm's drawings show: geometry, stops, potentiometers and supply, with the paper's white-box motors.
 
-    Motors' true values, friction and backlash are left out: they are what an identification has to find.
+    The motors' true values, friction and backlash are left out: an identification has to find them.
     """
     white = load_arm("white_box")
     joints = tuple(

@@ -1,7 +1,7 @@
-"""What the bench is asked to do before it is tuned: three motions, of which none is shown or judged later.
+"""Three motions that the bench makes before it is tuned; none of them is shown or judged later.
 
-The first is the one from which an arm can be identified best, as `greywhale record --excite` does it. On the other two,
-a person's reaches, the model is validated: with the controllers of the first, and with others.
+The first is the one from which an arm can be identified best, as `greywhale record --excite` makes it. The other two
+are a person's reaches, and validate the model: one with the controllers of the first, one with other controllers.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ Progress = Callable[[str, float], None]
 UNTUNED, OTHER = "before_tuning", "table_9"  # of the paper: where tuning starts, and the changed controller
 PRACTICE_S = 20.0
 POSE = (0.0, 0.4, 0.0, 0.0)  # rad, where it begins: the arm off its lower stops, room to both sides
-# The last evaluations of a search would gain little: its motion only has to be a good one.
+# The last evaluations of a search would gain little, and here the motion only has to be a good one.
 DESIGN_BUDGET = 150
-# To validate: with the same controllers, and with others. Was the arm learnt, or the arm with its controllers?
+# To validate, with the same controllers and with others: was the arm learnt, or the arm with its controllers?
 CHECKS = (("check", UNTUNED), ("check_changed", OTHER))
 CHECK_SHARE = 0.6  # of the length of the practice
-FIRST_SEED = 1000  # of the checks; far from those that people give
+FIRST_SEED = 1000  # of the checks; far from the seeds that people give
 
 
 def practise(
@@ -45,7 +45,7 @@ def practise(
 ) -> list[Log]:
     """Record practice of about `seconds` into `folder`, then the checks: the log to fit first, then those to validate.
 
-    `nominal` is what is known of the arm; `base` the parameters that the board has beside its controllers.
+    `nominal` is what is known of the arm; `base` the parameters that the board has besides its controllers.
     """
     report = progress or (lambda what, fraction: None)
 
@@ -68,4 +68,4 @@ def practise(
 
 def tables(base: ParameterTable) -> list[ParameterTable]:
     """The parameters of the practice's logs: its controllers on a board that otherwise has `base`."""
-    return [controller_file.load(paper_table(name)).table(base).named(name) for name in (UNTUNED, OTHER)]
+    return [controller_file.load(paper_table(name)).table(base).with_name(name) for name in (UNTUNED, OTHER)]

@@ -31,7 +31,7 @@ READY_WAIT_S = 20.0
 
 @dataclass(frozen=True)
 class Recorded:
-    """A log, the CRC of the parameters it was recorded with, what the link lost of it, wall time of the upload."""
+    """A log, the CRC of its parameters, what the link lost of it, and the wall time of the upload."""
 
     path: Path
     param_crc: int
@@ -50,7 +50,7 @@ def record_motion(
     controller: Path | None = None,
     progress: Progress | None = None,
 ) -> Recorded:
-    """Let the follower follow the whole motion of the file `leader` into `log`, first uploading `controller` if given.
+    """Let the follower follow the whole motion of the file `leader` into `log`; upload `controller` first, if given.
 
     The log begins LEAD_S before the leader's first movement and ends SETTLE_S after its last.
     """
@@ -70,7 +70,7 @@ def record_excitation(
     controller: Path | None = None,
     progress: Progress | None = None,
 ) -> Recorded:
-    """Lead the follower along `motion` into `log`; the person holds the leader still, as the file `rest` says."""
+    """Lead the follower along `motion` into `log`; the person holds the leader still, as in the file `rest`."""
 
     def play(device: Device) -> Recording:
         return record_led(device, log, motion, progress=progress)
@@ -85,7 +85,7 @@ def _recorded(
     progress: Progress | None,
     play: Callable[[Device], Recording],
 ) -> Recorded:
-    """Hand the person the motion `leader` and the board the controller, and record."""
+    """Give the person the motion `leader` and the board the controller, and record."""
     bench.command(f"leader {shlex.quote(str(leader.resolve()))}")
     started = time.monotonic()
     with Device(bench.port) as device:
@@ -99,7 +99,7 @@ def _recorded(
 
 
 def _wait_for_the_arms(device: Device, motion: Trajectory) -> None:
-    """Until the person at the bench has brought both arms to the start of the motion."""
+    """Wait until the person at the bench has brought both arms to the start of the motion."""
     scale = schema.Sample.LSB["leader"]
     home = motion.angles[0]
     for one in stream(device, 10):

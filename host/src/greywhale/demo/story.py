@@ -19,7 +19,7 @@ from greywhale.demo.bench import BenchProcess
 from greywhale.demo.practice import PRACTICE_S, UNTUNED, practise, tables
 from greywhale.demo.recorder import Recorded, record_motion
 from greywhale.demo.result import DemoResult, Run
-from greywhale.errors import BAD_USAGE, UserError, because
+from greywhale.errors import BAD_USAGE, UserError, os_reason
 from greywhale.files import controller as controller_file
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.files.leader import load_leader, save_leader
@@ -30,7 +30,7 @@ from greywhale.protocol.schema import Board, HelloReply
 from greywhale.report.follow import draw_following, trace
 from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory, human_reaches
-from greywhale.tune.progress import Report, silent
+from greywhale.tune.progress import Report, report_nothing
 
 SHORTEST_S, LONGEST_S = 4.0, 600.0  # of generated motions
 SHORTEST_PRACTICE_S, LONGEST_PRACTICE_S = 10.0, 60.0
@@ -54,7 +54,7 @@ class DemoOptions:
 
 def run(options: DemoOptions, progress: Report | None = None) -> DemoResult:
     """Tell the story; everything it shows is in the folder `options.out` afterwards."""
-    report = progress or silent
+    report = progress or report_nothing
     started = time.monotonic()
     motion = _motion(options)
     arm = default_arm() if options.arm is None else load_arm(options.arm)
@@ -91,7 +91,7 @@ def run(options: DemoOptions, progress: Report | None = None) -> DemoResult:
 
 
 class _Stage:
-    """The bench with what is done on it, told step by step."""
+    """The bench and the steps on it, each reported as it happens."""
 
     def __init__(self, bench: BenchProcess, options: DemoOptions, arm: ArmParameters, report: Report) -> None:
         self._bench = bench
@@ -101,14 +101,14 @@ class _Stage:
         self._base = self._set_supply()
 
     def follow(self, leader: Path, file: str, name: str, controller: Path) -> Run:
-        """One recording of the motion that is shown."""
+        """Record the motion that is shown once."""
         recorded = self._record(leader, file, name, controller)
         return Run(name, recorded, evaluate(recorded.log()))
 
     def learn(self) -> learn.Learnt:
         """Record practice, identify, tune."""
         options = self._options
-        nominal = load_arm("white_box") if options.arm is None else learn.drawn(self._arm)
+        nominal = load_arm("white_box") if options.arm is None else learn.arm_as_drawn(self._arm)
         logs = practise(self._bench, nominal, self._base, options.out, options.practice_s, self._report)
         known = tables(self._base)
         return learn.learn(logs[0], logs[1:], known, nominal, options.out, options.budget, progress=self._report)
@@ -120,7 +120,7 @@ class _Stage:
         return record_motion(self._bench, leader, self._options.out / f"{file}.csv", controller, told)
 
     def _set_supply(self) -> ParameterTable:
-        """Tell the board the arm's supply, as a person would; the parameters it then has."""
+        """Tell the board the arm's supply, as a person would; return the parameters that it then has."""
         defaults = ParameterTable.defaults(Board.NANO328 if self._options.board == "nano" else Board.MEGA2560)
         table = defaults.with_raw({"supply_mv": round(1000 * self._arm.drive.supply)})
         if table != defaults:
@@ -169,4 +169,4 @@ def _make_folder(folder: Path) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise UserError(f"{folder}: cannot be made: {because(error)}.") from None
+        raise UserError(f"{folder}: cannot be made: {os_reason(error)}.") from None

@@ -1,8 +1,8 @@
-"""Finds the motion that tells most about an arm: the multi-sine of greatest information (D-optimal) that is safe.
+"""Finds the motion that shows most about an arm: the safe multi-sine of greatest information (D-optimal).
 
-The information is that of the follower in the closed loop with the board's own controllers, together with what is known
-before: the covariance of a model.toml, or the doubts of an arm file. So with a model the search goes for what its logs
-left open.
+The information is that of the follower in the closed loop with the board's own controllers. What is known before counts
+too: the covariance of a model.toml, or the doubts of an arm file. So with a model, the search finds a motion for what
+the model's logs left open.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from greywhale.errors import BAD_USAGE, UserError
 from greywhale.excite.information import information, natural_sizes, prior
 from greywhale.excite.limits import MARGIN_RAD, Limits, family, limits_of
 from greywhale.excite.multisine import LONGEST_S, SHORTEST_S, Shape
-from greywhale.excite.trial import ROW_S, Tried, try_motion
+from greywhale.excite.trial import ROW_S, Trial, try_motion
 from greywhale.firmware import JOINTS
-from greywhale.identify.samples import searched
+from greywhale.identify.samples import read_search
 from greywhale.identify.space import KINDS, MOTOR, Parameter, Space
 from greywhale.identify.uncertainty import OPEN, OPEN_FACTOR, OPEN_LOG
 from greywhale.loop import plant_row
@@ -36,17 +36,17 @@ Report = Callable[[str, float], None]
 
 BUDGET = 300
 SECONDS = 20.0
-# What is looked at where an arm file says nothing about what is known: as in a usual identification.
+# The quantities that count where an arm file does not say what is known: as in a usual identification.
 USUAL = (*MOTOR, "coulomb", "breakaway", "gap", "teeth")
-# Cost of a lag or an overshoot of twice what is allowed: more than any information is worth.
+# Cost of a lag or an overshoot of twice the limit: more than any information is worth.
 PENALTY = 50.0
-# A motion that is not safe on some arm is drawn together towards the pose by this much, again and again.
+# A motion that is not safe on some arm is shrunk towards the pose by this factor, again and again.
 SHRINK, SHRINKS = 0.9, 30
 
 
 @dataclass(frozen=True)
 class Problem:
-    """What a motion is judged by: the arm, its family, the parameters and what is known of them."""
+    """The basis on which a motion is judged: the arm, its family, the parameters and what is known of them."""
 
     parameters: tuple[Parameter, ...]
     plants: Floats  # (1 + family, 60), that the motion is tried on
@@ -67,7 +67,7 @@ class Problem:
         limits = limits_of(arm, table, pose, ranges)
         facts = arm.identification
         if facts is not None and "covariance" in facts:
-            space, _, known_covariance = searched(arm)
+            space, _, known_covariance = read_search(arm)
             covariance: Floats | None = known_covariance
             nominal = plant_row(arm)
         else:
@@ -78,15 +78,15 @@ class Problem:
         return cls(space.parameters, family(arm, seed), nominal, known, table, limits)
 
     def judge(self, angles: Floats) -> Judgement:
-        """Of points (rows, 4) rad, 16 ms apart."""
+        """Judge points (rows, 4) rad, 16 ms apart."""
         tried = try_motion(angles, self.table, self.plants, threads=1)
         told = information(self.nominal, tried.angles[0], ROW_S, self.parameters).matrix + self.known
         size = natural_sizes(self.parameters)
         log_det = float(np.linalg.slogdet(told * np.outer(size, size))[1])
         return Judgement(log_det, np.sqrt(np.diag(np.linalg.inv(told))), tried, self._excess(tried))
 
-    def _excess(self, tried: Tried) -> float:
-        """By which share the worst arm of the family exceeds what it may lag or leave its range by; 0: none does."""
+    def _excess(self, tried: Trial) -> float:
+        """The share by which the worst arm of the family exceeds its allowed lag or range; 0 where none does."""
         beyond = np.maximum(self.limits.low - tried.angles.min(axis=1), tried.angles.max(axis=1) - self.limits.high)
         lag, overshoot = tried.lag.max() / self.limits.lag, beyond.max() / MARGIN_RAD
         return max(0.0, float(max(lag, overshoot)) - 1.0)
@@ -98,7 +98,7 @@ class Judgement:
 
     log_det: float
     deviations: Floats
-    tried: Tried = field(repr=False)
+    tried: Trial = field(repr=False)
     excess: float
 
     @property
@@ -108,7 +108,7 @@ class Judgement:
 
 @dataclass(frozen=True)
 class Design:
-    """A motion and what is expected of it."""
+    """A motion, and what to expect of it."""
 
     motion: Trajectory
     problem: Problem = field(repr=False)
@@ -130,7 +130,7 @@ class Design:
         }
 
     def left_open(self) -> list[str]:
-        """Names of parameters that even this motion will not settle, by the arm file."""
+        """Names of parameters that this motion will not settle either, by the arm file."""
         rows = zip(self.problem.parameters, self.judgement.deviations, strict=True)
         return [one.name for one, deviation in rows if deviation > _enough(one)]
 
@@ -158,10 +158,10 @@ def design(
     budget: int = BUDGET,
     report: Report | None = None,
 ) -> Design:
-    """Search a motion from `pose` (4,) rad and back to it for a board with this parameter table.
+    """Search a motion from `pose` (4,) rad and back to it, for a board with this parameter table.
 
-    `ranges` (rad) of single joints narrow or widen the usual: 1 rad to either side of the pose. The result depends on
-    the arguments only. Raises UserError where the arm cannot move like that.
+    `ranges` (rad) of single joints narrow or widen the usual range of 1 rad to either side of the pose. The result
+    depends on the arguments only. Raises UserError where the arm cannot move like that.
     """
     check_effort(seconds, budget)
     at = np.asarray(pose, dtype=np.float64)
@@ -190,7 +190,7 @@ def check_effort(seconds: float, budget: int) -> None:
 
 
 def _search(problem: Problem, shape: Shape, seed: int, budget: int, report: Report) -> Floats:
-    """The numbers of the best multi-sine, one of even speeds being the first tried; those of a batch side by side."""
+    """The numbers of the best multi-sine. The first one tried has even speeds; a batch is tried side by side."""
     ones = np.ones(shape.size)
     cost = partial(_cost, problem, shape)
     with (

@@ -1,9 +1,10 @@
-"""How much a motion tells about every parameter: the Fisher information of what the identification fits.
+"""How much a motion shows about every parameter: the Fisher information of the residual that the identification fits.
 
-The identification drives candidates by the logged voltages over windows of half a second, each started where the log
-was, and compares angles. To first order a wrong parameter acts on a joint as a voltage does (what the parameter's
-own term takes), and that voltage moves the joint as its motor lets it; what a wrong start angle and speed could explain
-as well is taken off. Joints are looked at one by one: what a wrong parameter does to its neighbours is left out.
+The identification drives candidates by the logged voltages over windows of half a second. Each window starts where the
+log says, and angles are compared. To first order, a wrong parameter acts on a joint like a voltage (the voltage that
+the parameter's own term takes), and that voltage moves the joint as its motor does. The part that a wrong start angle
+and speed could explain is removed. Each joint is treated alone: the effect of a wrong parameter on its neighbours is
+left out.
 """
 
 from __future__ import annotations
@@ -22,25 +23,25 @@ from greywhale.firmware import CONVERSIONS, JOINTS
 from greywhale.identify.space import KINDS, Parameter
 
 Floats = npt.NDArray[np.float64]
-# A reading's standard deviation (rad), and what a start speed may be off beyond noise (rad/s), as when identifying.
+# A reading's standard deviation (rad), and how far a start speed may be off beyond noise (rad/s), as in identification.
 NOISE_RAD = USUAL_NOISE_V / 5.0 * USUAL_TRACK_RAD / math.sqrt(CONVERSIONS)
 SPEED_DOUBT = 0.05
 WINDOW_S = 0.5
-# Below this speed friction may be anything within its limits and says nothing (rad/s).
+# Below this speed (rad/s) friction may have any value within its limits and shows nothing.
 STILL_RAD_S = 0.01
 _STEP = 1e-3  # rad, for the derivative by a zero angle
 
 
 @dataclass(frozen=True)
 class Information:
-    """What motions say about `parameters`: block by block, (n, n) over the searched numbers."""
+    """What motions show about `parameters`: block by block, (n, n) over the searched numbers."""
 
     parameters: tuple[Parameter, ...]
     matrix: Floats
 
 
 def information(plant: Floats, angles: Floats, row_s: float, parameters: Sequence[Parameter]) -> Information:
-    """Of a follower's motion, angles (rows, 4) rad every `row_s` seconds, on a plant (60,)."""
+    """The information in a follower's motion, angles (rows, 4) rad every `row_s` seconds, on a plant (60,)."""
     chosen = tuple(parameters)
     velocity = np.gradient(angles, row_s, axis=0)
     acceleration = np.gradient(velocity, row_s, axis=0)
@@ -65,7 +66,7 @@ def information(plant: Floats, angles: Floats, row_s: float, parameters: Sequenc
 
 @dataclass(frozen=True)
 class _Motion:
-    """One joint's motion and what each parameter takes of the voltage in it."""
+    """One joint's motion, and the voltage that each parameter takes in it."""
 
     body: Body
     plant: Floats
@@ -76,7 +77,7 @@ class _Motion:
     torque: Floats
 
     def volts(self, kind: str) -> Floats:
-        """(rows,) V by which a unit of the searched number changes what the motion takes."""
+        """(rows,) V by which a unit of the searched number changes the voltage that the motion takes."""
         alpha, speed = 1.0 / self._of("torque_per_volt"), self.v[:, self.joint]
         sliding: Floats = np.tanh(speed / STILL_RAD_S)
         coulomb = alpha * self._of("coulomb")
@@ -102,7 +103,7 @@ class _Motion:
                 change = self.body.bias(moved, still) - self.body.bias(self.q, still)
                 gained: Floats = alpha * change[:, self.joint] / _STEP
                 return gained
-            case _:  # gap and teeth move the joint without a voltage; drag is felt inside of the gap only, hardly
+            case _:  # gap and teeth move the joint without a voltage; drag acts inside the gap only, and hardly shows
                 return np.zeros(len(speed))
 
     def _of(self, name: str) -> float:
@@ -143,7 +144,7 @@ def _response(plant: Floats, joint: int, inertia: float, rows: int, row_s: float
 
 
 def _without_start(plant: Floats, joint: int, inertia: float, rows: int, row_s: float) -> Floats:
-    """(rows, rows): information of readings in a window whose start angle and speed are known poorly."""
+    """(rows, rows): the information of readings in a window whose start angle and speed are known poorly."""
     lag = _lag(plant, joint, inertia)
     time_s = np.arange(rows) * row_s
     basis = np.column_stack([np.ones(rows), lag * -np.expm1(-time_s / lag)])
@@ -155,7 +156,7 @@ def _without_start(plant: Floats, joint: int, inertia: float, rows: int, row_s: 
 
 
 def prior(parameters: Sequence[Parameter], covariance: Floats | None, doubts: Floats) -> Floats:
-    """Information of what is known before: of a model its covariance, of an arm file `doubts` (deviations)."""
+    """The information that is known before: from a model its covariance, from an arm file `doubts` (deviations)."""
     if covariance is None:
         return np.diag(doubts**-2.0)
     known = np.zeros_like(covariance)
@@ -167,5 +168,5 @@ def prior(parameters: Sequence[Parameter], covariance: Floats | None, doubts: Fl
 
 
 def natural_sizes(parameters: Sequence[Parameter]) -> Floats:
-    """What counts as one in each searched number: a factor of e, or ten steps of finite differences."""
+    """The size that counts as one in each searched number: a factor of e, or ten steps of finite differences."""
     return np.array([1.0 if KINDS[one.kind].logarithmic else 10.0 * KINDS[one.kind].step for one in parameters])

@@ -1,4 +1,4 @@
-"""What a motion may do on this arm: ranges, speeds, accelerations per joint; and arms on which it must be safe too."""
+"""A motion's limits on this arm: ranges, speeds, accelerations per joint; and other arms on which it must be safe."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ from greywhale.loop import plant_row
 from greywhale.table import ParameterTable
 
 Floats = npt.NDArray[np.float64]
-# Without --range a joint moves by no more than this to either side of where it is (rad).
+# Without --range a joint moves at most this far to either side of where it is (rad).
 REACH_RAD = 1.0
-# Kept free before a limit of the parameter table or a stop of the arm (rad).
+# This distance to a limit of the parameter table or a stop of the arm stays free (rad).
 MARGIN_RAD = 0.1
 # A narrower range shows nothing.
 NARROWEST_RAD = 0.2
-# Of the voltage there is, what speed may take and what acceleration may take.
+# The shares of the voltage that speed and acceleration may take.
 SPEED_SHARE, ACCELERATION_SHARE = 0.5, 0.5
 FASTEST = min(4.0, FASTEST_LED_RAD_S / 1.5)
-# Of the board's tracking limit, what the follower may lag in simulation; from half of it on the player slows down.
+# The share of the board's tracking limit by which the follower may lag in simulation; from half of it the player slows.
 LAG_SHARE = 0.4
 USUAL_TRACKING_RAD = 0.9
-# A motor may be wrong by this much in the arm file (logarithm, uniform), for the arms that the motion is tried on.
+# A motor may be wrong by this much in the arm file (logarithm, uniform), on the arms on which the motion is tried.
 DOUBT = 0.7
 FAMILY = 15
 FRICTION_V = (0.2, 0.9)
@@ -51,7 +51,7 @@ class Limits:
 def limits_of(
     arm: ArmParameters, table: ParameterTable, pose: Floats, ranges: Mapping[int, tuple[float, float]]
 ) -> Limits:
-    """Limits for a motion from `pose` (rad) with the board's parameter table and the user's ranges (rad)."""
+    """The limits of a motion from `pose` (rad) with the board's parameter table and the user's ranges (rad)."""
     low, high = np.zeros(JOINTS), np.zeros(JOINTS)
     for joint in range(JOINTS):
         stops = arm.joint[joint].stops
@@ -82,7 +82,7 @@ def _range(
 
 
 def _strength(arm: ArmParameters, table: ParameterTable, low: Floats, high: Floats) -> tuple[Floats, Floats]:
-    """Speeds and accelerations that a part of the voltage is enough for, by the arm file."""
+    """The speeds and accelerations for which a part of the voltage is enough, by the arm file."""
     body = Body.of(plant_row(arm))
     random = np.random.default_rng(0)
     poses = random.uniform(low, high, (200, JOINTS))
@@ -109,8 +109,8 @@ def _strength(arm: ArmParameters, table: ParameterTable, low: Floats, high: Floa
 def family(arm: ArmParameters, seed: int = 0) -> Floats:
     """Plants (1 + 15, 60): the arm itself, then arms that it might be.
 
-    Of an identified model they are drawn from its covariance; of an arm file with its motors wrong by up to a factor of
-    two and friction of its own.
+    For an identified model they are drawn from its covariance. For an arm file their motors are wrong by up to a factor
+    of two, and they have friction of their own.
     """
     if arm.identification is not None and "covariance" in arm.identification:
         return sampled_plants(arm, 1 + FAMILY, seed)
@@ -124,7 +124,7 @@ def family(arm: ArmParameters, seed: int = 0) -> Floats:
 
 
 def parse_range(text: str) -> tuple[int, tuple[float, float]]:
-    """`J:min:max` of the command line."""
+    """Read `J:min:max` of the command line."""
     parts = text.split(":")
     try:
         joint, low, high = int(parts[0]), float(parts[1]), float(parts[2])

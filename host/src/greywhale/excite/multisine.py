@@ -1,10 +1,10 @@
-"""Multi-sines that keep their limits by construction: whatever the numbers, the motion stays in its ranges, below its
-speeds and accelerations, and begins and ends at rest where the arm is.
+"""Multi-sines that keep their limits by construction.
 
-A sum of sines of fixed frequencies is stretched over the joint's range, faded in from the present pose and out to it,
-and drawn together towards that pose until speed and acceleration fit. Every step of that keeps the range, because each
-point lies between the pose and a point of the range; and as the board draws the motion as a B-spline of these very
-points, its positions, speeds and accelerations are means of theirs.
+Whatever its numbers, such a motion stays in its ranges and below its speeds and accelerations, and begins and ends at
+rest where the arm is. A sum of sines of fixed frequencies is stretched over the joint's range. It is faded in from the
+present pose and out to it, and shrunk towards that pose until speed and acceleration fit. Each of these steps keeps the
+range, because each point lies between the pose and a point of the range. The board draws the motion as a B-spline of
+these points, so its positions, speeds and accelerations are means of theirs.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ Floats = npt.NDArray[np.float64]
 
 SINES = 6
 LOWEST_HZ, HIGHEST_HZ = 0.1, 3.0
-# Fading in and out takes this long (s), and this is how much it may be of a short motion.
+# Fading in and out takes this long (s), but at most this share of a short motion.
 FADE_S, FADE_SHARE = 1.5, 0.2
 # At rest before and after (s).
 REST_S = 0.3
-# Now and then everything stands still, for friction at rest, creeping and hunting to show: so often (1/s), so long (s)
-# from slowing down to being at speed again.
+# Now and then everything stands still, so that friction at rest, creeping and hunting show: how often (1/s), and how
+# long (s) from slowing down to being at speed again.
 PAUSES_PER_S, PAUSE_S = 0.2, 1.2
 # Amplitudes differ by up to e to the power of this, before frequency.
 SPREAD = 3.0
@@ -37,7 +37,7 @@ SHORTEST_S, LONGEST_S = 4.0, 600.0
 
 @dataclass(frozen=True)
 class Shape:
-    """All multi-sines of a length: a vector of `size` numbers in [-1, 1] is one of them."""
+    """All multi-sines of a length: each is a vector of `size` numbers in [-1, 1]."""
 
     limits: Limits
     seconds: float
@@ -48,7 +48,7 @@ class Shape:
 
     @property
     def frequencies(self) -> Floats:
-        """(joints, sines) Hz, evenly over the octaves; no two joints share one, so that they can be told apart."""
+        """(joints, sines) Hz, even over the octaves. No two joints share one, so that they can be told apart."""
         lowest = max(LOWEST_HZ, 1.0 / self.seconds)
         place = (np.arange(SINES)[None, :] + np.arange(JOINTS)[:, None] / JOINTS) / (SINES - 1 + 0.75)
         hertz: Floats = lowest * (HIGHEST_HZ / lowest) ** place
@@ -61,7 +61,7 @@ class Shape:
     def angles(self, numbers: Floats) -> Floats:
         """(points, 4) rad, 16 ms apart."""
         numbers = np.clip(numbers, -1.0, 1.0).reshape(2, JOINTS, SINES)
-        fade, time_s = self._fade(self.time_s), self._played
+        fade, time_s = self._fade(self.time_s), self._played_time
         weights = np.exp(SPREAD * numbers[0]) / self.frequencies
         phases = np.pi * numbers[1]
         angles = np.zeros((len(fade), JOINTS))
@@ -72,11 +72,11 @@ class Shape:
             stretched = (wave - wave.min()) / np.ptp(wave)
             within = limits.low[joint] + (limits.high[joint] - limits.low[joint]) * stretched
             way = fade * (within - limits.pose[joint])
-            angles[:, joint] = limits.pose[joint] + way * self._calm(way, joint)
+            angles[:, joint] = limits.pose[joint] + way * self._shrink_factor(way, joint)
         return angles
 
     @property
-    def _played(self) -> Floats:
+    def _played_time(self) -> Floats:
         """Time on the multi-sine's own clock, which stands still in the pauses, (points,) s."""
         time_s = self.time_s
         pace = np.ones(len(time_s))
@@ -94,7 +94,7 @@ class Shape:
         fade_s = min(FADE_S, FADE_SHARE * self.seconds)
         return minimum_jerk((time_s - REST_S) / fade_s) * minimum_jerk((self.seconds - REST_S - time_s) / fade_s)
 
-    def _calm(self, way: Floats, joint: int) -> float:
+    def _shrink_factor(self, way: Floats, joint: int) -> float:
         """The factor, at most 1, that keeps speed and acceleration."""
         speed = float(np.abs(np.diff(way)).max()) / POINT_S
         acceleration = float(np.abs(np.diff(way, 2)).max()) / POINT_S**2

@@ -15,24 +15,26 @@ from greywhale.loop.controllers import controllers_of
 from greywhale.table import ParameterTable
 
 Floats = npt.NDArray[np.float64]
-EVERY = 16  # ticks from row to row of the traces
+EVERY = 16  # ticks between rows of the traces
 ROW_S = EVERY / 1000
 STEPS_PER_TICK = 1
-# The arm stands at the first pose for so long before the motion (ticks).
+# The arm stands at the first pose for so many ticks before the motion.
 STILL_TICKS = 304
 
 
 @dataclass(frozen=True)
-class Tried:
-    """`angles` (plants, rows, 4) rad, 16 ms apart, `lag` (plants,) rad: the most that a joint is behind for 50 ms."""
+class Trial:
+    """A motion tried: `angles` (plants, rows, 4) rad, 16 ms apart. `lag` (plants,) rad is the largest delay that a
+    joint keeps for 50 ms.
+    """
 
     angles: Floats
     reference: Floats  # (rows, 4) rad
     lag: Floats
-    outside: Floats  # (plants, 4) rad: how far the angles leave what the reference spans
+    outside: Floats  # (plants, 4) rad: how far the angles leave the range of the reference
 
 
-def try_motion(angles: Floats, table: ParameterTable, plants: Floats, threads: int = 0) -> Tried:
+def try_motion(angles: Floats, table: ParameterTable, plants: Floats, threads: int = 0) -> Trial:
     """Play points (rows, 4) to arms (n, 60) with the board's parameter table."""
     reference = np.vstack([np.tile(angles[:1], (STILL_TICKS, 1)), board_reference(angles)])
     loop = ClosedLoop(
@@ -58,4 +60,4 @@ def try_motion(angles: Floats, table: ParameterTable, plants: Floats, threads: i
     behind = np.abs(shown - wanted[None]).max(axis=2)
     held = np.lib.stride_tricks.sliding_window_view(behind, round(0.05 / ROW_S), axis=1).min(axis=2)
     outside = np.maximum(shown.max(axis=1) - wanted.max(axis=0), wanted.min(axis=0) - shown.min(axis=1))
-    return Tried(shown, wanted, held.max(axis=1), np.maximum(outside, 0.0))
+    return Trial(shown, wanted, held.max(axis=1), np.maximum(outside, 0.0))

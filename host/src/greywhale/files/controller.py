@@ -1,8 +1,8 @@
-"""controller.toml: the fuzzy sets and gains of four joints, checked before anything of them reaches a board; and
-written so that reading it back gives the board's own numbers.
+"""controller.toml: the fuzzy sets and gains of four joints.
 
-The sets are named as in the paper: NE [-1,-1,Ne_c,0], ZE [Ze_a,0,Ze_c], PE [0,Pe_b,1,1], and the same for the change of
-error with Nce_c, Zce_a, Zce_c, Pce_b.
+They are checked before any of them reaches a board. Reading a written file back gives the board's own numbers. The sets
+are named as in the paper: NE [-1,-1,Ne_c,0], ZE [Ze_a,0,Ze_c], PE [0,Pe_b,1,1], and the same for the change of error
+with Nce_c, Zce_a, Zce_c, Pce_b.
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ class Controller(toml_file.Table):
         }
 
     def table(self, rest: ParameterTable | None = None) -> ParameterTable:
-        """A whole parameter table with these controllers; the rest as given, else the firmware's defaults."""
+        """A whole parameter table with these controllers. The other values are as given, or the firmware's defaults."""
         return (ParameterTable.defaults() if rest is None else rest).with_raw(self.raw_values())
 
 
@@ -129,7 +129,7 @@ def save(
     """Write a controller file, or nothing at all where a board would refuse it.
 
     `rows` are raw as a board stores them: (4, 12), a joint's keys in the order of its parameters (sets 1/16384, gains
-    1/65536, mV), an int32 array for one. `load` gives the same raw values back. `header` are lines of comment on top,
+    1/65536, mV); an int32 array is one. `load` gives the same raw values back. `header` are lines of comment on top,
     `notes` one for each joint.
     """
     text = to_text(rows, source, header=header, notes=notes, tuning=tuning)
@@ -158,7 +158,7 @@ def to_text(
 
 
 def _in_file(joint: int, row: Iterable[int]) -> dict[str, float]:
-    """A joint's raw values by their keys in the file, exactly what the board will use."""
+    """A joint's raw values by their keys in the file, exactly as the board will use them."""
     raw = dict(zip(CONTROLLER_COLUMNS, row, strict=True))
     found = {}
     for key in (*Sets.model_fields, *GAINS):

@@ -40,7 +40,7 @@ def load_leader(path: str | Path) -> Trajectory:
 
 
 def _check_pace(table: csv_file.CsvTable, time_s: Array, angles: Array) -> None:
-    """Refuse what takes too long to play and what no leader does, which are mostly wrong units."""
+    """Refuse what takes too long to play, and speeds that no leader has; these are mostly wrong units."""
     late = np.flatnonzero(time_s - time_s[0] > LONGEST_S)
     if late.size:
         problem = f"{time_s[late[0]]:g} s is more than {LONGEST_S:g} s after the first row; times are in s"
@@ -65,7 +65,7 @@ def save_leader(path: str | Path, trajectory: Trajectory) -> None:
 
 
 def _is_log(path: str | Path) -> bool:
-    """Whether the column names are a log's; a file that cannot be read is left to the reader to complain about."""
+    """Whether the column names are a log's. A file that cannot be read counts as none; its reader refuses it."""
     try:
         refuse_devices(path)
         with open(path, encoding="utf-8-sig") as file:

@@ -1,4 +1,4 @@
-"""model.toml: the identified arm as a whole arm file, with a table that tells how it came about and how sure it is."""
+"""model.toml: the identified arm as a whole arm file, with a table that says how it was found and how certain it is."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where the paper's controllers (shared/fuzzy_tables) lie: inside an installed package, else in the checkout."""
+"""The place of the paper's controllers (shared/fuzzy_tables): inside an installed package, else in the checkout."""
 
 from __future__ import annotations
 

@@ -61,7 +61,7 @@ def load(path: str | Path) -> ParameterTable:
 def load_table(path: str | Path) -> ParameterTable:
     """A file of `greywhale params backup`, or a controller.toml on top of the firmware's defaults."""
     if isinstance(toml_file.read(path).get("joint"), list):
-        return controller.load(path).table().named(str(path))
+        return controller.load(path).table().with_name(str(path))
     return load(path)
 
 

@@ -1,1 +1,1 @@
-"""How files are read and written, whatever they hold: whole or not at all, TOML against a schema, CSV by columns."""
+"""Reading and writing files, whatever they hold: whole or not at all, TOML against a schema, CSV by columns."""

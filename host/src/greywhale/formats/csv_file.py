@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from greywhale.errors import UserError, because
+from greywhale.errors import UserError, os_reason
 from greywhale.formats.whole import refuse_devices
 
 
@@ -61,7 +61,7 @@ def read(path: str | Path, columns: Sequence[str], minimum_rows: int = 1) -> Csv
         with open(path, encoding="utf-8-sig", newline="") as file:
             return _table(file.read().splitlines(), columns, str(path), minimum_rows)
     except OSError as error:
-        raise UserError(f"{path}: cannot be read: {because(error)}.") from None
+        raise UserError(f"{path}: cannot be read: {os_reason(error)}.") from None
     except UnicodeDecodeError as error:
         raise UserError(f"{path}: byte {error.start} is not UTF-8; a CSV file must be plain text.") from None
 

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from greywhale.errors import UserError, because
+from greywhale.errors import UserError, os_reason
 from greywhale.formats.whole import refuse_devices
 
 Model = TypeVar("Model", bound=BaseModel)
@@ -45,7 +45,7 @@ def read(path: str | Path) -> dict[str, Any]:
         refuse_devices(path)
         text = Path(path).read_text(encoding="utf-8")
     except OSError as error:
-        raise UserError(f"{path}: cannot be read: {because(error)}.") from None
+        raise UserError(f"{path}: cannot be read: {os_reason(error)}.") from None
     except UnicodeDecodeError as error:
         raise UserError(f"{path}: byte {error.start} is not UTF-8; TOML files must be UTF-8 text.") from None
     return _parse(text, str(path))
@@ -57,7 +57,7 @@ def check(data: dict[str, Any], model: type[Model], name: str) -> Model:
         if not math.isfinite(value):
             raise UserError(f"{name}: {key_path(location)} is {value}; it must be a finite number.")
     try:
-        # Through JSON, so that in strict mode arrays may still become tuples and words may become enumerations.
+        # Through JSON, so that in strict mode arrays may still become tuples, and words may become enumerations.
         return model.model_validate_json(json.dumps(data, default=str), extra="forbid")
     except ValidationError as error:
         raise UserError(_sentence(name, model, error)) from None
@@ -129,7 +129,7 @@ def _problem(problem: Problem, model: type[BaseModel]) -> str:
     message = _lower_first(problem.message.removeprefix("Value error, ").removeprefix("Assertion failed, "))
     message = message.replace("input should", "it should").rstrip(".")
     if isinstance(problem.value, dict | list):
-        # A rule over a whole table words its own sentence; the table itself would be noise.
+        # A rule over a whole table words its own sentence; printing the table itself would not help.
         return f"{key}: {message}" if problem.location else message
     return f"{key} is {json.dumps(problem.value)}, but {message}"
 
@@ -145,7 +145,7 @@ _BOUND_WORDS = {
 
 
 def _range(schema: dict[str, Any], location: Sequence[str | int]) -> str:
-    """Both ends of the range of the number at `location`; pydantic's own words name only the end that was missed."""
+    """Both ends of the range of the number at `location`; pydantic names only the end that was missed."""
     here = _at(schema, location)
     return " and ".join(f"{words} {here[bound]:g}" for bound, words in _BOUND_WORDS.items() if bound in here)
 
@@ -158,7 +158,7 @@ def _fixed_count(schema: dict[str, Any], location: Sequence[str | int]) -> int |
 
 
 def _at(schema: dict[str, Any], location: Sequence[str | int]) -> dict[str, Any]:
-    """The schema of what stands at `location`."""
+    """The schema of the value at `location`."""
     here = schema
     for part in location:
         here = _resolve(schema, here)

@@ -12,7 +12,7 @@ _BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def value(thing: object) -> str:
-    """One value; a mapping becomes an inline table. TypeError for what has no form in TOML, None among it."""
+    """One value; a mapping becomes an inline table. TypeError for a value that TOML cannot hold, such as None."""
     if isinstance(thing, bool):
         return "true" if thing else "false"
     if isinstance(thing, str):

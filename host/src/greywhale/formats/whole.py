@@ -11,18 +11,18 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import IO
 
-from greywhale.errors import BAD_USAGE, UserError, because
+from greywhale.errors import BAD_USAGE, UserError, os_reason
 
 
 def refuse_devices(path: str | Path) -> None:
-    """Raise where `path` is a device or a pipe, which may never end. Folders and missing files are left to open()."""
+    """Raise where `path` is a device or a pipe, which may never end. open() deals with folders and missing files."""
     mode = os.stat(path).st_mode
     if not stat.S_ISREG(mode) and not stat.S_ISDIR(mode):
         raise OSError(errno.EINVAL, "not an ordinary file", str(path))
 
 
 def refuse_inputs(out: Path | None, *inputs: str | Path | None) -> None:
-    """Nothing is written over a file that is read from. (A name of an arm that comes with greywhale is no file.)"""
+    """Refuse to write over a file that is read from. (A name of an arm that comes with greywhale is no file.)"""
     for source in inputs:
         if out is not None and source is not None and out.exists() and Path(source).exists() and out.samefile(source):
             raise UserError(f"{out}: this file is read from; write elsewhere.", BAD_USAGE)
@@ -31,7 +31,7 @@ def refuse_inputs(out: Path | None, *inputs: str | Path | None) -> None:
 def temporary_beside(path: Path) -> tuple[int, str]:
     """An open, empty file in the folder of `path`, with the access rights that any new file of the user gets.
 
-    Refused where `path` is something else than a file: a folder cannot be replaced, and a device (/dev/null) must not.
+    Refused where `path` is not a file: a folder cannot be replaced, and a device (/dev/null) must not be.
     """
     if path.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
@@ -50,14 +50,14 @@ def write_whole(path: str | Path, write: Callable[[IO[bytes]], None]) -> None:
     try:
         descriptor, name = temporary_beside(target)
     except OSError as error:
-        raise UserError(f"{path}: cannot be written: {because(error)}.") from None
+        raise UserError(f"{path}: cannot be written: {os_reason(error)}.") from None
     try:
         with open(descriptor, "wb") as file:
             write(file)
         os.replace(name, target)
     except OSError as error:
         _discard(name)
-        raise UserError(f"{path}: cannot be written: {because(error)}.") from None
+        raise UserError(f"{path}: cannot be written: {os_reason(error)}.") from None
     except BaseException:
         _discard(name)
         raise

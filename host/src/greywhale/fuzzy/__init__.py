@@ -1,4 +1,4 @@
-"""The fuzzy PD+I law three times over: exact (rational), twin (integer, numpy) and the firmware's own (native)."""
+"""The fuzzy PD+I law in three forms: exact (rational), twin (integer, numpy) and the firmware's own (native)."""
 
 from greywhale.fuzzy.settings import JointSettings, load_joints
 

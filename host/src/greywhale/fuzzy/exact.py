@@ -1,4 +1,4 @@
-"""The law by its definition, in rational arithmetic: slow, and right by reading. All else is measured against it.
+"""The law by its definition, in rational arithmetic: slow, and easy to check by reading. It is the measure of all else.
 
 Read it beside the paper: Eq. 16 is `error`, Eq. 17 `change`, Eq. 18 the sum in `Law.step`; Table 6 is in rules.py.
 Units: radians, volts, seconds as fractions.
@@ -21,7 +21,7 @@ INTEGRAL_END = Fraction(1 << 15, 1000)  # V: the integral stays within
 
 
 class Feet(Enum):
-    """Where a set ends: at 0, as the project reads the paper, or straight down at the end of the plateau."""
+    """How a set ends: at 0, as the project reads the paper, or straight down at the end of the plateau."""
 
     AT_ZERO = "at zero"
     CRISP = "crisp"
@@ -57,7 +57,7 @@ def fuzzify(
 
 @dataclass(frozen=True)
 class Inference:
-    """Heights of the output sets and what they make: u = (hP - hN) / (hN + hZ + hP), 0 when no rule fires."""
+    """Heights of the output sets, and their result u = (hP - hN) / (hN + hZ + hP), 0 when no rule fires."""
 
     heights: Mapping[str, Fraction]
     u: Fraction
@@ -103,7 +103,7 @@ class Law:
     period_ms: int
 
     def inputs(self, error: Fraction, change: Fraction) -> tuple[Fraction, Fraction]:
-        """x and y, what the fuzzy sets see of an error and its change."""
+        """x and y: the error and its change as the fuzzy sets get them."""
         kp = Fraction(self.settings.kp, GAIN_UNIT)
         kd = Fraction(self.settings.kd, GAIN_UNIT) * KD_PERIOD_MS / self.period_ms
         return clamp(kp * error, ONE), clamp(kd * change, ONE)
@@ -112,8 +112,9 @@ class Law:
         return infer(*self.inputs(error, change), self.settings.set_values())
 
     def step(self, state: State, leader: Fraction, follower: Fraction, limit: Fraction) -> tuple[Output, State]:
-        """One control period. The integral takes the error in unless that leaves the output beyond the limit on the
-        error's own side."""
+        """Compute one control period. The integral takes in the error, unless that leaves the output beyond the limit
+        on the error's own side.
+        """
         error = clamp(leader - follower, LARGEST_DIFFERENCE)
         change = ZERO if state.error is None else clamp(error - state.error, LARGEST_DIFFERENCE)
         inference = self.infer(error, change)

@@ -8,7 +8,7 @@ from pathlib import Path
 from greywhale.formats.whole import write_text
 from greywhale.fuzzy.rules import OUTPUTS, RULES
 
-# MATLAB samples the output at 101 points; triangles as narrow as their distance make of the peaks what they stand for.
+# MATLAB samples the output at 101 points. Triangles as narrow as that spacing act as the peaks that they stand for.
 OUTPUT_HALF_WIDTH = 0.01
 # Within [-1, 1] the same as a foot at the shoulder itself, which Octave's trapmf does not take.
 OUTER_FOOT = 1.01
@@ -80,5 +80,5 @@ def fis_text(name: str, sets: Mapping[str, float]) -> str:
 
 
 def export_fis(path: str | Path, name: str, sets: Mapping[str, float]) -> None:
-    """Writes the file whole or not at all."""
+    """Write the file whole or not at all."""
     write_text(path, fis_text(name, sets))

@@ -1,4 +1,4 @@
-"""One joint's controller as the board stores it, and what a board refuses: the host checks before it sends."""
+"""One joint's controller as the board stores it, and why a board would refuse one: the host checks first."""
 
 from __future__ import annotations
 

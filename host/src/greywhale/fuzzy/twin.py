@@ -1,6 +1,7 @@
 """The firmware's arithmetic, bit for bit, over numpy arrays: the integer twin of firmware/lib/fuzzy_pdi.
 
-Function for function compile.cpp, arithmetic.h, inference.h and fuzzy_pdi.cpp; docs/fuzzy.md has the formats.
+It follows compile.cpp, arithmetic.h, inference.h and fuzzy_pdi.cpp function for function; docs/fuzzy.md has the
+formats.
 """
 
 from __future__ import annotations

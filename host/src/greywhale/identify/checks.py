@@ -1,6 +1,4 @@
-"""What makes a log useless for identification, found before any of it is believed; each sentence names the joint and
-the evidence.
-"""
+"""Finds logs that are useless for identification before any use; each sentence names joint and evidence."""
 
 from __future__ import annotations
 
@@ -22,12 +20,12 @@ CLIPPED_FROM = 2.3
 # Between error and voltage: a controller pulls towards the leader.
 AGAINST = -0.3
 SATURATED = 0.5
-# This share of the voltage's changes at least comes in whole control periods.
+# At least this share of the voltage's changes comes in whole control periods.
 FITTING = 0.7
 
 
 def check(prepared: Prepared, arm: ArmParameters, table: ParameterTable | None) -> list[str]:
-    """Refuse what cannot be used; doubts that do not forbid it come back as sentences."""
+    """Refuse a log that cannot be used; doubts that do not forbid it come back as sentences."""
     log = prepared.log
     used = _used(prepared)
     seconds = sum(run.period * (run.stop - run.start - 1) for run in prepared.runs)
@@ -96,7 +94,9 @@ def _supply(where: str, voltage: Floats, arm: ArmParameters) -> list[str]:
 
 
 def _refuse_other_period(prepared: Prepared, table: ParameterTable | None, used: NDArray[np.bool_]) -> None:
-    """With a row every tick the voltage shows the control period: it changes then and only then."""
+    """Refuse another period: with a row every tick, the voltage changes once in every control period and at no other
+    time.
+    """
     log = prepared.log
     stated = log.origin.period_ms
     if table is not None:

@@ -1,6 +1,6 @@
-"""The second residual: candidate arms inside the controller that made the log, led by the logged leader.
+"""The second residual: candidate arms inside the controller that made the log; the logged leader leads them.
 
-It cannot be fooled by where a window starts, and it is what a model is for: the response of the closed loop.
+The start of a window cannot mislead it. It also measures what a model is for: the response of the closed loop.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from greywhale.loop.controllers import controllers_of
 from greywhale.table import ParameterTable
 
 Floats = NDArray[np.float64]
-# The loop stands still at the first pose for so long before the log begins (ticks), so that it is not let go from rest.
+# The loop stands still at the first pose for so many ticks before the log begins, so that it starts at rest.
 LEAD_TICKS = 500
 COMPARED_TICKS = 5
 STEPS_PER_TICK = 2
@@ -66,7 +66,7 @@ class Loop:
         return Loop(*self._made_of, offsets)
 
     def angles(self, plants: Floats, every: int = COMPARED_TICKS, threads: int = 0) -> Floats:
-        """What the candidates' potentiometers show, (candidates, rows, 4), every so many ticks of the log."""
+        """The angles that the candidates' potentiometers show, (candidates, rows, 4), every `every` ticks."""
         result = self._loop.run(
             self.laws[None], np.ascontiguousarray(plants), substeps=STEPS_PER_TICK, every=every, threads=threads
         )
@@ -74,7 +74,7 @@ class Loop:
         return shown[:, : len(self.follower[::every])]
 
     def error(self, plants: Floats, held_out: bool | None = None) -> Floats:
-        """Mean squared difference to the log, (candidates, 4), rad²: all of it, what is held out, or the rest."""
+        """Mean squared difference to the log, (candidates, 4), rad²: over all of it, the held-out part, or the rest."""
         difference = self.angles(plants) - self.follower[None, ::COMPARED_TICKS]
         kept = difference if held_out is None else difference[:, part_of(self.rows, ROWS_PER_BLOCK, held_out)]
         mse: Floats = np.mean(np.nan_to_num(kept, nan=10.0, posinf=10.0, neginf=-10.0) ** 2, axis=1)
@@ -82,7 +82,7 @@ class Loop:
 
 
 class LoopResidual:
-    """Model minus log in the closed loop, in rad, for the joints that moved; with or without what is held out."""
+    """Model minus log in the closed loop, in rad, for the joints that moved; with or without the held-out part."""
 
     def __init__(self, loops: Sequence[Loop], joints: Sequence[int], whole: bool = True) -> None:
         self.loops = loops

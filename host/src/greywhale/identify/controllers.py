@@ -1,4 +1,4 @@
-"""Which controller a log was recorded with: found by the CRC in its header, never assumed."""
+"""Finds the controller with which a log was recorded, by the CRC in the log's header. It never assumes one."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ from collections.abc import Sequence
 
 from greywhale.errors import UserError
 from greywhale.files.log import Log
-from greywhale.table import ParameterTable, board_named
+from greywhale.table import ParameterTable, find_board
 
 
 def table_of(log: Log, given: Sequence[ParameterTable]) -> ParameterTable | None:
-    """The table of this log, on the board of this log, or None where the log does not say and the user did not."""
+    """The table of this log, on its board, or None where neither the log nor the user gives it."""
     found = _found(log, given)
     if found is None or log.origin.board is None:
         return found
-    return found.on(board_named(log.origin.board))
+    return found.for_board(find_board(log.origin.board))
 
 
 def _found(log: Log, given: Sequence[ParameterTable]) -> ParameterTable | None:

@@ -15,28 +15,29 @@ from greywhale.measure.runs import Run
 Floats = NDArray[np.float64]
 WINDOW_S = 0.5
 SMOOTHING_S = 0.04  # of the angle, to find velocities
-# Longest steps of the integration in a window, s: to search, and to finish with (what a light link does in its gap is
-# over in some milliseconds).
+# Longest steps of the integration in a window, s: for the search, and for the final fit (a light link moves through its
+# gap in some milliseconds).
 STEP_S = 1e-3
 FINE_STEP_S = 0.25e-3
-# Windows are compared with the log at this spacing, s; neighbouring readings differ in noise only.
+# Windows are compared with the log at this spacing, s; readings that are closer differ in noise only.
 COMPARED_S = 5e-3
-# That step is kept in so many percent of the spacings between rows.
+# The longest step holds in so many percent of the spacings between rows; the few longer spacings may exceed it.
 MOST_SPACINGS = 99.0
 # Firmware: from a new sample to its voltage, and the mean age of a tick's four conversions (s).
 ACTUATION_S = 0.3e-3
 CONVERSION_S = 0.5e-3
 TICK_S = 1e-3
-# Rows further apart than this (s) end a stretch, or than one and a half periods of a slower log.
+# Rows further apart than this (s), or than one and a half periods of a slower log, end a stretch.
 LONGEST_GAP_S = 0.02
-# Of every four blocks of this length (s) the last is held out: shorter than a motion, so that each is in both parts.
+# Of every four blocks of this length (s) the last is held out. A block is shorter than a motion, so each motion is in
+# both parts.
 BLOCK_S = 0.5
 BLOCKS = 4
 
 
 @dataclass(frozen=True)
 class Prepared:
-    """One log with what it says about the motion."""
+    """One log, with what it shows about the motion."""
 
     log: Log
     runs: tuple[Run, ...]
@@ -66,13 +67,13 @@ class Windows:
 
 
 def part_of(count: int, per_block: int, held_out: bool) -> NDArray[np.intp]:
-    """Which of `count` rows or windows are held out, or are not."""
+    """The rows or windows of `count` that are held out, or those that are not."""
     last = np.arange(count) // per_block % BLOCKS == BLOCKS - 1
     return np.flatnonzero(last if held_out else ~last)
 
 
 def prepare(log: Log, filter_shift: int | None) -> Prepared:
-    """Find the usable stretches; velocities by local quadratic fits, noise from the most quiet moments."""
+    """Find the usable stretches. Velocities come from local quadratic fits, noise from the quietest moments."""
     following = log.state == "following"
     wanted = following if following.any() else np.ones(len(log.time), dtype=bool)
     period = float(np.median(np.diff(log.time)))
@@ -95,7 +96,7 @@ def prepare(log: Log, filter_shift: int | None) -> Prepared:
 
 
 def _runs(time: Floats, wanted: NDArray[np.bool_], period: float) -> list[Run]:
-    """Stretches long enough for a window; a few rows may be missing or late, as voltages change little meanwhile."""
+    """Stretches long enough for a window. A few rows may be missing or late, as voltages change little meanwhile."""
     joined = (np.diff(time) <= max(1.5 * period, LONGEST_GAP_S)) & wanted[1:] & wanted[:-1]
     edges = np.flatnonzero(np.diff(np.concatenate(([False], joined, [False])).astype(np.int8)))
     least = max(8, round(WINDOW_S / period) + 2)
@@ -117,7 +118,7 @@ def _noise(rest: Floats, used: NDArray[np.bool_], size: int) -> Floats:
     if count == 0:
         return np.full(JOINTS, 1e-3)
     pieces = kept[: count * size].reshape(count, size, JOINTS)
-    # A quadratic takes about a ninth of the variance with it.
+    # A quadratic fit takes away about a ninth of the variance.
     noise: Floats = np.maximum(np.sqrt(np.median(pieces.var(axis=1), axis=0)) * 1.06, 2e-4)
     return noise
 
@@ -137,7 +138,7 @@ def windows_of(
     kept = np.arange(0, rows, every)
     at = first[:, None] + kept[None, :]
     spacing = np.diff(log.time, append=log.time[-1] + prepared.period)
-    # Rounded, so that windows of even rows can share a processor's vector; between stretches nothing is simulated.
+    # Rounded, so that windows of even rows can share a processor's vector. Between stretches nothing is simulated.
     longest = max(1.5 * prepared.period, LONGEST_GAP_S)
     spacing = np.round(np.minimum(spacing, longest), 9).astype(np.float64)
     substeps = max(1, int(np.ceil(np.percentile(spacing, MOST_SPACINGS) / longest_step - 1e-6)))
@@ -157,7 +158,7 @@ def windows_of(
 
 
 def _start_angles(prepared: Prepared, first: NDArray[np.int64]) -> Floats:
-    """The smoothed angle at each window's start: the mean over +-2 rows, less what curvature adds to it."""
+    """The smoothed angle at each window's start: the mean over +-2 rows, without what curvature adds to it."""
     follower = prepared.log.follower
     around = np.clip(first[:, None] + np.arange(-2, 3)[None, :], 0, len(follower) - 1)
     bend: Floats = prepared.acceleration[first] * (prepared.period**2) * 2.0 / 2.0
@@ -166,7 +167,7 @@ def _start_angles(prepared: Prepared, first: NDArray[np.int64]) -> Floats:
 
 
 def _volts(prepared: Prepared, substeps: int, spacing: Floats) -> Floats:
-    """The voltage in every substep: what the board held then, or a line between rows where it is logged seldom."""
+    """The voltage in every substep: what the board held then, or a line between rows in a log with few rows."""
     log = prepared.log
     share = (np.arange(substeps) + 0.5) / substeps
     moments = (log.time[:, None] + share[None, :] * spacing[:, None]).ravel() - prepared.delay - ACTUATION_S
@@ -175,7 +176,7 @@ def _volts(prepared: Prepared, substeps: int, spacing: Floats) -> Floats:
         return _at(moments, log.time, log.voltage)
     held = np.clip(np.searchsorted(log.time, moments + 1e-9, side="right") - 1, 0, len(log.time) - 1)
     volts = log.voltage[held]
-    # Where rows are missing the line between their neighbours is the better guess.
+    # Where rows are missing, the line between their neighbours is the better guess.
     missing = np.repeat(spacing > 1.5 * prepared.period, substeps)
     if missing.any():
         volts[missing] = _at(moments[missing], log.time, log.voltage)

@@ -1,4 +1,4 @@
-"""The default method: windows of the logs, then the closed loop, with as much structure as held-out data admit."""
+"""The default method: windows of the logs, then the closed loop, with as many quantities as held-out data support."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Floats = NDArray[np.float64]
 
 
 def find_default(task: Task) -> Found:
-    """Search; an interrupt after the first model ends it early, before that it goes on up."""
+    """Run the search. An interrupt after the first model ends it early; before that, the interrupt is raised again."""
     arm, joints = task.white_box, task.moving
     prepared = [subject.log for subject in task.fitted]
     search = Search(arm, prepared, task.loops(), joints, task.seed, task.report)

@@ -17,7 +17,7 @@ Floats = NDArray[np.float64]
 
 
 class Searched(Protocol):
-    """Whatever has numbers to search: how many, in which bounds, with which steps of finite differences."""
+    """Anything that has numbers to search: how many, in which bounds, with which steps of finite differences."""
 
     def __len__(self) -> int: ...
 
@@ -35,7 +35,7 @@ Residual = Callable[[Space, Floats], Floats]
 
 @dataclass(frozen=True)
 class Pattern:
-    """Which searched numbers move which numbers of a residual, so that several can be varied in one simulation."""
+    """Which searched numbers change which numbers of a residual, so that several can be varied in one simulation."""
 
     groups: tuple[NDArray[np.intp], ...]  # searched numbers that are varied together
     moves: NDArray[np.bool_]  # (numbers of the residual, searched numbers)
@@ -43,7 +43,7 @@ class Pattern:
 
 @dataclass(frozen=True)
 class Fit(Generic[Space]):
-    """Where least squares ended: half the sum of squares, the residual and its derivatives there."""
+    """The end of a least-squares fit: half the sum of squares, and the residual and its derivatives there."""
 
     space: Space
     x: Floats
@@ -62,9 +62,9 @@ def least_squares_fit(
     tolerance: float = 1e-4,
     pattern: Pattern | None = None,
 ) -> Fit[Space]:
-    """Trust-region least squares within the bounds, ended after `most_steps` steps or when little is gained.
+    """Trust-region least squares within the bounds. It ends after `most_steps` steps, or when a step gains little.
 
-    With a `pattern` derivatives outside of it are taken for 0.
+    With a `pattern`, derivatives outside of it are taken as 0.
     """
     low, high = space.bounds()
     inside = np.clip(start, low + 1e-9, high - 1e-9)
@@ -101,7 +101,7 @@ def least_squares_fit(
     scale = np.array(
         [1.0 if space.kind(index).logarithmic else 50.0 * space.kind(index).step for index in range(len(space))]
     )
-    # The matrices are tall and narrow: BLAS threads would only wait for each other, and for the simulations' own.
+    # The matrices are tall and narrow. Several BLAS threads would only wait for each other and for the simulations.
     with threadpool_limits(limits=1, user_api="blas"):
         found = least_squares(
             values,
@@ -117,8 +117,8 @@ def least_squares_fit(
     return Fit(space, found.x, float(found.cost), found.fun, found.jac, simulations)
 
 
-def differing(seen: Sequence[tuple[float, Floats]], count: int) -> list[Floats]:
-    """Of points with their costs the best `count` that differ from each other by more than half a unit somewhere."""
+def pick_different(seen: Sequence[tuple[float, Floats]], count: int) -> list[Floats]:
+    """The best `count` of points with their costs that differ from each other by more than half a unit somewhere."""
     kept: list[Floats] = []
     for _, point in sorted(seen, key=lambda one: one[0]):
         if all(np.max(np.abs(point - other)) > 0.5 for other in kept):

@@ -1,4 +1,4 @@
-"""What an identification is asked to do, and what any method of it finds."""
+"""The task of an identification, and the result that every method returns."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Report = Callable[[str, float], None]
 
 @dataclass(frozen=True)
 class Task:
-    """The white box to start from, logs made ready, and where random numbers start."""
+    """The white box to start from, the logs made ready, and the seed of all random numbers."""
 
     white_box: ArmParameters
     subjects: tuple[Subject, ...]
@@ -38,14 +38,14 @@ class Task:
         return tuple(joint for joint in range(JOINTS) if any(one.log.moving[joint] for one in self.fitted))
 
     def loops(self) -> list[Loop]:
-        """The fitted logs' closed loops; none where the controller of one is not known."""
+        """The fitted logs' closed loops, or none where the controller of one is not known."""
         tables = [subject.table for subject in self.fitted]
         if any(table is None for table in tables):
             return []
         return [Loop(one.log, one.table, self.white_box) for one in self.fitted if one.table is not None]
 
     def required_loops(self) -> list[Loop]:
-        """The same for a method that cannot do without."""
+        """The same, for a method that needs them."""
         loops = self.loops()
         if not loops:
             raise UserError(
@@ -57,7 +57,7 @@ class Task:
 
 @dataclass(frozen=True)
 class ParameterEstimate:
-    """One identified number; `deviation` is its standard deviation, None where the method knows none."""
+    """One identified number; `deviation` is its standard deviation, None where the method does not know it."""
 
     name: str
     means: str
@@ -74,10 +74,10 @@ class ParameterEstimate:
 
 @dataclass(frozen=True)
 class Found:
-    """A plant (60,), zero angles (4,) rad, and how sure the method is of them.
+    """A plant (60,), zero angles (4,) rad, and how certain the method is of them.
 
-    `joints` are those that were identified; `orders` the structures tried with their held-out errors; `covariance` is
-    of the searched numbers, in the order of the estimates; `open` are sentences on what the logs cannot tell.
+    `joints` are those that were identified. `orders` are the structures tried, with their held-out errors. `covariance`
+    is of the searched numbers, in the order of the estimates. `open` are sentences about what the logs cannot show.
     """
 
     plant: Floats = field(repr=False)

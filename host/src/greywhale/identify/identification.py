@@ -1,4 +1,4 @@
-"""Logs and the user's arm file in, a model out: checks, a method's search, judgement."""
+"""Logs and the user's arm file come in, and a model comes out: checks, a method's search, judgement."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ def identify(
 ) -> Outcome:
     """Find the arm that made the logs. `arm` is the white box to start from and supplies all geometry.
 
-    `tables` are controllers that the logs may have been recorded with; which is which is told by the CRC in each log.
-    An interrupt (Ctrl-C) after the first model ends the search early, with `complete` False in the outcome.
+    `tables` are controllers with which the logs may have been recorded; the CRC in each log shows which one it is. An
+    interrupt (Ctrl-C) after the first model ends the search early, with `complete` False in the outcome.
     """
     if method not in METHODS:
         raise UserError(f"method is {method!r}, but it must be one of {', '.join(METHODS)}.", BAD_USAGE)
@@ -56,12 +56,12 @@ def identify(
 def _subjects(
     logs: Sequence[Log], validate: Sequence[Log], arm: ArmParameters, tables: Sequence[ParameterTable]
 ) -> tuple[list[judge.Subject], list[str]]:
-    """Every log made ready and checked."""
+    """Make every log ready, and check it."""
     subjects, doubts = [], []
     crcs = {log.origin.param_crc for log in logs}
     for log in (*logs, *validate):
         table = controllers.table_of(log, tables)
-        shift = None  # of another tool's readings nobody knows how old they are
+        shift = None  # nobody knows how old the readings of another tool are
         if log.origin.firmware is not None:
             shift = (table or ParameterTable.defaults())["filter_shift"]
         prepared = prepare(log, shift)

@@ -1,5 +1,7 @@
-"""White box against model on every log: in the closed loop with the log's own controller, as that is what a model is
-for; where the controller is unknown, over windows under the logged voltages.
+"""Compares white box and model on every log.
+
+They run in the closed loop with the log's own controller, because a model is for that. Where the controller is unknown,
+they run over windows under the logged voltages.
 """
 
 from __future__ import annotations
@@ -24,7 +26,7 @@ FIT, SECOND, CHANGED = "fit", "validation", "validation, changed controller"
 
 @dataclass(frozen=True)
 class Subject:
-    """A log to be judged on."""
+    """A log on which arms are judged."""
 
     log: Prepared
     table: ParameterTable | None
@@ -59,7 +61,7 @@ class Verdict:
 
 
 def judge(subject: Subject, arm: ArmParameters, plant: Floats, zero: Floats, joints: Sequence[int]) -> Verdict:
-    """Both arms on one log; joints that were not identified count in neither."""
+    """Judge both arms on one log; joints that were not identified do not count."""
     white = Space.of(arm, (), ())
     kept = np.isin(np.arange(JOINTS), list(joints))
     if subject.table is not None:
@@ -77,7 +79,7 @@ def judge(subject: Subject, arm: ArmParameters, plant: Floats, zero: Floats, joi
 
 
 def warnings_of(verdicts: Sequence[Verdict]) -> list[str]:
-    """What the numbers say against the model."""
+    """Sentences for numbers that speak against the model."""
     sentences = []
     for verdict in verdicts:
         if verdict.improvement <= 0.0:

@@ -1,4 +1,4 @@
-"""How noisy the potentiometers are that made a log: a tuner that heard no noise would choose a Kd that magnifies it."""
+"""Measures a log's potentiometer noise: a tuner that knows of none would choose a Kd that magnifies it."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ STEPS = 1024  # of the converter
 
 
 def pot_noise(log: Prepared, filter_shift: int, supply: float) -> Floats:
-    """Of the follower's four potentiometers, V rms, from the log's readings.
+    """The noise of the follower's four potentiometers, V rms, from the log's readings.
 
-    A reading is the sum of four conversions after the firmware's low-pass, whose variance is share / (2 - share) of
-    its input's; the converter's own steps make a part of it.
+    A reading is the sum of four conversions after the firmware's low-pass. The low-pass leaves share / (2 - share) of
+    its input's variance. The converter's own steps make a part of the noise.
     """
     share = 1.0 / (1 << filter_shift)
     conversion = log.noise**2 * CONVERSIONS * (2.0 - share) / share

@@ -1,4 +1,4 @@
-"""What an identification found, as numbers, as text for people and as model.toml."""
+"""The outcome of an identification, as numbers, as text for people and as model.toml."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Outcome:
-    """A model, how sure it is, and how it does on every log."""
+    """A model, how certain it is, and how it does on every log."""
 
     white_box: ArmParameters
     method: str
@@ -39,7 +39,7 @@ class Outcome:
 
     @property
     def zero(self) -> Floats:
-        """(4,) rad, where the follower's potentiometers read 0."""
+        """(4,) rad, the angles at which the follower's potentiometers read 0."""
         return self.found.zero
 
     @property
@@ -60,7 +60,7 @@ class Outcome:
         return arm_of(self.white_box, self.plant, self.zero, name, source, self._noise())
 
     def _noise(self) -> Floats | None:
-        """Of the potentiometers, V rms, where a fitted log tells it: the noisiest one counts."""
+        """The potentiometers' noise, V rms, where a fitted log shows it; the noisiest log counts."""
         supply = self.white_box.follower_pots.supply
         found = [
             pot_noise(one.log, one.table["filter_shift"], supply)
@@ -74,7 +74,7 @@ class Outcome:
         write_text(path, to_toml(self.arm, self.identification()))
 
     def identification(self) -> dict[str, Any]:
-        """The table [identification] of model.toml, also the JSON."""
+        """The table [identification] of model.toml; it is also the JSON."""
         facts: dict[str, Any] = {
             "status": "complete" if self.complete else "unfinished: interrupted; the best model so far",
             "method": self.method,
@@ -90,7 +90,7 @@ class Outcome:
             facts["covariance"] = self.found.covariance.tolist()
         table = next((one.table for one in self.subjects if one.role == FIT and one.table is not None), None)
         if table is not None:
-            facts["parameters"] = table.changed()
+            facts["parameters"] = table.changes()
         board = next((one.log.log.origin.board for one in self.subjects if one.role == FIT), None)
         if board is not None:
             facts["board"] = board
@@ -116,7 +116,7 @@ class Outcome:
         return self.identification() | {"convergence": list(self.found.curve)}
 
     def text(self) -> str:
-        """For people: the layout of the paper's Table 5, then what is known and what is not."""
+        """The text for people: the layout of the paper's Table 5, then what is known and what is not."""
         lines = [] if self.complete else ["UNFINISHED: interrupted; this is the best model so far.", ""]
         for verdict in self.verdicts:
             lines += _table(verdict)

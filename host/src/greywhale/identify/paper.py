@@ -1,8 +1,8 @@
-"""The paper's identification: 20 motor values within Table 2's bounds, GWO-WOA with 10 agents and 50 iterations, the
-summed mean squared error of Eq. 5, here with the model inside the known controller.
+"""The paper's identification, with the model inside the known controller.
 
-The paper feeds "the same input" to arm and model. Taken literally (leader angles as volts) that is not well posed;
-inside the same controller it is.
+It searches 20 motor values within Table 2's bounds by GWO-WOA with 10 agents and 50 iterations, for the least summed
+mean squared error of Eq. 5. The paper feeds "the same input" to arm and model. Taken literally (leader angles as volts)
+that is not well posed; inside the same controller it is.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ Floats = NDArray[np.float64]
 AGENTS = 10
 ITERATIONS = 50
 VALUES = ("inertia", "resistance", "torque_constant", "viscous", "gear_ratio")
-# Table 2. It prints 19 lower bounds for 20 values: the third joint's lost a 0. Zero itself would divide by zero.
+# Table 2. It prints 19 lower bounds for 20 values: the third joint's is missing a 0. Zero itself would divide by zero.
 LEAST = 1e-6
 LOWER = (LEAST, 0.01, LEAST, LEAST, LEAST)
 UPPER = (100.0,) * 5
@@ -35,7 +35,7 @@ METHODS = {"paper": "gwo-woa", "paper-printed": "gwo-woa-printed"}
 
 @dataclass
 class PaperSearch:
-    """The search and what it has found so far."""
+    """The search and the best that it has found so far."""
 
     arm: ArmParameters
     loops: Sequence[Loop]
@@ -68,7 +68,7 @@ class PaperSearch:
         return total
 
     def plants(self, points: Floats) -> Floats:
-        """The paper's Eq. 1 as its units allow it; no friction, no backlash."""
+        """The paper's Eq. 1 in the only reading with consistent units; no friction, no backlash."""
         rows = np.tile(plant_row(self.arm), (len(points), 1))
         for joint in range(JOINTS):
             inertia, resistance, constant, viscous, ratio = points[:, 5 * joint : 5 * joint + 5].T
@@ -82,7 +82,7 @@ class PaperSearch:
 
 
 def find_as_paper(task: Task, method: str) -> Found:
-    """Search; an interrupt after the first pack ends it early, before that it goes on up."""
+    """Run the search. An interrupt after the first pack ends it early; before that, the interrupt is raised again."""
     loops = task.required_loops()
     search = PaperSearch(task.white_box, loops, task.seed, task.report, method)
     try:
@@ -106,7 +106,7 @@ def find_as_paper(task: Task, method: str) -> Found:
 
 
 def _estimates(white_box: ArmParameters, x: Floats) -> Iterator[ParameterEstimate]:
-    """The 20 values of Table 4 before and after."""
+    """The 20 values of Table 4, before and after."""
     for joint in range(JOINTS):
         before = white_box.joint[joint].motor.model_dump()
         for n, name in enumerate(VALUES):

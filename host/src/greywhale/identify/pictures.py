@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.figure import Figure
 
-from greywhale.errors import UserError, because
+from greywhale.errors import UserError, os_reason
 from greywhale.formats.whole import write_whole
 from greywhale.identify.closed_loop import COMPARED_TICKS, Loop
 from greywhale.identify.judge import Subject, Verdict
@@ -27,7 +27,7 @@ def draw(outcome: Outcome, folder: Path) -> list[Path]:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise UserError(f"{folder}: cannot be made: {because(error)}.") from None
+        raise UserError(f"{folder}: cannot be made: {os_reason(error)}.") from None
     written = []
     if outcome.found.curve:
         written.append(_save(_convergence(outcome), folder / "convergence.png"))

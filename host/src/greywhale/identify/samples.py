@@ -1,6 +1,6 @@
-"""Arms that the logs could have come from: the identified one, and others drawn from its covariance.
+"""Arms that could have made the logs: the identified one, and others drawn from its covariance.
 
-A controller that is to work on the real arm must work on all of these.
+A controller that is to work on the real arm must work on all of them.
 """
 
 from __future__ import annotations
@@ -19,20 +19,21 @@ Floats = NDArray[np.float64]
 
 
 def sampled_plants(arm: ArmParameters, count: int, seed: int = 0) -> Floats:
-    """Plants (count, 60) of an identified arm; row 0 is the estimate itself, the others are drawn with `seed`.
+    """Plants (count, 60) of an identified arm: row 0 is the estimate itself, the others are drawn with `seed`.
 
-    Drawn are the searched numbers, normal with [identification] covariance and kept within their ranges; row n does
-    not depend on `count`. A zero angle is drawn with the rest, but is the potentiometer's: no column of a plant.
-    Raises UserError (2) where `count` is below 1, (1) where the arm file holds no covariance.
+    The searched numbers are drawn from a normal distribution with the covariance of [identification], and kept within
+    their ranges. Row n does not depend on `count`. A zero angle is drawn too, but it belongs to the potentiometer and
+    is in no column of a plant. Raises UserError (2) where `count` is below 1, (1) where the arm file holds no
+    covariance.
     """
     if count < 1:
         raise UserError(f"count of sampled plants is {count}, but it must be at least 1.", BAD_USAGE)
     estimate = plant_row(arm)[None]
     if count == 1:
         return estimate
-    space, x, covariance = searched(arm)
+    space, x, covariance = read_search(arm)
     scale = np.sqrt(np.diag(covariance))
-    # A root that is the same on every computer: eigenvectors have free signs, a Cholesky factor has none.
+    # A root that is the same on every computer: eigenvectors have free signs, a Cholesky factor does not.
     root = np.linalg.cholesky(covariance / np.outer(scale, scale) + 1e-9 * np.eye(len(x))) * scale[:, None]
     draws = np.einsum("nk,jk->nj", np.random.default_rng(seed).standard_normal((count - 1, len(x))), root)
     low, high = _ranges(space)
@@ -41,10 +42,10 @@ def sampled_plants(arm: ArmParameters, count: int, seed: int = 0) -> Floats:
     return np.concatenate([estimate, space.plants(points)])
 
 
-def searched(arm: ArmParameters) -> tuple[Space, Floats, Floats]:
-    """What [identification] says was searched: space, point (n,) and covariance (n, n) in searched numbers.
+def read_search(arm: ArmParameters) -> tuple[Space, Floats, Floats]:
+    """The search that [identification] states: space, point (n,) and covariance (n, n) in searched numbers.
 
-    Raises UserError where it says nothing of that, or names what is not known.
+    Raises UserError where it states none, or names an unknown number.
     """
     facts = arm.identification
     if facts is None or "covariance" not in facts:
@@ -66,7 +67,7 @@ def searched(arm: ArmParameters) -> tuple[Space, Floats, Floats]:
 
 def _parameter(arm: ArmParameters, name: str) -> Parameter:
     try:
-        return Parameter.named(name)
+        return Parameter.from_name(name)
     except KeyError:
         raise UserError(
             f"{arm.name}: [identification] names the parameter {name!r}, which greywhale does not know; identify again."
@@ -74,7 +75,7 @@ def _parameter(arm: ArmParameters, name: str) -> Parameter:
 
 
 def _ranges(space: Space) -> tuple[Floats, Floats]:
-    """The search's own limits where they mean something physical: shares and gaps are never negative."""
+    """The search's own limits where they have a physical meaning: shares and gaps are never negative."""
     kinds = [space.kind(index) for index in range(len(space))]
     low = np.array([-np.inf if kind.logarithmic else kind.low for kind in kinds])
     high = np.array([np.inf if kind.logarithmic else kind.high for kind in kinds])

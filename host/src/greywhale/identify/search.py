@@ -1,13 +1,12 @@
-"""The default method: a global search seeded with the user's arm, least squares, then as many quantities as held-out
-data ask for.
+"""The default method: a global search that starts with the user's arm, then least squares, then more quantities.
 
-1. GWO-WOA over motors and Coulomb friction, on some windows of the log under its logged voltages.
-2. Least squares from the user's arm and from the best different points of that search; the best of them goes on.
-3. One group of quantities after the other is added: Stribeck friction, backlash, zero angles. Each is fitted to three
-   quarters of the log's windows, spread all over it, and stays only if the other quarter is predicted better with it.
-4. Where the controller is known, a fit to windows and closed loop together competes with the windows alone, and wins
-   if the held-out part of the closed loop is predicted better.
-5. What was chosen is fitted to the whole log.
+1. GWO-WOA searches motors and Coulomb friction, on some windows of the log under its logged voltages.
+2. Least squares starts from the user's arm and from the best different points of that search; the best result goes on.
+3. Groups of quantities are added one after the other: Stribeck friction, backlash, zero angles. Each is fitted to three
+   quarters of the log's windows, spread all over it. It stays only if the model then predicts the other quarter better.
+4. Where the controller is known, a fit to windows and closed loop together competes with the fit to windows alone. It
+   wins if it predicts the held-out part of the closed loop better.
+5. The chosen model is fitted to the whole log.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ from numpy.typing import NDArray
 from greywhale.arm import ArmParameters
 from greywhale.identify.closed_loop import Loop, LoopResidual
 from greywhale.identify.data import FINE_STEP_S, Prepared
-from greywhale.identify.fit import Pattern, differing, least_squares_fit
+from greywhale.identify.fit import Pattern, least_squares_fit, pick_different
 from greywhale.identify.space import COUPLED, MOTOR, Space
 from greywhale.identify.steps import WindowFit
 from greywhale.identify.windows import WindowResidual
@@ -31,7 +30,7 @@ from greywhale.optimise import DEFAULT, create
 Floats = NDArray[np.float64]
 Report = Callable[[str, float], None]
 
-# What each order of the model adds to the one before.
+# The quantities that each order of the model adds to the one before.
 ORDERS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("motors", MOTOR),
     ("Coulomb friction", ("coulomb",)),
@@ -41,7 +40,7 @@ ORDERS: tuple[tuple[str, tuple[str, ...]], ...] = (
 )
 # An order with more quantities must predict the held-out data better by this share of 1 + squares over noise.
 WORTH = 0.01
-# So must the closed loop, which is rough: chance alone moves its error by a tenth.
+# The same for the closed loop. It is rough: chance alone moves its error by a tenth.
 WORTH_CLOSED = 0.2
 # A closed-loop difference of this size counts as one standard deviation (rad): it lasts for many readings.
 LOOP_DOUBT = 1e-2
@@ -49,20 +48,20 @@ GLOBAL_EVALUATIONS = 500
 GLOBAL_WINDOWS = 12
 SOME_WINDOWS = 20
 GLOBAL_SPREAD = 2.5  # the box of the global search: factors e^(+-2.5) around the user's arm
-STARTS = 2  # of the global search's points that least squares starts from, beside the user's arm
+STARTS = 2  # the global search's points from which least squares starts, besides the user's arm
 WINDOW_STEPS = 20
 LOOP_STEPS = 10
-# From which side of its gap each motor starts is chosen anew so often at most, each time for some steps of the fit.
+# The side of its gap from which each motor starts is chosen anew at most so often, each time for some steps of the fit.
 SETTLINGS = 4
 SETTLED_STEPS = 8
-# Searched numbers that differ by so much are another optimum, worth a fit of its own.
+# Searched numbers that differ by so much are another optimum and get a fit of their own.
 ELSEWHERE = 0.3
-# Readings come in steps, so finite differences in the closed loop are taken wider than in the windows.
+# Readings come in steps, so finite differences in the closed loop are wider than in the windows.
 LOOP_STEP_SCALE = 5.0
 
 
 class Observed(Protocol):
-    """A residual that knows of which joint each of its numbers is, and how many seconds a candidate costs."""
+    """A residual that knows the joint of each of its numbers, and how many seconds a candidate costs."""
 
     joint_of: NDArray[np.intp]
     seconds: float
@@ -72,7 +71,9 @@ class Observed(Protocol):
 
 @dataclass(frozen=True)
 class Candidate:
-    """A model on its way; `held_out` is its error on windows that it was not fitted to, None before it was measured."""
+    """A model in the making. `held_out` is its error on windows to which it was not fitted, None before that is
+    measured.
+    """
 
     space: Space
     x: Floats
@@ -93,7 +94,7 @@ class Candidate:
 
 @dataclass
 class Search:
-    """Everything found so far, so that whoever interrupts the search loses nothing but the rest of it."""
+    """Everything found so far. An interrupt loses only the rest of the search."""
 
     arm: ArmParameters
     logs: Sequence[Prepared]
@@ -114,30 +115,30 @@ class Search:
 
     def run(self) -> None:
         self.report("fitting the motors", 0.0)
-        self._consider(self._motors())
-        self._consider(self._with_friction())
-        # What was of no use before backlash was known may be of use with it.
+        self._consider(self._fit_motors())
+        self._consider(self._fit_friction())
+        # A group that did not help before backlash was known may help with it.
         for step, number in enumerate((2, 3, 2, 4)):
             self.report("choosing the model's order", step / 4)
             self._consider_order(number)
         if self.loops:
             self._consider_closed()
-        self._whole()
+        self._fit_whole()
 
     def _consider_order(self, number: int) -> None:
         best = self.best
         assert best is not None
         order, added = ORDERS[number]
         kinds = {parameter.kind for parameter in best.space.parameters}
-        # Without Coulomb friction there is none at rest; and what is there need not be tried.
+        # Without Coulomb friction there is no friction at rest; and an order that is already there need not be tried.
         if added[0] in kinds or (order == "Stribeck friction" and "coulomb" not in kinds):
             return
-        candidate = self._with(best, number)
+        candidate = self._extend(best, number)
         if order == "Stribeck friction" and "gap" in kinds:
             candidate = replace(candidate, order=f"{order} with {best.order}")
         elif number == 2 and any(one.order == order for one in self.tried):
             return
-        self._consider(self._settled(self._fitted, candidate))
+        self._consider(self._settle(self._fitted, candidate))
 
     def _consider(self, candidate: Candidate) -> None:
         error = self._error(candidate)
@@ -150,30 +151,32 @@ class Search:
     def _error(self, candidate: Candidate) -> float:
         """Misfit of the held-out windows: the mean over windows and joints of log(1 + squares over noise).
 
-        Log, as else the one motion that the fitted part lacks would outweigh all that it has.
+        The logarithm keeps one motion that is missing in the fitted part from outweighing all other motions.
         """
         self._held.settle(candidate.plant, candidate.zero)
         return float(np.mean(np.log1p(self._held.misfit(candidate.plant, candidate.zero))))
 
-    def _motors(self) -> Candidate:
-        """Motors alone, from where the user has them."""
+    def _fit_motors(self) -> Candidate:
+        """Motors alone, starting from the user's values."""
         space = Space.of(self.arm, MOTOR, self.joints)
-        return self._refined(self._some_windows(), Candidate(space, space.start(), ORDERS[0][0]))
+        return self._refine(self._some_windows(), Candidate(space, space.start(), ORDERS[0][0]))
 
-    def _with_friction(self) -> Candidate:
+    def _fit_friction(self) -> Candidate:
         """Global search, then least squares from several points; the best by the fitted data."""
         space = Space.of(self.arm, (*MOTOR, "coulomb"), self.joints)
         motors = self.tried[0]
-        starts = [space.start(), space.moved(motors.x, motors.space), *self._global(space)]
+        starts = [space.start(), space.translate(motors.x, motors.space), *self._search_globally(space)]
         residual = self._some_windows()
         fits = []
         for number, point in enumerate(starts):
             self.report("least squares from several starts", number / len(starts))
             fits.append(self._fit_windows(residual, space, point, WINDOW_STEPS))
-        return self._refined(self._fitted, Candidate(space, self._mixed(self._fitted, space, fits), ORDERS[1][0]))
+        return self._refine(self._fitted, Candidate(space, self._mix_blocks(self._fitted, space, fits), ORDERS[1][0]))
 
-    def _mixed(self, windows: WindowResidual, space: Space, fits: Sequence[Floats]) -> Floats:
-        """Of joints that feel each other the numbers of the fit that is best for them: others may be stuck."""
+    def _mix_blocks(self, windows: WindowResidual, space: Space, fits: Sequence[Floats]) -> Floats:
+        """For each group of joints that feel each other, the numbers of the fit that is best for them: others may be
+        stuck.
+        """
         errors = np.array([windows.mse(space.plants(x[None])[0], space.offsets(x[None])[0]) for x in fits])
         mixed = fits[0].copy()
         for joints in COUPLED:
@@ -182,7 +185,7 @@ class Search:
             mixed[mine] = best[mine]
         return mixed
 
-    def _global(self, space: Space) -> list[Floats]:
+    def _search_globally(self, space: Space) -> list[Floats]:
         """The best points of GWO-WOA that differ from each other."""
         count = WindowResidual(self.logs, self.arm, self.joints).windows
         residual = WindowResidual(self.logs, self.arm, self.joints, False, max(1, count // GLOBAL_WINDOWS))
@@ -193,7 +196,7 @@ class Search:
         with create(DEFAULT, low, high, budget=GLOBAL_EVALUATIONS, seed=self.seed, start=middle[None]) as pack:
             while not pack.done:
                 points = pack.ask()
-                # Bounded per number, so that one joint far off does not hide what the others gain.
+                # Bounded per number, so that one joint with a large error does not hide what the others gain.
                 costs = np.mean(np.log1p(residual(space, points) ** 2), axis=1)
                 pack.tell(costs)
                 seen += [(float(cost), point.copy()) for cost, point in zip(costs, points, strict=True)]
@@ -201,37 +204,41 @@ class Search:
                 self.simulated += len(points) * residual.seconds
                 self.globally += len(points)
                 self.report("global search", self.globally / GLOBAL_EVALUATIONS)
-        return differing(seen, STARTS)
+        return pick_different(seen, STARTS)
 
-    def _with(self, candidate: Candidate, number: int) -> Candidate:
-        """The same model with the next order's quantities at their usual start."""
+    def _extend(self, candidate: Candidate, number: int) -> Candidate:
+        """The same model with the quantities of the next order at their usual start."""
         order, added = ORDERS[number]
         kinds = dict.fromkeys(parameter.kind for parameter in candidate.space.parameters)
         space = Space.of(self.arm, (*kinds, *added), self.joints)
-        return Candidate(space, space.moved(candidate.x, candidate.space), order)
+        return Candidate(space, space.translate(candidate.x, candidate.space), order)
 
-    def _refined(self, windows: WindowResidual, candidate: Candidate, steps: int = WINDOW_STEPS) -> Candidate:
+    def _refine(self, windows: WindowResidual, candidate: Candidate, steps: int = WINDOW_STEPS) -> Candidate:
         return replace(candidate, x=self._fit_windows(windows, candidate.space, candidate.x, steps))
 
-    def _settled(self, windows: WindowResidual, candidate: Candidate) -> Candidate:
-        """Least squares and the choice of where each window starts in the gaps, in turns until that no longer moves."""
-        found = self._refined(windows, candidate)
+    def _settle(self, windows: WindowResidual, candidate: Candidate) -> Candidate:
+        """Least squares and the choice of where each window starts in the gaps, in turns until that choice no longer
+        changes.
+        """
+        found = self._refine(windows, candidate)
         for _ in range(SETTLINGS):
             if not windows.settle(found.plant, found.zero):
                 break
-            found = self._refined(windows, found, SETTLED_STEPS)
+            found = self._refine(windows, found, SETTLED_STEPS)
         return found
 
     def _consider_closed(self) -> None:
-        """Fit windows and closed loop together; keep that if the held-out part of the closed loop is the better."""
+        """Fit windows and closed loop together; keep the fit if it predicts the held-out part of the closed loop
+        better.
+        """
         assert self.best is not None
         self.report("comparing with the closed loop", 0.0)
-        closed = self._closed(self._fitted, self.best, whole=False)
+        closed = self._fit_closed(self._fitted, self.best, whole=False)
         if self._closed_error(closed) < (1.0 - WORTH_CLOSED) * self._closed_error(self.best):
             self.best = closed
 
-    def _closed(self, windows: WindowResidual, candidate: Candidate, whole: bool) -> Candidate:
-        both = Both(windows, LoopResidual(self._loops_of(candidate), self.joints, whole), candidate)
+    def _fit_closed(self, windows: WindowResidual, candidate: Candidate, whole: bool) -> Candidate:
+        both = WindowsAndLoop(windows, LoopResidual(self._loops_of(candidate), self.joints, whole), candidate)
         x = self._fit(both, candidate.space, candidate.x, LOOP_STEPS, LOOP_STEP_SCALE)
         return replace(candidate, x=x, closed=True)
 
@@ -240,41 +247,41 @@ class Search:
         return float(np.mean(np.sum(errors, axis=1)))
 
     def _some_windows(self) -> WindowResidual:
-        """Of the fitted part as many as it takes to come near, in less time."""
+        """As many windows of the fitted part as it takes to come near the optimum in less time."""
         return WindowResidual(self.logs, self.arm, self.joints, False, max(1, self._fitted.windows // SOME_WINDOWS))
 
     def _loops_of(self, candidate: Candidate) -> Sequence[Loop]:
         zero = candidate.zero
         return [loop.with_zero(zero) for loop in self.loops] if zero.any() else self.loops
 
-    def _whole(self) -> None:
-        """The chosen order once more, on all data."""
+    def _fit_whole(self) -> None:
+        """Fit the chosen order once more, on all data."""
         assert self.best is not None
         self.report("fitting the chosen model to the whole log", 0.0)
-        self.best = self._unstuck(self.best)
+        self.best = self._retry_optima(self.best)
         windows = WindowResidual(self.logs, self.arm, self.joints, longest_step=FINE_STEP_S)
         windows.settle(self.best.plant, self.best.zero)
-        found = self._settled(windows, self.best)
-        self.best = self._closed(windows, found, whole=True) if self.best.closed else found
+        found = self._settle(windows, self.best)
+        self.best = self._fit_closed(windows, found, whole=True) if self.best.closed else found
         self.complete = True
 
-    def _unstuck(self, candidate: Candidate) -> Candidate:
-        """The motion that tells a joint's optimum from another may be in the part that was held out: try that again."""
+    def _retry_optima(self, candidate: Candidate) -> Candidate:
+        """Try another optimum again: the motion that tells a joint's optima apart may be in the held-out part."""
         windows = WindowResidual(self.logs, self.arm, self.joints)
         space = Space.of(self.arm, (*MOTOR, "coulomb"), self.joints)
-        starts = (space.start(), space.moved(candidate.x, candidate.space))
-        simple = self._mixed(windows, space, [self._fit_windows(windows, space, x, WINDOW_STEPS) for x in starts])
+        starts = (space.start(), space.translate(candidate.x, candidate.space))
+        simple = self._mix_blocks(windows, space, [self._fit_windows(windows, space, x, WINDOW_STEPS) for x in starts])
         names = dict(zip(space.names, simple, strict=True))
         other = np.array([names.get(name, x) for name, x in zip(candidate.space.names, candidate.x, strict=True)])
-        # A joint that feels no gravity hardly knows its alpha: that one alone is no other optimum.
+        # A joint that feels no gravity hardly shows its alpha: a difference in alpha alone is no other optimum.
         told = np.array([parameter.kind != "alpha" for parameter in candidate.space.parameters])
         if np.max(np.abs(other - candidate.x)[told]) < ELSEWHERE:
             return candidate
-        tried = [self._settled(windows, replace(candidate, x=x)).x for x in (candidate.x, other)]
-        return replace(candidate, x=self._mixed(windows, candidate.space, tried))
+        tried = [self._settle(windows, replace(candidate, x=x)).x for x in (candidate.x, other)]
+        return replace(candidate, x=self._mix_blocks(windows, candidate.space, tried))
 
     def _fit_windows(self, windows: WindowResidual, space: Space, start: Floats, steps: int) -> Floats:
-        """Where least squares on windows ends; counts what was simulated."""
+        """Run least squares on windows, and count what was simulated."""
         fit = WindowFit(windows, space, start)
         found = fit.run(steps)
         self.simulations += fit.simulations
@@ -282,7 +289,7 @@ class Search:
         return found
 
     def _fit(self, observed: Observed, space: Space, start: Floats, steps: int, scale: float = 1.0) -> Floats:
-        """Where least squares ends, the user's arm counting as one weak observation; counts what was simulated."""
+        """Run least squares with the user's arm as one weak observation, and count what was simulated."""
 
         def residual(space: Space, points: Floats) -> Floats:
             return np.concatenate([observed(space, points), (points - space.start()) / space.doubts()], axis=1)
@@ -296,15 +303,16 @@ class Search:
         return found.x
 
 
-class Both:
-    """Windows and closed loop in one residual, each in standard deviations of what it cannot help to miss."""
+class WindowsAndLoop:
+    """Windows and closed loop in one residual, each in standard deviations of the error that the model cannot avoid."""
 
     def __init__(self, windows: WindowResidual, loops: LoopResidual, candidate: Candidate) -> None:
         self._windows = windows
         self._loops = loops
         self.joint_of = np.concatenate([windows.joint_of, loops.joint_of])
         self.seconds = windows.seconds + loops.seconds
-        # What the model cannot explain in the windows is no noise of single readings, but weighs like it.
+        # An error that the model cannot explain in the windows is no noise of single readings, but it weighs like
+        # noise.
         missed = windows(candidate.space, candidate.x[None])
         self._scale = max(1.0, float(np.sqrt(np.mean(missed**2))))
 

@@ -1,7 +1,7 @@
-"""What is searched: per joint, the combinations of motor data that motion can reveal, friction, backlash, zero angle.
+"""What is searched, per joint: the combinations of motor data that motion can show, friction, backlash, zero angle.
 
-A joint's five motor values act through three numbers only: volts a torque needs (alpha), volts an acceleration needs
-(inertia) and volts a speed needs (damping). They are positive and of unknown size, so their logarithms are searched.
+A joint's five motor values act through three numbers only: the volts that a torque needs (alpha), an acceleration needs
+(inertia) and a speed needs (damping). They are positive and of unknown size, so their logarithms are searched.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Kind:
-    """One quantity of every joint: how it is searched, in which range, and how it is told."""
+    """One quantity of every joint: how it is searched, in which range, and how it is stated."""
 
     unit: str
     means: str
@@ -32,8 +32,8 @@ class Kind:
     low: float  # factor of the start where logarithmic, else the value itself
     high: float
     step: float  # of finite differences, in the searched number
-    # How far from the user's arm, or from the usual, it may well be: one standard deviation of the searched number. It
-    # weighs as much as one reading, so it decides only what the log leaves open.
+    # How far it may be from the user's arm, or from the usual: one standard deviation of the searched number. It weighs
+    # as much as one reading, so it decides only what the log leaves open.
     doubt: float
 
     def to_search(self, value: float) -> float:
@@ -65,7 +65,7 @@ KINDS = {
     "offset": Kind("rad", "angle at which the potentiometer reads 0", False, 0.0, -0.3, 0.3, 1e-3, 0.1),
 }
 MOTOR = ("alpha", "inertia", "damping")
-# Joints that feel each other while one of their numbers is varied a little: the pitch joints carry one another; yaw and
+# Joints that feel each other while one of their numbers is varied a little. The pitch joints carry one another. Yaw and
 # roll feel the others through their poses only, and each other by a few per cent at most.
 COUPLED = ((0,), (1, 2), (3,))
 PITCH = (1, 2)  # only these feel gravity, so only they have a zero angle that matters
@@ -87,7 +87,7 @@ class Parameter:
         return f"joint{self.joint}.{self.kind}"
 
     @classmethod
-    def named(cls, name: str) -> Self:
+    def from_name(cls, name: str) -> Self:
         """The searched number of a name such as "joint2.coulomb"; KeyError where there is none."""
         joint, _, kind = name.partition(".")
         if kind not in KINDS:
@@ -97,7 +97,7 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Space:
-    """Vectors of searched numbers for some quantities of some joints; all else stays as the user's arm has it."""
+    """Vectors of searched numbers for some quantities of some joints; everything else stays as in the user's arm."""
 
     arm: ArmParameters
     parameters: tuple[Parameter, ...]
@@ -123,28 +123,28 @@ class Space:
         return np.array([self.kind(index).step for index in range(len(self))])
 
     def doubts(self) -> Floats:
-        """How far from the user's arm a value may well be: standard deviations of the searched numbers."""
+        """How far a value may be from the user's arm: standard deviations of the searched numbers."""
         return np.array([self.kind(index).doubt for index in range(len(self))])
 
     def start(self) -> Floats:
-        """The user's arm; where it is silent (no friction, say), a usual value."""
+        """The user's arm, or a usual value where the arm gives none (no friction, for example)."""
         return np.array([self.kind(n).to_search(self._known(one)) for n, one in enumerate(self.parameters)])
 
     def bounds(self) -> tuple[Floats, Floats]:
         return ranges([self.kind(index) for index in range(len(self))], self.start())
 
     def values(self, x: Floats) -> Floats:
-        """In physical units."""
+        """The values in physical units."""
         return np.array([self.kind(index).from_search(float(number)) for index, number in enumerate(x)])
 
-    def moved(self, x: Floats, source: Space) -> Floats:
-        """A vector of another space in this one; what that one does not have starts as usual."""
+    def translate(self, x: Floats, source: Space) -> Floats:
+        """A vector of another space in this one; a number that the other does not have starts as usual."""
         known = dict(zip(source.names, x, strict=True))
         start = self.start()
         return np.array([known.get(name, start[index]) for index, name in enumerate(self.names)])
 
     def groups(self) -> tuple[NDArray[np.intp], ...]:
-        """Numbers that can be varied together, as no two of them belong to joints that feel each other."""
+        """Numbers that can be varied together, because no two of them belong to joints that feel each other."""
         columns: list[list[int]] = []
         for joints in COUPLED:
             mine = [index for index, one in enumerate(self.parameters) if one.joint in joints]
@@ -154,7 +154,7 @@ class Space:
         return tuple(np.array(group, dtype=np.intp) for group in columns)
 
     def moves(self, joint_of: NDArray[np.intp]) -> NDArray[np.bool_]:
-        """Which searched numbers move the numbers of a residual that are of these joints; (numbers, searched)."""
+        """Which searched numbers change the numbers of a residual that are of these joints; (numbers, searched)."""
         table = np.zeros((JOINTS, len(self)), dtype=bool)
         for joints in COUPLED:
             for index, one in enumerate(self.parameters):
@@ -212,7 +212,7 @@ def _set_joint(rows: Floats, joint: int, here: dict[str, Floats], supply: float)
         torque[:] = np.exp(-here["alpha"])
     for kind in ("inertia", "damping"):
         values = rows[:, column(kind, joint)]
-        # What is not searched keeps its volts, as that is what moves the joint.
+        # Quantities that are not searched keep their volts, because the volts move the joint.
         values[:] = (np.exp(here[kind]) if kind in here else values * volts_before) * torque
     sliding, rest = rows[:, column("coulomb", joint)], rows[:, column("breakaway", joint)]
     excess = np.where(sliding > 0.0, rest / np.where(sliding > 0.0, sliding, 1.0) - 1.0, 0.0)

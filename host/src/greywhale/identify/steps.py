@@ -1,9 +1,9 @@
-"""Least squares on windows, joint by joint in lock step: Levenberg-Marquardt with a damping of its own for each set of
-joints that feel each other.
+"""Least squares on windows, joint by joint in lock step.
 
-One trust region for all would let a joint that hunts in its gap, whose residual is rough, hold up the others. Several
-dampings are tried at once, as a batch of simulations costs little more than one. Windows that a joint's model misses
-far more than its mean window (as nobody can know how it started in its gap) count with the logarithm of their misfit.
+It is Levenberg-Marquardt; each set of joints that feel each other has a damping of its own. With one trust region for
+all, a joint that hunts in its gap, whose residual is rough, would hold up the others. Several dampings are tried at
+once, because a batch of simulations costs little more than one. Nobody can know how a joint started in its gap, so a
+model may miss some windows far more than its mean window. Such windows count with the logarithm of their misfit.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from greywhale.identify.space import COUPLED, Space
 from greywhale.identify.windows import WindowResidual
 
 Floats = NDArray[np.float64]
-DAMPINGS = (0.02, 0.3, 5.0, 100.0)  # times a block's last
+DAMPINGS = (0.02, 0.3, 5.0, 100.0)  # times a block's last damping
 LARGEST_STEP = 1.0  # of a searched number, in doubts
 MOST_DAMPING = 1e8
-# A window counts as usual up to so many times the mean window of its joint. (The median would be one of rest in many a
-# log, and every motion an exception.)
+# A window counts as usual up to so many times the mean window of its joint. (In many a log the median window is one of
+# rest, and every motion would be an exception.)
 USUAL = 4.0
-ENOUGH = 2e-4  # ends when a step gains less than this share of the cost
+ENOUGH = 2e-4  # the fit ends when a step gains less than this share of the cost
 
 
 @dataclass
@@ -39,7 +39,7 @@ class _Block:
 
 
 class WindowFit:
-    """One fit; the misfit that counts as usual is taken where it starts."""
+    """One fit. The misfit that counts as usual is measured where the fit starts."""
 
     def __init__(self, residual: WindowResidual, space: Space, start: Floats) -> None:
         self._residual = residual
@@ -75,7 +75,7 @@ class WindowFit:
         return self.x
 
     def _step(self) -> None:
-        """One set of derivatives, then a step of every block: the best of several."""
+        """Work out one set of derivatives, then take a step of every block: the best of several."""
         jacobian = self.derivatives()
         weights = self._weights(self._numbers)
         trials = np.tile(self.x, (len(DAMPINGS), 1))
@@ -89,7 +89,7 @@ class WindowFit:
         for number, block in enumerate(self._blocks):
             if not block.done:
                 self._accept(number, block, trials, costs[:, number])
-        # The blocks' steps together: what was taken from different trials has not been simulated yet.
+        # The blocks' steps together. Steps from different trials have not been simulated together yet.
         self._numbers = self._simulate(self.x[None])[0]
         self._costs = self._costs_of(self.x, self._numbers)
 
@@ -104,7 +104,7 @@ class WindowFit:
         block.done = gained < ENOUGH * self._costs[number] if gained > 0.0 else block.damping > MOST_DAMPING
 
     def _proposed(self, block: _Block, jacobian: Floats, weights: Floats, damping: float) -> Floats:
-        """Levenberg-Marquardt step of one block; numbers at their bounds that would leave stay."""
+        """The Levenberg-Marquardt step of one block; a number at its bound that would leave the box stays."""
         rows = np.isin(self._joint_of, block.joints)
         part = jacobian[np.ix_(rows, block.numbers)]
         doubts = self._doubts[block.numbers]
@@ -153,7 +153,7 @@ class WindowFit:
         return weights
 
     def _costs_of(self, x: Floats, numbers: Floats) -> Floats:
-        """Half of what each block is to minimise, doubts about the user's arm included."""
+        """Half of the sum that each block is to minimise, doubts about the user's arm included."""
         usual = self._usual[:, None]
         per_joint = np.sum(usual * np.log1p(self._misfit(numbers) / usual), axis=1)
         nominal = ((x - self._nominal) / self._doubts) ** 2

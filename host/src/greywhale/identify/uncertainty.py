@@ -1,7 +1,7 @@
-"""How well the logs determine each parameter, what they leave open, and which motion would settle it.
+"""How well the logs determine each parameter, what they leave open, and which motion would settle that.
 
-The covariance comes from the sandwich formula with the windows as clusters: what a model gets wrong it gets wrong for
-many readings in a row, and counting each of them as new evidence would make every deviation far too small.
+The covariance comes from the sandwich formula with the windows as clusters. A model's mistakes last for many readings
+in a row. If each reading counted as new evidence, every deviation would be far too small.
 """
 
 from __future__ import annotations
@@ -18,13 +18,14 @@ from greywhale.identify.space import KINDS, Space
 from greywhale.identify.windows import WindowResidual
 
 Floats = NDArray[np.float64]
-# A positive quantity known no better than to this factor's logarithm (or any other to this many steps) is left open.
+# A positive quantity is left open if it is known no better than to this factor's logarithm; any other, to so many
+# steps.
 OPEN_LOG = 0.3
 WIDE = 0.1  # of the user's arm's doubts
 OPEN = {"breakaway": 0.5, "gap": 2e-3, "offset": 0.05}
-# These matter little: known to a factor of e they are known well enough.
+# These matter little: to know them within a factor of e is enough.
 OPEN_FACTOR = {"drag": 1.0, "teeth": 1.0}
-# Directions of the search space below this share of the largest eigenvalue are not used to invert.
+# Directions of the search space below this share of the largest eigenvalue are left out of the inverse.
 SMALLEST_EIGENVALUE = 1e-13
 
 EXCITATION = {
@@ -58,31 +59,31 @@ class Uncertainty:
 
 
 def uncertainty(residual: WindowResidual, space: Space, x: Floats, joints: Sequence[int]) -> Uncertainty:
-    """Evaluate at a found point; what the readings leave open is as uncertain as the user's arm file."""
-    # Wide differences: a joint that hunts makes the residual rough, and roughness is no knowledge.
+    """Evaluate at a found point. Numbers that the readings leave open are as uncertain as the user's arm file."""
+    # Wide differences: a joint that hunts makes the residual rough, and roughness is no information.
     steps = WIDE * space.doubts()
     _, high = space.bounds()
     ahead = np.where(x + steps > high, -steps, steps)
     numbers = residual(space, np.vstack([x[None], x[None, :] + np.diag(ahead)]))
     jacobian = ((numbers[1:] - numbers[0]) / ahead[:, None]).T
     information = jacobian.T @ jacobian
-    # Each number in its own natural size: a factor of e, or what would be called another value of the quantity.
+    # Each number in its own natural size: a factor of e, or a step that makes it another value of the quantity.
     size = np.array([1.0 if space.kind(n).logarithmic else OPEN[one.kind] for n, one in enumerate(space.parameters)])
     values = np.linalg.eigvalsh(information * np.outer(size, size))
     condition = float(values[-1]) / max(float(values[0]), SMALLEST_EIGENVALUE * float(values[-1]))
     gradients = np.zeros((residual.clusters.max() + 1, len(space)))
     np.add.at(gradients, residual.clusters, jacobian * numbers[0][:, None])
-    covariance = _combined(information, gradients.T @ gradients, np.diag(space.doubts() ** -2.0))
-    return Uncertainty(covariance, condition, tuple(_open(space, x, np.sqrt(np.diag(covariance)), joints)))
+    covariance = _combine(information, gradients.T @ gradients, np.diag(space.doubts() ** -2.0))
+    return Uncertainty(covariance, condition, tuple(_describe_open(space, x, np.sqrt(np.diag(covariance)), joints)))
 
 
-def _combined(information: Floats, scatter: Floats, nominal: Floats) -> Floats:
-    """Covariance from what the readings would tell if only noise were in them (`information`), how much they disagree
-    beyond that (`scatter`, of the clusters' gradients), and the user's arm file (`nominal`, as information).
+def _combine(information: Floats, scatter: Floats, nominal: Floats) -> Floats:
+    """The covariance from three sources.
 
-    The readings tell information x scatter^-1 x information (Godambe). Few clusters show the scatter badly, so it is
-    drawn half way towards the information times one common factor. What the readings leave open stays as uncertain as
-    the arm file is taken to be.
+    `information` is what the readings would tell if only noise were in them. `scatter`, of the clusters' gradients, is
+    how much they disagree beyond that. `nominal` is the user's arm file, as information. The readings tell information
+    x scatter^-1 x information (Godambe). Few clusters show the scatter badly, so it is drawn half way towards the
+    information times one common factor. Numbers that the readings leave open stay as uncertain as in the arm file.
     """
     inverse = np.linalg.inv(information + nominal)
     common = float(np.trace(inverse @ scatter) / np.trace(inverse @ information))
@@ -93,7 +94,7 @@ def _combined(information: Floats, scatter: Floats, nominal: Floats) -> Floats:
     return symmetric
 
 
-def _open(space: Space, x: Floats, deviations: Floats, joints: Sequence[int]) -> list[str]:
+def _describe_open(space: Space, x: Floats, deviations: Floats, joints: Sequence[int]) -> list[str]:
     sentences = [
         f"joint {joint} ({JOINT_NAMES[joint]}): it did not move, so nothing of it was identified and the values of the "
         "arm file stay; move it by half a radian or more"

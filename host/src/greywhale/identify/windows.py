@@ -1,7 +1,7 @@
-"""The first residual: candidate arms driven by the logged voltages over short windows, each started from the log.
+"""The first residual: the logged voltages drive candidate arms over short windows, and the log gives each start.
 
-Where a window starts is known only as well as the potentiometers are read. So angle and speed there are free within
-their uncertainty: the best ones are found for every window and candidate by a formula, as the error they cause is
+The start of a window is known only as well as the potentiometers are read. So angle and speed there are free within
+their uncertainty. A formula finds the best ones for every window and candidate, because the error that they cause is
 nearly linear in them. That keeps the residual smooth in the parameters, and fair.
 """
 
@@ -21,9 +21,9 @@ from greywhale.identify.data import BLOCK_S, STEP_S, WINDOW_S, Prepared, Windows
 from greywhale.identify.space import Space
 
 Floats = NDArray[np.float64]
-# What a start speed may be off beyond what noise explains (rad/s): motion within the smoothing.
+# A start speed may be off by so much beyond what noise explains (rad/s): motion within the smoothing.
 SPEED_DOUBT = 0.05
-# Where in its gap a motor may stand at a window's start, as shares of the half gap.
+# The places in its gap at which a motor may stand at a window's start, as shares of the half gap.
 SIDES = (-1.0, -0.5, 0.0, 0.5, 1.0)
 # Another side is taken only if it leaves less than this share of the squared difference.
 WORTH_A_CHANGE = 0.95
@@ -32,7 +32,7 @@ START_PASSES = 2
 
 
 class WindowResidual:
-    """Differences between log and candidates in standard deviations of a reading; a row of numbers a candidate."""
+    """Differences between log and candidates, in standard deviations of a reading; one row of numbers a candidate."""
 
     def __init__(
         self,
@@ -66,13 +66,14 @@ class WindowResidual:
         return np.concatenate(parts, axis=1)
 
     def settle(self, plant: Floats, zero: Floats) -> bool:
-        """Choose anew how each window starts, as fits the log best with this plant: angle, speed, and where in its gap
-        the motor stands. True if a motor changed its place.
+        """Choose anew, for this plant, the start of each window that fits the log best. True if a motor changed its
+        place.
 
-        Torques tell that place badly where a joint hunts in its gap, and from the wrong side a window is of no use.
+        A start is an angle, a speed, and the motor's place in its gap. Where a joint hunts in its gap, torques show
+        that place badly, and a window that starts on the wrong side is useless.
         """
         changed = False
-        # From the log's own starts again: those of another model would stay where that one wanted them.
+        # Start from the log's own values again: those of another model would stay where that model wanted them.
         self._pieces = list(self._logged)
         for number in range(len(self._pieces)):
             if any(plant[column("half_gap", joint)] > 0.0 for joint in self.joints):
@@ -90,7 +91,7 @@ class WindowResidual:
         return bool(np.any(best))
 
     def _settle_starts(self, number: int, plant: Floats, zero: Floats) -> None:
-        """Move starts by what the formula takes off, where the simulation agrees that this is better."""
+        """Move starts by the formula's correction, where the simulation agrees that this is better."""
         windows, log = self._pieces[number]
         sides = self._sides[number]
         before, angles, velocities = self._costs(windows, log, sides, plant, zero)
@@ -110,7 +111,9 @@ class WindowResidual:
     def _costs(
         self, windows: Windows, log: Prepared, sides: Floats, plant: Floats, zero: Floats
     ) -> tuple[Floats, Floats, Floats]:
-        """Squared difference (windows, 4) of one plant, its best starts taken off, and these: rad and rad/s."""
+        """Squared difference (windows, 4) of one plant without the part that its best starts explain, and these: rad,
+        rad/s.
+        """
         error = self._errors(windows, sides, plant[None], zero[None])
         count = len(windows.first)
         costs, angles, velocities = (np.zeros((count, JOINTS)) for _ in range(3))
@@ -124,7 +127,7 @@ class WindowResidual:
         return costs, angles, velocities
 
     def misfit(self, plant: Floats, zero: Floats) -> Floats:
-        """Squares per reading over the noise's (windows, joints) of one plant, as `mse`."""
+        """Squares per reading over the noise's (windows, joints) of one plant, computed as in `mse`."""
         parts = [
             self._costs(windows, log, sides, plant, zero)[0] / len(windows.time)
             for (windows, log), sides in zip(self._pieces, self._sides, strict=True)
@@ -133,7 +136,9 @@ class WindowResidual:
         return found
 
     def mse(self, plant: Floats, zero: Floats) -> Floats:
-        """Mean squared difference per joint, rad², of one plant, with the best start of every window taken off."""
+        """Mean squared difference per joint, rad², of one plant, without the part that the best start of a window
+        explains.
+        """
         total, count = np.zeros(4), 0
         for (windows, log), sides in zip(self._pieces, self._sides, strict=True):
             error = self._errors(windows, sides, plant[None], zero[None])

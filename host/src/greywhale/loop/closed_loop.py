@@ -1,4 +1,4 @@
-"""The native closed loop, which no other module touches: one leader and one board, any number of candidates."""
+"""The native closed loop: one leader and one board, any number of candidates. No other module calls it."""
 
 from __future__ import annotations
 
@@ -31,12 +31,13 @@ class Timing:
 
     `chain_start`: cycles (16 MHz) from the beginning of that slice to the first of the tick's 32 conversions.
     `acts`: the slice (1..3) from whose beginning each joint's new voltage acts.
-    `drivers_on`: the slice (1..4, of tick 0) in which the drivers are first found on; a slice later the hand lets go of
-    the follower, and the controllers run from tick 1 on.
-    On the bench all depend on the cycle at which the board was switched on; the defaults are those of a tick that
-    begins with its slice and is done within it.
+    `drivers_on`: the slice (1..4, of tick 0) that first finds the drivers on. The hand lets go of the follower a slice
+    later, and the controllers run from tick 1 on.
     `late`: ticks by which every duty acts later than the firmware gives it. No board does that; a controller with a
-    margin bears it.
+    margin can bear it.
+
+    On the bench all but `late` depend on the cycle at which the board was switched on. The defaults are those of a tick
+    that begins with its slice and is done within it.
     """
 
     chain_start: int = 2208
@@ -81,7 +82,7 @@ class Result:
 
 @dataclass(frozen=True)
 class Readings:
-    """What the board sees of the leader, and where the leader is: a row a tick."""
+    """The leader as the board sees it, and where the leader is: a row a tick."""
 
     reference: Counts  # (ticks, 4) in ANGLE_LSB
     leader: Array  # (ticks, 4) rad
@@ -90,7 +91,7 @@ class Readings:
 def read_leader(
     table: ParameterTable, pots: PotentiometerBank, slices: Array, *, seed: int, noise: bool, timing: Timing
 ) -> Readings:
-    """Leader angles (rad, four slices a tick) through potentiometers, converter and the firmware's calibration."""
+    """Read leader angles (rad, four slices a tick) through potentiometers, converter and the firmware's calibration."""
     reference, leader = _native.leader_readings(
         settings=settings_of(table),
         timing=timing.native(),
@@ -103,9 +104,9 @@ def read_leader(
 
 
 def known_readings(reference: Array, leader: Array | None = None) -> Readings:
-    """For a leader of which the readings are known, (ticks, 4) rad: from a log, or because the host leads.
+    """The readings of a leader whose readings are known, (ticks, 4) rad: from a log, or because the host leads.
 
-    `leader` is what the follower is measured against, the same unless given.
+    The follower is measured against `leader`, by default these readings.
     """
     counts = np.clip(np.round(reference / ANGLE_LSB), -32768, 32767).astype(np.int16)
     return Readings(np.ascontiguousarray(counts), np.ascontiguousarray(reference if leader is None else leader))
@@ -114,8 +115,8 @@ def known_readings(reference: Array, leader: Array | None = None) -> Readings:
 class ClosedLoop:
     """Leader, follower's potentiometers and board settings, shared by all candidates.
 
-    `home` (4,) rad is where the follower starts, `gap` (4,) where in its backlash each gear stands (-1 to 1), and
-    `weight_s` (ticks,) weighs |e| and |u| in ITAE and ITAU.
+    The follower starts at `home` (4,) rad. `gap` (4,) is the place of each gear in its backlash (-1 to 1). `weight_s`
+    (ticks,) weighs |e| and |u| in ITAE and ITAU.
     """
 
     def __init__(
@@ -158,7 +159,7 @@ class ClosedLoop:
         single: bool = False,
         instructions: str = "",
     ) -> Result:
-        """Simulate candidates that are known to be sound; Experiment says what the arguments mean, and checks them."""
+        """Simulate candidates that are already checked; Experiment explains the arguments, and checks them."""
         try:
             outcome = self._loop.run(
                 controllers=controllers,
@@ -177,7 +178,7 @@ class ClosedLoop:
 
 
 def settings_of(table: ParameterTable, soft_start: bool = False) -> _native.LoopSettings:
-    """What the firmware does around the law, as the table sets it."""
+    """The settings of the firmware around the law, from the table."""
     return _native.LoopSettings(
         period_ms=table.period_ms,
         supply_mv=table["supply_mv"],
@@ -195,7 +196,9 @@ def settings_of(table: ParameterTable, soft_start: bool = False) -> _native.Loop
 
 
 def with_ideal_follower(table: ParameterTable) -> ParameterTable:
-    """The same board with motors wired right and usual potentiometers: a log's angles are calibrated already."""
+    """The same board with correctly wired motors and usual potentiometers, because a log's angles are already
+    calibrated.
+    """
     usual = ParameterTable.defaults()
     keys = ("follower", "zero"), ("follower", "scale"), ("joint", "motor_sign")
     names = [f"{group}{joint}.{key}" for group, key in keys for joint in range(JOINTS)]
@@ -205,6 +208,8 @@ def with_ideal_follower(table: ParameterTable) -> ParameterTable:
 def count_swings(
     traces: npt.NDArray[np.float32] | npt.NDArray[np.int16], first: int, last: int, band: float
 ) -> tuple[npt.NDArray[np.int32], Array]:
-    """Turning points of traces (n, rows, 4) more than `band` apart in rows first..last, and the way between them."""
+    """Count turning points of traces (n, rows, 4) more than `band` apart in rows first..last, and add up the way
+    between.
+    """
     turned, moved = _native.swings(traces, first, last, band)
     return turned, moved

@@ -31,7 +31,7 @@ def default_controller() -> Controllers:
 
 
 def check_controllers(controllers: Controllers) -> Controllers:
-    """One row or many, every one of which the firmware would accept; with the first axis added where it was missing."""
+    """Check one row or many that the firmware must accept; the first axis is added where it was missing."""
     check_type("controllers", controllers, np.int32)
     rows = controllers[None] if controllers.ndim == 2 else controllers
     if rows.ndim != 3 or rows.shape[1:] != (JOINTS, len(CONTROLLER_COLUMNS)):

@@ -1,4 +1,4 @@
-"""One experiment with the closed loop: what all candidates share, and what comes out for each."""
+"""One experiment with the closed loop: what all candidates share, and a result for each."""
 
 from __future__ import annotations
 
@@ -25,8 +25,9 @@ class Experiment:
     """Leader, sensors and board settings, shared by all candidates; `run` simulates any number of them.
 
     `leader` is a motion, or angles (rad) in every slice of 250 us as float64 (slices, 4). `table` is the parameter
-    table of the board; its controllers are the candidate unless others are given. `noise` False: quiet potentiometers.
-    `weight_s` (ticks,) weighs |e| and |u| in ITAE and ITAU; by default the time since the leader may move.
+    table of the board; its controllers are the candidate unless others are given. With `noise` False the potentiometers
+    are quiet. `weight_s` (ticks,) weighs |e| and |u| in ITAE and ITAU; by default it is the time since the leader may
+    move.
     """
 
     def __init__(
@@ -50,12 +51,12 @@ class Experiment:
         if isinstance(leader, Trajectory):
             slices = leader_slices(leader, wait_s, after_s, resample)
         else:
-            slices = _checked_slices(leader)
+            slices = _check_slices(leader)
         self.home = slices[0].copy()
         readings = read_leader(self.table, arm.leader_pots, slices, seed=seed, noise=noise, timing=timing)
         self.reference, self.leader = readings.reference, readings.leader
         time_s = np.arange(len(self.leader), dtype=np.float64) * TICK_S
-        self.weight_s = _checked_weight(weight_s, time_s, wait_s)
+        self.weight_s = _check_weight(weight_s, time_s, wait_s)
         gap = np.random.default_rng(seed).uniform(-1.0, 1.0, JOINTS) if gap_position is None else np.array(gap_position)
         self._loop = ClosedLoop(
             self.table,
@@ -84,9 +85,9 @@ class Experiment:
     ) -> Result:
         """Simulate a batch: controllers int32 (n, 4, 12), plants float64 (n, 60), or one row of either for all.
 
-        Sixteen candidates at a time in single precision, on `threads` threads (0: one per core); the result does not
-        depend on their number. `every` > 0 keeps angles and duties of every so many ticks. `steps_per_tick` 1, 2 or 4
-        trades speed for accuracy: docs/closed_loop.md has the errors.
+        Sixteen candidates run at a time in single precision, on `threads` threads (0: one per core); the result does
+        not depend on their number. `every` > 0 keeps angles and duties of every so many ticks. `steps_per_tick` 1, 2 or
+        4 trades speed for accuracy: docs/closed_loop.md has the errors.
         """
         if steps_per_tick not in STEPS_PER_TICK:
             raise UserError(f"steps_per_tick is {steps_per_tick}, but it must be 1, 2 or 4.")
@@ -101,7 +102,7 @@ class Experiment:
         threads: int = 0,
         steps_per_slice: int = 1,
     ) -> Result:
-        """The same one by one in double precision, as the bench does it, bit for bit; finer steps give a reference."""
+        """Simulate one by one in double precision, as the bench does, bit for bit; finer steps give a reference."""
         if steps_per_slice < 1:
             raise UserError(f"steps_per_slice is {steps_per_slice}, but it must be 1 or more.")
         return self._run(controllers, plants, every, threads, steps_per_slice, True, "")
@@ -147,7 +148,7 @@ class Experiment:
                 )
 
 
-def _checked_slices(slices: Array) -> Array:
+def _check_slices(slices: Array) -> Array:
     if not isinstance(slices, np.ndarray) or slices.dtype != np.float64:
         raise UserError("the leader must be a Trajectory, or a numpy array of float64 angles in every slice of 250 us.")
     if slices.ndim != 2 or slices.shape[1] != JOINTS or len(slices) < SLICES_PER_TICK or len(slices) % SLICES_PER_TICK:
@@ -160,7 +161,7 @@ def _checked_slices(slices: Array) -> Array:
     return np.ascontiguousarray(slices)
 
 
-def _checked_weight(weight: Array | None, time_s: Array, wait_s: float) -> Array:
+def _check_weight(weight: Array | None, time_s: Array, wait_s: float) -> Array:
     if weight is None:
         since: Array = np.maximum(time_s - wait_s, 0.0)
         return since

@@ -23,10 +23,10 @@ def simulate_ideal(
     keep: bool,
     threads: int,
 ) -> tuple[Array, Array]:
-    """Errors (n, 4) rad² and, to keep, angles (n, ticks, 4) rad of one plant (60,) for tunings (n, 4, 4).
+    """Errors (n, 4) rad² and, with `keep`, angles (n, ticks, 4) rad of one plant (60,) for tunings (n, 4, 4).
 
-    `leader` (slices, 4) rad, `late` in slices. A joint `chased` (-1: none) runs at full voltage in `direction` (ticks,)
-    as far as `until` (ticks,) rad.
+    `leader` (slices, 4) rad, `late` in slices. The joint `chased` (-1: none) runs at full voltage in `direction`
+    (ticks,) as far as `until` (ticks,) rad.
     """
     mse, angles = _native.simulate_ideal(
         leader=leader,

@@ -1,4 +1,4 @@
-"""A leader motion on the closed loop's clock: an even recording as it is, one with gaps on request only."""
+"""A leader motion on the closed loop's clock: an even recording as it is, one with gaps only on request."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from greywhale.trajectory.motion import Array
 
 SLICE_S = 250e-6
 SLICES_PER_TICK = 4
-UNEVEN = 0.05  # share of the usual spacing by which a row may be early or late
+UNEVEN = 0.05  # a row may be early or late by this share of the usual spacing
 
 
 def leader_slices(motion: Trajectory, wait_s: float, after_s: float = 0.0, resample: bool = False) -> Array:
     """Leader angles (rad) in every slice of 250 us: first pose for `wait_s`, the motion, last pose for `after_s`.
 
-    Between the rows of an even recording lies its monotone cubic (greywhale.trajectory). A recording with gaps or
-    uneven times is refused, unless `resample` says that the same cubic may bridge them too.
+    Between the rows of an even recording runs its monotone cubic (greywhale.trajectory). A recording with gaps or
+    uneven times is refused, unless `resample` allows the same cubic to bridge them too.
     """
     if not resample:
         _require_even(motion)

@@ -1,8 +1,8 @@
 """The delay from leader to follower by two definitions.
 
 `correlation_delay` slides the follower over the leader and takes the lag of highest correlation, refined between
-samples by a parabola through the peak. At every lag mean and scale of exactly the overlapping samples are removed, so
-that a constant error, a gain, or a window that cuts a motion in half does not pull the peak. `onset_delays` is the
+samples by a parabola through the peak. At every lag the mean and scale of exactly the overlapping samples are removed.
+So a constant error, a gain, or a window that cuts a motion in half does not move the peak. `onset_delays` is the
 paper's definition.
 """
 
@@ -17,14 +17,14 @@ Floats = NDArray[np.float64]
 _SMALLEST_MOTION = 0.05
 # Below this correlation the follower does not follow in any useful sense.
 _LOWEST_CORRELATION = 0.5
-# Lags below zero are searched this far (s), only so that a peak at zero can be told from the edge of the search.
+# Lags below zero are searched this far (s), only to tell a peak at zero from the edge of the search.
 _BEFORE_ZERO_S = 0.1
-# The two signals must overlap at least this many seconds at the longest lag.
+# At the longest lag the two signals must still overlap for so many seconds.
 _SHORTEST_OVERLAP_S = 1.0
 
 
 def correlation_delay(leader: Floats, follower: Floats, period: float, longest_s: float) -> float | None:
-    """Delay in s, or None: too short a recording, too little motion, too little likeness, no peak within the search."""
+    """Delay in s, or None: recording too short, motion too small, signals too different, no peak within the search."""
     if np.ptp(leader) < _SMALLEST_MOTION or np.ptp(follower) < _SMALLEST_MOTION:
         return None
     first = -max(2, round(_BEFORE_ZERO_S / period))
@@ -72,7 +72,7 @@ def onset_delays(
     ends = np.flatnonzero(rest[:-1] & ~rest[1:])
     for index, end in enumerate(ends):
         limit = int(ends[index + 1]) + 1 if index + 1 < len(ends) else len(leader)
-        # The follower may still be settling when the leader leaves, so its place of rest is where it was last.
+        # The follower may still be settling when the leader leaves, so its place of rest is its last place.
         moved = leader[end:limit] - np.median(leader[end - rest_samples : end + 1])
         answered = follower[end:limit] - np.median(follower[end - rest_samples // 10 : end + 1])
         away = np.flatnonzero(np.abs(moved) > band)

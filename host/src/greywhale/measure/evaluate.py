@@ -96,7 +96,7 @@ def evaluate(log: Log, settings: Settings | None = None) -> Evaluation:
             f"{log.name}: nothing to measure: no two neighbouring samples in state following; record longer."
         )
     joints, rests = [], []
-    # Each of the thousands of correlations is too short for BLAS threads, which would wait for a core that is busy.
+    # Each of the thousands of correlations is too short for BLAS threads, which would wait for a busy core.
     with threadpool_limits(limits=1, user_api="blas"):
         for joint in range(log.leader.shape[1]):
             measures, rested = _joint(log.leader[:, joint], log.follower[:, joint], measured, runs, chosen)

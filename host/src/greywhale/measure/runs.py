@@ -26,12 +26,12 @@ class Run:
         return slice(self.start, self.stop)
 
     def samples(self, seconds: float) -> int:
-        """How many sampling periods make up `seconds`, rounded up."""
+        """How many sampling periods `seconds` takes, rounded up."""
         return math.ceil(seconds / self.period - 1e-9)
 
 
 def gap_free_runs(time: NDArray[np.float64], wanted: NDArray[np.bool_]) -> list[Run]:
-    """The runs of at least two neighbouring wanted samples between which nothing is missing."""
+    """The runs of at least two neighbouring wanted samples, between which nothing is missing."""
     steps = np.diff(time)
     period = float(np.median(steps))
     joined = (steps <= _GAP * period) & wanted[1:] & wanted[:-1]
@@ -49,7 +49,7 @@ def resting(angle: NDArray[np.float64], window: int, band: float) -> NDArray[np.
     size = window + 1
     if len(angle) < size:
         return rest
-    # The filters are centred; shifting their origin makes them look only backwards.
+    # The filters are centred. Shifting their origin makes them look only backwards.
     origin = window // 2
     highest = maximum_filter1d(angle, size, origin=origin)
     lowest = minimum_filter1d(angle, size, origin=origin)

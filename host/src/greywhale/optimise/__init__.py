@@ -2,8 +2,8 @@
 
     minimum = minimise(cost, lower, upper, budget=500, seed=1)
 
-`cost` takes a batch (rows) and gives a cost a row; `mapped(cost_of_one_point, executor.map)` makes one. For a loop of
-your own, `create(...)` gives an object with `ask()` and `tell(costs)`.
+`cost` takes a batch (rows) and returns a cost a row; `mapped(cost_of_one_point, executor.map)` makes one. For a loop of
+your own, `create(...)` returns an object with `ask()` and `tell(costs)`.
 """
 
 from greywhale.optimise.box import Box

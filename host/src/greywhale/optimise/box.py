@@ -11,7 +11,7 @@ Floats = NDArray[np.float64]
 
 
 class Source(Protocol):
-    """Where all random numbers come from: numpy's Generator, or a script in a test."""
+    """The source of all random numbers: numpy's Generator, or a script in a test."""
 
     def random(self, size: tuple[int, ...], /) -> Floats:
         """Uniform numbers in [0, 1)."""

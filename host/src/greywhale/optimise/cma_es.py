@@ -1,8 +1,8 @@
 """CMA-ES (the package `cma`) behind ask and tell.
 
-Works in units of the box from a random point (or the first start point) with a standard deviation of 0.3; restarts with
-twice the pack when it has converged before the budget is spent (IPOP). Bounds: cma's own transformation, which maps the
-whole space into the box.
+It works in units of the box, from a random point (or the first start point) with a standard deviation of 0.3. When it
+has converged before the budget is spent, it restarts with twice the pack (IPOP). Bounds: cma's own transformation,
+which maps the whole space into the box.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Methods side by side: equal budgets, many runs, standard functions, plain and moved away from the origin.
 
-Every run's problem and random numbers follow from (seed, run, function, setting, method) alone, so that the result
-depends neither on the number of processes nor on which other methods and functions take part; all methods meet the same
+Every run's problem and random numbers follow from (seed, run, function, setting, method) alone. So the result depends
+neither on the number of processes nor on which other methods and functions take part. All methods get the same
 problems.
 """
 
@@ -25,7 +25,7 @@ from greywhale.optimise.functions import FUNCTIONS, SETTINGS, Setting, place
 from greywhale.optimise.methods import METHODS, create, minimise
 
 Progress = Callable[[str, float], None]
-# Two samples count as different when chance would separate them as far less often than this.
+# Two samples count as different when chance would separate them as far in fewer cases than this share.
 SIGNIFICANCE = 0.05
 # Evaluations that a process does in one go: short enough for a smooth progress bar and a quick end at Ctrl-C.
 PART = 5000
@@ -33,7 +33,7 @@ PART = 5000
 
 @dataclass(frozen=True)
 class Plan:
-    """What is compared. `pack` None leaves every method its own size: 10, CMA-ES 4 + 3 ln d."""
+    """The plan of a comparison. With `pack` None every method keeps its own size: 10, CMA-ES 4 + 3 ln d."""
 
     functions: tuple[str, ...] = tuple(FUNCTIONS)
     settings: tuple[Setting, ...] = ("plain", "shifted")
@@ -100,7 +100,7 @@ class Comparison:
 
     @property
     def medians(self) -> Floats:
-        """A function, a setting, a method each."""
+        """The medians for each function, setting and method."""
         medians: Floats = np.median(self.costs, axis=3)
         return medians
 
@@ -151,7 +151,7 @@ def compare(plan: Plan, jobs: int = 1, progress: Progress | None = None) -> Comp
         for cell in np.ndindex(*shape)
         for first in range(0, plan.runs, length)
     ]
-    results = _here(plan, parts) if min(jobs, len(parts)) <= 1 else _in_processes(plan, parts, jobs)
+    results = _run_here(plan, parts) if min(jobs, len(parts)) <= 1 else _run_in_processes(plan, parts, jobs)
     with contextlib.closing(results):
         for done, (part, values) in enumerate(results, start=1):
             costs[part.cell][part.runs] = values
@@ -162,7 +162,7 @@ def compare(plan: Plan, jobs: int = 1, progress: Progress | None = None) -> Comp
 
 @dataclass(frozen=True)
 class Part:
-    """Some runs of one method on one problem: what a process does in one go."""
+    """Some runs of one method on one problem: a process does them in one go."""
 
     cell: tuple[int, ...]
     runs: range
@@ -171,16 +171,17 @@ class Part:
 Results = Generator[tuple[Part, list[float]], None, None]
 
 
-def _here(plan: Plan, parts: list[Part]) -> Results:
+def _run_here(plan: Plan, parts: list[Part]) -> Results:
     for part in parts:
         yield part, _run_part(plan, part)
 
 
-def _in_processes(plan: Plan, parts: list[Part], jobs: int) -> Results:
-    # Spawned, since a fork would copy whatever threads (a progress bar's) are holding.
+def _run_in_processes(plan: Plan, parts: list[Part], jobs: int) -> Results:
+    # Spawned, not forked: a fork would copy the state of other threads (a progress bar's, for example) with their
+    # locks.
     pool = ProcessPoolExecutor(min(jobs, len(parts)), mp_context=multiprocessing.get_context("spawn"))
     try:
-        with _interrupts_held_back():
+        with _hold_interrupts():
             futures = {pool.submit(_run_part, plan, part): part for part in parts}
         for future in as_completed(futures):
             yield futures[future], future.result()
@@ -189,14 +190,16 @@ def _in_processes(plan: Plan, parts: list[Part], jobs: int) -> Results:
 
 
 @contextlib.contextmanager
-def _interrupts_held_back() -> Iterator[None]:
-    """Ctrl-C reaches all processes of a terminal, but only this one shall answer, and not while it starts the others:
-    those inherit the mask, and this one, which may be told through any of its threads, notes it for later.
+def _hold_interrupts() -> Iterator[None]:
+    """Hold Ctrl-C back while the other processes are started.
+
+    Ctrl-C reaches all processes of a terminal, but only this one may answer it. The others inherit the mask. This
+    process may receive the signal in any of its threads, and notes it for later.
     """
     if threading.current_thread() is not threading.main_thread() or not hasattr(signal, "pthread_sigmask"):
         yield
         return
-    # Starting it takes the mask away, so it must run already when the others start.
+    # Starting it removes the mask, so it must run already when the others start.
     resource_tracker.ensure_running()
     noted: list[int] = []
     before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}

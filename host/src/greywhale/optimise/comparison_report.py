@@ -71,7 +71,7 @@ def text(comparison: Comparison) -> str:
 
 
 def statement(comparison: Comparison) -> str:
-    """In words: who leads, how the order changes once the minimum is not at the origin, and how all fare against DE."""
+    """In words: who leads, how the order changes once the minimum is not at the origin, and how all compare with DE."""
     plan = comparison.plan
     sentences = [_leaders(comparison, setting) for setting in plan.settings]
     if "plain" in plan.settings:

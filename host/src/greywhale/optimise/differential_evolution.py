@@ -1,9 +1,9 @@
 """scipy's differential evolution behind ask and tell.
 
-scipy calls the cost function itself, so its public function runs in a thread of its own: what it wants to know is
-handed out by `ask`, what it is told comes in by `tell`. Only one of the two threads ever runs, so a run is as
-repeatable as scipy's. The thread ends with the budget, with close(), or when the optimiser is forgotten. Bounds: scipy
-draws a coordinate that leaves the box anew.
+scipy calls the cost function itself, so its public function runs in a thread of its own. `ask` hands out what it wants
+to know, and `tell` takes the answers in. Only one of the two threads runs at a time, so a run is as repeatable as
+scipy's. The thread ends with the budget, with close(), or when the optimiser is forgotten. Bounds: scipy draws a
+coordinate that leaves the box anew.
 """
 
 from __future__ import annotations
@@ -19,7 +19,8 @@ from numpy.typing import ArrayLike
 from greywhale.optimise.box import Box, Floats, Source, latin_hypercube
 from greywhale.optimise.optimiser import PACK, Optimiser
 
-# Finite, because scipy evaluates a first pack of infinities once more; far enough from the limit that sums stay finite.
+# Finite, because scipy evaluates a first pack of infinities a second time; far enough from the limit that sums stay
+# finite.
 WORST = 1e300
 FOR_EVER = 2**31 - 1
 
@@ -48,7 +49,7 @@ class _Channel:
             # Imported here: it takes a second, and most runs need no scipy.
             from scipy.optimize import differential_evolution
 
-            # The spread of costs that stand for "worst" may overflow; nothing depends on it.
+            # The spread of the costs that stand for "worst" may overflow; nothing depends on it.
             with np.errstate(all="ignore"):
                 differential_evolution(self.cost, **options)
         except _Closed:
@@ -72,8 +73,9 @@ class _Channel:
 
 
 class DifferentialEvolution(Optimiser):
-    """`scipy.optimize.differential_evolution` with its own defaults, a pack of the same size as the others', no polish
-    (which would be another method) and no early end.
+    """`scipy.optimize.differential_evolution` with its own defaults and a pack of the others' size.
+
+    It has no polish (which would be another method) and no early end.
     """
 
     name: ClassVar[str] = "de"

@@ -54,7 +54,7 @@ class Problem:
 
 
 def place(function: Function, dimensions: int, setting: Setting, rng: np.random.Generator) -> Problem:
-    """The function as a problem; what is random about it comes from `rng`."""
+    """Place the function as a problem; `rng` gives everything random in it."""
     if setting == "plain":
         return Problem(function, np.full(dimensions, function.minimum_at), None)
     minimum = rng.uniform(-REACH, REACH, dimensions) * function.half_width
@@ -102,8 +102,10 @@ def _schwefel222(z: Floats) -> Floats:
 
 
 def _schwefel226(z: Floats) -> Floats:
-    """sum of 418.98 - z sin(sqrt |z|). Beyond its box of +-500, where shifting leads, that has deeper minima; it is
-    continued there by its mirror image and the parabola of the CEC competitions.
+    """The sum of 418.98 - z sin(sqrt |z|).
+
+    Beyond its box of +-500, where shifting leads, it has deeper minima. It is continued there by its mirror image and
+    the parabola of the CEC competitions.
     """
     around = np.mod(z + 500, 2000)
     inner = np.where(around <= 1000, around - 500, 1500 - around)

@@ -1,10 +1,9 @@
 """The grey wolf optimiser, and the paper's hybrid of it with the whale optimisation algorithm (Eqs. 6 to 15, Fig. 5).
 
-All wolves move at once; random numbers are drawn in a fixed order, given by `Draw`. Bounds: a coordinate that leaves
-the box is put onto its bound, as the authors of both algorithms do it.
-
-Both steps multiply a POSITION by a random number (Q X_leader), so how far a wolf moves depends on where the origin of
-the coordinates lies. A pack far from the origin jumps, one at the origin settles; see relative.py for the remedy.
+All wolves move at once. Random numbers are drawn in a fixed order, which `Draw` gives. Bounds: a coordinate that leaves
+the box is put onto its bound, as in the code of both algorithms' authors. Both steps multiply a POSITION by a random
+number (Q X_leader), so how far a wolf moves depends on where the origin of the coordinates lies. A pack far from the
+origin jumps, one at the origin settles; relative.py has the remedy.
 """
 
 from __future__ import annotations
@@ -37,7 +36,7 @@ class Draw:
 
 
 def alpha_factor(p: Floats, curl: Floats, gamma: Floats, rho: Floats, b: float = 1.0) -> Floats:
-    """What Eq. 9 multiplies alpha's distance by, a wolf each: encircling below p = 0.5, else the whale's spiral."""
+    """The factor of alpha's distance in Eq. 9, a wolf each: encircling below p = 0.5, else the whale's spiral."""
     spiral = rho * np.exp(b * curl) * np.cos(2 * np.pi * curl)
     return np.where(p < 0.5, gamma, spiral)
 
@@ -52,9 +51,9 @@ def hunt(
     origin: Floats | float = 0.0,
     weights: tuple[float, float, float] = EQUAL_WEIGHTS,
 ) -> Floats:
-    """Where the wolves go (Eqs. 7, 8, 10 to 15; `alpha` is the factor of Eq. 9, without it this is plain GWO).
+    """The wolves' next places (Eqs. 7, 8, 10 to 15). `alpha` is the factor of Eq. 9; without it this is plain GWO.
 
-    `origin` is the point Q multiplies the leaders from: the origin of the coordinates in the paper.
+    `origin` is the point from which Q multiplies the leaders: the origin of the coordinates in the paper.
     """
     big_a = 2 * a * draw.r1 - a
     q = 2 * draw.r2
@@ -103,7 +102,7 @@ class GreyWolf(Optimiser):
 
     @property
     def a(self) -> float:
-        """Eq. 6 at the coming move."""
+        """The `a` of Eq. 6 at the coming move."""
         return A_START + (self._a_end - A_START) * self._move / self._moves
 
     def _propose(self) -> Floats:
@@ -126,7 +125,7 @@ class GreyWolf(Optimiser):
 
 
 class GreyWolfWhale(GreyWolf):
-    """The paper's GWO-WOA: by a coin's toss a wolf, alpha is encircled or approached on the whale's spiral."""
+    """The paper's GWO-WOA: by a coin's toss, each wolf encircles alpha or approaches it on the whale's spiral."""
 
     name: ClassVar[str] = "gwo-woa"
 

@@ -71,8 +71,10 @@ def create(
     start: ArrayLike | None = None,
     **options: Any,
 ) -> Optimiser:
-    """An optimiser to ask and tell. Without `pack` it has the method's own size; `start` are points (rows) that the
-    first pack shall hold; `options` are the method's.
+    """Make an optimiser to ask and tell.
+
+    Without `pack` it has the method's own size. `start` are points (rows) that the first pack must hold; `options` are
+    the method's.
     """
     if method not in METHODS:
         raise ValueError(f"there is no method {method!r}; there are {', '.join(METHODS)}")
@@ -94,7 +96,8 @@ def minimise(
     callback: Callable[[Step], bool | None] | None = None,
     **options: Any,
 ) -> Minimum:
-    """Minimise a cost function of a whole batch (rows in, a cost each out; see `mapped` for one of a single point).
+    """Minimise a cost function of a whole batch (rows in, one cost for each row out); `mapped` makes one of a cost of a
+    single point.
 
     Spends exactly `budget` evaluations, unless `callback`, called after every batch, returns True.
     """

@@ -1,8 +1,8 @@
-"""What every optimiser is: ask for candidates, tell their costs, until the budget of evaluations is spent.
+"""The base of every optimiser: ask for candidates, tell their costs, until the budget of evaluations is spent.
 
-This base keeps the books (budget, best point, convergence history, non-finite costs), so that a method only has to
-say where to look next and what it learns. It never calls the cost function itself: whoever drives it may evaluate a
-batch natively, over processes, or on a bench.
+It keeps the books (budget, best point, convergence history, non-finite costs), so a method only has to say where to
+look next and what it learns. It never calls the cost function itself: the caller may evaluate a batch natively, over
+processes, or on a bench.
 """
 
 from __future__ import annotations
@@ -37,10 +37,10 @@ class History:
 
 
 class Optimiser(ABC):
-    """Minimises within a box. `ask()` gives the candidates as rows, `tell(costs)` takes one cost a row.
+    """Minimises within a box. `ask()` returns the candidates as rows, `tell(costs)` takes one cost a row.
 
-    A batch never exceeds what is left of the budget: the last one is cut short. NaN and infinities (of either sign) are
-    costs no candidate can be worse than.
+    A batch never exceeds the rest of the budget: the last one is cut short. NaN and infinities (of either sign) are the
+    worst costs: no candidate loses against them.
     """
 
     name: ClassVar[str]
@@ -66,7 +66,7 @@ class Optimiser(ABC):
         self._best: Best | None = None
         self._history: list[tuple[int, float]] = []
 
-    # What a method is made of.
+    # The parts that a method defines.
 
     @abstractmethod
     def _propose(self) -> Floats:
@@ -77,9 +77,9 @@ class Optimiser(ABC):
         """Take in the costs of the last whole batch; +inf stands for every non-finite cost."""
 
     def close(self) -> None:  # noqa: B027 - most methods hold nothing
-        """Give back what the method holds beside memory."""
+        """Free what the method holds besides memory."""
 
-    # What a driver uses.
+    # The interface for a caller.
 
     def ask(self) -> Floats:
         """The candidates to evaluate next; the same ones until they have been told."""
@@ -139,7 +139,7 @@ class Optimiser(ABC):
     ) -> None:
         self.close()
 
-    # What methods share.
+    # The parts that methods share.
 
     @property
     def _moves(self) -> int:

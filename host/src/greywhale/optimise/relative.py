@@ -1,15 +1,16 @@
-"""A GWO-WOA that does not know where the origin is: moving a problem and its box moves the run and nothing else.
+"""A GWO-WOA that does not know where the origin is: if a problem and its box are moved, the run moves with them.
 
 Five things differ from the paper's:
+
 - Q multiplies the leaders' and the wolves' positions relative to the pack's MEAN, not to the origin (Eqs. 9 to 11).
-- A wolf goes to a new place only if it is better there; so the pack always holds the best places of its members.
-- `a` (Eq. 6) stays the same: a pack that keeps only improvements draws together by itself, at the speed the problem
+- A wolf goes to a new place only if it is better there. So the pack always holds the best places of its members.
+- `a` (Eq. 6) stays the same. A pack that keeps only improvements shrinks by itself, at the speed that the problem
   allows, and needs no timetable that depends on the budget.
 - Alpha counts more than beta, and beta more than delta (Eq. 15 with weights 0.5, 0.3, 0.2).
 - A wolf keeps each coordinate with probability 0.2, and changes at least one.
 
-Everything runs in units of the box, so that scaling does not matter either. Bounds: a coordinate that would leave is
-put at random between where it was and the bound, since wolves put onto a bound would pile up there.
+Everything runs in units of the box, so scaling does not matter either. Bounds: a coordinate that would leave is put at
+random between where it was and the bound, since wolves put onto a bound would pile up there.
 """
 
 from __future__ import annotations
@@ -23,8 +24,8 @@ from greywhale.optimise.box import Box, Floats, Source, latin_hypercube
 from greywhale.optimise.grey_wolf import LEADERS, Draw, best_three, draw_alpha_factor, hunt
 from greywhale.optimise.optimiser import PACK, Optimiser
 
-# Chosen by trial on ten of the standard functions, shifted, with other seeds than those of any published figure; levy,
-# schwefel226 and everything rotated were kept aside. docs/optimise.md has the figures.
+# Chosen by trial on ten of the standard functions, shifted, with other seeds than those of any published figure. levy,
+# schwefel226 and all rotated functions were kept aside. docs/optimise.md has the figures.
 A = 3.5
 WEIGHTS = (0.5, 0.3, 0.2)
 KEEP = 0.2
@@ -71,7 +72,7 @@ class RelativeWolfWhale(Optimiser):
         moved = hunt(
             self._pack, leaders, self._a, draw, alpha=alpha, origin=self._pack.mean(axis=0), weights=self._weights
         )
-        self._tried = self._back_inside(self._keep_some(moved))
+        self._tried = self._bring_back(self._keep_some(moved))
         return self.box.from_unit(self._tried)
 
     def _keep_some(self, moved: Floats) -> Floats:
@@ -81,7 +82,7 @@ class RelativeWolfWhale(Optimiser):
         kept[np.arange(wolves), changes] = False
         return np.where(kept, self._pack, moved)
 
-    def _back_inside(self, moved: Floats) -> Floats:
+    def _bring_back(self, moved: Floats) -> Floats:
         part = self._source.random(moved.shape)
         moved = np.where(moved < 0, self._pack * part, moved)
         return np.where(moved > 1, 1 - (1 - self._pack) * part, moved)

@@ -62,7 +62,7 @@ class Swarm(Optimiser):
 
 
 class RandomSearch(Optimiser):
-    """Independent uniform points: what every other method has to beat."""
+    """Independent uniform points: every other method must beat them."""
 
     name: ClassVar[str] = "random"
 

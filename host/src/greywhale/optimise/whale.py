@@ -16,8 +16,10 @@ from greywhale.optimise.optimiser import PACK, Optimiser
 
 
 def swim(pack: Floats, prey: Floats, others: Floats, a: float, r: Floats, b: float = 1.0) -> Floats:
-    """Where the whales go. `others` is the random whale of each; the rows of `r` are r1, r2, p and the spiral's number,
-    each in [0, 1), a number a whale.
+    """The whales' next places.
+
+    `others` is the random whale of each. The rows of `r` are r1, r2, p and the spiral's number, each in [0, 1), a
+    number a whale.
     """
     r1, r2, p, curl = (row[:, None] for row in r)
     big_a, c, curl = 2 * a * r1 - a, 2 * r2, 2 * curl - 1

@@ -1,4 +1,4 @@
-"""What the generated module greywhale.protocol.schema is made of: described enums, messages, the parameter table.
+"""The parts of the generated module greywhale.protocol.schema: described enums, messages, the parameter table.
 
 Raw values are the integers of the link; physical values are floats in the parameter's unit (radians, mV, 1/rad, ...).
 """
@@ -20,7 +20,7 @@ _CODES = {"u8": "B", "i8": "b", "u16": "H", "i16": "h", "u32": "I", "i32": "i"}
 
 
 class MessageError(UserError):
-    """A payload that is not what the schema says: the other side speaks another version."""
+    """A payload that does not match the schema: the other side speaks another version."""
 
 
 class Described(IntEnum):
@@ -86,7 +86,7 @@ Reply_co = TypeVar("Reply_co", bound=Message, covariant=True)
 
 
 class Request(Protocol[Reply_co]):
-    """A message that is answered: lets `ask(request: Request[R]) -> R` be typed."""
+    """A message that is answered; it gives `ask(request: Request[R]) -> R` its type."""
 
     NAME: ClassVar[str]
     TYPE: ClassVar[int]
@@ -159,7 +159,7 @@ class Parameter:
         return raw
 
     def to_raw_as_given(self, physical: float) -> int:
-        """As to_raw, for a number that a person gave: refused where rounding would make something else of it."""
+        """As to_raw, for a number that a person gave: refused where rounding would change it noticeably."""
         raw = self.to_raw(physical)
         if self.lsb == 1.0 and raw != physical:
             raise UserError(f"{self.name} is {physical:.6g}{self._unit()}, but it must be a whole number.", BAD_USAGE)
@@ -218,7 +218,7 @@ class Table:
         return crc_hqx(self.pack(raw), CRC_START)
 
     def check(self, raw: Sequence[int]) -> None:
-        """Ranges, and what one value demands of another: the firmware's own checks, but for the fuzzy sets."""
+        """Check ranges, and what one value demands of another: the firmware's own checks, except for the fuzzy sets."""
         self.pack(raw)
         for parameter in self.parameters:
             if parameter.below is None:

@@ -1,6 +1,6 @@
 """Frames on the wire: COBS( type | seq | payload | CRC-16 ) and a zero byte; docs/link.md has the definition.
 
-Encoding is one call; decoding takes bytes as they come, in pieces of any size, and finds its place again at the next
+Encoding is one call. Decoding takes bytes as they come, in pieces of any size, and finds its place again at the next
 zero.
 """
 
@@ -51,7 +51,7 @@ def decode_frame(wire: bytes) -> Frame | None:
 
 
 class FrameDecoder:
-    """Frames out of a stream of bytes. `bad` counts what stood between two zeros and was not a frame."""
+    """Finds frames in a stream of bytes. `bad` counts the pieces between two zeros that were not a frame."""
 
     def __init__(self) -> None:
         self.bad = 0
@@ -59,7 +59,7 @@ class FrameDecoder:
         self._skipping = False
 
     def feed(self, data: bytes) -> list[Frame]:
-        """Takes the next bytes and gives the frames that they complete."""
+        """Take the next bytes and return the frames that they complete."""
         *whole, rest = (self._rest + data).split(b"\0")
         frames: list[Frame] = []
         for wire in whole:
@@ -78,6 +78,6 @@ class FrameDecoder:
         return frames
 
     def reset(self) -> None:
-        """Forgets a piece of a frame, as after the port was opened anew."""
+        """Forget a piece of a frame, as after the port was opened anew."""
         self._rest = b""
         self._skipping = False

@@ -1,6 +1,4 @@
-"""Finds serial ports: boards on USB and running benches, told apart by what the port itself says, without opening
-it.
-"""
+"""Finds serial ports, boards on USB and running benches, without opening any; the port's own data tell them apart."""
 
 from __future__ import annotations
 
@@ -15,7 +13,7 @@ from greywhale.errors import BAD_USAGE, UserError
 
 BOARDS = {"mega": "Arduino Mega 2560", "nano": "Arduino Nano (ATmega328P)"}
 
-# USB vendor and product numbers of boards that tell what they are, and of the USB bridges that clones carry instead.
+# USB vendor and product numbers of boards that name themselves, and of the USB bridges on clones.
 _KNOWN = {
     (0x2341, 0x0010): "mega",
     (0x2341, 0x0042): "mega",
@@ -53,7 +51,7 @@ def bench_directory() -> Path:
 
 
 def find_ports() -> list[Port]:
-    """Benches first, then every serial port of this machine."""
+    """List benches first, then every serial port of this machine."""
     return _benches() + _hardware()
 
 

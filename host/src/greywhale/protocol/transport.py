@@ -1,4 +1,4 @@
-"""The serial port as bytes: opened exclusively at 1 Mbaud; whatever happens to it is one sentence."""
+"""The serial port as bytes: opened exclusively at 1 Mbaud; every failure of it becomes one sentence."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import os
 
 import serial
 
-from greywhale.errors import UserError, because
+from greywhale.errors import UserError, os_reason
 
 BAUD = 1_000_000
 
@@ -24,7 +24,7 @@ class Transport:
         self._serial = open_serial(port, BAUD, _READ_WAIT_S)
 
     def read(self) -> bytes:
-        """What has arrived; waits a moment when nothing has, and may then return nothing."""
+        """Return what has arrived; wait a moment when nothing has, and then return perhaps nothing."""
         try:
             return bytes(self._serial.read(self._serial.in_waiting or 1))
         except (OSError, TypeError) as error:  # pyserial reads from a port closed under it as a TypeError
@@ -44,14 +44,14 @@ class Transport:
         self._serial.close()
 
     def _gone(self, error: Exception) -> UserError:
-        reason = because(error) if isinstance(error, OSError) else "it was closed"
+        reason = os_reason(error) if isinstance(error, OSError) else "it was closed"
         return UserError(
             f"{self.port}: the port went away in the middle ({reason.rstrip('.')}); check the cable and try again."
         )
 
 
 def open_serial(port: str, baud: int, read_wait_s: float) -> serial.Serial:
-    """The port, for this process alone."""
+    """Open the port for this process alone."""
     if not os.path.exists(port):
         raise UserError(f"{port}: there is no such port; `greywhale ports` lists those there are.")
     try:
@@ -74,4 +74,4 @@ def _why_not_open(port: str, error: OSError) -> str:
         return f"{port}: there is no such port any more; `greywhale ports` lists those there are."
     if error.errno in (errno.ENOTTY, errno.EISDIR, errno.EINVAL) or error.errno is None:
         return f"{port}: this is not a serial port; `greywhale ports` lists those there are."
-    return f"{port}: the port cannot be opened: {because(error)}."
+    return f"{port}: the port cannot be opened: {os_reason(error)}."

@@ -1,7 +1,7 @@
 """One picture of leader against follower: a panel a joint with a strip of the error below it, for one log or several.
 
-With several logs (before and after tuning) the leaders are drawn once where they are the same motion. The same logs
-give the same file, byte for byte: no display, no date and no random identifier goes into it.
+Where several logs (before and after tuning) have the same motion, the leader is drawn once. The same logs give the same
+file, byte for byte: no display, no date and no random identifier goes into it.
 """
 
 from __future__ import annotations

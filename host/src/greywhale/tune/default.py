@@ -1,11 +1,11 @@
-"""The default method, and any optimiser by its name in its place:
+"""The default method. Any other optimiser can take its place, by its name.
 
-1. `shape`: a search a joint (`search/lockstep.py`) for sets that are the same to both sides of zero, over several
-   plants and all training motions, with unrest priced. Joints 0 and 2 take turns with 1 and 3, as neighbours disturb
-   each other.
+1. `shape`: one search a joint (`search/lockstep.py`) for sets that are the same on both sides of zero. It runs over
+   several plants and all training motions, and unrest costs extra. Joints 0 and 2 take turns with 1 and 3, because
+   neighbours disturb each other.
 2. `every corner`: a narrow search from there, in which each corner and factor is free.
 3. The best few of every joint are judged anew, on all plants in the bench's own arithmetic (`judge/choose.py`). The
-   controller from before the tuning is among them, so that no joint ends worse than it began.
+   controller from before the tuning competes too, so no joint ends worse than it began.
 
 Any other method is one search of all joints together with that optimiser, and then step 3.
 """
@@ -23,8 +23,8 @@ from greywhale.arm.parameters import with_usual_noise
 from greywhale.table import CONTROLLER_COLUMNS
 from greywhale.tune.judge.choose import choose
 from greywhale.tune.judge.held_out import judge_held_out
-from greywhale.tune.judge.margins import REST_LONG_S, Margin, Margins, loosest, penalty
-from greywhale.tune.method import Costs, Judged, Task
+from greywhale.tune.judge.margins import REST_LONG_S, Margin, Margins, loosest_plant, penalty
+from greywhale.tune.method import Costs, Judgement, Task
 from greywhale.tune.model import Model
 from greywhale.tune.search import lockstep
 from greywhale.tune.search.journal import Journal
@@ -37,15 +37,16 @@ Floats = npt.NDArray[np.float64]
 Controllers = npt.NDArray[np.int32]
 
 BUDGET = 3000
-# Of the budget, what the second, narrow search gets; its box is that share of the whole around the best so far.
+# The second, narrow search: its share of the budget, and its share of the box, around the best so far.
 NARROW_SHARE = 0.3
 NARROW_BOX = 0.03
 SHAPE_METHOD, CORNER_METHOD = "cma-es", "cma-es"  # of the default method's two searches
-# Plants that the search tracks on, the estimate among them; the last judgement uses all.
+# The search tracks on so many plants, the estimate among them; the last judgement uses all.
 SEARCH_PLANTS = 4
-# The last judgement prices unrest so much higher that a joint which does not rest is taken for want of any other only.
+# The last judgement makes unrest so much dearer that it takes a joint which does not rest only if there is no other.
 DEARER = 3.0
-# Shares of the best's Ku that compete with it there: full voltage may shake gears which the search saw at rest.
+# Shares of the best's Ku that compete in the last judgement: full voltage may shake gears that were quiet in the
+# search.
 WEAKER = (0.7, 0.5, 0.35)
 KU = CONTROLLER_COLUMNS.index("ku_mv")
 
@@ -55,18 +56,18 @@ class DefaultMethod:
 
     def __init__(self, task: Task) -> None:
         self.task = task
-        self.model = model = with_heard_noise(task.model)
+        self.model = model = give_usual_noise(task.model)
         self.table = model.table
         supply = self.table["supply_mv"]
         period = self.table.period_ms
-        self.space = Space.default(task.strategy, task.before, supply, period).bounded(task.bounds, period)
+        self.space = Space.default(task.strategy, task.before, supply, period).with_bounds(task.bounds, period)
         motions = drills(model.arm, self.table, model.plants, task.seed)
         self.objective = Objective(motions, model.plants[:SEARCH_PLANTS], task.threads)
         self.judging = Objective(motions, model.plants, task.threads)
-        self.margins = self._margins(_spanning(model.plants), searching=True)
-        # Longer and with other noise, since a search learns its own by heart.
-        self.judging_margins = self._margins(_spanning(model.plants), rest_s=REST_LONG_S, noise=1)
-        # With bounds, what is downloaded keeps within them, whatever ran before.
+        self.margins = self._margins(_extreme_plants(model.plants), searching=True)
+        # Longer and with other noise, since a search learns its own noise by heart.
+        self.judging_margins = self._margins(_extreme_plants(model.plants), rest_s=REST_LONG_S, noise=1)
+        # With bounds, what is uploaded keeps within them, whatever ran before.
         self.start = self.space.controllers(self.space.points(task.before[None]))[0] if task.bounds else task.before
         self.found = Found.nothing(self.start)
 
@@ -86,7 +87,7 @@ class DefaultMethod:
         return self.found.curve[0][1]
 
     def search(self, journal: Journal) -> None:
-        """First what there is, then the stages of the method."""
+        """Try the controllers from before first, then run the stages of the method."""
         task = self.task
 
         def tick(found: Found) -> None:
@@ -94,7 +95,7 @@ class DefaultMethod:
             task.report(what, min(1.0, found.evaluations / task.budget), note=f"cost {1e3 * found.total:.1f} mrad")
 
         common: dict[str, Any] = {"evaluate": self.costs, "found": self.found, "journal": journal, "tick": tick}
-        lockstep.first(self.start, self.costs, self.found, journal)
+        lockstep.try_start(self.start, self.costs, self.found, journal)
         left = task.budget - 1
         if task.method != "default":
             self._stage("search", self.space, task.method, left, self.start, 1, **common)
@@ -102,15 +103,15 @@ class DefaultMethod:
         turn = left // len(lockstep.TURNS)
         narrow = int(NARROW_SHARE * turn)
         common["groups"] = lockstep.TURNS
-        shape = self.space.reduced()
-        self._stage("shape", shape, SHAPE_METHOD, turn - narrow, shape.restretched(self.start), 1, **common)
+        shape = self.space.reduce()
+        self._stage("shape", shape, SHAPE_METHOD, turn - narrow, shape.restretch(self.start), 1, **common)
         self._stage("every corner", self.space, CORNER_METHOD, narrow, self.found.best, 2, sigma=NARROW_BOX, **common)
 
     def _stage(
         self, name: str, space: Space, method: str, budget: int, start: Controllers, number: int, **options: Any
     ) -> None:
         if budget > 0:
-            lockstep.lockstep(
+            lockstep.search_in_lockstep(
                 space,
                 stage=name,
                 method=method,
@@ -121,35 +122,35 @@ class DefaultMethod:
             )
 
     def costs(self, controllers: Controllers) -> Floats:
-        """Of the search: (n, 4) in rad."""
+        """The search's costs: (n, 4) in rad."""
         costs: Floats = self.objective.costs(controllers) + penalty(self.margins.unrest(controllers))
         return costs
 
-    def judged(self, controllers: Controllers) -> Floats:
+    def judge_costs(self, controllers: Controllers) -> Floats:
         """The same cost on all plants in the bench's arithmetic."""
         unrest = self.judging_margins.unrest(controllers, single=True)
         costs: Floats = self.judging.costs(controllers, single=True) + DEARER * penalty(unrest)
         return costs
 
     def _contenders(self) -> Controllers:
-        """The best few of every joint (k, 4, 12), and the best with less voltage: a quieter second choice."""
+        """The best few of every joint (k, 4, 12), and the best with less voltage, which is a quieter second choice."""
         kept = self.found.contenders(lockstep.KEPT)
         weaker = np.repeat(kept[:1], len(WEAKER), axis=0)
         weaker[:, :, KU] = np.round(weaker[:, :, KU] * np.array(WEAKER)[:, None])
-        # Within what is searched: without effect where Ku is not, or its bounds are narrower.
+        # Within what is searched: this changes nothing where Ku is not searched, or where its bounds are narrower.
         return np.concatenate([kept, self.space.controllers(self.space.points(weaker))])
 
-    def judge(self) -> Judged:
+    def judge(self) -> Judgement:
         task, model = self.task, self.model
         task.report("judging", 0.0)
-        after, cost_before, cost_after = choose(self.start, self._contenders(), self.judged)
+        after, cost_before, cost_after = choose(self.start, self._contenders(), self.judge_costs)
         task.report("judging", 0.5)
-        everywhere = self._margins(np.vstack([model.plants, loosest(model.plants)]), rest_s=REST_LONG_S, noise=2)
+        everywhere = self._margins(np.vstack([model.plants, loosest_plant(model.plants)]), rest_s=REST_LONG_S, noise=2)
         margins_before, margins = everywhere.check(task.before), everywhere.check(after)
         task.report("judging", 0.8)
         held_out = judge_held_out(model.arm, self.table, model.plants[0], task.before, after, task.threads, task.floors)
         task.report("judging", 1.0)
-        return Judged(
+        return Judgement(
             after=after,
             cost_before=tuple(map(float, cost_before)),
             cost_after=tuple(map(float, cost_after)),
@@ -161,7 +162,7 @@ class DefaultMethod:
 
 
 def _notes(margins: tuple[Margin, ...]) -> tuple[str, ...]:
-    """A sentence for every scenario in which a joint does not come to rest."""
+    """One sentence for every scenario in which a joint does not come to rest."""
     return tuple(
         f"joint {margin.joint}, {margin.scenario}: {margin.reversals} reversals in a rest and {margin.chatter_hz:.0f} "
         f"duty swings a second on {margin.plants_failing} of {margin.plants} plants"
@@ -170,9 +171,9 @@ def _notes(margins: tuple[Margin, ...]) -> tuple[str, ...]:
     )
 
 
-def _spanning(plants: Floats) -> Floats:
-    """The estimate, and with it the loosest gears that the samples show, where they differ."""
-    loose = loosest(plants)
+def _extreme_plants(plants: Floats) -> Floats:
+    """The estimate, and the same with the loosest gears that the samples show, where they differ."""
+    loose = loosest_plant(plants)
     return plants[:1] if np.array_equal(loose, plants[0]) else np.vstack([plants[0], loose])
 
 
@@ -180,8 +181,9 @@ def _digest(plants: Floats) -> str:
     return hashlib.sha256(np.ascontiguousarray(plants, dtype="<f8").tobytes()).hexdigest()[:16]
 
 
-def with_heard_noise(model: Model) -> Model:
-    """The same model with the noise of a usual potentiometer where it says none: silence would invite a Kd that
-    magnifies the noise of a real board.
+def give_usual_noise(model: Model) -> Model:
+    """The same model, with the noise of a usual potentiometer where it states none.
+
+    Without noise the search would choose a Kd that magnifies the noise of a real board.
     """
     return replace(model, arm=with_usual_noise(model.arm))

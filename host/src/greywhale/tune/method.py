@@ -1,4 +1,4 @@
-"""What any method of tuning is asked, offers and leaves: the default and the paper's are two of them."""
+"""What every method of tuning is given, offers and returns. The default and the paper's are two of them."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ class Task:
     before: Controllers
     bounds: dict[str, tuple[float, float]]
     report: Report
-    floors: bool  # whether to work out what is possible at all
+    floors: bool  # whether to work out the least possible error
 
     def request(self) -> dict[str, Any]:
-        """What every journal must agree with."""
+        """The facts that every journal must agree with."""
         return {
             "model": self.model.name,
             "model_digest": self.model.digest,
@@ -49,8 +49,8 @@ class Task:
 
 
 @dataclass(frozen=True)
-class Judged:
-    """The chosen controllers (4, 12), and what speaks for and against them and those from before."""
+class Judgement:
+    """The chosen controllers (4, 12), and how they and those from before did."""
 
     after: Controllers
     cost_before: Costs
@@ -62,13 +62,13 @@ class Judged:
 
 
 class Method(Protocol):
-    """A way to tune: it simulates with `table`, and keeps what is best so far in `found`."""
+    """A way to tune. It simulates with `table`, and keeps the best so far in `found`."""
 
     table: ParameterTable
     found: Found
 
     def request(self) -> dict[str, Any]:
-        """What a journal must agree with, beside the task's own."""
+        """The facts that a journal must agree with, besides the task's own."""
         ...
 
     def search(self, journal: Journal) -> None:
@@ -76,9 +76,9 @@ class Method(Protocol):
         ...
 
     def cost_before(self) -> Costs:
-        """Of the controllers from before, as the search sees them; asked only after something was evaluated."""
+        """The cost of the controllers from before, as the search sees it; called only after something was evaluated."""
         ...
 
-    def judge(self) -> Judged:
-        """Look at the best more closely than the search could."""
+    def judge(self) -> Judgement:
+        """Judge the best more exactly than the search could."""
         ...

@@ -1,4 +1,4 @@
-"""What a controller is tuned for: an identified arm, the board's parameter table, and arms that are as likely.
+"""What a controller is tuned for: an identified arm, the board's parameter table, and other arms that are as likely.
 
 A model that nobody validated, or that belongs to another arm or board, is refused with the reason, unless forced.
 """
@@ -31,7 +31,7 @@ SAMPLES = 8
 
 @dataclass(frozen=True)
 class Model:
-    """An arm to tune for; `doubts` are sentences on what speaks against it, none for a validated model."""
+    """An arm to tune for. `doubts` are sentences that speak against it; a validated model has none."""
 
     name: str
     arm: ArmParameters
@@ -43,7 +43,7 @@ class Model:
 
     @property
     def controllers(self) -> NDArray[np.int32]:
-        """What the board runs now: int32 (4, 12)."""
+        """The controllers that the board runs now: int32 (4, 12)."""
         return controllers_of(self.table)
 
     @property
@@ -63,10 +63,10 @@ def load_model(
 ) -> Model:
     """Read a model.toml (or an arm.toml, or one of the shipped arms by name, with `force`) and judge it.
 
-    `samples` plants are taken from its covariance with `seed`, the estimate among them. `params` is a file of
-    `greywhale params backup`: the table to tune for; without it, the one that the model's logs were recorded with.
-    `arm` is the arm file that the model shall be of. Raises UserError with the gravest doubt, unless `force`, which
-    keeps all doubts in the model.
+    `samples` plants are drawn from its covariance with `seed`; the estimate is one of them. `params` is a file of
+    `greywhale params backup`: the table to tune for. Without it, that is the table with which the model's logs were
+    recorded. `arm` is the arm file to which the model must belong. Raises UserError with the gravest doubt; with
+    `force`, the model keeps all doubts instead.
     """
     if samples < 1:
         raise UserError(f"samples is {samples}, but it must be at least 1.", BAD_USAGE)
@@ -77,7 +77,7 @@ def load_model(
     plants = plant_row(identified)[None]
     if facts is not None and facts.covariance is not None:
         plants = sampled_plants(identified, samples, seed)
-        doubts += checks.spread(identified, table)
+        doubts += checks.doubt_precision(identified, table)
     doubts += table_doubts
     if doubts and not force:
         raise UserError(_refusal(str(path), doubts))
@@ -96,29 +96,29 @@ def load_model(
 def _doubts(
     arm: ArmParameters, facts: Identification | None, table: ParameterTable, wanted: str | Path | None
 ) -> list[Doubt]:
-    """All that speaks against the model, the gravest first."""
-    doubts = checks.identified(facts)
+    """Everything that speaks against the model, the gravest first."""
+    doubts = checks.doubt_completeness(facts)
     if facts is not None:
-        doubts += checks.untouched(arm, facts)
-        doubts += checks.validated(facts)
-        doubts += checks.sure(facts)
+        doubts += checks.doubt_edits(arm, facts)
+        doubts += checks.doubt_validation(facts)
+        doubts += checks.doubt_missing_covariance(facts)
     if wanted is not None:
-        doubts += checks.same_arm(arm, load_arm(wanted), str(wanted))
-    return doubts + checks.same_board(arm, facts, table)
+        doubts += checks.doubt_other_arm(arm, load_arm(wanted), str(wanted))
+    return doubts + checks.doubt_other_board(arm, facts, table)
 
 
 def _table(
     arm: ArmParameters, facts: Identification | None, params: str | Path | None
 ) -> tuple[ParameterTable, list[Doubt]]:
-    """The parameter table to tune for, and what speaks against it."""
+    """The parameter table to tune for, and the doubts about it."""
     board = facts.made_on if facts is not None else Board.MEGA2560
     logged = facts.table() if facts is not None else None
     if params is not None:
-        given = load_table(params).on(board)
-        return given, checks.same_table(given, logged, str(params))
+        given = load_table(params).for_board(board)
+        return given, checks.doubt_other_table(given, logged, str(params))
     if logged is not None:
         return logged, []
-    # The best guess: as shipped, but for what the model does say.
+    # The best guess: the shipped values, with what the model does state.
     known = {"supply_mv": round(1000.0 * arm.drive.supply)}
     if facts is not None and facts.log and facts.log[0].period_ms is not None:
         known["period_ms"] = facts.log[0].period_ms

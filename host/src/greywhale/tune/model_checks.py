@@ -1,4 +1,4 @@
-"""What speaks against tuning for a model: each doubt says what was found and what would mend it."""
+"""The doubts about tuning for a model: each says what was found and what would mend it."""
 
 from __future__ import annotations
 
@@ -21,26 +21,26 @@ from greywhale.loop import PLANT_COLUMNS, Experiment, plant_row
 from greywhale.loop.controllers import controllers_of
 from greywhale.protocol import schema
 from greywhale.protocol.schema import Board
-from greywhale.table import ParameterTable, board_named, refuse_unknown
+from greywhale.table import ParameterTable, find_board, refuse_unknown
 from greywhale.trajectory import human_reaches
-from greywhale.tune.search.training import moves, reach, within
+from greywhale.tune.search.training import clip_motion, moves, reach
 
 Floats = NDArray[np.float64]
 
 # Half of the arms that the logs allow may follow a motion differently from the estimate by this share of its tracking
-# error. Slow reaches show friction and gravity, quick moves inertia and damping.
+# error. Slow reaches show friction and gravity, quick moves show inertia and damping.
 SPREAD = {"slow reaches": 0.5, "quick moves": 0.25}
 SPREAD_SAMPLES, ONE_BY_ONE_SAMPLES = 33, 9
 REACHES_SEED, REACHES_S, WAIT_TICKS = 2002, 6.0, 200
-# How far numbers that should agree may differ: supplies, potentiometers' slopes, an arm and its own table (relative);
-# its gaps (rad).
+# How far numbers that should agree may differ: supplies, potentiometers' slopes, an arm and its own table (relative),
+# and its gaps (rad).
 SAME_SUPPLY, SAME_SLOPE, SAME_VALUE, SAME_GAP = 0.02, 0.1, 1e-3, 1e-5
 CERTAIN = 1e-20  # a variance of next to nothing
 CONVERTER_SPAN = 16368  # four conversions of 10 bits, as the board counts a potentiometer's whole track
 
 
 class Doubt(NamedTuple):
-    """A clause each, without a full stop."""
+    """A reason and a remedy: one clause each, without a full stop."""
 
     reason: str
     remedy: str
@@ -73,7 +73,7 @@ class ParameterFacts(_Facts):
 
 
 class Identification(_Facts):
-    """What of a model's [identification] matters for tuning."""
+    """The part of a model's [identification] that matters for tuning."""
 
     status: str
     method: str
@@ -86,11 +86,11 @@ class Identification(_Facts):
 
     @property
     def made_on(self) -> Board:
-        """The board that made the logs; models from before they named it are of a Mega."""
-        return Board.MEGA2560 if self.board is None else board_named(self.board)
+        """The board that made the logs. A model that names no board is from an older version, and of a Mega."""
+        return Board.MEGA2560 if self.board is None else find_board(self.board)
 
     def table(self) -> ParameterTable | None:
-        """The whole parameter table that the fitted log was recorded with, or None where it is not known."""
+        """The whole parameter table with which the fitted log was recorded, or None where it is not known."""
         defaults = ParameterTable.defaults(self.made_on)
         if self.parameters is not None:
             return defaults.with_raw(self.parameters)
@@ -98,7 +98,7 @@ class Identification(_Facts):
         return defaults if crcs == {f"0x{defaults.crc:04x}"} else None
 
     def remarks(self) -> tuple[str, ...]:
-        """The identification's warnings, but for those that follow from the logs' numbers, which are judged here."""
+        """The identification's warnings, without those that follow from the logs' numbers, which are judged here."""
         verdicts = [
             Verdict(log.name, log.role, log.measure, log.white_box_mse_rad2, log.model_mse_rad2) for log in self.log
         ]
@@ -124,8 +124,8 @@ def identification_of(arm: ArmParameters, name: str) -> Identification | None:
     return facts
 
 
-def identified(facts: Identification | None) -> list[Doubt]:
-    """Whether the arm was identified at all, and to the end."""
+def doubt_completeness(facts: Identification | None) -> list[Doubt]:
+    """Doubt an arm that was not identified at all, or not to the end."""
     if facts is None:
         return [
             Doubt(
@@ -138,8 +138,8 @@ def identified(facts: Identification | None) -> list[Doubt]:
     return []
 
 
-def validated(facts: Identification) -> list[Doubt]:
-    """Whether logs that were not fitted speak for the model."""
+def doubt_validation(facts: Identification) -> list[Doubt]:
+    """Doubt a model for which no log speaks but the fitted ones."""
     others = [log for log in facts.log if log.role != FIT]
     if not others:
         return [
@@ -164,8 +164,8 @@ def validated(facts: Identification) -> list[Doubt]:
     ]
 
 
-def sure(facts: Identification) -> list[Doubt]:
-    """Whether the model says how uncertain it is, of every joint."""
+def doubt_missing_covariance(facts: Identification) -> list[Doubt]:
+    """Doubt a model that does not say, for every joint, how uncertain it is."""
     if facts.covariance is None:
         return [
             Doubt(
@@ -185,12 +185,12 @@ def sure(facts: Identification) -> list[Doubt]:
     ]
 
 
-def untouched(arm: ArmParameters, facts: Identification) -> list[Doubt]:
-    """Whether the arm's numbers are still those that were identified."""
+def doubt_edits(arm: ArmParameters, facts: Identification) -> list[Doubt]:
+    """Doubt an arm whose numbers are no longer those that were identified."""
     if facts.covariance is None or not facts.parameter:
         return []
-    now, then = sampled_plants(_only(arm, facts, None), 2)
-    # A gap of next to nothing is none, whatever its digits.
+    now, then = sampled_plants(_with_one_uncertain(arm, facts, None), 2)
+    # A gap of next to nothing is no gap, whatever its digits.
     least = np.array([SAME_GAP if name.endswith("half_gap") else 1e-12 for name in PLANT_COLUMNS])
     differs = np.abs(now - then) > SAME_VALUE * np.maximum(np.abs(now), np.abs(then)) + least
     if not differs.any():
@@ -205,15 +205,15 @@ def untouched(arm: ArmParameters, facts: Identification) -> list[Doubt]:
     ]
 
 
-def spread(arm: ArmParameters, table: ParameterTable) -> list[Doubt]:
-    """Whether all arms that the logs allow follow alike, inside the board's present controllers.
+def doubt_precision(arm: ArmParameters, table: ParameterTable) -> list[Doubt]:
+    """Doubt a model if the arms that its logs allow follow differently under the board's present controllers.
 
-    Single parameters may be known poorly without harm (torque per volt of a joint that carries nothing), so what counts
-    is what they do to the motion.
+    Single parameters may be known poorly without harm (torque per volt of a joint that carries nothing). So the effect
+    on the motion decides.
     """
     experiments = _motions(arm, table)
     plants = sampled_plants(arm, SPREAD_SAMPLES)
-    shares = {name: _shares(one, table, plants) for name, one in experiments.items()}
+    shares = {name: _share_of_error(one, table, plants) for name, one in experiments.items()}
     motion = max(shares, key=lambda name: float(np.max(shares[name])) / SPREAD[name])
     joint = int(np.argmax(shares[motion]))
     if shares[motion][joint] <= SPREAD[motion]:
@@ -221,7 +221,9 @@ def spread(arm: ArmParameters, table: ParameterTable) -> list[Doubt]:
     facts = identification_of(arm, arm.name)
     assert facts is not None
     harm = {
-        index: _shares(experiments[motion], table, sampled_plants(_only(arm, facts, index), ONE_BY_ONE_SAMPLES))[joint]
+        index: _share_of_error(
+            experiments[motion], table, sampled_plants(_with_one_uncertain(arm, facts, index), ONE_BY_ONE_SAMPLES)
+        )[joint]
         for index, one in enumerate(facts.parameter)
         if one.name.startswith(f"joint{joint}.")
     }
@@ -241,15 +243,15 @@ def spread(arm: ArmParameters, table: ParameterTable) -> list[Doubt]:
 def _motions(arm: ArmParameters, table: ParameterTable) -> dict[str, Experiment]:
     low, high = reach(arm, table, plant_row(arm)[None])
     slow, quick = SPREAD
-    motions = {slow: within(human_reaches(REACHES_SEED, REACHES_S), low, high), quick: moves(low, high)}
+    motions = {slow: clip_motion(human_reaches(REACHES_SEED, REACHES_S), low, high), quick: moves(low, high)}
     return {
         name: Experiment(motion, arm, table=table, noise=False, soft_start=False, wait_s=WAIT_TICKS * TICK_S)
         for name, motion in motions.items()
     }
 
 
-def _shares(experiment: Experiment, table: ParameterTable, plants: Floats) -> Floats:
-    """Per joint: how differently the median plant follows from the first one, as a share of its tracking error, rms."""
+def _share_of_error(experiment: Experiment, table: ParameterTable, plants: Floats) -> Floats:
+    """Per joint: how differently the median plant follows from the first one, rms, as a share of its error."""
     result = experiment.run(controllers_of(table), plants, every=10, threads=1)
     angles = result.angles[:, WAIT_TICKS // 10 :].astype(np.float64)
     apart = np.sqrt(((angles[1:] - angles[0]) ** 2).mean(axis=1))
@@ -258,8 +260,8 @@ def _shares(experiment: Experiment, table: ParameterTable, plants: Floats) -> Fl
     return shares
 
 
-def _only(arm: ArmParameters, facts: Identification, index: int | None) -> ArmParameters:
-    """The arm with only one of its numbers uncertain, or none; never quite certain, so that there is a distribution."""
+def _with_one_uncertain(arm: ArmParameters, facts: Identification, index: int | None) -> ArmParameters:
+    """The arm with one uncertain number, or none. The others keep a tiny variance, so that there is a distribution."""
     assert facts.covariance is not None
     assert arm.identification is not None
     variances = np.full(len(facts.covariance), CERTAIN)
@@ -273,8 +275,8 @@ def _parameters_of(facts: Identification, joint: int) -> list[ParameterFacts]:
     return [one for one in facts.parameter if one.name.startswith(f"joint{joint}.")]
 
 
-def same_arm(model: ArmParameters, arm: ArmParameters, name: str) -> list[Doubt]:
-    """Whether the model is of this arm file: geometry, gears, stops and supply are the user's in both."""
+def doubt_other_arm(model: ArmParameters, arm: ArmParameters, name: str) -> list[Doubt]:
+    """Doubt a model of another arm file: geometry, gears, stops and supply must be the user's in both."""
     ours, theirs = (dict(_leaves(_fixed(one))) for one in (model, arm))
     for key, value in ours.items():
         other = theirs.get(key)
@@ -293,7 +295,7 @@ def same_arm(model: ArmParameters, arm: ArmParameters, name: str) -> list[Doubt]
 
 
 def _fixed(arm: ArmParameters) -> dict[str, Any]:
-    """What an identification leaves as it was."""
+    """The values that an identification does not change."""
     data = arm.model_dump(exclude={"name", "source", "identification"})
     for joint in data["joint"]:
         joint["motor"] = {"gear_ratio": joint["motor"]["gear_ratio"]}
@@ -316,8 +318,8 @@ def _leaves(data: object, name: str = "") -> Iterator[tuple[str, Any]]:
         yield name, data
 
 
-def same_table(given: ParameterTable, logged: ParameterTable | None, name: str) -> list[Doubt]:
-    """Whether a board's table differs from the logs' in more than its controllers and limits."""
+def doubt_other_table(given: ParameterTable, logged: ParameterTable | None, name: str) -> list[Doubt]:
+    """Doubt a board's table that differs from the logs' in more than its controllers and limits."""
     if logged is None:
         return []
     for parameter in schema.PARAMETERS:
@@ -337,12 +339,12 @@ def same_table(given: ParameterTable, logged: ParameterTable | None, name: str) 
     return []
 
 
-def same_board(arm: ArmParameters, facts: Identification | None, table: ParameterTable) -> list[Doubt]:
-    """Whether the table's period, supply and potentiometers are those of the model and its logs."""
-    return [*_same_period(facts, table), *_same_supply(arm, table), *_same_slopes(arm, table)]
+def doubt_other_board(arm: ArmParameters, facts: Identification | None, table: ParameterTable) -> list[Doubt]:
+    """Doubt a table whose period, supply or potentiometers are not those of the model and its logs."""
+    return [*_doubt_period(facts, table), *_doubt_supply(arm, table), *_doubt_slopes(arm, table)]
 
 
-def _same_period(facts: Identification | None, table: ParameterTable) -> list[Doubt]:
+def _doubt_period(facts: Identification | None, table: ParameterTable) -> list[Doubt]:
     period = table.period_ms
     logged = sorted({log.period_ms for log in facts.log if log.period_ms is not None}) if facts is not None else []
     if not logged or period in logged:
@@ -356,7 +358,7 @@ def _same_period(facts: Identification | None, table: ParameterTable) -> list[Do
     ]
 
 
-def _same_supply(arm: ArmParameters, table: ParameterTable) -> list[Doubt]:
+def _doubt_supply(arm: ArmParameters, table: ParameterTable) -> list[Doubt]:
     supply = table.supply_v
     if abs(supply - arm.drive.supply) <= SAME_SUPPLY * arm.drive.supply:
         return []
@@ -368,7 +370,7 @@ def _same_supply(arm: ArmParameters, table: ParameterTable) -> list[Doubt]:
     ]
 
 
-def _same_slopes(arm: ArmParameters, table: ParameterTable) -> list[Doubt]:
+def _doubt_slopes(arm: ArmParameters, table: ParameterTable) -> list[Doubt]:
     for side, bank in (("leader", arm.leader_pots), ("follower", arm.follower_pots)):
         for joint, pot in enumerate(bank.joint):
             scale = f"{side}{joint}.scale"

@@ -1,4 +1,4 @@
-"""What a tuning found: controllers before and after, the search's course, margins, and how both do on other motions."""
+"""The outcome of a tuning: controllers before and after, the search's course, margins, errors on other motions."""
 
 from __future__ import annotations
 
@@ -26,17 +26,17 @@ class Curve:
 
 
 def curves_of(found: Found) -> tuple[Curve, ...]:
-    """One a joint, from the search's books."""
+    """One curve a joint, from the search's books."""
     at = tuple(evaluations for evaluations, _ in found.curve)
     return tuple(Curve(at, tuple(costs[joint] for _, costs in found.curve)) for joint in range(len(found.cost)))
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """`before` and `after` are int32 (4, 12), exactly what a board stores; costs are joints', judged like the winners.
+    """The controllers `before` and `after`, int32 (4, 12), exactly as a board stores them, and how they do.
 
-    `table` is the one that everything was simulated with: the model's, but for the paper's method, whose control
-    period is 20 ms.
+    Costs are the joints', judged like the winners. `table` is the one with which everything was simulated: the model's,
+    except for the paper's method, whose control period is 20 ms.
     """
 
     model: Model
@@ -73,7 +73,7 @@ class Outcome:
         return all(margin.holds for margin in self.margins)
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON; numbers of the controllers raw, as in the parameter table."""
+        """A dictionary for JSON; the controllers' numbers are raw, as in the parameter table."""
         return {
             "model": self.model.name,
             "strategy": self.strategy,

@@ -1,19 +1,20 @@
 """The paper's tuning: GWO-WOA, 10 agents, 30 iterations, every joint's controller on its own (section 4, Table 7).
 
-J = ITAE + ITAU with weights 1 (Eqs. 19 to 21), time counted from the leader's step to the end of the record, on the
-model as given: its estimate, no other plants, no sensor noise. What the paper leaves open is filled in like this:
+J = ITAE + ITAU with weights 1 (Eqs. 19 to 21). Time counts from the leader's step to the end of the record. The model
+is taken as given: its estimate, no other plants, no sensor noise. The paper leaves some things open; they are chosen as
+follows:
 
 - Training motion: the paper's 1 rad step (section 5.1) of the joint that is tuned. The other joints' leaders rest, and
   the other joints keep the controller from before.
 - Control period: 20 ms, to which the paper's Kd belongs.
 - Voltage: the model's supply for strategy mf. Where Ku is tuned too, 20 V: Ku = 20 of Table 8 is its bound.
 - Bounds of Kp, Kd, Ki: 0 to 3 (`space.py`). The sets of strategy sf and the factors of strategy mf stay as they are.
-- Table 7's bounds let a flank of a set have no width. No board takes that, so widths below 0.01 become 0.01; how often
-  that happened is among the notes. Out of order no set can be: each corner has a side of zero to itself.
+- Table 7's bounds let a flank of a set have no width. No board takes that, so widths below 0.01 become 0.01; a note
+  says how often that happened. The corners of a set cannot be out of order: each has a side of zero to itself.
 - No joint's search knows the controller from before; the first pack is random.
 
-On an objective that is mostly effort a controller that moves little does well. So this method may end worse than it
-began by any other measure; `default` is what to use.
+This objective is mostly effort, so a controller that moves little does well. By any other measure this method may
+therefore end worse than it began; use `default` instead.
 """
 
 from __future__ import annotations
@@ -30,10 +31,10 @@ from greywhale.loop import Experiment
 from greywhale.trajectory import Trajectory, steps
 from greywhale.tune.judge.held_out import judge_held_out
 from greywhale.tune.judge.margins import Margins
-from greywhale.tune.method import Costs, Judged, Task
+from greywhale.tune.method import Costs, Judgement, Task
 from greywhale.tune.model import Model
 from greywhale.tune.search.journal import Journal
-from greywhale.tune.search.lockstep import Found, lockstep
+from greywhale.tune.search.lockstep import Found, search_in_lockstep
 from greywhale.tune.search.space import Space
 
 Floats = npt.NDArray[np.float64]
@@ -42,7 +43,7 @@ Controllers = npt.NDArray[np.int32]
 METHOD = "gwo-woa"
 AGENTS = 10
 ITERATIONS = 30
-# The first pack and then as many moves as iterations, a joint.
+# For each joint the first pack, and then as many moves as iterations.
 BUDGET = AGENTS * (ITERATIONS + 1)
 PERIOD_MS = 20
 LARGEST_SUPPLY_V = 20.0
@@ -61,13 +62,13 @@ class Loops:
         self._threads = threads
         self._experiments = [
             Experiment(
-                alone(steps(), joint),
+                move_one_joint(steps(), joint),
                 model.arm,
                 table=self.table,
                 noise=False,
                 wait_s=WAIT_S,
                 soft_start=False,
-                weight_s=since_step(steps(), WAIT_S),
+                weight_s=time_since_step(steps(), WAIT_S),
             )
             for joint in range(JOINTS)
         ]
@@ -102,7 +103,7 @@ class PaperMethod:
         def tick(now: Found) -> None:
             task.report("tuning", min(1.0, now.evaluations / task.budget), note=f"J {now.total:.2f}")
 
-        lockstep(
+        search_in_lockstep(
             Space.paper(task.strategy, task.before), self.loops.costs, self.found, journal, stage="paper",
             method=METHOD, budget=task.budget, seed=(task.seed,),
             starts=np.empty((0, JOINTS, task.before.shape[1]), dtype=np.int32), tick=tick, pack=AGENTS,
@@ -111,7 +112,7 @@ class PaperMethod:
     def cost_before(self) -> Costs:
         return tuple(map(float, self.loops.costs(self.task.before[None])[0]))
 
-    def judge(self) -> Judged:
+    def judge(self) -> Judgement:
         task, table, plant = self.task, self.table, self.loops.plant
         best = self.found.best
         task.report("judging", 0.0)
@@ -120,7 +121,7 @@ class PaperMethod:
         task.report("judging", 0.5)
         held_out = judge_held_out(task.model.arm, table, plant, task.before, best, task.threads, task.floors)
         task.report("judging", 1.0)
-        return Judged(
+        return Judgement(
             after=best.copy(),
             cost_before=self.cost_before(),
             cost_after=tuple(map(float, self.found.cost)),
@@ -131,14 +132,14 @@ class PaperMethod:
         )
 
 
-def alone(motion: Trajectory, joint: int) -> Trajectory:
+def move_one_joint(motion: Trajectory, joint: int) -> Trajectory:
     """The motion of one joint; the others rest where it begins."""
     angles = np.repeat(motion.angles[:1], len(motion.angles), axis=0)
     angles[:, joint] = motion.angles[:, joint]
     return replace(motion, angles=angles)
 
 
-def since_step(motion: Trajectory, wait_s: float) -> Floats:
+def time_since_step(motion: Trajectory, wait_s: float) -> Floats:
     """The k of Eqs. 19 and 20 at every tick: the time since the leader left its first angle, 0 before."""
     elsewhere = np.flatnonzero(np.abs(motion.angles - motion.angles[0]).max(axis=1) > 1e-9)
     leaves = float(motion.time_s[elsewhere[0] - 1])

@@ -1,4 +1,4 @@
-"""What a long piece of work tells a progress bar."""
+"""What a long piece of work reports to a progress bar."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from typing import Protocol
 
 
 class Report(Protocol):
-    """Told what is being done, the share of it that is done, and a note such as the best cost."""
+    """Takes what is being done, the share of it that is done, and a note such as the best cost."""
 
     def __call__(self, what: str, fraction: float, note: str = "") -> None: ...
 
 
-def silent(what: str, fraction: float, note: str = "") -> None:
-    """For when nobody looks."""
+def report_nothing(what: str, fraction: float, note: str = "") -> None:
+    """Report nothing: nobody looks."""

@@ -1,4 +1,4 @@
-"""Tuning as a whole: a method searches and judges; its journal and its outcome are the same for all."""
+"""Tuning as a whole: a method searches and judges; journal and outcome are the same for all methods."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from greywhale.loop.controllers import check_controllers
 from greywhale.optimise import METHODS as OPTIMISERS
 from greywhale.tune import default, paper
 from greywhale.tune.default import DefaultMethod
-from greywhale.tune.method import Judged, Method, Task
+from greywhale.tune.method import Judgement, Method, Task
 from greywhale.tune.model import Model
 from greywhale.tune.outcome import Outcome, curves_of
 from greywhale.tune.paper import PaperMethod
-from greywhale.tune.progress import Report, silent
+from greywhale.tune.progress import Report, report_nothing
 from greywhale.tune.search.journal import Journal
 from greywhale.tune.search.space import Bounds, check_bounds, check_strategy
 
@@ -37,7 +37,7 @@ def check_request(
     threads: int = 0,
     bounds: Bounds | None = None,
 ) -> None:
-    """Refuse, with exit code 2, what no model could make right."""
+    """Refuse, with exit code 2, a request that fits no model at all."""
     check_strategy(strategy)
     if method not in METHODS:
         raise UserError(f"there is no method {method!r}; there are {', '.join(METHODS)}.", BAD_USAGE)
@@ -66,11 +66,11 @@ def tune(
 ) -> Outcome:
     """Tune the four controllers of a model.
 
-    `budget` counts sets of four candidates, each tried on all plants and motions; the first is `start`, the controller
-    from before: int32 (4, 12), by default that of the model's table. `journal` is a file that keeps every cost, with
-    `resume` to go on from. `threads` (0: all cores) changes no bit. `floors` False saves the held-out motions' floors.
-    After an interrupt (KeyboardInterrupt) the best so far comes back at once, with `complete` False and not judged;
-    only before anything was evaluated it goes on up. Raises UserError.
+    `budget` counts sets of four candidates, each tried on all plants and motions. The first set is `start`, the
+    controller from before: int32 (4, 12), by default that of the model's table. `journal` is a file that keeps every
+    cost; with `resume` the tuning goes on from it. `threads` (0: all cores) changes no bit. `floors` False leaves out
+    the held-out motions' floors. After an interrupt (KeyboardInterrupt) the best so far comes back at once, with
+    `complete` False and not judged; if nothing was evaluated yet, the interrupt is raised again. Raises UserError.
     """
     check_request(strategy=strategy, method=method, budget=budget, seed=seed, threads=threads, bounds=bounds)
     usual = paper.BUDGET if method == "paper" else DEFAULT_BUDGET
@@ -83,7 +83,7 @@ def tune(
         threads=threads,
         before=check_controllers(model.controllers if start is None else start)[0],
         bounds=dict(bounds or {}),
-        report=report or silent,
+        report=report or report_nothing,
         floors=floors,
     )
     return _run(task, PaperMethod(task) if method == "paper" else DefaultMethod(task), journal, resume)
@@ -100,11 +100,11 @@ def _run(task: Task, method: Method, journal: Path | None, resume: bool) -> Outc
                 raise
     found = method.found
     cost = tuple(map(float, found.cost))
-    best = Judged(found.best.copy(), method.cost_before(), cost, (_UNFINISHED,))
+    best = Judgement(found.best.copy(), method.cost_before(), cost, (_UNFINISHED,))
     return _outcome(task, method, best, complete=False)
 
 
-def _outcome(task: Task, method: Method, judged: Judged, complete: bool) -> Outcome:
+def _outcome(task: Task, method: Method, judged: Judgement, complete: bool) -> Outcome:
     return Outcome(
         model=task.model,
         table=method.table,

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from greywhale.board.flash.targets import BOARDS, FlashBoard
-from greywhale.errors import BAD_USAGE, UserError, because
+from greywhale.errors import BAD_USAGE, UserError, os_reason
 
 _PACKAGED = Path(__file__).resolve().parents[2] / "data" / "firmware"
 
@@ -56,7 +56,7 @@ def read_image(path: Path) -> Image:
     try:
         lines = path.read_text(encoding="ascii", errors="replace").splitlines()
     except OSError as error:
-        raise UserError(f"{path}: cannot be read: {because(error)}.", BAD_USAGE) from None
+        raise UserError(f"{path}: cannot be read: {os_reason(error)}.", BAD_USAGE) from None
     memory = bytearray()
     for address, data in _chunks(path, lines):
         end = address + len(data)

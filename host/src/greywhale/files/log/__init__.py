@@ -1,6 +1,4 @@
-"""Logs of leader, follower and motor voltages as CSV: written whole or not at all, read back with every doubt
-refused.
-"""
+"""Logs of leader, follower and motor voltages as CSV: written whole or not at all, refused where doubtful."""
 
 from greywhale.files.log.reader import Log, read_log
 from greywhale.files.log.writer import LogWriter

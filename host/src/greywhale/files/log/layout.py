@@ -1,4 +1,4 @@
-"""What a log looks like: its columns and the facts in its commented header."""
+"""The layout of a log: its columns and the facts in its commented header."""
 
 from __future__ import annotations
 
@@ -26,7 +26,9 @@ ENDINGS = (COMPLETE, INTERRUPTED, UNFINISHED)
 
 @dataclass(frozen=True)
 class Origin:
-    """Where a log comes from: known when recording starts, None where another tool wrote the file without saying."""
+    """Where a log comes from. A fact is known when recording starts, or None where another tool's file does not state
+    it.
+    """
 
     firmware: str | None = None
     board: str | None = None

@@ -15,7 +15,7 @@ from greywhale.files.log.layout import COLUMNS, COMPLETE, ENDINGS, STATES, TITLE
 from greywhale.firmware import JOINTS
 from greywhale.formats import csv_file
 
-# Sizes that no board sends, 16 bits of 1/4096 rad and of mV: degrees or millivolts of another tool.
+# No board sends larger values: 16 bits of 1/4096 rad and of mV. Such values are another tool's degrees or millivolts.
 _MOST = {"leader": (8.0, "rad"), "follower": (8.0, "rad"), "voltage": (33.0, "V")}
 
 

@@ -1,7 +1,7 @@
-"""Writes a log so that the named file is only ever whole: into a temporary file beside it, renamed when closed.
+"""Writes a log so that the named file is always whole: into a temporary file beside it, renamed when closed.
 
-Whatever ends the recording, an error or Ctrl-C included, the samples received so far are kept and the header says
-`interrupted`. Only when nothing at all was recorded is no file left. Dropped samples are counted, never filled in.
+Whatever ends the recording, also an error or Ctrl-C, the samples received so far are kept and the header says
+`interrupted`. Only when nothing was recorded is no file left. Dropped samples are counted, never filled in.
 """
 
 from __future__ import annotations
@@ -14,17 +14,17 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from greywhale.errors import UserError, because
+from greywhale.errors import UserError, os_reason
 from greywhale.files.log.layout import COMPLETE, HEADING, INTERRUPTED, STATES, TITLE, UNFINISHED, Origin
 from greywhale.formats.whole import temporary_beside
 
 _ROWS_PER_WRITE = 256
-# The two facts known only at the end keep this many characters free in the header.
+# Two facts are known only at the end; the header keeps so many characters free for each.
 _ROOM = 12
 
 
 class LogWriter:
-    """Use as a context manager; `rows` and `dropped` count what went in and what the link lost."""
+    """Use as a context manager; `rows` and `dropped` count the rows written and the samples that the link lost."""
 
     def __init__(self, path: str | Path, origin: Origin) -> None:
         self.path = Path(path)
@@ -76,7 +76,7 @@ class LogWriter:
             self.flush()
 
     def flush(self) -> None:
-        """Write what waits. Where the disk takes a part of it only, the lines that are whole stay."""
+        """Write what waits. If the disk takes only a part of it, the whole lines stay."""
         data = "".join(self._waiting).encode("ascii")
         self._waiting.clear()
         end = self._file.seek(0, os.SEEK_END)
@@ -122,10 +122,10 @@ class LogWriter:
             raise problem
 
     def _cannot_be_written(self, error: OSError) -> UserError:
-        return UserError(f"{self.path}: cannot be written: {because(error)}.")
+        return UserError(f"{self.path}: cannot be written: {os_reason(error)}.")
 
     def _header(self, ending: str) -> str:
-        """Always the same length, so that the end of a recording can rewrite it in place."""
+        """The header. Its length is always the same, so that the end of a recording can rewrite it in place."""
         origin = self.origin
         facts = {
             "firmware": origin.firmware,

@@ -1,1 +1,1 @@
-"""Judgement: margins, motions held out, the least possible error, and which candidates go together."""
+"""Judgement: margins, held-out motions, the least possible error, and the choice of candidates that go together."""

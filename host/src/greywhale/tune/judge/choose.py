@@ -1,4 +1,4 @@
-"""The last judgement: of every joint's best few candidates, which four are downloaded together."""
+"""The last judgement: it chooses, from every joint's best few candidates, the four that are uploaded together."""
 
 from __future__ import annotations
 
@@ -11,23 +11,23 @@ Floats = npt.NDArray[np.float64]
 Controllers = npt.NDArray[np.int32]
 Judge = Callable[[Controllers], Floats]
 
-# A joint whose cost in company is this much above its best elsewhere is exchanged for its other candidates.
+# If a joint costs this much more among the others than its best elsewhere, its other candidates are tried.
 WORSE = 1.03
 ROUNDS = 3
-# A joint that stays as it was feels its neighbours' new moves a little; more than this no joint may lose.
+# A joint that stays as it was feels its neighbours' new moves a little. No joint may lose more than this.
 FAIR = 1.01
-# If less than this share of what every joint could gain alone is gained together, another way is tried.
+# Another way is tried if together the joints gain less than this share of what each could gain alone.
 ENOUGH = 0.5
 
 
 def choose(start: Controllers, contenders: Controllers, judge: Judge) -> tuple[Controllers, Floats, Floats]:
-    """The best combination (4, 12) with the costs of `start` and of itself (4,); no joint costs more than FAIR times
-    what it does in `start`.
+    """The best combination (4, 12), with the costs of `start` and of itself (4,).
 
-    `contenders` (k, 4, 12) hold the k-th best of every joint. Each row is judged as it stands, every joint's best also
-    among the neighbours of `start`, and then the best of every joint together; where a joint turns out worse among its
-    new neighbours, its other candidates are tried there, also the one that it had in `start`. If little comes of that,
-    joint after joint is exchanged in `start` instead.
+    No joint costs more than FAIR times what it costs in `start`. `contenders` (k, 4, 12) hold the k-th best of every
+    joint. Each row is judged as it stands, then every joint's best among the neighbours of `start`, then the best of
+    every joint together. Where a joint turns out worse among its new neighbours, its other candidates are tried there,
+    also the one that it had in `start`. If that gains little, the joints of `start` are exchanged one after the other
+    instead.
     """
     alone = np.repeat(start[None], len(start), axis=0)
     for joint in range(len(start)):
@@ -35,57 +35,57 @@ def choose(start: Controllers, contenders: Controllers, judge: Judge) -> tuple[C
     rows = np.concatenate([start[None], contenders, alone])
     costs = judge(rows)
     before = costs[0]
-    mixed = _best_of_each(rows, costs)
+    mixed = _take_best_of_each(rows, costs)
     for _ in range(ROUNDS):
         now = judge(mixed[None])[0]
         rows, costs = np.concatenate([rows, mixed[None]]), np.concatenate([costs, now[None]])
         disappointing = np.flatnonzero(now > WORSE * costs.min(axis=0))
         if not disappointing.size:
             break
-        tried = _exchanged(mixed, np.concatenate([contenders, start[None]]), disappointing)
+        tried = _exchange(mixed, np.concatenate([contenders, start[None]]), disappointing)
         outcome = judge(tried)
         rows, costs = np.concatenate([rows, tried]), np.concatenate([costs, outcome])
         mixed = tried[int(np.argmin(outcome.sum(axis=1)))]
-    fair = _fair(costs, before)
+    fair = _is_fair(costs, before)
     best = int(np.argmin(np.where(fair, costs.sum(axis=1), np.inf)))
     chosen, cost = rows[best].copy(), costs[best]
     hoped_for = before.sum() - costs.min(axis=0).sum()
     if before.sum() - cost.sum() < ENOUGH * hoped_for:
-        built, its = _built_up(start, before, before, contenders, judge)
+        built, its = _build_up(start, before, before, contenders, judge)
         if its.sum() < cost.sum():
             chosen, cost = built, its
-    # Once more: what a joint could not take up among neighbours as they were it may now.
-    chosen, cost = _built_up(chosen, cost, before, contenders, judge)
+    # Once more: a joint may now accept a candidate that it could not accept among its old neighbours.
+    chosen, cost = _build_up(chosen, cost, before, contenders, judge)
     return chosen, before, cost
 
 
-def _fair(costs: Floats, before: Floats) -> npt.NDArray[np.bool_]:
+def _is_fair(costs: Floats, before: Floats) -> npt.NDArray[np.bool_]:
     fair: npt.NDArray[np.bool_] = np.all(costs <= FAIR * before, axis=1)
     return fair
 
 
-def _built_up(
+def _build_up(
     chosen: Controllers, cost: Floats, before: Floats, contenders: Controllers, judge: Judge
 ) -> tuple[Controllers, Floats]:
-    """`chosen` with one joint after the other exchanged for what lowers the sum most and is fair."""
+    """`chosen`, with one joint after the other exchanged for the fair candidate that lowers the sum most."""
     for joint in range(len(chosen)):
-        tried = _exchanged(chosen, contenders, np.array([joint]))
+        tried = _exchange(chosen, contenders, np.array([joint]))
         costs = judge(tried)
-        sums = np.where(_fair(costs, before), costs.sum(axis=1), np.inf)
+        sums = np.where(_is_fair(costs, before), costs.sum(axis=1), np.inf)
         best = int(np.argmin(sums))
         if sums[best] < cost.sum():
             chosen, cost = tried[best], costs[best]
     return chosen, cost
 
 
-def _best_of_each(rows: Controllers, costs: Floats) -> Controllers:
+def _take_best_of_each(rows: Controllers, costs: Floats) -> Controllers:
     best: Controllers = rows[0].copy()
     for joint, row in enumerate(np.argmin(costs, axis=0)):
         best[joint] = rows[row, joint]
     return best
 
 
-def _exchanged(mixed: Controllers, others: Controllers, joints: npt.NDArray[np.intp]) -> Controllers:
+def _exchange(mixed: Controllers, others: Controllers, joints: npt.NDArray[np.intp]) -> Controllers:
     """Copies of `mixed` with one of these joints replaced by each of its other candidates."""
     tried = []
     for joint in joints:

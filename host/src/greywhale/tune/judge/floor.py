@@ -1,22 +1,24 @@
-"""The saturation floor of a motion: what the supply leaves to any controller, however good.
+"""The saturation floor of a motion: the least error that the supply allows to any controller, however good.
 
 A motor has only so much voltage, so an arm cannot jump when its leader does, and no tuning can change that. Two numbers
 enclose the best that is possible, per joint (both in rad^2, over the window of `Experiment(motion)`):
 
-- `mse`, the floor, is reached: by an ideal controller in the arm simulation, with its friction, gaps and couplings. It
-  knows plant and state without noise, delay or quantisation, acts every 250 us, and follows the braking curve of each
-  joint (host/native/ideal/law.h). It is causal: of the leader it knows angle and speed up to this moment. What its law
-  leaves open (when to brake, how to settle) is searched for on the motion itself, for the least total.
-- `bound` cannot be gone below by a controller that waits at the leader while the leader rests, however it then moves
-  that joint: from the moment the leader leaves, the joint runs at full voltage after it, without a gap to cross and
-  without ever having to brake; only what the leader is ahead of that counts. The other joints move as under the ideal
-  controller. It says nothing (0) about leaders that never rest or that a motor can keep up with.
+- `mse`, the floor, is reached by an ideal controller in the arm simulation, with its friction, gaps and couplings. That
+  controller knows plant and state without noise, delay or quantisation, acts every 250 us, and follows the braking
+  curve of each joint (host/native/ideal/law.h). It is causal: it knows the leader's angle and speed only up to this
+  moment. Its law leaves some numbers open (when to brake, how to settle). A search on the motion itself finds those
+  with the least total.
+- `bound` is a lower limit: no controller that waits at the leader while the leader rests gets below it, however it then
+  moves that joint. From the moment the leader leaves, the joint runs after it at full voltage, without a gap to cross
+  and without ever having to brake. Only the way that the leader is ahead of this joint counts. The other joints move as
+  under the ideal controller. The bound is 0, and says nothing, for leaders that never rest or that a motor can keep up
+  with.
 
-For steps the floor lies 0.1 to 1.3 % above the bound on the shipped arms, and an optimiser over the voltages
-themselves, which knows what the leader will do, gains less than 1 % on it (tests/oracles/test_floor.py). Of 64 fuzzy
-controllers on each of 14 random arms none came below the total on multi-steps; one joint's share came out up to 3 %
-lower where its neighbour, moving otherwise, carried it. Where nothing saturates the floor is some mrad of backlash, a
-multiple of it means nothing, and `multiple` gives None.
+For steps the floor lies 0.1 to 1.3 % above the bound on the shipped arms. An optimiser over the voltages themselves,
+which knows what the leader will do, gains less than 1 % on it (tests/oracles/test_floor.py). 64 fuzzy controllers were
+tried on each of 14 random arms, and none came below the total on multi-steps. One joint's share came out up to 3 %
+lower where its neighbour moved differently and carried it. Where nothing saturates, the floor is some mrad of backlash,
+a multiple of it means nothing, and `multiple` gives None.
 """
 
 from __future__ import annotations
@@ -49,7 +51,8 @@ _BRAKES = (0.85, 0.95, 1.1, 1.25)  # tried for one joint after the other
 _NOTHING_TO_GAIN = 1e-4  # rad^2 in total
 
 _REST_S, _REST_RAD = 0.3, 0.004
-# The follower counts as waiting for the leader when it is so close to it and so slow; else a move bounds nothing.
+# The follower counts as waiting for the leader when it is this close to it and this slow. Otherwise a move gives no
+# bound.
 _WAITING_RAD, _WAITING_RAD_S = 0.01, 0.05
 
 
@@ -80,12 +83,12 @@ class Floor:
 
     @property
     def limited(self) -> tuple[bool, ...]:
-        """For each joint, then for all: whether it is the supply that keeps the error from zero."""
+        """For each joint, then for all: whether the supply keeps the error from zero."""
         each = [*zip(self.mse, self.bound, strict=True), (self.mse.sum(), self.bound.sum())]
         return tuple(bool(floor >= _BACKLASH or 2.0 * bound >= floor > 0.0) for floor, bound in each)
 
     def multiple(self, mse: Floats) -> tuple[float | None, ...]:
-        """Each joint's error as a multiple of the floor, then the total's; None where the supply is no limit."""
+        """Each joint's error as a multiple of the floor, then the total's; None where the supply does not limit it."""
         each = zip([*mse, mse.sum()], [*self.mse, self.mse.sum()], self.limited, strict=True)
         return tuple(float(one / floor) if limited else None for one, floor, limited in each)
 
@@ -103,14 +106,14 @@ def saturation_floor(
 ) -> Floor:
     """The floor of a motion (or angles in every slice of 250 us) on an arm or a plant row (60,).
 
-    `supply_v`: a lower voltage to get along with, for instance a controller's Ku. `delay_s`: how late the controller
-    learns where the leader is, to tell what sensing costs from what the supply costs. The rest as in Experiment.
+    `supply_v` sets a lower voltage, for instance a controller's Ku. `delay_s` says how late the controller learns where
+    the leader is; it separates the cost of sensing from the cost of the supply. The rest is as in Experiment.
     """
     plant = check_plants(arm if isinstance(arm, np.ndarray) else plant_row(arm))
     if len(plant) != 1:
         raise UserError(f"the floor is of one plant, not of {len(plant)}; call it for each.", BAD_USAGE)
     slices = leader_slices(motion, wait_s, after_s, resample) if isinstance(motion, Trajectory) else _checked(motion)
-    loop = _Loop(slices, plant[0], _supply(plant[0], supply_v), _late(delay_s), threads)
+    loop = _Loop(slices, plant[0], _supply(plant[0], supply_v), _delay_slices(delay_s), threads)
     _require_reach(loop)
     tunings = _best(loop)
     mse, angles = loop.run(tunings[None], keep=True)
@@ -139,7 +142,7 @@ class _Loop:
         return self._simulate(self.plant, tunings, -1, nowhere.astype(np.int8), nowhere, keep)
 
     def chase(self, joint: int, tunings: Floats, direction: NDArray[np.int8], until: Floats) -> Floats:
-        """A joint's angles (ticks,), its gear without a gap, at full voltage in `direction` as far as `until`."""
+        """A joint's angles (ticks,) at full voltage in `direction` as far as `until`, its gear without a gap."""
         tight = self.plant.copy()
         tight[column("half_gap", joint)] = 0.0
         angles: Floats = self._simulate(tight, tunings[None], joint, direction, until, True)[1][0, :, joint]
@@ -169,7 +172,7 @@ def _best(loop: _Loop) -> Floats:
     totals = loop.run(tried)[0].sum(axis=1)
     best: Floats = tried[totals.argmin()]
     least = totals.min()
-    # The pitches pull at each other most, so they go first.
+    # The pitch joints pull at each other most, so they go first.
     for joint in (1, 2, 0, 3) if least > _NOTHING_TO_GAIN else ():
         tried = np.repeat(best[None], len(_BRAKES), axis=0)
         tried[:, joint, 0] = _BRAKES
@@ -181,7 +184,7 @@ def _best(loop: _Loop) -> Floats:
 
 @dataclass(frozen=True)
 class _Move:
-    """A joint's leader from its departure out of a rest to the next: ticks, the angle it left and the way it went."""
+    """A joint's leader from when it leaves a rest to its next rest: ticks, the angle it left, its direction."""
 
     start: int
     stop: int
@@ -198,7 +201,8 @@ def _moves(leader: Floats) -> list[_Move]:
     for left in np.flatnonzero(rest[:-1] & ~rest[1:]) + 1:
         origin = float(np.median(leader[left - window : left]))
         side = 1 if leader[left] > origin else -1
-        # The band is left a little after the leader has gone: back to where it last was at its place of rest.
+        # The leader has already gone a little when it leaves the band, so the move starts where it last was at its
+        # rest.
         departures.append((int(np.flatnonzero(side * (leader[:left] - origin) <= 0.0)[-1]), origin, side))
     ends = [*(start for start, _, _ in departures[1:]), len(leader)] if departures else []
     return [
@@ -209,7 +213,7 @@ def _moves(leader: Floats) -> list[_Move]:
 
 
 def _bound(loop: _Loop, joint: int, tunings: Floats) -> float:
-    """What the leader is ahead of a joint at full voltage, squared, over all moves out of a rest; see the head."""
+    """The squared way that the leader is ahead of a joint at full voltage, over all moves; see the head."""
     leader = loop.leader[:, joint]
     moves = _moves(leader)
     direction, until = np.zeros(len(leader), dtype=np.int8), np.zeros(len(leader))
@@ -222,10 +226,10 @@ def _bound(loop: _Loop, joint: int, tunings: Floats) -> float:
     late = loop.late // SLICES_PER_TICK  # rounded down: the joint may leave earlier, which only lowers the bound
     each = np.repeat(np.roll(direction, late), SLICES_PER_TICK), np.repeat(np.roll(until, late), SLICES_PER_TICK)
     angles = loop.chase(joint, tunings, *each)
-    return sum(_ahead(move, leader, angles) for move in moves) / len(leader)
+    return sum(_sum_lead(move, leader, angles) for move in moves) / len(leader)
 
 
-def _ahead(move: _Move, leader: Floats, angles: Floats) -> float:
+def _sum_lead(move: _Move, leader: Floats, angles: Floats) -> float:
     """The sum of squares (rad^2) by which the leader of one move is ahead; 0 where the joint was not waiting for it."""
     start = move.start
     speed = (angles[start] - angles[start - 1]) / (SLICE_S * SLICES_PER_TICK) if start else 0.0
@@ -254,7 +258,7 @@ def _supply(plant: Floats, supply_v: float | None) -> float:
     return min(supply_v, full)
 
 
-def _late(delay_s: float) -> int:
+def _delay_slices(delay_s: float) -> int:
     if not 0.0 <= delay_s <= 1.0:
         raise UserError(f"delay_s is {delay_s:g}, but it must lie within 0..1 s.", BAD_USAGE)
     return round(delay_s / SLICE_S)

@@ -1,4 +1,4 @@
-"""Motions that nothing was tuned on: the paper's steps and multi-steps, and a human-like motion of another seed.
+"""Motions on which nothing was tuned: the paper's steps and multi-steps, and a human-like motion of another seed.
 
 The measures run from the moment the motors go on, as a log's do: WAIT_S of soft start and rest, then the motion.
 """
@@ -19,21 +19,21 @@ from greywhale.measure import Evaluation, evaluate
 from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory, human_reaches, multi_steps, steps
 from greywhale.tune.judge.floor import Floor, saturation_floor
-from greywhale.tune.search.training import reach, within
+from greywhale.tune.search.training import clip_motion, reach
 
 Floats = npt.NDArray[np.float64]
 Controllers = npt.NDArray[np.int32]
 
 WAIT_S = 1.5
-SEED = 2001  # of reaches that nobody plays elsewhere
+SEED = 2001  # of reaches that are played nowhere else
 EVERY = 2  # ticks between the rows of the traces
 
 
 @dataclass(frozen=True)
 class HeldOut:
-    """One motion that nothing was tuned on, in the bench's own arithmetic, on the estimated plant, with sensor noise.
+    """One motion on which nothing was tuned, in the bench's own arithmetic, on the estimated plant, with sensor noise.
 
-    `floor` is what any controller could reach at that supply, None where it was not computed.
+    `floor` is the least error that any controller could reach at that supply, None where it was not computed.
     """
 
     name: str
@@ -71,11 +71,11 @@ class HeldOut:
 
 
 def motions(low: Floats, high: Floats) -> dict[str, Trajectory]:
-    """By name, within the range of the joints."""
+    """Steps, multi-steps and reaches by name, within the range of the joints."""
     return {
-        "steps": within(steps(), low, high),
-        "multi-steps": within(multi_steps(), low, high),
-        "human-like reaches": within(human_reaches(SEED, 20.0), low, high),
+        "steps": clip_motion(steps(), low, high),
+        "multi-steps": clip_motion(multi_steps(), low, high),
+        "human-like reaches": clip_motion(human_reaches(SEED, 20.0), low, high),
     }
 
 
@@ -88,7 +88,7 @@ def judge_held_out(
     threads: int = 0,
     floors: bool = True,
 ) -> tuple[HeldOut, ...]:
-    """Both controllers (4, 12) on one plant (60,), in the bench's own arithmetic and with sensor noise."""
+    """Evaluate both controllers (4, 12) on one plant (60,), in the bench's own arithmetic and with sensor noise."""
     judged = []
     for name, motion in motions(*reach(arm, table, plant[None])).items():
         experiment = Experiment(motion, arm, table=table, seed=7, wait_s=WAIT_S)
@@ -99,8 +99,8 @@ def judge_held_out(
             HeldOut(
                 name=name,
                 motion=motion,
-                before=_evaluated(name, result.time_s, leader, angles[0]),
-                after=_evaluated(name, result.time_s, leader, angles[1]),
+                before=_evaluate(name, result.time_s, leader, angles[0]),
+                after=_evaluate(name, result.time_s, leader, angles[1]),
                 floor=saturation_floor(motion, plant, wait_s=WAIT_S, threads=threads) if floors else None,
                 time_s=result.time_s,
                 leader=leader,
@@ -111,6 +111,6 @@ def judge_held_out(
     return tuple(judged)
 
 
-def _evaluated(name: str, time_s: Floats, leader: Floats, follower: Floats) -> Evaluation:
+def _evaluate(name: str, time_s: Floats, leader: Floats, follower: Floats) -> Evaluation:
     state = np.full(len(time_s), "following")
     return evaluate(Log(name, Origin(), time_s, leader, follower, np.zeros_like(leader), state, 0, True))

@@ -1,11 +1,13 @@
-"""Whether a joint comes to rest, and still would with half or twice the loop gain, one more control period of delay, or
-softer gear teeth than the model knows (stiffness is what recordings tell least of, and backlash hunts on it).
+"""Whether a joint comes to rest, and whether it still would on a slightly different arm.
 
-The leader makes large moves and stops. From SETTLE_S after each stop on, the follower must not swing: REVERSALS or more
+Different means half or twice the loop gain, one more control period of delay, or softer gear teeth than the model has
+(recordings show stiffness least of all, and backlash hunts on it).
+
+The leader makes large moves and stops. From SETTLE_S after each stop on, the follower must not swing. REVERSALS or more
 turning points of its true angle, each more than SWING_RAD from the next, are a limit cycle (a gear that hunts in its
-backlash, an integrator that breaks loose again and again, a loop without phase margin); so are duties that swing by
-more than CHATTER_SHARE of the supply more than CHATTER_HZ times a second (a relay; sensor noise that Kd magnifies). A
-single overshoot, or creeping to the target, is neither.
+backlash, an integrator that breaks loose again and again, a loop without phase margin). Duties that swing by more than
+CHATTER_SHARE of the supply, more than CHATTER_HZ times a second, are chatter (a relay; sensor noise that Kd magnifies).
+A single overshoot, or creeping to the target, is neither.
 """
 
 from __future__ import annotations
@@ -26,7 +28,7 @@ from greywhale.protocol.schema import Board
 from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory
 from greywhale.trajectory.generate import minimum_jerk
-from greywhale.tune.search.objective import crossed
+from greywhale.tune.search.objective import pair_with_plants
 from greywhale.tune.search.training import EDGE_S, RATE_HZ, centre, reach
 
 Floats = npt.NDArray[np.float64]
@@ -47,11 +49,11 @@ DELAY = "one period more delay"
 TEETH = "softer teeth"
 SCENARIOS = (*GAINS, TEETH, DELAY)
 SOFTER, LESS_DAMPED = 4.0, 8.0
-# Where the leader stops, as shares of a joint's reach; all joints move together, so that all are shaken.
+# Where the leader stops, as shares of a joint's reach. All joints move together, so all are shaken.
 STOPS = (0.8, -0.2)
-REST_S = 2.2  # of which the last 1.2 s are looked at
+REST_S = 2.2  # the last 1.2 s of it are judged
 REST_LONG_S = 4.0
-# A search keeps clear of the border: gains are further off, and smaller swings and less chatter cost already.
+# A search keeps clear of the border: its gains are further off, and smaller swings and less chatter already cost.
 SEARCH_BEYOND = 1.15
 SEARCH_CHATTER = 0.7
 
@@ -85,7 +87,7 @@ class Margin:
 
 @dataclass(frozen=True)
 class Unrest:
-    """Of every candidate on every plant, per joint: (n, k, 4) each, the worst rest of the record."""
+    """The unrest of every candidate on every plant, per joint: (n, k, 4) each, in the worst rest of the record."""
 
     reversals: Integers
     travel: Floats  # rad/s, in swings of a limit cycle
@@ -106,7 +108,7 @@ def unrest_of(
     board: Board,
     band: float = SWING_RAD,
 ) -> Unrest:
-    """From traces of a board with a row every `every` ticks; `rests` are first and last tick."""
+    """The unrest in traces of a board, with a row every `every` ticks; `rests` are pairs of first and last tick."""
     reversals = np.zeros((*shape, JOINTS), dtype=np.int32)
     travel = np.zeros((*shape, JOINTS))
     chatter = np.zeros((*shape, JOINTS))
@@ -123,7 +125,7 @@ def unrest_of(
 
 
 def _duty_swings(result: Result, rows: tuple[int, int], board: Board) -> Integers:
-    """Of every row and joint (n, 4): swings by more than CHATTER_SHARE of what that joint's PWM can give."""
+    """For every row and joint (n, 4): swings by more than CHATTER_SHARE of that joint's full PWM."""
     steps = pwm_steps(board)
     counted = {top: count_swings(result.duties, *rows, CHATTER_SHARE * top)[0] for top in set(steps)}
     return np.stack([counted[top][:, joint] for joint, top in enumerate(steps)], axis=1)
@@ -171,9 +173,9 @@ class Margins:
         self._late = Experiment(motion, arm, timing=Timing(late=period), **common)
 
     def unrest(self, controllers: Controllers, *, single: bool = False, every: int = 1) -> dict[str, Unrest]:
-        """Every scenario for every candidate (n, 4, 12) on every plant."""
+        """Run every scenario for every candidate (n, 4, 12) on every plant."""
         count, plants = len(controllers), len(self.plants)
-        variants = {name: with_gain(self.plants, self._further(gain)) for name, gain in GAINS.items()}
+        variants = {name: with_gain(self.plants, self._widen(gain)) for name, gain in GAINS.items()}
         variants[TEETH] = with_softer_teeth(self.plants)
         prompt = self._run(self._prompt, controllers, np.concatenate(list(variants.values())), single, every)
         found = {
@@ -183,13 +185,13 @@ class Margins:
         assert all(one.reversals.shape == (count, plants, JOINTS) for one in found.values())
         return found
 
-    def _further(self, gain: float) -> float:
+    def _widen(self, gain: float) -> float:
         return gain * self._beyond if gain > 1.0 else gain / self._beyond if gain < 1.0 else gain
 
     def _run(
         self, experiment: Experiment, controllers: Controllers, plants: Floats, single: bool, every: int
     ) -> Unrest:
-        laws, arms = crossed(controllers, plants)
+        laws, arms = pair_with_plants(controllers, plants)
         if single:
             result = experiment.run_single(laws, arms, every=every, threads=self._threads)
         else:
@@ -197,7 +199,7 @@ class Margins:
         return unrest_of(result, self._rests, every, (len(controllers), len(plants)), self._board, self._band)
 
     def check(self, controllers: Controllers) -> tuple[Margin, ...]:
-        """One controller (4, 12), in the bench's own arithmetic: a verdict for each scenario and joint."""
+        """Check one controller (4, 12) in the bench's own arithmetic: a verdict for each scenario and joint."""
         verdicts = []
         for name, found in self.unrest(controllers[None], single=True, every=1).items():
             for joint in range(JOINTS):
@@ -216,14 +218,15 @@ class Margins:
 
 # The leader rests this long before its first move.
 _FIRST_S = 0.2
-# What a search pays for a limit cycle: rad for each rad/s of swinging, for each CHATTER_HZ of chatter, and at least.
+# What a search pays for a limit cycle: rad for each rad/s of swinging, rad for each CHATTER_HZ of chatter, and the
+# least.
 TRAVEL_PRICE = 0.2
 CHATTER_PRICE = 0.01
 LEAST_PRICE = 0.02
 
 
 def penalty(found: dict[str, Unrest]) -> Floats:
-    """What candidates pay (n, 4), in rad: nothing for quiet ones, else LEAST_PRICE and more for more unrest."""
+    """What candidates pay (n, 4), in rad: nothing when quiet, otherwise LEAST_PRICE, and more for more unrest."""
     total = 0.0
     for one in found.values():
         excess = np.maximum(one.chatter / CHATTER_HZ - SEARCH_CHATTER, 0.0)
@@ -247,8 +250,8 @@ def with_softer_teeth(plants: Floats) -> Floats:
     return softer
 
 
-def loosest(plants: Floats) -> Floats:
-    """The estimate (60,) with the widest gap and the softest, least damped teeth that any of the plants has."""
+def loosest_plant(plants: Floats) -> Floats:
+    """The estimate (60,), with the widest gap and the softest, least damped teeth of any of the plants."""
     loose: Floats = plants[0].copy()
     for joint in range(JOINTS):
         gap, stiffness, damping = (column(name, joint) for name in ("half_gap", "stiffness", "mesh_damping"))

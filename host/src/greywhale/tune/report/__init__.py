@@ -1,1 +1,1 @@
-"""What people get of a tuning: controller.toml, a summary, the paper's tables, pictures."""
+"""What people get from a tuning: controller.toml, a summary, the paper's tables, pictures."""

@@ -1,6 +1,6 @@
 """controller.toml as a tuning writes it: the board's own numbers, where they come from, and what to expect of them.
 
-Everything in it follows from the outcome, no date and no time of day, so that equal tunings give equal files.
+Everything in it follows from the outcome. It holds no date and no time of day, so equal tunings give equal files.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from greywhale.tune.judge.margins import Margin
 from greywhale.tune.outcome import Outcome
 from greywhale.tune.report.summary import failing_margins
 
-DIGITS = 4  # significant ones of what is expected
+DIGITS = 4  # significant digits of expected values
 
 
 def save(outcome: Outcome, path: str | Path) -> None:
@@ -28,7 +28,7 @@ def save(outcome: Outcome, path: str | Path) -> None:
 
 
 def provenance(outcome: Outcome) -> dict[str, Any]:
-    """The table [tuning]: how the controllers were found, and per joint what is to be expected of them."""
+    """The table [tuning]: how the controllers were found, and what to expect of each joint."""
     model = outcome.model
     facts: dict[str, Any] = {
         "status": "complete" if outcome.complete else "unfinished: interrupted; the best so far",
@@ -81,7 +81,7 @@ def _note(outcome: Outcome, joint: int) -> str:
 
 
 def _change(one: HeldOut, joint: int | None = None) -> str:
-    """Before, after, and how far from the floor, of one joint or all together."""
+    """The error before and after, and as a multiple of the floor, of one joint or all together."""
     before, after = one.mse_before, one.mse_after
     chosen = slice(None) if joint is None else slice(joint, joint + 1)
     text = f"MSE {before[chosen].sum():.3g} -> {after[chosen].sum():.3g} rad²"
@@ -90,7 +90,7 @@ def _change(one: HeldOut, joint: int | None = None) -> str:
 
 
 def _expected(one: HeldOut) -> dict[str, Any]:
-    """A held-out motion, a value per joint: measures before and after (those that every joint has), and the floor."""
+    """A held-out motion, a value per joint: the measures that every joint has, before and after, and the floor."""
     facts: dict[str, Any] = {"motion": one.name}
     for when, evaluation in (("before", one.before), ("after", one.after)):
         columns: dict[str, Sequence[float | None]] = {

@@ -25,7 +25,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from greywhale.arm.parameters import JOINT_NAMES
-from greywhale.errors import UserError, because
+from greywhale.errors import UserError, os_reason
 from greywhale.formats.whole import write_whole
 from greywhale.fuzzy.settings import SET_UNIT
 from greywhale.loop import CONTROLLER_COLUMNS
@@ -40,22 +40,22 @@ Controllers = npt.NDArray[np.int32]
 _LEADER, _BEFORE, _AFTER, _FLOOR = "#222222", "#D55E00", "#0072B2", "#009E73"
 _SET_COLOURS = ("#D55E00", "#222222", "#0072B2")
 _SET_NAMES = (("NE", "ZE", "PE"), ("NCE", "ZCE", "PCE"))
-# For the error and its change: the columns of the corners (left, middle's two, right), and what they are sets of.
+# For the error and its change: the columns of the corners (left, the middle's two, right), and the name of the sets.
 _INPUTS = {
     "error": (("ne_c", "ze_a", "ze_c", "pe_b"), "$K_p\\,e$"),
     "change of error": (("nce_c", "zce_a", "zce_c", "pce_b"), "$K_d\\,\\Delta e$"),
 }
-# What a close-up shows of the largest jump of the leader: before and after it.
+# A close-up shows so much before and after the largest jump of the leader.
 _CLOSE_BEFORE_S, _CLOSE_AFTER_S = 0.05, 0.45
 _JUMP_S = 0.1
 _WIDE_COSTS = 20.0  # from here on a logarithmic axis
-# Jumps would hide what is left of the error after them (rad).
+# Jumps would hide the error that is left after them (rad).
 _LARGEST_ERROR = 0.2
 
 
 @dataclass(frozen=True)
 class Response:
-    """Angles (rows, 4) in rad at `time_s` (rows,), with the word and the figures they have in the legend and titles."""
+    """Angles (rows, 4) in rad at `time_s` (rows,), with a word and figures for the legend and the titles."""
 
     time_s: Floats
     angles: Floats
@@ -82,13 +82,13 @@ def draw(outcome: Outcome, folder: Path) -> list[Path]:
 
 
 def draw_sets(path: Path, before: Controllers, after: Controllers) -> Path:
-    """The input sets of controllers as a board stores them, int32 (4, 12): before dashed, after solid."""
+    """Draw the input sets of controllers as a board stores them, int32 (4, 12): before dashed, after solid."""
     with set_style():
         return _save(plot_sets(before, after), path)
 
 
 def draw_responses(path: Path, time_s: Floats, leader: Floats, responses: Mapping[str, Response], title: str) -> Path:
-    """Leader (rows, 4) and followers; for each joint the whole motion, its error, and its largest move close up.
+    """Draw leader (rows, 4) and followers: for each joint the whole motion, its error, and its largest move close up.
 
     The first word of a response's name stands before its error in the titles.
     """
@@ -187,7 +187,7 @@ def _draw_angles(axes: Axes, time_s: Floats, leader: Floats, responses: Mapping[
 
 
 def _close_up(time_s: Floats, leader: Floats) -> tuple[float, float]:
-    """The time around the largest move of all joints within a moment."""
+    """The time around the largest move that all joints make within a moment."""
     step = max(1, round(_JUMP_S / float(np.median(np.diff(time_s)))))
     moved = np.abs(leader[step:] - leader[:-step]).sum(axis=1)
     start = float(time_s[int(np.argmax(moved > 0.99 * moved.max()))]) if len(moved) else float(time_s[0])
@@ -229,7 +229,7 @@ def _save(figure: Figure, path: Path) -> Path:
         path.parent.mkdir(parents=True, exist_ok=True)
         write_whole(path, lambda file: figure.savefig(file, format="png", dpi=150, metadata={"Software": None}))
     except OSError as error:
-        raise UserError(f"{path}: cannot be written: {because(error)}.") from None
+        raise UserError(f"{path}: cannot be written: {os_reason(error)}.") from None
     finally:
         plt.close(figure)
     return path

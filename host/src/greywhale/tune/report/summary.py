@@ -1,4 +1,4 @@
-"""A tuning in a page of text: what changed, what to expect on motions not trained on, what speaks against it."""
+"""A tuning in a page of text: what changed, what to expect on other motions, and what speaks against it."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from greywhale.tune.judge.held_out import HeldOut
 from greywhale.tune.judge.margins import GAINS, Margin
 from greywhale.tune.outcome import Outcome
 
-# A joint's error counts as worse than before from this ratio on; below it is noise.
+# From this ratio on a joint's error counts as worse than before; a smaller change is noise.
 WORSE = 1.02
 (AS_IT_IS,) = (name for name, gain in GAINS.items() if gain == 1.0)
 
 
 def summary(outcome: Outcome) -> str:
-    """For people."""
+    """The text for people."""
     how = f"{outcome.method}, strategy {outcome.strategy}, seed {outcome.seed}, {outcome.evaluations:,} evaluations"
     lines = [] if outcome.complete else ["UNFINISHED: interrupted; this is the best so far.", ""]
     lines += [
@@ -32,7 +32,7 @@ def summary(outcome: Outcome) -> str:
 
 
 def _motion(one: HeldOut) -> list[str]:
-    """A line for each joint: the paper's three measures, and how far the error is from the least possible."""
+    """A line for each joint: the paper's three measures, and the error as a multiple of the least possible."""
     lines = [f"{one.name:24} {'MSE [rad²]':>22} {'x floor':>8} {'steady state [rad]':>20} {'delay [s]':>16}"]
     for joint, (before, after) in enumerate(zip(one.before.joints, one.after.joints, strict=True)):
         worse = "  WORSE" if after.mse > WORSE * before.mse else ""
@@ -55,13 +55,13 @@ def _pair(before: float | None, after: float | None, form: str) -> str:
 
 
 def _multiple(one: HeldOut, joint: int) -> str:
-    """Of the least possible error; a dash where the supply is no limit, so that it means nothing. -1: all joints."""
+    """The multiple of the least possible error, or a dash where the supply does not limit it. -1: all joints."""
     multiple = one.multiples[joint]
     return "-" if multiple is None else f"{multiple:.2f}"
 
 
 def _margins(outcome: Outcome) -> list[str]:
-    """Whether all hold, or which do not; how far a joint swings stands in the notes."""
+    """Whether all margins hold, or which do not; the notes say how far a joint swings."""
     if failing := failing_margins(outcome):
         return failing
     plants = outcome.margins[0].plants
@@ -71,7 +71,7 @@ def _margins(outcome: Outcome) -> list[str]:
 
 
 def failing_margins(outcome: Outcome) -> list[str]:
-    """A sentence for joints that are not steady, one for those that would not be on a slightly different arm."""
+    """A sentence for joints that are not steady, and one for those that would not be on a slightly different arm."""
     failing = [margin for margin in outcome.margins if not margin.holds]
     groups = {
         "NOT STEADY": [one for one in failing if one.scenario == AS_IT_IS],

@@ -1,7 +1,7 @@
-"""A tuning in the layouts of the paper's Tables 8 to 12, as text and as data, beside the paper's figures if asked.
+"""A tuning in the layouts of the paper's Tables 8 to 12, as text and as data, with the paper's figures if asked.
 
 Controllers come raw as a board stores them, int32 (4, 12), and are shown as it will use them. Beside the paper's
-columns stand the improvement and, where a `Floor` is known, the error as a multiple of what any controller could reach.
+columns stand the improvement and, where a `Floor` is known, the error as a multiple of the least possible.
 """
 
 from __future__ import annotations
@@ -112,14 +112,14 @@ def scaling_factors(after: Controllers, *, paper: bool = False) -> Table:
 
 
 def factors_and_sets(after: Controllers, *, paper: bool = False) -> Table:
-    """Table 9: tuned scaling factors and sets."""
+    """Table 9: the tuned scaling factors and sets."""
     theirs = _paper("table_9") if paper else None
     table = _parameters("Tuned scaling factors and sets (layout of Table 9)", FACTORS | SETS, (), after, theirs)
     return replace(table, remarks=(*table.remarks, _NO_WIDTH)) if paper else table
 
 
 def fuzzy_sets(before: Controllers, after: Controllers, *, paper: bool = False) -> Table:
-    """Table 10: the sets before, once where all joints begin with the same, and after."""
+    """Table 10: the sets before (once, where all joints begin with the same) and after."""
     columns = [CONTROLLER_COLUMNS.index(column) for column, _ in SETS.values()]
     same = bool((before[:, columns] == before[0, columns]).all())
     starts = [("before", before[0])] if same else [(f"before {joint}", row) for joint, row in enumerate(before)]
@@ -132,8 +132,8 @@ def step_performance(
 ) -> Table:
     """Table 11: the three measures of a step response. `multiples` of the floor (4 joints, then all): Floor.multiple.
 
-    The paper's time delay is the one from the leader's to the follower's onset; the lag of best correlation, which also
-    slow rises show in, stands below it.
+    The paper's time delay runs from the leader's to the follower's onset. Below it stands the lag of best correlation,
+    which also shows slow rises.
     """
     floors = (None,) * len(_ALL) if multiples is None else multiples
     theirs = PAPER_STEP_MSE if paper else None
@@ -147,7 +147,7 @@ def step_performance(
 def motion_errors(
     name: str, before: Floats, after: Floats, multiples: Numbers | None = None, *, paper: bool = False
 ) -> Table:
-    """Table 12: the errors (4,) of a motion, the paper's being multi-steps."""
+    """Table 12: the errors (4,) of a motion; the paper's are of multi-steps."""
     was, now = ([*errors.tolist(), float(errors.sum())] for errors in (before, after))
     floors = (None,) * len(_ALL) if multiples is None else multiples
     theirs = PAPER_MULTI_STEP_MSE if paper else None

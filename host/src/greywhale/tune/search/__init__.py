@@ -1,1 +1,1 @@
-"""The search: what is varied, what it costs on the training motions, optimisers in lockstep, and their journal."""
+"""The search: what it varies, what that costs on the training motions, optimisers in lockstep, and their journal."""

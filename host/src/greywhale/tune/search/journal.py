@@ -1,8 +1,8 @@
-"""The journal of a tuning: every cost that was told to an optimiser, so that a tuning can go on where it was cut off.
+"""The journal of a tuning: every cost that an optimiser was told, so that an interrupted tuning can go on.
 
-A file of JSON lines. The first says what was asked for; each further one holds the costs of one batch and a digest of
-its candidates. Resuming plays the optimisers through the same batches with the costs from the file, which takes no
-simulation, and goes on from there: file and result become the same, byte for byte, as of a run that nobody interrupted.
+It is a file of JSON lines. The first says what was asked for. Each further line holds the costs of one batch and a
+digest of its candidates. Resuming plays the optimisers through the same batches with the costs from the file, without
+simulation, and then goes on. File and result become the same, byte for byte, as those of a run without a break.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from typing import IO, Any, Self
 import numpy as np
 import numpy.typing as npt
 
-from greywhale.errors import UserError, because
+from greywhale.errors import UserError, os_reason
 from greywhale.formats.whole import refuse_devices
 
 Floats = npt.NDArray[np.float64]
@@ -28,7 +28,7 @@ _CHOSEN = ("strategy", "method", "budget", "seed", "bounds", "before")
 
 
 class Journal:
-    """Costs as they are told; without a path it remembers nothing. Use as a context."""
+    """The costs in the order in which they are told. Without a path nothing is kept. Use as a context."""
 
     def __init__(self, path: Path | None, request: dict[str, Any], resume: bool = False) -> None:
         self._path = path
@@ -45,7 +45,7 @@ class Journal:
                 self._file = path.open("wb", buffering=0)
                 self._write(heading)
         except OSError as error:
-            raise UserError(f"{path}: cannot be used as a journal: {because(error)}.") from None
+            raise UserError(f"{path}: cannot be used as a journal: {os_reason(error)}.") from None
 
     @property
     def replaying(self) -> bool:
@@ -66,12 +66,12 @@ class Journal:
         return np.array(line["costs"], dtype=np.float64)
 
     def tell(self, stage: str, candidates: Controllers, costs: Floats) -> None:
-        """Append a batch's costs; they are on their way to the disk when this returns."""
+        """Append a batch's costs; when this returns they are on their way to the disk."""
         if self._file is not None:
             self._write({"stage": stage, "candidates": _digest(candidates), "costs": costs.tolist()})
 
     def close(self) -> None:
-        """Give the file back."""
+        """Close the file."""
         if self._file is not None:
             self._file.close()
             self._file = None
@@ -86,12 +86,12 @@ class Journal:
 
     def _write(self, line: dict[str, Any]) -> None:
         assert self._file is not None
-        # A single unbuffered write: what is torn by a crash is the last line and nothing else.
+        # A single unbuffered write: a crash can tear the last line only.
         try:
             self._file.write(json.dumps(line, separators=(",", ":")).encode() + b"\n")
         except OSError as error:
             raise UserError(
-                f"{self._path}: cannot be written: {because(error)}; make room and go on with --resume."
+                f"{self._path}: cannot be written: {os_reason(error)}; make room and go on with --resume."
             ) from None
 
     def _reopened(self, path: Path, heading: dict[str, Any]) -> IO[bytes]:
@@ -99,7 +99,7 @@ class Journal:
         whole = path.read_bytes()
         lines, length = _whole_lines(path, whole)
         if not lines:
-            # Cut off within its first line: nothing was told yet.
+            # It ends within its first line: nothing was told yet.
             file = path.open("wb", buffering=0)
             self._file = file
             self._write(heading)
@@ -111,7 +111,7 @@ class Journal:
 
 
 def _whole_lines(path: Path, content: bytes) -> tuple[list[dict[str, Any]], int]:
-    """The lines that were written to their end, and how many bytes they are; a torn last one is dropped."""
+    """The lines that were written to their end, and their length in bytes; a torn last line is dropped."""
     length = content.rfind(b"\n") + 1
     lines = []
     for number, line in enumerate(content[:length].splitlines(), start=1):
@@ -141,10 +141,10 @@ def _is_batch(value: dict[str, Any]) -> bool:
 def _require_same(path: Path, found: dict[str, Any], wanted: dict[str, Any]) -> None:
     if found.get("greywhale_tune_journal") != VERSION:
         raise UserError(f"{path}: this journal is of another version of greywhale; start anew without --resume.")
-    # As it looks after a way through the file: tuples are lists there.
+    # Compare in the form that JSON gives: tuples become lists there.
     now = json.loads(json.dumps(wanted["request"]))
     then = found["request"]
-    # What the user chose says more than what follows from it.
+    # Name a difference in the user's choices first; the others follow from them.
     for key in sorted({*now, *then}, key=lambda name: (name not in _CHOSEN, name)):
         if now.get(key) != then.get(key):
             raise UserError(

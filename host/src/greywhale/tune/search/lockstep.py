@@ -1,8 +1,8 @@
 """Four optimisers in lockstep: candidate i of every joint is tried together with candidate i of the others.
 
-One simulation of the arm thus serves four searches, and every joint is judged among moving neighbours. What each joint
-is told is its own cost. A method's batches may grow at different times (CMA-ES restarts with a larger pack); then the
-joints with fewer candidates run their best one in the rows that are left over.
+So one simulation of the arm serves four searches, and every joint is judged among moving neighbours. Each joint is told
+its own cost. A method's batches may grow at different times (CMA-ES restarts with a larger pack). A joint with fewer
+candidates then runs its best one in the rows that are left.
 """
 
 from __future__ import annotations
@@ -30,12 +30,12 @@ TURNS = ((0, 2), (1, 3))
 
 @dataclass
 class Found:
-    """The best so far of every joint, and how it came about."""
+    """The best so far of every joint, and the course of the search."""
 
     best: Controllers  # (4, 12)
     cost: Floats  # (4,); infinite while a joint has none
     evaluations: int = 0
-    narrowed: int = 0  # numbers that meant a width below 0.01 and were widened to it
+    narrowed: int = 0  # numbers whose width was below 0.01 and became 0.01
     curve: list[tuple[int, tuple[float, ...]]] = field(default_factory=list)
     ranking: list[list[tuple[float, bytes]]] = field(default_factory=lambda: [[] for _ in range(JOINTS)])
 
@@ -48,7 +48,7 @@ class Found:
         return float(self.cost.sum())
 
     def take(self, rows: Controllers, costs: Floats, counts: list[int]) -> None:
-        """Candidates (n, 4, 12) with their costs (n, 4); of joint j the first counts[j] rows are new."""
+        """Take in candidates (n, 4, 12) with their costs (n, 4); of joint j the first counts[j] rows are new."""
         self.evaluations += len(rows)
         for joint, count in enumerate(counts):
             self.ranking[joint] += [(float(costs[row, joint]), rows[row, joint].tobytes()) for row in range(count)]
@@ -59,7 +59,7 @@ class Found:
         self.curve.append((self.evaluations, tuple(float(cost) for cost in self.cost)))
 
     def contenders(self, count: int) -> Controllers:
-        """(count, 4, 12): every joint's best, then others from further down its list, whose first are much alike."""
+        """(count, 4, 12): every joint's best, then others from further down its list; the first few are alike."""
         rows = np.repeat(self.best[None], count, axis=0)
         for joint, ranked in enumerate(self.ranking):
             for place, rank in enumerate(RANKS[:count]):
@@ -74,14 +74,14 @@ KEPT = len(RANKS)
 
 
 def _best_few(ranked: list[tuple[float, bytes]]) -> list[tuple[float, bytes]]:
-    """Different ones only, the best first."""
+    """The best different ones, the best first."""
     kept: dict[bytes, float] = {}
     for cost, raw in sorted(ranked):
         kept.setdefault(raw, cost)
     return [(cost, raw) for raw, cost in list(kept.items())[: RANKS[-1] + 1]]
 
 
-def lockstep(
+def search_in_lockstep(
     space: Space,
     evaluate: Costs,
     found: Found,
@@ -97,7 +97,7 @@ def lockstep(
     pack: int | None = None,
     **options: object,
 ) -> None:
-    """Spend `budget` evaluations a joint and leave what is best in `found`; `starts` (k, 4, 12) open the first pack."""
+    """Spend `budget` evaluations a joint and leave the best in `found`; `starts` (k, 4, 12) are in the first pack."""
     points = space.points(starts)
     packs: list[Optimiser] = []
     try:
@@ -117,20 +117,22 @@ def lockstep(
         while not all(one.done for one in packs):
             for group in groups:
                 if not all(packs[joint].done for joint in group):
-                    _batch(space, evaluate, found, journal, stage, packs, group)
+                    _run_batch(space, evaluate, found, journal, stage, packs, group)
                     tick(found)
     finally:
         for one in packs:
             one.close()
 
 
-def first(start: Controllers, evaluate: Costs, found: Found, journal: Journal) -> None:
-    """Try what there is (4, 12), so that whatever comes later has to beat it."""
-    _tried(start[None], [1] * JOINTS, evaluate, found, journal, "start")
+def try_start(start: Controllers, evaluate: Costs, found: Found, journal: Journal) -> None:
+    """Try the controllers that there are (4, 12), so that every later candidate must beat them."""
+    _evaluate(start[None], [1] * JOINTS, evaluate, found, journal, "start")
 
 
-def _tried(rows: Controllers, counts: list[int], evaluate: Costs, found: Found, journal: Journal, stage: str) -> Floats:
-    """The costs of candidates, from the journal or by simulation."""
+def _evaluate(
+    rows: Controllers, counts: list[int], evaluate: Costs, found: Found, journal: Journal, stage: str
+) -> Floats:
+    """Take the costs of candidates from the journal, or simulate them."""
     costs = journal.costs(stage, rows)
     if costs is None:
         costs = evaluate(rows)
@@ -139,7 +141,7 @@ def _tried(rows: Controllers, counts: list[int], evaluate: Costs, found: Found, 
     return costs
 
 
-def _batch(
+def _run_batch(
     space: Space,
     evaluate: Costs,
     found: Found,
@@ -159,8 +161,8 @@ def _batch(
         if len(points):
             whole = np.repeat(points[:, None], JOINTS, axis=1)
             rows[: len(points), joint] = space.controllers(whole)[:, joint]
-            found.narrowed += space.narrowed(points[:, None])
-    costs = _tried(rows, counts, evaluate, found, journal, stage)
+            found.narrowed += space.count_narrow(points[:, None])
+    costs = _evaluate(rows, counts, evaluate, found, journal, stage)
     for joint, one in enumerate(packs):
         if counts[joint]:
             one.tell(costs[: counts[joint], joint])

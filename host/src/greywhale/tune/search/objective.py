@@ -1,14 +1,15 @@
-"""What a controller costs, joint by joint, over all plants and all training motions, with the firmware's own integers.
+"""What a controller costs, joint by joint, over all plants and training motions, with the firmware's own integers.
 
 The cost of a joint is a length (rad), the sum of
 
-- the mean of |e|, weighted with time that restarts at every move of the leader (`training.since_moving`);
-- RMS times the root of the mean of e^2, without weights: what the paper's tables measure, mostly made during moves;
+- the mean of |e|, weighted with time that restarts at every move of the leader (`training.time_since_move`);
+- RMS times the root of the mean of e^2, without weights: this is what the paper's tables measure, and it arises mostly
+  during moves;
 - EFFORT times the mean of |u|, weighted like |e|;
-- what `margins` demands of a joint that does not come to rest.
+- the price that `margins` sets for a joint that does not come to rest.
 
-Over the plants, the mean and the worst count half each. A controller that does nothing costs the whole distance that
-the leader goes, some 1 rad; the effort of a good one costs a thousandth of that.
+The mean over the plants counts half, and the worst plant the other half. A controller that does nothing costs the whole
+distance that the leader goes, some 1 rad; the effort of a good one costs a thousandth of that.
 """
 
 from __future__ import annotations
@@ -25,20 +26,20 @@ from greywhale.tune.search.training import Drill
 Floats = npt.NDArray[np.float64]
 Controllers = npt.NDArray[np.int32]
 
-# rad per V: 10 V all the time cost as much as 10 mrad.
+# rad per V: 10 V all the time costs as much as 10 mrad.
 EFFORT = 1e-3
 RMS = 1.5
 WORST_SHARE = 0.5
 
 
-def combined(values: Floats) -> Floats:
-    """Values (n, k, 4) over k plants to (n, 4): half the mean and half the worst."""
+def combine_plants(values: Floats) -> Floats:
+    """Combine values (n, k, 4) over k plants to (n, 4): half the mean and half the worst."""
     mixed: Floats = (1.0 - WORST_SHARE) * values.mean(axis=1) + WORST_SHARE * values.max(axis=1)
     return mixed
 
 
-def crossed(controllers: Controllers, plants: Floats) -> tuple[Controllers, Floats]:
-    """Every controller with every plant: n k rows of both, the plants of one controller beside each other."""
+def pair_with_plants(controllers: Controllers, plants: Floats) -> tuple[Controllers, Floats]:
+    """Pair every controller with every plant: n k rows of both, the plants of one controller beside each other."""
     laws = np.repeat(controllers, len(plants), axis=0)
     arms = np.tile(plants, (len(controllers), 1))
     return np.ascontiguousarray(laws), np.ascontiguousarray(arms)
@@ -62,8 +63,8 @@ class Objective:
     threads: int = 0
 
     def tracking(self, controllers: Controllers, single: bool = False) -> Tracking:
-        """Of every candidate on every plant; `single`: in the bench's own arithmetic."""
-        laws, arms = crossed(controllers, self.plants)
+        """Simulate every candidate on every plant; `single`: in the bench's own arithmetic."""
+        laws, arms = pair_with_plants(controllers, self.plants)
         shape = (len(controllers), len(self.plants), 4)
         error, square, volts = np.zeros(shape), np.zeros(shape), np.zeros(shape)
         for drill in self.drills:
@@ -75,9 +76,9 @@ class Objective:
         return Tracking(error / weight, square / sum(drill.experiment.ticks for drill in self.drills), volts / weight)
 
     def costs(self, controllers: Controllers, single: bool = False) -> Floats:
-        """(n, 4) in rad, over all plants; without what the margins demand."""
+        """(n, 4) in rad, over all plants; without the price of unrest."""
         found = self.tracking(controllers, single)
-        return combined(found.error + RMS * np.sqrt(found.square) + EFFORT * found.volts)
+        return combine_plants(found.error + RMS * np.sqrt(found.square) + EFFORT * found.volts)
 
     def _run(self, drill: Drill, laws: Controllers, arms: Floats, single: bool) -> Result:
         if single:

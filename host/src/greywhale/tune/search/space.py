@@ -1,6 +1,6 @@
-"""What a search may change, as points of a box; and how a point becomes a controller that the firmware accepts.
+"""What a search may change, as points of a box, and how a point becomes a controller that the firmware accepts.
 
-A point is decoded to the int32 numbers of the parameter table first: what is simulated is what will be downloaded, bit
+A point is decoded to the int32 numbers of the parameter table first. So what is simulated is what will be uploaded, bit
 for bit.
 """
 
@@ -35,12 +35,12 @@ NARROWEST_STATED = 0.01  # as people write it; stored, it is the next width abov
 
 # Sizes that the default search may give to a scaling factor. Kp and Kd only stretch the axes of the sets.
 _GAIN_RANGE = {"Kp": (0.1, 10.0), "Kd": (1e-3, 5.0), "Ki": (1e-2, 300.0)}
-# Ku may exceed the supply, at which the voltage is clipped in any case: full voltage then comes before full height.
+# Ku may exceed the supply, at which the voltage is clipped in any case. Full voltage then comes before full height.
 KU_BEYOND = 2.0
-# The least Ku (V): enough for friction, and never 0, which would be doing nothing.
+# The least Ku (V): enough for friction, and never 0, because such a controller would do nothing.
 _LEAST_KU = 3.0
-# Upper bounds of the paper's scaling factors: Ku = 20 V is visible in Table 8; for the others the paper prints none,
-# and 3 is the next whole number above all of Tables 8 and 9 (the largest is Ki = 2.072).
+# Upper bounds of the paper's scaling factors. Ku = 20 V is visible in Table 8. For the others the paper prints none; 3
+# is the next whole number above all of Tables 8 and 9 (the largest is Ki = 2.072).
 _PAPER_GAIN_MAX = {"Kp": 3.0, "Kd": 3.0, "Ki": 3.0, "Ku": 20.0}
 
 
@@ -68,7 +68,7 @@ class Variable:
 
     @property
     def unit(self) -> int:
-        """Raw numbers in one of the file's units."""
+        """How many raw steps one of the file's units has."""
         return _UNIT.get(self.name, SET_UNIT)
 
     @property
@@ -80,7 +80,7 @@ class Variable:
         return float(np.log(sizes[0])), float(np.log(sizes[1]))
 
     def raw(self, x: Floats) -> npt.NDArray[np.int64]:
-        """The nearest numbers that the board can store, widths below 0.01 widened to it."""
+        """The nearest numbers that the board can store; a width below 0.01 becomes 0.01."""
         sign = -1.0 if self.name in _NEGATIVE else 1.0
         size = np.exp(x) if self.logarithmic else sign * x
         raw = np.rint(size * self.unit).astype(np.int64)
@@ -98,7 +98,7 @@ class Variable:
 
 @dataclass(frozen=True)
 class Space:
-    """The box of one strategy, the same for every joint; what it does not search stays as in `base` (4, 12)."""
+    """The box of one strategy, the same for every joint; all other numbers stay as in `base` (4, 12)."""
 
     strategy: str
     variables: tuple[Variable, ...]
@@ -106,7 +106,7 @@ class Space:
 
     @classmethod
     def default(cls, strategy: str, base: Controllers, supply_mv: int, period_ms: int) -> Self:
-        """Widths from 0.01 to 1 and factors over decades by their logarithms, Ku up to twice the supply."""
+        """Widths from 0.01 to 1, and factors over decades by their logarithms, Ku up to twice the supply."""
         highest = {
             **{name: high for name, (_, high) in _GAIN_RANGE.items()},
             "Ki": min(_GAIN_RANGE["Ki"][1], largest_ki(period_ms)),
@@ -124,7 +124,7 @@ class Space:
         gains = [Variable(name, 0.0, _PAPER_GAIN_MAX[name], False) for name in GAINS]
         return cls(strategy, _chosen(strategy, sets, gains), base)
 
-    def bounded(self, bounds: Bounds, period_ms: int = 1) -> Self:
+    def with_bounds(self, bounds: Bounds, period_ms: int = 1) -> Self:
         """The same box with other bounds for some variables, which `check_bounds` must have passed."""
         most = largest_ki(period_ms)
         if "Ki" in bounds and bounds["Ki"][1] > most:
@@ -158,7 +158,7 @@ class Space:
         return np.array([variable.bounds[1] for variable in self.variables])
 
     def controllers(self, points: Floats) -> Controllers:
-        """Points (n, 4, d) in search units as the firmware stores them: int32 (n, 4, 12)."""
+        """Points (n, 4, d) in search units as controllers that the firmware stores: int32 (n, 4, 12)."""
         rows = np.repeat(self.base[None], len(points), axis=0).astype(np.int64)
         for place, variable in enumerate(self.variables):
             raw = variable.raw(points[:, :, place])
@@ -172,9 +172,11 @@ class Space:
         columns = [variable.search_value(controllers[:, :, variable.column]) for variable in self.variables]
         return np.stack(columns, axis=-1)
 
-    def reduced(self) -> Self:
-        """The part of the box that differs in shape: sets the same to both sides of zero; where factors and sets are
-        searched, Kp and Kd as near to 1 as their bounds allow, since they only stretch the axes of the sets.
+    def reduce(self) -> Self:
+        """The part of the box in which the shape of the law differs.
+
+        Sets are the same on both sides of zero. Where factors and sets are both searched, Kp and Kd are as near to 1 as
+        their bounds allow, since they only stretch the axes of the sets.
         """
         by_name = {variable.name: variable for variable in self.variables}
         for left, right in _PAIRS:
@@ -190,8 +192,10 @@ class Space:
                 base[:, variable.column] = round(float(np.clip(1.0, variable.low, variable.high)) * variable.unit)
         return replace(self, variables=tuple(by_name.values()), base=base)
 
-    def restretched(self, controllers: Controllers) -> Controllers:
-        """The same laws (4, 12) with Kp and Kd of `base` where this space does not search them: the sets stretched."""
+    def restretch(self, controllers: Controllers) -> Controllers:
+        """The same laws (4, 12) with Kp and Kd of `base` where this space does not search them: the sets are stretched
+        instead.
+        """
         rows = controllers.astype(np.float64)
         for gain, sets in (("Kp", SETS[:4]), ("Kd", SETS[4:])):
             if gain in self.names or not set(self.names) & set(sets):
@@ -203,8 +207,8 @@ class Space:
             rows[:, _column(gain)] = self.base[:, _column(gain)]
         return np.rint(rows).astype(np.int32)
 
-    def narrowed(self, points: Floats) -> int:
-        """How many numbers of these points (n, 4, d) mean a width below 0.01, which `controllers` widens."""
+    def count_narrow(self, points: Floats) -> int:
+        """How many numbers of these points (n, 4, d) have a width below 0.01, which `controllers` widens."""
         count = 0
         for place, variable in enumerate(self.variables):
             if variable.name in SETS and not variable.logarithmic:
@@ -218,7 +222,7 @@ def largest_ki(period_ms: int) -> float:
 
 
 def check_strategy(strategy: str) -> None:
-    """Refuse a strategy that there is not."""
+    """Refuse a strategy that does not exist."""
     if strategy not in STRATEGIES:
         raise UserError(f"there is no strategy {strategy!r}; there are {', '.join(STRATEGIES)}.", BAD_USAGE)
 
@@ -232,7 +236,7 @@ def check_bounds(strategy: str, bounds: Bounds) -> None:
             raise UserError(f"{name} is not searched by strategy {strategy}; leave out its bounds.", BAD_USAGE)
         if not low < high:
             raise UserError(f"the bounds of {name} are {low:g} and {high:g}; give the lower one first.", BAD_USAGE)
-        least, most = storable(name)
+        least, most = storable_range(name)
         if not (least <= low and high <= most):
             raise UserError(
                 f"the bounds of {name} are {low:g} and {high:g}, but they must lie within {least:g}..{most:g}.",
@@ -240,17 +244,17 @@ def check_bounds(strategy: str, bounds: Bounds) -> None:
             )
 
 
-def storable(name: str) -> tuple[float, float]:
-    """The smallest and the largest value that a search may bound a variable with."""
+def storable_range(name: str) -> tuple[float, float]:
+    """The smallest and the largest value that may bound a variable in a search."""
     if name in SETS:
         return _ordered(name, NARROWEST_STATED, 1.0)
     parameter = schema.PARAMETER_BY_NAME["joint0.ku_mv" if name == "Ku" else f"joint0.{name.lower()}"]
-    # A gain is searched by its logarithm, so 0 is no bound; one step of the format is as good.
+    # A gain is searched by its logarithm, so 0 cannot be a bound; one step of the format serves as well.
     return 1.0 / _UNIT[name], parameter.maximum / _UNIT[name]
 
 
 def _mirrored(left: Variable, right: Variable) -> Variable | None:
-    """One variable for both sides, within the bounds of both; None where they have no size in common."""
+    """One variable for both sides, within the bounds of both; None where both have no size in common."""
     low, high = max(right.low, -left.high), min(right.high, -left.low)
     return replace(right, low=low, high=high, mirror=left.name) if low < high else None
 

@@ -1,8 +1,8 @@
-"""What controllers are trained on: moves to both sides in several sizes, and human-like reaches; and how time weighs.
+"""The motions on which controllers are trained: moves to both sides in several sizes, and human-like reaches.
 
 The weight of a moment is SOON_S plus the time since the leader last moved: an error counts while the leader moves, and
-counts more the longer the leader has been at rest. It starts again with every move, so that the tenth move of a
-record weighs as much as the first.
+counts more the longer the leader has been at rest. The time starts again with every move, so the tenth move of a record
+weighs as much as the first.
 """
 
 from __future__ import annotations
@@ -24,20 +24,20 @@ from greywhale.trajectory.generate import minimum_jerk
 Floats = npt.NDArray[np.float64]
 
 RATE_HZ = 200.0
-EDGE_S = 0.04  # a hand cannot jump; the same as in trajectory.multi_steps
+EDGE_S = 0.04  # a hand cannot jump; as in trajectory.multi_steps
 # Levels of the moves (shares of the reach), rotated from joint to joint: sizes from 0.1 to 1, as many up as down.
 LEVELS = (0.0, 1.0, 0.9, 0.4, -0.6, -0.5, 0.0, -1.0, 0.0)
 HOLD_S = 1.2
 REACH_RAD = 1.0
-# Kept clear of limits and stops (rad).
+# This distance to limits and stops is kept (rad).
 CLEAR_RAD = 0.15
-# What must be left of a joint's range (rad).
+# A joint's range must have at least this much left (rad).
 LEAST_RANGE_RAD = 0.2
-HUMAN_SEED = 1001  # not one of those that anything is judged on
+HUMAN_SEED = 1001  # judges nothing anywhere else
 HUMAN_S = 9.0
 WAIT_S = 0.2
 SOON_S = 0.1
-# The leader counts as moving while it changes by this much (rad) within this time (s): far above the tremor of a hand.
+# The leader counts as moving while it changes by this much (rad) within this time (s); a hand's tremor is far smaller.
 MOVING_RAD, MOVING_S = 0.02, 0.1
 
 
@@ -55,11 +55,11 @@ def drills(arm: ArmParameters, table: ParameterTable, plants: Floats, seed: int 
     low, high = reach(arm, table, plants)
     motions = {
         "moves to both sides": moves(low, high),
-        "human-like reaches": within(human_reaches(HUMAN_SEED, HUMAN_S), low, high),
+        "human-like reaches": clip_motion(human_reaches(HUMAN_SEED, HUMAN_S), low, high),
     }
     made = []
     for number, (name, motion) in enumerate(motions.items()):
-        weight = since_moving(motion, WAIT_S)
+        weight = time_since_move(motion, WAIT_S)
         experiment = Experiment(
             motion, arm, table=table, seed=100 * seed + number + 11, wait_s=WAIT_S, soft_start=False,
             weight_s=weight,
@@ -69,7 +69,7 @@ def drills(arm: ArmParameters, table: ParameterTable, plants: Floats, seed: int 
 
 
 def reach(arm: ArmParameters, table: ParameterTable, plants: Floats) -> tuple[Floats, Floats]:
-    """Lowest and highest angle (4,) that the table's limits and all plants' stops allow, with some distance kept."""
+    """The lowest and highest angle (4,) that the table's limits and all plants' stops allow, some distance kept."""
     low, high = [], []
     for joint in range(JOINTS):
         limits = [table.physical(f"joint{joint}.limit_{side}") for side in ("min", "max")]
@@ -86,7 +86,7 @@ def reach(arm: ArmParameters, table: ParameterTable, plants: Floats) -> tuple[Fl
 
 
 def moves(low: Floats, high: Floats, hold_s: float = HOLD_S) -> Trajectory:
-    """All joints move at the same instants, each through the levels in an order of its own, around its middle or 0."""
+    """All joints move at the same instants. Each goes through the levels in its own order, around its middle or 0."""
     middle, size = centre(low, high)
     count = len(LEVELS)
     edges = hold_s * np.arange(1, count)
@@ -102,7 +102,7 @@ def moves(low: Floats, high: Floats, hold_s: float = HOLD_S) -> Trajectory:
 
 
 def _levels_of(joint: int) -> list[float]:
-    """From rest at 0 through the levels, begun at another place and mirrored on every second joint."""
+    """From rest at 0 through the levels, from another starting level for each joint, mirrored on every second joint."""
     inner = list(LEVELS[1:-1])
     turned = inner[2 * joint % len(inner) :] + inner[: 2 * joint % len(inner)]
     sign = -1.0 if joint % 2 else 1.0
@@ -110,17 +110,17 @@ def _levels_of(joint: int) -> list[float]:
 
 
 def centre(low: Floats, high: Floats) -> tuple[Floats, Floats]:
-    """Where a joint rests and how far it goes to either side: 0 and 1 rad where the range has room for it."""
+    """Where a joint rests and how far it goes to either side: 0 and 1 rad where the range has room for that."""
     size = np.minimum(REACH_RAD, 0.5 * (high - low))
     return np.clip(0.0, low + size, high - size), size
 
 
-def within(motion: Trajectory, low: Floats, high: Floats) -> Trajectory:
-    """The motion with what goes beyond the range folded onto its ends."""
+def clip_motion(motion: Trajectory, low: Floats, high: Floats) -> Trajectory:
+    """The motion with its angles clipped to the range."""
     return Trajectory(motion.time_s, np.clip(motion.angles, low, high))
 
 
-def since_moving(motion: Trajectory, wait_s: float) -> Floats:
+def time_since_move(motion: Trajectory, wait_s: float) -> Floats:
     """The weight (s) of every tick of an Experiment that waits `wait_s`; 0 while it waits."""
     ticks = int(np.ceil((wait_s + motion.duration_s) / 1e-3 - 1e-9))
     time_s: Floats = np.arange(ticks, dtype=np.float64) * 1e-3 - wait_s
