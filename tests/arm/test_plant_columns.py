@@ -5,8 +5,9 @@ from __future__ import annotations
 import pytest
 
 from greywhale import _native
-from greywhale.arm import ArmParameters, load_arm
-from greywhale.simulate import PLANT_COLUMNS, plant_row
+from greywhale.arm import ArmParameters
+from greywhale.arm.plants import PLANT_COLUMNS, plant_row
+from greywhale.files.arm import load_arm
 
 
 def named(arm: ArmParameters) -> dict[str, float]:

@@ -7,8 +7,9 @@ import pytest
 from numpy.typing import NDArray
 
 from greywhale import _native
-from greywhale.arm import Arm, load_arm
-from greywhale.simulate import plant_row
+from greywhale.arm import Arm
+from greywhale.arm.plants import plant_row
+from greywhale.files.arm import load_arm
 
 Floats = NDArray[np.float64]
 BODY = 11

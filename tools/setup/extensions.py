@@ -8,8 +8,6 @@ from tools.setup.console import ROOT, say
 SHARED = ("requirements.txt", "LICENSE")
 NATIVE = ("pyproject.toml", "host/native", "sim/arm", "firmware/lib/fuzzy_pdi", "firmware/lib/signal_chain")
 BOARD = ("sim/pyproject.toml", "sim/CMakeLists.txt", "sim/board")
-
-
 STUDY = ("tools/studies/one_joint/native", "sim/arm", "host/native/share_out.h")
 
 

@@ -17,17 +17,8 @@ from greywhale.firmware import JOINTS
 
 Plants = npt.NDArray[np.float64]
 
-BODY_COLUMNS = ("yaw", "ixx1", "iyy1", "ixx23", "iyy23", "izz23", "ixx3", "izz1", "coupling", "gravity1", "gravity2")
-JOINT_COLUMNS = (
-    *("torque_per_volt", "inertia", "damping", "coulomb", "breakaway", "stribeck_velocity"),
-    *("half_gap", "stiffness", "mesh_damping", "drag", "stop_min", "stop_max"),
-)
-PLANT_COLUMNS = (
-    *BODY_COLUMNS,
-    *(f"joint{joint}.{name}" for joint in range(JOINTS) for name in JOINT_COLUMNS),
-    "supply",
-)
-assert len(PLANT_COLUMNS) == _native.PLANT_COLUMNS
+# In the order of the native code: eleven constants of the links, twelve numbers for each joint, the supply.
+PLANT_COLUMNS: tuple[str, ...] = _native.PLANT_COLUMN_NAMES
 
 _INDEX = {name: index for index, name in enumerate(PLANT_COLUMNS)}
 _POSITIVE = (

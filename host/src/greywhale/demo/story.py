@@ -26,7 +26,7 @@ from greywhale.files.leader import load_leader, save_leader
 from greywhale.files.paper_tables import paper_table
 from greywhale.formats.whole import write_text
 from greywhale.measure import evaluate
-from greywhale.protocol.schema import Board
+from greywhale.protocol.schema import Board, HelloReply
 from greywhale.report.follow import draw_following, trace
 from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory, human_reaches
@@ -150,7 +150,7 @@ def _draw(options: DemoOptions, runs: list[Run]) -> Path:
     return picture
 
 
-def _put_firmware_on(bench: BenchProcess, options: DemoOptions, report: Report) -> schema.HelloReply:
+def _put_firmware_on(bench: BenchProcess, options: DemoOptions, report: Report) -> HelloReply:
     """Flash the board, as with a real one; its greeting."""
     if flash.find_avrdude() is not None:
         return flash.flash(bench.port, options.board, progress=report)

@@ -16,9 +16,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from greywhale.arm.body import Body
 from greywhale.arm.parameters import USUAL_NOISE_V, USUAL_TRACK_RAD
 from greywhale.arm.plants import column
-from greywhale.excite.body import Body
 from greywhale.firmware import CONVERSIONS, JOINTS
 from greywhale.identify.space import KINDS, Parameter
 

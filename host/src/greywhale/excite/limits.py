@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from greywhale.arm import ArmParameters
+from greywhale.arm.body import Body
 from greywhale.errors import BAD_USAGE, UserError
-from greywhale.excite.body import Body
 from greywhale.firmware import FASTEST_LED_RAD_S, JOINTS
 from greywhale.identify import sampled_plants
 from greywhale.identify.space import MOTOR, Space

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from greywhale import _native
-from greywhale.excite.body import Body
+from greywhale.arm.body import Body
 from greywhale.files.arm import arm_names, load_arm
 from greywhale.loop import plant_row
 
