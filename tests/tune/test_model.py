@@ -106,10 +106,10 @@ def test_warnings_of_the_identification_go_along(tmp_path: Path) -> None:
             {"log": [log_facts(), log_facts("validation"), log_facts("validation, changed controller", 0.0)]},
             "(0.01 against 0.01 rad²), though on others it is: it may have learnt its controller, not the arm; check",
         ),
-        ({"covariance": None, "method": "paper"}, "nothing in it tells how uncertain it is (method paper does not);"),
+        ({"covariance": None, "method": "paper"}, "it does not say how uncertain it is (method paper does not);"),
         ({"joints": (0, 1, 3)}, "joint 2 (wrist pitch) did not move in its logs, so nothing of it was identified;"),
         ({"parameters": {"supply_mv": 12_000}}, "its drive.supply is 15 V, but the board's supply_mv says 12 V;"),
-        ({"parameters": {"period_ms": 5}}, "recorded at a control period of 1 ms, but 5 ms is to be tuned for;"),
+        ({"parameters": {"period_ms": 5}}, "recorded at a control period of 1 ms, but the tuning is for 5 ms;"),
         (
             {"parameters": {"follower1.scale": 8_000}},
             "its follower potentiometer 1 turns 5.24 rad from end to end, but the board's follower1.scale makes it 3.9",

@@ -62,7 +62,7 @@ def practised(arm: ArmParameters, folder: Path, seed: int) -> list[Log]:
 
 @cache
 def excitation() -> Trajectory:
-    """The motion that tells most about an arm of which the white box is all that is known."""
+    """The motion that shows most about an arm of which only the white box is known."""
     return design(load_arm("white_box"), POSE, seconds=PRACTICE_S, budget=DESIGN_BUDGET).motion
 
 

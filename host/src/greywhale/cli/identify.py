@@ -22,7 +22,7 @@ from greywhale.identify import METHODS, identify
     "-v",
     type=click.Path(path_type=Path),
     multiple=True,
-    help="A log to judge the model on; one of the same and one of a changed controller tell most.",
+    help="A log that only judges the model; best are one of the same and one of another controller.",
 )
 @click.option(
     "--arm", "arm_file", default="white_box", show_default=True, help="Your arm.toml: geometry, nominal motors."

@@ -40,7 +40,7 @@ _OF_EXCITE = {
 @click.option("--every", type=int, default=1, show_default=True, help="One sample every so many ticks of 1 ms.")
 @click.option("--enable", is_flag=True, help="Turn the motors on: the follower follows while the log is recorded.")
 @click.option(
-    "--excite", is_flag=True, help="Turn the motors on and lead the arm along the motion that tells most about it."
+    "--excite", is_flag=True, help="Turn the motors on and lead the arm along the motion that shows most about it."
 )
 @click.option("--arm", "arm_file", help="With --excite: your arm.toml or a model.toml.  [default: white_box]")
 @click.option(
@@ -52,7 +52,7 @@ _OF_EXCITE = {
 )
 @click.option("--seed", type=int, help="With --excite: another seed, another motion.  [default: 0]")
 @click.option(
-    "--budget", type=int, help="With --excite: motions to try; more take longer and tell a little more.  [default: 300]"
+    "--budget", type=int, help="With --excite: motions to try; more take longer and show a little more.  [default: 300]"
 )
 @click.option(
     "--save-motion",

@@ -62,7 +62,7 @@ EXISTING = click.Path(path_type=Path)
     "--samples", type=int, default=SAMPLES, show_default=True, help="Arms as likely as the model, itself among them."
 )
 @click.option("--resume", is_flag=True, help="Go on where an interrupted tuning with the same options ended.")
-@click.option("--force", is_flag=True, help="Tune for a model that speaks against itself; the doubts go along.")
+@click.option("--force", is_flag=True, help="Tune even if there are doubts about the model; the result states them.")
 @click.option("--tables", is_flag=True, help="Also print the paper's Tables 8 to 12, ours beside its.")
 @click.option("--pictures", type=EXISTING, help="Folder for pictures of sets, responses and convergence.")
 @json_option

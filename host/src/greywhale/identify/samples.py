@@ -50,7 +50,7 @@ def read_search(arm: ArmParameters) -> tuple[Space, Floats, Floats]:
     facts = arm.identification
     if facts is None or "covariance" not in facts:
         raise UserError(
-            f"{arm.name}: there is no [identification] with a covariance in it, so nothing tells how uncertain it is; "
+            f"{arm.name}: there is no [identification] with a covariance, so it does not say how uncertain it is; "
             "use a model.toml of greywhale identify (method default)."
         )
     tables: list[dict[str, Any]] = facts.get("parameter", [])

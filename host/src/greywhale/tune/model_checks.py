@@ -169,7 +169,7 @@ def doubt_missing_covariance(facts: Identification) -> list[Doubt]:
     if facts.covariance is None:
         return [
             Doubt(
-                f"nothing in it tells how uncertain it is (method {facts.method} does not)",
+                f"it does not say how uncertain it is (method {facts.method} does not)",
                 "identify with --method default",
             )
         ]
@@ -351,8 +351,8 @@ def _doubt_period(facts: Identification | None, table: ParameterTable) -> list[D
         return []
     return [
         Doubt(
-            f"its logs were recorded at a control period of {' and '.join(map(str, logged))} ms, but {period} ms is "
-            "to be tuned for",
+            f"its logs were recorded at a control period of {' and '.join(map(str, logged))} ms, but the tuning "
+            f"is for {period} ms",
             f"record and identify at {period} ms",
         )
     ]
