@@ -85,7 +85,7 @@ def test_what_the_tool_started_ends_with_it() -> None:
 
 def test_ctrl_c_ends_the_tool_too(monkeypatch: pytest.MonkeyPatch) -> None:
     started: list[subprocess.Popen[bytes]] = []
-    start = subprocess.Popen
+    start: Any = subprocess.Popen
 
     def keep(*words: Any, **options: Any) -> subprocess.Popen[bytes]:
         started.append(start(*words, **options))
