@@ -7,6 +7,7 @@ import select
 import signal
 import subprocess
 import sys
+from typing import Any
 
 import pytest
 
