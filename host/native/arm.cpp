@@ -82,23 +82,23 @@ Out copy_of(const arm::Arm& self) {
 
 arm::Pose<double> pose_at(const In& in) {
   const Copy q(in);
-  return arm::pose_of(q.values[1], q.values[2]);
+  return arm::pose_of<double>(q.values[1], q.values[2]);
 }
 
 Matrix mass_matrix(const Body& body, const In& q) {
-  const arm::MassMatrix<double> m = arm::mass_matrix(body, pose_at(q));
-  const double full[16] = {m.m00, 0, 0, m.m03, 0, m.m11, m.m12, 0, 0, m.m12, m.m22, 0, m.m03, 0, 0, m.m33};
+  double full[arm::kJoints * arm::kJoints];
+  arm::fill_matrix(arm::geometry_of(body, pose_at(q)).mass, full);
   return owned<Matrix>(full, {arm::kJoints, arm::kJoints});
 }
 
 Out bias(const Body& body, const In& q, const In& v) {
   Four torque;
-  arm::bias_torque(body, pose_at(q), Copy(v).values, torque);
+  arm::bias_torque(arm::geometry_of(body, pose_at(q)), Copy(v).values, torque);
   return array_of(torque);
 }
 
 double kinetic(const Body& body, const In& q, const In& v) {
-  return arm::kinetic_energy(arm::mass_matrix(body, pose_at(q)), Copy(v).values);
+  return arm::kinetic_energy(arm::geometry_of(body, pose_at(q)).mass, Copy(v).values);
 }
 
 double potential(const Body& body, const In& q) { return arm::potential_energy(body, pose_at(q)); }

@@ -45,9 +45,8 @@ Matrices mass_matrix(const Columns& columns, const Rows& q) {
   const std::size_t count = q.shape(0);
   auto values = std::make_unique<double[]>(count * kJoints * kJoints);
   for (std::size_t n = 0; n < count; ++n) {
-    const arm::MassMatrix<double> m = arm::mass_matrix(body, arm::pose_of(q(n, 1), q(n, 2)));
-    const double full[] = {m.m00, 0, 0, m.m03, 0, m.m11, m.m12, 0, 0, m.m12, m.m22, 0, m.m03, 0, 0, m.m33};
-    std::copy(std::begin(full), std::end(full), &values[n * kJoints * kJoints]);
+    const arm::Geometry<double> geometry = arm::geometry_of(body, arm::pose_of<double>(q(n, 1), q(n, 2)));
+    arm::fill_matrix(geometry.mass, &values[n * kJoints * kJoints]);
   }
   double* raw = values.release();
   return Matrices(raw, {count, kJoints, kJoints}, owner_of(raw));
@@ -61,7 +60,7 @@ Torques bias(const Columns& columns, const Rows& q, const Rows& v) {
   for (std::size_t n = 0; n < count; ++n) {
     Four speed, torque;
     std::copy_n(&v(n, 0), kJoints, speed);
-    arm::bias_torque(body, arm::pose_of(q(n, 1), q(n, 2)), speed, torque);
+    arm::bias_torque(arm::geometry_of(body, arm::pose_of<double>(q(n, 1), q(n, 2))), speed, torque);
     std::copy_n(torque, kJoints, &values[n * kJoints]);
   }
   double* raw = values.release();

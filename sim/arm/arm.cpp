@@ -87,14 +87,14 @@ void Arm::set_load(const double (&torques)[kJoints]) {
 }
 
 double Arm::kinetic_energy() const {
-  const Pose<double> pose = pose_of(state_.q[1], state_.q[2]);
-  double energy = arm::kinetic_energy(mass_matrix(plant_.body, pose), state_.v);
+  const Geometry<double> geometry = geometry_of(plant_.body, pose_of<double>(state_.q[1], state_.q[2]));
+  double energy = arm::kinetic_energy(geometry.mass, state_.v);
   for (std::size_t i = 0; i < kJoints; ++i) energy += 0.5 * plant_.joints[i].actuator.inertia * state_.motor_v[i] * state_.motor_v[i];
   return energy;
 }
 
 double Arm::potential_energy() const {
-  double energy = arm::potential_energy(plant_.body, pose_of(state_.q[1], state_.q[2]));
+  double energy = arm::potential_energy(plant_.body, pose_of<double>(state_.q[1], state_.q[2]));
   for (std::size_t i = 0; i < kJoints; ++i) {
     const Gear<double>& gear = plant_.joints[i].gear;
     const double bent = std::fmax(std::fabs(state_.motor_q[i] - state_.q[i]) - gear.half_gap, 0.0);

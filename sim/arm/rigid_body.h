@@ -1,7 +1,8 @@
 // Mass matrix, velocity terms and gravity of the 4-DOF arm in corrected closed form (docs/arm.md derives it).
 //
 // Angles: q0 base yaw, q1 shoulder pitch, q2 wrist pitch, q3 wrist roll; phi = q1 + q2. Yaw and roll couple with each other and the
-// two pitches with each other, never across, so the mass matrix is two 2x2 blocks.
+// two pitches with each other, never across, so the mass matrix is two 2x2 blocks. The number type may be double or lanes of either
+// precision (scalar.h): the bench, the single run, the windows and the batch have their equations from here.
 #pragma once
 
 #include "parameters.h"
@@ -33,6 +34,16 @@ struct MassMatrix {
   T m11, m12, m22;              // the pitches
 };
 
+// All that depends on the links' angles alone.
+template <class T>
+struct Geometry {
+  MassMatrix<T> mass;
+  T half_d1, half_d2;           // halves of dm00/dq1 and dm00/dq2
+  T roll;                       // dm03/dphi
+  T wrist;                      // -dm12/dq2
+  T gravity1, gravity2;         // N m
+};
+
 // Link 3's inertias about y and z are averaged: with different values the matrix would depend on the roll angle and lose its block form.
 inline RigidBody<double> rigid_body(const ArmParameters& p) {
   const Link& link1 = p.links[1];
@@ -62,8 +73,9 @@ inline RigidBody<double> rigid_body(const ArmParameters& p) {
   return body;
 }
 
-template <class T>
-Pose<T> pose_of(T q1, T q2) {
+// Of angles in radians, or in another unit of which the number type knows sine and cosine.
+template <class T, class Angle>
+GREYWHALE_INLINE Pose<T> pose_of(Angle q1, Angle q2) {
   Pose<T> pose;
   sine_cosine(q1, pose.s1, pose.c1);
   sine_cosine(q2, pose.s2, pose.c2);
@@ -73,41 +85,49 @@ Pose<T> pose_of(T q1, T q2) {
 }
 
 template <class T>
-MassMatrix<T> mass_matrix(const RigidBody<T>& b, const Pose<T>& p) {
-  MassMatrix<T> m;
-  m.m00 = b.yaw + b.ixx1 * p.s1 * p.s1 + b.iyy1 * p.c1 * p.c1 + b.ixx23 * p.sphi * p.sphi + b.iyy23 * p.cphi * p.cphi +
-          2.0 * b.coupling * p.c1 * p.cphi;
-  m.m03 = b.ixx3 * p.sphi;
-  m.m33 = b.ixx3;
-  m.m22 = b.izz23;
-  m.m12 = b.izz23 + b.coupling * p.c2;
-  m.m11 = b.izz1 + b.izz23 + 2.0 * b.coupling * p.c2;
-  return m;
+GREYWHALE_INLINE Geometry<T> geometry_of(const RigidBody<T>& b, const Pose<T>& p) {
+  const T reach = b.coupling * p.c1;
+  const T folded = b.coupling * p.c2;
+  const T half_across = (b.ixx23 - b.iyy23) * (p.sphi * p.cphi);
+  Geometry<T> g;
+  g.mass.m00 = b.yaw + b.ixx1 * (p.s1 * p.s1) + b.iyy1 * (p.c1 * p.c1) + b.ixx23 * (p.sphi * p.sphi) + b.iyy23 * (p.cphi * p.cphi) +
+               (reach + reach) * p.cphi;
+  g.mass.m03 = b.ixx3 * p.sphi;
+  g.mass.m33 = b.ixx3;
+  g.mass.m22 = b.izz23;
+  g.mass.m12 = b.izz23 + folded;
+  g.mass.m11 = b.izz1 + b.izz23 + (folded + folded);
+  g.half_d2 = half_across - reach * p.sphi;
+  g.half_d1 = (b.ixx1 - b.iyy1) * (p.s1 * p.c1) + half_across - b.coupling * (p.s1 * p.cphi + p.c1 * p.sphi);
+  g.roll = b.ixx3 * p.cphi;
+  g.wrist = b.coupling * p.s2;
+  g.gravity2 = b.gravity2 * p.cphi;
+  g.gravity1 = b.gravity1 * p.c1 + g.gravity2;
+  return g;
 }
 
 // Coriolis, centrifugal and gravity torques: the torque that holds zero acceleration.
 template <class T>
-void bias_torque(const RigidBody<T>& b, const Pose<T>& p, const T (&v)[kJoints], T (&torque)[kJoints]) {
-  const T sin_2q1 = 2.0 * p.s1 * p.c1;
-  const T sin_2phi = 2.0 * p.sphi * p.cphi;
-  const T sin_q1_phi = p.s1 * p.cphi + p.c1 * p.sphi;
-  const T across = (b.ixx23 - b.iyy23) * sin_2phi;
-  const T d1 = (b.ixx1 - b.iyy1) * sin_2q1 + across - 2.0 * b.coupling * sin_q1_phi;  // dm00/dq1
-  const T d2 = across - 2.0 * b.coupling * p.c1 * p.sphi;                             // dm00/dq2
-  const T roll = b.ixx3 * p.cphi;                                                     // dm03/dphi
+GREYWHALE_INLINE void bias_torque(const Geometry<T>& g, const T (&v)[kJoints], T (&torque)[kJoints]) {
   const T pitch_rate = v[1] + v[2];
-  const T gyroscopic = roll * v[0] * v[3];
-  const T wrist = b.coupling * p.s2;
-  const T gravity2 = b.gravity2 * p.cphi;
+  const T rolling = g.roll * v[0];
+  const T gyroscopic = rolling * v[3];
+  const T square = v[0] * v[0];
+  const T half_turn = g.half_d1 * v[1] + g.half_d2 * v[2];
+  torque[0] = (half_turn + half_turn) * v[0] + g.roll * pitch_rate * v[3];
+  torque[1] = g.gravity1 - g.half_d1 * square - g.wrist * v[2] * (pitch_rate + v[1]) - gyroscopic;
+  torque[2] = g.gravity2 - g.half_d2 * square + g.wrist * (v[1] * v[1]) - gyroscopic;
+  torque[3] = rolling * pitch_rate;
+}
 
-  torque[0] = (d1 * v[1] + d2 * v[2]) * v[0] + roll * pitch_rate * v[3];
-  torque[1] = -0.5 * d1 * v[0] * v[0] - wrist * v[2] * (2.0 * v[1] + v[2]) - gyroscopic + b.gravity1 * p.c1 + gravity2;
-  torque[2] = -0.5 * d2 * v[0] * v[0] + wrist * v[1] * v[1] - gyroscopic + gravity2;
-  torque[3] = roll * v[0] * pitch_rate;
+// All sixteen entries, row by row.
+inline void fill_matrix(const MassMatrix<double>& m, double* out) {
+  const double full[] = {m.m00, 0, 0, m.m03, 0, m.m11, m.m12, 0, 0, m.m12, m.m22, 0, m.m03, 0, 0, m.m33};
+  for (const double entry : full) *out++ = entry;
 }
 
 template <class T>
-void momentum_of(const MassMatrix<T>& m, const T (&v)[kJoints], T (&momentum)[kJoints]) {
+GREYWHALE_INLINE void momentum_of(const MassMatrix<T>& m, const T (&v)[kJoints], T (&momentum)[kJoints]) {
   momentum[0] = m.m00 * v[0] + m.m03 * v[3];
   momentum[1] = m.m11 * v[1] + m.m12 * v[2];
   momentum[2] = m.m12 * v[1] + m.m22 * v[2];

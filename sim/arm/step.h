@@ -65,12 +65,11 @@ void rest_at_stops(const LinearSystem<T>& system, const Sides<T> (&sides)[kJoint
 // Returns whether the conditions were settled; the links are within their stops either way.
 template <class T>
 bool advance(const Plant<T>& plant, State<T>& s, const T (&volts)[kJoints], const T (&load)[kJoints], double dt) {
-  const Pose<T> pose = pose_of(s.q[1], s.q[2]);
-  const MassMatrix<T> m = mass_matrix(plant.body, pose);
+  const Geometry<T> geometry = geometry_of(plant.body, pose_of<T>(s.q[1], s.q[2]));
   T bias[kJoints];
-  bias_torque(plant.body, pose, s.v, bias);
+  bias_torque(geometry, s.v, bias);
   T momentum[kJoints];
-  momentum_of(m, s.v, momentum);
+  momentum_of(geometry.mass, s.v, momentum);
 
   Terms<T> terms[kJoints];
   Sides<T> sides[kJoints];
@@ -85,7 +84,7 @@ bool advance(const Plant<T>& plant, State<T>& s, const T (&volts)[kJoints], cons
   T v[kJoints];
   bool settled = false;
   for (int pass = 0; pass < kPasses && !settled; ++pass) {
-    system = linear_system(m, momentum, terms, sides);
+    system = linear_system(geometry.mass, momentum, terms, sides);
     T arriving[kJoints];  // at its stop exactly at the end of the step
     for (std::size_t i = 0; i < kJoints; ++i) {
       const Stops<T>& stops = plant.joints[i].stops;

@@ -41,6 +41,7 @@ def test_text_model_and_pictures(
     assert all(path.stat().st_size > 20_000 for path in (tmp_path / "pictures").iterdir())
 
 
+@pytest.mark.slow
 def test_json_is_one_object(
     found: Outcome, recorded: Recorded, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -51,6 +52,7 @@ def test_json_is_one_object(
     assert len(facts["log"]) == 3
 
 
+@pytest.mark.slow
 def test_interrupt_writes_the_model_and_says_so(
     outcome: Outcome,
     recorded: Recorded,

@@ -21,6 +21,7 @@ def model(outcome: Outcome, tmp_path_factory: pytest.TempPathFactory) -> ArmPara
     return load_arm(path)
 
 
+@pytest.mark.slow
 def test_row_0_is_the_estimate_and_no_row_depends_on_how_many_there_are(model: ArmParameters) -> None:
     plants = sampled_plants(model, 9, seed=4)
     assert plants.shape == (9, 60)
@@ -30,6 +31,7 @@ def test_row_0_is_the_estimate_and_no_row_depends_on_how_many_there_are(model: A
     assert not np.array_equal(sampled_plants(model, 9, seed=5)[1:], plants[1:])
 
 
+@pytest.mark.slow
 def test_every_drawn_plant_is_one_that_an_arm_can_have(model: ArmParameters) -> None:
     """With a covariance a hundred times wider too, so that gaps and shares would come out negative."""
     facts = model.identification
@@ -41,6 +43,7 @@ def test_every_drawn_plant_is_one_that_an_arm_can_have(model: ArmParameters) -> 
         assert len(np.unique(plants, axis=0)) == 200
 
 
+@pytest.mark.slow
 def test_draws_have_the_covariance_of_the_file(model: ArmParameters, outcome: Outcome) -> None:
     """Of the logarithms that no range cuts, taken back out of the plants."""
     plants = sampled_plants(model, 4000)
@@ -67,6 +70,7 @@ def test_draws_have_the_covariance_of_the_file(model: ArmParameters, outcome: Ou
     )
 
 
+@pytest.mark.slow
 def test_nothing_is_surer_than_it_is_written_and_nothing_less_sure_than_the_users_arm(outcome: Outcome) -> None:
     """Every searched number has a deviation above 0, and the arm file counts where the readings tell nothing."""
     assert outcome.found.covariance is not None
@@ -76,6 +80,7 @@ def test_nothing_is_surer_than_it_is_written_and_nothing_less_sure_than_the_user
     assert np.linalg.eigvalsh(outcome.found.covariance)[0] > 0.0
 
 
+@pytest.mark.slow
 def test_an_arm_without_a_covariance_and_a_wrong_count_are_refused(model: ArmParameters) -> None:
     with pytest.raises(UserError, match="at least 1") as refused:
         sampled_plants(model, 0)

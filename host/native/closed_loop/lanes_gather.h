@@ -45,9 +45,6 @@ inline Body body_of(const Block& block) {
   b.coupling = of(&Rigid::coupling);
   b.gravity1 = of(&Rigid::gravity1);
   b.gravity2 = of(&Rigid::gravity2);
-  b.d1 = b.ixx1 - b.iyy1;
-  b.across = b.ixx23 - b.iyy23;
-  b.m11 = b.izz1 + b.izz23;
   return b;
 }
 

@@ -1,4 +1,5 @@
-// One step of the arm for sixteen candidates in single precision: the equations of sim/arm (step.h, conditions.h), arranged for speed.
+// One step of the arm for sixteen candidates in single precision: the links' equations of sim/arm/rigid_body.h, and those of step.h and
+// conditions.h arranged for speed.
 //
 // What depends on the candidate and the step alone is worked out beforehand, so that choosing a side picks a constant. The link's
 // angle is a whole number of 2^-30 turns and the motor's is kept as its lead over the link, so that no step is lost in rounding.
@@ -8,6 +9,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "arm/rigid_body.h"
+
 namespace greywhale::loop::GREYWHALE_INSTRUCTIONS {
 
 constexpr int kQuarterBits = 28;  // a quarter turn is 2^28
@@ -15,11 +18,8 @@ constexpr float kRadian = static_cast<float>(1073741824.0 / 6.283185307179586);
 constexpr float kUnit = static_cast<float>(6.283185307179586 / 1073741824.0);  // rad
 constexpr int kPasses = 8;
 
-struct Body {
-  Float yaw, ixx1, iyy1, ixx23, iyy23, izz23, ixx3, izz1, coupling, gravity1, gravity2;
-  Float d1, across;  // ixx1 - iyy1, ixx23 - iyy23
-  Float m11;         // izz1 + izz23
-};
+using Body = arm::RigidBody<Float>;
+using Geometry = arm::Geometry<Float>;
 
 // One joint over one step; impulses in N m s. Of each pair the first is with teeth apart, the second with teeth touching.
 struct Joint {
@@ -66,55 +66,17 @@ GREYWHALE_INLINE void sine_cosine(Int q, Float& sine, Float& cosine) {
   cosine = negate_where(choose(odd, s, c), shift_left<30>(quarter + all(1)));
 }
 
-// What depends on the links' angles alone: mass matrix, its derivatives, gravity.
-struct Geometry {
-  Float m00, m03, m33, m11, m12, m22;
-  Float half_d1, half_d2, roll, wrist, gravity1, gravity2;
-};
-
-GREYWHALE_INLINE Geometry geometry_of(const Body& b, const State (&s)[4]) {
-  Float s1, c1, s2, c2;
-  sine_cosine(s[1].q, s1, c1);
-  sine_cosine(s[2].q, s2, c2);
-  const Float sphi = s1 * c2 + c1 * s2;
-  const Float cphi = c1 * c2 - s1 * s2;
-  const Float reach = b.coupling * c1;
-  const Float folded = b.coupling * c2;
-  const Float half_across = b.across * (sphi * cphi);
-
-  Geometry g;
-  g.m00 = b.yaw + b.ixx1 * (s1 * s1) + b.iyy1 * (c1 * c1) + b.ixx23 * (sphi * sphi) + b.iyy23 * (cphi * cphi) +
-          (reach + reach) * cphi;
-  g.m03 = b.ixx3 * sphi;
-  g.m33 = b.ixx3;
-  g.m22 = b.izz23;
-  g.m12 = b.izz23 + folded;
-  g.m11 = b.m11 + (folded + folded);
-  g.half_d2 = half_across - reach * sphi;
-  g.half_d1 = b.d1 * (s1 * c1) + half_across - b.coupling * (s1 * cphi + c1 * sphi);
-  g.roll = b.ixx3 * cphi;
-  g.wrist = b.coupling * s2;
-  g.gravity2 = b.gravity2 * cphi;
-  g.gravity1 = b.gravity1 * c1 + g.gravity2;
-  return g;
+GREYWHALE_INLINE Geometry geometry_of(const Body& body, const State (&s)[4]) {
+  return arm::geometry_of(body, arm::pose_of<Float>(s[1].q, s[2].q));
 }
 
 // The links' momentum with what bias torques do to it over the step.
 GREYWHALE_INLINE void momentum_of(const Geometry& g, Float step, const State (&s)[4], Float (&momentum)[4]) {
-  const Float v0 = s[0].v, v1 = s[1].v, v2 = s[2].v, v3 = s[3].v;
-  const Float pitch_rate = v1 + v2;
-  const Float rolling = g.roll * v0;
-  const Float gyroscopic = rolling * v3;
-  const Float square = v0 * v0;
-  const Float half_turn = g.half_d1 * v1 + g.half_d2 * v2;
-  const Float bias0 = (half_turn + half_turn) * v0 + g.roll * pitch_rate * v3;
-  const Float bias1 = g.gravity1 - g.half_d1 * square - g.wrist * v2 * (pitch_rate + v1) - gyroscopic;
-  const Float bias2 = g.gravity2 - g.half_d2 * square + g.wrist * (v1 * v1) - gyroscopic;
-  const Float bias3 = rolling * pitch_rate;
-  momentum[0] = g.m00 * v0 + g.m03 * v3 - step * bias0;
-  momentum[1] = g.m11 * v1 + g.m12 * v2 - step * bias1;
-  momentum[2] = g.m12 * v1 + g.m22 * v2 - step * bias2;
-  momentum[3] = g.m03 * v0 + g.m33 * v3 - step * bias3;
+  const Float v[4] = {s[0].v, s[1].v, s[2].v, s[3].v};
+  Float bias[4];
+  arm::bias_torque(g, v, bias);
+  arm::momentum_of(g.mass, v, momentum);
+  for (int i = 0; i < 4; ++i) momentum[i] = momentum[i] - step * bias[i];
 }
 
 // A joint's terms in this step, and the sides tried: -1, 0 or +1.
@@ -221,10 +183,10 @@ GREYWHALE_INLINE Mask correct_stop(const Joint& j, Int reached, Float impulse, T
 }
 
 GREYWHALE_INLINE void rows_of(const Plant& plant, const Geometry& g, const Float (&momentum)[4], const Trial (&t)[4], Row (&r)[4]) {
-  r[0] = row_of(plant.joints[0], t[0], g.m00, momentum[0]);
-  r[1] = row_of(plant.joints[1], t[1], g.m11, momentum[1]);
-  r[2] = row_of(plant.joints[2], t[2], g.m22, momentum[2]);
-  r[3] = row_of(plant.joints[3], t[3], g.m33, momentum[3]);
+  r[0] = row_of(plant.joints[0], t[0], g.mass.m00, momentum[0]);
+  r[1] = row_of(plant.joints[1], t[1], g.mass.m11, momentum[1]);
+  r[2] = row_of(plant.joints[2], t[2], g.mass.m22, momentum[2]);
+  r[3] = row_of(plant.joints[3], t[3], g.mass.m33, momentum[3]);
 }
 
 GREYWHALE_INLINE Float finished(const Row& r, Float slip, Float v) {
@@ -251,12 +213,12 @@ inline __attribute__((noinline)) void advance_at_stops(const Plant& plant, const
       used[i] = t[i];
     }
     rows_of(plant, g, momentum, t, r);
-    solve_held(r[0], r[3], g.m03, t[0], t[3], arriving[0], arriving[3], v[0], v[3]);
-    solve_held(r[1], r[2], g.m12, t[1], t[2], arriving[1], arriving[2], v[1], v[2]);
-    stops[0] = r[0].diagonal * v[0] + g.m03 * v[3] - r[0].right;
-    stops[1] = r[1].diagonal * v[1] + g.m12 * v[2] - r[1].right;
-    stops[2] = g.m12 * v[1] + r[2].diagonal * v[2] - r[2].right;
-    stops[3] = g.m03 * v[0] + r[3].diagonal * v[3] - r[3].right;
+    solve_held(r[0], r[3], g.mass.m03, t[0], t[3], arriving[0], arriving[3], v[0], v[3]);
+    solve_held(r[1], r[2], g.mass.m12, t[1], t[2], arriving[1], arriving[2], v[1], v[2]);
+    stops[0] = r[0].diagonal * v[0] + g.mass.m03 * v[3] - r[0].right;
+    stops[1] = r[1].diagonal * v[1] + g.mass.m12 * v[2] - r[1].right;
+    stops[2] = g.mass.m12 * v[1] + r[2].diagonal * v[2] - r[2].right;
+    stops[3] = g.mass.m03 * v[0] + r[3].diagonal * v[3] - r[3].right;
     Mask any_changed = all(0) != all(0);
     for (int i = 0; i < 4; ++i) {
       const Joint& j = plant.joints[i];
@@ -267,8 +229,8 @@ inline __attribute__((noinline)) void advance_at_stops(const Plant& plant, const
   }
   const Float rest = all(0.0f);
   Float after[4];
-  solve_held(r[0], r[3], g.m03, used[0], used[3], rest, rest, after[0], after[3]);
-  solve_held(r[1], r[2], g.m12, used[1], used[2], rest, rest, after[1], after[2]);
+  solve_held(r[0], r[3], g.mass.m03, used[0], used[3], rest, rest, after[0], after[3]);
+  solve_held(r[1], r[2], g.mass.m12, used[1], used[2], rest, rest, after[1], after[2]);
   const Mask blow = (used[0].stop != rest) | (used[1].stop != rest) | (used[2].stop != rest) | (used[3].stop != rest);
   for (int i = 0; i < 4; ++i) {
     const Joint& j = plant.joints[i];
@@ -293,8 +255,8 @@ GREYWHALE_INLINE void advance(const Plant& plant, const Geometry& g, State (&s)[
   bool changed = true;
   for (int pass = 0; pass < kPasses && changed; ++pass) {
     rows_of(plant, g, momentum, t, r);
-    solve_pair(r[0], r[3], g.m03, v[0], v[3]);
-    solve_pair(r[1], r[2], g.m12, v[1], v[2]);
+    solve_pair(r[0], r[3], g.mass.m03, v[0], v[3]);
+    solve_pair(r[1], r[2], g.mass.m12, v[1], v[2]);
     Mask any_changed = all(0) != all(0);
     for (int i = 0; i < 4; ++i) {
       slip[i] = t[i].slip;

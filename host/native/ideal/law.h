@@ -59,10 +59,10 @@ class Law {
 
   // Voltages (V) for the next slice, from the state now and the leader's angles and speeds (rad, rad/s).
   void volts(const arm::State<double>& s, const double (&leader)[kJoints], const double (&speed)[kJoints], double (&u)[kJoints]) {
-    const arm::Pose<double> pose = arm::pose_of(s.q[1], s.q[2]);
-    const arm::MassMatrix<double> m = arm::mass_matrix(plant_.body, pose);
+    const arm::Geometry<double> geometry = arm::geometry_of(plant_.body, arm::pose_of<double>(s.q[1], s.q[2]));
+    const arm::MassMatrix<double>& m = geometry.mass;
     double bias[kJoints];
-    arm::bias_torque(plant_.body, pose, s.v, bias);
+    arm::bias_torque(geometry, s.v, bias);
     watch(s);
     const double own[kJoints] = {m.m00, m.m11, m.m22, m.m33};
     const double pulled[kJoints] = {m.m03 * pace_[3], m.m12 * pace_[2], m.m12 * pace_[1], m.m03 * pace_[0]};

@@ -7,11 +7,10 @@ import select
 import signal
 import subprocess
 import sys
-import threading
+from typing import Any
 
 import pytest
 
-from greywhale.board.flash import runner
 from greywhale.board.flash.runner import Tool, run_tool
 from greywhale.errors import UserError
 
@@ -86,18 +85,18 @@ def test_what_the_tool_started_ends_with_it() -> None:
 
 
 def test_ctrl_c_ends_the_tool_too(monkeypatch: pytest.MonkeyPatch) -> None:
-    ended = threading.Event()
+    started: list[subprocess.Popen[bytes]] = []
+    start: Any = subprocess.Popen
 
-    def end(process: subprocess.Popen[bytes]) -> None:
-        process.kill()
-        process.wait()
-        ended.set()
+    def keep(*words: Any, **options: Any) -> subprocess.Popen[bytes]:
+        started.append(start(*words, **options))
+        return started[-1]
 
-    monkeypatch.setattr(runner, "_end", end)
+    monkeypatch.setattr(subprocess, "Popen", keep)
 
     def interrupt(text: str) -> None:
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
         run_tool(tool(sys.executable, "-c", "import threading; threading.Event().wait()"), interrupt)
-    assert ended.is_set()
+    assert started[0].returncode == -signal.SIGTERM
