@@ -1,4 +1,4 @@
-// The arm under an ideal controller (ideal/law.h), for many tunings of it. greywhale.tune.floor searches among them; use that, not this.
+// The arm under an ideal controller (ideal/law.h), for many tunings of it. greywhale.tune.judge.floor searches among them; use that, not this.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 

@@ -10,6 +10,7 @@ import fcntl
 import os
 import select
 import struct
+import subprocess
 import termios
 import threading
 import tty
@@ -109,10 +110,15 @@ class FakeBoard:
         """How many frames of this request arrived, repeats included."""
         return sum(1 for kind, _ in self.requests if kind == request.TYPE)
 
-    def wait_for(self, state: State, ticks: int) -> None:
-        """Return when the board has been in this state for so many ticks; the test's own time limit bounds the wait."""
+    def wait_for(self, state: State, ticks: int, host: subprocess.Popen[str]) -> None:
+        """Return when the board has been in this state for so many ticks, or fail when its host ends before."""
+
+        def reached() -> bool:
+            return self.problem is not None or (self.state is state and self._ticks_in_state >= ticks)
+
         with self._changed:
-            self._changed.wait_for(lambda: self.problem or (self.state is state and self._ticks_in_state >= ticks))
+            while not self._changed.wait_for(reached, timeout=0.5):
+                assert host.poll() is None, f"the host ended with {host.returncode}: {host.communicate()}"
         assert self.problem is None
 
     def own_hello(self) -> bytes:

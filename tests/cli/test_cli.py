@@ -278,7 +278,7 @@ def test_ctrl_c_leaves_motors_off_and_the_log_whole(tmp_path: Path, number: sign
         process = subprocess.Popen(
             [sys.executable, "-c", RUN, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
         )
-        board.wait_for(State.FOLLOWING, 300)
+        board.wait_for(State.FOLLOWING, 300, process)
         process.send_signal(number)
         output, errors = process.communicate(timeout=60)
         assert board.state is State.DISABLED

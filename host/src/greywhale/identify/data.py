@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.signal import savgol_filter
 
 from greywhale.files.log import Log
-from greywhale.firmware import JOINTS
+from greywhale.firmware import JOINTS, TICK_S
 from greywhale.measure.runs import Run
 
 Floats = NDArray[np.float64]
@@ -26,7 +26,6 @@ MOST_SPACINGS = 99.0
 # Firmware: from a new sample to its voltage, and the mean age of a tick's four conversions (s).
 ACTUATION_S = 0.3e-3
 CONVERSION_S = 0.5e-3
-TICK_S = 1e-3
 # Rows further apart than this (s), or than one and a half periods of a slower log, end a stretch.
 LONGEST_GAP_S = 0.02
 # Of every four blocks of this length (s) the last is held out. A block is shorter than a motion, so each motion is in
