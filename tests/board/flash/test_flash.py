@@ -167,8 +167,8 @@ def test_firmware_of_another_board_is_noticed(told: Path, tmp_path: Path, monkey
 def test_an_installed_package_writes_the_image_that_came_with_it(
     told: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(platformio, "_CHECKOUT", tmp_path / "nowhere")
-    monkeypatch.setattr(images, "_PACKAGED", tmp_path)
+    monkeypatch.setattr(platformio, "CHECKOUT", tmp_path / "nowhere")
+    monkeypatch.setattr(images, "PACKAGED", tmp_path)
     answering(monkeypatch, "wiring", 115200, MEGA2560)
     with FakeBoard() as board:
         with pytest.raises(

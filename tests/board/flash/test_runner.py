@@ -7,11 +7,9 @@ import select
 import signal
 import subprocess
 import sys
-import threading
 
 import pytest
 
-from greywhale.board.flash import runner
 from greywhale.board.flash.runner import Tool, run_tool
 from greywhale.errors import UserError
 
@@ -53,15 +51,21 @@ def test_a_tool_that_is_not_there_is_named() -> None:
         run_tool(tool("/nowhere/tool"), lambda text: None)
 
 
-def test_a_tool_that_hangs_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
-    started: list[subprocess.Popen[bytes]] = []
+@pytest.fixture
+def started(monkeypatch: pytest.MonkeyPatch) -> list[subprocess.Popen[bytes]]:
+    """Every process that is started from now on."""
+    processes: list[subprocess.Popen[bytes]] = []
     real = subprocess.Popen
 
     def start(*args: object, **options: object) -> subprocess.Popen[bytes]:
-        started.append(real(*args, **options))  # type: ignore[call-overload]
-        return started[-1]
+        processes.append(real(*args, **options))  # type: ignore[call-overload]
+        return processes[-1]
 
     monkeypatch.setattr(subprocess, "Popen", start)
+    return processes
+
+
+def test_a_tool_that_hangs_is_ended(started: list[subprocess.Popen[bytes]]) -> None:
     with pytest.raises(UserError, match=r"has not ended after 0\.3 s; reset the board"):
         run_tool(
             tool(sys.executable, "-c", "import threading; threading.Event().wait()", limit_s=0.3), lambda text: None
@@ -85,19 +89,10 @@ def test_what_the_tool_started_ends_with_it() -> None:
         os.close(started[0])
 
 
-def test_ctrl_c_ends_the_tool_too(monkeypatch: pytest.MonkeyPatch) -> None:
-    ended = threading.Event()
-
-    def end(process: subprocess.Popen[bytes]) -> None:
-        process.kill()
-        process.wait()
-        ended.set()
-
-    monkeypatch.setattr(runner, "_end", end)
-
+def test_ctrl_c_ends_the_tool_too(started: list[subprocess.Popen[bytes]]) -> None:
     def interrupt(text: str) -> None:
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
         run_tool(tool(sys.executable, "-c", "import threading; threading.Event().wait()"), interrupt)
-    assert ended.is_set()
+    assert started[0].returncode == -signal.SIGTERM

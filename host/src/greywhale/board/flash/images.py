@@ -13,7 +13,7 @@ from pathlib import Path
 from greywhale.board.flash.targets import BOARDS, FlashBoard
 from greywhale.errors import BAD_USAGE, UserError, os_reason
 
-_PACKAGED = Path(__file__).resolve().parents[2] / "data" / "firmware"
+PACKAGED = Path(__file__).resolve().parents[2] / "data" / "firmware"
 
 _MAGIC = b"greywhale image\0"
 _RECORD = struct.Struct("<16sB3s3BI17s")
@@ -45,7 +45,7 @@ class Image:
 
 def packaged_image(board: str) -> Path | None:
     """The image that came with this installation; a checkout has none, it builds its own."""
-    path = _PACKAGED / f"{board}.hex"
+    path = PACKAGED / f"{board}.hex"
     return path if path.is_file() else None
 
 

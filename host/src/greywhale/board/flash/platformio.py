@@ -13,14 +13,14 @@ from greywhale.board.flash.runner import Tool, run_tool
 from greywhale.board.flash.targets import FlashBoard
 from greywhale.errors import BAD_USAGE, UserError
 
-_CHECKOUT = Path(__file__).resolve().parents[5] / "firmware"
+CHECKOUT = Path(__file__).resolve().parents[5] / "firmware"
 _BUILD_LIMIT_S = 600.0  # of a first build on a slow machine
 
 
 def find_sources(named: str | Path | None) -> Path | None:
     """The firmware's source tree: the one named, else that of the checkout this package runs from, if it does."""
     if named is None:
-        return _CHECKOUT if (_CHECKOUT / "platformio.ini").is_file() else None
+        return CHECKOUT if (CHECKOUT / "platformio.ini").is_file() else None
     if not (Path(named) / "platformio.ini").is_file():
         raise UserError(
             f"{named} holds no platformio.ini; name the firmware folder of a checkout with --firmware, "
