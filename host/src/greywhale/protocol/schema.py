@@ -18,7 +18,7 @@ from typing import ClassVar
 from .declared import Described, Field, Group, Message, Parameter, Table, check_length
 
 PROTOCOL = 1
-SCHEMA_HASH = 0xC648C927
+SCHEMA_HASH = 0x7C188899
 MAX_PAYLOAD = 48
 REPLY_BIT = 0x80
 LAYOUT = 1
@@ -54,6 +54,7 @@ class Fault(Described):
     TRACKING = 4, "a follower stayed too far from its leader for too long", "Check that joint's motor supply, motor_sign and for something in the arm's way, or raise tracking_limit or tracking_ms, then clear the fault."
     WATCHDOG = 5, "the firmware had stopped and the watchdog restarted the board", "Clear the fault to go on; if it comes back, check the board's supply and report the firmware version with `greywhale info`."
     PARAMS = 6, "the stored parameters cannot be run by the controllers", "Upload a controller file with `greywhale upload`, then clear the fault."
+    FLOOD = 7, "more bytes came than the board can read, so that a stop might have been lost", "Close other programs that use the port and check the cable for noise, then clear the fault."
 
 
 class NackCode(Described):

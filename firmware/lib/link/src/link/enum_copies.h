@@ -60,6 +60,7 @@ constexpr bool is_copy(Fault, Copy value = Copy()) {
   static_assert(same_number(Copy::tracking, Fault::tracking), "Fault::tracking");
   static_assert(same_number(Copy::watchdog, Fault::watchdog), "Fault::watchdog");
   static_assert(same_number(Copy::params, Fault::params), "Fault::params");
+  static_assert(same_number(Copy::flood, Fault::flood), "Fault::flood");
   switch (value) {
     case Copy::none:
     case Copy::pot_low:
@@ -68,6 +69,7 @@ constexpr bool is_copy(Fault, Copy value = Copy()) {
     case Copy::tracking:
     case Copy::watchdog:
     case Copy::params:
+    case Copy::flood:
       break;
   }
   return true;

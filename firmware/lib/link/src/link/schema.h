@@ -9,7 +9,7 @@
 namespace wire {
 
 constexpr uint8_t protocol = 1;
-constexpr uint32_t schema_hash = 0xC648C927;
+constexpr uint32_t schema_hash = 0x7C188899;
 constexpr uint8_t max_payload = 48;
 constexpr uint8_t reply_bit = 0x80;
 
@@ -58,6 +58,7 @@ enum class Fault : uint8_t {
   tracking = 4,  // a follower stayed too far from its leader for too long
   watchdog = 5,  // the firmware had stopped and the watchdog restarted the board
   params = 6,  // the stored parameters cannot be run by the controllers
+  flood = 7,  // more bytes came than the board can read, so that a stop might have been lost
 };
 
 // Why a request was refused.
