@@ -13,7 +13,7 @@ OFF_MS = 20.0
 
 
 def hang(bench: Bench) -> None:
-    """From now on the processor runs in avr-libc's endless loop behind main(), which begins with turning interrupts off."""
+    """Send the processor into avr-libc's endless loop behind main(), which begins with turning interrupts off."""
     bench.board.pc = bench.symbols["_exit"].address
 
 

@@ -74,6 +74,28 @@ def test_a_reset_while_the_motors_run_leaves_them_off(bench: Bench) -> None:
     assert status(bench).stop_reason == schema.StopReason.RESET
 
 
+def test_a_damaged_newest_set_is_a_fault_until_the_host_has_confirmed_one(bench: Bench) -> None:
+    values = list(schema.DEFAULTS)
+    index = schema.PARAMETER_BY_NAME["joint1.motor_sign"].index
+    for sign in (1, -1):
+        values[index] = sign
+        bench.ask(schema.ParamSetRequest, struct.pack("<Hi", index, sign))
+        bench.ask(schema.ParamApplyRequest, struct.pack("<H", schema.param_crc(values)))
+        bench.ask(schema.ParamSaveRequest)
+        bench.wait(1000)
+    content = bytearray(bench.board.eeprom())
+    content[300] ^= 1  # in bank B, which holds the second set
+    bench.board.set_eeprom(bytes(content))
+    bench.board.reset()
+    bench.wait(60)
+    assert (status(bench).state, status(bench).fault) == (schema.State.FAULT, schema.Fault.PARAMS)
+    with pytest.raises(RuntimeError, match="ClearFault"):
+        bench.ask(schema.ClearFaultRequest)
+    bench.ask(schema.ParamSetRequest, struct.pack("<Hi", index, -1))
+    bench.ask(schema.ParamApplyRequest, struct.pack("<H", schema.param_crc(values)))
+    assert schema.ClearFaultReply.unpack(bench.ask(schema.ClearFaultRequest)).state == schema.State.DISABLED
+
+
 def leader(bench: Bench) -> tuple[int, ...]:
     """The leader's angles in the last sample of a tenth of a second."""
     bench.wait(100)

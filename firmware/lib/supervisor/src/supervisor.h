@@ -41,7 +41,7 @@ struct Reply {
 
 class Supervisor {
  public:
-  // A reset by the watchdog, or a stored set that cannot be run, is a fault that stands from the start.
+  // A reset by the watchdog is a fault that stands from the start. So is a set that need not be the one that ran before.
   void begin(bool after_watchdog, bool params_ok);
   void set_limits(const Limits& limits);   // only while the motors are off
   void params_mended() { params_ok_ = true; }

@@ -1163,38 +1163,38 @@ void for_each(Visit visit) {
   {
     wire::Nack message{};
     message.request = 255;
-    message.code = static_cast<wire::NackCode>(14);
+    message.code = static_cast<wire::NackCode>(15);
     message.detail = 65535;
-    const uint8_t payload[] = {0xFF, 0x0E, 0xFF, 0xFF};
-    const uint8_t wire_bytes[] = {0x09, 0xFF, 0xFF, 0xFF, 0x0E, 0xFF, 0xFF, 0xAD, 0x4D, 0x00};
+    const uint8_t payload[] = {0xFF, 0x0F, 0xFF, 0xFF};
+    const uint8_t wire_bytes[] = {0x09, 0xFF, 0xFF, 0xFF, 0x0F, 0xFF, 0xFF, 0x9D, 0x7A, 0x00};
     visit("Nack", 255, message, payload, size_t{4}, wire_bytes, size_t{10});
   }
   {
     wire::Nack message{};
     message.request = 165;
-    message.code = static_cast<wire::NackCode>(2);
+    message.code = static_cast<wire::NackCode>(4);
     message.detail = 48115;
-    const uint8_t payload[] = {0xA5, 0x02, 0xF3, 0xBB};
-    const uint8_t wire_bytes[] = {0x09, 0xFF, 0xF7, 0xA5, 0x02, 0xF3, 0xBB, 0x5C, 0x6A, 0x00};
+    const uint8_t payload[] = {0xA5, 0x04, 0xF3, 0xBB};
+    const uint8_t wire_bytes[] = {0x09, 0xFF, 0xF7, 0xA5, 0x04, 0xF3, 0xBB, 0xFC, 0xD8, 0x00};
     visit("Nack", 247, message, payload, size_t{4}, wire_bytes, size_t{10});
   }
   {
     wire::Nack message{};
     message.request = 204;
-    message.code = static_cast<wire::NackCode>(9);
-    message.detail = 25267;
-    const uint8_t payload[] = {0xCC, 0x09, 0xB3, 0x62};
-    const uint8_t wire_bytes[] = {0x08, 0xFF, 0xF0, 0xCC, 0x09, 0xB3, 0x62, 0x44, 0x01, 0x00};
-    visit("Nack", 240, message, payload, size_t{4}, wire_bytes, size_t{10});
+    message.code = static_cast<wire::NackCode>(6);
+    message.detail = 61450;
+    const uint8_t payload[] = {0xCC, 0x06, 0x0A, 0xF0};
+    const uint8_t wire_bytes[] = {0x09, 0xFF, 0xFD, 0xCC, 0x06, 0x0A, 0xF0, 0x61, 0x0A, 0x00};
+    visit("Nack", 253, message, payload, size_t{4}, wire_bytes, size_t{10});
   }
   {
     wire::Nack message{};
-    message.request = 253;
+    message.request = 69;
     message.code = static_cast<wire::NackCode>(9);
-    message.detail = 17690;
-    const uint8_t payload[] = {0xFD, 0x09, 0x1A, 0x45};
-    const uint8_t wire_bytes[] = {0x09, 0xFF, 0x9D, 0xFD, 0x09, 0x1A, 0x45, 0xDC, 0x91, 0x00};
-    visit("Nack", 157, message, payload, size_t{4}, wire_bytes, size_t{10});
+    message.detail = 57749;
+    const uint8_t payload[] = {0x45, 0x09, 0x95, 0xE1};
+    const uint8_t wire_bytes[] = {0x09, 0xFF, 0x86, 0x45, 0x09, 0x95, 0xE1, 0xA3, 0xF3, 0x00};
+    visit("Nack", 134, message, payload, size_t{4}, wire_bytes, size_t{10});
   }
 }
 
