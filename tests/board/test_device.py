@@ -160,7 +160,7 @@ def test_leaving_stops_motors_that_an_error_left_on() -> None:
         with pytest.raises(ZeroDivisionError):
             enable_and_fail(board)
         assert board.state is State.DISABLED
-        assert board.asked(schema.StopRequest) == 1
+        assert board.asked(schema.StopRequest) > 0
 
 
 def test_motors_that_never_ran_are_not_stopped() -> None:

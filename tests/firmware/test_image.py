@@ -12,11 +12,6 @@ from tools.bench.bench_tick import BOARDS, Bench, memory
 BYTES_A_MS = 100  # what the wire carries at 1 Mbaud
 
 
-@pytest.fixture(params=BOARDS)
-def bench(request: pytest.FixtureRequest) -> Bench:
-    return Bench(request.param)
-
-
 def status(bench: Bench) -> schema.StatusReply:
     return schema.StatusReply.unpack(bench.ask(schema.StatusRequest))
 
@@ -36,15 +31,14 @@ def test_a_babbling_host_neither_starts_the_motors_nor_delays_a_tick(bench: Benc
     assert seen.rx_overruns > 0
 
 
-def test_a_babbling_host_neither_stops_the_arm_nor_keeps_stop_from_it(bench: Bench) -> None:
+def test_a_babbling_host_delays_no_tick_of_a_moving_arm_and_ends_in_a_fault(bench: Bench) -> None:
     bench.ask(schema.TelemetryRequest, struct.pack("<H", 1))
     bench.ask(schema.EnableRequest, struct.pack("<H", 0))
     babble(bench, 500)
     seen = status(bench)
-    assert seen.state == schema.State.SOFT_START
-    assert seen.fault == schema.Fault.NONE
+    assert (seen.state, seen.fault) == (schema.State.FAULT, schema.Fault.FLOOD)
     assert seen.late_ticks == 0
-    assert schema.StopReply.unpack(bench.ask(schema.StopRequest)).state == schema.State.DISABLED
+    assert schema.ClearFaultReply.unpack(bench.ask(schema.ClearFaultRequest)).state == schema.State.DISABLED
 
 
 def test_no_tick_is_late_while_a_set_is_staged_applied_and_saved_with_telemetry_on(bench: Bench) -> None:
@@ -78,6 +72,28 @@ def test_a_reset_while_the_motors_run_leaves_them_off(bench: Bench) -> None:
         bench.wait(1)
         assert bench.board.duty(*bench.output) == 0
     assert status(bench).stop_reason == schema.StopReason.RESET
+
+
+def test_a_damaged_newest_set_is_a_fault_until_the_host_has_confirmed_one(bench: Bench) -> None:
+    values = list(schema.DEFAULTS)
+    index = schema.PARAMETER_BY_NAME["joint1.motor_sign"].index
+    for sign in (1, -1):
+        values[index] = sign
+        bench.ask(schema.ParamSetRequest, struct.pack("<Hi", index, sign))
+        bench.ask(schema.ParamApplyRequest, struct.pack("<H", schema.param_crc(values)))
+        bench.ask(schema.ParamSaveRequest)
+        bench.wait(1000)
+    content = bytearray(bench.board.eeprom())
+    content[300] ^= 1  # in bank B, which holds the second set
+    bench.board.set_eeprom(bytes(content))
+    bench.board.reset()
+    bench.wait(60)
+    assert (status(bench).state, status(bench).fault) == (schema.State.FAULT, schema.Fault.PARAMS)
+    with pytest.raises(RuntimeError, match="ClearFault"):
+        bench.ask(schema.ClearFaultRequest)
+    bench.ask(schema.ParamSetRequest, struct.pack("<Hi", index, -1))
+    bench.ask(schema.ParamApplyRequest, struct.pack("<H", schema.param_crc(values)))
+    assert schema.ClearFaultReply.unpack(bench.ask(schema.ClearFaultRequest)).state == schema.State.DISABLED
 
 
 def leader(bench: Bench) -> tuple[int, ...]:

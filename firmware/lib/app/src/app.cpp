@@ -13,9 +13,9 @@ uint16_t add_saturated(uint16_t count, uint8_t more) {
 }  // namespace
 
 void App::begin() {
-  const bool stored_set_runs = sets_.begin(controllers_);
+  const bool same_set = sets_.begin(controllers_);
   take_running_set();
-  supervisor_.begin(hal::reset_cause() == hal::ResetCause::watchdog, stored_set_runs);
+  supervisor_.begin(hal::reset_cause() == hal::ResetCause::watchdog, same_set);
   hal::begin();
   hal::watchdog_start();
 }

@@ -57,6 +57,7 @@ class App {
   void serve(const wire::LeadRequest& request);
   void serve(const wire::LeadPointRequest& request);
   bool granted(const supervisor::Reply& result);
+  void note_lost_bytes(uint8_t lost);
   bool work_on_lead();
   void see_distances();
   void work_on_apply();

@@ -15,7 +15,7 @@ bool ParameterSets::begin(Controllers& controllers) {
     for (uint8_t i = 0; i < hal::joint_count; ++i) controllers.take(table, i);
   }
   sets_.begin(table);
-  return runs;
+  return runs && !store_.lost();
 }
 
 bool ParameterSets::take(Controllers& controllers, const params::Table& table, uint8_t joint) {

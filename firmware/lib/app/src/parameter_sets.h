@@ -24,7 +24,8 @@ struct Unfit {
 
 class ParameterSets {
  public:
-  // Loads the stored set, or the defaults. False when the stored set cannot be run and the defaults stand in.
+  // Loads the stored set, or the defaults. False when it need not be the set that ran before: the stored set cannot be run and the
+  // defaults stand in, or a bank of the EEPROM is lost.
   bool begin(Controllers& controllers);
 
   const params::Table& running() const { return sets_.running(); }
@@ -42,7 +43,7 @@ class ParameterSets {
   // What was wrong: the CRC of the staged set, the index of the parameter that contradicts another, the joint.
   uint16_t staged_crc() const { return apply_crc_; }
   uint8_t misfit() const { return at_; }
-  Unfit unfit() const { return unfit_; }   // also after begin() has returned false
+  Unfit unfit() const { return unfit_; }   // also when begin() has found that the stored set cannot be run
 
   void save() { store_.save(sets_.running()); }
   bool work_on_save();   // at most one byte; true when the next can follow at once

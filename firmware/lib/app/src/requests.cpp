@@ -31,8 +31,7 @@ bool App::service() {
   const uint16_t age_us = hal::tick_age_us();
   const bool late_in_tick = age_us > latest_start_us;
   if (late_in_tick && heard_this_tick_) return false;
-  const uint8_t lost = hal::rx_lost();
-  if (lost) rx_overruns_ = rx_overruns_ > UINT16_MAX - lost ? UINT16_MAX : static_cast<uint16_t>(rx_overruns_ + lost);
+  if (const uint8_t lost = hal::rx_lost()) note_lost_bytes(lost);
   if (hal::tx_free() < wire::max_wire) return false;   // requests wait until there is room for the answer
   if (sets_.applying()) {
     if (age_us > latest_apply_us) return false;
@@ -56,6 +55,12 @@ bool App::service() {
     return sets_.work_on_save();
   }
   return true;
+}
+
+void App::note_lost_bytes(uint8_t lost) {
+  rx_overruns_ = rx_overruns_ > UINT16_MAX - lost ? UINT16_MAX : static_cast<uint16_t>(rx_overruns_ + lost);
+  supervisor_.bytes_lost(static_cast<uint16_t>(tick_));
+  follow_supervisor();
 }
 
 // Moves the host's reference on, once in each tick and before anything else. When the motors have gone off, for whatever reason, the
@@ -179,7 +184,10 @@ bool App::granted(const supervisor::Reply& result) {
     case Answer::in_fault: refuse(wire::NackCode::in_fault, result.detail); break;
     case Answer::pot_bad: refuse(wire::NackCode::pot_bad, pair(result.where, result.detail)); break;
     case Answer::too_far: refuse(wire::NackCode::error_too_large, pair(result.where, coarse(result.detail))); break;
-    case Answer::params: refuse_set(); break;
+    case Answer::params:
+      if (sets_.unfit().refusal != fuzzy_pdi::Refusal::none) refuse_set();
+      else refuse(wire::NackCode::set_lost, 0);
+      break;
   }
   return false;
 }

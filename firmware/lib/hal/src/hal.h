@@ -59,7 +59,7 @@ bool eeprom_busy();
 uint8_t eeprom_read(uint16_t address);                    // only when not busy
 void eeprom_begin_write(uint16_t address, uint8_t value); // only when not busy
 
-// --- Watchdog of 60 ms, and idle sleep until a tick is pending or a byte has come.
+// --- Watchdog of 15 ms, and idle sleep until a tick is pending or a byte has come.
 void watchdog_start();
 void watchdog_kick();
 void idle();

@@ -51,6 +51,10 @@ void Supervisor::watch(const Observation& seen) {
   if (lease_ && --lease_ == 0) switch_off(State::disabled, StopReason::lease);
 }
 
+void Supervisor::bytes_lost(uint16_t tick) {
+  if (motors_on() && overruns_.lost(tick)) raise(Fault::flood, nowhere);
+}
+
 // One tick at a rail may be noise; three in a row are a broken wire. Most ticks see no rail and have none to remember.
 void Supervisor::debounce(const Observation& seen) {
   if ((seen.rail_low | seen.rail_high | any_rail_) != 0) remember_rails(seen);
@@ -122,6 +126,7 @@ Reply Supervisor::enable(uint16_t lease_ms, const Observation& seen) {
   }
   state_ = State::soft_start;
   soft_start_.start(limits_.soft_start_ms);
+  overruns_.forget();
   lease_ = lease_ms;
   return {Answer::ok, nowhere, 0};
 }

@@ -3,6 +3,8 @@
 #include <signal_chain/soft_start.h>
 #include <stdint.h>
 
+#include "overruns.h"
+
 namespace supervisor {
 
 constexpr uint8_t joint_count = 4;
@@ -11,7 +13,7 @@ constexpr uint8_t nowhere = 255;   // fault_where when the fault has no pot or j
 // The numbers go over the link; app/src/on_link.h checks that they are the same there.
 enum class State : uint8_t { boot, disabled, soft_start, following, fault };
 enum class StopReason : uint8_t { none, host, lease, fault, reset };
-enum class Fault : uint8_t { none, pot_low, pot_high, late_tick, tracking, watchdog, params };
+enum class Fault : uint8_t { none, pot_low, pot_high, late_tick, tracking, watchdog, params, flood };
 
 struct Limits {
   uint16_t enable_limit;     // q12 rad
@@ -39,12 +41,14 @@ struct Reply {
 
 class Supervisor {
  public:
-  // A reset by the watchdog, or a stored set that cannot be run, is a fault that stands from the start.
+  // A reset by the watchdog is a fault that stands from the start. So is a set that need not be the one that ran before.
   void begin(bool after_watchdog, bool params_ok);
   void set_limits(const Limits& limits);   // only while the motors are off
   void params_mended() { params_ok_ = true; }
 
   void tick(const Observation& seen);
+  // Bytes of the link were lost in this tick: a stop may have been among them.
+  void bytes_lost(uint16_t tick);
 
   // enable() and clear_fault() judge by what the last tick has seen. enable() renews the lease when the motors are on.
   Reply enable(uint16_t lease_ms, const Observation& seen);
@@ -79,6 +83,7 @@ class Supervisor {
   uint16_t lost_ticks_[joint_count] = {};            // time beyond the tracking limit
   uint8_t far_ = 0;                                  // joints whose lost_ticks_ count
   signal_chain::SoftStart soft_start_;
+  Overruns overruns_;
   uint16_t lease_ = 0;                               // ticks, 0 = until stop
   uint8_t boot_left_ = boot_ticks;
   bool params_ok_ = true;

@@ -254,3 +254,54 @@ TEST_CASE("the LED tells the states apart, a 32nd of a second later at most") {
   arm.tick();
   CHECK(share(arm) == 512);
 }
+
+namespace {
+
+// Bytes get lost in so many of the next ticks, one tick in each `period`; how many such ticks the motors stayed on.
+int lossy_ticks(Bench& arm, int count, unsigned period) {
+  for (int i = 0; i < count; ++i) {
+    board.lost = 3;
+    arm.tick();
+    if (!board.drivers) return i;
+    arm.run(period - 1);
+  }
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("bytes lost in the fourth tick in a row are a flood: the motors go off, and the fault can be cleared") {
+  Bench arm;
+  arm.follow();
+  CHECK(lossy_ticks(arm, 100, 1) == 3);
+  const auto status = arm.status();
+  CHECK(status.state == wire::State::fault);
+  CHECK(status.fault == wire::Fault::flood);
+  CHECK(status.fault_where == supervisor::nowhere);
+  CHECK(status.rx_overruns == 12);
+  CHECK(arm.get<wire::ClearFaultReply>(wire::ClearFaultRequest{}).state == wire::State::disabled);
+}
+
+TEST_CASE("loss that goes on is a flood, however far apart it comes below 128 ticks; beyond that it is ridden through") {
+  for (const unsigned period : {2u, 20u, 64u, 127u}) {
+    Bench arm;
+    arm.follow();
+    CHECK(lossy_ticks(arm, 600, period) < 400);
+  }
+  Bench arm;
+  arm.follow();
+  CHECK(lossy_ticks(arm, 100, 128) == 100);
+}
+
+TEST_CASE("bytes lost while the motors are off do not count against the next start") {
+  Bench arm;
+  arm.boot();
+  for (int i = 0; i < 50; ++i) {
+    board.lost = 1;
+    arm.tick();
+  }
+  CHECK(arm.status().fault == wire::Fault::none);
+  REQUIRE(arm.enable() == wire::State::soft_start);
+  CHECK(lossy_ticks(arm, 3, 1) == 3);
+  CHECK(board.drivers);
+}

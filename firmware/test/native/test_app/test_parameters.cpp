@@ -220,6 +220,42 @@ TEST_CASE("what is not saved is gone after a power cycle") {
   CHECK(value_of(arm, 1) == 15000);
 }
 
+TEST_CASE("a lost set is a fault until the host has confirmed another; a save makes it good for the next reset") {
+  Bench arm;
+  arm.boot();
+  params::Table newest = changed();
+  for (const std::int8_t sign : {std::int8_t{1}, std::int8_t{-1}}) {   // one set into each bank
+    newest.joint[1].motor_sign = sign;
+    REQUIRE(arm.apply(newest).type == 0x85);
+    arm.get<wire::ParamSaveReply>(wire::ParamSaveRequest{});
+    arm.run(1500);
+    REQUIRE(arm.status().save_state == wire::SaveState::saved);
+  }
+  board.eeprom[params::bank::start_b + 30] ^= 1;
+
+  arm.power_on();
+  arm.boot();
+  CHECK(arm.get<wire::HelloReply>(wire::HelloRequest{}).param_source == wire::ParamSource::bank_a);   // another motor_sign
+  CHECK(arm.status().fault == wire::Fault::params);
+  CHECK(arm.refused(wire::EnableRequest{0}).code == wire::NackCode::in_fault);
+  CHECK(arm.refused(wire::ClearFaultRequest{}).code == wire::NackCode::set_lost);
+  REQUIRE(arm.apply(newest).type == 0x85);
+  CHECK(arm.get<wire::ClearFaultReply>(wire::ClearFaultRequest{}).state == wire::State::disabled);
+  CHECK(arm.enable() == wire::State::soft_start);
+
+  arm.power_on();   // without a save
+  arm.boot();
+  CHECK(arm.status().fault == wire::Fault::params);
+  REQUIRE(arm.apply(newest).type == 0x85);
+  arm.get<wire::ParamSaveReply>(wire::ParamSaveRequest{});
+  arm.run(3000);
+  CHECK(arm.status().save_state == wire::SaveState::saved);
+  arm.power_on();
+  arm.boot();
+  CHECK(arm.status().fault == wire::Fault::none);
+  CHECK(value_of(arm, 1) == 12000);
+}
+
 TEST_CASE("a stored set that cannot run: defaults, a fault, and a way out") {
   Bench arm;
   params::Table table = changed();

@@ -61,6 +61,15 @@ params::Table boot(FakeEeprom &eeprom, wire::ParamSource *source = nullptr) {
   return table;
 }
 
+// Whether a boot finds that a set was lost.
+bool lost(FakeEeprom eeprom) {
+  eeprom.power_on();
+  Store store(eeprom);
+  params::Table table;
+  store.load(table);
+  return store.lost();
+}
+
 // An EEPROM after `saves` saves of different sets; `last` is what a boot finds.
 FakeEeprom history(int saves, params::Table &last) {
   FakeEeprom eeprom;
@@ -91,6 +100,14 @@ TEST_CASE("a blank EEPROM gives the defaults and is not written") {
     CHECK(same(boot(eeprom, &source), defaults()));
     CHECK(source == wire::ParamSource::defaults);
     CHECK(eeprom.writes == 0);
+    CHECK(lost(eeprom) == (fill != 0xFF));   // what another program left behind is no blank EEPROM
+  }
+}
+
+TEST_CASE("after any number of saves nothing is lost") {
+  for (int saves = 0; saves < 5; ++saves) {
+    params::Table last;
+    CHECK_FALSE(lost(history(saves, last)));
   }
 }
 
@@ -122,6 +139,7 @@ TEST_CASE("a power cut at any write, with any torn byte, leaves the old or the n
   long cuts = 0;
   long found_old = 0;
   long found_new = 0;
+  long found_lost = 0;
   for (int saves = 0; saves <= 3; ++saves) {
     params::Table old_table;
     const FakeEeprom before = history(saves, old_table);
@@ -145,6 +163,10 @@ TEST_CASE("a power cut at any write, with any torn byte, leaves the old or the n
         const bool is_old = same(found, old_table);
         const bool is_new = same(found, new_table);
         EXPECT((is_old || is_new));
+        // A save that has begun is lost, unless the cut came so early or so late that both banks are whole or blank.
+        if (cut > 1 && is_old) EXPECT(lost(eeprom));
+        if (is_new) EXPECT(!lost(eeprom));
+        found_lost += lost(eeprom) ? 1 : 0;
         found_old += is_old ? 1 : 0;
         found_new += is_new ? 1 : 0;
         ++cuts;
@@ -152,11 +174,13 @@ TEST_CASE("a power cut at any write, with any torn byte, leaves the old or the n
           const params::Table next = variant(8);
           EXPECT(save(eeprom, next) == wire::SaveState::saved);
           EXPECT(same(boot(eeprom), next));
+          EXPECT(!lost(eeprom));
         }
       }
     }
   }
-  MESSAGE(cuts, " power cuts: ", found_old, " boots found the old set, ", found_new, " the new one");
+  MESSAGE(cuts, " power cuts: ", found_old, " boots found the old set, ", found_new, " the new one, ", found_lost,
+          " told of a lost set");
   CHECK(found_new >= 4);  // a cut in the last write whose byte came out right
 }
 
@@ -261,10 +285,12 @@ TEST_CASE("one flipped bit anywhere in the newer bank falls back to the older on
       wire::ParamSource source;
       EXPECT(same(boot(eeprom, &source), older));
       EXPECT(source == wire::ParamSource::bank_a);
+      EXPECT(lost(eeprom));
       auto &other = eeprom.cells.at(static_cast<size_t>(bank::start_a + at));
       other = static_cast<uint8_t>(other ^ (1 << bit));
       EXPECT(same(boot(eeprom, &source), defaults()));
       EXPECT(source == wire::ParamSource::defaults);
+      EXPECT(lost(eeprom));
       ++flips;
     }
   }
@@ -310,8 +336,10 @@ TEST_CASE("banks of another layout or length are left alone until they are neede
     wire::ParamSource source;
     CHECK(same(boot(eeprom, &source), defaults()));
     CHECK(source == wire::ParamSource::defaults);
+    CHECK(lost(eeprom));
     CHECK(save(eeprom, variant(9)) == wire::SaveState::saved);
     CHECK(same(boot(eeprom), variant(9)));
+    CHECK_FALSE(lost(eeprom));
   }
 }
 
@@ -323,8 +351,46 @@ TEST_CASE("a whole bank with a value out of range is passed over, and the next s
   wire::ParamSource source;
   CHECK(same(boot(eeprom, &source), variant(100)));
   CHECK(source == wire::ParamSource::bank_a);
+  CHECK(lost(eeprom));
   CHECK(save(eeprom, variant(11)) == wire::SaveState::saved);
   CHECK(same(boot(eeprom), variant(11)));
+  CHECK_FALSE(lost(eeprom));
+}
+
+TEST_CASE("a lost set is told until a save has made both banks whole, also a save of the set that runs") {
+  for (const uint16_t start : {bank::start_a, bank::start_b}) {
+    params::Table newest;
+    FakeEeprom eeprom = history(2, newest);
+    eeprom.cells.at(start + 20U) ^= 0x40;
+    Store store(eeprom);
+    params::Table runs;
+    store.load(runs);
+    CHECK(same(runs, start == bank::start_b ? variant(100) : newest));
+    CHECK(store.lost());
+    CHECK(save(store, runs) == wire::SaveState::saved);
+    CHECK_FALSE(store.lost());
+    CHECK_FALSE(lost(eeprom));
+    CHECK(same(boot(eeprom), runs));
+  }
+}
+
+TEST_CASE("both banks lost: the first save writes both, and a power cut in it is told") {
+  params::Table newest;
+  FakeEeprom before = history(2, newest);
+  before.cells.at(bank::start_a + 20U) ^= 0x40;
+  before.cells.at(bank::start_b + 20U) ^= 0x40;
+  FakeEeprom whole = before;
+  REQUIRE(save(whole, variant(7)) == wire::SaveState::saved);
+  CHECK_FALSE(lost(whole));
+  for (int cut = 1; cut < whole.writes; ++cut) {
+    FakeEeprom eeprom = before;
+    eeprom.cut_at = cut;
+    eeprom.torn = 0x5A;
+    CHECK_THROWS_AS(save(eeprom, variant(7)), PowerCut);
+    EXPECT(lost(eeprom));
+    const params::Table found = boot(eeprom);
+    EXPECT((same(found, defaults()) || same(found, variant(7))));
+  }
 }
 
 TEST_CASE("a worn-out cell is reported, and the last good set stays") {

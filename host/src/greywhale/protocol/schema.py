@@ -18,7 +18,7 @@ from typing import ClassVar
 from .declared import Described, Field, Group, Message, Parameter, Table, check_length
 
 PROTOCOL = 1
-SCHEMA_HASH = 0xC648C927
+SCHEMA_HASH = 0x48E90B45
 MAX_PAYLOAD = 48
 REPLY_BIT = 0x80
 LAYOUT = 1
@@ -53,7 +53,8 @@ class Fault(Described):
     LATE_TICK = 3, "a control tick had not finished when the next one began", "Lower the telemetry rate, then clear the fault; if it comes back, report the firmware version with `greywhale info`."
     TRACKING = 4, "a follower stayed too far from its leader for too long", "Check that joint's motor supply, motor_sign and for something in the arm's way, or raise tracking_limit or tracking_ms, then clear the fault."
     WATCHDOG = 5, "the firmware had stopped and the watchdog restarted the board", "Clear the fault to go on; if it comes back, check the board's supply and report the firmware version with `greywhale info`."
-    PARAMS = 6, "the stored parameters cannot be run by the controllers", "Upload a controller file with `greywhale upload`, then clear the fault."
+    PARAMS = 6, "stored parameters were lost or cannot be run, so older ones or the defaults run now", "Bring your parameters back with `greywhale params restore`, or upload a controller file with `greywhale upload`, then clear the fault."
+    FLOOD = 7, "more bytes came than the board can read, so that a stop might have been lost", "Close other programs that use the port and check the cable for noise, then clear the fault."
 
 
 class NackCode(Described):
@@ -74,6 +75,7 @@ class NackCode(Described):
     BOOTING = 12, "the board is still starting", "Try again in a moment.", "0"
     INCONSISTENT = 13, "parameters contradict each other", "Give limit_max above limit_min, a motor_sign of 1 or -1 and a pot scale other than 0, and upload again.", "the flat index of the first parameter that does not fit"
     LEAD_REFUSED = 14, "the host cannot lead like this", "Correct the motion and start it again.", "joint << 8 | LeadRefusal"
+    SET_LOST = 15, "stored parameters were lost, and nobody has confirmed those that run now", "Bring your parameters back with `greywhale params restore`, or upload a controller file with `greywhale upload`, then clear the fault.", "0"
 
 
 class LeadRefusal(Described):

@@ -22,7 +22,7 @@ volatile uint16_t watchdog_mark __attribute__((section(".noinit")));
 uint8_t reset_flags __attribute__((section(".noinit")));   // MCUSR
 
 constexpr uint16_t watchdog_is_on = 0x57a7;
-constexpr uint8_t hung_ticks = 40;   // the watchdog waits for 60
+constexpr uint8_t hung_ticks = 8;   // the watchdog waits for 16, give or take three: its clock is not the processor's
 
 }  // namespace
 
@@ -99,7 +99,7 @@ void eeprom_begin_write(uint16_t address, uint8_t value) {
 void watchdog_start() {
   internal::missed_ticks = 0;
   watchdog_mark = watchdog_is_on;
-  wdt_enable(WDTO_60MS);
+  wdt_enable(WDTO_15MS);
 }
 
 void watchdog_kick() { wdt_reset(); }

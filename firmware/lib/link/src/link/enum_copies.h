@@ -60,6 +60,7 @@ constexpr bool is_copy(Fault, Copy value = Copy()) {
   static_assert(same_number(Copy::tracking, Fault::tracking), "Fault::tracking");
   static_assert(same_number(Copy::watchdog, Fault::watchdog), "Fault::watchdog");
   static_assert(same_number(Copy::params, Fault::params), "Fault::params");
+  static_assert(same_number(Copy::flood, Fault::flood), "Fault::flood");
   switch (value) {
     case Copy::none:
     case Copy::pot_low:
@@ -68,6 +69,7 @@ constexpr bool is_copy(Fault, Copy value = Copy()) {
     case Copy::tracking:
     case Copy::watchdog:
     case Copy::params:
+    case Copy::flood:
       break;
   }
   return true;
@@ -90,6 +92,7 @@ constexpr bool is_copy(NackCode, Copy value = Copy()) {
   static_assert(same_number(Copy::booting, NackCode::booting), "NackCode::booting");
   static_assert(same_number(Copy::inconsistent, NackCode::inconsistent), "NackCode::inconsistent");
   static_assert(same_number(Copy::lead_refused, NackCode::lead_refused), "NackCode::lead_refused");
+  static_assert(same_number(Copy::set_lost, NackCode::set_lost), "NackCode::set_lost");
   switch (value) {
     case Copy::none:
     case Copy::unknown_type:
@@ -106,6 +109,7 @@ constexpr bool is_copy(NackCode, Copy value = Copy()) {
     case Copy::booting:
     case Copy::inconsistent:
     case Copy::lead_refused:
+    case Copy::set_lost:
       break;
   }
   return true;

@@ -9,7 +9,7 @@
 namespace wire {
 
 constexpr uint8_t protocol = 1;
-constexpr uint32_t schema_hash = 0xC648C927;
+constexpr uint32_t schema_hash = 0x48E90B45;
 constexpr uint8_t max_payload = 48;
 constexpr uint8_t reply_bit = 0x80;
 
@@ -57,7 +57,8 @@ enum class Fault : uint8_t {
   late_tick = 3,  // a control tick had not finished when the next one began
   tracking = 4,  // a follower stayed too far from its leader for too long
   watchdog = 5,  // the firmware had stopped and the watchdog restarted the board
-  params = 6,  // the stored parameters cannot be run by the controllers
+  params = 6,  // stored parameters were lost or cannot be run, so older ones or the defaults run now
+  flood = 7,  // more bytes came than the board can read, so that a stop might have been lost
 };
 
 // Why a request was refused.
@@ -77,6 +78,7 @@ enum class NackCode : uint8_t {
   booting = 12,  // the board is still starting
   inconsistent = 13,  // parameters contradict each other
   lead_refused = 14,  // the host cannot lead like this
+  set_lost = 15,  // stored parameters were lost, and nobody has confirmed those that run now
 };
 
 // Why a reference of the host was refused; the low byte of lead_refused.

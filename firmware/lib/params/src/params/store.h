@@ -8,6 +8,10 @@
 // writes nothing. Any other save writes each cell of one bank at most once, but the first magic byte twice. The banks take
 // turns, so even that byte is written once per save on average: it lasts for 100,000 saves.
 //
+// A bank that is neither whole nor blank held a set once, or was to hold one: rot, another layout, or a save that a power cut ended.
+// Nobody can tell any more whether that set was the newest. So lost() is true then, whatever the other bank holds. The next save
+// makes both banks whole again, in turn.
+//
 // Eeprom has `uint8_t read(uint16_t)`, `void begin_write(uint16_t, uint8_t)` and `bool busy()`. While it is busy, neither of the
 // other two is called.
 #pragma once
@@ -42,6 +46,9 @@ class Store {
   // At boot: loads the newest bank that is whole and in range, or else the defaults. Waits for a write that a reset left behind.
   wire::ParamSource load(Table &table);
 
+  // True while a bank is neither whole nor blank: what ran before this boot may have been another set.
+  bool lost() const { return spoilt_ != 0; }
+
   // Starts to save. `table` must stay as it is until state() is no longer saving. Does nothing while saving.
   void save(const Table &table);
 
@@ -57,6 +64,7 @@ class Store {
   static uint16_t start(uint8_t b) { return b == 0 ? bank::start_a : bank::start_b; }
 
   bool whole(uint8_t b, uint16_t &sequence);
+  bool blank(uint8_t b);
   bool fetch(uint8_t b, Table &table);
   uint16_t read_u16(uint16_t at) { return static_cast<uint16_t>(eeprom_.read(at) | (eeprom_.read(at + 1) << 8)); }
 
@@ -64,6 +72,7 @@ class Store {
   void walk(Phase phase, uint8_t from);
   bool step(uint8_t b, bool write);
   void retarget();
+  void stored();
   void finish(wire::SaveState state);
 
   Eeprom &eeprom_;
@@ -73,6 +82,7 @@ class Store {
   uint8_t position_ = 0;
   uint8_t current_ = no_bank;  // the bank that a boot would load
   uint8_t target_ = 0;
+  uint8_t spoilt_ = 0;         // bit b: bank b is neither whole nor blank
   Phase phase_ = Phase::idle;
   wire::SaveState state_ = wire::SaveState::idle;
 };
@@ -86,6 +96,14 @@ bool Store<Eeprom>::whole(uint8_t b, uint16_t &sequence) {
   for (uint8_t i = bank::layout_at; i < bank::crc_at; ++i) crc.add(eeprom_.read(static_cast<uint16_t>(at + i)));
   sequence = read_u16(at + bank::sequence_at);
   return crc.value() == read_u16(at + bank::crc_at);
+}
+
+template <class Eeprom>
+bool Store<Eeprom>::blank(uint8_t b) {
+  for (uint8_t i = 0; i < bank::size; ++i) {
+    if (eeprom_.read(static_cast<uint16_t>(start(b) + i)) != 0xFF) return false;
+  }
+  return true;
 }
 
 template <class Eeprom>
@@ -107,9 +125,15 @@ wire::ParamSource Store<Eeprom>::load(Table &table) {
   const uint8_t newest = b_newer ? 1 : 0;
   sequence_ = sequences[newest];
   current_ = no_bank;
-  for (uint8_t i = 0; i < 2 && current_ == no_bank; ++i) {
+  spoilt_ = 0;
+  for (uint8_t i = 0; i < 2; ++i) {
     const uint8_t b = static_cast<uint8_t>(newest ^ i);
-    if (good[b] && fetch(b, table)) current_ = b;
+    if (good[b] && current_ != no_bank) continue;   // the older set
+    if (good[b] && fetch(b, table)) {
+      current_ = b;
+    } else if (good[b] || !blank(b)) {
+      spoilt_ = static_cast<uint8_t>(spoilt_ | (1 << b));
+    }
   }
   if (current_ == no_bank) {
     load_defaults(table);
@@ -139,6 +163,18 @@ void Store<Eeprom>::retarget() {
   phase_ = Phase::spoil;
 }
 
+// The target holds the set. The other bank is next if it has to be mended.
+template <class Eeprom>
+void Store<Eeprom>::stored() {
+  current_ = target_;
+  spoilt_ = static_cast<uint8_t>(spoilt_ & ~(1 << target_));
+  if (spoilt_ != 0) {
+    retarget();
+  } else {
+    finish(wire::SaveState::saved);
+  }
+}
+
 template <class Eeprom>
 void Store<Eeprom>::walk(Phase phase, uint8_t from) {
   phase_ = phase;
@@ -150,7 +186,6 @@ template <class Eeprom>
 void Store<Eeprom>::finish(wire::SaveState state) {
   phase_ = Phase::idle;
   state_ = state;
-  if (state == wire::SaveState::saved) current_ = target_;
 }
 
 // The byte that belongs at a position. Ask for positions from layout_at on in their order, because of the CRC.
@@ -209,10 +244,11 @@ void Store<Eeprom>::poll() {
       if (!step(target_, false)) {
         retarget();
       } else if (position_ == bank::size) {
-        finish(wire::SaveState::saved);
+        stored();
       }
       break;
     case Phase::spoil:
+      spoilt_ = static_cast<uint8_t>(spoilt_ | (1 << target_));
       if (eeprom_.read(first) == mark) eeprom_.begin_write(first, static_cast<uint8_t>(~mark));
       phase_ = Phase::spoiled;
       break;
@@ -239,7 +275,11 @@ void Store<Eeprom>::poll() {
       phase_ = Phase::sealed;
       break;
     case Phase::sealed:
-      finish(eeprom_.read(first) == mark ? wire::SaveState::saved : wire::SaveState::failed);
+      if (eeprom_.read(first) == mark) {
+        stored();
+      } else {
+        finish(wire::SaveState::failed);
+      }
       break;
     case Phase::idle:
       break;
