@@ -14,14 +14,14 @@ FIRMWARE_ROOMS := $(patsubst %,-Ifirmware/lib/%/src,$(notdir $(wildcard firmware
 CXX_FILES := $(shell find firmware/lib firmware/src firmware/test host/native sim tests tools -name '*.cpp' -o -name '*.h')
 
 # Parts of the targets below, the longest first. They run side by side on all cores, and what one says stays together.
-LINT := mypy clang-tidy cppcheck-host cppcheck-firmware ruff ruff-format generated
+LINT := mypy clang-tidy cppcheck-host cppcheck-firmware ruff ruff-format clang-format generated
 UNIT_TESTS := firmware-tests-native
 IMAGES := firmware-tests-sim gates
 SIDE_BY_SIDE := $(MAKE) READY= --no-print-directory --jobs=$(shell nproc) --output-sync=target
 PYTEST := $(PYTHON) -m pytest -n auto
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build firmware demo check test lint oracles bench docs dist format lock hooks clean clang-format $(LINT) $(UNIT_TESTS) $(IMAGES)
+.PHONY: help setup build firmware demo check test lint oracles bench docs dist format lock hooks clean $(LINT) $(UNIT_TESTS) $(IMAGES)
 
 help: ## list the targets
 	@sed -n 's/^\([a-z]*\):[^#]*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12

@@ -1,5 +1,5 @@
-// What an image says about itself. Tools find this record in the .hex: they tell by it for which chip the image is, which
-// version it is, and from which sources it was built. The host reads it in board/flash/images.py.
+// What an image says about itself. Tools find this record in the .hex: they tell by it for which chip the image is,
+// which version it is, and from which sources it was built. The host reads it in board/flash/images.py.
 #include <avr/io.h>
 #include <avr/pgmspace.h>
 #include <link/schema.h>

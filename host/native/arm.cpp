@@ -63,7 +63,8 @@ using Writable = nb::ndarray<double, nb::shape<arm::kJoints>, nb::c_contig, nb::
 std::optional<Writable> target(nb::handle out) {
   if (out.is_none()) return std::nullopt;
   Writable array;
-  if (!nb::try_cast(out, array, false)) throw nb::type_error("out must be a writable, contiguous float64 array of four.");
+  if (!nb::try_cast(out, array, false))
+    throw nb::type_error("out must be a writable, contiguous float64 array of four.");
   return array;
 }
 
@@ -75,7 +76,7 @@ nb::object filled(nb::object out, const std::optional<Writable>& array, const Fo
 
 using State = arm::State<double>;
 
-template <Four State::*Member>
+template <Four State::* Member>
 Out copy_of(const arm::Arm& self) {
   return array_of(self.state().*Member);
 }
@@ -130,25 +131,27 @@ void bind_parameters(nb::module_& m) {
   nb::class_<JointOfOne>(m, "Joint", "Motor, friction, gear and stops of one joint, at its output shaft, SI units.")
       .def(
           "__init__",
-          [](JointOfOne* self, const ActuatorOfOne& actuator, double coulomb, double breakaway, double stribeck_velocity,
-             double half_gap, double stiffness, double damping, double drag, double min, double max) {
-            new (self) JointOfOne{actuator, {coulomb, breakaway, stribeck_velocity}, {half_gap, stiffness, damping, drag}, {min, max}};
+          [](JointOfOne* self, const ActuatorOfOne& actuator, double coulomb, double breakaway,
+             double stribeck_velocity, double half_gap, double stiffness, double damping, double drag, double min,
+             double max) {
+            new (self) JointOfOne{
+                actuator, {coulomb, breakaway, stribeck_velocity}, {half_gap, stiffness, damping, drag}, {min, max}};
           },
-          nb::kw_only(), "actuator"_a, "coulomb"_a, "breakaway"_a, "stribeck_velocity"_a, "half_gap"_a, "stiffness"_a, "damping"_a, "drag"_a,
-          "min"_a, "max"_a);
+          nb::kw_only(), "actuator"_a, "coulomb"_a, "breakaway"_a, "stribeck_velocity"_a, "half_gap"_a, "stiffness"_a,
+          "damping"_a, "drag"_a, "min"_a, "max"_a);
 
   nb::class_<arm::ArmParameters>(m, "ArmParameters", "The whole arm; greywhale.arm.ArmParameters makes it, validated.")
       .def(
           "__init__",
-          [](arm::ArmParameters* self, const std::array<arm::Link, arm::kJoints>& links, double tip_mass, double gravity,
-             const std::array<JointOfOne, arm::kJoints>& joints, double supply, int pwm_levels) {
-            new (self) arm::ArmParameters{links, tip_mass, gravity, joints, {supply, pwm_levels}};
-          },
+          [](arm::ArmParameters* self, const std::array<arm::Link, arm::kJoints>& links, double tip_mass,
+             double gravity, const std::array<JointOfOne, arm::kJoints>& joints, double supply,
+             int pwm_levels) { new (self) arm::ArmParameters{links, tip_mass, gravity, joints, {supply, pwm_levels}}; },
           nb::kw_only(), "links"_a, "tip_mass"_a, "gravity"_a, "joints"_a, "supply"_a, "pwm_levels"_a);
 }
 
 void bind_body(nb::module_& m) {
-  nb::class_<Body>(m, "RigidBody", "The links alone: M(q) q'' + bias(q, q') = torque. Arrays of four, rad and SI units.")
+  nb::class_<Body>(m, "RigidBody",
+                   "The links alone: M(q) q'' + bias(q, q') = torque. Arrays of four, rad and SI units.")
       .def("mass_matrix", &mass_matrix, "q"_a, "4x4, kg m^2")
       .def("bias", &bias, "q"_a, "v"_a, "Velocity and gravity torques, N m")
       .def("kinetic_energy", &kinetic, "q"_a, "v"_a, "J")
@@ -183,7 +186,8 @@ void bind_motion(nb::module_& m) {
       .def_prop_ro("potential_energy", &arm::Arm::potential_energy, "J, gravity and teeth")
       .def_prop_ro("body", &arm::Arm::body, nb::rv_policy::reference_internal)
       .def_prop_ro("steps", &arm::Arm::steps, "Integration steps so far")
-      .def_prop_ro("unsettled_steps", &arm::Arm::unsettled_steps, "Those whose contact conditions were not settled; 0 is normal");
+      .def_prop_ro("unsettled_steps", &arm::Arm::unsettled_steps,
+                   "Those whose contact conditions were not settled; 0 is normal");
 }
 
 void bind_pots(nb::module_& m) {
@@ -201,7 +205,8 @@ void bind_pots(nb::module_& m) {
           nb::kw_only(), "track"_a, "centre"_a, "direction"_a, "noise"_a, "linearity"_a);
 
   nb::class_<arm::Potentiometers>(m, "Potentiometers", "Four joint potentiometers.")
-      .def(nb::init<const std::array<arm::Potentiometer, arm::kJoints>&, double, std::uint64_t>(), "pots"_a, "supply"_a, "seed"_a = 0)
+      .def(nb::init<const std::array<arm::Potentiometer, arm::kJoints>&, double, std::uint64_t>(), "pots"_a, "supply"_a,
+           "seed"_a = 0)
       .def(
           "millivolts",
           [](arm::Potentiometers& self, const In& angles, nb::object out) {

@@ -84,9 +84,10 @@ loop::Calibration calibration_of(const Each<int>& zero, const Each<int>& scale) 
 }
 
 // As greywhale.loop passes it on; checked there.
-void make_settings(loop::Settings* self, int period_ms, int supply_mv, int soft_start_ms, int filter_shift, const Each<int>& limit_min,
-                   const Each<int>& limit_max, const Each<int>& motor_sign, const Each<int>& pwm_top, const Each<int>& leader_zero,
-                   const Each<int>& leader_scale, const Each<int>& follower_zero, const Each<int>& follower_scale) {
+void make_settings(loop::Settings* self, int period_ms, int supply_mv, int soft_start_ms, int filter_shift,
+                   const Each<int>& limit_min, const Each<int>& limit_max, const Each<int>& motor_sign,
+                   const Each<int>& pwm_top, const Each<int>& leader_zero, const Each<int>& leader_scale,
+                   const Each<int>& follower_zero, const Each<int>& follower_scale) {
   new (self) loop::Settings{};
   self->period_ms = period_ms;
   self->supply_mv = static_cast<std::uint16_t>(supply_mv);
@@ -100,10 +101,11 @@ void make_settings(loop::Settings* self, int period_ms, int supply_mv, int soft_
   self->follower = calibration_of(follower_zero, follower_scale);
 }
 
-void make_loop(ClosedLoop* self, const loop::Settings& settings, const loop::Timing& timing, const std::array<arm::Potentiometer, kJoints>& pots,
-               double pot_supply, std::uint64_t seed, const Each<double>& home, const Each<double>& gap,
-               const In<std::int16_t, nb::shape<-1, kJoints>>& reference, const In<double, nb::shape<-1, kJoints>>& leader,
-               const In<double, nb::shape<-1>>& weight) {
+void make_loop(ClosedLoop* self, const loop::Settings& settings, const loop::Timing& timing,
+               const std::array<arm::Potentiometer, kJoints>& pots, double pot_supply, std::uint64_t seed,
+               const Each<double>& home, const Each<double>& gap,
+               const In<std::int16_t, nb::shape<-1, kJoints>>& reference,
+               const In<double, nb::shape<-1, kJoints>>& leader, const In<double, nb::shape<-1>>& weight) {
   if (reference.shape(0) != leader.shape(0) || weight.shape(0) != leader.shape(0)) {
     throw std::invalid_argument("reference, leader and weight differ in length.");
   }
@@ -122,10 +124,11 @@ void make_loop(ClosedLoop* self, const loop::Settings& settings, const loop::Tim
   x.weight = weight.data();
 }
 
-nb::tuple run(const ClosedLoop& self, const ControllerTable& controllers, const PlantTable& plants, int substeps, int threads,
-              std::size_t every, bool single, const std::string& instructions) {
+nb::tuple run(const ClosedLoop& self, const ControllerTable& controllers, const PlantTable& plants, int substeps,
+              int threads, std::size_t every, bool single, const std::string& instructions) {
   const std::size_t count = std::max(controllers.shape(0), plants.shape(0));
-  if (count == 0 || (controllers.shape(0) != count && controllers.shape(0) != 1) || (plants.shape(0) != count && plants.shape(0) != 1)) {
+  if (count == 0 || (controllers.shape(0) != count && controllers.shape(0) != 1) ||
+      (plants.shape(0) != count && plants.shape(0) != 1)) {
     throw std::invalid_argument("controllers and plants must hold as many rows, or one of them a single row.");
   }
   const std::size_t rows = every == 0 ? 0 : (self.x.ticks + every - 1) / every;
@@ -133,19 +136,22 @@ nb::tuple run(const ClosedLoop& self, const ControllerTable& controllers, const 
   Array<bool> diverged({count});
   Array<float> angles({count, rows, kJoints});
   Array<std::int16_t> duties({count, rows, kJoints});
-  const std::vector<loop::Controllers> laws = loop::compiled(controllers.data(), controllers.shape(0), self.x.settings.period_ms);
+  const std::vector<loop::Controllers> laws =
+      loop::compiled(controllers.data(), controllers.shape(0), self.x.settings.period_ms);
   const auto* plant_rows = reinterpret_cast<const loop::PlantRow*>(plants.data());
   {
     const nb::gil_scoped_release free;
     const loop::Batch batch{laws.data(), laws.size(), plant_rows, plants.shape(0), count};
-    const loop::Outputs outputs{mse.data(), itae.data(), itau.data(), diverged.data(), every, rows, angles.data(), duties.data()};
+    const loop::Outputs outputs{mse.data(), itae.data(), itau.data(),   diverged.data(),
+                                every,      rows,        angles.data(), duties.data()};
     loop::run_batch(self.x, batch, {substeps, threads, single, instructions}, outputs);
   }
   return nb::make_tuple(mse.numpy(), itae.numpy(), itau.numpy(), diverged.numpy(), angles.numpy(), duties.numpy());
 }
 
-nb::tuple leader_readings(const loop::Settings& settings, const loop::Timing& timing, const std::array<arm::Potentiometer, kJoints>& pots,
-                          double pot_supply, std::uint64_t seed, const In<double, nb::shape<-1, kJoints>>& angles) {
+nb::tuple leader_readings(const loop::Settings& settings, const loop::Timing& timing,
+                          const std::array<arm::Potentiometer, kJoints>& pots, double pot_supply, std::uint64_t seed,
+                          const In<double, nb::shape<-1, kJoints>>& angles) {
   const std::size_t ticks = angles.shape(0) / loop::kSlices;
   Array<std::int16_t> reference({ticks, kJoints});
   Array<double> leader({ticks, kJoints});
@@ -154,12 +160,13 @@ nb::tuple leader_readings(const loop::Settings& settings, const loop::Timing& ti
 }
 
 // The vector form of the law for sixteen controllers side by side; tests compare it with the firmware's own.
-nb::object sixteen_laws(const In<std::int32_t, nb::shape<loop::kBlock, loop::kControllerColumns>>& controllers, int period_ms,
-                        const In<std::int32_t, nb::shape<-1, loop::kBlock>>& leader,
-                        const In<std::int32_t, nb::shape<-1, loop::kBlock>>& follower, const In<std::uint16_t, nb::shape<-1>>& limit_mv,
-                        const std::string& instructions) {
+nb::object sixteen_laws(const In<std::int32_t, nb::shape<loop::kBlock, loop::kControllerColumns>>& controllers,
+                        int period_ms, const In<std::int32_t, nb::shape<-1, loop::kBlock>>& leader,
+                        const In<std::int32_t, nb::shape<-1, loop::kBlock>>& follower,
+                        const In<std::uint16_t, nb::shape<-1>>& limit_mv, const std::string& instructions) {
   const std::size_t n = leader.shape(0);
-  if (follower.shape(0) != n || limit_mv.shape(0) != n) throw std::invalid_argument("leader, follower and limit_mv differ in length.");
+  if (follower.shape(0) != n || limit_mv.shape(0) != n)
+    throw std::invalid_argument("leader, follower and limit_mv differ in length.");
   std::array<fuzzy_pdi::Coefficients, loop::kBlock> laws;
   for (std::size_t lane = 0; lane < loop::kBlock; ++lane) {
     if (loop::compile(&controllers(lane, 0), period_ms, laws[lane]) != fuzzy_pdi::Refusal::none) {
@@ -174,7 +181,8 @@ nb::object sixteen_laws(const In<std::int32_t, nb::shape<loop::kBlock, loop::kCo
 // Reversals and travel (n x 4) of traces (n x rows x 4) between two rows.
 template <class T>
 nb::tuple swings(const In<T, nb::shape<-1, -1, kJoints>>& traces, std::size_t first, std::size_t last, double band) {
-  if (first > last || last > traces.shape(1)) throw std::invalid_argument("the rows must lie within the traces, the first before the last.");
+  if (first > last || last > traces.shape(1))
+    throw std::invalid_argument("the rows must lie within the traces, the first before the last.");
   const std::size_t count = traces.shape(0);
   Array<std::int32_t> reversals({count, kJoints});
   Array<double> travel({count, kJoints});
@@ -206,9 +214,12 @@ nb::object plant_row(const arm::ArmParameters& parameters) {
 
 void bind_closed_loop(nb::module_& m) {
   nb::class_<loop::Settings>(m, "LoopSettings", "What the closed loop needs of a parameter table, raw values.")
-      .def("__init__", &make_settings, nb::kw_only(), "period_ms"_a, "supply_mv"_a, "soft_start_ms"_a, "filter_shift"_a, "limit_min"_a,
-           "limit_max"_a, "motor_sign"_a, "pwm_top"_a, "leader_zero"_a, "leader_scale"_a, "follower_zero"_a, "follower_scale"_a);
-  nb::class_<loop::Timing>(m, "LoopTiming", "When conversions begin (cycles) and voltages act (slices) within a tick, and by how many ticks duties are late.")
+      .def("__init__", &make_settings, nb::kw_only(), "period_ms"_a, "supply_mv"_a, "soft_start_ms"_a, "filter_shift"_a,
+           "limit_min"_a, "limit_max"_a, "motor_sign"_a, "pwm_top"_a, "leader_zero"_a, "leader_scale"_a,
+           "follower_zero"_a, "follower_scale"_a);
+  nb::class_<loop::Timing>(
+      m, "LoopTiming",
+      "When conversions begin (cycles) and voltages act (slices) within a tick, and by how many ticks duties are late.")
       .def(
           "__init__",
           [](loop::Timing* self, int start, const Each<int>& acts, int on, int late) {
@@ -217,20 +228,25 @@ void bind_closed_loop(nb::module_& m) {
           },
           nb::kw_only(), "start"_a, "acts"_a, "on"_a, "late"_a = 0);
   nb::class_<ClosedLoop>(m, "ClosedLoop", "One experiment, for any number of candidates.")
-      .def("__init__", &make_loop, nb::kw_only(), "settings"_a, "timing"_a, "pots"_a, "pot_supply"_a, "seed"_a, "home"_a, "gap"_a,
-           "reference"_a.noconvert(), "leader"_a.noconvert(), "weight"_a.noconvert())
-      .def("run", &run, nb::kw_only(), "controllers"_a.noconvert(), "plants"_a.noconvert(), "substeps"_a, "threads"_a, "every"_a,
-           "single"_a, "instructions"_a,
-           "mse, itae, itau (n x 4), diverged (n), angles (float32) and duties (int16), both n x rows x 4. The GIL is released.");
-  m.def("leader_readings", &leader_readings, nb::kw_only(), "settings"_a, "timing"_a, "pots"_a, "pot_supply"_a, "seed"_a,
-        "angles"_a.noconvert(), "The leader's angles in every slice to q12 readings and true angles at every tick.");
-  m.def("sixteen_laws", &sixteen_laws, nb::kw_only(), "controllers"_a.noconvert(), "period_ms"_a, "leader"_a.noconvert(),
-        "follower"_a.noconvert(), "limit_mv"_a.noconvert(), "instructions"_a, "The batch kernel's form of the law, in mV; for tests.");
+      .def("__init__", &make_loop, nb::kw_only(), "settings"_a, "timing"_a, "pots"_a, "pot_supply"_a, "seed"_a,
+           "home"_a, "gap"_a, "reference"_a.noconvert(), "leader"_a.noconvert(), "weight"_a.noconvert())
+      .def("run", &run, nb::kw_only(), "controllers"_a.noconvert(), "plants"_a.noconvert(), "substeps"_a, "threads"_a,
+           "every"_a, "single"_a, "instructions"_a,
+           "mse, itae, itau (n x 4), diverged (n), angles (float32) and duties (int16), both n x rows x 4. The GIL is "
+           "released.");
+  m.def("leader_readings", &leader_readings, nb::kw_only(), "settings"_a, "timing"_a, "pots"_a, "pot_supply"_a,
+        "seed"_a, "angles"_a.noconvert(),
+        "The leader's angles in every slice to q12 readings and true angles at every tick.");
+  m.def("sixteen_laws", &sixteen_laws, nb::kw_only(), "controllers"_a.noconvert(), "period_ms"_a,
+        "leader"_a.noconvert(), "follower"_a.noconvert(), "limit_mv"_a.noconvert(), "instructions"_a,
+        "The batch kernel's form of the law, in mV; for tests.");
   m.def("swings", &swings<float>, "traces"_a.noconvert(), "first"_a, "last"_a, "band"_a,
-        "How often (int32) and how far (float64) traces, n x rows x 4, swing to and fro by more than the band: both n x 4.");
+        "How often (int32) and how far (float64) traces, n x rows x 4, swing to and fro by more than the band: both n "
+        "x 4.");
   m.def("swings", &swings<std::int16_t>, "traces"_a.noconvert(), "first"_a, "last"_a, "band"_a);
   m.def("plant_row", &plant_row, "parameters"_a, "An arm as one row of numbers.");
-  m.def("instruction_sets", &loop::instruction_sets, "Those of the batch kernel that this processor runs, the best first.");
+  m.def("instruction_sets", &loop::instruction_sets,
+        "Those of the batch kernel that this processor runs, the best first.");
   m.attr("PLANT_COLUMNS") = loop::kPlantColumns;
   m.attr("PLANT_COLUMN_NAMES") = nb::tuple(nb::cast(loop::plant_column_names()));
 }

@@ -1,4 +1,5 @@
-// Binds firmware/lib/fuzzy_pdi: the firmware's own arithmetic, one value or whole arrays at a time. greywhale.fuzzy wraps it.
+// Binds firmware/lib/fuzzy_pdi: the firmware's own arithmetic, one value or whole arrays at a time. greywhale.fuzzy
+// wraps it.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
@@ -33,31 +34,29 @@ template <typename T>
 struct Array {
   explicit Array(size_t size) : values(new T[size]), size(size) {}
   Out<T> numpy() {
-    T *raw = values.release();
-    return Out<T>(raw, {size}, nb::capsule(raw, [](void *p) noexcept { delete[] static_cast<T *>(p); }));
+    T* raw = values.release();
+    return Out<T>(raw, {size}, nb::capsule(raw, [](void* p) noexcept { delete[] static_cast<T*>(p); }));
   }
   std::unique_ptr<T[]> values;
   size_t size;
 };
 
 template <typename A, typename B>
-void same_length(const A &a, const B &b) {
+void same_length(const A& a, const B& b) {
   if (a.shape(0) != b.shape(0)) throw std::invalid_argument("The arrays differ in length.");
 }
 
-law::Input split(int32_t value) {
-  return {static_cast<uint16_t>(value < 0 ? -value : value), value < 0};
-}
+law::Input split(int32_t value) { return {static_cast<uint16_t>(value < 0 ? -value : value), value < 0}; }
 
 // Every intermediate of one inference, as columns of a row.
 struct Intermediates {
   static constexpr size_t columns = 10;
-  static constexpr const char *names[columns] = {"e_zero", "e_outer",  "ce_zero", "ce_outer", "with",
+  static constexpr const char* names[columns] = {"e_zero", "e_outer", "ce_zero", "ce_outer", "with",
                                                  "zero",   "against", "size",    "flip",     "no_rule"};
   int32_t row[columns];
 };
 
-Intermediates trace(const law::Coefficients &c, int32_t e, int32_t ce) {
+Intermediates trace(const law::Coefficients& c, int32_t e, int32_t ce) {
   const law::Input error = split(e);
   const law::Input change = split(ce);
   const law::Memberships a = law::fuzzify(c.e[error.negative], error.size);
@@ -69,11 +68,11 @@ Intermediates trace(const law::Coefficients &c, int32_t e, int32_t ce) {
            u.no_rule}};
 }
 
-nb::dict infer_all(const law::Coefficients &c, In<int32_t> e, In<int32_t> ce) {
+nb::dict infer_all(const law::Coefficients& c, In<int32_t> e, In<int32_t> ce) {
   same_length(e, ce);
   const size_t n = e.shape(0);
   std::unique_ptr<Array<int32_t>> out[Intermediates::columns];
-  for (auto &column : out) column = std::make_unique<Array<int32_t>>(n);
+  for (auto& column : out) column = std::make_unique<Array<int32_t>>(n);
   for (size_t k = 0; k < n; ++k) {
     const Intermediates all = trace(c, e(k), ce(k));
     for (size_t j = 0; j < Intermediates::columns; ++j) out[j]->values[k] = all.row[j];
@@ -84,24 +83,25 @@ nb::dict infer_all(const law::Coefficients &c, In<int32_t> e, In<int32_t> ce) {
 }
 
 // u_fuzzy in q15 with its sign, 32768 = 1.0.
-int32_t u_of(const law::Coefficients &c, int32_t e, int32_t ce) {
+int32_t u_of(const law::Coefficients& c, int32_t e, int32_t ce) {
   const law::Input error = split(e);
   const law::Defuzzified u = law::infer(c, error, split(ce));
   return (error.negative != u.flip) ? -int32_t{u.size} : int32_t{u.size};
 }
 
-Out<int32_t> surface(const law::Coefficients &c, In<int32_t> e, In<int32_t> ce) {
+Out<int32_t> surface(const law::Coefficients& c, In<int32_t> e, In<int32_t> ce) {
   same_length(e, ce);
   Array<int32_t> u(e.shape(0));
   for (size_t k = 0; k < u.size; ++k) u.values[k] = u_of(c, e(k), ce(k));
   return u.numpy();
 }
 
-law::Coefficients compiled(const law::Settings &settings, uint8_t period_ms) {
+law::Coefficients compiled(const law::Settings& settings, uint8_t period_ms) {
   law::Coefficients out;
   const law::Refusal refusal = law::compile(settings, period_ms, out);
   if (refusal != law::Refusal::none)
-    throw std::invalid_argument("The settings are refused for reason " + std::to_string(static_cast<int>(refusal)) + ".");
+    throw std::invalid_argument("The settings are refused for reason " + std::to_string(static_cast<int>(refusal)) +
+                                ".");
   return out;
 }
 
@@ -110,7 +110,7 @@ struct Controller {
   law::State state;
 };
 
-nb::dict run(Controller &self, In<int16_t> leader, In<int16_t> follower, In<uint16_t> limit_mv) {
+nb::dict run(Controller& self, In<int16_t> leader, In<int16_t> follower, In<uint16_t> limit_mv) {
   same_length(leader, follower);
   same_length(leader, limit_mv);
   const size_t n = leader.shape(0);
@@ -149,7 +149,7 @@ Triple memberships(double x, double n_c, double z_a, double z_c, double p_b, dou
           std::clamp(x / p_b, 0.0, 1.0)};
 }
 
-double by_rules(const Triple &e, const Triple &ce) {
+double by_rules(const Triple& e, const Triple& ce) {
   const double up = std::max({std::min(e.z, ce.p), std::min(e.p, ce.z), std::min(e.p, ce.p)});
   const double none = std::max({std::min(e.n, ce.p), std::min(e.z, ce.z), std::min(e.p, ce.n)});
   const double down = std::max({std::min(e.n, ce.n), std::min(e.n, ce.z), std::min(e.z, ce.n)});
@@ -157,7 +157,8 @@ double by_rules(const Triple &e, const Triple &ce) {
 }
 
 // The largest distance between the integer law and the one above, in LSB of q15, over all e and ce of a rectangle.
-double worst_difference(const law::Settings &s, uint8_t period_ms, std::array<int32_t, 2> e_range, std::array<int32_t, 2> ce_range) {
+double worst_difference(const law::Settings& s, uint8_t period_ms, std::array<int32_t, 2> e_range,
+                        std::array<int32_t, 2> ce_range) {
   const law::Coefficients c = compiled(s, period_ms);
   struct Both {
     bool negative;
@@ -176,7 +177,7 @@ double worst_difference(const law::Settings &s, uint8_t period_ms, std::array<in
     const law::Input input = split(e);
     const law::Memberships ours = law::fuzzify(c.e[input.negative], input.size);
     const Triple exact = memberships(s.kp / 65536.0 * e / 4096 * 16384, s.ne_c, s.ze_a, s.ze_c, s.pe_b, 16384);
-    for (const Both &change : changes) {
+    for (const Both& change : changes) {
       const law::Defuzzified u = law::defuzzify(law::fire(ours, change.ours, input.negative == change.negative));
       const double q15 = input.negative != u.flip ? -static_cast<double>(u.size) : static_cast<double>(u.size);
       worst = std::max(worst, std::abs(q15 - 32768 * by_rules(exact, change.exact)));
@@ -187,7 +188,7 @@ double worst_difference(const law::Settings &s, uint8_t period_ms, std::array<in
 
 }  // namespace
 
-void bind_fuzzy(nb::module_ &m) {
+void bind_fuzzy(nb::module_& m) {
   nb::class_<law::Settings>(m, "FuzzySettings", "One joint's controller as stored: sets q14, gains q16, Ku in mV.")
       .def(nb::init<>())
       .def_rw("ne_c", &law::Settings::ne_c)
@@ -205,41 +206,43 @@ void bind_fuzzy(nb::module_ &m) {
 
   m.def(
       "fuzzy_refusal",
-      [](const law::Settings &settings, uint8_t period_ms) {
+      [](const law::Settings& settings, uint8_t period_ms) {
         law::Coefficients unused;
         return static_cast<int>(law::compile(settings, period_ms, unused));
       },
       "settings"_a, "period_ms"_a, "Why compile() refuses these settings; 0 when it takes them.");
 
-  m.def("fuzzy_worst_difference", &worst_difference, "settings"_a, "period_ms"_a, "e"_a, "ce"_a, nb::call_guard<nb::gil_scoped_release>(),
+  m.def("fuzzy_worst_difference", &worst_difference, "settings"_a, "period_ms"_a, "e"_a, "ce"_a,
+        nb::call_guard<nb::gil_scoped_release>(),
         "Largest distance of u_fuzzy from the law in double precision, in LSB of q15, over [first, last] of e and ce.");
 
   nb::class_<Controller>(m, "FuzzyController", "The compiled law of one joint with its memory.")
       .def(
           "__init__",
-          [](Controller *self, const law::Settings &settings, uint8_t period_ms) {
+          [](Controller* self, const law::Settings& settings, uint8_t period_ms) {
             new (self) Controller{compiled(settings, period_ms), {}};
             law::reset(self->state);
           },
           "settings"_a, "period_ms"_a)
-      .def("reset", [](Controller &self) { law::reset(self.state); })
+      .def("reset", [](Controller& self) { law::reset(self.state); })
       .def(
           "configure",
-          [](Controller &self, const law::Settings &settings, uint8_t period_ms) {
+          [](Controller& self, const law::Settings& settings, uint8_t period_ms) {
             self.coefficients = compiled(settings, period_ms);
           },
           "settings"_a, "period_ms"_a, "New settings or period; the memory stays.")
       .def("run", &run, "leader"_a, "follower"_a, "limit_mv"_a, "step() over arrays of angles (q12) and limits.")
       .def(
-          "infer", [](const Controller &self, In<int32_t> e, In<int32_t> ce) { return infer_all(self.coefficients, e, ce); },
+          "infer",
+          [](const Controller& self, In<int32_t> e, In<int32_t> ce) { return infer_all(self.coefficients, e, ce); },
           "e"_a, "ce"_a, "Every intermediate of the inference for e and ce in 1/4096 rad.")
       .def(
-          "u", [](const Controller &self, In<int32_t> e, In<int32_t> ce) { return surface(self.coefficients, e, ce); }, "e"_a,
-          "ce"_a, "u_fuzzy in q15, 32768 = 1.0.")
-      .def_prop_ro("coefficients", [](const Controller &self) {
-        const law::Coefficients &c = self.coefficients;
+          "u", [](const Controller& self, In<int32_t> e, In<int32_t> ce) { return surface(self.coefficients, e, ce); },
+          "e"_a, "ce"_a, "u_fuzzy in q15, 32768 = 1.0.")
+      .def_prop_ro("coefficients", [](const Controller& self) {
+        const law::Coefficients& c = self.coefficients;
         nb::list sides;
-        for (const law::Side *side : {&c.e[0], &c.e[1], &c.ce[0], &c.ce[1]})
+        for (const law::Side* side : {&c.e[0], &c.e[1], &c.ce[0], &c.ce[1]})
           sides.append(nb::make_tuple(side->zero, side->outer, side->short_ramps));
         nb::dict result;
         result["sides"] = sides;

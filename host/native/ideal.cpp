@@ -1,4 +1,5 @@
-// The arm under an ideal controller (ideal/law.h), for many tunings of it. greywhale.tune.judge.floor searches among them; use that, not this.
+// The arm under an ideal controller (ideal/law.h), for many tunings of it. greywhale.tune.judge.floor searches among
+// them; use that, not this.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
@@ -35,7 +36,8 @@ using Leader = In<double, nb::shape<-1, kJoints>>;
 using Tunings = In<double, nb::shape<-1, kJoints, kOpen>>;
 
 void check(const ideal::Experiment& x, const Tunings& tunings) {
-  if (x.slices == 0 || x.slices % loop::kSlices != 0) throw std::invalid_argument("the leader must have whole ticks of four slices.");
+  if (x.slices == 0 || x.slices % loop::kSlices != 0)
+    throw std::invalid_argument("the leader must have whole ticks of four slices.");
   if (!(x.supply > 0.0)) throw std::invalid_argument("the supply must be above 0 V.");
   for (std::size_t n = 0; n < tunings.shape(0) * kJoints; ++n) {
     const double* open = tunings.data() + n * kOpen;
@@ -56,9 +58,11 @@ nb::tuple run(const ideal::Experiment& x, const Tunings& tunings, bool keep, int
   auto angles = std::make_unique<double[]>(count * ticks * kJoints);
   {
     const nb::gil_scoped_release free;
-    ideal::simulate(x, reinterpret_cast<const ideal::Tuning*>(tunings.data()), count, threads, mse.get(), keep ? angles.get() : nullptr);
+    ideal::simulate(x, reinterpret_cast<const ideal::Tuning*>(tunings.data()), count, threads, mse.get(),
+                    keep ? angles.get() : nullptr);
   }
-  return nb::make_tuple(array_of(std::move(mse), {count, kJoints}), array_of(std::move(angles), {count, ticks, kJoints}));
+  return nb::make_tuple(array_of(std::move(mse), {count, kJoints}),
+                        array_of(std::move(angles), {count, ticks, kJoints}));
 }
 
 }  // namespace
@@ -67,16 +71,18 @@ void bind_ideal(nb::module_& m) {
   m.def(
       "simulate_ideal",
       [](const Leader& leader, std::size_t late, const In<double, nb::shape<loop::kPlantColumns>>& plant, double supply,
-         const Tunings& tunings, int chased, const In<std::int8_t, nb::shape<-1>>& direction, const In<double, nb::shape<-1>>& until,
-         bool keep, int threads) {
+         const Tunings& tunings, int chased, const In<std::int8_t, nb::shape<-1>>& direction,
+         const In<double, nb::shape<-1>>& until, bool keep, int threads) {
         if (direction.shape(0) != leader.shape(0) || until.shape(0) != leader.shape(0)) {
           throw std::invalid_argument("direction and until need a value for every slice.");
         }
-        const ideal::Chase chase{chased < 0 ? kJoints : static_cast<std::size_t>(chased), direction.data(), until.data()};
+        const ideal::Chase chase{chased < 0 ? kJoints : static_cast<std::size_t>(chased), direction.data(),
+                                 until.data()};
         return run({leader.data(), leader.shape(0), late, plant.data(), supply, chase}, tunings, keep, threads);
       },
-      nb::kw_only(), "leader"_a.noconvert(), "late"_a, "plant"_a.noconvert(), "supply"_a, "tunings"_a.noconvert(), "chased"_a,
-      "direction"_a.noconvert(), "until"_a.noconvert(), "keep"_a, "threads"_a,
-      "Mean squared errors (tunings, 4) of an arm under the ideal controller, one of its joints chasing if asked, and, to keep, its "
+      nb::kw_only(), "leader"_a.noconvert(), "late"_a, "plant"_a.noconvert(), "supply"_a, "tunings"_a.noconvert(),
+      "chased"_a, "direction"_a.noconvert(), "until"_a.noconvert(), "keep"_a, "threads"_a,
+      "Mean squared errors (tunings, 4) of an arm under the ideal controller, one of its joints chasing if asked, and, "
+      "to keep, its "
       "angles (tunings, ticks, 4). The GIL is released.");
 }

@@ -1,5 +1,5 @@
-// Short windows of a log, each started from its own state and driven by the logged voltages, for many candidate arms at a time.
-// greywhale.identify prepares the windows and compares the outcome with the log; use that, not this.
+// Short windows of a log, each started from its own state and driven by the logged voltages, for many candidate arms at
+// a time. greywhale.identify prepares the windows and compares the outcome with the log; use that, not this.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
@@ -43,7 +43,8 @@ struct Drive {
   std::size_t substeps;
 };
 
-// What a candidate reads of its own angles: the potentiometers' zero, and how much faster the links started than estimated.
+// What a candidate reads of its own angles: the potentiometers' zero, and how much faster the links started than
+// estimated.
 struct Start {
   Rows offsets, kicks;
 };
@@ -51,7 +52,8 @@ struct Start {
 void check(const Windows& w, const Drive& drive, const Plants& plants, const Start& start, std::size_t every) {
   const std::size_t rows = drive.spacing.shape(0);
   if (every == 0 || drive.substeps == 0) throw std::invalid_argument("every and substeps must be 1 or more.");
-  if (drive.volts.shape(0) != rows * drive.substeps) throw std::invalid_argument("volts must hold `substeps` rows for every spacing.");
+  if (drive.volts.shape(0) != rows * drive.substeps)
+    throw std::invalid_argument("volts must hold `substeps` rows for every spacing.");
   const std::size_t count = w.first.shape(0);
   if (w.angles.shape(0) != count || w.velocities.shape(0) != count || w.sides.shape(0) != count) {
     throw std::invalid_argument("first, angles, velocities and sides differ in length.");
@@ -67,20 +69,23 @@ void check(const Windows& w, const Drive& drive, const Plants& plants, const Sta
 }
 
 // Every (candidate, window) pair once.
-nb::object run(const Windows& w, const Drive& drive, const Plants& plants, const Start& start, std::size_t every, int threads) {
+nb::object run(const Windows& w, const Drive& drive, const Plants& plants, const Start& start, std::size_t every,
+               int threads) {
   check(w, drive, plants, start, every);
   const std::size_t candidates = plants.shape(0), count = w.first.shape(0), kept = (w.rows + every - 1) / every;
   const std::size_t size = kept * kJoints;
   auto values = std::make_unique<double[]>(candidates * count * size);
   {
     const nb::gil_scoped_release free;
-    const windows::Windows given{w.first.data(),     w.angles.data(),      w.velocities.data(), w.sides.data(), drive.volts.data(),
-                                 drive.spacing.data(), w.rows, drive.substeps, every};
+    const windows::Windows given{w.first.data(), w.angles.data(),    w.velocities.data(),
+                                 w.sides.data(), drive.volts.data(), drive.spacing.data(),
+                                 w.rows,         drive.substeps,     every};
     std::vector<windows::Task> tasks;
     tasks.reserve(candidates * count);
     for (std::size_t window = 0; window < count; ++window) {
       for (std::size_t n = 0; n < candidates; ++n) {
-        tasks.push_back({&plants(n, 0), &start.offsets(n, 0), &start.kicks(n, 0), window, &values[(n * count + window) * size]});
+        tasks.push_back(
+            {&plants(n, 0), &start.offsets(n, 0), &start.kicks(n, 0), window, &values[(n * count + window) * size]});
       }
     }
     windows::simulate(given, tasks, threads);
@@ -95,12 +100,14 @@ nb::object run(const Windows& w, const Drive& drive, const Plants& plants, const
 void bind_identify(nb::module_& m) {
   m.def(
       "simulate_windows",
-      [](const Plants& plants, const Rows& offsets, const Rows& kicks, const In<std::int64_t, nb::shape<-1>>& first, const Rows& angles,
-         const Rows& velocities, const Rows& sides, std::size_t rows, const Rows& volts, const In<double, nb::shape<-1>>& spacing,
-         std::size_t substeps, std::size_t every, int threads) {
-        return run({first, angles, velocities, sides, rows}, {volts, spacing, substeps}, plants, {offsets, kicks}, every, threads);
+      [](const Plants& plants, const Rows& offsets, const Rows& kicks, const In<std::int64_t, nb::shape<-1>>& first,
+         const Rows& angles, const Rows& velocities, const Rows& sides, std::size_t rows, const Rows& volts,
+         const In<double, nb::shape<-1>>& spacing, std::size_t substeps, std::size_t every, int threads) {
+        return run({first, angles, velocities, sides, rows}, {volts, spacing, substeps}, plants, {offsets, kicks},
+                   every, threads);
       },
-      nb::kw_only(), "plants"_a.noconvert(), "offsets"_a.noconvert(), "kicks"_a.noconvert(), "first"_a.noconvert(), "angles"_a.noconvert(),
-      "velocities"_a.noconvert(), "sides"_a.noconvert(), "rows"_a, "volts"_a.noconvert(), "spacing"_a.noconvert(), "substeps"_a, "every"_a,
-      "threads"_a = 0, "Angles (candidates, windows, rows kept, 4) of candidate arms under logged voltages. The GIL is released.");
+      nb::kw_only(), "plants"_a.noconvert(), "offsets"_a.noconvert(), "kicks"_a.noconvert(), "first"_a.noconvert(),
+      "angles"_a.noconvert(), "velocities"_a.noconvert(), "sides"_a.noconvert(), "rows"_a, "volts"_a.noconvert(),
+      "spacing"_a.noconvert(), "substeps"_a, "every"_a, "threads"_a = 0,
+      "Angles (candidates, windows, rows kept, 4) of candidate arms under logged voltages. The GIL is released.");
 }

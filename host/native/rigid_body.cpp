@@ -73,5 +73,6 @@ void bind_rigid_body(nb::module_& m) {
   m.def("rigid_body_mass_matrix", &mass_matrix, "body"_a, "q"_a,
         "Mass matrices (n, 4, 4), kg m^2, at angles (n, 4), rad. `body` (11,) is what a plant begins with.");
   m.def("rigid_body_bias", &bias, "body"_a, "q"_a, "v"_a,
-        "Velocity and gravity torques (n, 4), N m, at angles and speeds (n, 4), rad and rad/s: what holds zero acceleration.");
+        "Velocity and gravity torques (n, 4), N m, at angles and speeds (n, 4), rad and rad/s: what holds zero "
+        "acceleration.");
 }

@@ -12,7 +12,8 @@ namespace greywhale {
 // Calls work(0) .. work(pieces - 1), each once, from `threads` threads (0: one per core), but no more than pieces.
 template <class Work>
 void share_out(std::size_t pieces, int threads, const Work& work) {
-  const std::size_t cores = threads > 0 ? static_cast<std::size_t>(threads) : std::max(1u, std::thread::hardware_concurrency());
+  const std::size_t cores =
+      threads > 0 ? static_cast<std::size_t>(threads) : std::max(1u, std::thread::hardware_concurrency());
   std::atomic<std::size_t> next{0};
   const auto take = [&] {
     for (std::size_t piece = next++; piece < pieces; piece = next++) work(piece);

@@ -17,14 +17,16 @@ namespace {
 
 void require_finite(const char* what, const double (&values)[kJoints]) {
   for (std::size_t i = 0; i < kJoints; ++i) {
-    if (!std::isfinite(values[i])) refuse(what + (" of joint " + std::to_string(i)), values[i], "it must be a finite number");
+    if (!std::isfinite(values[i]))
+      refuse(what + (" of joint " + std::to_string(i)), values[i], "it must be a finite number");
   }
 }
 
 bool is_finite(const State<double>& s) {
   bool finite = true;
   for (std::size_t i = 0; i < kJoints; ++i) {
-    finite = finite && std::isfinite(s.q[i]) && std::isfinite(s.v[i]) && std::isfinite(s.motor_q[i]) && std::isfinite(s.motor_v[i]);
+    finite = finite && std::isfinite(s.q[i]) && std::isfinite(s.v[i]) && std::isfinite(s.motor_q[i]) &&
+             std::isfinite(s.motor_v[i]);
   }
   return finite;
 }
@@ -33,7 +35,8 @@ bool is_finite(const State<double>& s) {
 
 Arm::Arm(const ArmParameters& parameters, std::uint64_t seed, double longest_step)
     : drive_(parameters.drive), noise_(seed, 0), longest_step_(longest_step) {
-  if (!(std::isfinite(longest_step) && longest_step > 0.0)) refuse("the longest step", longest_step, "it must be a time above 0 s");
+  if (!(std::isfinite(longest_step) && longest_step > 0.0))
+    refuse("the longest step", longest_step, "it must be a time above 0 s");
   plant_.body = rigid_body(parameters);
   for (std::size_t i = 0; i < kJoints; ++i) plant_.joints[i] = parameters.joints[i];
   double start[kJoints];
@@ -49,7 +52,8 @@ void Arm::reset(const double (&angles)[kJoints]) {
   for (std::size_t i = 0; i < kJoints; ++i) {
     const Stops<double>& stops = plant_.joints[i].stops;
     if (angles[i] < stops.min || angles[i] > stops.max) {
-      const std::string range = "it must lie between the stops, " + std::to_string(stops.min) + " to " + std::to_string(stops.max) + " rad";
+      const std::string range =
+          "it must lie between the stops, " + std::to_string(stops.min) + " to " + std::to_string(stops.max) + " rad";
       refuse("the angle of joint " + std::to_string(i), angles[i], range.c_str());
     }
   }
@@ -89,7 +93,8 @@ void Arm::set_load(const double (&torques)[kJoints]) {
 double Arm::kinetic_energy() const {
   const Geometry<double> geometry = geometry_of(plant_.body, pose_of<double>(state_.q[1], state_.q[2]));
   double energy = arm::kinetic_energy(geometry.mass, state_.v);
-  for (std::size_t i = 0; i < kJoints; ++i) energy += 0.5 * plant_.joints[i].actuator.inertia * state_.motor_v[i] * state_.motor_v[i];
+  for (std::size_t i = 0; i < kJoints; ++i)
+    energy += 0.5 * plant_.joints[i].actuator.inertia * state_.motor_v[i] * state_.motor_v[i];
   return energy;
 }
 

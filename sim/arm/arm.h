@@ -14,7 +14,8 @@ class Arm {
  public:
   static constexpr double kLongestStep = 0.25e-3;  // s
 
-  // `seed` draws where in its backlash each gear stands after a reset. Throws std::invalid_argument for a bad `longest_step`.
+  // `seed` draws where in its backlash each gear stands after a reset. Throws std::invalid_argument for a bad
+  // `longest_step`.
   Arm(const ArmParameters& parameters, std::uint64_t seed, double longest_step = kLongestStep);
 
   // Puts the links at rest at these angles (rad), within the stops.

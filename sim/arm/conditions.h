@@ -1,7 +1,8 @@
 // What can change from step to step in a joint: which teeth touch, whether the motor side slides, whether a stop holds.
 //
-// With these sides chosen, motor, mesh and friction are linear in the velocities at the end of the step. The motor's velocity is
-// eliminated, so that the link's equation alone remains; `corrected` then says which sides those velocities really ask for.
+// With these sides chosen, motor, mesh and friction are linear in the velocities at the end of the step. The motor's
+// velocity is eliminated, so that the link's equation alone remains; `corrected` then says which sides those velocities
+// really ask for.
 #pragma once
 
 #include <cstddef>
@@ -29,22 +30,22 @@ struct Sides {
 // One joint's constants over the step. Impulses in N m s; an "inertia" here is an impulse per velocity.
 template <class T>
 struct Terms {
-  T inertia;       // motor side with its damping over the step
-  T impulse;       // motor side momentum with the motor's torque
-  T friction;      // while sliding at the present speed
+  T inertia;   // motor side with its damping over the step
+  T impulse;   // motor side momentum with the motor's torque
+  T friction;  // while sliding at the present speed
   T breakaway;
-  T deflection;    // motor ahead of link, rad
-  T push;          // of the mesh as it is now deflected, were there no gap
-  T gap_push;      // what the half gap takes off it
-  T mesh;          // impulse of touching teeth per closing velocity
-  T drag;          // the same of the grease, which works all the time
+  T deflection;  // motor ahead of link, rad
+  T push;        // of the mesh as it is now deflected, were there no gap
+  T gap_push;    // what the half gap takes off it
+  T mesh;        // impulse of touching teeth per closing velocity
+  T drag;        // the same of the grease, which works all the time
 };
 
 // What the mesh does for one choice of sides: an impulse from its present deflection, and one per closing velocity.
 template <class T>
 struct Mesh {
   T push, stiff;
-  T share;         // of the link's velocity that a sliding motor side takes on
+  T share;  // of the link's velocity that a sliding motor side takes on
 };
 
 // One row of the links' equations: what motor and mesh add to it.
@@ -56,7 +57,8 @@ struct Row {
 // kg m^2; beside it every inertia of an arm vanishes in rounding, which is what makes a rigid gear rigid.
 constexpr double kRigid = 1e15;
 
-// N m s; a pull below it is rounding and lets nothing go, so that a side that neither pushes nor pulls is not chosen in turns.
+// N m s; a pull below it is rounding and lets nothing go, so that a side that neither pushes nor pulls is not chosen in
+// turns.
 constexpr double kNoPull = 1e-14;
 
 template <class T>

@@ -6,7 +6,8 @@
 
 namespace greywhale::arm {
 
-// Coulomb friction with the Stribeck excess in Hess and Soom's rational form: no exponential, and it is the breakaway torque at rest.
+// Coulomb friction with the Stribeck excess in Hess and Soom's rational form: no exponential, and it is the breakaway
+// torque at rest.
 template <class T>
 T friction_torque(const Friction<T>& friction, T velocity) {
   const T ratio = velocity / friction.stribeck_velocity;

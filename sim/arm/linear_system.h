@@ -29,8 +29,8 @@ LinearSystem<T> linear_system(const MassMatrix<T>& m, const T (&momentum)[kJoint
 
 // One pair, by Cramer's rule; a link that its stop holds has its velocity given instead.
 template <class T>
-void solve_pair(const LinearSystem<T>& system, T coupling, std::size_t i, std::size_t j, const Sides<T> (&sides)[kJoints],
-                const T (&given)[kJoints], T (&v)[kJoints]) {
+void solve_pair(const LinearSystem<T>& system, T coupling, std::size_t i, std::size_t j,
+                const Sides<T> (&sides)[kJoints], const T (&given)[kJoints], T (&v)[kJoints]) {
   const T zero = constant<T>(0.0);
   const T one = constant<T>(1.0);
   const auto held_i = sides[i].stop != zero;
@@ -47,7 +47,8 @@ void solve_pair(const LinearSystem<T>& system, T coupling, std::size_t i, std::s
 }
 
 template <class T>
-void solve(const LinearSystem<T>& system, const Sides<T> (&sides)[kJoints], const T (&given)[kJoints], T (&v)[kJoints]) {
+void solve(const LinearSystem<T>& system, const Sides<T> (&sides)[kJoints], const T (&given)[kJoints],
+           T (&v)[kJoints]) {
   solve_pair(system, system.coupling03, 0, 3, sides, given, v);
   solve_pair(system, system.coupling12, 1, 2, sides, given, v);
 }

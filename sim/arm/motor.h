@@ -20,8 +20,7 @@ inline Actuator<double> physical_actuator(const Motor& m) {
 //   U = (R/Kt) [(A + J r) q'' + C + G] + (Kt r + Bm R/Kt) q'
 inline Actuator<double> paper_actuator(const Motor& m) {
   const double torque_per_volt = m.torque_constant / m.resistance;
-  return {torque_per_volt, m.inertia * m.gear_ratio,
-          torque_per_volt * m.torque_constant * m.gear_ratio + m.viscous};
+  return {torque_per_volt, m.inertia * m.gear_ratio, torque_per_volt * m.torque_constant * m.gear_ratio + m.viscous};
 }
 
 // The driver cannot exceed its supply and, when it has duty levels, gives only the nearest of them.

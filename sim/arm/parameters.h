@@ -1,4 +1,5 @@
-// The arm as plain numbers in SI units. They are validated where they are read (host/src/greywhale/arm); here they are only used.
+// The arm as plain numbers in SI units. They are validated where they are read (host/src/greywhale/arm); here they are
+// only used.
 #pragma once
 
 #include <array>
@@ -10,49 +11,49 @@ constexpr std::size_t kJoints = 4;  // base yaw, shoulder pitch, wrist pitch, wr
 
 // Link x runs along the link, y is up at zero pitch, z is the pitch axis; inertias are about the centre of mass.
 struct Link {
-  double mass;                  // kg
-  double length;                // m
-  double centre;                // m, centre of mass from the nearer joint
-  double ixx, iyy, izz;         // kg m^2
+  double mass;           // kg
+  double length;         // m
+  double centre;         // m, centre of mass from the nearer joint
+  double ixx, iyy, izz;  // kg m^2
 };
 
 // A geared DC motor with its data sheet's values; motor speed = gear_ratio x joint speed.
 struct Motor {
-  double inertia;               // J, kg m^2, at the motor shaft
-  double resistance;            // R, ohm
-  double torque_constant;       // Kt = Ke, N m/A
-  double viscous;               // Bm, N m s, at the motor shaft
-  double gear_ratio;            // N
+  double inertia;          // J, kg m^2, at the motor shaft
+  double resistance;       // R, ohm
+  double torque_constant;  // Kt = Ke, N m/A
+  double viscous;          // Bm, N m s, at the motor shaft
+  double gear_ratio;       // N
 };
 
 // The three combinations of a motor's five values that the motion can reveal, seen from the joint's output shaft.
 template <class T>
 struct Actuator {
-  T torque_per_volt;            // N m/V, at standstill
-  T inertia;                    // kg m^2, reflected
-  T damping;                    // N m s, back-EMF and viscous friction together
+  T torque_per_volt;  // N m/V, at standstill
+  T inertia;          // kg m^2, reflected
+  T damping;          // N m s, back-EMF and viscous friction together
 };
 
 // Dry friction of motor and gear train, as torque at the output shaft.
 template <class T>
 struct Friction {
-  T coulomb;                    // N m, sliding
-  T breakaway;                  // N m, at rest; >= coulomb
-  T stribeck_velocity;          // rad/s, where the excess over Coulomb has halved
+  T coulomb;            // N m, sliding
+  T breakaway;          // N m, at rest; >= coulomb
+  T stribeck_velocity;  // rad/s, where the excess over Coulomb has halved
 };
 
 // The gear mesh between motor side and link side. No gap and no stiffness: a rigid gear.
 template <class T>
 struct Gear {
-  T half_gap;                   // rad, at the output shaft
-  T stiffness;                  // N m/rad, of the teeth in contact
-  T damping;                    // N m s, of the teeth in contact
-  T drag;                       // N m s, of the grease, also with the teeth apart
+  T half_gap;   // rad, at the output shaft
+  T stiffness;  // N m/rad, of the teeth in contact
+  T damping;    // N m s, of the teeth in contact
+  T drag;       // N m s, of the grease, also with the teeth apart
 };
 
 template <class T>
 struct Stops {
-  T min, max;                   // rad
+  T min, max;  // rad
 };
 
 template <class T>
@@ -64,14 +65,14 @@ struct Joint {
 };
 
 struct Drive {
-  double supply;                // V
-  int pwm_levels;               // duty steps from 0 to full; 0: not quantised
+  double supply;   // V
+  int pwm_levels;  // duty steps from 0 to full; 0: not quantised
 };
 
 struct ArmParameters {
   std::array<Link, kJoints> links;
-  double tip_mass;              // kg, carried at the end of link 3
-  double gravity;               // m/s^2
+  double tip_mass;  // kg, carried at the end of link 3
+  double gravity;   // m/s^2
   std::array<Joint<double>, kJoints> joints;
   Drive drive;
 };

@@ -22,7 +22,8 @@ void Potentiometers::millivolts(const double (&angles)[kJoints], double (&out)[k
   const std::uint64_t reading = readings_++;
   for (std::size_t i = 0; i < kJoints; ++i) {
     if (wiring_[i] == Wiring::connected) {
-      const double volts = wiper(i, angles[i]) + (pots_[i].noise > 0.0 ? pots_[i].noise * noise_[i].gaussian(reading) : 0.0);
+      const double volts =
+          wiper(i, angles[i]) + (pots_[i].noise > 0.0 ? pots_[i].noise * noise_[i].gaussian(reading) : 0.0);
       out[i] = 1000.0 * std::clamp(volts, 0.0, supply_);
     } else {
       out[i] = wiring_[i] == Wiring::open ? 0.0 : 1000.0 * supply_;

@@ -1,4 +1,5 @@
-// Four joint potentiometers: angle to wiper voltage, with noise, linearity error, broken wires, and a converter where one is wanted.
+// Four joint potentiometers: angle to wiper voltage, with noise, linearity error, broken wires, and a converter where
+// one is wanted.
 #pragma once
 
 #include <array>
@@ -10,11 +11,11 @@
 namespace greywhale::arm {
 
 struct Potentiometer {
-  double track;       // rad, from one end of the resistance to the other
-  double centre;      // rad, joint angle at mid-track
-  double direction;   // +1 or -1: sign of the voltage's slope
-  double noise;       // V rms at the wiper
-  double linearity;   // largest deviation from the straight line, as a share of the full scale
+  double track;      // rad, from one end of the resistance to the other
+  double centre;     // rad, joint angle at mid-track
+  double direction;  // +1 or -1: sign of the voltage's slope
+  double noise;      // V rms at the wiper
+  double linearity;  // largest deviation from the straight line, as a share of the full scale
 };
 
 // Connected; open: the wire is off and the input's pull-down wins; shorted: the wiper touches the supply.

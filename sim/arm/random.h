@@ -1,4 +1,5 @@
-// Reproducible noise: the n-th number of a stream is a function of (seed, stream, n), so nothing depends on who asks first.
+// Reproducible noise: the n-th number of a stream is a function of (seed, stream, n), so nothing depends on who asks
+// first.
 #pragma once
 
 #include <cmath>

@@ -1,8 +1,9 @@
 // Mass matrix, velocity terms and gravity of the 4-DOF arm in corrected closed form (docs/arm.md derives it).
 //
-// Angles: q0 base yaw, q1 shoulder pitch, q2 wrist pitch, q3 wrist roll; phi = q1 + q2. Yaw and roll couple with each other and the
-// two pitches with each other, never across, so the mass matrix is two 2x2 blocks. The number type may be double or lanes of either
-// precision (scalar.h): the bench, the single run, the windows and the batch have their equations from here.
+// Angles: q0 base yaw, q1 shoulder pitch, q2 wrist pitch, q3 wrist roll; phi = q1 + q2. Yaw and roll couple with each
+// other and the two pitches with each other, never across, so the mass matrix is two 2x2 blocks. The number type may be
+// double or lanes of either precision (scalar.h): the bench, the single run, the windows and the batch have their
+// equations from here.
 #pragma once
 
 #include "parameters.h"
@@ -13,13 +14,13 @@ namespace greywhale::arm {
 // Everything the equations need of masses and lengths.
 template <class T>
 struct RigidBody {
-  T yaw;                        // yaw inertia of link 0 about its own axis
-  T ixx1, iyy1;                 // link 1, iyy1 with the masses it carries
-  T ixx23, iyy23, izz23;        // links 2 and 3 with the tip, about the wrist
-  T ixx3;                       // roll inertia
-  T izz1;                       // link 1 about the shoulder, with the masses it carries
-  T coupling;                   // L1 x first moment of links 2, 3 and tip
-  T gravity1, gravity2;         // N m, gravity torque of shoulder and wrist at zero pitch
+  T yaw;                  // yaw inertia of link 0 about its own axis
+  T ixx1, iyy1;           // link 1, iyy1 with the masses it carries
+  T ixx23, iyy23, izz23;  // links 2 and 3 with the tip, about the wrist
+  T ixx3;                 // roll inertia
+  T izz1;                 // link 1 about the shoulder, with the masses it carries
+  T coupling;             // L1 x first moment of links 2, 3 and tip
+  T gravity1, gravity2;   // N m, gravity torque of shoulder and wrist at zero pitch
 };
 
 // Sines and cosines of one configuration.
@@ -30,21 +31,22 @@ struct Pose {
 
 template <class T>
 struct MassMatrix {
-  T m00, m03, m33;              // yaw and roll
-  T m11, m12, m22;              // the pitches
+  T m00, m03, m33;  // yaw and roll
+  T m11, m12, m22;  // the pitches
 };
 
 // All that depends on the links' angles alone.
 template <class T>
 struct Geometry {
   MassMatrix<T> mass;
-  T half_d1, half_d2;           // halves of dm00/dq1 and dm00/dq2
-  T roll;                       // dm03/dphi
-  T wrist;                      // -dm12/dq2
-  T gravity1, gravity2;         // N m
+  T half_d1, half_d2;    // halves of dm00/dq1 and dm00/dq2
+  T roll;                // dm03/dphi
+  T wrist;               // -dm12/dq2
+  T gravity1, gravity2;  // N m
 };
 
-// Link 3's inertias about y and z are averaged: with different values the matrix would depend on the roll angle and lose its block form.
+// Link 3's inertias about y and z are averaged: with different values the matrix would depend on the roll angle and
+// lose its block form.
 inline RigidBody<double> rigid_body(const ArmParameters& p) {
   const Link& link1 = p.links[1];
   const Link& link2 = p.links[2];
@@ -55,7 +57,8 @@ inline RigidBody<double> rigid_body(const ArmParameters& p) {
   const double first1 = link1.mass * link1.centre + carried * link1.length;
   const double first2 = link2.mass * link2.centre + link3.mass * reach3 + p.tip_mass * reach_tip;
   const double second1 = link1.mass * link1.centre * link1.centre + carried * link1.length * link1.length;
-  const double second2 = link2.mass * link2.centre * link2.centre + link3.mass * reach3 * reach3 + p.tip_mass * reach_tip * reach_tip;
+  const double second2 =
+      link2.mass * link2.centre * link2.centre + link3.mass * reach3 * reach3 + p.tip_mass * reach_tip * reach_tip;
   const double across3 = 0.5 * (link3.iyy + link3.izz);
 
   RigidBody<double> body{};
@@ -90,8 +93,8 @@ GREYWHALE_INLINE Geometry<T> geometry_of(const RigidBody<T>& b, const Pose<T>& p
   const T folded = b.coupling * p.c2;
   const T half_across = (b.ixx23 - b.iyy23) * (p.sphi * p.cphi);
   Geometry<T> g;
-  g.mass.m00 = b.yaw + b.ixx1 * (p.s1 * p.s1) + b.iyy1 * (p.c1 * p.c1) + b.ixx23 * (p.sphi * p.sphi) + b.iyy23 * (p.cphi * p.cphi) +
-               (reach + reach) * p.cphi;
+  g.mass.m00 = b.yaw + b.ixx1 * (p.s1 * p.s1) + b.iyy1 * (p.c1 * p.c1) + b.ixx23 * (p.sphi * p.sphi) +
+               b.iyy23 * (p.cphi * p.cphi) + (reach + reach) * p.cphi;
   g.mass.m03 = b.ixx3 * p.sphi;
   g.mass.m33 = b.ixx3;
   g.mass.m22 = b.izz23;

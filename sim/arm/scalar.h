@@ -8,7 +8,8 @@
 
 namespace greywhale::arm {
 
-// A constant in every lane. T may be a GCC vector type, which has no conversion from a number but does broadcast in sums.
+// A constant in every lane. T may be a GCC vector type, which has no conversion from a number but does broadcast in
+// sums.
 template <class T>
 constexpr T constant(double value) {
   return T{} + value;

@@ -1,11 +1,12 @@
 // One integration step of links, motors, gears, friction and stops.
 //
-// Each joint is two bodies: the motor side (rotor and gear train, reflected to the output shaft, with all dry friction) and the
-// link side. The gear mesh between them is a spring and damper with a dead zone. Everything stiff is taken at the end of the step
-// (implicit Euler in the velocities): motor damping, mesh, friction, stops. Velocity terms and gravity are taken at its start.
-// The step is linear once it is known which teeth touch, which shafts slide and which stops hold, and that is found by trying:
-// solve, correct, solve again. The conditions are monotone, so this ends, nearly always within two passes; a step that does not
-// settle is counted. All of it works lane by lane when T is a vector type.
+// Each joint is two bodies: the motor side (rotor and gear train, reflected to the output shaft, with all dry friction)
+// and the link side. The gear mesh between them is a spring and damper with a dead zone. Everything stiff is taken at
+// the end of the step (implicit Euler in the velocities): motor damping, mesh, friction, stops. Velocity terms and
+// gravity are taken at its start. The step is linear once it is known which teeth touch, which shafts slide and which
+// stops hold, and that is found by trying: solve, correct, solve again. The conditions are monotone, so this ends,
+// nearly always within two passes; a step that does not settle is counted. All of it works lane by lane when T is a
+// vector type.
 #pragma once
 
 #include <cstddef>
@@ -43,7 +44,8 @@ bool settle(const Plant<T>& plant, const State<T>& s, const Terms<T> (&terms)[kJ
     sides[i].mesh = corrected_mesh(joint.gear, terms[i], side.mesh, closing, dt);
     sides[i].slip = corrected_slip(terms[i], side, motor_v, closing);
     sides[i].stop = corrected_stop(joint.stops, side.stop, s.q[i] + dt * v[i], impulses[i]);
-    const bool changed = any(sides[i].mesh != side.mesh) || any(sides[i].slip != side.slip) || any(sides[i].stop != side.stop);
+    const bool changed =
+        any(sides[i].mesh != side.mesh) || any(sides[i].slip != side.slip) || any(sides[i].stop != side.stop);
     settled = settled && !changed;
   }
   return settled;
@@ -54,7 +56,8 @@ template <class T>
 void rest_at_stops(const LinearSystem<T>& system, const Sides<T> (&sides)[kJoints], T (&v)[kJoints]) {
   const T zero = constant<T>(0.0);
   const T rest[kJoints] = {zero, zero, zero, zero};
-  if (any(sides[0].stop != zero) || any(sides[1].stop != zero) || any(sides[2].stop != zero) || any(sides[3].stop != zero)) {
+  if (any(sides[0].stop != zero) || any(sides[1].stop != zero) || any(sides[2].stop != zero) ||
+      any(sides[3].stop != zero)) {
     solve(system, sides, rest, v);
   }
 }

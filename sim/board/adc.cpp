@@ -15,137 +15,137 @@ constexpr double bandgap_millivolts = 1100.0;
 constexpr double temperature_millivolts = 314.0;  // ATmega328P at 25 degrees Celsius
 
 avr_int_vector_t* find_adc_vector(avr_t& avr) {
-    for (unsigned i = 0; i < avr.interrupts.vector_count; ++i) {
-        avr_int_vector_t* vector = avr.interrupts.vector[i];
-        if (vector->enable.reg == reg::ADCSRA) return vector;
-    }
-    throw BoardError("this libsimavr has no ADC interrupt for the chip; install Debian's libsimavr-dev 1.6");
+  for (unsigned i = 0; i < avr.interrupts.vector_count; ++i) {
+    avr_int_vector_t* vector = avr.interrupts.vector[i];
+    if (vector->enable.reg == reg::ADCSRA) return vector;
+  }
+  throw BoardError("this libsimavr has no ADC interrupt for the chip; install Debian's libsimavr-dev 1.6");
 }
 }  // namespace
 
 Adc::Adc(avr_t& avr, const Chip& chip, Interrupts& interrupts)
     : avr_(avr), chip_(chip), interrupts_(interrupts), vector_(find_adc_vector(avr)) {
-    for (uint16_t r : {reg::ADCL, reg::ADCH, reg::ADCSRA, reg::ADCSRB, reg::ADMUX}) plain_register(avr_, r);
-    on_write<&Adc::write_control>(avr_, reg::ADCSRA, *this);
-    on_write<&Adc::write_mux>(avr_, reg::ADMUX, *this);
-    on_write<&Adc::write_mux>(avr_, reg::ADCSRB, *this);
-    on_read<&Adc::read_low>(avr_, reg::ADCL, *this);
-    on_read<&Adc::read_high>(avr_, reg::ADCH, *this);
+  for (uint16_t r : {reg::ADCL, reg::ADCH, reg::ADCSRA, reg::ADCSRB, reg::ADMUX}) plain_register(avr_, r);
+  on_write<&Adc::write_control>(avr_, reg::ADCSRA, *this);
+  on_write<&Adc::write_mux>(avr_, reg::ADMUX, *this);
+  on_write<&Adc::write_mux>(avr_, reg::ADCSRB, *this);
+  on_read<&Adc::read_low>(avr_, reg::ADCL, *this);
+  on_read<&Adc::read_high>(avr_, reg::ADCH, *this);
 }
 
 void Adc::reset() {
-    first_ = true;
-    result_locked_ = false;
-    end_ = 0;
+  first_ = true;
+  result_locked_ = false;
+  end_ = 0;
 }
 
 // Inputs change between two runs of the CPU only, so sampling may wait until the result or a change needs it.
 void Adc::set_millivolts(const std::array<double, input_count>& millivolts) {
-    if (running() && !sampled_ && sample_at_ <= avr_.cycle) sample();
-    millivolts_ = millivolts;
+  if (running() && !sampled_ && sample_at_ <= avr_.cycle) sample();
+  millivolts_ = millivolts;
 }
 
 unsigned Adc::selected() const {
-    const unsigned admux = avr_.data[reg::ADMUX];
-    if (!chip_.wide_adc_mux) return admux & 0x0Fu;
-    return (admux & 0x1Fu) | (avr_.data[reg::ADCSRB] & MUX5) << 2;
+  const unsigned admux = avr_.data[reg::ADMUX];
+  if (!chip_.wide_adc_mux) return admux & 0x0Fu;
+  return (admux & 0x1Fu) | (avr_.data[reg::ADCSRB] & MUX5) << 2;
 }
 
 double Adc::millivolts_at(unsigned mux) const {
-    if (mux < input_count) return millivolts_[mux];
-    if (mux == (chip_.wide_adc_mux ? 0x1Eu : 0x0Eu)) return bandgap_millivolts;
-    if (mux == 8 && !chip_.wide_adc_mux) return temperature_millivolts;
-    return 0.0;  // ground, ADC8..15 and the differential channels: nothing is connected
+  if (mux < input_count) return millivolts_[mux];
+  if (mux == (chip_.wide_adc_mux ? 0x1Eu : 0x0Eu)) return bandgap_millivolts;
+  if (mux == 8 && !chip_.wide_adc_mux) return temperature_millivolts;
+  return 0.0;  // ground, ADC8..15 and the differential channels: nothing is connected
 }
 
 double Adc::reference_millivolts(unsigned admux) const {
-    switch (admux >> 6) {
-        case 2: return chip_.wide_adc_mux ? 1100.0 : static_cast<double>(avr_.aref);
-        case 3: return chip_.wide_adc_mux ? 2560.0 : 1100.0;
-        default: return static_cast<double>(avr_.avcc);  // AVCC, or the AREF pin, taken as tied to 5 V
-    }
+  switch (admux >> 6) {
+    case 2: return chip_.wide_adc_mux ? 1100.0 : static_cast<double>(avr_.aref);
+    case 3: return chip_.wide_adc_mux ? 2560.0 : 1100.0;
+    default: return static_cast<double>(avr_.avcc);  // AVCC, or the AREF pin, taken as tied to 5 V
+  }
 }
 
 void Adc::start(uint64_t edge) {
-    const unsigned select = avr_.data[reg::ADCSRA] & ADPS;
-    const uint64_t clock = 1u << (select ? select : 1);
-    edge_ = edge;
-    sample_at_ = edge + (first_ ? 27 : 3) * clock / 2;
-    end_ = edge + (first_ ? 25 : 13) * clock;
-    first_ = false;
-    sampled_ = false;
-    mux_ = selected();
-    admux_ = avr_.data[reg::ADMUX];
+  const unsigned select = avr_.data[reg::ADCSRA] & ADPS;
+  const uint64_t clock = 1u << (select ? select : 1);
+  edge_ = edge;
+  sample_at_ = edge + (first_ ? 27 : 3) * clock / 2;
+  end_ = edge + (first_ ? 25 : 13) * clock;
+  first_ = false;
+  sampled_ = false;
+  mux_ = selected();
+  admux_ = avr_.data[reg::ADMUX];
 }
 
 void Adc::sample() {
-    const double count = millivolts_at(mux_) * 1024.0 / reference_millivolts(admux_);
-    held_ = static_cast<uint16_t>(count >= 1023.0 ? 1023.0 : count > 0.0 ? count : 0.0);
-    sampled_ = true;
+  const double count = millivolts_at(mux_) * 1024.0 / reference_millivolts(admux_);
+  held_ = static_cast<uint16_t>(count >= 1023.0 ? 1023.0 : count > 0.0 ? count : 0.0);
+  sampled_ = true;
 }
 
 avr_cycle_count_t Adc::on_done(avr_cycle_count_t when) {
-    if (!sampled_) sample();
-    ++conversions_;
-    end_ = 0;
-    if (!result_locked_) {
-        const unsigned result = (avr_.data[reg::ADMUX] & ADLAR) ? held_ << 6u : held_;
-        avr_.data[reg::ADCL] = static_cast<uint8_t>(result);
-        avr_.data[reg::ADCH] = static_cast<uint8_t>(result >> 8);
-    }
-    uint8_t& control = avr_.data[reg::ADCSRA];
-    const bool free_running = (control & ADATE) && !(avr_.data[reg::ADCSRB] & ADTS);
-    if (!free_running) control = static_cast<uint8_t>(control & ~ADSC);
-    interrupts_.raise(*vector_);  // sets ADIF
-    if (!free_running) return 0;
-    start(when);
-    return end_;
+  if (!sampled_) sample();
+  ++conversions_;
+  end_ = 0;
+  if (!result_locked_) {
+    const unsigned result = (avr_.data[reg::ADMUX] & ADLAR) ? held_ << 6u : held_;
+    avr_.data[reg::ADCL] = static_cast<uint8_t>(result);
+    avr_.data[reg::ADCH] = static_cast<uint8_t>(result >> 8);
+  }
+  uint8_t& control = avr_.data[reg::ADCSRA];
+  const bool free_running = (control & ADATE) && !(avr_.data[reg::ADCSRB] & ADTS);
+  if (!free_running) control = static_cast<uint8_t>(control & ~ADSC);
+  interrupts_.raise(*vector_);  // sets ADIF
+  if (!free_running) return 0;
+  start(when);
+  return end_;
 }
 
 void Adc::write_control(uint16_t, uint8_t value) {
-    uint8_t& control = avr_.data[reg::ADCSRA];
-    const uint8_t old = control;
-    const bool enabled = value & ADEN;
-    const bool flag = (old & ADIF) && !(value & ADIF);  // written one clears
-    uint8_t now = static_cast<uint8_t>((value & (ADEN | ADATE | ADIE | ADPS)) | (flag ? ADIF : 0));
-    if (enabled && (running() || (value & ADSC))) now |= ADSC;
-    control = now;
-    interrupts_.set_level(*vector_, flag && (value & ADIE));
+  uint8_t& control = avr_.data[reg::ADCSRA];
+  const uint8_t old = control;
+  const bool enabled = value & ADEN;
+  const bool flag = (old & ADIF) && !(value & ADIF);  // written one clears
+  uint8_t now = static_cast<uint8_t>((value & (ADEN | ADATE | ADIE | ADPS)) | (flag ? ADIF : 0));
+  if (enabled && (running() || (value & ADSC))) now |= ADSC;
+  control = now;
+  interrupts_.set_level(*vector_, flag && (value & ADIE));
 
-    if (!enabled) {
-        cancel<&Adc::on_done>(avr_, *this);
-        end_ = 0;
-        first_ = true;
-        return;
-    }
-    const uint64_t end_of_store = store_ends(avr_);
-    if (!(old & ADEN)) enabled_at_ = end_of_store;
-    if ((value & ADSC) && !running()) {
-        const uint64_t clock = 1u << ((value & ADPS) ? (value & ADPS) : 1);
-        const uint64_t late = (end_of_store - enabled_at_) % clock;
-        start(end_of_store + (late ? clock - late : 0));
-        schedule<&Adc::on_done>(avr_, end_, *this);
-    }
+  if (!enabled) {
+    cancel<&Adc::on_done>(avr_, *this);
+    end_ = 0;
+    first_ = true;
+    return;
+  }
+  const uint64_t end_of_store = store_ends(avr_);
+  if (!(old & ADEN)) enabled_at_ = end_of_store;
+  if ((value & ADSC) && !running()) {
+    const uint64_t clock = 1u << ((value & ADPS) ? (value & ADPS) : 1);
+    const uint64_t late = (end_of_store - enabled_at_) % clock;
+    start(end_of_store + (late ? clock - late : 0));
+    schedule<&Adc::on_done>(avr_, end_, *this);
+  }
 }
 
 // Until the conversion's first clock edge a new channel still counts.
 void Adc::write_mux(uint16_t reg, uint8_t value) {
-    avr_.data[reg] = value;
-    if (running() && store_ends(avr_) <= edge_) {
-        mux_ = selected();
-        admux_ = avr_.data[reg::ADMUX];
-    }
+  avr_.data[reg] = value;
+  if (running() && store_ends(avr_) <= edge_) {
+    mux_ = selected();
+    admux_ = avr_.data[reg::ADMUX];
+  }
 }
 
 // Reading ADCL holds the result until ADCH is read too.
 uint8_t Adc::read_low(uint16_t reg) {
-    result_locked_ = true;
-    return avr_.data[reg];
+  result_locked_ = true;
+  return avr_.data[reg];
 }
 
 uint8_t Adc::read_high(uint16_t reg) {
-    result_locked_ = false;
-    return avr_.data[reg];
+  result_locked_ = false;
+  return avr_.data[reg];
 }
 
 }  // namespace board

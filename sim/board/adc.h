@@ -11,49 +11,49 @@
 namespace board {
 
 class Adc {
-public:
-    static constexpr unsigned input_count = 8;
+ public:
+  static constexpr unsigned input_count = 8;
 
-    Adc(avr_t& avr, const Chip& chip, Interrupts& interrupts);
-    void reset();
+  Adc(avr_t& avr, const Chip& chip, Interrupts& interrupts);
+  void reset();
 
-    // Voltages at ADC0..7 from now on. A conversion that has already sampled keeps what it took.
-    void set_millivolts(const std::array<double, input_count>& millivolts);
-    uint64_t conversions() const { return conversions_; }
+  // Voltages at ADC0..7 from now on. A conversion that has already sampled keeps what it took.
+  void set_millivolts(const std::array<double, input_count>& millivolts);
+  uint64_t conversions() const { return conversions_; }
 
-private:
-    bool running() const { return end_ != 0; }
-    unsigned selected() const;
-    double millivolts_at(unsigned mux) const;
-    double reference_millivolts(unsigned admux) const;
-    void start(uint64_t edge);
-    void sample();
-    avr_cycle_count_t on_done(avr_cycle_count_t when);
+ private:
+  bool running() const { return end_ != 0; }
+  unsigned selected() const;
+  double millivolts_at(unsigned mux) const;
+  double reference_millivolts(unsigned admux) const;
+  void start(uint64_t edge);
+  void sample();
+  avr_cycle_count_t on_done(avr_cycle_count_t when);
 
-    void write_control(uint16_t reg, uint8_t value);
-    void write_mux(uint16_t reg, uint8_t value);
-    uint8_t read_low(uint16_t reg);
-    uint8_t read_high(uint16_t reg);
+  void write_control(uint16_t reg, uint8_t value);
+  void write_mux(uint16_t reg, uint8_t value);
+  uint8_t read_low(uint16_t reg);
+  uint8_t read_high(uint16_t reg);
 
-    avr_t& avr_;
-    const Chip& chip_;
-    Interrupts& interrupts_;
-    avr_int_vector_t* vector_ = nullptr;
+  avr_t& avr_;
+  const Chip& chip_;
+  Interrupts& interrupts_;
+  avr_int_vector_t* vector_ = nullptr;
 
-    std::array<double, input_count> millivolts_{};
-    uint64_t enabled_at_ = 0;  // the prescaler counts from here
-    bool first_ = true;
-    bool result_locked_ = false;
+  std::array<double, input_count> millivolts_{};
+  uint64_t enabled_at_ = 0;  // the prescaler counts from here
+  bool first_ = true;
+  bool result_locked_ = false;
 
-    // The conversion under way
-    uint64_t edge_ = 0;       // ADC clock edge it started at: channel and reference are fixed from here
-    uint64_t sample_at_ = 0;  // the sample-and-hold closes
-    uint64_t end_ = 0;        // 0: no conversion
-    unsigned mux_ = 0;
-    unsigned admux_ = 0;
-    bool sampled_ = false;
-    uint16_t held_ = 0;
-    uint64_t conversions_ = 0;
+  // The conversion under way
+  uint64_t edge_ = 0;       // ADC clock edge it started at: channel and reference are fixed from here
+  uint64_t sample_at_ = 0;  // the sample-and-hold closes
+  uint64_t end_ = 0;        // 0: no conversion
+  unsigned mux_ = 0;
+  unsigned admux_ = 0;
+  bool sampled_ = false;
+  uint16_t held_ = 0;
+  uint64_t conversions_ = 0;
 };
 
 }  // namespace board

@@ -27,109 +27,109 @@ namespace board {
 enum class RunState : int { running = 0, done = 1, crashed = 2 };
 
 struct Stats {
-    uint64_t sleep_cycles = 0;
-    uint64_t resets = 0;  // of every cause
-    uint64_t watchdog_resets = 0;
+  uint64_t sleep_cycles = 0;
+  uint64_t resets = 0;  // of every cause
+  uint64_t watchdog_resets = 0;
 };
 
 class Board {
-public:
-    explicit Board(const std::string& chip);
-    ~Board();
-    Board(const Board&) = delete;
-    Board& operator=(const Board&) = delete;
+ public:
+  explicit Board(const std::string& chip);
+  ~Board();
+  Board(const Board&) = delete;
+  Board& operator=(const Board&) = delete;
 
-    // Programming, as a programmer would do it: the reset that follows is up to the caller.
-    void load_hex(const std::string& path, bool bootloader);
-    void load_elf(const std::string& path);
-    void erase_flash();
-    std::string flash() const;
+  // Programming, as a programmer would do it: the reset that follows is up to the caller.
+  void load_hex(const std::string& path, bool bootloader);
+  void load_elf(const std::string& path);
+  void erase_flash();
+  std::string flash() const;
 
-    void power_on(uint64_t seed);
-    void power_off(uint64_t seed);
-    void reset();  // the RESET pin
-    bool powered() const { return powered_; }
+  void power_on(uint64_t seed);
+  void power_off(uint64_t seed);
+  void reset();  // the RESET pin
+  bool powered() const { return powered_; }
 
-    // Runs to the first instruction boundary at or after the cycle. Without power only time passes.
-    RunState run_until(uint64_t cycle);
-    RunState state() const;
-    const std::string& crash_reason() const { return hooks_.last_error; }
+  // Runs to the first instruction boundary at or after the cycle. Without power only time passes.
+  RunState run_until(uint64_t cycle);
+  RunState state() const;
+  const std::string& crash_reason() const { return hooks_.last_error; }
 
-    // Runs a compiled function as if called, interrupts off, and returns its exact cycles, RET included. Arguments and
-    // results are in the registers of the ABI (data addresses 0..31), which stay as the function leaves them. Throws if
-    // it takes more cycles than limit.
-    uint64_t call(uint32_t address, uint64_t limit);
+  // Runs a compiled function as if called, interrupts off, and returns its exact cycles, RET included. Arguments and
+  // results are in the registers of the ABI (data addresses 0..31), which stay as the function leaves them. Throws if
+  // it takes more cycles than limit.
+  uint64_t call(uint32_t address, uint64_t limit);
 
-    // Bytes to USART0; without power they are lost.
-    void send(const std::string& bytes);
+  // Bytes to USART0; without power they are lost.
+  void send(const std::string& bytes);
 
-    uint64_t cycle() const { return avr_->cycle; }
-    uint32_t pc() const { return avr_->pc; }
-    void set_pc(uint32_t address) { avr_->pc = address & avr_->flashend & ~1u; }
-    // Execute with simavr's own, slower instruction decoder: the reference that the fast one is tested against.
-    void use_reference_decoder(bool on) { reference_decoder_ = on; }
-    bool in_bootloader() const { return avr_->pc >= boot_start_; }
-    std::string peek(uint32_t address, uint32_t count);
-    void poke(uint32_t address, const std::string& bytes);
+  uint64_t cycle() const { return avr_->cycle; }
+  uint32_t pc() const { return avr_->pc; }
+  void set_pc(uint32_t address) { avr_->pc = address & avr_->flashend & ~1u; }
+  // Execute with simavr's own, slower instruction decoder: the reference that the fast one is tested against.
+  void use_reference_decoder(bool on) { reference_decoder_ = on; }
+  bool in_bootloader() const { return avr_->pc >= boot_start_; }
+  std::string peek(uint32_t address, uint32_t count);
+  void poke(uint32_t address, const std::string& bytes);
 
-    // Output registered once, read all together. Returns the place of the value in outputs().
-    size_t add_duty_output(unsigned timer, const std::string& channel);
-    size_t add_pin_output(const std::string& port, unsigned bit);
-    size_t output_count() const { return outputs_.size(); }
-    void read_outputs(double* values);
-    double duty(unsigned timer, const std::string& channel);
-    bool pin(const std::string& port, unsigned bit) const;
+  // Output registered once, read all together. Returns the place of the value in outputs().
+  size_t add_duty_output(unsigned timer, const std::string& channel);
+  size_t add_pin_output(const std::string& port, unsigned bit);
+  size_t output_count() const { return outputs_.size(); }
+  void read_outputs(double* values);
+  double duty(unsigned timer, const std::string& channel);
+  bool pin(const std::string& port, unsigned bit) const;
 
-    const Chip& chip() const { return chip_; }
-    Uart& uart() { return *uart_; }
-    Adc& adc() { return *adc_; }
-    Eeprom& eeprom() { return *eeprom_; }
-    const Flash& flash_model() const { return *flash_; }
-    const Interrupts& interrupts() const { return *interrupts_; }
-    const Stats& stats() const { return stats_; }
-    uint64_t trace_hash() const { return trace_.hash(); }
+  const Chip& chip() const { return chip_; }
+  Uart& uart() { return *uart_; }
+  Adc& adc() { return *adc_; }
+  Eeprom& eeprom() { return *eeprom_; }
+  const Flash& flash_model() const { return *flash_; }
+  const Interrupts& interrupts() const { return *interrupts_; }
+  const Stats& stats() const { return stats_; }
+  uint64_t trace_hash() const { return trace_.hash(); }
 
-private:
-    struct Output {
-        Timer* timer = nullptr;  // a duty, or else a pin
-        unsigned channel = 0;
-        uint16_t port = 0;
-        unsigned bit = 0;
-    };
-    struct FreeAvr {
-        void operator()(avr_t* avr) const;
-    };
+ private:
+  struct Output {
+    Timer* timer = nullptr;  // a duty, or else a pin
+    unsigned channel = 0;
+    uint16_t port = 0;
+    unsigned bit = 0;
+  };
+  struct FreeAvr {
+    void operator()(avr_t* avr) const;
+  };
 
-    void build_models();
-    void write_memory(const std::vector<Segment>& segments, const std::string& path);
-    void restart(uint8_t cause);
-    void step();
-    bool ended() const { return avr_->state == cpu_Done || avr_->state == cpu_Crashed; }
-    avr_cycle_count_t on_stop(avr_cycle_count_t) { return 0; }
-    Output find_duty(unsigned timer, const std::string& channel);
-    Output find_pin(const std::string& port, unsigned bit) const;
-    void require_memory(uint32_t address, size_t count) const;
+  void build_models();
+  void write_memory(const std::vector<Segment>& segments, const std::string& path);
+  void restart(uint8_t cause);
+  void step();
+  bool ended() const { return avr_->state == cpu_Done || avr_->state == cpu_Crashed; }
+  avr_cycle_count_t on_stop(avr_cycle_count_t) { return 0; }
+  Output find_duty(unsigned timer, const std::string& channel);
+  Output find_pin(const std::string& port, unsigned bit) const;
+  void require_memory(uint32_t address, size_t count) const;
 
-    const Chip& chip_;
-    Hooks hooks_;
-    std::unique_ptr<avr_t, FreeAvr> avr_;
-    avr_run_t normal_run_ = nullptr;
-    Trace trace_;
-    std::unique_ptr<Cpu> cpu_;
-    std::unique_ptr<Interrupts> interrupts_;
-    std::unique_ptr<Ports> ports_;
-    std::unique_ptr<Uart> uart_;
-    std::unique_ptr<Adc> adc_;
-    std::unique_ptr<Eeprom> eeprom_;
-    std::unique_ptr<Flash> flash_;
-    std::vector<std::unique_ptr<Timer>> timers_;
-    std::unique_ptr<Prescaler> prescaler_;
-    std::vector<Output> outputs_;
-    Stats stats_;
-    uint32_t boot_start_ = UINT32_MAX;
-    uint64_t stop_at_ = 0;
-    bool powered_ = false;
-    bool reference_decoder_ = false;
+  const Chip& chip_;
+  Hooks hooks_;
+  std::unique_ptr<avr_t, FreeAvr> avr_;
+  avr_run_t normal_run_ = nullptr;
+  Trace trace_;
+  std::unique_ptr<Cpu> cpu_;
+  std::unique_ptr<Interrupts> interrupts_;
+  std::unique_ptr<Ports> ports_;
+  std::unique_ptr<Uart> uart_;
+  std::unique_ptr<Adc> adc_;
+  std::unique_ptr<Eeprom> eeprom_;
+  std::unique_ptr<Flash> flash_;
+  std::vector<std::unique_ptr<Timer>> timers_;
+  std::unique_ptr<Prescaler> prescaler_;
+  std::vector<Output> outputs_;
+  Stats stats_;
+  uint32_t boot_start_ = UINT32_MAX;
+  uint64_t stop_at_ = 0;
+  bool powered_ = false;
+  bool reference_decoder_ = false;
 };
 
 }  // namespace board

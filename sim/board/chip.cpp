@@ -14,9 +14,9 @@ constexpr Chip chips[] = {
 }  // namespace
 
 const Chip& find_chip(const std::string& name) {
-    for (const Chip& chip : chips)
-        if (name == chip.name) return chip;
-    throw BoardError("the chip \"" + name + "\" is not simulated; use atmega2560 or atmega328p");
+  for (const Chip& chip : chips)
+    if (name == chip.name) return chip;
+  throw BoardError("the chip \"" + name + "\" is not simulated; use atmega2560 or atmega328p");
 }
 
 }  // namespace board

@@ -8,16 +8,16 @@
 namespace board {
 
 struct Chip {
-    const char* name;             // as avr-gcc and simavr call it
-    const char* title;            // as people call it
-    unsigned elf_architecture;    // EF_AVR_MACH of programs built for it
-    unsigned interrupt_entry;     // cycles from accepting an interrupt to its vector; as many again to wake up
-    unsigned reti;                // cycles of RETI
-    uint32_t nrww_start;          // first flash byte that cannot be read while it is written
-    uint32_t flash_page;          // bytes
-    bool wide_pc;                 // more than 128 KB of flash: 22-bit program counter, RAMPZ, EIND
-    bool wide_adc_mux;            // six multiplexer bits (MUX5 in ADCSRB) instead of four
-    const char* ports;            // port letters
+  const char* name;           // as avr-gcc and simavr call it
+  const char* title;          // as people call it
+  unsigned elf_architecture;  // EF_AVR_MACH of programs built for it
+  unsigned interrupt_entry;   // cycles from accepting an interrupt to its vector; as many again to wake up
+  unsigned reti;              // cycles of RETI
+  uint32_t nrww_start;        // first flash byte that cannot be read while it is written
+  uint32_t flash_page;        // bytes
+  bool wide_pc;               // more than 128 KB of flash: 22-bit program counter, RAMPZ, EIND
+  bool wide_adc_mux;          // six multiplexer bits (MUX5 in ADCSRB) instead of four
+  const char* ports;          // port letters
 };
 
 // Throws BoardError for anything but "atmega2560" and "atmega328p".
@@ -25,11 +25,31 @@ const Chip& find_chip(const std::string& name);
 
 namespace reg {
 enum : uint16_t {
-    PINA = 0x20,
-    EECR = 0x3F, EEDR = 0x40, EEARL = 0x41, EEARH = 0x42, GTCCR = 0x43,
-    SMCR = 0x53, MCUSR = 0x54, SPMCSR = 0x57, RAMPZ = 0x5B, EIND = 0x5C, SPL = 0x5D, SPH = 0x5E, SREG = 0x5F,
-    ADCL = 0x78, ADCH = 0x79, ADCSRA = 0x7A, ADCSRB = 0x7B, ADMUX = 0x7C,
-    UCSR0A = 0xC0, UCSR0B = 0xC1, UCSR0C = 0xC2, UBRR0L = 0xC4, UBRR0H = 0xC5, UDR0 = 0xC6,
+  PINA = 0x20,
+  EECR = 0x3F,
+  EEDR = 0x40,
+  EEARL = 0x41,
+  EEARH = 0x42,
+  GTCCR = 0x43,
+  SMCR = 0x53,
+  MCUSR = 0x54,
+  SPMCSR = 0x57,
+  RAMPZ = 0x5B,
+  EIND = 0x5C,
+  SPL = 0x5D,
+  SPH = 0x5E,
+  SREG = 0x5F,
+  ADCL = 0x78,
+  ADCH = 0x79,
+  ADCSRA = 0x7A,
+  ADCSRB = 0x7B,
+  ADMUX = 0x7C,
+  UCSR0A = 0xC0,
+  UCSR0B = 0xC1,
+  UCSR0C = 0xC2,
+  UBRR0L = 0xC4,
+  UBRR0H = 0xC5,
+  UDR0 = 0xC6,
 };
 }  // namespace reg
 
@@ -38,10 +58,10 @@ enum : uint8_t { PORF = 0x01, EXTRF = 0x02, BORF = 0x04, WDRF = 0x08 };
 
 // Address of PINx; DDRx and PORTx follow it.
 constexpr uint16_t port_base(char letter) {
-    const char order[] = "ABCDEFG";
-    for (uint16_t i = 0; i < 7; ++i)
-        if (order[i] == letter) return static_cast<uint16_t>(reg::PINA + 3 * i);
-    return static_cast<uint16_t>(letter == 'H' ? 0x100 : 0x103 + 3 * (letter - 'J'));
+  const char order[] = "ABCDEFG";
+  for (uint16_t i = 0; i < 7; ++i)
+    if (order[i] == letter) return static_cast<uint16_t>(reg::PINA + 3 * i);
+  return static_cast<uint16_t>(letter == 'H' ? 0x100 : 0x103 + 3 * (letter - 'J'));
 }
 
 }  // namespace board

@@ -12,27 +12,27 @@
 namespace board {
 
 class Cpu {
-public:
-    Cpu(avr_t& avr, const Chip& chip);
+ public:
+  Cpu(avr_t& avr, const Chip& chip);
 
-    // Like simavr's avr_run_one(): executes until the next event is due, an interrupt wants attention, or the CPU
-    // sleeps or crashes. Returns where the program goes on (a byte address).
-    avr_flashaddr_t run();
+  // Like simavr's avr_run_one(): executes until the next event is due, an interrupt wants attention, or the CPU
+  // sleeps or crashes. Returns where the program goes on (a byte address).
+  avr_flashaddr_t run();
 
-    // Forgets what was decoded there.
-    void flash_changed(uint32_t address, uint32_t count);
+  // Forgets what was decoded there.
+  void flash_changed(uint32_t address, uint32_t count);
 
-private:
-    // Everything but plain RAM: registers with their hooks, SREG, addresses that do not exist.
-    uint8_t read_register(uint32_t address);
-    void write_register(uint32_t address, uint8_t value);
-    void crash(const char* what, uint32_t value);
+ private:
+  // Everything but plain RAM: registers with their hooks, SREG, addresses that do not exist.
+  uint8_t read_register(uint32_t address);
+  void write_register(uint32_t address, uint8_t value);
+  void crash(const char* what, uint32_t value);
 
-    avr_t& avr_;
-    Decoder decoder_;
-    uint32_t mask_;  // word addresses wrap
-    bool wide_pc_;
-    std::vector<Instruction> decoded_;
+  avr_t& avr_;
+  Decoder decoder_;
+  uint32_t mask_;  // word addresses wrap
+  bool wide_pc_;
+  std::vector<Instruction> decoded_;
 };
 
 }  // namespace board

@@ -16,87 +16,85 @@ constexpr unsigned write_stall = 2, read_stall = 4, window_cycles = 4;
 
 Eeprom::Eeprom(avr_t& avr, avr_eeprom_t& stock, Interrupts& interrupts, Trace& trace)
     : avr_(avr), stock_(stock), interrupts_(interrupts), trace_(trace) {
-    plain_register(avr_, reg::EECR);
-    on_write<&Eeprom::write_control>(avr_, reg::EECR, *this);
+  plain_register(avr_, reg::EECR);
+  on_write<&Eeprom::write_control>(avr_, reg::EECR, *this);
 }
 
 void Eeprom::reset() {
-    if (!busy_) return;
-    control() |= EEPE;
-    schedule<&Eeprom::on_done>(avr_, end_, *this);
+  if (!busy_) return;
+  control() |= EEPE;
+  schedule<&Eeprom::on_done>(avr_, end_, *this);
 }
 
 uint16_t Eeprom::address() const {
-    const unsigned address = static_cast<unsigned>(avr_.data[reg::EEARL] | avr_.data[reg::EEARH] << 8);
-    return static_cast<uint16_t>(address % stock_.size);
+  const unsigned address = static_cast<unsigned>(avr_.data[reg::EEARL] | avr_.data[reg::EEARH] << 8);
+  return static_cast<uint16_t>(address % stock_.size);
 }
 
 uint64_t Eeprom::busy_cycles(Mode mode) const {
-    return uint64_t{avr_.frequency} * (mode == Mode::erase_and_write ? 34u : 18u) / 10000u;
+  return uint64_t{avr_.frequency} * (mode == Mode::erase_and_write ? 34u : 18u) / 10000u;
 }
 
 avr_cycle_count_t Eeprom::on_done(avr_cycle_count_t) {
-    uint8_t& cell = stock_.eeprom[cell_];
-    switch (mode_) {
-        case Mode::erase_and_write: cell = byte_; break;
-        case Mode::erase: cell = 0xFF; break;
-        case Mode::write: cell &= byte_; break;  // without erasing, bits can only be cleared
-        case Mode::reserved: break;
-    }
-    busy_ = false;
-    control() = static_cast<uint8_t>(control() & ~EEPE);
-    refresh_interrupt();
-    return 0;
+  uint8_t& cell = stock_.eeprom[cell_];
+  switch (mode_) {
+    case Mode::erase_and_write: cell = byte_; break;
+    case Mode::erase: cell = 0xFF; break;
+    case Mode::write: cell &= byte_; break;  // without erasing, bits can only be cleared
+    case Mode::reserved: break;
+  }
+  busy_ = false;
+  control() = static_cast<uint8_t>(control() & ~EEPE);
+  refresh_interrupt();
+  return 0;
 }
 
 // Erasing sets bits and writing clears them, one cell at a time: power that fails leaves some done and some not.
 void Eeprom::lose_power(uint64_t seed) {
-    if (!busy_) return;
-    busy_ = false;
-    uint8_t& cell = stock_.eeprom[cell_];
-    const auto done = static_cast<uint8_t>(Random(seed).next());
-    const bool erasing = mode_ == Mode::erase ||
-                         (mode_ == Mode::erase_and_write && avr_.cycle - begin_ < (end_ - begin_) / 2);
-    if (erasing)
-        cell = static_cast<uint8_t>(cell | done);
-    else
-        cell = static_cast<uint8_t>((mode_ == Mode::write ? cell : 0xFF) & (byte_ | done));
+  if (!busy_) return;
+  busy_ = false;
+  uint8_t& cell = stock_.eeprom[cell_];
+  const auto done = static_cast<uint8_t>(Random(seed).next());
+  const bool erasing =
+      mode_ == Mode::erase || (mode_ == Mode::erase_and_write && avr_.cycle - begin_ < (end_ - begin_) / 2);
+  if (erasing) cell = static_cast<uint8_t>(cell | done);
+  else cell = static_cast<uint8_t>((mode_ == Mode::write ? cell : 0xFF) & (byte_ | done));
 }
 
 avr_cycle_count_t Eeprom::on_window_closed(avr_cycle_count_t) {
-    control() = static_cast<uint8_t>(control() & ~EEMPE);
-    return 0;
+  control() = static_cast<uint8_t>(control() & ~EEMPE);
+  return 0;
 }
 
 void Eeprom::write_control(uint16_t, uint8_t value) {
-    const uint8_t old = control();
-    const unsigned mode = busy_ ? (old & EEPM) | EEPE : value & EEPM;  // fixed during a write
-    uint8_t now = static_cast<uint8_t>((value & EERIE) | (old & EEMPE) | mode);
-    unsigned stalled = 0;
-    if ((value & EEPE) && (old & EEMPE) && !busy_) {
-        mode_ = static_cast<Mode>((value & EEPM) >> 4);
-        cell_ = address();
-        byte_ = avr_.data[reg::EEDR];
-        begin_ = store_ends(avr_);
-        end_ = begin_ + busy_cycles(mode_);
-        busy_ = true;
-        ++writes_;
-        trace_.add(Trace::Kind::eeprom_write, begin_, static_cast<uint32_t>(cell_ << 8 | byte_));
-        now = static_cast<uint8_t>((now | EEPE) & ~EEMPE);
-        schedule<&Eeprom::on_done>(avr_, end_, *this);
-        cancel<&Eeprom::on_window_closed>(avr_, *this);
-        stalled = write_stall;
-    } else if (value & EEMPE) {
-        now |= EEMPE;
-        schedule<&Eeprom::on_window_closed>(avr_, store_ends(avr_) + window_cycles, *this);
-    }
-    if ((value & EERE) && !busy_) {
-        avr_.data[reg::EEDR] = stock_.eeprom[address()];
-        stalled = read_stall;
-    }
-    control() = now;
-    refresh_interrupt();
-    if (stalled) stall(avr_, stalled);
+  const uint8_t old = control();
+  const unsigned mode = busy_ ? (old & EEPM) | EEPE : value & EEPM;  // fixed during a write
+  uint8_t now = static_cast<uint8_t>((value & EERIE) | (old & EEMPE) | mode);
+  unsigned stalled = 0;
+  if ((value & EEPE) && (old & EEMPE) && !busy_) {
+    mode_ = static_cast<Mode>((value & EEPM) >> 4);
+    cell_ = address();
+    byte_ = avr_.data[reg::EEDR];
+    begin_ = store_ends(avr_);
+    end_ = begin_ + busy_cycles(mode_);
+    busy_ = true;
+    ++writes_;
+    trace_.add(Trace::Kind::eeprom_write, begin_, static_cast<uint32_t>(cell_ << 8 | byte_));
+    now = static_cast<uint8_t>((now | EEPE) & ~EEMPE);
+    schedule<&Eeprom::on_done>(avr_, end_, *this);
+    cancel<&Eeprom::on_window_closed>(avr_, *this);
+    stalled = write_stall;
+  } else if (value & EEMPE) {
+    now |= EEMPE;
+    schedule<&Eeprom::on_window_closed>(avr_, store_ends(avr_) + window_cycles, *this);
+  }
+  if ((value & EERE) && !busy_) {
+    avr_.data[reg::EEDR] = stock_.eeprom[address()];
+    stalled = read_stall;
+  }
+  control() = now;
+  refresh_interrupt();
+  if (stalled) stall(avr_, stalled);
 }
 
 void Eeprom::refresh_interrupt() { interrupts_.set_level(stock_.ready, (control() & EERIE) && !busy_); }
@@ -104,10 +102,10 @@ void Eeprom::refresh_interrupt() { interrupts_.set_level(stock_.ready, (control(
 std::string Eeprom::content() const { return {reinterpret_cast<const char*>(stock_.eeprom), stock_.size}; }
 
 void Eeprom::set_content(const std::string& bytes) {
-    if (bytes.size() != stock_.size)
-        throw BoardError("the EEPROM content has " + std::to_string(bytes.size()) + " bytes, but this chip has " +
-                         std::to_string(stock_.size) + "; give exactly that many");
-    bytes.copy(reinterpret_cast<char*>(stock_.eeprom), bytes.size());
+  if (bytes.size() != stock_.size)
+    throw BoardError("the EEPROM content has " + std::to_string(bytes.size()) + " bytes, but this chip has " +
+                     std::to_string(stock_.size) + "; give exactly that many");
+  bytes.copy(reinterpret_cast<char*>(stock_.eeprom), bytes.size());
 }
 
 }  // namespace board

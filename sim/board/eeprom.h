@@ -12,39 +12,39 @@
 namespace board {
 
 class Eeprom {
-public:
-    Eeprom(avr_t& avr, avr_eeprom_t& stock, Interrupts& interrupts, Trace& trace);
-    // A reset does not stop a write under way; losing power does.
-    void reset();
-    void lose_power(uint64_t seed);
-    void refresh_interrupt();
+ public:
+  Eeprom(avr_t& avr, avr_eeprom_t& stock, Interrupts& interrupts, Trace& trace);
+  // A reset does not stop a write under way; losing power does.
+  void reset();
+  void lose_power(uint64_t seed);
+  void refresh_interrupt();
 
-    std::string content() const;
-    void set_content(const std::string& bytes);
-    uint64_t writes() const { return writes_; }
+  std::string content() const;
+  void set_content(const std::string& bytes);
+  uint64_t writes() const { return writes_; }
 
-private:
-    enum class Mode : uint8_t { erase_and_write = 0, erase = 1, write = 2, reserved = 3 };
+ private:
+  enum class Mode : uint8_t { erase_and_write = 0, erase = 1, write = 2, reserved = 3 };
 
-    uint8_t& control() { return avr_.data[reg::EECR]; }
-    uint16_t address() const;
-    uint64_t busy_cycles(Mode mode) const;
-    avr_cycle_count_t on_done(avr_cycle_count_t when);
-    avr_cycle_count_t on_window_closed(avr_cycle_count_t when);
-    void write_control(uint16_t reg, uint8_t value);
+  uint8_t& control() { return avr_.data[reg::EECR]; }
+  uint16_t address() const;
+  uint64_t busy_cycles(Mode mode) const;
+  avr_cycle_count_t on_done(avr_cycle_count_t when);
+  avr_cycle_count_t on_window_closed(avr_cycle_count_t when);
+  void write_control(uint16_t reg, uint8_t value);
 
-    avr_t& avr_;
-    avr_eeprom_t& stock_;  // owns the bytes and the interrupt vector
-    Interrupts& interrupts_;
-    Trace& trace_;
+  avr_t& avr_;
+  avr_eeprom_t& stock_;  // owns the bytes and the interrupt vector
+  Interrupts& interrupts_;
+  Trace& trace_;
 
-    bool busy_ = false;
-    uint64_t begin_ = 0;
-    uint64_t end_ = 0;
-    Mode mode_ = Mode::erase_and_write;
-    uint16_t cell_ = 0;
-    uint8_t byte_ = 0;
-    uint64_t writes_ = 0;
+  bool busy_ = false;
+  uint64_t begin_ = 0;
+  uint64_t end_ = 0;
+  Mode mode_ = Mode::erase_and_write;
+  uint16_t cell_ = 0;
+  uint8_t byte_ = 0;
+  uint64_t writes_ = 0;
 };
 
 }  // namespace board

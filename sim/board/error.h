@@ -7,8 +7,8 @@
 namespace board {
 
 class BoardError : public std::runtime_error {
-public:
-    using std::runtime_error::runtime_error;
+ public:
+  using std::runtime_error::runtime_error;
 };
 
 }  // namespace board

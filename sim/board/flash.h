@@ -13,32 +13,32 @@
 namespace board {
 
 class Flash {
-public:
-    Flash(avr_t& avr, const Chip& chip, Cpu& cpu, Trace& trace);
-    void reset();
-    // From here up nothing is written: the boot lock bits of an Arduino.
-    void protect_from(uint32_t address) { protected_from_ = address; }
-    uint64_t page_writes() const { return page_writes_; }
+ public:
+  Flash(avr_t& avr, const Chip& chip, Cpu& cpu, Trace& trace);
+  void reset();
+  // From here up nothing is written: the boot lock bits of an Arduino.
+  void protect_from(uint32_t address) { protected_from_ = address; }
+  uint64_t page_writes() const { return page_writes_; }
 
-private:
-    static int on_spm(avr_io_t* io, uint32_t request, void*);
-    void store_program_memory();
-    void fill_buffer(uint32_t address);
-    void program_page(uint32_t address, bool erase);
-    void clear_buffer();
-    void write_control(uint16_t reg, uint8_t value);
-    avr_cycle_count_t on_window_closed(avr_cycle_count_t when);
-    avr_cycle_count_t on_done(avr_cycle_count_t when);
+ private:
+  static int on_spm(avr_io_t* io, uint32_t request, void*);
+  void store_program_memory();
+  void fill_buffer(uint32_t address);
+  void program_page(uint32_t address, bool erase);
+  void clear_buffer();
+  void write_control(uint16_t reg, uint8_t value);
+  avr_cycle_count_t on_window_closed(avr_cycle_count_t when);
+  avr_cycle_count_t on_done(avr_cycle_count_t when);
 
-    avr_t& avr_;
-    const Chip& chip_;
-    Cpu& cpu_;
-    Trace& trace_;
-    std::vector<uint8_t> buffer_;
-    std::vector<bool> filled_;  // one a word
-    uint32_t protected_from_ = UINT32_MAX;
-    bool busy_ = false;
-    uint64_t page_writes_ = 0;
+  avr_t& avr_;
+  const Chip& chip_;
+  Cpu& cpu_;
+  Trace& trace_;
+  std::vector<uint8_t> buffer_;
+  std::vector<bool> filled_;  // one a word
+  uint32_t protected_from_ = UINT32_MAX;
+  bool busy_ = false;
+  uint64_t page_writes_ = 0;
 };
 
 }  // namespace board

@@ -9,13 +9,13 @@
 namespace board {
 
 struct Segment {
-    uint32_t address = 0;
-    std::vector<uint8_t> bytes;
+  uint32_t address = 0;
+  std::vector<uint8_t> bytes;
 };
 
 struct ElfImage {
-    unsigned architecture = 0;       // EF_AVR_MACH: 5 for the ATmega328P, 6 for the ATmega2560
-    std::vector<Segment> segments;   // what is loaded, by physical address
+  unsigned architecture = 0;      // EF_AVR_MACH: 5 for the ATmega328P, 6 for the ATmega2560
+  std::vector<Segment> segments;  // what is loaded, by physical address
 };
 
 std::vector<Segment> read_intel_hex(const std::string& path);

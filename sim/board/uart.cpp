@@ -12,41 +12,41 @@ enum : uint8_t { RXCIE = 0x80, TXCIE = 0x40, UDRIE = 0x20, RXEN = 0x10, TXEN = 0
 
 Uart::Uart(avr_t& avr, avr_uart_t& stock, Interrupts& interrupts, Trace& trace)
     : avr_(avr), stock_(stock), interrupts_(interrupts), trace_(trace) {
-    for (uint16_t r : {reg::UCSR0A, reg::UCSR0B, reg::UCSR0C, reg::UBRR0L, reg::UBRR0H, reg::UDR0})
-        plain_register(avr_, r);
-    on_write<&Uart::write_status>(avr_, reg::UCSR0A, *this);
-    on_write<&Uart::write_control>(avr_, reg::UCSR0B, *this);
-    on_write<&Uart::write_data>(avr_, reg::UDR0, *this);
-    on_read<&Uart::read_data>(avr_, reg::UDR0, *this);
+  for (uint16_t r : {reg::UCSR0A, reg::UCSR0B, reg::UCSR0C, reg::UBRR0L, reg::UBRR0H, reg::UDR0})
+    plain_register(avr_, r);
+  on_write<&Uart::write_status>(avr_, reg::UCSR0A, *this);
+  on_write<&Uart::write_control>(avr_, reg::UCSR0B, *this);
+  on_write<&Uart::write_data>(avr_, reg::UDR0, *this);
+  on_read<&Uart::read_data>(avr_, reg::UDR0, *this);
 }
 
 // The line does not stop because the chip was reset: a byte on its way is lost, those behind it follow.
 void Uart::reset() {
-    avr_.data[reg::UCSR0A] = UDRE;
-    avr_.data[reg::UCSR0B] = 0;
-    avr_.data[reg::UCSR0C] = 0x06;  // 8 data bits, no parity, 1 stop bit
-    transmitting_ = transmit_buffer_full_ = false;
-    flush_receiver();
-    if (receiving_) {
-        receiving_ = false;
-        line_.pop_front();
-        line_free_at_ = avr_.cycle;
-    }
-    if (!line_.empty()) start_reception(avr_.cycle);
+  avr_.data[reg::UCSR0A] = UDRE;
+  avr_.data[reg::UCSR0B] = 0;
+  avr_.data[reg::UCSR0C] = 0x06;  // 8 data bits, no parity, 1 stop bit
+  transmitting_ = transmit_buffer_full_ = false;
+  flush_receiver();
+  if (receiving_) {
+    receiving_ = false;
+    line_.pop_front();
+    line_free_at_ = avr_.cycle;
+  }
+  if (!line_.empty()) start_reception(avr_.cycle);
 }
 
 uint64_t Uart::bit_cycles() const {
-    const uint64_t divisor = (avr_.data[reg::UBRR0L] | (avr_.data[reg::UBRR0H] & 0x0Fu) << 8) + 1u;
-    return divisor * ((avr_.data[reg::UCSR0A] & U2X) ? 8 : 16);
+  const uint64_t divisor = (avr_.data[reg::UBRR0L] | (avr_.data[reg::UBRR0H] & 0x0Fu) << 8) + 1u;
+  return divisor * ((avr_.data[reg::UCSR0A] & U2X) ? 8 : 16);
 }
 
 uint64_t Uart::frame_cycles() const {
-    const unsigned format = avr_.data[reg::UCSR0C];
-    const unsigned size = (format >> 1 & 3u) | (control() & UCSZ2);
-    const unsigned data_bits = size == 7 ? 9 : 5 + (size & 3u);
-    const unsigned parity_bits = (format & 0x20u) ? 1 : 0;
-    const unsigned stop_bits = (format & 0x08u) ? 2 : 1;
-    return bit_cycles() * (1 + data_bits + parity_bits + stop_bits);
+  const unsigned format = avr_.data[reg::UCSR0C];
+  const unsigned size = (format >> 1 & 3u) | (control() & UCSZ2);
+  const unsigned data_bits = size == 7 ? 9 : 5 + (size & 3u);
+  const unsigned parity_bits = (format & 0x20u) ? 1 : 0;
+  const unsigned stop_bits = (format & 0x08u) ? 2 : 1;
+  return bit_cycles() * (1 + data_bits + parity_bits + stop_bits);
 }
 
 double Uart::baud() const { return static_cast<double>(avr_.frequency) / static_cast<double>(bit_cycles()); }
@@ -54,139 +54,139 @@ double Uart::baud() const { return static_cast<double>(avr_.frequency) / static_
 // ---- receiver ----
 
 void Uart::send(const uint8_t* bytes, size_t count) {
-    line_.insert(line_.end(), bytes, bytes + count);
-    if (!receiving_ && !line_.empty()) start_reception(avr_.cycle > line_free_at_ ? avr_.cycle : line_free_at_);
+  line_.insert(line_.end(), bytes, bytes + count);
+  if (!receiving_ && !line_.empty()) start_reception(avr_.cycle > line_free_at_ ? avr_.cycle : line_free_at_);
 }
 
 void Uart::drop_pending() {
-    line_.clear();
-    receiving_ = false;
-    cancel<&Uart::on_start_bit>(avr_, *this);
-    cancel<&Uart::on_stop_bit>(avr_, *this);
+  line_.clear();
+  receiving_ = false;
+  cancel<&Uart::on_start_bit>(avr_, *this);
+  cancel<&Uart::on_stop_bit>(avr_, *this);
 }
 
 // The chip samples the middle of each bit: it is sure of the start bit after half a bit, and has the byte in the middle
 // of the stop bit.
 void Uart::start_reception(uint64_t start) {
-    receiving_ = true;
-    const uint64_t half_bit = bit_cycles() / 2;
-    if (receive_shift_full_) schedule<&Uart::on_start_bit>(avr_, start + half_bit, *this);
-    schedule<&Uart::on_stop_bit>(avr_, start + frame_cycles() - half_bit, *this);
+  receiving_ = true;
+  const uint64_t half_bit = bit_cycles() / 2;
+  if (receive_shift_full_) schedule<&Uart::on_start_bit>(avr_, start + half_bit, *this);
+  schedule<&Uart::on_stop_bit>(avr_, start + frame_cycles() - half_bit, *this);
 }
 
 // A new frame begins while two bytes wait in the buffer and one in the shift register: that one is lost.
 avr_cycle_count_t Uart::on_start_bit(avr_cycle_count_t) {
-    if (receive_shift_full_ && (control() & RXEN)) {
-        receive_shift_full_ = false;
-        frame_lost_ = true;
-        ++overruns_;
-    }
-    return 0;
+  if (receive_shift_full_ && (control() & RXEN)) {
+    receive_shift_full_ = false;
+    frame_lost_ = true;
+    ++overruns_;
+  }
+  return 0;
 }
 
 avr_cycle_count_t Uart::on_stop_bit(avr_cycle_count_t when) {
-    const uint8_t byte = line_.front();
-    line_.pop_front();
-    if (control() & RXEN) {
-        receive_shift_ = {byte, frame_lost_};
-        receive_shift_full_ = true;
-        frame_lost_ = false;
-        fill_buffer();
-    }
-    receiving_ = false;
-    line_free_at_ = when + bit_cycles() / 2;
-    if (!line_.empty()) start_reception(line_free_at_);
-    return 0;
+  const uint8_t byte = line_.front();
+  line_.pop_front();
+  if (control() & RXEN) {
+    receive_shift_ = {byte, frame_lost_};
+    receive_shift_full_ = true;
+    frame_lost_ = false;
+    fill_buffer();
+  }
+  receiving_ = false;
+  line_free_at_ = when + bit_cycles() / 2;
+  if (!line_.empty()) start_reception(line_free_at_);
+  return 0;
 }
 
 void Uart::fill_buffer() {
-    if (receive_shift_full_ && buffered_ < 2) {
-        buffer_[buffered_++] = receive_shift_;
-        receive_shift_full_ = false;
-    }
-    uint8_t flags = static_cast<uint8_t>(status() & ~(RXC | FE | DOR | UPE));
-    if (buffered_ > 0) flags = static_cast<uint8_t>(flags | RXC | (buffer_[0].overrun_before ? DOR : 0));
-    status() = flags;
-    refresh_interrupts();
+  if (receive_shift_full_ && buffered_ < 2) {
+    buffer_[buffered_++] = receive_shift_;
+    receive_shift_full_ = false;
+  }
+  uint8_t flags = static_cast<uint8_t>(status() & ~(RXC | FE | DOR | UPE));
+  if (buffered_ > 0) flags = static_cast<uint8_t>(flags | RXC | (buffer_[0].overrun_before ? DOR : 0));
+  status() = flags;
+  refresh_interrupts();
 }
 
 void Uart::flush_receiver() {
-    buffered_ = 0;
-    receive_shift_full_ = frame_lost_ = false;
-    fill_buffer();
+  buffered_ = 0;
+  receive_shift_full_ = frame_lost_ = false;
+  fill_buffer();
 }
 
 uint8_t Uart::read_data(uint16_t) {
-    const uint8_t byte = buffer_[0].byte;
-    if (buffered_ > 0) {
-        buffer_[0] = buffer_[1];
-        --buffered_;
-        fill_buffer();
-    }
-    return byte;
+  const uint8_t byte = buffer_[0].byte;
+  if (buffered_ > 0) {
+    buffer_[0] = buffer_[1];
+    --buffered_;
+    fill_buffer();
+  }
+  return byte;
 }
 
 // ---- transmitter ----
 
 void Uart::write_data(uint16_t, uint8_t value) {
-    if (!(control() & TXEN) || !(status() & UDRE)) return;  // the data sheet: ignored
-    if (transmitting_) {
-        transmit_buffer_ = value;
-        transmit_buffer_full_ = true;
-        status() = static_cast<uint8_t>(status() & ~UDRE);
-        refresh_interrupts();
-    } else {
-        transmit_shift_ = value;
-        transmitting_ = true;
-        if (loopback) send(&transmit_shift_, 1);
-        schedule<&Uart::on_transmitted>(avr_, store_ends(avr_) + frame_cycles(), *this);
-    }
+  if (!(control() & TXEN) || !(status() & UDRE)) return;  // the data sheet: ignored
+  if (transmitting_) {
+    transmit_buffer_ = value;
+    transmit_buffer_full_ = true;
+    status() = static_cast<uint8_t>(status() & ~UDRE);
+    refresh_interrupts();
+  } else {
+    transmit_shift_ = value;
+    transmitting_ = true;
+    if (loopback) send(&transmit_shift_, 1);
+    schedule<&Uart::on_transmitted>(avr_, store_ends(avr_) + frame_cycles(), *this);
+  }
 }
 
 avr_cycle_count_t Uart::on_transmitted(avr_cycle_count_t when) {
-    received_.push_back(static_cast<char>(transmit_shift_));
-    ++sent_;
-    trace_.add(Trace::Kind::uart_byte, when, transmit_shift_);
-    if (transmit_buffer_full_) {
-        transmit_shift_ = transmit_buffer_;
-        transmit_buffer_full_ = false;
-        status() |= UDRE;
-        refresh_interrupts();
-        if (loopback) send(&transmit_shift_, 1);
-        return when + frame_cycles();
-    }
-    transmitting_ = false;
-    interrupts_.raise(stock_.txc);  // sets TXC
-    return 0;
+  received_.push_back(static_cast<char>(transmit_shift_));
+  ++sent_;
+  trace_.add(Trace::Kind::uart_byte, when, transmit_shift_);
+  if (transmit_buffer_full_) {
+    transmit_shift_ = transmit_buffer_;
+    transmit_buffer_full_ = false;
+    status() |= UDRE;
+    refresh_interrupts();
+    if (loopback) send(&transmit_shift_, 1);
+    return when + frame_cycles();
+  }
+  transmitting_ = false;
+  interrupts_.raise(stock_.txc);  // sets TXC
+  return 0;
 }
 
 std::string Uart::receive() {
-    std::string bytes;
-    bytes.swap(received_);
-    return bytes;
+  std::string bytes;
+  bytes.swap(received_);
+  return bytes;
 }
 
 // ---- registers ----
 
 void Uart::write_status(uint16_t, uint8_t value) {
-    uint8_t flags = static_cast<uint8_t>((status() & ~(U2X | MPCM)) | (value & (U2X | MPCM)));
-    if (value & TXC) {
-        flags = static_cast<uint8_t>(flags & ~TXC);
-        Interrupts::withdraw(stock_.txc);
-    }
-    status() = flags;
+  uint8_t flags = static_cast<uint8_t>((status() & ~(U2X | MPCM)) | (value & (U2X | MPCM)));
+  if (value & TXC) {
+    flags = static_cast<uint8_t>(flags & ~TXC);
+    Interrupts::withdraw(stock_.txc);
+  }
+  status() = flags;
 }
 
 void Uart::write_control(uint16_t reg, uint8_t value) {
-    avr_.data[reg] = value;
-    if (!(value & RXEN)) flush_receiver();
-    if ((value & TXCIE) && (status() & TXC)) interrupts_.raise(stock_.txc);
-    refresh_interrupts();
+  avr_.data[reg] = value;
+  if (!(value & RXEN)) flush_receiver();
+  if ((value & TXCIE) && (status() & TXC)) interrupts_.raise(stock_.txc);
+  refresh_interrupts();
 }
 
 void Uart::refresh_interrupts() {
-    interrupts_.set_level(stock_.rxc, (status() & RXC) && (control() & RXCIE));
-    interrupts_.set_level(stock_.udrc, (status() & UDRE) && (control() & UDRIE));
+  interrupts_.set_level(stock_.rxc, (status() & RXC) && (control() & RXCIE));
+  interrupts_.set_level(stock_.udrc, (status() & UDRE) && (control() & UDRIE));
 }
 
 }  // namespace board

@@ -15,71 +15,71 @@
 namespace board {
 
 class Uart {
-public:
-    Uart(avr_t& avr, avr_uart_t& stock, Interrupts& interrupts, Trace& trace);
-    void reset();
+ public:
+  Uart(avr_t& avr, avr_uart_t& stock, Interrupts& interrupts, Trace& trace);
+  void reset();
 
-    // Bytes towards the AVR. They follow each other on the line without a gap, at the baud rate the AVR is set to.
-    void send(const uint8_t* bytes, size_t count);
-    size_t pending() const { return line_.size(); }
-    void drop_pending();
-    // Bytes from the AVR that have left the line since the last call.
-    std::string receive();
-    size_t available() const { return received_.size(); }
+  // Bytes towards the AVR. They follow each other on the line without a gap, at the baud rate the AVR is set to.
+  void send(const uint8_t* bytes, size_t count);
+  size_t pending() const { return line_.size(); }
+  void drop_pending();
+  // Bytes from the AVR that have left the line since the last call.
+  std::string receive();
+  size_t available() const { return received_.size(); }
 
-    // A wire from TX0 to RX0: what the AVR sends it also receives.
-    bool loopback = false;
+  // A wire from TX0 to RX0: what the AVR sends it also receives.
+  bool loopback = false;
 
-    double baud() const;
-    uint64_t sent() const { return sent_; }
-    uint64_t overruns() const { return overruns_; }
-    void refresh_interrupts();
+  double baud() const;
+  uint64_t sent() const { return sent_; }
+  uint64_t overruns() const { return overruns_; }
+  void refresh_interrupts();
 
-private:
-    struct Frame {
-        uint8_t byte = 0;
-        bool overrun_before = false;
-    };
+ private:
+  struct Frame {
+    uint8_t byte = 0;
+    bool overrun_before = false;
+  };
 
-    uint8_t& status() { return avr_.data[reg::UCSR0A]; }
-    uint8_t control() const { return avr_.data[reg::UCSR0B]; }
-    uint64_t bit_cycles() const;
-    uint64_t frame_cycles() const;
+  uint8_t& status() { return avr_.data[reg::UCSR0A]; }
+  uint8_t control() const { return avr_.data[reg::UCSR0B]; }
+  uint64_t bit_cycles() const;
+  uint64_t frame_cycles() const;
 
-    void start_reception(uint64_t start);
-    avr_cycle_count_t on_start_bit(avr_cycle_count_t when);
-    avr_cycle_count_t on_stop_bit(avr_cycle_count_t when);
-    avr_cycle_count_t on_transmitted(avr_cycle_count_t when);
-    void fill_buffer();
-    void flush_receiver();
+  void start_reception(uint64_t start);
+  avr_cycle_count_t on_start_bit(avr_cycle_count_t when);
+  avr_cycle_count_t on_stop_bit(avr_cycle_count_t when);
+  avr_cycle_count_t on_transmitted(avr_cycle_count_t when);
+  void fill_buffer();
+  void flush_receiver();
 
-    void write_status(uint16_t reg, uint8_t value);
-    void write_control(uint16_t reg, uint8_t value);
-    void write_data(uint16_t reg, uint8_t value);
-    uint8_t read_data(uint16_t reg);
+  void write_status(uint16_t reg, uint8_t value);
+  void write_control(uint16_t reg, uint8_t value);
+  void write_data(uint16_t reg, uint8_t value);
+  uint8_t read_data(uint16_t reg);
 
-    avr_t& avr_;
-    avr_uart_t& stock_;  // simavr's own model: only its interrupt vectors are used
-    Interrupts& interrupts_;
-    Trace& trace_;
+  avr_t& avr_;
+  avr_uart_t& stock_;  // simavr's own model: only its interrupt vectors are used
+  Interrupts& interrupts_;
+  Trace& trace_;
 
-    std::deque<uint8_t> line_;  // towards the AVR; the front byte is on the line while receiving_
-    bool receiving_ = false;
-    uint64_t line_free_at_ = 0;
-    Frame buffer_[2];
-    unsigned buffered_ = 0;
-    Frame receive_shift_;
-    bool receive_shift_full_ = false;
-    bool frame_lost_ = false;
+  std::deque<uint8_t> line_;  // towards the AVR; the front byte is on the line while receiving_
+  bool receiving_ = false;
+  uint64_t line_free_at_ = 0;
+  Frame buffer_[2];
+  unsigned buffered_ = 0;
+  Frame receive_shift_;
+  bool receive_shift_full_ = false;
+  bool frame_lost_ = false;
 
-    bool transmitting_ = false;
-    bool transmit_buffer_full_ = false;
-    uint8_t transmit_shift_ = 0;
-    uint8_t transmit_buffer_ = 0;
+  bool transmitting_ = false;
+  bool transmit_buffer_full_ = false;
+  uint8_t transmit_shift_ = 0;
+  uint8_t transmit_buffer_ = 0;
 
-    std::string received_;
-    uint64_t sent_ = 0;
-    uint64_t overruns_ = 0;
+  std::string received_;
+  uint64_t sent_ = 0;
+  uint64_t overruns_ = 0;
 };
 
 }  // namespace board

@@ -38,7 +38,8 @@ double between(double low, double high) { return low + (high - low) * std::gener
 
 Plant<double> random_arm(bool rigid) {
   ArmParameters p{};
-  for (Link& link : p.links) link = {between(0.1, 0.3), 0.1, 0.05, between(1e-4, 2e-4), between(1e-4, 2e-4), between(1e-4, 2e-4)};
+  for (Link& link : p.links)
+    link = {between(0.1, 0.3), 0.1, 0.05, between(1e-4, 2e-4), between(1e-4, 2e-4), between(1e-4, 2e-4)};
   p.gravity = 9.81;
   p.tip_mass = between(0.0, 0.1);
   Plant<double> plant{rigid_body(p), {}};
@@ -58,7 +59,8 @@ void put(const One& one, Many& many, int lane) {
   static_assert(sizeof(Many) == kLanes * sizeof(One));
   const double* from = reinterpret_cast<const double*>(&one);
   double* to = reinterpret_cast<double*>(&many);
-  for (std::size_t i = 0; i < sizeof(One) / sizeof(double); ++i) to[i * kLanes + static_cast<std::size_t>(lane)] = from[i];
+  for (std::size_t i = 0; i < sizeof(One) / sizeof(double); ++i)
+    to[i * kLanes + static_cast<std::size_t>(lane)] = from[i];
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Runs the controller on a bare Cortex-M0: reads vectors.bin, writes results.bin through semihosting. See test_fuzzy_cortex_m0.py.
+// Runs the controller on a bare Cortex-M0: reads vectors.bin, writes results.bin through semihosting. See
+// test_fuzzy_cortex_m0.py.
 #include <stdint.h>
 #include <stdio.h>
 #include <unistd.h>
@@ -26,8 +27,8 @@ void give(T value) {
 
 Settings take_settings() {
   Settings s;
-  int16_t *const sets[] = {&s.ne_c, &s.ze_a, &s.ze_c, &s.pe_b, &s.nce_c, &s.zce_a, &s.zce_c, &s.pce_b};
-  for (int16_t *set : sets) *set = take<int16_t>();
+  int16_t* const sets[] = {&s.ne_c, &s.ze_a, &s.ze_c, &s.pe_b, &s.nce_c, &s.zce_a, &s.zce_c, &s.pce_b};
+  for (int16_t* set : sets) *set = take<int16_t>();
   s.kp = take<uint32_t>();
   s.kd = take<uint32_t>();
   s.ki = take<uint32_t>();
@@ -70,15 +71,15 @@ static int run() {
 }
 
 void start() {
-  const uint32_t *image = &data_image;
-  for (uint32_t *word = &data_start; word != &data_end; ++word) *word = *image++;
-  for (uint32_t *word = &bss_start; word != &bss_end; ++word) *word = 0;
+  const uint32_t* image = &data_image;
+  for (uint32_t* word = &data_start; word != &data_end; ++word) *word = *image++;
+  for (uint32_t* word = &bss_start; word != &bss_end; ++word) *word = 0;
   initialise_monitor_handles();
   _exit(run());
 }
 
 struct Vectors {
-  uint32_t *stack;
+  uint32_t* stack;
   void (*reset)();
 };
 __attribute__((section(".vectors"), used)) const Vectors vectors = {&stack_top, start};

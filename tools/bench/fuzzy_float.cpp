@@ -1,5 +1,5 @@
-// The controller as one would first write it, in float, to compare cycles with: 3 x 3 rules, min, max, and then the centroid of
-// 101 samples (MATLAB's evalfis) or weighted singletons. Joint 0's sets of Table 10.
+// The controller as one would first write it, in float, to compare cycles with: 3 x 3 rules, min, max, and then the
+// centroid of 101 samples (MATLAB's evalfis) or weighted singletons. Joint 0's sets of Table 10.
 #include <stdint.h>
 
 namespace {
@@ -22,7 +22,7 @@ float trapezoid(float x, float a, float b, float c, float d) {
 float lesser(float a, float b) { return a < b ? a : b; }
 float greater(float a, float b) { return a < b ? b : a; }
 
-void fuzzify(float x, const Sets &sets, float (&degree)[3]) {
+void fuzzify(float x, const Sets& sets, float (&degree)[3]) {
   degree[0] = trapezoid(x, -1.0f, -1.0f, sets.n_c, 0.0f);
   degree[1] = trapezoid(x, sets.z_a, 0.0f, 0.0f, sets.z_c);
   degree[2] = trapezoid(x, 0.0f, sets.p_b, 1.0f, 1.0f);

@@ -62,7 +62,7 @@ inline void end() {
   UCSR0A |= 1 << TXC0;
   while (!(UCSR0A & (1 << UDRE0))) {
   }
-  __builtin_avr_delay_cycles(400);   // the last byte is still on the wire
+  __builtin_avr_delay_cycles(400);  // the last byte is still on the wire
   cli();
   sleep_enable();
   sleep_cpu();

@@ -52,14 +52,16 @@ Trace trace_of(std::size_t n, const Outputs& out) {
 
 // The noise of every slice in converter counts, the same for all candidates: the numbers that the single run draws.
 std::vector<float> noise_of(const Experiment& x) {
-  const bool quiet = std::all_of(x.pots.begin(), x.pots.end(), [](const arm::Potentiometer& pot) { return pot.noise == 0.0; });
+  const bool quiet =
+      std::all_of(x.pots.begin(), x.pots.end(), [](const arm::Potentiometer& pot) { return pot.noise == 0.0; });
   if (quiet) return {};
   const std::size_t slices = kSlices * x.ticks + 1;
   std::vector<float> noise(slices * kJoints);
   for (std::size_t i = 0; i < kJoints; ++i) {
     const arm::Noise source(x.seed, i);
     const double counts = x.pots[i].noise * 1000.0 * 1024.0 / kConverterMillivolts;
-    for (std::size_t slice = 0; slice < slices; ++slice) noise[slice * kJoints + i] = static_cast<float>(counts * source.gaussian(slice));
+    for (std::size_t slice = 0; slice < slices; ++slice)
+      noise[slice * kJoints + i] = static_cast<float>(counts * source.gaussian(slice));
   }
   return noise;
 }
@@ -97,7 +99,9 @@ Shared shared_of(const Experiment& x, const std::vector<float>& noise, const std
   return shared;
 }
 
-const Controllers& controllers_of(const Batch& batch, std::size_t n) { return batch.controllers[batch.controller_count == 1 ? 0 : n]; }
+const Controllers& controllers_of(const Batch& batch, std::size_t n) {
+  return batch.controllers[batch.controller_count == 1 ? 0 : n];
+}
 const PlantRow& plant_of(const Batch& batch, std::size_t n) { return batch.plants[batch.plant_count == 1 ? 0 : n]; }
 
 void run_lanes(const Experiment& x, const Batch& batch, const How& how, const Outputs& out) {

@@ -16,10 +16,12 @@ struct Block {
   const PlantRow* plants[kBlock];
   Trace traces[kBlock];
   std::size_t count;
-  std::int32_t* waiting;  // scratch: the duties commanded and not acting yet, late ticks x 4 joints x 16 candidates, zero
+  std::int32_t*
+      waiting;  // scratch: the duties commanded and not acting yet, late ticks x 4 joints x 16 candidates, zero
 };
 
-// Converter counts of the follower's potentiometers: gain x (angle in 2^-30 turns) + offset, and the noise of every slice.
+// Converter counts of the follower's potentiometers: gain x (angle in 2^-30 turns) + offset, and the noise of every
+// slice.
 struct Pots {
   float gain[kJoints], offset[kJoints];
   float linearity[kJoints];  // counts
@@ -29,7 +31,8 @@ struct Pots {
 // What all blocks share, worked out once.
 struct Shared {
   Pots pots;
-  std::int32_t turns[kJoints][kSlices + 1];  // how many of a pot's four conversions fall into each slice of a tick and the next's first
+  std::int32_t turns[kJoints][kSlices + 1];  // how many of a pot's four conversions fall into each slice of a tick and
+                                             // the next's first
   std::int32_t duty_scale[kJoints];
   const std::uint16_t* limit_mv;  // ticks: the voltage limit of the soft start
 };
@@ -46,7 +49,8 @@ struct LawCheck {
 
 // One instruction set's code. core.cmake says which of them a build has.
 struct Kernel {
-  void (*run_block)(const Experiment& experiment, const Shared& shared, const Block& block, int steps_per_tick, Measures* measures);
+  void (*run_block)(const Experiment& experiment, const Shared& shared, const Block& block, int steps_per_tick,
+                    Measures* measures);
   void (*check_law)(const LawCheck& check);
 };
 namespace baseline {

@@ -1,6 +1,6 @@
-// One experiment with the closed loop: everything that all candidates share. Times are whole slices of 250 us, four to a tick of 1 ms,
-// as on the bench: sensors hold their value and motors their voltage for a slice. During tick 0 the firmware is asked to enable; the
-// controllers run from tick 1 on.
+// One experiment with the closed loop: everything that all candidates share. Times are whole slices of 250 us, four to
+// a tick of 1 ms, as on the bench: sensors hold their value and motors their voltage for a slice. During tick 0 the
+// firmware is asked to enable; the controllers run from tick 1 on.
 #pragma once
 
 #include <array>
@@ -18,20 +18,20 @@ constexpr std::size_t kSlices = 4;  // in a tick
 constexpr double kTick = 1e-3;      // s
 constexpr double kSlice = kTick / kSlices;
 
-constexpr std::size_t kConversions = 4;     // of each potentiometer in a tick
+constexpr std::size_t kConversions = 4;  // of each potentiometer in a tick
 constexpr double kConverterMillivolts = 5000.0;
 constexpr std::int32_t kTopCount = 1023;
 
-// When things happen within a tick, in cycles of the 16 MHz clock and in slices counted from the one in which the tick begins.
-// The converter visits the eight pots in turn, four times.
+// When things happen within a tick, in cycles of the 16 MHz clock and in slices counted from the one in which the tick
+// begins. The converter visits the eight pots in turn, four times.
 struct Timing {
   static constexpr int kSliceCycles = 4000;
   static constexpr int kConversionCycles = 416;
   static constexpr int kHoldCycles = 48;  // from a conversion's start until it holds its input
-  int start;                              // of the first conversion, after the beginning of the slice in which the tick begins
-  int acts[kJoints];                      // the slice in which a joint's new voltage begins to act, 1 or later
-  int on;                                 // the slice in which the drivers are first found on, 1..4; the hand lets go one later
-  int late;                               // ticks by which every duty acts later than the firmware's; 0 on the board
+  int start;          // of the first conversion, after the beginning of the slice in which the tick begins
+  int acts[kJoints];  // the slice in which a joint's new voltage begins to act, 1 or later
+  int on;             // the slice in which the drivers are first found on, 1..4; the hand lets go one later
+  int late;           // ticks by which every duty acts later than the firmware's; 0 on the board
 };
 
 // The pots of a round in their order: the followers' come first.
@@ -40,7 +40,8 @@ constexpr std::size_t kFollower = 0, kLeader = kJoints;
 // The slice in which conversion `turn` of the round's pot `place` holds its input: 4 is the next tick's first.
 constexpr std::size_t slice_of(const Timing& timing, std::size_t turn, std::size_t place) {
   const int number = static_cast<int>(8 * turn + place);
-  return static_cast<std::size_t>((timing.start + number * Timing::kConversionCycles + Timing::kHoldCycles) / Timing::kSliceCycles);
+  return static_cast<std::size_t>((timing.start + number * Timing::kConversionCycles + Timing::kHoldCycles) /
+                                  Timing::kSliceCycles);
 }
 
 // How the firmware turns four conversions into an angle.
@@ -101,10 +102,11 @@ constexpr std::size_t kPlantColumns = sizeof(PlantRow) / sizeof(double);
 using Controllers = std::array<fuzzy_pdi::Coefficients, kJoints>;
 
 // The bench's own arithmetic in double precision; each slice in `substeps` steps of the arm.
-Measures run_single(const Experiment& experiment, const Controllers& controllers, const PlantRow& row, int substeps, const Trace& trace);
+Measures run_single(const Experiment& experiment, const Controllers& controllers, const PlantRow& row, int substeps,
+                    const Trace& trace);
 
 // The leader's readings and true angles at every tick from its angles (rad) in every slice: slices x 4 -> ticks x 4.
-void read_leader(const Settings& settings, const Timing& timing, arm::Potentiometers pots, const double* angles, std::size_t ticks,
-                 std::int16_t* reference, double* leader);
+void read_leader(const Settings& settings, const Timing& timing, arm::Potentiometers pots, const double* angles,
+                 std::size_t ticks, std::int16_t* reference, double* leader);
 
 }  // namespace greywhale::loop

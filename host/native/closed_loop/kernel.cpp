@@ -1,4 +1,5 @@
-// The closed loop of sixteen candidates over the whole experiment. core.cmake compiles it once for each instruction set.
+// The closed loop of sixteen candidates over the whole experiment. core.cmake compiles it once for each instruction
+// set.
 #include <cstddef>
 #include <cstdint>
 
@@ -20,7 +21,11 @@ struct Totals {
 class Run {
  public:
   Run(const Experiment& x, const Shared& shared, const Block& block, int steps)
-      : x_(x), shared_(shared), pots_(shared.pots), block_(block), steps_(static_cast<std::size_t>(steps)),
+      : x_(x),
+        shared_(shared),
+        pots_(shared.pots),
+        block_(block),
+        steps_(static_cast<std::size_t>(steps)),
         traced_(block.traces[0].every != 0) {
     const double h = kTick / steps;
     plant_.body = body_of(block);
@@ -31,8 +36,8 @@ class Run {
       plant_.joints[i] = joint_of(block, i, h, x.settings.pwm_top[i]);
       laws_[i] = law_of(block, i, short_ramps_);
       memories_[i] = {all(0), all(0), all(0)};
-      state_[i] = {all(static_cast<std::int32_t>(units(x.home[i]))), all(0.0f), plant_.joints[i].gap * all(static_cast<float>(x.gap[i])),
-                   all(0.0f)};
+      state_[i] = {all(static_cast<std::int32_t>(units(x.home[i]))), all(0.0f),
+                   plant_.joints[i].gap * all(static_cast<float>(x.gap[i])), all(0.0f)};
       const Int count = count_of<true>(i, counts(i, state_[i].q), 0.0f);
       curved_ = curved_ || pots_.linearity[i] != 0.0f;
       sum_[i] = shift_left<2>(count);
@@ -70,7 +75,9 @@ class Run {
 
  private:
   // A pot's place in converter counts at an angle.
-  GREYWHALE_INLINE Float counts(std::size_t i, Int q) const { return to_float(q) * all(pots_.gain[i]) + all(pots_.offset[i]); }
+  GREYWHALE_INLINE Float counts(std::size_t i, Int q) const {
+    return to_float(q) * all(pots_.gain[i]) + all(pots_.offset[i]);
+  }
 
   template <bool kCurved>
   GREYWHALE_INLINE Int count_of(std::size_t i, Float place, float noise) const {
@@ -96,7 +103,8 @@ class Run {
       follower[i] = to_angle(filtered_[i], s.follower.zero[i], s.follower.scale[i]);
     }
     step(laws_, memories_, leader, follower, shared_.limit_mv[tick], tick == 1, short_ramps_, millivolts);
-    for (std::size_t i = 0; i < kJoints; ++i) commanded_[i] = compare_value(millivolts[i], shared_.duty_scale[i], s.motor_sign[i]);
+    for (std::size_t i = 0; i < kJoints; ++i)
+      commanded_[i] = compare_value(millivolts[i], shared_.duty_scale[i], s.motor_sign[i]);
   }
 
   // The duties that the firmware commands, or those of `late` ticks ago.
@@ -104,7 +112,8 @@ class Run {
     for (std::size_t i = 0; i < kJoints; ++i) {
       compare_[i] = commanded_[i];
       if (x_.timing.late != 0) {
-        std::int32_t* const then = block_.waiting + (tick % static_cast<std::size_t>(x_.timing.late) * kJoints + i) * kBlock;
+        std::int32_t* const then =
+            block_.waiting + (tick % static_cast<std::size_t>(x_.timing.late) * kJoints + i) * kBlock;
         compare_[i] = load(then);
         store(then, commanded_[i]);
       }

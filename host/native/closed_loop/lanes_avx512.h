@@ -1,5 +1,5 @@
-// Sixteen lanes of single precision or 32-bit integers in one AVX-512 register; conditions are mask registers. The same in the compiler's
-// own vectors (lanes_portable.h) is a third slower, as it keeps conditions as numbers.
+// Sixteen lanes of single precision or 32-bit integers in one AVX-512 register; conditions are mask registers. The same
+// in the compiler's own vectors (lanes_portable.h) is a third slower, as it keeps conditions as numbers.
 #pragma once
 
 #include <immintrin.h>
@@ -62,8 +62,8 @@ GREYWHALE_INLINE Int shift_left(Int a, Int by) { return {_mm512_sllv_epi32(a.v, 
 GREYWHALE_INLINE Int shift_right(Int a, Int by) { return {_mm512_srlv_epi32(a.v, by.v)}; }
 
 GREYWHALE_INLINE Float to_float(Int a) { return {_mm512_cvtepi32_ps(a.v)}; }
-GREYWHALE_INLINE Int to_int(Float a) { return {_mm512_cvttps_epi32(a.v)}; }      // towards 0
-GREYWHALE_INLINE Int to_nearest(Float a) { return {_mm512_cvtps_epi32(a.v)}; }   // halves to even
+GREYWHALE_INLINE Int to_int(Float a) { return {_mm512_cvttps_epi32(a.v)}; }     // towards 0
+GREYWHALE_INLINE Int to_nearest(Float a) { return {_mm512_cvtps_epi32(a.v)}; }  // halves to even
 
 GREYWHALE_INLINE Mask operator<(Float a, Float b) { return {_mm512_cmp_ps_mask(a.v, b.v, _CMP_LT_OQ)}; }
 GREYWHALE_INLINE Mask operator>(Float a, Float b) { return b < a; }

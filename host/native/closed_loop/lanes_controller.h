@@ -1,5 +1,6 @@
-// The firmware's tick for sixteen candidates: filter, angle, fuzzy PD+I law, duty, in the same integers with the same bits.
-// The law is firmware/lib/fuzzy_pdi (fuzzy_pdi.cpp, inference.h, arithmetic.h), line by line; a test holds one against the other.
+// The firmware's tick for sixteen candidates: filter, angle, fuzzy PD+I law, duty, in the same integers with the same
+// bits. The law is firmware/lib/fuzzy_pdi (fuzzy_pdi.cpp, inference.h, arithmetic.h), line by line; a test holds one
+// against the other.
 #pragma once
 
 #include "fuzzy_pdi.h"
@@ -60,7 +61,8 @@ GREYWHALE_INLINE Int ratio_q15(Int part, Int whole) {
   part = shift_left(shift_right(part, down), up);
   whole = shift_left(small, up);
 
-  // The table of reciprocals, 131072 / (257 + i): the quotient is never close below a whole number, so the division is safe.
+  // The table of reciprocals, 131072 / (257 + i): the quotient is never close below a whole number, so the division is
+  // safe.
   const Int r = to_int(all(131072.0f) / to_float(all(257) + (shift_right<15>(whole) & all(255))));
   const Int rest = shift_right<9>(all(-1) - whole * r);
   const Int coarse = shift_right<8>(rest);
@@ -125,7 +127,8 @@ GREYWHALE_INLINE Int finish(const Law& law, Memory& memory, const Fired& f, Int 
 
   const Product more = multiply(f.e_size, law.integral);
   const Int fraction = memory.fraction + choose(f.e_below, all(0) - more.fraction, more.fraction);
-  const Int integral = memory.integral + choose(f.e_below, all(0) - more.whole, more.whole) + shift_right_signed<16>(fraction);
+  const Int integral =
+      memory.integral + choose(f.e_below, all(0) - more.whole, more.whole) + shift_right_signed<16>(fraction);
   const Mask above = integral >= all(1 << 30);
   const Mask below = integral < all(-(1 << 30));
   const Int next_integral = choose(above, all((1 << 30) - 1), choose(below, all(-(1 << 30)), integral));
@@ -140,10 +143,12 @@ GREYWHALE_INLINE Int finish(const Law& law, Memory& memory, const Fired& f, Int 
   return choose(given.negative, all(0) - size, size);
 }
 
-// One control period of N joints, stage by stage, so that the processor works at several joints at a time. The voltages in mV.
+// One control period of N joints, stage by stage, so that the processor works at several joints at a time. The voltages
+// in mV.
 template <int N>
-GREYWHALE_INLINE void step(const Law (&laws)[N], Memory (&memories)[N], const Int (&leader)[N], const Int (&follower)[N],
-                           std::int32_t limit_mv, bool first, bool short_ramps, Int (&millivolts)[N]) {
+GREYWHALE_INLINE void step(const Law (&laws)[N], Memory (&memories)[N], const Int (&leader)[N],
+                           const Int (&follower)[N], std::int32_t limit_mv, bool first, bool short_ramps,
+                           Int (&millivolts)[N]) {
   Fired fired[N];
   Int ratio[N];
   for (int i = 0; i < N; ++i) fired[i] = fire(laws[i], memories[i], leader[i], follower[i], first, short_ramps);

@@ -29,7 +29,7 @@ inline double units(double radians) {
 }
 
 inline Body body_of(const Block& block) {
-  const auto of = [&](double arm::RigidBody<double>::*member) {
+  const auto of = [&](double arm::RigidBody<double>::* member) {
     return gather(block, [member](const PlantRow& row) { return row.plant.body.*member; });
   };
   using Rigid = arm::RigidBody<double>;
@@ -50,12 +50,17 @@ inline Body body_of(const Block& block) {
 
 inline Joint joint_of(const Block& block, std::size_t i, double h, int top) {
   using Source = arm::Joint<double>;
-  const auto of = [&](auto value) { return gather(block, [&](const PlantRow& row) { return value(row.plant.joints[i]); }); };
+  const auto of = [&](auto value) {
+    return gather(block, [&](const PlantRow& row) { return value(row.plant.joints[i]); });
+  };
   const auto rotor_damped = [h](const Source& s) { return s.actuator.inertia + h * s.actuator.damping; };
-  const auto mesh = [h](const Source& s) { return s.gear.stiffness > 0.0 ? h * (h * s.gear.stiffness + s.gear.damping) : arm::kRigid; };
+  const auto mesh = [h](const Source& s) {
+    return s.gear.stiffness > 0.0 ? h * (h * s.gear.stiffness + s.gear.damping) : arm::kRigid;
+  };
   Joint j;
   j.rotor = of([](const Source& s) { return s.actuator.inertia; });
-  j.impulse = gather(block, [&](const PlantRow& r) { return h * r.plant.joints[i].actuator.torque_per_volt * r.supply / top; });
+  j.impulse =
+      gather(block, [&](const PlantRow& r) { return h * r.plant.joints[i].actuator.torque_per_volt * r.supply / top; });
   j.coulomb = of([h](const Source& s) { return h * s.friction.coulomb; });
   j.stribeck = of([h](const Source& s) { return h * (s.friction.breakaway - s.friction.coulomb); });
   j.per_stribeck_velocity = of([](const Source& s) { return 1.0 / s.friction.stribeck_velocity; });
@@ -70,9 +75,10 @@ inline Joint joint_of(const Block& block, std::size_t i, double h, int top) {
     j.stiff[touching] = of(stiff);
     j.give[touching] = of([=](const Source& s) { return 1.0 / (rotor_damped(s) + stiff(s)); });
     j.share[touching] = of([=](const Source& s) { return stiff(s) / (rotor_damped(s) + stiff(s)); });
-    j.inertia[touching] = of([=](const Source& s) { return rotor_damped(s) * (stiff(s) / (rotor_damped(s) + stiff(s))); });
+    j.inertia[touching] =
+        of([=](const Source& s) { return rotor_damped(s) * (stiff(s) / (rotor_damped(s) + stiff(s))); });
   }
-  const auto stop = [&](double arm::Stops<double>::*side) {
+  const auto stop = [&](double arm::Stops<double>::* side) {
     return gather_int([&](std::size_t n) { return units(block.plants[n]->plant.joints[i].stops.*side); });
   };
   j.stop_min = stop(&arm::Stops<double>::min);
@@ -80,7 +86,8 @@ inline Joint joint_of(const Block& block, std::size_t i, double h, int top) {
   return j;
 }
 
-inline Side side_of(const Block& block, std::size_t joint, fuzzy_pdi::Side (fuzzy_pdi::Coefficients::*input)[2], std::size_t below) {
+inline Side side_of(const Block& block, std::size_t joint, fuzzy_pdi::Side (fuzzy_pdi::Coefficients::*input)[2],
+                    std::size_t below) {
   const auto of = [&](auto value) {
     return gather_int([&](std::size_t n) { return value((block.controllers[n][joint].*input)[below]); });
   };

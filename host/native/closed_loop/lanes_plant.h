@@ -1,9 +1,9 @@
-// One step of the arm for sixteen candidates in single precision: the links' equations of sim/arm/rigid_body.h, and those of step.h and
-// conditions.h arranged for speed.
+// One step of the arm for sixteen candidates in single precision: the links' equations of sim/arm/rigid_body.h, and
+// those of step.h and conditions.h arranged for speed.
 //
-// What depends on the candidate and the step alone is worked out beforehand, so that choosing a side picks a constant. The link's
-// angle is a whole number of 2^-30 turns and the motor's is kept as its lead over the link, so that no step is lost in rounding.
-// Stops cost much and are rarely met: a step is first tried without them.
+// What depends on the candidate and the step alone is worked out beforehand, so that choosing a side picks a constant.
+// The link's angle is a whole number of 2^-30 turns and the motor's is kept as its lead over the link, so that no step
+// is lost in rounding. Stops cost much and are rarely met: a step is first tried without them.
 #pragma once
 
 #include <cstddef>
@@ -21,13 +21,14 @@ constexpr int kPasses = 8;
 using Body = arm::RigidBody<Float>;
 using Geometry = arm::Geometry<Float>;
 
-// One joint over one step; impulses in N m s. Of each pair the first is with teeth apart, the second with teeth touching.
+// One joint over one step; impulses in N m s. Of each pair the first is with teeth apart, the second with teeth
+// touching.
 struct Joint {
-  Float rotor;       // inertia of the motor side
-  Float impulse;     // per PWM compare step
+  Float rotor;    // inertia of the motor side
+  Float impulse;  // per PWM compare step
   Float coulomb, stribeck, per_stribeck_velocity, breakaway;
   Float spring, gap_push, no_pull, gap;
-  Float mesh;        // per closing velocity, without grease
+  Float mesh;  // per closing velocity, without grease
   Float stiff[2], give[2], share[2], inertia[2];
   Int stop_min, stop_max;
 };
@@ -35,15 +36,15 @@ struct Joint {
 struct State {
   Int q;
   Float v;
-  Float lead;     // motor ahead of link, rad
+  Float lead;  // motor ahead of link, rad
   Float motor_v;
 };
 
 struct Plant {
   Body body;
   Joint joints[4];
-  Float step;     // s
-  Float travel;   // 2^-30 turns per rad/s
+  Float step;    // s
+  Float travel;  // 2^-30 turns per rad/s
   Float per_step;
 };
 
@@ -59,8 +60,9 @@ GREYWHALE_INLINE void sine_cosine(Int q, Float& sine, Float& cosine) {
   const Float x = to_float(q - shift_left<kQuarterBits>(quarter)) * all(kUnit);
   const Float z = x * x;
   const Float s = x + x * z * (all(-1.6666654611e-1f) + z * (all(8.3321608736e-3f) + z * all(-1.9515295891e-4f)));
-  const Float c = all(1.0f) - all(0.5f) * z +
-                  z * z * (all(4.166664568298827e-2f) + z * (all(-1.388731625493765e-3f) + z * all(2.443315711809948e-5f)));
+  const Float c =
+      all(1.0f) - all(0.5f) * z +
+      z * z * (all(4.166664568298827e-2f) + z * (all(-1.388731625493765e-3f) + z * all(2.443315711809948e-5f)));
   const Mask odd = negative(shift_left<31>(quarter));
   sine = negate_where(choose(odd, c, s), shift_left<30>(quarter));
   cosine = negate_where(choose(odd, s, c), shift_left<30>(quarter + all(1)));
@@ -159,8 +161,8 @@ GREYWHALE_INLINE Int travelled(const Plant& plant, Float v) {
 }
 
 // With a link that its stop holds its velocity is given instead.
-GREYWHALE_INLINE void solve_held(const Row& a, const Row& b, Float coupling, const Trial& ta, const Trial& tb, Float ga, Float gb, Float& va,
-                                 Float& vb) {
+GREYWHALE_INLINE void solve_held(const Row& a, const Row& b, Float coupling, const Trial& ta, const Trial& tb, Float ga,
+                                 Float gb, Float& va, Float& vb) {
   const Float zero = all(0.0f), one = all(1.0f);
   const Mask held_a = ta.stop != zero, held_b = tb.stop != zero;
   const Float aa = choose(held_a, one, a.diagonal), bb = choose(held_b, one, b.diagonal);
@@ -182,7 +184,8 @@ GREYWHALE_INLINE Mask correct_stop(const Joint& j, Int reached, Float impulse, T
   return changed;
 }
 
-GREYWHALE_INLINE void rows_of(const Plant& plant, const Geometry& g, const Float (&momentum)[4], const Trial (&t)[4], Row (&r)[4]) {
+GREYWHALE_INLINE void rows_of(const Plant& plant, const Geometry& g, const Float (&momentum)[4], const Trial (&t)[4],
+                              Row (&r)[4]) {
   r[0] = row_of(plant.joints[0], t[0], g.mass.m00, momentum[0]);
   r[1] = row_of(plant.joints[1], t[1], g.mass.m11, momentum[1]);
   r[2] = row_of(plant.joints[2], t[2], g.mass.m22, momentum[2]);
@@ -195,7 +198,8 @@ GREYWHALE_INLINE Float finished(const Row& r, Float slip, Float v) {
 }
 
 // With stops: the same, for the few steps in which a link is at one.
-inline __attribute__((noinline)) void advance_at_stops(const Plant& plant, const Geometry& g, State (&s)[4], const Float (&duty)[4]) {
+inline __attribute__((noinline)) void advance_at_stops(const Plant& plant, const Geometry& g, State (&s)[4],
+                                                       const Float (&duty)[4]) {
   Trial t[4];
   Row r[4];
   Float momentum[4];

@@ -1,5 +1,5 @@
-// Sixteen lanes of single precision or 32-bit integers, in as many of the compiler's vectors as the registers' width asks for.
-// Conditions are lanes of all ones or zeros. The same operations with the same results as lanes_avx512.h.
+// Sixteen lanes of single precision or 32-bit integers, in as many of the compiler's vectors as the registers' width
+// asks for. Conditions are lanes of all ones or zeros. The same operations with the same results as lanes_avx512.h.
 #pragma once
 
 #include <cstdint>
@@ -62,9 +62,9 @@ GREYWHALE_INLINE Int load(const std::int32_t* from) { return loaded<Int>(from); 
 GREYWHALE_INLINE void store(float* to, Float a) { std::memcpy(to, &a, sizeof a); }
 GREYWHALE_INLINE void store(std::int32_t* to, Int a) { std::memcpy(to, &a, sizeof a); }
 
-#define GREYWHALE_COMPARE(sign, T)                                    \
-  GREYWHALE_INLINE Mask operator sign(T a, T b) {                     \
-    return parts<Mask>([&](int p) { return a.v[p] sign b.v[p]; });    \
+#define GREYWHALE_COMPARE(sign, T)                                 \
+  GREYWHALE_INLINE Mask operator sign(T a, T b) {                  \
+    return parts<Mask>([&](int p) { return a.v[p] sign b.v[p]; }); \
   }
 GREYWHALE_COMPARE(<, Float)
 GREYWHALE_COMPARE(>, Float)
@@ -76,9 +76,9 @@ GREYWHALE_COMPARE(>=, Int)
 GREYWHALE_COMPARE(!=, Int)
 #undef GREYWHALE_COMPARE
 
-#define GREYWHALE_EXACT(sign, T)                                      \
-  GREYWHALE_INLINE T operator sign(T a, T b) {                        \
-    return parts<T>([&](int p) { return a.v[p] sign b.v[p]; });       \
+#define GREYWHALE_EXACT(sign, T)                                \
+  GREYWHALE_INLINE T operator sign(T a, T b) {                  \
+    return parts<T>([&](int p) { return a.v[p] sign b.v[p]; }); \
   }
 GREYWHALE_EXACT(+, Float)
 GREYWHALE_EXACT(-, Float)
@@ -92,9 +92,9 @@ GREYWHALE_EXACT(^, Mask)
 #undef GREYWHALE_EXACT
 
 // Modulo 2^32.
-#define GREYWHALE_WRAPPING(sign)                                                        \
-  GREYWHALE_INLINE Int operator sign(Int a, Int b) {                                    \
-    return parts<Int>([&](int p) { return of_word(word(a.v[p]) sign word(b.v[p])); });  \
+#define GREYWHALE_WRAPPING(sign)                                                       \
+  GREYWHALE_INLINE Int operator sign(Int a, Int b) {                                   \
+    return parts<Int>([&](int p) { return of_word(word(a.v[p]) sign word(b.v[p])); }); \
   }
 GREYWHALE_WRAPPING(+)
 GREYWHALE_WRAPPING(-)
@@ -122,7 +122,9 @@ GREYWHALE_INLINE Float float_of_bits(Int a) {
 GREYWHALE_INLINE Int choose(Mask m, Int yes, Int no) {
   return parts<Int>([&](int p) { return (yes.v[p] & m.v[p]) | (no.v[p] & ~m.v[p]); });
 }
-GREYWHALE_INLINE Float choose(Mask m, Float yes, Float no) { return float_of_bits(choose(m, bits_of(yes), bits_of(no))); }
+GREYWHALE_INLINE Float choose(Mask m, Float yes, Float no) {
+  return float_of_bits(choose(m, bits_of(yes), bits_of(no)));
+}
 GREYWHALE_INLINE Float least(Float a, Float b) { return choose(a < b, a, b); }
 GREYWHALE_INLINE Float greatest(Float a, Float b) { return choose(a > b, a, b); }
 GREYWHALE_INLINE Int least(Int a, Int b) { return choose(a < b, a, b); }

@@ -7,9 +7,10 @@
 
 namespace greywhale::loop::GREYWHALE_INSTRUCTIONS {
 
-// Numbers too small to matter are 0, as they slow a processor down. They are 0 on every processor that can do it, or else a joint that
-// all but rests would slide on one and stick on another. x86 and ARM differ in one case only, some 1e-7 of the numbers around 1e-38:
-// a result below the smallest normal number that rounds up to it is kept by x86 and is 0 on ARM.
+// Numbers too small to matter are 0, as they slow a processor down. They are 0 on every processor that can do it, or
+// else a joint that all but rests would slide on one and stick on another. x86 and ARM differ in one case only, some
+// 1e-7 of the numbers around 1e-38: a result below the smallest normal number that rounds up to it is kept by x86 and
+// is 0 on ARM.
 class NoDenormals {
  public:
   NoDenormals() : before_(control()) { set_control(before_ | kFlush); }

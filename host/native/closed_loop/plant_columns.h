@@ -10,14 +10,16 @@
 
 namespace greywhale::loop {
 
-static_assert(offsetof(PlantRow, plant.joints) == std::size(arm::kBodyColumns) * sizeof(double), "the joints follow the links");
+static_assert(offsetof(PlantRow, plant.joints) == std::size(arm::kBodyColumns) * sizeof(double),
+              "the joints follow the links");
 static_assert(offsetof(PlantRow, supply) == (kPlantColumns - 1) * sizeof(double), "the supply is the last column");
 
 inline std::vector<std::string> plant_column_names() {
   std::vector<std::string> names;
   for (const arm::Column& column : arm::kBodyColumns) names.emplace_back(column.name);
   for (std::size_t joint = 0; joint < kJoints; ++joint) {
-    for (const arm::Column& column : arm::kJointColumns) names.push_back("joint" + std::to_string(joint) + "." + column.name);
+    for (const arm::Column& column : arm::kJointColumns)
+      names.push_back("joint" + std::to_string(joint) + "." + column.name);
   }
   names.emplace_back("supply");
   return names;

@@ -66,7 +66,8 @@ class Sums {
 // Filter and calibration of one side's pots.
 class Angles {
  public:
-  Angles(const Settings& settings, const Calibration& calibration) : shift_(settings.filter_shift), calibration_(calibration) {}
+  Angles(const Settings& settings, const Calibration& calibration)
+      : shift_(settings.filter_shift), calibration_(calibration) {}
 
   std::int16_t next(std::size_t joint, std::uint16_t sum) {
     filtered_[joint] = low_pass(filtered_[joint], sum, primed_[joint] ? shift_ : 0);
@@ -100,8 +101,16 @@ bool is_finite(const arm::State<double>& s) {
 class Run {
  public:
   Run(const Experiment& x, const Controllers& controllers, const PlantRow& row, int substeps, const Trace& trace)
-      : x_(x), controllers_(controllers), row_(row), substeps_(substeps), trace_(trace), pots_(x.pots, x.pot_supply, x.seed),
-        sums_(x.timing, kFollower), angles_(x.settings, x.settings.follower), ramp_(x.settings.soft_start_ms), state_(resting(x, row.plant)),
+      : x_(x),
+        controllers_(controllers),
+        row_(row),
+        substeps_(substeps),
+        trace_(trace),
+        pots_(x.pots, x.pot_supply, x.seed),
+        sums_(x.timing, kFollower),
+        angles_(x.settings, x.settings.follower),
+        ramp_(x.settings.soft_start_ms),
+        state_(resting(x, row.plant)),
         waiting_(static_cast<std::size_t>(x.timing.late)) {
     for (fuzzy_pdi::State& memory : memories_) fuzzy_pdi::reset(memory);
     Four millivolts;
@@ -156,9 +165,11 @@ class Run {
     for (std::size_t i = 0; i < kJoints; ++i) {
       const std::int16_t follower = angles_.next(i, sums_[i]);
       if (!due) continue;
-      const std::int16_t reference = std::clamp(x_.reference[tick * kJoints + i], x_.settings.limit_min[i], x_.settings.limit_max[i]);
+      const std::int16_t reference =
+          std::clamp(x_.reference[tick * kJoints + i], x_.settings.limit_min[i], x_.settings.limit_max[i]);
       const fuzzy_pdi::Output out = fuzzy_pdi::step(controllers_[i], memories_[i], reference, follower, limit);
-      commanded_[i] = compare_value(out.volts_mv, duty_scale(x_.settings.pwm_top[i], x_.settings.supply_mv), x_.settings.motor_sign[i]);
+      commanded_[i] = compare_value(out.volts_mv, duty_scale(x_.settings.pwm_top[i], x_.settings.supply_mv),
+                                    x_.settings.motor_sign[i]);
     }
     act(tick);
   }
@@ -214,12 +225,13 @@ class Run {
 
 }  // namespace
 
-Measures run_single(const Experiment& x, const Controllers& controllers, const PlantRow& row, int substeps, const Trace& trace) {
+Measures run_single(const Experiment& x, const Controllers& controllers, const PlantRow& row, int substeps,
+                    const Trace& trace) {
   return Run(x, controllers, row, substeps, trace).measures();
 }
 
-void read_leader(const Settings& settings, const Timing& timing, Potentiometers pots, const double* angles, std::size_t ticks,
-                 std::int16_t* reference, double* leader) {
+void read_leader(const Settings& settings, const Timing& timing, Potentiometers pots, const double* angles,
+                 std::size_t ticks, std::int16_t* reference, double* leader) {
   Sums sums(timing, kLeader);
   Angles readings(settings, settings.leader);
   for (std::size_t tick = 0; tick < ticks; ++tick) {

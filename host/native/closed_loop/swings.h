@@ -1,4 +1,5 @@
-// How often and how far a recorded signal swings to and fro: what tells a limit cycle from rest, from creep and from one overshoot.
+// How often and how far a recorded signal swings to and fro: what tells a limit cycle from rest, from creep and from
+// one overshoot.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +9,7 @@ namespace greywhale::loop {
 
 struct Swings {
   std::int32_t reversals;  // turning points between legs that are both longer than the band
-  double travel;           // the lengths of the legs between two reversals, summed: the first leg and the last do not count
+  double travel;  // the lengths of the legs between two reversals, summed: the first leg and the last do not count
 };
 
 // Of `rows` values, `stride` apart. A leg ends where the signal has come back from its extreme by more than the band.

@@ -1,10 +1,11 @@
 // An ideal controller of the arm: it knows the plant and its whole state exactly, and the leader up to this moment.
 //
-// Each joint runs at full voltage towards the leader until what is left is the way it needs to stop there at full voltage, times
-// `brake` (1 is the fastest arrival; a little less gives the smallest squared error: Fuller's problem), and then follows that braking
-// curve. Close to the leader the curve gives way to a straight line, so that it settles instead of chattering. Gravity, velocity
-// terms, the other joints' pull and friction are compensated as far as the voltage goes. The motor's angle is controlled, with the
-// gear's give allowed for: a law that looked at the link alone would throw it from side to side in its gap.
+// Each joint runs at full voltage towards the leader until what is left is the way it needs to stop there at full
+// voltage, times `brake` (1 is the fastest arrival; a little less gives the smallest squared error: Fuller's problem),
+// and then follows that braking curve. Close to the leader the curve gives way to a straight line, so that it settles
+// instead of chattering. Gravity, velocity terms, the other joints' pull and friction are compensated as far as the
+// voltage goes. The motor's angle is controlled, with the gear's give allowed for: a law that looked at the link alone
+// would throw it from side to side in its gap.
 #pragma once
 
 #include <algorithm>
@@ -30,8 +31,8 @@ struct Braking {
   double inertia, damping, stop;  // kg m^2, N m s, N m
 };
 
-// Way covered relative to a target of constant speed until the closing speed `w` is gone; `stop` includes the damping at the
-// target's speed.
+// Way covered relative to a target of constant speed until the closing speed `w` is gone; `stop` includes the damping
+// at the target's speed.
 inline double stopping_distance(const Braking& b, double w) {
   const double ratio = b.damping * w / b.stop;
   if (ratio < 1e-4) return 0.5 * b.inertia * w * w / b.stop * (1.0 - 2.0 / 3.0 * ratio);
@@ -58,7 +59,8 @@ class Law {
       : plant_(plant), supply_(supply), tuning_(tuning), dt_(dt) {}
 
   // Voltages (V) for the next slice, from the state now and the leader's angles and speeds (rad, rad/s).
-  void volts(const arm::State<double>& s, const double (&leader)[kJoints], const double (&speed)[kJoints], double (&u)[kJoints]) {
+  void volts(const arm::State<double>& s, const double (&leader)[kJoints], const double (&speed)[kJoints],
+             double (&u)[kJoints]) {
     const arm::Geometry<double> geometry = arm::geometry_of(plant_.body, arm::pose_of<double>(s.q[1], s.q[2]));
     const arm::MassMatrix<double>& m = geometry.mass;
     double bias[kJoints];
@@ -72,7 +74,8 @@ class Law {
       learn(joint.gear, leader[i] - s.q[i], give_[i]);
       const double error = leader[i] + give(joint, bias[i]) + give_[i] - s.motor_q[i];
       const double inertia = own[i] + joint.actuator.inertia;
-      const double wanted = wanted_speed(joint, inertia, bias[i] + tuning.pull * pulled[i], error, tuning.lead * speed[i], tuning);
+      const double wanted =
+          wanted_speed(joint, inertia, bias[i] + tuning.pull * pulled[i], error, tuning.lead * speed[i], tuning);
       const double hurry = inertia * (wanted - s.motor_v[i]) / (kSpeedShare * tuning.settle);
       const double dry = arm::friction_torque(joint.friction, s.motor_v[i]) * std::clamp(wanted / kDrySpeed, -1.0, 1.0);
       const double torque = hurry + joint.actuator.damping * wanted + dry + bias[i] + pulled[i];
@@ -81,11 +84,12 @@ class Law {
   }
 
  private:
-  static constexpr double kSpeedShare = 0.3;   // the speed follows this much faster than the angle
-  static constexpr double kDrySpeed = 0.02;    // rad/s from which on all dry friction is compensated
-  static constexpr double kLeastShare = 0.02;  // of the full torque: left for braking whatever the load; presses the teeth together
-  static constexpr double kLearning = 0.1;     // s
-  static constexpr double kSmoothing = 5e-3;   // s, of the links' accelerations: their teeth ring
+  static constexpr double kSpeedShare = 0.3;  // the speed follows this much faster than the angle
+  static constexpr double kDrySpeed = 0.02;   // rad/s from which on all dry friction is compensated
+  static constexpr double kLeastShare =
+      0.02;  // of the full torque: left for braking whatever the load; presses the teeth together
+  static constexpr double kLearning = 0.1;    // s
+  static constexpr double kSmoothing = 5e-3;  // s, of the links' accelerations: their teeth ring
 
   void watch(const arm::State<double>& s) {
     for (std::size_t i = 0; i < kJoints; ++i) {
@@ -95,7 +99,8 @@ class Law {
   }
 
   // The speed at which the joint can still stop at the leader, or at which the last bit of error goes.
-  double wanted_speed(const arm::Joint<double>& joint, double inertia, double load, double error, double lead, const Tuning& t) const {
+  double wanted_speed(const arm::Joint<double>& joint, double inertia, double load, double error, double lead,
+                      const Tuning& t) const {
     const double side = error < 0.0 ? -1.0 : 1.0;
     const double full = joint.actuator.torque_per_volt * supply_;
     const double stop = full + joint.friction.coulomb + side * (load + joint.actuator.damping * lead);
@@ -116,7 +121,8 @@ class Law {
   // What `give` is off, found slowly from the link's angle once it is near.
   void learn(const arm::Gear<double>& gear, double link_error, double& correction) const {
     const double most = 2.0 * gear.half_gap;
-    if (std::fabs(link_error) < 2.0 * most) correction = std::clamp(correction + dt_ / kLearning * link_error, -most, most);
+    if (std::fabs(link_error) < 2.0 * most)
+      correction = std::clamp(correction + dt_ / kLearning * link_error, -most, most);
   }
 
   const arm::Plant<double>& plant_;

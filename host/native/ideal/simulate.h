@@ -8,8 +8,8 @@
 
 namespace greywhale::ideal {
 
-// One joint that runs at full voltage while the others are controlled: in each slice the direction (0: it is controlled too), and the
-// angle at which it has gone far enough.
+// One joint that runs at full voltage while the others are controlled: in each slice the direction (0: it is controlled
+// too), and the angle at which it has gone far enough.
 struct Chase {
   std::size_t joint;  // kJoints: none
   const std::int8_t* direction;
@@ -25,8 +25,9 @@ struct Experiment {
   Chase chase;
 };
 
-// Mean squared errors (count x 4, rad^2) and, unless null, the angles at the beginning of every tick (count x ticks x 4, rad), with
-// four tunings for each of `count` controllers. `mse` comes as zeros.
-void simulate(const Experiment& experiment, const Tuning* tunings, std::size_t count, int threads, double* mse, double* angles);
+// Mean squared errors (count x 4, rad^2) and, unless null, the angles at the beginning of every tick (count x ticks x
+// 4, rad), with four tunings for each of `count` controllers. `mse` comes as zeros.
+void simulate(const Experiment& experiment, const Tuning* tunings, std::size_t count, int threads, double* mse,
+              double* angles);
 
 }  // namespace greywhale::ideal

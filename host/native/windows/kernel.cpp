@@ -1,4 +1,5 @@
-// The plant in lanes; every lane has the bits of the plant in plain doubles. core.cmake compiles it once for each instruction set.
+// The plant in lanes; every lane has the bits of the plant in plain doubles. core.cmake compiles it once for each
+// instruction set.
 #include <cstddef>
 
 #include "arm/step.h"

@@ -17,14 +17,16 @@ const Kernel& widest() {
   return baseline::kKernel;
 }
 
-// Runs of at most `most` tasks that can share a kernel call: those of one window, or of windows with the same times between rows.
+// Runs of at most `most` tasks that can share a kernel call: those of one window, or of windows with the same times
+// between rows.
 std::vector<std::size_t> grouped(const std::vector<Task>& tasks, const Windows& w, std::size_t most) {
   const auto spacing = [&](std::size_t task) { return w.spacing + w.first[tasks[task].window]; };
   std::vector<std::size_t> begins;
   for (std::size_t task = 0; task < tasks.size(); ++task) {
     const std::size_t begin = begins.empty() ? 0 : begins.back();
     const bool fits = !begins.empty() && task - begin < most &&
-                      (tasks[task].window == tasks[begin].window || std::equal(spacing(begin), spacing(begin) + w.rows, spacing(task)));
+                      (tasks[task].window == tasks[begin].window ||
+                       std::equal(spacing(begin), spacing(begin) + w.rows, spacing(task)));
     if (!fits) begins.push_back(task);
   }
   begins.push_back(tasks.size());

@@ -1,4 +1,5 @@
-// Short windows of a log, each started from its own state and driven by the logged voltages, for many candidate arms at a time.
+// Short windows of a log, each started from its own state and driven by the logged voltages, for many candidate arms at
+// a time.
 #pragma once
 
 #include <cstddef>
@@ -9,23 +10,23 @@ namespace greywhale::windows {
 
 // The log on the integration's grid, and where its windows begin; rows of four joints where not said otherwise.
 struct Windows {
-  const std::int64_t* first;                   // row, one a window
-  const double *angles, *velocities, *sides;   // of a window's start: links in rad and rad/s; place in the gap, -1..1
-  const double* volts;                         // `substeps` rows for every row of the log
-  const double* spacing;                       // s from a row to the next, one number a row
+  const std::int64_t* first;                  // row, one a window
+  const double *angles, *velocities, *sides;  // of a window's start: links in rad and rad/s; place in the gap, -1..1
+  const double* volts;                        // `substeps` rows for every row of the log
+  const double* spacing;                      // s from a row to the next, one number a row
   std::size_t rows, substeps, every;
 };
 
 // One candidate in one window.
 struct Task {
-  const double* plant;                         // a row of plants
+  const double* plant;  // a row of plants
   const double *offset, *kick;
   std::size_t window;
-  double* out;                                 // (rows kept, 4)
+  double* out;  // (rows kept, 4)
 };
 
-// All of them, from `threads` threads (0: one per core), in as many lanes as the processor has; neither changes a bit of the result.
-// Neighbours that share a window go well together.
+// All of them, from `threads` threads (0: one per core), in as many lanes as the processor has; neither changes a bit
+// of the result. Neighbours that share a window go well together.
 void simulate(const Windows& windows, const std::vector<Task>& tasks, int threads);
 
 // One instruction set's code: it takes up to so many lanes whose windows have the same spacing.

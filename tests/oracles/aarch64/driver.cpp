@@ -1,7 +1,9 @@
-// Repeats calls of greywhale._native on another processor: driver CALLS RESULTS. See tests/oracles/native_calls.py for the file's form.
+// Repeats calls of greywhale._native on another processor: driver CALLS RESULTS. See tests/oracles/native_calls.py for
+// the file's form.
 //
-// Every call is its name and its arguments in the order of the functions here: whole numbers as int64, others as float64, arrays as
-// their number of elements and the elements. The results are the elements of the arrays that the call returns, one after the other.
+// Every call is its name and its arguments in the order of the functions here: whole numbers as int64, others as
+// float64, arrays as their number of elements and the elements. The results are the elements of the arrays that the
+// call returns, one after the other.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -64,7 +66,8 @@ class Calls {
 
  private:
   void read(void* to, std::size_t bytes) {
-    if (!file_.read(static_cast<char*>(to), static_cast<std::streamsize>(bytes))) throw std::runtime_error("the calls end too early.");
+    if (!file_.read(static_cast<char*>(to), static_cast<std::streamsize>(bytes)))
+      throw std::runtime_error("the calls end too early.");
   }
   std::ifstream file_;
 };
@@ -199,7 +202,8 @@ void sixteen_laws(Calls& calls, Results& results) {
 void fuzzy_run(Calls& calls, Results& results) {
   const std::vector<std::int32_t> columns = calls.array<std::int32_t>();
   fuzzy_pdi::Coefficients law;
-  if (loop::compile(columns.data(), calls.number(), law) != fuzzy_pdi::Refusal::none) throw std::runtime_error("a controller is refused.");
+  if (loop::compile(columns.data(), calls.number(), law) != fuzzy_pdi::Refusal::none)
+    throw std::runtime_error("a controller is refused.");
   const std::vector<std::int16_t> leader = calls.array<std::int16_t>(), follower = calls.array<std::int16_t>();
   const std::vector<std::uint16_t> limit = calls.array<std::uint16_t>();
   std::vector<std::int16_t> u_fuzzy, volts_mv;
@@ -218,9 +222,11 @@ void fuzzy_run(Calls& calls, Results& results) {
 }
 
 void simulate_windows(Calls& calls, Results& results) {
-  const std::vector<double> plants = calls.array<double>(), offsets = calls.array<double>(), kicks = calls.array<double>();
+  const std::vector<double> plants = calls.array<double>(), offsets = calls.array<double>(),
+                            kicks = calls.array<double>();
   const std::vector<std::int64_t> first = calls.array<std::int64_t>();
-  const std::vector<double> angles = calls.array<double>(), velocities = calls.array<double>(), sides = calls.array<double>();
+  const std::vector<double> angles = calls.array<double>(), velocities = calls.array<double>(),
+                            sides = calls.array<double>();
   const std::size_t rows = calls.size();
   const std::vector<double> volts = calls.array<double>(), spacing = calls.array<double>();
   const std::size_t substeps = calls.size(), every = calls.size();
@@ -233,7 +239,8 @@ void simulate_windows(Calls& calls, Results& results) {
                        &values[(n * first.size() + window) * size]});
     }
   }
-  windows::simulate({first.data(), angles.data(), velocities.data(), sides.data(), volts.data(), spacing.data(), rows, substeps, every},
+  windows::simulate({first.data(), angles.data(), velocities.data(), sides.data(), volts.data(), spacing.data(), rows,
+                     substeps, every},
                     tasks, 0);
   results.give(values);
 }
@@ -252,7 +259,8 @@ void simulate_ideal(Calls& calls, Results& results) {
   const std::size_t count = tunings.size() / kJoints;
   std::vector<double> mse(count * kJoints), angles(count * slices / loop::kSlices * kJoints);
   const ideal::Chase chase{chased < 0 ? kJoints : static_cast<std::size_t>(chased), direction.data(), until.data()};
-  ideal::simulate({leader.data(), slices, late, plant.data(), supply, chase}, tunings.data(), count, 0, mse.data(), angles.data());
+  ideal::simulate({leader.data(), slices, late, plant.data(), supply, chase}, tunings.data(), count, 0, mse.data(),
+                  angles.data());
   results.give(mse);
   results.give(angles);
 }

@@ -1,5 +1,6 @@
-// The closed loop of four joints in MuJoCo's C API: 1 ms steps, the firmware's fuzzy law natively, rigid gears, 10-bit sensors.
-// Usage: mujoco_loop MODEL.xml SECONDS THREADS; prints wall-clock seconds and the mean squared error, one candidate per thread.
+// The closed loop of four joints in MuJoCo's C API: 1 ms steps, the firmware's fuzzy law natively, rigid gears, 10-bit
+// sensors. Usage: mujoco_loop MODEL.xml SECONDS THREADS; prints wall-clock seconds and the mean squared error, one
+// candidate per thread.
 #include <mujoco/mujoco.h>
 
 #include <chrono>
@@ -21,7 +22,8 @@ std::int16_t reading(double angle) {
 }
 
 double run(const mjModel* model, int ticks) {
-  const fuzzy_pdi::Settings settings = {-8192, -8192, 8192, 8192, -8192, -8192, 8192, 8192, 131072, 32768, 262144, 15000};
+  const fuzzy_pdi::Settings settings = {-8192, -8192, 8192,   8192,  -8192,  -8192,
+                                        8192,  8192,  131072, 32768, 262144, 15000};
   fuzzy_pdi::Coefficients law;
   if (fuzzy_pdi::compile(settings, 1, law) != fuzzy_pdi::Refusal::none) std::abort();
   fuzzy_pdi::State memory[kJoints];

@@ -20,7 +20,8 @@ void App::begin() {
   hal::watchdog_start();
 }
 
-// Hands the running set to those who keep parts of it in a form of their own. The controllers have taken theirs joint by joint.
+// Hands the running set to those who keep parts of it in a form of their own. The controllers have taken theirs joint
+// by joint.
 void App::take_running_set() {
   const params::Table& table = sets_.running();
   sampling_.configure(table);
@@ -96,7 +97,8 @@ void App::schedule_sample() {
   sample_due_ = true;
 }
 
-// Sets the LED every 32 ms: on while following, quick while starting, a short flash each second while disabled, 4 Hz in fault.
+// Sets the LED every 32 ms: on while following, quick while starting, a short flash each second while disabled, 4 Hz in
+// fault.
 void App::show_state() {
   if (static_cast<uint8_t>(tick_) & 31) return;
   const auto ms = static_cast<uint16_t>(tick_);

@@ -17,7 +17,7 @@ class App {
  public:
   // begin() and service() are not inlined into main(): their variables would stay on the stack for ever.
   __attribute__((noinline)) void begin();
-  void tick();   // when hal::tick_pending()
+  void tick();  // when hal::tick_pending()
   // Does one bounded piece of other work; false when there is nothing to do until the next interrupt.
   __attribute__((noinline)) bool service();
 
@@ -62,7 +62,7 @@ class App {
   void work_on_apply();
   void send_hello(uint8_t seq);
   void send_status();
-  __attribute__((noinline)) void send_sample();   // inlined, its variables would take stack in all of service()
+  __attribute__((noinline)) void send_sample();  // inlined, its variables would take stack in all of service()
   wire::State state_on_link() const;
   void refuse_not_disabled();
   void refuse_lead(wire::LeadRefusal why, uint8_t joint);
@@ -71,25 +71,27 @@ class App {
   template <class Message>
   void send(uint8_t seq, const Message& message);
   template <class Message>
-  void reply(const Message& message) { send(seq_, message); }
+  void reply(const Message& message) {
+    send(seq_, message);
+  }
 
   Sampling sampling_;
   Controllers controllers_;
   Drive drive_;
   supervisor::Supervisor supervisor_;
-  supervisor::Observation seen_ = {};   // what the last tick has seen
+  supervisor::Observation seen_ = {};  // what the last tick has seen
   ParameterSets sets_;
   wire::Decoder decoder_;
   wire::Encoder encoder_;
 
   uint32_t tick_ = 0;
-  uint16_t late_ticks_ = 0, rx_overruns_ = 0, telemetry_dropped_ = 0, tick_us_max_ = 0;   // they stop at 65535
+  uint16_t late_ticks_ = 0, rx_overruns_ = 0, telemetry_dropped_ = 0, tick_us_max_ = 0;  // they stop at 65535
   uint16_t every_ = 0, until_sample_ = 0;
-  uint8_t until_control_ = 1;      // ticks
+  uint8_t until_control_ = 1;  // ticks
   uint8_t sample_seq_ = 0;
   bool sample_due_ = false;
   bool heard_this_tick_ = false;
-  bool excused_ = false;   // the next tick may be late without being counted, because a set is being applied
+  bool excused_ = false;  // the next tick may be late without being counted, because a set is being applied
   bool hello_due_ = false;
   bool drivers_on_ = false;
   uint8_t request_ = 0, seq_ = 0;  // of the frame that is being answered

@@ -11,15 +11,16 @@ namespace app {
 // The part of fuzzy_pdi::Output that the app uses.
 struct Outcome {
   uint16_t size_mv;
-  uint8_t sign;      // bit 7: the voltage is negative
+  uint8_t sign;  // bit 7: the voltage is negative
   bool no_rule;
 };
 
 #if defined(__AVR__) && !defined(FUZZY_PDI_PORTABLE)
 
-// Calls the bare entry of fuzzy_pdi::step_error(). It saves no registers: hal::run_tick() lets the tick use all of them. It returns the
-// size and the sign of the voltage apart, as the duty needs them.
-inline __attribute__((always_inline)) Outcome step_in_registers(fuzzy_pdi::Joint& joint, int16_t error, uint16_t limit) {
+// Calls the bare entry of fuzzy_pdi::step_error(). It saves no registers: hal::run_tick() lets the tick use all of
+// them. It returns the size and the sign of the voltage apart, as the duty needs them.
+inline __attribute__((always_inline)) Outcome step_in_registers(fuzzy_pdi::Joint& joint, int16_t error,
+                                                                uint16_t limit) {
   register uint16_t r30 __asm__("r30") = reinterpret_cast<uint16_t>(&joint);
   register int16_t r24 __asm__("r24") = error;
   register uint16_t r4 __asm__("r4") = limit;
@@ -27,10 +28,10 @@ inline __attribute__((always_inline)) Outcome step_in_registers(fuzzy_pdi::Joint
   register uint8_t r17 __asm__("r17");
   register uint8_t r6 __asm__("r6");
   __asm__ volatile("%~call fuzzy_pdi_step_bare"
-      : "+r"(r30), "+r"(r24), "=r"(r26), "=r"(r17), "=r"(r6)
-      : "r"(r4)
-      : "r2", "r3", "r7", "r8", "r9", "r10", "r11", "r12", "r13", "r14", "r15", "r16", "r18", "r19", "r20", "r21", "r22", "r23",
-        "memory");
+                   : "+r"(r30), "+r"(r24), "=r"(r26), "=r"(r17), "=r"(r6)
+                   : "r"(r4)
+                   : "r2", "r3", "r7", "r8", "r9", "r10", "r11", "r12", "r13", "r14", "r15", "r16", "r18", "r19", "r20",
+                     "r21", "r22", "r23", "memory");
   return {r26, r17, r6 != 0};
 }
 
@@ -39,7 +40,8 @@ inline __attribute__((always_inline)) Outcome step_in_registers(fuzzy_pdi::Joint
 inline Outcome step_in_registers(fuzzy_pdi::Joint& joint, int16_t error, uint16_t limit) {
   const fuzzy_pdi::Output out = fuzzy_pdi::step_error(joint, error, limit);
   const bool negative = out.volts_mv < 0;
-  return {static_cast<uint16_t>(negative ? -out.volts_mv : out.volts_mv), static_cast<uint8_t>(negative ? 0x80 : 0), out.no_rule};
+  return {static_cast<uint16_t>(negative ? -out.volts_mv : out.volts_mv), static_cast<uint8_t>(negative ? 0x80 : 0),
+          out.no_rule};
 }
 
 #endif
@@ -65,13 +67,13 @@ class Controllers {
     const auto size = static_cast<int16_t>(size_mv_[joint]);
     return static_cast<int16_t>(sign_[joint] & 0x80 ? -size : size);
   }
-  uint16_t no_rule() const { return no_rule_; }   // stops at 65535
+  uint16_t no_rule() const { return no_rule_; }  // stops at 65535
 
  private:
   void count_no_rule();
 
   fuzzy_pdi::Joint joints_[hal::joint_count] = {};
-  uint16_t size_mv_[hal::joint_count] = {};   // of the voltages, and their signs as in Outcome
+  uint16_t size_mv_[hal::joint_count] = {};  // of the voltages, and their signs as in Outcome
   uint8_t sign_[hal::joint_count] = {};
   uint16_t supply_mv_ = 0;
   uint16_t no_rule_ = 0;

@@ -13,12 +13,12 @@ class Drive {
   // size_mv <= the supply; bit 7 of sign: the voltage is negative
   template <uint8_t joint>
   void set(uint16_t size_mv, uint8_t sign) const;
-  void release() const;   // all duties 0
+  void release() const;  // all duties 0
 
  private:
   struct Motor {
-    uint16_t scale;   // see signal_chain::duty_scale()
-    int8_t sign;      // below 0: the motor turns the other way
+    uint16_t scale;  // see signal_chain::duty_scale()
+    int8_t sign;     // below 0: the motor turns the other way
   };
   Motor motors_[hal::joint_count] = {};
 };

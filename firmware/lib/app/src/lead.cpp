@@ -7,7 +7,7 @@ namespace app {
 namespace {
 
 constexpr int16_t q12_per_step = 4;
-constexpr int32_t q27_per_tick = 32768L * q12_per_step / 512;   // of a speed of 1
+constexpr int32_t q27_per_tick = 32768L * q12_per_step / 512;  // of a speed of 1
 
 }  // namespace
 
@@ -50,9 +50,9 @@ void Lead::begin_piece() {
   --waiting_;
 }
 
-// A piece of the curve leads from the middle of one step to the middle of the next. Its speed changes evenly from that of the first
-// step to that of the second. Its tick n = 0..15 moves the reference by (32 before + (2 n + 1)(after - before)) / 512. The sum of all
-// is exactly (before + after) / 2, so nothing is lost.
+// A piece of the curve leads from the middle of one step to the middle of the next. Its speed changes evenly from that
+// of the first step to that of the second. Its tick n = 0..15 moves the reference by (32 before + (2 n + 1)(after -
+// before)) / 512. The sum of all is exactly (before + after) / 2, so nothing is lost.
 void Lead::advance(uint8_t tick, Sampling& sampling) {
   tick_ = tick;
   if (done_ == ticks_per_point) begin_piece();
@@ -60,7 +60,7 @@ void Lead::advance(uint8_t tick, Sampling& sampling) {
   ++done_;
   for (uint8_t i = 0; i < hal::joint_count; ++i) {
     const auto bend = static_cast<int16_t>(after_[i] - before_[i]);
-    const auto speed = static_cast<int16_t>(32 * before_[i] + share * bend);   // 2^-9 steps a tick
+    const auto speed = static_cast<int16_t>(32 * before_[i] + share * bend);  // 2^-9 steps a tick
     if (speed != 0) sampling.move_lead(i, speed * q27_per_tick);
   }
 }

@@ -1,5 +1,5 @@
-// The reference when the host leads in place of the leader arm: a uniform quadratic B-spline whose control points wait in a short queue.
-// It is computed between ticks; a tick sees leader angles only, as it always does.
+// The reference when the host leads in place of the leader arm: a uniform quadratic B-spline whose control points wait
+// in a short queue. It is computed between ticks; a tick sees leader angles only, as it always does.
 #pragma once
 #include <hal.h>
 #include <link/schema.h>
@@ -11,8 +11,8 @@ namespace app {
 
 class Lead {
  public:
-  static constexpr uint8_t room = 12;              // points that can wait
-  static constexpr uint8_t ticks_per_point = 16;   // the arithmetic of advance() depends on it
+  static constexpr uint8_t room = 12;             // points that can wait
+  static constexpr uint8_t ticks_per_point = 16;  // the arithmetic of advance() depends on it
 
   bool on() const { return on_; }
   // From now on the reference rests at the followers' pose, within the joints' limits.
@@ -36,14 +36,14 @@ class Lead {
  private:
   void begin_piece();
 
-  using Step = int8_t[hal::joint_count];     // 2^-10 rad
+  using Step = int8_t[hal::joint_count];  // 2^-10 rad
   Step steps_[room] = {};
-  Step before_ = {}, after_ = {};            // the steps to and from the point around which the curve bends
-  int16_t last_[hal::joint_count] = {};      // q12 rad, the last point taken
-  uint8_t first_ = 0, waiting_ = 0;          // in steps_
+  Step before_ = {}, after_ = {};        // the steps to and from the point around which the curve bends
+  int16_t last_[hal::joint_count] = {};  // q12 rad, the last point taken
+  uint8_t first_ = 0, waiting_ = 0;      // in steps_
   uint8_t next_ = 0;
-  uint8_t done_ = ticks_per_point;           // ticks of this piece
-  uint8_t tick_ = 0;                         // lower byte of the tick of the last advance()
+  uint8_t done_ = ticks_per_point;  // ticks of this piece
+  uint8_t tick_ = 0;                // lower byte of the tick of the last advance()
   bool on_ = false;
 };
 

@@ -63,9 +63,7 @@ ParameterSets::Progress ParameterSets::work_on_apply(Controllers& controllers) {
       if (at_ == unfit_.joint) return end(Progress::refused);
       controllers.take(sets_.running(), at_++);
       break;
-    case Step::finish:
-      sets_.apply();
-      return end(Progress::applied);
+    case Step::finish: sets_.apply(); return end(Progress::applied);
     case Step::none: break;
   }
   return Progress::going_on;

@@ -33,8 +33,8 @@ class ParameterSets {
   params::Access stage(uint16_t index, int32_t value) { return sets_.stage(index, value); }
   void stage_defaults() { sets_.stage_defaults(); }
 
-  // Checks the staged set and hands it to the controllers, one step in each call. A step takes up to a millisecond. When a
-  // joint refuses its settings, the joints before it get their running settings back.
+  // Checks the staged set and hands it to the controllers, one step in each call. A step takes up to a millisecond.
+  // When a joint refuses its settings, the joints before it get their running settings back.
   enum class Progress : uint8_t { going_on, applied, crc_differs, inconsistent, refused };
   void begin_apply(uint16_t crc);
   bool applying() const { return step_ != Step::none; }
@@ -42,10 +42,10 @@ class ParameterSets {
   // What was wrong: the CRC of the staged set, the index of the parameter that contradicts another, the joint.
   uint16_t staged_crc() const { return apply_crc_; }
   uint8_t misfit() const { return at_; }
-  Unfit unfit() const { return unfit_; }   // also after begin() has returned false
+  Unfit unfit() const { return unfit_; }  // also after begin() has returned false
 
   void save() { store_.save(sets_.running()); }
-  bool work_on_save();   // at most one byte; true when the next can follow at once
+  bool work_on_save();  // at most one byte; true when the next can follow at once
   wire::SaveState save_state() const { return store_.state(); }
 
  private:
@@ -57,9 +57,9 @@ class ParameterSets {
   params::Sets sets_;
   HalEeprom eeprom_;
   params::Store<HalEeprom> store_{eeprom_};
-  uint16_t apply_crc_ = 0;   // the CRC that the host wants, then the one that was found
+  uint16_t apply_crc_ = 0;  // the CRC that the host wants, then the one that was found
   Step step_ = Step::none;
-  uint8_t at_ = 0;           // the joint that is next, or the parameter that does not fit
+  uint8_t at_ = 0;  // the joint that is next, or the parameter that does not fit
   Unfit unfit_ = {0, fuzzy_pdi::Refusal::none};
   wire::ParamSource source_ = wire::ParamSource::defaults;
 };

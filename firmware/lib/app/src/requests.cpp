@@ -10,7 +10,7 @@ namespace {
 
 // After this time of a tick no piece of work is begun, so that the next tick starts in time even while bytes pour in.
 constexpr uint16_t latest_start_us = 800;
-constexpr uint16_t latest_apply_us = 300;   // a joint's compilation takes most of a tick
+constexpr uint16_t latest_apply_us = 300;  // a joint's compilation takes most of a tick
 constexpr uint8_t bytes_per_piece = 16;
 
 // Farther than two angles can be apart. It stands until a tick has seen the pots through the new set.
@@ -33,15 +33,15 @@ bool App::service() {
   if (late_in_tick && heard_this_tick_) return false;
   const uint8_t lost = hal::rx_lost();
   if (lost) rx_overruns_ = rx_overruns_ > UINT16_MAX - lost ? UINT16_MAX : static_cast<uint16_t>(rx_overruns_ + lost);
-  if (hal::tx_free() < wire::max_wire) return false;   // requests wait until there is room for the answer
+  if (hal::tx_free() < wire::max_wire) return false;  // requests wait until there is room for the answer
   if (sets_.applying()) {
     if (age_us > latest_apply_us) return false;
     work_on_apply();
     return true;
   }
-  if (excused_) return false;   // a set was applied: the next request must be judged by what a tick has seen with it
+  if (excused_) return false;  // a set was applied: the next request must be judged by what a tick has seen with it
   if (!heard_this_tick_ && hal::rx_available()) {
-    receive();   // once in every tick, whatever else there is to do: a stop must get through
+    receive();  // once in every tick, whatever else there is to do: a stop must get through
     return true;
   }
   if (late_in_tick) return false;
@@ -49,7 +49,7 @@ bool App::service() {
     send_sample();
   } else if (hello_due_) {
     hello_due_ = false;
-    send_hello(0);   // after boot, without a request: the host waits for the bootloader to end
+    send_hello(0);  // after boot, without a request: the host waits for the bootloader to end
   } else if (hal::rx_available()) {
     receive();
   } else {
@@ -58,8 +58,8 @@ bool App::service() {
   return true;
 }
 
-// Moves the host's reference on, once in each tick and before anything else. When the motors have gone off, for whatever reason, the
-// leader arm leads again before any request is taken.
+// Moves the host's reference on, once in each tick and before anything else. When the motors have gone off, for
+// whatever reason, the leader arm leads again before any request is taken.
 bool App::work_on_lead() {
   const auto tick = static_cast<uint8_t>(tick_);
   if (drivers_on_) {
@@ -147,7 +147,8 @@ void App::serve(const wire::ClearFaultRequest&) {
   if (granted(supervisor_.clear_fault(seen_))) reply(wire::ClearFaultReply{state_on_link()});
 }
 
-// When the supervisor refuses, the motors stay off; service() then gives the lead back to the leader arm before it does anything else.
+// When the supervisor refuses, the motors stay off; service() then gives the lead back to the leader arm before it does
+// anything else.
 void App::serve(const wire::LeadRequest& request) {
   if (request.lease_ms == 0) return refuse_lead(wire::LeadRefusal::no_lease, 0);
   if (supervisor_.motors_on() && !lead_.on()) return refuse_not_disabled();
@@ -271,7 +272,8 @@ void App::send_sample() {
   sample.state = state_on_link();
   sample.fault = on_link(supervisor_.fault());
   for (uint8_t i = 0; i < hal::joint_count; ++i) {
-    // When the host leads, the reference is already that of the next tick. This tick's follows from the controllers' error.
+    // When the host leads, the reference is already that of the next tick. This tick's follows from the controllers'
+    // error.
     sample.leader[i] =
         lead_.on() ? static_cast<int16_t>(sampling_.follower(i) + sampling_.error(i)) : sampling_.leader(i);
     sample.follower[i] = sampling_.follower(i);

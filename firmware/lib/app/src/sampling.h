@@ -15,7 +15,7 @@ class Sampling {
   void tick(const uint16_t* sums, supervisor::Observation& seen);
 
   // The leader's angle, or the host's reference while the host leads.
-  int16_t leader(uint8_t joint) const { return signal_chain::angle(signals_.joint[joint].leader); }   // q12 rad
+  int16_t leader(uint8_t joint) const { return signal_chain::angle(signals_.joint[joint].leader); }  // q12 rad
   int16_t follower(uint8_t joint) const { return signals_.joint[joint].follower_angle; }
   // Reference minus follower; the reference is the leader within the joint's limits.
   int16_t error(uint8_t joint) const { return signals_.joint[joint].error; }
@@ -23,13 +23,13 @@ class Sampling {
   // Between reference and follower, as they are now. The last tick may have seen another reference.
   uint16_t distance(uint8_t joint) const;
 
-  // Puts a reference in the place of a leader pot until configure() is called. The reference is a line of slope 0, so a tick does
-  // what it always does. move_lead() moves the reference, in 2^-15 q12 rad.
+  // Puts a reference in the place of a leader pot until configure() is called. The reference is a line of slope 0, so a
+  // tick does what it always does. move_lead() moves the reference, in 2^-15 q12 rad.
   void lead(uint8_t joint, int16_t angle);
   void move_lead(uint8_t joint, int32_t by);
 
  private:
-  Signals signals_ = {signal_chain::low_pass(0), 0, 0xffff, {}};   // the first sample is taken whole
+  Signals signals_ = {signal_chain::low_pass(0), 0, 0xffff, {}};  // the first sample is taken whole
   uint8_t shift_ = 0;
   bool primed_ = false;
 };

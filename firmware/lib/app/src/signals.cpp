@@ -11,23 +11,26 @@ namespace app {
 #if defined(__AVR__)
 
 // Every place that signals_avr.S reads or writes.
-static_assert(offsetof(signal_chain::LowPass, keep) == SIGNALS_KEEP && offsetof(signal_chain::LowPass, gain) == SIGNALS_GAIN &&
-                  offsetof(Signals, low_pass) == 0 && offsetof(Signals, lowest) == SIGNALS_LOWEST &&
-                  offsetof(Signals, span) == SIGNALS_SPAN && offsetof(Signals, joint) == SIGNALS_JOINT,
+static_assert(offsetof(signal_chain::LowPass, keep) == SIGNALS_KEEP &&
+                  offsetof(signal_chain::LowPass, gain) == SIGNALS_GAIN && offsetof(Signals, low_pass) == 0 &&
+                  offsetof(Signals, lowest) == SIGNALS_LOWEST && offsetof(Signals, span) == SIGNALS_SPAN &&
+                  offsetof(Signals, joint) == SIGNALS_JOINT,
               "signals_layout.h");
 static_assert(offsetof(JointSignals, leader) == JOINT_LEADER && offsetof(JointSignals, follower) == JOINT_FOLLOWER &&
                   offsetof(JointSignals, follower_angle) == JOINT_FOLLOWER_ANGLE &&
-                  offsetof(JointSignals, limit_min) == JOINT_LIMIT_MIN && offsetof(JointSignals, limit_max) == JOINT_LIMIT_MAX &&
+                  offsetof(JointSignals, limit_min) == JOINT_LIMIT_MIN &&
+                  offsetof(JointSignals, limit_max) == JOINT_LIMIT_MAX &&
                   offsetof(JointSignals, error) == JOINT_ERROR && sizeof(JointSignals) == JOINT_SIZE,
               "signals_layout.h");
-static_assert(offsetof(signal_chain::Pot, filtered) == POT_FILTERED && offsetof(signal_chain::Pot, scale) == POT_SCALE &&
-                  offsetof(signal_chain::Pot, offset) == POT_OFFSET,
+static_assert(offsetof(signal_chain::Pot, filtered) == POT_FILTERED &&
+                  offsetof(signal_chain::Pot, scale) == POT_SCALE && offsetof(signal_chain::Pot, offset) == POT_OFFSET,
               "signals_layout.h");
 static_assert(offsetof(supervisor::Observation, distance) == SEEN_DISTANCE &&
                   offsetof(supervisor::Observation, rail_low) == SEEN_RAIL_LOW &&
                   offsetof(supervisor::Observation, rail_high) == SEEN_RAIL_LOW + 1,
               "signals_layout.h");
-static_assert(hal::joint_count == 4 && supervisor::joint_count == 4 && hal::pot_count == 8, "signals_avr.S writes out each joint");
+static_assert(hal::joint_count == 4 && supervisor::joint_count == 4 && hal::pot_count == 8,
+              "signals_avr.S writes out each joint");
 
 #endif
 
@@ -52,7 +55,8 @@ void follow_pots_portable(const uint16_t* sums, Signals* signals, supervisor::Ob
     note_rail(i, sums[i], *signals, *seen);
     note_rail(other, sums[other], *signals, *seen);
     JointSignals& joint = signals->joint[i];
-    const int16_t wanted = signal_chain::clamp(follow(joint.leader, sums[i], *signals), joint.limit_min, joint.limit_max);
+    const int16_t wanted =
+        signal_chain::clamp(follow(joint.leader, sums[i], *signals), joint.limit_min, joint.limit_max);
     const int16_t is = follow(joint.follower, sums[other], *signals);
     joint.follower_angle = is;
     joint.error = fuzzy_pdi::difference(wanted, is);

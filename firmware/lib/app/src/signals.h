@@ -9,18 +9,19 @@ namespace app {
 
 struct JointSignals {
   signal_chain::Pot leader, follower;
-  int16_t follower_angle;         // q12 rad
-  int16_t limit_min, limit_max;   // of the reference, which is the leader within them
-  int16_t error;                  // reference - follower, saturated at +-32767
+  int16_t follower_angle;        // q12 rad
+  int16_t limit_min, limit_max;  // of the reference, which is the leader within them
+  int16_t error;                 // reference - follower, saturated at +-32767
 };
 
 struct Signals {
   signal_chain::LowPass low_pass;
-  uint16_t lowest, span;          // a sum from lowest to lowest + span is not at a rail
+  uint16_t lowest, span;  // a sum from lowest to lowest + span is not at a rail
   JointSignals joint[hal::joint_count];
 };
 
-// `sums` are those of all pots, as hal::pot_sums() gives them. Writes all of `seen` but `late`; its rails must be 0 before.
+// `sums` are those of all pots, as hal::pot_sums() gives them. Writes all of `seen` but `late`; its rails must be 0
+// before.
 void follow_pots_portable(const uint16_t* sums, Signals* signals, supervisor::Observation* seen);
 
 #if defined(__AVR__)
@@ -31,9 +32,10 @@ inline void follow_pots(const uint16_t* sums, Signals* signals, supervisor::Obse
   register Signals* r22 __asm__("r22") = signals;
   register supervisor::Observation* r20 __asm__("r20") = seen;
   __asm__ volatile("%~call app_follow_pots"
-      : "+r"(r24), "+r"(r22), "+r"(r20)
-      :
-      : "r8", "r9", "r10", "r11", "r12", "r13", "r14", "r15", "r16", "r17", "r18", "r19", "r26", "r27", "r30", "r31", "memory");
+                   : "+r"(r24), "+r"(r22), "+r"(r20)
+                   :
+                   : "r8", "r9", "r10", "r11", "r12", "r13", "r14", "r15", "r16", "r17", "r18", "r19", "r26", "r27",
+                     "r30", "r31", "memory");
 }
 
 #else

@@ -33,9 +33,9 @@ inline uint16_t ratio_q15(uint32_t part, uint32_t whole) {
   for (; !(whole >> 23); whole <<= 1) part <<= 1;
 
   const uint32_t r = uint32_t{256} + reciprocals.less_256[(whole >> 15) & 255];
-  const uint32_t rest = (0xFFFFFFFF - whole * r) >> 9;              // E, 2^-23
+  const uint32_t rest = (0xFFFFFFFF - whole * r) >> 9;                // E, 2^-23
   const uint32_t series = rest + (((rest >> 8) * (rest >> 8)) >> 7);  // E + E^2
-  const uint32_t first = (part * r) >> 8;                            // 2^-24
+  const uint32_t first = (part * r) >> 8;                             // 2^-24
   const uint32_t high = first >> 16;
   const uint32_t low = (first >> 8) & 255;
   const uint32_t more = high * (series >> 8) + ((high * (series & 255)) >> 8) + ((low * (series >> 8)) >> 8);

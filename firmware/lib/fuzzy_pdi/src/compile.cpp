@@ -1,12 +1,12 @@
-// Derives a joint's coefficients from its stored settings, or says why it cannot. It runs when parameters are applied, never in the
-// tick.
+// Derives a joint's coefficients from its stored settings, or says why it cannot. It runs when parameters are applied,
+// never in the tick.
 #include "fuzzy_pdi.h"
 
 namespace fuzzy_pdi {
 namespace {
 
-constexpr int16_t unit = 16384;            // 1.0 in q14
-constexpr int16_t least_width = 164;       // 0.01, rounded up
+constexpr int16_t unit = 16384;       // 1.0 in q14
+constexpr int16_t least_width = 164;  // 0.01, rounded up
 constexpr uint32_t largest_k = 64UL << 16;
 constexpr uint32_t largest_ki = 1000UL << 16;
 constexpr uint32_t largest_ki_period = 1UL << 28;  // 4096 V ms / (rad s): a step of the integral stays below 2^30
@@ -35,8 +35,8 @@ struct Slope {
   bool is_short;
 };
 
-// The slope of a ramp that is full at size width * 2^14 / gain (width in q14, gain in q16, or both times the same factor):
-// (2^24 - 1) * 2^16 / full size, or 2^8 for a short ramp.
+// The slope of a ramp that is full at size width * 2^14 / gain (width in q14, gain in q16, or both times the same
+// factor): (2^24 - 1) * 2^16 / full size, or 2^8 for a short ramp.
 Slope make_slope(uint32_t width, uint32_t gain) {
   const uint32_t below = gain << 2;
   const uint32_t low = gain << 26;
@@ -45,7 +45,8 @@ Slope make_slope(uint32_t width, uint32_t gain) {
   return {divide(high, low - below, is_short ? width << 8 : width), is_short};
 }
 
-// A rising ramp needs relative precision only: 24 bits of slope, in the upper three bytes unless the slope is below 2^24.
+// A rising ramp needs relative precision only: 24 bits of slope, in the upper three bytes unless the slope is below
+// 2^24.
 uint32_t without_low_byte(uint32_t slope) {
   if (slope < (uint32_t{1} << 24)) return slope;
   return (slope > largest_slope - 128 ? largest_slope : slope + 128) & ~uint32_t{0xFF};

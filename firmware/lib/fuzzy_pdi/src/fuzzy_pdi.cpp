@@ -12,10 +12,11 @@ void reset(State& state) { state = {0, 0, 0, false}; }
 #if defined(__AVR__) && !defined(FUZZY_PDI_PORTABLE)
 
 // Every place that the assembly reads or writes.
-static_assert(sizeof(Side) == 9 && offsetof(Side, zero) == 0 && offsetof(Side, outer) == 4 && offsetof(Side, short_ramps) == 8,
+static_assert(sizeof(Side) == 9 && offsetof(Side, zero) == 0 && offsetof(Side, outer) == 4 &&
+                  offsetof(Side, short_ramps) == 8,
               "memberships_avr.inc");
-static_assert(offsetof(Coefficients, e) == 0 && offsetof(Coefficients, ce) == 18 && offsetof(Coefficients, integral) == 36 &&
-                  offsetof(Coefficients, ku_mv) == 40,
+static_assert(offsetof(Coefficients, e) == 0 && offsetof(Coefficients, ce) == 18 &&
+                  offsetof(Coefficients, integral) == 36 && offsetof(Coefficients, ku_mv) == 40,
               "step_avr.S");
 static_assert(offsetof(State, integral) == 0 && offsetof(State, fraction) == 4 && offsetof(State, previous_e) == 6 &&
                   offsetof(State, started) == 8,
@@ -31,9 +32,7 @@ namespace {
 
 constexpr int32_t integral_end = int32_t{1} << 30;
 
-inline Input split(int16_t value) {
-  return {static_cast<uint16_t>(value < 0 ? -value : value), value < 0};
-}
+inline Input split(int16_t value) { return {static_cast<uint16_t>(value < 0 ? -value : value), value < 0}; }
 
 // Takes one more period of e into the integral.
 inline void integrate(State& state, uint32_t factor, const Input& e) {
@@ -92,8 +91,8 @@ Output step_error(const Coefficients& c, State& state, int16_t error_q12, uint16
 
   const int16_t size = static_cast<int16_t>(u.size > 32767 ? 32767 : u.size);
   const int16_t size_mv = static_cast<int16_t>(volts.size_mv);
-  return {static_cast<int16_t>(down ? -size : size), static_cast<int16_t>(volts.negative ? -size_mv : size_mv), saturated,
-          u.no_rule};
+  return {static_cast<int16_t>(down ? -size : size), static_cast<int16_t>(volts.negative ? -size_mv : size_mv),
+          saturated, u.no_rule};
 }
 
 #endif

@@ -1,15 +1,18 @@
-// The fuzzy PD+I law of one joint in fixed point: its settings, the coefficients derived from them, and one control period.
+// The fuzzy PD+I law of one joint in fixed point: its settings, the coefficients derived from them, and one control
+// period.
 //
-// Portable C++14: no heap, no float, no division outside compile(). docs/fuzzy.md derives formats, roundings and the error bound.
-// A host twin (greywhale.fuzzy.twin) and a rational reference (greywhale.fuzzy.exact) pin every bit and the bound.
+// Portable C++14: no heap, no float, no division outside compile(). docs/fuzzy.md derives formats, roundings and the
+// error bound. A host twin (greywhale.fuzzy.twin) and a rational reference (greywhale.fuzzy.exact) pin every bit and
+// the bound.
 #pragma once
 
 #include <stdint.h>
 
 namespace fuzzy_pdi {
 
-// One joint's controller as the parameter table stores it. Sets are q14 (16384 = 1.0) and named as in the paper: the end of
-// NE's plateau, ZE's left and right foot, the start of PE's plateau, then the same for the change of error. Every other foot is 0.
+// One joint's controller as the parameter table stores it. Sets are q14 (16384 = 1.0) and named as in the paper: the
+// end of NE's plateau, ZE's left and right foot, the start of PE's plateau, then the same for the change of error.
+// Every other foot is 0.
 struct Settings {
   int16_t ne_c, ze_a, ze_c, pe_b;
   int16_t nce_c, zce_a, zce_c, pce_b;
@@ -36,7 +39,7 @@ struct Side {
 
 // Everything the tick needs of one joint.
 struct Coefficients {
-  Side e[2];          // [0] for e >= 0, [1] for e < 0
+  Side e[2];  // [0] for e >= 0, [1] for e < 0
   Side ce[2];
   uint32_t integral;  // 2^-31 mV per control period and 1/4096 rad
   uint16_t ku_mv;
@@ -47,7 +50,7 @@ struct State {
   int32_t integral;   // 2^-15 mV, held within +-2^15 mV
   uint16_t fraction;  // 2^-31 mV: nothing is lost in the sum
   int16_t previous_e;
-  bool started;       // false until the first step: its change of error is 0
+  bool started;  // false until the first step: its change of error is 0
 };
 
 // A joint's controller. Both parts are together because the assembly reaches both from one address.
@@ -57,10 +60,10 @@ struct Joint {
 };
 
 struct Output {
-  int16_t u_fuzzy;   // q15; 1.0 is 32767 here, 32768 inside
+  int16_t u_fuzzy;  // q15; 1.0 is 32767 here, 32768 inside
   int16_t volts_mv;
-  bool saturated;    // the law wanted more than limit_mv
-  bool no_rule;      // no rule fired, u_fuzzy is 0
+  bool saturated;  // the law wanted more than limit_mv
+  bool no_rule;    // no rule fired, u_fuzzy is 0
 };
 
 // Derives the coefficients. Leaves `out` untouched unless it returns Refusal::none. Divides: not for the tick.
@@ -74,8 +77,8 @@ inline int16_t difference(int16_t a, int16_t b) {
   return static_cast<int16_t>(exact > 32767 ? 32767 : exact < -32767 ? -32767 : exact);
 }
 
-// One control period. error = difference(leader, follower), +-8 rad; limit_mv (0..32767) is the voltage available now. The
-// integral takes the error in unless the output is beyond the limit on the error's own side.
+// One control period. error = difference(leader, follower), +-8 rad; limit_mv (0..32767) is the voltage available now.
+// The integral takes the error in unless the output is beyond the limit on the error's own side.
 #if defined(__AVR__) && !defined(FUZZY_PDI_PORTABLE)
 extern "C" Output fuzzy_pdi_step_error(Joint* joint, int16_t error, uint16_t limit_mv);  // step_avr.S
 

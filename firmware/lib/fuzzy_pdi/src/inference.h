@@ -1,7 +1,8 @@
-// From the two inputs to u_fuzzy: memberships, rules, defuzzification. On AVR memberships_avr.inc and rules_avr.inc replace it.
+// From the two inputs to u_fuzzy: memberships, rules, defuzzification. On AVR memberships_avr.inc and rules_avr.inc
+// replace it.
 //
-// Heights are 24-bit fractions of `one`. Each input is taken as size and sign: on either side of zero only two sets are active,
-// so the nine rules of Table 6 become three (same signs) or four (opposite signs) minima.
+// Heights are 24-bit fractions of `one`. Each input is taken as size and sign: on either side of zero only two sets are
+// active, so the nine rules of Table 6 become three (same signs) or four (opposite signs) minima.
 #pragma once
 
 #include "arithmetic.h"
@@ -26,8 +27,8 @@ struct Rules {
   uint32_t with, zero, against;
 };
 
-// A ramp from 0 at size 0 to 1: round(size * slope / 2^16), half up. A short ramp, full within the first 256 sizes, has a slope
-// 2^8 times finer, so that every ramp keeps its precision.
+// A ramp from 0 at size 0 to 1: round(size * slope / 2^16), half up. A short ramp, full within the first 256 sizes, has
+// a slope 2^8 times finer, so that every ramp keeps its precision.
 inline uint32_t climb(uint32_t slope, bool is_short, uint16_t size) {
   if (is_short) {
     if (size > 255) return one;
@@ -49,7 +50,8 @@ inline Rules fire(const Memberships& e, const Memberships& ce, bool same_sign) {
   if (same_sign) {
     return {greater(lesser(e.zero, ce.outer), lesser(e.outer, greater(ce.zero, ce.outer))), lesser(e.zero, ce.zero), 0};
   }
-  return {lesser(e.outer, ce.zero), greater(lesser(e.zero, ce.zero), lesser(e.outer, ce.outer)), lesser(e.zero, ce.outer)};
+  return {lesser(e.outer, ce.zero), greater(lesser(e.zero, ce.zero), lesser(e.outer, ce.outer)),
+          lesser(e.zero, ce.outer)};
 }
 
 // Magnitude of u_fuzzy in q15 (32768 = 1.0); `flip` is set when it points against e.
@@ -68,7 +70,8 @@ inline Defuzzified defuzzify(const Rules& rules) {
 }
 
 inline Defuzzified infer(const Coefficients& c, const Input& e, const Input& ce) {
-  return defuzzify(fire(fuzzify(c.e[e.negative], e.size), fuzzify(c.ce[ce.negative], ce.size), e.negative == ce.negative));
+  return defuzzify(
+      fire(fuzzify(c.e[e.negative], e.size), fuzzify(c.ce[ce.negative], ce.size), e.negative == ce.negative));
 }
 
 }  // namespace fuzzy_pdi

@@ -6,8 +6,8 @@
 namespace hal {
 
 constexpr uint8_t joint_count = 4;
-constexpr uint8_t pot_count = 8;             // 0..3 leader, 4..7 follower
-constexpr uint8_t conversions_per_pot = 4;   // summed each tick
+constexpr uint8_t pot_count = 8;            // 0..3 leader, 4..7 follower
+constexpr uint8_t conversions_per_pot = 4;  // summed each tick
 
 // unknown: a board that has no name yet.
 enum class Board : uint8_t { unknown, mega2560, nano328, native };
@@ -20,24 +20,25 @@ ResetCause reset_cause();
 // Takes timers, ADC and serial port over from the framework. Outputs have been low and drivers off since the reset.
 void begin();
 
-// --- The tick, from a 1 kHz timer interrupt. The interrupt itself turns the drivers off when a tick is not finished in time.
+// --- The tick, from a 1 kHz timer interrupt. The interrupt itself turns the drivers off when a tick is not finished in
+// time.
 struct TickStart {
-  uint8_t elapsed;   // ticks since the last tick_begin(): 1 unless some were missed
-  bool late;         // the tick before this one was not finished in time, or samples were not complete
+  uint8_t elapsed;  // ticks since the last tick_begin(): 1 unless some were missed
+  bool late;        // the tick before this one was not finished in time, or samples were not complete
 };
 bool tick_pending();
 TickStart tick_begin();
 void tick_end();
-void run_tick();          // calls firmware_tick(), which main.cpp defines; no other caller may
-uint16_t tick_age_us();   // time since the timer started this tick, resolution 4 us
+void run_tick();         // calls firmware_tick(), which main.cpp defines; no other caller may
+uint16_t tick_age_us();  // time since the timer started this tick, resolution 4 us
 
-// For every pot the sum of four 10-bit conversions, all made during the last tick; null when there are no new sums. Release the
-// sums before tick_end(): until then they stay as they are.
+// For every pot the sum of four 10-bit conversions, all made during the last tick; null when there are no new sums.
+// Release the sums before tick_end(): until then they stay as they are.
 const uint16_t* pot_sums();
 void release_pots();
 
-// --- Outputs. A duty is a size of 0..full_duty(joint), the PWM's own steps, and a sign: positive sets the direction pin.
-// set_duty<joint>() is the same for a joint known at compile time, in a few cycles.
+// --- Outputs. A duty is a size of 0..full_duty(joint), the PWM's own steps, and a sign: positive sets the direction
+// pin. set_duty<joint>() is the same for a joint known at compile time, in a few cycles.
 uint16_t full_duty(uint8_t joint);
 void set_duty(uint8_t joint, bool positive, uint16_t size);
 template <uint8_t joint>
@@ -49,15 +50,15 @@ void set_led(bool on);
 constexpr uint8_t tx_capacity = 127;
 constexpr uint8_t rx_capacity = 127;
 bool rx_available();
-uint8_t rx_read();              // only when rx_available()
+uint8_t rx_read();  // only when rx_available()
 uint8_t tx_free();
-void tx_write(const uint8_t* bytes, uint8_t count);   // 1..tx_free() of them
-uint8_t rx_lost();              // how often bytes were lost since the last call, at most 255
+void tx_write(const uint8_t* bytes, uint8_t count);  // 1..tx_free() of them
+uint8_t rx_lost();                                   // how often bytes were lost since the last call, at most 255
 
 // --- EEPROM, one byte at a time. A write takes about 3.4 ms in the background.
 bool eeprom_busy();
-uint8_t eeprom_read(uint16_t address);                    // only when not busy
-void eeprom_begin_write(uint16_t address, uint8_t value); // only when not busy
+uint8_t eeprom_read(uint16_t address);                     // only when not busy
+void eeprom_begin_write(uint16_t address, uint8_t value);  // only when not busy
 
 // --- Watchdog of 60 ms, and idle sleep until a tick is pending or a byte has come.
 void watchdog_start();
@@ -72,5 +73,7 @@ void idle();
 extern "C" void firmware_tick();
 inline void hal::run_tick() { firmware_tick(); }
 template <uint8_t joint>
-inline void hal::set_duty(bool positive, uint16_t size) { set_duty(joint, positive, size); }
+inline void hal::set_duty(bool positive, uint16_t size) {
+  set_duty(joint, positive, size);
+}
 #endif

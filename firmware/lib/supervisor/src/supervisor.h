@@ -6,7 +6,7 @@
 namespace supervisor {
 
 constexpr uint8_t joint_count = 4;
-constexpr uint8_t nowhere = 255;   // fault_where when the fault has no pot or joint
+constexpr uint8_t nowhere = 255;  // fault_where when the fault has no pot or joint
 
 // The numbers go over the link; app/src/on_link.h checks that they are the same there.
 enum class State : uint8_t { boot, disabled, soft_start, following, fault };
@@ -14,14 +14,14 @@ enum class StopReason : uint8_t { none, host, lease, fault, reset };
 enum class Fault : uint8_t { none, pot_low, pot_high, late_tick, tracking, watchdog, params };
 
 struct Limits {
-  uint16_t enable_limit;     // q12 rad
-  uint16_t tracking_limit;   // q12 rad, 0 = no check
+  uint16_t enable_limit;    // q12 rad
+  uint16_t tracking_limit;  // q12 rad, 0 = no check
   uint16_t tracking_ms;
   uint16_t soft_start_ms;
 };
 
-// What a tick has seen. A joint's distance is between its reference (the leader within the joint's limits) and its follower, in
-// q12 rad. Bit i of a rail mask is pot i: 0..3 leader, 4..7 follower.
+// What a tick has seen. A joint's distance is between its reference (the leader within the joint's limits) and its
+// follower, in q12 rad. Bit i of a rail mask is pot i: 0..3 leader, 4..7 follower.
 struct Observation {
   uint16_t distance[joint_count];
   uint8_t rail_low;
@@ -34,14 +34,14 @@ enum class Answer : uint8_t { ok, booting, in_fault, pot_bad, too_far, params };
 struct Reply {
   Answer answer;
   uint8_t where;
-  uint16_t detail;   // the Fault for pot_bad and in_fault, the distance for too_far
+  uint16_t detail;  // the Fault for pot_bad and in_fault, the distance for too_far
 };
 
 class Supervisor {
  public:
   // A reset by the watchdog, or a stored set that cannot be run, is a fault that stands from the start.
   void begin(bool after_watchdog, bool params_ok);
-  void set_limits(const Limits& limits);   // only while the motors are off
+  void set_limits(const Limits& limits);  // only while the motors are off
   void params_mended() { params_ok_ = true; }
 
   void tick(const Observation& seen);
@@ -69,17 +69,17 @@ class Supervisor {
   void debounce(const Observation& seen);
   void remember_rails(const Observation& seen);
 
-  static constexpr uint8_t boot_ticks = 20;          // meanwhile the filters settle and bad pots are found
+  static constexpr uint8_t boot_ticks = 20;  // meanwhile the filters settle and bad pots are found
 
   Limits limits_ = {};
-  uint8_t low_[2] = {}, high_[2] = {};               // rail masks of the two ticks before
-  uint8_t any_rail_ = 0;                             // not 0 when one of them has a bit set
-  uint8_t steady_low_ = 0, steady_high_ = 0;         // at the rail for three ticks
-  uint16_t tracking_limit_ = UINT16_MAX;             // without a check no distance is beyond it
-  uint16_t lost_ticks_[joint_count] = {};            // time beyond the tracking limit
-  uint8_t far_ = 0;                                  // joints whose lost_ticks_ count
+  uint8_t low_[2] = {}, high_[2] = {};        // rail masks of the two ticks before
+  uint8_t any_rail_ = 0;                      // not 0 when one of them has a bit set
+  uint8_t steady_low_ = 0, steady_high_ = 0;  // at the rail for three ticks
+  uint16_t tracking_limit_ = UINT16_MAX;      // without a check no distance is beyond it
+  uint16_t lost_ticks_[joint_count] = {};     // time beyond the tracking limit
+  uint8_t far_ = 0;                           // joints whose lost_ticks_ count
   signal_chain::SoftStart soft_start_;
-  uint16_t lease_ = 0;                               // ticks, 0 = until stop
+  uint16_t lease_ = 0;  // ticks, 0 = until stop
   uint8_t boot_left_ = boot_ticks;
   bool params_ok_ = true;
   State state_ = State::boot;

@@ -32,7 +32,7 @@ struct Frame {
 class Bench {
  public:
   Bench() {
-    hal::fake::board = hal::fake::FakeBoard();   // a blank EEPROM
+    hal::fake::board = hal::fake::FakeBoard();  // a blank EEPROM
     power_on();
   }
 
@@ -65,7 +65,7 @@ class Bench {
 
   void service() {
     int pieces = 0;
-    while (app_->service()) REQUIRE(++pieces < 1000);   // it must come to rest
+    while (app_->service()) REQUIRE(++pieces < 1000);  // it must come to rest
   }
 
   void send_raw(const std::vector<std::uint8_t>& bytes) {
@@ -89,14 +89,14 @@ class Bench {
 
   // The same for any type and payload.
   Frame ask_raw(std::uint8_t type, const std::vector<std::uint8_t>& payload) {
-    constexpr unsigned patience = 40;   // ticks
+    constexpr unsigned patience = 40;  // ticks
     const std::uint8_t seq = ++seq_;
     wire::Encoder encoder;
     std::copy(payload.begin(), payload.end(), encoder.payload());
     encoder.finish(type, seq, static_cast<std::uint8_t>(payload.size()));
     frames.clear();
     send_raw({encoder.data(), encoder.data() + encoder.size()});
-    service();   // a reply need not wait for the next tick
+    service();  // a reply need not wait for the next tick
     collect();
     for (unsigned waited = 0; frames.empty() && waited < patience; ++waited) tick();
     REQUIRE(frames.size() == 1);
@@ -124,9 +124,7 @@ class Bench {
 
   wire::StatusReply status() { return get<wire::StatusReply>(wire::StatusRequest{}); }
   wire::State state() { return status().state; }
-  wire::State enable(std::uint16_t lease_ms = 0) {
-    return get<wire::EnableReply>(wire::EnableRequest{lease_ms}).state;
-  }
+  wire::State enable(std::uint16_t lease_ms = 0) { return get<wire::EnableReply>(wire::EnableRequest{lease_ms}).state; }
   wire::State stop() { return get<wire::StopReply>(wire::StopRequest{}).state; }
 
   void follow() {
@@ -156,12 +154,12 @@ class Bench {
   void set_count(std::uint8_t pot, std::uint16_t count) { counts[pot] = count; }
   double follower(std::uint8_t joint) const { return position_[joint]; }
 
-  std::vector<Frame> frames;          // everything but samples
+  std::vector<Frame> frames;  // everything but samples
   std::vector<wire::Sample> samples;
   std::vector<std::uint8_t> sample_seqs;
   unsigned ticks = 0;
-  double speed = 0;                   // rad/s at full duty; 0: the arm does not move
-  bool drain = true;                  // the wire takes what is sent
+  double speed = 0;   // rad/s at full duty; 0: the arm does not move
+  bool drain = true;  // the wire takes what is sent
   std::array<std::uint16_t, 8> counts = [] {
     std::array<std::uint16_t, 8> middle;
     middle.fill(512);
@@ -192,8 +190,8 @@ class Bench {
         samples.push_back(sample);
         sample_seqs.push_back(decoder_.seq());
       } else {
-        frames.push_back({decoder_.type(), decoder_.seq(),
-                 {decoder_.payload(), decoder_.payload() + decoder_.payload_size()}});
+        frames.push_back(
+            {decoder_.type(), decoder_.seq(), {decoder_.payload(), decoder_.payload() + decoder_.payload_size()}});
       }
     }
     board.sent.clear();

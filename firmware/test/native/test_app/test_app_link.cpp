@@ -122,7 +122,7 @@ TEST_CASE("an enable frame with any one or two bits wrong does not turn the moto
   arm.boot();
   const auto bits = good.size() * 8;
   for (std::size_t a = 0; a < bits; ++a) {
-    for (std::size_t b = a; b < bits; ++b) {   // b == a: one bit
+    for (std::size_t b = a; b < bits; ++b) {  // b == a: one bit
       auto bad = good;
       bad[a / 8] = static_cast<std::uint8_t>(bad[a / 8] ^ (1u << (a % 8)));
       if (b != a) bad[b / 8] = static_cast<std::uint8_t>(bad[b / 8] ^ (1u << (b % 8)));
@@ -134,7 +134,7 @@ TEST_CASE("an enable frame with any one or two bits wrong does not turn the moto
     }
   }
   arm.run(2);
-  CHECK(arm.enable() == wire::State::soft_start);   // the whole one does
+  CHECK(arm.enable() == wire::State::soft_start);  // the whole one does
 }
 
 TEST_CASE("lost bytes are counted") {

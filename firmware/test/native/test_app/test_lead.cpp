@@ -8,7 +8,7 @@ using bench::board;
 
 namespace {
 
-constexpr int piece = 16;   // ticks from point to point
+constexpr int piece = 16;  // ticks from point to point
 
 struct Led : Bench {
   wire::LeadReply lead(std::uint16_t lease_ms = 60000) { return get<wire::LeadReply>(wire::LeadRequest{lease_ms}); }
@@ -60,7 +60,7 @@ TEST_CASE("the reference starts at the follower's pose, wherever the leader arm 
   CHECK(board.drivers);
   CHECK(reply.reference[0] == doctest::Approx(-0.5 * 4096).epsilon(0.01));
   for (int i = 0; i < 100; ++i) CHECK(arm.reference() == reply.reference[0]);
-  CHECK(bench::joint_max(board.duty) == 0);   // nothing to do
+  CHECK(bench::joint_max(board.duty) == 0);  // nothing to do
 }
 
 TEST_CASE("the reference is the B-spline of the points to the last bit, and rests at the last point") {
@@ -68,7 +68,7 @@ TEST_CASE("the reference is the B-spline of the points to the last bit, and rest
   arm.boot();
   params::Table table;
   params::load_defaults(table);
-  table.tracking_limit = 0;   // this follower stays where it is
+  table.tracking_limit = 0;  // this follower stays where it is
   REQUIRE(arm.apply(table).type == 0x85);
   arm.sampling();
   const wire::LeadReply begun = arm.lead();
@@ -78,7 +78,7 @@ TEST_CASE("the reference is the B-spline of the points to the last bit, and rest
   std::size_t sent = 0;
   std::vector<int> seen;
   for (int ms = 0; ms < 1200; ++ms) {
-    for (; sent < steps.size(); ++sent) {   // as many as there is room for
+    for (; sent < steps.size(); ++sent) {  // as many as there is room for
       const auto number = static_cast<std::uint8_t>(begun.next + sent);
       if (arm.send(number, steps[sent]).next == number) break;
       control.push_back(control.back() + 4 * steps[sent]);
@@ -119,7 +119,7 @@ TEST_CASE("samples tell the error and voltage of one and the same tick, whoever 
     if (led) next = arm.lead().next;
     else arm.enable();
     arm.samples.clear();
-    arm.run(1100);   // past the soft start
+    arm.run(1100);  // past the soft start
     double angle = 0.0;
     for (int k = 0; k < 60; ++k) {
       const int step = static_cast<int>(std::lround(60.0 * std::sin(k * 0.21)));
@@ -134,7 +134,8 @@ TEST_CASE("samples tell the error and voltage of one and the same tick, whoever 
     params::Table table;
     params::load_defaults(table);
     const auto& p = table.joint[0];
-    const fuzzy_pdi::Settings settings = {p.ne_c, p.ze_a, p.ze_c, p.pe_b, p.nce_c, p.zce_a, p.zce_c, p.pce_b, p.kp, p.kd, p.ki, p.ku_mv};
+    const fuzzy_pdi::Settings settings = {p.ne_c,  p.ze_a,  p.ze_c, p.pe_b, p.nce_c, p.zce_a,
+                                          p.zce_c, p.pce_b, p.kp,   p.kd,   p.ki,    p.ku_mv};
     REQUIRE(fuzzy_pdi::compile(settings, table.period_ms, law.coefficients) == fuzzy_pdi::Refusal::none);
     fuzzy_pdi::reset(law.state);
     int moved = 0, wrong = 0;
@@ -161,7 +162,7 @@ TEST_CASE("while the host leads its lease cannot be taken away, and the leader a
   CHECK(arm.refused(wire::EnableRequest{500}).code == wire::NackCode::not_disabled);
   CHECK(board.drivers);
   arm.run(300);
-  CHECK(!board.drivers);   // none of it renewed the lease
+  CHECK(!board.drivers);  // none of it renewed the lease
 }
 
 TEST_CASE("a host that sends nothing more brings the reference to rest within two pieces, where its last point is") {
@@ -182,9 +183,9 @@ TEST_CASE("a point is taken once, in its turn, and while there is room") {
   arm.boot();
   const wire::LeadReply begun = arm.lead();
   const auto number = [&begun](int i) { return static_cast<std::uint8_t>(begun.next + i); };
-  CHECK(arm.send(number(1), 0).next == number(0));   // one is missing
+  CHECK(arm.send(number(1), 0).next == number(0));  // one is missing
   CHECK(arm.send(number(0), 10).next == number(1));
-  CHECK(arm.send(number(0), 99).waiting == 1);   // sent again: the answer was lost
+  CHECK(arm.send(number(0), 99).waiting == 1);  // sent again: the answer was lost
   CHECK(arm.lead().reference[0] == begun.reference[0] + 40);
   CHECK(arm.lead().next == number(1));
   for (int i = 1; i < 12; ++i) CHECK(arm.send(number(i), 0).waiting == i + 1);
@@ -251,13 +252,13 @@ TEST_CASE("whatever turns the motors off, the leader arm leads again before any 
   };
   const auto back = [&arm] {
     CHECK(arm.why(wire::LeadPointRequest{}) == wire::LeadRefusal::not_leading);
-    const wire::Nack nack = arm.refused(wire::EnableRequest{0});   // the leader arm is far away, and that counts
+    const wire::Nack nack = arm.refused(wire::EnableRequest{0});  // the leader arm is far away, and that counts
     CHECK(nack.code == wire::NackCode::error_too_large);
     CHECK((nack.detail >> 8) == 0);
     CHECK(arm.reference() == doctest::Approx(1.5 * 4096).epsilon(0.01));
   };
   led();
-  arm.send_raw(Bench::frame(wire::StopRequest{}, 1));   // and an enable right behind it, in the same tick
+  arm.send_raw(Bench::frame(wire::StopRequest{}, 1));  // and an enable right behind it, in the same tick
   arm.send_raw(Bench::frame(wire::EnableRequest{0}, 2));
   arm.service();
   CHECK_FALSE(board.drivers);
@@ -266,12 +267,12 @@ TEST_CASE("whatever turns the motors off, the leader arm leads again before any 
   arm.frames.clear();
   back();
   led();
-  arm.run(301);   // nobody renews the lease
+  arm.run(301);  // nobody renews the lease
   CHECK(arm.status().stop_reason == wire::StopReason::lease);
   back();
   led();
   const std::uint16_t whole = arm.counts[2];
-  arm.set_count(2, 0);   // a leader pot counts while the host leads as well
+  arm.set_count(2, 0);  // a leader pot counts while the host leads as well
   arm.run(5);
   CHECK(arm.status().fault == wire::Fault::pot_low);
   arm.set_count(2, whole);
@@ -309,8 +310,10 @@ TEST_CASE("a follower beyond its limits is led back to the limit, or not at all 
   CHECK_FALSE(board.drivers);
 }
 
-TEST_CASE("a follower that does not follow the host is the same fault as with the leader arm, and the lease keeps it running") {
-  Led arm;   // its speed is 0: it stays where it is
+TEST_CASE(
+    "a follower that does not follow the host is the same fault as with the leader arm, and the lease keeps it "
+    "running") {
+  Led arm;  // its speed is 0: it stays where it is
   arm.boot();
   std::uint8_t next = arm.lead(200).next;
   for (int i = 1; i <= 40; ++i) {

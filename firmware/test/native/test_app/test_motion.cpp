@@ -34,7 +34,7 @@ TEST_CASE("enable is refused while a pot is at a rail, and names the pot") {
 
 TEST_CASE("soft start: the duty stays below the ramp, and the ramp reaches the top") {
   Bench arm;
-  for (std::uint8_t i = 0; i < 4; ++i) arm.set_leader(i, 0.79);   // as far as enable allows: more volts than the ramp
+  for (std::uint8_t i = 0; i < 4; ++i) arm.set_leader(i, 0.79);  // as far as enable allows: more volts than the ramp
   arm.boot();
   REQUIRE(arm.enable() == wire::State::soft_start);
   CHECK(board.drivers);
@@ -44,7 +44,7 @@ TEST_CASE("soft start: the duty stays below the ramp, and the ramp reaches the t
     arm.tick();
     at_end = bench::joint_max(board.duty);
     if (at_end > std::lround(bench::full_duty * ms / 1000.0)) ++over;
-    if (ms == 100) CHECK(at_end > bench::full_duty * 9 / 100);   // the ramp is the limit here, not the controller
+    if (ms == 100) CHECK(at_end > bench::full_duty * 9 / 100);  // the ramp is the limit here, not the controller
   }
   CHECK(over == 0);
   CHECK(at_end > bench::full_duty * 3 / 10);
@@ -84,10 +84,10 @@ TEST_CASE("a leader beyond the joint's limits is followed to the limit only") {
   arm.boot();
   params::Table table;
   params::load_defaults(table);
-  table.joint[0].limit_max = 1024;   // 0.25 rad
+  table.joint[0].limit_max = 1024;  // 0.25 rad
   REQUIRE(arm.apply(table).type == 0x85);
   arm.speed = 3.0;
-  arm.set_leader(0, 2.0);            // 2 rad away from the follower, but the reference is not
+  arm.set_leader(0, 2.0);  // 2 rad away from the follower, but the reference is not
   arm.run(30);
   REQUIRE(arm.enable() == wire::State::soft_start);
   arm.run(6000);
@@ -101,7 +101,7 @@ TEST_CASE("stop turns the drivers off before it is answered, in soft start and i
   starting.run(10);
   REQUIRE(board.drivers);
   starting.send_raw(Bench::frame(wire::StopRequest{}, 77));
-  starting.service();   // no tick in between
+  starting.service();  // no tick in between
   CHECK_FALSE(board.drivers);
   CHECK_FALSE(board.drivers_when_sending);
   CHECK(bench::joint_max(board.duty) == 0);
@@ -128,7 +128,7 @@ TEST_CASE("stop is answered in every other state too, and gets through while sam
   Bench busy;
   busy.follow();
   busy.get<wire::TelemetryReply>(wire::TelemetryRequest{1});
-  board.age_us = 900;   // the processor is busy: every tick ends late
+  board.age_us = 900;  // the processor is busy: every tick ends late
   busy.run(10);
   CHECK(busy.stop() == wire::State::disabled);
 }
@@ -174,7 +174,7 @@ TEST_CASE("a late tick stops the arm at once and is counted") {
   board.late = true;
   board.elapsed = 3;
   hal::fake::start_tick();
-  CHECK_FALSE(board.drivers);   // the interrupt does not wait for the main loop
+  CHECK_FALSE(board.drivers);  // the interrupt does not wait for the main loop
   arm.tick();
   CHECK_FALSE(board.drivers);
   const auto status = arm.status();
@@ -202,9 +202,9 @@ TEST_CASE("a lease that is not renewed ends in disabled; one that is renewed goe
 
 TEST_CASE("a follower that does not come is lost after tracking_ms") {
   Bench arm;
-  arm.follow();   // the plant stands still
+  arm.follow();  // the plant stands still
   arm.set_leader(3, 2.4);
-  arm.set_follower(3, 1.4);   // 1 rad; with 0.8 rad it might go on
+  arm.set_follower(3, 1.4);  // 1 rad; with 0.8 rad it might go on
   arm.run(195);
   CHECK(board.drivers);
   arm.run(20);

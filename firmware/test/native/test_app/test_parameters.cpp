@@ -53,7 +53,7 @@ TEST_CASE("a lower supply means more duty for the same voltage") {
   params::Table table;
   params::load_defaults(table);
   table.supply_mv = 12000;
-  table.joint[0].ki = 0;   // the integral would go on in between
+  table.joint[0].ki = 0;  // the integral would go on in between
   REQUIRE(arm.apply(table).type == 0x85);
   arm.enable();
   arm.run(1100);
@@ -63,7 +63,7 @@ TEST_CASE("a lower supply means more duty for the same voltage") {
 TEST_CASE("apply is refused while the motors are on, and the running set stays") {
   Bench arm;
   arm.follow();
-  arm.get<wire::ParamSetReply>(wire::ParamSetRequest{1, 12000});   // staging is harmless
+  arm.get<wire::ParamSetReply>(wire::ParamSetRequest{1, 12000});  // staging is harmless
   const wire::Nack nack = arm.refused(wire::ParamApplyRequest{0});
   CHECK(nack.code == wire::NackCode::not_disabled);
   CHECK(nack.detail == static_cast<int>(wire::State::following));
@@ -77,7 +77,7 @@ TEST_CASE("apply is refused for another CRC, for contradictions and for a set th
   params::Table table;
   params::load_defaults(table);
   CHECK(arm.refused(wire::ParamApplyRequest{static_cast<std::uint16_t>(params::crc(table) + 1)}).code ==
-     wire::NackCode::crc_mismatch);
+        wire::NackCode::crc_mismatch);
 
   table.joint[1].limit_min = 2000;
   table.joint[1].limit_max = 2000;
@@ -85,13 +85,13 @@ TEST_CASE("apply is refused for another CRC, for contradictions and for a set th
   CHECK(arm.refused(wire::ParamApplyRequest{params::crc(table)}).code == wire::NackCode::inconsistent);
 
   params::load_defaults(table);
-  table.joint[3].ze_c = 10;   // narrower than 0.01
+  table.joint[3].ze_c = 10;  // narrower than 0.01
   table.supply_mv = 9000;
   CHECK(arm.apply(table).type == 0xff);
   const wire::Nack nack = arm.refused(wire::ParamApplyRequest{params::crc(table)});
   CHECK(nack.code == wire::NackCode::set_refused);
   CHECK(nack.detail == (3 << 8 | static_cast<int>(wire::Refusal::width)));
-  CHECK(value_of(arm, 1) == 15000);   // nothing of it runs
+  CHECK(value_of(arm, 1) == 15000);  // nothing of it runs
   CHECK(arm.enable() == wire::State::soft_start);
 }
 
@@ -133,7 +133,7 @@ TEST_CASE("an enable on the heels of an apply is judged by the new calibration")
   arm.boot();
   params::Table table;
   params::load_defaults(table);
-  table.leader[0].zero = 8184 - 6100;   // the leader now stands 1.95 rad away from the follower
+  table.leader[0].zero = 8184 - 6100;  // the leader now stands 1.95 rad away from the follower
   for (std::uint8_t i = 0; i < params::count; ++i) {
     std::int32_t value = 0;
     REQUIRE(params::get(table, i, value) == params::Access::ok);
@@ -154,9 +154,10 @@ TEST_CASE("an enable on the heels of an apply is judged by the new calibration")
   CHECK(arm.frames[1].seq == 202);
   wire::Nack nack{};
   REQUIRE(unsigned(arm.frames[1].type) == 0xff);
-  REQUIRE(wire::Nack::decode(arm.frames[1].payload.data(), static_cast<std::uint8_t>(arm.frames[1].payload.size()), nack));
+  REQUIRE(
+      wire::Nack::decode(arm.frames[1].payload.data(), static_cast<std::uint8_t>(arm.frames[1].payload.size()), nack));
   CHECK(nack.code == wire::NackCode::error_too_large);
-  CHECK(unsigned(nack.detail) < 256);   // joint 0
+  CHECK(unsigned(nack.detail) < 256);  // joint 0
   CHECK(nack.detail / 32.0 == doctest::Approx(1.95).epsilon(0.02));
 }
 
@@ -164,7 +165,7 @@ TEST_CASE("after an apply no enable works before potentiometers were read") {
   Bench arm;
   arm.boot();
   REQUIRE(arm.apply(changed()).type == 0x85);
-  board.samples_ready = false;   // ticks without samples
+  board.samples_ready = false;  // ticks without samples
   CHECK(arm.refused(wire::EnableRequest{0}).code == wire::NackCode::error_too_large);
   CHECK_FALSE(board.drivers);
   board.samples_ready = true;
@@ -223,7 +224,7 @@ TEST_CASE("what is not saved is gone after a power cycle") {
 TEST_CASE("a stored set that cannot run: defaults, a fault, and a way out") {
   Bench arm;
   params::Table table = changed();
-  table.joint[0].ne_c = 0;   // within its range, but the controller refuses it
+  table.joint[0].ne_c = 0;  // within its range, but the controller refuses it
   app::HalEeprom eeprom;
   params::Store<app::HalEeprom> store(eeprom);
   params::Table found;

@@ -1,4 +1,5 @@
-// Every type of request in every length: a declared one is answered by its own reply, all else is refused and changes nothing.
+// Every type of request in every length: a declared one is answered by its own reply, all else is refused and changes
+// nothing.
 #include <array>
 #include <functional>
 #include <map>
@@ -59,14 +60,14 @@ void add(std::vector<int>& trace, const Message& message) {
   trace.insert(trace.end(), bytes, bytes + sizeof bytes);
 }
 
-// All that can be seen of an arm: its outputs, its EEPROM and its samples tick by tick; then its counters, its running and its
-// staged set. Before each tick it gets one of the frames, if any.
+// All that can be seen of an arm: its outputs, its EEPROM and its samples tick by tick; then its counters, its running
+// and its staged set. Before each tick it gets one of the frames, if any.
 std::vector<int> life(const std::function<void(Bench&)>& begin, const std::vector<Odd>& frames, bool send) {
   Bench arm;
   begin(arm);
   params::Table staged;
   params::load_defaults(staged);
-  staged.soft_start_ms = 777;   // place 3 of the table
+  staged.soft_start_ms = 777;  // place 3 of the table
   arm.get<wire::ParamSetReply>(wire::ParamSetRequest{3, 777});
   arm.get<wire::TelemetryReply>(wire::TelemetryRequest{1});
   arm.samples.clear();

@@ -71,7 +71,7 @@ TEST_CASE("the filter reaches a step from both sides, never overshoots, and its 
           before = std::abs(now);
         }
         CHECK(worse == 0);
-        CHECK(before <= 3);   // half of the filter's smallest step, 8/64 of a 10-bit count
+        CHECK(before <= 3);  // half of the filter's smallest step, 8/64 of a 10-bit count
       }
     }
   }
@@ -80,7 +80,7 @@ TEST_CASE("the filter reaches a step from both sides, never overshoots, and its 
 TEST_CASE("filter_shift is the share of a step taken each tick") {
   params::Table table = defaults();
   table.filter_shift = 2;
-  table.leader[0] = {0, 8192};   // the angle is count14
+  table.leader[0] = {0, 8192};  // the angle is count14
   app::Sampling sampling;
   supervisor::Observation seen = {};
   sampling.configure(table);
@@ -88,7 +88,7 @@ TEST_CASE("filter_shift is the share of a step taken each tick") {
   sampling.tick(sums, seen);
   sums[0] = 4000;
   sampling.tick(sums, seen);
-  CHECK(sampling.leader(0) == 4000);    // 16000 / 4
+  CHECK(sampling.leader(0) == 4000);  // 16000 / 4
   sampling.tick(sums, seen);
   CHECK(sampling.leader(0) == 7000);
 }
@@ -98,7 +98,7 @@ TEST_CASE("an error is that from the follower to the leader within its joint's l
   table.filter_shift = 0;
   int wrong = 0;
   for (std::uint8_t joint = 0; joint < 4; ++joint) {
-    table.leader[joint] = {8184, 16384};   // twice count14
+    table.leader[joint] = {8184, 16384};  // twice count14
     table.follower[joint] = {8184, -16384};
     table.joint[joint].limit_min = static_cast<std::int16_t>(-1000 * (joint + 1));
     table.joint[joint].limit_max = static_cast<std::int16_t>(700 * (joint + 2));
@@ -134,8 +134,8 @@ TEST_CASE("rails are flagged per pot on the raw reading, and rail_counts 0 turns
     for (const int sum : {0, 15, 16, 17, 4075, 4076, 4077, 4092}) {
       sums[pot] = static_cast<std::uint16_t>(sum);
       sampling.tick(sums, seen);
-      CHECK(seen.rail_low == (sum <= 16 ? bit : 0u));      // 4 counts x 4 conversions
-      CHECK(seen.rail_high == (sum >= 4076 ? bit : 0u));   // 1019 x 4
+      CHECK(seen.rail_low == (sum <= 16 ? bit : 0u));     // 4 counts x 4 conversions
+      CHECK(seen.rail_high == (sum >= 4076 ? bit : 0u));  // 1019 x 4
     }
   }
   table.rail_counts = 0;
@@ -164,7 +164,7 @@ TEST_CASE("a duty is the PWM step nearest to voltage over supply, odd in the vol
       unequal += bench::board.duty[0] != -positive;
       worst = std::max(worst, std::abs(positive - mv * bench::full_duty / double(supply)));
     }
-    CHECK(worst < 0.56);   // half a step, and what the rounded quotient costs at the highest supply
+    CHECK(worst < 0.56);  // half a step, and what the rounded quotient costs at the highest supply
     CHECK(unequal == 0);
     drive.set<0>(static_cast<std::uint16_t>(supply), 0);
     CHECK(bench::board.duty[0] == bench::full_duty);

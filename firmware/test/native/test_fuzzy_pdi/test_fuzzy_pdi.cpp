@@ -84,12 +84,14 @@ TEST_CASE("the integral is held within 2^15 mV") {
   reset(state);
   step(c, state, 32767, 0, 30000);
   // A shrinking error: the proportional part pulls down with all its 30 V while the integral grows.
-  for (int16_t e = 32000; e > 3000; e = static_cast<int16_t>(e - 200)) CHECK(step(c, state, e, 0, 30000).u_fuzzy == -32767);
+  for (int16_t e = 32000; e > 3000; e = static_cast<int16_t>(e - 200))
+    CHECK(step(c, state, e, 0, 30000).u_fuzzy == -32767);
   CHECK(state.integral == (int32_t{1} << 30) - 1);
   CHECK(state.fraction == 0xFFFF);
   reset(state);
   step(c, state, 0, 32767, 30000);
-  for (int16_t e = 32000; e > 3000; e = static_cast<int16_t>(e - 200)) CHECK(step(c, state, 0, e, 30000).u_fuzzy == 32767);
+  for (int16_t e = 32000; e > 3000; e = static_cast<int16_t>(e - 200))
+    CHECK(step(c, state, 0, e, 30000).u_fuzzy == 32767);
   CHECK(state.integral == -(int32_t{1} << 30));
   CHECK(state.fraction == 0);
 }
@@ -176,7 +178,9 @@ struct Random {
   // Mostly small, sometimes anything.
   uint32_t some(uint32_t most) { return next() % 4 == 0 ? next() : next() % (most + 1) >> next() % 16; }
   int16_t angle() { return static_cast<int16_t>(next() % 3 == 0 ? next() : next() % 4096); }
-  int16_t corner(int sign) { return static_cast<int16_t>(next() % 9 == 0 ? next() : sign * static_cast<int>(164 + next() % 16221)); }
+  int16_t corner(int sign) {
+    return static_cast<int16_t>(next() % 9 == 0 ? next() : sign * static_cast<int>(164 + next() % 16221));
+  }
 };
 
 }  // namespace
@@ -186,10 +190,10 @@ TEST_CASE("whatever is asked, settings are refused or the output is within the l
   Random random;
   uint32_t taken = 0;
   for (uint32_t i = 0; i < 3000; ++i) {
-    const Settings s = {random.corner(-1), random.corner(-1), random.corner(1), random.corner(1),
-                        random.corner(-1), random.corner(-1), random.corner(1), random.corner(1),
-                        random.some(64UL << 16), random.some(64UL << 16), random.some(1000UL << 16),
-                        static_cast<uint16_t>(random.some(30000))};
+    const Settings s = {random.corner(-1),       random.corner(-1),         random.corner(1),
+                        random.corner(1),        random.corner(-1),         random.corner(-1),
+                        random.corner(1),        random.corner(1),          random.some(64UL << 16),
+                        random.some(64UL << 16), random.some(1000UL << 16), static_cast<uint16_t>(random.some(30000))};
     Coefficients c = {};
     if (compile(s, static_cast<uint8_t>(random.next() % 60), c) != Refusal::none) continue;
     ++taken;

@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#define EXPECT(condition)                      \
-  do {                                         \
+#define EXPECT(condition)                          \
+  do {                                             \
     if (!(condition)) FAIL("not so: " #condition); \
   } while (false)

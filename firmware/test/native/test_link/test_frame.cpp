@@ -21,27 +21,27 @@ struct Received {
   Bytes payload;
 };
 
-std::vector<Received> feed(wire::Decoder &decoder, const Bytes &bytes) {
+std::vector<Received> feed(wire::Decoder& decoder, const Bytes& bytes) {
   std::vector<Received> frames;
   for (const uint8_t byte : bytes) {
     if (decoder.push(byte)) {
-      const uint8_t *payload = decoder.payload();
+      const uint8_t* payload = decoder.payload();
       frames.push_back({decoder.type(), decoder.seq(), Bytes(payload, payload + decoder.payload_size())});
     }
   }
   return frames;
 }
 
-Bytes frame_of(uint8_t type, uint8_t seq, const Bytes &payload) {
+Bytes frame_of(uint8_t type, uint8_t seq, const Bytes& payload) {
   wire::Encoder encoder;
   std::copy(payload.begin(), payload.end(), encoder.payload());
   encoder.finish(type, seq, static_cast<uint8_t>(payload.size()));
   return Bytes(encoder.data(), encoder.data() + encoder.size());
 }
 
-Bytes random_payload(std::mt19937 &random, size_t size) {
+Bytes random_payload(std::mt19937& random, size_t size) {
   Bytes payload(size);
-  for (uint8_t &byte : payload) byte = static_cast<uint8_t>(random() % 4 == 0 ? 0 : random());
+  for (uint8_t& byte : payload) byte = static_cast<uint8_t>(random() % 4 == 0 ? 0 : random());
   return payload;
 }
 
@@ -49,7 +49,7 @@ Bytes random_payload(std::mt19937 &random, size_t size) {
 
 TEST_CASE("crc has the published check value") {
   const std::string text = "123456789";
-  CHECK(wire::crc_over(reinterpret_cast<const uint8_t *>(text.data()), 9) == 0x29B1);
+  CHECK(wire::crc_over(reinterpret_cast<const uint8_t*>(text.data()), 9) == 0x29B1);
   CHECK(wire::crc_over(nullptr, 0) == 0xFFFF);
 }
 
@@ -76,10 +76,10 @@ TEST_CASE("crc equals the bitwise definition for every high byte and data byte")
 namespace {
 
 struct CheckVector {
-  int &count;
+  int& count;
   template <class Message>
-  void operator()(const char *name, int seq, const Message &message, const uint8_t *payload, size_t payload_size,
-                  const uint8_t *wire_bytes, size_t wire_size) {
+  void operator()(const char* name, int seq, const Message& message, const uint8_t* payload, size_t payload_size,
+                  const uint8_t* wire_bytes, size_t wire_size) {
     INFO(name);
     ++count;
     const Bytes expected(wire_bytes, wire_bytes + wire_size);
@@ -161,7 +161,7 @@ TEST_CASE("garbage of any kind is survived, counted and left behind") {
   // Noise passes for a frame with a chance of about 1 in 65,536; this seed has no such piece.
   for (int trial = 0; trial < 20000; ++trial) {
     Bytes noise(1 + random() % 200);
-    for (uint8_t &byte : noise) byte = static_cast<uint8_t>(random() % 255 + 1);
+    for (uint8_t& byte : noise) byte = static_cast<uint8_t>(random() % 255 + 1);
     noise.push_back(0);
     EXPECT(feed(decoder, noise).empty());
     EXPECT(decoder.bad() == trial + 1);

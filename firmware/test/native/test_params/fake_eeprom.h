@@ -47,9 +47,9 @@ class FakeEeprom {
   std::vector<uint8_t> cells;
   std::vector<int> wear;
   int writes = 0;
-  int cut_at = 0;      // the write, counted from 1, in which the power goes; 0 never
-  int torn = 0xFF;     // what the cell has become when the power went
-  int stuck = -1;      // a worn-out cell that keeps its value
+  int cut_at = 0;   // the write, counted from 1, in which the power goes; 0 never
+  int torn = 0xFF;  // what the cell has become when the power went
+  int stuck = -1;   // a worn-out cell that keeps its value
 
  private:
   int busy_ = 0;

@@ -26,33 +26,33 @@ params::Table variant(unsigned seed) {
   params::Table table = defaults();
   table.period_ms = static_cast<uint8_t>(1 + random() % 50);
   table.supply_mv = static_cast<uint16_t>(3000 + random() % 27000);
-  for (auto &joint : table.joint) {
+  for (auto& joint : table.joint) {
     joint.kp = static_cast<uint32_t>(random() % 4194304);
     joint.ki = static_cast<uint32_t>(random() % 65536000);
     joint.limit_min = static_cast<int16_t>(-1 - static_cast<int>(random() % 20000));
     joint.ne_c = static_cast<int16_t>(-static_cast<int>(random() % 16384));
   }
-  for (auto &pot : table.follower) pot.zero = static_cast<uint16_t>(random() % 16369);
+  for (auto& pot : table.follower) pot.zero = static_cast<uint16_t>(random() % 16369);
   EXPECT(params::first_invalid(table) == params::none);
   return table;
 }
 
-bool same(const params::Table &a, const params::Table &b) { return memcmp(&a, &b, sizeof(a)) == 0; }
+bool same(const params::Table& a, const params::Table& b) { return memcmp(&a, &b, sizeof(a)) == 0; }
 
-wire::SaveState save(Store &store, const params::Table &table) {
+wire::SaveState save(Store& store, const params::Table& table) {
   store.save(table);
   for (int i = 0; i < 20000 && store.state() == wire::SaveState::saving; ++i) store.poll();
   return store.state();
 }
 
-wire::SaveState save(FakeEeprom &eeprom, const params::Table &table) {
+wire::SaveState save(FakeEeprom& eeprom, const params::Table& table) {
   Store store(eeprom);
   params::Table loaded;
   store.load(loaded);
   return save(store, table);
 }
 
-params::Table boot(FakeEeprom &eeprom, wire::ParamSource *source = nullptr) {
+params::Table boot(FakeEeprom& eeprom, wire::ParamSource* source = nullptr) {
   eeprom.power_on();
   Store store(eeprom);
   params::Table table;
@@ -62,7 +62,7 @@ params::Table boot(FakeEeprom &eeprom, wire::ParamSource *source = nullptr) {
 }
 
 // An EEPROM after `saves` saves of different sets; `last` is what a boot finds.
-FakeEeprom history(int saves, params::Table &last) {
+FakeEeprom history(int saves, params::Table& last) {
   FakeEeprom eeprom;
   last = defaults();
   for (int i = 0; i < saves; ++i) {
@@ -74,7 +74,7 @@ FakeEeprom history(int saves, params::Table &last) {
 }
 
 // Recomputes the CRC of a bank that a test has changed by hand.
-void reseal(FakeEeprom &eeprom, uint16_t start) {
+void reseal(FakeEeprom& eeprom, uint16_t start) {
   wire::Crc16 crc;
   for (int i = bank::layout_at; i < bank::crc_at; ++i) crc.add(eeprom.cells.at(static_cast<size_t>(start + i)));
   eeprom.cells.at(start + size_t{bank::crc_at}) = crc.low();
@@ -137,7 +137,7 @@ TEST_CASE("a power cut at any write, with any torn byte, leaves the old or the n
         bool was_cut = false;
         try {
           save(eeprom, new_table);
-        } catch (const PowerCut &) {
+        } catch (const PowerCut&) {
           was_cut = true;
         }
         EXPECT(was_cut);
@@ -164,7 +164,7 @@ TEST_CASE("a half-written bank is never taken, even when its CRC happens to be r
   params::Table newest;
   const FakeEeprom before = history(2, newest);  // bank A: variant(100), sequence 1; the save goes there, as sequence 3
   constexpr int kp_at = bank::payload_at + 13 + 16;
-  const auto crc_up_to_kp = [](const FakeEeprom &eeprom, int sequence, uint16_t low) {
+  const auto crc_up_to_kp = [](const FakeEeprom& eeprom, int sequence, uint16_t low) {
     wire::Crc16 crc;
     for (int i = bank::layout_at; i < kp_at; ++i) {
       const uint8_t byte = eeprom.cells.at(static_cast<size_t>(bank::start_a + i));
@@ -174,7 +174,8 @@ TEST_CASE("a half-written bank is never taken, even when its CRC happens to be r
     crc.add(static_cast<uint8_t>(low >> 8));
     return crc.value();
   };
-  // A new set whose first part brings the CRC to where the old first part brought it: the old rest and the old CRC fit it.
+  // A new set whose first part brings the CRC to where the old first part brought it: the old rest and the old CRC fit
+  // it.
   params::Table next = variant(100);
   const uint32_t old_kp = next.joint[0].kp;
   const uint16_t target = crc_up_to_kp(before, 1, static_cast<uint16_t>(old_kp & 0xFFFF));
@@ -208,7 +209,7 @@ TEST_CASE("power cuts one after another never lose the last set that was whole")
       bool was_cut = false;
       try {
         EXPECT(save(eeprom, next) == wire::SaveState::saved);
-      } catch (const PowerCut &) {
+      } catch (const PowerCut&) {
         was_cut = true;
       }
       const params::Table found = boot(eeprom);
@@ -256,12 +257,12 @@ TEST_CASE("one flipped bit anywhere in the newer bank falls back to the older on
   for (int at = 0; at < bank::size; ++at) {
     for (int bit = 0; bit < 8; ++bit) {
       FakeEeprom eeprom = before;
-      auto &cell = eeprom.cells.at(static_cast<size_t>(bank::start_b + at));
+      auto& cell = eeprom.cells.at(static_cast<size_t>(bank::start_b + at));
       cell = static_cast<uint8_t>(cell ^ (1 << bit));
       wire::ParamSource source;
       EXPECT(same(boot(eeprom, &source), older));
       EXPECT(source == wire::ParamSource::bank_a);
-      auto &other = eeprom.cells.at(static_cast<size_t>(bank::start_a + at));
+      auto& other = eeprom.cells.at(static_cast<size_t>(bank::start_a + at));
       other = static_cast<uint8_t>(other ^ (1 << bit));
       EXPECT(same(boot(eeprom, &source), defaults()));
       EXPECT(source == wire::ParamSource::defaults);

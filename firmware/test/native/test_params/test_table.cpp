@@ -18,7 +18,7 @@ constexpr uint16_t joint_fields = 15;
 constexpr uint16_t leader_at = joint_at + 4 * joint_fields;
 constexpr uint16_t follower_at = leader_at + 8;
 
-int32_t value_of(const params::Table &table, uint16_t index) {
+int32_t value_of(const params::Table& table, uint16_t index) {
   int32_t value = 0;
   EXPECT(params::get(table, index, value) == params::Access::ok);
   return value;
@@ -30,7 +30,7 @@ params::Table defaults() {
   return table;
 }
 
-bool same(const params::Table &a, const params::Table &b) { return memcmp(&a, &b, sizeof(a)) == 0; }
+bool same(const params::Table& a, const params::Table& b) { return memcmp(&a, &b, sizeof(a)) == 0; }
 
 }  // namespace
 
@@ -44,8 +44,10 @@ TEST_CASE("defaults are the golden bytes with the golden CRC, valid as they stan
 
 TEST_CASE("defaults are the paper's controllers before tuning") {
   const params::Table table = defaults();
-  const double gains[4][4] = {
-      {0.513, 0.160, 0.313, 15.0}, {0.590, 0.147, 0.201, 11.55}, {0.630, 0.244, 0.251, 13.15}, {0.782, 0.169, 0.233, 14.5}};
+  const double gains[4][4] = {{0.513, 0.160, 0.313, 15.0},
+                              {0.590, 0.147, 0.201, 11.55},
+                              {0.630, 0.244, 0.251, 13.15},
+                              {0.782, 0.169, 0.233, 14.5}};
   for (int j = 0; j < 4; ++j) {
     const params::JointParameters joint = table.joint[j];
     CHECK(joint.kp == std::lround(gains[j][0] * 65536));
@@ -88,7 +90,7 @@ TEST_CASE("every parameter takes its limits, refuses one beyond, and changes not
   CHECK(sizeof(golden::ranges) / sizeof(golden::Range) == params::count);
   for (uint16_t index = 0; index < params::count; ++index) {
     INFO("index ", index);
-    const golden::Range &range = golden::ranges[index];
+    const golden::Range& range = golden::ranges[index];
     EXPECT(value_of(before, index) == range.initial);
     for (const int32_t value : {range.minimum, range.maximum, range.nonzero ? 1 : 0, range.initial}) {
       if (value < range.minimum) continue;
@@ -98,7 +100,8 @@ TEST_CASE("every parameter takes its limits, refuses one beyond, and changes not
       EXPECT(params::set(table, index, range.initial) == params::Access::ok);
       EXPECT(same(table, before));
     }
-    for (const int64_t value : {int64_t{range.minimum} - 1, int64_t{range.maximum} + 1, int64_t{INT32_MIN}, int64_t{INT32_MAX}}) {
+    for (const int64_t value :
+         {int64_t{range.minimum} - 1, int64_t{range.maximum} + 1, int64_t{INT32_MIN}, int64_t{INT32_MAX}}) {
       params::Table table = before;
       EXPECT(params::set(table, index, static_cast<int32_t>(value)) == params::Access::out_of_range);
       EXPECT(same(table, before));
@@ -109,7 +112,8 @@ TEST_CASE("every parameter takes its limits, refuses one beyond, and changes not
 TEST_CASE("an index beyond the table is refused, also far beyond") {
   params::Table table = defaults();
   int32_t value = 1234;
-  for (const uint16_t index : {uint16_t{params::count}, uint16_t{255}, uint16_t{256}, uint16_t{0x8000}, uint16_t{0xFFFF}}) {
+  for (const uint16_t index :
+       {uint16_t{params::count}, uint16_t{255}, uint16_t{256}, uint16_t{0x8000}, uint16_t{0xFFFF}}) {
     CHECK(params::get(table, index, value) == params::Access::bad_index);
     CHECK(params::set(table, index, 1) == params::Access::bad_index);
   }

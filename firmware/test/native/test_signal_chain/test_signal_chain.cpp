@@ -62,7 +62,8 @@ TEST_CASE("an angle is ((count14 - zero) * scale + 4096) >> 13, with count14 not
     }
   }
   for (int i = 0; i < 1000000; ++i) {
-    check(static_cast<int>(random() % 65473), static_cast<int>(random() % 16369), static_cast<int>(random() % 32769) - 16384);
+    check(static_cast<int>(random() % 65473), static_cast<int>(random() % 16369),
+          static_cast<int>(random() % 32769) - 16384);
   }
   CHECK(wrong == 0);
 }
@@ -90,7 +91,7 @@ TEST_CASE("a soft start rises by equal steps and is full with its last tick, not
       worst = std::max(worst, std::abs(start.share_q15() - 32768.0 * tick / ticks));
     }
     CHECK(early == 0);
-    CHECK(worst <= 2);   // q15: a step loses up to 2^-31 of the supply a tick
+    CHECK(worst <= 2);  // q15: a step loses up to 2^-31 of the supply a tick
     CHECK(start.advance());
     CHECK(start.share_q15() == 32768);
     start.stop();
@@ -102,7 +103,8 @@ TEST_CASE("the limit is the share of the supply, rounded down") {
   int wrong = 0;
   for (const int supply : {3000, 12345, 30000}) {
     for (int share = 0; share <= 32768; ++share) {
-      wrong += limit_mv(static_cast<std::uint16_t>(supply), static_cast<std::uint16_t>(share)) != supply * share / 32768;
+      wrong +=
+          limit_mv(static_cast<std::uint16_t>(supply), static_cast<std::uint16_t>(share)) != supply * share / 32768;
     }
   }
   CHECK(wrong == 0);
@@ -114,9 +116,10 @@ TEST_CASE("a duty is the step nearest to its voltage, 0 at none and full at the 
       const std::uint16_t scale = duty_scale(static_cast<std::uint16_t>(full), static_cast<std::uint16_t>(supply));
       double worst = 0;
       for (int mv = 0; mv <= supply; ++mv) {
-        worst = std::max(worst, std::abs(duty(static_cast<std::uint16_t>(mv), scale) - static_cast<double>(mv) * full / supply));
+        worst = std::max(
+            worst, std::abs(duty(static_cast<std::uint16_t>(mv), scale) - static_cast<double>(mv) * full / supply));
       }
-      CHECK(worst < 0.56);   // half a step, and what the rounded scale costs at a high supply
+      CHECK(worst < 0.56);  // half a step, and what the rounded scale costs at a high supply
       CHECK(duty(0, scale) == 0);
       CHECK(duty(static_cast<std::uint16_t>(supply), scale) == full);
     }

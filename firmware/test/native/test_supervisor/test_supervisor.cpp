@@ -9,7 +9,7 @@ using namespace supervisor;
 
 namespace {
 
-constexpr Limits limits = {3277, 10240, 500, 1000};   // 0.8 rad, 2.5 rad
+constexpr Limits limits = {3277, 10240, 500, 1000};  // 0.8 rad, 2.5 rad
 constexpr Observation calm = {{0, 0, 0, 0}, 0, 0, false};
 
 Observation apart(std::uint8_t joint, std::uint16_t distance) {
@@ -188,7 +188,7 @@ TEST_CASE("a late tick is a fault at once while motors are on, and only then") {
   CHECK(arm.fault() == Fault::late_tick);
   CHECK(arm.fault_where() == nowhere);
   CHECK_FALSE(arm.motors_on());
-  CHECK(arm.clear_fault().answer == Answer::in_fault);   // the last tick was late
+  CHECK(arm.clear_fault().answer == Answer::in_fault);  // the last tick was late
   arm.run(1);
   CHECK(arm.clear_fault().answer == Answer::ok);
 }

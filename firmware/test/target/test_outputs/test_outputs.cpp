@@ -20,7 +20,7 @@ uint16_t compare(uint8_t joint) {
   }
 }
 
-void at_reset() {   // before hal::begin(): what start-up code has done
+void at_reset() {  // before hal::begin(): what start-up code has done
   const uint8_t port_h = PORTH, port_e = PORTE, port_a = PORTA, ddr_h = DDRH, ddr_e = DDRE, ddr_a = DDRA;
   hal::begin();
   EQUAL("at_reset_enable_is_driven", ddr_h & enable, enable);

@@ -28,7 +28,7 @@ void one_tick(uint16_t number) {
 
 void setup() {
   hal::begin();
-  for (uint16_t i = 0; i < ticks; ++i) one_tick(i);   // tick 0 has the sums of no conversions yet
+  for (uint16_t i = 0; i < ticks; ++i) one_tick(i);  // tick 0 has the sums of no conversions yet
   for (uint8_t i = 0; i < hal::pot_count; ++i) {
     const long sum = 4L * millivolts[i] * 1024 / 5000;
     WITHIN("pot_reads_its_own_voltage", last[i], sum - 4, sum + 4);

@@ -1,5 +1,5 @@
-// The pass over the pots in assembly gives the same bits as its portable form: random readings at rails and away from them, every
-// filter, extreme calibrations and limits.
+// The pass over the pots in assembly gives the same bits as its portable form: random readings at rails and away from
+// them, every filter, extreme calibrations and limits.
 #include <Arduino.h>
 #include <hal.h>
 #include <signals.h>
@@ -12,7 +12,7 @@ using app::Signals;
 
 uint16_t state = 1;
 
-uint16_t next_random() {   // xorshift, full period
+uint16_t next_random() {  // xorshift, full period
   state = static_cast<uint16_t>(state ^ (state << 7));
   state = static_cast<uint16_t>(state ^ (state >> 9));
   state = static_cast<uint16_t>(state ^ (state << 8));
@@ -50,8 +50,8 @@ void configure(Signals& signals, uint8_t shift) {
 
 uint16_t reading() {
   switch (next_random() & 7) {
-    case 0: return next_random() % 410;          // about the lower rail
-    case 1: return 4092 - next_random() % 410;   // and the upper one
+    case 0: return next_random() % 410;         // about the lower rail
+    case 1: return 4092 - next_random() % 410;  // and the upper one
     case 2: return next_random() & 1 ? 4092 : 0;
     default: return next_random() % 4093;
   }
@@ -61,7 +61,7 @@ uint16_t reading() {
 
 void setup() {
   uint16_t signals_differ = 0, seen_differs = 0;
-  uint16_t low = 0, high = 0, clamped = 0, saturated = 0;   // what the readings came across
+  uint16_t low = 0, high = 0, clamped = 0, saturated = 0;  // what the readings came across
   for (uint16_t set = 0; set < 250; ++set) {
     Signals fast;
     configure(fast, static_cast<uint8_t>(set % 5));

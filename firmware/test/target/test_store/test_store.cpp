@@ -30,7 +30,7 @@ uint16_t save(params::Store<app::HalEeprom>& store, const params::Table& table) 
 }
 
 wire::ParamSource load(params::Table& table) {
-  params::Store<app::HalEeprom> fresh(eeprom);   // as after a reset
+  params::Store<app::HalEeprom> fresh(eeprom);  // as after a reset
   memset(&table, 0, sizeof table);
   return fresh.load(table);
 }

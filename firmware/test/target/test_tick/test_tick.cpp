@@ -33,7 +33,7 @@ struct Periods {
 // the wire from TX to RX makes that full speed both ways, the heaviest load there is.
 Periods measure(bool talk) {
   uint8_t load[100];
-  memset(load, '\n', sizeof load);   // blank lines: the report's reader skips them
+  memset(load, '\n', sizeof load);  // blank lines: the report's reader skips them
   Periods p = {0xffff, 0, 0, 0};
   catch_up();
   wait_for_tick();
@@ -83,7 +83,7 @@ void broken_chain() {
   finish_tick();
   while (hal::tick_age_us() < 500) {
   }
-  ADCSRA = 0;   // in the middle of the conversions
+  ADCSRA = 0;  // in the middle of the conversions
   wait_for_tick();
   const bool told = hal::tick_begin().late;
   const bool none = hal::pot_sums() == nullptr;

@@ -8,7 +8,7 @@ namespace {
 
 constexpr uint16_t bytes = 20000;
 constexpr uint8_t burst = 100;
-constexpr uint8_t in_chip = 2;   // bytes behind the receive register; a third one is overwritten
+constexpr uint8_t in_chip = 2;  // bytes behind the receive register; a third one is overwritten
 
 struct Result {
   uint16_t received, wrong, lost, late, milliseconds;
@@ -16,7 +16,7 @@ struct Result {
 
 uint8_t pattern(uint16_t i) {
   const uint8_t byte = static_cast<uint8_t>(i * 7 + (i >> 8));
-  return byte < 0x80 ? static_cast<uint8_t>(byte | 0x80) : byte;   // nothing that the report's reader takes for text
+  return byte < 0x80 ? static_cast<uint8_t>(byte | 0x80) : byte;  // nothing that the report's reader takes for text
 }
 
 // Waits until the wire has been quiet for 5 ms.
@@ -98,7 +98,8 @@ void setup() {
   EQUAL("none_is_lost", full.lost, 0);
   EQUAL("no_tick_is_late", full.late, 0);
   WITHIN("at_nearly_the_speed_of_the_wire", full.milliseconds, bytes / 100, bytes / 100 * 2);
-  WITHIN("ring_and_chip_keep_what_they_have", over.received, hal::rx_capacity + in_chip, hal::rx_capacity + in_chip + 1);
+  WITHIN("ring_and_chip_keep_what_they_have", over.received, hal::rx_capacity + in_chip,
+         hal::rx_capacity + in_chip + 1);
   EQUAL("in_order", over.wrong, 0);
   EQUAL("and_the_loss_is_told", over.lost, 1);
   EQUAL("afterwards_bytes_come_again", again.wrong == 0 && again.received == bytes, true);

@@ -9,7 +9,7 @@ namespace {
 
 uint16_t state = 1;
 
-uint16_t next_random() {   // xorshift, full period
+uint16_t next_random() {  // xorshift, full period
   state = static_cast<uint16_t>(state ^ (state << 7));
   state = static_cast<uint16_t>(state ^ (state >> 9));
   state = static_cast<uint16_t>(state ^ (state << 8));

@@ -7,7 +7,7 @@
 
 namespace {
 
-struct Memory {   // kept over resets
+struct Memory {  // kept over resets
   uint8_t start;
   bool hide_cause;
   hal::ResetCause cause[4];
@@ -28,7 +28,7 @@ extern "C" void play_bootloader() {
 void run_healthily() {
   hal::begin();
   hal::watchdog_start();
-  for (uint8_t i = 0; i < 100; ++i) {   // longer than the watchdog waits
+  for (uint8_t i = 0; i < 100; ++i) {  // longer than the watchdog waits
     while (!hal::tick_pending()) hal::idle();
     finish_tick();
     hal::watchdog_kick();

@@ -1,9 +1,9 @@
 // One joint with its motor inside any linear controller, or under logged voltages, for many candidate plants at a time.
 // tools.studies.one_joint prepares experiments and compares the outcome with a record; use that, not this.
 //
-// Motor, friction, gear and stops are those of the arm (sim/arm/conditions.h), with one body behind the gear instead of four
-// links. To these come what a foreign rig may have: gravity about any angle, a constant pull, a gear whose friction grows with
-// the torque that it passes on, and delays.
+// Motor, friction, gear and stops are those of the arm (sim/arm/conditions.h), with one body behind the gear instead of
+// four links. To these come what a foreign rig may have: gravity about any angle, a constant pull, a gear whose
+// friction grows with the torque that it passes on, and delays.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
@@ -34,14 +34,14 @@ constexpr int kPasses = 8;
 
 // A candidate; tools.studies.one_joint names these columns in the same order.
 struct Plant {
-  double link_inertia;    // kg m^2, behind the gear
-  double weight;          // N m, gravity's torque a quarter turn from where the link hangs
-  double hanging;         // rad, where the link hangs
-  double pull;            // N m, constant
+  double link_inertia;  // kg m^2, behind the gear
+  double weight;        // N m, gravity's torque a quarter turn from where the link hangs
+  double hanging;       // rad, where the link hangs
+  double pull;          // N m, constant
   arm::Joint<double> joint;
-  double load_friction;   // share of the torque that the gear passes on
-  double delay;           // s, from a controller's reading to its voltage
-  double leader_delay;    // s, from the leader to the controller
+  double load_friction;  // share of the torque that the gear passes on
+  double delay;          // s, from a controller's reading to its voltage
+  double leader_delay;   // s, from the leader to the controller
 };
 constexpr std::size_t kColumns = 19;
 static_assert(sizeof(Plant) == kColumns * sizeof(double), "Plant must be nothing but its columns");
@@ -102,8 +102,8 @@ struct Record {
   bool leader_lines, volts_lines;  // straight between rows, or held until the next
 };
 
-// x' = A x + B (leader, follower); u = C x + D (leader, follower), cut to +-limit. With a hysteresis it is a relay: +-limit
-// beyond +-hysteresis, else what it was.
+// x' = A x + B (leader, follower); u = C x + D (leader, follower), cut to +-limit. With a hysteresis it is a relay:
+// +-limit beyond +-hysteresis, else what it was.
 struct Law {
   Matrix a, b;
   Vector c, d;
@@ -121,7 +121,8 @@ struct Windows {
 
 class Controller {
  public:
-  Controller(const Law& law, const double* state, double volts) : law_(law), x_(state, state + law.c.shape(0)), next_(x_.size()), u_(volts) {}
+  Controller(const Law& law, const double* state, double volts)
+      : law_(law), x_(state, state + law.c.shape(0)), next_(x_.size()), u_(volts) {}
 
   double operator()(double leader, double angle) {
     const double follower = law_.resolution > 0.0 ? law_.resolution * std::floor(angle / law_.resolution + 0.5) : angle;
@@ -149,8 +150,8 @@ double between(const Vector& values, std::size_t row, double share, bool lines) 
   return lines ? values(row) + share * (values(next) - values(row)) : values(row);
 }
 
-// The integration's grid over the whole record: times of the substeps' edges, and the logged voltage integrated up to there.
-// Differences of the integral give a delayed voltage that changes smoothly with the delay.
+// The integration's grid over the whole record: times of the substeps' edges, and the logged voltage integrated up to
+// there. Differences of the integral give a delayed voltage that changes smoothly with the delay.
 struct Grid {
   std::vector<double> time, integral;
 
@@ -198,8 +199,8 @@ double leader_at(const Record& r, const Grid& grid, Follow& follow, double momen
   return between(r.leader, row, (moment - grid.time[row * r.substeps]) / r.spacing(row), r.leader_lines);
 }
 
-void simulate(const Record& r, const Grid& grid, const Law& law, const Windows& w, const Plant& p, std::size_t window, double* angles,
-              double* volts) {
+void simulate(const Record& r, const Grid& grid, const Law& law, const Windows& w, const Plant& p, std::size_t window,
+              double* angles, double* volts) {
   const auto first = static_cast<std::size_t>(w.first(window));
   const std::size_t start = first * r.substeps;
   Motion m;
@@ -218,7 +219,8 @@ void simulate(const Record& r, const Grid& grid, const Law& law, const Windows& 
     const std::size_t row = k / r.substeps, n = k % r.substeps;
     const double now = grid.time[k], dt = grid.time[k + 1] - now;
     const double share = (static_cast<double>(n) + 0.5) / static_cast<double>(r.substeps);
-    if (law.closed && (k - start) % law.every == 0) u = control(leader_at(r, grid, lead, now - p.leader_delay), m.s.q[0]);
+    if (law.closed && (k - start) % law.every == 0)
+      u = control(leader_at(r, grid, lead, now - p.leader_delay), m.s.q[0]);
     if (law.closed) integral[k + 1] = integral[k] + dt * u;
     if (n == 0 && (row - first) % w.kept_every == 0) {
       *angles++ = m.s.q[0];
@@ -232,18 +234,22 @@ void simulate(const Record& r, const Grid& grid, const Law& law, const Windows& 
 void check(const Record& r, const Law& law, const Windows& w, const Matrix& plants) {
   const std::size_t rows = r.spacing.shape(0), order = law.c.shape(0), count = w.first.shape(0);
   if (plants.shape(1) != kColumns) throw std::invalid_argument("a plant has 19 columns.");
-  if (rows == 0 || r.substeps == 0 || law.every == 0 || w.kept_every == 0) throw std::invalid_argument("nothing to simulate.");
+  if (rows == 0 || r.substeps == 0 || law.every == 0 || w.kept_every == 0)
+    throw std::invalid_argument("nothing to simulate.");
   if (r.leader.shape(0) != rows || r.load.shape(0) != rows || r.volts.shape(0) != rows) {
     throw std::invalid_argument("spacing, leader, load and volts differ in length.");
   }
-  if (law.a.shape(0) != order || law.a.shape(1) != order || law.b.shape(0) != order || law.b.shape(1) != 2 || law.d.shape(0) != 2) {
+  if (law.a.shape(0) != order || law.a.shape(1) != order || law.b.shape(0) != order || law.b.shape(1) != 2 ||
+      law.d.shape(0) != 2) {
     throw std::invalid_argument("the controller's matrices do not fit together.");
   }
-  if (w.angles.shape(0) != count || w.velocities.shape(0) != count || w.states.shape(0) != count || w.states.shape(1) != order) {
+  if (w.angles.shape(0) != count || w.velocities.shape(0) != count || w.states.shape(0) != count ||
+      w.states.shape(1) != order) {
     throw std::invalid_argument("first, angles, velocities and states differ in length.");
   }
   for (std::size_t n = 0; n < count; ++n) {
-    if (w.first(n) < 0 || static_cast<std::size_t>(w.first(n)) + w.rows > rows) throw std::invalid_argument("a window reaches beyond the record.");
+    if (w.first(n) < 0 || static_cast<std::size_t>(w.first(n)) + w.rows > rows)
+      throw std::invalid_argument("a window reaches beyond the record.");
   }
 }
 
@@ -256,8 +262,10 @@ nb::object as_array(std::unique_ptr<double[]> values, std::size_t candidates, st
 // Every (candidate, window) pair once, from as many threads as there are cores or as asked; the order does not matter.
 nb::tuple run(const Record& r, const Law& law, const Windows& w, const Matrix& plants, int threads) {
   check(r, law, w, plants);
-  const std::size_t candidates = plants.shape(0), windows = w.first.shape(0), kept = (w.rows + w.kept_every - 1) / w.kept_every;
-  auto angles = std::make_unique<double[]>(candidates * windows * kept), volts = std::make_unique<double[]>(candidates * windows * kept);
+  const std::size_t candidates = plants.shape(0), windows = w.first.shape(0),
+                    kept = (w.rows + w.kept_every - 1) / w.kept_every;
+  auto angles = std::make_unique<double[]>(candidates * windows * kept),
+       volts = std::make_unique<double[]>(candidates * windows * kept);
   {
     const nb::gil_scoped_release free;
     const Grid grid(r);
@@ -267,7 +275,8 @@ nb::tuple run(const Record& r, const Law& law, const Windows& w, const Matrix& p
       simulate(r, grid, law, w, plant, task % windows, &angles[task * kept], &volts[task * kept]);
     });
   }
-  return nb::make_tuple(as_array(std::move(angles), candidates, windows, kept), as_array(std::move(volts), candidates, windows, kept));
+  return nb::make_tuple(as_array(std::move(angles), candidates, windows, kept),
+                        as_array(std::move(volts), candidates, windows, kept));
 }
 
 }  // namespace
@@ -277,17 +286,20 @@ NB_MODULE(one_joint_native, m) {
   m.attr("COLUMNS") = kColumns;
   m.def(
       "simulate",
-      [](const Matrix& plants, const Vector& spacing, const Vector& leader, const Vector& load, const Vector& volts, std::size_t substeps,
-         bool leader_lines, bool volts_lines, const Matrix& a, const Matrix& b, const Vector& c, const Vector& d, double limit, double hysteresis,
-         double resolution, std::size_t control_every, bool closed, const Indices& first, const Vector& angles, const Vector& velocities,
-         const Matrix& states, std::size_t rows, std::size_t every, int threads) {
+      [](const Matrix& plants, const Vector& spacing, const Vector& leader, const Vector& load, const Vector& volts,
+         std::size_t substeps, bool leader_lines, bool volts_lines, const Matrix& a, const Matrix& b, const Vector& c,
+         const Vector& d, double limit, double hysteresis, double resolution, std::size_t control_every, bool closed,
+         const Indices& first, const Vector& angles, const Vector& velocities, const Matrix& states, std::size_t rows,
+         std::size_t every, int threads) {
         const Record record{spacing, leader, load, volts, substeps, leader_lines, volts_lines};
         const Law law{a, b, c, d, limit, hysteresis, resolution, control_every, closed};
         return run(record, law, {first, angles, velocities, states, rows, every}, plants, threads);
       },
-      nb::kw_only(), "plants"_a.noconvert(), "spacing"_a.noconvert(), "leader"_a.noconvert(), "load"_a.noconvert(), "volts"_a.noconvert(),
-      "substeps"_a, "leader_lines"_a, "volts_lines"_a, "a"_a.noconvert(), "b"_a.noconvert(), "c"_a.noconvert(), "d"_a.noconvert(), "limit"_a,
-      "hysteresis"_a, "resolution"_a, "control_every"_a, "closed"_a, "first"_a.noconvert(), "angles"_a.noconvert(),
-      "velocities"_a.noconvert(), "states"_a.noconvert(), "rows"_a, "every"_a, "threads"_a = 0,
-      "Angles and voltages, both (candidates, windows, rows kept), of one joint in a linear controller or under logged voltages.");
+      nb::kw_only(), "plants"_a.noconvert(), "spacing"_a.noconvert(), "leader"_a.noconvert(), "load"_a.noconvert(),
+      "volts"_a.noconvert(), "substeps"_a, "leader_lines"_a, "volts_lines"_a, "a"_a.noconvert(), "b"_a.noconvert(),
+      "c"_a.noconvert(), "d"_a.noconvert(), "limit"_a, "hysteresis"_a, "resolution"_a, "control_every"_a, "closed"_a,
+      "first"_a.noconvert(), "angles"_a.noconvert(), "velocities"_a.noconvert(), "states"_a.noconvert(), "rows"_a,
+      "every"_a, "threads"_a = 0,
+      "Angles and voltages, both (candidates, windows, rows kept), of one joint in a linear controller or under logged "
+      "voltages.");
 }

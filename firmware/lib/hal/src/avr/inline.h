@@ -9,15 +9,16 @@ extern "C" __attribute__((OS_task, noinline, used, externally_visible)) void fir
 namespace hal {
 
 inline __attribute__((always_inline)) void run_tick() {
-  __asm__ volatile("push r28\n\t"
+  __asm__ volatile(
+      "push r28\n\t"
       "push r29\n\t"
       "%~call firmware_tick\n\t"
       "pop r29\n\t"
       "pop r28"
       :
       :
-      : "r2", "r3", "r4", "r5", "r6", "r7", "r8", "r9", "r10", "r11", "r12", "r13", "r14", "r15", "r16", "r17", "r18", "r19", "r20",
-        "r21", "r22", "r23", "r24", "r25", "r26", "r27", "r30", "r31", "memory");
+      : "r2", "r3", "r4", "r5", "r6", "r7", "r8", "r9", "r10", "r11", "r12", "r13", "r14", "r15", "r16", "r17", "r18",
+        "r19", "r20", "r21", "r22", "r23", "r24", "r25", "r26", "r27", "r30", "r31", "memory");
 }
 
 template <uint8_t joint>
@@ -28,9 +29,9 @@ inline void set_duty(bool positive, uint16_t size) {
 
 namespace internal {
 
-extern volatile uint8_t elapsed;   // ticks since tick_begin()
+extern volatile uint8_t elapsed;  // ticks since tick_begin()
 
-uint16_t age_with(uint8_t ticks, uint8_t count);   // count: 4 us
+uint16_t age_with(uint8_t ticks, uint8_t count);  // count: 4 us
 
 }  // namespace internal
 
@@ -39,7 +40,7 @@ inline uint16_t tick_age_us() {
   do {
     ticks = internal::elapsed;
     count = TCNT0;
-  } while (ticks != internal::elapsed);   // a tick in between: read again
+  } while (ticks != internal::elapsed);  // a tick in between: read again
   return ticks == 0 ? static_cast<uint16_t>(count * 4u) : internal::age_with(ticks, count);
 }
 

@@ -14,13 +14,13 @@
 #error "greywhale's hal knows the ATmega2560 and the ATmega328P"
 #endif
 
-#ifndef __ASSEMBLER__   // hal.h includes what follows, at its end
+#ifndef __ASSEMBLER__  // hal.h includes what follows, at its end
 #include <stdint.h>
 
 namespace hal {
 namespace pins {
 
-constexpr uint16_t pwm_top = 400;   // 16 MHz / (2 * 400) = 20 kHz, phase and frequency correct
+constexpr uint16_t pwm_top = 400;  // 16 MHz / (2 * 400) = 20 kHz, phase and frequency correct
 
 // Turns the drivers off in a few cycles; safe in an interrupt and before any C++ is set up.
 inline void drivers_off();
@@ -34,7 +34,10 @@ constexpr uint8_t pwm_e = 1 << PE3, pwm_h = (1 << PH3) | (1 << PH4) | (1 << PH5)
 
 inline void drivers_off() { PORTH = static_cast<uint8_t>(PORTH & ~enable_bit); }
 inline void drivers_on() { PORTH = static_cast<uint8_t>(PORTH | enable_bit); }
-inline void led(bool on) { if (on) PORTB |= led_bit; else PORTB &= static_cast<uint8_t>(~led_bit); }
+inline void led(bool on) {
+  if (on) PORTB |= led_bit;
+  else PORTB &= static_cast<uint8_t>(~led_bit);
+}
 
 inline void all_outputs_low() {
   PORTH = 0;
@@ -56,17 +59,29 @@ inline void start_pwm() {
   TCNT3 = TCNT4 = 0;
   TCCR3A = 1 << COM3A1;
   TCCR4A = (1 << COM4A1) | (1 << COM4B1) | (1 << COM4C1);
-  TCCR3B = TCCR4B = (1 << WGM33) | (1 << CS30);   // mode 8, no prescaler
+  TCCR3B = TCCR4B = (1 << WGM33) | (1 << CS30);  // mode 8, no prescaler
 }
 
 inline void stop_unused_timers() { TCCR1B = TCCR2B = TCCR5B = 0; }
 
 inline void direction(uint8_t joint, bool positive) {
   switch (joint) {
-    case 0: if (positive) PORTA |= direction_bits[0]; else PORTA &= static_cast<uint8_t>(~direction_bits[0]); break;
-    case 1: if (positive) PORTA |= direction_bits[1]; else PORTA &= static_cast<uint8_t>(~direction_bits[1]); break;
-    case 2: if (positive) PORTA |= direction_bits[2]; else PORTA &= static_cast<uint8_t>(~direction_bits[2]); break;
-    default: if (positive) PORTA |= direction_bits[3]; else PORTA &= static_cast<uint8_t>(~direction_bits[3]); break;
+    case 0:
+      if (positive) PORTA |= direction_bits[0];
+      else PORTA &= static_cast<uint8_t>(~direction_bits[0]);
+      break;
+    case 1:
+      if (positive) PORTA |= direction_bits[1];
+      else PORTA &= static_cast<uint8_t>(~direction_bits[1]);
+      break;
+    case 2:
+      if (positive) PORTA |= direction_bits[2];
+      else PORTA &= static_cast<uint8_t>(~direction_bits[2]);
+      break;
+    default:
+      if (positive) PORTA |= direction_bits[3];
+      else PORTA &= static_cast<uint8_t>(~direction_bits[3]);
+      break;
   }
 }
 
@@ -91,7 +106,10 @@ constexpr uint8_t pwm_b = (1 << PB1) | (1 << PB2) | (1 << PB3), pwm_d = 1 << PD3
 
 inline void drivers_off() { PORTB &= static_cast<uint8_t>(~enable_bit); }
 inline void drivers_on() { PORTB |= enable_bit; }
-inline void led(bool on) { if (on) PORTB |= led_bit; else PORTB &= static_cast<uint8_t>(~led_bit); }
+inline void led(bool on) {
+  if (on) PORTB |= led_bit;
+  else PORTB &= static_cast<uint8_t>(~led_bit);
+}
 
 inline void all_outputs_low() {
   PORTB = 0;
@@ -100,7 +118,8 @@ inline void all_outputs_low() {
   DDRD = pwm_d | directions_d;
 }
 
-// Timer 1 runs at 20 kHz, as on the Mega. Timer 2 has 8 bits only, and both its compare registers drive pins: 31.4 kHz, top 255.
+// Timer 1 runs at 20 kHz, as on the Mega. Timer 2 has 8 bits only, and both its compare registers drive pins: 31.4 kHz,
+// top 255.
 inline void start_pwm() {
   TIMSK1 = TIMSK2 = 0;
   TCCR1B = TCCR2B = 0;
@@ -110,19 +129,31 @@ inline void start_pwm() {
   TCNT1 = 0;
   TCNT2 = 0;
   TCCR1A = (1 << COM1A1) | (1 << COM1B1);
-  TCCR1B = (1 << WGM13) | (1 << CS10);   // mode 8, no prescaler
+  TCCR1B = (1 << WGM13) | (1 << CS10);  // mode 8, no prescaler
   TCCR2A = (1 << COM2A1) | (1 << COM2B1) | (1 << WGM20);
-  TCCR2B = 1 << CS20;                    // mode 1, no prescaler
+  TCCR2B = 1 << CS20;  // mode 1, no prescaler
 }
 
 inline void stop_unused_timers() {}
 
 inline void direction(uint8_t joint, bool positive) {
-  switch (joint) {   // single-bit instructions, so interrupts may touch the same port
-    case 0: if (positive) PORTD |= 1 << PD2; else PORTD &= static_cast<uint8_t>(~(1 << PD2)); break;
-    case 1: if (positive) PORTD |= 1 << PD4; else PORTD &= static_cast<uint8_t>(~(1 << PD4)); break;
-    case 2: if (positive) PORTD |= 1 << PD7; else PORTD &= static_cast<uint8_t>(~(1 << PD7)); break;
-    default: if (positive) PORTB |= direction_b; else PORTB &= static_cast<uint8_t>(~direction_b); break;
+  switch (joint) {  // single-bit instructions, so interrupts may touch the same port
+    case 0:
+      if (positive) PORTD |= 1 << PD2;
+      else PORTD &= static_cast<uint8_t>(~(1 << PD2));
+      break;
+    case 1:
+      if (positive) PORTD |= 1 << PD4;
+      else PORTD &= static_cast<uint8_t>(~(1 << PD4));
+      break;
+    case 2:
+      if (positive) PORTD |= 1 << PD7;
+      else PORTD &= static_cast<uint8_t>(~(1 << PD7));
+      break;
+    default:
+      if (positive) PORTB |= direction_b;
+      else PORTB &= static_cast<uint8_t>(~direction_b);
+      break;
   }
 }
 

@@ -19,15 +19,16 @@ namespace {
 
 // These survive a reset. After power-on they are random, so a mark tells whether they hold anything.
 volatile uint16_t watchdog_mark __attribute__((section(".noinit")));
-uint8_t reset_flags __attribute__((section(".noinit")));   // MCUSR
+uint8_t reset_flags __attribute__((section(".noinit")));  // MCUSR
 
 constexpr uint16_t watchdog_is_on = 0x57a7;
-constexpr uint8_t hung_ticks = 40;   // the watchdog waits for 60
+constexpr uint8_t hung_ticks = 40;  // the watchdog waits for 60
 
 }  // namespace
 
-// Runs before main() and before variables are set up. Turns outputs off, keeps the reset cause, and turns the watchdog off, which a
-// watchdog reset leaves on at its shortest time. It saves no registers: section .init3 is straight-line start-up code.
+// Runs before main() and before variables are set up. Turns outputs off, keeps the reset cause, and turns the watchdog
+// off, which a watchdog reset leaves on at its shortest time. It saves no registers: section .init3 is straight-line
+// start-up code.
 extern "C" void hal_early_start() __attribute__((naked, used, section(".init3")));
 extern "C" void hal_early_start() {
   pins::all_outputs_low();
@@ -58,7 +59,7 @@ void begin() {
   pins::start_pwm();
   internal::start_uart();
   internal::start_tick();
-  SMCR = 0;   // idle sleep: timers, ADC and serial port go on
+  SMCR = 0;  // idle sleep: timers, ADC and serial port go on
   sei();
 }
 
@@ -90,7 +91,7 @@ uint8_t eeprom_read(uint16_t address) {
 void eeprom_begin_write(uint16_t address, uint8_t value) {
   EEAR = address;
   EEDR = value;
-  cli();   // EEPE must follow EEMPE within four cycles
+  cli();  // EEPE must follow EEMPE within four cycles
   EECR = 1 << EEMPE;
   EECR = (1 << EEMPE) | (1 << EEPE);
   sei();
@@ -110,7 +111,7 @@ void idle() {
     cli();
     if (tick_pending() || rx_available()) break;
     SMCR = 1 << SE;
-    sei();   // takes effect after the next instruction: no interrupt can slip in before the sleep
+    sei();  // takes effect after the next instruction: no interrupt can slip in before the sleep
     sleep_cpu();
     SMCR = 0;
   }

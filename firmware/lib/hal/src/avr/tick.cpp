@@ -13,15 +13,15 @@ namespace {
 static_assert(CONVERSIONS == pot_count * conversions_per_pot, "each pot in turn, the same number of times");
 static_assert(FIRST_POT == pot_count - joint_count, "a round ends with the leaders");
 
-constexpr uint8_t channel(uint8_t n) { return static_cast<uint8_t>((1 << REFS0) | (n & 7)); }   // reference AVcc
+constexpr uint8_t channel(uint8_t n) { return static_cast<uint8_t>((1 << REFS0) | (n & 7)); }  // reference AVcc
 
-// When the chain starts, in steps of 4 us after the tick: as late as is safe, so that the next tick gets young readings. The chain
-// takes 834 us; other interrupts may delay its start and its last conversion by 9 us each.
+// When the chain starts, in steps of 4 us after the tick: as late as is safe, so that the next tick gets young
+// readings. The chain takes 834 us; other interrupts may delay its start and its last conversion by 9 us each.
 constexpr uint8_t chain_start = 33;
 
-volatile uint8_t filling = 0;   // the set of sums to which the interrupt adds; the main loop has the other one
-volatile uint8_t full = 0;      // the main loop's set holds sums that it has not released
-volatile uint8_t running = 0;   // a tick has started and tick_end() has not been called
+volatile uint8_t filling = 0;  // the set of sums to which the interrupt adds; the main loop has the other one
+volatile uint8_t full = 0;     // the main loop's set holds sums that it has not released
+volatile uint8_t running = 0;  // a tick has started and tick_end() has not been called
 volatile uint8_t late = 0;
 
 }  // namespace
@@ -51,35 +51,36 @@ ISR(TIMER0_COMPA_vect) {
   running = 1;
 }
 
-// A chain that has not ended by now is given up; the tick's interrupt has already reported it as late. The first conversion is
-// started before all other work, so that its moment does not depend on that work.
+// A chain that has not ended by now is given up; the tick's interrupt has already reported it as late. The first
+// conversion is started before all other work, so that its moment does not depend on that work.
 ISR(TIMER0_COMPB_vect) {
   if (CONVERSION != CHAIN_END) {
     ADCSRA = 0;
     ADMUX = channel(FIRST_POT);
   }
-  ADCSRA = ADC_CHAIN;   // the last interrupt of the chain before has chosen the channel
+  ADCSRA = ADC_CHAIN;  // the last interrupt of the chain before has chosen the channel
   CONVERSION = CHAIN_START;
   SUM_POSITION = static_cast<uint8_t>(reinterpret_cast<uint16_t>(&hal_sums[filling ? 1 : 0][FIRST_POT]));
-  __builtin_avr_delay_cycles(16);   // conversion 1's channel may be set one ADC clock (32 cycles) after the start, not before
+  __builtin_avr_delay_cycles(
+      16);  // conversion 1's channel may be set one ADC clock (32 cycles) after the start, not before
   ADMUX = channel(FIRST_POT + 1);
 }
 
 namespace internal {
 
 void start_tick() {
-  TIMSK0 = 0;   // the framework's millis() interrupt
+  TIMSK0 = 0;  // the framework's millis() interrupt
   TCCR0A = 1 << WGM01;
-  TCCR0B = (1 << CS01) | (1 << CS00);   // prescaler 64
+  TCCR0B = (1 << CS01) | (1 << CS00);  // prescaler 64
   OCR0A = 249;
   OCR0B = chain_start;
-  TCNT0 = chain_start - 2;   // a chain starts at once, so that the first tick has samples
+  TCNT0 = chain_start - 2;  // a chain starts at once, so that the first tick has samples
   TIFR0 = (1 << OCF0A) | (1 << OCF0B) | (1 << TOV0);
   TIMSK0 = (1 << OCIE0A) | (1 << OCIE0B);
 
   CONVERSION = CHAIN_END;
-  DIDR0 = 0xff;   // no digital inputs on the pots
-  ADCSRB = 0;     // channels 0..7, free-running
+  DIDR0 = 0xff;  // no digital inputs on the pots
+  ADCSRB = 0;    // channels 0..7, free-running
   ADMUX = channel(FIRST_POT);
   ADCSRA = ADC_SINGLE | (1 << ADIF);
 }

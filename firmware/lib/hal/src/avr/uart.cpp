@@ -1,5 +1,5 @@
-// USART0 at 1 Mbaud with a ring for each direction; interrupts.S moves the bytes. At that speed a byte comes every 160 cycles, and
-// the chip holds three.
+// USART0 at 1 Mbaud with a ring for each direction; interrupts.S moves the bytes. At that speed a byte comes every 160
+// cycles, and the chip holds three.
 #ifdef __AVR__
 #include <avr/interrupt.h>
 #include <avr/io.h>
@@ -20,9 +20,9 @@ namespace internal {
 
 void start_uart() {
   TX_TAIL = 0;
-  UBRR0 = 0;   // 16 MHz / 16 = 1 Mbaud exactly
+  UBRR0 = 0;  // 16 MHz / 16 = 1 Mbaud exactly
   UCSR0A = 0;
-  UCSR0C = (1 << UCSZ01) | (1 << UCSZ00);   // 8N1
+  UCSR0C = (1 << UCSZ01) | (1 << UCSZ00);  // 8N1
   UCSR0B = UART_ON;
 }
 
@@ -34,7 +34,7 @@ uint8_t rx_read() {
   const uint8_t tail = hal_rx_tail;
   const uint8_t byte = hal_rx_ring[tail];
   hal_rx_tail = (tail + 1) & mask;
-  if (!(UCSR0B & (1 << RXCIE0))) {   // a full ring has turned the interrupt off
+  if (!(UCSR0B & (1 << RXCIE0))) {  // a full ring has turned the interrupt off
     cli();
     UCSR0B |= 1 << RXCIE0;
     sei();
@@ -44,8 +44,8 @@ uint8_t rx_read() {
 
 uint8_t tx_free() { return static_cast<uint8_t>(mask - ((hal_tx_head - TX_TAIL) & mask)); }
 
-// The head moves once, behind the last byte, and together with turning the interrupt on. The interrupt sends whatever is at the
-// tail, so it must never be on with an empty ring.
+// The head moves once, behind the last byte, and together with turning the interrupt on. The interrupt sends whatever
+// is at the tail, so it must never be on with an empty ring.
 void tx_write(const uint8_t* bytes, uint8_t count) {
   uint8_t head = hal_tx_head;
   for (; count; --count) {

@@ -20,7 +20,7 @@ void power_on() {
 
 void start_tick() {
   board.pending = true;
-  if (board.late) board.drivers = false;   // as the interrupt does
+  if (board.late) board.drivers = false;  // as the interrupt does
   if (board.eeprom_busy_ticks) --board.eeprom_busy_ticks;
 }
 

@@ -27,7 +27,7 @@ class Crc16 {
   uint8_t low_ = 0xFF;
 };
 
-inline uint16_t crc_over(const uint8_t *data, uint8_t size) {
+inline uint16_t crc_over(const uint8_t* data, uint8_t size) {
   Crc16 crc;
   for (; size != 0; --size) crc.add(*data++);
   return crc.value();

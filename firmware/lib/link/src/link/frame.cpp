@@ -42,10 +42,10 @@ namespace {
 
 // Replaces each zero of a frame by the distance to the next one.
 struct Stuffer {
-  uint8_t *code;  // the byte that will hold the distance
+  uint8_t* code;  // the byte that will hold the distance
   uint8_t distance;
 
-  void pass(uint8_t *at, uint8_t byte) {
+  void pass(uint8_t* at, uint8_t byte) {
     if (byte == 0) {
       *code = distance;
       code = at;
@@ -62,7 +62,7 @@ void Encoder::finish(uint8_t type, uint8_t seq, uint8_t payload_size) {
   buffer_[2] = seq;
   Stuffer stuffer{buffer_, 1};
   Crc16 crc;
-  uint8_t *at = buffer_ + 1;
+  uint8_t* at = buffer_ + 1;
   for (uint8_t left = static_cast<uint8_t>(payload_size + 2); left != 0; --left, ++at) {
     const uint8_t byte = *at;
     crc.add(byte);

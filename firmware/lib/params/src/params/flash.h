@@ -11,7 +11,7 @@
 namespace params {
 
 template <class T>
-inline void read_flash(T &out, const T &in_flash) {
+inline void read_flash(T& out, const T& in_flash) {
 #if defined(__AVR__)
   memcpy_P(&out, &in_flash, sizeof(T));
 #else

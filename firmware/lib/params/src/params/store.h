@@ -1,15 +1,15 @@
-// The parameter set in EEPROM: two banks, written in turn from the main loop, one byte at a time. A power cut at any moment
-// leaves the old or the new set whole.
+// The parameter set in EEPROM: two banks, written in turn from the main loop, one byte at a time. A power cut at any
+// moment leaves the old or the new set whole.
 //
 // A bank: magic u16 | layout u8 | length u16 | sequence u16 | packed table | crc u16, the CRC over layout to table. A
-// save spoils the first magic byte of the older bank, writes all the rest and reads it back, and puts the magic byte right
-// last. A bank with its magic is thus a finished bank, whatever a power cut made of the byte that was being written. At boot
-// the bank with the newer sequence wins. Bytes that are already right are not written. A save of a set that is already stored
-// writes nothing. Any other save writes each cell of one bank at most once, but the first magic byte twice. The banks take
-// turns, so even that byte is written once per save on average: it lasts for 100,000 saves.
+// save spoils the first magic byte of the older bank, writes all the rest and reads it back, and puts the magic byte
+// right last. A bank with its magic is thus a finished bank, whatever a power cut made of the byte that was being
+// written. At boot the bank with the newer sequence wins. Bytes that are already right are not written. A save of a set
+// that is already stored writes nothing. Any other save writes each cell of one bank at most once, but the first magic
+// byte twice. The banks take turns, so even that byte is written once per save on average: it lasts for 100,000 saves.
 //
-// Eeprom has `uint8_t read(uint16_t)`, `void begin_write(uint16_t, uint8_t)` and `bool busy()`. While it is busy, neither of the
-// other two is called.
+// Eeprom has `uint8_t read(uint16_t)`, `void begin_write(uint16_t, uint8_t)` and `bool busy()`. While it is busy,
+// neither of the other two is called.
 #pragma once
 
 #include <stdint.h>
@@ -37,13 +37,14 @@ constexpr uint16_t start_b = start_a + 256;
 template <class Eeprom>
 class Store {
  public:
-  explicit Store(Eeprom &eeprom) : eeprom_(eeprom) {}
+  explicit Store(Eeprom& eeprom) : eeprom_(eeprom) {}
 
-  // At boot: loads the newest bank that is whole and in range, or else the defaults. Waits for a write that a reset left behind.
-  wire::ParamSource load(Table &table);
+  // At boot: loads the newest bank that is whole and in range, or else the defaults. Waits for a write that a reset
+  // left behind.
+  wire::ParamSource load(Table& table);
 
   // Starts to save. `table` must stay as it is until state() is no longer saving. Does nothing while saving.
-  void save(const Table &table);
+  void save(const Table& table);
 
   // Does one step, which writes at most one byte. Call it again and again from the main loop.
   void poll();
@@ -56,8 +57,8 @@ class Store {
   static constexpr uint8_t no_bank = 2;
   static uint16_t start(uint8_t b) { return b == 0 ? bank::start_a : bank::start_b; }
 
-  bool whole(uint8_t b, uint16_t &sequence);
-  bool fetch(uint8_t b, Table &table);
+  bool whole(uint8_t b, uint16_t& sequence);
+  bool fetch(uint8_t b, Table& table);
   uint16_t read_u16(uint16_t at) { return static_cast<uint16_t>(eeprom_.read(at) | (eeprom_.read(at + 1) << 8)); }
 
   uint8_t image(uint8_t position);
@@ -66,10 +67,10 @@ class Store {
   void retarget();
   void finish(wire::SaveState state);
 
-  Eeprom &eeprom_;
-  const Table *table_ = nullptr;
-  uint16_t sequence_ = 0;   // the newest in EEPROM, or the one that is being written
-  wire::Crc16 crc_;         // over the positions walked so far
+  Eeprom& eeprom_;
+  const Table* table_ = nullptr;
+  uint16_t sequence_ = 0;  // the newest in EEPROM, or the one that is being written
+  wire::Crc16 crc_;        // over the positions walked so far
   uint8_t position_ = 0;
   uint8_t current_ = no_bank;  // the bank that a boot would load
   uint8_t target_ = 0;
@@ -78,7 +79,7 @@ class Store {
 };
 
 template <class Eeprom>
-bool Store<Eeprom>::whole(uint8_t b, uint16_t &sequence) {
+bool Store<Eeprom>::whole(uint8_t b, uint16_t& sequence) {
   const uint16_t at = start(b);
   if (read_u16(at) != bank::magic || eeprom_.read(at + bank::layout_at) != layout) return false;
   if (read_u16(at + bank::length_at) != table_size) return false;
@@ -89,15 +90,15 @@ bool Store<Eeprom>::whole(uint8_t b, uint16_t &sequence) {
 }
 
 template <class Eeprom>
-bool Store<Eeprom>::fetch(uint8_t b, Table &table) {
-  uint8_t *out = reinterpret_cast<uint8_t *>(&table);
+bool Store<Eeprom>::fetch(uint8_t b, Table& table) {
+  uint8_t* out = reinterpret_cast<uint8_t*>(&table);
   const uint16_t at = start(b) + bank::payload_at;
   for (uint8_t i = 0; i < table_size; ++i) out[i] = eeprom_.read(static_cast<uint16_t>(at + i));
   return first_invalid(table) == none;
 }
 
 template <class Eeprom>
-wire::ParamSource Store<Eeprom>::load(Table &table) {
+wire::ParamSource Store<Eeprom>::load(Table& table) {
   while (eeprom_.busy()) {
   }
   uint16_t sequences[2] = {0, 0};
@@ -119,7 +120,7 @@ wire::ParamSource Store<Eeprom>::load(Table &table) {
 }
 
 template <class Eeprom>
-void Store<Eeprom>::save(const Table &table) {
+void Store<Eeprom>::save(const Table& table) {
   if (state_ == wire::SaveState::saving) return;
   table_ = &table;
   state_ = wire::SaveState::saving;
@@ -158,31 +159,16 @@ template <class Eeprom>
 uint8_t Store<Eeprom>::image(uint8_t position) {
   uint8_t byte = 0;
   switch (position) {
-    case 0:
-      return bank::magic & 0xFF;
-    case 1:
-      return bank::magic >> 8;
-    case bank::layout_at:
-      byte = layout;
-      break;
-    case bank::length_at:
-      byte = table_size & 0xFF;
-      break;
-    case bank::length_at + 1:
-      byte = table_size >> 8;
-      break;
-    case bank::sequence_at:
-      byte = static_cast<uint8_t>(sequence_ & 0xFF);
-      break;
-    case bank::sequence_at + 1:
-      byte = static_cast<uint8_t>(sequence_ >> 8);
-      break;
-    case bank::crc_at:
-      return crc_.low();
-    case bank::crc_at + 1:
-      return crc_.high();
-    default:
-      byte = reinterpret_cast<const uint8_t *>(table_)[position - bank::payload_at];
+    case 0: return bank::magic & 0xFF;
+    case 1: return bank::magic >> 8;
+    case bank::layout_at: byte = layout; break;
+    case bank::length_at: byte = table_size & 0xFF; break;
+    case bank::length_at + 1: byte = table_size >> 8; break;
+    case bank::sequence_at: byte = static_cast<uint8_t>(sequence_ & 0xFF); break;
+    case bank::sequence_at + 1: byte = static_cast<uint8_t>(sequence_ >> 8); break;
+    case bank::crc_at: return crc_.low();
+    case bank::crc_at + 1: return crc_.high();
+    default: byte = reinterpret_cast<const uint8_t*>(table_)[position - bank::payload_at];
   }
   crc_.add(byte);
   return byte;
@@ -238,11 +224,8 @@ void Store<Eeprom>::poll() {
       eeprom_.begin_write(first, mark);
       phase_ = Phase::sealed;
       break;
-    case Phase::sealed:
-      finish(eeprom_.read(first) == mark ? wire::SaveState::saved : wire::SaveState::failed);
-      break;
-    case Phase::idle:
-      break;
+    case Phase::sealed: finish(eeprom_.read(first) == mark ? wire::SaveState::saved : wire::SaveState::failed); break;
+    case Phase::idle: break;
   }
 }
 

@@ -27,7 +27,7 @@ class SoftStart {
   static constexpr uint32_t full = UINT32_C(1) << 31;
 
   uint32_t share_ = 0, step_ = 0;
-  uint16_t left_ = 0;   // ticks
+  uint16_t left_ = 0;  // ticks
 };
 
 }  // namespace signal_chain

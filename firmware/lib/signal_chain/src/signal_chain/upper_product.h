@@ -1,5 +1,5 @@
-// The upper half of a 16-bit product: how the tick divides. On AVR in assembly, because avr-gcc makes the whole product first.
-// test/target/test_upper_product holds the two forms equal.
+// The upper half of a 16-bit product: how the tick divides. On AVR in assembly, because avr-gcc makes the whole product
+// first. test/target/test_upper_product holds the two forms equal.
 #pragma once
 #include <stdint.h>
 
@@ -14,7 +14,8 @@ inline uint16_t upper_product_portable(uint16_t a, uint16_t b) {
 inline __attribute__((always_inline)) uint16_t upper_product(uint16_t a, uint16_t b) {
   uint16_t product;
   uint8_t low, zero;
-  __asm__("clr %[zero]\n\t"
+  __asm__(
+      "clr %[zero]\n\t"
       "mul %A[a], %A[b]\n\t"
       "mov %[low], r1\n\t"
       "mul %B[a], %B[b]\n\t"
