@@ -1,6 +1,6 @@
 // What an image says about itself. Tools find this record in the .hex: they tell by it for which chip the image is,
 // which version it is, and from which sources it was built. The host reads it in board/flash/images.py.
-#include <avr/io.h>
+#include <avr/chip_signature.h>
 #include <avr/pgmspace.h>
 #include <link/schema.h>
 #include <version.h>
@@ -24,7 +24,7 @@ extern const ImageRecord image_record;
 __attribute__((used, externally_visible)) const ImageRecord image_record PROGMEM = {
     "greywhale image",
     1,
-    {SIGNATURE_0, SIGNATURE_1, SIGNATURE_2},
+    {hal::chip_signature[0], hal::chip_signature[1], hal::chip_signature[2]},
     {app::version_major, app::version_minor, app::version_patch},
     wire::schema_hash,
     GREYWHALE_SOURCE_DIGEST,
