@@ -5,10 +5,13 @@ from __future__ import annotations
 import subprocess
 from pathlib import Path
 
+import pytest
+
 HERE = Path(__file__).parent
 ARM = HERE.parents[1] / "sim" / "arm"
 
 
+@pytest.mark.slow
 def test_vector_of_arms_equals_single_arms(tmp_path: Path) -> None:
     program = tmp_path / "lanes"
     build = ["g++", "-std=gnu++17", "-O1", "-Wall", "-Wextra", "-Werror", "-Wno-psabi", "-ffp-contract=off", f"-I{ARM}"]

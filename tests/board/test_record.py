@@ -124,6 +124,7 @@ def test_a_bad_end_keeps_what_was_recorded_and_says_why(tmp_path: Path, faults: 
     assert parts(tmp_path) == []
 
 
+@pytest.mark.slow
 def test_a_restart_without_a_word_is_found(tmp_path: Path) -> None:
     faults = Faults(restart_at=200, restart_says_hello=False)
     with (
@@ -134,6 +135,7 @@ def test_a_restart_without_a_word_is_found(tmp_path: Path) -> None:
         record(device, tmp_path / "log.csv", 10.0)
 
 
+@pytest.mark.slow
 def test_samples_that_stop_coming_are_named(tmp_path: Path) -> None:
     with (
         FakeBoard(Faults(stop_sampling_at=100)) as board,

@@ -299,6 +299,7 @@ def interrupt_after(monkeypatch: pytest.MonkeyPatch, batches: int) -> None:
     monkeypatch.setattr(verb, "progress", impatient)
 
 
+@pytest.mark.slow
 def test_a_resumed_tuning_must_be_the_same_one(
     no_floors: None, model: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
 ) -> None:

@@ -31,6 +31,7 @@ def test_flash_a_blank_board(start_bench: Start, board_name: str) -> None:
     assert not bench.command("status")["in_bootloader"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("board", "expected"),
     [
@@ -44,6 +45,7 @@ def test_the_real_bootloaders_tell_their_board(start_bench: Start, board: str, e
     assert find_bootloader(bench.port, dialects, []) == expected
 
 
+@pytest.mark.slow
 def test_neither_a_wrong_name_nor_the_other_boards_image_reaches_a_board(
     start_bench: Start, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -215,6 +215,7 @@ def set_parameters(host: Any, changes: dict[str, int]) -> int:
     return int(host.ask(schema.ParamApplyRequest(schema.param_crc(values))).param_crc)
 
 
+@pytest.mark.slow
 def test_same_bytes_same_trace(lock_step: Any, board_name: str) -> None:
     def trace(kp: int, pieces: int) -> str:
         host = lock_step(board_name, boot=False)

@@ -34,6 +34,7 @@ def told(capsys: pytest.CaptureFixture[str], *arguments: str | Path) -> dict[str
     return answer
 
 
+@pytest.mark.slow
 def test_a_nano_is_excited_identified_and_tuned_as_a_nano(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -75,6 +76,7 @@ def full_duties_of_every_loop(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     return largest
 
 
+@pytest.mark.slow
 def test_the_very_voltages_of_a_nanos_log_come_in_its_steps(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Told by the log alone: 15 V in 255 steps on the last two joints, in 400 on the first two."""
     path = tmp_path / "log.csv"
@@ -87,6 +89,7 @@ def test_the_very_voltages_of_a_nanos_log_come_in_its_steps(tmp_path: Path, caps
     assert loop.error(plant_row(load_arm("default"))[None]).sum() < 1e-4, "the true arm in its own loop repeats the log"
 
 
+@pytest.mark.slow
 def test_a_controller_for_a_nano_is_doubted_on_a_mega(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     table = Path(__file__).parents[2] / "shared" / "fuzzy_tables" / "table_10.toml"
     controller = tmp_path / "controller.toml"

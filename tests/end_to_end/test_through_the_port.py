@@ -223,6 +223,7 @@ def test_bad_options_are_one_sentence(options: tuple[str, ...], sentence: str) -
     assert done.stdout == ""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_signals_end_the_bench_cleanly(leader_file: Path, tmp_path: Path, number: signal.Signals) -> None:
     link = tmp_path / "bench"

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import struct
 
+import pytest
+
 from greywhale.protocol import schema
 from tests.firmware.test_stop import motors_on, status
 from tools.bench.bench_tick import CYCLES_PER_TICK, Bench
@@ -24,6 +26,7 @@ def ms_until_off(bench: Bench) -> float:
     return float((bench.board.cycle - begun) / CYCLES_PER_TICK)
 
 
+@pytest.mark.slow
 def test_a_hang_with_interrupts_off_turns_the_motors_off_within_20_ms(bench: Bench) -> None:
     for _ in range(PHASES):
         bench.ask(schema.ClearFaultRequest)
@@ -37,6 +40,7 @@ def test_a_hang_with_interrupts_off_turns_the_motors_off_within_20_ms(bench: Ben
         assert not motors_on(bench)
 
 
+@pytest.mark.slow
 def test_the_watchdog_leaves_boot_and_every_step_of_a_parameter_set_alone(bench: Bench) -> None:
     """Staged, applied, saved into both banks, with telemetry on and a reset at the end: the watchdog never bites."""
     bench.ask(schema.TelemetryRequest, struct.pack("<H", 1))

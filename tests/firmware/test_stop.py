@@ -84,6 +84,7 @@ class Pour:
                 self.off_at = board.cycle
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rate", [16, 32, 40, 48, 64, 80, 96])
 @pytest.mark.parametrize("kind", [garbage, requests, unfinished, too_long, zeros])
 def test_motors_are_off_soon_after_a_stop_inside_a_flood_or_after_the_line_is_lost(
@@ -109,6 +110,7 @@ def test_motors_are_off_soon_after_a_stop_inside_a_flood_or_after_the_line_is_lo
         assert seen.fault in (schema.Fault.NONE, schema.Fault.FLOOD)
 
 
+@pytest.mark.slow
 def test_a_short_burst_is_no_flood(bench: Bench) -> None:
     """Twice what an honest host may send without waiting, at full speed, again and again."""
     enable(bench)
@@ -119,6 +121,7 @@ def test_a_short_burst_is_no_flood(bench: Bench) -> None:
     assert motors_on(bench)
 
 
+@pytest.mark.slow
 def test_a_stop_acts_although_one_byte_in_twenty_is_damaged(bench: Bench) -> None:
     line = Noise(seed=3)
     line.set("flip", 0.05)

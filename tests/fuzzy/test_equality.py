@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -29,6 +30,7 @@ COLUMNS = {
 }
 
 
+@pytest.mark.slow
 @settings(max_examples=400)
 @given(data=st.data())
 def test_coefficients(cases: st.SearchStrategy[Case], data: st.DataObject) -> None:
@@ -41,6 +43,7 @@ def test_coefficients(cases: st.SearchStrategy[Case], data: st.DataObject) -> No
     assert native == {"sides": sides, "integral": ours.integral, "ku_mv": ours.ku_mv}
 
 
+@pytest.mark.slow
 @settings(max_examples=400)
 @given(data=st.data())
 def test_every_intermediate(cases: st.SearchStrategy[Case], points: Points, data: st.DataObject) -> None:
@@ -61,6 +64,7 @@ def _walk(random: np.random.Generator, length: int) -> NDArray[np.int64]:
     return np.clip(np.cumsum(steps), -32768, 32767).astype(np.int64)
 
 
+@pytest.mark.slow
 @settings(max_examples=200)
 @given(data=st.data())
 def test_whole_trajectories(cases: st.SearchStrategy[Case], data: st.DataObject) -> None:

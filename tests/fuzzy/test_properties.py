@@ -41,6 +41,7 @@ def _mirrored(joint: JointSettings) -> JointSettings:
     )
 
 
+@pytest.mark.slow
 @settings(max_examples=200)
 @given(data=st.data())
 def test_mirrored_sets_mirror_the_output(cases: st.SearchStrategy[Case], points: Points, data: st.DataObject) -> None:
@@ -52,6 +53,7 @@ def test_mirrored_sets_mirror_the_output(cases: st.SearchStrategy[Case], points:
     np.testing.assert_array_equal(u, -mirrored)
 
 
+@pytest.mark.slow
 @settings(max_examples=200)
 @given(data=st.data())
 def test_output_is_within_one_and_some_rule_fires(
@@ -66,6 +68,7 @@ def test_output_is_within_one_and_some_rule_fires(
     assert (ours.with_e + ours.zero + ours.against_e).min() >= 164 / (16384 + 164) * twin.ONE - 3
 
 
+@pytest.mark.slow
 @settings(max_examples=200)
 @given(data=st.data())
 def test_no_error_no_output_and_no_change_of_sides(cases: st.SearchStrategy[Case], data: st.DataObject) -> None:
@@ -149,6 +152,7 @@ def test_crisp_feet_leave_points_without_a_rule() -> None:
     assert beyond.u == 1
 
 
+@pytest.mark.slow
 @settings(max_examples=500)
 @given(data=st.data())
 def test_host_and_firmware_refuse_the_same(data: st.DataObject) -> None:

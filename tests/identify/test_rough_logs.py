@@ -94,6 +94,7 @@ def test_a_long_gap_ends_a_stretch_and_no_window_crosses_it(recorded: Recorded) 
         check(prepare(rows(recorded.fit, shredded), 1), load_arm("white_box"), None)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "moment", ["global search", "choosing the model's order", "comparing with", "fitting the chosen"]
 )

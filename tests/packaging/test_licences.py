@@ -6,6 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).resolve().parents[2]
 REUSE = [sys.executable, "-m", "reuse", "--root", str(ROOT)]
 
@@ -14,11 +16,13 @@ def run_reuse(*arguments: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run([*REUSE, *arguments], capture_output=True, text=True, check=False)
 
 
+@pytest.mark.slow
 def test_no_file_is_without_a_licence() -> None:
     answer = run_reuse("lint", "--lines")
     assert answer.returncode == 0, answer.stdout + answer.stderr
 
 
+@pytest.mark.slow
 def test_the_gpl_covers_the_simulated_board_and_the_bench_and_nothing_else() -> None:
     files: dict[str, str] = {}
     name = ""

@@ -103,6 +103,7 @@ def test_both_sides_end_the_ranges_at_the_same_value(firmware: Firmware, paramet
     assert firmware.set(firmware.defaults(), parameter.index, beyond) == "out_of_range"
 
 
+@pytest.mark.slow
 @given(tables)
 def test_both_sides_find_the_same_contradictions(firmware: Firmware, raw: tuple[int, ...]) -> None:
     invalid = firmware.first_invalid(bytearray(pack_parameters(raw)))

@@ -130,6 +130,7 @@ def pump(board: Board, master: int, process: subprocess.Popen[str]) -> None:
             os.write(master, answer)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("chip", "bootloader", "options"),
     [

@@ -26,6 +26,7 @@ def test_each_bootloader_is_found_with_its_speed_and_its_chip(
         assert find_bootloader(line.port, [MEGA, NEW_NANO, OLD_NANO], []) == Bootloader(dialect, signature)
 
 
+@pytest.mark.slow
 def test_another_bootloader_than_the_likely_one_is_found_last() -> None:
     with Version2(115200, MEGA2560) as line:
         assert find_bootloader(line.port, [OLD_NANO], [MEGA]).dialect == MEGA
@@ -41,6 +42,7 @@ def test_a_bootloader_that_does_not_tell_its_chip_is_found_all_the_same() -> Non
         assert find_bootloader(line.port, [OLD_NANO], []) == Bootloader(OLD_NANO, None)
 
 
+@pytest.mark.slow
 def test_a_board_without_bootloader_is_named() -> None:
     with Version1(9600, ATMEGA328P) as line:
         with pytest.raises(UserError, match="no bootloader answers at 115200 and 57600 baud"):

@@ -100,6 +100,7 @@ def test_avrdude_gets_the_speed_of_a_nanos_bootloader(
     assert told.read_text().endswith(f"-c arduino -p atmega328p -P {line.port} -D -U flash:w:{image}:i -b {baud}")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("bootloader", "named", "words"),
     [

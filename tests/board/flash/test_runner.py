@@ -68,6 +68,7 @@ def test_a_tool_that_hangs_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
     assert started[0].returncode == -signal.SIGTERM
 
 
+@pytest.mark.slow
 def test_what_the_tool_started_ends_with_it() -> None:
     started: list[int] = []
 

@@ -61,6 +61,7 @@ def test_a_fit_finds_motor_and_load_friction_of_a_servo_that_swings_a_weight(swi
     assert naive > 10.0 * physics
 
 
+@pytest.mark.slow
 def test_a_model_holds_in_a_controller_that_it_was_not_fitted_in(swings: Record) -> None:
     stiff = proportional(12.0, 7.4)
     other = made(led(4.0), stiff, plant(SERVO, **TRUE))
