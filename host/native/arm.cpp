@@ -116,7 +116,8 @@ void bind_parameters(nb::module_& m) {
   nb::class_<ActuatorOfOne>(m, "Actuator", "A geared motor as its joint feels it.")
       .def_ro("torque_per_volt", &ActuatorOfOne::torque_per_volt, "N m/V at standstill")
       .def_ro("inertia", &ActuatorOfOne::inertia, "kg m^2, reflected to the joint")
-      .def_ro("damping", &ActuatorOfOne::damping, "N m s, back-EMF and viscous friction");
+      .def_ro("damping", &ActuatorOfOne::damping, "N m s, back-EMF and viscous friction")
+      .def_ro("resistance", &ActuatorOfOne::resistance, "ohm, of winding and driver");
   const auto define_actuator = [&m](const char* name, ActuatorOfOne (*equation)(const arm::Motor&), const char* doc) {
     m.def(
         name,
@@ -132,21 +133,28 @@ void bind_parameters(nb::module_& m) {
       .def(
           "__init__",
           [](JointOfOne* self, const ActuatorOfOne& actuator, double coulomb, double breakaway,
-             double stribeck_velocity, double half_gap, double stiffness, double damping, double drag, double min,
-             double max) {
-            new (self) JointOfOne{
-                actuator, {coulomb, breakaway, stribeck_velocity}, {half_gap, stiffness, damping, drag}, {min, max}};
+             double stribeck_velocity, double load_friction, double creep_velocity, double half_gap, double stiffness,
+             double damping, double drag, double min, double max, double pot_play, double pot_lag) {
+            new (self) JointOfOne{actuator,
+                                  {coulomb, breakaway, stribeck_velocity, load_friction, creep_velocity},
+                                  {half_gap, stiffness, damping, drag},
+                                  {min, max},
+                                  {pot_play, pot_lag}};
           },
-          nb::kw_only(), "actuator"_a, "coulomb"_a, "breakaway"_a, "stribeck_velocity"_a, "half_gap"_a, "stiffness"_a,
-          "damping"_a, "drag"_a, "min"_a, "max"_a);
+          nb::kw_only(), "actuator"_a, "coulomb"_a, "breakaway"_a, "stribeck_velocity"_a, "load_friction"_a = 0.0,
+          "creep_velocity"_a = 0.0, "half_gap"_a, "stiffness"_a, "damping"_a, "drag"_a, "min"_a, "max"_a,
+          "pot_play"_a = 0.0, "pot_lag"_a = 0.0);
 
   nb::class_<arm::ArmParameters>(m, "ArmParameters", "The whole arm; greywhale.arm.ArmParameters makes it, validated.")
       .def(
           "__init__",
           [](arm::ArmParameters* self, const std::array<arm::Link, arm::kJoints>& links, double tip_mass,
              double gravity, const std::array<JointOfOne, arm::kJoints>& joints, double supply,
-             int pwm_levels) { new (self) arm::ArmParameters{links, tip_mass, gravity, joints, {supply, pwm_levels}}; },
-          nb::kw_only(), "links"_a, "tip_mass"_a, "gravity"_a, "joints"_a, "supply"_a, "pwm_levels"_a);
+             double supply_resistance, int pwm_levels) {
+            new (self) arm::ArmParameters{links, tip_mass, gravity, joints, {{supply, supply_resistance}, pwm_levels}};
+          },
+          nb::kw_only(), "links"_a, "tip_mass"_a, "gravity"_a, "joints"_a, "supply"_a, "supply_resistance"_a = 0.0,
+          "pwm_levels"_a);
 }
 
 void bind_body(nb::module_& m) {
@@ -199,10 +207,10 @@ void bind_pots(nb::module_& m) {
   nb::class_<arm::Potentiometer>(m, "Potentiometer")
       .def(
           "__init__",
-          [](arm::Potentiometer* self, double track, double centre, double direction, double noise, double linearity) {
-            new (self) arm::Potentiometer{track, centre, direction, noise, linearity};
-          },
-          nb::kw_only(), "track"_a, "centre"_a, "direction"_a, "noise"_a, "linearity"_a);
+          [](arm::Potentiometer* self, double track, double centre, double direction, double noise, double linearity,
+             double play,
+             double lag) { new (self) arm::Potentiometer{track, centre, direction, noise, linearity, {play, lag}}; },
+          nb::kw_only(), "track"_a, "centre"_a, "direction"_a, "noise"_a, "linearity"_a, "play"_a = 0.0, "lag"_a = 0.0);
 
   nb::class_<arm::Potentiometers>(m, "Potentiometers", "Four joint potentiometers.")
       .def(nb::init<const std::array<arm::Potentiometer, arm::kJoints>&, double, std::uint64_t>(), "pots"_a, "supply"_a,

@@ -32,7 +32,7 @@ using Plants = In<double, nb::shape<-1, loop::kPlantColumns>>;
 struct Windows {
   In<std::int64_t, nb::shape<-1>> first;  // row
   Rows angles, velocities;                // of the links, rad and rad/s
-  Rows sides;                             // -1..1, where in its gap each motor side stands
+  Rows sides, places;                     // -1..1, where each motor stands in its gap, each joint in its pot's play
   std::size_t rows;                       // of every window
 };
 
@@ -55,8 +55,9 @@ void check(const Windows& w, const Drive& drive, const Plants& plants, const Sta
   if (drive.volts.shape(0) != rows * drive.substeps)
     throw std::invalid_argument("volts must hold `substeps` rows for every spacing.");
   const std::size_t count = w.first.shape(0);
-  if (w.angles.shape(0) != count || w.velocities.shape(0) != count || w.sides.shape(0) != count) {
-    throw std::invalid_argument("first, angles, velocities and sides differ in length.");
+  if (w.angles.shape(0) != count || w.velocities.shape(0) != count || w.sides.shape(0) != count ||
+      w.places.shape(0) != count) {
+    throw std::invalid_argument("first, angles, velocities, sides and places differ in length.");
   }
   if (start.offsets.shape(0) != plants.shape(0) || start.kicks.shape(0) != plants.shape(0)) {
     throw std::invalid_argument("offsets and kicks need a row for every plant.");
@@ -77,9 +78,9 @@ nb::object run(const Windows& w, const Drive& drive, const Plants& plants, const
   auto values = std::make_unique<double[]>(candidates * count * size);
   {
     const nb::gil_scoped_release free;
-    const windows::Windows given{w.first.data(), w.angles.data(),    w.velocities.data(),
-                                 w.sides.data(), drive.volts.data(), drive.spacing.data(),
-                                 w.rows,         drive.substeps,     every};
+    const windows::Windows given{
+        w.first.data(),       w.angles.data(), w.velocities.data(), w.sides.data(), w.places.data(), drive.volts.data(),
+        drive.spacing.data(), w.rows,          drive.substeps,      every};
     std::vector<windows::Task> tasks;
     tasks.reserve(candidates * count);
     for (std::size_t window = 0; window < count; ++window) {
@@ -101,13 +102,14 @@ void bind_identify(nb::module_& m) {
   m.def(
       "simulate_windows",
       [](const Plants& plants, const Rows& offsets, const Rows& kicks, const In<std::int64_t, nb::shape<-1>>& first,
-         const Rows& angles, const Rows& velocities, const Rows& sides, std::size_t rows, const Rows& volts,
-         const In<double, nb::shape<-1>>& spacing, std::size_t substeps, std::size_t every, int threads) {
-        return run({first, angles, velocities, sides, rows}, {volts, spacing, substeps}, plants, {offsets, kicks},
-                   every, threads);
+         const Rows& angles, const Rows& velocities, const Rows& sides, const Rows& places, std::size_t rows,
+         const Rows& volts, const In<double, nb::shape<-1>>& spacing, std::size_t substeps, std::size_t every,
+         int threads) {
+        return run({first, angles, velocities, sides, places, rows}, {volts, spacing, substeps}, plants,
+                   {offsets, kicks}, every, threads);
       },
       nb::kw_only(), "plants"_a.noconvert(), "offsets"_a.noconvert(), "kicks"_a.noconvert(), "first"_a.noconvert(),
-      "angles"_a.noconvert(), "velocities"_a.noconvert(), "sides"_a.noconvert(), "rows"_a, "volts"_a.noconvert(),
-      "spacing"_a.noconvert(), "substeps"_a, "every"_a, "threads"_a = 0,
+      "angles"_a.noconvert(), "velocities"_a.noconvert(), "sides"_a.noconvert(), "places"_a.noconvert(), "rows"_a,
+      "volts"_a.noconvert(), "spacing"_a.noconvert(), "substeps"_a, "every"_a, "threads"_a = 0,
       "Angles (candidates, windows, rows kept, 4) of candidate arms under logged voltages. The GIL is released.");
 }

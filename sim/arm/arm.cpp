@@ -6,6 +6,7 @@
 #include <string>
 
 #include "motor.h"
+#include "supply.h"
 
 namespace greywhale::arm {
 
@@ -34,11 +35,12 @@ bool is_finite(const State<double>& s) {
 }  // namespace
 
 Arm::Arm(const ArmParameters& parameters, std::uint64_t seed, double longest_step)
-    : drive_(parameters.drive), noise_(seed, 0), longest_step_(longest_step) {
+    : worn_(false), drive_(parameters.drive), noise_(seed, 0), longest_step_(longest_step) {
   if (!(std::isfinite(longest_step) && longest_step > 0.0))
     refuse("the longest step", longest_step, "it must be a time above 0 s");
   plant_.body = rigid_body(parameters);
   for (std::size_t i = 0; i < kJoints; ++i) plant_.joints[i] = parameters.joints[i];
+  worn_ = is_worn(plant_);
   double start[kJoints];
   for (std::size_t i = 0; i < kJoints; ++i) {
     const Stops<double>& stops = plant_.joints[i].stops;
@@ -78,7 +80,12 @@ void Arm::step(const double (&volts)[kJoints], double dt) {
   const double h = dt / count;
   State<double> next = state_;
   std::uint64_t unsettled = 0;
-  for (double n = 0.0; n < count; n += 1.0) unsettled += advance(plant_, next, applied, load_, h) ? 0u : 1u;
+  for (double n = 0.0; n < count; n += 1.0) {
+    double arriving[kJoints];
+    for (std::size_t i = 0; i < kJoints; ++i) arriving[i] = applied[i];
+    if (drive_.supply.resistance > 0.0) sag(plant_.joints, drive_.supply, next, arriving);
+    unsettled += advance(plant_, next, arriving, load_, h, worn_) ? 0u : 1u;
+  }
   if (!is_finite(next)) throw std::runtime_error("the arm's motion left the range of numbers; check its parameters.");
   state_ = next;
   steps_ += static_cast<std::uint64_t>(count);

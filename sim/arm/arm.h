@@ -37,6 +37,7 @@ class Arm {
 
  private:
   Plant<double> plant_{};
+  bool worn_;
   Drive drive_;
   Noise noise_;
   double longest_step_;

@@ -43,15 +43,20 @@ constexpr Column kJointColumns[] = {
     {"torque_per_volt", offsetof(detail::Shaft, actuator.torque_per_volt)},
     {"inertia", offsetof(detail::Shaft, actuator.inertia)},
     {"damping", offsetof(detail::Shaft, actuator.damping)},
+    {"resistance", offsetof(detail::Shaft, actuator.resistance)},
     {"coulomb", offsetof(detail::Shaft, friction.coulomb)},
     {"breakaway", offsetof(detail::Shaft, friction.breakaway)},
     {"stribeck_velocity", offsetof(detail::Shaft, friction.stribeck_velocity)},
+    {"load_friction", offsetof(detail::Shaft, friction.load)},
+    {"creep_velocity", offsetof(detail::Shaft, friction.creep)},
     {"half_gap", offsetof(detail::Shaft, gear.half_gap)},
     {"stiffness", offsetof(detail::Shaft, gear.stiffness)},
     {"mesh_damping", offsetof(detail::Shaft, gear.damping)},
     {"drag", offsetof(detail::Shaft, gear.drag)},
     {"stop_min", offsetof(detail::Shaft, stops.min)},
     {"stop_max", offsetof(detail::Shaft, stops.max)},
+    {"pot_play", offsetof(detail::Shaft, sensor.play)},
+    {"pot_lag", offsetof(detail::Shaft, sensor.lag)},
 };
 static_assert(detail::is_all_of<detail::Shaft>(kJointColumns), "Joint and the names of its columns differ");
 

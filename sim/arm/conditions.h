@@ -3,6 +3,9 @@
 // With these sides chosen, motor, mesh and friction are linear in the velocities at the end of the step. The motor's
 // velocity is eliminated, so that the link's equation alone remains; `corrected` then says which sides those velocities
 // really ask for.
+//
+// `kWorn` is whether there is friction that grows with the load, or creep. Without them the numbers are the same bits,
+// in less time.
 #pragma once
 
 #include <cstddef>
@@ -39,13 +42,18 @@ struct Terms {
   T gap_push;    // what the half gap takes off it
   T mesh;        // impulse of touching teeth per closing velocity
   T drag;        // the same of the grease, which works all the time
+  T load;        // share of the mesh's impulse that friction adds
+  T creeps;      // 1 where a side at rest gives way a little, else 0
+  T creep;       // friction per velocity of one that does
 };
 
 // What the mesh does for one choice of sides: an impulse from its present deflection, and one per closing velocity.
 template <class T>
 struct Mesh {
   T push, stiff;
-  T share;  // of the link's velocity that a sliding motor side takes on
+  T inertia;  // of the motor side, with what its creep resists by
+  T felt;     // share of the mesh's impulse that the motor side feels: friction grows with it
+  T share;    // of the link's velocity that a moving motor side takes on, per `felt`
 };
 
 // One row of the links' equations: what motor and mesh add to it.
@@ -61,7 +69,7 @@ constexpr double kRigid = 1e15;
 // turns.
 constexpr double kNoPull = 1e-14;
 
-template <class T>
+template <bool kWorn, class T>
 Terms<T> terms_of(const Joint<T>& joint, const State<T>& s, std::size_t i, T volts, double dt) {
   const Gear<T>& gear = joint.gear;
   const T compliant = dt * (dt * gear.stiffness + gear.damping);
@@ -75,6 +83,13 @@ Terms<T> terms_of(const Joint<T>& joint, const State<T>& s, std::size_t i, T vol
   t.gap_push = dt * gear.stiffness * gear.half_gap;
   t.mesh = choose(gear.stiffness > constant<T>(0.0), compliant, constant<T>(kRigid));
   t.drag = dt * gear.drag;
+  if (kWorn) {
+    const T zero = constant<T>(0.0), one = constant<T>(1.0);
+    const T creeping = choose(t.breakaway > zero, joint.friction.creep, zero);
+    t.load = joint.friction.load;
+    t.creeps = choose(creeping > zero, one, zero);
+    t.creep = t.breakaway / choose(creeping > zero, creeping, one);
+  }
   return t;
 }
 
@@ -86,40 +101,72 @@ Sides<T> first_guess(const Joint<T>& joint, const State<T>& s, std::size_t i, do
   const T ahead = s.motor_q[i] - s.q[i] + dt * (s.motor_v[i] - s.v[i]);
   Sides<T> side;
   side.mesh = choose(absolute(ahead) >= joint.gear.half_gap, choose(ahead < zero, -one, one), zero);
-  side.slip = sign(s.motor_v[i]);
+  side.slip = choose(absolute(s.motor_v[i]) > joint.friction.creep, sign(s.motor_v[i]), zero);
   side.stop = choose(s.q[i] >= joint.stops.max, one, choose(s.q[i] <= joint.stops.min, -one, zero));
   return side;
 }
 
-template <class T>
+template <bool kWorn, class T>
 Mesh<T> mesh_of(const Terms<T>& t, const Sides<T>& side) {
   const T zero = constant<T>(0.0);
   const auto touching = side.mesh != zero;
   Mesh<T> mesh;
   mesh.push = choose(touching, t.push - side.mesh * t.gap_push, zero);
   mesh.stiff = choose(touching, t.mesh + t.drag, t.drag);
-  mesh.share = mesh.stiff / (t.inertia + mesh.stiff);
+  mesh.inertia = t.inertia;
+  T felt = mesh.stiff;
+  if (kWorn) {
+    mesh.felt = side.slip * side.mesh * t.load + 1.0;
+    mesh.inertia = choose(side.slip != zero, t.inertia, t.inertia + t.creep);
+    felt = mesh.felt * mesh.stiff;
+  }
+  mesh.share = mesh.stiff / (mesh.inertia + felt);
   return mesh;
 }
 
-// A motor side at rest holds the link through the mesh alone; a sliding one moves with it by `share`.
-template <class T>
+// Without the mesh's part that depends on velocities.
+template <bool kWorn, class T>
+T driving_impulse(const Terms<T>& t, const Sides<T>& side, const Mesh<T>& mesh) {
+  const T push = kWorn ? mesh.felt * mesh.push : mesh.push;
+  return t.impulse - push - side.slip * t.friction;
+}
+
+// Not 0 where the motor side moves: while it slides, and at rest where it creeps.
+template <bool kWorn, class T>
+T moving(const Terms<T>& t, const Sides<T>& side) {
+  return kWorn ? choose(side.slip != constant<T>(0.0), side.slip, t.creeps) : side.slip;
+}
+
+// A motor side at rest holds the link through the mesh alone; a moving one goes with it by `share`.
+template <bool kWorn, class T>
 Row<T> link_row(const Terms<T>& t, const Sides<T>& side) {
-  const Mesh<T> mesh = mesh_of(t, side);
-  const auto slides = side.slip != constant<T>(0.0);
-  const T driven = t.impulse - mesh.push - side.slip * t.friction;
+  const Mesh<T> mesh = mesh_of<kWorn>(t, side);
+  const auto moves = moving<kWorn>(t, side) != constant<T>(0.0);
+  const T driven = driving_impulse<kWorn>(t, side, mesh);
   Row<T> row;
-  row.diagonal = choose(slides, mesh.share * t.inertia, mesh.stiff);
-  row.right = choose(slides, mesh.push + mesh.share * driven, mesh.push);
+  row.diagonal = choose(moves, mesh.share * mesh.inertia, mesh.stiff);
+  row.right = choose(moves, mesh.push + mesh.share * driven, mesh.push);
   return row;
 }
 
-template <class T>
+template <bool kWorn, class T>
 T motor_velocity(const Terms<T>& t, const Sides<T>& side, T link_v) {
-  const T zero = constant<T>(0.0);
-  const Mesh<T> mesh = mesh_of(t, side);
-  const T driven = t.impulse - mesh.push - side.slip * t.friction;
-  return choose(side.slip != zero, driven / (t.inertia + mesh.stiff) + mesh.share * link_v, zero);
+  const Mesh<T> mesh = mesh_of<kWorn>(t, side);
+  const auto moves = moving<kWorn>(t, side) != constant<T>(0.0);
+  const T driven = driving_impulse<kWorn>(t, side, mesh);
+  const T felt = kWorn ? mesh.felt * mesh.stiff : mesh.stiff;
+  const T share = kWorn ? mesh.felt * mesh.share : mesh.share;
+  return choose(moves, driven / (mesh.inertia + felt) + share * link_v, constant<T>(0.0));
+}
+
+// What the mesh passes on over the step; taken from what is left of the motor's own impulse where it moves, since a
+// rigid mesh shows nothing.
+template <class T>
+T passed_impulse(const Terms<T>& t, const Sides<T>& side, T motor_v, T link_v) {
+  const Mesh<T> mesh = mesh_of<true>(t, side);
+  const auto moves = moving<true>(t, side) != constant<T>(0.0);
+  const T left = t.impulse - side.slip * t.friction - mesh.inertia * motor_v;
+  return choose(moves, left / mesh.felt, mesh.push - mesh.stiff * link_v);
 }
 
 // Teeth push and never pull. Apart, they meet on the side where the gap would close and the mesh would push.
@@ -135,14 +182,32 @@ T corrected_mesh(const Gear<T>& gear, const Terms<T>& t, T side, T closing, doub
   return choose(gear.half_gap > zero, choose(side != zero, stays, meets), side);
 }
 
+// Where there is no gap, the side says which way the mesh pushes; only friction that grows with the load asks for it.
+template <class T>
+T corrected_gapless(const Gear<T>& gear, const Terms<T>& t, T side, T passed) {
+  const T zero = constant<T>(0.0);
+  const T turned = choose(side * passed < constant<T>(-kNoPull), -side, side);
+  return choose(t.load > zero, choose(gear.half_gap > zero, side, turned), side);
+}
+
 // Sliding ends where it would reverse; rest ends where more than the breakaway torque is needed to keep it.
 template <class T>
 T corrected_slip(const Terms<T>& t, const Sides<T>& side, T motor_v, T closing) {
   const T zero = constant<T>(0.0);
-  const Mesh<T> mesh = mesh_of(t, side);
+  const Mesh<T> mesh = mesh_of<false>(t, side);
   const T needed = t.impulse - mesh.push - mesh.stiff * closing;
   const T starts = choose(absolute(needed) > t.breakaway, sign(needed), zero);
   const T stays = choose(side.slip * motor_v < zero, zero, side.slip);
+  return choose(side.slip != zero, stays, starts);
+}
+
+// The same with friction that grows with the load. Sliding also ends where it gets as slow as creep.
+template <class T>
+T corrected_worn_slip(const Friction<T>& friction, const Terms<T>& t, const Sides<T>& side, T motor_v, T passed) {
+  const T zero = constant<T>(0.0);
+  const T needed = t.impulse - passed - t.inertia * motor_v;
+  const T starts = choose(absolute(needed) > t.breakaway + t.load * absolute(passed), sign(needed), zero);
+  const T stays = choose(side.slip * motor_v < friction.creep, zero, side.slip);
   return choose(side.slip != zero, stays, starts);
 }
 

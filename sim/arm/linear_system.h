@@ -13,13 +13,13 @@ struct LinearSystem {
   T coupling03, coupling12;
 };
 
-template <class T>
+template <bool kWorn, class T>
 LinearSystem<T> linear_system(const MassMatrix<T>& m, const T (&momentum)[kJoints], const Terms<T> (&terms)[kJoints],
                               const Sides<T> (&sides)[kJoints]) {
   const T inertia[kJoints] = {m.m00, m.m11, m.m22, m.m33};
   LinearSystem<T> system;
   for (std::size_t i = 0; i < kJoints; ++i) {
-    const Row<T> added = link_row(terms[i], sides[i]);
+    const Row<T> added = link_row<kWorn>(terms[i], sides[i]);
     system.rows[i] = {inertia[i] + added.diagonal, momentum[i] + added.right};
   }
   system.coupling03 = m.m03;

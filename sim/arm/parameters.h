@@ -32,6 +32,7 @@ struct Actuator {
   T torque_per_volt;  // N m/V, at standstill
   T inertia;          // kg m^2, reflected
   T damping;          // N m s, back-EMF and viscous friction together
+  T resistance;       // ohm, of winding and driver; matters only where the supply's voltage sags
 };
 
 // Dry friction of motor and gear train, as torque at the output shaft.
@@ -40,6 +41,8 @@ struct Friction {
   T coulomb;            // N m, sliding
   T breakaway;          // N m, at rest; >= coulomb
   T stribeck_velocity;  // rad/s, where the excess over Coulomb has halved
+  T load;               // share of the torque that the teeth pass on, which adds to all of these; below 1
+  T creep;              // rad/s at which a shaft under nearly the breakaway torque gives way; 0: not at all
 };
 
 // The gear mesh between motor side and link side. No gap and no stiffness: a rigid gear.
@@ -56,16 +59,31 @@ struct Stops {
   T min, max;  // rad
 };
 
+// How a potentiometer follows its joint.
+template <class T>
+struct Sensor {
+  T play;  // rad, half of the play between joint and wiper
+  T lag;   // s, time constant of the low-pass between wiper and converter
+};
+
 template <class T>
 struct Joint {
   Actuator<T> actuator;
   Friction<T> friction;
   Gear<T> gear;
   Stops<T> stops;
+  Sensor<T> sensor;
+};
+
+// What feeds all motor drivers.
+template <class T>
+struct Supply {
+  T volts;       // V without load, which is also full duty
+  T resistance;  // ohm, of battery and cables, shared by all motors
 };
 
 struct Drive {
-  double supply;   // V
+  Supply<double> supply;
   int pwm_levels;  // duty steps from 0 to full; 0: not quantised
 };
 

@@ -6,8 +6,11 @@
 
 namespace greywhale::arm {
 
-Potentiometers::Potentiometers(const std::array<Potentiometer, kJoints>& pots, double supply, std::uint64_t seed)
-    : pots_(pots), supply_(supply), noise_{Noise(seed, 0), Noise(seed, 1), Noise(seed, 2), Noise(seed, 3)} {}
+Potentiometers::Potentiometers(const std::array<Potentiometer, kJoints>& pots, double supply, std::uint64_t seed,
+                               double interval)
+    : pots_(pots), supply_(supply), noise_{Noise(seed, 0), Noise(seed, 1), Noise(seed, 2), Noise(seed, 3)} {
+  for (std::size_t i = 0; i < kJoints; ++i) lags_[i] = lag_of(pots[i].sensor.lag, interval);
+}
 
 // Without noise, in V. Past its ends the wiper stays on the end contact.
 double Potentiometers::wiper(std::size_t joint, double angle) const {
@@ -21,9 +24,11 @@ double Potentiometers::wiper(std::size_t joint, double angle) const {
 void Potentiometers::millivolts(const double (&angles)[kJoints], double (&out)[kJoints]) {
   const std::uint64_t reading = readings_++;
   for (std::size_t i = 0; i < kJoints; ++i) {
+    if (reading == 0) shown_[i] = {angles[i], angles[i]};
+    follow(pots_[i].sensor, lags_[i], angles[i], shown_[i]);
     if (wiring_[i] == Wiring::connected) {
       const double volts =
-          wiper(i, angles[i]) + (pots_[i].noise > 0.0 ? pots_[i].noise * noise_[i].gaussian(reading) : 0.0);
+          wiper(i, shown_[i].after) + (pots_[i].noise > 0.0 ? pots_[i].noise * noise_[i].gaussian(reading) : 0.0);
       out[i] = 1000.0 * std::clamp(volts, 0.0, supply_);
     } else {
       out[i] = wiring_[i] == Wiring::open ? 0.0 : 1000.0 * supply_;

@@ -7,6 +7,7 @@
 
 #include "parameters.h"
 #include "random.h"
+#include "sensor.h"
 
 namespace greywhale::arm {
 
@@ -16,6 +17,7 @@ struct Potentiometer {
   double direction;  // +1 or -1: sign of the voltage's slope
   double noise;      // V rms at the wiper
   double linearity;  // largest deviation from the straight line, as a share of the full scale
+  Sensor<double> sensor;
 };
 
 // Connected; open: the wire is off and the input's pull-down wins; shorted: the wiper touches the supply.
@@ -23,12 +25,16 @@ enum class Wiring : std::uint8_t { connected, open, shorted };
 
 class Potentiometers {
  public:
-  Potentiometers(const std::array<Potentiometer, kJoints>& pots, double supply, std::uint64_t seed);
+  static constexpr double kInterval = 0.25e-3;  // s between readings
+
+  Potentiometers(const std::array<Potentiometer, kJoints>& pots, double supply, std::uint64_t seed,
+                 double interval = kInterval);
 
   void set_wiring(std::size_t joint, Wiring wiring) { wiring_.at(joint) = wiring; }
   Wiring wiring(std::size_t joint) const { return wiring_.at(joint); }
 
-  // Wiper voltages in mV, 0 to the supply; each call draws new noise.
+  // Voltages at the converter in mV, 0 to the supply. Each call is a reading, `interval` after the one before, and
+  // draws new noise. At the first reading the wipers stand in the middle of their play, and nothing lags.
   void millivolts(const double (&angles)[kJoints], double (&out)[kJoints]);
 
   // The same through a converter of `bits` bits whose reference is the supply.
@@ -41,6 +47,8 @@ class Potentiometers {
   std::array<Wiring, kJoints> wiring_{};
   double supply_;
   std::array<Noise, kJoints> noise_;
+  std::array<Lag<double>, kJoints> lags_{};
+  std::array<Shown<double>, kJoints> shown_{};
   std::uint64_t readings_ = 0;
 };
 

@@ -30,7 +30,7 @@ constexpr int kPasses = 8;
 namespace detail {
 
 // Corrects all sides by the velocities found with them; true when nothing changed.
-template <class T>
+template <bool kWorn, class T>
 bool settle(const Plant<T>& plant, const State<T>& s, const Terms<T> (&terms)[kJoints], const LinearSystem<T>& system,
             const T (&v)[kJoints], double dt, Sides<T> (&sides)[kJoints]) {
   T impulses[kJoints];
@@ -39,10 +39,16 @@ bool settle(const Plant<T>& plant, const State<T>& s, const Terms<T> (&terms)[kJ
   for (std::size_t i = 0; i < kJoints; ++i) {
     const Joint<T>& joint = plant.joints[i];
     const Sides<T> side = sides[i];
-    const T motor_v = motor_velocity(terms[i], side, v[i]);
+    const T motor_v = motor_velocity<kWorn>(terms[i], side, v[i]);
     const T closing = motor_v - v[i];
     sides[i].mesh = corrected_mesh(joint.gear, terms[i], side.mesh, closing, dt);
-    sides[i].slip = corrected_slip(terms[i], side, motor_v, closing);
+    if (kWorn) {
+      const T passed = passed_impulse(terms[i], side, motor_v, v[i]);
+      sides[i].mesh = corrected_gapless(joint.gear, terms[i], sides[i].mesh, passed);
+      sides[i].slip = corrected_worn_slip(joint.friction, terms[i], side, motor_v, passed);
+    } else {
+      sides[i].slip = corrected_slip(terms[i], side, motor_v, closing);
+    }
     sides[i].stop = corrected_stop(joint.stops, side.stop, s.q[i] + dt * v[i], impulses[i]);
     const bool changed =
         any(sides[i].mesh != side.mesh) || any(sides[i].slip != side.slip) || any(sides[i].stop != side.stop);
@@ -62,11 +68,7 @@ void rest_at_stops(const LinearSystem<T>& system, const Sides<T> (&sides)[kJoint
   }
 }
 
-}  // namespace detail
-
-// Advances the state by dt under motor voltages and torques applied to the links from outside.
-// Returns whether the conditions were settled; the links are within their stops either way.
-template <class T>
+template <bool kWorn, class T>
 bool advance(const Plant<T>& plant, State<T>& s, const T (&volts)[kJoints], const T (&load)[kJoints], double dt) {
   const Geometry<T> geometry = geometry_of(plant.body, pose_of<T>(s.q[1], s.q[2]));
   T bias[kJoints];
@@ -77,7 +79,7 @@ bool advance(const Plant<T>& plant, State<T>& s, const T (&volts)[kJoints], cons
   Terms<T> terms[kJoints];
   Sides<T> sides[kJoints];
   for (std::size_t i = 0; i < kJoints; ++i) {
-    terms[i] = terms_of(plant.joints[i], s, i, volts[i], dt);
+    terms[i] = terms_of<kWorn>(plant.joints[i], s, i, volts[i], dt);
     sides[i] = first_guess(plant.joints[i], s, i, dt);
     momentum[i] = momentum[i] + dt * (load[i] - bias[i]);
   }
@@ -87,7 +89,7 @@ bool advance(const Plant<T>& plant, State<T>& s, const T (&volts)[kJoints], cons
   T v[kJoints];
   bool settled = false;
   for (int pass = 0; pass < kPasses && !settled; ++pass) {
-    system = linear_system(geometry.mass, momentum, terms, sides);
+    system = linear_system<kWorn>(geometry.mass, momentum, terms, sides);
     T arriving[kJoints];  // at its stop exactly at the end of the step
     for (std::size_t i = 0; i < kJoints; ++i) {
       const Stops<T>& stops = plant.joints[i].stops;
@@ -95,22 +97,43 @@ bool advance(const Plant<T>& plant, State<T>& s, const T (&volts)[kJoints], cons
       used[i] = sides[i];
     }
     solve(system, used, arriving, v);
-    settled = detail::settle(plant, s, terms, system, v, dt, sides);
+    settled = detail::settle<kWorn>(plant, s, terms, system, v, dt, sides);
   }
 
   for (std::size_t i = 0; i < kJoints; ++i) {
     const Stops<T>& stops = plant.joints[i].stops;
     const T reached = s.q[i] + dt * v[i];
     s.q[i] = choose(reached > stops.max, stops.max, choose(reached < stops.min, stops.min, reached));
-    s.motor_q[i] = s.motor_q[i] + dt * motor_velocity(terms[i], used[i], v[i]);
+    s.motor_q[i] = s.motor_q[i] + dt * motor_velocity<kWorn>(terms[i], used[i], v[i]);
   }
   detail::rest_at_stops(system, used, v);
   for (std::size_t i = 0; i < kJoints; ++i) {
-    const T motor_v = motor_velocity(terms[i], used[i], v[i]);
+    const T motor_v = motor_velocity<kWorn>(terms[i], used[i], v[i]);
     s.motor_v[i] = choose(used[i].slip * motor_v < constant<T>(0.0), constant<T>(0.0), motor_v);
     s.v[i] = v[i];
   }
   return settled;
+}
+
+}  // namespace detail
+
+// Whether a joint has friction that grows with the load, or creep.
+template <class T>
+bool is_worn(const Plant<T>& plant) {
+  bool worn = false;
+  for (const Joint<T>& joint : plant.joints) {
+    worn = worn || any(joint.friction.load != constant<T>(0.0)) || any(joint.friction.creep != constant<T>(0.0));
+  }
+  return worn;
+}
+
+// Advances the state by dt under motor voltages and torques applied to the links from outside. `worn` may be false only
+// where `is_worn` is; this is then faster.
+// Returns whether the conditions were settled; the links are within their stops either way.
+template <class T>
+bool advance(const Plant<T>& plant, State<T>& s, const T (&volts)[kJoints], const T (&load)[kJoints], double dt,
+             bool worn) {
+  return worn ? detail::advance<true>(plant, s, volts, load, dt) : detail::advance<false>(plant, s, volts, load, dt);
 }
 
 }  // namespace greywhale::arm

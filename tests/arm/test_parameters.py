@@ -15,7 +15,7 @@ DEFAULT = resources.files("greywhale.arm").joinpath("data", "default.toml").read
 
 
 def test_shipped_arms_load_and_move() -> None:
-    assert arm_names() == ["default", "grey_box", "white_box"]
+    assert arm_names() == ["default", "grey_box", "white_box", "worn"]
     for name in arm_names():
         arm = Arm(load_arm(name))
         assert abs(arm.step([10.0] * 4, 0.5)).min() > 0.05

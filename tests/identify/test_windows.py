@@ -33,6 +33,7 @@ def arguments(parameters: ArmParameters, count: int = 3) -> dict[str, Any]:
         "angles": np.array([[0.1, 0.2, -0.3, 0.4], [0.0, 0.0, 0.0, 0.0], [-1.0, 0.5, 0.5, 1.0]]),
         "velocities": np.zeros((3, 4)),
         "sides": np.zeros((3, 4)),
+        "places": np.zeros((3, 4)),
         "rows": ROWS,
         "volts": random.uniform(-15, 15, (150 * SUBSTEPS, 4)),
         "spacing": np.full(150, H * SUBSTEPS),
@@ -131,7 +132,7 @@ def test_windows_with_different_times_between_rows_do_not_disturb_each_other(whi
     spacing = H * SUBSTEPS * np.random.default_rng(2).uniform(0.5, 1.5, 150)
     together = np.asarray(_native.simulate_windows(**(given | {"spacing": spacing})))
     for window in range(3):
-        alone = {key: given[key][window : window + 1] for key in ("first", "angles", "velocities", "sides")}
+        alone = {key: given[key][window : window + 1] for key in ("first", "angles", "velocities", "sides", "places")}
         single = np.asarray(_native.simulate_windows(**(given | {"spacing": spacing} | alone)))
         np.testing.assert_array_equal(together[:, window : window + 1], single)
     assert np.max(np.abs(together[0, 0] - np.asarray(_native.simulate_windows(**given))[0, 0])) > 1e-6

@@ -50,7 +50,7 @@ PLANT = plant_row(default_arm())
     ("arguments", "sentence"),
     [
         ({"plants": PLANT.astype(np.float32)}, "plants are of type float32, but float64 is needed"),
-        ({"plants": PLANT[:-1]}, r"shape \(59,\), but \(n, 60\) or \(60,\)"),
+        ({"plants": PLANT[:-1]}, r"shape \(\d+,\), but \(n, \d+\) or \(\d+,\) is needed"),
         ({"plants": PLANT.tolist()}, "plants must be a numpy array of float64, not a list"),
         ({"plants": changed(PLANT, "joint1.inertia", -0.1)}, r"plants\[0\]: joint1.inertia is -0.1, but it must be"),
         ({"plants": changed(PLANT, "supply", np.nan)}, "supply is nan, but it must be a finite number"),

@@ -64,7 +64,7 @@ struct Settings {
 struct Experiment {
   Settings settings;
   Timing timing;
-  std::array<arm::Potentiometer, kJoints> pots;  // of the follower
+  std::array<arm::Potentiometer, kJoints> pots;  // of the follower; play and lag are the plant's
   double pot_supply;                             // V
   std::uint64_t seed;                            // of the follower's potentiometer noise
   double home[kJoints];                          // rad, where the follower is held until the motors are on
@@ -95,7 +95,7 @@ struct Trace {
 // A plant as a row of numbers.
 struct PlantRow {
   arm::Plant<double> plant;
-  double supply;  // V at full duty
+  arm::Supply<double> supply;
 };
 constexpr std::size_t kPlantColumns = sizeof(PlantRow) / sizeof(double);
 

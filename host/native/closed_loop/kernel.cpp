@@ -29,6 +29,9 @@ class Run {
         traced_(block.traces[0].every != 0) {
     const double h = kTick / steps;
     plant_.body = body_of(block);
+    sensors_ = sensors_of(block, pots_);
+    sag_ = sag_of(block, x.settings.pwm_top);
+    worn_ = is_worn(block);
     plant_.step = all(static_cast<float>(h));
     plant_.travel = all(static_cast<float>(h) * kRadian);
     plant_.per_step = all(static_cast<float>(1.0 / h));
@@ -38,6 +41,7 @@ class Run {
       memories_[i] = {all(0), all(0), all(0)};
       state_[i] = {all(static_cast<std::int32_t>(units(x.home[i]))), all(0.0f),
                    plant_.joints[i].gap * all(static_cast<float>(x.gap[i])), all(0.0f)};
+      begin(sensors_, i, counts(i, state_[i].q));
       const Int count = count_of<true>(i, counts(i, state_[i].q), 0.0f);
       curved_ = curved_ || pots_.linearity[i] != 0.0f;
       sum_[i] = shift_left<2>(count);
@@ -60,10 +64,12 @@ class Run {
       act(tick);
       add(tick, error, totals);
       if (traced_) record(tick);
-      if (curved_) {
-        move<true>(tick);
+      if (worn_) {
+        move<true, true>(tick);
+      } else if (curved_) {
+        move<true, false>(tick);
       } else {
-        move<false>(tick);
+        move<false, false>(tick);
       }
       if (tick % kFlush == kFlush - 1 || tick + 1 == x_.ticks) {
         flush(totals, sums);
@@ -122,7 +128,7 @@ class Run {
   }
 
   // The arm from the end of a tick's first slice to that of the next tick's, and what the converter sees on the way.
-  template <bool kCurved>
+  template <bool kCurved, bool kWorn>
   GREYWHALE_INLINE void move(std::size_t tick) {
     Float place[kSlices + 1][kJoints];
     for (std::size_t i = 0; i < kJoints; ++i) place[0][i] = counts(i, state_[i].q);
@@ -132,7 +138,7 @@ class Run {
       const std::size_t first = kSlices * tick + slice - stride + 1;
       // Between two steps of a tick the links move so little that the geometry may stay; four are as exact as can be.
       if (steps_ == 4) geometry = geometry_of(plant_.body, state_);
-      if (first > static_cast<std::size_t>(x_.timing.on)) advance(plant_, geometry, state_, duty_);
+      if (first > static_cast<std::size_t>(x_.timing.on)) push<kWorn>(geometry);
       for (std::size_t i = 0; i < kJoints; ++i) place[slice][i] = counts(i, state_[i].q);
       for (std::size_t part = 1; part < stride; ++part) {  // between the steps the links move evenly
         const Float share = all(static_cast<float>(part) / static_cast<float>(stride));
@@ -142,6 +148,7 @@ class Run {
         }
       }
     }
+    if (sensors_.on) look(place);
     for (std::size_t i = 0; i < kJoints; ++i) {
       Int sum = all(0);
       for (std::size_t slice = 0; slice <= kSlices; ++slice) {
@@ -152,6 +159,26 @@ class Run {
         sum = sum + (turns == 1 ? count : count * all(turns));
       }
       sum_[i] = sum;
+    }
+  }
+
+  // One step of the arm under what arrives of the duties.
+  template <bool kWorn>
+  GREYWHALE_INLINE void push(const Geometry& geometry) {
+    if (__builtin_expect(!sag_.on, 1)) {
+      advance<kWorn>(plant_, geometry, state_, duty_);
+      return;
+    }
+    Float arriving[kJoints];
+    sag(sag_, state_, duty_, arriving);
+    advance<kWorn>(plant_, geometry, state_, arriving);
+  }
+
+  // The joints' places become those that the converter sees.
+  void look(Float (&place)[kSlices + 1][kJoints]) {
+    for (std::size_t i = 0; i < kJoints; ++i) {
+      place[0][i] = sensors_.after[i];
+      for (std::size_t slice = 1; slice <= kSlices; ++slice) place[slice][i] = follow(sensors_, i, place[slice][i]);
     }
   }
 
@@ -209,7 +236,7 @@ class Run {
       Measures& m = measures[n];
       m.diverged = !(lost[n] == 0.0f);
       for (std::size_t i = 0; i < kJoints; ++i) {
-        const double volts = block_.plants[n]->supply / x_.settings.pwm_top[i];
+        const double volts = block_.plants[n]->supply.volts / x_.settings.pwm_top[i];
         m.mse[i] = m.diverged ? kDiverged : sums[0][i][n] / static_cast<double>(x_.ticks);
         m.itae[i] = m.diverged ? kDiverged : kTick * sums[1][i][n];
         m.itau[i] = m.diverged ? kDiverged : kTick * volts * sums[2][i][n];
@@ -225,7 +252,10 @@ class Run {
   const bool traced_;
   bool short_ramps_ = false;
   bool curved_ = false;  // some potentiometer's line is not straight
+  bool worn_ = false;
   Plant plant_;
+  Sensors sensors_;
+  Sag sag_;
   Law laws_[kJoints];
   Memory memories_[kJoints];
   State state_[kJoints];

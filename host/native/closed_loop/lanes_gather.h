@@ -1,9 +1,14 @@
 // Plants and controllers of a block, side by side in lanes.
 #pragma once
 
+#include <cmath>
+
+#include "arm/sensor.h"
+#include "arm/step.h"
 #include "block.h"
 #include "lanes_controller.h"
 #include "lanes_plant.h"
+#include "lanes_wear.h"
 
 namespace greywhale::loop::GREYWHALE_INSTRUCTIONS {
 
@@ -59,8 +64,8 @@ inline Joint joint_of(const Block& block, std::size_t i, double h, int top) {
   };
   Joint j;
   j.rotor = of([](const Source& s) { return s.actuator.inertia; });
-  j.impulse =
-      gather(block, [&](const PlantRow& r) { return h * r.plant.joints[i].actuator.torque_per_volt * r.supply / top; });
+  j.impulse = gather(
+      block, [&](const PlantRow& r) { return h * r.plant.joints[i].actuator.torque_per_volt * r.supply.volts / top; });
   j.coulomb = of([h](const Source& s) { return h * s.friction.coulomb; });
   j.stribeck = of([h](const Source& s) { return h * (s.friction.breakaway - s.friction.coulomb); });
   j.per_stribeck_velocity = of([](const Source& s) { return 1.0 / s.friction.stribeck_velocity; });
@@ -83,7 +88,53 @@ inline Joint joint_of(const Block& block, std::size_t i, double h, int top) {
   };
   j.stop_min = stop(&arm::Stops<double>::min);
   j.stop_max = stop(&arm::Stops<double>::max);
+  j.damped = of(rotor_damped);
+  j.load = of([](const Source& s) { return s.friction.load; });
+  const auto creeps = [](const Source& s) { return s.friction.creep > 0.0 && s.friction.breakaway > 0.0; };
+  j.creep_velocity = of([=](const Source& s) { return creeps(s) ? s.friction.creep : 0.0; });
+  j.creep = of([=](const Source& s) { return creeps(s) ? h * s.friction.breakaway / s.friction.creep : 0.0; });
+  j.creeps = of([=](const Source& s) { return creeps(s) ? 1.0 : 0.0; });
   return j;
+}
+
+// Of the potentiometers' play and lag, in converter counts.
+inline Sensors sensors_of(const Block& block, const Pots& pots) {
+  Sensors sensors{};
+  for (std::size_t i = 0; i < kJoints; ++i) {
+    const auto of = [&](auto value) {
+      return gather(block, [&](const PlantRow& row) { return value(row.plant.joints[i].sensor); });
+    };
+    using Source = arm::Sensor<double>;
+    const double per_radian = std::fabs(static_cast<double>(pots.gain[i])) * (1073741824.0 / 6.283185307179586);
+    sensors.play[i] = of([=](const Source& s) { return per_radian * s.play; });
+    sensors.kept[i] = of([](const Source& s) { return arm::lag_of(s.lag, kSlice).kept; });
+    sensors.behind[i] = of([](const Source& s) { return arm::lag_of(s.lag, kSlice).behind; });
+    for (const PlantRow* row : block.plants) {
+      const Source& sensor = row->plant.joints[i].sensor;
+      sensors.on = sensors.on || sensor.play > 0.0 || sensor.lag > 0.0;
+    }
+  }
+  return sensors;
+}
+
+inline Sag sag_of(const Block& block, const int (&top)[kJoints]) {
+  Sag sag{};
+  for (std::size_t i = 0; i < kJoints; ++i) {
+    sag.fed[i] = gather(block, [&](const PlantRow& row) {
+      return row.supply.resistance / row.supply.volts * row.plant.joints[i].actuator.torque_per_volt / top[i];
+    });
+    sag.load[i] = gather(block, [&](const PlantRow& row) {
+      return row.supply.resistance / row.plant.joints[i].actuator.resistance / top[i] / top[i];
+    });
+  }
+  for (const PlantRow* row : block.plants) sag.on = sag.on || row->supply.resistance > 0.0;
+  return sag;
+}
+
+inline bool is_worn(const Block& block) {
+  bool worn = false;
+  for (const PlantRow* row : block.plants) worn = worn || arm::is_worn(row->plant);
+  return worn;
 }
 
 inline Side side_of(const Block& block, std::size_t joint, fuzzy_pdi::Side (fuzzy_pdi::Coefficients::*input)[2],

@@ -3,7 +3,8 @@
 //
 // What depends on the candidate and the step alone is worked out beforehand, so that choosing a side picks a constant.
 // The link's angle is a whole number of 2^-30 turns and the motor's is kept as its lead over the link, so that no step
-// is lost in rounding. Stops cost much and are rarely met: a step is first tried without them.
+// is lost in rounding. Stops cost much and are rarely met: a step is first tried without them. `kWorn` is that of
+// conditions.h.
 #pragma once
 
 #include <cstddef>
@@ -31,6 +32,9 @@ struct Joint {
   Float mesh;  // per closing velocity, without grease
   Float stiff[2], give[2], share[2], inertia[2];
   Int stop_min, stop_max;
+  // Of worn joints: the motor side's inertia with its damping, what friction adds per impulse passed on, the speed of
+  // creep, friction per velocity of a side that creeps, and 1 for one that may.
+  Float damped, load, creep_velocity, creep, creeps;
 };
 
 struct State {
@@ -87,6 +91,7 @@ struct Trial {
   Float mesh, slip, stop;
 };
 
+template <bool kWorn>
 GREYWHALE_INLINE Trial first_trial(const Plant& plant, const Joint& j, const State& s, Float duty) {
   const Float ratio = s.motor_v * j.per_stribeck_velocity;
   Trial t;
@@ -97,24 +102,42 @@ GREYWHALE_INLINE Trial first_trial(const Plant& plant, const Joint& j, const Sta
   const Float side = choose(ahead < all(0.0f), all(-1.0f), all(1.0f));
   t.mesh = choose(absolute(ahead) >= j.gap, side, all(0.0f));
   t.slip = sign(s.motor_v);
+  if (kWorn) t.slip = choose(absolute(s.motor_v) > j.creep_velocity, t.slip, all(0.0f));
   t.stop = choose(s.q >= j.stop_max, all(1.0f), choose(j.stop_min >= s.q, all(-1.0f), all(0.0f)));
   return t;
 }
 
 // What motor and mesh add to the link's equation, and what is needed to find the motor's velocity.
 struct Row {
-  Mask touching, slides;
+  Mask touching, slides, moves;
   Float push, driven, stiff, give, share;
   Float diagonal, right;
+  Float inertia, felt;  // of worn joints, as in Mesh of conditions.h
 };
 
+template <bool kWorn>
 GREYWHALE_INLINE Row row_of(const Joint& j, const Trial& t, Float inertia, Float momentum) {
-  const Float zero = all(0.0f);
+  const Float zero = all(0.0f), one = all(1.0f);
   Row r;
   r.touching = t.mesh != zero;
   r.slides = t.slip != zero;
   r.push = choose(r.touching, t.push - t.mesh * j.gap_push, zero);
   r.stiff = choose(r.touching, j.stiff[1], j.stiff[0]);
+  if (kWorn) {
+    r.moves = r.slides | (j.creeps != zero);
+    r.felt = one + t.slip * t.mesh * j.load;
+    r.inertia = j.damped + choose(r.slides, zero, j.creep);
+    r.give = one / (r.inertia + r.felt * r.stiff);
+    const Float share = r.stiff * r.give;
+    r.driven = t.impulse - r.felt * r.push - t.slip * t.friction;
+    r.diagonal = inertia + choose(r.moves, share * r.inertia, r.stiff);
+    r.right = momentum + r.push + choose(r.moves, share * r.driven, zero);
+    r.share = r.felt * share;
+    return r;
+  }
+  r.moves = r.slides;
+  r.inertia = j.damped;
+  r.felt = one;
   r.give = choose(r.touching, j.give[1], j.give[0]);
   r.share = choose(r.touching, j.share[1], j.share[0]);
   r.driven = t.impulse - r.push - t.slip * t.friction;
@@ -124,10 +147,25 @@ GREYWHALE_INLINE Row row_of(const Joint& j, const Trial& t, Float inertia, Float
 }
 
 GREYWHALE_INLINE Float motor_velocity(const Row& r, Float link_v) {
-  return choose(r.slides, r.driven * r.give + r.share * link_v, all(0.0f));
+  return choose(r.moves, r.driven * r.give + r.share * link_v, all(0.0f));
+}
+
+// The side a gear without a gap pushes to, and the direction of sliding, where friction grows with the load.
+GREYWHALE_INLINE void correct_worn(const Joint& j, const Row& r, const Trial& t, Float motor_v, Float v, Float& mesh,
+                                   Float& slip) {
+  const Float zero = all(0.0f);
+  const Float left = t.impulse - t.slip * t.friction - r.inertia * motor_v;
+  const Float passed = choose(r.moves, left / r.felt, r.push - r.stiff * v);
+  const Float turned = choose(t.mesh * passed < zero - j.no_pull, zero - t.mesh, t.mesh);
+  mesh = choose(j.load > zero, choose(j.gap > zero, mesh, turned), mesh);
+  const Float needed = t.impulse - passed - j.damped * motor_v;
+  const Float starts = choose(absolute(needed) > j.breakaway + j.load * absolute(passed), sign(needed), zero);
+  const Float slides_on = choose(t.slip * motor_v < j.creep_velocity, zero, t.slip);
+  slip = choose(r.slides, slides_on, starts);
 }
 
 // The sides that these velocities really ask for; where they differ from those tried.
+template <bool kWorn>
 GREYWHALE_INLINE Mask correct(const Plant& plant, const Joint& j, const State& s, const Row& r, Float v, Trial& t) {
   const Float zero = all(0.0f), one = all(1.0f);
   const Float motor_v = motor_velocity(r, v);
@@ -137,12 +175,17 @@ GREYWHALE_INLINE Mask correct(const Plant& plant, const Joint& j, const State& s
   const Float meeting = choose(absolute(ahead) > j.gap, choose(ahead < zero, all(-1.0f), one), zero);
   const Float meets = choose(meeting * push > j.gap_push, meeting, zero);
   const Float stays = choose(t.mesh * push < j.gap_push - j.no_pull, zero, t.mesh);
-  const Float mesh = choose(j.gap > zero, choose(r.touching, stays, meets), t.mesh);
+  Float mesh = choose(j.gap > zero, choose(r.touching, stays, meets), t.mesh);
 
-  const Float needed = t.impulse - r.push - r.stiff * closing;
-  const Float starts = choose(absolute(needed) > j.breakaway, sign(needed), zero);
-  const Float slides_on = choose(t.slip * motor_v < zero, zero, t.slip);
-  const Float slip = choose(r.slides, slides_on, starts);
+  Float slip;
+  if (kWorn) {
+    correct_worn(j, r, t, motor_v, v, mesh, slip);
+  } else {
+    const Float needed = t.impulse - r.push - r.stiff * closing;
+    const Float starts = choose(absolute(needed) > j.breakaway, sign(needed), zero);
+    const Float slides_on = choose(t.slip * motor_v < zero, zero, t.slip);
+    slip = choose(r.slides, slides_on, starts);
+  }
   const Mask changed = (mesh != t.mesh) | (slip != t.slip);
   t.mesh = mesh;
   t.slip = slip;
@@ -184,12 +227,13 @@ GREYWHALE_INLINE Mask correct_stop(const Joint& j, Int reached, Float impulse, T
   return changed;
 }
 
+template <bool kWorn>
 GREYWHALE_INLINE void rows_of(const Plant& plant, const Geometry& g, const Float (&momentum)[4], const Trial (&t)[4],
                               Row (&r)[4]) {
-  r[0] = row_of(plant.joints[0], t[0], g.mass.m00, momentum[0]);
-  r[1] = row_of(plant.joints[1], t[1], g.mass.m11, momentum[1]);
-  r[2] = row_of(plant.joints[2], t[2], g.mass.m22, momentum[2]);
-  r[3] = row_of(plant.joints[3], t[3], g.mass.m33, momentum[3]);
+  r[0] = row_of<kWorn>(plant.joints[0], t[0], g.mass.m00, momentum[0]);
+  r[1] = row_of<kWorn>(plant.joints[1], t[1], g.mass.m11, momentum[1]);
+  r[2] = row_of<kWorn>(plant.joints[2], t[2], g.mass.m22, momentum[2]);
+  r[3] = row_of<kWorn>(plant.joints[3], t[3], g.mass.m33, momentum[3]);
 }
 
 GREYWHALE_INLINE Float finished(const Row& r, Float slip, Float v) {
@@ -198,12 +242,13 @@ GREYWHALE_INLINE Float finished(const Row& r, Float slip, Float v) {
 }
 
 // With stops: the same, for the few steps in which a link is at one.
-inline __attribute__((noinline)) void advance_at_stops(const Plant& plant, const Geometry& g, State (&s)[4],
-                                                       const Float (&duty)[4]) {
+template <bool kWorn>
+__attribute__((noinline)) void advance_at_stops(const Plant& plant, const Geometry& g, State (&s)[4],
+                                                const Float (&duty)[4]) {
   Trial t[4];
   Row r[4];
   Float momentum[4];
-  for (int i = 0; i < 4; ++i) t[i] = first_trial(plant, plant.joints[i], s[i], duty[i]);
+  for (int i = 0; i < 4; ++i) t[i] = first_trial<kWorn>(plant, plant.joints[i], s[i], duty[i]);
   momentum_of(g, plant.step, s, momentum);
   Float v[4], stops[4];
   Trial used[4];
@@ -216,7 +261,7 @@ inline __attribute__((noinline)) void advance_at_stops(const Plant& plant, const
       arriving[i] = to_float(way) * all(kUnit) * plant.per_step;
       used[i] = t[i];
     }
-    rows_of(plant, g, momentum, t, r);
+    rows_of<kWorn>(plant, g, momentum, t, r);
     solve_held(r[0], r[3], g.mass.m03, t[0], t[3], arriving[0], arriving[3], v[0], v[3]);
     solve_held(r[1], r[2], g.mass.m12, t[1], t[2], arriving[1], arriving[2], v[1], v[2]);
     stops[0] = r[0].diagonal * v[0] + g.mass.m03 * v[3] - r[0].right;
@@ -226,7 +271,7 @@ inline __attribute__((noinline)) void advance_at_stops(const Plant& plant, const
     Mask any_changed = all(0) != all(0);
     for (int i = 0; i < 4; ++i) {
       const Joint& j = plant.joints[i];
-      any_changed = any_changed | correct(plant, j, s[i], r[i], v[i], t[i]);
+      any_changed = any_changed | correct<kWorn>(plant, j, s[i], r[i], v[i], t[i]);
       any_changed = any_changed | correct_stop(j, s[i].q + travelled(plant, v[i]), stops[i], t[i]);
     }
     changed = any(any_changed);
@@ -249,22 +294,23 @@ inline __attribute__((noinline)) void advance_at_stops(const Plant& plant, const
   }
 }
 
+template <bool kWorn>
 GREYWHALE_INLINE void advance(const Plant& plant, const Geometry& g, State (&s)[4], const Float (&duty)[4]) {
   Trial t[4];
   Row r[4];
   Float momentum[4];
-  for (int i = 0; i < 4; ++i) t[i] = first_trial(plant, plant.joints[i], s[i], duty[i]);
+  for (int i = 0; i < 4; ++i) t[i] = first_trial<kWorn>(plant, plant.joints[i], s[i], duty[i]);
   momentum_of(g, plant.step, s, momentum);
   Float v[4], slip[4];
   bool changed = true;
   for (int pass = 0; pass < kPasses && changed; ++pass) {
-    rows_of(plant, g, momentum, t, r);
+    rows_of<kWorn>(plant, g, momentum, t, r);
     solve_pair(r[0], r[3], g.mass.m03, v[0], v[3]);
     solve_pair(r[1], r[2], g.mass.m12, v[1], v[2]);
     Mask any_changed = all(0) != all(0);
     for (int i = 0; i < 4; ++i) {
       slip[i] = t[i].slip;
-      any_changed = any_changed | correct(plant, plant.joints[i], s[i], r[i], v[i], t[i]);
+      any_changed = any_changed | correct<kWorn>(plant, plant.joints[i], s[i], r[i], v[i], t[i]);
     }
     changed = any(any_changed);
   }
@@ -276,7 +322,7 @@ GREYWHALE_INLINE void advance(const Plant& plant, const Geometry& g, State (&s)[
     at_stop = at_stop | (greatest(q[i], s[i].q) >= j.stop_max) | (j.stop_min >= least(q[i], s[i].q));
   }
   if (__builtin_expect(any(at_stop), 0)) {
-    advance_at_stops(plant, g, s, duty);
+    advance_at_stops<kWorn>(plant, g, s, duty);
     return;
   }
   for (int i = 0; i < 4; ++i) {

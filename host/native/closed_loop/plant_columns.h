@@ -12,7 +12,9 @@ namespace greywhale::loop {
 
 static_assert(offsetof(PlantRow, plant.joints) == std::size(arm::kBodyColumns) * sizeof(double),
               "the joints follow the links");
-static_assert(offsetof(PlantRow, supply) == (kPlantColumns - 1) * sizeof(double), "the supply is the last column");
+static_assert(offsetof(PlantRow, supply.volts) == (kPlantColumns - 2) * sizeof(double) &&
+                  offsetof(PlantRow, supply.resistance) == (kPlantColumns - 1) * sizeof(double),
+              "the supply comes last");
 
 inline std::vector<std::string> plant_column_names() {
   std::vector<std::string> names;
@@ -22,6 +24,7 @@ inline std::vector<std::string> plant_column_names() {
       names.push_back("joint" + std::to_string(joint) + "." + column.name);
   }
   names.emplace_back("supply");
+  names.emplace_back("supply_resistance");
   return names;
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "arm/supply.h"
 #include "closed_loop/experiment.h"
 #include "closed_loop/firmware_tick.h"
 
@@ -106,11 +107,13 @@ class Run {
         row_(row),
         substeps_(substeps),
         trace_(trace),
-        pots_(x.pots, x.pot_supply, x.seed),
+        pots_(with_sensors(x.pots, row.plant), x.pot_supply, x.seed),
         sums_(x.timing, kFollower),
         angles_(x.settings, x.settings.follower),
         ramp_(x.settings.soft_start_ms),
         state_(resting(x, row.plant)),
+        worn_(arm::is_worn(row.plant)),
+        sags_(row.supply.resistance > 0.0),
         waiting_(static_cast<std::size_t>(x.timing.late)) {
     for (fuzzy_pdi::State& memory : memories_) fuzzy_pdi::reset(memory);
     Four millivolts;
@@ -147,11 +150,22 @@ class Run {
     return pots;
   }
 
+  static std::array<arm::Potentiometer, kJoints> with_sensors(std::array<arm::Potentiometer, kJoints> pots,
+                                                              const arm::Plant<double>& plant) {
+    for (std::size_t i = 0; i < kJoints; ++i) pots[i].sensor = plant.joints[i].sensor;
+    return pots;
+  }
+
   // The arm moves under the voltages found at the slice's beginning; the pots then show where it has come to.
   void pass_slice(std::size_t tick, std::size_t slice, const Four& volts) {
     static constexpr Four kNoLoad = {};
     if (kSlices * tick + slice > static_cast<std::size_t>(x_.timing.on)) {
-      for (int n = 0; n < substeps_; ++n) arm::advance(row_.plant, state_, volts, kNoLoad, kSlice / substeps_);
+      for (int n = 0; n < substeps_; ++n) {
+        Four arriving;
+        std::copy_n(volts, kJoints, arriving);
+        if (sags_) arm::sag(row_.plant.joints, row_.supply, state_, arriving);
+        arm::advance(row_.plant, state_, arriving, kNoLoad, kSlice / substeps_, worn_);
+      }
     }
     Four millivolts;
     pots_.millivolts(state_.q, millivolts);
@@ -180,7 +194,7 @@ class Run {
     if (!waiting_.empty()) std::swap(compare_, waiting_[tick % waiting_.size()]);
     for (std::size_t i = 0; i < kJoints; ++i) {
       const double size = std::abs(compare_[i]) / static_cast<double>(x_.settings.pwm_top[i]);
-      volts_[i] = (compare_[i] < 0 ? -size : size) * row_.supply;
+      volts_[i] = (compare_[i] < 0 ? -size : size) * row_.supply.volts;
     }
   }
 
@@ -217,6 +231,7 @@ class Run {
   Angles angles_;
   SoftStart ramp_;
   arm::State<double> state_;
+  const bool worn_, sags_;
   fuzzy_pdi::State memories_[kJoints];
   std::array<std::int32_t, kJoints> commanded_ = {}, compare_ = {};
   std::vector<std::array<std::int32_t, kJoints>> waiting_;  // commanded, not acting yet

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "arm/supply.h"
 #include "closed_loop/experiment.h"
 #include "share_out.h"
 
@@ -24,6 +25,7 @@ void simulate_one(const Experiment& x, const Tuning* tuning, double* mse, double
   const loop::PlantRow& row = *reinterpret_cast<const loop::PlantRow*>(x.plant);
   Law law(row.plant, x.supply, tuning, kSlice);
   arm::State<double> s = at_rest(x.leader);
+  const bool worn = arm::is_worn(row.plant), sags = row.supply.resistance > 0.0;
   bool arrived = false;
   for (std::size_t n = 0; n < x.slices; ++n) {
     const std::size_t known = n > x.late ? n - x.late : 0, before = known > 0 ? known - 1 : 0;
@@ -43,7 +45,8 @@ void simulate_one(const Experiment& x, const Tuning* tuning, double* mse, double
       arrived = direction != 0 && (arrived || direction * (s.q[x.chase.joint] - x.chase.until[n]) >= 0.0);
       if (direction != 0 && !arrived) volts[x.chase.joint] = direction * x.supply;
     }
-    arm::advance(row.plant, s, volts, kNoLoad, kSlice);
+    if (sags) arm::sag(row.plant.joints, row.supply, s, volts);
+    arm::advance(row.plant, s, volts, kNoLoad, kSlice, worn);
   }
 }
 

@@ -10,10 +10,12 @@ namespace greywhale::windows {
 
 // The log on the integration's grid, and where its windows begin; rows of four joints where not said otherwise.
 struct Windows {
-  const std::int64_t* first;                  // row, one a window
-  const double *angles, *velocities, *sides;  // of a window's start: links in rad and rad/s; place in the gap, -1..1
-  const double* volts;                        // `substeps` rows for every row of the log
-  const double* spacing;                      // s from a row to the next, one number a row
+  const std::int64_t* first;          // row, one a window
+  const double *angles, *velocities;  // of a window's start, as the potentiometers show the links: rad, rad/s
+  const double *sides, *places;       // where the motor then stands in its gap, and the joint in its
+                                      // potentiometer's play, -1..1
+  const double* volts;                // `substeps` rows for every row of the log
+  const double* spacing;              // s from a row to the next, one number a row
   std::size_t rows, substeps, every;
 };
 

@@ -226,7 +226,7 @@ void simulate_windows(Calls& calls, Results& results) {
                             kicks = calls.array<double>();
   const std::vector<std::int64_t> first = calls.array<std::int64_t>();
   const std::vector<double> angles = calls.array<double>(), velocities = calls.array<double>(),
-                            sides = calls.array<double>();
+                            sides = calls.array<double>(), places = calls.array<double>();
   const std::size_t rows = calls.size();
   const std::vector<double> volts = calls.array<double>(), spacing = calls.array<double>();
   const std::size_t substeps = calls.size(), every = calls.size();
@@ -239,8 +239,8 @@ void simulate_windows(Calls& calls, Results& results) {
                        &values[(n * first.size() + window) * size]});
     }
   }
-  windows::simulate({first.data(), angles.data(), velocities.data(), sides.data(), volts.data(), spacing.data(), rows,
-                     substeps, every},
+  windows::simulate({first.data(), angles.data(), velocities.data(), sides.data(), places.data(), volts.data(),
+                     spacing.data(), rows, substeps, every},
                     tasks, 0);
   results.give(values);
 }

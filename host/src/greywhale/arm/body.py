@@ -13,7 +13,7 @@ from greywhale.arm.plants import PLANT_COLUMNS
 Floats = npt.NDArray[np.float64]
 
 # The links' constants are the columns before those of the joints.
-_COLUMNS = sum("." not in name for name in PLANT_COLUMNS) - 1
+_COLUMNS = next(n for n, name in enumerate(PLANT_COLUMNS) if name.startswith("joint"))
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class Body:
 
     @classmethod
     def of(cls, plant: Floats) -> Body:
-        """Of a plant (60,)."""
+        """Of a plant (columns,)."""
         return cls(np.ascontiguousarray(plant[:_COLUMNS]))
 
     def mass_matrix(self, q: Floats) -> Floats:

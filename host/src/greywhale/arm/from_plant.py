@@ -33,6 +33,8 @@ def arm_of(
             "coulomb": _cell(plant, joint, "coulomb"),
             "breakaway": max(_cell(plant, joint, "breakaway"), _cell(plant, joint, "coulomb")),
             "stribeck_velocity": _cell(plant, joint, "stribeck_velocity"),
+            "load": _cell(plant, joint, "load_friction"),
+            "creep_velocity": _cell(plant, joint, "creep_velocity"),
         }
         one["gear"] = {
             "half_gap": _cell(plant, joint, "half_gap"),
@@ -41,11 +43,14 @@ def arm_of(
             "drag": _cell(plant, joint, "drag"),
         }
         pot = data["follower_pots"]["joint"][joint]
+        pot["play"], pot["lag"] = _cell(plant, joint, "pot_play"), _cell(plant, joint, "pot_lag")
         pot["centre"] = float(pot["centre"] + zero[joint])
         if noise is not None:
             pot["noise"] = min(float(noise[joint]) * USUAL_TRACK_RAD / pot["track"], MOST_NOISE_V)
             of_leader = data["leader_pots"]["joint"][joint]
             of_leader["noise"] = max(of_leader["noise"], pot["noise"])
+    data["drive"]["resistance"] = 0.0  # the motors' resistance now has the driver's in it
+    data["drive"]["supply_resistance"] = float(plant[column("supply_resistance")])
     return ArmParameters.model_validate(data, strict=False)
 
 

@@ -94,6 +94,8 @@ class Friction(Table):
     coulomb: NotNegative = 0.0  # N m, sliding
     breakaway: NotNegative = 0.0  # N m, at rest
     stribeck_velocity: Positive = 0.1  # rad/s, where the excess of breakaway over coulomb has halved
+    load: Annotated[float, Field(ge=0, le=0.9)] = 0.0  # share of the torque passed on, which adds to both
+    creep_velocity: Annotated[float, Field(ge=0, le=1)] = 0.0  # rad/s just below breakaway; 0: holds still
 
     @model_validator(mode="after")
     def _rest_holds_more(self) -> Friction:
@@ -146,7 +148,9 @@ class Joint(Table):
 class Drive(Table):
     """The motor drivers."""
 
-    supply: Annotated[float, Field(gt=0, le=60)]  # V
+    supply: Annotated[float, Field(gt=0, le=60)]  # V, without load
+    supply_resistance: Annotated[float, Field(ge=0, le=10)] = 0.0  # ohm, of battery and cables, for all motors together
+    resistance: Annotated[float, Field(ge=0, le=10)] = 0.0  # ohm, of one driver, in line with its motor's
     pwm_levels: Annotated[int, Field(ge=0, le=65535)] = 0  # duty steps from 0 to full; 0: not quantised here
 
 
@@ -158,6 +162,8 @@ class Potentiometer(Table):
     direction: Literal[1, -1] = 1  # sign of the voltage's slope
     noise: Annotated[float, Field(ge=0, le=MOST_NOISE_V)] = 0.0  # V rms
     linearity: Annotated[float, Field(ge=0, le=0.05)] = 0.0  # largest deviation, share of full scale
+    play: Annotated[float, Field(ge=0, le=0.2)] = 0.0  # rad, half of the play between joint and wiper
+    lag: Annotated[float, Field(ge=0, le=0.05)] = 0.0  # s, time constant of the low-pass behind the wiper
 
 
 class PotentiometerBank(Table):
@@ -187,13 +193,22 @@ class ArmParameters(Table):
     follower_pots: PotentiometerBank = PotentiometerBank()
     identification: dict[str, Any] | None = None  # how `greywhale identify` found this arm; the plant ignores it
 
+    @model_validator(mode="after")
+    def _currents_are_physical(self) -> ArmParameters:
+        if self.drive.supply_resistance > 0 and self.motor_equation == "paper":
+            raise ValueError(
+                f"supply_resistance is {self.drive.supply_resistance:g} ohm, but the paper's motor equation gives no "
+                'currents; set motor_equation = "physical"'
+            )
+        return self
+
     def actuator(self, joint: int) -> _native.Actuator:
         """The motor of one joint as its output shaft feels it, by this arm's motor equation."""
         motor = self.joint[joint].motor
         equation = _native.physical_actuator if self.motor_equation == "physical" else _native.paper_actuator
         return equation(
             inertia=motor.inertia,
-            resistance=motor.resistance,
+            resistance=motor.resistance + self.drive.resistance,
             torque_constant=motor.torque_constant,
             viscous=motor.viscous,
             gear_ratio=motor.gear_ratio,
@@ -207,22 +222,27 @@ class ArmParameters(Table):
             gravity=self.gravity,
             joints=[self._native_joint(index) for index in range(len(self.joint))],
             supply=self.drive.supply,
+            supply_resistance=self.drive.supply_resistance,
             pwm_levels=self.drive.pwm_levels,
         )
 
     def _native_joint(self, index: int) -> _native.Joint:
-        joint = self.joint[index]
+        joint, pot = self.joint[index], self.follower_pots.joint[index]
         return _native.Joint(
             actuator=self.actuator(index),
             coulomb=joint.friction.coulomb,
             breakaway=joint.friction.breakaway,
             stribeck_velocity=joint.friction.stribeck_velocity,
+            load_friction=joint.friction.load,
+            creep_velocity=joint.friction.creep_velocity,
             half_gap=joint.gear.half_gap,
             stiffness=joint.gear.stiffness,
             damping=joint.gear.damping,
             drag=joint.gear.drag,
             min=joint.stops.min,
             max=joint.stops.max,
+            pot_play=pot.play,
+            pot_lag=pot.lag,
         )
 
 

@@ -37,6 +37,8 @@ def native_potentiometers(bank: PotentiometerBank, noise: bool = True) -> list[_
             direction=pot.direction,
             noise=pot.noise if noise else 0.0,
             linearity=pot.linearity,
+            play=pot.play,
+            lag=pot.lag,
         )
         for pot in bank.joint
     ]

@@ -17,16 +17,22 @@ from greywhale.firmware import JOINTS
 
 Plants = npt.NDArray[np.float64]
 
-# In the order of the native code: eleven constants of the links, twelve numbers for each joint, the supply.
+# In the order of the native code: constants of the links, numbers of each joint, the supply.
 PLANT_COLUMNS: tuple[str, ...] = _native.PLANT_COLUMN_NAMES
+
+COLUMNS = len(PLANT_COLUMNS)
 
 _INDEX = {name: index for index, name in enumerate(PLANT_COLUMNS)}
 _POSITIVE = (
     *("yaw", "ixx1", "iyy1", "ixx23", "iyy23", "izz23", "ixx3", "izz1", "supply"),
     "inertia",
+    "resistance",
     "stribeck_velocity",
 )
-_NOT_NEGATIVE = ("coulomb", "damping", "half_gap", "stiffness", "mesh_damping", "drag")
+_NOT_NEGATIVE = (
+    *("coulomb", "damping", "load_friction", "creep_velocity", "half_gap", "stiffness", "mesh_damping", "drag"),
+    *("pot_play", "pot_lag", "supply_resistance"),
+)
 
 
 def column(name: str, joint: int | None = None) -> int:
@@ -40,7 +46,7 @@ def columns(name: str) -> list[int]:
 
 
 def plant_row(parameters: ArmParameters) -> Plants:
-    """An arm as one row: float64 (60,), in the order of PLANT_COLUMNS."""
+    """An arm as one row: float64 (columns,), in the order of PLANT_COLUMNS."""
     return np.asarray(_native.plant_row(parameters.native()), dtype=np.float64)
 
 
@@ -49,7 +55,7 @@ def check_plants(plants: Plants) -> Plants:
     check_type("plants", plants, np.float64)
     rows = plants[None] if plants.ndim == 1 else plants
     if rows.ndim != 2 or rows.shape[1] != len(PLANT_COLUMNS):
-        raise UserError(f"plants have the shape {plants.shape}, but (n, 60) or (60,) is needed.")
+        raise UserError(f"plants have the shape {plants.shape}, but (n, {COLUMNS}) or ({COLUMNS},) is needed.")
     _refuse(rows, ~np.isfinite(rows), "it must be a finite number")
     named = np.array([name.split(".")[-1] for name in PLANT_COLUMNS])
     _refuse(rows, np.isin(named, _POSITIVE) & (rows <= 0.0), "it must be above 0")

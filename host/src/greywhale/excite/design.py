@@ -49,8 +49,8 @@ class Problem:
     """The basis on which a motion is judged: the arm, its family, the parameters and what is known of them."""
 
     parameters: tuple[Parameter, ...]
-    plants: Floats  # (1 + family, 60), that the motion is tried on
-    nominal: Floats  # (60,), whose parameters the information is about
+    plants: Floats  # (1 + family, columns), that the motion is tried on
+    nominal: Floats  # (columns,), whose parameters the information is about
     known: Floats  # information before, (n, n)
     table: ParameterTable
     limits: Limits

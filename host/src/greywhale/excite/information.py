@@ -41,7 +41,7 @@ class Information:
 
 
 def information(plant: Floats, angles: Floats, row_s: float, parameters: Sequence[Parameter]) -> Information:
-    """The information in a follower's motion, angles (rows, 4) rad every `row_s` seconds, on a plant (60,)."""
+    """The information in a follower's motion, angles (rows, 4) rad every `row_s` seconds, on a plant (columns,)."""
     chosen = tuple(parameters)
     velocity = np.gradient(angles, row_s, axis=0)
     acceleration = np.gradient(velocity, row_s, axis=0)

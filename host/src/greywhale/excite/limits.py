@@ -107,7 +107,7 @@ def _strength(arm: ArmParameters, table: ParameterTable, low: Floats, high: Floa
 
 
 def family(arm: ArmParameters, seed: int = 0) -> Floats:
-    """Plants (1 + 15, 60): the arm itself, then arms that it might be.
+    """Plants (1 + 15, columns): the arm itself, then arms that it might be.
 
     For an identified model they are drawn from its covariance. For an arm file their motors are wrong by up to a factor
     of two, and they have friction of their own.

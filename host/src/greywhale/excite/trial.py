@@ -35,7 +35,7 @@ class Trial:
 
 
 def try_motion(angles: Floats, table: ParameterTable, plants: Floats, threads: int = 0) -> Trial:
-    """Play points (rows, 4) to arms (n, 60) with the board's parameter table."""
+    """Play points (rows, 4) to arms (n, columns) with the board's parameter table."""
     reference = np.vstack([np.tile(angles[:1], (STILL_TICKS, 1)), board_reference(angles)])
     loop = ClosedLoop(
         with_ideal_follower(table),

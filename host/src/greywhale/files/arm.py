@@ -11,7 +11,7 @@ from greywhale.formats import toml_file
 
 
 def arm_names() -> list[str]:
-    """The arms that come with greywhale: default, and the paper's white_box and grey_box."""
+    """The arms that come with greywhale: default, worn, and the paper's white_box and grey_box."""
     folder = _shipped()
     return sorted(entry.name.removesuffix(".toml") for entry in folder.iterdir() if entry.name.endswith(".toml"))
 

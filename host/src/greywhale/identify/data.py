@@ -26,6 +26,8 @@ MOST_SPACINGS = 99.0
 # Firmware: from a new sample to its voltage, and the mean age of a tick's four conversions (s).
 ACTUATION_S = 0.3e-3
 CONVERSION_S = 0.5e-3
+# A joint that is slower than this (rad/s) may turn back within its potentiometer's play unseen.
+SURE_RAD_S = 0.05
 # Rows further apart than this (s), or than one and a half periods of a slower log, end a stretch.
 LONGEST_GAP_S = 0.02
 # Of every four blocks of this length (s) the last is held out. A block is shorter than a motion, so each motion is in
@@ -44,6 +46,7 @@ class Prepared:
     delay: float  # s, age of a reading
     velocity: Floats
     acceleration: Floats
+    places: Floats  # in the potentiometers' play, see `Windows`
     noise: Floats  # rad, standard deviation of a reading, per joint
     moving: NDArray[np.bool_]  # per joint
 
@@ -58,6 +61,7 @@ class Windows:
     angles: Floats
     velocities: Floats
     accelerations: Floats
+    places: Floats  # where each joint stands in its potentiometer's play: -1 or +1, by its last sure motion; 0 before
     measured: Floats  # (windows, rows kept, 4)
     time: Floats  # (rows kept,) from the window's start
     volts: Floats
@@ -91,7 +95,8 @@ def prepare(log: Log, filter_shift: int | None) -> Prepared:
     delay = 0.0 if filter_shift is None else CONVERSION_S + TICK_S * ((1 << filter_shift) - 1)
     noise = _noise(log.follower - smooth, used, size)
     moving = np.array([bool(used.any() and np.ptp(log.follower[used, joint]) > 0.1) for joint in range(JOINTS)])
-    return Prepared(log, runs, period, delay, velocity, acceleration, noise, moving)
+    places = _places(velocity, runs)
+    return Prepared(log, runs, period, delay, velocity, acceleration, places, noise, moving)
 
 
 def _runs(time: Floats, wanted: NDArray[np.bool_], period: float) -> list[Run]:
@@ -104,6 +109,17 @@ def _runs(time: Floats, wanted: NDArray[np.bool_], period: float) -> list[Run]:
         for start, stop in zip(edges[::2], edges[1::2], strict=True)
         if stop + 1 - start >= least
     ]
+
+
+def _places(velocity: Floats, runs: tuple[Run, ...]) -> Floats:
+    """The direction of the last motion that was sure, within each stretch."""
+    places = np.zeros_like(velocity)
+    for run in runs:
+        speed = velocity[run.slice]
+        last = np.where(np.abs(speed) > SURE_RAD_S, np.arange(len(speed))[:, None], -1)
+        last = np.maximum.accumulate(last, axis=0)
+        places[run.slice] = np.where(last >= 0, np.sign(np.take_along_axis(speed, np.maximum(last, 0), axis=0)), 0.0)
+    return places
 
 
 def _at(times: Floats, known: Floats, angles: Floats) -> Floats:
@@ -148,6 +164,7 @@ def windows_of(
         angles=np.ascontiguousarray(_start_angles(prepared, first)),
         velocities=np.ascontiguousarray(prepared.velocity[first]),
         accelerations=prepared.acceleration[first],
+        places=np.ascontiguousarray(prepared.places[first]),
         measured=log.follower[at],
         time=np.asarray(kept * prepared.period, dtype=np.float64),
         volts=_volts(prepared, substeps, spacing),

@@ -74,7 +74,7 @@ class ParameterEstimate:
 
 @dataclass(frozen=True)
 class Found:
-    """A plant (60,), zero angles (4,) rad, and how certain the method is of them.
+    """A plant (columns,), zero angles (4,) rad, and how certain the method is of them.
 
     `joints` are those that were identified. `orders` are the structures tried, with their held-out errors. `covariance`
     is of the searched numbers, in the order of the estimates. `open` are sentences about what the logs cannot show.

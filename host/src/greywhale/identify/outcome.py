@@ -34,7 +34,7 @@ class Outcome:
 
     @property
     def plant(self) -> Floats:
-        """(60,)"""
+        """(columns,)"""
         return self.found.plant
 
     @property

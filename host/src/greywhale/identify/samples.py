@@ -19,7 +19,7 @@ Floats = NDArray[np.float64]
 
 
 def sampled_plants(arm: ArmParameters, count: int, seed: int = 0) -> Floats:
-    """Plants (count, 60) of an identified arm: row 0 is the estimate itself, the others are drawn with `seed`.
+    """Plants (count, columns) of an identified arm: row 0 is the estimate itself, the others are drawn with `seed`.
 
     The searched numbers are drawn from a normal distribution with the covariance of [identification], and kept within
     their ranges. Row n does not depend on `count`. A zero angle is drawn too, but it belongs to the potentiometer and

@@ -164,7 +164,7 @@ class Space:
         return found
 
     def plants(self, points: Floats) -> Floats:
-        """Plants (rows, 60) of searched points (rows)."""
+        """Plants (rows, columns) of searched points (rows)."""
         rows = np.tile(self.base, (len(points), 1))
         found = {name: points[:, index] for index, name in enumerate(self.names)}
         supply = self.base[column("supply")]
@@ -210,6 +210,7 @@ def _set_joint(rows: Floats, joint: int, here: dict[str, Floats], supply: float)
     volts_before = 1.0 / torque.copy()
     if "alpha" in here:
         torque[:] = np.exp(-here["alpha"])
+        rows[:, column("resistance", joint)] /= torque * volts_before
     for kind in ("inertia", "damping"):
         values = rows[:, column(kind, joint)]
         # Quantities that are not searched keep their volts, because the volts move the joint.

@@ -165,6 +165,7 @@ class WindowResidual:
             angles=windows.angles,
             velocities=windows.velocities,
             sides=sides,
+            places=windows.places,
             rows=windows.rows,
             volts=windows.volts,
             spacing=windows.spacing,

@@ -23,7 +23,7 @@ def simulate_ideal(
     keep: bool,
     threads: int,
 ) -> tuple[Array, Array]:
-    """Errors (n, 4) rad² and, with `keep`, angles (n, ticks, 4) rad of one plant (60,) for tunings (n, 4, 4).
+    """Errors (n, 4) rad² and, with `keep`, angles (n, ticks, 4) rad of one plant (columns,) for tunings (n, 4, 4).
 
     `leader` (slices, 4) rad, `late` in slices. The joint `chased` (-1: none) runs at full voltage in `direction`
     (ticks,) as far as `until` (ticks,) rad.

@@ -32,7 +32,8 @@ using Indices = nb::ndarray<const std::int64_t, nb::shape<-1>, nb::c_contig, nb:
 
 constexpr int kPasses = 8;
 
-// A candidate; tools.studies.one_joint names these columns in the same order.
+// A candidate. `from` takes its columns in the order in which tools.studies.one_joint names them.
+constexpr std::size_t kColumns = 19;
 struct Plant {
   double link_inertia;  // kg m^2, behind the gear
   double weight;        // N m, gravity's torque a quarter turn from where the link hangs
@@ -42,9 +43,20 @@ struct Plant {
   double load_friction;  // share of the torque that the gear passes on
   double delay;          // s, from a controller's reading to its voltage
   double leader_delay;   // s, from the leader to the controller
+
+  static Plant from(const double* c) {
+    constexpr double kNoMatter = 1.0;  // ohm; the supply does not sag here
+    return {
+        c[0],
+        c[1],
+        c[2],
+        c[3],
+        {{c[4], c[5], c[6], kNoMatter}, {c[7], c[8], c[9], 0.0, 0.0}, {c[10], c[11], c[12], c[13]}, {c[14], c[15]}, {}},
+        c[16],
+        c[17],
+        c[18]};
+  }
 };
-constexpr std::size_t kColumns = 19;
-static_assert(sizeof(Plant) == kColumns * sizeof(double), "Plant must be nothing but its columns");
 
 struct Motion {
   arm::State<double> s{};  // joint 0 of it
@@ -60,7 +72,7 @@ void advance(const Plant& p, Motion& m, double volts, double load, double dt) {
   arm::State<double>& s = m.s;
   const double outside = outside_torque(p, s.q[0], load);
   const double momentum = p.link_inertia * s.v[0] + dt * outside;
-  arm::Terms<double> terms = arm::terms_of(p.joint, s, 0, volts, dt);
+  arm::Terms<double> terms = arm::terms_of<false>(p.joint, s, 0, volts, dt);
   if (p.load_friction > 0.0) {
     // Sliding and breaking away both grow, in the proportion that they have without a load.
     const double coulomb = p.joint.friction.coulomb, more = p.load_friction * std::fabs(m.passed);
@@ -72,21 +84,21 @@ void advance(const Plant& p, Motion& m, double volts, double load, double dt) {
   double v = 0.0;
   for (int pass = 0; pass < kPasses; ++pass) {
     used = side;
-    const arm::Row<double> row = arm::link_row(terms, side);
+    const arm::Row<double> row = arm::link_row<false>(terms, side);
     const double inertia = p.link_inertia + row.diagonal;
     const double stop = side.stop > 0.0 ? p.joint.stops.max : p.joint.stops.min;
     v = side.stop != 0.0 ? (stop - s.q[0]) / dt : (momentum + row.right) / inertia;
-    const double motor_v = arm::motor_velocity(terms, side, v);
+    const double motor_v = arm::motor_velocity<false>(terms, side, v);
     side.mesh = arm::corrected_mesh(p.joint.gear, terms, used.mesh, motor_v - v, dt);
     side.slip = arm::corrected_slip(terms, used, motor_v, motor_v - v);
     side.stop = arm::corrected_stop(p.joint.stops, used.stop, s.q[0] + dt * v, inertia * v - momentum - row.right);
     if (side.mesh == used.mesh && side.slip == used.slip && side.stop == used.stop) break;
   }
   const double before = s.v[0];
-  s.motor_q[0] += dt * arm::motor_velocity(terms, used, v);
+  s.motor_q[0] += dt * arm::motor_velocity<false>(terms, used, v);
   s.q[0] = std::clamp(s.q[0] + dt * v, p.joint.stops.min, p.joint.stops.max);
   if (used.stop != 0.0) v = 0.0;
-  const double motor_v = arm::motor_velocity(terms, used, v);
+  const double motor_v = arm::motor_velocity<false>(terms, used, v);
   s.motor_v[0] = used.slip * motor_v < 0.0 ? 0.0 : motor_v;
   s.v[0] = v;
   m.passed = p.link_inertia * (v - before) / dt - outside;
@@ -270,8 +282,7 @@ nb::tuple run(const Record& r, const Law& law, const Windows& w, const Matrix& p
     const nb::gil_scoped_release free;
     const Grid grid(r);
     greywhale::share_out(candidates * windows, threads, [&](std::size_t task) {
-      Plant plant;
-      std::copy_n(&plants(task / windows, 0), kColumns, reinterpret_cast<double*>(&plant));
+      const Plant plant = Plant::from(&plants(task / windows, 0));
       simulate(r, grid, law, w, plant, task % windows, &angles[task * kept], &volts[task * kept]);
     });
   }

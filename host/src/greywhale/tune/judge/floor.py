@@ -104,7 +104,7 @@ def saturation_floor(
     resample: bool = False,
     threads: int = 0,
 ) -> Floor:
-    """The floor of a motion (or angles in every slice of 250 us) on an arm or a plant row (60,).
+    """The floor of a motion (or angles in every slice of 250 us) on an arm or a plant row (columns,).
 
     `supply_v` sets a lower voltage, for instance a controller's Ku. `delay_s` says how late the controller learns where
     the leader is; it separates the cost of sensing from the cost of the supply. The rest is as in Experiment.

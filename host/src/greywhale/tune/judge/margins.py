@@ -251,7 +251,7 @@ def with_softer_teeth(plants: Floats) -> Floats:
 
 
 def loosest_plant(plants: Floats) -> Floats:
-    """The estimate (60,), with the widest gap and the softest, least damped teeth of any of the plants."""
+    """The estimate (columns,), with the widest gap and the softest, least damped teeth of any of the plants."""
     loose: Floats = plants[0].copy()
     for joint in range(JOINTS):
         gap, stiffness, damping = (column(name, joint) for name in ("half_gap", "stiffness", "mesh_damping"))
