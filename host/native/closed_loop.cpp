@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "arm/arm.h"
+#include "arm/sensor.h"
 #include "bindings.h"
 #include "closed_loop/batch.h"
 #include "closed_loop/block.h"
@@ -200,6 +201,29 @@ nb::tuple swings(const In<T, nb::shape<-1, -1, kJoints>>& traces, std::size_t fi
   return nb::make_tuple(reversals.numpy(), travel.numpy());
 }
 
+// What each plant's potentiometers show of traces of its angles.
+nb::object shown_angles(const In<float, nb::shape<-1, -1, kJoints>>& angles, const PlantTable& plants, double row_s) {
+  const std::size_t count = angles.shape(0), rows = angles.shape(1);
+  if (plants.shape(0) != count) throw std::invalid_argument("angles and plants differ in number.");
+  Array<double> shown({count, rows, kJoints});
+  for (std::size_t n = 0; n < count; ++n) {
+    const auto& row = *reinterpret_cast<const loop::PlantRow*>(plants.data() + n * loop::kPlantColumns);
+    for (std::size_t i = 0; i < kJoints; ++i) {
+      const arm::Sensor<double>& sensor = row.plant.joints[i].sensor;
+      const arm::Lag<double> lag = arm::lag_of(sensor.lag, row_s);
+      arm::Shown<double> now{};
+      for (std::size_t k = 0; k < rows; ++k) {
+        const std::size_t at = (n * rows + k) * kJoints + i;
+        const double angle = static_cast<double>(angles.data()[at]);
+        if (k == 0) now = {angle, angle};
+        arm::follow(sensor, lag, angle, now);
+        shown.data()[at] = now.after;
+      }
+    }
+  }
+  return shown.numpy();
+}
+
 nb::object plant_row(const arm::ArmParameters& parameters) {
   Array<double> row({loop::kPlantColumns});
   loop::PlantRow one{};
@@ -244,6 +268,8 @@ void bind_closed_loop(nb::module_& m) {
         "How often (int32) and how far (float64) traces, n x rows x 4, swing to and fro by more than the band: both n "
         "x 4.");
   m.def("swings", &swings<std::int16_t>, "traces"_a.noconvert(), "first"_a, "last"_a, "band"_a);
+  m.def("shown_angles", &shown_angles, nb::kw_only(), "angles"_a.noconvert(), "plants"_a.noconvert(), "row_s"_a,
+        "What the plants' potentiometers show (float64) of their joints' angles, n x rows x 4, a row every row_s.");
   m.def("plant_row", &plant_row, "parameters"_a, "An arm as one row of numbers.");
   m.def("instruction_sets", &loop::instruction_sets,
         "Those of the batch kernel that this processor runs, the best first.");

@@ -11,7 +11,7 @@ namespace greywhale::arm {
 //
 // A bridge at duty d takes d times its motor's current from the supply, and gives the motor d times what is left:
 //   i = (d V - Ke w) / R,   V = V0 - Rs sum(d i),   Ke / R = torque per volt.
-// A motor that brakes feeds the supply, as a battery allows.
+// A motor that brakes feeds the supply, as a battery allows. Motors by the paper's equation count as if geared 1 : 1.
 template <class T>
 GREYWHALE_INLINE T voltage_share(const Joint<T> (&joints)[kJoints], const Supply<T>& supply,
                                  const T (&motor_v)[kJoints], const T (&duty)[kJoints]) {

@@ -14,7 +14,6 @@ from scipy.integrate import solve_ivp
 
 from greywhale.arm import Arm, PotentiometerBank, Potentiometers
 from greywhale.arm.parameters import Potentiometer
-from greywhale.errors import UserError
 
 Floats = npt.NDArray[np.float64]
 SLICE_S = 0.25e-3
@@ -135,13 +134,6 @@ def test_braking_motor_feeds_the_others(make_arm: Any, rigid: Any) -> None:
         arm.step([1.0, 0.0, 0.0, 6.0], 0.02)
     assert pushed.velocities[0] > 1.0
     assert pushed.velocities[ROLL] > 1.001 * still.velocities[ROLL]
-
-
-def test_currents_need_the_physical_motor_equation(make_arm: Any) -> None:
-    with pytest.raises(
-        UserError, match="supply_resistance is 0.5 ohm, but the paper's motor equation gives no currents"
-    ):
-        make_arm(motor_equation="paper", drive={"supply_resistance": 0.5})
 
 
 def pots(**values: float) -> Potentiometers:

@@ -24,7 +24,7 @@ def model(outcome: Outcome, tmp_path_factory: pytest.TempPathFactory) -> ArmPara
 @pytest.mark.slow
 def test_row_0_is_the_estimate_and_no_row_depends_on_how_many_there_are(model: ArmParameters) -> None:
     plants = sampled_plants(model, 9, seed=4)
-    assert plants.shape == (9, 60)
+    assert plants.shape == (9, 81)
     np.testing.assert_array_equal(plants[0], plant_row(model))
     np.testing.assert_array_equal(sampled_plants(model, 3, seed=4), plants[:3])
     np.testing.assert_array_equal(sampled_plants(model, 1), plants[:1])

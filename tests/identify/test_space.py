@@ -7,11 +7,11 @@ import pytest
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.from_plant import arm_of
-from greywhale.arm.plants import column
+from greywhale.arm.plants import column, columns
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.files.model import to_toml
 from greywhale.firmware import JOINTS
-from greywhale.identify.space import KINDS, MOTOR, Space
+from greywhale.identify.space import KINDS, MOTOR, WHOLE_ARM, Space
 from greywhale.loop import plant_row
 
 ALL = tuple(KINDS)
@@ -25,10 +25,10 @@ def test_motors_start_as_the_users_arm(name: str) -> None:
 
 
 def test_friction_and_gears_of_the_users_arm_are_kept() -> None:
-    arm = default_arm()
+    arm = load_arm("worn")
     space = Space.of(arm, ALL, range(JOINTS))
     np.testing.assert_allclose(space.plants(space.start()[None])[0], plant_row(arm), rtol=1e-12)
-    assert len(space) == 10 * 4 - 2, "only pitch joints have a zero angle that matters"
+    assert len(space) == 14 * 4 - 2 + 1, "only pitch joints have a zero angle that matters; the supply is the arm's"
 
 
 def test_each_number_moves_its_own_joint_only() -> None:
@@ -40,8 +40,11 @@ def test_each_number_moves_its_own_joint_only() -> None:
     base = space.plants(start[None])[0]
     for index, parameter in enumerate(space.parameters):
         changed = np.flatnonzero(~np.isclose(rows[index], base, rtol=1e-9, atol=0))
+        if parameter.joint == WHOLE_ARM:
+            assert list(changed) == [column("supply_resistance")]
+            continue
         first = column("torque_per_volt", parameter.joint)
-        assert np.all((changed >= first) & (changed < first + 12))
+        assert np.all((changed >= first) & (changed <= column("pot_lag", parameter.joint)))
         assert bool(len(changed)) is (parameter.kind != "offset")
 
 
@@ -80,7 +83,8 @@ def test_identified_plants_become_motors(name: str, damping: float) -> None:
         plant[column("torque_per_volt", joint)] *= 1.3
         plant[column("coulomb", joint)] = plant[column("breakaway", joint)] = 0.1
     model = arm_of(arm, plant, np.array([0.0, 0.1, -0.2, 0.0]), "model", "test")
-    np.testing.assert_allclose(plant_row(model), plant, rtol=1e-12)
+    told = np.isin(np.arange(len(plant)), columns("resistance"), invert=True)
+    np.testing.assert_allclose(plant_row(model)[told], plant[told], rtol=1e-12)
     assert model.follower_pots.joint[1].centre == pytest.approx(arm.follower_pots.joint[1].centre + 0.1)
     assert all(joint.motor.viscous > 0.0 for joint in model.joint)
 

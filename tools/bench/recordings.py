@@ -17,7 +17,7 @@ from greywhale.files import controller
 from greywhale.files.arm import load_arm
 from greywhale.files.log import Log, LogWriter, read_log
 from greywhale.files.log.layout import Origin
-from greywhale.firmware import ANGLE_LSB, pwm_steps
+from greywhale.firmware import ANGLE_LSB, JOINTS, pwm_steps
 from greywhale.loop import Experiment
 from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory, human_reaches
@@ -28,6 +28,7 @@ TABLES = ROOT / "shared" / "fuzzy_tables"
 # Within a tick, when the four conversions of a follower's potentiometer hold their input (ms).
 MOMENTS = (0.1, 0.3, 0.5, 0.7)
 SUPPLY = 15.0
+WEAR = ("play", "load", "creep", "lag", "linearity", "supply")
 START_S = 1.5  # the log begins that long after the motors went on, as `greywhale record` does
 
 
@@ -75,11 +76,9 @@ def _readings(angles: Array, arm: ArmParameters, table: ParameterTable, seed: in
     pots = Potentiometers(arm.follower_pots, seed + 1)
     shift = table["filter_shift"]
     before = np.vstack([angles[:1], angles[:-1]])
-    sums = np.zeros_like(angles)
-    for moment in MOMENTS:
-        between = np.ascontiguousarray(before + moment * (angles - before))
-        sums += np.array([pots.counts(row) for row in between])
-    filtered = sums * 4.0
+    between = np.stack([before + moment * (angles - before) for moment in MOMENTS], axis=1)
+    counts = np.array([pots.counts(row) for row in np.ascontiguousarray(between.reshape(-1, JOINTS))])
+    filtered = counts.reshape(len(angles), len(MOMENTS), JOINTS).sum(axis=1) * 4.0
     for tick in range(1, len(filtered)):
         filtered[tick] = filtered[tick - 1] + (filtered[tick] - filtered[tick - 1]) / (1 << shift)
     zero, scale = np.array(table.each("follower", "zero")), np.array(table.each("follower", "scale"))
@@ -128,6 +127,34 @@ def random_arm(seed: int) -> ArmParameters:
     pots = {"supply": 5.0, "joint": [{"noise": noise}] * 4}
     data = white.model_dump() | {"name": f"random arm {seed}", "joint": joints, "motor_equation": "physical"}
     return ArmParameters.model_validate(data | {"follower_pots": pots, "leader_pots": pots}, strict=False)
+
+
+def wear_out(arm: ArmParameters, seed: int, kinds: tuple[str, ...] = WEAR) -> ArmParameters:
+    """The same arm with some of what used arms have, drawn at random: play of 0 to 20 mrad, load friction to 50 %."""
+    random = np.random.default_rng([seed, 9])
+    data = arm.model_dump()
+    drawn = {
+        "play": random.uniform(0.0, 0.02, 4),
+        "load": random.uniform(0.0, 0.5, 4),
+        "creep": random.uniform(0.0, 0.03, 4),
+        "lag": random.uniform(0.0, 2e-3) * np.ones(4),
+        "linearity": random.uniform(0.0, 0.005, 4),
+    }
+    supply = float(random.uniform(0.0, 0.3))
+    for joint in range(JOINTS):
+        friction, pot = data["joint"][joint]["friction"], data["follower_pots"]["joint"][joint]
+        for kind, place, key in (
+            ("play", pot, "play"),
+            ("lag", pot, "lag"),
+            ("linearity", pot, "linearity"),
+            ("load", friction, "load"),
+            ("creep", friction, "creep_velocity"),
+        ):
+            if kind in kinds:
+                place[key] = float(drawn[kind][joint])
+    if "supply" in kinds:
+        data["drive"]["supply_resistance"] = supply
+    return ArmParameters.model_validate(data | {"name": f"{arm.name}, worn"}, strict=False)
 
 
 def record_three(arm: ArmParameters, folder: Path, seed: int = 1, seconds: float = 30.0) -> Recorded:

@@ -138,7 +138,11 @@ class Run {
       const std::size_t first = kSlices * tick + slice - stride + 1;
       // Between two steps of a tick the links move so little that the geometry may stay; four are as exact as can be.
       if (steps_ == 4) geometry = geometry_of(plant_.body, state_);
-      if (first > static_cast<std::size_t>(x_.timing.on)) push<kWorn>(geometry);
+      if (first > static_cast<std::size_t>(x_.timing.on)) {
+        Float duty[kJoints];
+        arrive(duty);
+        advance<kWorn>(plant_, geometry, state_, duty);
+      }
       for (std::size_t i = 0; i < kJoints; ++i) place[slice][i] = counts(i, state_[i].q);
       for (std::size_t part = 1; part < stride; ++part) {  // between the steps the links move evenly
         const Float share = all(static_cast<float>(part) / static_cast<float>(stride));
@@ -162,16 +166,10 @@ class Run {
     }
   }
 
-  // One step of the arm under what arrives of the duties.
-  template <bool kWorn>
-  GREYWHALE_INLINE void push(const Geometry& geometry) {
-    if (__builtin_expect(!sag_.on, 1)) {
-      advance<kWorn>(plant_, geometry, state_, duty_);
-      return;
-    }
-    Float arriving[kJoints];
-    sag(sag_, state_, duty_, arriving);
-    advance<kWorn>(plant_, geometry, state_, arriving);
+  // What arrives of the duties.
+  GREYWHALE_INLINE void arrive(Float (&duty)[kJoints]) const {
+    for (std::size_t i = 0; i < kJoints; ++i) duty[i] = duty_[i];
+    if (__builtin_expect(sag_.on, 0)) sag(sag_, state_, duty_, duty);
   }
 
   // The joints' places become those that the converter sees.

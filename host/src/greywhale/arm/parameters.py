@@ -193,15 +193,6 @@ class ArmParameters(Table):
     follower_pots: PotentiometerBank = PotentiometerBank()
     identification: dict[str, Any] | None = None  # how `greywhale identify` found this arm; the plant ignores it
 
-    @model_validator(mode="after")
-    def _currents_are_physical(self) -> ArmParameters:
-        if self.drive.supply_resistance > 0 and self.motor_equation == "paper":
-            raise ValueError(
-                f"supply_resistance is {self.drive.supply_resistance:g} ohm, but the paper's motor equation gives no "
-                'currents; set motor_equation = "physical"'
-            )
-        return self
-
     def actuator(self, joint: int) -> _native.Actuator:
         """The motor of one joint as its output shaft feels it, by this arm's motor equation."""
         motor = self.joint[joint].motor

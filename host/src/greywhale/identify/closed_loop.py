@@ -16,7 +16,7 @@ from greywhale.firmware import JOINTS, TICK_S
 from greywhale.identify.data import BLOCK_S, Prepared, part_of
 from greywhale.identify.noise import pot_noise
 from greywhale.identify.space import Space
-from greywhale.loop.closed_loop import ClosedLoop, known_readings, with_ideal_follower
+from greywhale.loop.closed_loop import ClosedLoop, known_readings, shown_angles, with_ideal_follower
 from greywhale.loop.controllers import controllers_of
 from greywhale.table import ParameterTable
 
@@ -67,10 +67,9 @@ class Loop:
 
     def angles(self, plants: Floats, every: int = COMPARED_TICKS, threads: int = 0) -> Floats:
         """The angles that the candidates' potentiometers show, (candidates, rows, 4), every `every` ticks."""
-        result = self._loop.run(
-            self.laws[None], np.ascontiguousarray(plants), substeps=STEPS_PER_TICK, every=every, threads=threads
-        )
-        shown: Floats = result.angles[:, LEAD_TICKS // every :].astype(np.float64) - self._zero
+        rows = np.ascontiguousarray(plants)
+        result = self._loop.run(self.laws[None], rows, substeps=STEPS_PER_TICK, every=every, threads=threads)
+        shown = shown_angles(result.angles, rows, every * TICK_S)[:, LEAD_TICKS // every :] - self._zero
         return shown[:, : len(self.follower[::every])]
 
     def error(self, plants: Floats, held_out: bool | None = None) -> Floats:

@@ -74,6 +74,7 @@ class PaperSearch:
             inertia, resistance, constant, viscous, ratio = points[:, 5 * joint : 5 * joint + 5].T
             torque = constant / resistance
             rows[:, column("torque_per_volt", joint)] = torque
+            rows[:, column("resistance", joint)] = resistance
             rows[:, column("inertia", joint)] = inertia * ratio
             rows[:, column("damping", joint)] = torque * constant * ratio + viscous
             for name in ("coulomb", "breakaway", "half_gap", "stiffness", "mesh_damping", "drag"):

@@ -31,12 +31,26 @@ Floats = NDArray[np.float64]
 Report = Callable[[str, float], None]
 
 # The quantities that each order of the model adds to the one before.
-ORDERS: tuple[tuple[str, tuple[str, ...]], ...] = (
-    ("motors", MOTOR),
-    ("Coulomb friction", ("coulomb",)),
-    ("Stribeck friction", ("breakaway", "stribeck")),
-    ("backlash", ("gap", "drag", "teeth")),
-    ("zero angles", ("offset",)),
+ORDERS: dict[str, tuple[str, ...]] = {
+    "motors": MOTOR,
+    "Coulomb friction": ("coulomb",),
+    "Stribeck friction": ("breakaway", "stribeck"),
+    "backlash": ("gap", "drag", "teeth"),
+    "play at the potentiometers": ("play",),
+    "load friction": ("load",),
+    "creep": ("creep",),
+    "lag of the potentiometers": ("lag",),
+    "sagging supply": ("sag",),
+    "zero angles": ("offset",),
+}
+# What is tried after motors and Coulomb friction, one line after the other. Orders of one line explain much the same,
+# so they compete; the losers are tried again on top of the winner. An order that did not help may do so later.
+TURNS: tuple[tuple[str, ...], ...] = (
+    ("Stribeck friction",),
+    ("backlash", "play at the potentiometers"),
+    ("Stribeck friction", "load friction", "creep"),
+    ("zero angles",),
+    ("lag of the potentiometers", "sagging supply"),
 )
 # An order with more quantities must predict the held-out data better by this share of 1 + squares over noise.
 WORTH = 0.01
@@ -50,6 +64,9 @@ SOME_WINDOWS = 20
 GLOBAL_SPREAD = 2.5  # the box of the global search: factors e^(+-2.5) around the user's arm
 STARTS = 2  # the global search's points from which least squares starts, besides the user's arm
 WINDOW_STEPS = 20
+# An order gets a whole fit only if a short one leaves at most so much more of the held-out misfit than there was.
+PROBE_STEPS = 6
+PROBE_SLACK = 0.01
 LOOP_STEPS = 10
 # The side of its gap from which each motor starts is chosen anew at most so often, each time for some steps of the fit.
 SETTLINGS = 4
@@ -117,36 +134,58 @@ class Search:
         self.report("fitting the motors", 0.0)
         self._consider(self._fit_motors())
         self._consider(self._fit_friction())
-        # A group that did not help before backlash was known may help with it.
-        for step, number in enumerate((2, 3, 2, 4)):
-            self.report("choosing the model's order", step / 4)
-            self._consider_order(number)
+        for number, turn in enumerate(TURNS):
+            self._consider_rivals(turn, number)
         if self.loops:
             self._consider_closed()
         self._fit_whole()
 
-    def _consider_order(self, number: int) -> None:
+    def _consider_rivals(self, turn: Sequence[str], number: int) -> None:
+        """Try each of some orders on top of the best model, take the one that helps most, and try the others again."""
+        left = [order for order in turn if self._may_follow(order)]
+        while left:
+            self.report("choosing the model's order", (number + 1 - len(left) / len(turn)) / len(TURNS))
+            before = self.best
+            assert before is not None
+            hopeful = [one for one in (self._extend(before, order) for order in left) if self._is_hopeful(one, before)]
+            if not hopeful:
+                return
+            found = [self._measure(self._settle(self._fitted, one)) for one in hopeful]
+            errors = [float(one.held_out or 0.0) for one in found]
+            winner = int(np.argmin(errors))
+            self._take(found[winner])
+            if self.best is before:
+                return
+            left = [order for order in left if self._may_follow(order)]
+
+    def _is_hopeful(self, candidate: Candidate, before: Candidate) -> bool:
+        """Whether a few steps on half of the windows already predict the held-out part as well as the model before."""
+        assert before.held_out is not None
+        few = WindowResidual(self.logs, self.arm, self.joints, False, 2)
+        few.settle(before.plant, before.zero)
+        return self._error(self._refine(few, candidate, PROBE_STEPS)) < before.held_out + PROBE_SLACK
+
+    def _may_follow(self, order: str) -> bool:
+        """Whether the best model lacks this order. Without Coulomb friction there is no friction at rest."""
         best = self.best
         assert best is not None
-        order, added = ORDERS[number]
         kinds = {parameter.kind for parameter in best.space.parameters}
-        # Without Coulomb friction there is no friction at rest; and an order that is already there need not be tried.
-        if added[0] in kinds or (order == "Stribeck friction" and "coulomb" not in kinds):
-            return
-        candidate = self._extend(best, number)
-        if order == "Stribeck friction" and "gap" in kinds:
-            candidate = replace(candidate, order=f"{order} with {best.order}")
-        elif number == 2 and any(one.order == order for one in self.tried):
-            return
-        self._consider(self._settle(self._fitted, candidate))
+        return ORDERS[order][0] not in kinds and (order not in ("Stribeck friction", "creep") or "coulomb" in kinds)
 
     def _consider(self, candidate: Candidate) -> None:
-        error = self._error(candidate)
-        measured = replace(candidate, held_out=error)
+        self._take(self._measure(candidate))
+
+    def _measure(self, candidate: Candidate) -> Candidate:
+        measured = replace(candidate, held_out=self._error(candidate))
         self.tried.append(measured)
-        best = self.best
+        return measured
+
+    def _take(self, candidate: Candidate) -> None:
+        """Take a measured candidate if it predicts the held-out part better than the best so far."""
+        best, error = self.best, candidate.held_out
+        assert error is not None
         if best is None or best.held_out is None or error < best.held_out - WORTH:
-            self.best = measured
+            self.best = candidate
 
     def _error(self, candidate: Candidate) -> float:
         """Misfit of the held-out windows: the mean over windows and joints of log(1 + squares over noise).
@@ -159,7 +198,7 @@ class Search:
     def _fit_motors(self) -> Candidate:
         """Motors alone, starting from the user's values."""
         space = Space.of(self.arm, MOTOR, self.joints)
-        return self._refine(self._some_windows(), Candidate(space, space.start(), ORDERS[0][0]))
+        return self._refine(self._some_windows(), Candidate(space, space.start(), "motors"))
 
     def _fit_friction(self) -> Candidate:
         """Global search, then least squares from several points; the best by the fitted data."""
@@ -171,7 +210,9 @@ class Search:
         for number, point in enumerate(starts):
             self.report("least squares from several starts", number / len(starts))
             fits.append(self._fit_windows(residual, space, point, WINDOW_STEPS))
-        return self._refine(self._fitted, Candidate(space, self._mix_blocks(self._fitted, space, fits), ORDERS[1][0]))
+        return self._refine(
+            self._fitted, Candidate(space, self._mix_blocks(self._fitted, space, fits), "Coulomb friction")
+        )
 
     def _mix_blocks(self, windows: WindowResidual, space: Space, fits: Sequence[Floats]) -> Floats:
         """For each group of joints that feel each other, the numbers of the fit that is best for them: others may be
@@ -206,12 +247,12 @@ class Search:
                 self.report("global search", self.globally / GLOBAL_EVALUATIONS)
         return pick_different(seen, STARTS)
 
-    def _extend(self, candidate: Candidate, number: int) -> Candidate:
-        """The same model with the quantities of the next order at their usual start."""
-        order, added = ORDERS[number]
+    def _extend(self, candidate: Candidate, order: str) -> Candidate:
+        """The same model with the quantities of another order at their usual start."""
         kinds = dict.fromkeys(parameter.kind for parameter in candidate.space.parameters)
-        space = Space.of(self.arm, (*kinds, *added), self.joints)
-        return Candidate(space, space.translate(candidate.x, candidate.space), order)
+        space = Space.of(self.arm, (*kinds, *ORDERS[order]), self.joints)
+        name = order if candidate.order in ("motors", "Coulomb friction") else f"{candidate.order}, {order}"
+        return Candidate(space, space.translate(candidate.x, candidate.space), name)
 
     def _refine(self, windows: WindowResidual, candidate: Candidate, steps: int = WINDOW_STEPS) -> Candidate:
         return replace(candidate, x=self._fit_windows(windows, candidate.space, candidate.x, steps))

@@ -62,35 +62,43 @@ KINDS = {
     "gap": Kind("rad", "half of the backlash, at the joint", False, 2e-3, 0.0, 0.03, 1e-4, 1e-2),
     "drag": Kind("", "drag of the grease between the teeth, a share of the damping", True, 0.1, 1e-2, 10.0, 1e-2, 1.5),
     "teeth": Kind("rad", "bend of the teeth at the motor's stall torque", True, 1e-2, 3e-2, 30.0, 2e-2, 1.5),
+    "play": Kind("rad", "half of the play between joint and potentiometer", False, 4e-3, 0.0, 0.05, 1e-4, 2e-2),
+    "load": Kind("", "friction that the torque passed on adds, a share of it", False, 0.1, 0.0, 0.7, 1e-2, 0.5),
+    "creep": Kind("rad/s", "speed at which a joint gives way just below breakaway", False, 5e-3, 0.0, 0.3, 1e-3, 0.05),
+    "lag": Kind("s", "time constant of the low-pass behind the potentiometer", False, 5e-4, 0.0, 2e-2, 1e-4, 2e-3),
+    "sag": Kind("ohm", "resistance of supply and cables, shared by all motors", False, 0.1, 0.0, 5.0, 1e-2, 0.5),
     "offset": Kind("rad", "angle at which the potentiometer reads 0", False, 0.0, -0.3, 0.3, 1e-3, 0.1),
 }
 MOTOR = ("alpha", "inertia", "damping")
 # Joints that feel each other while one of their numbers is varied a little. The pitch joints carry one another. Yaw and
 # roll feel the others through their poses only, and each other by a few per cent at most.
 COUPLED = ((0,), (1, 2), (3,))
+# Quantities of the arm as a whole: their joint is this number.
+OF_THE_ARM = ("sag",)
+WHOLE_ARM = JOINTS
 PITCH = (1, 2)  # only these feel gravity, so only they have a zero angle that matters
 TEETH_S = 2e-3  # how long the damping of teeth of unknown stiffness lasts, s
 
 
-_JOINT_NUMBERS = {f"joint{number}": number for number in range(JOINTS)}
+_JOINT_NUMBERS = {f"joint{number}": number for number in range(JOINTS)} | {"arm": WHOLE_ARM}
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """One searched number."""
+    """One searched number, of a joint or of the whole arm."""
 
     joint: int
     kind: str
 
     @property
     def name(self) -> str:
-        return f"joint{self.joint}.{self.kind}"
+        return f"arm.{self.kind}" if self.joint == WHOLE_ARM else f"joint{self.joint}.{self.kind}"
 
     @classmethod
     def from_name(cls, name: str) -> Self:
         """The searched number of a name such as "joint2.coulomb"; KeyError where there is none."""
         joint, _, kind = name.partition(".")
-        if kind not in KINDS:
+        if kind not in KINDS or (joint == "arm") != (kind in OF_THE_ARM):
             raise KeyError(name)
         return cls(_JOINT_NUMBERS[joint], kind)
 
@@ -105,7 +113,13 @@ class Space:
 
     @classmethod
     def of(cls, arm: ArmParameters, kinds: Sequence[str], joints: Sequence[int]) -> Space:
-        chosen = [Parameter(joint, kind) for joint in joints for kind in kinds if kind != "offset" or joint in PITCH]
+        chosen = [
+            Parameter(joint, kind)
+            for joint in joints
+            for kind in kinds
+            if kind not in OF_THE_ARM and (kind != "offset" or joint in PITCH)
+        ]
+        chosen += [Parameter(WHOLE_ARM, kind) for kind in kinds if kind in OF_THE_ARM]
         return cls(arm, tuple(chosen), plant_row(arm))
 
     def __len__(self) -> int:
@@ -151,11 +165,13 @@ class Space:
             columns += [[] for _ in range(len(mine) - len(columns))]
             for group, index in zip(columns, mine, strict=False):
                 group.append(index)
+        columns += [[index] for index, one in enumerate(self.parameters) if one.joint == WHOLE_ARM]
         return tuple(np.array(group, dtype=np.intp) for group in columns)
 
     def moves(self, joint_of: NDArray[np.intp]) -> NDArray[np.bool_]:
         """Which searched numbers change the numbers of a residual that are of these joints; (numbers, searched)."""
-        table = np.zeros((JOINTS, len(self)), dtype=bool)
+        table = np.zeros((JOINTS + 1, len(self)), dtype=bool)
+        table[:, [index for index, one in enumerate(self.parameters) if one.joint == WHOLE_ARM]] = True
         for joints in COUPLED:
             for index, one in enumerate(self.parameters):
                 if one.joint in joints:
@@ -172,6 +188,8 @@ class Space:
             here = {kind: found[f"joint{joint}.{kind}"] for kind in KINDS if f"joint{joint}.{kind}" in found}
             if here:
                 _set_joint(rows, joint, here, supply)
+        if "arm.sag" in found:
+            rows[:, column("supply_resistance")] = found["arm.sag"]
         return rows
 
     def offsets(self, points: Floats) -> Floats:
@@ -183,6 +201,9 @@ class Space:
         return angles
 
     def _known(self, parameter: Parameter) -> float:
+        if parameter.kind == "sag":
+            return self.arm.drive.supply_resistance or KINDS["sag"].start
+        pot = self.arm.follower_pots.joint[parameter.joint]
         joint = self.arm.joint[parameter.joint]
         motor = self.arm.actuator(parameter.joint)
         alpha = 1.0 / motor.torque_per_volt
@@ -199,9 +220,23 @@ class Space:
             "teeth": motor.torque_per_volt * self.arm.drive.supply / joint.gear.stiffness
             if joint.gear.stiffness
             else usual,
+            "play": pot.play or usual,
+            "load": joint.friction.load or usual,
+            "creep": joint.friction.creep_velocity or usual,
+            "lag": pot.lag or usual,
             "offset": 0.0,
         }
         return known[parameter.kind]
+
+
+# Quantities that are columns of a plant as they are searched.
+_AS_THEY_ARE = {
+    "gap": "half_gap",
+    "play": "pot_play",
+    "load": "load_friction",
+    "creep": "creep_velocity",
+    "lag": "pot_lag",
+}
 
 
 def _set_joint(rows: Floats, joint: int, here: dict[str, Floats], supply: float) -> None:
@@ -223,8 +258,9 @@ def _set_joint(rows: Floats, joint: int, here: dict[str, Floats], supply: float)
         rows[:, column("stribeck_velocity", joint)] = np.exp(here["stribeck"])
     if "drag" in here:
         rows[:, column("drag", joint)] = np.exp(here["drag"]) * rows[:, column("damping", joint)]
-    if "gap" in here:
-        rows[:, column("half_gap", joint)] = here["gap"]
+    for kind, name in _AS_THEY_ARE.items():
+        if kind in here:
+            rows[:, column(name, joint)] = here[kind]
     if "gap" in here or "teeth" in here:
         stiffness, mesh = rows[:, column("stiffness", joint)], rows[:, column("mesh_damping", joint)]
         lasting = np.where(stiffness > 0.0, mesh / np.where(stiffness > 0.0, stiffness, 1.0), TEETH_S)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from greywhale.firmware import JOINTS
-from greywhale.identify.space import COUPLED, Space
+from greywhale.identify.space import COUPLED, WHOLE_ARM, Space
 from greywhale.identify.windows import WindowResidual
 
 Floats = NDArray[np.float64]
@@ -59,6 +59,8 @@ class WindowFit:
             )
             for joints in COUPLED
         ]
+        whole = [n for n, one in enumerate(space.parameters) if one.joint == WHOLE_ARM]
+        self._blocks.append(_Block(tuple(range(JOINTS)), np.array(whole, dtype=np.intp)))
         self._blocks = [block for block in self._blocks if len(block.numbers)]
         self._numbers = self._simulate(self.x[None])[0]
         misfit = self._misfit(self._numbers)

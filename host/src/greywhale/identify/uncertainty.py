@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.firmware import JOINTS
-from greywhale.identify.space import KINDS, Space
+from greywhale.identify.space import KINDS, WHOLE_ARM, Parameter, Space
 from greywhale.identify.windows import WindowResidual
 
 Floats = NDArray[np.float64]
@@ -22,7 +22,16 @@ Floats = NDArray[np.float64]
 # steps.
 OPEN_LOG = 0.3
 WIDE = 0.1  # of the user's arm's doubts
-OPEN = {"breakaway": 0.5, "gap": 2e-3, "offset": 0.05}
+OPEN = {
+    "breakaway": 0.5,
+    "gap": 2e-3,
+    "play": 2e-3,
+    "load": 0.2,
+    "creep": 0.05,
+    "lag": 1e-3,
+    "sag": 0.3,
+    "offset": 0.05,
+}
 # These matter little: to know them within a factor of e is enough.
 OPEN_FACTOR = {"drag": 1.0, "teeth": 1.0}
 # Directions of the search space below this share of the largest eigenvalue are left out of the inverse.
@@ -39,6 +48,11 @@ EXCITATION = {
     "gap": "reverse slowly and often without load, so that the teeth change sides",
     "drag": "reverse a light joint quickly, so that its link crosses the gap alone",
     "teeth": "reverse with full voltage, so that the teeth bend",
+    "play": "reverse slowly and often, under load too",
+    "load": "move a heavy pose slowly up and down",
+    "creep": "rest in poses that the motor must hold",
+    "lag": "reverse the motion quickly, several times a second",
+    "sag": "move several joints at full voltage at once",
     "offset": "turn the joint through a wide range of poses, so that gravity changes sign",
 }
 
@@ -94,6 +108,12 @@ def _combine(information: Floats, scatter: Floats, nominal: Floats) -> Floats:
     return symmetric
 
 
+def _whose(parameter: Parameter) -> str:
+    if parameter.joint == WHOLE_ARM:
+        return "the arm"
+    return f"joint {parameter.joint} ({JOINT_NAMES[parameter.joint]})"
+
+
 def _describe_open(space: Space, x: Floats, deviations: Floats, joints: Sequence[int]) -> list[str]:
     sentences = [
         f"joint {joint} ({JOINT_NAMES[joint]}): it did not move, so nothing of it was identified and the values of the "
@@ -112,8 +132,6 @@ def _describe_open(space: Space, x: Floats, deviations: Floats, joints: Sequence
             else f"{x[index]:.2g} +- {deviations[index]:.2g} {kind.unit}".rstrip()
         )
         sentences.append(
-            f"joint {parameter.joint} ({JOINT_NAMES[parameter.joint]}): {parameter.kind}, the {kind.means}, "
-            f"is {known}; "
-            f"{EXCITATION[parameter.kind]}"
+            f"{_whose(parameter)}: {parameter.kind}, the {kind.means}, is {known}; {EXCITATION[parameter.kind]}"
         )
     return sentences

@@ -23,7 +23,8 @@ from greywhale.identify.space import Space
 Floats = NDArray[np.float64]
 # A start speed may be off by so much beyond what noise explains (rad/s): motion within the smoothing.
 SPEED_DOUBT = 0.05
-# The places in its gap at which a motor may stand at a window's start, as shares of the half gap.
+# The places at which a motor may stand in its gap at a window's start, or a joint in its potentiometer's play.
+# They are shares of half of it.
 SIDES = (-1.0, -0.5, 0.0, 0.5, 1.0)
 # Another side is taken only if it leaves less than this share of the squared difference.
 WORTH_A_CHANGE = 0.95
@@ -50,6 +51,7 @@ class WindowResidual:
         self._pieces = [piece for piece in self._pieces if len(piece[0].first)]
         self._logged = tuple(self._pieces)
         self._sides = [self._sides_of(windows) for windows, _ in self._pieces]
+        self._places: dict[int, Floats] = {}  # of the pieces for which they were chosen anew
         self.windows = sum(len(windows.first) for windows, _ in self._pieces)
         self.seconds = sum(len(windows.first) * windows.rows * log.period for windows, log in self._pieces)
         self.clusters = self._clusters()
@@ -69,8 +71,8 @@ class WindowResidual:
         """Choose anew, for this plant, the start of each window that fits the log best. True if a motor changed its
         place.
 
-        A start is an angle, a speed, and the motor's place in its gap. Where a joint hunts in its gap, torques show
-        that place badly, and a window that starts on the wrong side is useless.
+        A start is an angle, a speed, the motor's place in its gap and the joint's in its potentiometer's play. Where a
+        joint hunts in its gap, torques show that place badly, and a window that starts on the wrong side is useless.
         """
         changed = False
         # Start from the log's own values again: those of another model would stay where that model wanted them.
@@ -78,6 +80,8 @@ class WindowResidual:
         for number in range(len(self._pieces)):
             if any(plant[column("half_gap", joint)] > 0.0 for joint in self.joints):
                 changed = self._settle_sides(number, plant, zero) or changed
+            if any(plant[column("pot_play", joint)] > 0.0 for joint in self.joints):
+                changed = self._settle_places(number, plant, zero) or changed
             for _ in range(START_PASSES):
                 self._settle_starts(number, plant, zero)
         return changed
@@ -86,9 +90,19 @@ class WindowResidual:
         windows, log = self._pieces[number]
         tried = np.array([self._sides[number], *(np.full_like(windows.angles, side) for side in SIDES)])
         costs = np.array([self._costs(windows, log, sides, plant, zero)[0] for sides in tried])
-        best = np.where(np.min(costs, axis=0) < WORTH_A_CHANGE * costs[0], np.argmin(costs, axis=0), 0)
-        self._sides[number] = np.take_along_axis(tried, best[None], axis=0)[0]
-        return bool(np.any(best))
+        self._sides[number], changed = _choose(tried, costs)
+        return changed
+
+    def _settle_places(self, number: int, plant: Floats, zero: Floats) -> bool:
+        """The same for the joint's place in the play of its potentiometer."""
+        windows, log = self._pieces[number]
+        sides = self._sides[number]
+        known = self._places.get(number, windows.places)
+        tried = np.array([known, *(np.full_like(windows.angles, side) for side in SIDES)])
+        costs = np.array([self._costs(replace(windows, places=one), log, sides, plant, zero)[0] for one in tried])
+        self._places[number], changed = _choose(tried, costs)
+        self._pieces[number] = replace(windows, places=self._places[number]), log
+        return changed
 
     def _settle_starts(self, number: int, plant: Floats, zero: Floats) -> None:
         """Move starts by the formula's correction, where the simulation agrees that this is better."""
@@ -203,6 +217,13 @@ class WindowResidual:
             still = (np.abs(torque) < 1e-3) & (np.abs(windows.velocities[row]) < 0.05)
             sides[row] = np.where(still, 0.0, np.sign(torque))
         return sides
+
+
+def _choose(tried: Floats, costs: Floats) -> tuple[Floats, bool]:
+    """For each window and joint the best of (tries, windows, 4); the first stays unless another is clearly better."""
+    best = np.where(np.min(costs, axis=0) < WORTH_A_CHANGE * costs[0], np.argmin(costs, axis=0), 0)
+    chosen: Floats = np.ascontiguousarray(np.take_along_axis(tried, best[None], axis=0)[0])
+    return chosen, bool(np.any(best))
 
 
 def take_off_starts(error: Floats, windows: Windows, log: Prepared, plants: Floats, joint: int) -> Floats:

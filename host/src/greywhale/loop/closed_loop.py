@@ -205,6 +205,15 @@ def with_ideal_follower(table: ParameterTable) -> ParameterTable:
     return table.with_raw({name: usual[name] for name in names})
 
 
+def shown_angles(angles: npt.NDArray[np.float32], plants: Plants, row_s: float) -> Array:
+    """What the plants' potentiometers show, (n, rows, 4) rad, of their joints' angles with a row every `row_s` seconds.
+
+    Play and lag are in it; noise and a bent line are not.
+    """
+    found: Array = np.asarray(_native.shown_angles(angles=angles, plants=plants, row_s=row_s))
+    return found
+
+
 def count_swings(
     traces: npt.NDArray[np.float32] | npt.NDArray[np.int16], first: int, last: int, band: float
 ) -> tuple[npt.NDArray[np.int32], Array]:
