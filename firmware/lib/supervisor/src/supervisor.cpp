@@ -55,6 +55,10 @@ void Supervisor::bytes_lost(uint16_t tick) {
   if (motors_on() && overruns_.lost(tick)) raise(Fault::flood, nowhere);
 }
 
+void Supervisor::look(uint8_t joint, int16_t reference, int16_t error) {
+  if (motors_on() && unrest_.look(joint, reference, error)) raise(Fault::unrest, joint);
+}
+
 // One tick at a rail may be noise; three in a row are a broken wire. Most ticks see no rail and have none to remember.
 void Supervisor::debounce(const Observation& seen) {
   if ((seen.rail_low | seen.rail_high | any_rail_) != 0) remember_rails(seen);
@@ -127,6 +131,7 @@ Reply Supervisor::enable(uint16_t lease_ms, const Observation& seen) {
   state_ = State::soft_start;
   soft_start_.start(limits_.soft_start_ms);
   overruns_.forget();
+  unrest_.forget();
   lease_ = lease_ms;
   return {Answer::ok, nowhere, 0};
 }

@@ -4,6 +4,7 @@
 #include <stdint.h>
 
 #include "overruns.h"
+#include "unrest.h"
 
 namespace supervisor {
 
@@ -13,7 +14,7 @@ constexpr uint8_t nowhere = 255;  // fault_where when the fault has no pot or jo
 // The numbers go over the link; app/src/on_link.h checks that they are the same there.
 enum class State : uint8_t { boot, disabled, soft_start, following, fault };
 enum class StopReason : uint8_t { none, host, lease, fault, reset };
-enum class Fault : uint8_t { none, pot_low, pot_high, late_tick, tracking, watchdog, params, flood };
+enum class Fault : uint8_t { none, pot_low, pot_high, late_tick, tracking, watchdog, params, flood, unrest };
 
 struct Limits {
   uint16_t enable_limit;    // q12 rad
@@ -45,11 +46,14 @@ class Supervisor {
   // before.
   void begin(bool after_watchdog, bool params_ok);
   void set_limits(const Limits& limits);  // only while the motors are off
+  void set_unrest_limits(const UnrestLimits& limits) { unrest_.configure(limits); }
   void params_mended() { params_ok_ = true; }
 
   void tick(const Observation& seen);
   // Bytes of the link were lost in this tick: a stop may have been among them.
   void bytes_lost(uint16_t tick);
+  // Between ticks, the next joint after each. Reference and error in q12 rad.
+  void look(uint8_t joint, int16_t reference, int16_t error);
 
   // enable() and clear_fault() judge by what the last tick has seen. enable() renews the lease when the motors are on.
   Reply enable(uint16_t lease_ms, const Observation& seen);
@@ -85,6 +89,7 @@ class Supervisor {
   uint8_t far_ = 0;                           // joints whose lost_ticks_ count
   signal_chain::SoftStart soft_start_;
   Overruns overruns_;
+  Unrest unrest_;
   uint16_t lease_ = 0;  // ticks, 0 = until stop
   uint8_t boot_left_ = boot_ticks;
   bool params_ok_ = true;

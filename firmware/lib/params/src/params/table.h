@@ -7,10 +7,10 @@
 
 namespace params {
 
-constexpr uint8_t layout = 1;
-constexpr uint8_t count = 84;
-constexpr uint8_t field_count = 27;
-constexpr uint8_t group_count = 4;
+constexpr uint8_t layout = 2;
+constexpr uint8_t count = 87;
+constexpr uint8_t field_count = 30;
+constexpr uint8_t group_count = 5;
 
 // Packed, so that the bytes in RAM are the bytes on the link and in EEPROM, in the order of the flat index.
 // Read members by value: a reference to a packed member does not compile.
@@ -49,9 +49,12 @@ struct __attribute__((packed)) Table {
   JointParameters joint[4];
   PotParameters leader[4];
   PotParameters follower[4];
+  uint8_t unrest_amplitude;  // a joint is restless when its error swings with more than this amplitude (from turn to turn twice this) while no joint of the leader moves by more than this within 1/unrest_rate; 0 turns the check off [1/1024 rad]
+  uint8_t unrest_rate;  // turns of the error in a second that are unrest; a swing to and fro has two [1/s]
+  uint8_t unrest_time;  // time of unrest that becomes a fault [1/10 s]
 };
 
-constexpr uint16_t table_size = 185;
+constexpr uint16_t table_size = 188;
 static_assert(sizeof(Table) == table_size, "the table must have no padding");
 
 enum class Kind : uint8_t { u8, i8, u16, i16, u32, i32 };
