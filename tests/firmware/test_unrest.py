@@ -57,15 +57,36 @@ def test_a_joint_that_swings_with_its_leader_keeps_its_motors(bench: Bench) -> N
     assert status(bench).fault is schema.Fault.NONE
 
 
+def apply(bench: Bench, name: str, raw: int) -> None:
+    """Run the defaults with another value of one parameter."""
+    values = list(schema.DEFAULTS)
+    index = schema.PARAMETER_BY_NAME[name].index
+    values[index] = raw
+    bench.ask(schema.ParamSetRequest, struct.pack("<Hi", index, raw))
+    bench.ask(schema.ParamApplyRequest, struct.pack("<H", schema.param_crc(values)))
+    bench.wait(20)
+
+
+@pytest.mark.slow
+def test_the_safe_set_takes_over_within_some_ticks_and_none_is_late(bench: Bench) -> None:
+    apply(bench, "unrest_action", 1)
+    enable(bench)
+    assert shake(bench, FOLLOWER + 1, 0.05, 8.0) is not None
+    bench.board.set_millivolts(bench.millivolts)
+    off_at = bench.board.cycle
+    while not motors_on(bench):
+        bench.wait(0.1)
+        assert bench.board.cycle - off_at < 12 * CYCLES_PER_TICK
+    seen = status(bench)
+    assert (seen.state, seen.fault, seen.late_ticks) == (schema.State.SOFT_START, schema.Fault.UNREST, 0)
+    bench.wait(1200)
+    assert status(bench).state is schema.State.FOLLOWING
+
+
 def test_looking_for_unrest_costs_the_tick_nothing(bench: Bench) -> None:
     worst = []
     for amplitude in (0, 10):
-        values = list(schema.DEFAULTS)
-        index = schema.PARAMETER_BY_NAME["unrest_amplitude"].index
-        values[index] = amplitude
-        bench.ask(schema.ParamSetRequest, struct.pack("<Hi", index, amplitude))
-        bench.ask(schema.ParamApplyRequest, struct.pack("<H", schema.param_crc(values)))
-        bench.wait(20)
+        apply(bench, "unrest_amplitude", amplitude)
         enable(bench)
         bench.wait(1100)
         worst.append(max(bench.tick_cycles()[1] for _ in range(60)))

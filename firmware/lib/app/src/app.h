@@ -60,6 +60,7 @@ class App {
   void note_lost_bytes(uint8_t lost);
   bool work_on_lead();
   void look_for_unrest();
+  void restart_safe();
   void see_distances();
   void work_on_apply();
   void send_hello(uint8_t seq);

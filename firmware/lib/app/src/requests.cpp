@@ -40,6 +40,7 @@ bool App::service() {
     return true;
   }
   if (excused_) return false;  // a set was applied: the next request must be judged by what a tick has seen with it
+  if (sets_.safe() == ParameterSets::Safe::applied) restart_safe();
   if (!heard_this_tick_ && hal::rx_available()) {
     receive();  // once in every tick, whatever else there is to do: a stop must get through
     return true;
@@ -84,6 +85,15 @@ __attribute__((noinline)) void App::look_for_unrest() {
   looked_at_ = static_cast<uint8_t>(tick_);
   const uint8_t joint = looked_at_ % hal::joint_count;
   supervisor_.look(joint, sampling_.reference(joint), sampling_.error(joint));
+  if (supervisor_.motors_on()) return;
+  follow_supervisor();
+  const bool can = !lead_.on() && sets_.save_state() != wire::SaveState::saving;
+  if (can && sets_.running().unrest_action == 1 && sets_.safe() == ParameterSets::Safe::no) sets_.begin_safe();
+}
+
+void App::restart_safe() {
+  sets_.safe_runs();
+  supervisor_.restart(seen_);
   follow_supervisor();
 }
 
@@ -244,6 +254,7 @@ void App::work_on_apply() {
     case ParameterSets::Progress::refused: refuse_set(); break;
     case ParameterSets::Progress::applied:
       take_running_set();
+      if (sets_.safe() == ParameterSets::Safe::applied) return;  // no host waits for an answer
       for (uint16_t& distance : seen_.distance) distance = not_seen;
       supervisor_.params_mended();
       reply(wire::ParamApplyReply{sets_.crc()});

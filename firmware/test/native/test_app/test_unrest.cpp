@@ -103,3 +103,89 @@ TEST_CASE("while the host leads, a reference that rests is a still leader, and o
     CHECK(arm.status().fault == wire::Fault::unrest);
   }
 }
+
+namespace {
+
+// The safe set for what runs: the controllers of the defaults with no more gain, motor and limits as they are.
+params::Table hot() {
+  params::Table table;
+  params::load_defaults(table);
+  table.unrest_action = 1;
+  table.joint[1].kp *= 8;
+  table.joint[1].ku_mv = 9000;
+  table.joint[1].motor_sign = -1;
+  table.joint[3].ne_c = -1000;
+  return table;
+}
+
+}  // namespace
+
+TEST_CASE("with action 1 the safe set takes over within some ticks, in a soft start; the next unrest is the end") {
+  Bench arm;
+  arm.boot();
+  REQUIRE(arm.apply(hot()).type == 0x85);
+  REQUIRE(arm.enable() == wire::State::soft_start);
+  arm.run(1100);
+  CHECK(shake(arm, 2, 3000, 0.04) < 1550);
+  unsigned off = 0;
+  for (; !board.drivers && off < 100; ++off) arm.tick();
+  CHECK(off <= 12);
+  auto status = arm.status();
+  CHECK(status.state == wire::State::soft_start);
+  CHECK(status.fault == wire::Fault::unrest);
+  CHECK(status.fault_where == 2);
+  CHECK(status.late_ticks == 0);
+
+  params::Table safe = hot(), defaults;
+  params::load_defaults(defaults);
+  safe.joint[1].kp = defaults.joint[1].kp;
+  safe.joint[3].ne_c = defaults.joint[3].ne_c;
+  CHECK(arm.get<wire::HelloReply>(wire::HelloRequest{}).param_crc == params::crc(safe));
+
+  arm.run(1100);
+  CHECK(arm.state() == wire::State::following);
+  CHECK(shake(arm, 2, 3000, 0.04) < 1550);
+  arm.run(50);
+  CHECK_FALSE(board.drivers);
+  status = arm.status();
+  CHECK(status.state == wire::State::fault);
+  CHECK(status.fault == wire::Fault::unrest);
+
+  REQUIRE(arm.apply(hot()).type == 0x85);  // the host's set again, and with it another safe start
+  CHECK(arm.get<wire::ClearFaultReply>(wire::ClearFaultRequest{}).state == wire::State::disabled);
+  REQUIRE(arm.enable() == wire::State::soft_start);
+  CHECK(shake(arm, 0, 3000, 0.04) < 1550);
+  arm.run(20);
+  CHECK(board.drivers);
+}
+
+TEST_CASE("the lease goes on while the safe set takes over, and a stop then is a stop") {
+  for (const bool stop : {true, false}) {
+    Bench arm;
+    arm.boot();
+    REQUIRE(arm.apply(hot()).type == 0x85);
+    REQUIRE(arm.enable(2000) == wire::State::soft_start);
+    CHECK(shake(arm, 2, 3000, 0.04) < 1550);
+    if (stop) {
+      CHECK(arm.stop() == wire::State::disabled);
+      arm.run(50);
+    } else {
+      arm.run(20);
+      CHECK(board.drivers);
+      arm.run(1000);
+      CHECK(arm.status().stop_reason == wire::StopReason::lease);
+    }
+    CHECK_FALSE(board.drivers);
+  }
+}
+
+TEST_CASE("a host that leads gets no safe set: the motors stay off") {
+  Bench arm;
+  arm.boot();
+  REQUIRE(arm.apply(hot()).type == 0x85);
+  arm.get<wire::LeadReply>(wire::LeadRequest{60000});
+  CHECK(shake(arm, 2, 3000, 0.04) < 1550);
+  arm.run(50);
+  CHECK_FALSE(board.drivers);
+  CHECK(arm.status().state == wire::State::fault);
+}

@@ -18,7 +18,7 @@ from typing import ClassVar
 from .declared import Described, Field, Group, Message, Parameter, Table, check_length
 
 PROTOCOL = 1
-SCHEMA_HASH = 0x4ED585CF
+SCHEMA_HASH = 0xF352FDC8
 MAX_PAYLOAD = 48
 REPLY_BIT = 0x80
 LAYOUT = 2
@@ -1013,6 +1013,7 @@ TABLE = Table((
         Field("unrest_amplitude", "u8", "rad", 0.0009765625, 0, 205, (10,), False, None, "a joint is restless when its error swings with more than this amplitude (from turn to turn twice this) while no joint of the leader moves by more than this within 1/unrest_rate; 0 turns the check off"),
         Field("unrest_rate", "u8", "1/s", 1.0, 1, 10, (6,), False, None, "turns of the error in a second that are unrest; a swing to and fro has two"),
         Field("unrest_time", "u8", "s", 0.1, 2, 60, (11,), False, None, "time of unrest that becomes a fault"),
+        Field("unrest_action", "u8", "", 1.0, 0, 1, (0,), False, None, "what unrest does: 0 turns the motors off, 1 goes on with the safe controllers, and turns the motors off at the next unrest"),
     )),
 ))
 PARAMETERS: tuple[Parameter, ...] = TABLE.parameters

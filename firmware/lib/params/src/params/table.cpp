@@ -38,6 +38,7 @@ const Field fields[field_count] PROGMEM = {
     {Kind::u8, offsetof(Table, unrest_amplitude), no_field, false, 0, 205},
     {Kind::u8, offsetof(Table, unrest_rate), no_field, false, 1, 10},
     {Kind::u8, offsetof(Table, unrest_time), no_field, false, 2, 60},
+    {Kind::u8, offsetof(Table, unrest_action), no_field, false, 0, 1},
 };
 
 const Group groups[group_count] PROGMEM = {
@@ -45,7 +46,7 @@ const Group groups[group_count] PROGMEM = {
     {4, 15, 8, offsetof(Table, joint), sizeof(JointParameters)},
     {4, 2, 23, offsetof(Table, leader), sizeof(PotParameters)},
     {4, 2, 25, offsetof(Table, follower), sizeof(PotParameters)},
-    {1, 3, 27, 0, 0},
+    {1, 4, 27, 0, 0},
 };
 
 const Table default_table PROGMEM = {
@@ -68,7 +69,7 @@ const Table default_table PROGMEM = {
         {8184, 10734},
         {8184, 10734},
     },
-    10, 6, 11,
+    10, 6, 11, 0,
 };
 
 }  // namespace params
