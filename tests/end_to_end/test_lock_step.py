@@ -189,6 +189,36 @@ def test_a_motor_with_the_wrong_sign_is_switched_off(lock_step: Any, joint: int)
     assert np.count_nonzero(np.abs(volts) > 10.0) < 350, "ms at more than 10 V"
 
 
+class LoosePots:
+    """The bench's own arm behind potentiometers that it drags along through some play."""
+
+    def __init__(self, arm: Any, half_gap: float) -> None:
+        self.arm, self.half_gap = arm, half_gap
+        self.read: np.ndarray | None = None
+
+    def step(self, voltages: np.ndarray, dt: float) -> np.ndarray:
+        angles = np.array(self.arm.step(voltages, dt))
+        last = angles if self.read is None else self.read
+        self.read = np.clip(last, angles - self.half_gap, angles + self.half_gap)
+        return self.read
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.arm, name)
+
+
+@pytest.mark.slow
+def test_a_joint_that_hunts_at_rest_is_switched_off(lock_step: Any) -> None:
+    """Much gain and play at the pots: the joint swings about its leader for ever."""
+    host = lock_step()
+    host.bench.plant = LoosePots(host.bench.plant, 0.02)
+    kp = schema.PARAMETER_BY_NAME["joint2.kp"]
+    set_parameters(host, {"joint2.kp": 16 * kp.default, "joint2.ku_mv": 30000})
+    host.ask(schema.EnableRequest(0))
+    host.run(6.0)
+    assert (host.status().fault, host.status().fault_where) == (Fault.UNREST, 2)
+    assert not host.bench.motors_enabled
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("table", ["before_tuning", "table_10"])
 def test_the_papers_steps_are_no_runaway(lock_step: Any, tmp_path: Path, table: str) -> None:

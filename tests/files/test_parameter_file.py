@@ -44,6 +44,15 @@ def test_neighbouring_raw_values_stay_apart_at_the_ends_of_the_range(parameter: 
         assert parameter.to_raw(parameter_file.physical(parameter, raw)) == raw
 
 
+def test_a_backup_of_layout_1_gets_the_defaults_of_what_it_lacks(tmp_path: Path) -> None:
+    path = tmp_path / "backup.toml"
+    table = ParameterTable.defaults().with_raw({"joint1.kp": 50_000})
+    parameter_file.save(path, table.with_raw({"unrest_amplitude": 0}))
+    lines = path.read_text().splitlines(keepends=True)
+    path.write_text("".join(line for line in lines if not line.startswith("unrest_")))
+    assert parameter_file.load(path) == table
+
+
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
@@ -51,6 +60,7 @@ def test_neighbouring_raw_values_stay_apart_at_the_ends_of_the_range(parameter: 
         ("period_ms = 1", "period_ms = 1.5", "period_ms is 1.5 ms, but it must be a whole number"),
         ("kp = 0.513", "kp = 1e-9", "joint0.kp is 1e-09 1/rad, which the board would store as 0"),
         ("period_ms = 1", "", "period_ms is missing"),
+        ("unrest_rate = 6", "", "unrest_rate is missing"),
         ("period_ms = 1", "period_ms = 1\nperiod = 2", "unknown key period"),
         ("period_ms = 1", "period_ms = true", "period_ms is True, but it must be a number"),
         ("period_ms = 1", "period_ms = inf", "period_ms is inf"),

@@ -89,6 +89,7 @@ class Parameter:
 class Group:
     name: str
     struct: str
+    title: str
     description: str
     count: int
     parameters: tuple[Parameter, ...]
@@ -233,8 +234,9 @@ def _parameter(entry: dict[str, Any], count: int) -> Parameter:
 def _group(entry: dict[str, Any]) -> Group:
     parameters = tuple(_parameter(parameter, entry["count"]) for parameter in entry["parameters"])
     if entry["name"] == "" and entry["count"] != 1:
-        raise DeclarationError("parameters.toml: the group without a name must have the count 1.")
-    return Group(entry["name"], entry.get("struct", ""), entry["description"], entry["count"], parameters)
+        raise DeclarationError("parameters.toml: a group without a name must have the count 1.")
+    title = entry["title"] if entry["name"] == "" else f"{entry['name']}0 .. {entry['name']}{entry['count'] - 1}"
+    return Group(entry["name"], entry.get("struct", ""), title, entry["description"], entry["count"], parameters)
 
 
 def _schema_hash(

@@ -27,6 +27,7 @@ void App::take_running_set() {
   sampling_.configure(table);
   drive_.configure(table);
   supervisor_.set_limits({table.enable_limit, table.tracking_limit, table.tracking_ms, table.soft_start_ms});
+  supervisor_.set_unrest_limits({table.unrest_amplitude, table.unrest_rate, table.unrest_time});
 }
 
 void App::tick() {

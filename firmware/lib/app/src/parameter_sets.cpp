@@ -31,6 +31,15 @@ void ParameterSets::begin_apply(uint16_t crc) {
   step_ = Step::crc;
 }
 
+void ParameterSets::begin_safe() {
+  params::Table& table = sets_.staged();
+  table = sets_.running();
+  for (uint8_t i = 0; i < hal::joint_count; ++i) params::make_safe(table.joint[i], i);
+  safe_ = Safe::begun;
+  at_ = 0;
+  step_ = Step::joints;
+}
+
 ParameterSets::Progress ParameterSets::end(Progress how) {
   step_ = Step::none;
   return how;
@@ -63,7 +72,10 @@ ParameterSets::Progress ParameterSets::work_on_apply(Controllers& controllers) {
       if (at_ == unfit_.joint) return end(Progress::refused);
       controllers.take(sets_.running(), at_++);
       break;
-    case Step::finish: sets_.apply(); return end(Progress::applied);
+    case Step::finish:
+      sets_.apply();
+      safe_ = safe_ == Safe::begun ? Safe::applied : Safe::no;
+      return end(Progress::applied);
     case Step::none: break;
   }
   return Progress::going_on;

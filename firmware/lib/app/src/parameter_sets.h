@@ -39,6 +39,12 @@ class ParameterSets {
   enum class Progress : uint8_t { going_on, applied, crc_differs, inconsistent, refused };
   void begin_apply(uint16_t crc);
   bool applying() const { return step_ != Step::none; }
+  // The same for the safe set, by the board itself: the running set with the controllers of the defaults, and with no
+  // gain and no voltage above the running one. The staged set is lost. Not while a set is being saved or applied.
+  enum class Safe : uint8_t { no, begun, applied, runs };
+  void begin_safe();
+  Safe safe() const { return safe_; }
+  void safe_runs() { safe_ = Safe::runs; }
   Progress work_on_apply(Controllers& controllers);
   // What was wrong: the CRC of the staged set, the index of the parameter that contradicts another, the joint.
   uint16_t staged_crc() const { return apply_crc_; }
@@ -60,6 +66,7 @@ class ParameterSets {
   params::Store<HalEeprom> store_{eeprom_};
   uint16_t apply_crc_ = 0;  // the CRC that the host wants, then the one that was found
   Step step_ = Step::none;
+  Safe safe_ = Safe::no;
   uint8_t at_ = 0;  // the joint that is next, or the parameter that does not fit
   Unfit unfit_ = {0, fuzzy_pdi::Refusal::none};
   wire::ParamSource source_ = wire::ParamSource::defaults;

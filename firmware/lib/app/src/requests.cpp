@@ -28,6 +28,7 @@ uint16_t pair(uint8_t high, uint16_t low) { return static_cast<uint16_t>(high <<
 
 bool App::service() {
   if (lead_.on() && work_on_lead()) return true;
+  if (drivers_on_ && looked_at_ != static_cast<uint8_t>(tick_)) look_for_unrest();
   const uint16_t age_us = hal::tick_age_us();
   const bool late_in_tick = age_us > latest_start_us;
   if (late_in_tick && heard_this_tick_) return false;
@@ -39,6 +40,7 @@ bool App::service() {
     return true;
   }
   if (excused_) return false;  // a set was applied: the next request must be judged by what a tick has seen with it
+  if (sets_.safe() == ParameterSets::Safe::applied) restart_safe();
   if (!heard_this_tick_ && hal::rx_available()) {
     receive();  // once in every tick, whatever else there is to do: a stop must get through
     return true;
@@ -76,6 +78,23 @@ bool App::work_on_lead() {
   sampling_.configure(sets_.running());
   see_distances();
   return true;
+}
+
+// At one joint after each tick.
+__attribute__((noinline)) void App::look_for_unrest() {
+  looked_at_ = static_cast<uint8_t>(tick_);
+  const uint8_t joint = looked_at_ % hal::joint_count;
+  supervisor_.look(joint, sampling_.reference(joint), sampling_.error(joint));
+  if (supervisor_.motors_on()) return;
+  follow_supervisor();
+  const bool can = !lead_.on() && sets_.save_state() != wire::SaveState::saving;
+  if (can && sets_.running().unrest_action == 1 && sets_.safe() == ParameterSets::Safe::no) sets_.begin_safe();
+}
+
+void App::restart_safe() {
+  sets_.safe_runs();
+  supervisor_.restart(seen_);
+  follow_supervisor();
 }
 
 void App::see_distances() {
@@ -235,6 +254,7 @@ void App::work_on_apply() {
     case ParameterSets::Progress::refused: refuse_set(); break;
     case ParameterSets::Progress::applied:
       take_running_set();
+      if (sets_.safe() == ParameterSets::Safe::applied) return;  // no host waits for an answer
       for (uint16_t& distance : seen_.distance) distance = not_seen;
       supervisor_.params_mended();
       reply(wire::ParamApplyReply{sets_.crc()});
@@ -280,10 +300,8 @@ void App::send_sample() {
   sample.state = state_on_link();
   sample.fault = on_link(supervisor_.fault());
   for (uint8_t i = 0; i < hal::joint_count; ++i) {
-    // When the host leads, the reference is already that of the next tick. This tick's follows from the controllers'
-    // error.
-    sample.leader[i] =
-        lead_.on() ? static_cast<int16_t>(sampling_.follower(i) + sampling_.error(i)) : sampling_.leader(i);
+    // When the host leads, sampling_.leader() is already that of the next tick.
+    sample.leader[i] = lead_.on() ? sampling_.reference(i) : sampling_.leader(i);
     sample.follower[i] = sampling_.follower(i);
     sample.voltage[i] = controllers_.volts_mv(i);
   }

@@ -19,6 +19,8 @@ class Sampling {
   int16_t follower(uint8_t joint) const { return signals_.joint[joint].follower_angle; }
   // Reference minus follower; the reference is the leader within the joint's limits.
   int16_t error(uint8_t joint) const { return signals_.joint[joint].error; }
+  // Of the last tick, also when the host's reference has moved on since.
+  int16_t reference(uint8_t joint) const { return static_cast<int16_t>(follower(joint) + error(joint)); }
   int16_t within_limits(uint8_t joint, int16_t angle) const;
   // Between reference and follower, as they are now. The last tick may have seen another reference.
   uint16_t distance(uint8_t joint) const;

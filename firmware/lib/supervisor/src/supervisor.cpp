@@ -22,7 +22,7 @@ void Supervisor::begin(bool after_watchdog, bool params_ok) {
 
 void Supervisor::set_limits(const Limits& limits) {
   limits_ = limits;
-  tracking_limit_ = limits.tracking_limit ? limits.tracking_limit : UINT16_MAX;
+  if (limits.tracking_limit == 0) limits_.tracking_limit = UINT16_MAX;
 }
 
 void Supervisor::tick(const Observation& seen) {
@@ -51,8 +51,30 @@ void Supervisor::watch(const Observation& seen) {
   if (lease_ && --lease_ == 0) switch_off(State::disabled, StopReason::lease);
 }
 
+void Supervisor::params_mended() {
+  params_ok_ = true;
+  if (state_ == State::disabled) forget_fault();
+}
+
+void Supervisor::forget_fault() {
+  fault_ = Fault::none;
+  fault_where_ = nowhere;
+}
+
+bool Supervisor::restart(const Observation& seen) {
+  if (fault_ != Fault::unrest || state_ != State::fault) return false;
+  state_ = State::disabled;
+  if (enable(lease_, seen).answer == Answer::ok) return true;
+  state_ = State::fault;
+  return false;
+}
+
 void Supervisor::bytes_lost(uint16_t tick) {
   if (motors_on() && overruns_.lost(tick)) raise(Fault::flood, nowhere);
+}
+
+void Supervisor::look(uint8_t joint, int16_t reference, int16_t error) {
+  if (motors_on() && unrest_.look(joint, reference, error)) raise(Fault::unrest, joint);
 }
 
 // One tick at a rail may be noise; three in a row are a broken wire. Most ticks see no rail and have none to remember.
@@ -73,7 +95,7 @@ __attribute__((noinline)) void Supervisor::remember_rails(const Observation& see
 // The joint that has been beyond the tracking limit for too long, if there is one.
 uint8_t Supervisor::lost_joint(const Observation& seen) {
   static_assert(joint_count == 4, "joints 0..3 below");
-  const uint16_t limit = tracking_limit_;
+  const uint16_t limit = limits_.tracking_limit;
   uint8_t far = 0;
   if (seen.distance[0] > limit) far = 1;
   if (seen.distance[1] > limit) far |= 2;
@@ -100,7 +122,6 @@ void Supervisor::switch_off(State next, StopReason reason) {
   state_ = next;
   stop_reason_ = reason;
   soft_start_.stop();
-  lease_ = 0;
 }
 
 void Supervisor::raise(Fault fault, uint8_t where) {
@@ -127,6 +148,7 @@ Reply Supervisor::enable(uint16_t lease_ms, const Observation& seen) {
   state_ = State::soft_start;
   soft_start_.start(limits_.soft_start_ms);
   overruns_.forget();
+  unrest_.forget();
   lease_ = lease_ms;
   return {Answer::ok, nowhere, 0};
 }
@@ -148,11 +170,10 @@ Reply Supervisor::clear_fault(const Observation& seen) {
   if (fault_ == Fault::late_tick && seen.late) return {Answer::in_fault, nowhere, static_cast<uint16_t>(fault_)};
   if (fault_ == Fault::tracking) {
     const uint16_t distance = seen.distance[fault_where_];
-    if (distance > tracking_limit_) return {Answer::too_far, fault_where_, distance};
+    if (distance > limits_.tracking_limit) return {Answer::too_far, fault_where_, distance};
   }
   state_ = State::disabled;
-  fault_ = Fault::none;
-  fault_where_ = nowhere;
+  forget_fault();
   return {Answer::ok, nowhere, 0};
 }
 

@@ -4,6 +4,7 @@
 #include <stdint.h>
 
 #include "overruns.h"
+#include "unrest.h"
 
 namespace supervisor {
 
@@ -13,7 +14,7 @@ constexpr uint8_t nowhere = 255;  // fault_where when the fault has no pot or jo
 // The numbers go over the link; app/src/on_link.h checks that they are the same there.
 enum class State : uint8_t { boot, disabled, soft_start, following, fault };
 enum class StopReason : uint8_t { none, host, lease, fault, reset };
-enum class Fault : uint8_t { none, pot_low, pot_high, late_tick, tracking, watchdog, params, flood };
+enum class Fault : uint8_t { none, pot_low, pot_high, late_tick, tracking, watchdog, params, flood, unrest };
 
 struct Limits {
   uint16_t enable_limit;    // q12 rad
@@ -45,11 +46,16 @@ class Supervisor {
   // before.
   void begin(bool after_watchdog, bool params_ok);
   void set_limits(const Limits& limits);  // only while the motors are off
-  void params_mended() { params_ok_ = true; }
+  void set_unrest_limits(const UnrestLimits& limits) { unrest_.configure(limits); }
+  void params_mended();
 
   void tick(const Observation& seen);
   // Bytes of the link were lost in this tick: a stop may have been among them.
   void bytes_lost(uint16_t tick);
+  // Between ticks, the next joint after each. Reference and error in q12 rad.
+  void look(uint8_t joint, int16_t reference, int16_t error);
+  // After unrest: starts the motors again, within the lease as it was. The fault stays to be seen. False when refused.
+  bool restart(const Observation& seen);
 
   // enable() and clear_fault() judge by what the last tick has seen. enable() renews the lease when the motors are on.
   Reply enable(uint16_t lease_ms, const Observation& seen);
@@ -68,6 +74,7 @@ class Supervisor {
  private:
   void switch_off(State next, StopReason reason);
   void raise(Fault fault, uint8_t where);
+  void forget_fault();
   void watch(const Observation& seen);
   uint8_t lost_joint(const Observation& seen);
   uint8_t count_lost(uint8_t far);
@@ -76,16 +83,16 @@ class Supervisor {
 
   static constexpr uint8_t boot_ticks = 20;  // meanwhile the filters settle and bad pots are found
 
-  Limits limits_ = {};
+  Limits limits_ = {0, UINT16_MAX, 0, 0};     // a tracking limit of UINT16_MAX: no distance is beyond it
   uint8_t low_[2] = {}, high_[2] = {};        // rail masks of the two ticks before
   uint8_t any_rail_ = 0;                      // not 0 when one of them has a bit set
   uint8_t steady_low_ = 0, steady_high_ = 0;  // at the rail for three ticks
-  uint16_t tracking_limit_ = UINT16_MAX;      // without a check no distance is beyond it
   uint16_t lost_ticks_[joint_count] = {};     // time beyond the tracking limit
   uint8_t far_ = 0;                           // joints whose lost_ticks_ count
   signal_chain::SoftStart soft_start_;
   Overruns overruns_;
-  uint16_t lease_ = 0;  // ticks, 0 = until stop
+  Unrest unrest_;
+  uint16_t lease_ = 0;  // ticks, 0 = until stop; it stays after a fault, for restart()
   uint8_t boot_left_ = boot_ticks;
   bool params_ok_ = true;
   State state_ = State::boot;

@@ -9,8 +9,8 @@
 
 namespace golden {
 
-constexpr uint8_t default_table[] = {0x01, 0x98, 0x3A, 0xCD, 0x0C, 0xE8, 0x03, 0x66, 0x0E, 0xC8, 0x00, 0x01, 0x04, 0xCD, 0xEC, 0xCD, 0xEC, 0x33, 0x13, 0x33, 0x13, 0x9A, 0xF9, 0x9A, 0xF9, 0x66, 0x06, 0x66, 0x06, 0x54, 0x83, 0x00, 0x00, 0xF6, 0x28, 0x00, 0x00, 0x21, 0x50, 0x00, 0x00, 0x98, 0x3A, 0x01, 0x00, 0xD8, 0x00, 0x28, 0xCD, 0xEC, 0xCD, 0xEC, 0x33, 0x13, 0x33, 0x13, 0x9A, 0xF9, 0x9A, 0xF9, 0x66, 0x06, 0x66, 0x06, 0x0A, 0x97, 0x00, 0x00, 0xA2, 0x25, 0x00, 0x00, 0x75, 0x33, 0x00, 0x00, 0x1E, 0x2D, 0x01, 0x00, 0xD8, 0x00, 0x28, 0xCD, 0xEC, 0xCD, 0xEC, 0x33, 0x13, 0x33, 0x13, 0x9A, 0xF9, 0x9A, 0xF9, 0x66, 0x06, 0x66, 0x06, 0x48, 0xA1, 0x00, 0x00, 0x77, 0x3E, 0x00, 0x00, 0x42, 0x40, 0x00, 0x00, 0x5E, 0x33, 0x01, 0x00, 0xD8, 0x00, 0x28, 0xCD, 0xEC, 0xCD, 0xEC, 0x33, 0x13, 0x33, 0x13, 0x9A, 0xF9, 0x9A, 0xF9, 0x66, 0x06, 0x66, 0x06, 0x31, 0xC8, 0x00, 0x00, 0x44, 0x2B, 0x00, 0x00, 0xA6, 0x3B, 0x00, 0x00, 0xA4, 0x38, 0x01, 0x00, 0xD8, 0x00, 0x28, 0xF8, 0x1F, 0xEE, 0x29, 0xF8, 0x1F, 0xEE, 0x29, 0xF8, 0x1F, 0xEE, 0x29, 0xF8, 0x1F, 0xEE, 0x29, 0xF8, 0x1F, 0xEE, 0x29, 0xF8, 0x1F, 0xEE, 0x29, 0xF8, 0x1F, 0xEE, 0x29, 0xF8, 0x1F, 0xEE, 0x29};
-constexpr uint16_t default_crc = 0x64E2;
+constexpr uint8_t default_table[] = {0x01, 0x98, 0x3A, 0xCD, 0x0C, 0xE8, 0x03, 0x66, 0x0E, 0xC8, 0x00, 0x01, 0x04, 0xCD, 0xEC, 0xCD, 0xEC, 0x33, 0x13, 0x33, 0x13, 0x9A, 0xF9, 0x9A, 0xF9, 0x66, 0x06, 0x66, 0x06, 0x54, 0x83, 0x00, 0x00, 0xF6, 0x28, 0x00, 0x00, 0x21, 0x50, 0x00, 0x00, 0x98, 0x3A, 0x01, 0x00, 0xD8, 0x00, 0x28, 0xCD, 0xEC, 0xCD, 0xEC, 0x33, 0x13, 0x33, 0x13, 0x9A, 0xF9, 0x9A, 0xF9, 0x66, 0x06, 0x66, 0x06, 0x0A, 0x97, 0x00, 0x00, 0xA2, 0x25, 0x00, 0x00, 0x75, 0x33, 0x00, 0x00, 0x1E, 0x2D, 0x01, 0x00, 0xD8, 0x00, 0x28, 0xCD, 0xEC, 0xCD, 0xEC, 0x33, 0x13, 0x33, 0x13, 0x9A, 0xF9, 0x9A, 0xF9, 0x66, 0x06, 0x66, 0x06, 0x48, 0xA1, 0x00, 0x00, 0x77, 0x3E, 0x00, 0x00, 0x42, 0x40, 0x00, 0x00, 0x5E, 0x33, 0x01, 0x00, 0xD8, 0x00, 0x28, 0xCD, 0xEC, 0xCD, 0xEC, 0x33, 0x13, 0x33, 0x13, 0x9A, 0xF9, 0x9A, 0xF9, 0x66, 0x06, 0x66, 0x06, 0x31, 0xC8, 0x00, 0x00, 0x44, 0x2B, 0x00, 0x00, 0xA6, 0x3B, 0x00, 0x00, 0xA4, 0x38, 0x01, 0x00, 0xD8, 0x00, 0x28, 0xF8, 0x1F, 0xEE, 0x29, 0xF8, 0x1F, 0xEE, 0x29, 0xF8, 0x1F, 0xEE, 0x29, 0xF8, 0x1F, 0xEE, 0x29, 0xF8, 0x1F, 0xEE, 0x29, 0xF8, 0x1F, 0xEE, 0x29, 0xF8, 0x1F, 0xEE, 0x29, 0xF8, 0x1F, 0xEE, 0x29, 0x0A, 0x06, 0x0B, 0x00};
+constexpr uint16_t default_crc = 0x5B83;
 
 struct Range {
   int32_t minimum;
@@ -104,6 +104,10 @@ constexpr Range ranges[] = {  // in index order
     {-16384, 16384, 10734, true},
     {0, 16368, 8184, false},
     {-16384, 16384, 10734, true},
+    {0, 205, 10, false},
+    {1, 10, 6, false},
+    {2, 60, 11, false},
+    {0, 1, 0, false},
 };
 
 // Calls visit(name, seq, message, payload, payload_size, wire, wire_size) for every vector.
@@ -218,7 +222,7 @@ void for_each(Visit visit) {
     wire::StatusReply message{};
     message.state = static_cast<wire::State>(4);
     message.stop_reason = static_cast<wire::StopReason>(4);
-    message.fault = static_cast<wire::Fault>(7);
+    message.fault = static_cast<wire::Fault>(8);
     message.fault_where = 255;
     message.tick = 4294967295u;
     message.late_ticks = 65535;
@@ -228,8 +232,8 @@ void for_each(Visit visit) {
     message.no_rule = 65535;
     message.tick_us_max = 65535;
     message.save_state = static_cast<wire::SaveState>(3);
-    const uint8_t payload[] = {0x04, 0x04, 0x07, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x03};
-    const uint8_t wire_bytes[] = {0x1A, 0x82, 0xFF, 0x04, 0x04, 0x07, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x03, 0x6E, 0x88, 0x00};
+    const uint8_t payload[] = {0x04, 0x04, 0x08, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x03};
+    const uint8_t wire_bytes[] = {0x1A, 0x82, 0xFF, 0x04, 0x04, 0x08, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x03, 0x4F, 0x22, 0x00};
     visit("StatusReply", 255, message, payload, size_t{21}, wire_bytes, size_t{27});
   }
   {
@@ -254,37 +258,37 @@ void for_each(Visit visit) {
     wire::StatusReply message{};
     message.state = static_cast<wire::State>(3);
     message.stop_reason = static_cast<wire::StopReason>(4);
-    message.fault = static_cast<wire::Fault>(4);
+    message.fault = static_cast<wire::Fault>(8);
     message.fault_where = 154;
-    message.tick = 91747024u;
-    message.late_ticks = 1216;
-    message.frames_bad = 22687;
-    message.rx_overruns = 27618;
-    message.telemetry_dropped = 4694;
-    message.no_rule = 46838;
-    message.tick_us_max = 42634;
-    message.save_state = static_cast<wire::SaveState>(3);
-    const uint8_t payload[] = {0x03, 0x04, 0x04, 0x9A, 0xD0, 0xF2, 0x77, 0x05, 0xC0, 0x04, 0x9F, 0x58, 0xE2, 0x6B, 0x56, 0x12, 0xF6, 0xB6, 0x8A, 0xA6, 0x03};
-    const uint8_t wire_bytes[] = {0x1A, 0x82, 0xDD, 0x03, 0x04, 0x04, 0x9A, 0xD0, 0xF2, 0x77, 0x05, 0xC0, 0x04, 0x9F, 0x58, 0xE2, 0x6B, 0x56, 0x12, 0xF6, 0xB6, 0x8A, 0xA6, 0x03, 0x4C, 0x4B, 0x00};
-    visit("StatusReply", 221, message, payload, size_t{21}, wire_bytes, size_t{27});
+    message.tick = 4005053597u;
+    message.late_ticks = 65303;
+    message.frames_bad = 1216;
+    message.rx_overruns = 22687;
+    message.telemetry_dropped = 27618;
+    message.no_rule = 4694;
+    message.tick_us_max = 46838;
+    message.save_state = static_cast<wire::SaveState>(2);
+    const uint8_t payload[] = {0x03, 0x04, 0x08, 0x9A, 0x9D, 0x44, 0xB8, 0xEE, 0x17, 0xFF, 0xC0, 0x04, 0x9F, 0x58, 0xE2, 0x6B, 0x56, 0x12, 0xF6, 0xB6, 0x02};
+    const uint8_t wire_bytes[] = {0x1A, 0x82, 0xF1, 0x03, 0x04, 0x08, 0x9A, 0x9D, 0x44, 0xB8, 0xEE, 0x17, 0xFF, 0xC0, 0x04, 0x9F, 0x58, 0xE2, 0x6B, 0x56, 0x12, 0xF6, 0xB6, 0x02, 0x11, 0xCE, 0x00};
+    visit("StatusReply", 241, message, payload, size_t{21}, wire_bytes, size_t{27});
   }
   {
     wire::StatusReply message{};
     message.state = static_cast<wire::State>(3);
-    message.stop_reason = static_cast<wire::StopReason>(1);
-    message.fault = static_cast<wire::Fault>(7);
-    message.fault_where = 65;
-    message.tick = 23413582u;
-    message.late_ticks = 42561;
-    message.frames_bad = 15460;
-    message.rx_overruns = 60590;
-    message.telemetry_dropped = 19849;
-    message.no_rule = 41467;
-    message.tick_us_max = 15518;
-    message.save_state = static_cast<wire::SaveState>(3);
-    const uint8_t payload[] = {0x03, 0x01, 0x07, 0x41, 0x4E, 0x43, 0x65, 0x01, 0x41, 0xA6, 0x64, 0x3C, 0xAE, 0xEC, 0x89, 0x4D, 0xFB, 0xA1, 0x9E, 0x3C, 0x03};
-    const uint8_t wire_bytes[] = {0x1A, 0x82, 0x8D, 0x03, 0x01, 0x07, 0x41, 0x4E, 0x43, 0x65, 0x01, 0x41, 0xA6, 0x64, 0x3C, 0xAE, 0xEC, 0x89, 0x4D, 0xFB, 0xA1, 0x9E, 0x3C, 0x03, 0xD0, 0x0C, 0x00};
-    visit("StatusReply", 141, message, payload, size_t{21}, wire_bytes, size_t{27});
+    message.stop_reason = static_cast<wire::StopReason>(3);
+    message.fault = static_cast<wire::Fault>(3);
+    message.fault_where = 236;
+    message.tick = 2877108944u;
+    message.late_ticks = 43449;
+    message.frames_bad = 42561;
+    message.rx_overruns = 15460;
+    message.telemetry_dropped = 60590;
+    message.no_rule = 19849;
+    message.tick_us_max = 41467;
+    message.save_state = static_cast<wire::SaveState>(0);
+    const uint8_t payload[] = {0x03, 0x03, 0x03, 0xEC, 0xD0, 0x32, 0x7D, 0xAB, 0xB9, 0xA9, 0x41, 0xA6, 0x64, 0x3C, 0xAE, 0xEC, 0x89, 0x4D, 0xFB, 0xA1, 0x00};
+    const uint8_t wire_bytes[] = {0x17, 0x82, 0xD0, 0x03, 0x03, 0x03, 0xEC, 0xD0, 0x32, 0x7D, 0xAB, 0xB9, 0xA9, 0x41, 0xA6, 0x64, 0x3C, 0xAE, 0xEC, 0x89, 0x4D, 0xFB, 0xA1, 0x03, 0x9A, 0x99, 0x00};
+    visit("StatusReply", 208, message, payload, size_t{21}, wire_bytes, size_t{27});
   }
   {
     wire::ParamGetRequest message{};
@@ -302,24 +306,24 @@ void for_each(Visit visit) {
   }
   {
     wire::ParamGetRequest message{};
-    message.index = 23889;
-    const uint8_t payload[] = {0x51, 0x5D};
-    const uint8_t wire_bytes[] = {0x07, 0x03, 0x66, 0x51, 0x5D, 0x01, 0x80, 0x00};
-    visit("ParamGetRequest", 102, message, payload, size_t{2}, wire_bytes, size_t{8});
+    message.index = 59608;
+    const uint8_t payload[] = {0xD8, 0xE8};
+    const uint8_t wire_bytes[] = {0x07, 0x03, 0x5D, 0xD8, 0xE8, 0x2B, 0xE3, 0x00};
+    visit("ParamGetRequest", 93, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::ParamGetRequest message{};
-    message.index = 60010;
-    const uint8_t payload[] = {0x6A, 0xEA};
-    const uint8_t wire_bytes[] = {0x07, 0x03, 0x8F, 0x6A, 0xEA, 0xF2, 0xB0, 0x00};
-    visit("ParamGetRequest", 143, message, payload, size_t{2}, wire_bytes, size_t{8});
+    message.index = 26360;
+    const uint8_t payload[] = {0xF8, 0x66};
+    const uint8_t wire_bytes[] = {0x07, 0x03, 0xEA, 0xF8, 0x66, 0xE4, 0xEE, 0x00};
+    visit("ParamGetRequest", 234, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::ParamGetRequest message{};
-    message.index = 3284;
-    const uint8_t payload[] = {0xD4, 0x0C};
-    const uint8_t wire_bytes[] = {0x07, 0x03, 0xFB, 0xD4, 0x0C, 0xD0, 0x14, 0x00};
-    visit("ParamGetRequest", 251, message, payload, size_t{2}, wire_bytes, size_t{8});
+    message.index = 36638;
+    const uint8_t payload[] = {0x1E, 0x8F};
+    const uint8_t wire_bytes[] = {0x07, 0x03, 0x0C, 0x1E, 0x8F, 0x66, 0x2A, 0x00};
+    visit("ParamGetRequest", 12, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::ParamGetReply message{};
@@ -339,27 +343,27 @@ void for_each(Visit visit) {
   }
   {
     wire::ParamGetReply message{};
-    message.index = 43664;
-    message.value = -335806441;
-    const uint8_t payload[] = {0x90, 0xAA, 0x17, 0x00, 0xFC, 0xEB};
-    const uint8_t wire_bytes[] = {0x06, 0x83, 0x60, 0x90, 0xAA, 0x17, 0x05, 0xFC, 0xEB, 0xDD, 0x45, 0x00};
-    visit("ParamGetReply", 96, message, payload, size_t{6}, wire_bytes, size_t{12});
+    message.index = 18059;
+    message.value = -716673369;
+    const uint8_t payload[] = {0x8B, 0x46, 0xA7, 0x6E, 0x48, 0xD5};
+    const uint8_t wire_bytes[] = {0x0B, 0x83, 0x5F, 0x8B, 0x46, 0xA7, 0x6E, 0x48, 0xD5, 0x57, 0x8B, 0x00};
+    visit("ParamGetReply", 95, message, payload, size_t{6}, wire_bytes, size_t{12});
   }
   {
     wire::ParamGetReply message{};
-    message.index = 63100;
-    message.value = -1917030696;
-    const uint8_t payload[] = {0x7C, 0xF6, 0xD8, 0x6E, 0xBC, 0x8D};
-    const uint8_t wire_bytes[] = {0x0B, 0x83, 0x8E, 0x7C, 0xF6, 0xD8, 0x6E, 0xBC, 0x8D, 0xF8, 0x97, 0x00};
-    visit("ParamGetReply", 142, message, payload, size_t{6}, wire_bytes, size_t{12});
+    message.index = 24769;
+    message.value = 1810876892;
+    const uint8_t payload[] = {0xC1, 0x60, 0xDC, 0xC9, 0xEF, 0x6B};
+    const uint8_t wire_bytes[] = {0x0B, 0x83, 0x1B, 0xC1, 0x60, 0xDC, 0xC9, 0xEF, 0x6B, 0xC4, 0x18, 0x00};
+    visit("ParamGetReply", 27, message, payload, size_t{6}, wire_bytes, size_t{12});
   }
   {
     wire::ParamGetReply message{};
-    message.index = 31910;
-    message.value = 10742708;
-    const uint8_t payload[] = {0xA6, 0x7C, 0xB4, 0xEB, 0xA3, 0x00};
-    const uint8_t wire_bytes[] = {0x08, 0x83, 0x31, 0xA6, 0x7C, 0xB4, 0xEB, 0xA3, 0x03, 0x8F, 0x3C, 0x00};
-    visit("ParamGetReply", 49, message, payload, size_t{6}, wire_bytes, size_t{12});
+    message.index = 58900;
+    message.value = 1202465966;
+    const uint8_t payload[] = {0x14, 0xE6, 0xAE, 0x2C, 0xAC, 0x47};
+    const uint8_t wire_bytes[] = {0x0B, 0x83, 0x27, 0x14, 0xE6, 0xAE, 0x2C, 0xAC, 0x47, 0x6F, 0x42, 0x00};
+    visit("ParamGetReply", 39, message, payload, size_t{6}, wire_bytes, size_t{12});
   }
   {
     wire::ParamSetRequest message{};
@@ -379,27 +383,27 @@ void for_each(Visit visit) {
   }
   {
     wire::ParamSetRequest message{};
-    message.index = 30728;
-    message.value = -989689899;
-    const uint8_t payload[] = {0x08, 0x78, 0xD5, 0x87, 0x02, 0xC5};
-    const uint8_t wire_bytes[] = {0x0B, 0x04, 0xA4, 0x08, 0x78, 0xD5, 0x87, 0x02, 0xC5, 0x74, 0x6D, 0x00};
-    visit("ParamSetRequest", 164, message, payload, size_t{6}, wire_bytes, size_t{12});
+    message.index = 10807;
+    message.value = 653879893;
+    const uint8_t payload[] = {0x37, 0x2A, 0x55, 0x6A, 0xF9, 0x26};
+    const uint8_t wire_bytes[] = {0x0B, 0x04, 0x8A, 0x37, 0x2A, 0x55, 0x6A, 0xF9, 0x26, 0x1A, 0xB7, 0x00};
+    visit("ParamSetRequest", 138, message, payload, size_t{6}, wire_bytes, size_t{12});
   }
   {
     wire::ParamSetRequest message{};
-    message.index = 13777;
-    message.value = -1224434842;
-    const uint8_t payload[] = {0xD1, 0x35, 0x66, 0x9B, 0x04, 0xB7};
-    const uint8_t wire_bytes[] = {0x0B, 0x04, 0x78, 0xD1, 0x35, 0x66, 0x9B, 0x04, 0xB7, 0x49, 0x0A, 0x00};
-    visit("ParamSetRequest", 120, message, payload, size_t{6}, wire_bytes, size_t{12});
+    message.index = 50136;
+    message.value = 440574272;
+    const uint8_t payload[] = {0xD8, 0xC3, 0x40, 0xA1, 0x42, 0x1A};
+    const uint8_t wire_bytes[] = {0x09, 0x04, 0x35, 0xD8, 0xC3, 0x40, 0xA1, 0x42, 0x1A, 0x02, 0x56, 0x00};
+    visit("ParamSetRequest", 53, message, payload, size_t{6}, wire_bytes, size_t{12});
   }
   {
     wire::ParamSetRequest message{};
-    message.index = 64981;
-    message.value = 484532669;
-    const uint8_t payload[] = {0xD5, 0xFD, 0xBD, 0x61, 0xE1, 0x1C};
-    const uint8_t wire_bytes[] = {0x0B, 0x04, 0x9F, 0xD5, 0xFD, 0xBD, 0x61, 0xE1, 0x1C, 0x93, 0x45, 0x00};
-    visit("ParamSetRequest", 159, message, payload, size_t{6}, wire_bytes, size_t{12});
+    message.index = 28169;
+    message.value = -1975375699;
+    const uint8_t payload[] = {0x09, 0x6E, 0xAD, 0x28, 0x42, 0x8A};
+    const uint8_t wire_bytes[] = {0x0B, 0x04, 0xFD, 0x09, 0x6E, 0xAD, 0x28, 0x42, 0x8A, 0xAC, 0xC2, 0x00};
+    visit("ParamSetRequest", 253, message, payload, size_t{6}, wire_bytes, size_t{12});
   }
   {
     wire::ParamSetReply message{};
@@ -419,27 +423,27 @@ void for_each(Visit visit) {
   }
   {
     wire::ParamSetReply message{};
-    message.index = 39036;
-    message.value = 1121214660;
-    const uint8_t payload[] = {0x7C, 0x98, 0xC4, 0x60, 0xD4, 0x42};
-    const uint8_t wire_bytes[] = {0x0B, 0x84, 0x76, 0x7C, 0x98, 0xC4, 0x60, 0xD4, 0x42, 0x15, 0xDF, 0x00};
-    visit("ParamSetReply", 118, message, payload, size_t{6}, wire_bytes, size_t{12});
+    message.index = 24887;
+    message.value = 1028561145;
+    const uint8_t payload[] = {0x37, 0x61, 0xF9, 0x98, 0x4E, 0x3D};
+    const uint8_t wire_bytes[] = {0x0B, 0x84, 0x07, 0x37, 0x61, 0xF9, 0x98, 0x4E, 0x3D, 0x49, 0xFA, 0x00};
+    visit("ParamSetReply", 7, message, payload, size_t{6}, wire_bytes, size_t{12});
   }
   {
     wire::ParamSetReply message{};
-    message.index = 53064;
-    message.value = -1997694877;
-    const uint8_t payload[] = {0x48, 0xCF, 0x63, 0x98, 0xED, 0x88};
-    const uint8_t wire_bytes[] = {0x0B, 0x84, 0x68, 0x48, 0xCF, 0x63, 0x98, 0xED, 0x88, 0x8E, 0xB7, 0x00};
-    visit("ParamSetReply", 104, message, payload, size_t{6}, wire_bytes, size_t{12});
+    message.index = 30327;
+    message.value = 1760633884;
+    const uint8_t payload[] = {0x77, 0x76, 0x1C, 0x24, 0xF1, 0x68};
+    const uint8_t wire_bytes[] = {0x0B, 0x84, 0xAA, 0x77, 0x76, 0x1C, 0x24, 0xF1, 0x68, 0x80, 0x6B, 0x00};
+    visit("ParamSetReply", 170, message, payload, size_t{6}, wire_bytes, size_t{12});
   }
   {
     wire::ParamSetReply message{};
-    message.index = 45926;
-    message.value = -110947606;
-    const uint8_t payload[] = {0x66, 0xB3, 0xEA, 0x12, 0x63, 0xF9};
-    const uint8_t wire_bytes[] = {0x0B, 0x84, 0x17, 0x66, 0xB3, 0xEA, 0x12, 0x63, 0xF9, 0xF5, 0x1E, 0x00};
-    visit("ParamSetReply", 23, message, payload, size_t{6}, wire_bytes, size_t{12});
+    message.index = 4571;
+    message.value = -1268770490;
+    const uint8_t payload[] = {0xDB, 0x11, 0x46, 0x19, 0x60, 0xB4};
+    const uint8_t wire_bytes[] = {0x0B, 0x84, 0xF2, 0xDB, 0x11, 0x46, 0x19, 0x60, 0xB4, 0x36, 0x3D, 0x00};
+    visit("ParamSetReply", 242, message, payload, size_t{6}, wire_bytes, size_t{12});
   }
   {
     wire::ParamApplyRequest message{};
@@ -457,6 +461,13 @@ void for_each(Visit visit) {
   }
   {
     wire::ParamApplyRequest message{};
+    message.crc = 41119;
+    const uint8_t payload[] = {0x9F, 0xA0};
+    const uint8_t wire_bytes[] = {0x07, 0x05, 0x8A, 0x9F, 0xA0, 0x21, 0x79, 0x00};
+    visit("ParamApplyRequest", 138, message, payload, size_t{2}, wire_bytes, size_t{8});
+  }
+  {
+    wire::ParamApplyRequest message{};
     message.crc = 53155;
     const uint8_t payload[] = {0xA3, 0xCF};
     const uint8_t wire_bytes[] = {0x07, 0x05, 0x48, 0xA3, 0xCF, 0x07, 0xEC, 0x00};
@@ -468,13 +479,6 @@ void for_each(Visit visit) {
     const uint8_t payload[] = {0x6E, 0x73};
     const uint8_t wire_bytes[] = {0x07, 0x05, 0x7A, 0x6E, 0x73, 0x9D, 0x41, 0x00};
     visit("ParamApplyRequest", 122, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::ParamApplyRequest message{};
-    message.crc = 48045;
-    const uint8_t payload[] = {0xAD, 0xBB};
-    const uint8_t wire_bytes[] = {0x07, 0x05, 0x07, 0xAD, 0xBB, 0x87, 0xC0, 0x00};
-    visit("ParamApplyRequest", 7, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::ParamApplyReply message{};
@@ -492,6 +496,13 @@ void for_each(Visit visit) {
   }
   {
     wire::ParamApplyReply message{};
+    message.param_crc = 15384;
+    const uint8_t payload[] = {0x18, 0x3C};
+    const uint8_t wire_bytes[] = {0x07, 0x85, 0x66, 0x18, 0x3C, 0x73, 0xB1, 0x00};
+    visit("ParamApplyReply", 102, message, payload, size_t{2}, wire_bytes, size_t{8});
+  }
+  {
+    wire::ParamApplyReply message{};
     message.param_crc = 21239;
     const uint8_t payload[] = {0xF7, 0x52};
     const uint8_t wire_bytes[] = {0x07, 0x85, 0x33, 0xF7, 0x52, 0xA9, 0x89, 0x00};
@@ -503,13 +514,6 @@ void for_each(Visit visit) {
     const uint8_t payload[] = {0xB9, 0x54};
     const uint8_t wire_bytes[] = {0x07, 0x85, 0x67, 0xB9, 0x54, 0xA2, 0x45, 0x00};
     visit("ParamApplyReply", 103, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::ParamApplyReply message{};
-    message.param_crc = 42513;
-    const uint8_t payload[] = {0x11, 0xA6};
-    const uint8_t wire_bytes[] = {0x07, 0x85, 0x6D, 0x11, 0xA6, 0xE9, 0xD9, 0x00};
-    visit("ParamApplyReply", 109, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::ParamSaveRequest message{};
@@ -533,6 +537,13 @@ void for_each(Visit visit) {
   }
   {
     wire::ParamSaveReply message{};
+    message.param_crc = 30192;
+    const uint8_t payload[] = {0xF0, 0x75};
+    const uint8_t wire_bytes[] = {0x07, 0x86, 0xE6, 0xF0, 0x75, 0x03, 0x51, 0x00};
+    visit("ParamSaveReply", 230, message, payload, size_t{2}, wire_bytes, size_t{8});
+  }
+  {
+    wire::ParamSaveReply message{};
     message.param_crc = 58410;
     const uint8_t payload[] = {0x2A, 0xE4};
     const uint8_t wire_bytes[] = {0x07, 0x86, 0xD7, 0x2A, 0xE4, 0xE2, 0xCA, 0x00};
@@ -544,13 +555,6 @@ void for_each(Visit visit) {
     const uint8_t payload[] = {0x97, 0xFC};
     const uint8_t wire_bytes[] = {0x07, 0x86, 0x7C, 0x97, 0xFC, 0xE7, 0x7C, 0x00};
     visit("ParamSaveReply", 124, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::ParamSaveReply message{};
-    message.param_crc = 44495;
-    const uint8_t payload[] = {0xCF, 0xAD};
-    const uint8_t wire_bytes[] = {0x07, 0x86, 0xB6, 0xCF, 0xAD, 0x13, 0x50, 0x00};
-    visit("ParamSaveReply", 182, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::ParamDefaultsRequest message{};
@@ -580,6 +584,13 @@ void for_each(Visit visit) {
   }
   {
     wire::EnableRequest message{};
+    message.lease_ms = 13522;
+    const uint8_t payload[] = {0xD2, 0x34};
+    const uint8_t wire_bytes[] = {0x07, 0x08, 0xE8, 0xD2, 0x34, 0x01, 0x0D, 0x00};
+    visit("EnableRequest", 232, message, payload, size_t{2}, wire_bytes, size_t{8});
+  }
+  {
+    wire::EnableRequest message{};
     message.lease_ms = 62705;
     const uint8_t payload[] = {0xF1, 0xF4};
     const uint8_t wire_bytes[] = {0x07, 0x08, 0x53, 0xF1, 0xF4, 0xF6, 0x89, 0x00};
@@ -591,13 +602,6 @@ void for_each(Visit visit) {
     const uint8_t payload[] = {0xBC, 0xA6};
     const uint8_t wire_bytes[] = {0x07, 0x08, 0x66, 0xBC, 0xA6, 0x84, 0xA6, 0x00};
     visit("EnableRequest", 102, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::EnableRequest message{};
-    message.lease_ms = 57566;
-    const uint8_t payload[] = {0xDE, 0xE0};
-    const uint8_t wire_bytes[] = {0x07, 0x08, 0x24, 0xDE, 0xE0, 0x03, 0x90, 0x00};
-    visit("EnableRequest", 36, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::EnableReply message{};
@@ -617,6 +621,13 @@ void for_each(Visit visit) {
     wire::EnableReply message{};
     message.state = static_cast<wire::State>(2);
     const uint8_t payload[] = {0x02};
+    const uint8_t wire_bytes[] = {0x06, 0x88, 0xB9, 0x02, 0xB0, 0xDA, 0x00};
+    visit("EnableReply", 185, message, payload, size_t{1}, wire_bytes, size_t{7});
+  }
+  {
+    wire::EnableReply message{};
+    message.state = static_cast<wire::State>(2);
+    const uint8_t payload[] = {0x02};
     const uint8_t wire_bytes[] = {0x06, 0x88, 0x38, 0x02, 0x19, 0xF2, 0x00};
     visit("EnableReply", 56, message, payload, size_t{1}, wire_bytes, size_t{7});
   }
@@ -626,13 +637,6 @@ void for_each(Visit visit) {
     const uint8_t payload[] = {0x04};
     const uint8_t wire_bytes[] = {0x06, 0x88, 0x58, 0x04, 0xF5, 0x99, 0x00};
     visit("EnableReply", 88, message, payload, size_t{1}, wire_bytes, size_t{7});
-  }
-  {
-    wire::EnableReply message{};
-    message.state = static_cast<wire::State>(2);
-    const uint8_t payload[] = {0x02};
-    const uint8_t wire_bytes[] = {0x06, 0x88, 0x44, 0x02, 0x2D, 0xBF, 0x00};
-    visit("EnableReply", 68, message, payload, size_t{1}, wire_bytes, size_t{7});
   }
   {
     wire::StopRequest message{};
@@ -656,6 +660,13 @@ void for_each(Visit visit) {
   }
   {
     wire::StopReply message{};
+    message.state = static_cast<wire::State>(0);
+    const uint8_t payload[] = {0x00};
+    const uint8_t wire_bytes[] = {0x03, 0x89, 0x3F, 0x03, 0xFC, 0x7C, 0x00};
+    visit("StopReply", 63, message, payload, size_t{1}, wire_bytes, size_t{7});
+  }
+  {
+    wire::StopReply message{};
     message.state = static_cast<wire::State>(4);
     const uint8_t payload[] = {0x04};
     const uint8_t wire_bytes[] = {0x06, 0x89, 0xC8, 0x04, 0x2E, 0xB6, 0x00};
@@ -667,13 +678,6 @@ void for_each(Visit visit) {
     const uint8_t payload[] = {0x04};
     const uint8_t wire_bytes[] = {0x06, 0x89, 0x60, 0x04, 0xF9, 0x22, 0x00};
     visit("StopReply", 96, message, payload, size_t{1}, wire_bytes, size_t{7});
-  }
-  {
-    wire::StopReply message{};
-    message.state = static_cast<wire::State>(4);
-    const uint8_t payload[] = {0x04};
-    const uint8_t wire_bytes[] = {0x06, 0x89, 0x26, 0x04, 0x93, 0x85, 0x00};
-    visit("StopReply", 38, message, payload, size_t{1}, wire_bytes, size_t{7});
   }
   {
     wire::RenewRequest message{};
@@ -691,24 +695,24 @@ void for_each(Visit visit) {
   }
   {
     wire::RenewRequest message{};
-    message.lease_ms = 13753;
-    const uint8_t payload[] = {0xB9, 0x35};
-    const uint8_t wire_bytes[] = {0x07, 0x0A, 0x7D, 0xB9, 0x35, 0x51, 0xB4, 0x00};
-    visit("RenewRequest", 125, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::RenewRequest message{};
-    message.lease_ms = 19571;
-    const uint8_t payload[] = {0x73, 0x4C};
-    const uint8_t wire_bytes[] = {0x07, 0x0A, 0x59, 0x73, 0x4C, 0x76, 0xF8, 0x00};
-    visit("RenewRequest", 89, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::RenewRequest message{};
-    message.lease_ms = 41324;
-    const uint8_t payload[] = {0x6C, 0xA1};
-    const uint8_t wire_bytes[] = {0x07, 0x0A, 0x35, 0x6C, 0xA1, 0xB2, 0x29, 0x00};
+    message.lease_ms = 23710;
+    const uint8_t payload[] = {0x9E, 0x5C};
+    const uint8_t wire_bytes[] = {0x07, 0x0A, 0x35, 0x9E, 0x5C, 0xA3, 0x62, 0x00};
     visit("RenewRequest", 53, message, payload, size_t{2}, wire_bytes, size_t{8});
+  }
+  {
+    wire::RenewRequest message{};
+    message.lease_ms = 32161;
+    const uint8_t payload[] = {0xA1, 0x7D};
+    const uint8_t wire_bytes[] = {0x07, 0x0A, 0x4C, 0xA1, 0x7D, 0xD2, 0x05, 0x00};
+    visit("RenewRequest", 76, message, payload, size_t{2}, wire_bytes, size_t{8});
+  }
+  {
+    wire::RenewRequest message{};
+    message.lease_ms = 22912;
+    const uint8_t payload[] = {0x80, 0x59};
+    const uint8_t wire_bytes[] = {0x07, 0x0A, 0xA1, 0x80, 0x59, 0x83, 0xB6, 0x00};
+    visit("RenewRequest", 161, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::RenewReply message{};
@@ -726,24 +730,24 @@ void for_each(Visit visit) {
   }
   {
     wire::RenewReply message{};
-    message.state = static_cast<wire::State>(2);
-    const uint8_t payload[] = {0x02};
-    const uint8_t wire_bytes[] = {0x06, 0x8A, 0xF7, 0x02, 0x13, 0x9A, 0x00};
-    visit("RenewReply", 247, message, payload, size_t{1}, wire_bytes, size_t{7});
+    message.state = static_cast<wire::State>(0);
+    const uint8_t payload[] = {0x00};
+    const uint8_t wire_bytes[] = {0x03, 0x8A, 0xA3, 0x03, 0x2A, 0x78, 0x00};
+    visit("RenewReply", 163, message, payload, size_t{1}, wire_bytes, size_t{7});
   }
   {
     wire::RenewReply message{};
     message.state = static_cast<wire::State>(3);
     const uint8_t payload[] = {0x03};
-    const uint8_t wire_bytes[] = {0x06, 0x8A, 0x6A, 0x03, 0x85, 0xE4, 0x00};
-    visit("RenewReply", 106, message, payload, size_t{1}, wire_bytes, size_t{7});
+    const uint8_t wire_bytes[] = {0x06, 0x8A, 0xF8, 0x03, 0x0C, 0x9A, 0x00};
+    visit("RenewReply", 248, message, payload, size_t{1}, wire_bytes, size_t{7});
   }
   {
     wire::RenewReply message{};
-    message.state = static_cast<wire::State>(3);
-    const uint8_t payload[] = {0x03};
-    const uint8_t wire_bytes[] = {0x06, 0x8A, 0xA5, 0x03, 0xEF, 0xE2, 0x00};
-    visit("RenewReply", 165, message, payload, size_t{1}, wire_bytes, size_t{7});
+    message.state = static_cast<wire::State>(1);
+    const uint8_t payload[] = {0x01};
+    const uint8_t wire_bytes[] = {0x06, 0x8A, 0xEF, 0x01, 0xAA, 0x20, 0x00};
+    visit("RenewReply", 239, message, payload, size_t{1}, wire_bytes, size_t{7});
   }
   {
     wire::ClearFaultRequest message{};
@@ -767,9 +771,16 @@ void for_each(Visit visit) {
   }
   {
     wire::ClearFaultReply message{};
-    message.state = static_cast<wire::State>(1);
-    const uint8_t payload[] = {0x01};
-    const uint8_t wire_bytes[] = {0x06, 0x8B, 0x37, 0x01, 0x14, 0x8B, 0x00};
+    message.state = static_cast<wire::State>(3);
+    const uint8_t payload[] = {0x03};
+    const uint8_t wire_bytes[] = {0x06, 0x8B, 0x4E, 0x03, 0x97, 0x19, 0x00};
+    visit("ClearFaultReply", 78, message, payload, size_t{1}, wire_bytes, size_t{7});
+  }
+  {
+    wire::ClearFaultReply message{};
+    message.state = static_cast<wire::State>(4);
+    const uint8_t payload[] = {0x04};
+    const uint8_t wire_bytes[] = {0x06, 0x8B, 0x37, 0x04, 0xB1, 0xDB, 0x00};
     visit("ClearFaultReply", 55, message, payload, size_t{1}, wire_bytes, size_t{7});
   }
   {
@@ -778,13 +789,6 @@ void for_each(Visit visit) {
     const uint8_t payload[] = {0x02};
     const uint8_t wire_bytes[] = {0x06, 0x8B, 0x07, 0x02, 0xE2, 0xBE, 0x00};
     visit("ClearFaultReply", 7, message, payload, size_t{1}, wire_bytes, size_t{7});
-  }
-  {
-    wire::ClearFaultReply message{};
-    message.state = static_cast<wire::State>(1);
-    const uint8_t payload[] = {0x01};
-    const uint8_t wire_bytes[] = {0x06, 0x8B, 0x1B, 0x01, 0x9F, 0xC8, 0x00};
-    visit("ClearFaultReply", 27, message, payload, size_t{1}, wire_bytes, size_t{7});
   }
   {
     wire::TelemetryRequest message{};
@@ -802,6 +806,13 @@ void for_each(Visit visit) {
   }
   {
     wire::TelemetryRequest message{};
+    message.every = 56951;
+    const uint8_t payload[] = {0x77, 0xDE};
+    const uint8_t wire_bytes[] = {0x07, 0x0C, 0x50, 0x77, 0xDE, 0x41, 0x2E, 0x00};
+    visit("TelemetryRequest", 80, message, payload, size_t{2}, wire_bytes, size_t{8});
+  }
+  {
+    wire::TelemetryRequest message{};
     message.every = 53030;
     const uint8_t payload[] = {0x26, 0xCF};
     const uint8_t wire_bytes[] = {0x07, 0x0C, 0xC7, 0x26, 0xCF, 0x76, 0xEC, 0x00};
@@ -813,13 +824,6 @@ void for_each(Visit visit) {
     const uint8_t payload[] = {0x8D, 0x57};
     const uint8_t wire_bytes[] = {0x07, 0x0C, 0xCC, 0x8D, 0x57, 0xB2, 0xDF, 0x00};
     visit("TelemetryRequest", 204, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::TelemetryRequest message{};
-    message.every = 33808;
-    const uint8_t payload[] = {0x10, 0x84};
-    const uint8_t wire_bytes[] = {0x07, 0x0C, 0x69, 0x10, 0x84, 0x77, 0x1C, 0x00};
-    visit("TelemetryRequest", 105, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::TelemetryReply message{};
@@ -837,6 +841,13 @@ void for_each(Visit visit) {
   }
   {
     wire::TelemetryReply message{};
+    message.every = 39231;
+    const uint8_t payload[] = {0x3F, 0x99};
+    const uint8_t wire_bytes[] = {0x07, 0x8C, 0xCD, 0x3F, 0x99, 0x57, 0x75, 0x00};
+    visit("TelemetryReply", 205, message, payload, size_t{2}, wire_bytes, size_t{8});
+  }
+  {
+    wire::TelemetryReply message{};
     message.every = 10353;
     const uint8_t payload[] = {0x71, 0x28};
     const uint8_t wire_bytes[] = {0x07, 0x8C, 0x20, 0x71, 0x28, 0x0E, 0x0E, 0x00};
@@ -848,13 +859,6 @@ void for_each(Visit visit) {
     const uint8_t payload[] = {0xB4, 0xC5};
     const uint8_t wire_bytes[] = {0x07, 0x8C, 0x90, 0xB4, 0xC5, 0xD3, 0x35, 0x00};
     visit("TelemetryReply", 144, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::TelemetryReply message{};
-    message.every = 7185;
-    const uint8_t payload[] = {0x11, 0x1C};
-    const uint8_t wire_bytes[] = {0x07, 0x8C, 0xD5, 0x11, 0x1C, 0x51, 0x7B, 0x00};
-    visit("TelemetryReply", 213, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::LeadRequest message{};
@@ -872,6 +876,13 @@ void for_each(Visit visit) {
   }
   {
     wire::LeadRequest message{};
+    message.lease_ms = 9101;
+    const uint8_t payload[] = {0x8D, 0x23};
+    const uint8_t wire_bytes[] = {0x07, 0x0D, 0x80, 0x8D, 0x23, 0xD9, 0xFF, 0x00};
+    visit("LeadRequest", 128, message, payload, size_t{2}, wire_bytes, size_t{8});
+  }
+  {
+    wire::LeadRequest message{};
     message.lease_ms = 10343;
     const uint8_t payload[] = {0x67, 0x28};
     const uint8_t wire_bytes[] = {0x07, 0x0D, 0xA5, 0x67, 0x28, 0xFD, 0xDC, 0x00};
@@ -883,13 +894,6 @@ void for_each(Visit visit) {
     const uint8_t payload[] = {0xC6, 0x6F};
     const uint8_t wire_bytes[] = {0x07, 0x0D, 0x96, 0xC6, 0x6F, 0x64, 0x56, 0x00};
     visit("LeadRequest", 150, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::LeadRequest message{};
-    message.lease_ms = 18904;
-    const uint8_t payload[] = {0xD8, 0x49};
-    const uint8_t wire_bytes[] = {0x07, 0x0D, 0x74, 0xD8, 0x49, 0xED, 0xFC, 0x00};
-    visit("LeadRequest", 116, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::LeadReply message{};
@@ -917,39 +921,39 @@ void for_each(Visit visit) {
   }
   {
     wire::LeadReply message{};
+    message.state = static_cast<wire::State>(3);
+    message.next = 204;
+    message.reference[0] = -28324;
+    message.reference[1] = -18563;
+    message.reference[2] = -28193;
+    message.reference[3] = 4081;
+    const uint8_t payload[] = {0x03, 0xCC, 0x5C, 0x91, 0x7D, 0xB7, 0xDF, 0x91, 0xF1, 0x0F};
+    const uint8_t wire_bytes[] = {0x0F, 0x8D, 0xDC, 0x03, 0xCC, 0x5C, 0x91, 0x7D, 0xB7, 0xDF, 0x91, 0xF1, 0x0F, 0x90, 0xEA, 0x00};
+    visit("LeadReply", 220, message, payload, size_t{10}, wire_bytes, size_t{16});
+  }
+  {
+    wire::LeadReply message{};
+    message.state = static_cast<wire::State>(4);
+    message.next = 140;
+    message.reference[0] = 16007;
+    message.reference[1] = 14971;
+    message.reference[2] = 17405;
+    message.reference[3] = -25925;
+    const uint8_t payload[] = {0x04, 0x8C, 0x87, 0x3E, 0x7B, 0x3A, 0xFD, 0x43, 0xBB, 0x9A};
+    const uint8_t wire_bytes[] = {0x0F, 0x8D, 0x3D, 0x04, 0x8C, 0x87, 0x3E, 0x7B, 0x3A, 0xFD, 0x43, 0xBB, 0x9A, 0xD1, 0xD7, 0x00};
+    visit("LeadReply", 61, message, payload, size_t{10}, wire_bytes, size_t{16});
+  }
+  {
+    wire::LeadReply message{};
     message.state = static_cast<wire::State>(0);
-    message.next = 55;
-    message.reference[0] = -28193;
-    message.reference[1] = 4081;
-    message.reference[2] = 23720;
-    message.reference[3] = 3203;
-    const uint8_t payload[] = {0x00, 0x37, 0xDF, 0x91, 0xF1, 0x0F, 0xA8, 0x5C, 0x83, 0x0C};
-    const uint8_t wire_bytes[] = {0x03, 0x8D, 0xBE, 0x0C, 0x37, 0xDF, 0x91, 0xF1, 0x0F, 0xA8, 0x5C, 0x83, 0x0C, 0x13, 0xEA, 0x00};
-    visit("LeadReply", 190, message, payload, size_t{10}, wire_bytes, size_t{16});
-  }
-  {
-    wire::LeadReply message{};
-    message.state = static_cast<wire::State>(2);
-    message.next = 195;
-    message.reference[0] = -25925;
-    message.reference[1] = -16926;
-    message.reference[2] = -24140;
-    message.reference[3] = 14639;
-    const uint8_t payload[] = {0x02, 0xC3, 0xBB, 0x9A, 0xE2, 0xBD, 0xB4, 0xA1, 0x2F, 0x39};
-    const uint8_t wire_bytes[] = {0x0F, 0x8D, 0x0C, 0x02, 0xC3, 0xBB, 0x9A, 0xE2, 0xBD, 0xB4, 0xA1, 0x2F, 0x39, 0x11, 0xD6, 0x00};
-    visit("LeadReply", 12, message, payload, size_t{10}, wire_bytes, size_t{16});
-  }
-  {
-    wire::LeadReply message{};
-    message.state = static_cast<wire::State>(1);
-    message.next = 231;
-    message.reference[0] = -11328;
-    message.reference[1] = 32465;
-    message.reference[2] = -13064;
-    message.reference[3] = 10;
-    const uint8_t payload[] = {0x01, 0xE7, 0xC0, 0xD3, 0xD1, 0x7E, 0xF8, 0xCC, 0x0A, 0x00};
-    const uint8_t wire_bytes[] = {0x0C, 0x8D, 0xC4, 0x01, 0xE7, 0xC0, 0xD3, 0xD1, 0x7E, 0xF8, 0xCC, 0x0A, 0x03, 0x44, 0x39, 0x00};
-    visit("LeadReply", 196, message, payload, size_t{10}, wire_bytes, size_t{16});
+    message.next = 185;
+    message.reference[0] = -29595;
+    message.reference[1] = -8969;
+    message.reference[2] = 26435;
+    message.reference[3] = -11328;
+    const uint8_t payload[] = {0x00, 0xB9, 0x65, 0x8C, 0xF7, 0xDC, 0x43, 0x67, 0xC0, 0xD3};
+    const uint8_t wire_bytes[] = {0x03, 0x8D, 0xFE, 0x0C, 0xB9, 0x65, 0x8C, 0xF7, 0xDC, 0x43, 0x67, 0xC0, 0xD3, 0x2E, 0x0C, 0x00};
+    visit("LeadReply", 254, message, payload, size_t{10}, wire_bytes, size_t{16});
   }
   {
     wire::LeadPointRequest message{};
@@ -975,36 +979,36 @@ void for_each(Visit visit) {
   }
   {
     wire::LeadPointRequest message{};
-    message.number = 200;
-    message.step[0] = -59;
-    message.step[1] = -92;
-    message.step[2] = 18;
-    message.step[3] = 45;
-    const uint8_t payload[] = {0xC8, 0xC5, 0xA4, 0x12, 0x2D};
-    const uint8_t wire_bytes[] = {0x0A, 0x0E, 0x32, 0xC8, 0xC5, 0xA4, 0x12, 0x2D, 0x7C, 0xA8, 0x00};
-    visit("LeadPointRequest", 50, message, payload, size_t{5}, wire_bytes, size_t{11});
+    message.number = 196;
+    message.step[0] = -62;
+    message.step[1] = 29;
+    message.step[2] = 72;
+    message.step[3] = -59;
+    const uint8_t payload[] = {0xC4, 0xC2, 0x1D, 0x48, 0xC5};
+    const uint8_t wire_bytes[] = {0x0A, 0x0E, 0x24, 0xC4, 0xC2, 0x1D, 0x48, 0xC5, 0x23, 0x18, 0x00};
+    visit("LeadPointRequest", 36, message, payload, size_t{5}, wire_bytes, size_t{11});
   }
   {
     wire::LeadPointRequest message{};
-    message.number = 98;
-    message.step[0] = 86;
-    message.step[1] = 31;
-    message.step[2] = 42;
-    message.step[3] = -72;
-    const uint8_t payload[] = {0x62, 0x56, 0x1F, 0x2A, 0xB8};
-    const uint8_t wire_bytes[] = {0x0A, 0x0E, 0xD8, 0x62, 0x56, 0x1F, 0x2A, 0xB8, 0xE1, 0xC5, 0x00};
-    visit("LeadPointRequest", 216, message, payload, size_t{5}, wire_bytes, size_t{11});
+    message.number = 146;
+    message.step[0] = 45;
+    message.step[1] = -78;
+    message.step[2] = -30;
+    message.step[3] = 86;
+    const uint8_t payload[] = {0x92, 0x2D, 0xB2, 0xE2, 0x56};
+    const uint8_t wire_bytes[] = {0x0A, 0x0E, 0x9F, 0x92, 0x2D, 0xB2, 0xE2, 0x56, 0x5C, 0x78, 0x00};
+    visit("LeadPointRequest", 159, message, payload, size_t{5}, wire_bytes, size_t{11});
   }
   {
     wire::LeadPointRequest message{};
-    message.number = 234;
-    message.step[0] = 80;
-    message.step[1] = -100;
-    message.step[2] = 50;
-    message.step[3] = -89;
-    const uint8_t payload[] = {0xEA, 0x50, 0x9C, 0x32, 0xA7};
-    const uint8_t wire_bytes[] = {0x0A, 0x0E, 0xC6, 0xEA, 0x50, 0x9C, 0x32, 0xA7, 0xAC, 0x53, 0x00};
-    visit("LeadPointRequest", 198, message, payload, size_t{5}, wire_bytes, size_t{11});
+    message.number = 170;
+    message.step[0] = -72;
+    message.step[1] = 88;
+    message.step[2] = 106;
+    message.step[3] = 80;
+    const uint8_t payload[] = {0xAA, 0xB8, 0x58, 0x6A, 0x50};
+    const uint8_t wire_bytes[] = {0x0A, 0x0E, 0x1C, 0xAA, 0xB8, 0x58, 0x6A, 0x50, 0x82, 0x83, 0x00};
+    visit("LeadPointRequest", 28, message, payload, size_t{5}, wire_bytes, size_t{11});
   }
   {
     wire::LeadPointReply message{};
@@ -1024,6 +1028,14 @@ void for_each(Visit visit) {
   }
   {
     wire::LeadPointReply message{};
+    message.next = 198;
+    message.waiting = 241;
+    const uint8_t payload[] = {0xC6, 0xF1};
+    const uint8_t wire_bytes[] = {0x07, 0x8E, 0x03, 0xC6, 0xF1, 0x3E, 0xE1, 0x00};
+    visit("LeadPointReply", 3, message, payload, size_t{2}, wire_bytes, size_t{8});
+  }
+  {
+    wire::LeadPointReply message{};
     message.next = 124;
     message.waiting = 228;
     const uint8_t payload[] = {0x7C, 0xE4};
@@ -1037,14 +1049,6 @@ void for_each(Visit visit) {
     const uint8_t payload[] = {0x66, 0x29};
     const uint8_t wire_bytes[] = {0x07, 0x8E, 0xE2, 0x66, 0x29, 0x34, 0x21, 0x00};
     visit("LeadPointReply", 226, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::LeadPointReply message{};
-    message.next = 202;
-    message.waiting = 179;
-    const uint8_t payload[] = {0xCA, 0xB3};
-    const uint8_t wire_bytes[] = {0x07, 0x8E, 0xEF, 0xCA, 0xB3, 0x85, 0x19, 0x00};
-    visit("LeadPointReply", 239, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::Sample message{};
@@ -1071,7 +1075,7 @@ void for_each(Visit visit) {
     wire::Sample message{};
     message.tick = 4294967295u;
     message.state = static_cast<wire::State>(4);
-    message.fault = static_cast<wire::Fault>(7);
+    message.fault = static_cast<wire::Fault>(8);
     message.leader[0] = 32767;
     message.leader[1] = 32767;
     message.leader[2] = 32767;
@@ -1084,72 +1088,72 @@ void for_each(Visit visit) {
     message.voltage[1] = 32767;
     message.voltage[2] = 32767;
     message.voltage[3] = 32767;
-    const uint8_t payload[] = {0xFF, 0xFF, 0xFF, 0xFF, 0x04, 0x07, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F};
-    const uint8_t wire_bytes[] = {0x23, 0x40, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x04, 0x07, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xB1, 0x40, 0x00};
+    const uint8_t payload[] = {0xFF, 0xFF, 0xFF, 0xFF, 0x04, 0x08, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F};
+    const uint8_t wire_bytes[] = {0x23, 0x40, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x04, 0x08, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0x7E, 0x85, 0x00};
     visit("Sample", 255, message, payload, size_t{30}, wire_bytes, size_t{36});
   }
   {
     wire::Sample message{};
-    message.tick = 567108859u;
+    message.tick = 2006533010u;
     message.state = static_cast<wire::State>(1);
-    message.fault = static_cast<wire::Fault>(7);
-    message.leader[0] = -25698;
-    message.leader[1] = -26732;
-    message.leader[2] = -2191;
-    message.leader[3] = -29237;
-    message.follower[0] = 11510;
-    message.follower[1] = -22596;
-    message.follower[2] = 21432;
-    message.follower[3] = 31307;
-    message.voltage[0] = 10890;
-    message.voltage[1] = 9977;
-    message.voltage[2] = 19550;
-    message.voltage[3] = 23677;
-    const uint8_t payload[] = {0xFB, 0x64, 0xCD, 0x21, 0x01, 0x07, 0x9E, 0x9B, 0x94, 0x97, 0x71, 0xF7, 0xCB, 0x8D, 0xF6, 0x2C, 0xBC, 0xA7, 0xB8, 0x53, 0x4B, 0x7A, 0x8A, 0x2A, 0xF9, 0x26, 0x5E, 0x4C, 0x7D, 0x5C};
-    const uint8_t wire_bytes[] = {0x23, 0x40, 0xD2, 0xFB, 0x64, 0xCD, 0x21, 0x01, 0x07, 0x9E, 0x9B, 0x94, 0x97, 0x71, 0xF7, 0xCB, 0x8D, 0xF6, 0x2C, 0xBC, 0xA7, 0xB8, 0x53, 0x4B, 0x7A, 0x8A, 0x2A, 0xF9, 0x26, 0x5E, 0x4C, 0x7D, 0x5C, 0x23, 0x3C, 0x00};
-    visit("Sample", 210, message, payload, size_t{30}, wire_bytes, size_t{36});
+    message.fault = static_cast<wire::Fault>(6);
+    message.leader[0] = -15462;
+    message.leader[1] = -6101;
+    message.leader[2] = -11183;
+    message.leader[3] = 27186;
+    message.follower[0] = -25698;
+    message.follower[1] = -26732;
+    message.follower[2] = -2191;
+    message.follower[3] = -29237;
+    message.voltage[0] = 11510;
+    message.voltage[1] = -22596;
+    message.voltage[2] = 21432;
+    message.voltage[3] = 31307;
+    const uint8_t payload[] = {0x92, 0x43, 0x99, 0x77, 0x01, 0x06, 0x9A, 0xC3, 0x2B, 0xE8, 0x51, 0xD4, 0x32, 0x6A, 0x9E, 0x9B, 0x94, 0x97, 0x71, 0xF7, 0xCB, 0x8D, 0xF6, 0x2C, 0xBC, 0xA7, 0xB8, 0x53, 0x4B, 0x7A};
+    const uint8_t wire_bytes[] = {0x23, 0x40, 0xAA, 0x92, 0x43, 0x99, 0x77, 0x01, 0x06, 0x9A, 0xC3, 0x2B, 0xE8, 0x51, 0xD4, 0x32, 0x6A, 0x9E, 0x9B, 0x94, 0x97, 0x71, 0xF7, 0xCB, 0x8D, 0xF6, 0x2C, 0xBC, 0xA7, 0xB8, 0x53, 0x4B, 0x7A, 0x74, 0xE7, 0x00};
+    visit("Sample", 170, message, payload, size_t{30}, wire_bytes, size_t{36});
   }
   {
     wire::Sample message{};
-    message.tick = 440497064u;
-    message.state = static_cast<wire::State>(0);
-    message.fault = static_cast<wire::Fault>(0);
-    message.leader[0] = -22822;
-    message.leader[1] = -22677;
-    message.leader[2] = -2030;
-    message.leader[3] = -23845;
-    message.follower[0] = -9034;
-    message.follower[1] = 8978;
-    message.follower[2] = 2884;
-    message.follower[3] = 3978;
-    message.voltage[0] = 1950;
-    message.voltage[1] = 25058;
-    message.voltage[2] = 27425;
-    message.voltage[3] = 21288;
-    const uint8_t payload[] = {0xA8, 0x73, 0x41, 0x1A, 0x00, 0x00, 0xDA, 0xA6, 0x6B, 0xA7, 0x12, 0xF8, 0xDB, 0xA2, 0xB6, 0xDC, 0x12, 0x23, 0x44, 0x0B, 0x8A, 0x0F, 0x9E, 0x07, 0xE2, 0x61, 0x21, 0x6B, 0x28, 0x53};
-    const uint8_t wire_bytes[] = {0x07, 0x40, 0xA3, 0xA8, 0x73, 0x41, 0x1A, 0x01, 0x1B, 0xDA, 0xA6, 0x6B, 0xA7, 0x12, 0xF8, 0xDB, 0xA2, 0xB6, 0xDC, 0x12, 0x23, 0x44, 0x0B, 0x8A, 0x0F, 0x9E, 0x07, 0xE2, 0x61, 0x21, 0x6B, 0x28, 0x53, 0xA7, 0xA1, 0x00};
-    visit("Sample", 163, message, payload, size_t{30}, wire_bytes, size_t{36});
+    message.tick = 1400695378u;
+    message.state = static_cast<wire::State>(3);
+    message.fault = static_cast<wire::Fault>(6);
+    message.leader[0] = -19326;
+    message.leader[1] = -25103;
+    message.leader[2] = -30402;
+    message.leader[3] = -32377;
+    message.follower[0] = -22822;
+    message.follower[1] = -22677;
+    message.follower[2] = -2030;
+    message.follower[3] = -23845;
+    message.voltage[0] = -9034;
+    message.voltage[1] = 8978;
+    message.voltage[2] = 2884;
+    message.voltage[3] = 3978;
+    const uint8_t payload[] = {0x52, 0xEA, 0x7C, 0x53, 0x03, 0x06, 0x82, 0xB4, 0xF1, 0x9D, 0x3E, 0x89, 0x87, 0x81, 0xDA, 0xA6, 0x6B, 0xA7, 0x12, 0xF8, 0xDB, 0xA2, 0xB6, 0xDC, 0x12, 0x23, 0x44, 0x0B, 0x8A, 0x0F};
+    const uint8_t wire_bytes[] = {0x23, 0x40, 0x87, 0x52, 0xEA, 0x7C, 0x53, 0x03, 0x06, 0x82, 0xB4, 0xF1, 0x9D, 0x3E, 0x89, 0x87, 0x81, 0xDA, 0xA6, 0x6B, 0xA7, 0x12, 0xF8, 0xDB, 0xA2, 0xB6, 0xDC, 0x12, 0x23, 0x44, 0x0B, 0x8A, 0x0F, 0x36, 0xF5, 0x00};
+    visit("Sample", 135, message, payload, size_t{30}, wire_bytes, size_t{36});
   }
   {
     wire::Sample message{};
-    message.tick = 1076439784u;
-    message.state = static_cast<wire::State>(0);
-    message.fault = static_cast<wire::Fault>(2);
-    message.leader[0] = -28212;
-    message.leader[1] = 1181;
-    message.leader[2] = 6873;
-    message.leader[3] = -22256;
-    message.follower[0] = 21651;
-    message.follower[1] = -14157;
-    message.follower[2] = 18377;
-    message.follower[3] = -1690;
-    message.voltage[0] = 21705;
-    message.voltage[1] = 4265;
-    message.voltage[2] = 20279;
-    message.voltage[3] = 16507;
-    const uint8_t payload[] = {0xE8, 0x2A, 0x29, 0x40, 0x00, 0x02, 0xCC, 0x91, 0x9D, 0x04, 0xD9, 0x1A, 0x10, 0xA9, 0x93, 0x54, 0xB3, 0xC8, 0xC9, 0x47, 0x66, 0xF9, 0xC9, 0x54, 0xA9, 0x10, 0x37, 0x4F, 0x7B, 0x40};
-    const uint8_t wire_bytes[] = {0x07, 0x40, 0x4B, 0xE8, 0x2A, 0x29, 0x40, 0x1C, 0x02, 0xCC, 0x91, 0x9D, 0x04, 0xD9, 0x1A, 0x10, 0xA9, 0x93, 0x54, 0xB3, 0xC8, 0xC9, 0x47, 0x66, 0xF9, 0xC9, 0x54, 0xA9, 0x10, 0x37, 0x4F, 0x7B, 0x40, 0xA5, 0xD0, 0x00};
-    visit("Sample", 75, message, payload, size_t{30}, wire_bytes, size_t{36});
+    message.tick = 3335820814u;
+    message.state = static_cast<wire::State>(3);
+    message.fault = static_cast<wire::Fault>(6);
+    message.leader[0] = 9116;
+    message.leader[1] = 82;
+    message.leader[2] = 15697;
+    message.leader[3] = -31589;
+    message.follower[0] = -14465;
+    message.follower[1] = -28212;
+    message.follower[2] = 1181;
+    message.follower[3] = 6873;
+    message.voltage[0] = -22256;
+    message.voltage[1] = 21651;
+    message.voltage[2] = -14157;
+    message.voltage[3] = 18377;
+    const uint8_t payload[] = {0x0E, 0x96, 0xD4, 0xC6, 0x03, 0x06, 0x9C, 0x23, 0x52, 0x00, 0x51, 0x3D, 0x9B, 0x84, 0x7F, 0xC7, 0xCC, 0x91, 0x9D, 0x04, 0xD9, 0x1A, 0x10, 0xA9, 0x93, 0x54, 0xB3, 0xC8, 0xC9, 0x47};
+    const uint8_t wire_bytes[] = {0x0C, 0x40, 0x79, 0x0E, 0x96, 0xD4, 0xC6, 0x03, 0x06, 0x9C, 0x23, 0x52, 0x17, 0x51, 0x3D, 0x9B, 0x84, 0x7F, 0xC7, 0xCC, 0x91, 0x9D, 0x04, 0xD9, 0x1A, 0x10, 0xA9, 0x93, 0x54, 0xB3, 0xC8, 0xC9, 0x47, 0x6F, 0x8C, 0x00};
+    visit("Sample", 121, message, payload, size_t{30}, wire_bytes, size_t{36});
   }
   {
     wire::Nack message{};
@@ -1171,30 +1175,30 @@ void for_each(Visit visit) {
   }
   {
     wire::Nack message{};
-    message.request = 165;
-    message.code = static_cast<wire::NackCode>(4);
-    message.detail = 48115;
-    const uint8_t payload[] = {0xA5, 0x04, 0xF3, 0xBB};
-    const uint8_t wire_bytes[] = {0x09, 0xFF, 0xF7, 0xA5, 0x04, 0xF3, 0xBB, 0xFC, 0xD8, 0x00};
-    visit("Nack", 247, message, payload, size_t{4}, wire_bytes, size_t{10});
+    message.request = 207;
+    message.code = static_cast<wire::NackCode>(12);
+    message.detail = 19215;
+    const uint8_t payload[] = {0xCF, 0x0C, 0x0F, 0x4B};
+    const uint8_t wire_bytes[] = {0x09, 0xFF, 0x1F, 0xCF, 0x0C, 0x0F, 0x4B, 0xB6, 0xC0, 0x00};
+    visit("Nack", 31, message, payload, size_t{4}, wire_bytes, size_t{10});
   }
   {
     wire::Nack message{};
-    message.request = 204;
-    message.code = static_cast<wire::NackCode>(6);
-    message.detail = 61450;
-    const uint8_t payload[] = {0xCC, 0x06, 0x0A, 0xF0};
-    const uint8_t wire_bytes[] = {0x09, 0xFF, 0xFD, 0xCC, 0x06, 0x0A, 0xF0, 0x61, 0x0A, 0x00};
-    visit("Nack", 253, message, payload, size_t{4}, wire_bytes, size_t{10});
+    message.request = 183;
+    message.code = static_cast<wire::NackCode>(10);
+    message.detail = 18489;
+    const uint8_t payload[] = {0xB7, 0x0A, 0x39, 0x48};
+    const uint8_t wire_bytes[] = {0x09, 0xFF, 0xBB, 0xB7, 0x0A, 0x39, 0x48, 0x92, 0x89, 0x00};
+    visit("Nack", 187, message, payload, size_t{4}, wire_bytes, size_t{10});
   }
   {
     wire::Nack message{};
-    message.request = 69;
-    message.code = static_cast<wire::NackCode>(9);
-    message.detail = 57749;
-    const uint8_t payload[] = {0x45, 0x09, 0x95, 0xE1};
-    const uint8_t wire_bytes[] = {0x09, 0xFF, 0x86, 0x45, 0x09, 0x95, 0xE1, 0xA3, 0xF3, 0x00};
-    visit("Nack", 134, message, payload, size_t{4}, wire_bytes, size_t{10});
+    message.request = 247;
+    message.code = static_cast<wire::NackCode>(12);
+    message.detail = 25267;
+    const uint8_t payload[] = {0xF7, 0x0C, 0xB3, 0x62};
+    const uint8_t wire_bytes[] = {0x09, 0xFF, 0xF0, 0xF7, 0x0C, 0xB3, 0x62, 0x42, 0xD9, 0x00};
+    visit("Nack", 240, message, payload, size_t{4}, wire_bytes, size_t{10});
   }
 }
 

@@ -331,7 +331,7 @@ TEST_CASE("banks of another layout or length are left alone until they are neede
     params::Table newest;
     FakeEeprom eeprom = history(2, newest);
     for (const uint16_t start : {bank::start_a, bank::start_b}) {
-      eeprom.cells.at(static_cast<size_t>(start + at)) ^= 0x03;
+      eeprom.cells.at(static_cast<size_t>(start + at)) ^= 0x05;
       reseal(eeprom, start);
     }
     wire::ParamSource source;
@@ -341,6 +341,45 @@ TEST_CASE("banks of another layout or length are left alone until they are neede
     CHECK(save(eeprom, variant(9)) == wire::SaveState::saved);
     CHECK(same(boot(eeprom), variant(9)));
     CHECK_FALSE(lost(eeprom));
+  }
+}
+
+namespace {
+
+// Makes of a bank what the firmware before wrote: the beginning of the table only.
+void turn_into_layout_1(FakeEeprom& eeprom, uint16_t start) {
+  const auto cell = [&](int at) -> uint8_t& { return eeprom.cells.at(static_cast<size_t>(start + at)); };
+  cell(bank::layout_at) = 1;
+  cell(bank::length_at) = 185;
+  wire::Crc16 crc;
+  for (int i = bank::layout_at; i < bank::payload_at + 185; ++i) crc.add(cell(i));
+  cell(bank::payload_at + 185) = crc.low();
+  cell(bank::payload_at + 186) = crc.high();
+  for (int i = bank::payload_at + 187; i < bank::size; ++i) cell(i) = 0xFF;
+}
+
+}  // namespace
+
+TEST_CASE("a bank of layout 1 keeps its values, the rest gets its defaults, and a save writes today's layout") {
+  for (const int saves : {1, 2, 3}) {
+    params::Table newest;
+    FakeEeprom eeprom = history(saves, newest);
+    turn_into_layout_1(eeprom, bank::start_a);
+    if (saves > 1) turn_into_layout_1(eeprom, bank::start_b);
+    CHECK(same(boot(eeprom), newest));
+    CHECK_FALSE(lost(eeprom));
+    params::Table changed = newest;
+    changed.unrest_amplitude = 33;
+    FakeEeprom before = eeprom;
+    CHECK(save(eeprom, newest) == wire::SaveState::saved);
+    CHECK(same(boot(eeprom), newest));
+    CHECK(save(eeprom, changed) == wire::SaveState::saved);
+    CHECK(same(boot(eeprom), changed));
+    CHECK_FALSE(lost(eeprom));
+    const size_t spoilt = (saves == 2 ? bank::start_b : bank::start_a) + bank::payload_at + 184U;
+    before.cells.at(spoilt) ^= 1;  // the last byte of the newest
+    CHECK_FALSE(same(boot(before), newest));
+    CHECK(lost(before));
   }
 }
 

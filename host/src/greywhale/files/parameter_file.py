@@ -13,6 +13,8 @@ from greywhale.protocol import schema
 from greywhale.protocol.declared import Parameter
 from greywhale.table import ParameterTable
 
+SINCE_LAYOUT_2 = ("unrest_amplitude", "unrest_rate", "unrest_time", "unrest_action")
+
 
 def physical(parameter: Parameter, raw: int) -> float:
     """The value in the parameter's unit, rounded to the digits that still tell neighbouring raw values apart."""
@@ -25,7 +27,7 @@ def save(path: str | Path, table: ParameterTable) -> None:
     """Write every parameter; `load` gives the same table back."""
     lines = [f"# greywhale parameters, CRC {table.crc:#06x}"]
     heading = ""
-    for parameter in schema.PARAMETERS:
+    for parameter in sorted(schema.PARAMETERS, key=lambda one: one.group != ""):  # TOML: values of no table come first
         group, _, name = parameter.name.rpartition(".")
         if group != heading:
             heading = group
@@ -36,13 +38,20 @@ def save(path: str | Path, table: ParameterTable) -> None:
 
 
 def load(path: str | Path) -> ParameterTable:
-    """A whole table; every parameter must be there, in range, and nothing else."""
+    """A whole table; every parameter must be there, in range, and nothing else.
+
+    A file of layout 1 gets the defaults of the parameters that this layout lacks, as a board does with its banks.
+    """
     found = _flat(toml_file.read(path), path)
     unknown = [name for name in found if name not in schema.PARAMETER_BY_NAME]
     if unknown:
         raise UserError(f"{path}: unknown key {unknown[0]}; remove it or check its spelling.")
     values = []
+    older = not any(name in found for name in SINCE_LAYOUT_2)
     for parameter in schema.PARAMETERS:
+        if older and parameter.name in SINCE_LAYOUT_2:
+            values.append(parameter.default)
+            continue
         if parameter.name not in found:
             raise UserError(f"{path}: {parameter.name} is missing; a parameter file holds all of them.")
         value = found[parameter.name]

@@ -18,10 +18,10 @@ from typing import ClassVar
 from .declared import Described, Field, Group, Message, Parameter, Table, check_length
 
 PROTOCOL = 1
-SCHEMA_HASH = 0x48E90B45
+SCHEMA_HASH = 0xF352FDC8
 MAX_PAYLOAD = 48
 REPLY_BIT = 0x80
-LAYOUT = 1
+LAYOUT = 2
 
 
 class State(Described):
@@ -55,6 +55,7 @@ class Fault(Described):
     WATCHDOG = 5, "the firmware had stopped and the watchdog restarted the board", "Clear the fault to go on; if it comes back, check the board's supply and report the firmware version with `greywhale info`."
     PARAMS = 6, "stored parameters were lost or cannot be run, so older ones or the defaults run now", "Bring your parameters back with `greywhale params restore`, or upload a controller file with `greywhale upload`, then clear the fault."
     FLOOD = 7, "more bytes came than the board can read, so that a stop might have been lost", "Close other programs that use the port and check the cable for noise, then clear the fault."
+    UNREST = 8, "a follower swung to and fro although the leader was still", "Lower that joint's gains (kp and ki first) or tune again with `greywhale tune`, then clear the fault; see unrest_amplitude for what counts as unrest."
 
 
 class NackCode(Described):
@@ -1007,6 +1008,12 @@ TABLE = Table((
     Group("follower", 4, "One follower potentiometer, as the leader's.", (
         Field("zero", "u16", "count14", 1.0, 0, 16368, (8184, 8184, 8184, 8184), False, None, "reading at 0 rad"),
         Field("scale", "i16", "rad/count14", 2.9802322387695312e-08, -16384, 16384, (10734, 10734, 10734, 10734), True, None, "angle of one count, negative when the potentiometer turns the other way"),
+    )),
+    Group("", 1, "When a joint counts as restless: its error swings to and fro while the leader is still.", (
+        Field("unrest_amplitude", "u8", "rad", 0.0009765625, 0, 205, (10,), False, None, "a joint is restless when its error swings with more than this amplitude (from turn to turn twice this) while no joint of the leader moves by more than this within 1/unrest_rate; 0 turns the check off"),
+        Field("unrest_rate", "u8", "1/s", 1.0, 1, 10, (6,), False, None, "turns of the error in a second that are unrest; a swing to and fro has two"),
+        Field("unrest_time", "u8", "s", 0.1, 2, 60, (11,), False, None, "time of unrest that becomes a fault"),
+        Field("unrest_action", "u8", "", 1.0, 0, 1, (0,), False, None, "what unrest does: 0 turns the motors off, 1 goes on with the safe controllers, and turns the motors off at the next unrest"),
     )),
 ))
 PARAMETERS: tuple[Parameter, ...] = TABLE.parameters

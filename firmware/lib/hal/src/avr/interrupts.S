@@ -14,6 +14,8 @@
 hal_sums:    .skip 32           ; two sets of eight
 hal_tx_ring: .skip RING_SIZE
 hal_rx_ring: .skip RING_SIZE
+
+.section .bss.hal_places, "aw", @nobits   ; the assembler fills an aligned section up to the next multiple of 32
 .global hal_tx_head, hal_rx_head, hal_rx_tail, hal_rx_lost
 hal_tx_head: .skip 1
 hal_rx_head: .skip 1

@@ -61,6 +61,7 @@ constexpr bool is_copy(Fault, Copy value = Copy()) {
   static_assert(same_number(Copy::watchdog, Fault::watchdog), "Fault::watchdog");
   static_assert(same_number(Copy::params, Fault::params), "Fault::params");
   static_assert(same_number(Copy::flood, Fault::flood), "Fault::flood");
+  static_assert(same_number(Copy::unrest, Fault::unrest), "Fault::unrest");
   switch (value) {
     case Copy::none:
     case Copy::pot_low:
@@ -70,6 +71,7 @@ constexpr bool is_copy(Fault, Copy value = Copy()) {
     case Copy::watchdog:
     case Copy::params:
     case Copy::flood:
+    case Copy::unrest:
       break;
   }
   return true;

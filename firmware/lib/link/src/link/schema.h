@@ -9,7 +9,7 @@
 namespace wire {
 
 constexpr uint8_t protocol = 1;
-constexpr uint32_t schema_hash = 0x48E90B45;
+constexpr uint32_t schema_hash = 0xF352FDC8;
 constexpr uint8_t max_payload = 48;
 constexpr uint8_t reply_bit = 0x80;
 
@@ -59,6 +59,7 @@ enum class Fault : uint8_t {
   watchdog = 5,  // the firmware had stopped and the watchdog restarted the board
   params = 6,  // stored parameters were lost or cannot be run, so older ones or the defaults run now
   flood = 7,  // more bytes came than the board can read, so that a stop might have been lost
+  unrest = 8,  // a follower swung to and fro although the leader was still
 };
 
 // Why a request was refused.

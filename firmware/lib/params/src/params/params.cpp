@@ -109,6 +109,19 @@ Access set(Table& table, uint16_t index, int32_t value) {
 
 void load_defaults(Table& table) { read_flash(table, default_table); }
 
+void make_safe(JointParameters& own, uint8_t joint) {
+  JointParameters safe;
+  read_flash(safe, default_table.joint[joint]);
+  safe.kp = safe.kp < own.kp ? uint32_t{safe.kp} : uint32_t{own.kp};
+  safe.kd = safe.kd < own.kd ? uint32_t{safe.kd} : uint32_t{own.kd};
+  safe.ki = safe.ki < own.ki ? uint32_t{safe.ki} : uint32_t{own.ki};
+  safe.ku_mv = safe.ku_mv < own.ku_mv ? uint16_t{safe.ku_mv} : uint16_t{own.ku_mv};
+  safe.motor_sign = own.motor_sign;
+  safe.limit_min = own.limit_min;
+  safe.limit_max = own.limit_max;
+  own = safe;
+}
+
 uint16_t crc(const Table& table) { return wire::crc_over(bytes_of(table), static_cast<uint8_t>(table_size)); }
 
 uint8_t first_inconsistent(const Table& table) { return first_bad(table, false); }

@@ -8,6 +8,9 @@
 // that is already stored writes nothing. Any other save writes each cell of one bank at most once, but the first magic
 // byte twice. The banks take turns, so even that byte is written once per save on average: it lasts for 100,000 saves.
 //
+// A bank of layout 1 is read as well: it lacks the last parameters, which get their defaults. The next save writes the
+// other bank in today's layout.
+//
 // A bank that is neither whole nor blank held a set once, or was to hold one: rot, another layout, or a save that a
 // power cut ended. Nobody can tell any more whether that set was the newest. So lost() is true then, whatever the other
 // bank holds. The next save makes both banks whole again, in turn.
@@ -16,6 +19,7 @@
 // neither of the other two is called.
 #pragma once
 
+#include <stddef.h>
 #include <stdint.h>
 
 #include "link/crc16.h"
@@ -32,6 +36,9 @@ constexpr uint8_t sequence_at = 5;
 constexpr uint8_t payload_at = 7;
 constexpr uint8_t crc_at = payload_at + table_size;
 constexpr uint8_t size = crc_at + 2;
+constexpr uint8_t layout_1 = 1;
+constexpr uint8_t layout_1_table = offsetof(Table, unrest_amplitude);
+static_assert(layout_1_table == 185 && layout == 2, "a bank of layout 1 must be the beginning of the table");
 static_assert(payload_at + table_size + 2 <= 255, "positions within a bank are bytes");
 // Address 0 is not used: a brown-out is most likely to spoil that cell.
 constexpr uint16_t start_a = 16;
@@ -66,6 +73,7 @@ class Store {
 
   bool whole(uint8_t b, uint16_t& sequence);
   bool blank(uint8_t b);
+  uint8_t table_bytes(uint8_t b);
   bool fetch(uint8_t b, Table& table);
   uint16_t read_u16(uint16_t at) { return static_cast<uint16_t>(eeprom_.read(at) | (eeprom_.read(at + 1) << 8)); }
 
@@ -91,12 +99,20 @@ class Store {
 template <class Eeprom>
 bool Store<Eeprom>::whole(uint8_t b, uint16_t& sequence) {
   const uint16_t at = start(b);
-  if (read_u16(at) != bank::magic || eeprom_.read(at + bank::layout_at) != layout) return false;
-  if (read_u16(at + bank::length_at) != table_size) return false;
+  const uint8_t bytes = table_bytes(b);
+  if (read_u16(at) != bank::magic || bytes == 0 || read_u16(at + bank::length_at) != bytes) return false;
+  const auto crc_at = static_cast<uint8_t>(bank::payload_at + bytes);
   wire::Crc16 crc;
-  for (uint8_t i = bank::layout_at; i < bank::crc_at; ++i) crc.add(eeprom_.read(static_cast<uint16_t>(at + i)));
+  for (uint8_t i = bank::layout_at; i < crc_at; ++i) crc.add(eeprom_.read(static_cast<uint16_t>(at + i)));
   sequence = read_u16(at + bank::sequence_at);
-  return crc.value() == read_u16(at + bank::crc_at);
+  return crc.value() == read_u16(static_cast<uint16_t>(at + crc_at));
+}
+
+// How much of the table a bank of its layout holds; 0 for a layout that is not known.
+template <class Eeprom>
+uint8_t Store<Eeprom>::table_bytes(uint8_t b) {
+  const uint8_t found = eeprom_.read(start(b) + bank::layout_at);
+  return found == layout ? table_size : found == bank::layout_1 ? bank::layout_1_table : 0;
 }
 
 template <class Eeprom>
@@ -111,7 +127,8 @@ template <class Eeprom>
 bool Store<Eeprom>::fetch(uint8_t b, Table& table) {
   uint8_t* out = reinterpret_cast<uint8_t*>(&table);
   const uint16_t at = start(b) + bank::payload_at;
-  for (uint8_t i = 0; i < table_size; ++i) out[i] = eeprom_.read(static_cast<uint16_t>(at + i));
+  load_defaults(table);
+  for (uint8_t i = table_bytes(b); i-- > 0;) out[i] = eeprom_.read(static_cast<uint16_t>(at + i));
   return first_invalid(table) == none;
 }
 

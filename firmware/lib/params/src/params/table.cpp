@@ -35,6 +35,10 @@ const Field fields[field_count] PROGMEM = {
     {Kind::i16, offsetof(PotParameters, scale), no_field, true, -16384, 16384},
     {Kind::u16, offsetof(PotParameters, zero), no_field, false, 0, 16368},
     {Kind::i16, offsetof(PotParameters, scale), no_field, true, -16384, 16384},
+    {Kind::u8, offsetof(Table, unrest_amplitude), no_field, false, 0, 205},
+    {Kind::u8, offsetof(Table, unrest_rate), no_field, false, 1, 10},
+    {Kind::u8, offsetof(Table, unrest_time), no_field, false, 2, 60},
+    {Kind::u8, offsetof(Table, unrest_action), no_field, false, 0, 1},
 };
 
 const Group groups[group_count] PROGMEM = {
@@ -42,6 +46,7 @@ const Group groups[group_count] PROGMEM = {
     {4, 15, 8, offsetof(Table, joint), sizeof(JointParameters)},
     {4, 2, 23, offsetof(Table, leader), sizeof(PotParameters)},
     {4, 2, 25, offsetof(Table, follower), sizeof(PotParameters)},
+    {1, 4, 27, 0, 0},
 };
 
 const Table default_table PROGMEM = {
@@ -64,6 +69,7 @@ const Table default_table PROGMEM = {
         {8184, 10734},
         {8184, 10734},
     },
+    10, 6, 11, 0,
 };
 
 }  // namespace params

@@ -7,10 +7,10 @@
 
 namespace params {
 
-constexpr uint8_t layout = 1;
-constexpr uint8_t count = 84;
-constexpr uint8_t field_count = 27;
-constexpr uint8_t group_count = 4;
+constexpr uint8_t layout = 2;
+constexpr uint8_t count = 88;
+constexpr uint8_t field_count = 31;
+constexpr uint8_t group_count = 5;
 
 // Packed, so that the bytes in RAM are the bytes on the link and in EEPROM, in the order of the flat index.
 // Read members by value: a reference to a packed member does not compile.
@@ -49,9 +49,13 @@ struct __attribute__((packed)) Table {
   JointParameters joint[4];
   PotParameters leader[4];
   PotParameters follower[4];
+  uint8_t unrest_amplitude;  // a joint is restless when its error swings with more than this amplitude (from turn to turn twice this) while no joint of the leader moves by more than this within 1/unrest_rate; 0 turns the check off [1/1024 rad]
+  uint8_t unrest_rate;  // turns of the error in a second that are unrest; a swing to and fro has two [1/s]
+  uint8_t unrest_time;  // time of unrest that becomes a fault [1/10 s]
+  uint8_t unrest_action;  // what unrest does: 0 turns the motors off, 1 goes on with the safe controllers, and turns the motors off at the next unrest
 };
 
-constexpr uint16_t table_size = 185;
+constexpr uint16_t table_size = 189;
 static_assert(sizeof(Table) == table_size, "the table must have no padding");
 
 enum class Kind : uint8_t { u8, i8, u16, i16, u32, i32 };

@@ -1,0 +1,191 @@
+// Unrest through the whole firmware: pots, filter, limits, a host that leads, and what the host is told.
+#include "bench.h"
+
+using bench::Bench;
+using bench::board;
+
+namespace {
+
+// Shakes a follower's pot, and a leader's, until the motors go off or the time is over. The ticks that it took.
+unsigned shake(Bench& arm, std::uint8_t joint, unsigned ms, double follower, double leader = 0, double hertz = 8) {
+  for (unsigned t = 0; t < ms; ++t) {
+    const double swing = std::sin(2 * 3.14159265358979 * hertz * t / 1000.0);
+    arm.set_follower(joint, follower * swing);
+    arm.set_leader(joint, leader * swing);
+    arm.tick();
+    if (!board.drivers) return t;
+  }
+  return ms;
+}
+
+params::Table with_amplitude(std::uint8_t amplitude) {
+  params::Table table;
+  params::load_defaults(table);
+  table.unrest_amplitude = amplitude;
+  return table;
+}
+
+}  // namespace
+
+TEST_CASE("a follower that swings about its still leader is off within a second and a half, each joint, and named") {
+  for (std::uint8_t joint = 0; joint < 4; ++joint) {
+    Bench arm;
+    arm.follow();
+    const unsigned off = shake(arm, joint, 5000, 0.04);
+    CHECK(off > 1100);
+    CHECK(off < 1550);
+    const auto status = arm.status();
+    CHECK(status.state == wire::State::fault);
+    CHECK(status.fault == wire::Fault::unrest);
+    CHECK(status.fault_where == joint);
+    CHECK(status.stop_reason == wire::StopReason::fault);
+    CHECK(arm.get<wire::ClearFaultReply>(wire::ClearFaultRequest{}).state == wire::State::disabled);
+  }
+}
+
+TEST_CASE("a follower that swings with its leader, or against it, is not restless") {
+  for (const double follower : {0.04, -0.04}) {
+    Bench arm;
+    arm.follow();
+    CHECK(shake(arm, 1, 8000, follower, 0.04) == 8000);
+  }
+}
+
+TEST_CASE("unrest is seen in the soft start too") {
+  Bench arm;
+  arm.boot();
+  params::Table table = with_amplitude(10);
+  table.soft_start_ms = 10000;
+  REQUIRE(arm.apply(table).type == 0x85);
+  REQUIRE(arm.enable() == wire::State::soft_start);
+  CHECK(shake(arm, 0, 5000, 0.04) < 1550);
+}
+
+TEST_CASE("the limits come from the running set; 0 turns the check off") {
+  for (const int amplitude : {0, 60, 30}) {
+    Bench arm;
+    arm.boot();
+    REQUIRE(arm.apply(with_amplitude(static_cast<std::uint8_t>(amplitude))).type == 0x85);
+    REQUIRE(arm.enable() == wire::State::soft_start);
+    CHECK((shake(arm, 2, 5000, 0.04) < 5000) == (amplitude == 30));
+  }
+}
+
+TEST_CASE("a leader beyond its joint's limit is still as long as it stays there") {
+  Bench arm;
+  arm.boot();
+  params::Table table = with_amplitude(10);
+  table.joint[0].limit_max = 0;
+  REQUIRE(arm.apply(table).type == 0x85);
+  arm.set_leader(0, 0.3);
+  arm.run(50);
+  REQUIRE(arm.enable() == wire::State::soft_start);
+  for (unsigned t = 0; t < 5000 && board.drivers; ++t) {
+    arm.set_leader(0, 0.3 + 0.2 * std::sin(t / 50.0));
+    arm.set_follower(0, 0.05 * std::sin(t / 20.0));
+    arm.tick();
+  }
+  CHECK(arm.status().fault == wire::Fault::unrest);
+}
+
+TEST_CASE("while the host leads, a reference that rests is a still leader, and one that moves is not") {
+  for (const int size : {8, 0}) {  // 1/1024 rad in 16 ms
+    Bench arm;
+    arm.boot();
+    auto lead = arm.get<wire::LeadReply>(wire::LeadRequest{60000});
+    for (int i = 0; i < 150 && board.drivers; ++i) {
+      const auto step = static_cast<std::int8_t>(i % 20 < 10 ? size : -size);
+      lead.next = arm.get<wire::LeadPointReply>(wire::LeadPointRequest{lead.next, {step, 0, 0, 0}}).next;
+      shake(arm, 3, 16, 0.04, 0, 62.5);  // whole periods, so that the swing goes on
+    }
+    CHECK(board.drivers == (size != 0));
+    if (board.drivers) CHECK(shake(arm, 3, 3000, 0.04) < 1800);
+    CHECK(arm.status().fault == wire::Fault::unrest);
+  }
+}
+
+namespace {
+
+// The safe set for what runs: the controllers of the defaults with no more gain, motor and limits as they are.
+params::Table hot() {
+  params::Table table;
+  params::load_defaults(table);
+  table.unrest_action = 1;
+  table.joint[1].kp *= 8;
+  table.joint[1].ku_mv = 9000;
+  table.joint[1].motor_sign = -1;
+  table.joint[3].ne_c = -1000;
+  return table;
+}
+
+}  // namespace
+
+TEST_CASE("with action 1 the safe set takes over within some ticks, in a soft start; the next unrest is the end") {
+  Bench arm;
+  arm.boot();
+  REQUIRE(arm.apply(hot()).type == 0x85);
+  REQUIRE(arm.enable() == wire::State::soft_start);
+  arm.run(1100);
+  CHECK(shake(arm, 2, 3000, 0.04) < 1550);
+  unsigned off = 0;
+  for (; !board.drivers && off < 100; ++off) arm.tick();
+  CHECK(off <= 12);
+  auto status = arm.status();
+  CHECK(status.state == wire::State::soft_start);
+  CHECK(status.fault == wire::Fault::unrest);
+  CHECK(status.fault_where == 2);
+  CHECK(status.late_ticks == 0);
+
+  params::Table safe = hot(), defaults;
+  params::load_defaults(defaults);
+  safe.joint[1].kp = defaults.joint[1].kp;
+  safe.joint[3].ne_c = defaults.joint[3].ne_c;
+  CHECK(arm.get<wire::HelloReply>(wire::HelloRequest{}).param_crc == params::crc(safe));
+
+  arm.run(1100);
+  CHECK(arm.state() == wire::State::following);
+  CHECK(shake(arm, 2, 3000, 0.04) < 1550);
+  arm.run(50);
+  CHECK_FALSE(board.drivers);
+  status = arm.status();
+  CHECK(status.state == wire::State::fault);
+  CHECK(status.fault == wire::Fault::unrest);
+
+  REQUIRE(arm.apply(hot()).type == 0x85);  // the host's set again, and with it another safe start
+  CHECK(arm.get<wire::ClearFaultReply>(wire::ClearFaultRequest{}).state == wire::State::disabled);
+  REQUIRE(arm.enable() == wire::State::soft_start);
+  CHECK(shake(arm, 0, 3000, 0.04) < 1550);
+  arm.run(20);
+  CHECK(board.drivers);
+}
+
+TEST_CASE("the lease goes on while the safe set takes over, and a stop then is a stop") {
+  for (const bool stop : {true, false}) {
+    Bench arm;
+    arm.boot();
+    REQUIRE(arm.apply(hot()).type == 0x85);
+    REQUIRE(arm.enable(2000) == wire::State::soft_start);
+    CHECK(shake(arm, 2, 3000, 0.04) < 1550);
+    if (stop) {
+      CHECK(arm.stop() == wire::State::disabled);
+      arm.run(50);
+    } else {
+      arm.run(20);
+      CHECK(board.drivers);
+      arm.run(1000);
+      CHECK(arm.status().stop_reason == wire::StopReason::lease);
+    }
+    CHECK_FALSE(board.drivers);
+  }
+}
+
+TEST_CASE("a host that leads gets no safe set: the motors stay off") {
+  Bench arm;
+  arm.boot();
+  REQUIRE(arm.apply(hot()).type == 0x85);
+  arm.get<wire::LeadReply>(wire::LeadRequest{60000});
+  CHECK(shake(arm, 2, 3000, 0.04) < 1550);
+  arm.run(50);
+  CHECK_FALSE(board.drivers);
+  CHECK(arm.status().state == wire::State::fault);
+}
