@@ -37,6 +37,7 @@ OURS = METHODS[0]
 BUDGET = int(os.environ.get("GREYWHALE_BUDGET", "3000"))
 SEEDS = range(int(os.environ.get("GREYWHALE_SEEDS", "20")))
 ARMS = range(int(os.environ.get("GREYWHALE_ARMS", "5")))  # 0 is the default arm, the others are drawn at random
+WORKERS = int(os.environ.get("GREYWHALE_WORKERS", "0"))
 OTHER_SEED = 999  # of the sensor noise of the judgement
 SIGNIFICANCE = 0.05
 TABLE = ROOT / "build" / "bench_tune_methods.md"
@@ -55,27 +56,19 @@ def identified(number: int) -> Model:
 def method_of(model: Model, method: str, seed: int) -> DefaultMethod:
     """The stages of the default method with an optimiser, before its search."""
     before = model.controllers
-    return DefaultMethod(Task(model, "both", method, BUDGET, seed, 0, before, {}, report_nothing, floors=False))
+    return DefaultMethod(Task(model, "both", method, BUDGET, seed, WORKERS, before, {}, report_nothing, floors=False))
 
 
-def costs(model: Model) -> dict[str, Array]:
-    """The costs of one model, every seed: of the method that has found it, judged with other noise."""
-    judge = method_of(model, OURS, OTHER_SEED)
-    found: dict[str, list[float]] = {method: [] for method in METHODS}
-    for seed in SEEDS:
-        for method in METHODS:
-            search = method_of(model, method, seed)
-            with Journal(None, {}) as book:
-                search.search(book)
-            found[method].append(float(judge.costs(search.found.best[None]).sum()))
-            print_progress(model.name, method, seed, found[method][-1])
-    return {method: np.array(values) for method, values in found.items()}
-
-
-def print_progress(model: str, method: str, seed: int, cost: float) -> None:
-    """One line in a log beside the table: the whole takes an hour."""
+def cost(model: Model, judge: DefaultMethod, method: str, seed: int) -> float:
+    """What a method found with one seed, judged with other noise."""
+    search = method_of(model, method, seed)
+    with Journal(None, {}) as book:
+        search.search(book)
+    found = float(judge.costs(search.found.best[None]).sum())
+    # The whole takes hours, so what is known is kept beside the table.
     with TABLE.with_suffix(".log").open("a", encoding="utf-8") as log:
-        log.write(f"{model}, {method}, seed {seed}: {cost:.4f}\n")
+        log.write(f"{model.name}, {method}, seed {seed}: {found:.4f}\n")
+    return found
 
 
 def verdict(own: Array, other: Array) -> tuple[str, float]:
@@ -110,11 +103,17 @@ def run() -> list[Figure]:
     TABLE.parent.mkdir(exist_ok=True)
     names = ["default arm" if number == 0 else f"random arm {number}" for number in ARMS]
     models = [replace(identified(number), name=name) for number, name in zip(ARMS, names, strict=True)]
-    found = [costs(model) for model in models]
+    judges = [method_of(model, OURS, OTHER_SEED) for model in models]
+    known: list[dict[str, list[float]]] = [{method: [] for method in METHODS} for _ in models]
+    for seed in SEEDS:
+        for model, judge, one in zip(models, judges, known, strict=True):
+            for method in METHODS:
+                one[method].append(cost(model, judge, method, seed))
+    found = [{method: np.array(values) for method, values in of_model.items()} for of_model in known]
     TABLE.write_text(table(found), encoding="utf-8")
     figures = []
-    for name, one in zip(names, found, strict=True):
-        for method, own in one.items():
+    for name, of_model in zip(names, found, strict=True):
+        for method, own in of_model.items():
             head = f"{name}, {BUDGET} evaluations: {method}"
             figures.append(Figure(f"{head}, median cost", float(np.median(own)), "x of before"))
     together = {method: np.concatenate([one[method] for one in found]) for method in METHODS}

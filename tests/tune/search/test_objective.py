@@ -67,23 +67,31 @@ def test_fine_following_counts_as_much_as_large_moves() -> None:
     scale = Scale(floor + np.array([0.3, 0.0])[:, None], room, np.zeros((1, 2, 4)))
     none = np.zeros((1, 1, 2, 4))
     found = Following(scale.floor[None] + 0.5 * room[None], none, none, none)
-    np.testing.assert_allclose(relative_costs(found, scale, 15.0), 0.5)
+    np.testing.assert_allclose(relative_costs(found, scale, 15.0), np.sqrt(0.5))
+
+
+def test_large_moves_count_half_and_fine_following_the_other_half(objective: Objective) -> None:
+    shares = {drill.name: drill.importance for drill in objective.drills}
+    assert shares["moves to both sides"] == shares["human-like reaches"] + shares["slow following"]
+    found = follow(objective.drills, PLANTS, BEFORE[None])
+    large, human, slow = relative_costs(found, objective.scale, 15.0)[0, 0]
+    np.testing.assert_allclose(objective.costs(BEFORE[None])[0], 0.5 * large + 0.25 * (human + slow))
 
 
 def test_rattling_and_chatter_cost_in_every_class_and_most_beyond_what_was_before() -> None:
     floor, room, before = np.zeros((1, 2, 4)), np.full((1, 2, 4), 0.05), np.full((1, 2, 4), 0.002)
     scale, none = Scale(floor, room, before), np.zeros((1, 1, 2, 4))
     quiet, loud, chattering = none.copy(), none.copy(), none.copy()
-    quiet[0, 0, 1, 3], loud[0, 0, 1, 3], chattering[0, 0, 0, 2] = 0.002, 0.003, 85.0
+    quiet[0, 0, 1, 3], loud[0, 0, 1, 3], chattering[0, 0, 0, 2] = 0.002, 0.003, 170.0
     costs = [relative_costs(Following(none, none, rattle, none), scale, 15.0) for rattle in (quiet, loud)]
-    assert costs[0][0, 0, 1, 3] == pytest.approx(RATTLE * 0.002 / 0.05)
-    assert costs[1][0, 0, 1, 3] == pytest.approx(RATTLE * (0.003 + LOUDER * 0.001) / 0.05)
+    assert costs[0][0, 0, 1, 3] == pytest.approx(np.sqrt(RATTLE * 0.002 / 0.05))
+    assert costs[1][0, 0, 1, 3] == pytest.approx(np.sqrt(RATTLE * (0.003 + LOUDER * 0.001) / 0.05))
     assert np.count_nonzero(costs[1]) == 1
     beaten = relative_costs(Following(none, none, none, chattering), scale, 15.0)
-    assert beaten[0, 0, 0, 2] == pytest.approx(CHATTER * 1.0)
+    assert beaten[0, 0, 0, 2] == pytest.approx(np.sqrt(CHATTER * 1.0))
     silent = replace(scale, rattle=np.zeros((1, 2, 4)))
     free = relative_costs(Following(none, none, np.full_like(none, QUIET_RAD), none), silent, 15.0)
-    np.testing.assert_allclose(free, RATTLE * QUIET_RAD / 0.05)
+    np.testing.assert_allclose(free, np.sqrt(RATTLE * QUIET_RAD / 0.05))
 
 
 def test_a_joint_that_is_tuned_one_sidedly_pays(objective: Objective) -> None:

@@ -10,7 +10,7 @@ a third of the supply, more than CHATTER_HZ times a second, are chatter (a relay
 A single overshoot, or creeping to the target, is neither.
 
 While the leader moves, in all classes of training motions, the follower must not rattle by RATTLE_RAD or more (rms, as
-`rattle` measures it), and its duty must not chatter.
+`rattle` measures it), and its duty must not chatter: a gear that moves bears MOVING_CHATTER_HZ.
 """
 
 from __future__ import annotations
@@ -31,7 +31,8 @@ from greywhale.protocol.schema import Board
 from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory
 from greywhale.trajectory.generate import minimum_jerk
-from greywhale.tune.search.objective import CHATTER_HZ, follow, pair_with_plants
+from greywhale.tune.search.objective import CHATTER_HZ as MOVING_CHATTER_HZ
+from greywhale.tune.search.objective import follow, pair_with_plants
 from greywhale.tune.search.rattle import duty_swings
 from greywhale.tune.search.training import EDGE_S, RATE_HZ, centre, drills, reach
 
@@ -42,6 +43,7 @@ Controllers = npt.NDArray[np.int32]
 SWING_RAD = 0.01
 REVERSALS = 3
 RATTLE_RAD = 0.005
+CHATTER_HZ = 50.0
 SETTLE_S = 1.0
 SEARCH_SWING_RAD = 0.005
 WAIT_S = 0.2
@@ -221,7 +223,7 @@ class Margins:
         found = follow(motions, self.plants, controllers[None], single=True, threads=self._threads)
         # The worst class counts.
         rattle, chatter = found.rattle[0].max(axis=1), found.chatter[0].max(axis=1)
-        failing = (rattle >= RATTLE_RAD) | (chatter > CHATTER_HZ)
+        failing = (rattle >= RATTLE_RAD) | (chatter > MOVING_CHATTER_HZ)
         return [
             Margin(
                 scenario=MOVING,

@@ -12,10 +12,12 @@ cannot be helped. To this come, in every class,
 
 - RATTLE times the rattling (`rattle`, rad), on the same scale, and as much as LOUDER times that for what is beyond the
   rattling from before;
-- CHATTER for every CHATTER_HZ of duty swings beyond those that a gear bears;
+- CHATTER for every CHATTER_HZ of duty swings beyond those that a moving gear bears;
 - EFFORT times the mean of |u| as a share of the supply, weighted like |e|.
 
-The cost is the mean over the classes. Of the plants, the mean counts half, and the worst plant the other half.
+The cost of the class is the root of this sum, because the last tenth of the way matters more than the first. Large
+moves count half, and the two classes of fine following the other half. Of the plants, the mean counts half, and the
+worst plant the other half.
 `margins` adds the price of a joint that does not come to rest.
 """
 
@@ -40,8 +42,8 @@ RATTLE = 3.0
 LOUDER = 3.0
 # Rattling below this (rad) is never louder: a board's angle has steps of a quarter of it.
 QUIET_RAD = 1e-3
-CHATTER = 0.05
-CHATTER_HZ = 50.0
+CHATTER = 0.3
+CHATTER_HZ = 100.0
 BEARABLE = 0.7  # of CHATTER_HZ
 EFFORT = 0.02
 WORST_SHARE = 0.5
@@ -106,7 +108,9 @@ class Objective:
         """(n, 4), over all plants; without the price of unrest. `single`: in the bench's own arithmetic."""
         found = follow(self.drills, self.plants, controllers, single=single, threads=self.threads)
         supply = self.drills[0].experiment.table.supply_v
-        return combine_plants(relative_costs(found, self.scale, supply).mean(axis=2))
+        weights = np.array([drill.importance for drill in self.drills])
+        weighted = weights[:, None] * relative_costs(found, self.scale, supply)
+        return combine_plants(weighted.sum(axis=2) / weights.sum())
 
 
 def relative_costs(found: Following, scale: Scale, supply_v: float) -> Floats:
@@ -116,7 +120,8 @@ def relative_costs(found: Following, scale: Scale, supply_v: float) -> Floats:
     avoidable = np.maximum(found.error - scale.floor, 0.0)
     length = avoidable + RATTLE * (found.rattle + LOUDER * louder)
     unbearable = np.maximum(found.chatter / CHATTER_HZ - BEARABLE, 0.0)
-    costs: Floats = length / scale.room + CHATTER * unbearable + EFFORT * found.volts / supply_v
+    share = length / scale.room + CHATTER * unbearable + EFFORT * found.volts / supply_v
+    costs: Floats = np.sqrt(share)
     return costs
 
 

@@ -55,7 +55,8 @@ class Drill:
     name: str
     motion: Trajectory
     experiment: Experiment
-    total_weight: float  # s2, the integral of the weights
+    total_weight: float  # the integral of the weights
+    importance: float  # beside the other classes
 
 
 def drills(arm: ArmParameters, table: ParameterTable, plants: Floats, seed: int = 0) -> tuple[Drill, ...]:
@@ -65,17 +66,17 @@ def drills(arm: ArmParameters, table: ParameterTable, plants: Floats, seed: int 
     human = clip_motion(human_reaches(HUMAN_SEED, HUMAN_S), low, high)
     slow = slow_following(low, high)
     classes = {
-        "moves to both sides": (large, time_since_move(large, WAIT_S)),
-        "human-like reaches": (human, time_since_move(human, WAIT_S)),
-        "slow following": (slow, _equal_weight(slow, WAIT_S)),
+        "moves to both sides": (large, time_since_move(large, WAIT_S), 2.0),
+        "human-like reaches": (human, time_since_move(human, WAIT_S), 1.0),
+        "slow following": (slow, _equal_weight(slow, WAIT_S), 1.0),
     }
     made = []
-    for number, (name, (motion, weight)) in enumerate(classes.items()):
+    for number, (name, (motion, weight, importance)) in enumerate(classes.items()):
         experiment = Experiment(
             motion, arm, table=table, seed=100 * seed + number + 11, wait_s=WAIT_S, soft_start=False,
             weight_s=weight,
         )  # fmt: skip
-        made.append(Drill(name, motion, experiment, float(weight.sum()) * 1e-3))
+        made.append(Drill(name, motion, experiment, float(weight.sum()) * 1e-3, importance))
     return tuple(made)
 
 
