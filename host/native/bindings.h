@@ -4,6 +4,7 @@
 #include <nanobind/nanobind.h>
 
 void bind_arm(nanobind::module_& m);
+void bind_band_power(nanobind::module_& m);
 void bind_closed_loop(nanobind::module_& m);
 void bind_fuzzy(nanobind::module_& m);
 void bind_ideal(nanobind::module_& m);

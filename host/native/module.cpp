@@ -4,6 +4,7 @@
 NB_MODULE(_native, m) {
   m.doc() = "The firmware's fuzzy controller and the arm model, compiled for this machine.";
   bind_arm(m);
+  bind_band_power(m);
   bind_closed_loop(m);
   bind_fuzzy(m);
   bind_ideal(m);

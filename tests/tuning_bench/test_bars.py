@@ -86,12 +86,21 @@ def test_a_swinging_joint_is_told_from_one_that_settles_or_trembles() -> None:
     assert bench_tune_arms.unrest(np.vstack([rest, cycling, rest])) == (2,)
 
 
-def test_methods_are_compared_with_the_rival_by_their_whole_samples() -> None:
-    rival = np.arange(20.0)
-    assert bench_tune_methods.verdict(rival - 15.0, rival)[0] == "lower"
-    assert bench_tune_methods.verdict(rival + 15.0, rival)[0] == "higher"
-    assert bench_tune_methods.verdict(rival + 0.5, rival)[0] == "not told apart"
-    text = bench_tune_methods.table({"de": rival, "pso": rival + 15.0})
-    assert text.index("| de | 9.5 | 0.0 to 19.0 | 1.00 |  |") < text.index(
-        "| pso | 24.5 | 15.0 to 34.0 | 2.00 | higher"
-    )
+def test_methods_are_compared_by_arm_and_seed() -> None:
+    rival = np.arange(1.0, 21.0)
+    assert bench_tune_methods.verdict(0.9 * rival, rival)[0] == "lower"
+    assert bench_tune_methods.verdict(1.1 * rival, rival)[0] == "higher"
+    mixed = rival * np.where(np.arange(20) % 2, 1.01, 0.99)
+    assert bench_tune_methods.verdict(mixed, rival)[0] == "not told apart"
+    found = [
+        {
+            method: rival * factor
+            for method, factor in zip(bench_tune_methods.METHODS, (1.1, 1.0, 1.2, 1.3), strict=True)
+        }
+        for _ in bench_tune_methods.ARMS
+    ]
+    text = bench_tune_methods.table(found)
+    assert text.index("| cma-es | 10.500 (19.000) |") < text.index("| gwo-woa-relative | 11.550 (20.900) |")
+    assert "| 2.00 |  |" in text
+    assert "| 1.00 | higher, p = " in text
+    assert text.count("| lower, p = ") == 2

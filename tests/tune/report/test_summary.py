@@ -19,7 +19,7 @@ def test_it_shows_before_and_after_and_the_multiple_of_the_floor(outcome: Outcom
     assert [line.split()[7] for line in lines if line.startswith("joint 3")] == ["1.23", "-"]
     assert "none -> none" in lines[8]
     assert "WORSE" not in summary(outcome)
-    assert "Margins hold on all 2 plants, no joint swings or chatters once its leader rests: at rest." in lines
+    assert "Margins hold on all 2 plants, no joint swings, rattles or chatters: at rest." in lines
     assert lines[-5:] == [
         "Notes:",
         "- a note",

@@ -13,7 +13,7 @@ from greywhale.optimise import Optimiser, create
 from greywhale.tune.judge.choose import choose
 from greywhale.tune.search import lockstep as search
 from greywhale.tune.search.journal import Journal
-from greywhale.tune.search.lockstep import KEPT, TOGETHER, TURNS, Found, search_in_lockstep, try_start
+from greywhale.tune.search.lockstep import KEPT, TOGETHER, TURNS, Found, search_in_lockstep, try_again
 from greywhale.tune.search.space import Space
 
 BEFORE = default_controller()
@@ -37,9 +37,9 @@ class Hills:
 def run(method: str = "gwo-woa-relative", budget: int = 400, groups: object = TOGETHER) -> tuple[Found, Hills]:
     found, hills = Found.nothing(BEFORE), Hills()
     with Journal(None, {}) as book:
-        try_start(BEFORE, hills, found, book)
+        try_again(hills, found, book, "start")
         search_in_lockstep(
-            SPACE, hills, found, book, stage="test", method=method, budget=budget, seed=(1,), starts=BEFORE[None],
+            SPACE, hills, found, book, stage="test", method=method, budget=budget, seed=(1,), start=BEFORE,
             tick=lambda _: None, groups=groups,  # type: ignore[arg-type]
         )  # fmt: skip
     return found, hills
@@ -73,6 +73,17 @@ def test_restarts_with_other_packs_keep_the_joints_apart() -> None:
     sizes = {len(rows) for rows in hills.rows}
     assert len(sizes) > 2, "no joint restarted"
     assert (found.cost < 1e-3).all()
+
+
+def test_trying_again_forgets_what_neighbours_that_are_gone_made_of_a_cost() -> None:
+    found, hills = run(budget=57)
+    best = found.best.copy()
+    with Journal(None, {}) as book:
+        try_again(lambda rows: hills(rows) + 1.0, found, book, "again")
+    np.testing.assert_array_equal(found.best, best)
+    np.testing.assert_allclose(found.cost, hills(best[None])[0] + 1.0)
+    assert found.evaluations == 59
+    assert (found.contenders(KEPT) == best).all(), "candidates of other neighbours do not compete any more"
 
 
 def test_the_curve_never_rises() -> None:
@@ -112,7 +123,7 @@ def test_optimisers_are_given_back_when_a_search_is_cut_off(monkeypatch: pytest.
     with pytest.raises(KeyboardInterrupt), Journal(None, {}) as book:
         search_in_lockstep(
             SPACE, interrupted, Found.nothing(BEFORE), book, stage="test", method="gwo-woa", budget=10, seed=(1,),
-            starts=BEFORE[None], tick=lambda _: None,
+            start=BEFORE, tick=lambda _: None,
         )  # fmt: skip
     assert len(closed) == 4
 
@@ -198,7 +209,7 @@ def test_the_journal_is_asked_before_anything_is_simulated(tmp_path: Path) -> No
         with Journal(path, {"budget": 30}, resume) as book:
             search_in_lockstep(
                 SPACE, evaluate or _never, found, book, stage="test", method="cma-es", budget=30, seed=(1,),
-                starts=BEFORE[None], tick=lambda _: None,
+                start=BEFORE, tick=lambda _: None,
             )  # fmt: skip
         if not resume:
             expected = found

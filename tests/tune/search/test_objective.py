@@ -1,6 +1,8 @@
-"""The objective cannot be won by doing nothing, and trains to both sides in several sizes."""
+"""The objective cannot be won by doing nothing, weighs each class by what is possible, and trains to both sides."""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,8 +13,21 @@ from greywhale.files.arm import default_arm
 from greywhale.loop import default_controller, plant_row
 from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory
-from greywhale.tune.search.objective import EFFORT, RMS, Objective, combine_plants, pair_with_plants
-from greywhale.tune.search.training import LEVELS, SOON_S, drills, moves, reach, time_since_move
+from greywhale.tune.possible import scale_of
+from greywhale.tune.search.objective import (
+    CHATTER,
+    LOUDER,
+    QUIET_RAD,
+    RATTLE,
+    Following,
+    Objective,
+    Scale,
+    combine_plants,
+    follow,
+    pair_with_plants,
+    relative_costs,
+)
+from greywhale.tune.search.training import LEVELS, SOON_S, drills, moves, reach, slow_following, time_since_move
 
 ARM = default_arm()
 PLANTS = plant_row(ARM)[None]
@@ -21,7 +36,8 @@ BEFORE = default_controller()
 
 @pytest.fixture(scope="module")
 def objective() -> Objective:
-    return Objective(drills(ARM, ParameterTable.defaults(), PLANTS), PLANTS)
+    motions = drills(ARM, ParameterTable.defaults(), PLANTS)
+    return Objective(motions, PLANTS, scale_of(motions, PLANTS, BEFORE))
 
 
 def test_doing_nothing_costs_more_than_anything_sensible(objective: Objective) -> None:
@@ -29,14 +45,53 @@ def test_doing_nothing_costs_more_than_anything_sensible(objective: Objective) -
     idle[:, 11] = 0
     nothing, before = objective.costs(np.stack([idle, BEFORE]))
     assert (nothing > 2.0 * before).all()
-    assert (nothing > 0.5).all(), "rad, about the distance that the leader goes"
+
+
+def test_what_was_before_counts_as_one_in_every_class(objective: Objective) -> None:
+    found = follow(objective.drills, PLANTS, BEFORE[None])
+    shares = (found.error - objective.scale.floor) / objective.scale.room
+    np.testing.assert_allclose(shares, 1.0)
 
 
 def test_the_effort_is_a_small_part_of_the_cost(objective: Objective) -> None:
-    found = objective.tracking(BEFORE[None])
-    parts = np.stack([found.error, RMS * np.sqrt(found.square), EFFORT * found.volts])
-    np.testing.assert_allclose(objective.costs(BEFORE[None])[0], parts.sum(axis=0)[0, 0])
-    assert (parts[2] < 0.01 * parts.sum(axis=0)).all()
+    found = follow(objective.drills, PLANTS, BEFORE[None])
+    all_of_it = relative_costs(found, objective.scale, 15.0)
+    without = relative_costs(replace(found, volts=0.0 * found.volts), objective.scale, 15.0)
+    assert (all_of_it > without).all()
+    assert (all_of_it - without < 0.01 * all_of_it).all()
+
+
+def test_fine_following_counts_as_much_as_large_moves() -> None:
+    """Half of what can be avoided costs the same in a class whose errors are ten times as large."""
+    floor, room = np.zeros((1, 2, 4)), np.stack([np.full(4, 0.1), np.full(4, 0.01)])[None]
+    scale = Scale(floor + np.array([0.3, 0.0])[:, None], room, np.zeros((1, 2, 4)))
+    none = np.zeros((1, 1, 2, 4))
+    found = Following(scale.floor[None] + 0.5 * room[None], none, none, none)
+    np.testing.assert_allclose(relative_costs(found, scale, 15.0), np.sqrt(0.5))
+
+
+def test_large_moves_count_half_and_fine_following_the_other_half(objective: Objective) -> None:
+    shares = {drill.name: drill.importance for drill in objective.drills}
+    assert shares["moves to both sides"] == shares["human-like reaches"] + shares["slow following"]
+    found = follow(objective.drills, PLANTS, BEFORE[None])
+    large, human, slow = relative_costs(found, objective.scale, 15.0)[0, 0]
+    np.testing.assert_allclose(objective.costs(BEFORE[None])[0], 0.5 * large + 0.25 * (human + slow))
+
+
+def test_rattling_and_chatter_cost_in_every_class_and_most_beyond_what_was_before() -> None:
+    floor, room, before = np.zeros((1, 2, 4)), np.full((1, 2, 4), 0.05), np.full((1, 2, 4), 0.002)
+    scale, none = Scale(floor, room, before), np.zeros((1, 1, 2, 4))
+    quiet, loud, chattering = none.copy(), none.copy(), none.copy()
+    quiet[0, 0, 1, 3], loud[0, 0, 1, 3], chattering[0, 0, 0, 2] = 0.002, 0.003, 170.0
+    costs = [relative_costs(Following(none, none, rattle, none), scale, 15.0) for rattle in (quiet, loud)]
+    assert costs[0][0, 0, 1, 3] == pytest.approx(np.sqrt(RATTLE * 0.002 / 0.05))
+    assert costs[1][0, 0, 1, 3] == pytest.approx(np.sqrt(RATTLE * (0.003 + LOUDER * 0.001) / 0.05))
+    assert np.count_nonzero(costs[1]) == 1
+    beaten = relative_costs(Following(none, none, none, chattering), scale, 15.0)
+    assert beaten[0, 0, 0, 2] == pytest.approx(np.sqrt(CHATTER * 1.0))
+    silent = replace(scale, rattle=np.zeros((1, 2, 4)))
+    free = relative_costs(Following(none, none, np.full_like(none, QUIET_RAD), none), silent, 15.0)
+    np.testing.assert_allclose(free, np.sqrt(RATTLE * QUIET_RAD / 0.05))
 
 
 def test_a_joint_that_is_tuned_one_sidedly_pays(objective: Objective) -> None:
@@ -110,7 +165,7 @@ def test_motions_keep_within_limits_and_stops() -> None:
         leader = drill.experiment.leader
         assert (leader >= low - 1e-9).all()
         assert (leader <= high + 1e-9).all()
-        assert (np.ptp(leader, axis=0) > 0.3).all()
+        assert (np.ptp(leader, axis=0) > 0.2).all()
     assert leader[:, 1].max() <= 0.5
     assert leader[:, 3].min() >= -0.4
 
@@ -119,3 +174,22 @@ def test_a_joint_without_room_is_refused() -> None:
     table = ParameterTable.defaults().with_raw({"joint2.limit_max": -9000})
     with pytest.raises(UserError, match="joint 2 has no room to move: limits -2.5 to -2.19"):
         reach(ARM, table, PLANTS)
+
+
+def test_slow_following_is_small_and_slow_and_lets_each_joint_rest_in_turn() -> None:
+    motion = slow_following(np.full(4, -2.0), np.full(4, 2.0))
+    speed = np.diff(motion.angles, axis=0) * 200.0
+    assert (np.ptp(motion.angles, axis=0) > 0.15).all()
+    assert (np.ptp(motion.angles, axis=0) < 0.4).all()
+    assert np.abs(speed).max() < 0.6
+    resting = np.array(
+        [[np.abs(speed[400 * k + 100 : 400 * k + 300, j]).max() < 1e-9 for j in range(4)] for k in range(4)]
+    )
+    np.testing.assert_array_equal(resting, np.eye(4, dtype=bool))
+
+
+def test_slow_following_keeps_within_a_narrow_range() -> None:
+    motion = slow_following(np.full(4, 0.3), np.full(4, 0.5))
+    assert motion.angles.min() >= 0.3
+    assert motion.angles.max() <= 0.5
+    assert (np.ptp(motion.angles, axis=0) > 0.099).all()

@@ -63,6 +63,20 @@ def test_the_supply_bounds_ku_to_its_double_and_the_firmware_to_30_volts() -> No
         assert space.controllers(space.upper + np.zeros((1, 4, 12)))[0, :, 11].tolist() == [highest] * 4
 
 
+def test_ki_goes_from_none_to_the_most_that_the_firmware_takes() -> None:
+    for period_ms, most in ((1, 1000.0), (20, 204.8)):
+        space = box("both", period_ms=period_ms)
+        ends = space.controllers(np.stack([space.lower, space.upper])[:, None] + np.zeros((2, 4, 12)))
+        assert (ends[0, :, 10] == 0).all()
+        np.testing.assert_allclose(ends[1, :, 10] / 65536, most, rtol=1e-3)
+
+
+def test_most_of_the_kis_that_are_tried_do_something() -> None:
+    """Below some 30 V/(rad s) an integral does next to nothing; a logarithm from 0.01 would try little else."""
+    tried = box("both").controllers(anywhere(box("both"), 2000))[..., 10] / 65536
+    assert np.mean(tried > 30.0) > 0.7
+
+
 def test_the_papers_box_is_table_7() -> None:
     space = box("mf", "paper")
     assert space.names == ("Ne_c", "Ze_a", "Ze_c", "Pe_b", "Nce_c", "Zce_a", "Zce_c", "Pce_b")
@@ -85,7 +99,8 @@ def test_the_reduced_box_is_the_same_to_both_sides_and_lets_kp_and_kd_be() -> No
     rows = space.controllers(anywhere(space))
     for left, right in (("ne_c", "pe_b"), ("ze_a", "ze_c"), ("nce_c", "pce_b"), ("zce_a", "zce_c")):
         assert (rows[..., CONTROLLER_COLUMNS.index(left)] == -rows[..., CONTROLLER_COLUMNS.index(right)]).all()
-    assert (rows[..., 8:10] == 1 << 16).all()
+    assert (rows[..., 8] == 1 << 16).all()
+    assert (rows[..., 9] == round(0.3 * (1 << 16))).all()
     assert box("sf").reduce().names == GAINS
     assert box("mf").reduce().names == ("Ze_c", "Pe_b", "Zce_c", "Pce_b")
 
@@ -95,6 +110,7 @@ def test_restretching_keeps_the_law() -> None:
     space = box("both").reduce()
     stretched = space.restretch(BEFORE)
     assert (stretched[:, 8] == 1 << 16).all()
+    assert (stretched[:, 9] == round(0.3 * (1 << 16))).all()
     for old, new in zip(BEFORE, stretched, strict=True):
         one, other = (JointSettings(*(int(value) for value in row)).controller(1) for row in (old, new))
         e, ce = (np.random.default_rng(3).integers(-limit, limit, 500).astype(np.int32) for limit in (3000, 60))

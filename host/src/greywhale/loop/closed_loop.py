@@ -222,3 +222,11 @@ def count_swings(
     """
     turned, moved = _native.swings(traces, first, last, band)
     return turned, moved
+
+
+def band_power(angles: npt.NDArray[np.float32] | Array, stride: int, length: int, sections: Array) -> Array:
+    """The mean square (n, blocks, 4) of angles (n, rows, 4) in the band that two second-order `sections` (2, 6) pass.
+
+    Every `stride`-th row counts, and `length` of those make a block; a block that is not full is left out.
+    """
+    return np.asarray(_native.band_power(angles, stride, length, sections), dtype=np.float64)

@@ -1,31 +1,33 @@
-"""The default method. Any other optimiser can take its place, by its name.
+"""The default method: GWO-WOA in stages. Any other optimiser can take its place, by its name.
 
 1. `shape`: one search a joint (`search/lockstep.py`) for sets that are the same on both sides of zero. It runs over
-   several plants and all training motions, and unrest costs extra. Joints 0 and 2 take turns with 1 and 3, because
-   neighbours disturb each other.
-2. `every corner`: a narrow search from there, in which each corner and factor is free.
-3. The best few of every joint are judged anew, on all plants in the bench's own arithmetic (`judge/choose.py`). The
+   several plants and all training motions, each class of them counted by what is possible in it (`possible.py`).
+   Unrest costs extra. Joints 0 and 2 take turns with 1 and 3, because neighbours disturb each other.
+2. `shape again`, twice: fresh packs, ever closer around the best so far. What neighbours did counts in a joint's cost,
+   and by now they do better. So everything is judged anew.
+3. `every corner`: a narrow search from there, in which each corner and factor is free.
+4. The best few of every joint are judged anew, on all plants in the bench's own arithmetic (`judge/choose.py`). The
    controller from before the tuning competes too, so no joint ends worse than it began.
-
-Any other method is one search of all joints together with that optimiser, and then step 3.
 """
 
 from __future__ import annotations
 
 import hashlib
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from greywhale.arm.parameters import with_usual_noise
+from greywhale.optimise.relative import RelativeWolfWhale
 from greywhale.table import CONTROLLER_COLUMNS
 from greywhale.tune.judge.choose import choose
 from greywhale.tune.judge.held_out import judge_held_out
-from greywhale.tune.judge.margins import REST_LONG_S, Margin, Margins, loosest_plant, penalty
+from greywhale.tune.judge.margins import MOVING, REST_LONG_S, Margin, Margins, loosest_plant, penalty
 from greywhale.tune.method import Costs, Judgement, Task
 from greywhale.tune.model import Model
+from greywhale.tune.possible import scale_of
 from greywhale.tune.search import lockstep
 from greywhale.tune.search.journal import Journal
 from greywhale.tune.search.lockstep import Found
@@ -37,10 +39,25 @@ Floats = npt.NDArray[np.float64]
 Controllers = npt.NDArray[np.int32]
 
 BUDGET = 3000
-# The second, narrow search: its share of the budget, and its share of the box, around the best so far.
-NARROW_SHARE = 0.3
-NARROW_BOX = 0.03
-SHAPE_METHOD, CORNER_METHOD = "cma-es", "cma-es"  # of the default method's two searches
+METHOD = RelativeWolfWhale.name  # of the default method
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One search of the default method, from the best so far."""
+
+    name: str
+    share: float  # of the budget
+    sigma: float | None  # of the first pack, as a share of the box; None: all over it
+    every_corner: bool = False
+
+
+STAGES = (
+    Stage("shape", 0.4, None),
+    Stage("shape again", 0.15, 0.15),
+    Stage("shape at last", 0.15, 0.05),
+    Stage("every corner", 0.3, 0.03, every_corner=True),
+)
 # The search tracks on so many plants, the estimate among them; the last judgement uses all.
 SEARCH_PLANTS = 4
 # The last judgement makes unrest so much dearer that it takes a joint which does not rest only if there is no other.
@@ -62,8 +79,10 @@ class DefaultMethod:
         period = self.table.period_ms
         self.space = Space.default(task.strategy, task.before, supply, period).with_bounds(task.bounds, period)
         motions = drills(model.arm, self.table, model.plants, task.seed)
-        self.objective = Objective(motions, model.plants[:SEARCH_PLANTS], task.threads)
-        self.judging = Objective(motions, model.plants, task.threads)
+        scale = scale_of(motions, model.plants, task.before, task.threads)
+        some = model.plants[:SEARCH_PLANTS]
+        self.objective = Objective(motions, some, scale.first(len(some)), task.threads)
+        self.judging = Objective(motions, model.plants, scale, task.threads)
         self.margins = self._margins(_extreme_plants(model.plants), searching=True)
         # Longer and with other noise, since a search learns its own noise by heart.
         self.judging_margins = self._margins(_extreme_plants(model.plants), rest_s=REST_LONG_S, noise=1)
@@ -87,42 +106,45 @@ class DefaultMethod:
         return self.found.curve[0][1]
 
     def search(self, journal: Journal) -> None:
-        """Try the controllers from before first, then run the stages of the method."""
+        """Try the controllers from before first, then run the stages."""
         task = self.task
 
         def tick(found: Found) -> None:
             what = "replaying the journal" if journal.replaying else "tuning"
-            task.report(what, min(1.0, found.evaluations / task.budget), note=f"cost {1e3 * found.total:.1f} mrad")
+            task.report(what, min(1.0, found.evaluations / task.budget), note=f"cost {found.total:.3f}")
 
-        common: dict[str, Any] = {"evaluate": self.costs, "found": self.found, "journal": journal, "tick": tick}
-        lockstep.try_start(self.start, self.costs, self.found, journal)
-        left = task.budget - 1
-        if task.method != "default":
-            self._stage("search", self.space, task.method, left, self.start, 1, **common)
+        lockstep.try_again(self.costs, self.found, journal, "start")
+        for number, stage in enumerate(STAGES, 1):
+            left = task.budget - self.found.evaluations
+            share = left if stage is STAGES[-1] else min(left, round(stage.share * task.budget))
+            if number > 1 and share > len(lockstep.TURNS):
+                lockstep.try_again(self.costs, self.found, journal, stage.name)
+                share -= 1
+            self._run(stage, number, share // len(lockstep.TURNS), journal, tick)
+
+    def _run(self, stage: Stage, number: int, budget: int, journal: Journal, tick: lockstep.Tick) -> None:
+        """Spend a stage's evaluations of each joint."""
+        if budget < 1:
             return
-        turn = left // len(lockstep.TURNS)
-        narrow = int(NARROW_SHARE * turn)
-        common["groups"] = lockstep.TURNS
-        shape = self.space.reduce()
-        self._stage("shape", shape, SHAPE_METHOD, turn - narrow, shape.restretch(self.start), 1, **common)
-        self._stage("every corner", self.space, CORNER_METHOD, narrow, self.found.best, 2, sigma=NARROW_BOX, **common)
-
-    def _stage(
-        self, name: str, space: Space, method: str, budget: int, start: Controllers, number: int, **options: Any
-    ) -> None:
-        if budget > 0:
-            lockstep.search_in_lockstep(
-                space,
-                stage=name,
-                method=method,
-                budget=budget,
-                starts=start[None],
-                seed=(self.task.seed, number),
-                **options,
-            )
+        space = self.space if stage.every_corner else self.space.reduce()
+        best = self.found.best
+        lockstep.search_in_lockstep(
+            space,
+            self.costs,
+            self.found,
+            journal,
+            stage=stage.name,
+            method=METHOD if self.task.method == "default" else self.task.method,
+            budget=budget,
+            seed=(self.task.seed, number),
+            start=best if stage.every_corner else space.restretch(best),
+            tick=tick,
+            groups=lockstep.TURNS,
+            sigma=stage.sigma,
+        )
 
     def costs(self, controllers: Controllers) -> Floats:
-        """The search's costs: (n, 4) in rad."""
+        """The search's costs: (n, 4)."""
         costs: Floats = self.objective.costs(controllers) + penalty(self.margins.unrest(controllers))
         return costs
 
@@ -162,12 +184,17 @@ class DefaultMethod:
 
 
 def _notes(margins: tuple[Margin, ...]) -> tuple[str, ...]:
-    """One sentence for every scenario in which a joint does not come to rest."""
-    return tuple(
-        f"joint {margin.joint}, {margin.scenario}: {margin.reversals} reversals in a rest and {margin.chatter_hz:.0f} "
-        f"duty swings a second on {margin.plants_failing} of {margin.plants} plants"
-        for margin in margins
-        if not margin.holds
+    """One sentence for every scenario in which a joint does not come to rest, or does not move smoothly."""
+    return tuple(_note(margin) for margin in margins if not margin.holds)
+
+
+def _note(margin: Margin) -> str:
+    what = f"{1e3 * margin.rattle_rad:.1f} mrad of rattling"
+    if margin.scenario != MOVING:
+        what = f"{margin.reversals} reversals in a rest"
+    return (
+        f"joint {margin.joint}, {margin.scenario}: {what} and {margin.chatter_hz:.0f} duty swings a second on "
+        f"{margin.plants_failing} of {margin.plants} plants"
     )
 
 

@@ -105,8 +105,7 @@ class PaperMethod:
 
         search_in_lockstep(
             Space.paper(task.strategy, task.before), self.loops.costs, self.found, journal, stage="paper",
-            method=METHOD, budget=task.budget, seed=(task.seed,),
-            starts=np.empty((0, JOINTS, task.before.shape[1]), dtype=np.int32), tick=tick, pack=AGENTS,
+            method=METHOD, budget=task.budget, seed=(task.seed,), tick=tick, pack=AGENTS,
         )  # fmt: skip
 
     def cost_before(self) -> Costs:

@@ -1,4 +1,4 @@
-"""Whether a joint comes to rest, and whether it still would on a slightly different arm.
+"""Whether a joint comes to rest, whether it still would on a slightly different arm, and whether it moves smoothly.
 
 Different means half or twice the loop gain, one more control period of delay, or softer gear teeth than the model has
 (recordings show stiffness least of all, and backlash hunts on it).
@@ -6,8 +6,11 @@ Different means half or twice the loop gain, one more control period of delay, o
 The leader makes large moves and stops. From SETTLE_S after each stop on, the follower must not swing. REVERSALS or more
 turning points of its true angle, each more than SWING_RAD from the next, are a limit cycle (a gear that hunts in its
 backlash, an integrator that breaks loose again and again, a loop without phase margin). Duties that swing by more than
-CHATTER_SHARE of the supply, more than CHATTER_HZ times a second, are chatter (a relay; sensor noise that Kd magnifies).
+a third of the supply, more than CHATTER_HZ times a second, are chatter (a relay; sensor noise that Kd magnifies).
 A single overshoot, or creeping to the target, is neither.
+
+While the leader moves, in all classes of training motions, the follower must not rattle by RATTLE_RAD or more (rms, as
+`rattle` measures it), and its duty must not chatter: a gear that moves bears MOVING_CHATTER_HZ.
 """
 
 from __future__ import annotations
@@ -21,15 +24,17 @@ import numpy.typing as npt
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import column, columns
-from greywhale.firmware import JOINTS, pwm_steps
+from greywhale.firmware import JOINTS
 from greywhale.loop import Experiment, Result, Timing
 from greywhale.loop.closed_loop import count_swings
 from greywhale.protocol.schema import Board
 from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory
 from greywhale.trajectory.generate import minimum_jerk
-from greywhale.tune.search.objective import pair_with_plants
-from greywhale.tune.search.training import EDGE_S, RATE_HZ, centre, reach
+from greywhale.tune.search.objective import CHATTER_HZ as MOVING_CHATTER_HZ
+from greywhale.tune.search.objective import follow, pair_with_plants
+from greywhale.tune.search.rattle import duty_swings
+from greywhale.tune.search.training import EDGE_S, RATE_HZ, centre, drills, reach
 
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int32]
@@ -37,7 +42,7 @@ Controllers = npt.NDArray[np.int32]
 
 SWING_RAD = 0.01
 REVERSALS = 3
-CHATTER_SHARE = 1 / 3
+RATTLE_RAD = 0.005
 CHATTER_HZ = 50.0
 SETTLE_S = 1.0
 SEARCH_SWING_RAD = 0.005
@@ -47,7 +52,8 @@ WAIT_S = 0.2
 GAINS = {"at rest": 1.0, "half the loop gain": 0.5, "twice the loop gain": 2.0}
 DELAY = "one period more delay"
 TEETH = "softer teeth"
-SCENARIOS = (*GAINS, TEETH, DELAY)
+MOVING = "while moving"
+SCENARIOS = (*GAINS, TEETH, DELAY, MOVING)
 SOFTER, LESS_DAMPED = 4.0, 8.0
 # Where the leader stops, as shares of a joint's reach. All joints move together, so all are shaken.
 STOPS = (0.8, -0.2)
@@ -68,6 +74,7 @@ class Margin:
     chatter_hz: float
     plants_failing: int
     plants: int
+    rattle_rad: float = 0.0  # rms; looked at while moving only
 
     @property
     def holds(self) -> bool:
@@ -80,6 +87,7 @@ class Margin:
             "holds": self.holds,
             "reversals": self.reversals,
             "chatter_hz": self.chatter_hz,
+            "rattle_rad": self.rattle_rad,
             "plants_failing": self.plants_failing,
             "plants": self.plants,
         }
@@ -116,19 +124,12 @@ def unrest_of(
         seconds = (last - first) * 1e-3
         rows = (first // every, last // every)
         turned, moved = count_swings(result.angles, *rows, band)
-        beats = _duty_swings(result, rows, board)
+        beats = duty_swings(result, rows, board)
         reversals = np.maximum(reversals, turned.reshape(*shape, JOINTS))
         travel = np.maximum(travel, np.where(turned >= REVERSALS, moved / seconds, 0.0).reshape(*shape, JOINTS))
         chatter = np.maximum(chatter, (beats / seconds).reshape(*shape, JOINTS))
     lost = np.repeat(result.diverged.reshape(shape)[:, :, None], JOINTS, axis=2)
     return Unrest(reversals, travel, chatter, lost)
-
-
-def _duty_swings(result: Result, rows: tuple[int, int], board: Board) -> Integers:
-    """For every row and joint (n, 4): swings by more than CHATTER_SHARE of that joint's full PWM."""
-    steps = pwm_steps(board)
-    counted = {top: count_swings(result.duties, *rows, CHATTER_SHARE * top)[0] for top in set(steps)}
-    return np.stack([counted[top][:, joint] for joint, top in enumerate(steps)], axis=1)
 
 
 def _part(found: Unrest, plants: slice) -> Unrest:
@@ -154,6 +155,7 @@ class Margins:
         period = table.period_ms
         motion = stops(low, high, rest_s)
         self.plants = plants
+        self._arm, self._table, self._seed = arm, table, 100 * seed + _MOVING_SEED + noise
         self._board = table.board
         self._threads = threads
         self._band = SEARCH_SWING_RAD if searching else SWING_RAD
@@ -213,20 +215,41 @@ class Margins:
                         plants=len(self.plants),
                     )
                 )
-        return tuple(verdicts)
+        return (*verdicts, *self._check_moving(controllers))
+
+    def _check_moving(self, controllers: Controllers) -> list[Margin]:
+        """A verdict for each joint on the training motions, with other sensor noise than in a search."""
+        motions = drills(self._arm, self._table, self.plants, self._seed)
+        found = follow(motions, self.plants, controllers[None], single=True, threads=self._threads)
+        # The worst class counts.
+        rattle, chatter = found.rattle[0].max(axis=1), found.chatter[0].max(axis=1)
+        failing = (rattle >= RATTLE_RAD) | (chatter > MOVING_CHATTER_HZ)
+        return [
+            Margin(
+                scenario=MOVING,
+                joint=joint,
+                reversals=0,
+                chatter_hz=float(chatter[:, joint].max()),
+                plants_failing=int(failing[:, joint].sum()),
+                plants=len(self.plants),
+                rattle_rad=float(rattle[:, joint].max()),
+            )
+            for joint in range(JOINTS)
+        ]
 
 
+_MOVING_SEED = 50  # of sensor noise that no search hears
 # The leader rests this long before its first move.
 _FIRST_S = 0.2
-# What a search pays for a limit cycle: rad for each rad/s of swinging, rad for each CHATTER_HZ of chatter, and the
-# least.
-TRAVEL_PRICE = 0.2
-CHATTER_PRICE = 0.01
-LEAST_PRICE = 0.02
+# What a search pays for a limit cycle, as shares of what is possible: for each rad/s of swinging, for each CHATTER_HZ
+# of chatter, and the least.
+TRAVEL_PRICE = 0.5
+CHATTER_PRICE = 0.03
+LEAST_PRICE = 0.05
 
 
 def penalty(found: dict[str, Unrest]) -> Floats:
-    """What candidates pay (n, 4), in rad: nothing when quiet, otherwise LEAST_PRICE, and more for more unrest."""
+    """What candidates pay (n, 4): nothing when quiet, otherwise LEAST_PRICE, and more for more unrest."""
     total = 0.0
     for one in found.values():
         excess = np.maximum(one.chatter / CHATTER_HZ - SEARCH_CHATTER, 0.0)

@@ -120,6 +120,7 @@ def _margins(margins: tuple[Margin, ...]) -> list[dict[str, Any]]:
                 "plants_failing": [one.plants_failing for one in joints],
                 "reversals": [one.reversals for one in joints],
                 "chatter_hz": _rounded(one.chatter_hz for one in joints),
+                "rattle_rad": _rounded(one.rattle_rad for one in joints),
             }
         )
     return rows

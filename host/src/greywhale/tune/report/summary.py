@@ -67,7 +67,7 @@ def _margins(outcome: Outcome) -> list[str]:
     plants = outcome.margins[0].plants
     arms = f"on all {plants} plants" if plants > 1 else "on the model itself"
     scenarios = ", ".join(dict.fromkeys(margin.scenario for margin in outcome.margins))
-    return [f"Margins hold {arms}, no joint swings or chatters once its leader rests: {scenarios}."]
+    return [f"Margins hold {arms}, no joint swings, rattles or chatters: {scenarios}."]
 
 
 def failing_margins(outcome: Outcome) -> list[str]:

@@ -9,12 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from greywhale.firmware import JOINTS
 from greywhale.optimise import Optimiser, create
+from greywhale.optimise.box import latin_hypercube
+from greywhale.optimise.cma_es import SIGMA, CmaEs
+from greywhale.optimise.optimiser import PACK
 from greywhale.tune.search.journal import Journal
 from greywhale.tune.search.space import Space
 
@@ -58,6 +62,11 @@ class Found:
                 self.best[joint], self.cost[joint] = rows[row, joint], costs[row, joint]
         self.curve.append((self.evaluations, tuple(float(cost) for cost in self.cost)))
 
+    def forget_costs(self) -> None:
+        """Keep the best of every joint, but not what it or any other candidate cost."""
+        self.cost = np.full(JOINTS, np.inf)
+        self.ranking = [[] for _ in range(JOINTS)]
+
     def contenders(self, count: int) -> Controllers:
         """(count, 4, 12): every joint's best, then others from further down its list; the first few are alike."""
         rows = np.repeat(self.best[None], count, axis=0)
@@ -91,29 +100,23 @@ def search_in_lockstep(
     method: str,
     budget: int,
     seed: tuple[int, ...],
-    starts: Controllers,
+    start: Controllers | None = None,
     tick: Tick,
     groups: Sequence[Sequence[int]] = TOGETHER,
-    pack: int | None = None,
-    **options: object,
+    sigma: float | None = None,
+    pack: int = PACK,
 ) -> None:
-    """Spend `budget` evaluations a joint and leave the best in `found`; `starts` (k, 4, 12) are in the first pack."""
-    points = space.points(starts)
+    """Spend `budget` evaluations a joint and leave the best in `found`; a `start` (4, 12) is in the first pack.
+
+    The first pack lies all over the box, or around `start` with a standard deviation of `sigma` times the box. CMA-ES
+    has a pack of its own size.
+    """
+    points = np.empty((0, JOINTS, space.dimensions)) if start is None else space.points(start[None])
     packs: list[Optimiser] = []
     try:
         for joint in range(JOINTS):
-            packs.append(
-                create(
-                    method,
-                    space.lower,
-                    space.upper,
-                    budget=budget,
-                    seed=np.random.default_rng([*seed, joint]),
-                    pack=pack,
-                    start=points[:, joint],
-                    **options,
-                )
-            )
+            source = np.random.default_rng([*seed, joint])
+            packs.append(_begin(method, space, budget, source, points[:, joint], sigma, pack))
         while not all(one.done for one in packs):
             for group in groups:
                 if not all(packs[joint].done for joint in group):
@@ -124,9 +127,42 @@ def search_in_lockstep(
             one.close()
 
 
-def try_start(start: Controllers, evaluate: Costs, found: Found, journal: Journal) -> None:
-    """Try the controllers that there are (4, 12), so that every later candidate must beat them."""
-    _evaluate(start[None], [1] * JOINTS, evaluate, found, journal, "start")
+def _begin(
+    method: str,
+    space: Space,
+    budget: int,
+    source: np.random.Generator,
+    start: Floats,
+    sigma: float | None,
+    pack: int,
+) -> Optimiser:
+    """One joint's optimiser with its start points (k, d)."""
+    box: dict[str, Any] = {"lower": space.lower, "upper": space.upper, "budget": budget, "seed": source}
+    if method == CmaEs.name:
+        # It makes its own pack around the start.
+        return create(method, **box, start=start, sigma=SIGMA if sigma is None else sigma)
+    if sigma is not None:
+        start = _surround(space, start, sigma, source, pack)
+    return create(method, **box, start=start, pack=pack)
+
+
+def _surround(space: Space, start: Floats, sigma: float, source: np.random.Generator, pack: int) -> Floats:
+    """A first pack (pack, d): the start point, and others around it that keep inside the box."""
+    places = latin_hypercube(source, pack - len(start), space.dimensions)
+    # Even numbers have a standard deviation of 1 between -sqrt(3) and sqrt(3).
+    steps = sigma * np.sqrt(3.0) * (2.0 * places - 1.0)
+    around = np.clip(start[:1] + steps * (space.upper - space.lower), space.lower, space.upper)
+    return np.concatenate([start, around])
+
+
+def try_again(evaluate: Costs, found: Found, journal: Journal, stage: str) -> None:
+    """Judge the best of all joints together, and forget all other costs, so that later candidates must beat that.
+
+    A joint's cost depends on what its neighbours did in the same row. The best of many was also lucky in that, and
+    neighbours have changed since.
+    """
+    found.forget_costs()
+    _evaluate(found.best[None].copy(), [1] * JOINTS, evaluate, found, journal, stage)
 
 
 def _evaluate(

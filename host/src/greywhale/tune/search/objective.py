@@ -1,15 +1,24 @@
-"""What a controller costs, joint by joint, over all plants and training motions, with the firmware's own integers.
+"""What a controller costs, joint by joint, over all plants and classes of motion, with the firmware's own integers.
 
-The cost of a joint is a length (rad), the sum of
+The error of a joint in a class is a length (rad), the sum of
 
-- the mean of |e|, weighted with time that restarts at every move of the leader (`training.time_since_move`);
+- the mean of |e|, with the weights of `training`;
 - RMS times the root of the mean of e^2, without weights: this is what the paper's tables measure, and it arises mostly
-  during moves;
-- EFFORT times the mean of |u|, weighted like |e|;
-- the price that `margins` sets for a joint that does not come to rest.
+  during moves.
 
-The mean over the plants counts half, and the worst plant the other half. A controller that does nothing costs the whole
-distance that the leader goes, some 1 rad; the effort of a good one costs a thousandth of that.
+A class counts relative to what is possible in it (`Scale`): 0 is the error of the ideal controller, 1 that of the
+controller from before. So fine following counts as much as large moves, whose error is ten times as large, but mostly
+cannot be helped. To this come, in every class,
+
+- RATTLE times the rattling (`rattle`, rad), on the same scale, and as much as LOUDER times that for what is beyond the
+  rattling from before;
+- CHATTER for every CHATTER_HZ of duty swings beyond those that a moving gear bears;
+- EFFORT times the mean of |u| as a share of the supply, weighted like |e|.
+
+The cost of the class is the root of this sum, because the last tenth of the way matters more than the first. Large
+moves count half, and the two classes of fine following the other half. Of the plants, the mean counts half, and the
+worst plant the other half.
+`margins` adds the price of a joint that does not come to rest.
 """
 
 from __future__ import annotations
@@ -20,16 +29,25 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from greywhale.firmware import JOINTS
 from greywhale.loop import Result
-from greywhale.tune.search.training import Drill
+from greywhale.tune.search.rattle import chatter, rattle
+from greywhale.tune.search.training import WAIT_S, Drill
 
 Floats = npt.NDArray[np.float64]
 Controllers = npt.NDArray[np.int32]
 
-# rad per V: 10 V all the time costs as much as 10 mrad.
-EFFORT = 1e-3
 RMS = 1.5
+RATTLE = 3.0
+LOUDER = 3.0
+# Rattling below this (rad) is never louder: a board's angle has steps of a quarter of it.
+QUIET_RAD = 1e-3
+CHATTER = 0.3
+CHATTER_HZ = 100.0
+BEARABLE = 0.7  # of CHATTER_HZ
+EFFORT = 0.02
 WORST_SHARE = 0.5
+LOST = 1e3  # a motion that left the range of numbers
 
 
 def combine_plants(values: Floats) -> Floats:
@@ -45,42 +63,87 @@ def pair_with_plants(controllers: Controllers, plants: Floats) -> tuple[Controll
     return np.ascontiguousarray(laws), np.ascontiguousarray(arms)
 
 
-@dataclass(frozen=True)
-class Tracking:
-    """(n, plants, 4) each."""
+def error_of(weighted: Floats, square: Floats) -> Floats:
+    """The error in rad, of the weighted mean of |e| and the mean of e^2."""
+    error: Floats = weighted + RMS * np.sqrt(square)
+    return error
 
-    error: Floats  # rad, weighted mean of |e|
-    square: Floats  # rad2, mean of e^2
+
+@dataclass(frozen=True)
+class Following:
+    """How candidates follow: (n, plants, classes, 4) each."""
+
+    error: Floats  # rad, see the head
     volts: Floats  # V, weighted mean of |u|
+    rattle: Floats  # rad
+    chatter: Floats  # 1/s
+
+
+@dataclass(frozen=True)
+class Scale:
+    """What is possible on every plant in every class, and what was reached before: (plants, classes, 4) each, in rad.
+
+    `room` is the way from the floor to the error before.
+    """
+
+    floor: Floats
+    room: Floats
+    rattle: Floats
+
+    def first(self, plants: int) -> Scale:
+        """The same for the first few plants only."""
+        return Scale(self.floor[:plants], self.room[:plants], self.rattle[:plants])
 
 
 @dataclass(frozen=True)
 class Objective:
-    """The training motions and the plants on which candidates are judged."""
+    """The training motions and the plants on which candidates are judged, by what is possible."""
 
     drills: Sequence[Drill]
     plants: Floats
+    scale: Scale
     threads: int = 0
 
-    def tracking(self, controllers: Controllers, single: bool = False) -> Tracking:
-        """Simulate every candidate on every plant; `single`: in the bench's own arithmetic."""
-        laws, arms = pair_with_plants(controllers, self.plants)
-        shape = (len(controllers), len(self.plants), 4)
-        error, square, volts = np.zeros(shape), np.zeros(shape), np.zeros(shape)
-        for drill in self.drills:
-            result = self._run(drill, laws, arms, single)
-            error += result.itae.reshape(shape)
-            volts += result.itau.reshape(shape)
-            square += drill.experiment.ticks * result.mse.reshape(shape)
-        weight = sum(drill.total_weight for drill in self.drills)
-        return Tracking(error / weight, square / sum(drill.experiment.ticks for drill in self.drills), volts / weight)
-
     def costs(self, controllers: Controllers, single: bool = False) -> Floats:
-        """(n, 4) in rad, over all plants; without the price of unrest."""
-        found = self.tracking(controllers, single)
-        return combine_plants(found.error + RMS * np.sqrt(found.square) + EFFORT * found.volts)
+        """(n, 4), over all plants; without the price of unrest. `single`: in the bench's own arithmetic."""
+        found = follow(self.drills, self.plants, controllers, single=single, threads=self.threads)
+        supply = self.drills[0].experiment.table.supply_v
+        weights = np.array([drill.importance for drill in self.drills])
+        weighted = weights[:, None] * relative_costs(found, self.scale, supply)
+        return combine_plants(weighted.sum(axis=2) / weights.sum())
 
-    def _run(self, drill: Drill, laws: Controllers, arms: Floats, single: bool) -> Result:
-        if single:
-            return drill.experiment.run_single(laws, arms, threads=self.threads)
-        return drill.experiment.run(laws, arms, threads=self.threads)
+
+def relative_costs(found: Following, scale: Scale, supply_v: float) -> Floats:
+    """The cost of every class: (n, plants, classes, 4)."""
+    louder = np.maximum(found.rattle - np.maximum(scale.rattle, QUIET_RAD), 0.0)
+    # One joint may come out a little below its floor, where a neighbour carries it.
+    avoidable = np.maximum(found.error - scale.floor, 0.0)
+    length = avoidable + RATTLE * (found.rattle + LOUDER * louder)
+    unbearable = np.maximum(found.chatter / CHATTER_HZ - BEARABLE, 0.0)
+    share = length / scale.room + CHATTER * unbearable + EFFORT * found.volts / supply_v
+    costs: Floats = np.sqrt(share)
+    return costs
+
+
+def follow(
+    drills: Sequence[Drill], plants: Floats, controllers: Controllers, *, single: bool = False, threads: int = 0
+) -> Following:
+    """Simulate every candidate on every plant and motion; `single`: in the bench's own arithmetic."""
+    laws, arms = pair_with_plants(controllers, plants)
+    shape = (len(controllers), len(plants), JOINTS)
+    kept: list[list[Floats]] = [[], [], [], []]
+    for drill in drills:
+        run = drill.experiment.run_single if single else drill.experiment.run
+        for place, value in enumerate(_measures(drill, run(laws, arms, every=1, threads=threads))):
+            kept[place].append(value.reshape(shape))
+    return Following(*(np.stack(values, axis=2) for values in kept))
+
+
+def _measures(drill: Drill, result: Result) -> tuple[Floats, Floats, Floats, Floats]:
+    """Error, volts, rattling and chatter (n k, 4) of one motion."""
+    experiment = drill.experiment
+    error = error_of(result.itae / drill.total_weight, result.mse)
+    error[result.diverged] = LOST
+    shaken = rattle(result.angles, experiment.leader, 1, WAIT_S)
+    shaken[result.diverged] = LOST
+    return error, result.itau / drill.total_weight, shaken, chatter(result, 1, experiment.table.board)

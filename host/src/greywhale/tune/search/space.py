@@ -34,7 +34,12 @@ NARROWEST = LEAST_WIDTH / SET_UNIT
 NARROWEST_STATED = 0.01  # as people write it; stored, it is the next width above
 
 # Sizes that the default search may give to a scaling factor. Kp and Kd only stretch the axes of the sets.
-_GAIN_RANGE = {"Kp": (0.1, 10.0), "Kd": (1e-3, 5.0), "Ki": (1e-2, 300.0)}
+_GAIN_RANGE = {"Kp": (0.1, 10.0), "Kd": (1e-3, 5.0)}
+# Ki goes from none to the largest that the firmware takes. Below this size (V/(rad s)) an integral does next to nothing
+# in the time of a move, so sizes below it are searched as they are, and only those above it by their logarithm.
+_SLOW_KI = 30.0
+# Kp and Kd where they only stretch the sets: sets of full width then reach to 1 rad and 170 rad/s.
+_STRETCH = {"Kp": 1.0, "Kd": 0.3}
 # Ku may exceed the supply, at which the voltage is clipped in any case. Full voltage then comes before full height.
 KU_BEYOND = 2.0
 # The least Ku (V): enough for friction, and never 0, because such a controller would do nothing.
@@ -52,7 +57,8 @@ def _column(name: str) -> int:
 class Variable:
     """One searched number: `low` to `high` in the file's unit and sign, searched by its logarithm or as it is.
 
-    `mirror` is another corner that gets the same size on the other side of zero.
+    `offset` is added to a size before the logarithm is taken, so that it may be 0. `mirror` is another corner that gets
+    the same size on the other side of zero.
     """
 
     name: str
@@ -60,6 +66,7 @@ class Variable:
     high: float
     logarithmic: bool
     mirror: str = ""
+    offset: float = 0.0
 
     @property
     def column(self) -> int:
@@ -77,13 +84,14 @@ class Variable:
         if not self.logarithmic:
             return self.low, self.high
         sizes = sorted((abs(self.low), abs(self.high)))
-        return float(np.log(sizes[0])), float(np.log(sizes[1]))
+        return float(np.log(sizes[0] + self.offset)), float(np.log(sizes[1] + self.offset))
 
     def raw(self, x: Floats) -> npt.NDArray[np.int64]:
         """The nearest numbers that the board can store; a width below 0.01 becomes 0.01."""
         sign = -1.0 if self.name in _NEGATIVE else 1.0
-        size = np.exp(x) if self.logarithmic else sign * x
-        raw = np.rint(size * self.unit).astype(np.int64)
+        size = np.exp(x) - self.offset if self.logarithmic else sign * x
+        # A size of 0 comes back from its logarithm with an error of rounding.
+        raw = np.maximum(np.rint(size * self.unit), 0.0).astype(np.int64)
         if self.name in SETS:
             raw = np.clip(raw, LEAST_WIDTH, SET_UNIT)
         return np.asarray(sign * raw, dtype=np.int64)
@@ -92,7 +100,7 @@ class Variable:
         """The point of a stored number, moved into the box where it lies outside."""
         value = raw.astype(np.float64) / self.unit
         if self.logarithmic:
-            value = np.log(np.maximum(np.abs(value), 1e-9))
+            value = np.log(np.maximum(np.abs(value) + self.offset, 1e-9))
         return np.clip(value, *self.bounds)
 
 
@@ -109,12 +117,19 @@ class Space:
         """Widths from 0.01 to 1, and factors over decades by their logarithms, Ku up to twice the supply."""
         highest = {
             **{name: high for name, (_, high) in _GAIN_RANGE.items()},
-            "Ki": min(_GAIN_RANGE["Ki"][1], largest_ki(period_ms)),
+            "Ki": largest_ki(period_ms),
             "Ku": min(KU_BEYOND * supply_mv, LARGEST_KU_MV) / 1000.0,
         }
-        lowest = {**{name: low for name, (low, _) in _GAIN_RANGE.items()}, "Ku": min(_LEAST_KU, 0.5 * highest["Ku"])}
+        lowest = {
+            **{name: low for name, (low, _) in _GAIN_RANGE.items()},
+            "Ki": 0.0,
+            "Ku": min(_LEAST_KU, 0.5 * highest["Ku"]),
+        }
         sets = [Variable(name, *_ordered(name, NARROWEST, 1.0), True) for name in SETS]
-        gains = [Variable(name, lowest[name], highest[name], name != "Ku") for name in GAINS]
+        offset = {"Ki": _SLOW_KI}
+        gains = [
+            Variable(name, lowest[name], highest[name], name != "Ku", offset=offset.get(name, 0.0)) for name in GAINS
+        ]
         return cls(strategy, _chosen(strategy, sets, gains), base)
 
     @classmethod
@@ -175,8 +190,8 @@ class Space:
     def reduce(self) -> Self:
         """The part of the box in which the shape of the law differs.
 
-        Sets are the same on both sides of zero. Where factors and sets are both searched, Kp and Kd are as near to 1 as
-        their bounds allow, since they only stretch the axes of the sets.
+        Sets are the same on both sides of zero. Where factors and sets are both searched, Kp and Kd are as near to
+        _STRETCH as their bounds allow, since they only stretch the axes of the sets.
         """
         by_name = {variable.name: variable for variable in self.variables}
         for left, right in _PAIRS:
@@ -187,9 +202,9 @@ class Space:
                     del by_name[left]
         base = self.base.copy()
         if self.strategy == "both":
-            for name in ("Kp", "Kd"):
+            for name, usual in _STRETCH.items():
                 variable = by_name.pop(name)
-                base[:, variable.column] = round(float(np.clip(1.0, variable.low, variable.high)) * variable.unit)
+                base[:, variable.column] = round(float(np.clip(usual, variable.low, variable.high) * variable.unit))
         return replace(self, variables=tuple(by_name.values()), base=base)
 
     def restretch(self, controllers: Controllers) -> Controllers:

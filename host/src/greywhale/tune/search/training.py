@@ -1,8 +1,8 @@
-"""The motions on which controllers are trained: moves to both sides in several sizes, and human-like reaches.
+"""The motions on which controllers are trained, one a class: moves to both sides, human-like reaches, slow following.
 
 The weight of a moment is SOON_S plus the time since the leader last moved: an error counts while the leader moves, and
 counts more the longer the leader has been at rest. The time starts again with every move, so the tenth move of a record
-weighs as much as the first.
+weighs as much as the first. In slow following the leader hardly ever rests, so there all moments weigh the same.
 """
 
 from __future__ import annotations
@@ -35,6 +35,13 @@ CLEAR_RAD = 0.15
 LEAST_RANGE_RAD = 0.2
 HUMAN_SEED = 1001  # judges nothing anywhere else
 HUMAN_S = 9.0
+# Slow following: waves of these periods (s), in shares of a size that is small beside the moves.
+SLOW_S = 8.0
+SLOW_PERIODS_S = (2.3, 4.1)
+SLOW_SHARES = (0.4, 0.6)
+SLOW_RAD = 0.15
+# Every joint rests in its own part of the record while the others go on; it stops and starts within this time.
+EASE_S = 0.4
 WAIT_S = 0.2
 SOON_S = 0.1
 # The leader counts as moving while it changes by this much (rad) within this time (s); a hand's tremor is far smaller.
@@ -43,28 +50,33 @@ MOVING_RAD, MOVING_S = 0.02, 0.1
 
 @dataclass(frozen=True)
 class Drill:
-    """One training motion with its weights."""
+    """One training motion, the only one of its class, with its weights."""
 
     name: str
+    motion: Trajectory
     experiment: Experiment
-    total_weight: float  # s2, the integral of the weights
+    total_weight: float  # the integral of the weights
+    importance: float  # beside the other classes
 
 
 def drills(arm: ArmParameters, table: ParameterTable, plants: Floats, seed: int = 0) -> tuple[Drill, ...]:
     """The training motions within the range of this arm and table, with sensor noise."""
     low, high = reach(arm, table, plants)
-    motions = {
-        "moves to both sides": moves(low, high),
-        "human-like reaches": clip_motion(human_reaches(HUMAN_SEED, HUMAN_S), low, high),
+    large = moves(low, high)
+    human = clip_motion(human_reaches(HUMAN_SEED, HUMAN_S), low, high)
+    slow = slow_following(low, high)
+    classes = {
+        "moves to both sides": (large, time_since_move(large, WAIT_S), 2.0),
+        "human-like reaches": (human, time_since_move(human, WAIT_S), 1.0),
+        "slow following": (slow, _equal_weight(slow, WAIT_S), 1.0),
     }
     made = []
-    for number, (name, motion) in enumerate(motions.items()):
-        weight = time_since_move(motion, WAIT_S)
+    for number, (name, (motion, weight, importance)) in enumerate(classes.items()):
         experiment = Experiment(
             motion, arm, table=table, seed=100 * seed + number + 11, wait_s=WAIT_S, soft_start=False,
             weight_s=weight,
         )  # fmt: skip
-        made.append(Drill(name, experiment, float(weight.sum()) * 1e-3))
+        made.append(Drill(name, motion, experiment, float(weight.sum()) * 1e-3, importance))
     return tuple(made)
 
 
@@ -109,6 +121,26 @@ def _levels_of(joint: int) -> list[float]:
     return [0.0, *(sign * level for level in turned), 0.0]
 
 
+def slow_following(low: Floats, high: Floats) -> Trajectory:
+    """Small slow waves of all joints around their middle or 0. Each rests in one quarter while the others move."""
+    middle, size = centre(low, high)
+    time_s = np.arange(round(SLOW_S * RATE_HZ) + 1) / RATE_HZ
+    part = SLOW_S / JOINTS
+    angles = np.empty((len(time_s), JOINTS))
+    for joint in range(JOINTS):
+        start = part * joint
+        # The joint's own clock stands still in its quarter, and goes slowly at both ends of it.
+        speed = np.clip(np.maximum(start - time_s, time_s - (start + part)) / EASE_S + 1.0, 0.0, 1.0)
+        clock = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]))]) / RATE_HZ
+        phase = 0.5 * np.pi * joint
+        path = sum(
+            share * (np.sin(2.0 * np.pi * clock / period + phase) - np.sin(phase))
+            for share, period in zip(SLOW_SHARES, SLOW_PERIODS_S, strict=True)
+        )
+        angles[:, joint] = middle[joint] + min(SLOW_RAD, size[joint]) * path * minimum_jerk(time_s / EASE_S)
+    return clip_motion(Trajectory(time_s, angles), low, high)
+
+
 def centre(low: Floats, high: Floats) -> tuple[Floats, Floats]:
     """Where a joint rests and how far it goes to either side: 0 and 1 rad where the range has room for that."""
     size = np.minimum(REACH_RAD, 0.5 * (high - low))
@@ -128,4 +160,11 @@ def time_since_move(motion: Trajectory, wait_s: float) -> Floats:
     moving = change > MOVING_RAD
     last = np.maximum.accumulate(np.where(moving, time_s, 0.0))
     weight: Floats = np.where(time_s < 0.0, 0.0, SOON_S + time_s - last)
+    return weight
+
+
+def _equal_weight(motion: Trajectory, wait_s: float) -> Floats:
+    """The same weight for every tick of an Experiment that waits `wait_s`; 0 while it waits."""
+    ticks = int(np.ceil((wait_s + motion.duration_s) / 1e-3 - 1e-9))
+    weight: Floats = np.where(np.arange(ticks) * 1e-3 < wait_s, 0.0, 1.0)
     return weight

@@ -1,0 +1,51 @@
+"""What is possible in every class of training motion, between the least error and that of the controllers from before.
+
+The least error is that of the ideal controller of `judge/floor.py`, which hears of the leader as late as a board does.
+It is worked out for every plant, once for each tuning. A joint may start at its floor, or so near to it that a division
+by the rest would magnify mere noise. So the room of a class is never less than LEAST_SHARE of its floor, and never less
+than LEAST_RAD.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.firmware import TICK_S
+from greywhale.table import ParameterTable
+from greywhale.tune.judge.floor import saturation_floor
+from greywhale.tune.search.objective import Scale, error_of, follow
+from greywhale.tune.search.training import WAIT_S, Drill
+
+Floats = npt.NDArray[np.float64]
+Controllers = npt.NDArray[np.int32]
+
+LEAST_SHARE = 0.1
+LEAST_RAD = 0.004
+# The mean age of a tick's conversions when the tick uses them.
+CONVERSIONS_S = 0.5e-3
+
+
+def scale_of(drills: Sequence[Drill], plants: Floats, before: Controllers, threads: int = 0) -> Scale:
+    """Floors, and errors and rattling of the controllers from before (4, 12), on every plant."""
+    late = lateness_s(drills[0].experiment.table)
+    floor = np.stack([[_least_error(drill, plant, late, threads) for drill in drills] for plant in plants])
+    found = follow(drills, plants, before[None], threads=threads)
+    least = np.maximum(LEAST_SHARE * floor, LEAST_RAD)
+    return Scale(floor, np.maximum(found.error[0] - floor, least), found.rattle[0])
+
+
+def lateness_s(table: ParameterTable) -> float:
+    """How late a board hears of its leader (s): conversions, the low-pass, and half a period until the duty changes."""
+    low_pass = ((1 << table["filter_shift"]) - 1) * TICK_S
+    return CONVERSIONS_S + low_pass + 0.5e-3 * table.period_ms
+
+
+def _least_error(drill: Drill, plant: Floats, late_s: float, threads: int) -> Floats:
+    """The ideal controller's error (4,) in rad, measured like a candidate's."""
+    floor = saturation_floor(drill.motion, plant, delay_s=late_s, wait_s=WAIT_S, threads=threads)
+    distance = np.abs(floor.leader - floor.angles)
+    weight = drill.experiment.weight_s[:, None]
+    return error_of((weight * distance).sum(axis=0) / weight.sum(), np.square(distance).mean(axis=0))

@@ -1,0 +1,67 @@
+"""What is possible lies between the ideal controller and the one from before, also where these are nearly the same."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from greywhale.arm.plants import columns
+from greywhale.files.arm import default_arm
+from greywhale.loop import default_controller, plant_row
+from greywhale.table import ParameterTable
+from greywhale.tune.possible import LEAST_RAD, LEAST_SHARE, lateness_s, scale_of
+from greywhale.tune.search.objective import Scale, follow
+from greywhale.tune.search.training import Drill, drills
+
+ARM = default_arm()
+TABLE = ParameterTable.defaults()
+PLANTS = np.repeat(plant_row(ARM)[None], 2, axis=0)
+PLANTS[1, columns("torque_per_volt")] *= 1.3
+BEFORE = default_controller()
+
+
+@pytest.fixture(scope="module")
+def motions() -> tuple[Drill, ...]:
+    return drills(ARM, TABLE, PLANTS)
+
+
+@pytest.fixture(scope="module")
+def scale(motions: tuple[Drill, ...]) -> Scale:
+    return scale_of(motions, PLANTS, BEFORE)
+
+
+def test_the_floor_lies_below_any_controller_that_there_is(motions: tuple[Drill, ...], scale: Scale) -> None:
+    found = follow(motions, PLANTS, BEFORE[None])
+    assert scale.floor.shape == (2, len(motions), 4)
+    assert (scale.floor > 0.0).all()
+    assert (scale.floor < found.error[0]).all()
+    np.testing.assert_allclose(scale.floor + scale.room, found.error[0])
+
+
+def test_a_stronger_arm_has_a_lower_floor_on_large_moves(scale: Scale) -> None:
+    assert (scale.floor[1, 0] < 0.95 * scale.floor[0, 0]).all()
+
+
+def test_large_moves_can_hardly_be_helped_and_slow_ones_nearly_all(scale: Scale) -> None:
+    assert (scale.floor[:, 0] > 2.0 * scale.room[:, 0]).all()
+    assert (scale.floor[:, 1:] < 0.5 * scale.room[:, 1:]).all()
+
+
+def test_a_joint_at_its_floor_has_room_all_the_same(
+    motions: tuple[Drill, ...], scale: Scale, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As if the controllers from before reached the floor."""
+    found = follow(motions, PLANTS, BEFORE[None])
+
+    def ideal(*_: object, **__: object) -> object:
+        return type(found)(scale.floor[None], found.volts, found.rattle, found.chatter)
+
+    monkeypatch.setattr("greywhale.tune.possible.follow", ideal)
+    narrow = scale_of(motions, PLANTS, BEFORE)
+    np.testing.assert_allclose(narrow.room, np.maximum(LEAST_SHARE * scale.floor, LEAST_RAD))
+
+
+def test_a_board_hears_late_of_its_leader() -> None:
+    assert lateness_s(TABLE.with_raw({"period_ms": 1, "filter_shift": 0})) == pytest.approx(1e-3)
+    assert lateness_s(TABLE.with_raw({"period_ms": 1, "filter_shift": 1})) == pytest.approx(2e-3)
+    assert lateness_s(TABLE.with_raw({"period_ms": 20, "filter_shift": 1})) == pytest.approx(11.5e-3)
