@@ -20,6 +20,7 @@ from greywhale.errors import UserError, os_reason
 from greywhale.protocol.ports import bench_directory
 from greywhale_sim import commands
 from greywhale_sim.assemble import BenchOptions, build_bench, wiring_of
+from greywhale_sim.bench import Plant
 from greywhale_sim.serial_port import SerialPort
 from greywhale_sim.server import Server
 
@@ -36,11 +37,11 @@ class ServeOptions(BenchOptions):
 
 
 @contextmanager
-def running(options: ServeOptions) -> Iterator[Server]:
-    """A server with an open port; it is cleaned up whatever happens."""
+def running(options: ServeOptions, plant: Plant | None = None) -> Iterator[Server]:
+    """A server with an open port; it is cleaned up whatever happens. `plant` takes the place of the built-in arm."""
     if options.speed not in ("1", "max"):
         raise UserError(f'speed "{options.speed}" is not known; say 1 (real time) or max.', 2)
-    bench = build_bench(options)
+    bench = build_bench(options, plant)
     port = SerialPort(_links(options))
     server = Server(
         bench, bench.board, wiring_of(options.board), port, fast=options.speed == "max", eeprom=options.eeprom
@@ -51,11 +52,11 @@ def running(options: ServeOptions) -> Iterator[Server]:
         server.close()
 
 
-def serve(options: ServeOptions, on_ready: Callable[[str], None]) -> None:
+def serve(options: ServeOptions, on_ready: Callable[[str], None], plant: Plant | None = None) -> None:
     """Serve until Ctrl-C, a request to terminate or, with control, the end of standard input; all these ends are
     normal.
     """
-    with running(options) as server, _ending_on_signals(server):
+    with running(options, plant) as server, _ending_on_signals(server):
         on_ready(server.port.path if options.link is None else str(options.link))
         if options.control:
             server.while_waiting = Control(server).look

@@ -172,7 +172,7 @@ class Device:
 
     def stop(self) -> None:
         """Turn the motors off, confirmed by the board. A further Ctrl-C does not hold the request back."""
-        with _hold_ctrl_c():
+        with hold_ctrl_c():
             try:
                 message = stop_message(self._next_sequence())
                 self._repeat(message, schema.StopRequest.TYPE, schema.StopRequest.NAME, STOP_ATTEMPTS, STOP_REPEAT_S)
@@ -315,8 +315,8 @@ def version(hello: schema.HelloReply) -> str:
 
 
 @contextlib.contextmanager
-def _hold_ctrl_c() -> Iterator[None]:
-    """Hold Ctrl-C back for the second that a stop takes at most (only the main thread receives it)."""
+def hold_ctrl_c() -> Iterator[None]:
+    """Hold Ctrl-C back for what takes a second at most, such as a stop (only the main thread receives it)."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return

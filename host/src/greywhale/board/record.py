@@ -28,6 +28,7 @@ from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory
 
 Progress = Callable[[str, float], None]
+Watch = Callable[[Received], None]
 Floats = npt.NDArray[np.float64]
 
 # The motors go off this long after this host falls silent.
@@ -107,9 +108,15 @@ def record_led(
     every: int = 1,
     progress: Progress | None = None,
     table: ParameterTable | None = None,
+    *,
+    patient: bool = True,
+    watch: Watch | None = None,
 ) -> Recording:
     """Lead the arm along `motion`, from where it is, and record that; `table` is the table that runs, where it is
     known.
+
+    A `patient` host slows the motion down for a follower that lags; another does not, so that all controllers are led
+    along the same motion. `watch` sees every sample of the log, and what it raises ends the recording, motors off.
     """
     check_every_led(every)
     report = progress or (lambda what, fraction: None)
@@ -122,9 +129,9 @@ def record_led(
         with device.leading(LEASE_MS) as begun:
             pose = np.array(begun.reference) * ANGLE_LSB
             plan = Plan.of(motion, pose, limits, REST_S)
-            leading = Leading(device, begun, plan, running.physical("tracking_limit"))
+            leading = Leading(device, begun, plan, running.physical("tracking_limit") if patient else 0.0)
             received = _await_following(device, received, report, leading)
-            duration = _write_led(device, log, received, leading, report)
+            duration = _write_led(device, log, received, leading, report, watch)
     device.telemetry(0)
     return Recording(Path(path), log.rows, log.dropped, duration, leading.slowest, leading.starved)
 
@@ -205,7 +212,12 @@ def _write(
 
 
 def _write_led(
-    device: Device, log: LogWriter, received: Iterator[Received], leading: Leading, report: Progress
+    device: Device,
+    log: LogWriter,
+    received: Iterator[Received],
+    leading: Leading,
+    report: Progress,
+    watch: Watch | None = None,
 ) -> float:
     """Fill the log until the motion is over, and return its duration in s."""
     start: int | None = None
@@ -220,6 +232,8 @@ def _write_led(
         if leading.done:
             return (one.elapsed - start) / 1000
         _append(log, (one.elapsed - start) / 1000, one.sample)
+        if watch is not None:
+            watch(one)
         if log.rows % _ROWS_PER_REPORT == 0:
             report("recording", leading.fraction)
     raise AssertionError("a stream of samples has no end")

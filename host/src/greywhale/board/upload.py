@@ -85,7 +85,20 @@ def upload_set(
 ) -> None:
     """Stage, apply and save a whole set, then check that the board runs it. A save may take `save_wait_s`."""
     report = progress or _report_nothing
-    crc = table.crc
+    _apply(device, table, report, save_wait_s)
+    _when_not_saving(save_wait_s, lambda: device.ask(schema.ParamSaveRequest()))
+    report("saving parameters", 0.0)
+    _wait_until_saved(device, save_wait_s)
+    _prove(device, table)
+
+
+def run_set(device: Device, table: ParameterTable, progress: Progress | None = None) -> None:
+    """Run a whole set without storing it: after its next start, the board runs the stored set again."""
+    _apply(device, table, progress or _report_nothing, SAVE_WAIT_S)
+    _prove(device, table)
+
+
+def _apply(device: Device, table: ParameterTable, report: Progress, save_wait_s: float) -> None:
     for index, value in enumerate(table.raw):
         report("uploading parameters", index / len(table.raw))
         echo = device.ask(schema.ParamSetRequest(index, value))
@@ -94,15 +107,15 @@ def upload_set(
                 f"{device.port}: sent {schema.PARAMETERS[index].name} = {value}, the board understood parameter "
                 f"{echo.index} = {echo.value}; nothing was changed, try again."
             )
-    _when_not_saving(save_wait_s, lambda: device.ask(schema.ParamApplyRequest(crc)))
-    _when_not_saving(save_wait_s, lambda: device.ask(schema.ParamSaveRequest()))
-    report("saving parameters", 0.0)
-    _wait_until_saved(device, save_wait_s)
+    _when_not_saving(save_wait_s, lambda: device.ask(schema.ParamApplyRequest(table.crc)))
+
+
+def _prove(device: Device, table: ParameterTable) -> None:
     running = device.greet().param_crc
-    if running != crc:
+    if running != table.crc:
         raise UserError(
-            f"{device.port}: after the upload the board runs a set with CRC {running:#06x} instead of {crc:#06x}; "
-            "upload again."
+            f"{device.port}: after the upload the board runs a set with CRC {running:#06x} instead of "
+            f"{table.crc:#06x}; upload again."
         )
 
 

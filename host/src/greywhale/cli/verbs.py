@@ -19,6 +19,7 @@ VERBS = {
     "replay": ("replay", "Lead the arm along a motion from a file and record it."),
     "stop": ("stop", "Stop the motors; clear a fault."),
     "evaluate": ("evaluate", "Measure how well the follower followed in a log."),
+    "commission": ("commission", "Identify, tune and prove the controllers on the connected arm itself."),
     "identify": ("identify", "Find the arm that made a log: a model with its uncertainties."),
     "tune": ("tune", "Find controllers for a model: a controller.toml for upload."),
     "export": ("export", "Write a controller as .fis (MATLAB), an arm as URDF or MJCF."),

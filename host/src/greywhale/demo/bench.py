@@ -21,12 +21,12 @@ ANSWER_WAIT_S = 60.0  # the machine may be busy; a healthy bench answers in mill
 
 
 class BenchProcess:
-    """Starts `python -m greywhale_sim` with the given options; `port` is its serial port."""
+    """Starts `python -m greywhale_sim`, or another module that serves a bench; `port` is its serial port."""
 
-    def __init__(self, *options: str) -> None:
+    def __init__(self, *options: str, module: str = "greywhale_sim") -> None:
         self._errors = tempfile.TemporaryFile()  # noqa: SIM115 (close() closes it)
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "greywhale_sim", "--control", "--json", *options],
+            [sys.executable, "-m", module, "--control", "--json", *options],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=self._errors,

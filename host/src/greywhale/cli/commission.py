@@ -1,0 +1,101 @@
+"""`greywhale commission`: controllers that are proven on the connected arm itself."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from greywhale.cli.output import json_option, port_option, progress, show
+from greywhale.errors import BAD_USAGE, UserError
+from greywhale.files.arm import load_arm
+from greywhale.protocol.ports import choose_port
+
+EXISTING = click.Path(path_type=Path)
+
+
+@click.command("commission")
+@click.option("--out", "-o", type=EXISTING, default=Path("commission"), show_default=True, help="Folder for all files.")
+@click.option(
+    "--arm", "arm_file", default="white_box", show_default=True, help="Your arm.toml: geometry, nominal motors."
+)
+@click.option("--model", type=EXISTING, help="A model.toml of this arm to begin with, instead of identifying first.")
+@click.option(
+    "--range",
+    "ranges",
+    multiple=True,
+    metavar="J:MIN:MAX",
+    help="Range of a joint in rad, instead of 1 rad to either side of where it is.",
+)
+@click.option("--rounds", type=click.IntRange(min=1), default=3, show_default=True, help="Models to make at most.")
+@click.option(
+    "--trials", type=click.IntRange(min=1), default=6, show_default=True, help="Sets to try on the arm in each round."
+)
+@click.option("--budget", type=click.IntRange(min=1), help="Evaluations of `tune`; without it, as many as it tries.")
+@click.option(
+    "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Where all random numbers start."
+)
+@click.option("--workers", type=click.IntRange(min=1), help="Threads; without it, one for every processor.")
+@click.option("--resume", is_flag=True, help="Go on where an interrupted commissioning in this folder ended.")
+@port_option
+@json_option
+def command(
+    out: Path,
+    arm_file: str,
+    model: Path | None,
+    ranges: tuple[str, ...],
+    rounds: int,
+    trials: int,
+    budget: int | None,
+    seed: int,
+    workers: int | None,
+    resume: bool,
+    port: str | None,
+    as_json: bool,
+) -> None:
+    """Find controllers for the connected arm, and prove them on it.
+
+    The arm moves by itself for some minutes, within its limits, 1 rad to either side of where it is: clear its
+    surroundings, or narrow the joints' --range, and keep a hand on the switch of the motors' supply. It is identified,
+    tuned for, and led along motions that nobody trained on, with one set of controllers after another, small moves
+    first. A joint that hunts is stopped at once.
+
+    The board ends with the best that was measured, joint by joint, never worse than before; until then it keeps the
+    controllers from before. Ctrl-C stops the motors at any point; --resume goes on. FOLDER/report.html tells the story.
+    """
+    # Scipy and the native simulation take a moment to import.
+    from greywhale.commission import Options, commission
+    from greywhale.commission.page import save_page
+    from greywhale.excite import parse_range
+
+    chosen = dict(parse_range(text) for text in ranges)
+    if len(chosen) < len(ranges):
+        raise UserError("--range names a joint twice; give each joint once.", BAD_USAGE)
+    options = Options(
+        port=choose_port(port),
+        out=out,
+        nominal=load_arm(arm_file),
+        arm_file=arm_file,
+        model=model,
+        ranges=chosen,
+        rounds=rounds,
+        trials=trials,
+        seed=seed,
+        budget=budget,
+        threads=workers or 0,
+        resume=resume,
+    )
+    try:
+        with progress(as_json) as report:
+            outcome = commission(options, report)
+    except KeyboardInterrupt as interrupt:
+        interrupt.add_note(
+            f"The board keeps the controllers from before; the same command with --resume goes on in {out}."
+        )
+        raise
+    page = save_page(outcome, out / "report.html")
+    show(
+        as_json,
+        {"port": options.port, **outcome.as_dict(), "report": str(page)},
+        f"{outcome.text()}\n\nWritten: {page}",
+    )

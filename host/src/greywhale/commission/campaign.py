@@ -1,0 +1,233 @@
+"""A commissioning as a whole: what the arm does before, then rounds of a model, controllers, and trials on the arm.
+
+The arm is connected only while it is measured. The controllers on trial are never stored; the board keeps those from
+before until the end, when it gets the best that was measured.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.arm import ArmParameters
+from greywhale.commission import learn, start
+from greywhale.commission.book import Book
+from greywhale.commission.choose import confirm
+from greywhale.commission.evidence import failing_plants, gather
+from greywhale.commission.motions import Room, check_motion
+from greywhale.commission.outcome import Outcome, Round
+from greywhale.commission.rig import Rig, connected
+from greywhale.commission.search import JointSearch
+from greywhale.commission.trials import Controllers, Trials
+from greywhale.errors import UserError
+from greywhale.excite import design
+from greywhale.excite.limits import limits_of
+from greywhale.files.leader import load_leader, save_leader
+from greywhale.files.log import Log, read_log
+from greywhale.files.parameter_file import load as load_parameters
+from greywhale.files.parameter_file import save as save_parameters
+from greywhale.firmware import JOINTS
+from greywhale.loop.controllers import controllers_of
+from greywhale.table import ParameterTable, find_board
+from greywhale.tune.progress import Report, report_nothing
+
+ROUNDS, TRIALS = 3, 6
+DESIGN_BUDGET = 150  # the last evaluations of a search for a motion would gain little
+# A joint whose error is this share of before (mean over the check) is good: no more trials for its sake.
+GOOD = 0.1
+# Another round follows while a joint's best is above this share of before.
+WANTING = 0.3
+
+
+@dataclass(frozen=True)
+class Options:
+    """What to commission, and how much effort to spend."""
+
+    port: str
+    out: Path
+    nominal: ArmParameters
+    arm_file: str = "white_box"
+    model: Path | None = None
+    ranges: dict[int, tuple[float, float]] | None = None
+    rounds: int = ROUNDS
+    trials: int = TRIALS  # for each round
+    seed: int = 0
+    budget: int | None = None
+    threads: int = 0
+    resume: bool = False
+
+    def request(self) -> dict[str, Any]:
+        """What a journal must agree with."""
+        return {
+            "arm": self.arm_file,
+            "model": None if self.model is None else str(self.model),
+            "ranges": {str(joint): list(pair) for joint, pair in sorted((self.ranges or {}).items())},
+            "rounds": self.rounds,
+            "trials": self.trials,
+            "seed": self.seed,
+            "budget": self.budget,
+        }
+
+
+def commission(options: Options, report: Report | None = None) -> Outcome:
+    """Find controllers on the arm; the board then runs and stores the best that was measured. Raises UserError."""
+    return _Campaign(options, report or report_nothing).run()
+
+
+class _Campaign:
+    def __init__(self, options: Options, report: Report) -> None:
+        self.options = options
+        self.report = report
+        self.book = Book(options.out, options.request(), options.resume)
+        self.rounds: list[Round] = []
+        self.before: ParameterTable | None = None
+
+    def run(self) -> Outcome:
+        self._begin()
+        trials, searches = self.trials, self.searches
+        for number in range(1, self.options.rounds + 1):
+            learnt = self._learn(number)
+            first = len(trials.done)
+            with self._arm(f"round {number}") as arm:
+                self._try(arm, learnt.controllers)
+            self.rounds.append(Round(number, learnt, tuple(trials.done[first:])))
+            if not self._is_wanting():
+                break
+        with self._arm("confirming") as arm:
+            best = confirm(trials, searches, arm)
+            arm().keep(trials.table_of(best.rows))
+        return Outcome(trials, tuple(self.rounds), best)
+
+    def _begin(self) -> None:
+        """Connect, refuse what must not move, and record the arm with the controllers from before."""
+        options, book = self.options, self.book
+        facts = book.get("start")
+        if facts is None:
+            with self._arm("before") as arm:
+                rig = arm()
+                start.refuse_uncalibrated(options.nominal, rig.before)
+                limits = limits_of(options.nominal, rig.before, rig.pose(), options.ranges or {})
+                room = Room(limits.pose, limits.low, limits.high)
+                start.refuse_stuck(rig, book, room)
+                save_parameters(book.path("before.toml"), rig.before)
+                facts = {
+                    "board": rig.before.board.key,
+                    "room": [array.tolist() for array in (room.pose, room.low, room.high)],
+                }
+                book.note("start", facts)
+        self.before = before = load_parameters(book.path("before.toml")).for_board(find_board(facts["board"]))
+        self.room = Room(*(np.array(values) for values in facts["room"]))
+        self.trials = Trials(book, check_motion(self.room), before)
+        with self._arm("before") as arm:
+            first = self.trials.play_before(None if self.trials.known() else arm())
+        rows = controllers_of(before)
+        self.searches = [JointSearch(joint, before.period_ms) for joint in range(JOINTS)]
+        for search, verdict in zip(self.searches, first.verdicts, strict=True):
+            search.add(rows[search.joint], verdict, first.name)
+        if options.model is not None:
+            model = learn.read_model(options.model, options.seed, book.path("before.toml"), options.arm_file, False)
+            learn.refuse_other_arm(model.arm, str(options.model), first, before)
+
+    def _learn(self, number: int) -> learn.Learnt:
+        """A round's model and controllers."""
+        options, book, report = self.options, self.book, self._report(f"round {number}")
+        if number == 1 and options.model is not None:
+            path = options.model
+        else:
+            known = gather(self._excite(), self.trials)
+            path = learn.find_model(book, f"model-{number}", options.nominal, known, options.seed, report)
+        model = learn.read_model(path, options.seed, book.path("before.toml"))
+        return learn.find_controllers(
+            book,
+            f"controller-{number}",
+            learn.with_failures(model, failing_plants(model.arm, self.trials)),
+            start=self._best_rows(),
+            budget=options.budget if number == 1 else learn.later_budget(options.budget),
+            seed=options.seed,
+            threads=options.threads,
+            report=report,
+        )
+
+    def _excite(self) -> Log:
+        """The log of the motion that shows most about the arm."""
+        options, path, leader = self.options, self.book.path("excite.csv"), self.book.path("excite_leader.csv")
+        if self.book.get("excite") is None:
+            if not leader.exists():
+                designed = design(
+                    options.nominal,
+                    self.room.pose,
+                    table=self.trials.table,
+                    ranges=options.ranges,
+                    seed=options.seed,
+                    budget=DESIGN_BUDGET,
+                    report=self._report("excite"),
+                )
+                save_leader(leader, designed.motion)
+            with self._arm("excite") as arm:
+                played = arm().play(load_leader(leader), path, self.trials.table, patient=True, watched=False)
+            if played.stopped:
+                raise UserError(f"the arm cannot be excited: {played.stopped}; narrow the --range.")
+            self.book.note("excite", {"log": path.name})
+        return read_log(path)
+
+    def _try(self, arm: Callable[[], Rig], tuned: Controllers) -> None:
+        """Try a round's controllers on the arm, then vary what failed or follows poorly."""
+        trials, searches = self.trials, self.searches
+        wanted: list[npt.NDArray[np.int32] | None] = [tuned[search.joint] for search in searches]
+        for search in searches:
+            search.begin()
+        for _ in range(self.options.trials):
+            rows = self._best_rows()
+            for joint, row in enumerate(wanted):
+                if row is not None:
+                    rows[joint] = row
+            trial = trials.play(None if trials.known() else arm(), rows)
+            for search, verdict in zip(searches, trial.verdicts, strict=True):
+                joint = search.joint
+                if wanted[joint] is not None and verdict.known:
+                    search.add(rows[joint], verdict, trial.name)
+                    wanted[joint] = None if _is_good(search) else search.propose()
+            if all(row is None for row in wanted):
+                break
+
+    def _best_rows(self) -> Controllers:
+        """Every joint's best so far, of whatever trial."""
+        rows = controllers_of(self.trials.table).copy()
+        for search in self.searches:
+            if search.best is not None:
+                rows[search.joint] = search.best.row
+        return rows
+
+    def _is_wanting(self) -> bool:
+        """Whether another round may help: a joint follows little better than before."""
+        return any(search.best is None or search.best.verdict.score > WANTING for search in self.searches)
+
+    def _report(self, stage: str) -> Report:
+        def told(what: str, fraction: float, note: str = "") -> None:
+            self.report(f"{stage}: {what}", fraction, note)
+
+        return told
+
+    @contextmanager
+    def _arm(self, stage: str) -> Iterator[Callable[[], Rig]]:
+        """The arm, connected when it is first asked for, and left with its motors off at the end."""
+        with ExitStack() as stack:
+            rigs: list[Rig] = []
+
+            def arm() -> Rig:
+                if not rigs:
+                    told = self._report(stage)
+                    rigs.append(stack.enter_context(connected(self.options.port, self.before, told)))
+                return rigs[0]
+
+            yield arm
+
+
+def _is_good(search: JointSearch) -> bool:
+    return search.best is not None and search.best.verdict.score <= GOOD

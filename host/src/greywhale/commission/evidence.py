@@ -1,0 +1,102 @@
+"""What earlier trials tell a later round: logs with other controllers, and plants that show what the arm did."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.arm import ArmParameters
+from greywhale.arm.plants import column, plant_row
+from greywhale.commission.measures import Traces, unrest
+from greywhale.commission.predict import predict
+from greywhale.commission.trials import Trial, Trials
+from greywhale.files.log import Log, read_log
+from greywhale.firmware import JOINTS, TICK_S
+from greywhale.loop.closed_loop import count_swings
+from greywhale.table import CONTROLLER_COLUMNS, ParameterTable
+
+Floats = npt.NDArray[np.float64]
+KP = CONTROLLER_COLUMNS.index("kp")
+
+# Trials whose logs a later round fits, besides the excitation.
+MOST_FITTED = 2
+# What may be wrong with a model under which a joint rests and on the arm does not, mildest first: a wider gap (rad, to
+# either side) or more loop gain.
+GAPS = (0.002, 0.005, 0.01, 0.02)
+GAINS = (1.4, 2.0, 2.8)
+# A log that ended in hunting: turning points of this size in its last moments.
+SWING_RAD, REVERSALS, LAST_S = 0.01, 3, 0.8
+# A plant shows unrest from this share of the measured one on.
+SHOWN = 0.5
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """Logs to fit and to validate with, and the tables that they were recorded with."""
+
+    fit: tuple[Log, ...]
+    validate: tuple[Log, ...]
+    tables: tuple[ParameterTable, ...]
+
+
+def gather(excite: Log, trials: Trials) -> Evidence:
+    """The excitation and the best played trials to fit, those from before and another to validate."""
+    whole = [one for one in trials.done[1:] if not one.stopped]
+    whole.sort(key=lambda one: one.score)
+    fitted, others = whole[:MOST_FITTED], whole[MOST_FITTED : MOST_FITTED + 1]
+    logs = [read_log(trials.before.path), *(read_log(one.path) for one in others)]
+    tables = [trials.table, *(trials.table_of(one.rows) for one in (*fitted, *others))]
+    return Evidence((excite, *(read_log(one.path) for one in fitted)), tuple(logs), tuple(tables))
+
+
+def failing_plants(arm: ArmParameters, trials: Trials) -> Floats:
+    """For each joint that a model called calm and the arm did not: the mildest plant that hunts as the arm did."""
+    found = []
+    for joint in range(JOINTS):
+        restless = [one for one in trials.done[1:] if one.verdicts[joint].hunts]
+        if restless:
+            # The one nearest to rest shows best where the margin is.
+            calmest = min(restless, key=lambda one: int(one.rows[joint, KP]))
+            plant = _plant_that_hunts(arm, trials.table_of(calmest.rows), calmest, joint)
+            if plant is not None:
+                found.append(plant)
+    return np.array(found) if found else np.zeros((0, len(plant_row(arm))))
+
+
+def _plant_that_hunts(arm: ArmParameters, table: ParameterTable, trial: Trial, joint: int) -> Floats | None:
+    """The model itself where it hunts; None where no plant in reach does."""
+    plants = _variants(plant_row(arm), joint)
+    measured = _unrest(trial.traces, joint)
+    for plant, shown in zip(plants, predict(arm, table, trial.traces, plants), strict=True):
+        if _shows(shown, trial, joint, measured):
+            found: Floats = plant
+            return found
+    return None
+
+
+def _variants(plant: Floats, joint: int) -> Floats:
+    """The model itself, then with wider gaps (where its teeth are not rigid), then with more loop gain. (n, columns)"""
+    rows = [plant]
+    gap, stiffness, gain = (column(name, joint) for name in ("half_gap", "stiffness", "torque_per_volt"))
+    for wider in GAPS if plant[stiffness] > 0.0 else ():
+        rows.append(plant.copy())
+        rows[-1][gap] += wider
+    for factor in GAINS:
+        rows.append(plant.copy())
+        rows[-1][gain] *= factor
+    return np.array(rows)
+
+
+def _unrest(traces: Traces, joint: int) -> float:
+    return float(np.nan_to_num(unrest(traces.leader, traces.follower)[joint]))
+
+
+def _shows(shown: Traces, trial: Trial, joint: int, measured: float) -> bool:
+    if not trial.stopped:
+        return _unrest(shown, joint) >= SHOWN * measured
+    path = np.ascontiguousarray(shown.follower[None], dtype=np.float32)
+    rows = path.shape[1]
+    turned, _ = count_swings(path, max(0, rows - round(LAST_S / TICK_S)), rows, SWING_RAD)
+    return bool(turned[0, joint] >= REVERSALS)

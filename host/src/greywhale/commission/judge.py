@@ -1,0 +1,99 @@
+"""Judges a joint's measures on the arm against those from before: does it hunt, rattle, chatter or follow worse?"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.commission.measures import Measures
+from greywhale.commission.motions import PARTS
+from greywhale.firmware import JOINTS
+from greywhale.tune.judge.margins import CHATTER_HZ
+
+Floats = npt.NDArray[np.float64]
+
+# Unrest and rattling may grow to twice what they were, but not above this (rad rms). Below the second number nobody
+# sees them, whatever they were.
+MOST_UNREST, LEAST_UNREST = 0.005, 0.0015
+MOST_RATTLE, LEAST_RATTLE = 0.005, 0.002
+GROWTH = 2.0
+# Two recordings with the same controllers differ by so much: as a share, and in rad² (1 mrad rms).
+SAME_SHARE, SAME_RAD2 = 0.02, 1e-6
+# A joint that keeps its controller feels its neighbours' quicker moves.
+KEPT_SHARE = 0.05
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What a joint may do at most, (4,) each; `error` is (parts, 4)."""
+
+    unrest: Floats
+    rattle: Floats
+    chatter: Floats
+    error: Floats
+
+    @classmethod
+    def of(cls, before: Measures, kept: npt.NDArray[np.bool_]) -> Limits:
+        """What was there before is never too much. `kept` (4,) marks joints whose controllers are those from before."""
+        share = np.where(kept, KEPT_SHARE, SAME_SHARE)
+        return cls(
+            unrest=_allowed(before.worst("unrest"), LEAST_UNREST, MOST_UNREST),
+            rattle=_allowed(before.worst("rattle"), LEAST_RATTLE, MOST_RATTLE),
+            chatter=np.maximum(CHATTER_HZ, 1.1 * np.nan_to_num(before.worst("chatter"))),
+            error=(1.0 + share) * before.error + SAME_RAD2,
+        )
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """One joint in one trial: `faults` are clauses, empty where it passed; `score` is its error relative to before."""
+
+    joint: int
+    faults: tuple[str, ...]
+    restless: bool  # one of the faults is unrest, rattling or chatter
+    chatters_only: bool
+    score: float  # geometric mean over the parts; NaN where the check was not played to its end
+    known: bool  # whether the joint can be judged: the check was whole, or this joint ended it
+
+    @property
+    def hunts(self) -> bool:
+        """Whether it does not come to rest, or rattles."""
+        return self.restless and not self.chatters_only
+
+    @property
+    def passed(self) -> bool:
+        return self.known and not self.faults
+
+
+def judge(measured: Measures, before: Measures, limits: Limits, guilty: Sequence[str]) -> tuple[Verdict, ...]:
+    """A verdict for every joint; `guilty` has a clause for each joint that ended the trial, "" for the others."""
+    return tuple(_judge(measured, before, limits, joint, guilty[joint]) for joint in range(JOINTS))
+
+
+def _judge(measured: Measures, before: Measures, limits: Limits, joint: int, guilty: str) -> Verdict:
+    faults = [guilty] if guilty else []
+    unrest, rattle, chatter = (float(measured.worst(name)[joint]) for name in ("unrest", "rattle", "chatter"))
+    if not guilty and unrest > limits.unrest[joint]:
+        faults.append(f"it hunts at rest ({1e3 * unrest:.1f} mrad rms, at most {1e3 * limits.unrest[joint]:.1f})")
+    if rattle > limits.rattle[joint]:
+        faults.append(f"it rattles in motion ({1e3 * rattle:.1f} mrad rms, at most {1e3 * limits.rattle[joint]:.1f})")
+    quiet = not faults
+    if chatter > limits.chatter[joint]:
+        faults.append(f"its voltage chatters ({chatter:.0f} times a second)")
+    restless = bool(faults)
+    for place, part in enumerate(PARTS):
+        if measured.error[place, joint] > limits.error[place, joint]:
+            ratio = measured.error[place, joint] / before.error[place, joint]
+            faults.append(f"it follows {part} worse than before ({ratio:.2g} times the error)")
+    ratios = measured.error[:, joint] / np.maximum(before.error[:, joint], 1e-9)
+    score = float(np.exp(np.mean(np.log(np.maximum(ratios, 1e-9)))))
+    return Verdict(joint, tuple(faults), restless, restless and quiet, score, measured.whole or bool(faults))
+
+
+def _allowed(before: Floats, least: float, most: float) -> Floats:
+    known = np.nan_to_num(before)
+    allowed: Floats = np.maximum(np.clip(GROWTH * known, least, most), known * (1.0 + SAME_SHARE))
+    return allowed

@@ -1,0 +1,126 @@
+"""From logs to controllers in one round: identify the arm from the evidence so far, and tune on that model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.arm import ArmParameters
+from greywhale.commission.book import Book
+from greywhale.commission.evidence import Evidence
+from greywhale.commission.predict import predict
+from greywhale.commission.trials import Trial
+from greywhale.errors import UserError
+from greywhale.files import controller as controller_file
+from greywhale.identify import identify
+from greywhale.loop import controller_row
+from greywhale.table import ParameterTable
+from greywhale.tune import DEFAULT_BUDGET, tune
+from greywhale.tune.model import Model, load_model
+from greywhale.tune.progress import Report
+from greywhale.tune.report.controller_file import save
+
+Controllers = npt.NDArray[np.int32]
+Floats = npt.NDArray[np.float64]
+
+# A later round begins with the best so far, and needs a part of the search only.
+LATER_SHARE = 0.5
+# A model of this arm predicts each joint's way to within this share of the tracking error (mean squares).
+MOST_APART = 0.5
+
+
+@dataclass(frozen=True)
+class Learnt:
+    """A round's model and controllers (4, 12), and what speaks against the model."""
+
+    arm: ArmParameters
+    controllers: Controllers
+    doubts: tuple[str, ...]
+    steady: bool  # whether all margins hold on the model
+
+
+def find_model(
+    book: Book,
+    name: str,
+    nominal: ArmParameters,
+    known: Evidence,
+    seed: int,
+    report: Report,
+) -> Path:
+    """Identify the arm, or take the model of that name from the journal; its file."""
+    path = book.path(f"{name}.toml")
+    if book.get(name) is None:
+        outcome = identify(known.fit, nominal, validate=known.validate, tables=known.tables, seed=seed, report=report)
+        outcome.save(path)
+        if not outcome.complete:
+            raise KeyboardInterrupt
+        book.note(name, {"improvement": [round(one.improvement, 4) for one in outcome.verdicts]})
+    return path
+
+
+def find_controllers(
+    book: Book,
+    name: str,
+    model: Model,
+    *,
+    start: Controllers,
+    budget: int | None,
+    seed: int,
+    threads: int,
+    report: Report,
+) -> Learnt:
+    """Tune on a model, or take the controllers of that name from the journal. An interrupted search goes on."""
+    path, journal = book.path(f"{name}.toml"), book.path(f"{name}.toml.journal")
+    known = book.get(name)
+    if known is None:
+        outcome = tune(
+            model,
+            budget=budget,
+            seed=seed,
+            threads=threads,
+            start=start,
+            journal=journal,
+            resume=journal.exists(),
+            report=report,
+            floors=False,
+        )
+        if not outcome.complete:
+            raise KeyboardInterrupt
+        save(outcome, path)
+        journal.unlink(missing_ok=True)
+        known = {"steady": outcome.steady, "doubts": list(model.doubts)}
+        book.note(name, known)
+    rows = controller_row(controller_file.load(path))
+    return Learnt(model.arm, rows, tuple(known["doubts"]), known["steady"])
+
+
+def read_model(path: Path, seed: int, params: Path | None = None, arm: str | None = None, force: bool = True) -> Model:
+    """A model to tune for. Its doubts do not refuse it, because the arm itself judges what comes of it."""
+    return load_model(path, seed=seed, force=force, params=params, arm=arm)
+
+
+def later_budget(budget: int | None) -> int:
+    """The budget of a later round."""
+    return max(1, round(LATER_SHARE * (DEFAULT_BUDGET if budget is None else budget)))
+
+
+def with_failures(model: Model, plants: Floats) -> Model:
+    """The same model with plants that show what the arm did, where the search and the margins see them."""
+    return replace(model, plants=np.vstack([model.plants[:1], plants, model.plants[1:]])) if len(plants) else model
+
+
+def refuse_other_arm(arm: ArmParameters, name: str, before: Trial, table: ParameterTable) -> None:
+    """Refuse a model that does not predict what this arm did with the controllers from before."""
+    shown = predict(arm, table, before.traces)[0]
+    apart = np.mean((shown.follower - before.traces.follower) ** 2, axis=0)
+    error = np.mean((before.traces.leader - before.traces.follower) ** 2, axis=0)
+    shares = apart / np.maximum(error, 1e-9)
+    worst = int(np.argmax(shares))
+    if shares[worst] > MOST_APART:
+        raise UserError(
+            f"{name} is a model of another arm: joint {worst} is {np.sqrt(apart[worst]):.3g} rad (rms) away from where "
+            f"it should be, though it follows its leader within {np.sqrt(error[worst]):.3g} rad; leave --model out."
+        )

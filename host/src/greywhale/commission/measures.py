@@ -1,0 +1,171 @@
+"""What a log of the check says about every joint: error, unrest at rest, rattling in motion, chatter, voltage.
+
+- error: mean of (leader - follower)², rad².
+- unrest: rms of the follower about its own mean over 0.2 s, rad, from 0.7 s after the leader stopped on.
+- rattle: rms of the follower between 6 and 40 Hz beyond the leader's own, rad, while a hand leads.
+- chatter: swings of the voltage by more than a third of the supply, 1/s.
+- voltage: mean of |u|, V.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from scipy.ndimage import uniform_filter1d
+from scipy.signal import butter, sosfiltfilt
+
+from greywhale.commission.motions import PARTS, Check
+from greywhale.files.log import Log
+from greywhale.firmware import JOINTS, TICK_S
+from greywhale.loop.closed_loop import count_swings
+from greywhale.measure.runs import resting
+from greywhale.tune.judge.margins import CHATTER_SHARE
+
+Floats = npt.NDArray[np.float64]
+
+MEAN_S = 0.2
+SETTLE_S = 0.7
+STILL_RAD = 0.005  # the leader rests within this
+SHORTEST_REST_S = 0.3
+RATTLE_HZ = (6.0, 40.0)
+LATEST_BEGIN_S = 8.0  # from the first row of a log to the check: the way to its first pose
+HAND_LED = ("reaches", "slow motion")  # parts in which rattling is measured; the others have edges that no hand makes
+NAMES = ("error", "unrest", "rattle", "chatter", "voltage")
+
+
+@dataclass(frozen=True)
+class Traces:
+    """A played check on an even grid of 1 ms; `begins` is the time (s) at which the check begins in it."""
+
+    leader: Floats  # (rows, 4) rad
+    follower: Floats  # (rows, 4) rad
+    voltage: Floats  # (rows, 4) V
+    begins: float
+
+    def rows(self, part: tuple[float, float]) -> slice:
+        first, last = (max(0, round((self.begins + moment) / TICK_S)) for moment in part)
+        return slice(min(first, len(self.leader)), min(last, len(self.leader)))
+
+
+@dataclass(frozen=True)
+class Measures:
+    """(parts, 4) each, NaN where a part was not played to its end or has no such measure; the parts as in PARTS."""
+
+    error: Floats
+    unrest: Floats
+    rattle: Floats
+    chatter: Floats
+    voltage: Floats
+
+    @property
+    def whole(self) -> bool:
+        """Whether the check was played to its end."""
+        return bool(np.isfinite(self.error).all())
+
+    def worst(self, name: str) -> Floats:
+        """The largest of a measure over the parts, (4,); NaN where there is none."""
+        values: Floats = getattr(self, name)
+        known = np.isfinite(values)
+        largest = np.where(known, values, -np.inf).max(axis=0)
+        return np.where(known.any(axis=0), largest, np.nan)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Part -> measure -> a value a joint."""
+        return {
+            part: {name: [_number(value) for value in getattr(self, name)[place]] for name in NAMES}
+            for place, part in enumerate(PARTS)
+        }
+
+
+def traces_of(log: Log, check: Check) -> Traces:
+    """A log on an even grid, and where the check begins in it: the leader's columns are the check, some time later."""
+    time_s: Floats = np.arange(0.0, float(log.time[-1]), TICK_S)
+    leader, follower, voltage = (_at(time_s, log.time, values) for values in (log.leader, log.follower, log.voltage))
+    return Traces(leader, follower, voltage, _begin(time_s, leader, check))
+
+
+def measure(traces: Traces, check: Check, supply_v: float) -> Measures:
+    """Measure every part that was played to its end."""
+    found = {name: np.full((len(PARTS), JOINTS), np.nan) for name in NAMES}
+    for place, (name, part) in enumerate(check.parts.items()):
+        rows = traces.rows(part)
+        if rows.stop - rows.start < round((part[1] - part[0]) / TICK_S) - 5:
+            continue
+        leader, follower, voltage = traces.leader[rows], traces.follower[rows], traces.voltage[rows]
+        found["error"][place] = np.mean((leader - follower) ** 2, axis=0)
+        found["voltage"][place] = np.mean(np.abs(voltage), axis=0)
+        found["chatter"][place] = chatter(voltage, supply_v)
+        if name in HAND_LED:
+            found["rattle"][place] = rattle(leader, follower)
+        else:
+            found["unrest"][place] = unrest(leader, follower)
+    return Measures(**found)
+
+
+def unrest(leader: Floats, follower: Floats) -> Floats:
+    """(4,) rad rms over all rests; NaN for a joint whose leader never rests."""
+    found = np.full(JOINTS, np.nan)
+    window, mean, least = (round(seconds / TICK_S) for seconds in (SETTLE_S, MEAN_S, SHORTEST_REST_S))
+    for joint in range(JOINTS):
+        rest = resting(leader[:, joint], window, STILL_RAD)
+        edges = np.flatnonzero(np.diff(np.concatenate(([False], rest, [False])).astype(np.int8)))
+        swings = []
+        for first, last in zip(edges[::2], edges[1::2], strict=True):
+            # A mean over samples of the next move would show that move.
+            path = follower[first : last - mean, joint]
+            if len(path) >= least:
+                swings.append(path - uniform_filter1d(path, mean, mode="nearest"))
+        if swings:
+            found[joint] = np.sqrt(np.mean(np.concatenate(swings) ** 2))
+    return found
+
+
+def rattle(leader: Floats, follower: Floats) -> Floats:
+    """(4,) rad rms between 6 and 40 Hz, beyond what the leader has there."""
+    band = butter(4, RATTLE_HZ, btype="bandpass", fs=1.0 / TICK_S, output="sos")
+    powers = [np.mean(sosfiltfilt(band, angles, axis=0) ** 2, axis=0) for angles in (follower, leader)]
+    beyond: Floats = np.sqrt(np.maximum(powers[0] - powers[1], 0.0))
+    return beyond
+
+
+def chatter(voltage: Floats, supply_v: float) -> Floats:
+    """(4,) large swings of the voltage a second."""
+    traces = np.ascontiguousarray(voltage[None], dtype=np.float32)
+    turned, _ = count_swings(traces, 0, len(voltage), CHATTER_SHARE * supply_v)
+    per_second: Floats = turned[0] / (len(voltage) * TICK_S)
+    return per_second
+
+
+def from_dict(data: Mapping[str, Any]) -> Measures:
+    """What `as_dict` gave."""
+    return Measures(
+        **{
+            name: np.array([[np.nan if one is None else one for one in data[part][name]] for part in PARTS])
+            for name in NAMES
+        }
+    )
+
+
+def _number(value: float) -> float | None:
+    return float(f"{value:.6g}") if np.isfinite(value) else None
+
+
+def _at(times: Floats, known: Floats, values: Floats) -> Floats:
+    return np.column_stack([np.interp(times, known, values[:, joint]) for joint in range(JOINTS)])
+
+
+def _begin(time_s: Floats, leader: Floats, check: Check) -> float:
+    """The delay (s) at which the check resembles the leader's columns most; coarsely, then to the millisecond."""
+    every = 8
+
+    def apart(delay: float) -> float:
+        return float(np.mean((check.motion.at(time_s[::every] - delay) - leader[::every]) ** 2))
+
+    coarse = np.arange(0.0, min(LATEST_BEGIN_S, float(time_s[-1])) + 0.02, 0.02)
+    near = min(coarse, key=apart)
+    fine = np.maximum(near + np.arange(-0.03, 0.031, 0.002), 0.0)
+    return float(min(fine, key=apart))

@@ -1,0 +1,141 @@
+"""The motions of a commissioning: a little first one, and a check in four parts, the small moves first.
+
+Nothing is trained on the check. Each set of controllers is led along the same check, point by point, so that errors
+compare.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.firmware import FASTEST_LED_RAD_S, JOINTS
+from greywhale.trajectory import Trajectory, human_reaches
+from greywhale.trajectory.generate import RANGE_RAD, minimum_jerk
+
+Floats = npt.NDArray[np.float64]
+
+RATE_HZ = 200.0
+# No move is quicker: what a host can lead, with a tenth to spare. (A minimum-jerk move peaks at 1.875 times its mean.)
+FASTEST_RAD_S, PEAK = 0.9 * FASTEST_LED_RAD_S, 1.875
+EDGE_S = 0.04
+FIRST_RAD, FIRST_EDGE_S, FIRST_HOLD_S = 0.15, 0.5, 0.7  # of the little first motion
+SMALL_RAD = (0.1, -0.05, 0.0)
+# Shares of the room to either side, as steps in turn; each joint begins at another one.
+MOVES = (0.5, -0.3, 0.9, 0.1, -0.9, 0.3)
+HOLD_S = 1.4
+REACHES_SEED, REACHES_S = 3001, 8.0  # judge nothing anywhere else
+REACHES_SHARE = 0.8  # of the room
+SLOW_S, SLOW_SHARE = 5.0, 0.4
+PAUSE_S = 1.0
+PARTS = ("small moves", "moves", "reaches", "slow motion")
+
+
+@dataclass(frozen=True)
+class Room:
+    """Where the arm is, and how far each joint may go: `pose`, `low` and `high` (4,) in rad."""
+
+    pose: Floats
+    low: Floats
+    high: Floats
+
+    def place(self, shares: Floats) -> Floats:
+        """Angles for shares from -1 (low) over 0 (pose) to 1 (high)."""
+        up, down = self.high - self.pose, self.pose - self.low
+        angles: Floats = self.pose + np.where(shares > 0.0, up, down) * shares
+        return angles
+
+
+@dataclass(frozen=True)
+class Check:
+    """The check, and where its parts begin and end in it: pairs of s by name."""
+
+    motion: Trajectory
+    parts: dict[str, tuple[float, float]]
+
+
+def first_motion(room: Room, size: float) -> Trajectory:
+    """Every joint goes `size` rad to the side with more room, slowly, and back."""
+    side = np.where(room.high - room.pose >= room.pose - room.low, 1.0, -1.0)
+    reach = np.minimum(size, np.where(side > 0.0, room.high - room.pose, room.pose - room.low))
+    stops = [room.pose, room.pose + side * reach, room.pose]
+    return _through(stops, [FIRST_HOLD_S] * len(stops), FIRST_EDGE_S)
+
+
+def check_motion(room: Room) -> Check:
+    """Small moves, moves through the room, human-like reaches, slow motion; at rest at the pose between them."""
+    small = [room.pose, *(_within(room, room.pose + size) for size in SMALL_RAD)]
+    moves = [room.pose, *(room.place(_turned(number)) for number in range(len(MOVES))), room.pose]
+    pieces = (
+        _through(small, [PAUSE_S] + [HOLD_S] * len(SMALL_RAD), EDGE_S),
+        _through(moves, [0.1] + [HOLD_S] * (len(moves) - 1), EDGE_S),
+        _reaches(room),
+        _slow(room),
+    )
+    time_s, angles = [pieces[0].time_s[:1]], [pieces[0].angles[:1]]
+    parts: dict[str, tuple[float, float]] = {}
+    for name, piece in zip(PARTS, pieces, strict=True):
+        begin = float(time_s[-1][-1])
+        time_s.append(begin + piece.time_s[1:])
+        angles.append(piece.angles[1:])
+        parts[name] = (begin, float(time_s[-1][-1]))
+    return Check(Trajectory(np.concatenate(time_s), np.vstack(angles)), parts)
+
+
+def _turned(number: int) -> Floats:
+    """The share of every joint at a step; joints 1 and 3 go the other way."""
+    shares = [MOVES[(number + 2 * joint) % len(MOVES)] for joint in range(JOINTS)]
+    return np.array([-share if joint % 2 else share for joint, share in enumerate(shares)])
+
+
+def _within(room: Room, angles: Floats) -> Floats:
+    """A small move goes to the other side where this side has no room."""
+    beyond = (angles > room.high) | (angles < room.low)
+    mirrored: Floats = np.clip(np.where(beyond, 2.0 * room.pose - angles, angles), room.low, room.high)
+    return mirrored
+
+
+def _through(stops: list[Floats], holds: list[float], edge_s: float) -> Trajectory:
+    """From stop to stop, each held for its time; an edge takes `edge_s`, or longer where it would be too quick."""
+    times, rows = [np.zeros(1)], [np.array([stops[0]])]
+    now = holds[0]
+    for before, after, hold in zip(stops[:-1], stops[1:], holds[1:], strict=True):
+        edge = max(edge_s, PEAK * float(np.abs(after - before).max()) / FASTEST_RAD_S)
+        grid = np.arange(1, round(edge * RATE_HZ) + 1) / RATE_HZ
+        share = minimum_jerk(grid / grid[-1])[:, None]
+        times += [np.array([now]), now + grid]
+        rows += [before[None], before + share * (after - before)]
+        now += grid[-1] + hold
+    times.append(np.array([now]))
+    rows.append(stops[-1][None])
+    return Trajectory(np.concatenate(times), np.vstack(rows))
+
+
+def _reaches(room: Room) -> Trajectory:
+    """Human-like reaches, scaled into the room; from the pose and back to it."""
+    human = human_reaches(REACHES_SEED, REACHES_S)
+    middle, half = RANGE_RAD.mean(axis=1), 0.5 * (RANGE_RAD[:, 1] - RANGE_RAD[:, 0])
+    shares = REACHES_SHARE * np.clip((human.angles - middle) / half, -1.0, 1.0)
+    angles = np.where(
+        shares > 0.0, room.pose + (room.high - room.pose) * shares, room.pose + (room.pose - room.low) * shares
+    )
+    return _back(Trajectory(human.time_s, angles), room.pose)
+
+
+def _slow(room: Room) -> Trajectory:
+    """One slow swing to both sides, in which a joint rattles most easily."""
+    time_s = np.arange(round(SLOW_S * RATE_HZ) + 1) / RATE_HZ
+    turn = 2.0 * np.pi * time_s / SLOW_S
+    swing = SLOW_SHARE * np.sin(turn) * minimum_jerk(time_s / 1.0)
+    sides = np.array([1.0, -1.0, 1.0, -1.0])
+    angles = np.array([room.place(share * sides) for share in swing])
+    return _back(Trajectory(time_s, angles), room.pose)
+
+
+def _back(motion: Trajectory, pose: Floats) -> Trajectory:
+    """The motion, then the way to the pose, and a rest there."""
+    way = _through([motion.angles[-1], pose], [0.05, PAUSE_S], 0.5)
+    times = np.concatenate([motion.time_s, motion.duration_s + way.time_s[1:]])
+    return Trajectory(times, np.vstack([motion.angles, way.angles[1:]]))

@@ -1,0 +1,93 @@
+"""The outcome of a commissioning: rounds, trials, and what the board runs now."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from greywhale.arm.parameters import JOINT_NAMES
+from greywhale.commission.learn import Learnt
+from greywhale.commission.measures import Measures, measure
+from greywhale.commission.motions import PARTS
+from greywhale.commission.predict import predict
+from greywhale.commission.trials import Trial, Trials
+from greywhale.firmware import JOINTS
+
+
+@dataclass(frozen=True)
+class Round:
+    """One model, the controllers tuned on it, and the trials that followed."""
+
+    number: int
+    learnt: Learnt
+    trials: tuple[Trial, ...]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What was tried, and the set `best` that the board runs and stores now."""
+
+    trials: Trials
+    rounds: tuple[Round, ...]
+    best: Trial
+
+    @property
+    def improved(self) -> bool:
+        return self.best is not self.trials.before
+
+    def predicted(self, trial: Trial, round_: Round) -> Measures:
+        """What a round's model says about a trial."""
+        shown = predict(round_.learnt.arm, self.trials.table_of(trial.rows), trial.traces)[0]
+        return measure(shown, self.trials.check, self.trials.table.supply_v)
+
+    def round_of(self, trial: Trial) -> Round:
+        """The round that a trial belongs to; the last one's model is asked about what belongs to none."""
+        return next((one for one in self.rounds if any(trial is done for done in one.trials)), self.rounds[-1])
+
+    def as_dict(self) -> dict[str, Any]:
+        return {
+            "improved": self.improved,
+            "best": self.best.name,
+            "parameter_crc": f"0x{self.trials.table_of(self.best.rows).crc:04x}",
+            "rounds": [
+                {
+                    "round": one.number,
+                    "doubts": list(one.learnt.doubts),
+                    "margins_hold": one.learnt.steady,
+                    "trials": [trial.name for trial in one.trials],
+                }
+                for one in self.rounds
+            ],
+            "trials": [
+                {**trial.as_dict(), "predicted": self.predicted(trial, self.round_of(trial)).as_dict()}
+                for trial in self.trials.done
+            ],
+        }
+
+    def text(self) -> str:
+        """What changed on the arm, joint by joint, for people."""
+        before, after = self.trials.before.measured, self.best.measured
+        played = len(self.trials.done) - 1
+        lines = [f"{played} sets of controllers tried on the arm in {len(self.rounds)} rounds."]
+        if not self.improved:
+            return "\n".join([*lines, "None passed on every joint: the controllers from before stay on the board."])
+        head = "".join(f"{part:>24}" for part in PARTS)
+        lines += ["", "Mean squared error on the arm (rad²), before -> after:", f"{'':26}{head}"]
+        for joint in range(JOINTS):
+            cells = (_pair(before.error[place, joint], after.error[place, joint]) for place in range(len(PARTS)))
+            lines.append(f"{f'joint {joint} ({JOINT_NAMES[joint]})':26}" + "".join(f"{cell:>24}" for cell in cells))
+        rests = 1e3 * np.array([before.worst("unrest"), after.worst("unrest")])
+        unrest = [f"{was:.1f} -> {now:.1f}" for was, now in rests.T]
+        lines += ["", f"Unrest at rest (mrad rms), joints 0 to 3: {', '.join(unrest)}."]
+        same = (self.best.rows == self.trials.before.rows).all(axis=1)
+        kept = [joint for joint in range(JOINTS) if same[joint]]
+        if kept:
+            named = " and ".join(f"joint {joint} ({JOINT_NAMES[joint]})" for joint in kept)
+            lines.append(f"Nothing better was found for {named}: there the controller from before stays.")
+        return "\n".join(lines)
+
+
+def _pair(before: float, after: float) -> str:
+    return f"{before:.2e} -> {after:.2e}"

@@ -1,0 +1,107 @@
+"""The report of a commissioning: one HTML file with what was predicted beside what was measured, round by round."""
+
+from __future__ import annotations
+
+import base64
+import io
+from pathlib import Path
+from typing import Any
+
+import jinja2
+
+from greywhale.arm.parameters import JOINT_NAMES
+from greywhale.commission.measures import Measures
+from greywhale.commission.motions import PARTS
+from greywhale.commission.outcome import Outcome
+from greywhale.commission.trials import Trial
+from greywhale.files.log import read_log
+from greywhale.formats.whole import write_text
+
+Measure = tuple[str, str, str, float, str]  # name in Measures, words, unit, factor, form
+MEASURES: tuple[Measure, ...] = (
+    ("unrest", "unrest at rest", "mrad rms", 1e3, ".1f"),
+    ("rattle", "rattle in motion", "mrad rms", 1e3, ".1f"),
+    ("chatter", "chatter", "1/s", 1.0, ".0f"),
+    ("voltage", "voltage, most", "V", 1.0, ".2f"),
+)
+
+
+def save_page(outcome: Outcome, path: Path) -> Path:
+    """Write the report, whole or not at all; it needs no other file."""
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("greywhale.commission", "data"), autoescape=True, undefined=jinja2.StrictUndefined
+    )
+    write_text(path, environment.get_template("report.html").render(facts(outcome)))
+    return path
+
+
+def facts(outcome: Outcome) -> dict[str, Any]:
+    """All that the page shows, as texts."""
+    trials = outcome.trials
+    rounds = []
+    for one in outcome.rounds:
+        shown = [_trial(outcome, trial) for trial in one.trials]
+        rounds.append({"number": one.number, "doubts": one.learnt.doubts, "trials": shown})
+    tried = {id(trial) for one in outcome.rounds for trial in one.trials}
+    rest = [_trial(outcome, trial) for trial in trials.done[1:] if id(trial) not in tried]
+    return {
+        "text": outcome.text(),
+        "joints": [f"{joint} {name}" for joint, name in enumerate(JOINT_NAMES)],
+        "before": _trial(outcome, trials.before),
+        "rounds": rounds,
+        "confirmations": rest,
+        "picture": _picture(outcome),
+    }
+
+
+def _trial(outcome: Outcome, trial: Trial) -> dict[str, Any]:
+    predicted = outcome.predicted(trial, outcome.round_of(trial))
+    rows = []
+    for place, part in enumerate(PARTS):
+        pairs = zip(predicted.error[place], trial.measured.error[place], strict=True)
+        rows.append({"name": f"error, {part}", "unit": "rad²", "cells": [_cell(*pair, ".2e") for pair in pairs]})
+    rows += [_row(predicted, trial.measured, measure) for measure in MEASURES]
+    return {
+        "name": trial.name,
+        "log": trial.path.name,
+        "stopped": trial.stopped,
+        "best": trial is outcome.best,
+        "verdicts": [
+            "; ".join(verdict.faults) if verdict.faults else "passed" if verdict.known else "not judged"
+            for verdict in trial.verdicts
+        ],
+        "rows": rows,
+    }
+
+
+def _row(predicted: Measures, measured: Measures, measure: Measure) -> dict[str, Any]:
+    name, means, unit, factor, form = measure
+    pairs = zip(factor * predicted.worst(name), factor * measured.worst(name), strict=True)
+    return {"name": means, "unit": unit, "cells": [_cell(*pair, form) for pair in pairs]}
+
+
+def _cell(predicted: float, measured: float, form: str) -> dict[str, str]:
+    return {"predicted": _text(predicted, form), "measured": _text(measured, form)}
+
+
+def _text(value: float, form: str) -> str:
+    return "-" if value != value else f"{value:{form}}"
+
+
+def _picture(outcome: Outcome) -> str:
+    """Before and after on the check, as a data URL."""
+    import matplotlib.pyplot as plt
+
+    from greywhale.report.follow import plot_following, set_style, trace
+
+    chosen = [(outcome.trials.before, "before")]
+    if outcome.improved:
+        chosen.append((outcome.best, "now on the board"))
+    with set_style():
+        figure = plot_following([trace(read_log(trial.path), label) for trial, label in chosen], "The check on the arm")
+        try:
+            file = io.BytesIO()
+            figure.savefig(file, format="png", dpi=110, metadata={"Software": None})
+        finally:
+            plt.close(figure)
+    return "data:image/png;base64," + base64.b64encode(file.getvalue()).decode("ascii")

@@ -1,0 +1,51 @@
+"""What a model says about a played check: the same leader, the same controllers, the model in the arm's place."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.arm import ArmParameters
+from greywhale.arm.parameters import with_usual_noise
+from greywhale.arm.plants import plant_row
+from greywhale.commission.measures import Traces
+from greywhale.firmware import JOINTS, pwm_steps
+from greywhale.loop.closed_loop import ClosedLoop, known_readings, with_ideal_follower
+from greywhale.loop.controllers import controllers_of
+from greywhale.table import ParameterTable
+
+Floats = npt.NDArray[np.float64]
+
+# The model stands at the log's first pose for so long before it is led, so that it starts at rest.
+LEAD_TICKS = 500
+SEED = 5
+
+
+def predict(arm: ArmParameters, table: ParameterTable, played: Traces, plants: Floats | None = None) -> list[Traces]:
+    """The traces that the model (or each of other plants) would have made under the leader of a log."""
+    rows = plant_row(arm)[None] if plants is None else plants
+    noisy = with_usual_noise(arm)
+    zero = np.array([pot.centre for pot in noisy.follower_pots.joint])
+    reference = np.vstack([np.tile(played.leader[:1], (LEAD_TICKS, 1)), played.leader])
+    stops = [(joint.stops.min, joint.stops.max) for joint in arm.joint]
+    home = [float(np.clip(angle, *stops[joint])) for joint, angle in enumerate(played.follower[0] + zero)]
+    loop = ClosedLoop(
+        with_ideal_follower(table),
+        known_readings(reference, reference + zero),
+        noisy.follower_pots,
+        seed=SEED,
+        home=home,
+        gap=[0.0] * JOINTS,
+        weight_s=np.zeros(len(reference)),
+    )
+    found = loop.run(controllers_of(table)[None], np.ascontiguousarray(rows), substeps=2, every=1)
+    volts = table.supply_v / np.array(pwm_steps(table.board))
+    return [
+        Traces(
+            leader=played.leader,
+            follower=np.nan_to_num(angles[LEAD_TICKS:].astype(np.float64), nan=10.0) - zero,
+            voltage=duties[LEAD_TICKS:].astype(np.float64) * volts,
+            begins=played.begins,
+        )
+        for angles, duties in zip(found.angles, found.duties, strict=True)
+    ]

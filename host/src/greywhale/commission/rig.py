@@ -1,0 +1,129 @@
+"""The arm on its board: plays motions with controllers on trial, and always gives the controllers from before back.
+
+Controllers on trial run, but are not stored. So whatever happens (a lost port, a power cut, this program killed), the
+board runs those from before again after its next start; opening its port restarts an Arduino. Only `keep` stores.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.board.device import Device, hold_ctrl_c
+from greywhale.board.record import pose_of, record_led
+from greywhale.board.upload import read_parameters, run_set, upload_set
+from greywhale.commission.watch import Hunting, Watch
+from greywhale.errors import UserError
+from greywhale.files.log import Log, read_log
+from greywhale.protocol import schema
+from greywhale.table import ParameterTable
+from greywhale.trajectory import Trajectory
+
+Controllers = npt.NDArray[np.int32]
+Floats = npt.NDArray[np.float64]
+Progress = Callable[[str, float], None]
+
+# Faults that a bad controller causes. Every other fault is one of the arm or the board, and ends the commissioning.
+OF_A_CONTROLLER = ("tracking", "unrest")
+
+
+@dataclass(frozen=True)
+class Played:
+    """A log, and why it ended early: `joint` is the one that the board or this host stopped for, None where unknown."""
+
+    log: Log
+    stopped: str = ""
+    joint: int | None = None
+
+
+class Rig:
+    """A board on an open port that runs the table `before`."""
+
+    def __init__(self, device: Device, before: ParameterTable, progress: Progress) -> None:
+        self.device = device
+        self.before = before
+        self._progress = progress
+        self._running = before
+
+    def pose(self) -> Floats:
+        """The follower's angles now, (4,) rad."""
+        return pose_of(self.device)
+
+    def play(
+        self, motion: Trajectory, path: Path, table: ParameterTable, *, patient: bool = False, watched: bool = True
+    ) -> Played:
+        """Lead the arm along a motion with the controllers of a table, and put those from before back.
+
+        A `patient` rig waits for a follower that lags; a `watched` arm is stopped when a joint hunts.
+        """
+        try:
+            self._run(table)
+            played = self._record(motion, path, table, patient, Watch() if watched else None)
+        except BaseException as error:
+            self._put_back(error)
+            raise
+        self._run(self.before)
+        return played
+
+    def keep(self, table: ParameterTable) -> None:
+        """Run and store the controllers of a table."""
+        if table.crc != self.before.crc:
+            upload_set(self.device, table, self._progress)
+        self.before = self._running = table
+
+    def _put_back(self, error: BaseException) -> None:
+        """Run the controllers from before after an error or Ctrl-C; the motors are off by now."""
+        with hold_ctrl_c():
+            try:
+                self._run(self.before)
+            except UserError:
+                error.add_note("The board runs the controllers from before again after its next start.")
+
+    def _run(self, table: ParameterTable) -> None:
+        if self._running.crc != table.crc:
+            run_set(self.device, table, self._progress)
+            self._running = table
+
+    def _record(
+        self, motion: Trajectory, path: Path, table: ParameterTable, patient: bool, watch: Watch | None
+    ) -> Played:
+        path.unlink(missing_ok=True)
+        try:
+            record_led(self.device, path, motion, progress=self._progress, table=table, patient=patient, watch=watch)
+        except Hunting as hunting:
+            self.device.telemetry(0)
+            return Played(read_log(path), f"joint {hunting.joint} hunted", hunting.joint)
+        except UserError:
+            status = self._status()
+            if status is None or status.fault.key not in OF_A_CONTROLLER or not path.exists():
+                raise
+            self.device.telemetry(0)
+            self.device.ask(schema.ClearFaultRequest())
+            where = status.fault_where if status.fault_where < len(table.controllers) else None
+            return Played(read_log(path), f"the board stopped: {status.fault.description}", where)
+        return Played(read_log(path))
+
+    def _status(self) -> schema.StatusReply | None:
+        """The board's state after an error; None where it does not answer any more."""
+        try:
+            return self.device.status()
+        except UserError:
+            return None
+
+
+@contextmanager
+def connected(port: str, before: ParameterTable | None, progress: Progress) -> Iterator[Rig]:
+    """Open the port; the board must run the table `before`, where it is known. Leaving turns the motors off."""
+    with Device(port) as device:
+        running = read_parameters(device, progress)
+        if before is not None and running.crc != before.crc:
+            raise UserError(
+                f"{port}: the board runs parameter set {running.crc:#06x}, but this commissioning began with "
+                f"{before.crc:#06x}; connect that board, or begin anew in another folder."
+            )
+        yield Rig(device, running, progress)

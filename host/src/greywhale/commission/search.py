@@ -1,0 +1,123 @@
+"""The search on the arm itself, joint by joint: a restless controller gets softer, any other is varied step by step.
+
+A model tells where to begin. What it does not know (play, a slow wiper) shows in measures on the arm only, and mostly
+asks for the same: less gain, more damping, another integral part.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.commission.judge import Verdict
+from greywhale.fuzzy.settings import GAIN_UNIT
+from greywhale.loop import CONTROLLER_COLUMNS
+from greywhale.protocol import schema
+from greywhale.tune.search.space import largest_ki
+
+Row = npt.NDArray[np.int32]
+
+KP, KD, KI = (CONTROLLER_COLUMNS.index(name) for name in ("kp", "kd", "ki"))
+# A restless joint gets less stiffness, relatively more damping, and hardly any integral part that could hunt; one that
+# only chatters gets less damping.
+SOFTER = {KP: 0.5, KD: 0.8, KI: 0.1}
+FIRST_SOFTER = {KP: 0.5, KD: 1.2, KI: 0.1}
+QUIETER = {KD: 0.6}
+MOST_SOFTER = 3
+# The steps of the search: more integral part against friction, more damping, stiffer, softer, less integral part.
+STEPS: tuple[dict[int, float], ...] = ({KI: 6.0}, {KP: 1.5, KD: 1.3}, {KD: 1.4}, {KP: 0.7}, {KI: 0.15})
+LEAST_KI, MOST_KI = 20.0, 300.0  # V/(rad s), where a step enlarges it
+
+
+@dataclass(frozen=True)
+class Tried:
+    """A joint's controller (12,) and what the arm said about it; `trial` is where that was measured."""
+
+    row: Row
+    verdict: Verdict
+    trial: str
+
+
+def _rank(one: Tried) -> tuple[bool, float]:
+    """What passed comes first, then what follows best; a joint that another one stopped has no score."""
+    score = one.verdict.score
+    return not one.verdict.passed, score if np.isfinite(score) else np.inf
+
+
+@dataclass
+class JointSearch:
+    """One joint's controllers in the order of their trials."""
+
+    joint: int
+    period_ms: int
+    tried: list[Tried] = field(default_factory=list)
+    _softened: int = 0
+    _step: int = 0
+    _from: Row | None = None
+
+    @property
+    def best(self) -> Tried | None:
+        """The best that passed."""
+        return next(iter(self.ranked()), None)
+
+    def ranked(self) -> list[Tried]:
+        """All that passed, the best first."""
+        return sorted((one for one in self.tried if one.verdict.passed), key=_rank)
+
+    def add(self, row: Row, verdict: Verdict, trial: str) -> None:
+        """Note a judged controller."""
+        self.tried.append(Tried(row.copy(), verdict, trial))
+
+    def propose(self) -> Row | None:
+        """The next controller to try; None where there is nothing left to vary."""
+        if self.tried and self.tried[-1].verdict.restless and self._softened < MOST_SOFTER:
+            softer = self._soften(self.tried[-1])
+            if softer is not None:
+                return softer
+        self._softened = MOST_SOFTER
+        calm = [one for one in self.tried if not one.verdict.restless]
+        if not calm:
+            return None
+        centre = min(calm, key=_rank)
+        if self._from is None or not np.array_equal(self._from, centre.row):
+            # The step that led here is tried again first: what helped once may help twice.
+            self._step = max(0, self._step - 1) if self._from is not None else 0
+            self._from = centre.row
+        while self._step < len(STEPS):
+            row = self._scaled(centre.row, STEPS[self._step])
+            self._step += 1
+            if row is not None and not any(np.array_equal(row, one.row) for one in self.tried):
+                return row
+        return None
+
+    def begin(self) -> None:
+        """A new controller of a model comes next: if it is restless, it is softened first."""
+        self._softened = 0
+        self._from = None
+        self._step = 0
+
+    def _soften(self, last: Tried) -> Row | None:
+        factors = FIRST_SOFTER if self._softened == 0 else SOFTER
+        if last.verdict.chatters_only:
+            factors = QUIETER
+        self._softened += 1
+        return self._scaled(last.row, factors)
+
+    def _scaled(self, row: Row, factors: dict[int, float]) -> Row | None:
+        """The row with some gains multiplied, within what the firmware takes; None where that changes nothing."""
+        changed = row.astype(np.float64)
+        for column, factor in factors.items():
+            changed[column] *= factor
+            if column == KI and factor > 1.0:
+                if row[KI] >= MOST_KI * GAIN_UNIT:
+                    return None
+                changed[KI] = np.clip(changed[KI], LEAST_KI * GAIN_UNIT, MOST_KI * GAIN_UNIT)
+        most = {KI: largest_ki(self.period_ms) * GAIN_UNIT}
+        for column in (KP, KD, KI):
+            parameter = schema.PARAMETER_BY_NAME[f"joint0.{CONTROLLER_COLUMNS[column]}"]
+            highest = min(float(parameter.maximum), most.get(column, np.inf))
+            changed[column] = np.clip(changed[column], max(parameter.minimum, 1), highest)
+        rounded = np.rint(changed).astype(np.int32)
+        return None if np.array_equal(rounded, row) else rounded

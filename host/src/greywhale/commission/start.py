@@ -1,0 +1,87 @@
+"""The beginning of a commissioning: refuses arms that it must not move, and finds out whether the arm moves freely."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.arm import ArmParameters
+from greywhale.arm.parameters import JOINT_NAMES
+from greywhale.commission.book import Book
+from greywhale.commission.motions import FIRST_RAD, Room, first_motion
+from greywhale.commission.rig import Rig
+from greywhale.errors import UserError
+from greywhale.files.log import Log
+from greywhale.firmware import JOINTS
+from greywhale.table import ParameterTable
+from greywhale.tune.model_checks import CONVERTER_SPAN, doubt_other_board
+
+Floats = npt.NDArray[np.float64]
+
+# The little first motion, and a larger one for joints that friction held.
+FIRST_SIZES = (FIRST_RAD, 0.4)
+# A joint that went less than this share of its way, or the other way, does not move freely.
+LEAST_SHARE = 0.25
+# Zero angles of table and arm file may differ by this much (rad).
+SAME_ZERO = 0.1
+
+
+def refuse_uncalibrated(arm: ArmParameters, table: ParameterTable) -> None:
+    """Refuse a board whose table contradicts the arm file: supply, or a potentiometer's slope or zero angle."""
+    for doubt in doubt_other_board(arm, None, table):
+        raise UserError(f"the board does not fit the arm file ({arm.name}): {doubt.reason}; {doubt.remedy}.")
+    usual = ParameterTable.defaults()
+    for joint, pot in enumerate(arm.follower_pots.joint):
+        name = f"follower{joint}.zero"
+        middle = (CONVERTER_SPAN / 2 - table[name]) * table.physical(f"follower{joint}.scale")
+        if abs(middle - pot.centre) > SAME_ZERO:
+            state = "was never calibrated" if table[name] == usual[name] else "is calibrated for another arm"
+            raise UserError(
+                f"joint {joint} ({JOINT_NAMES[joint]}) {state}: its potentiometer's middle is {pot.centre:.2f} rad "
+                f"by the arm file, but the board's {name} makes it {middle:.2f} rad; correct the one that is wrong."
+            )
+
+
+def refuse_stuck(rig: Rig, book: Book, room: Room) -> None:
+    """Move every joint a little, then, where friction held one, a little more. Refuse an arm that does not follow."""
+    if book.get("first motion") is not None:
+        return
+    stuck: list[int] = []
+    for number, size in enumerate(FIRST_SIZES, 1):
+        played = rig.play(first_motion(room, size), book.path(f"first-{number}.csv"), rig.before, patient=True)
+        if played.stopped:
+            raise UserError(f"the arm cannot be commissioned: {played.stopped} in the little first motion.")
+        shares = shares_moved(played.log)
+        _refuse_backwards(shares)
+        stuck = [joint for joint in range(JOINTS) if shares[joint] < LEAST_SHARE]
+        if not stuck:
+            book.note("first motion", {"size_rad": size, "shares_moved": [round(float(share), 3) for share in shares]})
+            return
+    named = " and ".join(f"joint {joint} ({JOINT_NAMES[joint]})" for joint in stuck)
+    raise UserError(
+        f"{named} did not move when led by {FIRST_SIZES[-1]:g} rad; see that the arm is free, its motors have power, "
+        "and each potentiometer is on its own joint."
+    )
+
+
+def shares_moved(log: Log) -> Floats:
+    """How far each follower went, as a share of its leader's way; below 0 the other way. (4,)"""
+    shares = np.zeros(JOINTS)
+    for joint in range(JOINTS):
+        leader, follower = log.leader[:, joint], log.follower[:, joint]
+        moved = leader - leader[0]
+        far = int(np.argmax(np.abs(moved)))
+        late = slice(far, min(far + 500, len(leader)))
+        way = follower[late] - np.median(follower[:50])
+        share = way / moved[far] if moved[far] else np.zeros(1)
+        shares[joint] = share[np.argmax(np.abs(share))]
+    return shares
+
+
+def _refuse_backwards(shares: Floats) -> None:
+    wrong = int(np.argmin(shares))
+    if shares[wrong] < -LEAST_SHARE:
+        raise UserError(
+            f"joint {wrong} ({JOINT_NAMES[wrong]}) moves away from its leader; swap its motor's wires, or set "
+            f"joint{wrong}.motor_sign."
+        )

@@ -1,0 +1,123 @@
+"""Trials on the arm: a set of controllers is led along the check, measured, and judged against those from before."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.commission.book import Book
+from greywhale.commission.judge import Limits, Verdict, judge
+from greywhale.commission.measures import Measures, Traces, measure, traces_of
+from greywhale.commission.motions import Check
+from greywhale.commission.rig import Played, Rig
+from greywhale.errors import UserError
+from greywhale.files.log import read_log
+from greywhale.firmware import JOINTS
+from greywhale.loop.controllers import controllers_of
+from greywhale.table import ParameterTable
+
+Controllers = npt.NDArray[np.int32]
+
+
+@dataclass(frozen=True)
+class Trial:
+    """Controllers (4, 12) that ran on the arm, their log, and what was measured. `stopped` says why it ended early."""
+
+    name: str
+    rows: Controllers
+    path: Path
+    stopped: str
+    measured: Measures
+    verdicts: tuple[Verdict, ...]
+    traces: Traces = field(repr=False)
+
+    @property
+    def passed(self) -> bool:
+        """Whether all joints did, with each other."""
+        return all(verdict.passed for verdict in self.verdicts)
+
+    @property
+    def score(self) -> float:
+        """The geometric mean of the joints' scores."""
+        return float(np.exp(np.mean([np.log(verdict.score) for verdict in self.verdicts])))
+
+    def as_dict(self) -> dict[str, Any]:
+        return {
+            "trial": self.name,
+            "log": self.path.name,
+            "controllers": self.rows.tolist(),
+            "stopped": self.stopped,
+            "passed": self.passed,
+            "faults": [list(verdict.faults) for verdict in self.verdicts],
+            "score": [None if np.isnan(verdict.score) else round(verdict.score, 4) for verdict in self.verdicts],
+            "measured": self.measured.as_dict(),
+        }
+
+
+class Trials:
+    """All trials so far. The first is that of the controllers from before, against which the others are judged."""
+
+    def __init__(self, book: Book, check: Check, before: ParameterTable) -> None:
+        self.book = book
+        self.check = check
+        self.table = before
+        self.done: list[Trial] = []
+
+    @property
+    def before(self) -> Trial:
+        return self.done[0]
+
+    def table_of(self, rows: Controllers) -> ParameterTable:
+        """The board's table with these controllers."""
+        return self.table.with_controllers(rows)
+
+    def known(self) -> bool:
+        """Whether the next trial was played before an interrupt, so that no arm is needed for it."""
+        return self.book.get(self._next_name()) is not None
+
+    def play_before(self, rig: Rig | None) -> Trial:
+        """Play the check with the controllers from before."""
+        trial = self.play(rig, controllers_of(self.table))
+        if trial.stopped:
+            raise UserError(
+                f"with the controllers from before, the check ended early: {trial.stopped}; narrow the --range, or "
+                "upload calmer controllers first."
+            )
+        return trial
+
+    def play(self, rig: Rig | None, rows: Controllers) -> Trial:
+        """Play the check with these controllers, or take the result from the journal."""
+        name = self._next_name()
+        path = self.book.path(f"{name}.csv")
+        facts = self.book.get(name)
+        if facts is not None and facts["controllers"] == rows.tolist():
+            played = Played(read_log(path), facts["stopped"], facts["joint"])
+        else:
+            assert rig is not None
+            # The controllers from before may hunt already: their check is played to its end all the same.
+            played = rig.play(self.check.motion, path, self.table_of(rows), watched=bool(self.done))
+            self.book.note(name, {"controllers": rows.tolist(), "stopped": played.stopped, "joint": played.joint})
+        trial = self._judged(name, rows, path, played)
+        self.done.append(trial)
+        return trial
+
+    def passing(self) -> list[Trial]:
+        """Sets of controllers that passed as a whole, the best first; those from before always do."""
+        whole = [one for one in self.done[1:] if one.passed]
+        return [*sorted(whole, key=lambda one: one.score), self.before]
+
+    def _next_name(self) -> str:
+        return "before" if not self.done else f"trial-{len(self.done):02d}"
+
+    def _judged(self, name: str, rows: Controllers, path: Path, played: Played) -> Trial:
+        traces = traces_of(played.log, self.check)
+        measured = measure(traces, self.check, self.table.supply_v)
+        first = self.done[0].measured if self.done else measured
+        guilty = [played.stopped if joint == played.joint else "" for joint in range(JOINTS)]
+        kept = (rows == controllers_of(self.table)).all(axis=1)
+        verdicts = judge(measured, first, Limits.of(first, kept), guilty)
+        return Trial(name, rows.copy(), path, played.stopped, measured, verdicts, traces)

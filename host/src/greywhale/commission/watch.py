@@ -1,0 +1,62 @@
+"""Watches a follower while it is led, and stops it at once when a joint hunts.
+
+A joint hunts here when it turns back again and again, each time by more than a swing that nobody can overlook, while
+its leader rests. Smaller unrest is measured afterwards, in the whole log.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+
+import numpy as np
+
+from greywhale.board.stream import Received
+from greywhale.firmware import ANGLE_LSB
+from greywhale.loop.closed_loop import count_swings
+
+SWING_RAD = 0.03  # from one turning point to the next
+REVERSALS = 4
+WINDOW_S = 0.8
+LOOK_EVERY = 40  # samples
+SETTLE_S = 0.4  # a follower may still be on its way for so long after its leader stopped
+STILL_RAD = 0.02
+
+
+class Hunting(Exception):
+    """A joint hunts, and the motors went off."""
+
+    def __init__(self, joint: int) -> None:
+        super().__init__(f"joint {joint} hunts")
+        self.joint = joint
+
+
+class Watch:
+    """Call it with every sample; it raises Hunting."""
+
+    def __init__(self) -> None:
+        self._ticks: deque[int] = deque()
+        self._leader: deque[tuple[int, ...]] = deque()
+        self._follower: deque[tuple[int, ...]] = deque()
+        self._count = 0
+
+    def __call__(self, received: Received) -> None:
+        self._ticks.append(received.elapsed)
+        self._leader.append(tuple(received.sample.leader))
+        self._follower.append(tuple(received.sample.follower))
+        kept = 1000 * (WINDOW_S + SETTLE_S)
+        while received.elapsed - self._ticks[0] > kept:
+            self._ticks.popleft()
+            self._leader.popleft()
+            self._follower.popleft()
+        self._count += 1
+        if self._count % LOOK_EVERY == 0:
+            self._look()
+
+    def _look(self) -> None:
+        leader, follower = (np.array(rows) * ANGLE_LSB for rows in (self._leader, self._follower))
+        judged = np.array(self._ticks) > self._ticks[-1] - 1000 * WINDOW_S
+        path = np.ascontiguousarray(follower[judged][None], dtype=np.float32)
+        turned, _ = count_swings(path, 0, path.shape[1], SWING_RAD)
+        hunting = (turned[0] >= REVERSALS) & (np.ptp(leader, axis=0) <= STILL_RAD)
+        if hunting.any():
+            raise Hunting(int(np.argmax(np.where(hunting, turned[0], 0))))

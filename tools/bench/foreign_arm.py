@@ -1,0 +1,130 @@
+"""Arms that greywhale's model does not know: MuJoCo moves them, and their potentiometers have play behind the joint.
+
+`python -m tools.bench.foreign_arm SEED ...` serves the simulated bench with such an arm, as `python -m greywhale_sim`
+serves it with the built-in one.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree as xml
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.arm import ArmParameters
+from greywhale.arm.export import JOINT_IDS, mjcf
+from greywhale.files.arm import load_arm
+from greywhale.files.model import to_toml
+from greywhale.firmware import JOINTS
+
+Floats = npt.NDArray[np.float64]
+
+MASS, MOTOR = 0.1, 0.6  # masses are off by this share, motors by this logarithm, both uniform
+FRICTION_V = (0.15, 0.9)
+PLAY_RAD = (0.002, 0.020)  # of the whole band
+NOISE_V = (0.001, 0.004)
+
+
+@dataclass(frozen=True)
+class ForeignArm:
+    """Masses, motors and friction of an arm, and the play (4,) rad between each joint and its potentiometer."""
+
+    parameters: ArmParameters
+    play: Floats
+
+
+def foreign_arm(seed: int, play: bool = True) -> ForeignArm:
+    """The white box with masses, motors, friction, noise and play of its own; rigid gears, no Stribeck friction."""
+    random = np.random.default_rng(7000 + seed)
+    white = load_arm("white_box")
+    links = []
+    for link in white.link:
+        factor = float(np.exp(random.uniform(-MASS, MASS)))
+        inertia = {key: factor * value for key, value in link.inertia.model_dump().items()}
+        links.append(link.model_dump() | {"mass": factor * link.mass, "inertia": inertia})
+    joints = []
+    for number, joint in enumerate(white.joint):
+        known = white.actuator(number)
+        alpha, inertia_volts, damping_volts = random.uniform(-MOTOR, MOTOR, 3)
+        torque_per_volt = float(known.torque_per_volt * np.exp(-alpha))
+        damping = float(known.damping * np.exp(damping_volts - alpha))
+        motor = {
+            "gear_ratio": 1.0,
+            "torque_constant": 0.5 * damping / torque_per_volt,
+            "resistance": 0.5 * damping / torque_per_volt**2,
+            "inertia": float(known.inertia * np.exp(inertia_volts - alpha)),
+            "viscous": 0.5 * damping,
+        }
+        coulomb = float(random.uniform(*FRICTION_V)) * torque_per_volt
+        joints.append(joint.model_dump() | {"motor": motor, "friction": {"coulomb": coulomb, "breakaway": coulomb}})
+    noise = float(random.uniform(*NOISE_V))
+    pots = {"supply": 5.0, "joint": [{"noise": noise}] * JOINTS}
+    data = white.model_dump() | {"name": f"foreign arm {seed}", "link": links, "joint": joints}
+    data |= {"motor_equation": "physical", "follower_pots": pots, "leader_pots": pots}
+    width = random.uniform(*PLAY_RAD, JOINTS)
+    parameters = ArmParameters.model_validate(data, strict=False)
+    return ForeignArm(parameters, width if play else np.zeros(JOINTS))
+
+
+class MuJoCoPlant:
+    """The follower of a bench: `step` turns voltages into the angles that the potentiometers show."""
+
+    def __init__(self, arm: ForeignArm) -> None:
+        import mujoco  # only `make oracles` installs it
+
+        self._advance = mujoco.mj_step
+        self._model = mujoco.MjModel.from_xml_string(_with_stops(arm.parameters))
+        self._model.opt.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+        self._data: Any = mujoco.MjData(self._model)
+        self._half = 0.5 * arm.play
+        self._shown = np.zeros(JOINTS)
+
+    def reset(self, angles: Floats) -> None:
+        """Hold the arm in a pose by hand."""
+        self._data.qpos[:] = angles
+        self._data.qvel[:] = 0.0
+        self._shown = angles.copy()
+
+    def step(self, voltages: Floats, dt: float) -> Floats:
+        self._model.opt.timestep = dt
+        self._data.ctrl[:] = voltages
+        self._advance(self._model, self._data)
+        # The joint drags the wiper along at either end of the play.
+        self._shown = np.clip(self._shown, self._data.qpos - self._half, self._data.qpos + self._half)
+        return self._shown
+
+
+def _with_stops(parameters: ArmParameters) -> str:
+    root = xml.fromstring(mjcf(parameters, motors=True))
+    for name, joint in zip(JOINT_IDS, parameters.joint, strict=True):
+        hinge = root.find(f".//joint[@name='{name}']")
+        assert hinge is not None
+        hinge.set("limited", "true")
+        hinge.set("range", f"{joint.stops.min!r} {joint.stops.max!r}")
+    return xml.tostring(root, encoding="unicode")
+
+
+def save(arm: ForeignArm, path: Path) -> Path:
+    """Write the arm file that a bench needs for potentiometers and supply."""
+    path.write_text(to_toml(arm.parameters, {}).replace("[identification]\n", ""), encoding="utf-8")
+    return path
+
+
+def main(arguments: list[str]) -> int:
+    """Serve a bench: SEED, PLAY (1 or 0) and the arm file, after the options of a bench process."""
+    from greywhale_sim.serve import ServeOptions, serve
+
+    seed, play, folder = int(arguments[-3]), arguments[-2] == "1", Path(arguments[-1])
+    arm = foreign_arm(seed, play)
+    options = ServeOptions(arm=save(arm, folder / "foreign.toml"), speed="max", control=True)
+    serve(options, lambda port: print(json.dumps({"port": port}), flush=True), MuJoCoPlant(arm))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
