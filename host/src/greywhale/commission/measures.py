@@ -23,7 +23,7 @@ from greywhale.files.log import Log
 from greywhale.firmware import JOINTS, TICK_S
 from greywhale.loop.closed_loop import count_swings
 from greywhale.measure.runs import resting
-from greywhale.tune.judge.margins import CHATTER_SHARE
+from greywhale.tune.search.rattle import CHATTER_SHARE
 
 Floats = npt.NDArray[np.float64]
 
