@@ -127,7 +127,7 @@ def test_a_bare_arm_file_is_no_model_but_can_be_forced(tmp_path: Path) -> None:
     path = tmp_path / "arm.toml"
     path.write_text(to_toml(default_arm(), {}).replace("[identification]", ""), encoding="utf-8")
     assert "nothing in it was identified: it is an arm file, not a model; make a model from logs" in refused(path)
-    assert load_model(path, force=True).plants.shape == (1, 60)
+    assert load_model(path, force=True).plants.shape == (1, len(plant_row(default_arm())))
 
 
 def test_a_shipped_arm_can_be_forced_by_its_name_at_its_own_supply() -> None:

@@ -43,6 +43,7 @@ class Loop:
         times: Floats = start + TICK_S * np.arange(ticks, dtype=np.float64)
         leader = _at(times, recorded.time, recorded.leader)
         self.follower = _at(times + log.delay, recorded.time, recorded.follower)
+        self.leader = leader
         reference = np.vstack([np.tile(leader[:1], (LEAD_TICKS, 1)), leader])
         target = np.vstack([np.tile(self.follower[:1], (LEAD_TICKS, 1)), self.follower]) + zero
         self.ticks = ticks

@@ -49,6 +49,7 @@ def identify(
         found=found,
         verdicts=verdicts,
         warnings=(*doubts, *judge.warnings_of(verdicts)),
+        doubts=judge.doubts_of(verdicts, found.joints),
         subjects=tuple(subjects),
     )
 

@@ -13,14 +13,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
-from greywhale.firmware import JOINTS
-from greywhale.identify.closed_loop import Loop
+from greywhale.arm.parameters import JOINT_NAMES
+from greywhale.firmware import JOINTS, TICK_S
+from greywhale.identify.closed_loop import COMPARED_TICKS, Loop
 from greywhale.identify.data import Prepared
+from greywhale.identify.hunting import Swings, describe_difference, smooth_motion, swings_of
 from greywhale.identify.space import Space
 from greywhale.identify.windows import WindowResidual
 from greywhale.table import ParameterTable
 
 Floats = NDArray[np.float64]
+TINY = 1e-12  # rad², beside every error of a joint that moved
+# A joint is doubted whose model leaves more than this share of the tracking error with a changed controller, and so
+# many times the share that it leaves with its own; below this error (rad) nobody cares.
+UNEXPLAINED = 0.5
+WORSE = 4.0
+SMALL_RAD = 5e-3
 FIT, SECOND, CHANGED = "fit", "validation", "validation, changed controller"
 
 
@@ -34,6 +42,44 @@ class Subject:
 
 
 @dataclass(frozen=True)
+class Following:
+    """The closed loop without the swings of joints that hunt, and these by themselves; (4,) each.
+
+    `model` and `white_box` are mean squared differences to the log, rad². `error` is the log's own tracking error.
+    """
+
+    white_box: tuple[float, ...]
+    model: tuple[float, ...]
+    error: tuple[float, ...]
+    log_swings: Swings
+    model_swings: Swings
+
+    @property
+    def improvement(self) -> float:
+        """As in Verdict."""
+        before = sum(self.white_box)
+        return 1.0 - sum(self.model) / before if before > 0.0 else 0.0
+
+    @property
+    def unexplained(self) -> tuple[float, ...]:
+        """What the model leaves of each joint's tracking error, as a share of it."""
+        return tuple(left / max(whole, TINY) for left, whole in zip(self.model, self.error, strict=True))
+
+    def as_dict(self) -> dict[str, object]:
+        """In the file's words."""
+        return {
+            "following_improvement": self.improvement,
+            "unexplained": list(self.unexplained),
+            "hunts": list(self.log_swings.hunts),
+            "model_hunts": list(self.model_swings.hunts),
+            "swings_rad": list(self.log_swings.rms),
+            "model_swings_rad": list(self.model_swings.rms),
+            "swings_hz": list(self.log_swings.frequency),
+            "model_swings_hz": list(self.model_swings.frequency),
+        }
+
+
+@dataclass(frozen=True)
 class Verdict:
     """Mean squared differences between log and model, rad², per joint."""
 
@@ -42,6 +88,7 @@ class Verdict:
     measure: str
     white_box: tuple[float, ...]
     model: tuple[float, ...]
+    following: Following | None = None
 
     @property
     def improvement(self) -> float:
@@ -57,25 +104,43 @@ class Verdict:
             "white_box_mse_rad2": list(self.white_box),
             "model_mse_rad2": list(self.model),
             "improvement": self.improvement,
-        }
+        } | (self.following.as_dict() if self.following else {})
 
 
 def judge(subject: Subject, arm: ArmParameters, plant: Floats, zero: Floats, joints: Sequence[int]) -> Verdict:
     """Judge both arms on one log; joints that were not identified do not count."""
     white = Space.of(arm, (), ())
     kept = np.isin(np.arange(JOINTS), list(joints))
+    following = None
     if subject.table is not None:
         loop = Loop(subject.log, subject.table, arm)
-        before = loop.error(white.base[None])[0]
-        after = (loop.with_zero(zero) if zero.any() else loop).error(plant[None])[0]
+        own = loop.with_zero(zero) if zero.any() else loop
+        shown = [one.angles(row[None])[0] for one, row in ((loop, white.base), (own, plant))]
+        before, after = (_squares(angles, loop.follower[::COMPARED_TICKS]) for angles in shown)
+        following = _following(loop, shown[0], shown[1], kept)
         measure = "closed loop"
     else:
         windows = WindowResidual([subject.log], arm, range(JOINTS))
         before = windows.mse(white.base, np.zeros(JOINTS))
         after = windows.mse(plant, zero)
         measure = "logged voltages, windows"
-    pair = (tuple(float(value) for value in np.where(kept, errors, 0.0)) for errors in (before, after))
-    return Verdict(subject.log.log.name, subject.role, measure, *pair)
+    one, other = (tuple(float(value) for value in np.where(kept, errors, 0.0)) for errors in (before, after))
+    return Verdict(subject.log.log.name, subject.role, measure, one, other, following)
+
+
+def _squares(one: Floats, other: Floats) -> Floats:
+    """Mean squared difference (4,) of two records, rad²; a motion that left the range of numbers is far off."""
+    found: Floats = np.mean(np.nan_to_num(one - other, nan=10.0, posinf=10.0, neginf=-10.0) ** 2, axis=0)
+    return found
+
+
+def _following(loop: Loop, white: Floats, model: Floats, kept: NDArray[np.bool_]) -> Following:
+    row_s = COMPARED_TICKS * TICK_S
+    log, leader = loop.follower[::COMPARED_TICKS], loop.leader[::COMPARED_TICKS]
+    smooth = smooth_motion(log, row_s)
+    squares = [_squares(smooth_motion(other, row_s), smooth) for other in (white, model, leader)]
+    parts = [tuple(float(value) for value in np.where(kept, one, 0.0)) for one in squares]
+    return Following(parts[0], parts[1], parts[2], swings_of(log, leader, row_s), swings_of(model, leader, row_s))
 
 
 def warnings_of(verdicts: Sequence[Verdict]) -> list[str]:
@@ -98,4 +163,35 @@ def warnings_of(verdicts: Sequence[Verdict]) -> list[str]:
             "The model improves on the logs of its own controller but not with a changed one: it has learnt that "
             "controller, not the arm. Do not tune with it; check supply, controller file and directions, record again."
         )
+    return sentences
+
+
+def doubts_of(verdicts: Sequence[Verdict], joints: Sequence[int]) -> tuple[str, ...]:
+    """Sentences about joints that the model does not understand: hunting, or a changed controller predicted badly."""
+    sentences = []
+    own = [one.following for one in verdicts if one.role != CHANGED and one.following is not None]
+    for verdict in verdicts:
+        if verdict.following is None:
+            continue
+        sentences += describe_difference(
+            verdict.name, verdict.following.log_swings, verdict.following.model_swings, tuple(joints)
+        )
+        if verdict.role == CHANGED and own:
+            sentences += _describe_unexplained(verdict, own, joints)
+    return tuple(sentences)
+
+
+def _describe_unexplained(verdict: Verdict, own: Sequence[Following], joints: Sequence[int]) -> list[str]:
+    assert verdict.following is not None
+    sentences = []
+    for joint in joints:
+        share, usual = verdict.following.unexplained[joint], max(one.unexplained[joint] for one in own)
+        left = np.sqrt(verdict.following.model[joint])
+        if share > UNEXPLAINED and share > WORSE * usual and left > SMALL_RAD:
+            sentences.append(
+                f"{verdict.name}: joint {joint} ({JOINT_NAMES[joint]}) follows otherwise than the model by "
+                f"{1e3 * left:.0f} mrad rms, {100 * share:.0f} % of its tracking error, against {100 * usual:.0f} % "
+                "with the controller of the fitted log; what only a stiffer or softer controller shows is missing from "
+                "the model, such as play, load friction, lag or a sagging supply: fit that log too."
+            )
     return sentences

@@ -30,6 +30,7 @@ class Outcome:
     found: Found
     verdicts: tuple[Verdict, ...]
     warnings: tuple[str, ...]
+    doubts: tuple[str, ...]  # about joints that the model does not understand; `tune` refuses such a model
     subjects: tuple[Subject, ...] = field(repr=False)
 
     @property
@@ -96,6 +97,7 @@ class Outcome:
             facts["board"] = board
         facts["not_identified"] = list(self.found.open)
         facts["warnings"] = list(self.warnings)
+        facts["doubts"] = list(self.doubts)
         facts["log"] = [self._log(*pair) for pair in zip(self.subjects, self.verdicts, strict=True)]
         if self.found.orders:
             facts["orders_tried"] = [{"order": order, "held_out_error": error} for order, error in self.found.orders]
@@ -121,7 +123,7 @@ class Outcome:
         for verdict in self.verdicts:
             lines += _table(verdict)
         if self.found.condition is not None:
-            lines.append(f"Model order: up to {self.found.order} (by held-out data).")
+            lines.append(f"Model order: {self.found.order} (by held-out data).")
             lines.append(f"Condition number of the Fisher information: {self.found.condition:.2g}.")
             lines += ["", f"{'parameter':18} {'white box':>11} {'model':>11} {'std':>9}  unit"]
             for one in self.estimates:
@@ -131,8 +133,9 @@ class Outcome:
                 )
         if self.found.open:
             lines += ["", "Not identified by these logs:", *(f"- {sentence}" for sentence in self.found.open)]
-        if self.warnings:
-            lines += ["", "Warnings:", *(f"- {sentence}" for sentence in self.warnings)]
+        for title, sentences in (("Warnings", self.warnings), ("Doubts", self.doubts)):
+            if sentences:
+                lines += ["", f"{title}:", *(f"- {sentence}" for sentence in sentences)]
         return "\n".join(lines)
 
 

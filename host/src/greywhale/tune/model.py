@@ -101,6 +101,7 @@ def _doubts(
     if facts is not None:
         doubts += checks.doubt_edits(arm, facts)
         doubts += checks.doubt_validation(facts)
+        doubts += checks.doubt_behaviour(facts)
         doubts += checks.doubt_missing_covariance(facts)
     if wanted is not None:
         doubts += checks.doubt_other_arm(arm, load_arm(wanted), str(wanted))

@@ -80,6 +80,7 @@ class Identification(_Facts):
     log: tuple[LogFacts, ...] = ()
     parameter: tuple[ParameterFacts, ...] = ()
     warnings: tuple[str, ...] = ()
+    doubts: tuple[str, ...] = ()
     covariance: tuple[tuple[float, ...], ...] | None = None
     parameters: dict[str, int] | None = None
     board: str | None = None
@@ -162,6 +163,15 @@ def doubt_validation(facts: Identification) -> list[Doubt]:
             "check supply, directions and controller files, record livelier motion and identify again",
         )
     ]
+
+
+def doubt_behaviour(facts: Identification) -> list[Doubt]:
+    """Doubt a model that does not understand how a joint hunts, or how it follows with a changed controller."""
+    if not facts.doubts:
+        return []
+    more = f" (and {len(facts.doubts) - 1} more such findings)" if len(facts.doubts) > 1 else ""
+    reason, _, remedy = facts.doubts[0].rstrip(".").rpartition(": ")
+    return [Doubt(f"{reason}{more}", f"to mend it, {remedy}")]
 
 
 def doubt_missing_covariance(facts: Identification) -> list[Doubt]:

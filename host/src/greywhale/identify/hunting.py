@@ -1,0 +1,101 @@
+"""Whether joints hunt in a log and in what a model makes of it: how far, how fast, and how they follow apart from that.
+
+Two arms that hunt alike do not swing in step: where each begins a swing is chance. So swings are compared by size and
+frequency, and the motion that is left without them is compared as it is.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import uniform_filter1d
+
+from greywhale.arm.parameters import JOINT_NAMES
+from greywhale.firmware import JOINTS
+
+Floats = NDArray[np.float64]
+# A swing is what a moving average over this time (s) takes away: of the follower, less what it takes from the leader.
+AVERAGE_S = 0.2
+# Swings are looked at in pieces of this length (s) in which the leader itself makes none larger than this (rad). A
+# joint hunts where some of its pieces do, not one alone.
+PIECE_S = 0.5
+LEADER_RAD = 5e-3
+HUNTING_SHARE = 0.1
+HUNTING_RAD = 5e-3  # rms in a piece
+# A model that hunts as the log does swings within this factor.
+ALIKE = 2.0
+
+
+@dataclass(frozen=True)
+class Swings:
+    """Of every joint (4,): rms of its swings while its leader makes none, rad; their frequency, Hz; if it hunts."""
+
+    rms: tuple[float, ...]
+    frequency: tuple[float, ...]
+    hunts: tuple[bool, ...]
+
+
+def smooth_motion(angles: Floats, row_s: float) -> Floats:
+    """A motion (rows, 4) without its swings."""
+    size = max(3, round(AVERAGE_S / row_s))
+    smooth: Floats = uniform_filter1d(angles, size, axis=0, mode="nearest")
+    return smooth
+
+
+def swings_of(follower: Floats, leader: Floats, row_s: float) -> Swings:
+    """Measure the swings of a record, (rows, 4) rad with a row every `row_s` seconds."""
+    wanted = _pieces(leader - smooth_motion(leader, row_s), row_s)
+    pieces = _pieces(follower - smooth_motion(follower, row_s), row_s) - wanted
+    rms = np.sqrt(np.mean(pieces**2, axis=1))
+    quiet = np.max(np.abs(wanted), axis=1) < LEADER_RAD
+    hunting = quiet & (rms > HUNTING_RAD)
+    count = np.maximum(quiet.sum(axis=0), 1)
+    found = np.sqrt(np.sum(np.where(quiet, rms, 0.0) ** 2, axis=0) / count)
+    hunts = hunting.sum(axis=0) >= np.maximum(2, HUNTING_SHARE * count)
+    return Swings(
+        rms=tuple(float(value) for value in found),
+        frequency=tuple(_frequency(pieces[hunting[:, joint], :, joint], row_s) for joint in range(JOINTS)),
+        hunts=tuple(bool(one) for one in hunts),
+    )
+
+
+def _pieces(swing: Floats, row_s: float) -> Floats:
+    """(pieces, rows, 4)."""
+    size = min(len(swing), max(2, round(PIECE_S / row_s)))
+    return swing[: len(swing) // size * size].reshape(-1, size, JOINTS)
+
+
+def _frequency(pieces: Floats, row_s: float) -> float:
+    """Mean frequency of pieces (n, rows) by their crossings of zero, Hz; 0 without pieces."""
+    if not pieces.size:
+        return 0.0
+    crossings = np.count_nonzero(np.diff(np.signbit(pieces), axis=1))
+    return float(crossings / (2.0 * pieces.shape[0] * (pieces.shape[1] - 1) * row_s))
+
+
+def describe_difference(name: str, log: Swings, model: Swings, joints: tuple[int, ...]) -> list[str]:
+    """Sentences for joints whose hunting the model does not predict."""
+    sentences = []
+    for joint in joints:
+        who = f"{name}: joint {joint} ({JOINT_NAMES[joint]})"
+        seen, told = 1e3 * log.rms[joint], 1e3 * model.rms[joint]
+        if log.hunts[joint] and not model.hunts[joint]:
+            sentences.append(
+                f"{who} hunts by {seen:.1f} mrad rms at {log.frequency[joint]:.1f} Hz, but the model rests at "
+                f"{told:.1f} mrad; play, backlash or a delay may be missing from the model: record slow reversals "
+                "with this controller and fit that log too."
+            )
+        elif model.hunts[joint] and not log.hunts[joint]:
+            sentences.append(
+                f"{who} rests at {seen:.1f} mrad rms, but the model hunts by {told:.1f} mrad at "
+                f"{model.frequency[joint]:.1f} Hz; the model's gap or play may be too wide, or its friction too small: "
+                "fit that log too."
+            )
+        elif log.hunts[joint] and not 1.0 / ALIKE <= told / seen <= ALIKE:
+            sentences.append(
+                f"{who} hunts by {seen:.1f} mrad rms, but the model by {told:.1f} mrad; its gap, play or friction may "
+                "be wrong: fit that log too."
+            )
+    return sentences
