@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -10,14 +12,16 @@ from greywhale.arm.plants import check_plants, column
 from greywhale.errors import UserError
 from greywhale.files.arm import load_arm
 from greywhale.identify import Outcome, sampled_plants
+from greywhale.identify.found import Rival
 from greywhale.identify.space import KINDS, Space
 from greywhale.loop import plant_row
 
 
 @pytest.fixture(scope="module")
 def model(outcome: Outcome, tmp_path_factory: pytest.TempPathFactory) -> ArmParameters:
+    """Without rivals, which take the place of draws."""
     path = tmp_path_factory.mktemp("model") / "model.toml"
-    outcome.save(path)
+    replace(outcome, found=replace(outcome.found, rivals=())).save(path)
     return load_arm(path)
 
 
@@ -98,3 +102,25 @@ def test_an_arm_without_a_covariance_and_a_wrong_count_are_refused(model: ArmPar
     strange = model.model_copy(update={"identification": facts | {"parameter": renamed}})
     with pytest.raises(UserError, match="'joint9.magic'"):
         sampled_plants(strange, 2)
+
+
+@pytest.mark.slow
+def test_rivals_take_every_third_row_and_the_draws_between_stay(
+    model: ArmParameters, outcome: Outcome, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    other = plant_row(load_arm("worn"))
+    rivals = (Rival("backlash", 0.9, other), Rival("creep", 0.9, 2.0 * other))
+    path = tmp_path_factory.mktemp("model") / "model.toml"
+    told = replace(outcome, found=replace(outcome.found, rivals=rivals))
+    told.save(path)
+    assert "Nearly as good: backlash." in told.text()
+    plants, plain = sampled_plants(load_arm(path), 8), sampled_plants(model, 8)
+    np.testing.assert_array_equal(plants[3], other)
+    np.testing.assert_array_equal(plants[6], 2.0 * other)
+    kept = [0, 1, 2, 4, 5, 7]
+    np.testing.assert_array_equal(plants[kept], plain[kept])
+    facts = model.identification
+    assert facts is not None
+    short = model.model_copy(update={"identification": facts | {"rival": [{"order": "creep", "plant": [1.0]}]}})
+    with pytest.raises(UserError, match="a rival of .* has no plant of 81 numbers"):
+        sampled_plants(short, 4)

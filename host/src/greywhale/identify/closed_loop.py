@@ -25,6 +25,7 @@ Floats = NDArray[np.float64]
 LEAD_TICKS = 500
 COMPARED_TICKS = 5
 STEPS_PER_TICK = 2
+BENCH_STEPS = 4
 ROWS_PER_BLOCK = round(BLOCK_S / (COMPARED_TICKS * TICK_S))
 SEED = 1
 
@@ -32,8 +33,17 @@ SEED = 1
 class Loop:
     """The controller, leader and readings of one log, for any number of candidate arms."""
 
-    def __init__(self, log: Prepared, table: ParameterTable, arm: ArmParameters, offsets: Floats | None = None) -> None:
+    def __init__(
+        self,
+        log: Prepared,
+        table: ParameterTable,
+        arm: ArmParameters,
+        offsets: Floats | None = None,
+        seed: int = SEED,
+    ) -> None:
+        """`seed` is that of the potentiometers' noise."""
         self.log = log
+        self.table = table
         zero = np.zeros(JOINTS) if offsets is None else offsets
         self._made_of = (log, table, arm)
         run = max(log.runs, key=lambda one: one.stop - one.start)
@@ -50,11 +60,13 @@ class Loop:
         self.seconds = len(reference) * TICK_S  # simulated for every candidate
         self.time = times
         self.laws = controllers_of(table)
+        pots = _pots(log, arm, table, zero)
+        self.noise_rad = np.array([pot.noise * pot.track / pots.supply for pot in pots.joint])  # of one conversion
         self._loop = ClosedLoop(
             with_ideal_follower(table),
             known_readings(reference, target),
-            _pots(log, arm, table, zero),
-            seed=SEED,
+            pots,
+            seed=seed,
             home=_home(self.follower[0] + zero, arm),
             gap=[0.0] * JOINTS,
             weight_s=np.zeros(len(target)),
@@ -62,9 +74,16 @@ class Loop:
         self._zero = zero
         self.rows = len(self.follower[::COMPARED_TICKS])
 
-    def with_zero(self, offsets: Floats) -> Loop:
-        """The same experiment with potentiometers that read 0 at other angles."""
-        return Loop(*self._made_of, offsets)
+    def with_zero(self, offsets: Floats, seed: int = SEED) -> Loop:
+        """The same experiment with potentiometers that read 0 at other angles, and with other noise."""
+        return Loop(*self._made_of, offsets, seed)
+
+    def record(self, plant: Floats) -> tuple[Floats, NDArray[np.int16]]:
+        """One candidate's shown angles (rad) and duties at every tick, (ticks, 4) each, in the bench's own steps."""
+        rows = np.ascontiguousarray(plant[None])
+        result = self._loop.run(self.laws[None], rows, substeps=BENCH_STEPS, every=1)
+        shown = shown_angles(result.angles, rows, TICK_S)[0, LEAD_TICKS:] - self._zero
+        return shown, result.duties[0, LEAD_TICKS:]
 
     def angles(self, plants: Floats, every: int = COMPARED_TICKS, threads: int = 0) -> Floats:
         """The angles that the candidates' potentiometers show, (candidates, rows, 4), every `every` ticks."""

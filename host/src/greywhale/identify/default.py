@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from greywhale.identify.bootstrap import scatter_of_fits, spread_covariance
 from greywhale.identify.data import FINE_STEP_S
-from greywhale.identify.found import Found, ParameterEstimate, Task
+from greywhale.identify.found import Found, ParameterEstimate, Rival, Task
 from greywhale.identify.search import Search
 from greywhale.identify.space import KINDS, Space
 from greywhale.identify.uncertainty import uncertainty
@@ -31,12 +32,25 @@ def find_default(task: Task) -> Found:
     windows = WindowResidual(prepared, arm, joints, longest_step=FINE_STEP_S)
     windows.settle(best.plant, best.zero)
     sure = uncertainty(windows, best.space, best.x, joints)
+    if search.complete and search.loops:
+        scatter = scatter_of_fits(
+            prepared,
+            search.loops,
+            best.space,
+            best.x,
+            sure.covariance,
+            joints,
+            task.seed,
+            lambda done: task.report("testing the fit", done),
+        )
+        sure = sure.widened(spread_covariance(sure.covariance, scatter, best.space), best.space, best.x, joints)
     return Found(
         plant=best.plant,
         zero=best.zero,
         joints=joints,
         order=best.order,
         orders=tuple((one.order, float(one.held_out or 0.0)) for one in search.tried),
+        rivals=tuple(Rival(one.order, float(one.held_out or 0.0), one.plant) for one in search.rivals()),
         estimates=_estimates(best.space, best.x, sure.deviations),
         covariance=sure.covariance,
         condition=sure.condition,

@@ -73,6 +73,18 @@ class ParameterEstimate:
 
 
 @dataclass(frozen=True)
+class Rival:
+    """A model of another structure that predicts the held-out data nearly as well; its plant (columns,)."""
+
+    order: str
+    held_out: float
+    plant: Floats = field(repr=False)
+
+    def as_dict(self) -> dict[str, Any]:
+        return {"order": self.order, "held_out_error": self.held_out, "plant": self.plant.tolist()}
+
+
+@dataclass(frozen=True)
 class Found:
     """A plant (columns,), zero angles (4,) rad, and how certain the method is of them.
 
@@ -90,6 +102,7 @@ class Found:
     simulated: float  # s, of arms, in windows and closed loops together
     complete: bool
     orders: tuple[tuple[str, float], ...] = ()
+    rivals: tuple[Rival, ...] = ()
     covariance: Floats | None = field(default=None, repr=False)
     condition: float | None = None
     curve: tuple[float, ...] = ()

@@ -101,6 +101,8 @@ class Outcome:
         facts["log"] = [self._log(*pair) for pair in zip(self.subjects, self.verdicts, strict=True)]
         if self.found.orders:
             facts["orders_tried"] = [{"order": order, "held_out_error": error} for order, error in self.found.orders]
+        if self.found.rivals:
+            facts["rival"] = [one.as_dict() for one in self.found.rivals]
         facts["parameter"] = [one.as_dict() for one in self.estimates]
         return facts
 
@@ -123,6 +125,8 @@ class Outcome:
         for verdict in self.verdicts:
             lines += _table(verdict)
         if self.found.condition is not None:
+            for rival in self.found.rivals:
+                lines.append(f"Nearly as good: {rival.order}.")
             lines.append(f"Model order: {self.found.order} (by held-out data).")
             lines.append(f"Condition number of the Fisher information: {self.found.condition:.2g}.")
             lines += ["", f"{'parameter':18} {'white box':>11} {'model':>11} {'std':>9}  unit"]

@@ -11,11 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
+from greywhale.arm.plants import PLANT_COLUMNS, check_plants
 from greywhale.errors import BAD_USAGE, UserError
 from greywhale.identify.space import KINDS, Parameter, Space
 from greywhale.loop import plant_row
 
 Floats = NDArray[np.float64]
+EVERY = 3  # a rival takes the place of one draw in so many
 
 
 def sampled_plants(arm: ArmParameters, count: int, seed: int = 0) -> Floats:
@@ -25,6 +27,9 @@ def sampled_plants(arm: ArmParameters, count: int, seed: int = 0) -> Floats:
     their ranges. Row n does not depend on `count`. A zero angle is drawn too, but it belongs to the potentiometer and
     is in no column of a plant. Raises UserError (2) where `count` is below 1, (1) where the arm file holds no
     covariance.
+
+    Where [identification] has rivals, models of other structures that predict nearly as well, every third row is one of
+    them.
     """
     if count < 1:
         raise UserError(f"count of sampled plants is {count}, but it must be at least 1.", BAD_USAGE)
@@ -39,7 +44,21 @@ def sampled_plants(arm: ArmParameters, count: int, seed: int = 0) -> Floats:
     low, high = _ranges(space)
     # The estimate may itself lie at the end of its range.
     points = np.clip(x + draws, np.minimum(low, x), np.maximum(high, x))
-    return np.concatenate([estimate, space.plants(points)])
+    plants: Floats = np.concatenate([estimate, space.plants(points)])
+    rivals = _read_rivals(arm)
+    for number, row in enumerate(range(EVERY, count, EVERY) if len(rivals) else ()):
+        plants[row] = rivals[number % len(rivals)]
+    return plants
+
+
+def _read_rivals(arm: ArmParameters) -> Floats:
+    tables: list[dict[str, Any]] = (arm.identification or {}).get("rival", [])
+    rows = [np.array(table.get("plant", []), dtype=np.float64) for table in tables]
+    if any(row.shape != (len(PLANT_COLUMNS),) for row in rows):
+        raise UserError(
+            f"{arm.name}: a rival of [identification] has no plant of {len(PLANT_COLUMNS)} numbers; identify again."
+        )
+    return check_plants(np.array(rows)) if rows else np.zeros((0, len(PLANT_COLUMNS)))
 
 
 def read_search(arm: ArmParameters) -> tuple[Space, Floats, Floats]:

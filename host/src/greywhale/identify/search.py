@@ -62,6 +62,9 @@ GLOBAL_EVALUATIONS = 500
 GLOBAL_WINDOWS = 12
 SOME_WINDOWS = 20
 GLOBAL_SPREAD = 2.5  # the box of the global search: factors e^(+-2.5) around the user's arm
+# Other orders whose held-out misfit is at most so much above the best one's are kept as rivals, and so many of them.
+RIVAL = 0.02
+MOST_RIVALS = 2
 STARTS = 2  # the global search's points from which least squares starts, besides the user's arm
 WINDOW_STEPS = 20
 # An order gets a whole fit only if a short one leaves at most so much more of the held-out misfit than there was.
@@ -139,6 +142,16 @@ class Search:
         if self.loops:
             self._consider_closed()
         self._fit_whole()
+
+    def rivals(self) -> list[Candidate]:
+        """Other orders that predict the held-out part nearly as well as the best, the best of them first."""
+        best = self.best
+        if best is None or best.held_out is None:
+            return []
+        most, own = best.held_out + RIVAL, set(best.space.names)
+        others = [one for one in self.tried if one.held_out is not None and one.held_out < most]
+        others = [one for one in others if set(one.space.names) != own]
+        return sorted(others, key=lambda one: float(one.held_out or 0.0))[:MOST_RIVALS]
 
     def _consider_rivals(self, turn: Sequence[str], number: int) -> None:
         """Try each of some orders on top of the best model, take the one that helps most, and try the others again."""

@@ -71,6 +71,11 @@ class Uncertainty:
         found: Floats = np.sqrt(np.diag(self.covariance))
         return found
 
+    def widened(self, covariance: Floats, space: Space, x: Floats, joints: Sequence[int]) -> Uncertainty:
+        """The same with another covariance."""
+        found = tuple(_describe_open(space, x, np.sqrt(np.diag(covariance)), joints))
+        return Uncertainty(covariance, self.condition, found)
+
 
 def uncertainty(residual: WindowResidual, space: Space, x: Floats, joints: Sequence[int]) -> Uncertainty:
     """Evaluate at a found point. Numbers that the readings leave open are as uncertain as the user's arm file."""

@@ -1,0 +1,125 @@
+"""How uncertain a model is, from logs that it makes itself: a parametric bootstrap (Efron and Tibshirani 1993, ch. 6).
+
+The identified arm is led by the leaders of the logs, under their controllers, with fresh noise and through the same
+converter. Each of these logs is fitted as the real one was. What the fits are off, bias included, is what the real fit
+may be off; no formula covers converter steps, starts within a gap, or a fit that stops on a ridge.
+
+A few logs show the spread of many numbers badly. So their scatter is drawn towards the shape that the formula of
+`uncertainty` gives, made as large as the scatter is on average in each group of joints that feel each other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from greywhale.arm.parameters import USUAL_TRACK_RAD
+from greywhale.firmware import ANGLE_LSB, TICK_S, pwm_steps
+from greywhale.identify.closed_loop import Loop
+from greywhale.identify.data import FINE_STEP_S, Prepared, prepare
+from greywhale.identify.space import COUPLED, WHOLE_ARM, Space
+from greywhale.identify.steps import WindowFit
+from greywhale.identify.windows import WindowResidual
+
+Floats = NDArray[np.float64]
+LOGS = 6
+STEPS = 8
+# A fit starts so many of the formula's standard deviations away.
+START = 2.0
+# The formula's shape counts like so many logs.
+SHAPE_LOGS = 3.0
+# Moments of a tick at which its four conversions hold their input, as shares of it.
+MOMENTS = (0.1, 0.3, 0.5, 0.7)
+COUNTS = 1024
+
+
+def scatter_of_fits(
+    logs: Sequence[Prepared],
+    loops: Sequence[Loop],
+    space: Space,
+    x: Floats,
+    covariance: Floats,
+    joints: Sequence[int],
+    seed: int,
+    report: Callable[[float], None],
+) -> Floats:
+    """What fits of simulated logs are off the point `x` that simulated them: (fits, numbers). Ctrl-C ends it early.
+
+    Each fit starts elsewhere, by the formula's `covariance`: the real one did not start at the truth either.
+    """
+    root = np.linalg.cholesky(covariance)
+    low, high = space.bounds()
+    plant, zero = space.plants(x[None])[0], space.offsets(x[None])[0]
+    found: list[Floats] = []
+    try:
+        for number in range(LOGS):
+            report(number / LOGS)
+            made = [_simulate(*pair, plant, zero, 1 + number + LOGS * seed) for pair in zip(logs, loops, strict=True)]
+            windows = WindowResidual(made, space.arm, joints, longest_step=FINE_STEP_S)
+            windows.settle(plant, zero)
+            start = x + START * root @ np.random.default_rng([seed, number]).standard_normal(len(x))
+            found.append(WindowFit(windows, space, np.clip(start, low, high)).run(STEPS) - x)
+    except KeyboardInterrupt:
+        pass
+    return np.array(found).reshape(-1, len(x))
+
+
+def spread_covariance(covariance: Floats, scatter: Floats, space: Space) -> Floats:
+    """The covariance of the formula, made to cover the scatter of fits (fits, numbers), group by group."""
+    if not len(scatter):
+        return covariance
+    scale = np.ones(len(space))
+    for joints in (*COUPLED, (WHOLE_ARM,)):
+        mine = [index for index, one in enumerate(space.parameters) if one.joint in joints]
+        if mine:
+            inside = np.linalg.solve(covariance[np.ix_(mine, mine)], scatter[:, mine].T)
+            scale[mine] = np.sqrt(max(1.0, float(np.mean(np.sum(scatter[:, mine].T * inside, axis=0))) / len(mine)))
+    shape = covariance * np.outer(scale, scale)
+    count = SHAPE_LOGS + len(scatter)
+    # From so few logs the variance itself is uncertain: it is that of Student's t.
+    student = count / (count - 2.0)
+    spread = student * (SHAPE_LOGS * shape + scatter.T @ scatter) / count
+    # No number is less certain than in the user's arm file.
+    known: Floats = np.linalg.inv(np.linalg.inv(spread) + np.diag(space.doubts() ** -2.0))
+    return (known + known.T) / 2.0
+
+
+def _simulate(log: Prepared, loop: Loop, plant: Floats, zero: Floats, seed: int) -> Prepared:
+    """The log that the plant would have made, read by another draw of noise."""
+    own = loop.with_zero(zero, seed)
+    shown, duties = own.record(plant)
+    shift = own.table["filter_shift"]
+    readings = read_motion(shown, own.noise_rad, shift, np.random.default_rng(seed))
+    run = max(log.runs, key=lambda one: one.stop - one.start)
+    rows = np.clip(np.round((log.log.time[run.slice] - log.log.time[run.start]) / TICK_S).astype(int), 0, own.ticks - 1)
+    supply = own.table["supply_mv"] / 1000.0
+    recorded = replace(
+        log.log,
+        time=log.log.time[run.slice],
+        leader=log.log.leader[run.slice],
+        follower=readings[rows],
+        voltage=duties[rows] / np.array(pwm_steps(own.table.board)) * supply,
+        state=log.log.state[run.slice],
+    )
+    return prepare(recorded, shift)
+
+
+def read_motion(shown: Floats, noise: Floats, shift: int, random: np.random.Generator) -> Floats:
+    """What the firmware makes of what potentiometers show at every tick, (ticks, 4) rad: four conversions, a filter."""
+    before = np.vstack([shown[:1], shown[:-1]])
+    step = USUAL_TRACK_RAD / COUNTS
+    mean = np.zeros_like(shown)
+    for moment in MOMENTS:
+        seen = before + moment * (shown - before) + noise * random.standard_normal(shown.shape)
+        mean += (np.floor(seen / step) + 0.5) * step / len(MOMENTS)
+    share = 1.0 / (1 << shift)
+    filtered = np.empty_like(mean)
+    state = mean[0]
+    for tick in range(len(mean)):
+        state = state + share * (mean[tick] - state)
+        filtered[tick] = state
+    found: Floats = np.round(filtered / ANGLE_LSB) * ANGLE_LSB
+    return found

@@ -1,0 +1,65 @@
+"""The parametric bootstrap: a covariance that covers what fits of simulated logs are off, and logs as a board makes them."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from greywhale.files.arm import load_arm
+from greywhale.firmware import ANGLE_LSB
+from greywhale.identify.bootstrap import read_motion, spread_covariance
+from greywhale.identify.space import MOTOR, Space
+
+Floats = npt.NDArray[np.float64]
+SPACE = Space.of(load_arm("default"), MOTOR, range(4))
+FORMULA = np.diag(np.full(len(SPACE), 1e-6))
+
+
+def scatter(size: float, logs: int = 6) -> Floats:
+    found: Floats = size * np.random.default_rng(1).standard_normal((logs, len(SPACE)))
+    return found
+
+
+def test_without_logs_the_formula_stays() -> None:
+    np.testing.assert_array_equal(spread_covariance(FORMULA, np.zeros((0, len(SPACE))), SPACE), FORMULA)
+
+
+@pytest.mark.parametrize("times", [0.2, 1.0, 10.0, 100.0])
+def test_deviations_grow_with_the_scatter_and_never_fall_far_below_the_formula(times: float) -> None:
+    found = spread_covariance(FORMULA, scatter(times * 1e-3), SPACE)
+    assert np.linalg.eigvalsh(found)[0] > 0.0
+    np.testing.assert_allclose(found, found.T)
+    deviations = np.sqrt(np.diag(found)) / 1e-3
+    expected = np.sqrt(9 / 7 * (3 * max(1.0, times**2) + 6 * times**2) / 9)
+    assert np.median(deviations) == pytest.approx(expected, rel=0.3)
+    assert deviations.min() > 0.5
+
+
+def test_one_bad_group_does_not_widen_the_others() -> None:
+    off = scatter(1e-3)
+    off[:, :3] *= 50.0  # joint 0 alone
+    deviations = np.sqrt(np.diag(spread_covariance(FORMULA, off, SPACE))) / 1e-3
+    assert deviations[:3].min() > 15.0
+    assert deviations[3:].max() < 3.0
+
+
+def test_bias_counts_like_scatter() -> None:
+    biased = np.tile(np.full(len(SPACE), 5e-3), (6, 1))
+    assert (np.sqrt(np.diag(spread_covariance(FORMULA, biased, SPACE))) > 3e-3).all()
+
+
+def test_no_number_is_less_certain_than_the_users_arm() -> None:
+    found = spread_covariance(FORMULA, scatter(100.0), SPACE)
+    assert (np.sqrt(np.diag(found)) <= SPACE.doubts()).all()
+
+
+def test_readings_are_those_of_a_noisy_converter_and_a_filter() -> None:
+    """A slow ramp comes back late by the filter and half a tick; whole steps of 1/4096 rad; as noisy as four means."""
+    ramp = np.tile(np.linspace(0.0, 1.0, 20_000)[:, None], (1, 4))
+    seen = read_motion(ramp, np.full(4, 2.5e-3), 1, np.random.default_rng(2))
+    np.testing.assert_array_equal(seen, np.round(seen / ANGLE_LSB) * ANGLE_LSB)
+    error = (seen - ramp)[1000:]
+    late = 1e-3 / 20.0 / 1e-3 * (0.6 + 1.0) * 1e-3
+    assert np.abs(error.mean(axis=0) + late).max() < 3e-4
+    assert error.std(axis=0) == pytest.approx(np.full(4, 2.9e-3 / 2.0 / np.sqrt(3.0)), rel=0.25)
