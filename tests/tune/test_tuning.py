@@ -203,7 +203,7 @@ def test_a_joint_whose_best_would_shake_its_gear_gets_less_voltage(
     """The last judgement refuses every candidate of the search, here by its Ku, but not one with less."""
     searched: list[int] = []
 
-    def judge_costs(self: Any, controllers: np.ndarray) -> np.ndarray:
+    def judge_costs(self: Any, controllers: np.ndarray, single: bool = False) -> np.ndarray:
         costs = Objective.costs(self.judging, controllers)
         if not searched:
             searched.extend(self.found.contenders(KEPT)[:, 1, KU].tolist())
@@ -215,6 +215,22 @@ def test_a_joint_whose_best_would_shake_its_gear_gets_less_voltage(
     outcome = tune(model, budget=60, floors=False)
     assert outcome.after[1, KU] not in searched
     assert outcome.after[1, KU] in [round(share * searched[0]) for share in WEAKER]
+
+
+@pytest.mark.slow
+def test_the_benchs_own_arithmetic_has_the_last_word(model: Model, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every change of joint 1 looks better in single precision, and is worse in truth."""
+
+    def judge_costs(self: Any, controllers: np.ndarray, single: bool = False) -> np.ndarray:
+        changed = (controllers != self.start).any(axis=2)
+        costs = np.where(changed, 0.5, 1.0)
+        costs[:, 1] = np.where(changed[:, 1] & single, 2.0, costs[:, 1])
+        return np.asarray(costs)
+
+    monkeypatch.setattr(DefaultMethod, "judge_costs", judge_costs)
+    outcome = run(model, budget=30)
+    np.testing.assert_array_equal(outcome.after[1], outcome.before[1])
+    assert (outcome.after[[0, 2, 3]] != outcome.before[[0, 2, 3]]).any(axis=1).all()
 
 
 def test_silent_potentiometers_get_the_noise_of_ordinary_ones(model: Model) -> None:

@@ -13,6 +13,8 @@ from greywhale.loop import controller_row, default_controller, plant_row
 from greywhale.table import ParameterTable
 from greywhale.tune.judge.margins import (
     DELAY,
+    MOVING,
+    RATTLE_RAD,
     SCENARIOS,
     TEETH,
     Margins,
@@ -85,6 +87,23 @@ def test_table_9_swings_at_rest(margins: Margins) -> None:
     assert not at_rest[3].holds
     assert at_rest[3].reversals > 10
     assert at_rest[2].holds
+
+
+def test_a_roll_joint_with_four_times_the_gain_rattles_while_it_moves(margins: Margins) -> None:
+    bold = BEFORE.copy()
+    bold[3, 8] *= 4
+    moving = [one for one in margins.check(bold) if one.scenario == MOVING]
+    assert [one.holds for one in moving] == [True, True, True, False]
+    assert moving[3].rattle_rad > RATTLE_RAD
+    assert moving[3].chatter_hz < 10.0
+    assert all(one.rattle_rad < 0.5 * RATTLE_RAD for one in moving[:3])
+
+
+def test_table_9_chatters_while_it_moves(margins: Margins) -> None:
+    moving = [one for one in margins.check(TABLE_9) if one.scenario == MOVING]
+    assert [one.holds for one in moving] == [True, True, True, False]
+    assert moving[3].rattle_rad < RATTLE_RAD
+    assert moving[3].chatter_hz > 100.0
 
 
 def test_more_gain_and_more_delay_bring_instability_nearer(margins: Margins) -> None:

@@ -111,7 +111,7 @@ def test_other_candidates_than_the_journals_are_refused(tmp_path: Path) -> None:
         (lambda lines: [lines[0], b"\xff\xfe", *lines[2:]], "line 2 is not a line"),
         (lambda lines: [lines[0], lines[1].replace(b"0.1", b'"x"'), *lines[2:]], "line 2 is not a line"),
         (lambda lines: [lines[0], lines[1].replace(b"[", b"[[0.5],", 1), *lines[2:]], "line 2 is not a line"),
-        (lambda lines: [lines[0].replace(b":1,", b":0,", 1), *lines[1:]], "of another version of greywhale"),
+        (lambda lines: [lines[0].replace(b":2,", b":1,", 1), *lines[1:]], "of another version of greywhale"),
     ],
 )
 def test_what_is_no_journal_is_refused(tmp_path: Path, spoil: Any, sentence: str) -> None:

@@ -75,6 +75,20 @@ def test_restarts_with_other_packs_keep_the_joints_apart() -> None:
     assert (found.cost < 1e-3).all()
 
 
+@pytest.mark.parametrize("method", ["gwo-woa-relative", "de", "cma-es"])
+def test_a_narrow_stage_begins_around_its_start(method: str) -> None:
+    hills = Hills()
+    with Journal(None, {}) as book:
+        search_in_lockstep(
+            SPACE, hills, Found.nothing(BEFORE), book, stage="test", method=method, budget=8, seed=(1,), start=BEFORE,
+            tick=lambda _: None, sigma=0.02,
+        )  # fmt: skip
+    tried = SPACE.points(np.concatenate(hills.rows))
+    away = np.abs(tried - SPACE.points(BEFORE[None])) / (SPACE.upper - SPACE.lower)
+    assert (away < 0.1).all()
+    assert (away.max(axis=0) > 0.0).all()
+
+
 def test_trying_again_forgets_what_neighbours_that_are_gone_made_of_a_cost() -> None:
     found, hills = run(budget=57)
     best = found.best.copy()

@@ -12,7 +12,7 @@ from greywhale.loop import Experiment, default_controller
 from greywhale.loop.closed_loop import band_power
 from greywhale.protocol.schema import Board
 from greywhale.trajectory import human_reaches
-from greywhale.tune.search.rattle import _BLOCK, _SECTIONS, chatter, duty_swings, rattle
+from greywhale.tune.search.rattle import BLOCK, SECTIONS, chatter, duty_swings, rattle
 
 TIME_S = np.arange(6000) * 1e-3
 
@@ -29,11 +29,9 @@ def follower(*paths: np.ndarray) -> np.ndarray:
 def test_the_native_filter_is_scipys(kind: type) -> None:
     angles: np.ndarray = np.cumsum(np.random.default_rng(3).normal(size=(3, 803, 4)), axis=1).astype(kind)
     rows = (angles.astype(np.float64) - angles[:, :1].astype(np.float64))[:, ::2]
-    blocks = rows.shape[1] // _BLOCK
-    wanted = (
-        np.square(sosfilt(_SECTIONS, rows, axis=1))[:, : blocks * _BLOCK].reshape(3, blocks, _BLOCK, 4).mean(axis=2)
-    )
-    np.testing.assert_allclose(band_power(angles, 2, _BLOCK, _SECTIONS), wanted, rtol=1e-9)
+    blocks = rows.shape[1] // BLOCK
+    wanted = np.square(sosfilt(SECTIONS, rows, axis=1))[:, : blocks * BLOCK].reshape(3, blocks, BLOCK, 4).mean(axis=2)
+    np.testing.assert_allclose(band_power(angles, 2, BLOCK, SECTIONS), wanted, rtol=1e-9)
 
 
 def test_swinging_in_the_band_is_rattling_and_elsewhere_is_not() -> None:

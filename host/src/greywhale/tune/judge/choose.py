@@ -46,7 +46,7 @@ def choose(start: Controllers, contenders: Controllers, judge: Judge) -> tuple[C
         outcome = judge(tried)
         rows, costs = np.concatenate([rows, tried]), np.concatenate([costs, outcome])
         mixed = tried[int(np.argmin(outcome.sum(axis=1)))]
-    fair = _is_fair(costs, before)
+    fair = is_fair(costs, before)
     best = int(np.argmin(np.where(fair, costs.sum(axis=1), np.inf)))
     chosen, cost = rows[best].copy(), costs[best]
     hoped_for = before.sum() - costs.min(axis=0).sum()
@@ -59,8 +59,9 @@ def choose(start: Controllers, contenders: Controllers, judge: Judge) -> tuple[C
     return chosen, before, cost
 
 
-def _is_fair(costs: Floats, before: Floats) -> npt.NDArray[np.bool_]:
-    fair: npt.NDArray[np.bool_] = np.all(costs <= FAIR * before, axis=1)
+def is_fair(costs: Floats, before: Floats) -> npt.NDArray[np.bool_]:
+    """Whether no joint loses, of costs (..., 4)."""
+    fair: npt.NDArray[np.bool_] = np.all(costs <= FAIR * before, axis=-1)
     return fair
 
 
@@ -71,7 +72,7 @@ def _build_up(
     for joint in range(len(chosen)):
         tried = _exchange(chosen, contenders, np.array([joint]))
         costs = judge(tried)
-        sums = np.where(_is_fair(costs, before), costs.sum(axis=1), np.inf)
+        sums = np.where(is_fair(costs, before), costs.sum(axis=1), np.inf)
         best = int(np.argmin(sums))
         if sums[best] < cost.sum():
             chosen, cost = tried[best], costs[best]

@@ -23,7 +23,7 @@ from greywhale.formats.whole import refuse_devices
 Floats = npt.NDArray[np.float64]
 Controllers = npt.NDArray[np.int32]
 
-VERSION = 1
+VERSION = 2
 _CHOSEN = ("strategy", "method", "budget", "seed", "bounds", "before")
 
 

@@ -33,8 +33,8 @@ REACT_S = 0.8
 CHATTER_SHARE = 1 / 3
 
 # Rounded, so that it is the same filter on every computer.
-_SECTIONS = np.round(butter(ORDER, BAND_HZ, "bandpass", fs=1.0 / (FILTER_EVERY * TICK_S), output="sos"), 12)
-_BLOCK = round(BLOCK_S / (FILTER_EVERY * TICK_S))
+SECTIONS = np.round(butter(ORDER, BAND_HZ, "bandpass", fs=1.0 / (FILTER_EVERY * TICK_S), output="sos"), 12)
+BLOCK = round(BLOCK_S / (FILTER_EVERY * TICK_S))
 
 
 def rattle(angles: npt.NDArray[np.float32], leader: Floats, every: int, wait_s: float) -> Floats:
@@ -45,8 +45,8 @@ def rattle(angles: npt.NDArray[np.float32], leader: Floats, every: int, wait_s: 
     """
     if FILTER_EVERY % every:
         raise ValueError(f"there is a row every {every} ticks, but {FILTER_EVERY} must be a multiple of that")
-    followed = band_power(angles, FILTER_EVERY // every, _BLOCK, _SECTIONS)
-    led = band_power(leader[None], FILTER_EVERY, _BLOCK, _SECTIONS)
+    followed = band_power(angles, FILTER_EVERY // every, BLOCK, SECTIONS)
+    led = band_power(leader[None], FILTER_EVERY, BLOCK, SECTIONS)
     back = round(REACT_S / BLOCK_S)
     # The filter is centred; shifted, it looks back only.
     allowed = maximum_filter1d(led, back + 1, axis=1, origin=back // 2)
