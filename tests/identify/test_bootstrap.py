@@ -1,4 +1,4 @@
-"""The parametric bootstrap: a covariance that covers what fits of simulated logs are off, and logs as a board makes them."""
+"""The parametric bootstrap: a covariance that covers what fits of simulated logs are off; logs as boards make them."""
 
 from __future__ import annotations
 

@@ -51,8 +51,19 @@ class Board:
             self.volts[joint] = out["volts_mv"][0] / 1000.0
 
 
-def record(arm: ArmParameters, motion: Trajectory, path: Path, table: ParameterTable, noise_v: float, seed: int) -> Log:
-    """Play `motion` (rad) on MuJoCo's arm and write the log `path` from 1.5 s after the motors went on."""
+def record(
+    arm: ArmParameters,
+    motion: Trajectory,
+    path: Path,
+    table: ParameterTable,
+    noise_v: float,
+    seed: int,
+    play: float = 0.0,
+) -> Log:
+    """Play `motion` (rad) on MuJoCo's arm and write the log `path` from 1.5 s after the motors went on.
+
+    The joints drag their potentiometers along with `play` (rad) to either side.
+    """
     model = mujoco.MjModel.from_xml_string(mjcf(arm, motors=True))
     model.opt.timestep = STEP_S
     model.opt.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
@@ -63,6 +74,7 @@ def record(arm: ArmParameters, motion: Trajectory, path: Path, table: ParameterT
     leader = np.column_stack([np.interp(np.arange(ticks) / 1000, motion.time_s, angles) for angles in motion.angles.T])
     leader = np.round(np.vstack([np.tile(leader[:1], (before, 1)), leader]) / ANGLE_LSB).astype(np.int16)
     data.qpos[:] = leader[0] * ANGLE_LSB
+    wiper = data.qpos.copy()
     board = Board(table)
     noise = noise_v / 5.0 * 1024.0
     counts = np.zeros((len(CONVERSIONS), JOINTS))
@@ -73,7 +85,8 @@ def record(arm: ArmParameters, motion: Trajectory, path: Path, table: ParameterT
                 if step == NEW_DUTY:
                     data.ctrl[:] = board.volts
                 if step in CONVERSIONS:
-                    ideal = (data.qpos / TRACK + 0.5) * 1024.0
+                    wiper = np.clip(wiper, data.qpos - play, data.qpos + play)
+                    ideal = (wiper / TRACK + 0.5) * 1024.0
                     counts[CONVERSIONS.index(step)] = np.floor(ideal + noise * random.standard_normal(JOINTS))
                 mujoco.mj_step(model, data)
             board.tick(target, counts)

@@ -57,6 +57,30 @@ def test_armature_damping_and_friction_loss_come_out(outcome: Outcome, arm: ArmP
         assert found[f"joint{joint}.alpha"] == pytest.approx(volts, rel=0.03 if joint < 3 else 0.6)
 
 
+PLAY_RAD = 0.008  # to either side
+
+
+@pytest.fixture(scope="module")
+def with_play(arm: ArmParameters, tmp_path_factory: pytest.TempPathFactory) -> Outcome:
+    folder = tmp_path_factory.mktemp("mujoco")
+    table = table_of(NAMES[0])
+    logs = [
+        record(arm, human_reaches(seed, SECONDS), folder / f"{seed}.csv", table, 0.0024, seed, PLAY_RAD)
+        for seed in (34, 35)
+    ]
+    return identify(logs[:1], load_arm("white_box"), validate=logs[1:], tables=[table])
+
+
+def test_play_at_the_potentiometers_is_found_and_explained(with_play: Outcome) -> None:
+    assert "play at the potentiometers" in with_play.found.order
+    assert "backlash" not in with_play.found.order, "MuJoCo's gears are rigid"
+    assert with_play.verdicts[1].improvement > 0.95
+    found = {one.name: one.value for one in with_play.estimates}
+    plays = [found[f"joint{joint}.play"] for joint in range(4)]
+    assert np.median(plays) == pytest.approx(PLAY_RAD, rel=0.15)
+    assert plays == pytest.approx([PLAY_RAD] * 4, rel=0.35)
+
+
 def test_standard_deviations_are_honest_here_too(outcome: Outcome, arm: ArmParameters) -> None:
     """Errors in standard deviations; the two engines' friction is not quite the same, which no formula can know."""
     errors = []
