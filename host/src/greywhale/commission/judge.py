@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from greywhale.commission.measures import Measures
+from greywhale.commission.measures import NAMES, Measures
 from greywhale.commission.motions import PARTS
 from greywhale.firmware import JOINTS
 from greywhale.tune.judge.margins import CHATTER_HZ
@@ -20,10 +20,11 @@ Floats = npt.NDArray[np.float64]
 MOST_UNREST, LEAST_UNREST = 0.005, 0.0015
 MOST_RATTLE, LEAST_RATTLE = 0.005, 0.002
 GROWTH = 2.0
-# Two recordings with the same controllers differ by so much: as a share, and in rad² (1 mrad rms).
+# Two recordings with the same controllers may differ by so much more than two others did: as a share, and in rad² (1
+# mrad rms). Friction holds a joint now here, now there.
 SAME_SHARE, SAME_RAD2 = 0.02, 1e-6
 # A joint that keeps its controller feels its neighbours' quicker moves.
-KEPT_SHARE = 0.05
+KEPT_SHARE = 0.1
 
 
 @dataclass(frozen=True)
@@ -36,8 +37,11 @@ class Limits:
     error: Floats
 
     @classmethod
-    def of(cls, before: Measures, kept: npt.NDArray[np.bool_]) -> Limits:
-        """What was there before is never too much. `kept` (4,) marks joints whose controllers are those from before."""
+    def of(cls, befores: Sequence[Measures], kept: npt.NDArray[np.bool_]) -> Limits:
+        """What was there before, the worst of some recordings, is never too much. `kept` (4,) marks joints whose
+        controllers are those from before.
+        """
+        before = Measures(**{name: np.fmax.reduce([getattr(one, name) for one in befores]) for name in NAMES})
         share = np.where(kept, KEPT_SHARE, SAME_SHARE)
         return cls(
             unrest=_allowed(before.worst("unrest"), LEAST_UNREST, MOST_UNREST),

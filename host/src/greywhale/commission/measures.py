@@ -9,7 +9,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -106,12 +105,12 @@ def measure(traces: Traces, check: Check, supply_v: float) -> Measures:
     return Measures(**found)
 
 
-def unrest(leader: Floats, follower: Floats) -> Floats:
-    """(4,) rad rms over all rests; NaN for a joint whose leader never rests."""
+def unrest(leader: Floats, follower: Floats, still_rad: float = STILL_RAD) -> Floats:
+    """(4,) rad rms over all rests; NaN for a joint whose leader never rests. A row a millisecond."""
     found = np.full(JOINTS, np.nan)
     window, mean, least = (round(seconds / TICK_S) for seconds in (SETTLE_S, MEAN_S, SHORTEST_REST_S))
     for joint in range(JOINTS):
-        rest = resting(leader[:, joint], window, STILL_RAD)
+        rest = resting(leader[:, joint], window, still_rad)
         edges = np.flatnonzero(np.diff(np.concatenate(([False], rest, [False])).astype(np.int8)))
         swings = []
         for first, last in zip(edges[::2], edges[1::2], strict=True):
@@ -138,16 +137,6 @@ def chatter(voltage: Floats, supply_v: float) -> Floats:
     turned, _ = count_swings(traces, 0, len(voltage), CHATTER_SHARE * supply_v)
     per_second: Floats = turned[0] / (len(voltage) * TICK_S)
     return per_second
-
-
-def from_dict(data: Mapping[str, Any]) -> Measures:
-    """What `as_dict` gave."""
-    return Measures(
-        **{
-            name: np.array([[np.nan if one is None else one for one in data[part][name]] for part in PARTS])
-            for name in NAMES
-        }
-    )
 
 
 def _number(value: float) -> float | None:
