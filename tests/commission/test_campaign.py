@@ -110,8 +110,27 @@ def test_a_model_of_another_arm_is_refused_before_it_moves_the_board(rig: Simula
     assert all(table == rig.before for table in rig.played), "nothing but the controllers from before has run"
 
 
+def test_a_finished_commissioning_needs_no_arm_to_tell_its_story_again(rig: SimulatedRig, options: Make) -> None:
+    outcome = commission(options())
+    rig.played.clear()
+    assert commission(options(resume=True)).as_dict() == outcome.as_dict()
+    assert rig.played == []
+
+
+def test_a_model_of_another_arm_file_is_refused_before_anything_moves(rig: SimulatedRig, options: Make) -> None:
+    with pytest.raises(UserError, match=r"model.toml: it is of another arm than white_box"):
+        commission(options(arm_file="white_box"))
+    assert rig.played == []
+
+
 def test_another_board_is_refused_on_resuming(rig: SimulatedRig, options: Make) -> None:
-    commission(options())
+    def interrupt(number: int) -> None:
+        if number == 4:
+            raise KeyboardInterrupt
+
+    rig.at_play = interrupt
+    with pytest.raises(KeyboardInterrupt):
+        commission(options())
     rig.stored = rig.stored.with_raw({"joint0.kp": 12345})
     with pytest.raises(UserError, match="another set"):
         commission(options(resume=True))

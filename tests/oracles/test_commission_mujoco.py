@@ -1,4 +1,4 @@
-"""An arm of another engine, with play at its potentiometers, ends better than it began on motions it never practised."""
+"""Arms of another engine, with play at their potentiometers, end better than they began, on motions never practised."""
 
 from __future__ import annotations
 

@@ -35,6 +35,7 @@ from greywhale.files.parameter_file import save as save_parameters
 from greywhale.firmware import JOINTS
 from greywhale.loop.controllers import controllers_of
 from greywhale.table import ParameterTable, find_board
+from greywhale.tune.model_checks import doubt_other_arm
 from greywhale.tune.progress import Report, report_nothing
 
 ROUNDS, TRIALS = 3, 6
@@ -84,6 +85,9 @@ class _Campaign:
         self.options = options
         self.report = report
         self.nominal = load_arm(options.arm_file or options.model or "white_box")
+        if options.arm_file is not None and options.model is not None:
+            for doubt in doubt_other_arm(load_arm(options.model), self.nominal, options.arm_file):
+                raise UserError(f"{options.model}: {doubt.reason}; {doubt.remedy}.")
         self.book = Book(options.out, options.request(), options.resume)
         self.rounds: list[Round] = []
         self.before: ParameterTable | None = None
@@ -101,7 +105,9 @@ class _Campaign:
                 break
         with self._arm("confirming") as arm:
             best = confirm(trials, searches, arm)
-            arm().keep(trials.table_of(best.rows))
+            if self.book.get("end") is None:
+                arm().keep(trials.table_of(best.rows))
+                self.book.note("end", {"best": best.name})
         return Outcome(trials, tuple(self.rounds), best)
 
     def _begin(self) -> None:
@@ -131,8 +137,7 @@ class _Campaign:
         for search, verdict in zip(self.searches, first.verdicts, strict=True):
             search.add(rows[search.joint], verdict, first.name)
         if options.model is not None:
-            model = learn.read_model(options.model, options.seed, book.path("before.toml"), options.arm_file, False)
-            learn.refuse_other_arm(model.arm, str(options.model), first, before)
+            learn.refuse_other_arm(load_arm(options.model), str(options.model), first, before)
 
     def _learn(self, number: int) -> learn.Learnt:
         """A round's model and controllers."""
