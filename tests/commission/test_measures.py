@@ -110,3 +110,17 @@ def test_numbers_for_json_are_numbers_or_nothing() -> None:
     facts = measure(Traces(leader, leader, np.zeros_like(leader), 0.0), check, 15.0).as_dict()
     assert set(facts) == set(PARTS)
     assert facts["moves"]["error"] == [None] * 4
+
+
+def test_holding_still_is_judged_while_the_joints_own_leader_rests() -> None:
+    """A joint that follows its own moves poorly but holds still well has no error there."""
+    check = check_motion(ROOM)
+    leader = check.motion.at(np.arange(0.0, check.motion.duration_s, TICK_S))
+    moving = np.abs(np.gradient(leader, TICK_S, axis=0)) > 0.01
+    late = leader - 0.1 * moving
+    measured = measure(traces_of(log_of(leader, late), check), check, 15.0)
+    place = PARTS.index("holding still")
+    # A rest ends a moment after the next move has begun.
+    assert (measured.error[place] < 0.03 * measured.error[PARTS.index("reaches")]).all()
+    off = leader - 0.01
+    assert measure(traces_of(log_of(leader, off), check), check, 15.0).error[place] == pytest.approx(np.full(4, 1e-4))

@@ -1,6 +1,6 @@
 """What a log of the check says about every joint: error, unrest at rest, rattling in motion, chatter, voltage.
 
-- error: mean of (leader - follower)², rad².
+- error: mean of (leader - follower)², rad²; in the part "holding still" only while the joint's own leader rests.
 - unrest: rms of the follower about its own mean over 0.2 s, rad, from 0.7 s after the leader stopped on.
 - rattle: rms of the follower between 6 and 40 Hz beyond the leader's own, rad, while a hand leads.
 - chatter: swings of the voltage by more than a third of the supply, 1/s.
@@ -32,6 +32,7 @@ STILL_RAD = 0.005  # the leader rests within this
 SHORTEST_REST_S = 0.3
 RATTLE_HZ = (6.0, 40.0)
 LATEST_BEGIN_S = 8.0  # from the first row of a log to the check: the way to its first pose
+HOLDING = "holding still"
 HAND_LED = ("reaches", "slow motion")  # parts in which rattling is measured; the others have edges that no hand makes
 NAMES = ("error", "unrest", "rattle", "chatter", "voltage")
 
@@ -96,6 +97,8 @@ def measure(traces: Traces, check: Check, supply_v: float) -> Measures:
             continue
         leader, follower, voltage = traces.leader[rows], traces.follower[rows], traces.voltage[rows]
         found["error"][place] = np.mean((leader - follower) ** 2, axis=0)
+        if name == HOLDING:
+            found["error"][place] = still_error(leader, follower)
         found["voltage"][place] = np.mean(np.abs(voltage), axis=0)
         found["chatter"][place] = chatter(voltage, supply_v)
         if name in HAND_LED:
@@ -103,6 +106,14 @@ def measure(traces: Traces, check: Check, supply_v: float) -> Measures:
         else:
             found["unrest"][place] = unrest(leader, follower)
     return Measures(**found)
+
+
+def still_error(leader: Floats, follower: Floats) -> Floats:
+    """(4,) rad² while the joint's own leader rests, whatever the other joints do."""
+    window = round(SETTLE_S / TICK_S)
+    rests = [resting(path, window, STILL_RAD) for path in leader.T]
+    errors = ((leader - follower) ** 2).T
+    return np.array([np.mean(error[rest]) for error, rest in zip(errors, rests, strict=True)])
 
 
 def unrest(leader: Floats, follower: Floats, still_rad: float = STILL_RAD) -> Floats:
