@@ -8,7 +8,6 @@ import click
 
 from greywhale.cli.output import json_option, port_option, progress, show
 from greywhale.errors import BAD_USAGE, UserError
-from greywhale.files.arm import load_arm
 from greywhale.protocol.ports import choose_port
 
 EXISTING = click.Path(path_type=Path)
@@ -17,7 +16,7 @@ EXISTING = click.Path(path_type=Path)
 @click.command("commission")
 @click.option("--out", "-o", type=EXISTING, default=Path("commission"), show_default=True, help="Folder for all files.")
 @click.option(
-    "--arm", "arm_file", default="white_box", show_default=True, help="Your arm.toml: geometry, nominal motors."
+    "--arm", "arm_file", help="Your arm.toml: geometry, nominal motors.  [default: the model's arm, or white_box]"
 )
 @click.option("--model", type=EXISTING, help="A model.toml of this arm to begin with, instead of identifying first.")
 @click.option(
@@ -41,7 +40,7 @@ EXISTING = click.Path(path_type=Path)
 @json_option
 def command(
     out: Path,
-    arm_file: str,
+    arm_file: str | None,
     model: Path | None,
     ranges: tuple[str, ...],
     rounds: int,
@@ -74,7 +73,6 @@ def command(
     options = Options(
         port=choose_port(port),
         out=out,
-        nominal=load_arm(arm_file),
         arm_file=arm_file,
         model=model,
         ranges=chosen,

@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from greywhale.arm import ArmParameters
 from greywhale.commission import learn, start
 from greywhale.commission.book import Book
 from greywhale.commission.choose import confirm
@@ -28,6 +27,7 @@ from greywhale.commission.trials import Controllers, Trials
 from greywhale.errors import UserError
 from greywhale.excite import design
 from greywhale.excite.limits import limits_of
+from greywhale.files.arm import load_arm
 from greywhale.files.leader import load_leader, save_leader
 from greywhale.files.log import Log, read_log
 from greywhale.files.parameter_file import load as load_parameters
@@ -35,6 +35,7 @@ from greywhale.files.parameter_file import save as save_parameters
 from greywhale.firmware import JOINTS
 from greywhale.loop.controllers import controllers_of
 from greywhale.table import ParameterTable, find_board
+from greywhale.tune.model_checks import doubt_other_arm
 from greywhale.tune.progress import Report, report_nothing
 
 ROUNDS, TRIALS = 3, 6
@@ -51,8 +52,7 @@ class Options:
 
     port: str
     out: Path
-    nominal: ArmParameters
-    arm_file: str = "white_box"
+    arm_file: str | None = None  # None: the model's arm, or the white box
     model: Path | None = None
     ranges: dict[int, tuple[float, float]] | None = None
     rounds: int = ROUNDS
@@ -84,6 +84,10 @@ class _Campaign:
     def __init__(self, options: Options, report: Report) -> None:
         self.options = options
         self.report = report
+        self.nominal = load_arm(options.arm_file or options.model or "white_box")
+        if options.arm_file is not None and options.model is not None:
+            for doubt in doubt_other_arm(load_arm(options.model), self.nominal, options.arm_file):
+                raise UserError(f"{options.model}: {doubt.reason}; {doubt.remedy}.")
         self.book = Book(options.out, options.request(), options.resume)
         self.rounds: list[Round] = []
         self.before: ParameterTable | None = None
@@ -101,7 +105,9 @@ class _Campaign:
                 break
         with self._arm("confirming") as arm:
             best = confirm(trials, searches, arm)
-            arm().keep(trials.table_of(best.rows))
+            if self.book.get("end") is None:
+                arm().keep(trials.table_of(best.rows))
+                self.book.note("end", {"best": best.name})
         return Outcome(trials, tuple(self.rounds), best)
 
     def _begin(self) -> None:
@@ -111,8 +117,8 @@ class _Campaign:
         if facts is None:
             with self._arm("before") as arm:
                 rig = arm()
-                start.refuse_uncalibrated(options.nominal, rig.before)
-                limits = limits_of(options.nominal, rig.before, rig.pose(), options.ranges or {})
+                start.refuse_uncalibrated(self.nominal, rig.before)
+                limits = limits_of(self.nominal, rig.before, rig.pose(), options.ranges or {})
                 room = Room(limits.pose, limits.low, limits.high)
                 start.refuse_stuck(rig, book, room)
                 save_parameters(book.path("before.toml"), rig.before)
@@ -131,8 +137,7 @@ class _Campaign:
         for search, verdict in zip(self.searches, first.verdicts, strict=True):
             search.add(rows[search.joint], verdict, first.name)
         if options.model is not None:
-            model = learn.read_model(options.model, options.seed, book.path("before.toml"), options.arm_file, False)
-            learn.refuse_other_arm(model.arm, str(options.model), first, before)
+            learn.refuse_other_arm(load_arm(options.model), str(options.model), first, before)
 
     def _learn(self, number: int) -> learn.Learnt:
         """A round's model and controllers."""
@@ -141,7 +146,7 @@ class _Campaign:
             path = options.model
         else:
             known = gather(self._excite(), self.trials)
-            path = learn.find_model(book, f"model-{number}", options.nominal, known, options.seed, report)
+            path = learn.find_model(book, f"model-{number}", self.nominal, known, options.seed, report)
         model = learn.read_model(path, options.seed, book.path("before.toml"))
         return learn.find_controllers(
             book,
@@ -160,7 +165,7 @@ class _Campaign:
         if self.book.get("excite") is None:
             if not leader.exists():
                 designed = design(
-                    options.nominal,
+                    self.nominal,
                     self.room.pose,
                     table=self.trials.table,
                     ranges=options.ranges,

@@ -7,33 +7,33 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from greywhale.commission.rig import Rig
-from greywhale.commission.search import JointSearch
-from greywhale.commission.trials import Controllers, Trial, Trials
+from greywhale.commission.search import JointSearch, Row
+from greywhale.commission.trials import Trial, Trials
 from greywhale.loop.controllers import controllers_of
 
-MOST_CONFIRMATIONS = 4
+MOST_CONFIRMATIONS = 6
 
 
 def confirm(trials: Trials, searches: Sequence[JointSearch], arm: Callable[[], Rig]) -> Trial:
     """The best set that passed as a whole. A combination that was not measured is played before it counts."""
-    places = [0] * len(searches)
+    rows = np.array([_next(search, [], trials) for search in searches])
+    failed: list[list[bytes]] = [[] for _ in searches]
     for _ in range(MOST_CONFIRMATIONS):
-        rows = _combined(trials, searches, places)
         known = next((one for one in trials.done if np.array_equal(one.rows, rows)), None)
         trial = known or trials.play(None if trials.known() else arm(), rows)
         if trial.passed:
             break
-        for verdict in trial.verdicts:
+        for search, verdict in zip(searches, trial.verdicts, strict=True):
             if verdict.faults:
-                places[verdict.joint] += 1
+                failed[search.joint].append(rows[search.joint].tobytes())
+                rows[search.joint] = _next(search, failed[search.joint], trials)
     return trials.passing()[0]
 
 
-def _combined(trials: Trials, searches: Sequence[JointSearch], places: Sequence[int]) -> Controllers:
-    """For each joint its best, or as many places further down as it failed; after the last, the one from before."""
-    rows = controllers_of(trials.table).copy()
-    for search, place in zip(searches, places, strict=True):
-        ranked = search.ranked()
-        if place < len(ranked):
-            rows[search.joint] = ranked[place].row
-    return rows
+def _next(search: JointSearch, failed: Sequence[bytes], trials: Trials) -> Row:
+    """A joint's best that has not failed in company; else something new; else the controller from before."""
+    for one in search.ranked():
+        if one.row.tobytes() not in failed:
+            return one.row
+    new = search.propose() if failed else None
+    return controllers_of(trials.table)[search.joint] if new is None else new

@@ -22,9 +22,10 @@ KP = CONTROLLER_COLUMNS.index("kp")
 
 # Trials whose logs a later round fits, besides the excitation.
 MOST_FITTED = 2
-# What may be wrong with a model under which a joint rests and on the arm does not, mildest first: a wider gap (rad, to
-# either side) or more loop gain.
+# What may be wrong with a model under which a joint rests and on the arm does not, mildest first: more play at the
+# potentiometer or a wider gap (rad, to either side), a slower potentiometer (s), or more loop gain.
 GAPS = (0.002, 0.005, 0.01, 0.02)
+LAGS = (1e-3, 2e-3, 4e-3)
 GAINS = (1.4, 2.0, 2.8)
 # A log that ended in hunting: turning points of this size in its last moments.
 SWING_RAD, REVERSALS, LAST_S = 0.01, 3, 0.8
@@ -77,12 +78,14 @@ def _plant_that_hunts(arm: ArmParameters, table: ParameterTable, trial: Trial, j
 
 
 def _variants(plant: Floats, joint: int) -> Floats:
-    """The model itself, then with wider gaps (where its teeth are not rigid), then with more loop gain. (n, columns)"""
+    """The model itself, then with more play, wider gaps (where its teeth are not rigid), lag, loop gain: (n, columns)."""
     rows = [plant]
     gap, stiffness, gain = (column(name, joint) for name in ("half_gap", "stiffness", "torque_per_volt"))
-    for wider in GAPS if plant[stiffness] > 0.0 else ():
-        rows.append(plant.copy())
-        rows[-1][gap] += wider
+    toothed = ((gap, GAPS),) if plant[stiffness] > 0.0 else ()
+    for place, sizes in ((column("pot_play", joint), GAPS), *toothed, (column("pot_lag", joint), LAGS)):
+        for more in sizes:
+            rows.append(plant.copy())
+            rows[-1][place] += more
     for factor in GAINS:
         rows.append(plant.copy())
         rows[-1][gain] *= factor

@@ -8,22 +8,23 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from greywhale.commission.measures import Measures
+from greywhale.commission.measures import NAMES, Measures
 from greywhale.commission.motions import PARTS
 from greywhale.firmware import JOINTS
 from greywhale.tune.judge.margins import CHATTER_HZ
 
 Floats = npt.NDArray[np.float64]
 
-# Unrest and rattling may grow to twice what they were, but not above this (rad rms). Below the second number nobody
-# sees them, whatever they were.
+# Unrest and rattling may grow by these factors, but not above this (rad rms). Below the second number nobody sees them,
+# whatever they were. Other motions show more unrest than the check: so its limit keeps clear of twice what it was.
 MOST_UNREST, LEAST_UNREST = 0.005, 0.0015
 MOST_RATTLE, LEAST_RATTLE = 0.005, 0.002
-GROWTH = 2.0
-# Two recordings with the same controllers differ by so much: as a share, and in rad² (1 mrad rms).
+UNREST_GROWTH, RATTLE_GROWTH = 1.5, 2.0
+# Two recordings with the same controllers may differ by so much more than two others did: as a share, and in rad² (1
+# mrad rms). Friction holds a joint now here, now there.
 SAME_SHARE, SAME_RAD2 = 0.02, 1e-6
 # A joint that keeps its controller feels its neighbours' quicker moves.
-KEPT_SHARE = 0.05
+KEPT_SHARE = 0.1
 
 
 @dataclass(frozen=True)
@@ -36,12 +37,15 @@ class Limits:
     error: Floats
 
     @classmethod
-    def of(cls, before: Measures, kept: npt.NDArray[np.bool_]) -> Limits:
-        """What was there before is never too much. `kept` (4,) marks joints whose controllers are those from before."""
+    def of(cls, befores: Sequence[Measures], kept: npt.NDArray[np.bool_]) -> Limits:
+        """What was there before, the worst of some recordings, is never too much. `kept` (4,) marks joints whose
+        controllers are those from before.
+        """
+        before = Measures(**{name: np.fmax.reduce([getattr(one, name) for one in befores]) for name in NAMES})
         share = np.where(kept, KEPT_SHARE, SAME_SHARE)
         return cls(
-            unrest=_allowed(before.worst("unrest"), LEAST_UNREST, MOST_UNREST),
-            rattle=_allowed(before.worst("rattle"), LEAST_RATTLE, MOST_RATTLE),
+            unrest=_allowed(before.worst("unrest"), UNREST_GROWTH, LEAST_UNREST, MOST_UNREST),
+            rattle=_allowed(before.worst("rattle"), RATTLE_GROWTH, LEAST_RATTLE, MOST_RATTLE),
             chatter=np.maximum(CHATTER_HZ, 1.1 * np.nan_to_num(before.worst("chatter"))),
             error=(1.0 + share) * before.error + SAME_RAD2,
         )
@@ -93,7 +97,7 @@ def _judge(measured: Measures, before: Measures, limits: Limits, joint: int, gui
     return Verdict(joint, tuple(faults), restless, restless and quiet, score, measured.whole or bool(faults))
 
 
-def _allowed(before: Floats, least: float, most: float) -> Floats:
+def _allowed(before: Floats, growth: float, least: float, most: float) -> Floats:
     known = np.nan_to_num(before)
-    allowed: Floats = np.maximum(np.clip(GROWTH * known, least, most), known * (1.0 + SAME_SHARE))
+    allowed: Floats = np.maximum(np.clip(growth * known, least, most), known * (1.0 + SAME_SHARE))
     return allowed

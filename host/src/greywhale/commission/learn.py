@@ -97,9 +97,9 @@ def find_controllers(
     return Learnt(model.arm, rows, tuple(known["doubts"]), known["steady"])
 
 
-def read_model(path: Path, seed: int, params: Path | None = None, arm: str | None = None, force: bool = True) -> Model:
+def read_model(path: Path, seed: int, params: Path) -> Model:
     """A model to tune for. Its doubts do not refuse it, because the arm itself judges what comes of it."""
-    return load_model(path, seed=seed, force=force, params=params, arm=arm)
+    return load_model(path, seed=seed, force=True, params=params)
 
 
 def later_budget(budget: int | None) -> int:

@@ -1,6 +1,6 @@
 """What a log of the check says about every joint: error, unrest at rest, rattling in motion, chatter, voltage.
 
-- error: mean of (leader - follower)², rad².
+- error: mean of (leader - follower)², rad²; in the part "holding still" only while the joint's own leader rests.
 - unrest: rms of the follower about its own mean over 0.2 s, rad, from 0.7 s after the leader stopped on.
 - rattle: rms of the follower between 6 and 40 Hz beyond the leader's own, rad, while a hand leads.
 - chatter: swings of the voltage by more than a third of the supply, 1/s.
@@ -9,7 +9,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -33,6 +32,7 @@ STILL_RAD = 0.005  # the leader rests within this
 SHORTEST_REST_S = 0.3
 RATTLE_HZ = (6.0, 40.0)
 LATEST_BEGIN_S = 8.0  # from the first row of a log to the check: the way to its first pose
+HOLDING = "holding still"
 HAND_LED = ("reaches", "slow motion")  # parts in which rattling is measured; the others have edges that no hand makes
 NAMES = ("error", "unrest", "rattle", "chatter", "voltage")
 
@@ -97,6 +97,8 @@ def measure(traces: Traces, check: Check, supply_v: float) -> Measures:
             continue
         leader, follower, voltage = traces.leader[rows], traces.follower[rows], traces.voltage[rows]
         found["error"][place] = np.mean((leader - follower) ** 2, axis=0)
+        if name == HOLDING:
+            found["error"][place] = still_error(leader, follower)
         found["voltage"][place] = np.mean(np.abs(voltage), axis=0)
         found["chatter"][place] = chatter(voltage, supply_v)
         if name in HAND_LED:
@@ -106,12 +108,20 @@ def measure(traces: Traces, check: Check, supply_v: float) -> Measures:
     return Measures(**found)
 
 
-def unrest(leader: Floats, follower: Floats) -> Floats:
-    """(4,) rad rms over all rests; NaN for a joint whose leader never rests."""
+def still_error(leader: Floats, follower: Floats) -> Floats:
+    """(4,) rad² while the joint's own leader rests, whatever the other joints do."""
+    window = round(SETTLE_S / TICK_S)
+    rests = [resting(path, window, STILL_RAD) for path in leader.T]
+    errors = ((leader - follower) ** 2).T
+    return np.array([np.mean(error[rest]) for error, rest in zip(errors, rests, strict=True)])
+
+
+def unrest(leader: Floats, follower: Floats, still_rad: float = STILL_RAD) -> Floats:
+    """(4,) rad rms over all rests; NaN for a joint whose leader never rests. A row a millisecond."""
     found = np.full(JOINTS, np.nan)
     window, mean, least = (round(seconds / TICK_S) for seconds in (SETTLE_S, MEAN_S, SHORTEST_REST_S))
     for joint in range(JOINTS):
-        rest = resting(leader[:, joint], window, STILL_RAD)
+        rest = resting(leader[:, joint], window, still_rad)
         edges = np.flatnonzero(np.diff(np.concatenate(([False], rest, [False])).astype(np.int8)))
         swings = []
         for first, last in zip(edges[::2], edges[1::2], strict=True):
@@ -138,16 +148,6 @@ def chatter(voltage: Floats, supply_v: float) -> Floats:
     turned, _ = count_swings(traces, 0, len(voltage), CHATTER_SHARE * supply_v)
     per_second: Floats = turned[0] / (len(voltage) * TICK_S)
     return per_second
-
-
-def from_dict(data: Mapping[str, Any]) -> Measures:
-    """What `as_dict` gave."""
-    return Measures(
-        **{
-            name: np.array([[np.nan if one is None else one for one in data[part][name]] for part in PARTS])
-            for name in NAMES
-        }
-    )
 
 
 def _number(value: float) -> float | None:

@@ -1,4 +1,4 @@
-"""The motions of a commissioning: a little first one, and a check in four parts, the small moves first.
+"""The motions of a commissioning: a little first one, and a check in five parts, the small moves first.
 
 Nothing is trained on the check. Each set of controllers is led along the same check, point by point, so that errors
 compare.
@@ -26,11 +26,12 @@ SMALL_RAD = (0.1, -0.05, 0.0)
 # Shares of the room to either side, as steps in turn; each joint begins at another one.
 MOVES = (0.5, -0.3, 0.9, 0.1, -0.9, 0.3)
 HOLD_S = 1.4
-REACHES_SEED, REACHES_S = 3001, 8.0  # judge nothing anywhere else
+REACHES_SEED, REACHES_S = 3005, 9.0  # each joint goes far; these judge nothing anywhere else
 REACHES_SHARE = 0.8  # of the room
 SLOW_S, SLOW_SHARE = 5.0, 0.4
 PAUSE_S = 1.0
-PARTS = ("small moves", "moves", "reaches", "slow motion")
+STILL_SHARES, STILL_EDGE_S, STILL_HOLD_S = (0.6, -0.5, 0.0), 0.4, 0.4
+PARTS = ("small moves", "moves", "reaches", "slow motion", "holding still")
 
 
 @dataclass(frozen=True)
@@ -65,7 +66,9 @@ def first_motion(room: Room, size: float) -> Trajectory:
 
 
 def check_motion(room: Room) -> Check:
-    """Small moves, moves through the room, human-like reaches, slow motion; at rest at the pose between them."""
+    """Small moves, moves through the room, human-like reaches, slow motion, and moves of every second joint while the
+    others hold still; at rest at the pose between the parts.
+    """
     small = [room.pose, *(_within(room, room.pose + size) for size in SMALL_RAD)]
     moves = [room.pose, *(room.place(_turned(number)) for number in range(len(MOVES))), room.pose]
     pieces = (
@@ -73,6 +76,7 @@ def check_motion(room: Room) -> Check:
         _through(moves, [0.1] + [HOLD_S] * (len(moves) - 1), EDGE_S),
         _reaches(room),
         _slow(room),
+        _through(_still(room), [0.1] + [STILL_HOLD_S] * (2 * len(STILL_SHARES) - 1) + [PAUSE_S], STILL_EDGE_S),
     )
     time_s, angles = [pieces[0].time_s[:1]], [pieces[0].angles[:1]]
     parts: dict[str, tuple[float, float]] = {}
@@ -88,6 +92,13 @@ def _turned(number: int) -> Floats:
     """The share of every joint at a step; joints 1 and 3 go the other way."""
     shares = [MOVES[(number + 2 * joint) % len(MOVES)] for joint in range(JOINTS)]
     return np.array([-share if joint % 2 else share for joint, share in enumerate(shares)])
+
+
+def _still(room: Room) -> list[Floats]:
+    """The pose, then moves of joints 0 and 2 while 1 and 3 hold still, then the other way round."""
+    turns = [np.array([share, 0.0, share, 0.0]) for share in STILL_SHARES]
+    turns += [np.array([0.0, share, 0.0, share]) for share in STILL_SHARES]
+    return [room.pose, *(room.place(shares) for shares in turns)]
 
 
 def _within(room: Room, angles: Floats) -> Floats:

@@ -9,8 +9,8 @@ from greywhale.arm import ArmParameters
 from greywhale.arm.parameters import with_usual_noise
 from greywhale.arm.plants import plant_row
 from greywhale.commission.measures import Traces
-from greywhale.firmware import JOINTS, pwm_steps
-from greywhale.loop.closed_loop import ClosedLoop, known_readings, with_ideal_follower
+from greywhale.firmware import JOINTS, TICK_S, pwm_steps
+from greywhale.loop.closed_loop import ClosedLoop, known_readings, shown_angles, with_ideal_follower
 from greywhale.loop.controllers import controllers_of
 from greywhale.table import ParameterTable
 
@@ -39,13 +39,14 @@ def predict(arm: ArmParameters, table: ParameterTable, played: Traces, plants: F
         weight_s=np.zeros(len(reference)),
     )
     found = loop.run(controllers_of(table)[None], np.ascontiguousarray(rows), substeps=2, every=1)
+    shown = shown_angles(found.angles, np.ascontiguousarray(rows), TICK_S)
     volts = table.supply_v / np.array(pwm_steps(table.board))
     return [
         Traces(
             leader=played.leader,
-            follower=np.nan_to_num(angles[LEAD_TICKS:].astype(np.float64), nan=10.0) - zero,
+            follower=np.nan_to_num(angles[LEAD_TICKS:], nan=10.0) - zero,
             voltage=duties[LEAD_TICKS:].astype(np.float64) * volts,
             begins=played.begins,
         )
-        for angles, duties in zip(found.angles, found.duties, strict=True)
+        for angles, duties in zip(shown, found.duties, strict=True)
     ]

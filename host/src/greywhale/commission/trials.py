@@ -21,6 +21,7 @@ from greywhale.loop.controllers import controllers_of
 from greywhale.table import ParameterTable
 
 Controllers = npt.NDArray[np.int32]
+BEFORE, AGAIN = "before", "before-again"
 
 
 @dataclass(frozen=True)
@@ -66,6 +67,7 @@ class Trials:
         self.check = check
         self.table = before
         self.done: list[Trial] = []
+        self._befores: list[Measures] = []
 
     @property
     def before(self) -> Trial:
@@ -80,30 +82,39 @@ class Trials:
         return self.book.get(self._next_name()) is not None
 
     def play_before(self, rig: Rig | None) -> Trial:
-        """Play the check with the controllers from before."""
-        trial = self.play(rig, controllers_of(self.table))
-        if trial.stopped:
-            raise UserError(
-                f"with the controllers from before, the check ended early: {trial.stopped}; narrow the --range, or "
-                "upload calmer controllers first."
-            )
-        return trial
+        """Play the check with the controllers from before; twice, to see how much two recordings differ."""
+        rows = controllers_of(self.table)
+        for name in (BEFORE, AGAIN):
+            path, played = self._played(name, rig, rows, watched=False)
+            if played.stopped:
+                raise UserError(
+                    f"with the controllers from before, the check ended early: {played.stopped}; narrow the --range, "
+                    "or upload calmer controllers first."
+                )
+            traces = traces_of(played.log, self.check)
+            self._befores.append(measure(traces, self.check, self.table.supply_v))
+            if name == BEFORE:
+                first = path, played
+        self.done.append(self._judged(BEFORE, rows, *first))
+        return self.before
 
     def play(self, rig: Rig | None, rows: Controllers) -> Trial:
         """Play the check with these controllers, or take the result from the journal."""
         name = self._next_name()
+        trial = self._judged(name, rows, *self._played(name, rig, rows, watched=True))
+        self.done.append(trial)
+        return trial
+
+    def _played(self, name: str, rig: Rig | None, rows: Controllers, watched: bool) -> tuple[Path, Played]:
+        """A log and how it ended. The controllers from before may hunt already: unwatched, they do so to the end."""
         path = self.book.path(f"{name}.csv")
         facts = self.book.get(name)
         if facts is not None and facts["controllers"] == rows.tolist():
-            played = Played(read_log(path), facts["stopped"], facts["joint"])
-        else:
-            assert rig is not None
-            # The controllers from before may hunt already: their check is played to its end all the same.
-            played = rig.play(self.check.motion, path, self.table_of(rows), watched=bool(self.done))
-            self.book.note(name, {"controllers": rows.tolist(), "stopped": played.stopped, "joint": played.joint})
-        trial = self._judged(name, rows, path, played)
-        self.done.append(trial)
-        return trial
+            return path, Played(read_log(path), facts["stopped"], facts["joint"])
+        assert rig is not None
+        played = rig.play(self.check.motion, path, self.table_of(rows), watched=watched)
+        self.book.note(name, {"controllers": rows.tolist(), "stopped": played.stopped, "joint": played.joint})
+        return path, played
 
     def passing(self) -> list[Trial]:
         """Sets of controllers that passed as a whole, the best first; those from before always do."""
@@ -111,13 +122,12 @@ class Trials:
         return [*sorted(whole, key=lambda one: one.score), self.before]
 
     def _next_name(self) -> str:
-        return "before" if not self.done else f"trial-{len(self.done):02d}"
+        return f"trial-{len(self.done):02d}" if self.done else AGAIN
 
     def _judged(self, name: str, rows: Controllers, path: Path, played: Played) -> Trial:
         traces = traces_of(played.log, self.check)
         measured = measure(traces, self.check, self.table.supply_v)
-        first = self.done[0].measured if self.done else measured
         guilty = [played.stopped if joint == played.joint else "" for joint in range(JOINTS)]
         kept = (rows == controllers_of(self.table)).all(axis=1)
-        verdicts = judge(measured, first, Limits.of(first, kept), guilty)
+        verdicts = judge(measured, self._befores[0], Limits.of(self._befores, kept), guilty)
         return Trial(name, rows.copy(), path, played.stopped, measured, verdicts, traces)

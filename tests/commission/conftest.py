@@ -1,0 +1,48 @@
+"""A commissioning on a simulated rig, with a model that fits it, so that nothing has to be identified."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from greywhale.commission import Options
+from greywhale.commission.book import Book
+from greywhale.commission.motions import check_motion
+from greywhale.commission.trials import Trials
+from greywhale.files.arm import default_arm
+from tests.commission.simulated import ROOM, SimulatedRig
+from tests.tune.models import write_model
+
+
+@pytest.fixture
+def rig() -> SimulatedRig:
+    """The default arm."""
+    return SimulatedRig(default_arm())
+
+
+@pytest.fixture
+def trials(tmp_path: Path, rig: SimulatedRig) -> Trials:
+    """Nothing tried yet."""
+    return Trials(Book(tmp_path / "trials", {}, resume=False), check_motion(ROOM), rig.before)
+
+
+@pytest.fixture
+def options(tmp_path: Path) -> Callable[..., Options]:
+    """A short commissioning that begins with a model of the default arm."""
+    model = write_model(tmp_path / "model.toml")
+
+    def make(**changes: Any) -> Options:
+        given: dict[str, Any] = {
+            "port": "port",
+            "out": tmp_path / "out",
+            "model": model,
+            "rounds": 1,
+            "trials": 4,
+            "budget": 12,
+        }
+        return Options(**given | changes)
+
+    return make

@@ -1,0 +1,54 @@
+"""The journal: what is in it is not done again, and it is never mixed up with another commissioning."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from greywhale.commission.book import NAME, Book
+from greywhale.errors import BAD_USAGE, UserError
+
+REQUEST = {"arm": "white_box", "ranges": {"0": [-0.5, 0.5]}, "seed": 0}
+
+
+def test_steps_are_there_after_a_break(tmp_path: Path) -> None:
+    book = Book(tmp_path / "new", REQUEST, resume=False)
+    assert book.get("before") is None
+    book.note("before", {"stopped": ""})
+    again = Book(tmp_path / "new", REQUEST, resume=True)
+    assert again.get("before") == {"stopped": ""}
+    assert again.path("before.csv") == tmp_path / "new" / "before.csv"
+
+
+def test_a_commissioning_is_not_overwritten_by_accident(tmp_path: Path) -> None:
+    Book(tmp_path, REQUEST, resume=False).note("before", {})
+    with pytest.raises(UserError, match="--resume") as caught:
+        Book(tmp_path, REQUEST, resume=False)
+    assert caught.value.exit_code == BAD_USAGE
+    assert Book(tmp_path, REQUEST, resume=True).get("before") == {}
+
+
+def test_one_that_did_nothing_is_begun_anew(tmp_path: Path) -> None:
+    Book(tmp_path, {**REQUEST, "seed": 3}, resume=False)
+    Book(tmp_path, REQUEST, resume=False).note("before", {})
+    assert json.loads((tmp_path / NAME).read_text())["request"] == REQUEST
+
+
+def test_other_options_are_refused_with_their_name(tmp_path: Path) -> None:
+    Book(tmp_path, REQUEST, resume=False).note("before", {})
+    with pytest.raises(UserError, match="begun with seed = 0, not 1"):
+        Book(tmp_path, {**REQUEST, "seed": 1}, resume=True)
+
+
+def test_nothing_to_go_on_with_is_said(tmp_path: Path) -> None:
+    with pytest.raises(UserError, match="no interrupted commissioning"):
+        Book(tmp_path, REQUEST, resume=True)
+
+
+@pytest.mark.parametrize("text", ["", "[]", "{", '{"greywhale_commission": 1}'])
+def test_a_file_that_is_no_journal_is_refused(tmp_path: Path, text: str) -> None:
+    (tmp_path / NAME).write_text(text)
+    with pytest.raises(UserError, match="no journal of a commissioning"):
+        Book(tmp_path, REQUEST, resume=True)

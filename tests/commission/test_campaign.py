@@ -1,0 +1,173 @@
+"""A whole commissioning: never worse than before, at any exit the controllers from before, and it goes on from any."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from greywhale.commission import Options, campaign, commission, learn
+from greywhale.commission.book import Book
+from greywhale.commission.learn import Learnt
+from greywhale.commission.page import facts, save_page
+from greywhale.commission.search import KD, KI, KP
+from greywhale.errors import UserError
+from greywhale.files.arm import default_arm
+from greywhale.files.leader import load_leader
+from greywhale.loop.controllers import controllers_of
+from greywhale.tune.model import Model
+from tests.commission.simulated import SimulatedRig
+from tests.tune.models import write_model
+
+Make = Callable[..., Options]
+
+
+find_controllers = learn.find_controllers
+
+
+@pytest.fixture(autouse=True)
+def _in_no_time(rig: SimulatedRig, monkeypatch: pytest.MonkeyPatch) -> None:
+    """No board, and the controllers are found at once: twice as stiff, and too stiff for joint 2."""
+
+    def find(book: Book, name: str, model: Model, start: np.ndarray, **options: object) -> Learnt:
+        rows = start.copy()
+        rows[:, [KP, KI]] *= 2
+        rows[:, KD] = np.rint(1.4 * rows[:, KD])
+        rows[2, KP] *= 10
+        book.note(name, {})
+        return Learnt(model.arm, rows, (), True)
+
+    monkeypatch.setattr(campaign, "connected", rig.connected)
+    monkeypatch.setattr(learn, "find_controllers", find)
+
+
+def test_the_board_ends_with_what_passed_on_the_arm(rig: SimulatedRig, options: Make) -> None:
+    outcome = commission(options())
+    assert outcome.best.passed
+    assert np.array_equal(controllers_of(rig.stored), outcome.best.rows)
+    assert (outcome.best.measured.error <= 1.11 * outcome.trials.before.measured.error).all()
+    assert [verdict.score < 0.5 for verdict in outcome.best.verdicts][:3] == [True] * 3
+    assert outcome.improved
+    before = outcome.trials.table
+    assert rig.played[0] == before, "the little first motion is made with the controllers from before"
+
+
+@pytest.mark.slow
+def test_interrupted_anywhere_the_board_keeps_what_it_had_and_resuming_ends_the_same(
+    rig: SimulatedRig, options: Make
+) -> None:
+    whole = commission(options())
+    plays, before = len(rig.played), whole.trials.table
+    for stop in range(plays):
+        rig.stored = rig.before = before
+        rig.played.clear()
+
+        def interrupt(number: int, stop: int = stop) -> None:
+            if number == stop:
+                raise KeyboardInterrupt
+
+        rig.at_play = interrupt
+        out = options().out.parent / f"stopped-{stop}"
+        with pytest.raises(KeyboardInterrupt):
+            commission(options(out=out))
+        assert rig.stored == before
+        rig.at_play = lambda number: None
+        again = commission(options(out=out, resume=(out / "commission.json").exists() and stop > 0))
+        assert again.as_dict() == whole.as_dict()
+        assert len(rig.played) == plays, "no motion is made twice"
+
+
+@pytest.mark.slow
+def test_an_interrupted_tuning_goes_on(rig: SimulatedRig, options: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(learn, "find_controllers", find_controllers)
+    whole = commission(options(out=options().out.parent / "whole"))
+
+    def report(what: str, fraction: float, note: str = "") -> None:
+        if "tuning" in what and fraction > 0.4:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        rig.before = rig.stored = whole.trials.table
+        commission(options(), report)
+    assert rig.stored == whole.trials.table
+    journal = options().out / "controller-1.toml.journal"
+    assert journal.exists()
+    rig.before = rig.stored = whole.trials.table
+    outcome = commission(options(resume=True))
+    assert not journal.exists()
+    assert outcome.as_dict() == whole.as_dict()
+
+
+def test_a_model_of_another_arm_is_refused_before_it_moves_the_board(rig: SimulatedRig, options: Make) -> None:
+    arm = default_arm()
+    joints = [joint.model_dump() for joint in arm.joint]
+    joints[1]["motor"]["resistance"] *= 5.0
+    other = arm.model_validate(arm.model_dump() | {"joint": joints}, strict=False)
+    path = write_model(options().out.parent / "other.toml", other)
+    with pytest.raises(UserError, match=r"other.toml is a model of another arm: joint 1"):
+        commission(options(model=path))
+    assert all(table == rig.before for table in rig.played), "nothing but the controllers from before has run"
+
+
+def test_a_finished_commissioning_needs_no_arm_to_tell_its_story_again(rig: SimulatedRig, options: Make) -> None:
+    outcome = commission(options())
+    rig.played.clear()
+    assert commission(options(resume=True)).as_dict() == outcome.as_dict()
+    assert rig.played == []
+
+
+def test_a_model_of_another_arm_file_is_refused_before_anything_moves(rig: SimulatedRig, options: Make) -> None:
+    with pytest.raises(UserError, match=r"model.toml: it is of another arm than white_box"):
+        commission(options(arm_file="white_box"))
+    assert rig.played == []
+
+
+def test_another_board_is_refused_on_resuming(rig: SimulatedRig, options: Make) -> None:
+    def interrupt(number: int) -> None:
+        if number == 4:
+            raise KeyboardInterrupt
+
+    rig.at_play = interrupt
+    with pytest.raises(KeyboardInterrupt):
+        commission(options())
+    rig.stored = rig.stored.with_raw({"joint0.kp": 12345})
+    with pytest.raises(UserError, match="another set"):
+        commission(options(resume=True))
+
+
+def test_without_a_model_the_arm_is_excited_and_identified(
+    rig: SimulatedRig, options: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The identification itself has tests of its own; here it is enough that it gets the right logs."""
+    given = {}
+
+    def find(book, name, nominal, known, seed, report):  # type: ignore[no-untyped-def]
+        given[name] = known
+        return options().model
+
+    monkeypatch.setattr(learn, "find_model", find)
+    monkeypatch.setattr(campaign, "DESIGN_BUDGET", 2)
+    monkeypatch.setattr(campaign, "WANTING", 0.0)
+    outcome = commission(options(model=None, rounds=2, trials=2))
+    first, second = given["model-1"], given["model-2"]
+    assert [len(one.fit) for one in (first, second)] == [1, 2]
+    assert first.fit[0].time[-1] > load_leader(outcome.trials.book.path("excite_leader.csv")).duration_s - 1.0
+    assert [log.name for log in first.validate] == [str(outcome.trials.before.path)]
+    crcs = {table.crc for table in second.tables}
+    assert {log.origin.param_crc for log in (*second.fit, *second.validate)} <= crcs
+
+
+def test_the_report_shows_predicted_beside_measured(rig: SimulatedRig, options: Make) -> None:
+    outcome = commission(options())
+    shown = facts(outcome)
+    trial = shown["rounds"][0]["trials"][-1]
+    error = next(row for row in trial["rows"] if row["name"] == "error, reaches")
+    for cell in error["cells"]:
+        assert float(cell["predicted"]) == pytest.approx(float(cell["measured"]), rel=0.5), (
+            "the model is that of the arm"
+        )
+    page = save_page(outcome, outcome.trials.book.path("report.html")).read_text(encoding="utf-8")
+    assert error["cells"][0]["measured"] in page
+    assert "data:image/png;base64," in page
+    assert page.count("now on the board") == 1

@@ -1,0 +1,78 @@
+"""What trials tell the next round: their logs, and a plant that hunts as the arm did."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from greywhale.arm import ArmParameters
+from greywhale.arm.plants import column, plant_row
+from greywhale.commission.book import Book
+from greywhale.commission.evidence import failing_plants, gather
+from greywhale.commission.motions import check_motion
+from greywhale.commission.predict import predict
+from greywhale.commission.trials import Trials
+from greywhale.files.arm import default_arm
+from greywhale.files.log import read_log
+from greywhale.loop.controllers import controllers_of
+from tests.commission.simulated import ROOM, SimulatedRig
+from tests.commission.test_trials import BETTER, play, play_before, stiffer
+
+GAP = 0.02
+JOINT = 2
+
+
+def loose_arm() -> ArmParameters:
+    """The default arm with a gap on one joint that its model does not know of."""
+    data = default_arm().model_dump()
+    data["joint"][JOINT]["gear"]["half_gap"] = GAP
+    return ArmParameters.model_validate(data, strict=False)
+
+
+def test_a_model_predicts_what_its_own_arm_does(trials: Trials, rig: SimulatedRig) -> None:
+    before = play_before(trials, rig)
+    shown = predict(rig.arm, trials.table, before.traces)[0]
+    apart = np.mean((shown.follower - before.traces.follower) ** 2, axis=0)
+    assert (apart < 0.1 * before.measured.error.mean(axis=0)).all()
+    rows = trials.check.parts["moves"]
+    measured, predicted = (np.abs(one.voltage[one.rows(rows)]).mean(axis=0) for one in (before.traces, shown))
+    assert predicted == pytest.approx(measured, rel=0.1)
+
+
+def test_the_plant_that_shows_the_hunting_is_the_model_with_one_change(tmp_path: Path) -> None:
+    rig = SimulatedRig(loose_arm())
+    trials = Trials(Book(tmp_path, {}, resume=False), check_motion(ROOM), rig.before)
+    play_before(trials, rig)
+    trial = play(trials, rig, stiffer(trials, [JOINT], 12.0))
+    assert trial.verdicts[JOINT].hunts
+    model = default_arm()
+    plants = failing_plants(model, trials)
+    assert len(plants) == sum(one.hunts for one in trial.verdicts)
+    mine = plants[[one.joint for one in trial.verdicts if one.hunts].index(JOINT)]
+    changed = np.flatnonzero(mine != plant_row(model))
+    assert set(changed) <= {column("half_gap", JOINT), column("torque_per_volt", JOINT)}
+
+
+def test_an_arm_that_rests_gives_no_such_plant(trials: Trials, rig: SimulatedRig) -> None:
+    play_before(trials, rig)
+    assert play(trials, rig, stiffer(trials, [1], BETTER)).passed
+    assert len(failing_plants(default_arm(), trials)) == 0
+
+
+def test_the_best_trials_are_fitted_and_the_first_recording_validates(trials: Trials, rig: SimulatedRig) -> None:
+    before = play_before(trials, rig)
+    excite = read_log(before.path)
+    assert gather(excite, trials).fit == (excite,)
+    for joints in ([0], [1], [0, 1], [2]):
+        play(trials, rig, stiffer(trials, joints, BETTER))
+    known = gather(excite, trials)
+    assert [log.name for log in known.validate][:1] == [str(before.path)]
+    assert len(known.fit) == 3
+    assert len({log.name for log in (*known.fit[1:], *known.validate)}) == 4
+    tables = {table.crc: table for table in known.tables}
+    for log in (*known.fit[1:], *known.validate):
+        trial = next(one for one in trials.done if str(one.path) == log.name)
+        assert log.origin.param_crc is not None
+        assert np.array_equal(controllers_of(tables[log.origin.param_crc]), trial.rows)

@@ -1,0 +1,99 @@
+"""A joint is judged against what it did before: unrest, rattling, chatter and error, each with its own sentence."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from greywhale.commission.judge import Limits, Verdict, judge
+from greywhale.commission.measures import Measures
+from greywhale.commission.motions import PARTS
+
+SHAPE = (len(PARTS), 4)
+KEPT = np.zeros(4, dtype=bool)
+BEFORE = Measures(
+    error=np.full(SHAPE, 1e-3),
+    unrest=np.full(SHAPE, 0.001),
+    rattle=np.full(SHAPE, 0.0012),
+    chatter=np.full(SHAPE, 3.0),
+    voltage=np.full(SHAPE, 1.0),
+)
+QUIET = ("", "", "", "")
+
+
+def with_joint(name: str, joint: int, value: float, part: int = 1) -> Measures:
+    values = getattr(BEFORE, name).copy()
+    values[part, joint] = value
+    return replace(BEFORE, **{name: values})
+
+
+def verdict(measured: Measures, joint: int, kept: np.ndarray = KEPT, guilty: tuple[str, ...] = QUIET) -> Verdict:
+    return judge(measured, BEFORE, Limits.of([BEFORE], kept), guilty)[joint]
+
+
+def test_what_was_there_before_passes_with_a_score_of_one() -> None:
+    for one in judge(BEFORE, BEFORE, Limits.of([BEFORE], KEPT), QUIET):
+        assert one.passed
+        assert one.score == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("name", "passes", "fails", "says"),
+    [
+        ("unrest", 0.00149, 0.00151, "hunts at rest"),
+        ("rattle", 0.0023, 0.0025, "rattles"),
+        ("chatter", 49.0, 51.0, "chatters"),
+        ("error", 1.01e-3, 1.03e-3, "moves worse than before"),
+    ],
+)
+def test_each_fault_has_its_limit_and_its_sentence(name: str, passes: float, fails: float, says: str) -> None:
+    assert verdict(with_joint(name, 2, passes), 2).passed
+    failed = verdict(with_joint(name, 2, fails), 2)
+    assert not failed.passed
+    assert says in failed.faults[0]
+    assert failed.restless == (name != "error")
+    assert failed.hunts == (name in ("unrest", "rattle"))
+    assert verdict(with_joint(name, 2, fails), 1).passed, "the other joints are not blamed"
+
+
+def test_an_arm_that_was_restless_before_may_stay_as_it_was_but_no_more() -> None:
+    restless = replace(BEFORE, unrest=np.full(SHAPE, 0.008))
+    limits = Limits.of([restless], KEPT)
+    assert limits.unrest == pytest.approx(np.full(4, 0.008), rel=0.03)
+    quiet = replace(BEFORE, unrest=np.full(SHAPE, 0.0002))
+    assert Limits.of([quiet], KEPT).unrest == pytest.approx(np.full(4, 0.0015)), "nobody sees so little"
+
+
+def test_a_joint_that_keeps_its_controller_may_feel_its_neighbours() -> None:
+    felt = with_joint("error", 3, 1.09e-3)
+    kept = np.array([False, False, False, True])
+    assert not verdict(felt, 3).passed
+    assert verdict(felt, 3, kept).passed
+    assert not verdict(with_joint("error", 3, 1.11e-3), 3, kept).passed
+
+
+def test_a_joint_that_ended_the_trial_failed_and_the_others_are_not_judged() -> None:
+    error = BEFORE.error.copy()
+    error[1:] = np.nan
+    stopped = replace(BEFORE, error=error)
+    guilty = ("", "joint 1 hunted", "", "")
+    assert verdict(stopped, 1, guilty=guilty).faults == ("joint 1 hunted",)
+    assert verdict(stopped, 1, guilty=guilty).hunts
+    other = verdict(stopped, 0, guilty=guilty)
+    assert not other.known
+    assert not other.passed
+    assert np.isnan(other.score)
+
+
+def test_the_score_is_the_error_relative_to_before() -> None:
+    better = replace(BEFORE, error=BEFORE.error * np.array([0.1, 1.0, 0.1, 1.0, 1.0])[:, None])
+    assert verdict(better, 0).score == pytest.approx(0.1**0.4)
+
+
+def test_how_much_two_recordings_differ_is_allowed_for() -> None:
+    again = replace(BEFORE, error=1.2 * BEFORE.error)
+    limits = Limits.of([BEFORE, again], KEPT)
+    assert judge(with_joint("error", 0, 1.21e-3), BEFORE, limits, QUIET)[0].passed
+    assert not judge(with_joint("error", 0, 1.23e-3), BEFORE, limits, QUIET)[0].passed

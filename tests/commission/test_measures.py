@@ -1,0 +1,126 @@
+"""What a log of the check shows: traces made by hand, whose unrest, rattling and chatter are known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from greywhale.commission.measures import Traces, chatter, measure, rattle, traces_of, unrest
+from greywhale.commission.motions import PARTS, check_motion
+from greywhale.files.log import Log
+from greywhale.files.log.layout import Origin
+from greywhale.firmware import TICK_S
+from tests.commission.simulated import ROOM
+
+TIME = np.arange(0.0, 6.0, TICK_S)
+
+
+def staircase() -> np.ndarray:
+    """A leader that moves for a moment every two seconds, all joints alike."""
+    return np.tile((np.floor(TIME / 2.0) * 0.3)[:, None], (1, 4))
+
+
+def wave(hertz: float, rms: float) -> np.ndarray:
+    return np.asarray(rms * np.sqrt(2.0) * np.sin(2.0 * np.pi * hertz * TIME))
+
+
+def test_unrest_is_what_the_follower_swings_while_its_leader_rests() -> None:
+    leader = staircase()
+    follower = leader.copy()
+    follower[:, 1] += wave(7.0, 0.02)
+    found = unrest(leader, follower)
+    # The mean over 0.2 s keeps a fifth of a swing of 7 Hz.
+    assert found[1] == pytest.approx(0.02, rel=0.3)
+    assert found[[0, 2, 3]] == pytest.approx(np.zeros(3), abs=1e-12)
+
+
+def test_moving_is_no_unrest() -> None:
+    """A slow follower still creeps when the leader has stopped, and the next move begins at the end of a rest."""
+    leader = staircase()
+    late = np.maximum(TIME % 2.0, 0.0)
+    follower = leader - 0.3 * np.exp(-late / 0.15)[:, None]
+    assert unrest(leader, follower).max() < 1e-3
+
+
+def test_a_leader_that_never_rests_shows_no_unrest() -> None:
+    leader = np.tile((0.3 * TIME)[:, None], (1, 4))
+    assert np.isnan(unrest(leader, leader)).all()
+
+
+def test_rattle_is_what_the_follower_adds_between_6_and_40_hz() -> None:
+    leader = np.tile(np.sin(TIME)[:, None], (1, 4))
+    leader[:, 1] += wave(10.0, 0.002)
+    follower = leader.copy()
+    follower[:, 0] += wave(12.0, 0.004)
+    follower[:, 2] += wave(1.0, 0.05)
+    found = rattle(leader, follower)
+    assert found[0] == pytest.approx(0.004, rel=0.05)
+    assert found[1] == 0.0, "a hand's tremor that is followed is no rattling"
+    assert found[2] < 5e-4
+    assert found[3] == 0.0
+
+
+def test_chatter_counts_large_swings_of_the_voltage() -> None:
+    volts = np.zeros((2000, 4))
+    volts[:, 0] = np.where(np.arange(2000) % 10 < 5, 6.0, -6.0)
+    volts[:, 1] = np.where(np.arange(2000) % 10 < 5, 2.0, -2.0)
+    found = chatter(volts, 15.0)
+    assert found[0] == pytest.approx(200.0, rel=0.01)
+    assert found[1] == 0.0
+
+
+def log_of(leader: np.ndarray, follower: np.ndarray, drop: int = 0) -> Log:
+    """A log; every `drop`th row was lost."""
+    time = np.arange(len(leader), dtype=np.float64) * TICK_S
+    kept = np.ones(len(leader), dtype=bool) if drop == 0 else np.arange(len(leader)) % drop > 0
+    kept[0] = True
+    state = np.full(int(kept.sum()), "following")
+    volts = np.zeros((int(kept.sum()), 4))
+    return Log("log", Origin(), time[kept], leader[kept], follower[kept], volts, state, 0, True)
+
+
+@pytest.mark.parametrize("drop", [0, 50])
+def test_the_check_is_found_in_a_log_wherever_it_begins(drop: int) -> None:
+    check = check_motion(ROOM)
+    times = np.arange(-1.234, check.motion.duration_s, TICK_S)
+    leader = check.motion.at(times)
+    leader[times < 0.0] += np.linspace(-0.2, 0.0, int((times < 0.0).sum()))[:, None]
+    found = traces_of(log_of(leader, leader - 0.01, drop), check)
+    assert found.begins == pytest.approx(1.234, abs=0.004)
+    measured = measure(found, check, 15.0)
+    assert measured.whole
+    assert measured.error == pytest.approx(np.full((len(PARTS), 4), 1e-4), rel=1e-3)
+
+
+def test_a_stopped_check_counts_its_whole_parts_only() -> None:
+    check = check_motion(ROOM)
+    begin, end = check.parts["moves"]
+    leader = check.motion.at(np.arange(0.0, 0.5 * (begin + end), TICK_S))
+    measured = measure(traces_of(log_of(leader, leader), check), check, 15.0)
+    assert np.isfinite(measured.error[0]).all()
+    assert np.isnan(measured.error[1:]).all()
+    assert not measured.whole
+    assert np.isfinite(measured.worst("unrest")).all()
+    assert np.isnan(measured.worst("rattle")).all()
+
+
+def test_numbers_for_json_are_numbers_or_nothing() -> None:
+    check = check_motion(ROOM)
+    leader = check.motion.at(np.arange(0.0, 3.0, TICK_S))
+    facts = measure(Traces(leader, leader, np.zeros_like(leader), 0.0), check, 15.0).as_dict()
+    assert set(facts) == set(PARTS)
+    assert facts["moves"]["error"] == [None] * 4
+
+
+def test_holding_still_is_judged_while_the_joints_own_leader_rests() -> None:
+    """A joint that follows its own moves poorly but holds still well has no error there."""
+    check = check_motion(ROOM)
+    leader = check.motion.at(np.arange(0.0, check.motion.duration_s, TICK_S))
+    moving = np.abs(np.gradient(leader, TICK_S, axis=0)) > 0.01
+    late = leader - 0.1 * moving
+    measured = measure(traces_of(log_of(leader, late), check), check, 15.0)
+    place = PARTS.index("holding still")
+    # A rest ends a moment after the next move has begun.
+    assert (measured.error[place] < 0.03 * measured.error[PARTS.index("reaches")]).all()
+    off = leader - 0.01
+    assert measure(traces_of(log_of(leader, off), check), check, 15.0).error[place] == pytest.approx(np.full(4, 1e-4))

@@ -1,0 +1,124 @@
+"""The search on the arm: restless joints are softened until calm, calm ones varied, what helps is tried again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from greywhale.commission.judge import Verdict
+from greywhale.commission.search import KD, KI, KP, JointSearch
+from greywhale.loop import CONTROLLER_COLUMNS, default_controller
+from greywhale.loop.controllers import check_controllers
+
+BEFORE = default_controller()[0]
+TUNED = BEFORE.copy()
+TUNED[[KP, KD, KI]] = 65536 * np.array([1, 1, 100])
+Row = np.ndarray
+
+
+def verdict(score: float, *, restless: bool = False, chatters: bool = False, worse: bool = False) -> Verdict:
+    faults = (("restless",) if restless or chatters else ()) + (("worse",) if worse else ())
+    return Verdict(0, faults, restless or chatters, chatters and not restless, score, True)
+
+
+def begun() -> JointSearch:
+    search = JointSearch(0, 1)
+    search.add(BEFORE, verdict(1.0), "before")
+    search.begin()
+    return search
+
+
+def run(judge: Callable[[Row], Verdict], trials: int = 20) -> JointSearch:
+    """Play the search against an arm of which `judge` says how it does."""
+    search, row = begun(), TUNED
+    for number in range(trials):
+        search.add(row, judge(row), f"trial-{number}")
+        proposed = search.propose()
+        if proposed is None:
+            return search
+        row = proposed
+    return search
+
+
+def test_a_joint_that_hunts_gets_softer_until_it_rests() -> None:
+    limit = 0.3 * 65536
+    search = run(lambda row: verdict(0.1, restless=bool(row[KP] > limit)))
+    assert search.best is not None
+    assert search.best.row[KP] <= limit
+    first, second = search.tried[2].row, search.tried[3].row
+    assert first[KP] == TUNED[KP] // 2
+    assert first[KI] < TUNED[KI] / 5
+    assert first[KD] / first[KP] > TUNED[KD] / TUNED[KP], "relatively more damping"
+    assert second[KP] == TUNED[KP] // 4
+
+
+def test_a_joint_that_only_chatters_gets_less_damping_and_keeps_its_stiffness() -> None:
+    search = begun()
+    search.add(TUNED, verdict(0.1, chatters=True), "trial-1")
+    row = search.propose()
+    assert row is not None
+    assert row[KD] < TUNED[KD]
+    assert row[KP] == TUNED[KP]
+
+
+def test_what_helped_is_tried_again() -> None:
+    """An arm on which only more integral part helps, up to a point."""
+    weak = TUNED.copy()
+    weak[KI] = 65536
+    search, row = begun(), weak
+    for number in range(6):
+        score = 0.9 - 0.1 * np.log(row[KI] / 65536)
+        search.add(row, verdict(float(score)), f"trial-{number}")
+        proposed = search.propose()
+        if proposed is None:
+            break
+        row = proposed
+    assert search.best is not None
+    assert search.best.row[KI] > 100 * 65536
+
+
+def test_nothing_is_tried_twice_and_it_ends() -> None:
+    search = run(lambda row: verdict(0.5), trials=100)
+    assert len(search.tried) < 30
+    assert len({one.row.tobytes() for one in search.tried}) == len(search.tried)
+    assert search.propose() is None
+
+
+def test_where_nothing_passes_the_controller_from_before_is_the_best() -> None:
+    search = run(lambda row: verdict(2.0, restless=True, worse=True))
+    assert search.best is not None
+    assert np.array_equal(search.best.row, BEFORE)
+
+
+def test_a_joint_that_follows_worse_is_varied_from_the_better_of_the_two() -> None:
+    search = begun()
+    search.add(TUNED, verdict(1.5, worse=True), "trial-1")
+    row = search.propose()
+    assert row is not None
+    sets = [place for place, name in enumerate(CONTROLLER_COLUMNS) if name not in ("kp", "kd", "ki")]
+    assert np.array_equal(row[sets], BEFORE[sets])
+
+
+def test_a_joint_without_a_score_is_never_the_better_one() -> None:
+    """It failed in the first part, and another joint then ended the trial."""
+    search = begun()
+    search.add(TUNED, verdict(float("nan"), worse=True), "trial-1")
+    assert search.propose() is not None
+    assert search.best is not None
+    assert search.best.trial == "before"
+
+
+def test_every_proposal_is_one_that_the_firmware_takes() -> None:
+    extreme = TUNED.copy()
+    extreme[[KP, KD, KI]] = 2**20, 1, 1
+    for start in (TUNED, extreme):
+        for restless in (True, False):
+            search = begun()
+            search.add(start, verdict(0.2, restless=restless), "trial-1")
+            for number in range(12):
+                row = search.propose()
+                if row is None:
+                    break
+                check_controllers(np.tile(row, (4, 1)))
+                search.add(row, verdict(0.2, restless=restless), f"trial-{number + 2}")

@@ -1,0 +1,95 @@
+"""What a commissioning refuses to move, in one sentence."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from greywhale.arm import ArmParameters
+from greywhale.commission.book import Book
+from greywhale.commission.start import refuse_stuck, refuse_uncalibrated, shares_moved
+from greywhale.errors import UserError
+from greywhale.files.arm import default_arm
+from greywhale.files.log import Log
+from greywhale.files.log.layout import Origin
+from greywhale.table import ParameterTable
+from tests.commission.simulated import ROOM, SimulatedRig
+
+
+def with_joint(arm: ArmParameters, joint: int, part: str, **values: float) -> ArmParameters:
+    data = arm.model_dump()
+    data["joint"][joint][part] |= values
+    return ArmParameters.model_validate(data, strict=False)
+
+
+def with_pot(arm: ArmParameters, joint: int, **values: float) -> ArmParameters:
+    data = arm.model_dump()
+    pots = list(data["follower_pots"]["joint"])
+    pots[joint] = pots[joint] | values
+    data["follower_pots"]["joint"] = pots
+    return ArmParameters.model_validate(data, strict=False)
+
+
+@pytest.fixture
+def book(tmp_path: Path) -> Book:
+    return Book(tmp_path / "out", {}, resume=False)
+
+
+def stuck(rig: SimulatedRig, book: Book) -> None:
+    refuse_stuck(rig, book, ROOM)  # type: ignore[arg-type]
+
+
+def test_an_arm_that_follows_is_moved_once(rig: SimulatedRig, book: Book) -> None:
+    stuck(rig, book)
+    assert len(rig.played) == 1
+    stuck(rig, book)
+    assert len(rig.played) == 1, "not again after a break"
+
+
+def test_friction_that_holds_a_joint_gets_a_larger_motion(book: Book) -> None:
+    held = 8.0 * default_arm().actuator(3).torque_per_volt  # V that friction takes
+    weak = with_joint(default_arm(), 3, "friction", coulomb=held, breakaway=held)
+    rig = SimulatedRig(weak)
+    stuck(rig, book)
+    assert len(rig.played) == 2
+
+
+def test_a_joint_that_cannot_move_is_named(book: Book) -> None:
+    blocked = with_joint(default_arm(), 2, "friction", coulomb=50.0, breakaway=50.0)
+    with pytest.raises(UserError, match=r"joint 2 \(wrist pitch\) did not move when led by 0.4 rad") as caught:
+        stuck(SimulatedRig(blocked), book)
+    assert "joint 1" not in caught.value.message
+    assert book.get("first motion") is None
+
+
+def test_a_joint_that_runs_the_wrong_way_is_named() -> None:
+    time = np.arange(2000) / 1000
+    leader = np.tile(np.minimum(0.3 * time, 0.15)[:, None], (1, 4))
+    follower = leader * np.array([1.0, 0.9, -0.6, 0.05])
+    log = Log("log", Origin(), time, leader, follower, 0.0 * leader, np.full(len(time), "following"), 0, True)
+    assert shares_moved(log) == pytest.approx([1.0, 0.9, -0.6, 0.05], abs=0.05)
+
+
+def test_a_board_that_fits_its_arm_file_is_taken() -> None:
+    refuse_uncalibrated(default_arm(), ParameterTable.defaults())
+
+
+def test_a_joint_that_was_never_calibrated_is_named() -> None:
+    """The arm file says where its potentiometer stands; the board still has the default."""
+    arm = with_pot(default_arm(), 1, centre=0.6)
+    with pytest.raises(UserError, match=r"joint 1 \(shoulder pitch\) was never calibrated: .* 0.60 rad"):
+        refuse_uncalibrated(arm, ParameterTable.defaults())
+    table = ParameterTable.defaults()
+    zero = round(16368 / 2 - 0.6 / table.physical("follower1.scale"))
+    refuse_uncalibrated(arm, table.with_raw({"follower1.zero": zero}))
+    with pytest.raises(UserError, match="is calibrated for another arm"):
+        refuse_uncalibrated(default_arm(), table.with_raw({"follower1.zero": zero}))
+
+
+def test_another_potentiometer_or_supply_than_the_arm_files_is_refused() -> None:
+    with pytest.raises(UserError, match="follower potentiometer 2 turns 4.71 rad"):
+        refuse_uncalibrated(with_pot(default_arm(), 2, track=4.71), ParameterTable.defaults())
+    with pytest.raises(UserError, match="supply_mv says 9 V"):
+        refuse_uncalibrated(default_arm(), ParameterTable.defaults().with_raw({"supply_mv": 9000}))

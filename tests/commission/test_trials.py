@@ -1,0 +1,121 @@
+"""Trials: judged against the controllers from before, kept in the journal, and the best of them that passed whole."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+
+from greywhale.commission.choose import confirm
+from greywhale.commission.rig import Rig
+from greywhale.commission.search import KD, KI, KP, JointSearch
+from greywhale.commission.trials import Trial, Trials
+from greywhale.errors import UserError
+from greywhale.loop.controllers import controllers_of
+from tests.commission.simulated import SimulatedRig
+
+BETTER, WILD = 2.0, 40.0  # times the stiffness of before
+
+
+def stiffer(trials: Trials, joints: Sequence[int], factor: float) -> np.ndarray:
+    rows = controllers_of(trials.table).copy()
+    for joint in joints:
+        rows[joint, KP] *= factor
+        rows[joint, KD] *= factor**0.5
+        rows[joint, KI] *= factor
+    return rows
+
+
+def play(trials: Trials, rig: SimulatedRig, rows: np.ndarray) -> Trial:
+    return trials.play(rig, rows)  # type: ignore[arg-type]
+
+
+def play_before(trials: Trials, rig: SimulatedRig) -> Trial:
+    return trials.play_before(rig)  # type: ignore[arg-type]
+
+
+def test_better_controllers_pass_and_are_ranked(trials: Trials, rig: SimulatedRig) -> None:
+    before = play_before(trials, rig)
+    some = play(trials, rig, stiffer(trials, [1], BETTER))
+    more = play(trials, rig, stiffer(trials, [0, 1, 2], BETTER))
+    assert all(trial.passed for trial in (before, some, more))
+    assert trials.passing() == [more, some, before]
+    assert more.verdicts[1].score < 0.7
+
+
+def test_a_joint_that_hunts_is_stopped_and_named(trials: Trials, rig: SimulatedRig) -> None:
+    play_before(trials, rig)
+    trial = play(trials, rig, stiffer(trials, [2], WILD))
+    assert trial.stopped == "joint 2 hunted"
+    assert trial.verdicts[2].hunts
+    assert not trial.verdicts[0].faults
+    assert not trial.passed
+    assert trial.traces.leader.shape[0] < 10_000
+
+
+def test_what_is_in_the_journal_needs_no_arm(trials: Trials, rig: SimulatedRig) -> None:
+    sets = [stiffer(trials, [0], BETTER), stiffer(trials, [3], WILD)]
+    before = play_before(trials, rig)
+    first = [play(trials, rig, rows) for rows in sets]
+    again = Trials(trials.book, trials.check, trials.table)
+    assert again.known()
+    assert again.play_before(None).as_dict() == before.as_dict()
+    for rows, known in zip(sets, first, strict=True):
+        assert again.known()
+        assert again.play(None, rows).as_dict() == known.as_dict()
+    assert not again.known()
+
+
+def searches_of(trials: Trials) -> list[JointSearch]:
+    searches = [JointSearch(joint, 1) for joint in range(4)]
+    for trial in trials.done:
+        for search, verdict in zip(searches, trial.verdicts, strict=True):
+            search.add(trial.rows[search.joint], verdict, trial.name)
+    return searches
+
+
+def test_the_joints_best_are_played_together_before_they_count(trials: Trials, rig: SimulatedRig) -> None:
+    play_before(trials, rig)
+    play(trials, rig, stiffer(trials, [0, 1], BETTER))
+    play(trials, rig, stiffer(trials, [2], BETTER))
+    best = confirm(trials, searches_of(trials), lambda: rig)  # type: ignore[arg-type, return-value]
+    assert best is trials.done[3]
+    assert best.passed
+    assert np.array_equal(best.rows, stiffer(trials, [0, 1, 2], BETTER))
+
+
+def test_a_combination_that_fails_on_the_arm_is_not_chosen(trials: Trials, rig: SimulatedRig) -> None:
+    """The third joint's controller passed once; from then on the arm is another, on which it hunts."""
+    play_before(trials, rig)
+    play(trials, rig, stiffer(trials, [1], BETTER))
+    searches = searches_of(trials)
+    wild = stiffer(trials, [2], WILD)[2]
+    searches[2].add(wild, searches[1].ranked()[0].verdict, "lucky")
+    best = confirm(trials, searches, lambda: rig)  # type: ignore[arg-type, return-value]
+    assert best.passed
+    assert not np.array_equal(best.rows[2], wild)
+    assert np.array_equal(best.rows[1], stiffer(trials, [1], BETTER)[1]), "the other joint keeps its better controller"
+
+
+def test_where_nothing_passes_what_was_before_is_chosen(trials: Trials, rig: SimulatedRig) -> None:
+    before = play_before(trials, rig)
+    play(trials, rig, stiffer(trials, [1], WILD))
+    assert confirm(trials, searches_of(trials), lambda: rig) is before  # type: ignore[arg-type, return-value]
+
+
+def test_controllers_from_before_that_the_board_stops_are_refused(trials: Trials, rig: SimulatedRig) -> None:
+    wild = Trials(trials.book, trials.check, trials.table_of(stiffer(trials, [1], WILD)))
+
+    class Stopping(SimulatedRig):
+        def play(self, *given: object, **options: object):  # type: ignore[no-untyped-def]
+            played = super().play(*given, **options)  # type: ignore[arg-type]
+            return type(played)(played.log, "the board stopped", 1)
+
+    with pytest.raises(UserError, match="ended early: the board stopped"):
+        wild.play_before(Stopping(rig.arm))  # type: ignore[arg-type]
+
+
+def test_a_simulated_rig_offers_what_a_rig_offers() -> None:
+    offered = {name for name in vars(SimulatedRig) if not name.startswith("_")}
+    assert {name for name in vars(Rig) if not name.startswith("_")} <= offered

@@ -1,0 +1,95 @@
+"""Commissioning arms that the model does not know (MuJoCo's, with play at the potentiometers), through the serial port.
+
+Judged on motions that a person leads and that the commissioning never sees. GREYWHALE_FOREIGN names other seeds.
+"""
+
+from __future__ import annotations
+
+import os
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.commission import Options, commission
+from greywhale.commission.judge import MOST_UNREST
+from greywhale.commission.measures import unrest
+from greywhale.demo import BenchProcess, record_motion
+from greywhale.files.leader import save_leader
+from greywhale.firmware import TICK_S
+from greywhale.measure import evaluate
+from tools.bench.figure import Figure
+from tools.bench.tuning import motions
+
+Floats = npt.NDArray[np.float64]
+
+SEEDS = tuple(map(int, os.environ.get("GREYWHALE_FOREIGN", "1 2 3 4 5").split()))
+WALL_S = 240.0
+HUMAN_SHARE = 0.15
+
+
+@dataclass(frozen=True)
+class Run:
+    """Errors (4,) rad² and unrest (4,) rad rms by motion."""
+
+    error: dict[str, Floats]
+    unrest: dict[str, Floats]
+
+
+def commissioned(seed: int, folder: Path) -> tuple[Run, Run, float]:
+    """How an arm follows before and after, and the wall time of the commissioning (s)."""
+    with BenchProcess(str(seed), "1", str(folder), module="tools.bench.foreign_arm") as bench:
+        before = recorded(bench, folder, "before")
+        started = time.monotonic()
+        commission(Options(port=bench.port, out=folder / "commission"))
+        wall = time.monotonic() - started
+        return before, recorded(bench, folder, "after"), wall
+
+
+def recorded(bench: BenchProcess, folder: Path, when: str) -> Run:
+    """Every motion with the controllers that the board has."""
+    errors, rests = {}, {}
+    for name, motion in motions().items():
+        leader = folder / "leader.csv"
+        save_leader(leader, motion)
+        log = record_motion(bench, leader, folder / f"{when} {name}.csv").log()
+        errors[name] = np.array([joint.mse for joint in evaluate(log).joints])
+        grid = np.arange(0.0, float(log.time[-1]), TICK_S)
+        even = [
+            np.column_stack([np.interp(grid, log.time, values[:, joint]) for joint in range(4)])
+            for values in (log.leader, log.follower)
+        ]
+        rests[name] = unrest(even[0], even[1], still_rad=0.02)
+    return Run(errors, rests)
+
+
+def run() -> list[Figure]:
+    figures: list[Figure] = []
+    reaches = []
+    for seed in SEEDS:
+        with tempfile.TemporaryDirectory() as folder:
+            before, after, wall = commissioned(seed, Path(folder))
+        head = f"foreign arm {seed}"
+        for name, was in before.error.items():
+            ratios = after.error[name] / was
+            total = float(after.error[name].sum() / was.sum())
+            worst = float(ratios.max())
+            figures += [
+                Figure(f"{head}, {name}: MSE after / before", total, "x"),
+                Figure(f"{head}, {name}: worst joint", worst, "x", "<= 1", worst <= 1.0),
+            ]
+        reaches.append(float(after.error["human reaches"].sum() / before.error["human reaches"].sum()))
+        rests, rested = after.unrest["multi-steps"], before.unrest["multi-steps"]
+        hunting = int(((rests > MOST_UNREST) | (rests > 2.0 * rested)).sum())
+        figures += [
+            Figure(f"{head}: most unrest at rest", 1e3 * float(rests.max()), "mrad rms"),
+            Figure(f"{head}: joints that hunt at rest", hunting, "", "0", hunting == 0),
+            Figure(f"{head}: wall time", wall, "s", f"<= {WALL_S:g}", wall <= WALL_S),
+        ]
+    median = float(np.median(reaches))
+    holds = median <= HUMAN_SHARE
+    figures.append(Figure("foreign arms, human reaches: median", median, "x", f"<= {HUMAN_SHARE}", holds))
+    return figures
