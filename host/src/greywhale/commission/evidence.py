@@ -78,7 +78,7 @@ def _plant_that_hunts(arm: ArmParameters, table: ParameterTable, trial: Trial, j
 
 
 def _variants(plant: Floats, joint: int) -> Floats:
-    """The model itself, then with more play, wider gaps (where its teeth are not rigid), lag, loop gain: (n, columns)."""
+    """The model itself, then with more play, wider gaps (where its teeth are not rigid), lag and gain: (n, columns)."""
     rows = [plant]
     gap, stiffness, gain = (column(name, joint) for name in ("half_gap", "stiffness", "torque_per_volt"))
     toothed = ((gap, GAPS),) if plant[stiffness] > 0.0 else ()
