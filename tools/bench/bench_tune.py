@@ -19,7 +19,7 @@ from greywhale.loop import plant_row
 from greywhale.measure import Evaluation, evaluate
 from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory
-from greywhale.tune.judge.margins import Margins
+from greywhale.tune.judge.margins import MOVING, Margin, Margins
 from tools.bench.figure import Figure
 from tools.bench.tuning import Judged, figures, motions
 from tools.setup.console import ROOT
@@ -41,6 +41,12 @@ def measured(
     return found
 
 
+def roll_rattle(margins: tuple[Margin, ...]) -> float:
+    """rad rms, in the worst class of motion."""
+    (roll,) = (one.rattle_rad for one in margins if one.scenario == MOVING and one.joint == 3)
+    return roll
+
+
 def run() -> list[Figure]:
     FOLDER.mkdir(parents=True, exist_ok=True)
     wanted, nominal = motions(), load_arm("white_box")
@@ -54,7 +60,9 @@ def run() -> list[Figure]:
     arm = default_arm()
     judged = {name: Judged.of(name, motion, arm, before[name][0], after[name][0]) for name, motion in wanted.items()}
     changed = 100 * learnt.identification.verdicts[2].improvement
-    margins = Margins(arm, ParameterTable.defaults(), plant_row(arm)[None]).check(learnt.tuning.after)
+    judge = Margins(arm, ParameterTable.defaults(), plant_row(arm)[None])
+    margins = judge.check(learnt.tuning.after)
+    rattling = [roll_rattle(judge.check(learnt.tuning.before)), roll_rattle(margins)]
     missing = sum(not margin.holds for margin in margins)
     return [
         Figure("bench: identify, wall time", learnt.identify_s, "s"),
@@ -63,5 +71,7 @@ def run() -> list[Figure]:
         Figure("bench: identify, tune and upload", total, "s", f"<= {REACH_S:g}", total <= REACH_S),
         Figure("bench: model better than white box, changed controller", changed, "%"),
         Figure(f"bench: margins missing on the true arm, of {len(margins)}", missing, "", "0", missing == 0),
+        Figure("bench: rattling of the roll joint while moving, before", 1e3 * rattling[0], "mrad"),
+        Figure("bench: the same, after", 1e3 * rattling[1], "mrad", "<= before", rattling[1] <= rattling[0]),
         *figures("bench", judged),
     ]
