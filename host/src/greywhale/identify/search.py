@@ -68,8 +68,11 @@ MOST_RIVALS = 2
 STARTS = 2  # the global search's points from which least squares starts, besides the user's arm
 WINDOW_STEPS = 20
 # An order gets a whole fit only if a short one leaves at most so much more of the held-out misfit than there was.
-PROBE_STEPS = 6
-PROBE_SLACK = 0.01
+# Orders of the first two turns always get one: much hangs on them.
+PROBE_STEPS = 8
+PROBE_SLACK = 0.04  # a share
+SURE_TURNS = (0, 1)
+ROUNDS = 2
 LOOP_STEPS = 10
 # The side of its gap from which each motor starts is chosen anew at most so often, each time for some steps of the fit.
 SETTLINGS = 4
@@ -137,8 +140,13 @@ class Search:
         self.report("fitting the motors", 0.0)
         self._consider(self._fit_motors())
         self._consider(self._fit_friction())
-        for number, turn in enumerate(TURNS):
-            self._consider_rivals(turn, number)
+        # An order that did not help at first may do so once the later ones are known.
+        for _ in range(ROUNDS):
+            before = self.best
+            for number, turn in enumerate(TURNS):
+                self._consider_rivals(turn, number)
+            if self.best is before:
+                break
         if self.loops:
             self._consider_closed()
         self._fit_whole()
@@ -160,7 +168,8 @@ class Search:
             self.report("choosing the model's order", (number + 1 - len(left) / len(turn)) / len(TURNS))
             before = self.best
             assert before is not None
-            hopeful = [one for one in (self._extend(before, order) for order in left) if self._is_hopeful(one, before)]
+            extended = [one for one in (self._extend(before, order) for order in left) if not self._was_tried(one)]
+            hopeful = [one for one in extended if number in SURE_TURNS or self._is_hopeful(one, before)]
             if not hopeful:
                 return
             found = [self._measure(self._settle(self._fitted, one)) for one in hopeful]
@@ -171,12 +180,15 @@ class Search:
                 return
             left = [order for order in left if self._may_follow(order)]
 
+    def _was_tried(self, candidate: Candidate) -> bool:
+        return any(set(one.space.names) == set(candidate.space.names) for one in self.tried)
+
     def _is_hopeful(self, candidate: Candidate, before: Candidate) -> bool:
         """Whether a few steps on half of the windows already predict the held-out part as well as the model before."""
         assert before.held_out is not None
         few = WindowResidual(self.logs, self.arm, self.joints, False, 2)
         few.settle(before.plant, before.zero)
-        return self._error(self._refine(few, candidate, PROBE_STEPS)) < before.held_out + PROBE_SLACK
+        return self._error(self._refine(few, candidate, PROBE_STEPS)) < before.held_out * (1.0 + PROBE_SLACK)
 
     def _may_follow(self, order: str) -> bool:
         """Whether the best model lacks this order. Without Coulomb friction there is no friction at rest."""
