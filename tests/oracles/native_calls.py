@@ -92,7 +92,7 @@ class Calls:
         return b"".join(wholes(given[name]) for name in ("start", "acts", "on", "late"))
 
     def _pots(self, pots: list[object]) -> bytes:
-        names = ("track", "centre", "direction", "noise", "linearity")
+        names = ("track", "centre", "direction", "noise", "linearity", "play", "lag")
         return b"".join(reals(self._made[id(pot)][1][name]) for pot in pots for name in names)
 
     def _board(self, settings: object, timing: object, pots: list[object], pot_supply: float, seed: int) -> bytes:
@@ -120,7 +120,7 @@ class Calls:
 
     @staticmethod
     def _simulate_windows(**given: Any) -> bytes:
-        names = ("angles", "velocities", "sides")
+        names = ("angles", "velocities", "sides", "places")
         return b"".join(
             (
                 *(array(given[name], np.float64) for name in ("plants", "offsets", "kicks")),

@@ -104,12 +104,17 @@ STEPS_PER_TICK = {
 
 
 def candidates() -> tuple[Any, Any]:
-    """Of three arms; some against a stop all the time, some with short ramps, some that cannot be.
+    """Of four arms; some against a stop all the time, some with short ramps, some that cannot be.
 
     The last but one is a shadow of an arm: its inertias and torques are so small that many a product is no normal
     number. The last is lost at once.
     """
-    boxes = [search_box("default", 7, 1.0, 1), search_box("white_box", 6, 0.4, 3), search_box("grey_box", 6, 2.0, 3)]
+    boxes = [
+        search_box("worn", 5, 0.3, 2),
+        search_box("default", 7, 1.0, 1),
+        search_box("white_box", 6, 0.4, 3),
+        search_box("grey_box", 6, 2.0, 3),
+    ]
     controllers, plants = (np.concatenate(parts) for parts in zip(*boxes, strict=True))
     plants[::5, columns("stop_max")] = 0.5
     controllers[3::7, :, CONTROLLER_COLUMNS.index("ze_c")] = 200
@@ -146,7 +151,7 @@ def test_single_runs(name: str, calls: Calls, driver: Path, tmp_path: Path) -> N
 
 def test_identification_windows(calls: Calls, driver: Path, tmp_path: Path) -> None:
     spacing = 1e-3 * np.random.default_rng(2).uniform(0.5, 1.5, 150)
-    for arm in ("default", "white_box", "grey_box"):
+    for arm in ("default", "white_box", "grey_box", "worn"):
         for count in (1, 3, 5):
             given = windows_of_test(load_arm(arm), count)
             angles = np.asarray(_native.simulate_windows(**given))
@@ -159,7 +164,7 @@ def test_ideal_law(calls: Calls, driver: Path, tmp_path: Path) -> None:
     slices = leader_slices(human_reaches(4, 2.0), 0.5, 0.0, False)
     tunings = np.tile([1.1, 0.02, 1.0, 1.0], (3, 4, 1)) * np.array([1.0, 1.1, 1.2])[:, None, None]
     direction = np.where(np.arange(len(slices)) % 4000 < 1500, 1, 0).astype(np.int8)
-    for arm in ("default", "white_box"):
+    for arm in ("default", "white_box", "worn"):
         for chased in (-1, 1):
             _, angles = _native.simulate_ideal(
                 leader=slices,

@@ -88,6 +88,7 @@ class WholeArm:
             angles=at_rest,
             velocities=at_rest,
             sides=np.tile([0.0, 1.0, 1.0, 0.0], (count, 1)),
+            places=at_rest,
             rows=self.slices,
             volts=np.ascontiguousarray(volts),
             spacing=np.full(count * self.slices, SLICE_S),

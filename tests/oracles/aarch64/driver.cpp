@@ -115,13 +115,15 @@ loop::Timing take_timing(Calls& calls) {
 }
 
 std::array<arm::Potentiometer, kJoints> take_pots(Calls& calls) {
-  std::array<arm::Potentiometer, kJoints> pots;
+  std::array<arm::Potentiometer, kJoints> pots{};
   for (arm::Potentiometer& pot : pots) {
     pot.track = calls.real();
     pot.centre = calls.real();
     pot.direction = calls.real();
     pot.noise = calls.real();
     pot.linearity = calls.real();
+    pot.sensor.play = calls.real();
+    pot.sensor.lag = calls.real();
   }
   return pots;
 }
