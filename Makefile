@@ -34,7 +34,7 @@ build: setup ## the same, under the name people look for
 firmware: gates ## build the firmware for both boards, show its size, check its tick and its stack
 
 demo: setup ## the whole story on the simulated bench; options in ARGS, e.g. ARGS="--leader motion.csv"
-	@$(PYTHON) -m greywhale demo --out build/demo $(ARGS)
+	@$(PYTHON) -m greywhale demo --out build/demo --prove $(ARGS)
 
 lint: $(READY) ## ruff, mypy --strict, cppcheck, clang-tidy, generated files
 	@$(SIDE_BY_SIDE) $(LINT)

@@ -61,6 +61,17 @@ def test_the_demo_tells_its_story(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+def test_the_demo_proves_its_controllers_on_the_arm(tmp_path: Path) -> None:
+    """A third recording, with what commissioning left on the board: nowhere worse than the tuned controllers."""
+    result = run(DemoOptions(tmp_path, duration_s=4.0, practice_s=10.0, budget=30, prove=True))
+    assert [one.name for one in result.runs] == ["before tuning", "tuned", "proven on the arm"]
+    assert "predicted" in (tmp_path / "commission" / "report.html").read_text(encoding="utf-8").lower()
+    _, tuned, proven = (one.measures for one in result.runs)
+    assert proven.total_mse < 1.1 * tuned.total_mse
+    assert "proven on the arm" in result.text()
+
+
+@pytest.mark.slow
 def test_the_demo_shows_a_controller_that_it_is_given(tmp_path: Path) -> None:
     table = ROOT / "shared" / "fuzzy_tables" / "table_10.toml"
     result = run(DemoOptions(tmp_path, duration_s=5.0, controller=table))

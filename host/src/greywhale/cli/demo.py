@@ -42,6 +42,7 @@ from greywhale.cli.output import json_option, progress, show
     type=click.IntRange(min=1),
     help="Controllers tried for each joint; without it, as many as `tune` tries.",
 )
+@click.option("--prove", is_flag=True, help="Also prove the tuned controllers on the arm, as `commission` does.")
 @json_option
 def command(
     out: Path,
@@ -54,6 +55,7 @@ def command(
     controller: Path | None,
     practice: float,
     budget: int | None,
+    prove: bool,
     as_json: bool,
 ) -> None:
     """The whole story on the simulated bench in one go, pictures at the end.
@@ -77,6 +79,7 @@ def command(
         controller=controller,
         practice_s=practice,
         budget=budget,
+        prove=prove,
     )
     with progress(as_json) as report:
         result = demo.run(options, report)

@@ -25,6 +25,7 @@ from greywhale.trajectory import Trajectory, human_reaches
 Progress = Callable[[str, float], None]
 
 UNTUNED, OTHER = "before_tuning", "table_9"  # of the paper: where tuning starts, and the changed controller
+REST_FILE = "rest_leader.csv"  # a leader that the person holds still
 PRACTICE_S = 20.0
 POSE = (0.0, 0.4, 0.0, 0.0)  # rad, where it begins: the arm off its lower stops, room to both sides
 # The last evaluations of a search would gain little, and here the motion only has to be a good one.
@@ -52,7 +53,7 @@ def practise(
     def named(name: str) -> Progress:
         return lambda what, fraction: report(f"{name}: {what}", fraction)
 
-    rest, motion = folder / "rest_leader.csv", folder / "practice_leader.csv"
+    rest, motion = folder / REST_FILE, folder / "practice_leader.csv"
     save_leader(rest, Trajectory(np.array([0.0, 1.0]), np.array([POSE, POSE])))
     untuned = tables(base)[0]
     designed = design(nominal, POSE, table=untuned, seconds=seconds, budget=DESIGN_BUDGET, report=named("practice"))

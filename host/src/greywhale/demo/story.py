@@ -6,6 +6,7 @@ The motion that is shown is not used for anything else: identification sees othe
 from __future__ import annotations
 
 import json
+import shlex
 import time
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -16,7 +17,8 @@ from greywhale.board.device import Device
 from greywhale.board.upload import change_parameters
 from greywhale.demo import learn
 from greywhale.demo.bench import BenchProcess
-from greywhale.demo.practice import PRACTICE_S, UNTUNED, practise, tables
+from greywhale.demo.learn import Learnt
+from greywhale.demo.practice import PRACTICE_S, REST_FILE, UNTUNED, practise, tables
 from greywhale.demo.recorder import Recorded, record_motion
 from greywhale.demo.result import DemoResult, Run
 from greywhale.errors import BAD_USAGE, UserError, os_reason
@@ -33,6 +35,7 @@ from greywhale.trajectory import Trajectory, human_reaches
 from greywhale.tune.progress import Report, report_nothing
 
 SHORTEST_S, LONGEST_S = 4.0, 600.0  # of generated motions
+PROVING_TRIALS = 4  # sets tried on the arm
 SHORTEST_PRACTICE_S, LONGEST_PRACTICE_S = 10.0, 60.0
 
 
@@ -50,6 +53,7 @@ class DemoOptions:
     controller: Path | None = None  # shown instead of tuned ones
     practice_s: float = PRACTICE_S  # of the motion that the arm is identified from
     budget: int | None = None  # of the tuning, evaluations; None: its default
+    prove: bool = False  # prove the tuned controllers on the arm, as `greywhale commission` does
 
 
 def run(options: DemoOptions, progress: Report | None = None) -> DemoResult:
@@ -75,6 +79,9 @@ def run(options: DemoOptions, progress: Report | None = None) -> DemoResult:
             runs.append(stage.follow(leader, "after", options.controller.stem, options.controller))
         else:
             runs.append(stage.follow(leader, "after", "tuned", learnt.controller))
+            if options.prove:
+                stage.prove(learnt)
+                runs.append(stage.follow(leader, "proven", "proven on the arm"))
     report("drawing", 0.0)
     result = DemoResult(
         leader=str(options.leader) if options.leader else f"generated, seed {options.seed}",
@@ -100,8 +107,8 @@ class _Stage:
         self._report = report
         self._base = self._set_supply()
 
-    def follow(self, leader: Path, file: str, name: str, controller: Path) -> Run:
-        """Record the motion that is shown once."""
+    def follow(self, leader: Path, file: str, name: str, controller: Path | None = None) -> Run:
+        """Record the motion that is shown once; without a controller, with those that the board has."""
         recorded = self._record(leader, file, name, controller)
         return Run(name, recorded, evaluate(recorded.log()))
 
@@ -113,7 +120,28 @@ class _Stage:
         known = tables(self._base)
         return learn.learn(logs[0], logs[1:], known, nominal, options.out, options.budget, progress=self._report)
 
-    def _record(self, leader: Path, file: str, name: str, controller: Path) -> Recorded:
+    def prove(self, learnt: Learnt) -> None:
+        """Try the tuned controllers and variants of them on the arm, while the person holds the leader still."""
+        # It brings identification and tuning along, which are slow to import.
+        from greywhale.commission import Options, commission
+        from greywhale.commission.page import save_page
+
+        options = self._options
+        self._bench.command(f"leader {shlex.quote(str((options.out / REST_FILE).resolve()))}")
+        outcome = commission(
+            Options(
+                port=self._bench.port,
+                out=options.out / "commission",
+                model=learnt.model,
+                rounds=1,
+                trials=PROVING_TRIALS,
+                budget=options.budget,
+            ),
+            self._report,
+        )
+        save_page(outcome, options.out / "commission" / "report.html")
+
+    def _record(self, leader: Path, file: str, name: str, controller: Path | None) -> Recorded:
         def told(what: str, fraction: float) -> None:
             self._report(f"{name}: {what}", fraction)
 
