@@ -81,7 +81,7 @@ def run(options: DemoOptions, progress: Report | None = None) -> DemoResult:
             runs.append(stage.follow(leader, "after", "tuned", learnt.controller))
             if options.prove:
                 stage.prove(learnt)
-                runs.append(stage.follow(leader, "proven", "proven on the arm"))
+                runs.append(stage.follow(leader, "proven", "proven"))
     report("drawing", 0.0)
     result = DemoResult(
         leader=str(options.leader) if options.leader else f"generated, seed {options.seed}",

@@ -115,7 +115,7 @@ def _draw_angle(axes: Axes, traces: Sequence[Trace], joint: int, shared_leader: 
     for one, colour in zip(traces, _COLOURS, strict=False):
         axes.plot(one.time, one.follower[:, joint], color=colour, linewidth=1.1, label=f"follower, {one.label}")
     figures = ", ".join(f"{one.label} {one.mse[joint]:.2g}" for one in traces)
-    axes.set_title(f"Joint {joint}, {JOINT_NAMES[joint]}   (MSE in rad²: {figures})", fontsize=9)
+    axes.set_title(f"Joint {joint}, {JOINT_NAMES[joint]}\nMSE in rad²: {figures}", fontsize=9)
     axes.set_ylabel("angle [rad]")
 
 

@@ -35,6 +35,8 @@ REACHES_SEED, REACHES_S, WAIT_TICKS = 2002, 6.0, 200
 # How far numbers that should agree may differ: supplies, potentiometers' slopes, an arm and its own table (relative),
 # and its gaps (rad).
 SAME_SUPPLY, SAME_SLOPE, SAME_VALUE, SAME_GAP = 0.02, 0.1, 1e-3, 1e-5
+# Quantities that the search may leave at next to nothing.
+OFTEN_NOTHING = ("half_gap", "pot_play", "pot_lag", "load_friction", "creep_velocity", "supply_resistance")
 CERTAIN = 1e-20  # a variance of next to nothing
 CONVERTER_SPAN = 16368  # four conversions of 10 bits, as the board counts a potentiometer's whole track
 
@@ -200,8 +202,8 @@ def doubt_edits(arm: ArmParameters, facts: Identification) -> list[Doubt]:
     if facts.covariance is None or not facts.parameter:
         return []
     now, then = sampled_plants(_with_one_uncertain(arm, facts, None), 2)
-    # A gap of next to nothing is no gap, whatever its digits.
-    least = np.array([SAME_GAP if name.endswith("half_gap") else 1e-12 for name in PLANT_COLUMNS])
+    # A gap or play of next to nothing is none, whatever its digits.
+    least = np.array([SAME_GAP if name.endswith(OFTEN_NOTHING) else 1e-12 for name in PLANT_COLUMNS])
     differs = np.abs(now - then) > SAME_VALUE * np.maximum(np.abs(now), np.abs(then)) + least
     if not differs.any():
         return []
