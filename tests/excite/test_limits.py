@@ -70,10 +70,11 @@ def test_the_family_begins_with_the_arm_and_is_the_same_for_a_seed() -> None:
 
 def test_the_family_of_a_model_is_drawn_from_its_covariance() -> None:
     sure = modelled(1e-3)
-    spread = family(sure, 0)[1:] / family(sure, 0)[0]
-    assert np.nanmax(np.abs(spread - 1.0)) < 0.01
+    there = family(sure, 0)[0] != 0.0
+    spread = family(sure, 0)[1:, there] / family(sure, 0)[0, there]
+    assert np.max(np.abs(spread - 1.0)) < 0.01
     doubtful = modelled(0.3)
-    assert np.nanmax(np.abs(family(doubtful, 0)[1:] / family(doubtful, 0)[0] - 1.0)) > 0.1
+    assert np.max(np.abs(family(doubtful, 0)[1:, there] / family(doubtful, 0)[0, there] - 1.0)) > 0.1
 
 
 def modelled(deviation: float) -> ArmParameters:

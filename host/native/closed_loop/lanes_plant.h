@@ -115,6 +115,8 @@ struct Row {
   Float inertia, felt;  // of worn joints, as in Mesh of conditions.h
 };
 
+GREYWHALE_INLINE Mask worn_lanes(const Joint& j) { return (j.load > all(0.0f)) | (j.creeps != all(0.0f)); }
+
 template <bool kWorn>
 GREYWHALE_INLINE Row row_of(const Joint& j, const Trial& t, Float inertia, Float momentum) {
   const Float zero = all(0.0f), one = all(1.0f);
@@ -127,10 +129,14 @@ GREYWHALE_INLINE Row row_of(const Joint& j, const Trial& t, Float inertia, Float
     r.moves = r.slides | (j.creeps != zero);
     r.felt = one + t.slip * t.mesh * j.load;
     r.inertia = j.damped + choose(r.slides, zero, j.creep);
-    r.give = one / (r.inertia + r.felt * r.stiff);
-    const Float share = r.stiff * r.give;
+    // Lanes that are not worn keep the bits that they have among their like.
+    const Mask worn = worn_lanes(j);
+    const Float give = one / (r.inertia + r.felt * r.stiff);
+    r.give = choose(worn, give, choose(r.touching, j.give[1], j.give[0]));
+    const Float share = choose(worn, r.stiff * give, choose(r.touching, j.share[1], j.share[0]));
+    const Float passed_on = choose(worn, share * r.inertia, choose(r.touching, j.inertia[1], j.inertia[0]));
     r.driven = t.impulse - r.felt * r.push - t.slip * t.friction;
-    r.diagonal = inertia + choose(r.moves, share * r.inertia, r.stiff);
+    r.diagonal = inertia + choose(r.moves, passed_on, r.stiff);
     r.right = momentum + r.push + choose(r.moves, share * r.driven, zero);
     r.share = r.felt * share;
     return r;
@@ -158,7 +164,8 @@ GREYWHALE_INLINE void correct_worn(const Joint& j, const Row& r, const Trial& t,
   const Float passed = choose(r.moves, left / r.felt, r.push - r.stiff * v);
   const Float turned = choose(t.mesh * passed < zero - j.no_pull, zero - t.mesh, t.mesh);
   mesh = choose(j.load > zero, choose(j.gap > zero, mesh, turned), mesh);
-  const Float needed = t.impulse - passed - j.damped * motor_v;
+  const Float sound = t.impulse - r.push - r.stiff * (motor_v - v);
+  const Float needed = choose(worn_lanes(j), t.impulse - passed - j.damped * motor_v, sound);
   const Float starts = choose(absolute(needed) > j.breakaway + j.load * absolute(passed), sign(needed), zero);
   const Float slides_on = choose(t.slip * motor_v < j.creep_velocity, zero, t.slip);
   slip = choose(r.slides, slides_on, starts);
