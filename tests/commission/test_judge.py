@@ -56,6 +56,7 @@ def test_each_fault_has_its_limit_and_its_sentence(name: str, passes: float, fai
     assert failed.restless == (name != "error")
     assert failed.hunts == (name in ("unrest", "rattle"))
     assert verdict(with_joint(name, 2, fails), 1).passed, "the other joints are not blamed"
+    assert (1.0 < failed.excess < 1.2) == (name != "error")
 
 
 def test_an_arm_that_was_restless_before_may_stay_as_it_was_but_no_more() -> None:

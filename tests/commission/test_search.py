@@ -17,9 +17,11 @@ TUNED[[KP, KD, KI]] = 65536 * np.array([1, 1, 100])
 Row = np.ndarray
 
 
-def verdict(score: float, *, restless: bool = False, chatters: bool = False, worse: bool = False) -> Verdict:
+def verdict(
+    score: float, *, restless: bool = False, chatters: bool = False, worse: bool = False, excess: float = 3.0
+) -> Verdict:
     faults = (("restless",) if restless or chatters else ()) + (("worse",) if worse else ())
-    return Verdict(0, faults, restless or chatters, chatters and not restless, score, True)
+    return Verdict(0, faults, restless or chatters, chatters and not restless, excess, score, True)
 
 
 def begun() -> JointSearch:
@@ -51,6 +53,14 @@ def test_a_joint_that_hunts_gets_softer_until_it_rests() -> None:
     assert first[KI] < TUNED[KI] / 5
     assert first[KD] / first[KP] > TUNED[KD] / TUNED[KP], "relatively more damping"
     assert second[KP] == TUNED[KP] // 4
+
+
+def test_a_joint_that_hunts_hardly_more_than_it_may_is_softened_a_little() -> None:
+    search = begun()
+    search.add(TUNED, verdict(0.1, restless=True, excess=1.1), "trial-1")
+    row = search.propose()
+    assert row is not None
+    assert 0.7 * TUNED[KP] < row[KP] < 0.9 * TUNED[KP]
 
 
 def test_a_joint_that_only_chatters_gets_less_damping_and_keeps_its_stiffness() -> None:

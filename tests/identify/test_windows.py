@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 from greywhale import _native
 from greywhale.arm import Arm, ArmParameters
 from greywhale.files.arm import default_arm
-from greywhale.identify.data import prepare, windows_of
+from greywhale.identify.data import LIVELY_RAD, first_rows, prepare, some_windows, windows_of
 from greywhale.identify.space import MOTOR, Space
 from greywhale.identify.steps import WindowFit
 from greywhale.identify.windows import WindowResidual, take_off_starts
@@ -95,6 +96,19 @@ def test_windows_cover_the_log_without_gaps(recorded: Recorded) -> None:
     assert np.all(np.diff(windows.first) == windows.rows)
     assert (len(windows.first) + 1) * windows.rows >= len(recorded.fit.time) - 1
     np.testing.assert_array_equal(windows.measured[0, 0], recorded.fit.follower[0])
+
+
+def test_of_many_windows_those_with_motion_stay_and_are_taken_evenly(recorded: Recorded) -> None:
+    log = prepare(recorded.fit, 1)
+    resting = replace(recorded.fit, follower=np.where(recorded.fit.time[:, None] < 4.0, 0.1, recorded.fit.follower))
+    count = len(first_rows(log))
+    whole = some_windows([log, prepare(resting, 1)], 2 * count)
+    assert [list(numbers) for numbers in whole] == [list(range(count))] * 2
+    few = some_windows([log, prepare(resting, 1)], count // 2)
+    assert sum(map(len, few)) == pytest.approx(count // 2, abs=1)
+    assert np.ptp(few[0]) > count // 2, "from all over the log"
+    for first in first_rows(log)[few[1]]:
+        assert np.ptp(resting.follower[first : first + 500], axis=0).max() > LIVELY_RAD
 
 
 def test_truth_explains_the_log_and_the_white_box_does_not(

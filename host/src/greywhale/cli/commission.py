@@ -26,7 +26,7 @@ EXISTING = click.Path(path_type=Path)
     metavar="J:MIN:MAX",
     help="Range of a joint in rad, instead of 1 rad to either side of where it is.",
 )
-@click.option("--rounds", type=click.IntRange(min=1), default=3, show_default=True, help="Models to make at most.")
+@click.option("--rounds", type=click.IntRange(min=1), default=2, show_default=True, help="Models to make at most.")
 @click.option(
     "--trials", type=click.IntRange(min=1), default=6, show_default=True, help="Sets to try on the arm in each round."
 )

@@ -38,7 +38,7 @@ from greywhale.table import ParameterTable, find_board
 from greywhale.tune.model_checks import doubt_other_arm
 from greywhale.tune.progress import Report, report_nothing
 
-ROUNDS, TRIALS = 3, 6
+ROUNDS, TRIALS = 2, 6
 DESIGN_BUDGET = 150  # the last evaluations of a search for a motion would gain little
 # A joint whose error is this share of before (mean over the check) is good: no more trials for its sake.
 GOOD = 0.1
@@ -146,7 +146,8 @@ class _Campaign:
             path = options.model
         else:
             known = gather(self._excite(), self.trials)
-            path = learn.find_model(book, f"model-{number}", self.nominal, known, options.seed, report)
+            begin = self.rounds[-1].learnt.arm if self.rounds else None
+            path = learn.find_model(book, f"model-{number}", self.nominal, known, options.seed, report, begin)
         model = learn.read_model(path, options.seed, book.path("before.toml"))
         return learn.find_controllers(
             book,

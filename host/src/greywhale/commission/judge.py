@@ -59,6 +59,7 @@ class Verdict:
     faults: tuple[str, ...]
     restless: bool  # one of the faults is unrest, rattling or chatter
     chatters_only: bool
+    excess: float  # how many times its unrest, rattling or chatter are what they may be; inf where it ended the trial
     score: float  # geometric mean over the parts; NaN where the check was not played to its end
     known: bool  # whether the joint can be judged: the check was whole, or this joint ended it
 
@@ -79,7 +80,10 @@ def judge(measured: Measures, before: Measures, limits: Limits, guilty: Sequence
 
 def _judge(measured: Measures, before: Measures, limits: Limits, joint: int, guilty: str) -> Verdict:
     faults = [guilty] if guilty else []
+    excess = np.inf if guilty else 0.0
     unrest, rattle, chatter = (float(measured.worst(name)[joint]) for name in ("unrest", "rattle", "chatter"))
+    for value, limit in ((unrest, limits.unrest), (rattle, limits.rattle), (chatter, limits.chatter)):
+        excess = max(excess, value / float(limit[joint]))
     if not guilty and unrest > limits.unrest[joint]:
         faults.append(f"it hunts at rest ({1e3 * unrest:.1f} mrad rms, at most {1e3 * limits.unrest[joint]:.1f})")
     if rattle > limits.rattle[joint]:
@@ -94,7 +98,7 @@ def _judge(measured: Measures, before: Measures, limits: Limits, joint: int, gui
             faults.append(f"it follows {part} worse than before ({ratio:.2g} times the error)")
     ratios = measured.error[:, joint] / np.maximum(before.error[:, joint], 1e-9)
     score = float(np.exp(np.mean(np.log(np.maximum(ratios, 1e-9)))))
-    return Verdict(joint, tuple(faults), restless, restless and quiet, score, measured.whole or bool(faults))
+    return Verdict(joint, tuple(faults), restless, restless and quiet, excess, score, measured.whole or bool(faults))
 
 
 def _allowed(before: Floats, growth: float, least: float, most: float) -> Floats:

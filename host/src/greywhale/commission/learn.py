@@ -49,11 +49,20 @@ def find_model(
     known: Evidence,
     seed: int,
     report: Report,
+    begin: ArmParameters | None = None,
 ) -> Path:
-    """Identify the arm, or take the model of that name from the journal; its file."""
+    """Identify the arm, or take the model of that name from the journal; its file. `begin` is the model before."""
     path = book.path(f"{name}.toml")
     if book.get(name) is None:
-        outcome = identify(known.fit, nominal, validate=known.validate, tables=known.tables, seed=seed, report=report)
+        outcome = identify(
+            known.fit,
+            nominal,
+            validate=known.validate,
+            tables=known.tables,
+            seed=seed,
+            begin=begin if begin is not None and "covariance" in (begin.identification or {}) else None,
+            report=report,
+        )
         outcome.save(path)
         if not outcome.complete:
             raise KeyboardInterrupt

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,6 +35,8 @@ LONGEST_GAP_S = 0.02
 # both parts.
 BLOCK_S = 0.5
 BLOCKS = 4
+# In a lively window a joint moves by more than this.
+LIVELY_RAD = 0.01
 
 
 @dataclass(frozen=True)
@@ -138,15 +141,54 @@ def _noise(rest: Floats, used: NDArray[np.bool_], size: int) -> Floats:
     return noise
 
 
+def first_rows(prepared: Prepared) -> NDArray[np.int64]:
+    """The first row of each window of a log, (windows,)."""
+    rows = _rows_of_window(prepared)
+    starts = [start for run in prepared.runs for start in range(run.start, run.stop - rows, rows)]
+    return np.array(starts, dtype=np.int64)
+
+
+def some_windows(logs: Sequence[Prepared], most: int) -> list[NDArray[np.intp]]:
+    """At most about `most` windows of all logs together: numbers of windows, for each log.
+
+    Where there are more, windows in which nothing moves go first, and what is left is taken evenly.
+    """
+    counts = [len(first_rows(log)) for log in logs]
+    chosen = [np.arange(count) for count in counts]
+    if sum(counts) <= most:
+        return chosen
+    lively = [np.flatnonzero(_is_lively(log)) for log in logs]
+    if sum(map(len, lively)) >= most:
+        chosen = lively
+    share = most / max(1, sum(map(len, chosen)))
+    return [_evenly(numbers, max(1, round(min(1.0, share) * len(numbers)))) for numbers in chosen]
+
+
+def _evenly(numbers: NDArray[np.intp], count: int) -> NDArray[np.intp]:
+    places = np.round(np.linspace(0, len(numbers) - 1, count)).astype(np.intp)
+    found: NDArray[np.intp] = numbers[places] if len(numbers) else numbers
+    return found
+
+
+def _is_lively(prepared: Prepared) -> NDArray[np.bool_]:
+    """Whether any joint moves in a window, (windows,)."""
+    rows = _rows_of_window(prepared)
+    angles = prepared.log.follower
+    found = [float(np.ptp(angles[first : first + rows], axis=0).max()) > LIVELY_RAD for first in first_rows(prepared)]
+    return np.array(found, dtype=bool)
+
+
+def _rows_of_window(prepared: Prepared) -> int:
+    return max(6, round(WINDOW_S / prepared.period))
+
+
 def windows_of(
     prepared: Prepared, part: slice | NDArray[np.intp] | None = None, longest_step: float = STEP_S
 ) -> Windows:
     """Windows one after the other over the whole log, or over a `part` of its windows."""
-    rows = max(6, round(WINDOW_S / prepared.period))
+    rows = _rows_of_window(prepared)
     every = max(1, round(COMPARED_S / prepared.period))
-    first = np.array(
-        [start for run in prepared.runs for start in range(run.start, run.stop - rows, rows)], dtype=np.int64
-    )
+    first = first_rows(prepared)
     if part is not None:
         first = np.ascontiguousarray(first[part])
     log = prepared.log

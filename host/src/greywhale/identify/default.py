@@ -6,8 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greywhale.identify.bootstrap import scatter_of_fits, spread_covariance
+from greywhale.identify.candidate import Candidate
 from greywhale.identify.data import FINE_STEP_S
 from greywhale.identify.found import Found, ParameterEstimate, Rival, Task
+from greywhale.identify.samples import read_search
 from greywhale.identify.search import Search
 from greywhale.identify.space import KINDS, Space
 from greywhale.identify.uncertainty import uncertainty
@@ -20,7 +22,7 @@ def find_default(task: Task) -> Found:
     """Run the search. An interrupt after the first model ends it early; before that, the interrupt is raised again."""
     arm, joints = task.white_box, task.moving
     prepared = [subject.log for subject in task.fitted]
-    search = Search(arm, prepared, task.loops(), joints, task.seed, task.report)
+    search = Search(arm, prepared, task.loops(), joints, task.seed, task.report, _begin(task))
     try:
         search.run()
     except KeyboardInterrupt:
@@ -59,6 +61,18 @@ def find_default(task: Task) -> Found:
         simulated=search.simulated,
         complete=search.complete,
     )
+
+
+def _begin(task: Task) -> Candidate | None:
+    """The model to begin with, in the search's own numbers: all quantities that it states of any joint."""
+    if task.begin is None:
+        return None
+    known, x, _ = read_search(task.begin)
+    kinds = tuple(dict.fromkeys(one.kind for one in known.parameters))
+    space = Space.of(task.white_box, kinds, task.moving)
+    low, high = space.bounds()
+    facts = task.begin.identification or {}
+    return Candidate(space, np.clip(space.translate(x, known), low, high), str(facts.get("order", "")))
 
 
 def _estimates(space: Space, x: Floats, deviations: Floats) -> tuple[ParameterEstimate, ...]:

@@ -21,12 +21,16 @@ Report = Callable[[str, float], None]
 
 @dataclass(frozen=True)
 class Task:
-    """The white box to start from, the logs made ready, and the seed of all random numbers."""
+    """The white box to start from, the logs made ready, and the seed of all random numbers.
+
+    `begin` is an identified model of the same arm, made from other logs, to go on from.
+    """
 
     white_box: ArmParameters
     subjects: tuple[Subject, ...]
     seed: int
     report: Report
+    begin: ArmParameters | None = None
 
     @property
     def fitted(self) -> tuple[Subject, ...]:

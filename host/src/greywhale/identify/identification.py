@@ -27,10 +27,13 @@ def identify(
     tables: Sequence[ParameterTable] = (),
     method: str = "default",
     seed: int = 0,
+    begin: ArmParameters | None = None,
     report: Report | None = None,
 ) -> Outcome:
     """Find the arm that made the logs. `arm` is the white box to start from and supplies all geometry.
 
+    `begin` is a model of the same arm that the default method found from other logs: its quantities are fitted to these
+    logs, and only orders that it lacks are tried. That takes a fraction of the time.
     `tables` are controllers with which the logs may have been recorded; the CRC in each log shows which one it is. An
     interrupt (Ctrl-C) after the first model ends the search early, with `complete` False in the outcome.
     """
@@ -39,7 +42,7 @@ def identify(
     if not logs:
         raise UserError("identification needs at least one log.", BAD_USAGE)
     subjects, doubts = _subjects(logs, validate, arm, tables)
-    task = Task(arm, tuple(subjects), seed, report or (lambda what, fraction: None))
+    task = Task(arm, tuple(subjects), seed, report or (lambda what, fraction: None), begin)
     found = find_default(task) if method == "default" else find_as_paper(task, method)
     verdicts = tuple(judge.judge(subject, arm, found.plant, found.zero, found.joints) for subject in subjects)
     return Outcome(

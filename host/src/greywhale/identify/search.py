@@ -7,18 +7,20 @@
 4. Where the controller is known, a fit to windows and closed loop together competes with the fit to windows alone. It
    wins if it predicts the held-out part of the closed loop better.
 5. The chosen model is fitted to the whole log.
+
+A search may begin with a model of the same arm, found from fewer logs. Then steps 1 and 2 are left out.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
+from greywhale.identify.candidate import Candidate, Observed, WindowsAndLoop
 from greywhale.identify.closed_loop import Loop, LoopResidual
 from greywhale.identify.data import FINE_STEP_S, Prepared
 from greywhale.identify.fit import Pattern, least_squares_fit, pick_different
@@ -56,8 +58,6 @@ TURNS: tuple[tuple[str, ...], ...] = (
 WORTH = 0.01
 # The same for the closed loop. It is rough: chance alone moves its error by a tenth.
 WORTH_CLOSED = 0.2
-# A closed-loop difference of this size counts as one standard deviation (rad): it lasts for many readings.
-LOOP_DOUBT = 1e-2
 GLOBAL_EVALUATIONS = 500
 GLOBAL_WINDOWS = 12
 SOME_WINDOWS = 20
@@ -83,38 +83,6 @@ ELSEWHERE = 0.3
 LOOP_STEP_SCALE = 5.0
 
 
-class Observed(Protocol):
-    """A residual that knows the joint of each of its numbers, and how many seconds a candidate costs."""
-
-    joint_of: NDArray[np.intp]
-    seconds: float
-
-    def __call__(self, space: Space, points: Floats) -> Floats: ...
-
-
-@dataclass(frozen=True)
-class Candidate:
-    """A model in the making. `held_out` is its error on windows to which it was not fitted, None before that is
-    measured.
-    """
-
-    space: Space
-    x: Floats
-    order: str
-    held_out: float | None = None
-    closed: bool = False  # fitted to the closed loop too
-
-    @property
-    def plant(self) -> Floats:
-        found: Floats = self.space.plants(self.x[None])[0]
-        return found
-
-    @property
-    def zero(self) -> Floats:
-        found: Floats = self.space.offsets(self.x[None])[0]
-        return found
-
-
 @dataclass
 class Search:
     """Everything found so far. An interrupt loses only the rest of the search."""
@@ -125,6 +93,7 @@ class Search:
     joints: Sequence[int]
     seed: int
     report: Report
+    begin: Candidate | None = None  # a model of this arm, found from other logs
     best: Candidate | None = None
     tried: list[Candidate] = field(default_factory=list)
     simulations: int = 0
@@ -138,10 +107,13 @@ class Search:
 
     def run(self) -> None:
         self.report("fitting the motors", 0.0)
-        self._consider(self._fit_motors())
-        self._consider(self._fit_friction())
+        if self.begin is None:
+            self._consider(self._fit_motors())
+            self._consider(self._fit_friction())
+        else:
+            self._consider(self._settle(self._fitted, self.begin))
         # An order that did not help at first may do so once the later ones are known.
-        for _ in range(ROUNDS):
+        for _ in range(ROUNDS if self.begin is None else 1):
             before = self.best
             for number, turn in enumerate(TURNS):
                 self._consider_rivals(turn, number)
@@ -169,7 +141,8 @@ class Search:
             before = self.best
             assert before is not None
             extended = [one for one in (self._extend(before, order) for order in left) if not self._was_tried(one)]
-            hopeful = [one for one in extended if number in SURE_TURNS or self._is_hopeful(one, before)]
+            sure = self.begin is None and number in SURE_TURNS
+            hopeful = [one for one in extended if sure or self._is_hopeful(one, before)]
             if not hopeful:
                 return
             found = [self._measure(self._settle(self._fitted, one)) for one in hopeful]
@@ -324,7 +297,8 @@ class Search:
         """Fit the chosen order once more, on all data."""
         assert self.best is not None
         self.report("fitting the chosen model to the whole log", 0.0)
-        self.best = self._retry_optima(self.best)
+        if self.begin is None:
+            self.best = self._retry_optima(self.best)
         windows = WindowResidual(self.logs, self.arm, self.joints, longest_step=FINE_STEP_S)
         windows.settle(self.best.plant, self.best.zero)
         found = self._settle(windows, self.best)
@@ -367,21 +341,3 @@ class Search:
         self.simulations += found.simulations
         self.simulated += found.simulations * observed.seconds
         return found.x
-
-
-class WindowsAndLoop:
-    """Windows and closed loop in one residual, each in standard deviations of the error that the model cannot avoid."""
-
-    def __init__(self, windows: WindowResidual, loops: LoopResidual, candidate: Candidate) -> None:
-        self._windows = windows
-        self._loops = loops
-        self.joint_of = np.concatenate([windows.joint_of, loops.joint_of])
-        self.seconds = windows.seconds + loops.seconds
-        # An error that the model cannot explain in the windows is no noise of single readings, but it weighs like
-        # noise.
-        missed = windows(candidate.space, candidate.x[None])
-        self._scale = max(1.0, float(np.sqrt(np.mean(missed**2))))
-
-    def __call__(self, space: Space, points: Floats) -> Floats:
-        parts = self._windows(space, points) / self._scale, self._loops(space, points) / LOOP_DOUBT
-        return np.concatenate(parts, axis=1)

@@ -17,7 +17,7 @@ from greywhale import _native
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import column
 from greywhale.firmware import JOINTS
-from greywhale.identify.data import BLOCK_S, STEP_S, WINDOW_S, Prepared, Windows, part_of, windows_of
+from greywhale.identify.data import BLOCK_S, STEP_S, WINDOW_S, Prepared, Windows, part_of, some_windows, windows_of
 from greywhale.identify.space import Space
 
 Floats = NDArray[np.float64]
@@ -30,6 +30,8 @@ SIDES = (-1.0, -0.5, 0.0, 0.5, 1.0)
 WORTH_A_CHANGE = 0.95
 # The formula for starts is linear, the gap is not.
 START_PASSES = 2
+# More windows (of half a second) than this would take longer, and hardly tell more.
+MOST_WINDOWS = 120
 
 
 class WindowResidual:
@@ -43,11 +45,13 @@ class WindowResidual:
         held_out: bool | None = None,
         every: int = 1,
         longest_step: float = STEP_S,
+        most: int = MOST_WINDOWS,
     ) -> None:
-        """All windows of the logs, or those held out, or the others; of these, one in `every`."""
+        """At most about `most` windows of the logs, or those held out, or the others; of these, one in `every`."""
         self.joints = list(joints)
         self._body = _native.Arm(arm.native()).body
-        self._pieces = [(windows_of(log, _part(log, held_out, every), longest_step), log) for log in logs]
+        parts = [_part(numbers, held_out, every) for numbers in some_windows(logs, most)]
+        self._pieces = [(windows_of(log, part, longest_step), log) for part, log in zip(parts, logs, strict=True)]
         self._pieces = [piece for piece in self._pieces if len(piece[0].first)]
         self._logged = tuple(self._pieces)
         self._sides = [self._sides_of(windows) for windows, _ in self._pieces]
@@ -245,7 +249,7 @@ def take_off_starts(error: Floats, windows: Windows, log: Prepared, plants: Floa
     return np.concatenate([left.reshape(count, -1), (best / doubt[None, :, None]).reshape(count, -1)], axis=1)
 
 
-def _part(log: Prepared, held_out: bool | None, every: int) -> NDArray[np.intp]:
-    count = len(windows_of(log).first)
-    chosen = np.arange(count) if held_out is None else part_of(count, round(BLOCK_S / WINDOW_S), held_out)
-    return chosen[::every]
+def _part(numbers: NDArray[np.intp], held_out: bool | None, every: int) -> NDArray[np.intp]:
+    if held_out is not None:
+        numbers = numbers[part_of(len(numbers), round(BLOCK_S / WINDOW_S), held_out)]
+    return numbers[::every]

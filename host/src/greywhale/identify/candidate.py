@@ -1,0 +1,67 @@
+"""A model in the making, and what its error is measured by: windows, or windows and closed loop together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from greywhale.identify.closed_loop import LoopResidual
+from greywhale.identify.space import Space
+from greywhale.identify.windows import WindowResidual
+
+Floats = NDArray[np.float64]
+# A closed-loop difference of this size counts as one standard deviation (rad): it lasts for many readings.
+LOOP_DOUBT = 1e-2
+
+
+class Observed(Protocol):
+    """A residual that knows the joint of each of its numbers, and how many seconds a candidate costs."""
+
+    joint_of: NDArray[np.intp]
+    seconds: float
+
+    def __call__(self, space: Space, points: Floats) -> Floats: ...
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A model in the making. `held_out` is its error on windows to which it was not fitted, None before that is
+    measured.
+    """
+
+    space: Space
+    x: Floats
+    order: str
+    held_out: float | None = None
+    closed: bool = False  # fitted to the closed loop too
+
+    @property
+    def plant(self) -> Floats:
+        found: Floats = self.space.plants(self.x[None])[0]
+        return found
+
+    @property
+    def zero(self) -> Floats:
+        found: Floats = self.space.offsets(self.x[None])[0]
+        return found
+
+
+class WindowsAndLoop:
+    """Windows and closed loop in one residual, each in standard deviations of the error that the model cannot avoid."""
+
+    def __init__(self, windows: WindowResidual, loops: LoopResidual, candidate: Candidate) -> None:
+        self._windows = windows
+        self._loops = loops
+        self.joint_of = np.concatenate([windows.joint_of, loops.joint_of])
+        self.seconds = windows.seconds + loops.seconds
+        # An error that the model cannot explain in the windows is no noise of single readings, but it weighs like
+        # noise.
+        missed = windows(candidate.space, candidate.x[None])
+        self._scale = max(1.0, float(np.sqrt(np.mean(missed**2))))
+
+    def __call__(self, space: Space, points: Floats) -> Floats:
+        parts = self._windows(space, points) / self._scale, self._loops(space, points) / LOOP_DOUBT
+        return np.concatenate(parts, axis=1)
