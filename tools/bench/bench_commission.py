@@ -8,8 +8,10 @@ from __future__ import annotations
 import os
 import tempfile
 import time
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -21,6 +23,7 @@ from greywhale.demo import BenchProcess, record_motion
 from greywhale.files.leader import save_leader
 from greywhale.firmware import TICK_S
 from greywhale.measure import evaluate
+from greywhale.trajectory import Trajectory
 from tools.bench.figure import Figure
 from tools.bench.tuning import motions
 
@@ -39,20 +42,20 @@ class Run:
     unrest: dict[str, Floats]
 
 
-def commissioned(seed: int, folder: Path) -> tuple[Run, Run, float]:
-    """How an arm follows before and after, and the wall time of the commissioning (s)."""
+def commissioned(seed: int, folder: Path, unseen: Mapping[str, Trajectory], **options: Any) -> tuple[Run, Run, float]:
+    """How an arm follows unseen motions before and after, and the wall time of the commissioning (s)."""
     with BenchProcess(str(seed), "1", str(folder), module="tools.bench.foreign_arm") as bench:
-        before = recorded(bench, folder, "before")
+        before = recorded(bench, folder, "before", unseen)
         started = time.monotonic()
-        commission(Options(port=bench.port, out=folder / "commission"))
+        commission(Options(port=bench.port, out=folder / "commission", **options))
         wall = time.monotonic() - started
-        return before, recorded(bench, folder, "after"), wall
+        return before, recorded(bench, folder, "after", unseen), wall
 
 
-def recorded(bench: BenchProcess, folder: Path, when: str) -> Run:
+def recorded(bench: BenchProcess, folder: Path, when: str, unseen: Mapping[str, Trajectory]) -> Run:
     """Every motion with the controllers that the board has."""
     errors, rests = {}, {}
-    for name, motion in motions().items():
+    for name, motion in unseen.items():
         leader = folder / "leader.csv"
         save_leader(leader, motion)
         log = record_motion(bench, leader, folder / f"{when} {name}.csv").log()
@@ -71,7 +74,7 @@ def run() -> list[Figure]:
     reaches = []
     for seed in SEEDS:
         with tempfile.TemporaryDirectory() as folder:
-            before, after, wall = commissioned(seed, Path(folder))
+            before, after, wall = commissioned(seed, Path(folder), motions())
         head = f"foreign arm {seed}"
         for name, was in before.error.items():
             ratios = after.error[name] / was

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from greywhale.identify.bootstrap import scatter_of_fits, spread_covariance
 from greywhale.identify.candidate import Candidate
+from greywhale.identify.combinations import combinations
 from greywhale.identify.data import FINE_STEP_S
 from greywhale.identify.found import Found, ParameterEstimate, Rival, Task
 from greywhale.identify.samples import read_search
@@ -52,6 +53,7 @@ def find_default(task: Task) -> Found:
         joints=joints,
         order=best.order,
         orders=tuple((one.order, float(one.held_out or 0.0)) for one in search.tried),
+        combinations=combinations(best.space, best.x, sure.covariance),
         rivals=tuple(Rival(one.order, float(one.held_out or 0.0), one.plant) for one in search.rivals()),
         estimates=_estimates(best.space, best.x, sure.deviations),
         covariance=sure.covariance,

@@ -13,6 +13,7 @@ from greywhale.arm import ArmParameters
 from greywhale.errors import UserError
 from greywhale.firmware import JOINTS
 from greywhale.identify.closed_loop import Loop
+from greywhale.identify.combinations import Combination
 from greywhale.identify.judge import FIT, Subject
 
 Floats = NDArray[np.float64]
@@ -107,6 +108,7 @@ class Found:
     complete: bool
     orders: tuple[tuple[str, float], ...] = ()
     rivals: tuple[Rival, ...] = ()
+    combinations: tuple[Combination, ...] = ()
     covariance: Floats | None = field(default=None, repr=False)
     condition: float | None = None
     curve: tuple[float, ...] = ()

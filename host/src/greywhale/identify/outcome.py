@@ -103,6 +103,8 @@ class Outcome:
             facts["orders_tried"] = [{"order": order, "held_out_error": error} for order, error in self.found.orders]
         if self.found.rivals:
             facts["rival"] = [one.as_dict() for one in self.found.rivals]
+        if self.found.combinations:
+            facts["combination"] = [one.as_dict() for one in self.found.combinations]
         facts["parameter"] = [one.as_dict() for one in self.estimates]
         return facts
 
@@ -135,6 +137,11 @@ class Outcome:
                 lines.append(
                     f"{one.name:18} {one.white_box:>11.4g} {one.value:>11.4g} {deviation:>9}  {one.unit}".rstrip()
                 )
+        if self.found.combinations:
+            lines += ["", "Better known together than one by one:"]
+            lines += [
+                f"- {one.name} = {one.value:.4g} +- {100.0 * one.deviation:.2g} %" for one in self.found.combinations
+            ]
         if self.found.open:
             lines += ["", "Not identified by these logs:", *(f"- {sentence}" for sentence in self.found.open)]
         for title, sentences in (("Warnings", self.warnings), ("Doubts", self.doubts)):
