@@ -26,7 +26,7 @@ SOFTER = {KP: 0.5, KD: 0.8, KI: 0.1}
 FIRST_SOFTER = {KP: 0.5, KD: 1.2, KI: 0.1}
 QUIETER = {KD: 0.6}
 MOST_SOFTER = 3
-# Where it is hardly too much (up to so many times), the step is a part of these, as a power.
+# Where it is hardly too much (up to so many times), the first step is a part of these, as a power.
 HARDLY, GENTLY = 1.5, 0.35
 # The steps of the search: more integral part against friction, more damping, stiffer, softer, less integral part.
 STEPS: tuple[dict[int, float], ...] = ({KI: 6.0}, {KP: 1.5, KD: 1.3}, {KD: 1.4}, {KP: 0.7}, {KI: 0.15})
@@ -104,7 +104,7 @@ class JointSearch:
         factors = FIRST_SOFTER if self._softened == 0 else SOFTER
         if last.verdict.chatters_only:
             factors = QUIETER
-        if last.verdict.excess <= HARDLY:
+        if self._softened == 0 and last.verdict.excess <= HARDLY:
             factors = {column: factor**GENTLY for column, factor in factors.items()}
         self._softened += 1
         return self._scaled(last.row, factors)
