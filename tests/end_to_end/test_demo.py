@@ -17,16 +17,24 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 @pytest.mark.slow
-def test_the_demo_tells_its_story(tmp_path: Path) -> None:
+def test_the_demo_tells_its_story_and_proves_its_controllers_on_the_arm(tmp_path: Path) -> None:
+    """The third recording is with what commissioning left on the board: nowhere worse than the tuned controllers."""
     told: list[str] = []
     out = tmp_path / "new" / "demo"
-    options = DemoOptions(out, duration_s=8.0, budget=300)
+    options = DemoOptions(out, duration_s=8.0, budget=300, prove=True)
     result = run(options, lambda what, fraction, note="": told.append(what))
-    recordings = ["before", "after", "practice", "check", "check_changed"]
+    recordings = ["before", "after", "proven", "practice", "check", "check_changed"]
     leaders = ["leader", "rest_leader", "practice_leader", "check_leader", "check_changed_leader"]
     pictures = ["following.png", "sets.png", "convergence.png"]
     assert sorted(path.name for path in out.iterdir()) == sorted(
-        ["model.toml", "controller.toml", "summary.json", *pictures, *(f"{name}.csv" for name in recordings + leaders)]
+        [
+            "model.toml",
+            "controller.toml",
+            "summary.json",
+            "commission",
+            *pictures,
+            *(f"{name}.csv" for name in recordings + leaders),
+        ]
     )
     assert json.loads((out / "summary.json").read_text()) == result.as_dict()
     for picture in result.pictures:
@@ -35,7 +43,9 @@ def test_the_demo_tells_its_story(tmp_path: Path) -> None:
     assert told[-1] == "drawing"
     assert told.index("practice: recording") < told.index("tuning") < told.index("tuned: recording")
 
-    before, after = (one.recorded.log() for one in result.runs)
+    assert [one.name for one in result.runs] == ["before tuning", "tuned", "proven"]
+    assert "predicted" in (out / "commission" / "report.html").read_text(encoding="utf-8").lower()
+    before, after, _ = (one.recorded.log() for one in result.runs)
     assert before.origin.board == "mega2560"
     assert schema.param_crc(schema.DEFAULTS) == before.origin.param_crc != after.origin.param_crc
     assert_same_motion(before, after)
@@ -43,7 +53,8 @@ def test_the_demo_tells_its_story(tmp_path: Path) -> None:
     second, changed = result.learnt.identification.verdicts[1:]
     assert second.improvement > 0.9
     assert changed.improvement > 0.3
-    was, became = (one.measures for one in result.runs)
+    was, became, proven = (one.measures for one in result.runs)
+    assert proven.total_mse < 1.1 * became.total_mse
     assert became.total_mse < 0.7 * was.total_mse
     for joint in range(4):
         assert became.joints[joint].mse < 1.1 * was.joints[joint].mse
@@ -51,6 +62,7 @@ def test_the_demo_tells_its_story(tmp_path: Path) -> None:
     for word in (
         "before tuning",
         "tuned",
+        "proven",
         "Identified",
         "base yaw",
         "wrist roll",
@@ -58,17 +70,6 @@ def test_the_demo_tells_its_story(tmp_path: Path) -> None:
         str(result.pictures[0]),
     ):
         assert word in text
-
-
-@pytest.mark.slow
-def test_the_demo_proves_its_controllers_on_the_arm(tmp_path: Path) -> None:
-    """A third recording, with what commissioning left on the board: nowhere worse than the tuned controllers."""
-    result = run(DemoOptions(tmp_path, duration_s=4.0, practice_s=10.0, budget=30, prove=True))
-    assert [one.name for one in result.runs] == ["before tuning", "tuned", "proven"]
-    assert "predicted" in (tmp_path / "commission" / "report.html").read_text(encoding="utf-8").lower()
-    _, tuned, proven = (one.measures for one in result.runs)
-    assert proven.total_mse < 1.1 * tuned.total_mse
-    assert "proven" in result.text()
 
 
 @pytest.mark.slow
