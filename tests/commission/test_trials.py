@@ -67,6 +67,15 @@ def test_what_is_in_the_journal_needs_no_arm(trials: Trials, rig: SimulatedRig) 
     assert not again.known()
 
 
+def test_a_journal_that_another_version_made_is_refused_in_a_sentence(trials: Trials, rig: SimulatedRig) -> None:
+    play_before(trials, rig)
+    play(trials, rig, stiffer(trials, [0], BETTER))
+    again = Trials(trials.book, trials.check, trials.table)
+    again.play_before(None)
+    with pytest.raises(UserError, match="trial-01 of this commissioning was made by another version"):
+        again.play(None, stiffer(trials, [1], BETTER))
+
+
 def searches_of(trials: Trials) -> list[JointSearch]:
     searches = [JointSearch(joint, 1) for joint in range(4)]
     for trial in trials.done:

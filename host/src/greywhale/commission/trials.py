@@ -109,7 +109,12 @@ class Trials:
         """A log and how it ended. The controllers from before may hunt already: unwatched, they do so to the end."""
         path = self.book.path(f"{name}.csv")
         facts = self.book.get(name)
-        if facts is not None and facts["controllers"] == rows.tolist():
+        if facts is not None:
+            if facts["controllers"] != rows.tolist():
+                raise UserError(
+                    f"{self.book.folder}: {name} of this commissioning was made by another version of greywhale, which "
+                    "would go on differently; begin anew in another folder."
+                )
             return path, Played(read_log(path), facts["stopped"], facts["joint"])
         assert rig is not None
         played = rig.play(self.check.motion, path, self.table_of(rows), watched=watched)

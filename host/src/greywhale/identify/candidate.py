@@ -39,6 +39,11 @@ class Candidate:
     closed: bool = False  # fitted to the closed loop too
 
     @property
+    def kinds(self) -> tuple[str, ...]:
+        """The kinds of its searched numbers, each once."""
+        return tuple(dict.fromkeys(parameter.kind for parameter in self.space.parameters))
+
+    @property
     def plant(self) -> Floats:
         found: Floats = self.space.plants(self.x[None])[0]
         return found

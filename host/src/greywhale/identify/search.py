@@ -8,12 +8,13 @@
    wins if it predicts the held-out part of the closed loop better.
 5. The chosen model is fitted to the whole log.
 
-A search may begin with a model of the same arm, found from fewer logs. Then steps 1 and 2 are left out.
+A search may begin with a model of the same arm, found from fewer logs. Its quantities are then fitted at once after
+step 2, and only orders that it lacks are tried.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -53,6 +54,13 @@ TURNS: tuple[tuple[str, ...], ...] = (
     ("Stribeck friction", "load friction", "creep"),
     ("zero angles",),
     ("lag of the potentiometers", "sagging supply"),
+)
+# A gear's numbers have several optima. So least squares starts from each of these too: half of the gap in rad, drag,
+# bend of the teeth in rad.
+GEARS: tuple[dict[str, float], ...] = (
+    {"gap": 2e-3, "drag": 0.1, "teeth": 2e-3},
+    {"gap": 5e-3, "drag": 0.1, "teeth": 2e-3},
+    {"gap": 3e-3, "drag": 0.03, "teeth": 5e-3},
 )
 # An order with more quantities must predict the held-out data better by this share of 1 + squares over noise.
 WORTH = 0.01
@@ -107,11 +115,10 @@ class Search:
 
     def run(self) -> None:
         self.report("fitting the motors", 0.0)
-        if self.begin is None:
-            self._consider(self._fit_motors())
-            self._consider(self._fit_friction())
-        else:
-            self._consider(self._settle(self._fitted, self.begin))
+        self._consider(self._fit_motors())
+        self._consider(self._fit_friction())
+        if self.begin is not None:
+            self._consider(self._fit_begun(self.begin))
         # An order that did not help at first may do so once the later ones are known.
         for _ in range(ROUNDS if self.begin is None else 1):
             before = self.best
@@ -140,18 +147,42 @@ class Search:
             self.report("choosing the model's order", (number + 1 - len(left) / len(turn)) / len(TURNS))
             before = self.best
             assert before is not None
-            extended = [one for one in (self._extend(before, order) for order in left) if not self._was_tried(one)]
+            extended = [(self._extend(before, order), order) for order in left]
+            extended = [(one, order) for one, order in extended if not self._was_tried(one)]
             sure = self.begin is None and number in SURE_TURNS
-            hopeful = [one for one in extended if sure or self._is_hopeful(one, before)]
+            hopeful = [(one, order) for one, order in extended if sure or self._is_hopeful(one, before)]
             if not hopeful:
                 return
-            found = [self._measure(self._settle(self._fitted, one)) for one in hopeful]
+            found = [self._measure(self._fit_order(one, order)) for one, order in hopeful]
             errors = [float(one.held_out or 0.0) for one in found]
             winner = int(np.argmin(errors))
             self._take(found[winner])
             if self.best is before:
                 return
             left = [order for order in left if self._may_follow(order)]
+
+    def _fit_order(self, candidate: Candidate, order: str) -> Candidate:
+        """Fit an order's quantities along with the others, those of gears from several starts."""
+        if order != "backlash":
+            return self._settle(self._fitted, candidate)
+        return self._fit_best([candidate, *(_with_values(candidate, gear) for gear in GEARS)])
+
+    def _fit_begun(self, begin: Candidate) -> Candidate:
+        """Fit the quantities of the model to begin with, from its values and from this search's own."""
+        assert self.best is not None
+        own = replace(begin, x=begin.space.translate(self.best.x, self.best.space))
+        gears = [_with_values(own, gear) for gear in GEARS] if "gap" in begin.kinds else []
+        return self._fit_best([begin, own, *gears])
+
+    def _fit_best(self, starts: Sequence[Candidate]) -> Candidate:
+        """Fit one model from several starts; the best goes on for each group of joints that feel each other."""
+        tried = [self._settle(self._fitted, one) for one in starts]
+        errors = []
+        for one in tried:
+            self._fitted.settle(one.plant, one.zero)
+            errors.append(np.mean(np.log1p(self._fitted.misfit(one.plant, one.zero)), axis=0))
+        mixed = self._mix_by_block(tried[0].space, [one.x for one in tried], np.array(errors))
+        return self._settle(self._fitted, replace(tried[0], x=mixed))
 
     def _was_tried(self, candidate: Candidate) -> bool:
         return any(set(one.space.names) == set(candidate.space.names) for one in self.tried)
@@ -167,7 +198,7 @@ class Search:
         """Whether the best model lacks this order. Without Coulomb friction there is no friction at rest."""
         best = self.best
         assert best is not None
-        kinds = {parameter.kind for parameter in best.space.parameters}
+        kinds = best.kinds
         return ORDERS[order][0] not in kinds and (order not in ("Stribeck friction", "creep") or "coulomb" in kinds)
 
     def _consider(self, candidate: Candidate) -> None:
@@ -217,9 +248,14 @@ class Search:
         stuck.
         """
         errors = np.array([windows.mse(space.plants(x[None])[0], space.offsets(x[None])[0]) for x in fits])
+        return self._mix_by_block(space, fits, errors[:, list(self.joints)])
+
+    def _mix_by_block(self, space: Space, fits: Sequence[Floats], errors: Floats) -> Floats:
+        """The same, by errors (fits, moving joints)."""
         mixed = fits[0].copy()
         for joints in COUPLED:
-            best = fits[int(np.argmin(errors[:, list(joints)].sum(axis=1)))]
+            mine = [place for place, joint in enumerate(self.joints) if joint in joints]
+            best = fits[int(np.argmin(errors[:, mine].sum(axis=1)))]
             mine = [index for index, one in enumerate(space.parameters) if one.joint in joints]
             mixed[mine] = best[mine]
         return mixed
@@ -247,8 +283,7 @@ class Search:
 
     def _extend(self, candidate: Candidate, order: str) -> Candidate:
         """The same model with the quantities of another order at their usual start."""
-        kinds = dict.fromkeys(parameter.kind for parameter in candidate.space.parameters)
-        space = Space.of(self.arm, (*kinds, *ORDERS[order]), self.joints)
+        space = Space.of(self.arm, (*candidate.kinds, *ORDERS[order]), self.joints)
         name = order if candidate.order in ("motors", "Coulomb friction") else f"{candidate.order}, {order}"
         return Candidate(space, space.translate(candidate.x, candidate.space), name)
 
@@ -341,3 +376,12 @@ class Search:
         self.simulations += found.simulations
         self.simulated += found.simulations * observed.seconds
         return found.x
+
+
+def _with_values(candidate: Candidate, values: Mapping[str, float]) -> Candidate:
+    """The same model with some kinds of quantities at other values, on every joint."""
+    x = candidate.x.copy()
+    for index, one in enumerate(candidate.space.parameters):
+        if one.kind in values:
+            x[index] = candidate.space.kind(index).to_search(values[one.kind])
+    return replace(candidate, x=x)
