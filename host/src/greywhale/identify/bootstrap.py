@@ -35,16 +35,17 @@ SHAPE_LOGS = 3.0
 # the truth, the real one ends in one of several optima. These, and the widening, are measured on arms that are known
 # (docs/identify.md). Yaw and roll feel no gravity and hardly show their alpha.
 SYSTEMATIC = {
-    "inertia": 0.012,
+    "inertia": 0.015,
     "damping": 0.002,
+    "coulomb": 0.008,
     "breakaway": 0.03,
     "stribeck": 0.3,
     "gap": 2e-4,
-    "drag": 1.5,
+    "drag": 2.0,
     "teeth": 0.7,
     "play": 6e-4,
 }
-SYSTEMATIC_ALPHA = {0: 0.02, 3: 0.6}  # of joints
+SYSTEMATIC_ALPHA = {0: 0.03, 1: 0.001, 2: 0.001, 3: 3.0}  # of joints
 WIDENED = 1.3  # times the variance
 # Moments of a tick at which its four conversions hold their input, as shares of it.
 MOMENTS = (0.1, 0.3, 0.5, 0.7)
