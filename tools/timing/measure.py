@@ -1,0 +1,137 @@
+"""The dearest tick and interrupts that a search finds on the simulated boards: the other end of what the bounds say.
+
+The search draws controllers and readings where the code has most to do: sets that bend there, pots at their rails,
+joints far apart, errors that saturate, with telemetry and a busy line.
+"""
+
+from __future__ import annotations
+
+import struct
+
+import numpy as np
+
+from greywhale.protocol import frames, schema
+from greywhale.protocol.declared import Message
+from greywhale_sim._board import Board
+from tools.bench.fuzzy_search import Random
+from tools.timing.image import PERIOD, TICK, Target
+from tools.timing.listing import read_program
+
+SETS, TICKS_PER_SET = 60, 24
+RAIL_MV = 5000.0
+WIDE, STEEP = 25_723, 16_384  # the largest limit of a joint and the steepest pot that the table allows
+
+
+class Session:
+    """The real image on a simulated board, with a host that knows frames only."""
+
+    def __init__(self, target: Target, seed: int) -> None:
+        self.target = target
+        self.tick = read_program(target.elf).entry(TICK)
+        self.random = np.random.default_rng(seed)
+        self.board = Board(target.chip.name.lower())
+        self.board.load_elf(str(target.elf))
+        self.board.power_on(seed)
+        self.rest()
+        self.board.run_until(60 * PERIOD)
+
+    def rest(self) -> None:
+        self.board.set_millivolts(np.full(8, RAIL_MV / 2))
+
+    def disturb(self) -> None:
+        self.board.set_millivolts(_readings(self.random))
+
+    def wait(self, ms: float) -> None:
+        self.board.run_until(self.board.cycle + int(ms * PERIOD))
+
+    def ask(self, message: type[Message], payload: bytes = b"") -> None:
+        self.board.uart_receive()
+        self.board.uart_send(b"\0" + frames.encode_frame(message.TYPE, 1, payload))
+        decoder = frames.FrameDecoder()
+        for _ in range(60):
+            self.wait(1)
+            if any(frame.type == message.TYPE | 0x80 for frame in decoder.feed(self.board.uart_receive())):
+                return
+        raise RuntimeError(f"the firmware did not do as asked: {message.__name__}")
+
+    def run_set(self, values: dict[str, int]) -> None:
+        """Runs the defaults but for these values, motors on."""
+        self.ask(schema.StopRequest)
+        self.rest()
+        self.wait(40)
+        self.ask(schema.ClearFaultRequest)
+        wanted = list(schema.DEFAULTS)
+        for key, value in values.items():
+            wanted[schema.PARAMETER_BY_NAME[key].index] = value
+        for index, value in enumerate(wanted):
+            self.ask(schema.ParamSetRequest, struct.pack("<Hi", index, value))
+        self.ask(schema.ParamApplyRequest, struct.pack("<H", schema.param_crc(wanted)))
+        self.wait(30)
+        self.ask(schema.EnableRequest, struct.pack("<H", 0))
+        self.wait(5)
+
+    def interrupt_cycles(self) -> float:
+        return sum(times.count * times.mean for times in self.board.stats().vectors.values())
+
+    def tick_cycles(self) -> int:
+        """Cycles of the next tick alone, from its first instruction to the end of its return."""
+        board = self.board
+        while board.pc != self.tick:
+            board.run_until(board.cycle + 1)
+        start, interrupts = board.cycle, self.interrupt_cycles()
+        size = self.target.chip.return_address
+        level = int.from_bytes(board.peek(0x5D, 2), "little")
+        back = 2 * int.from_bytes(board.peek(level + 1, size), "big")
+        while board.pc != back:
+            board.run_until(board.cycle + 1)
+        return round(board.cycle - start - (self.interrupt_cycles() - interrupts))
+
+
+def _readings(random: np.random.Generator) -> np.ndarray:
+    """Eight voltages: spread a little or a lot, some of them at a rail; often alike for all joints."""
+    millivolts = RAIL_MV / 2 + random.uniform(-1, 1, 8) * 10.0 ** random.uniform(0, 3.4)
+    rails = random.random(8) < random.choice([0.0, 0.3, 1.0])
+    millivolts = np.where(rails, random.choice([0.0, RAIL_MV], 8), millivolts).clip(0, RAIL_MV)
+    return np.repeat(millivolts[[0, 4]], 4) if random.random() < 0.7 else millivolts
+
+
+def _parameters(draw: Random) -> dict[str, int]:
+    """A set whose joints bend anywhere and may be far apart, and which raises no fault for that.
+
+    Joints that are alike are dear in the same tick.
+    """
+    random = draw.random
+    values = {
+        "supply_mv": int(random.choice([3000, 15000, 30000])),
+        "filter_shift": int(random.choice([0, 2, 3, 4])),
+        "soft_start_ms": 100,
+        "tracking_limit": int(random.choice([0, 1, 3000])),
+        "tracking_ms": 60_000,
+        "unrest_amplitude": 0,
+    }
+    wide, alike = random.random() < 0.5, random.random() < 0.7
+    settings = vars(draw.settings(1))
+    for joint in range(4):
+        values |= {f"joint{joint}.{key}": value for key, value in settings.items()}
+        if wide:
+            values |= {f"joint{joint}.limit_min": -WIDE, f"joint{joint}.limit_max": WIDE}
+            values |= {f"leader{joint}.scale": STEEP, f"follower{joint}.scale": STEEP}
+        if not alike:
+            settings = vars(draw.settings(1))
+    return values
+
+
+def worst(target: Target, sets: int = SETS, seed: int = 5) -> dict[str, int]:
+    """The dearest tick alone, and the dearest run of every interrupt, in cycles."""
+    session, draw = Session(target, seed), Random(seed)
+    dearest = 0
+    for _ in range(sets):
+        session.run_set(_parameters(draw))
+        session.ask(schema.TelemetryRequest, struct.pack("<H", 1))
+        for _ in range(TICKS_PER_SET):
+            session.disturb()
+            if session.random.random() < 0.3:
+                session.board.uart_send(session.random.bytes(60))
+            dearest = max(dearest, session.tick_cycles())
+    vectors = session.board.stats().vectors
+    return {"tick": dearest, **{role: vectors[number].max for role, number in target.vectors.items()}}
