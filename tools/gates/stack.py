@@ -110,9 +110,7 @@ class Depths:
                 if known is None:
                     levels[follower] = level
                 elif known.taken != level.taken:
-                    raise ImageError(
-                        f"{self._program.name(follower)}: paths meet at {follower:#x}, stacks unequal."
-                    )
+                    raise ImageError(f"{self._program.name(follower)}: paths meet at {follower:#x}, stacks unequal.")
                 elif known.in_y is not None and known.in_y != level.in_y:
                     levels[follower] = Level(known.taken, None)
                 else:
