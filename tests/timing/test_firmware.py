@@ -142,7 +142,9 @@ def test_interrupts_add_to_the_tick_as_often_as_they_may_come() -> None:
         "byte sent": 50,
     }
     bounds = Times(tick=1000, interrupts=quiet, waking=0)
-    assert bounds.response(receiving=False, sending=False) == 1000 + 20 + 3 * 20
-    assert bounds.response(receiving=True, sending=False) == 1020 + 4 * 20 + (10 + 2) * 50 + 2 * 50 + 20
+    assert bounds.response(receiving=False, sending=False) == 1020
+    assert bounds.response(receiving=True, sending=False) == 1020 + (11 + 2) * 50
+    longer = Times(tick=3000, interrupts=quiet, waking=0)
+    assert longer.response(receiving=False, sending=False) == 3020 + 2 * 20
     full = Times(tick=1000, interrupts=quiet | {"byte received": 161}, waking=0)
     assert full.response(receiving=True, sending=False) is None

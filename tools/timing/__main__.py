@@ -1,6 +1,6 @@
 """Prints the bounds of both images beside the worst that was measured on the simulated boards.
 
-python -m tools.timing            the bounds, and the worst measured (a minute)
+python -m tools.timing            the bounds, and the worst measured (minutes)
 python -m tools.timing --commit   takes the bounds of the images as they are into budget.toml
 """
 
@@ -28,7 +28,8 @@ def _print(target: Target, found: Times) -> None:
         print(_row(what, bound, worst[what]))
     print(f"  tick with its interrupts: {_response(found, False, False)} when the line is quiet,")
     print(f"    {_response(found, True, False)} when bytes come without a gap,")
-    print(f"    {_response(found, False, True)} when bytes go without a gap, {_response(found, True, True)} with both")
+    print(f"    {_response(found, False, True)} when bytes go without a gap, {_response(found, True, True)} with both,")
+    print(f"    of which the longest that was found is {measure.busiest(target)}")
 
 
 def main(arguments: list[str]) -> int:

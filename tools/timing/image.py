@@ -18,6 +18,7 @@ PERIOD = 16_000  # cycles from one tick to the next
 BYTE = 160  # cycles that a byte takes on the line at 1 Mbaud
 CONVERSION = 416
 CONVERSIONS = 32  # in a tick
+FIRST_CONVERSION = 33 * 64 + CONVERSION  # its end, in cycles after the tick's interrupt: hal's chain_start, and itself
 RING = 127  # bytes: no more are received, or sent, while the main loop does not get to the rings
 # The chip holds two received bytes while a third comes in, so three interrupts may be due at once; of sent bytes two.
 HELD = {"byte received": 2, "byte sent": 1}
@@ -65,14 +66,15 @@ class Times:
     def response(self, receiving: bool, sending: bool) -> int | None:
         """The tick with all interrupts that may come until its end; None if that is not before the next tick.
 
-        Every kind comes as often as its least distance allows. The tick's own may end a sleep; during a tick there is
-        none.
+        Every kind comes as often as its least distance allows, conversions not before the chain has begun. The tick's
+        own may end a sleep; during a tick there is none.
         """
         during = {kind: cycles - self.waking for kind, cycles in self.interrupts.items()}
         once = self.tick + self.interrupts["tick's interrupt"] + during["start of the chain"]
         end = once
         while end <= PERIOD:
-            longer = once + min(CONVERSIONS, math.ceil(end / CONVERSION)) * during["conversion done"]
+            conversions = math.ceil(max(0, end - FIRST_CONVERSION) / CONVERSION)
+            longer = once + min(CONVERSIONS, conversions) * during["conversion done"]
             for kind, on in (("byte received", receiving), ("byte sent", sending)):
                 longer += on * min(RING, math.ceil(end / BYTE) + HELD[kind]) * during[kind]
             if longer == end:

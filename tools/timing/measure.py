@@ -17,8 +17,9 @@ from tools.bench.fuzzy_search import Random
 from tools.timing.image import PERIOD, TICK, Target
 from tools.timing.listing import read_program
 
-SETS, TICKS_PER_SET = 60, 24
+SETS, TICKS_PER_SET = 300, 24
 RAIL_MV = 5000.0
+STACK_POINTER = 0x5D  # data address of SPL
 WIDE, STEEP = 25_723, 16_384  # the largest limit of a joint and the steepest pot that the table allows
 
 
@@ -27,7 +28,9 @@ class Session:
 
     def __init__(self, target: Target, seed: int) -> None:
         self.target = target
-        self.tick = read_program(target.elf).entry(TICK)
+        program = read_program(target.elf)
+        self.tick = program.entry(TICK)
+        self.vector = 4 * target.vectors["tick's interrupt"]
         self.random = np.random.default_rng(seed)
         self.board = Board(target.chip.name.lower())
         self.board.load_elf(str(target.elf))
@@ -73,18 +76,26 @@ class Session:
     def interrupt_cycles(self) -> float:
         return sum(times.count * times.mean for times in self.board.stats().vectors.values())
 
+    def _run_to(self, address: int) -> int:
+        while self.board.pc != address:
+            self.board.run_until(self.board.cycle + 1)
+        return self.board.cycle
+
+    def next_tick(self) -> int:
+        """Runs to the next tick's interrupt; its cycle."""
+        return self._run_to(self.vector)
+
+    def end_of_tick(self) -> int:
+        """Runs through the next tick's function; the cycle at which it has returned."""
+        self._run_to(self.tick)
+        level = int.from_bytes(self.board.peek(STACK_POINTER, 2), "little")
+        back = self.board.peek(level + 1, self.target.chip.return_address)
+        return self._run_to(2 * int.from_bytes(back, "big"))
+
     def tick_cycles(self) -> int:
         """Cycles of the next tick alone, from its first instruction to the end of its return."""
-        board = self.board
-        while board.pc != self.tick:
-            board.run_until(board.cycle + 1)
-        start, interrupts = board.cycle, self.interrupt_cycles()
-        size = self.target.chip.return_address
-        level = int.from_bytes(board.peek(0x5D, 2), "little")
-        back = 2 * int.from_bytes(board.peek(level + 1, size), "big")
-        while board.pc != back:
-            board.run_until(board.cycle + 1)
-        return round(board.cycle - start - (self.interrupt_cycles() - interrupts))
+        start, interrupts = self._run_to(self.tick), self.interrupt_cycles()
+        return round(self.end_of_tick() - start - (self.interrupt_cycles() - interrupts))
 
 
 def _readings(random: np.random.Generator) -> np.ndarray:
@@ -135,3 +146,31 @@ def worst(target: Target, sets: int = SETS, seed: int = 5) -> dict[str, int]:
             dearest = max(dearest, session.tick_cycles())
     vectors = session.board.stats().vectors
     return {"tick": dearest, **{role: vectors[number].max for role, number in target.vectors.items()}}
+
+
+def busiest(target: Target, sets: int = SETS, seed: int = 9) -> int:
+    """The longest from a tick's interrupt to the end of its tick, in cycles, with both directions of the line full.
+
+    Requests for the longest reply come before a tick, so that the ring of bytes to send is full when it starts, and
+    bytes without a gap from then on. With pauses, as the firmware takes a flood for a fault.
+    """
+    session, draw = Session(target, seed), Random(seed)
+    board, random = session.board, session.random
+    status = b"\0" + frames.encode_frame(schema.StatusRequest.TYPE, 1, b"")
+    longest = 0
+    for _ in range(sets):
+        session.run_set(_parameters(draw))
+        session.ask(schema.TelemetryRequest, struct.pack("<H", 1))
+        for _ in range(TICKS_PER_SET):
+            session.wait(3)
+            start = session.next_tick()
+            board.run_until(start + int(random.integers(10_000, 12_500)))
+            board.uart_send(status * int(random.integers(4, 9)))
+            board.run_until(start + int(random.integers(14_700, PERIOD - 10)))
+            board.uart_send(random.bytes(100))
+            session.disturb()
+            start = session.next_tick()
+            longest = max(longest, session.end_of_tick() - start)
+            session.rest()
+        session.wait(10)  # until all that was sent has been read
+    return longest
