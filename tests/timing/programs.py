@@ -21,11 +21,8 @@ class Assembled:
         source.write_text(
             f".global main\nmain: rjmp main\n{also}\n.global work\n.type work, @function\nwork:\n{body}\n"
         )
-        self._compile(source)
-
-    def _compile(self, source: Path) -> None:
-        mcu = f"-mmcu={self.chip.name.lower()}"
-        subprocess.run(["avr-gcc", mcu, "-nostartfiles", str(source), "-o", str(self.elf)], check=True)
+        command = ["avr-gcc", f"-mmcu={chip.name.lower()}", "-nostartfiles", str(source), "-o", str(self.elf)]
+        subprocess.run(command, check=True)
 
     @property
     def program(self) -> Program:
@@ -40,5 +37,17 @@ class Assembled:
         board = Board(self.chip.name.lower())
         board.load_elf(str(self.elf))
         board.power_on(1)
+        board.poke(1, b"\0")  # the register that compiled code takes for zero
         board.poke(24, bytes([argument]))
         return board.call(read_symbols(self.elf)["work"].address, 100_000)
+
+
+class Compiled(Assembled):
+    """The same from C++, with `work(uint8_t)` somewhere in it."""
+
+    def __init__(self, folder: Path, source: str, chip: Chip) -> None:
+        self.elf, self.chip = folder / "program.elf", chip
+        path = folder / "program.cpp"
+        path.write_text(source)
+        command = ["avr-g++", f"-mmcu={chip.name.lower()}", "-O2", "-std=gnu++14", str(path), "-o", str(self.elf)]
+        subprocess.run(command, check=True)

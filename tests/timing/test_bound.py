@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.timing.programs import Assembled
+from tests.timing.programs import Assembled, Compiled
 from tools.timing import facts, loops
 from tools.timing.bound import Timing
 from tools.timing.cycles import MEGA, NANO, Chip
@@ -79,6 +79,25 @@ helper:
   nop
 1:ret
 """
+SWITCH = """
+#include <stdint.h>
+volatile uint8_t sink;
+volatile uint16_t wide = 3;
+extern "C" __attribute__((noinline, used)) void work(uint8_t what) {
+  switch (what) {
+    case 0: sink = 7; break;
+    case 1: wide = wide + 9; break;
+    case 2: sink = sink ^ 0x55; sink = 3; break;
+    case 3: wide = wide * wide; break;
+    case 4: wide = wide << 3; break;
+    case 5: sink = 1; sink = 2; break;
+    case 6: wide = 0; break;
+    case 7: wide = wide * 77; sink = 5; break;
+    default: sink = 0;
+  }
+}
+int main() { work(sink); }
+"""
 
 
 @CHIPS
@@ -107,6 +126,13 @@ def test_a_loop_that_is_entered_in_its_middle_is_bounded_too(tmp_path: Path, chi
     (loop,) = loops.find(build(function.program, function.program.entry("work"), chip))
     assert len(loop.heads) == 2
     assert function.bound(3) == max(function.measured(argument) for argument in (0, 1))
+
+
+@CHIPS
+def test_a_switch_goes_to_all_its_cases(tmp_path: Path, chip: Chip) -> None:
+    function = Compiled(tmp_path, SWITCH, chip)
+    assert "__tablejump2__" in function.program.symbols
+    assert function.bound() == max(function.measured(argument) for argument in range(9))
 
 
 @CHIPS

@@ -13,10 +13,11 @@ from tools.gates import stack
 from tools.timing import facts, loops
 from tools.timing.bound import Timing
 from tools.timing.graph import Graph
-from tools.timing.image import PERIOD, TARGETS, TICK, Target, Times, times
+from tools.timing.image import PERIOD, TARGETS, TICK, Target, times
 from tools.timing.listing import Program, read_program
 from tools.timing.measure import Session, worst
 
+pytestmark = pytest.mark.slow
 BOARDS = pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.chip.name)
 
 
@@ -131,20 +132,3 @@ def test_the_deepest_stack_stays_below_its_bound(target: Target) -> None:
     memory = session.board.peek(top - bound.free, bound.free)
     deepest = bound.free - next(i for i, byte in enumerate(memory) if byte != 0xA5)
     assert deepest <= bound.bytes <= deepest + 32
-
-
-def test_interrupts_add_to_the_tick_as_often_as_they_may_come() -> None:
-    quiet = {
-        "tick's interrupt": 10,
-        "start of the chain": 10,
-        "conversion done": 20,
-        "byte received": 50,
-        "byte sent": 50,
-    }
-    bounds = Times(tick=1000, interrupts=quiet, waking=0)
-    assert bounds.response(receiving=False, sending=False) == 1020
-    assert bounds.response(receiving=True, sending=False) == 1020 + (11 + 2) * 50
-    longer = Times(tick=3000, interrupts=quiet, waking=0)
-    assert longer.response(receiving=False, sending=False) == 3020 + 2 * 20
-    full = Times(tick=1000, interrupts=quiet | {"byte received": 161}, waking=0)
-    assert full.response(receiving=True, sending=False) is None

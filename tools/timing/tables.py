@@ -27,10 +27,11 @@ def _number(instruction: Instruction) -> int:
 def cases(program: Program, jump: int, before: Mapping[int, Instruction]) -> list[int]:
     """The addresses that the jump may go to; `before` has an instruction that leads to each address.
 
-    The code in front of the jump compares Z with the number of cases (cpi r30) and adds the table's address to it, as
-    subi and sbci do with its negative.
+    The code in front of the jump compares the case with the number of cases (cpi), moves it to Z if it is not there,
+    and adds the table's address, as subi and sbci do with its negative.
     """
     low = high = count = None
+    case = "r30"
     at = before.get(jump)
     for _ in range(REACH):
         if at is None:
@@ -39,11 +40,13 @@ def cases(program: Program, jump: int, before: Mapping[int, Instruction]) -> lis
             low = _number(at)
         elif at.mnemonic == "sbci" and at.operands.startswith("r31,") and high is None:
             high = _number(at)
-        elif at.mnemonic == "cpi" and at.operands.startswith("r30,"):
+        elif at.mnemonic in ("mov", "movw") and at.operands.startswith(f"{case},"):
+            case = at.operands.split(",")[1].strip()
+        elif at.mnemonic == "cpi" and at.operands.startswith(f"{case},"):
             count = _number(at)
             break
         at = before.get(at.address)
     if low is None or high is None or count is None:
         raise ImageError(f"{program.name(jump)} jumps through a table at {jump:#x} whose size cannot be read.")
     table = 2 * (-(high << 8 | low) & 0xFFFF)
-    return sorted({2 * program.word(table + 2 * case) for case in range(count)})
+    return sorted({2 * program.word(table + 2 * place) for place in range(count)})
