@@ -12,7 +12,7 @@ from tools.gates import stack, tick
 from tools.gates.__main__ import check
 from tools.timing import budget
 from tools.timing.cycles import MEGA, NANO, Chip
-from tools.timing.image import TARGETS, Target, Times
+from tools.timing.image import TARGETS, Target, Times, compiler
 from tools.timing.listing import ImageError, read_program
 
 TICK = "void firmware_tick()"
@@ -149,3 +149,14 @@ def test_a_bound_above_its_number_is_named() -> None:
     assert budget.complaints("chip", times, committed) == [
         "the bound of byte sent is 60 cycles, 1 more than tools/timing/budget.toml allows."
     ]
+
+
+def test_an_image_of_another_compiler_is_said_to_have_no_bound_on_its_time(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    target = TARGETS[1]
+    other = tmp_path / "other.elf"
+    made_by = compiler(target.elf).encode()
+    other.write_bytes(target.elf.read_bytes().replace(b"GCC: (GNU) " + made_by, b"GCC: (GNU) " + b"9" + made_by[1:]))
+    assert check(other, target) == []
+    assert "time not bounded" in capsys.readouterr().out

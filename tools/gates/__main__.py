@@ -11,7 +11,7 @@ from pathlib import Path
 
 from tools.gates import stack, tick
 from tools.timing import budget
-from tools.timing.image import TARGETS, Target, times
+from tools.timing.image import TARGETS, Target, compiler, is_described, times
 from tools.timing.listing import ImageError, read_program
 
 
@@ -19,12 +19,15 @@ def check(elf: Path, target: Target) -> list[str]:
     """Complaints about one image; prints its bounds."""
     found = tick.complaints(read_program(elf))
     deepest = stack.bound(elf, target.chip)
-    longest = times(target, elf)
-    print(f"{target.chip.name:12} tick at most {longest.tick} cycles without its interrupts")
     print(f"{target.chip.name:12} stack at most {deepest.bytes} bytes of {deepest.free}, in {' > '.join(deepest.path)}")
     if deepest.bytes > deepest.free:
         found.append(f"the stack may take {deepest.bytes} bytes, but variables leave {deepest.free}.")
-    found += budget.complaints(target.chip.name, longest, budget.load())
+    if is_described(elf):
+        longest = times(target, elf)
+        print(f"{target.chip.name:12} tick at most {longest.tick} cycles without its interrupts")
+        found += budget.complaints(target.chip.name, longest, budget.load())
+    else:
+        print(f"{target.chip.name:12} time not bounded: facts.toml does not describe the code of GCC {compiler(elf)}")
     return [f"{target.chip.name}: {complaint}" for complaint in found]
 
 

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+
+from elftools.elf.elffile import ELFFile
 
 from tools.timing import facts
 from tools.timing.bound import Timing
@@ -91,6 +94,19 @@ def _handlers(program: Program, target: Target) -> dict[str, int]:
         more, less = sorted(found - known), sorted(known - found)
         raise ImageError(f"the image has the interrupts {more} without a role and lacks {less}.")
     return {role: program.symbols[f"__vector_{number}"] for role, number in target.vectors.items()}
+
+
+def compiler(elf: Path) -> str:
+    """The version of the GCC that made an image."""
+    with elf.open("rb") as stream:
+        section = ELFFile(stream).get_section_by_name(".comment")
+        found = re.search(rb"GCC: \(.*?\) ([0-9.]+)", section.data()) if section else None
+    return found[1].decode() if found else "unknown"
+
+
+def is_described(elf: Path) -> bool:
+    """Whether facts.toml is about the compiler that made this image: another one makes other loops."""
+    return compiler(elf) == facts.load().compiler
 
 
 def times(target: Target, elf: Path | None = None) -> Times:
