@@ -18,6 +18,7 @@ from tools.timing.image import PERIOD, TICK, Target
 from tools.timing.listing import read_program
 
 SETS, TICKS_PER_SET = 300, 24
+BEST = 6  # sets near which most others are drawn
 RAIL_MV = 5000.0
 STACK_POINTER = 0x5D  # data address of SPL
 WIDE, STEEP = 25_723, 16_384  # the largest limit of a joint and the steepest pot that the table allows
@@ -132,20 +133,32 @@ def _parameters(draw: Random) -> dict[str, int]:
     return values
 
 
+def _near(draw: Random, values: dict[str, int]) -> dict[str, int]:
+    """The same set, some of its parameters drawn anew, for all joints together."""
+    drawn = _parameters(draw)
+    names = sorted({key.partition(".")[2] or key for key in values})
+    again = {name for name in names if draw.random.random() < 0.25}
+    return values | {key: value for key, value in drawn.items() if (key.partition(".")[2] or key) in again}
+
+
 def worst(target: Target, sets: int = SETS, seed: int = 5) -> dict[str, int]:
     """The dearest tick alone, and the dearest run of every interrupt, in cycles."""
     session, draw = Session(target, seed), Random(seed)
-    dearest = 0
-    for _ in range(sets):
-        session.run_set(_parameters(draw))
+    best: list[tuple[int, dict[str, int]]] = []
+    for number in range(sets):
+        values = _near(draw, best[number % len(best)][1]) if number % 4 and best else _parameters(draw)
+        session.run_set(values)
         session.ask(schema.TelemetryRequest, struct.pack("<H", 1))
+        dearest = 0
         for _ in range(TICKS_PER_SET):
             session.disturb()
             if session.random.random() < 0.3:
                 session.board.uart_send(session.random.bytes(60))
             dearest = max(dearest, session.tick_cycles())
+        session.wait(10)  # until all that was sent has been read
+        best = sorted([*best, (dearest, values)], key=lambda one: -one[0])[:BEST]
     vectors = session.board.stats().vectors
-    return {"tick": dearest, **{role: vectors[number].max for role, number in target.vectors.items()}}
+    return {"tick": best[0][0], **{role: vectors[number].max for role, number in target.vectors.items()}}
 
 
 def busiest(target: Target, sets: int = SETS, seed: int = 9) -> int:
