@@ -9,8 +9,11 @@ import pytest
 
 from greywhale_sim._board import Board
 from tools.gates import stack, tick
-from tools.gates.__main__ import BUILD, IMAGES, check
-from tools.gates.image import GateError, read_image
+from tools.gates.__main__ import check
+from tools.timing import budget
+from tools.timing.cycles import MEGA, NANO, Chip
+from tools.timing.image import TARGETS, Target, Times, compiler
+from tools.timing.listing import ImageError, read_program
 
 TICK = "void firmware_tick()"
 FRAME = """
@@ -53,16 +56,16 @@ def build(folder: Path, program: str, chip: str = "atmega328p") -> Path:
 )
 def test_what_a_tick_must_not_contain(tmp_path: Path, body: str, complaint: str) -> None:
     elf = build(tmp_path, f"void firmware_tick() {{ {body} }}")
-    assert complaint in " ".join(tick.complaints(read_image(elf)))
+    assert complaint in " ".join(tick.complaints(read_program(elf)))
 
 
 def test_it_is_found_in_interrupts_and_deep_down_too(tmp_path: Path) -> None:
     deep = "__attribute__((noinline)) void deep() { a = a / b; }"
     mid = "__attribute__((noinline)) void mid() { deep(); sink = 1; }"
     below = build(tmp_path, f"{deep} {mid} void firmware_tick() {{ mid(); sink = 2; }}")
-    assert any("mid" in complaint and "deep" in complaint for complaint in tick.complaints(read_image(below)))
+    assert any("mid" in complaint and "deep" in complaint for complaint in tick.complaints(read_program(below)))
     interrupt = build(tmp_path, "ISR(TIMER0_COMPA_vect) { a = a / b; } void firmware_tick() {}")
-    assert "__vector_14" in tick.complaints(read_image(interrupt))[0]
+    assert "__vector_14" in tick.complaints(read_program(interrupt))[0]
 
 
 def test_multiplying_and_dividing_elsewhere_are_fine(tmp_path: Path) -> None:
@@ -70,15 +73,15 @@ def test_multiplying_and_dividing_elsewhere_are_fine(tmp_path: Path) -> None:
     __attribute__((noinline, used)) void elsewhere() { a = a / b; }
     void firmware_tick() { a = (uint16_t)((uint32_t(a) * b) >> 3); }
     """
-    assert tick.complaints(read_image(build(tmp_path, program))) == []
+    assert tick.complaints(read_program(build(tmp_path, program))) == []
 
 
 def test_an_image_without_a_tick_is_not_passed(tmp_path: Path) -> None:
     source, elf = tmp_path / "none.c", tmp_path / "none.elf"
     source.write_text("int main(void) { return 0; }")
     subprocess.run(["avr-gcc", "-mmcu=atmega328p", str(source), "-o", str(elf)], check=True)
-    with pytest.raises(GateError, match="not in the image"):
-        tick.complaints(read_image(elf))
+    with pytest.raises(ImageError, match="not in the image"):
+        tick.complaints(read_program(elf))
 
 
 DEEP = """
@@ -96,12 +99,10 @@ void firmware_tick() {{ sink = middle(3); }}
 """
 
 
-@pytest.mark.parametrize(
-    ("chip", "kind", "ram"), [("atmega328p", stack.NANO, 0x100), ("atmega2560", stack.MEGA, 0x200)]
-)
+@pytest.mark.parametrize(("chip", "kind", "ram"), [("atmega328p", NANO, 0x100), ("atmega2560", MEGA, 0x200)])
 @pytest.mark.parametrize(("leaf", "middle"), [(5, 20), (60, 64), (100, 300)])
 def test_the_stack_bound_holds_and_is_tight(
-    tmp_path: Path, chip: str, kind: stack.Chip, ram: int, leaf: int, middle: int
+    tmp_path: Path, chip: str, kind: Chip, ram: int, leaf: int, middle: int
 ) -> None:
     elf = build(tmp_path, DEEP.format(leaf=leaf, middle=middle), chip)
     bound = stack.bound(elf, kind)
@@ -127,16 +128,35 @@ def test_the_stack_bound_holds_and_is_tight(
 )  # fmt: skip
 def test_what_cannot_be_bounded_is_refused(tmp_path: Path, program: str, reason: str) -> None:
     program = program.replace("uint16_t down", "__attribute__((noinline, optimize(0))) uint16_t down")
-    with pytest.raises(GateError, match=reason):
-        stack.bound(build(tmp_path, program), stack.NANO)
+    with pytest.raises(ImageError, match=reason):
+        stack.bound(build(tmp_path, program), NANO)
 
 
 def test_an_interrupt_counts(tmp_path: Path) -> None:
-    quiet = stack.bound(build(tmp_path, "void firmware_tick() {}"), stack.NANO).bytes
+    quiet = stack.bound(build(tmp_path, "void firmware_tick() {}"), NANO).bytes
     program = "ISR(TIMER0_COMPA_vect) { a = a * b; } void firmware_tick() {}"
-    assert stack.bound(build(tmp_path, program), stack.NANO).bytes > quiet + 6
+    assert stack.bound(build(tmp_path, program), NANO).bytes > quiet + 6
 
 
-@pytest.mark.parametrize("environment", list(IMAGES))
-def test_the_real_images_pass(environment: str) -> None:
-    assert check(BUILD / environment / "firmware.elf", IMAGES[environment]) == []
+@pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.chip.name)
+def test_the_real_images_pass(target: Target) -> None:
+    assert check(target.elf, target) == []
+
+
+def test_a_bound_above_its_number_is_named() -> None:
+    times = Times(tick=3000, interrupts={"byte sent": 60}, waking=4)
+    committed = {"chip": {"tick": 3000, "byte sent": 59}}
+    assert budget.complaints("chip", times, committed) == [
+        "the bound of byte sent is 60 cycles, 1 more than tools/timing/budget.toml allows."
+    ]
+
+
+def test_an_image_of_another_compiler_is_said_to_have_no_bound_on_its_time(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    target = TARGETS[1]
+    other = tmp_path / "other.elf"
+    made_by = compiler(target.elf).encode()
+    other.write_bytes(target.elf.read_bytes().replace(b"GCC: (GNU) " + made_by, b"GCC: (GNU) " + b"9" + made_by[1:]))
+    assert check(other, target) == []
+    assert "time not bounded" in capsys.readouterr().out

@@ -1,4 +1,5 @@
-"""Fails when the tick of a firmware image holds a float, a heap or a division, or its stack may meet its variables.
+"""Fails when a firmware image breaks a bound: its tick must hold no float, heap or division and keep to its cycles, as
+must its interrupts, and its stack must not meet its variables.
 
 python -m tools.gates
 """
@@ -9,33 +10,38 @@ import sys
 from pathlib import Path
 
 from tools.gates import stack, tick
-from tools.gates.image import GateError, read_image
-
-BUILD = Path(__file__).parents[2] / "firmware/.pio/build"
-IMAGES = {"megaatmega2560": stack.MEGA, "nanoatmega328": stack.NANO}
-
-
-def check(elf: Path, chip: stack.Chip) -> list[str]:
-    """Complaints about one image; prints its stack bound."""
-    found = tick.complaints(read_image(elf))
-    bound = stack.bound(elf, chip)
-    print(f"{chip.name:12} stack at most {bound.bytes} bytes of {bound.free}, in {' > '.join(bound.path)}")
-    if bound.bytes > bound.free:
-        found.append(f"the stack may take {bound.bytes} bytes, but variables leave {bound.free}.")
-    return [f"{chip.name}: {complaint}" for complaint in found]
+from tools.timing import budget
+from tools.timing.image import TARGETS, Target, compiler, is_described, times
+from tools.timing.listing import ImageError, read_program
 
 
-def main(build: Path) -> int:
+def check(elf: Path, target: Target) -> list[str]:
+    """Complaints about one image; prints its bounds."""
+    found = tick.complaints(read_program(elf))
+    deepest = stack.bound(elf, target.chip)
+    print(f"{target.chip.name:12} stack at most {deepest.bytes} bytes of {deepest.free}, in {' > '.join(deepest.path)}")
+    if deepest.bytes > deepest.free:
+        found.append(f"the stack may take {deepest.bytes} bytes, but variables leave {deepest.free}.")
+    if is_described(elf):
+        longest = times(target, elf)
+        print(f"{target.chip.name:12} tick at most {longest.tick} cycles without its interrupts")
+        found += budget.complaints(target.chip.name, longest, budget.load())
+    else:
+        print(f"{target.chip.name:12} time not bounded: facts.toml does not describe the code of GCC {compiler(elf)}")
+    return [f"{target.chip.name}: {complaint}" for complaint in found]
+
+
+def main() -> int:
     found = []
-    for environment, chip in IMAGES.items():
+    for target in TARGETS:
         try:
-            found += check(build / environment / "firmware.elf", chip)
-        except GateError as error:
-            found.append(f"{chip.name}: {error}")
+            found += check(target.elf, target)
+        except ImageError as error:
+            found.append(f"{target.chip.name}: {error}")
     for complaint in found:
         print(complaint, file=sys.stderr)
     return 1 if found else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(Path(sys.argv[1]) if len(sys.argv) > 1 else BUILD))
+    sys.exit(main())

@@ -1,29 +1,20 @@
-"""The deepest that a firmware's stack can get: the longest path through the call graph and the deepest interrupt."""
+"""The deepest that a firmware's stack can get: every path through every function, and the deepest interrupt on top."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from elftools.elf.elffile import ELFFile
 
-from tools.gates.image import TABLE_JUMP, Function, GateError, read_image
+from tools.timing import tables
+from tools.timing.cycles import Chip
+from tools.timing.graph import Graph, build
+from tools.timing.listing import ImageError, Instruction, Program, read_program
 
 DATA_SPACE = 0x800000
-
-
-@dataclass(frozen=True)
-class Chip:
-    """Where RAM ends, and how many bytes a return address takes."""
-
-    name: str
-    ram_end: int
-    return_address: int
-
-
-MEGA = Chip("ATmega2560", 0x21FF, 3)
-NANO = Chip("ATmega328P", 0x08FF, 2)
+STACK_POINTER_LOW, STACK_POINTER_HIGH = "0x3d", "0x3e"
+CONSTRUCTOR = "_GLOBAL__sub_I_"  # __do_global_ctors calls all of them, through a table
 
 
 @dataclass(frozen=True)
@@ -36,58 +27,133 @@ class Bound:
     free: int
 
 
+@dataclass(frozen=True)
+class Level:
+    """Bytes taken since the function began; in Y as well while Y holds a stack pointer that is being worked out."""
+
+    taken: int
+    in_y: int | None = None
+
+
+def _after(level: Level, instruction: Instruction, chip: Chip) -> Level:
+    mnemonic, operands = instruction.mnemonic, instruction.operands
+    first, _, second = (part.strip() for part in operands.partition(","))
+    if mnemonic == "push":
+        return Level(level.taken + 1, level.in_y)
+    if mnemonic == "pop":
+        return Level(level.taken - 1, None if first in ("r28", "r29") else level.in_y)
+    if mnemonic in ("call", "rcall") and instruction.target == instruction.next:
+        return Level(level.taken + chip.return_address, level.in_y)
+    if mnemonic == "in" and first == "r28" and second == STACK_POINTER_LOW:
+        return Level(level.taken, level.taken)
+    if mnemonic == "out" and first == STACK_POINTER_LOW:
+        if second != "r28" or level.in_y is None:
+            raise ImageError(f"the stack pointer is set at {instruction.address:#x}, nobody knows to what.")
+        return Level(level.in_y, level.in_y)
+    if level.in_y is None or first not in ("r28", "r29"):
+        return level
+    if mnemonic in ("sbiw", "adiw"):
+        return Level(level.taken, level.in_y + int(second, 0) * (1 if mnemonic == "sbiw" else -1))
+    if mnemonic == "subi" and first == "r28":
+        return Level(level.taken, level.in_y + int(second, 0))
+    if mnemonic == "sbci" and first == "r29":
+        byte = int(second, 0)
+        return Level(level.taken, level.in_y + 256 * (byte - 256 if byte > 127 else byte))
+    if mnemonic == "sbc" and second == "r1":  # avr-gcc's zero
+        return level
+    changes_y = mnemonic in ("ldi", "mov", "movw", "add", "adc", "sub", "sbc", "lds", "ldd", "ld", "eor")
+    return Level(level.taken, None) if changes_y else level
+
+
 class Depths:
     """Depth of every function, its own return address not counted."""
 
-    def __init__(self, functions: Mapping[str, Function], chip: Chip) -> None:
-        self._functions, self._chip = functions, chip
-        self._known: dict[str, tuple[int, tuple[str, ...]]] = {}
-        self._open: list[tuple[str, bool]] = []  # the path down to here, and whether each was entered by a jump
+    def __init__(self, program: Program, chip: Chip) -> None:
+        self._program, self._chip = program, chip
+        self._known: dict[int, tuple[int, tuple[str, ...]]] = {}
+        self._open: list[int] = []
 
-    def of(self, name: str, by_jump: bool = False) -> tuple[int, tuple[str, ...]]:
+    def of(self, entry: int) -> tuple[int, tuple[str, ...]]:
         """The depth, and the path that reaches it."""
-        if name in self._known:
-            return self._known[name]
-        if any(name == entered for entered, _ in self._open):
-            self._must_be_a_loop(name, by_jump)
-            return 0, ()
-        function = self._functions[name]
-        if function.indirect and name != TABLE_JUMP:
-            raise GateError(f"{name} calls through a pointer; the gate cannot tell whom, so avoid it.")
-        self._open.append((name, by_jump))
-        paths: list[tuple[int, tuple[str, ...]]] = [(0, ())]
-        for callee in sorted(function.calls):
-            depth, path = self.of(callee)
-            paths.append((self._chip.return_address + depth, path))
-        paths += [self.of(target, by_jump=True) for target in sorted(function.jumps - {name})]
+        if entry in self._known:
+            return self._known[entry]
+        if entry in self._open:
+            names = " -> ".join(self._program.name(address) for address in [*self._open, entry])
+            raise ImageError(f"{names}: recursion, so the stack has no bound.")
+        self._open.append(entry)
+        graph = build(self._program, entry, self._chip)
+        levels = self._levels(graph)
+        found: tuple[int, tuple[str, ...]] = (max(level.taken for level in levels.values()), ())
+        for at, callee in sorted(graph.calls.items()):
+            for called in self._called(callee):
+                depth, path = self.of(called)
+                found = max(found, (levels[at].taken + self._chip.return_address + depth, path))
         self._open.pop()
-        deepest, path = max(paths)
-        self._known[name] = (function.pushes + function.frame + deepest, (name, *path))
-        return self._known[name]
+        self._known[entry] = (found[0], (self._program.name(entry), *found[1]))
+        return self._known[entry]
 
-    def _must_be_a_loop(self, name: str, by_jump: bool) -> None:
-        """Parts of one assembly function may jump in circles; anything else that comes back to itself is recursion."""
-        names = [entered for entered, _ in self._open]
-        circle = self._open[names.index(name) :]
-        jumps = by_jump and all(jump for _, jump in circle[1:])
-        if not jumps or any(self._functions[entered].pushes for entered, _ in circle):
-            raise GateError(f"{' -> '.join([*names, name])}: recursion, so the stack has no bound.")
+    def _called(self, callee: int) -> list[int]:
+        if callee != self._program.symbols.get(tables.DISPATCH):
+            return [callee]
+        return [address for name, address in self._program.symbols.items() if name.startswith(CONSTRUCTOR)]
+
+    def _levels(self, graph: Graph) -> dict[int, Level]:
+        """What the stack holds before each instruction; the same on every path to it, or there is no bound."""
+        after = graph.followers()
+        levels = {graph.entry: Level(0)}
+        waiting = [graph.entry]
+        while waiting:
+            address = waiting.pop()
+            level = _after(levels[address], self._program.at(address), self._chip)
+            for follower in after[address]:
+                known = levels.get(follower)
+                if known is None:
+                    levels[follower] = level
+                elif known.taken != level.taken:
+                    raise ImageError(f"{self._program.name(follower)}: paths meet at {follower:#x}, stacks unequal.")
+                elif known.in_y is not None and known.in_y != level.in_y:
+                    levels[follower] = Level(known.taken, None)
+                else:
+                    continue
+                waiting.append(follower)
+        return levels
+
+
+def vectors(program: Program) -> dict[str, int]:
+    """The interrupt handlers of an image and where they begin."""
+    return {
+        name: address
+        for name, address in program.symbols.items()
+        if name.startswith("__vector_") and name[9:].isdigit()
+    }
 
 
 def bound(elf: Path, chip: Chip) -> Bound:
     """The bound of an image that starts at main; interrupts do not nest unless one enables them."""
-    functions = read_image(elf)
-    depths = Depths(functions, chip)
-    starts = [name for name in ("main", "__do_global_ctors") if name in functions]
-    foreground, path = max(depths.of(name) for name in starts)
-    vectors = {name: depths.of(name)[0] for name in functions if name.startswith("__vector_") and name[9:].isdigit()}
-    if nesting := [name for name in vectors if functions[name].enables]:
-        raise GateError(
-            f"{', '.join(nesting)}: an interrupt that enables interrupts may nest, so the stack has no bound."
-        )
-    interrupt = max(vectors, key=lambda name: vectors[name], default="")
-    extra = chip.return_address + vectors[interrupt] if interrupt else 0
+    program = read_program(elf)
+    depths = Depths(program, chip)
+    starts = [program.symbols[name] for name in ("main", "__do_global_ctors") if name in program.symbols]
+    foreground, path = max(depths.of(start) for start in starts)
+    handlers = vectors(program)
+    for name, address in handlers.items():
+        if any(program.at(node).mnemonic == "sei" for node in _reached(program, address, chip)):
+            raise ImageError(f"{name}: an interrupt that enables interrupts may nest, so the stack has no bound.")
+    deepest = {name: depths.of(address)[0] for name, address in handlers.items()}
+    interrupt = max(deepest, key=lambda name: deepest[name], default="")
+    extra = chip.return_address + deepest[interrupt] if interrupt else 0
     return Bound(chip.return_address + foreground + extra, path, interrupt, chip.ram_end + 1 - _variables_end(elf))
+
+
+def _reached(program: Program, entry: int, chip: Chip) -> set[int]:
+    """All instructions that a function may run, those of its callees too."""
+    nodes: set[int] = set()
+    waiting, seen = [entry], {entry}
+    while waiting:
+        graph = build(program, waiting.pop(), chip)
+        nodes |= graph.nodes
+        waiting += set(graph.calls.values()) - seen
+        seen |= set(graph.calls.values())
+    return nodes
 
 
 def _variables_end(elf: Path) -> int:

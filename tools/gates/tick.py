@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
 
-from tools.gates.image import Function, GateError
+from tools.timing.cycles import NANO
+from tools.timing.graph import build
+from tools.timing.listing import ImageError, Program
 
 TICK = "firmware_tick"
 FORBIDDEN = {
@@ -17,27 +18,32 @@ FORBIDDEN = {
 }
 
 
-def reachable(functions: Mapping[str, Function], roots: list[str]) -> dict[str, tuple[str, ...]]:
-    """Everything that can run below the roots, each with a path to it."""
+def reachable(program: Program, roots: list[str]) -> dict[str, tuple[str, ...]]:
+    """Every symbol that can run below the roots, each with a path to it."""
     paths: dict[str, tuple[str, ...]] = {name: (name,) for name in roots}
-    waiting = list(roots)
+    waiting = [(program.symbols[name], paths[name]) for name in roots]
+    seen = {entry for entry, _ in waiting}
     while waiting:
-        name = waiting.pop()
-        for callee in functions[name].calls | functions[name].jumps:
-            if callee not in paths:
-                paths[callee] = (*paths[name], callee)
-                waiting.append(callee)
+        entry, path = waiting.pop()
+        graph = build(program, entry, NANO)  # who calls whom is the same on every chip
+        for node in graph.nodes:  # jumps may lead into other functions
+            paths.setdefault(program.symbol(node), (*path, program.symbol(node)))
+        for callee in set(graph.calls.values()) - seen:
+            seen.add(callee)
+            name = program.symbol(callee)
+            paths.setdefault(name, (*path, name))
+            waiting.append((callee, paths[name]))
     return paths
 
 
-def complaints(functions: Mapping[str, Function]) -> list[str]:
+def complaints(program: Program) -> list[str]:
     """One sentence for each thing that does not belong there."""
-    roots = [name for name in functions if name.startswith((TICK, "__vector_"))]
+    roots = [name for name in program.symbols if name.startswith((TICK, "__vector_"))]
     if not any(name.startswith(TICK) for name in roots):
-        raise GateError(f"{TICK} is not in the image: was the tick renamed or inlined?")
+        raise ImageError(f"{TICK} is not in the image: was the tick renamed or inlined?")
     return [
         f"{' -> '.join(path)}: {what} in the tick."
-        for name, path in sorted(reachable(functions, roots).items())
+        for name, path in sorted(reachable(program, roots).items())
         for what, pattern in FORBIDDEN.items()
         if pattern.match(name)
     ]

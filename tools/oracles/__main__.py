@@ -1,10 +1,10 @@
-"""Installs the outside references that tests/oracles compares with: other people's packages, and another processor."""
+"""Installs what tests/oracles compares with: other people's packages and simulators, other processors."""
 
 from __future__ import annotations
 
 import sys
 
-from tools.oracles import wheelhouse
+from tools.oracles import node, wheelhouse
 from tools.setup import debian, stamps, venv
 from tools.setup.console import ROOT, SetupError, say
 
@@ -30,6 +30,7 @@ def main() -> int:
             venv.pip_install("--requirement", REQUIREMENTS, "--constraint", venv.REQUIREMENTS, what="Installing them")
             stamps.set_current("oracles", wanted)
         wheelhouse.step()
+        node.step()
     except SetupError as error:
         print(f"set-up: {error}", file=sys.stderr)
         return 1

@@ -1,0 +1,162 @@
+"""Another simulator of the ATmega328P runs our image: the same duties, to the tick, and our host at its serial port."""
+
+from __future__ import annotations
+
+import json
+import struct
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from greywhale.files.log import read_log
+from greywhale.protocol import frames, schema
+from tests.oracles.second_simulator import (
+    CHANNELS,
+    CONVERSIONS,
+    IMAGE,
+    NODE,
+    ROOT,
+    SCRIPTS,
+    Run,
+    Scenario,
+    Volts,
+    parameter_requests,
+    request,
+    run_avr8js,
+    run_board,
+)
+from tests.oracles.served_nano import ServedNano
+
+CONTROLLER = ROOT / "shared/fuzzy_tables/table_10.toml"  # the paper's, tuned
+TICKS = 4000
+NEW_SET = {
+    "filter_shift": 2,
+    "joint0.kp": 90_000,
+    "joint1.ki": 3_000_000,
+    "joint2.ku_mv": 12_000,
+    "joint3.motor_sign": -1,
+    "tracking_ms": 40,
+}
+COUNT = 5 / 1024  # volts
+
+
+def _volts() -> Volts:
+    """Four joints that follow badly: slow swings, steps, noise on each conversion, a pot at its rail, a lost joint."""
+    random = np.random.default_rng(4)
+    tick = np.arange(TICKS)
+    counts = np.zeros((TICKS, CONVERSIONS, CHANNELS))
+    for joint in range(4):
+        leader = 512 + 120 * np.sin(tick / (70 + 30 * joint) + joint) + 40 * (tick // 400 % 2)
+        follower = np.roll(leader, 30 + 7 * joint) + 15 * np.sin(tick / 9)
+        follower[:200] = leader[:200] + 20
+        counts[:, :, joint] = leader[:, None]
+        counts[:, :, 4 + joint] = follower[:, None]
+    counts += random.integers(-3, 4, counts.shape)
+    counts[2600:2606, :, 5] = 1023  # longer than a rail may last
+    counts[3400:, :, 2] += 300  # beyond the tracking limit for good
+    volts: Volts = ((np.floor(counts.clip(0, 1023)) + 0.5) * COUNT).astype(np.float32)
+    return volts
+
+
+def _sends() -> dict[int, bytes]:
+    enable = request(schema.EnableRequest, 2, struct.pack("<H", 0))
+    # While samples are on their way: both directions of the line are busy.
+    sends = {
+        tick: request(schema.ParamGetRequest, tick & 0xFF, struct.pack("<H", tick % 80)) for tick in range(200, 1400)
+    }
+    sends |= {
+        40: request(schema.TelemetryRequest, 1, struct.pack("<H", 1)),
+        60: enable,
+        1500: request(schema.StopRequest, 3),
+        1700: enable,
+        2700: request(schema.ClearFaultRequest, 4),
+        2720: enable,
+        3950: request(schema.TelemetryRequest, 5, struct.pack("<H", 0)),
+    }
+    return sends | {1510 + 4 * i: data for i, data in enumerate(parameter_requests(NEW_SET, 10))}
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory: pytest.TempPathFactory) -> tuple[Run, Run]:
+    scenario = Scenario(_volts(), _sends())
+    return run_avr8js(scenario, tmp_path_factory.mktemp("avr8js")), run_board(scenario)
+
+
+def test_both_simulators_give_the_same_outputs_in_every_tick(runs: tuple[Run, Run]) -> None:
+    theirs, ours = runs
+    different = np.nonzero(np.any(theirs.outputs != ours.outputs, axis=1))[0]
+    assert theirs.outputs.shape == ours.outputs.shape == (TICKS, 6)
+    assert len(different) == 0, f"tick {different[0]}: {theirs.outputs[different[0]]} and {ours.outputs[different[0]]}"
+
+
+def test_both_simulators_send_the_same_bytes(runs: tuple[Run, Run]) -> None:
+    theirs, ours = runs
+    assert theirs.sent == ours.sent
+    assert len(ours.sent) > 100_000
+
+
+def test_the_scenario_shows_what_it_is_for(runs: tuple[Run, Run]) -> None:
+    """Motors on three times, four duties that differ all the time, both directions, two faults."""
+    _, ours = runs
+    drivers = ours.outputs[:, 4] >> 4 & 1
+    assert np.count_nonzero(np.diff(drivers) == 1) == 3
+    assert list(drivers[[1499, 2600, 3399]]) == [1, 1, 1]
+    assert list(drivers[[1501, 2604, 3450]]) == [0, 0, 0]
+    following = ours.outputs[drivers == 1]
+    assert all(len(np.unique(following[:, column])) > 100 for column in range(4))
+
+
+def test_the_watchdog_of_the_other_simulator_ends_a_hang() -> None:
+    """After a hang with interrupts off: motors off within 16.4 ms, and the board says why it started again."""
+    output = subprocess.run(
+        ["node", str(SCRIPTS / "hang.js"), str(IMAGE)], env=NODE, check=True, capture_output=True, text=True
+    ).stdout
+    found = json.loads(output)
+    assert found["resets"] == 1
+    assert found["cycles"] <= 16.4 * 16_000
+    assert not found["drivers"]
+    (frame,) = frames.FrameDecoder().feed(bytes.fromhex(found["sent"]))
+    hello = schema.HelloReply.unpack(frame.payload)
+    assert isinstance(hello, schema.HelloReply)
+    assert hello.reset_cause == schema.ResetCause.WATCHDOG
+
+
+def _greywhale(verb: str, port: str, *arguments: str) -> dict[str, Any]:
+    command = [sys.executable, "-m", "greywhale", *verb.split(), "--port", port, "--json", *arguments]
+    run = subprocess.run(command, capture_output=True, text=True, timeout=50, check=False)
+    assert run.returncode == 0, run.stdout + run.stderr
+    answer: dict[str, Any] = json.loads(run.stdout)
+    return answer
+
+
+def test_our_host_uploads_follows_and_records_on_the_other_simulator(tmp_path: Path) -> None:
+    log = tmp_path / "log.csv"
+    with ServedNano() as nano:
+        before = _greywhale("info", nano.path)
+        uploaded = _greywhale("upload", nano.path, str(CONTROLLER))
+        recorded = _greywhale("record", nano.path, "--enable", "--seconds", "3", "--out", str(log))
+        after = _greywhale("info", nano.path)
+    assert (before["board"], before["reset_cause"], before["parameter_source"]) == ("nano328", "external", "defaults")
+    assert uploaded["parameter_crc"] == after["parameter_crc"] != before["parameter_crc"]
+    assert after["parameter_source"] == "bank_a"  # it came through a reset in the EEPROM
+    assert (recorded["samples"], recorded["dropped"]) == (3000, 0)
+    samples = read_log(log)
+    assert samples.complete
+    assert np.allclose(np.diff(samples.time), 1e-3)
+    assert set(samples.state) == {"following"}
+    assert np.ptp(samples.follower, axis=0).min() > 0.4
+    assert np.abs(samples.leader - samples.follower).max() < 0.3  # half of the way that leaders swing
+
+
+def test_the_pins_carry_the_duties_of_the_compare_registers() -> None:
+    """By the other simulator's own timers: 20 kHz from timer 1, 31.4 kHz from timer 2, mean levels to 0.5 %."""
+    values = (100, 300, 64, 200)
+    command = ["node", str(SCRIPTS / "pwm.js"), str(IMAGE), *map(str, values)]
+    pins = json.loads(subprocess.run(command, env=NODE, check=True, capture_output=True, text=True).stdout)
+    for pin, value, top in zip(pins, values, (400, 400, 255, 255), strict=True):
+        assert pin["period"] == pytest.approx(2 * top, rel=1e-3)
+        assert pin["mean"] == pytest.approx(value / top, abs=5e-3)

@@ -1,0 +1,22 @@
+"""The tick with the interrupts that may come, from bounds that are easy to add by hand."""
+
+from __future__ import annotations
+
+from tools.timing.image import Times
+
+
+def test_interrupts_add_to_the_tick_as_often_as_they_may_come() -> None:
+    quiet = {
+        "tick's interrupt": 10,
+        "start of the chain": 10,
+        "conversion done": 20,
+        "byte received": 50,
+        "byte sent": 50,
+    }
+    bounds = Times(tick=1000, interrupts=quiet, waking=0)
+    assert bounds.response(receiving=False, sending=False) == 1020
+    assert bounds.response(receiving=True, sending=False) == 1020 + (11 + 2) * 50
+    longer = Times(tick=3000, interrupts=quiet, waking=0)
+    assert longer.response(receiving=False, sending=False) == 3020 + 2 * 20
+    full = Times(tick=1000, interrupts=quiet | {"byte received": 161}, waking=0)
+    assert full.response(receiving=True, sending=False) is None

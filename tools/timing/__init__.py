@@ -1,0 +1,1 @@
+"""Static bounds on time and stack of a compiled firmware image, from its disassembly."""

@@ -1,0 +1,119 @@
+"""The bounds of a firmware image: its tick, each of its interrupts, and the tick with the interrupts that may come."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from elftools.elf.elffile import ELFFile
+
+from tools.timing import facts
+from tools.timing.bound import Timing
+from tools.timing.cycles import MEGA, NANO, Chip
+from tools.timing.listing import ImageError, Program, read_program
+
+BUILD = Path(__file__).parents[2] / "firmware/.pio/build"
+TICK = "firmware_tick"
+PERIOD = 16_000  # cycles from one tick to the next
+BYTE = 160  # cycles that a byte takes on the line at 1 Mbaud
+CONVERSION = 416
+CONVERSIONS = 32  # in a tick
+FIRST_CONVERSION = 33 * 64 + CONVERSION  # its end, in cycles after the tick's interrupt: hal's chain_start, and itself
+RING = 127  # bytes: no more are received, or sent, while the main loop does not get to the rings
+# The chip holds two received bytes while a third comes in, so three interrupts may be due at once; of sent bytes two.
+HELD = {"byte received": 2, "byte sent": 1}
+
+
+@dataclass(frozen=True)
+class Target:
+    """A board's image and which vector does what. `unused` vectors are in the image, but never turned on."""
+
+    chip: Chip
+    environment: str
+    vectors: Mapping[str, int]
+    unused: frozenset[int]
+
+    @property
+    def elf(self) -> Path:
+        return BUILD / self.environment / "firmware.elf"
+
+
+def _vectors(tick: int, chain: int, received: int, sent: int, conversion: int) -> dict[str, int]:
+    return {
+        "tick's interrupt": tick,
+        "start of the chain": chain,
+        "conversion done": conversion,
+        "byte received": received,
+        "byte sent": sent,
+    }
+
+
+# The framework's millis() interrupt is in every image; hal::begin() turns it off for good.
+TARGETS = (
+    Target(MEGA, "megaatmega2560", _vectors(21, 22, 25, 26, 29), frozenset({23})),
+    Target(NANO, "nanoatmega328", _vectors(14, 15, 18, 19, 21), frozenset({16})),
+)
+
+
+@dataclass(frozen=True)
+class Times:
+    """Bounds in cycles. An interrupt counts from its acceptance to the end of RETI, with `waking` in front of it."""
+
+    tick: int
+    interrupts: dict[str, int]
+    waking: int
+
+    def response(self, receiving: bool, sending: bool) -> int | None:
+        """The tick with all interrupts that may come until its end; None if that is not before the next tick.
+
+        Every kind comes as often as its least distance allows, conversions not before the chain has begun. The tick's
+        own may end a sleep; during a tick there is none.
+        """
+        during = {kind: cycles - self.waking for kind, cycles in self.interrupts.items()}
+        once = self.tick + self.interrupts["tick's interrupt"] + during["start of the chain"]
+        end = once
+        while end <= PERIOD:
+            conversions = math.ceil(max(0, end - FIRST_CONVERSION) / CONVERSION)
+            longer = once + min(CONVERSIONS, conversions) * during["conversion done"]
+            for kind, on in (("byte received", receiving), ("byte sent", sending)):
+                longer += on * min(RING, math.ceil(end / BYTE) + HELD[kind]) * during[kind]
+            if longer == end:
+                return end
+            end = longer
+        return None
+
+
+def _handlers(program: Program, target: Target) -> dict[str, int]:
+    """Role -> address; a handler that has no role is refused."""
+    found = {int(name[9:]) for name in program.symbols if name.startswith("__vector_") and name[9:].isdigit()}
+    known = set(target.vectors.values()) | target.unused
+    if found != known:
+        more, less = sorted(found - known), sorted(known - found)
+        raise ImageError(f"the image has the interrupts {more} without a role and lacks {less}.")
+    return {role: program.symbols[f"__vector_{number}"] for role, number in target.vectors.items()}
+
+
+def compiler(elf: Path) -> str:
+    """The version of the GCC that made an image."""
+    with elf.open("rb") as stream:
+        section = ELFFile(stream).get_section_by_name(".comment")
+        found = re.search(rb"GCC: \(.*?\) ([0-9.]+)", section.data()) if section else None
+    return found[1].decode() if found else "unknown"
+
+
+def is_described(elf: Path) -> bool:
+    """Whether facts.toml is about the compiler that made this image: another one makes other loops."""
+    return compiler(elf) == facts.load().compiler
+
+
+def times(target: Target, elf: Path | None = None) -> Times:
+    """The bounds of an image; raises ImageError for what has none."""
+    program = read_program(elf or target.elf)
+    timing = Timing(program, target.chip, facts.load())
+    waking, vector_table_jump = target.chip.interrupt_entry, 3
+    entry = waking + target.chip.interrupt_entry + vector_table_jump
+    interrupts = {role: entry + timing.of(address).cycles for role, address in _handlers(program, target).items()}
+    return Times(timing.of(program.entry(TICK)).cycles, interrupts, waking)
