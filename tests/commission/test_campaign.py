@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from greywhale.arm import ArmParameters
 from greywhale.commission import Options, campaign, commission, learn
 from greywhale.commission.book import Book
 from greywhale.commission.learn import Learnt
@@ -141,9 +142,11 @@ def test_without_a_model_the_arm_is_excited_and_identified(
 ) -> None:
     """The identification itself has tests of its own; here it is enough that it gets the right logs."""
     given = {}
+    begun: list[ArmParameters | None] = []
 
-    def find(book, name, nominal, known, seed, report):  # type: ignore[no-untyped-def]
+    def find(book, name, nominal, known, seed, report, begin):  # type: ignore[no-untyped-def]
         given[name] = known
+        begun.append(begin)
         return options().model
 
     monkeypatch.setattr(learn, "find_model", find)
@@ -151,6 +154,7 @@ def test_without_a_model_the_arm_is_excited_and_identified(
     monkeypatch.setattr(campaign, "WANTING", 0.0)
     outcome = commission(options(model=None, rounds=2, trials=2))
     first, second = given["model-1"], given["model-2"]
+    assert begun == [None, outcome.rounds[0].learnt.arm], "the second model goes on from the first"
     assert [len(one.fit) for one in (first, second)] == [1, 2]
     assert first.fit[0].time[-1] > load_leader(outcome.trials.book.path("excite_leader.csv")).duration_s - 1.0
     assert [log.name for log in first.validate] == [str(outcome.trials.before.path)]

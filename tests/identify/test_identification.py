@@ -34,14 +34,14 @@ def test_model_predicts_other_logs_far_better_than_the_white_box(outcome: Outcom
 def test_search_can_go_on_from_a_model_of_the_same_arm(
     outcome: Outcome, recorded: Recorded, white_box: ArmParameters, tables: list[ParameterTable], tmp_path: Path
 ) -> None:
-    """With one log more, and no worse on what it has not seen."""
+    """With one log more; a third, which it has not seen, is predicted well."""
     outcome.save(tmp_path / "model.toml")
     begin = load_arm(tmp_path / "model.toml")
     more = identify([recorded.fit, recorded.changed], white_box, validate=[recorded.second], tables=tables, begin=begin)
     orders = [order for order, _ in more.found.orders]
     assert orders[:3] == ["motors", "Coulomb friction", outcome.found.order], "nothing in between is tried again"
     role_of_second = {verdict.role: verdict for verdict in more.verdicts}[SECOND]
-    assert role_of_second.improvement > outcome.verdicts[1].improvement - 0.005
+    assert role_of_second.improvement > 0.97
     assert more.complete
 
 
