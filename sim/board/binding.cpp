@@ -161,7 +161,12 @@ void bind_pins(BoardClass& c) {
            "All watched outputs, duties 0..1 and pins 0 or 1. The same array each time: copy what must stay.")
       .def("duty", &PyBoard::duty, "timer"_a, "channel"_a,
            "Mean level of an output-compare pin, 0..1, from the registers.")
-      .def("pin", &PyBoard::pin, "port"_a, "bit"_a, "Whether the pin is driven high.");
+      .def("pin", &PyBoard::pin, "port"_a, "bit"_a, "Whether the pin is driven high.")
+      .def("hold_pin", &PyBoard::hold_pin, "port"_a, "bit"_a, "high"_a,
+           "Hold a pin at a level from outside, as a button does, until let_pin_go(). It matters while the pin is an "
+           "input.")
+      .def("let_pin_go", &PyBoard::let_pin_go, "port"_a, "bit"_a,
+           "Hold a pin no longer: an input then reads its pull-up.");
 }
 
 void bind_serial(BoardClass& c) {

@@ -49,6 +49,12 @@ class FakeBoard:
         self.registered.append((port, bit))
         return len(self.registered) - 1
 
+    def hold_pin(self, port: str, bit: int, high: bool) -> None:
+        self.events.append(f"hold {port}{bit} {'high' if high else 'low'}")
+
+    def let_pin_go(self, port: str, bit: int) -> None:
+        self.events.append(f"let {port}{bit} go")
+
     def outputs(self) -> np.ndarray:
         return self.pins
 

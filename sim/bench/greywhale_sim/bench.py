@@ -38,6 +38,8 @@ class Board(Protocol):
     def crash_reason(self) -> str: ...
     def add_duty_output(self, timer: int, channel: str) -> int: ...
     def add_pin_output(self, port: str, bit: int) -> int: ...
+    def hold_pin(self, port: str, bit: int, high: bool) -> None: ...
+    def let_pin_go(self, port: str, bit: int) -> None: ...
     def outputs(self) -> Array: ...
     def set_millivolts(self, millivolts: Array) -> None: ...
     def run_until(self, cycle: int) -> int: ...
@@ -77,6 +79,8 @@ class Bench:
         supply_v: float,
     ) -> None:
         self.board = board
+        self.wiring = wiring
+        self.estop_pressed = False
         self.plant = plant
         self.leader = leader
         self.leader_pots = leader_pots
@@ -103,6 +107,15 @@ class Bench:
     def motors_enabled(self) -> bool:
         """The drivers' enable pin, as it is now."""
         return bool(self.board.outputs()[0])
+
+    def press_estop(self, pressed: bool) -> None:
+        """Press the emergency stop, which closes to ground, or release it."""
+        pin = self.wiring.estop
+        if pressed:
+            self.board.hold_pin(pin.port, pin.bit, False)
+        else:
+            self.board.let_pin_go(pin.port, pin.bit)
+        self.estop_pressed = pressed
 
     def place(self, angles: Array) -> None:
         """Hold the follower in a pose by hand, if the plant allows that (it has `reset`)."""

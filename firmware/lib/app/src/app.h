@@ -25,6 +25,7 @@ class App {
   // app.cpp: the tick
   void count_ticks(hal::TickStart start);
   void supervise(bool late);
+  bool estop_pressed() const;
   // Switches the drivers as the supervisor has decided. Call it wherever the supervisor may have changed its mind.
   void follow_supervisor() {
     if (supervisor_.motors_on() != drivers_on_) switch_drivers();

@@ -204,6 +204,7 @@ bool App::granted(const supervisor::Reply& result) {
     case Answer::in_fault: refuse(wire::NackCode::in_fault, result.detail); break;
     case Answer::pot_bad: refuse(wire::NackCode::pot_bad, pair(result.where, result.detail)); break;
     case Answer::too_far: refuse(wire::NackCode::error_too_large, pair(result.where, coarse(result.detail))); break;
+    case Answer::estop: refuse(wire::NackCode::estop_pressed, 0); break;
     case Answer::params:
       if (sets_.unfit().refusal != fuzzy_pdi::Refusal::none) refuse_set();
       else refuse(wire::NackCode::set_lost, 0);

@@ -46,6 +46,9 @@ void set_duty(bool positive, uint16_t size);
 void set_drivers(bool on);
 void set_led(bool on);
 
+// --- The emergency stop's input, which its pull-up holds high: its level now.
+bool estop_low();
+
 // --- Serial port, interrupt-driven both ways.
 constexpr uint8_t tx_capacity = 127;
 constexpr uint8_t rx_capacity = 127;

@@ -37,8 +37,19 @@ void Supervisor::tick(const Observation& seen) {
     }
     return;
   }
+  if (seen.estop) press_estop();
   if (motors_on()) watch(seen);
   if (state_ == State::soft_start && soft_start_.advance()) state_ = State::following;
+}
+
+// A stop that is pressed counts with the motors off as well: somebody wants nothing to start. A fault that stands
+// already stays to be seen, but not one after which the board would start the motors again by itself.
+__attribute__((noinline)) void Supervisor::press_estop() {
+  if (motors_on()) return raise(Fault::estop, nowhere);
+  if (state_ == State::fault && fault_ != Fault::unrest) return;
+  state_ = State::fault;
+  fault_ = Fault::estop;
+  fault_where_ = nowhere;
 }
 
 // Faults come before the lease, the gravest first: only one is reported.
@@ -137,6 +148,7 @@ Reply Supervisor::enable(uint16_t lease_ms, const Observation& seen) {
   }
   if (state_ == State::boot) return {Answer::booting, nowhere, 0};
   if (state_ == State::fault) return {Answer::in_fault, nowhere, static_cast<uint16_t>(fault_)};
+  if (seen.estop) return {Answer::estop, nowhere, 0};
   const uint8_t low = steady_low_ | seen.rail_low, high = steady_high_ | seen.rail_high;
   if (low) return {Answer::pot_bad, lowest_bit(low), static_cast<uint16_t>(Fault::pot_low)};
   if (high) return {Answer::pot_bad, lowest_bit(high), static_cast<uint16_t>(Fault::pot_high)};
@@ -164,6 +176,7 @@ void Supervisor::renew(uint16_t lease_ms) {
 Reply Supervisor::clear_fault(const Observation& seen) {
   if (state_ == State::boot) return {Answer::booting, nowhere, 0};
   if (state_ != State::fault) return {Answer::ok, nowhere, 0};
+  if (seen.estop) return {Answer::estop, nowhere, 0};
   if (steady_low_) return {Answer::pot_bad, lowest_bit(steady_low_), static_cast<uint16_t>(Fault::pot_low)};
   if (steady_high_) return {Answer::pot_bad, lowest_bit(steady_high_), static_cast<uint16_t>(Fault::pot_high)};
   if (!params_ok_) return {Answer::params, nowhere, static_cast<uint16_t>(Fault::params)};

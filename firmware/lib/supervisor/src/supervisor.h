@@ -14,7 +14,7 @@ constexpr uint8_t nowhere = 255;  // fault_where when the fault has no pot or jo
 // The numbers go over the link; app/src/on_link.h checks that they are the same there.
 enum class State : uint8_t { boot, disabled, soft_start, following, fault };
 enum class StopReason : uint8_t { none, host, lease, fault, reset };
-enum class Fault : uint8_t { none, pot_low, pot_high, late_tick, tracking, watchdog, params, flood, unrest };
+enum class Fault : uint8_t { none, pot_low, pot_high, late_tick, tracking, watchdog, params, flood, unrest, estop };
 
 struct Limits {
   uint16_t enable_limit;    // q12 rad
@@ -30,10 +30,11 @@ struct Observation {
   uint8_t rail_low;
   uint8_t rail_high;
   bool late;
+  bool estop;  // the emergency stop is pressed
 };
 
 // Why a request was refused; `where` is a pot for pot_bad and a joint for too_far.
-enum class Answer : uint8_t { ok, booting, in_fault, pot_bad, too_far, params };
+enum class Answer : uint8_t { ok, booting, in_fault, pot_bad, too_far, params, estop };
 struct Reply {
   Answer answer;
   uint8_t where;
@@ -75,6 +76,7 @@ class Supervisor {
   void switch_off(State next, StopReason reason);
   void raise(Fault fault, uint8_t where);
   void forget_fault();
+  void press_estop();
   void watch(const Observation& seen);
   uint8_t lost_joint(const Observation& seen);
   uint8_t count_lost(uint8_t far);

@@ -10,7 +10,7 @@ using namespace supervisor;
 namespace {
 
 constexpr Limits limits = {3277, 10240, 500, 1000};  // 0.8 rad, 2.5 rad
-constexpr Observation calm = {{0, 0, 0, 0}, 0, 0, false};
+constexpr Observation calm = {{0, 0, 0, 0}, 0, 0, false, false};
 
 Observation apart(std::uint8_t joint, std::uint16_t distance) {
   Observation seen = calm;
@@ -28,6 +28,12 @@ Observation with_rails(std::uint8_t low, std::uint8_t high) {
 Observation late() {
   Observation seen = calm;
   seen.late = true;
+  return seen;
+}
+
+Observation pressed() {
+  Observation seen = calm;
+  seen.estop = true;
   return seen;
 }
 
@@ -293,4 +299,58 @@ TEST_CASE("the first fault is the one reported") {
   Arm arm;
   arm.following().run(1, late()).run(5, with_rails(1, 0));
   CHECK(arm.fault() == Fault::late_tick);
+}
+
+TEST_CASE("the emergency stop acts at once in every state but boot, where it waits for the end") {
+  Arm boot;
+  boot.run(19, pressed());
+  CHECK(boot.state() == State::boot);
+  boot.run(2, pressed());
+  CHECK(boot.fault() == Fault::estop);
+  CHECK(boot.stop_reason() == StopReason::reset);
+
+  Arm disabled;
+  disabled.booted().run(1, pressed());
+  CHECK(disabled.state() == State::fault);
+  CHECK(disabled.fault() == Fault::estop);
+  CHECK(disabled.stop_reason() == StopReason::reset);
+
+  for (const unsigned ticks : {1u, 500u, 2000u}) {
+    Arm arm;
+    arm.enabled().run(ticks).run(1, pressed());
+    CHECK(arm.state() == State::fault);
+    CHECK(arm.fault() == Fault::estop);
+    CHECK(arm.fault_where() == nowhere);
+    CHECK(arm.stop_reason() == StopReason::fault);
+  }
+}
+
+TEST_CASE("the emergency stop is latched, and neither clear_fault nor enable works while it is pressed") {
+  Arm arm;
+  arm.following().run(1, pressed());
+  CHECK(arm.clear_fault().answer == Answer::estop);
+  arm.run(1000);
+  CHECK(arm.fault() == Fault::estop);
+  CHECK(arm.enable(0).answer == Answer::in_fault);
+  CHECK(arm.clear_fault().answer == Answer::ok);
+  arm.run(1);
+  CHECK(arm.enable(0).answer == Answer::ok);
+
+  Arm just_pressed;
+  just_pressed.booted();
+  just_pressed.last = pressed();  // since the last tick
+  CHECK(just_pressed.enable(0).answer == Answer::estop);
+}
+
+TEST_CASE("the emergency stop comes before every other fault of its tick, but leaves one that stands") {
+  Observation all = pressed();
+  all.late = true;
+  all.rail_low = 1;
+  Arm together;
+  together.following().run(1, all);
+  CHECK(together.fault() == Fault::estop);
+  Arm later;
+  later.following().run(1, late()).run(5, pressed());
+  CHECK(later.fault() == Fault::late_tick);
+  CHECK(later.clear_fault().answer == Answer::estop);
 }

@@ -8,7 +8,7 @@
 #include "pins.h"
 #include "shared_state.h"
 
-.section .bss.hal, "aw", @nobits
+.section .bss, "aw", @nobits    ; comes first in RAM: see BEHIND_RINGS
 .balign 32                      ; the address of a sum changes in its low byte only
 .global hal_sums, hal_tx_ring, hal_rx_ring
 hal_sums:    .skip 32           ; two sets of eight
