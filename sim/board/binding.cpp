@@ -153,6 +153,9 @@ void bind_memory(BoardClass& c) {
 void bind_pins(BoardClass& c) {
   c.def("set_millivolts", &PyBoard::set_millivolts, "millivolts"_a,
         "Voltages at ADC0..7 from now on, eight float64 in mV.")
+      .def(
+          "set_floating", [](PyBoard& b, uint8_t inputs) { b.adc().set_floating(inputs); }, "inputs"_a,
+          "Inputs without a wire, bit i for ADCi: they read what the conversion before left on the sampling capacitor.")
       .def("add_duty_output", &PyBoard::add_duty_output, "timer"_a, "channel"_a,
            "Watch a PWM output, for example (3, \"A\") for OC3A; its place in outputs().")
       .def("add_pin_output", &PyBoard::add_pin_output, "port"_a, "bit"_a,

@@ -61,6 +61,9 @@ class FakeBoard:
     def set_millivolts(self, millivolts: np.ndarray) -> None:
         self.millivolts.append(millivolts.copy())
 
+    def set_floating(self, inputs: int) -> None:
+        self.events.append(f"floating {inputs:#x}")
+
     def run_until(self, cycle: int) -> int:
         self.cycle = cycle + 1  # the last instruction ends a little late, as on the real thing
         return self.result

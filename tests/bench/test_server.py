@@ -208,6 +208,14 @@ def test_commands_change_the_bench(server: Server) -> None:
     assert status["leader"] == pytest.approx([0.0, 0.1, 0.2, 0.3])
 
 
+def test_a_potentiometer_floats_until_it_is_connected_again(server: Server, board: Any) -> None:
+    assert commands.run(server, "pot leader 1 floating") == {"pot": "leader_1", "state": "floating"}
+    commands.run(server, "pot follower 2 floating")
+    commands.run(server, "pot leader 1 connected")
+    commands.run(server, "pot follower 2 open")
+    assert board.events == ["floating 0x2", "floating 0x42", "floating 0x40", "floating 0x0"]
+
+
 def test_the_emergency_stop_closes_its_pin_to_ground_until_it_is_released(server: Server, board: Any) -> None:
     assert commands.run(server, "estop press") == {"estop_pressed": True}
     assert commands.run(server, "status")["estop_pressed"]

@@ -42,6 +42,7 @@ class Board(Protocol):
     def let_pin_go(self, port: str, bit: int) -> None: ...
     def outputs(self) -> Array: ...
     def set_millivolts(self, millivolts: Array) -> None: ...
+    def set_floating(self, inputs: int) -> None: ...
     def run_until(self, cycle: int) -> int: ...
 
 
@@ -81,6 +82,7 @@ class Bench:
         self.board = board
         self.wiring = wiring
         self.estop_pressed = False
+        self.floating = 0  # bit i: the wire of potentiometer i is off and nothing pulls its input
         self.plant = plant
         self.leader = leader
         self.leader_pots = leader_pots
@@ -116,6 +118,11 @@ class Bench:
         else:
             self.board.let_pin_go(pin.port, pin.bit)
         self.estop_pressed = pressed
+
+    def let_float(self, pot: int, floats: bool) -> None:
+        """Take the wire off a potentiometer's input (0..3 leader, 4..7 follower), without a pull-down, or put it back."""
+        self.floating = self.floating & ~(1 << pot) | floats << pot
+        self.board.set_floating(self.floating)
 
     def place(self, angles: Array) -> None:
         """Hold the follower in a pose by hand, if the plant allows that (it has `reset`)."""

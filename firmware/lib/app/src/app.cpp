@@ -75,6 +75,7 @@ __attribute__((noinline)) void App::switch_drivers() {
   if (!drivers_on_) hal::set_drivers(false);
   controllers_.reset();
   drive_.release();
+  sampling_.hold(drivers_on_);
   until_control_ = 1;
   if (drivers_on_) hal::set_drivers(true);
 }

@@ -36,6 +36,8 @@ TEST_CASE("soft start: the duty stays below the ramp, and the ramp reaches the t
   Bench arm;
   for (std::uint8_t i = 0; i < 4; ++i) arm.set_leader(i, 0.79);  // as far as enable allows: more volts than the ramp
   arm.boot();
+  REQUIRE(arm.apply(bench::unwatched()).type == 0x85);
+  arm.run(1);
   REQUIRE(arm.enable() == wire::State::soft_start);
   CHECK(board.drivers);
   CHECK(bench::joint_max(board.duty) == 0);
@@ -202,6 +204,8 @@ TEST_CASE("a lease that is not renewed ends in disabled; one that is renewed goe
 
 TEST_CASE("a follower that does not come is lost after tracking_ms") {
   Bench arm;
+  arm.boot();
+  REQUIRE(arm.apply(bench::unwatched()).type == 0x85);
   arm.follow();  // the plant stands still
   arm.set_leader(3, 2.4);
   arm.set_follower(3, 1.4);  // 1 rad; with 0.8 rad it might go on
@@ -217,8 +221,7 @@ TEST_CASE("a follower that does not come is lost after tracking_ms") {
 TEST_CASE("controllers run every period_ms ticks and hold in between") {
   Bench arm;
   arm.boot();
-  params::Table table;
-  params::load_defaults(table);
+  params::Table table = bench::unwatched();
   table.period_ms = 10;
   REQUIRE(arm.apply(table).type == 0x85);
   arm.set_leader(0, 0.7);

@@ -42,14 +42,20 @@ struct Arm : Supervisor {
     set_limits(limits);
     begin(after_watchdog, params_ok);
   }
+  // Ticks, each followed by the look at a joint. A set of limits turns the checks of the motion off.
   Arm& run(unsigned ticks, const Observation& seen = calm) {
-    while (ticks--) tick(seen);
+    for (; ticks > 0; --ticks, ++now) {
+      tick(seen);
+      const auto joint = static_cast<std::uint8_t>(now % joint_count);
+      look(joint, {0, 0, seen.distance[joint], 0, 15000}, {});
+    }
     last = seen;
     return *this;
   }
   Reply enable(std::uint16_t lease) { return Supervisor::enable(lease, last); }
   Reply clear_fault() { return Supervisor::clear_fault(last); }
   Observation last = calm;
+  unsigned now = 0;
   Arm& booted() { return run(20); }
   Arm& enabled(std::uint16_t lease = 0) {
     booted();
@@ -205,7 +211,7 @@ TEST_CASE("a pot at a rail for three ticks in a row is a fault and names the pot
       const auto bit = static_cast<std::uint8_t>(1u << pot);
       const Observation rail = high ? with_rails(0, bit) : with_rails(bit, 0);
       Arm arm;
-      arm.following().run(2, rail).run(1).run(2, rail);
+      arm.following().run(2, rail).run(40).run(2, rail);
       CHECK(arm.state() == State::following);
       arm.run(1, rail);
       CHECK(arm.state() == State::fault);
@@ -214,24 +220,59 @@ TEST_CASE("a pot at a rail for three ticks in a row is a fault and names the pot
       const Reply refused = arm.clear_fault();
       CHECK(refused.answer == Answer::pot_bad);
       CHECK(refused.where == pot);
-      arm.run(1);
+      CHECK(refused.detail == static_cast<unsigned>(arm.fault()));
+      arm.run(50);
       CHECK(arm.clear_fault().answer == Answer::ok);
     }
   }
 }
 
-TEST_CASE("different pots at a rail in turn do not add up to a fault") {
+TEST_CASE("a pot that comes and goes is a fault, wherever in its pattern the motors start") {
+  struct Pattern {
+    unsigned at_rail, of;
+  };
+  for (const Pattern pattern : {Pattern{2, 3}, {1, 2}, {2, 4}, {1, 4}, {2, 10}, {1, 10}}) {
+    for (unsigned phase = 0; phase < pattern.of; ++phase) {
+      Arm arm;
+      arm.following();
+      unsigned ticks = 0;
+      for (; arm.motors_on() && ticks < 1000; ++ticks) {
+        arm.run(1, (ticks + phase) % pattern.of < pattern.at_rail ? with_rails(0, 1 << 6) : calm);
+      }
+      CAPTURE(pattern.at_rail);
+      CAPTURE(pattern.of);
+      CHECK(arm.fault() == Fault::pot_high);
+      CHECK(arm.fault_where() == 6);
+      CHECK(ticks <= 10 * pattern.of / pattern.at_rail);
+    }
+  }
+}
+
+TEST_CASE("a reading at a rail now and then is ridden through") {
   Arm arm;
   arm.following();
-  for (int i = 0; i < 30; ++i) arm.run(1, with_rails(static_cast<std::uint8_t>(1u << (i % 8)), 0));
+  for (int i = 0; i < 2000; ++i) arm.run(16).run(1, with_rails(1 << 3, 0));
   CHECK(arm.state() == State::following);
 }
 
-TEST_CASE("tracking: beyond the limit for tracking_ms in a row") {
+TEST_CASE("a pot that goes from one rail to the other is named with the one it is at") {
   Arm arm;
-  arm.following().run(499, apart(3, 10241)).run(1).run(499, apart(3, 10241));
+  arm.booted().run(20, with_rails(1 << 5, 0)).run(5, with_rails(0, 1 << 5));
+  CHECK(arm.enable(0).detail == static_cast<unsigned>(Fault::pot_high));
+}
+
+TEST_CASE("different pots at a rail in turn do not add up to a fault") {
+  Arm arm;
+  arm.following();
+  for (int i = 0; i < 3000; ++i) arm.run(2).run(1, with_rails(static_cast<std::uint8_t>(1u << (i % 8)), 0));
   CHECK(arm.state() == State::following);
-  arm.run(1, apart(3, 10241));
+}
+
+TEST_CASE("tracking: beyond the limit for tracking_ms in a row, to a look") {
+  Arm arm;
+  arm.following().run(496, apart(3, 10241)).run(4).run(496, apart(3, 10241));
+  CHECK(arm.state() == State::following);
+  arm.run(4, apart(3, 10241));
   CHECK(arm.state() == State::fault);
   CHECK(arm.fault() == Fault::tracking);
   CHECK(arm.fault_where() == 3);
@@ -255,9 +296,9 @@ TEST_CASE("time lost before a stop does not count after the next enable") {
   arm.following().run(400, apart(1, 20000)).stop();
   arm.run(1);
   REQUIRE(arm.enable(0).answer == Answer::ok);
-  arm.run(499, apart(1, 20000));
+  arm.run(496, apart(1, 20000));
   CHECK(arm.motors_on());
-  arm.run(1, apart(1, 20000));
+  arm.run(4, apart(1, 20000));
   CHECK(arm.fault() == Fault::tracking);
 }
 

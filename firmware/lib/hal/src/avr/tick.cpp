@@ -11,6 +11,7 @@ namespace hal {
 namespace {
 
 static_assert(CONVERSIONS == pot_count * conversions_per_pot, "each pot in turn, the same number of times");
+static_assert(MARK == rail_mark >> 8, "each conversion at a rail adds one");
 static_assert(FIRST_POT == pot_count - joint_count, "a round ends with the leaders");
 
 constexpr uint8_t channel(uint8_t n) { return static_cast<uint8_t>((1 << REFS0) | (n & 7)); }  // reference AVcc

@@ -63,6 +63,9 @@ constexpr bool is_copy(Fault, Copy value = Copy()) {
   static_assert(same_number(Copy::flood, Fault::flood), "Fault::flood");
   static_assert(same_number(Copy::unrest, Fault::unrest), "Fault::unrest");
   static_assert(same_number(Copy::estop, Fault::estop), "Fault::estop");
+  static_assert(same_number(Copy::speed, Fault::speed), "Fault::speed");
+  static_assert(same_number(Copy::runaway, Fault::runaway), "Fault::runaway");
+  static_assert(same_number(Copy::stalled, Fault::stalled), "Fault::stalled");
   switch (value) {
     case Copy::none:
     case Copy::pot_low:
@@ -74,6 +77,9 @@ constexpr bool is_copy(Fault, Copy value = Copy()) {
     case Copy::flood:
     case Copy::unrest:
     case Copy::estop:
+    case Copy::speed:
+    case Copy::runaway:
+    case Copy::stalled:
       break;
   }
   return true;

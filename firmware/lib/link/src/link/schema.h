@@ -9,7 +9,7 @@
 namespace wire {
 
 constexpr uint8_t protocol = 1;
-constexpr uint32_t schema_hash = 0xAC464613;
+constexpr uint32_t schema_hash = 0x2C981C8E;
 constexpr uint8_t max_payload = 48;
 constexpr uint8_t reply_bit = 0x80;
 
@@ -61,6 +61,9 @@ enum class Fault : uint8_t {
   flood = 7,  // more bytes came than the board can read, so that a stop might have been lost
   unrest = 8,  // a follower swung to and fro although the leader was still
   estop = 9,  // the emergency stop was pressed
+  speed = 10,  // a follower's potentiometer jumped, or turned faster than any joint does
+  runaway = 11,  // a follower moved against its motor's voltage, faster and faster
+  stalled = 12,  // a motor had voltage, but its follower did not move
 };
 
 // Why a request was refused.
