@@ -5,7 +5,8 @@ python -m tools.campaign.faults [--trials 100] [--out build/faults.json] [--boar
 
 Each trial is the real image on the simulated board with the default arm: a leader that a person moves, everything in
 order, and at a random moment a fault. It says after how many ms the motors were off, by how much the true error (the
-leader's angle minus the follower's, of the joint concerned) had grown by then, and which fault the board reported.
+leader's angle minus the follower's, of the joint concerned) had grown by then, how far the follower had gone, and which
+fault the board reported. A leader that a person moves makes the error grow as well.
 """
 
 from __future__ import annotations
@@ -35,10 +36,12 @@ NOISE_MV = 2.4
 
 @dataclass(frozen=True)
 class Trial:
-    """`off_ms` is None when the motors were still on at the end; `grown_rad` is the most until they went off."""
+    """Until the motors went off (`off_ms` None: never) the true error had grown by at most `grown_rad`, and the follower
+    alone had gone `gone_rad`."""
 
     off_ms: float | None
     grown_rad: float
+    gone_rad: float
     fault: str
     where: int
 
@@ -54,6 +57,7 @@ class Summary:
     off_ms_median: float | None = None
     off_ms_max: float | None = None
     grown_rad_max: float = 0.0
+    gone_rad_max: float = 0.0
     beyond_half_a_rad: int = 0
     reported: dict[str, int] = field(default_factory=dict)
 
@@ -162,7 +166,7 @@ def run_trial(rig: Rig, inject: Inject, joint: int) -> Trial:
     assert rig.motors_on, f"nothing was wrong yet, but the board says {rig.status().fault.key}"
     rig.shift_phase()
     before = abs(rig.true_error[joint])
-    begun, grown = rig.board.cycle, 0.0
+    begun, place, grown, gone = rig.board.cycle, rig.angles[joint], 0.0, 0.0
     inject(rig, joint)
     off_ms = None
     for _ in range(round(PATIENCE_S / SLICE_S)):
@@ -171,8 +175,9 @@ def run_trial(rig: Rig, inject: Inject, joint: int) -> Trial:
             off_ms = (rig.board.cycle - begun) / CYCLES_PER_MS
             break
         grown = max(grown, abs(rig.true_error[joint]) - before)
+        gone = max(gone, abs(rig.angles[joint] - place))
     status = rig.status()
-    return Trial(off_ms, float(grown), status.fault.key, status.fault_where)
+    return Trial(off_ms, float(grown), float(gone), status.fault.key, status.fault_where)
 
 
 def summarise(board: str, name: str, trials: list[Trial]) -> Summary:
@@ -185,6 +190,7 @@ def summarise(board: str, name: str, trials: list[Trial]) -> Summary:
         off_ms_median=round(float(np.median(times)), 2) if times else None,
         off_ms_max=round(max(times), 2) if times else None,
         grown_rad_max=round(max(trial.grown_rad for trial in trials), 3),
+        gone_rad_max=round(max(trial.gone_rad for trial in trials), 3),
         beyond_half_a_rad=sum(trial.grown_rad > 0.5 for trial in trials),
         reported=dict(Counter(trial.fault for trial in trials)),
     )
@@ -227,7 +233,7 @@ def main(arguments: list[str]) -> int:
             print(
                 f"{board:5} {name:32} off after {found.off_ms_median} ms, at most {found.off_ms_max}; unnoticed "
                 f"{found.unnoticed} of {found.trials}; error grown by {found.grown_rad_max} rad at most, beyond 0.5 in "
-                f"{found.beyond_half_a_rad}; {found.reported}",
+                f"{found.beyond_half_a_rad}; gone {found.gone_rad_max} rad; {found.reported}",
                 flush=True,
             )
             options.out.parent.mkdir(parents=True, exist_ok=True)

@@ -120,7 +120,7 @@ class Bench:
         self.estop_pressed = pressed
 
     def let_float(self, pot: int, floats: bool) -> None:
-        """Take the wire off a potentiometer's input (0..3 leader, 4..7 follower), without a pull-down, or put it back."""
+        """Take the wire off a potentiometer (0..3 leader, 4..7 follower) without a pull-down, or put it back."""
         self.floating = self.floating & ~(1 << pot) | floats << pot
         self.board.set_floating(self.floating)
 

@@ -7,8 +7,7 @@ namespace {
 constexpr uint16_t pushes_mv = 2000;  // from here on a voltage counts as one that the joint runs against
 constexpr uint16_t turns = 8;         // q12 rad a look: noise moves a reading less
 constexpr uint8_t noise = 2;          // 1/1024 rad a look, of a speed
-constexpr uint8_t looks_per_time = 2;
-constexpr int8_t place_reached = 3;  // 1/256 rad: noise is less
+constexpr int8_t place_reached = 3;   // 1/256 rad: noise is less
 
 uint16_t size_of(int16_t value) {
   return value < 0 ? static_cast<uint16_t>(-static_cast<uint16_t>(value)) : static_cast<uint16_t>(value);
@@ -56,9 +55,9 @@ bool Motion::is_stalled(Joint& joint, int16_t follower, uint16_t size_mv, uint16
     joint.stayed = 0;
     return false;
   }
-  const uint8_t more = size_mv > supply_mv / 2u ? 3 : 2;
+  const uint8_t more = size_mv > supply_mv / 2u ? 2 : 1;
   joint.stayed = joint.stayed > 255 - more ? uint8_t{255} : static_cast<uint8_t>(joint.stayed + more);
-  return joint.stayed / looks_per_time >= limits.time;
+  return joint.stayed >= limits.time;
 }
 
 }  // namespace supervisor

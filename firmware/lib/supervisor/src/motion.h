@@ -6,7 +6,7 @@
 //          overshoots is braked by such a voltage. So a way counts only as long as the speed is within a sixteenth of
 //          the highest since the joint began to move against its voltage.
 // stalled: the voltage is above the limit, and the reading has not left its place for the time. Above half the supply
-//          time counts half as much again: the joint may be on its way, unseen, and is faster then.
+//          time counts twice: the joint may be on its way, unseen, and is faster then.
 #pragma once
 #include <stdint.h>
 
@@ -35,7 +35,7 @@ class Motion {
     int16_t back;    // q12 rad, the way against the voltage, without a turn
     uint8_t peak;    // speed on that way, 1/1024 rad a look
     uint8_t place;   // 1/256 rad, where the stall began
-    uint8_t stayed;  // there, in halves of a look
+    uint8_t stayed;  // there, in looks
   };
   static_assert(sizeof(int) > 2 || sizeof(Joint) == 7, "a Nano's memory is short");
 
