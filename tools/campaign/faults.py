@@ -36,8 +36,8 @@ NOISE_MV = 2.4
 
 @dataclass(frozen=True)
 class Trial:
-    """Until the motors went off (`off_ms` None: never) the true error had grown by at most `grown_rad`, and the follower
-    alone had gone `gone_rad`."""
+    """Until the motors went off (`off_ms` None: never) the true error had grown by at most `grown_rad`, and the
+    follower alone had gone `gone_rad`."""
 
     off_ms: float | None
     grown_rad: float
