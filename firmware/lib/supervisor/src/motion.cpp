@@ -7,6 +7,7 @@ namespace {
 constexpr uint16_t pushes_mv = 2000;  // from here on a voltage counts as one that the joint runs against
 constexpr uint16_t turns = 8;         // q12 rad a look: noise moves a reading less
 constexpr uint8_t noise = 2;          // 1/1024 rad a look, of a speed
+constexpr uint8_t relief = 3;         // looks that one below the limit takes off
 constexpr int8_t place_reached = 3;   // 1/256 rad: noise is less
 
 uint16_t size_of(int16_t value) {
@@ -49,15 +50,17 @@ bool Motion::is_stalled(Joint& joint, int16_t follower, uint16_t size_mv, uint16
                         const MotionLimits& limits) {
   const auto at = static_cast<uint8_t>(static_cast<uint16_t>(follower) >> 4);
   const auto away = static_cast<int8_t>(at - joint.place);
-  const bool driven = limits.stall != 0 && size_mv > limits.stall * 100u;
-  if (!driven || away >= place_reached || away <= -place_reached) {
-    joint.place = at;
+  const bool left = away >= place_reached || away <= -place_reached;
+  if (left || joint.stayed == 0) joint.place = at;
+  if (left || limits.stall == 0) {
     joint.stayed = 0;
-    return false;
+  } else if (size_mv <= limits.stall * 100u) {
+    joint.stayed = joint.stayed > relief ? static_cast<uint8_t>(joint.stayed - relief) : uint8_t{0};
+  } else {
+    const uint8_t more = size_mv > supply_mv / 2u ? 2 : 1;
+    joint.stayed = joint.stayed > 255 - more ? uint8_t{255} : static_cast<uint8_t>(joint.stayed + more);
   }
-  const uint8_t more = size_mv > supply_mv / 2u ? 2 : 1;
-  joint.stayed = joint.stayed > 255 - more ? uint8_t{255} : static_cast<uint8_t>(joint.stayed + more);
-  return joint.stayed >= limits.time;
+  return joint.stayed >= limits.time && joint.stayed != 0;
 }
 
 }  // namespace supervisor

@@ -5,8 +5,9 @@
 // runaway: the joint moves against its voltage for longer than the limit, and does not slow down. A joint that
 //          overshoots is braked by such a voltage. So a way counts only as long as the speed is within a sixteenth of
 //          the highest since the joint began to move against its voltage.
-// stalled: the voltage is above the limit, and the reading has not left its place for the time. Above half the supply
-//          time counts twice: the joint may be on its way, unseen, and is faster then.
+// stalled: the voltage has been above the limit for the time, and the reading has not left its place. Above half the
+// supply time counts twice: the joint may be on its way, unseen, and is faster then. Time below the limit takes off
+// three times as much, so that a voltage which dips now and then still counts.
 #pragma once
 #include <stdint.h>
 

@@ -11,7 +11,7 @@ using namespace supervisor;
 
 namespace {
 
-constexpr MotionLimits limits = {25, 40, 30, 42};  // 25 rad/s, 0.31 rad, 3 V, 168 ms
+constexpr MotionLimits limits = {25, 40, 32, 42};  // 25 rad/s, 0.31 rad, 3.2 V, 168 ms
 constexpr double runaway_limit = 40 / 128.0;
 
 using Course = std::function<double(double)>;  // of a time in s
@@ -103,7 +103,7 @@ TEST_CASE("a joint that vibrates against its voltage goes no way") {
 }
 
 TEST_CASE("a joint with voltage that does not move is a fault after the time, sooner above half the supply") {
-  for (const double volts : {3.2, 7.0, -7.0}) {
+  for (const double volts : {3.4, 7.0, -7.0}) {
     Joint joint;
     CHECK(joint.run(0, 2, always(0.5), always(volts)) == doctest::Approx(0.168).epsilon(0.03));
     CHECK(joint.fault == MotionFault::stalled);
@@ -119,6 +119,8 @@ TEST_CASE("what holds a load, moves slowly or starts late is not stalled") {
   CHECK(Joint().run(0, 60, always(0.5), always(2.9)) < 0);
   CHECK(Joint().run(0, 20, [](double s) { return 0.2 * s; }, always(10)) < 0);
   CHECK(Joint().run(0, 1, [](double s) { return s < 0.06 ? 0 : 3 * (s - 0.06); }, always(15)) < 0);
+  const auto dips = [](double s) { return std::fmod(s, 0.1) < 0.02 ? 1.0 : 6.0; };
+  CHECK(Joint().run(0, 20, always(0.5), dips) > 0);
   const auto pulses = [](double s) { return std::fmod(s, 0.2) < 0.1 ? 5.0 : 1.0; };
   CHECK(Joint().run(0, 20, always(0.5), pulses) < 0);
 }

@@ -18,7 +18,7 @@ from typing import ClassVar
 from .declared import Described, Field, Group, Message, Parameter, Table, check_length
 
 PROTOCOL = 1
-SCHEMA_HASH = 0xD833F974
+SCHEMA_HASH = 0x5E1C25F6
 MAX_PAYLOAD = 48
 REPLY_BIT = 0x80
 LAYOUT = 2
@@ -1023,8 +1023,8 @@ TABLE = Table((
     Group("", 1, "What a follower's motion must be like: a reading that lies, a motor or potentiometer the wrong way round and a stuck joint are faults.", (
         Field("speed_limit", "u8", "rad/s", 1.0, 0, 100, (25,), False, None, "a follower's reading that moves faster is a fault; 0 turns the check off"),
         Field("runaway_limit", "u8", "rad", 0.0078125, 0, 192, (40,), False, None, "way of a follower against its voltage of at least 2 V, without slowing down, that becomes a fault; 0 turns the check off"),
-        Field("stall_volts", "u8", "V", 0.1, 0, 250, (30,), False, None, "voltage above which a follower must move; more than any joint needs to hold its load. 0 turns the check off"),
-        Field("stall_ms", "u8", "ms", 4.0, 5, 125, (42,), False, None, "time above stall_volts without motion that becomes a fault; with more than half the supply, half of it"),
+        Field("stall_volts", "u8", "V", 0.1, 0, 250, (32,), False, None, "voltage above which a follower must move; more than any joint needs to hold its load. 0 turns the check off"),
+        Field("stall_ms", "u8", "ms", 4.0, 5, 125, (42,), False, None, "time above stall_volts without motion that becomes a fault; half of it with more than half the supply, and time below takes off three times as much"),
     )),
     Group("", 1, "A button that turns the motors off, between the emergency stop's pin and ground.", (
         Field("estop_input", "u8", "", 1.0, 0, 2, (1,), False, None, "the emergency stop: 0 is none, 1 a button that closes to ground (without one, nothing is stopped), 2 one that opens, so that a broken wire stops as well"),

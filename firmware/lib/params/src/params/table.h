@@ -56,7 +56,7 @@ struct __attribute__((packed)) Table {
   uint8_t speed_limit;  // a follower's reading that moves faster is a fault; 0 turns the check off [rad/s]
   uint8_t runaway_limit;  // way of a follower against its voltage of at least 2 V, without slowing down, that becomes a fault; 0 turns the check off [1/128 rad]
   uint8_t stall_volts;  // voltage above which a follower must move; more than any joint needs to hold its load. 0 turns the check off [1/10 V]
-  uint8_t stall_ms;  // time above stall_volts without motion that becomes a fault; with more than half the supply, half of it [4 ms]
+  uint8_t stall_ms;  // time above stall_volts without motion that becomes a fault; half of it with more than half the supply, and time below takes off three times as much [4 ms]
   uint8_t estop_input;  // the emergency stop: 0 is none, 1 a button that closes to ground (without one, nothing is stopped), 2 one that opens, so that a broken wire stops as well
 };
 
