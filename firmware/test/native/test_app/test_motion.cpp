@@ -1,4 +1,6 @@
 // Enable, soft start, following, and every way to stop.
+#include <initializer_list>
+
 #include "bench.h"
 
 using bench::Bench;
@@ -308,4 +310,43 @@ TEST_CASE("bytes lost while the motors are off do not count against the next sta
   REQUIRE(arm.enable() == wire::State::soft_start);
   CHECK(lossy_ticks(arm, 3, 1) == 3);
   CHECK(board.drivers);
+}
+
+TEST_CASE("while the motors are on, a reading at a rail is not taken; while they are off, it is seen as it is") {
+  Bench arm;
+  arm.follow();
+  arm.get<wire::TelemetryReply>(wire::TelemetryRequest{1});
+  for (const std::uint8_t pot : {std::uint8_t{1}, std::uint8_t{6}}) {
+    for (const std::uint16_t rail : std::initializer_list<std::uint16_t>{0, 1023}) {
+      const std::uint16_t whole = arm.counts[pot];
+      arm.set_count(pot, rail);
+      arm.run(2);
+      const wire::Sample& held = arm.samples.back();
+      CHECK(std::abs(pot < 4 ? held.leader[pot] : held.follower[pot - 4]) < 20);
+      CHECK(board.drivers);
+      arm.set_count(pot, whole);
+      arm.run(60);
+    }
+  }
+  arm.stop();
+  arm.set_count(6, 0);
+  arm.run(30);
+  CHECK(arm.samples.back().follower[2] < -10000);
+}
+
+TEST_CASE("with rail_counts 0 a reading at a rail is a reading like any other") {
+  Bench arm;
+  arm.boot();
+  params::Table table = bench::unwatched();
+  table.rail_counts = 0;
+  REQUIRE(arm.apply(table).type == 0x85);
+  arm.set_count(1, 0);
+  arm.set_count(5, 3);
+  arm.run(40);
+  REQUIRE(arm.enable() == wire::State::soft_start);
+  arm.get<wire::TelemetryReply>(wire::TelemetryRequest{1});
+  arm.run(30);
+  CHECK(board.drivers);
+  CHECK(arm.samples.back().leader[1] < -10000);
+  CHECK(arm.samples.back().follower[1] < -10000);
 }
