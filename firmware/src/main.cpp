@@ -1,15 +1,18 @@
 // Wires the rooms together, nothing else: a tick when the timer says so, otherwise the link, otherwise sleep.
-#include <Arduino.h>
+//
+// main() is here and not the framework's: that one would start a clock of its own, in the timer that the tick takes
+// over.
 #include <app.h>
 #include <hal.h>
 
-static app::App arm;
-
-void setup() { arm.begin(); }
+BEHIND_RINGS static app::App arm;
 
 void firmware_tick() { arm.tick(); }
 
-void loop() {
-  if (hal::tick_pending()) hal::run_tick();
-  else if (!arm.service()) hal::idle();
+int main() {
+  arm.begin();
+  for (;;) {
+    if (hal::tick_pending()) hal::run_tick();
+    else if (!arm.service()) hal::idle();
+  }
 }

@@ -45,6 +45,11 @@ void Adc::set_millivolts(const std::array<double, input_count>& millivolts) {
   millivolts_ = millivolts;
 }
 
+void Adc::set_floating(uint8_t inputs) {
+  if (running() && !sampled_ && sample_at_ <= avr_.cycle) sample();
+  floating_ = inputs;
+}
+
 unsigned Adc::selected() const {
   const unsigned admux = avr_.data[reg::ADMUX];
   if (!chip_.wide_adc_mux) return admux & 0x0Fu;
@@ -79,7 +84,9 @@ void Adc::start(uint64_t edge) {
 }
 
 void Adc::sample() {
-  const double count = millivolts_at(mux_) * 1024.0 / reference_millivolts(admux_);
+  const bool floats = mux_ < input_count && (floating_ >> mux_ & 1);
+  if (!floats) charge_ = millivolts_at(mux_);
+  const double count = charge_ * 1024.0 / reference_millivolts(admux_);
   held_ = static_cast<uint16_t>(count >= 1023.0 ? 1023.0 : count > 0.0 ? count : 0.0);
   sampled_ = true;
 }

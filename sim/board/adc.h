@@ -19,6 +19,9 @@ class Adc {
 
   // Voltages at ADC0..7 from now on. A conversion that has already sampled keeps what it took.
   void set_millivolts(const std::array<double, input_count>& millivolts);
+  // Inputs without a wire, bit i for ADCi: such a one has no voltage of its own, and the sampling capacitor keeps what
+  // the conversion before left on it.
+  void set_floating(uint8_t inputs);
   uint64_t conversions() const { return conversions_; }
 
  private:
@@ -41,6 +44,8 @@ class Adc {
   avr_int_vector_t* vector_ = nullptr;
 
   std::array<double, input_count> millivolts_{};
+  uint8_t floating_ = 0;
+  double charge_ = 0.0;      // mV on the sampling capacitor
   uint64_t enabled_at_ = 0;  // the prescaler counts from here
   bool first_ = true;
   bool result_locked_ = false;

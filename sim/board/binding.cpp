@@ -153,6 +153,9 @@ void bind_memory(BoardClass& c) {
 void bind_pins(BoardClass& c) {
   c.def("set_millivolts", &PyBoard::set_millivolts, "millivolts"_a,
         "Voltages at ADC0..7 from now on, eight float64 in mV.")
+      .def(
+          "set_floating", [](PyBoard& b, uint8_t inputs) { b.adc().set_floating(inputs); }, "inputs"_a,
+          "Inputs without a wire, bit i for ADCi: they read what the conversion before left on the sampling capacitor.")
       .def("add_duty_output", &PyBoard::add_duty_output, "timer"_a, "channel"_a,
            "Watch a PWM output, for example (3, \"A\") for OC3A; its place in outputs().")
       .def("add_pin_output", &PyBoard::add_pin_output, "port"_a, "bit"_a,
@@ -161,7 +164,12 @@ void bind_pins(BoardClass& c) {
            "All watched outputs, duties 0..1 and pins 0 or 1. The same array each time: copy what must stay.")
       .def("duty", &PyBoard::duty, "timer"_a, "channel"_a,
            "Mean level of an output-compare pin, 0..1, from the registers.")
-      .def("pin", &PyBoard::pin, "port"_a, "bit"_a, "Whether the pin is driven high.");
+      .def("pin", &PyBoard::pin, "port"_a, "bit"_a, "Whether the pin is driven high.")
+      .def("hold_pin", &PyBoard::hold_pin, "port"_a, "bit"_a, "high"_a,
+           "Hold a pin at a level from outside, as a button does, until let_pin_go(). It matters while the pin is an "
+           "input.")
+      .def("let_pin_go", &PyBoard::let_pin_go, "port"_a, "bit"_a,
+           "Hold a pin no longer: an input then reads its pull-up.");
 }
 
 void bind_serial(BoardClass& c) {

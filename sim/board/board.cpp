@@ -351,4 +351,14 @@ bool Board::pin(const std::string& port, unsigned bit) const {
   return ports_->driven_high(output.port, output.bit);
 }
 
+void Board::hold_pin(const std::string& port, unsigned bit, bool high) {
+  const Output pin = find_pin(port, bit);
+  ports_->hold(pin.port, pin.bit, high);
+}
+
+void Board::let_pin_go(const std::string& port, unsigned bit) {
+  const Output pin = find_pin(port, bit);
+  ports_->let_go(pin.port, pin.bit);
+}
+
 }  // namespace board

@@ -80,6 +80,10 @@ class Board {
   double duty(unsigned timer, const std::string& channel);
   bool pin(const std::string& port, unsigned bit) const;
 
+  // Input from outside: see Ports.
+  void hold_pin(const std::string& port, unsigned bit, bool high);
+  void let_pin_go(const std::string& port, unsigned bit);
+
   const Chip& chip() const { return chip_; }
   Uart& uart() { return *uart_; }
   Adc& adc() { return *adc_; }

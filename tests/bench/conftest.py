@@ -49,11 +49,20 @@ class FakeBoard:
         self.registered.append((port, bit))
         return len(self.registered) - 1
 
+    def hold_pin(self, port: str, bit: int, high: bool) -> None:
+        self.events.append(f"hold {port}{bit} {'high' if high else 'low'}")
+
+    def let_pin_go(self, port: str, bit: int) -> None:
+        self.events.append(f"let {port}{bit} go")
+
     def outputs(self) -> np.ndarray:
         return self.pins
 
     def set_millivolts(self, millivolts: np.ndarray) -> None:
         self.millivolts.append(millivolts.copy())
+
+    def set_floating(self, inputs: int) -> None:
+        self.events.append(f"floating {inputs:#x}")
 
     def run_until(self, cycle: int) -> int:
         self.cycle = cycle + 1  # the last instruction ends a little late, as on the real thing

@@ -208,6 +208,22 @@ def test_commands_change_the_bench(server: Server) -> None:
     assert status["leader"] == pytest.approx([0.0, 0.1, 0.2, 0.3])
 
 
+def test_a_potentiometer_floats_until_it_is_connected_again(server: Server, board: Any) -> None:
+    assert commands.run(server, "pot leader 1 floating") == {"pot": "leader_1", "state": "floating"}
+    commands.run(server, "pot follower 2 floating")
+    commands.run(server, "pot leader 1 connected")
+    commands.run(server, "pot follower 2 open")
+    assert board.events == ["floating 0x2", "floating 0x42", "floating 0x40", "floating 0x0"]
+
+
+def test_the_emergency_stop_closes_its_pin_to_ground_until_it_is_released(server: Server, board: Any) -> None:
+    assert commands.run(server, "estop press") == {"estop_pressed": True}
+    assert commands.run(server, "status")["estop_pressed"]
+    assert commands.run(server, "estop release") == {"estop_pressed": False}
+    assert not commands.run(server, "status")["estop_pressed"]
+    assert board.events == ["hold B4 low", "let B4 go"]
+
+
 def test_the_person_takes_up_another_motion_between_two_enables(server: Server, board: Any, tmp_path: Path) -> None:
     file = tmp_path / "another motion.csv"
     save_leader(file, Trajectory(np.array([0.0, 2.0]), np.array([[0.5] * 4, [1.0] * 4])))
@@ -229,6 +245,7 @@ def test_the_person_takes_up_another_motion_between_two_enables(server: Server, 
         *("leader", "leader 'unfinished", "leader a b"),
         *("", "fly", "speed", "speed 2", "power maybe", "line flip", "line flip much", "line flip 2"),
         *("pot nobody 1 open", "pot leader 4 open", "pot leader x open", "pot leader 1 melted", "status now"),
+        *("estop", "estop hit"),
     ],
 )
 def test_bad_commands_are_answered_with_a_sentence(server: Server, text: str) -> None:

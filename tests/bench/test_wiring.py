@@ -20,11 +20,12 @@ SERIAL_PINS = {"D0", "D1"}
 @pytest.mark.parametrize("wiring", BOARDS.values(), ids=BOARDS.keys())
 def test_every_wire_has_a_pin_of_its_own(wiring: Wiring) -> None:
     pins = [motor.pwm_arduino for motor in wiring.motors] + [motor.direction.arduino for motor in wiring.motors]
-    pins += [wiring.enable.arduino, wiring.led.arduino]
-    assert len(set(pins)) == 10
+    pins += [wiring.enable.arduino, wiring.led.arduino, wiring.estop.arduino]
+    assert len(set(pins)) == 11
     assert not SERIAL_PINS & set(pins)
     bits = [(motor.direction.port, motor.direction.bit) for motor in wiring.motors]
-    assert len({*bits, (wiring.enable.port, wiring.enable.bit), (wiring.led.port, wiring.led.bit)}) == 6
+    others = [(pin.port, pin.bit) for pin in (wiring.enable, wiring.led, wiring.estop)]
+    assert len({*bits, *others}) == 7
 
 
 @pytest.mark.parametrize("wiring", BOARDS.values(), ids=BOARDS.keys())

@@ -153,7 +153,7 @@ def test_enable_is_refused_while_the_arms_are_apart(lock_step: Any) -> None:
 def test_a_follower_that_cannot_follow_is_a_fault(lock_step: Any) -> None:
     host = lock_step()
     limit = schema.PARAMETER_BY_NAME["tracking_limit"]
-    set_parameters(host, {"tracking_limit": limit.to_raw(0.3)})
+    set_parameters(host, {"tracking_limit": limit.to_raw(0.3), "stall_volts": 0})
     stuck: np.ndarray = host.bench.leader.home.copy()
 
     class Stuck:
@@ -169,8 +169,7 @@ def test_a_follower_that_cannot_follow_is_a_fault(lock_step: Any) -> None:
 
 @pytest.mark.parametrize("joint", range(4))
 def test_a_motor_with_the_wrong_sign_is_switched_off(lock_step: Any, joint: int) -> None:
-    """Its controller drives it away from the leader, faster and faster: a fault within the time docs/firmware.md
-    states."""
+    """Its controller drives it away from the leader, faster and faster: a fault before it has gone far."""
     host = lock_step()
     set_parameters(host, {f"joint{joint}.motor_sign": -1})
     host.ask(schema.TelemetryRequest(1))
@@ -181,12 +180,11 @@ def test_a_motor_with_the_wrong_sign_is_switched_off(lock_step: Any, joint: int)
     volts = np.array([sample.voltage[joint] for sample in host.samples]) / 1000
     on = np.array([sample.state in (State.SOFT_START, State.FOLLOWING) for sample in host.samples])
     status = host.status()
-    assert (status.fault, status.fault_where) == (Fault.TRACKING, joint)
+    assert (status.fault, status.fault_where) == (Fault.RUNAWAY, joint)
     assert not host.bench.motors_enabled
     off = int(np.argmin(on))
-    noticeable = int(np.argmax(np.abs(error) > 0.2))
-    assert 200 <= off - noticeable < 500, "ms from 0.2 rad of error to motors off"
-    assert np.count_nonzero(np.abs(volts) > 10.0) < 350, "ms at more than 10 V"
+    assert 0.3 < np.abs(error[: off + 1]).max() < 0.6, "rad"
+    assert np.count_nonzero(np.abs(volts) > 10.0) < 150, "ms at more than 10 V"
 
 
 class LoosePots:

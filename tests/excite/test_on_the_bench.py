@@ -109,11 +109,15 @@ def test_a_line_that_loses_bytes_changes_nothing_of_the_motion(bench: BenchProce
 def test_an_arm_far_weaker_than_its_file_is_led_more_slowly_and_without_a_fault(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A fifth of the voltage that the board believes in: a motion designed for the whole cannot be followed."""
+    """A fifth of the voltage that the board believes in: a motion designed for the whole cannot be followed.
+
+    Friction takes five times as much of that voltage, so a joint at rest with 7 V is not a stalled one.
+    """
     arm = default_arm()
     weak = arm.model_copy(update={"drive": arm.drive.model_copy(update={"supply": 3.0})})
     (tmp_path / "weak.toml").write_text(to_toml(weak, {}).replace("[identification]\n", ""), encoding="utf-8")
     with BenchProcess("--speed", "max", "--arm", str(tmp_path / "weak.toml")) as bench:
+        told(capsys, "params", "set", "stall_volts=12", "-p", bench.port)
         arguments = ("-o", str(tmp_path / "log.csv"), "--seconds", "10", "--budget", "10")
         answer = told(capsys, "record", "--excite", "-p", bench.port, *arguments)
     assert answer["slowest_pace"] < 0.9

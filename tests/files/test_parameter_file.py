@@ -49,7 +49,7 @@ def test_a_backup_of_layout_1_gets_the_defaults_of_what_it_lacks(tmp_path: Path)
     table = ParameterTable.defaults().with_raw({"joint1.kp": 50_000})
     parameter_file.save(path, table.with_raw({"unrest_amplitude": 0}))
     lines = path.read_text().splitlines(keepends=True)
-    path.write_text("".join(line for line in lines if not line.startswith("unrest_")))
+    path.write_text("".join(line for line in lines if not line.startswith(parameter_file.SINCE_LAYOUT_2)))
     assert parameter_file.load(path) == table
 
 

@@ -7,7 +7,7 @@ import struct
 import pytest
 
 from greywhale.protocol import frames, schema
-from tools.bench.bench_tick import BOARDS, Bench, memory
+from tools.bench.bench_tick import BOARDS, UNWATCHED, Bench, apply, memory
 
 BYTES_A_MS = 100  # what the wire carries at 1 Mbaud
 
@@ -62,6 +62,7 @@ def test_enabling_right_after_applying_works(bench: Bench) -> None:
 
 
 def test_a_reset_while_the_motors_run_leaves_them_off(bench: Bench) -> None:
+    apply(bench, UNWATCHED)  # its follower stays where it is
     bench.millivolts[0] += 300
     bench.board.set_millivolts(bench.millivolts)
     bench.ask(schema.EnableRequest, struct.pack("<H", 0))

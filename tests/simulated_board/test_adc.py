@@ -92,6 +92,28 @@ def test_the_result_is_the_input_over_the_reference(
         assert run.u16("result") == expected
 
 
+EACH = """
+volatile uint16_t result[8];
+int main(void) {
+    ADCSRA = _BV(ADEN) | 5;
+    for (uint8_t i = 0; i < 8; ++i) {
+        ADMUX = 0x40 | i; ADCSRA |= _BV(ADSC); while (ADCSRA & _BV(ADSC)); result[i] = ADC;
+    }
+    DONE();
+}
+"""
+
+
+def test_a_floating_input_reads_what_the_conversion_before_left(program: MakeProgram) -> None:
+    run = program(EACH)
+    run.board.set_millivolts(np.array([500.0 * channel for channel in range(8)]))
+    run.board.set_floating(1 << 3 | 1 << 6 | 1 << 7)
+    counts = [500 * channel * 1024 // 5000 for channel in (0, 1, 2, 2, 4, 5, 5, 5)]
+    assert run.finish().u16("result") == counts
+    run.board.set_floating(0)
+    assert run.finish().u16("result")[3] == 1500 * 1024 // 5000
+
+
 HOLD = """
 volatile uint8_t go; volatile uint16_t result;
 int main(void) {

@@ -19,6 +19,7 @@ CYCLES_PER_TICK = 16_000
 TICKS = 250
 SETS, TICKS_PER_SET = 300, 10  # for the worst tick over the parameters
 PAINT = 0xA5
+UNWATCHED = {"speed_limit": 0, "runaway_limit": 0, "stall_volts": 0}  # potentiometers here move as no arm does
 RUNNING = "_ZN3hal12_GLOBAL__N_17runningE"  # hal's flag, set from the timer's interrupt to the end of the tick
 BOARDS = {  # name: chip, environment, vector of the tick, RAM, duty output of joint 0
     "Mega": ("atmega2560", "megaatmega2560", "__vector_21", (0x200, 0x2200), (3, "A")),
@@ -103,6 +104,7 @@ class Bench:
 
 def ticks(name: str) -> list[Figure]:
     bench = Bench(name)
+    apply(bench, UNWATCHED)
     bench.ask(schema.EnableRequest, struct.pack("<H", 0))
     bench.wait(1100)
     whole, alone = [], []
@@ -119,7 +121,7 @@ def ticks(name: str) -> list[Figure]:
     ]
 
 
-def _apply(bench: Bench, values: dict[str, int]) -> None:
+def apply(bench: Bench, values: dict[str, int]) -> None:
     """Runs a whole parameter set: the defaults but for these."""
     wanted = list(schema.DEFAULTS)
     for key, value in values.items():
@@ -137,10 +139,10 @@ def over_parameters(name: str) -> Figure:
         bench.millivolts[:] = 2500.0
         bench.board.set_millivolts(bench.millivolts)
         bench.wait(30)
-        values = {"filter_shift": 2, "soft_start_ms": 100, "tracking_limit": 0}
+        values = {"filter_shift": 2, "soft_start_ms": 100, "tracking_limit": 0} | UNWATCHED
         for joint in range(4):
             values |= {f"joint{joint}.{key}": value for key, value in vars(draw.settings(1)).items()}
-        _apply(bench, values)
+        apply(bench, values)
         bench.wait(30)
         bench.ask(schema.EnableRequest, struct.pack("<H", 0))
         bench.wait(110)
@@ -169,6 +171,7 @@ def jitter(name: str) -> Figure:
 def latency(name: str) -> list[Figure]:
     """From a step at a leader pot to the first change of the duty, over all phases of the tick."""
     bench = Bench(name)
+    apply(bench, UNWATCHED)
     bench.ask(schema.EnableRequest, struct.pack("<H", 0))
     bench.wait(1100)
     delays = []

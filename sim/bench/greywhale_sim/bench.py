@@ -38,8 +38,11 @@ class Board(Protocol):
     def crash_reason(self) -> str: ...
     def add_duty_output(self, timer: int, channel: str) -> int: ...
     def add_pin_output(self, port: str, bit: int) -> int: ...
+    def hold_pin(self, port: str, bit: int, high: bool) -> None: ...
+    def let_pin_go(self, port: str, bit: int) -> None: ...
     def outputs(self) -> Array: ...
     def set_millivolts(self, millivolts: Array) -> None: ...
+    def set_floating(self, inputs: int) -> None: ...
     def run_until(self, cycle: int) -> int: ...
 
 
@@ -77,6 +80,9 @@ class Bench:
         supply_v: float,
     ) -> None:
         self.board = board
+        self.wiring = wiring
+        self.estop_pressed = False
+        self.floating = 0  # bit i: the wire of potentiometer i is off and nothing pulls its input
         self.plant = plant
         self.leader = leader
         self.leader_pots = leader_pots
@@ -103,6 +109,20 @@ class Bench:
     def motors_enabled(self) -> bool:
         """The drivers' enable pin, as it is now."""
         return bool(self.board.outputs()[0])
+
+    def press_estop(self, pressed: bool) -> None:
+        """Press the emergency stop, which closes to ground, or release it."""
+        pin = self.wiring.estop
+        if pressed:
+            self.board.hold_pin(pin.port, pin.bit, False)
+        else:
+            self.board.let_pin_go(pin.port, pin.bit)
+        self.estop_pressed = pressed
+
+    def let_float(self, pot: int, floats: bool) -> None:
+        """Take the wire off a potentiometer (0..3 leader, 4..7 follower) without a pull-down, or put it back."""
+        self.floating = self.floating & ~(1 << pot) | floats << pot
+        self.board.set_floating(self.floating)
 
     def place(self, angles: Array) -> None:
         """Hold the follower in a pose by hand, if the plant allows that (it has `reset`)."""

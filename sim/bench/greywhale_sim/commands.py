@@ -2,8 +2,10 @@
 
 status                             time, motors, voltages, angles, resets, EEPROM, serial line
 leader FILE                        the person takes up another motion, while the motors are off
-pot leader|follower 0..3 STATE     a potentiometer: connected, open (its wire is off) or shorted (to the supply)
+pot leader|follower 0..3 STATE     a potentiometer: connected, open (its wire is off, a pull-down wins), floating
+                                   (the same without a pull-down) or shorted (to the supply)
 line flip|lose PROBABILITY         damage or lose bytes on the serial line, per byte
+estop press|release                the emergency stop's button, which closes its pin to ground
 power off|on                       cut or restore the board's supply
 speed 1|max                        real time, or as fast as possible
 """
@@ -47,6 +49,7 @@ def status(server: Server) -> Answer:
         "voltages": [round(float(volts), 3) for volts in bench.voltages],
         "leader": [round(float(angle), 5) for angle in bench.leader.angles],
         "follower": [round(float(angle), 5) for angle in bench.angles],
+        "estop_pressed": bench.estop_pressed,
         "leader_plays": bench.leader.plays,
         "in_bootloader": server.board.in_bootloader,
         "connected": server.port.connected,
@@ -68,10 +71,19 @@ def leader(server: Server, file: str) -> Answer:
 
 def pot(server: Server, side: str, joint: str, state: str) -> Answer:
     pots = {"leader": server.bench.leader_pots, "follower": server.bench.follower_pots}
-    if side not in pots or not 0 <= int(joint) <= 3 or state not in ("connected", "open", "shorted"):
+    if side not in pots or not 0 <= int(joint) <= 3 or state not in ("connected", "open", "floating", "shorted"):
         raise ValueError
-    pots[side].set_wiring(int(joint), arm.Wiring[state.upper()])  # type: ignore[attr-defined]
+    wiring = arm.Wiring.CONNECTED if state == "floating" else arm.Wiring[state.upper()]
+    pots[side].set_wiring(int(joint), wiring)  # type: ignore[attr-defined]
+    server.bench.let_float(int(joint) + (4 if side == "follower" else 0), state == "floating")
     return {"pot": f"{side}_{joint}", "state": state}
+
+
+def estop(server: Server, action: str) -> Answer:
+    if action not in ("press", "release"):
+        raise ValueError
+    server.bench.press_estop(action == "press")
+    return {"estop_pressed": server.bench.estop_pressed}
 
 
 def line(server: Server, what: str, probability: str) -> Answer:
@@ -99,7 +111,8 @@ def speed(server: Server, value: str) -> Answer:
 COMMANDS: dict[str, tuple[Callable[..., Answer], str]] = {
     "status": (status, ""),
     "leader": (leader, "FILE.csv"),
-    "pot": (pot, "leader|follower 0..3 connected|open|shorted"),
+    "pot": (pot, "leader|follower 0..3 connected|open|floating|shorted"),
+    "estop": (estop, "press|release"),
     "line": (line, "flip|lose PROBABILITY"),
     "power": (power, "on|off [WRITES]"),
     "speed": (speed, "1|max"),

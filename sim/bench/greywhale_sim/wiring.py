@@ -51,6 +51,7 @@ class Wiring:
     motors: tuple[Motor, Motor, Motor, Motor]
     enable: Pin  # the drivers' enable inputs, high = motors powered; an external pull-down keeps them off at reset
     led: Pin
+    estop: Pin  # a button to ground, optional; the pin has a pull-up
 
 
 MEGA = Wiring(
@@ -68,6 +69,7 @@ MEGA = Wiring(
     ),
     enable=Pin("D9", "H", 6),
     led=Pin("D13", "B", 7),
+    estop=Pin("D10", "B", 4),
 )
 
 NANO = Wiring(
@@ -86,6 +88,7 @@ NANO = Wiring(
     ),
     enable=Pin("D12", "B", 4),
     led=Pin("D13", "B", 5),
+    estop=Pin("D5", "D", 5),
 )
 
 BOARDS: Mapping[str, Wiring] = {wiring.name: wiring for wiring in (MEGA, NANO)}
@@ -103,5 +106,6 @@ def markdown_table() -> str:
         rows.append([f"motor {joint} ({name}), PWM", *(board.motors[joint].pwm_arduino for board in boards)])
         rows.append([f"motor {joint}, direction", *(board.motors[joint].direction.arduino for board in boards)])
     rows.append(["enable of all drivers", *(board.enable.arduino for board in boards)])
+    rows.append(["emergency stop, a button to ground (optional)", *(board.estop.arduino for board in boards)])
     rows.append(["state LED (on the board)", *(board.led.arduino for board in boards)])
     return "\n".join("| " + " | ".join(row) + " |" for row in rows)

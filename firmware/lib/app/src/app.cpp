@@ -56,8 +56,15 @@ void App::count_ticks(hal::TickStart start) {
   late_ticks_ = add_saturated(late_ticks_, start.elapsed > 1 ? static_cast<uint8_t>(start.elapsed - 1) : uint8_t{1});
 }
 
+// A closing button pulls its input low. An opening one holds it low until it is pressed, or until a wire breaks.
+inline bool App::estop_pressed() const {
+  const uint8_t button = sets_.running().estop_input;
+  return button != 0 && hal::estop_low() == (button == 1);
+}
+
 void App::supervise(bool late) {
   seen_.late = late;
+  seen_.estop = estop_pressed();
   const bool booting = supervisor_.state() == supervisor::State::boot;
   supervisor_.tick(seen_);
   if (booting && supervisor_.state() != supervisor::State::boot) hello_due_ = true;
@@ -68,6 +75,7 @@ __attribute__((noinline)) void App::switch_drivers() {
   if (!drivers_on_) hal::set_drivers(false);
   controllers_.reset();
   drive_.release();
+  sampling_.hold(drivers_on_);
   until_control_ = 1;
   if (drivers_on_) hal::set_drivers(true);
 }

@@ -25,6 +25,7 @@ class App {
   // app.cpp: the tick
   void count_ticks(hal::TickStart start);
   void supervise(bool late);
+  bool estop_pressed() const;
   // Switches the drivers as the supervisor has decided. Call it wherever the supervisor may have changed its mind.
   void follow_supervisor() {
     if (supervisor_.motors_on() != drivers_on_) switch_drivers();
@@ -59,7 +60,7 @@ class App {
   bool granted(const supervisor::Reply& result);
   void note_lost_bytes(uint8_t lost);
   bool work_on_lead();
-  void look_for_unrest();
+  void look_at_joint();
   void restart_safe();
   void see_distances();
   void work_on_apply();
@@ -92,7 +93,7 @@ class App {
   uint16_t every_ = 0, until_sample_ = 0;
   uint8_t until_control_ = 1;  // ticks
   uint8_t sample_seq_ = 0;
-  uint8_t looked_at_ = 0;  // lower byte of the tick of the last look_for_unrest()
+  uint8_t looked_at_ = 0;  // lower byte of the tick of the last look_at_joint()
   bool sample_due_ = false;
   bool heard_this_tick_ = false;
   bool excused_ = false;  // the next tick may be late without being counted, because a set is being applied

@@ -28,7 +28,7 @@ uint16_t pair(uint8_t high, uint16_t low) { return static_cast<uint16_t>(high <<
 
 bool App::service() {
   if (lead_.on() && work_on_lead()) return true;
-  if (drivers_on_ && looked_at_ != static_cast<uint8_t>(tick_)) look_for_unrest();
+  if (looked_at_ != static_cast<uint8_t>(tick_)) look_at_joint();
   const uint16_t age_us = hal::tick_age_us();
   const bool late_in_tick = age_us > latest_start_us;
   if (late_in_tick && heard_this_tick_) return false;
@@ -81,12 +81,17 @@ bool App::work_on_lead() {
 }
 
 // At one joint after each tick.
-__attribute__((noinline)) void App::look_for_unrest() {
+__attribute__((noinline)) void App::look_at_joint() {
   looked_at_ = static_cast<uint8_t>(tick_);
   const uint8_t joint = looked_at_ % hal::joint_count;
-  supervisor_.look(joint, sampling_.reference(joint), sampling_.error(joint));
-  if (supervisor_.motors_on()) return;
+  const params::Table& table = sets_.running();
+  supervisor_.look(joint,
+                   {sampling_.follower(joint), sampling_.error(joint), seen_.distance[joint],
+                    controllers_.volts_mv(joint), table.supply_mv},
+                   {table.speed_limit, table.runaway_limit, table.stall_volts, table.stall_ms});
+  if (!drivers_on_ || supervisor_.motors_on()) return;
   follow_supervisor();
+  if (supervisor_.fault() != supervisor::Fault::unrest) return;
   const bool can = !lead_.on() && sets_.save_state() != wire::SaveState::saving;
   if (can && sets_.running().unrest_action == 1 && sets_.safe() == ParameterSets::Safe::no) sets_.begin_safe();
 }
@@ -204,6 +209,7 @@ bool App::granted(const supervisor::Reply& result) {
     case Answer::in_fault: refuse(wire::NackCode::in_fault, result.detail); break;
     case Answer::pot_bad: refuse(wire::NackCode::pot_bad, pair(result.where, result.detail)); break;
     case Answer::too_far: refuse(wire::NackCode::error_too_large, pair(result.where, coarse(result.detail))); break;
+    case Answer::estop: refuse(wire::NackCode::estop_pressed, 0); break;
     case Answer::params:
       if (sets_.unfit().refusal != fuzzy_pdi::Refusal::none) refuse_set();
       else refuse(wire::NackCode::set_lost, 0);

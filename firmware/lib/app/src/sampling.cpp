@@ -20,7 +20,8 @@ void Sampling::configure(const params::Table& table) {
   const uint16_t lowest = rail ? static_cast<uint16_t>(rail * hal::conversions_per_pot + 1) : 0;
   const uint16_t highest = static_cast<uint16_t>((full_count - rail) * hal::conversions_per_pot - 1);
   signals_.lowest = lowest;
-  signals_.span = rail ? static_cast<uint16_t>(highest - lowest) : 0xffff;
+  signals_.span = rail ? static_cast<uint16_t>(highest - lowest) : static_cast<uint16_t>(hal::rail_mark - 1);
+  signals_.rails = rail ? tell_rails : 0;  // the motors are off, so nothing is held
   for (uint8_t i = 0; i < hal::joint_count; ++i) {
     JointSignals& joint = signals_.joint[i];
     calibrate(joint.leader, table.leader[i]);

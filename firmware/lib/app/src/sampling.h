@@ -21,6 +21,9 @@ class Sampling {
   int16_t error(uint8_t joint) const { return signals_.joint[joint].error; }
   // Of the last tick, also when the host's reference has moved on since.
   int16_t reference(uint8_t joint) const { return static_cast<int16_t>(follower(joint) + error(joint)); }
+  // Whether readings at a rail leave the angles as they are: while the motors are on. Otherwise they are seen as they
+  // are.
+  void hold(bool on) { signals_.rails = static_cast<uint8_t>((signals_.rails & tell_rails) | (on ? hold_rails : 0)); }
   int16_t within_limits(uint8_t joint, int16_t angle) const;
   // Between reference and follower, as they are now. The last tick may have seen another reference.
   uint16_t distance(uint8_t joint) const;
@@ -31,7 +34,7 @@ class Sampling {
   void move_lead(uint8_t joint, int32_t by);
 
  private:
-  Signals signals_ = {signal_chain::low_pass(0), 0, 0xffff, {}};  // the first sample is taken whole
+  Signals signals_ = {signal_chain::low_pass(0), 0, hal::rail_mark - 1, 0, {}};  // the first sample is taken whole
   uint8_t shift_ = 0;
   bool primed_ = false;
 };

@@ -14,7 +14,7 @@ namespace app {
 static_assert(offsetof(signal_chain::LowPass, keep) == SIGNALS_KEEP &&
                   offsetof(signal_chain::LowPass, gain) == SIGNALS_GAIN && offsetof(Signals, low_pass) == 0 &&
                   offsetof(Signals, lowest) == SIGNALS_LOWEST && offsetof(Signals, span) == SIGNALS_SPAN &&
-                  offsetof(Signals, joint) == SIGNALS_JOINT,
+                  offsetof(Signals, rails) == SIGNALS_RAILS && offsetof(Signals, joint) == SIGNALS_JOINT,
               "signals_layout.h");
 static_assert(offsetof(JointSignals, leader) == JOINT_LEADER && offsetof(JointSignals, follower) == JOINT_FOLLOWER &&
                   offsetof(JointSignals, follower_angle) == JOINT_FOLLOWER_ANGLE &&
@@ -36,15 +36,28 @@ static_assert(hal::joint_count == 4 && supervisor::joint_count == 4 && hal::pot_
 
 namespace {
 
-int16_t follow(signal_chain::Pot& pot, uint16_t sum, const Signals& signals) {
-  pot.filtered = signal_chain::filter(pot.filtered, sum, signals.low_pass);
-  return signal_chain::angle(pot);
+// A sum between the rails has a mark when only some of its conversions were at one. It was the lower one if the sum
+// fell.
+bool at_lower_rail(uint16_t sum, const Signals& signals, uint16_t filtered) {
+  if (sum < signals.lowest) return true;
+  return sum - signals.lowest <= signals.span && static_cast<uint16_t>(sum << 4) < filtered;
 }
 
-void note_rail(uint8_t pot, uint16_t sum, const Signals& signals, supervisor::Observation& seen) {
-  if (static_cast<uint16_t>(sum - signals.lowest) <= signals.span) return;
-  uint8_t& rail = sum < signals.lowest ? seen.rail_low : seen.rail_high;
+// Takes the marks off. True when the sum must not be used.
+bool note_rail(uint8_t pot, uint16_t& sum, const Signals& signals, uint16_t filtered, supervisor::Observation& seen) {
+  if (static_cast<uint16_t>(sum - signals.lowest) <= signals.span) return false;
+  sum = sum & (hal::rail_mark - 1);
+  if (!(signals.rails & tell_rails)) return false;
+  uint8_t& rail = at_lower_rail(sum, signals, filtered) ? seen.rail_low : seen.rail_high;
   rail = static_cast<uint8_t>(rail | (1u << pot));
+  return (signals.rails & hold_rails) != 0;
+}
+
+int16_t follow(signal_chain::Pot& pot, uint8_t number, uint16_t sum, const Signals& signals,
+               supervisor::Observation& seen) {
+  const bool hold = note_rail(number, sum, signals, pot.filtered, seen);
+  if (!hold) pot.filtered = signal_chain::filter(pot.filtered, sum, signals.low_pass);
+  return signal_chain::angle(pot);
 }
 
 }  // namespace
@@ -52,12 +65,10 @@ void note_rail(uint8_t pot, uint16_t sum, const Signals& signals, supervisor::Ob
 void follow_pots_portable(const uint16_t* sums, Signals* signals, supervisor::Observation* seen) {
   for (uint8_t i = 0; i < hal::joint_count; ++i) {
     const uint8_t other = static_cast<uint8_t>(i + hal::joint_count);
-    note_rail(i, sums[i], *signals, *seen);
-    note_rail(other, sums[other], *signals, *seen);
     JointSignals& joint = signals->joint[i];
     const int16_t wanted =
-        signal_chain::clamp(follow(joint.leader, sums[i], *signals), joint.limit_min, joint.limit_max);
-    const int16_t is = follow(joint.follower, sums[other], *signals);
+        signal_chain::clamp(follow(joint.leader, i, sums[i], *signals, *seen), joint.limit_min, joint.limit_max);
+    const int16_t is = follow(joint.follower, other, sums[other], *signals, *seen);
     joint.follower_angle = is;
     joint.error = fuzzy_pdi::difference(wanted, is);
     seen->distance[i] = signal_chain::distance(wanted, is);

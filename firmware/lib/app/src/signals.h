@@ -14,14 +14,18 @@ struct JointSignals {
   int16_t error;                 // reference - follower, saturated at +-32767
 };
 
+// A rail is told in Observation. The sum is not taken: the angle stays that of the last good one.
+enum Rails : uint8_t { hold_rails = 1, tell_rails = 2 };
+
 struct Signals {
   signal_chain::LowPass low_pass;
   uint16_t lowest, span;  // a sum from lowest to lowest + span is not at a rail
+  uint8_t rails;          // what a sum at a rail means: bits of Rails
   JointSignals joint[hal::joint_count];
 };
 
-// `sums` are those of all pots, as hal::pot_sums() gives them. Writes all of `seen` but `late`; its rails must be 0
-// before.
+// `sums` are those of all pots, as hal::pot_sums() gives them, marks included. Writes all of `seen` but `late`; its
+// rails must be 0 before.
 void follow_pots_portable(const uint16_t* sums, Signals* signals, supervisor::Observation* seen);
 
 #if defined(__AVR__)

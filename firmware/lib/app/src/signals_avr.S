@@ -12,6 +12,7 @@
 #define GAIN r15
 #define LOWEST_LOW r13
 #define LOWEST_HIGH r14
+#define RAILS r10
 #define SPAN_LOW r11
 #define SPAN_HIGH r12
 
@@ -63,13 +64,17 @@
   brcc 1f
   ldi r22, 1 << (\pot)
   ldi r23, SEEN_RAIL_LOW - SEEN_DISTANCE - 2*(\joint)
+  ldd r18, Z+(\at)+POT_FILTERED
+  ldd r19, Z+(\at)+POT_FILTERED+1
   rcall .Lat_a_rail
+  brts 6f
 1:
   ldd r18, Z+(\at)+POT_FILTERED
   ldd r19, Z+(\at)+POT_FILTERED+1
   \filter
   std Z+(\at)+POT_FILTERED, r18
   std Z+(\at)+POT_FILTERED+1, r19
+6:
   // r25:r24:r23:r22 = offset + filtered * scale (r21:r20)
   ldd r20, Z+(\at)+POT_SCALE
   ldd r21, Z+(\at)+POT_SCALE+1
@@ -158,6 +163,7 @@ app_follow_pots:
   ldd GAIN, Z+SIGNALS_GAIN
   ldd LOWEST_LOW, Z+SIGNALS_LOWEST
   ldd LOWEST_HIGH, Z+SIGNALS_LOWEST+1
+  ldd RAILS, Z+SIGNALS_RAILS
   ldd SPAN_LOW, Z+SIGNALS_SPAN
   ldd SPAN_HIGH, Z+SIGNALS_SPAN+1
   cpi KEEP, 128
@@ -190,19 +196,43 @@ app_follow_pots:
   std Z+ERROR+1, r25
   ret
 
-// The sum in r25:r24 is at a rail: sets the bit r22 of rail_low or rail_high. rail_low is at X + r23.
+// The sum in r25:r24 is at a rail, or has marks: takes them off, and sets the bit r22 of rail_low or rail_high. rail_low
+// is at X + r23; the pot's low-pass is in r19:r18. T says whether it stays as it is.
 .Lat_a_rail:
-  movw r18, r26
+  andi r25, 0x0f
+  clt
+  sbrs RAILS, 1
+  ret
+  movw r20, r26
   add r26, r23
   adc r27, ZERO
   cp r24, LOWEST_LOW
   cpc r25, LOWEST_HIGH
+  brcs 2f
+  movw r0, r24
+  sub r0, LOWEST_LOW
+  sbc r1, LOWEST_HIGH
+  cp SPAN_LOW, r0
+  cpc SPAN_HIGH, r1
   brcs 1f
-  adiw r26, 1
-1:ld r23, X
+  movw r0, r24        // only some conversions were at a rail
+  lsl r0
+  rol r1
+  lsl r0
+  rol r1
+  lsl r0
+  rol r1
+  lsl r0
+  rol r1
+  cp r0, r18
+  cpc r1, r19
+  brcs 2f
+1:adiw r26, 1
+2:ld r23, X
   or r23, r22
   st X, r23
-  movw r26, r18
+  movw r26, r20
+  bst RAILS, 0
   ret
   .size app_follow_pots, . - app_follow_pots
 #endif  // __AVR__

@@ -6,7 +6,8 @@
 #define SIGNALS_GAIN 1
 #define SIGNALS_LOWEST 2
 #define SIGNALS_SPAN 4
-#define SIGNALS_JOINT 6
+#define SIGNALS_RAILS 6
+#define SIGNALS_JOINT 7
 
 // In JointSignals, which are in a row
 #define JOINT_LEADER 0

@@ -8,6 +8,7 @@ namespace hal {
 constexpr uint8_t joint_count = 4;
 constexpr uint8_t pot_count = 8;            // 0..3 leader, 4..7 follower
 constexpr uint8_t conversions_per_pot = 4;  // summed each tick
+constexpr uint16_t rail_mark = 0x1000;      // above every sum
 
 // unknown: a board that has no name yet.
 enum class Board : uint8_t { unknown, mega2560, nano328, native };
@@ -33,7 +34,8 @@ void run_tick();         // calls firmware_tick(), which main.cpp defines; no ot
 uint16_t tick_age_us();  // time since the timer started this tick, resolution 4 us
 
 // For every pot the sum of four 10-bit conversions, all made during the last tick; null when there are no new sums.
-// Release the sums before tick_end(): until then they stay as they are.
+// Each conversion of 0..3 or 1020..1023 adds a rail_mark: a wire that opens in the middle of a tick shows in no sum
+// else. Release the sums before tick_end(): until then they stay as they are.
 const uint16_t* pot_sums();
 void release_pots();
 
@@ -45,6 +47,9 @@ template <uint8_t joint>
 void set_duty(bool positive, uint16_t size);
 void set_drivers(bool on);
 void set_led(bool on);
+
+// --- The emergency stop's input, which its pull-up holds high: its level now.
+bool estop_low();
 
 // --- Serial port, interrupt-driven both ways.
 constexpr uint8_t tx_capacity = 127;

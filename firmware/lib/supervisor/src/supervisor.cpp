@@ -26,7 +26,7 @@ void Supervisor::set_limits(const Limits& limits) {
 }
 
 void Supervisor::tick(const Observation& seen) {
-  debounce(seen);
+  if ((seen.rail_low | seen.rail_high) != 0) rails_.fill(seen.rail_low, seen.rail_high);
   if (state_ == State::boot) {
     if (--boot_left_ == 0) {
       state_ = State::disabled;
@@ -37,17 +37,26 @@ void Supervisor::tick(const Observation& seen) {
     }
     return;
   }
+  if (seen.estop) press_estop();
   if (motors_on()) watch(seen);
   if (state_ == State::soft_start && soft_start_.advance()) state_ = State::following;
+}
+
+// A stop that is pressed counts with the motors off as well: somebody wants nothing to start. A fault that stands
+// already stays to be seen, but not one after which the board would start the motors again by itself.
+__attribute__((noinline)) void Supervisor::press_estop() {
+  if (motors_on()) return raise(Fault::estop, nowhere);
+  if (state_ == State::fault && fault_ != Fault::unrest) return;
+  state_ = State::fault;
+  fault_ = Fault::estop;
+  fault_where_ = nowhere;
 }
 
 // Faults come before the lease, the gravest first: only one is reported.
 void Supervisor::watch(const Observation& seen) {
   if (seen.late) return raise(Fault::late_tick, nowhere);
-  if (steady_low_) return raise(Fault::pot_low, lowest_bit(steady_low_));
-  if (steady_high_) return raise(Fault::pot_high, lowest_bit(steady_high_));
-  const uint8_t lost = lost_joint(seen);
-  if (lost != nowhere) return raise(Fault::tracking, lost);
+  if (rails_.bad_low()) return raise(Fault::pot_low, lowest_bit(rails_.bad_low()));
+  if (rails_.bad_high()) return raise(Fault::pot_high, lowest_bit(rails_.bad_high()));
   if (lease_ && --lease_ == 0) switch_off(State::disabled, StopReason::lease);
 }
 
@@ -73,49 +82,32 @@ void Supervisor::bytes_lost(uint16_t tick) {
   if (motors_on() && overruns_.lost(tick)) raise(Fault::flood, nowhere);
 }
 
-void Supervisor::look(uint8_t joint, int16_t reference, int16_t error) {
-  if (motors_on() && unrest_.look(joint, reference, error)) raise(Fault::unrest, joint);
+void Supervisor::look(uint8_t joint, const JointSeen& seen, const MotionLimits& limits) {
+  rails_.leak(joint);
+  if (motors_on()) watch_joint(joint, seen, limits);
 }
 
-// One tick at a rail may be noise; three in a row are a broken wire. Most ticks see no rail and have none to remember.
-void Supervisor::debounce(const Observation& seen) {
-  if ((seen.rail_low | seen.rail_high | any_rail_) != 0) remember_rails(seen);
+void Supervisor::watch_joint(uint8_t joint, const JointSeen& seen, const MotionLimits& limits) {
+  const auto reference = static_cast<int16_t>(seen.follower + seen.error);
+  switch (motion_.look(joint, seen.follower, seen.volts_mv, seen.supply_mv, limits)) {
+    case MotionFault::speed: return raise(Fault::speed, joint);
+    case MotionFault::runaway: return raise(Fault::runaway, joint);
+    case MotionFault::stalled: return raise(Fault::stalled, joint);
+    case MotionFault::none: break;
+  }
+  if (is_lost(joint, seen.distance)) return raise(Fault::tracking, joint);
+  if (unrest_.look(joint, reference, seen.error)) raise(Fault::unrest, joint);
 }
 
-__attribute__((noinline)) void Supervisor::remember_rails(const Observation& seen) {
-  steady_low_ = seen.rail_low & low_[0] & low_[1];
-  steady_high_ = seen.rail_high & high_[0] & high_[1];
-  low_[1] = low_[0];
-  low_[0] = seen.rail_low;
-  high_[1] = high_[0];
-  high_[0] = seen.rail_high;
-  any_rail_ = low_[0] | low_[1] | high_[0] | high_[1];
-}
-
-// The joint that has been beyond the tracking limit for too long, if there is one.
-uint8_t Supervisor::lost_joint(const Observation& seen) {
-  static_assert(joint_count == 4, "joints 0..3 below");
-  const uint16_t limit = limits_.tracking_limit;
-  uint8_t far = 0;
-  if (seen.distance[0] > limit) far = 1;
-  if (seen.distance[1] > limit) far |= 2;
-  if (seen.distance[2] > limit) far |= 4;
-  if (seen.distance[3] > limit) far |= 8;
-  return (far | far_) != 0 ? count_lost(far) : nowhere;
-}
-
-// A function of its own, because most ticks do not need it.
-__attribute__((noinline)) uint8_t Supervisor::count_lost(uint8_t far) {
-  far_ = far;
-  if (!(far & 1)) lost_ticks_[0] = 0;
-  else if (++lost_ticks_[0] >= limits_.tracking_ms) return 0;
-  if (!(far & 2)) lost_ticks_[1] = 0;
-  else if (++lost_ticks_[1] >= limits_.tracking_ms) return 1;
-  if (!(far & 4)) lost_ticks_[2] = 0;
-  else if (++lost_ticks_[2] >= limits_.tracking_ms) return 2;
-  if (!(far & 8)) lost_ticks_[3] = 0;
-  else if (++lost_ticks_[3] >= limits_.tracking_ms) return 3;
-  return nowhere;
+// A look comes every four ticks.
+bool Supervisor::is_lost(uint8_t joint, uint16_t distance) {
+  uint16_t& lost = lost_ms_[joint];
+  if (distance <= limits_.tracking_limit) {
+    lost = 0;
+    return false;
+  }
+  lost = static_cast<uint16_t>(lost + joint_count);
+  return lost >= limits_.tracking_ms;
 }
 
 void Supervisor::switch_off(State next, StopReason reason) {
@@ -137,18 +129,20 @@ Reply Supervisor::enable(uint16_t lease_ms, const Observation& seen) {
   }
   if (state_ == State::boot) return {Answer::booting, nowhere, 0};
   if (state_ == State::fault) return {Answer::in_fault, nowhere, static_cast<uint16_t>(fault_)};
-  const uint8_t low = steady_low_ | seen.rail_low, high = steady_high_ | seen.rail_high;
+  if (seen.estop) return {Answer::estop, nowhere, 0};
+  const uint8_t low = rails_.bad_low() | seen.rail_low, high = rails_.bad_high() | seen.rail_high;
   if (low) return {Answer::pot_bad, lowest_bit(low), static_cast<uint16_t>(Fault::pot_low)};
   if (high) return {Answer::pot_bad, lowest_bit(high), static_cast<uint16_t>(Fault::pot_high)};
   for (uint8_t i = 0; i < joint_count; ++i) {
     const uint16_t distance = seen.distance[i];
     if (distance > limits_.enable_limit) return {Answer::too_far, i, distance};
-    lost_ticks_[i] = 0;
+    lost_ms_[i] = 0;
   }
   state_ = State::soft_start;
   soft_start_.start(limits_.soft_start_ms);
   overruns_.forget();
   unrest_.forget();
+  motion_.forget();
   lease_ = lease_ms;
   return {Answer::ok, nowhere, 0};
 }
@@ -164,8 +158,10 @@ void Supervisor::renew(uint16_t lease_ms) {
 Reply Supervisor::clear_fault(const Observation& seen) {
   if (state_ == State::boot) return {Answer::booting, nowhere, 0};
   if (state_ != State::fault) return {Answer::ok, nowhere, 0};
-  if (steady_low_) return {Answer::pot_bad, lowest_bit(steady_low_), static_cast<uint16_t>(Fault::pot_low)};
-  if (steady_high_) return {Answer::pot_bad, lowest_bit(steady_high_), static_cast<uint16_t>(Fault::pot_high)};
+  if (seen.estop) return {Answer::estop, nowhere, 0};
+  const uint8_t low = rails_.bad_low(), high = rails_.bad_high();
+  if (low) return {Answer::pot_bad, lowest_bit(low), static_cast<uint16_t>(Fault::pot_low)};
+  if (high) return {Answer::pot_bad, lowest_bit(high), static_cast<uint16_t>(Fault::pot_high)};
   if (!params_ok_) return {Answer::params, nowhere, static_cast<uint16_t>(Fault::params)};
   if (fault_ == Fault::late_tick && seen.late) return {Answer::in_fault, nowhere, static_cast<uint16_t>(fault_)};
   if (fault_ == Fault::tracking) {

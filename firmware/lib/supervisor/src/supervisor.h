@@ -3,7 +3,9 @@
 #include <signal_chain/soft_start.h>
 #include <stdint.h>
 
+#include "motion.h"
 #include "overruns.h"
+#include "rails.h"
 #include "unrest.h"
 
 namespace supervisor {
@@ -14,7 +16,21 @@ constexpr uint8_t nowhere = 255;  // fault_where when the fault has no pot or jo
 // The numbers go over the link; app/src/on_link.h checks that they are the same there.
 enum class State : uint8_t { boot, disabled, soft_start, following, fault };
 enum class StopReason : uint8_t { none, host, lease, fault, reset };
-enum class Fault : uint8_t { none, pot_low, pot_high, late_tick, tracking, watchdog, params, flood, unrest };
+enum class Fault : uint8_t {
+  none,
+  pot_low,
+  pot_high,
+  late_tick,
+  tracking,
+  watchdog,
+  params,
+  flood,
+  unrest,
+  estop,
+  speed,
+  runaway,
+  stalled
+};
 
 struct Limits {
   uint16_t enable_limit;    // q12 rad
@@ -30,10 +46,19 @@ struct Observation {
   uint8_t rail_low;
   uint8_t rail_high;
   bool late;
+  bool estop;  // the emergency stop is pressed
+};
+
+// What the last tick has seen of a joint, and what its motor was told.
+struct JointSeen {
+  int16_t follower, error;  // q12 rad
+  uint16_t distance;
+  int16_t volts_mv;
+  uint16_t supply_mv;
 };
 
 // Why a request was refused; `where` is a pot for pot_bad and a joint for too_far.
-enum class Answer : uint8_t { ok, booting, in_fault, pot_bad, too_far, params };
+enum class Answer : uint8_t { ok, booting, in_fault, pot_bad, too_far, params, estop };
 struct Reply {
   Answer answer;
   uint8_t where;
@@ -52,8 +77,8 @@ class Supervisor {
   void tick(const Observation& seen);
   // Bytes of the link were lost in this tick: a stop may have been among them.
   void bytes_lost(uint16_t tick);
-  // Between ticks, the next joint after each. Reference and error in q12 rad.
-  void look(uint8_t joint, int16_t reference, int16_t error);
+  // Between ticks, the next joint after each.
+  void look(uint8_t joint, const JointSeen& seen, const MotionLimits& limits);
   // After unrest: starts the motors again, within the lease as it was. The fault stays to be seen. False when refused.
   bool restart(const Observation& seen);
 
@@ -75,23 +100,20 @@ class Supervisor {
   void switch_off(State next, StopReason reason);
   void raise(Fault fault, uint8_t where);
   void forget_fault();
+  void press_estop();
   void watch(const Observation& seen);
-  uint8_t lost_joint(const Observation& seen);
-  uint8_t count_lost(uint8_t far);
-  void debounce(const Observation& seen);
-  void remember_rails(const Observation& seen);
+  bool is_lost(uint8_t joint, uint16_t distance);
+  void watch_joint(uint8_t joint, const JointSeen& seen, const MotionLimits& limits);
 
   static constexpr uint8_t boot_ticks = 20;  // meanwhile the filters settle and bad pots are found
 
-  Limits limits_ = {0, UINT16_MAX, 0, 0};     // a tracking limit of UINT16_MAX: no distance is beyond it
-  uint8_t low_[2] = {}, high_[2] = {};        // rail masks of the two ticks before
-  uint8_t any_rail_ = 0;                      // not 0 when one of them has a bit set
-  uint8_t steady_low_ = 0, steady_high_ = 0;  // at the rail for three ticks
-  uint16_t lost_ticks_[joint_count] = {};     // time beyond the tracking limit
-  uint8_t far_ = 0;                           // joints whose lost_ticks_ count
+  Limits limits_ = {0, UINT16_MAX, 0, 0};  // a tracking limit of UINT16_MAX: no distance is beyond it
+  Rails rails_;
+  uint16_t lost_ms_[joint_count] = {};  // time beyond the tracking limit
   signal_chain::SoftStart soft_start_;
   Overruns overruns_;
   Unrest unrest_;
+  Motion motion_;
   uint16_t lease_ = 0;  // ticks, 0 = until stop; it stays after a fault, for restart()
   uint8_t boot_left_ = boot_ticks;
   bool params_ok_ = true;

@@ -29,6 +29,14 @@ struct Frame {
   std::vector<std::uint8_t> payload;
 };
 
+// The defaults for an arm that stays where it is, or jumps: without the checks of its motion.
+inline params::Table unwatched() {
+  params::Table table;
+  params::load_defaults(table);
+  table.speed_limit = table.runaway_limit = table.stall_volts = 0;
+  return table;
+}
+
 class Bench {
  public:
   Bench() {

@@ -31,6 +31,7 @@ TEST_CASE("a sample tells angles, voltages, state and fault") {
   arm.set_leader(1, 0.5);
   arm.set_follower(3, -0.4);
   arm.boot();
+  REQUIRE(arm.apply(bench::unwatched()).type == 0x85);
   arm.get<wire::TelemetryReply>(wire::TelemetryRequest{1});
   arm.run(50);
   CHECK(arm.samples.back().leader[1] / 4096.0 == doctest::Approx(0.5).epsilon(0.01));

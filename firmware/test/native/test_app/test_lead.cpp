@@ -66,8 +66,7 @@ TEST_CASE("the reference starts at the follower's pose, wherever the leader arm 
 TEST_CASE("the reference is the B-spline of the points to the last bit, and rests at the last point") {
   Led arm;
   arm.boot();
-  params::Table table;
-  params::load_defaults(table);
+  params::Table table = bench::unwatched();
   table.tracking_limit = 0;  // this follower stays where it is
   REQUIRE(arm.apply(table).type == 0x85);
   arm.sampling();
@@ -276,7 +275,7 @@ TEST_CASE("whatever turns the motors off, the leader arm leads again before any 
   arm.run(5);
   CHECK(arm.status().fault == wire::Fault::pot_low);
   arm.set_count(2, whole);
-  arm.run(5);
+  arm.run(50);
   arm.get<wire::ClearFaultReply>(wire::ClearFaultRequest{});
   back();
   led();
@@ -315,6 +314,8 @@ TEST_CASE(
     "running") {
   Led arm;  // its speed is 0: it stays where it is
   arm.boot();
+  REQUIRE(arm.apply(bench::unwatched()).type == 0x85);
+  arm.run(1);
   std::uint8_t next = arm.lead(200).next;
   for (int i = 1; i <= 40; ++i) {
     const auto state = arm.status().state;

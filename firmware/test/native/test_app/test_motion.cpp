@@ -1,4 +1,6 @@
 // Enable, soft start, following, and every way to stop.
+#include <initializer_list>
+
 #include "bench.h"
 
 using bench::Bench;
@@ -36,6 +38,8 @@ TEST_CASE("soft start: the duty stays below the ramp, and the ramp reaches the t
   Bench arm;
   for (std::uint8_t i = 0; i < 4; ++i) arm.set_leader(i, 0.79);  // as far as enable allows: more volts than the ramp
   arm.boot();
+  REQUIRE(arm.apply(bench::unwatched()).type == 0x85);
+  arm.run(1);
   REQUIRE(arm.enable() == wire::State::soft_start);
   CHECK(board.drivers);
   CHECK(bench::joint_max(board.duty) == 0);
@@ -202,6 +206,8 @@ TEST_CASE("a lease that is not renewed ends in disabled; one that is renewed goe
 
 TEST_CASE("a follower that does not come is lost after tracking_ms") {
   Bench arm;
+  arm.boot();
+  REQUIRE(arm.apply(bench::unwatched()).type == 0x85);
   arm.follow();  // the plant stands still
   arm.set_leader(3, 2.4);
   arm.set_follower(3, 1.4);  // 1 rad; with 0.8 rad it might go on
@@ -217,8 +223,7 @@ TEST_CASE("a follower that does not come is lost after tracking_ms") {
 TEST_CASE("controllers run every period_ms ticks and hold in between") {
   Bench arm;
   arm.boot();
-  params::Table table;
-  params::load_defaults(table);
+  params::Table table = bench::unwatched();
   table.period_ms = 10;
   REQUIRE(arm.apply(table).type == 0x85);
   arm.set_leader(0, 0.7);
@@ -305,4 +310,43 @@ TEST_CASE("bytes lost while the motors are off do not count against the next sta
   REQUIRE(arm.enable() == wire::State::soft_start);
   CHECK(lossy_ticks(arm, 3, 1) == 3);
   CHECK(board.drivers);
+}
+
+TEST_CASE("while the motors are on, a reading at a rail is not taken; while they are off, it is seen as it is") {
+  Bench arm;
+  arm.follow();
+  arm.get<wire::TelemetryReply>(wire::TelemetryRequest{1});
+  for (const std::uint8_t pot : {std::uint8_t{1}, std::uint8_t{6}}) {
+    for (const std::uint16_t rail : std::initializer_list<std::uint16_t>{0, 1023}) {
+      const std::uint16_t whole = arm.counts[pot];
+      arm.set_count(pot, rail);
+      arm.run(2);
+      const wire::Sample& held = arm.samples.back();
+      CHECK(std::abs(pot < 4 ? held.leader[pot] : held.follower[pot - 4]) < 20);
+      CHECK(board.drivers);
+      arm.set_count(pot, whole);
+      arm.run(60);
+    }
+  }
+  arm.stop();
+  arm.set_count(6, 0);
+  arm.run(30);
+  CHECK(arm.samples.back().follower[2] < -10000);
+}
+
+TEST_CASE("with rail_counts 0 a reading at a rail is a reading like any other") {
+  Bench arm;
+  arm.boot();
+  params::Table table = bench::unwatched();
+  table.rail_counts = 0;
+  REQUIRE(arm.apply(table).type == 0x85);
+  arm.set_count(1, 0);
+  arm.set_count(5, 3);
+  arm.run(40);
+  REQUIRE(arm.enable() == wire::State::soft_start);
+  arm.get<wire::TelemetryReply>(wire::TelemetryRequest{1});
+  arm.run(30);
+  CHECK(board.drivers);
+  CHECK(arm.samples.back().leader[1] < -10000);
+  CHECK(arm.samples.back().follower[1] < -10000);
 }

@@ -44,14 +44,14 @@ TEST_CASE("a repeated apply is answered again") {
 TEST_CASE("a lower supply means more duty for the same voltage") {
   Bench arm;
   arm.boot();
+  REQUIRE(arm.apply(bench::unwatched()).type == 0x85);
   arm.set_leader(0, 0.3);
   arm.run(30);
   arm.enable();
   arm.run(1100);
   const int at_15v = board.duty[0];
   arm.stop();
-  params::Table table;
-  params::load_defaults(table);
+  params::Table table = bench::unwatched();
   table.supply_mv = 12000;
   table.joint[0].ki = 0;  // the integral would go on in between
   REQUIRE(arm.apply(table).type == 0x85);

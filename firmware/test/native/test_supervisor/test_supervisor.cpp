@@ -10,7 +10,7 @@ using namespace supervisor;
 namespace {
 
 constexpr Limits limits = {3277, 10240, 500, 1000};  // 0.8 rad, 2.5 rad
-constexpr Observation calm = {{0, 0, 0, 0}, 0, 0, false};
+constexpr Observation calm = {{0, 0, 0, 0}, 0, 0, false, false};
 
 Observation apart(std::uint8_t joint, std::uint16_t distance) {
   Observation seen = calm;
@@ -31,19 +31,31 @@ Observation late() {
   return seen;
 }
 
+Observation pressed() {
+  Observation seen = calm;
+  seen.estop = true;
+  return seen;
+}
+
 struct Arm : Supervisor {
   explicit Arm(bool after_watchdog = false, bool params_ok = true) {
     set_limits(limits);
     begin(after_watchdog, params_ok);
   }
+  // Ticks, each followed by the look at a joint. A set of limits turns the checks of the motion off.
   Arm& run(unsigned ticks, const Observation& seen = calm) {
-    while (ticks--) tick(seen);
+    for (; ticks > 0; --ticks, ++now) {
+      tick(seen);
+      const auto joint = static_cast<std::uint8_t>(now % joint_count);
+      look(joint, {0, 0, seen.distance[joint], 0, 15000}, {});
+    }
     last = seen;
     return *this;
   }
   Reply enable(std::uint16_t lease) { return Supervisor::enable(lease, last); }
   Reply clear_fault() { return Supervisor::clear_fault(last); }
   Observation last = calm;
+  unsigned now = 0;
   Arm& booted() { return run(20); }
   Arm& enabled(std::uint16_t lease = 0) {
     booted();
@@ -199,7 +211,7 @@ TEST_CASE("a pot at a rail for three ticks in a row is a fault and names the pot
       const auto bit = static_cast<std::uint8_t>(1u << pot);
       const Observation rail = high ? with_rails(0, bit) : with_rails(bit, 0);
       Arm arm;
-      arm.following().run(2, rail).run(1).run(2, rail);
+      arm.following().run(2, rail).run(40).run(2, rail);
       CHECK(arm.state() == State::following);
       arm.run(1, rail);
       CHECK(arm.state() == State::fault);
@@ -208,24 +220,59 @@ TEST_CASE("a pot at a rail for three ticks in a row is a fault and names the pot
       const Reply refused = arm.clear_fault();
       CHECK(refused.answer == Answer::pot_bad);
       CHECK(refused.where == pot);
-      arm.run(1);
+      CHECK(refused.detail == static_cast<unsigned>(arm.fault()));
+      arm.run(50);
       CHECK(arm.clear_fault().answer == Answer::ok);
     }
   }
 }
 
-TEST_CASE("different pots at a rail in turn do not add up to a fault") {
+TEST_CASE("a pot that comes and goes is a fault, wherever in its pattern the motors start") {
+  struct Pattern {
+    unsigned at_rail, of;
+  };
+  for (const Pattern pattern : {Pattern{2, 3}, {1, 2}, {2, 4}, {1, 4}, {2, 10}, {1, 10}}) {
+    for (unsigned phase = 0; phase < pattern.of; ++phase) {
+      Arm arm;
+      arm.following();
+      unsigned ticks = 0;
+      for (; arm.motors_on() && ticks < 1000; ++ticks) {
+        arm.run(1, (ticks + phase) % pattern.of < pattern.at_rail ? with_rails(0, 1 << 6) : calm);
+      }
+      CAPTURE(pattern.at_rail);
+      CAPTURE(pattern.of);
+      CHECK(arm.fault() == Fault::pot_high);
+      CHECK(arm.fault_where() == 6);
+      CHECK(ticks <= 10 * pattern.of / pattern.at_rail);
+    }
+  }
+}
+
+TEST_CASE("a reading at a rail now and then is ridden through") {
   Arm arm;
   arm.following();
-  for (int i = 0; i < 30; ++i) arm.run(1, with_rails(static_cast<std::uint8_t>(1u << (i % 8)), 0));
+  for (int i = 0; i < 2000; ++i) arm.run(16).run(1, with_rails(1 << 3, 0));
   CHECK(arm.state() == State::following);
 }
 
-TEST_CASE("tracking: beyond the limit for tracking_ms in a row") {
+TEST_CASE("a pot that goes from one rail to the other is named with the one it is at") {
   Arm arm;
-  arm.following().run(499, apart(3, 10241)).run(1).run(499, apart(3, 10241));
+  arm.booted().run(20, with_rails(1 << 5, 0)).run(5, with_rails(0, 1 << 5));
+  CHECK(arm.enable(0).detail == static_cast<unsigned>(Fault::pot_high));
+}
+
+TEST_CASE("different pots at a rail in turn do not add up to a fault") {
+  Arm arm;
+  arm.following();
+  for (int i = 0; i < 3000; ++i) arm.run(2).run(1, with_rails(static_cast<std::uint8_t>(1u << (i % 8)), 0));
   CHECK(arm.state() == State::following);
-  arm.run(1, apart(3, 10241));
+}
+
+TEST_CASE("tracking: beyond the limit for tracking_ms in a row, to a look") {
+  Arm arm;
+  arm.following().run(496, apart(3, 10241)).run(4).run(496, apart(3, 10241));
+  CHECK(arm.state() == State::following);
+  arm.run(4, apart(3, 10241));
   CHECK(arm.state() == State::fault);
   CHECK(arm.fault() == Fault::tracking);
   CHECK(arm.fault_where() == 3);
@@ -249,9 +296,9 @@ TEST_CASE("time lost before a stop does not count after the next enable") {
   arm.following().run(400, apart(1, 20000)).stop();
   arm.run(1);
   REQUIRE(arm.enable(0).answer == Answer::ok);
-  arm.run(499, apart(1, 20000));
+  arm.run(496, apart(1, 20000));
   CHECK(arm.motors_on());
-  arm.run(1, apart(1, 20000));
+  arm.run(4, apart(1, 20000));
   CHECK(arm.fault() == Fault::tracking);
 }
 
@@ -293,4 +340,58 @@ TEST_CASE("the first fault is the one reported") {
   Arm arm;
   arm.following().run(1, late()).run(5, with_rails(1, 0));
   CHECK(arm.fault() == Fault::late_tick);
+}
+
+TEST_CASE("the emergency stop acts at once in every state but boot, where it waits for the end") {
+  Arm boot;
+  boot.run(19, pressed());
+  CHECK(boot.state() == State::boot);
+  boot.run(2, pressed());
+  CHECK(boot.fault() == Fault::estop);
+  CHECK(boot.stop_reason() == StopReason::reset);
+
+  Arm disabled;
+  disabled.booted().run(1, pressed());
+  CHECK(disabled.state() == State::fault);
+  CHECK(disabled.fault() == Fault::estop);
+  CHECK(disabled.stop_reason() == StopReason::reset);
+
+  for (const unsigned ticks : {1u, 500u, 2000u}) {
+    Arm arm;
+    arm.enabled().run(ticks).run(1, pressed());
+    CHECK(arm.state() == State::fault);
+    CHECK(arm.fault() == Fault::estop);
+    CHECK(arm.fault_where() == nowhere);
+    CHECK(arm.stop_reason() == StopReason::fault);
+  }
+}
+
+TEST_CASE("the emergency stop is latched, and neither clear_fault nor enable works while it is pressed") {
+  Arm arm;
+  arm.following().run(1, pressed());
+  CHECK(arm.clear_fault().answer == Answer::estop);
+  arm.run(1000);
+  CHECK(arm.fault() == Fault::estop);
+  CHECK(arm.enable(0).answer == Answer::in_fault);
+  CHECK(arm.clear_fault().answer == Answer::ok);
+  arm.run(1);
+  CHECK(arm.enable(0).answer == Answer::ok);
+
+  Arm just_pressed;
+  just_pressed.booted();
+  just_pressed.last = pressed();  // since the last tick
+  CHECK(just_pressed.enable(0).answer == Answer::estop);
+}
+
+TEST_CASE("the emergency stop comes before every other fault of its tick, but leaves one that stands") {
+  Observation all = pressed();
+  all.late = true;
+  all.rail_low = 1;
+  Arm together;
+  together.following().run(1, all);
+  CHECK(together.fault() == Fault::estop);
+  Arm later;
+  later.following().run(1, late()).run(5, pressed());
+  CHECK(later.fault() == Fault::late_tick);
+  CHECK(later.clear_fault().answer == Answer::estop);
 }

@@ -15,11 +15,11 @@ constexpr double q12 = 4096.0, pi = 3.14159265358979;
 constexpr UnrestLimits limits = {10, 6, 10};  // 10 mrad, 6 turns in a second, 1 s
 constexpr Limits others = {3277, 0, 1, 100};
 
-using Motion = std::function<double(double)>;  // rad at a time in s
+using Course = std::function<double(double)>;  // rad at a time in s
 
 double still(double) { return 0.3; }
 
-Motion swing(double amplitude, double hertz, double phase = 0) {
+Course swing(double amplitude, double hertz, double phase = 0) {
   return [=](double s) { return amplitude * std::sin(2 * pi * hertz * s + phase); };
 }
 
@@ -33,17 +33,21 @@ struct Arm : Supervisor {
   }
 
   // Joint 2 has this leader and this error, all others are at rest. The time in s of the fault, or -1.
-  double run(double seconds, const Motion& leader, const Motion& error) {
+  double run(double seconds, const Course& leader, const Course& error) {
     for (const auto end = static_cast<unsigned>(now + seconds * 1000); now < end; ++now) {
       tick({});
       const auto joint = static_cast<std::uint8_t>(now % 4);
       const double s = now / 1000.0;
       const bool moves = joint == 2;
-      look(joint, static_cast<std::int16_t>(std::lround(q12 * (moves ? leader(s) : 0))),
-           static_cast<std::int16_t>(std::lround(q12 * (moves ? error(s) : 0))));
+      look_at(joint, moves ? leader(s) : 0, moves ? error(s) : 0);
       if (fault() != Fault::none) return s;
     }
     return -1;
+  }
+
+  void look_at(std::uint8_t joint, double leader, double error) {
+    const auto reference = std::lround(q12 * leader), apart = std::lround(q12 * error);
+    look(joint, {static_cast<std::int16_t>(reference - apart), static_cast<std::int16_t>(apart), 0, 0, 15000}, {});
   }
 
   unsigned now = 0;  // ms
@@ -106,16 +110,16 @@ TEST_CASE("property: a leader that moves by more than the amplitude every second
   std::uniform_real_distribution<double> share(0, 1);
   for (int trial = 0; trial < 300; ++trial) {
     // The error is as bad as it can be: it swings all the time. The leader is drawn from what people and hosts do.
-    const Motion error = swing(0.02 + share(random), 3.2 + 20 * share(random), 6 * share(random));
+    const Course error = swing(0.02 + share(random), 3.2 + 20 * share(random), 6 * share(random));
     const double size = 0.0115 + share(random) * share(random) * 2, f = 1.5 + 8 * share(random) * share(random);
     const double speed = 0.07 + 2 * share(random), phase = 6 * share(random);
-    const Motion leaders[] = {
+    const Course leaders[] = {
         swing(size, f, phase),
         [=](double s) { return speed * s > 7.9 ? 7.9 - std::fmod(speed * s, 7.9) : speed * s; },
         [=](double s) { return std::fmod(s * f, 1.0) < 0.5 ? size : -size; },  // jumps
         [=](double s) { return std::floor(s * 1.3) * 0.05; },
     };
-    for (const Motion& leader : leaders) {
+    for (const Course& leader : leaders) {
       CAPTURE(trial);
       CHECK(Arm().run(3, leader, error) < 0);
     }
@@ -130,7 +134,7 @@ TEST_CASE("property: a leader alone raises nothing, whatever it does, when the f
     const double noise = 0.003 * share(random);
     std::normal_distribution<double> draw(0, noise);
     double at = 0;
-    const Motion leader = [&](double s) { return at = size * std::sin(2 * pi * f * s) + drift * s + draw(random); };
+    const Course leader = [&](double s) { return at = size * std::sin(2 * pi * f * s) + drift * s + draw(random); };
     CAPTURE(size);
     CAPTURE(f);
     CHECK(Arm().run(3, leader, [&](double) { return at; }) < 0);
@@ -143,8 +147,7 @@ TEST_CASE("the other joints' leaders count too, and the time begins when the las
     const auto joint = static_cast<std::uint8_t>(arm.now % 4);
     const double s = arm.now / 1000.0;
     const double leader = joint == 0 && s < 2 ? swing(0.05, 1)(s) : 0;
-    arm.look(joint, static_cast<std::int16_t>(q12 * leader),
-             static_cast<std::int16_t>(q12 * (joint == 3 ? swing(0.05, 8)(s) : 0)));
+    arm.look_at(joint, leader, joint == 3 ? swing(0.05, 8)(s) : 0);
     if (arm.fault() != Fault::none) break;
   }
   CHECK(arm.fault_where() == 3);

@@ -38,7 +38,8 @@ void configure(Signals& signals, uint8_t shift) {
   signals.low_pass = signal_chain::low_pass(shift);
   const uint16_t rail = next_random() % 101;
   signals.lowest = rail ? rail * 4 + 1 : 0;
-  signals.span = rail ? (1023 - rail) * 4 - 1 - signals.lowest : 0xffff;
+  signals.span = rail ? (1023 - rail) * 4 - 1 - signals.lowest : 0x0fff;
+  signals.rails = static_cast<uint8_t>(rail ? app::tell_rails | (next_random() & app::hold_rails) : 0);
   for (app::JointSignals& joint : signals.joint) {
     calibrate(joint.leader);
     calibrate(joint.follower);
@@ -68,7 +69,7 @@ void setup() {
     Signals portable = fast;
     for (uint8_t tick = 0; tick < 8; ++tick) {
       uint16_t sums[hal::pot_count];
-      for (uint16_t& sum : sums) sum = reading();
+      for (uint16_t& sum : sums) sum = reading() | (next_random() & 7 ? 0 : hal::rail_mark * (1 + (next_random() & 3)));
       supervisor::Observation by_fast = {}, by_portable = {};
       app::follow_pots(sums, &fast, &by_fast);
       app::follow_pots_portable(sums, &portable, &by_portable);

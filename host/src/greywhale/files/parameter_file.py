@@ -13,7 +13,10 @@ from greywhale.protocol import schema
 from greywhale.protocol.declared import Parameter
 from greywhale.table import ParameterTable
 
-SINCE_LAYOUT_2 = ("unrest_amplitude", "unrest_rate", "unrest_time", "unrest_action")
+SINCE_LAYOUT_2 = (
+    *("unrest_amplitude", "unrest_rate", "unrest_time", "unrest_action"),
+    *("speed_limit", "runaway_limit", "stall_volts", "stall_ms", "estop_input"),
+)
 
 
 def physical(parameter: Parameter, raw: int) -> float:

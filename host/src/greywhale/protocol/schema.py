@@ -18,7 +18,7 @@ from typing import ClassVar
 from .declared import Described, Field, Group, Message, Parameter, Table, check_length
 
 PROTOCOL = 1
-SCHEMA_HASH = 0xF352FDC8
+SCHEMA_HASH = 0x5E1C25F6
 MAX_PAYLOAD = 48
 REPLY_BIT = 0x80
 LAYOUT = 2
@@ -56,6 +56,10 @@ class Fault(Described):
     PARAMS = 6, "stored parameters were lost or cannot be run, so older ones or the defaults run now", "Bring your parameters back with `greywhale params restore`, or upload a controller file with `greywhale upload`, then clear the fault."
     FLOOD = 7, "more bytes came than the board can read, so that a stop might have been lost", "Close other programs that use the port and check the cable for noise, then clear the fault."
     UNREST = 8, "a follower swung to and fro although the leader was still", "Lower that joint's gains (kp and ki first) or tune again with `greywhale tune`, then clear the fault; see unrest_amplitude for what counts as unrest."
+    ESTOP = 9, "the emergency stop was pressed", "Release the emergency stop once it is safe, then clear the fault; without such a button set estop_input to 0, or check its wire."
+    SPEED = 10, "a follower's potentiometer jumped, or turned faster than any joint does", "Check that potentiometer's three wires, its wiper and its coupling to the joint, or raise speed_limit, then clear the fault."
+    RUNAWAY = 11, "a follower moved against its motor's voltage, faster and faster", "Check motor_sign, both motor wires and the sign of the potentiometer's scale, and that the potentiometer is that joint's own, then clear the fault."
+    STALLED = 12, "a motor had voltage, but its follower did not move", "Check for something in the joint's way, its motor supply, and that its potentiometer turns with it; for a heavy load raise stall_volts or stall_ms, then clear the fault."
 
 
 class NackCode(Described):
@@ -77,6 +81,7 @@ class NackCode(Described):
     INCONSISTENT = 13, "parameters contradict each other", "Give limit_max above limit_min, a motor_sign of 1 or -1 and a pot scale other than 0, and upload again.", "the flat index of the first parameter that does not fit"
     LEAD_REFUSED = 14, "the host cannot lead like this", "Correct the motion and start it again.", "joint << 8 | LeadRefusal"
     SET_LOST = 15, "stored parameters were lost, and nobody has confirmed those that run now", "Bring your parameters back with `greywhale params restore`, or upload a controller file with `greywhale upload`, then clear the fault.", "0"
+    ESTOP_PRESSED = 16, "the emergency stop is pressed", "Release the emergency stop once it is safe; without such a button set estop_input to 0, or check its wire.", "0"
 
 
 class LeadRefusal(Described):
@@ -1014,6 +1019,15 @@ TABLE = Table((
         Field("unrest_rate", "u8", "1/s", 1.0, 1, 10, (6,), False, None, "turns of the error in a second that are unrest; a swing to and fro has two"),
         Field("unrest_time", "u8", "s", 0.1, 2, 60, (11,), False, None, "time of unrest that becomes a fault"),
         Field("unrest_action", "u8", "", 1.0, 0, 1, (0,), False, None, "what unrest does: 0 turns the motors off, 1 goes on with the safe controllers, and turns the motors off at the next unrest"),
+    )),
+    Group("", 1, "What a follower's motion must be like: a reading that lies, a motor or potentiometer the wrong way round and a stuck joint are faults.", (
+        Field("speed_limit", "u8", "rad/s", 1.0, 0, 100, (25,), False, None, "a follower's reading that moves faster is a fault; 0 turns the check off"),
+        Field("runaway_limit", "u8", "rad", 0.0078125, 0, 192, (40,), False, None, "way of a follower against its voltage of at least 2 V, without slowing down, that becomes a fault; 0 turns the check off"),
+        Field("stall_volts", "u8", "V", 0.1, 0, 250, (32,), False, None, "voltage above which a follower must move; more than any joint needs to hold its load. 0 turns the check off"),
+        Field("stall_ms", "u8", "ms", 4.0, 5, 125, (42,), False, None, "time above stall_volts without motion that becomes a fault; half of it with more than half the supply, and time below takes off three times as much"),
+    )),
+    Group("", 1, "A button that turns the motors off, between the emergency stop's pin and ground.", (
+        Field("estop_input", "u8", "", 1.0, 0, 2, (1,), False, None, "the emergency stop: 0 is none, 1 a button that closes to ground (without one, nothing is stopped), 2 one that opens, so that a broken wire stops as well"),
     )),
 ))
 PARAMETERS: tuple[Parameter, ...] = TABLE.parameters

@@ -3,7 +3,11 @@
 #ifdef __AVR__
 #include "pins.h"
 
-// The tick saves no registers (OS_task): the controllers need nearly all of them, and loop() keeps nothing in them.
+// The rings and sums of interrupts.S begin at a multiple of 32. They are the only ones in section .bss, which comes
+// first in RAM, so that no byte is lost to that. All other variables go behind them: those that have this mark.
+#define BEHIND_RINGS __attribute__((section(".bss.behind_rings")))
+
+// The tick saves no registers (OS_task): the controllers need nearly all of them, and main() keeps nothing in them.
 extern "C" __attribute__((OS_task, noinline, used, externally_visible)) void firmware_tick();
 
 namespace hal {
@@ -26,6 +30,8 @@ inline void set_duty(bool positive, uint16_t size) {
   pins::direction(joint, positive);
   pins::compare(joint, size);
 }
+
+inline bool estop_low() { return pins::estop_low(); }
 
 namespace internal {
 

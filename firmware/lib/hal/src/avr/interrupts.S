@@ -8,7 +8,7 @@
 #include "pins.h"
 #include "shared_state.h"
 
-.section .bss.hal, "aw", @nobits
+.section .bss, "aw", @nobits    ; comes first in RAM: see BEHIND_RINGS
 .balign 32                      ; the address of a sum changes in its low byte only
 .global hal_sums, hal_tx_ring, hal_rx_ring
 hal_sums:    .skip 32           ; two sets of eight
@@ -57,8 +57,12 @@ hal_rx_lost: .skip 1
 ADC_vect:
     enter
     in   r30, SUM_POSITION
-    ldi  r31, hi8(hal_sums)
     lds  r24, ADCL
+    mov  r31, r24
+    subi r31, -4                ; below 8 for a lower byte of 0..3 and of 252..255
+    cpi  r31, 8
+    brcs 6f
+    ldi  r31, hi8(hal_sums)
     sbic CONVERSION, 7
     rjmp 4f
     ld   r25, Z
@@ -93,6 +97,30 @@ ADC_vect:
     ldi  r24, ADC_SINGLE        ; the conversion under way is the last
     sts  ADCSRA, r24
     rjmp 3b
+6:  lds  r25, ADCH              ; a conversion of 0..3 or 1020..1023 gets its mark
+    cpi  r31, 4
+    brcs 7f
+    cpi  r25, 0
+    breq 8f
+    rjmp 9f
+7:  cpi  r25, 3
+    brne 9f
+8:  ori  r25, MARK
+9:  ldi  r31, hi8(hal_sums)
+    sbic CONVERSION, 7
+    rjmp 10f
+    push r23
+    ld   r23, Z
+    add  r23, r24
+    st   Z+, r23
+    ld   r23, Z
+    adc  r23, r25
+    st   Z+, r23
+    pop  r23
+    rjmp 1b
+10: st   Z+, r24                ; the first round
+    st   Z+, r25
+    rjmp 1b
 
 ; The transmitter takes a byte. After the last byte, this interrupt is turned off.
 .global SENDABLE_vect

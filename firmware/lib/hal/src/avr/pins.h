@@ -28,7 +28,7 @@ inline void drivers_off();
 #if defined(__AVR_ATmega2560__)
 
 constexpr Board board = Board::mega2560;
-constexpr uint8_t enable_bit = 1 << PH6, led_bit = 1 << PB7;
+constexpr uint8_t enable_bit = 1 << PH6, led_bit = 1 << PB7, estop_bit = 1 << PB4;
 constexpr uint8_t direction_bits[4] = {1 << PA0, 1 << PA2, 1 << PA4, 1 << PA6};
 constexpr uint8_t pwm_e = 1 << PE3, pwm_h = (1 << PH3) | (1 << PH4) | (1 << PH5);
 
@@ -46,7 +46,7 @@ inline void all_outputs_low() {
   DDRE = pwm_e;
   PORTA = 0;
   DDRA = direction_bits[0] | direction_bits[1] | direction_bits[2] | direction_bits[3];
-  PORTB = 0;
+  PORTB = estop_bit;  // an input with its pull-up
   DDRB = led_bit;
 }
 
@@ -63,6 +63,8 @@ inline void start_pwm() {
 }
 
 inline void stop_unused_timers() { TCCR1B = TCCR2B = TCCR5B = 0; }
+
+inline bool estop_low() { return (PINB & estop_bit) == 0; }
 
 inline void direction(uint8_t joint, bool positive) {
   switch (joint) {
@@ -99,7 +101,7 @@ inline void compare(uint8_t joint, uint16_t value) {
 #else
 
 constexpr Board board = Board::nano328;
-constexpr uint8_t enable_bit = 1 << PB4, led_bit = 1 << PB5;
+constexpr uint8_t enable_bit = 1 << PB4, led_bit = 1 << PB5, estop_bit = 1 << PD5;
 constexpr uint8_t directions_d = (1 << PD2) | (1 << PD4) | (1 << PD7), direction_b = 1 << PB0;
 constexpr uint16_t pwm_top8 = 255;
 constexpr uint8_t pwm_b = (1 << PB1) | (1 << PB2) | (1 << PB3), pwm_d = 1 << PD3;
@@ -114,7 +116,7 @@ inline void led(bool on) {
 inline void all_outputs_low() {
   PORTB = 0;
   DDRB = enable_bit | led_bit | pwm_b | direction_b;
-  PORTD = 0;
+  PORTD = estop_bit;  // an input with its pull-up
   DDRD = pwm_d | directions_d;
 }
 
@@ -135,6 +137,8 @@ inline void start_pwm() {
 }
 
 inline void stop_unused_timers() {}
+
+inline bool estop_low() { return (PIND & estop_bit) == 0; }
 
 inline void direction(uint8_t joint, bool positive) {
   switch (joint) {  // single-bit instructions, so interrupts may touch the same port

@@ -16,6 +16,9 @@
 #define SUM_POSITION GPIOR1  // low byte of the address of the sum that the next conversion belongs to
 #define TX_TAIL GPIOR2       // position in the ring of the byte to be sent next
 
+// In the upper byte of a conversion at a rail: hal::rail_mark.
+#define MARK 0x10
+
 #define UART_ON ((1 << RXEN0) | (1 << TXEN0) | (1 << RXCIE0))
 
 // Prescaler 32: an ADC clock of 500 kHz. A free-running conversion takes exactly 13 ADC clocks (416 cycles), however

@@ -11,6 +11,7 @@ namespace hal {
 namespace {
 
 static_assert(CONVERSIONS == pot_count * conversions_per_pot, "each pot in turn, the same number of times");
+static_assert(MARK == rail_mark >> 8, "each conversion at a rail adds one");
 static_assert(FIRST_POT == pot_count - joint_count, "a round ends with the leaders");
 
 constexpr uint8_t channel(uint8_t n) { return static_cast<uint8_t>((1 << REFS0) | (n & 7)); }  // reference AVcc
@@ -19,16 +20,17 @@ constexpr uint8_t channel(uint8_t n) { return static_cast<uint8_t>((1 << REFS0) 
 // readings. The chain takes 834 us; other interrupts may delay its start and its last conversion by 9 us each.
 constexpr uint8_t chain_start = 33;
 
-volatile uint8_t filling = 0;  // the set of sums to which the interrupt adds; the main loop has the other one
-volatile uint8_t full = 0;     // the main loop's set holds sums that it has not released
-volatile uint8_t running = 0;  // a tick has started and tick_end() has not been called
-volatile uint8_t late = 0;
+BEHIND_RINGS volatile uint8_t filling =
+    0;                                   // the set of sums to which the interrupt adds; the main loop has the other one
+BEHIND_RINGS volatile uint8_t full = 0;  // the main loop's set holds sums that it has not released
+BEHIND_RINGS volatile uint8_t running = 0;  // a tick has started and tick_end() has not been called
+BEHIND_RINGS volatile uint8_t late = 0;
 
 }  // namespace
 
 namespace internal {
 
-volatile uint8_t elapsed = 0;
+BEHIND_RINGS volatile uint8_t elapsed = 0;
 
 uint16_t age_with(uint8_t ticks, uint8_t count) { return static_cast<uint16_t>(ticks * 1000u + count * 4u); }
 

@@ -45,7 +45,9 @@ std::uint16_t tick_age_us() { return fake::board.age_us; }
 const std::uint16_t* pot_sums() {
   static std::uint16_t sums[pot_count];
   for (std::uint8_t i = 0; i < pot_count; ++i) {
-    sums[i] = static_cast<std::uint16_t>(fake::board.counts[i] * conversions_per_pot);
+    const std::uint16_t count = fake::board.counts[i];
+    const std::uint16_t mark = count < 4 || count >= 1020 ? rail_mark : 0;
+    sums[i] = static_cast<std::uint16_t>((count + mark) * conversions_per_pot);
   }
   return fake::board.samples_ready ? sums : nullptr;
 }
@@ -60,6 +62,7 @@ void set_duty(std::uint8_t joint, bool positive, std::uint16_t size) {
 
 void set_drivers(bool on) { fake::board.drivers = on; }
 void set_led(bool on) { fake::board.led = on; }
+bool estop_low() { return fake::board.estop_low; }
 
 bool rx_available() { return !fake::board.received.empty(); }
 

@@ -24,6 +24,7 @@ struct FakeBoard {
   std::uint8_t elapsed = 1;  // of the next tick
   bool late = false;         // the next tick finds the last one unfinished
   bool samples_ready = true;
+  bool estop_low = false;
   std::uint16_t age_us = 100;
   std::array<std::uint8_t, eeprom_size> eeprom;
   // out

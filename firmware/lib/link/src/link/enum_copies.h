@@ -62,6 +62,10 @@ constexpr bool is_copy(Fault, Copy value = Copy()) {
   static_assert(same_number(Copy::params, Fault::params), "Fault::params");
   static_assert(same_number(Copy::flood, Fault::flood), "Fault::flood");
   static_assert(same_number(Copy::unrest, Fault::unrest), "Fault::unrest");
+  static_assert(same_number(Copy::estop, Fault::estop), "Fault::estop");
+  static_assert(same_number(Copy::speed, Fault::speed), "Fault::speed");
+  static_assert(same_number(Copy::runaway, Fault::runaway), "Fault::runaway");
+  static_assert(same_number(Copy::stalled, Fault::stalled), "Fault::stalled");
   switch (value) {
     case Copy::none:
     case Copy::pot_low:
@@ -72,6 +76,10 @@ constexpr bool is_copy(Fault, Copy value = Copy()) {
     case Copy::params:
     case Copy::flood:
     case Copy::unrest:
+    case Copy::estop:
+    case Copy::speed:
+    case Copy::runaway:
+    case Copy::stalled:
       break;
   }
   return true;
@@ -95,6 +103,7 @@ constexpr bool is_copy(NackCode, Copy value = Copy()) {
   static_assert(same_number(Copy::inconsistent, NackCode::inconsistent), "NackCode::inconsistent");
   static_assert(same_number(Copy::lead_refused, NackCode::lead_refused), "NackCode::lead_refused");
   static_assert(same_number(Copy::set_lost, NackCode::set_lost), "NackCode::set_lost");
+  static_assert(same_number(Copy::estop_pressed, NackCode::estop_pressed), "NackCode::estop_pressed");
   switch (value) {
     case Copy::none:
     case Copy::unknown_type:
@@ -112,6 +121,7 @@ constexpr bool is_copy(NackCode, Copy value = Copy()) {
     case Copy::inconsistent:
     case Copy::lead_refused:
     case Copy::set_lost:
+    case Copy::estop_pressed:
       break;
   }
   return true;

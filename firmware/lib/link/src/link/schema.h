@@ -9,7 +9,7 @@
 namespace wire {
 
 constexpr uint8_t protocol = 1;
-constexpr uint32_t schema_hash = 0xF352FDC8;
+constexpr uint32_t schema_hash = 0x5E1C25F6;
 constexpr uint8_t max_payload = 48;
 constexpr uint8_t reply_bit = 0x80;
 
@@ -60,6 +60,10 @@ enum class Fault : uint8_t {
   params = 6,  // stored parameters were lost or cannot be run, so older ones or the defaults run now
   flood = 7,  // more bytes came than the board can read, so that a stop might have been lost
   unrest = 8,  // a follower swung to and fro although the leader was still
+  estop = 9,  // the emergency stop was pressed
+  speed = 10,  // a follower's potentiometer jumped, or turned faster than any joint does
+  runaway = 11,  // a follower moved against its motor's voltage, faster and faster
+  stalled = 12,  // a motor had voltage, but its follower did not move
 };
 
 // Why a request was refused.
@@ -80,6 +84,7 @@ enum class NackCode : uint8_t {
   inconsistent = 13,  // parameters contradict each other
   lead_refused = 14,  // the host cannot lead like this
   set_lost = 15,  // stored parameters were lost, and nobody has confirmed those that run now
+  estop_pressed = 16,  // the emergency stop is pressed
 };
 
 // Why a reference of the host was refused; the low byte of lead_refused.

@@ -39,6 +39,11 @@ const Field fields[field_count] PROGMEM = {
     {Kind::u8, offsetof(Table, unrest_rate), no_field, false, 1, 10},
     {Kind::u8, offsetof(Table, unrest_time), no_field, false, 2, 60},
     {Kind::u8, offsetof(Table, unrest_action), no_field, false, 0, 1},
+    {Kind::u8, offsetof(Table, speed_limit), no_field, false, 0, 100},
+    {Kind::u8, offsetof(Table, runaway_limit), no_field, false, 0, 192},
+    {Kind::u8, offsetof(Table, stall_volts), no_field, false, 0, 250},
+    {Kind::u8, offsetof(Table, stall_ms), no_field, false, 5, 125},
+    {Kind::u8, offsetof(Table, estop_input), no_field, false, 0, 2},
 };
 
 const Group groups[group_count] PROGMEM = {
@@ -47,6 +52,8 @@ const Group groups[group_count] PROGMEM = {
     {4, 2, 23, offsetof(Table, leader), sizeof(PotParameters)},
     {4, 2, 25, offsetof(Table, follower), sizeof(PotParameters)},
     {1, 4, 27, 0, 0},
+    {1, 4, 31, 0, 0},
+    {1, 1, 35, 0, 0},
 };
 
 const Table default_table PROGMEM = {
@@ -70,6 +77,8 @@ const Table default_table PROGMEM = {
         {8184, 10734},
     },
     10, 6, 11, 0,
+    25, 40, 32, 42,
+    1,
 };
 
 }  // namespace params

@@ -8,9 +8,9 @@
 namespace params {
 
 constexpr uint8_t layout = 2;
-constexpr uint8_t count = 88;
-constexpr uint8_t field_count = 31;
-constexpr uint8_t group_count = 5;
+constexpr uint8_t count = 93;
+constexpr uint8_t field_count = 36;
+constexpr uint8_t group_count = 7;
 
 // Packed, so that the bytes in RAM are the bytes on the link and in EEPROM, in the order of the flat index.
 // Read members by value: a reference to a packed member does not compile.
@@ -53,9 +53,14 @@ struct __attribute__((packed)) Table {
   uint8_t unrest_rate;  // turns of the error in a second that are unrest; a swing to and fro has two [1/s]
   uint8_t unrest_time;  // time of unrest that becomes a fault [1/10 s]
   uint8_t unrest_action;  // what unrest does: 0 turns the motors off, 1 goes on with the safe controllers, and turns the motors off at the next unrest
+  uint8_t speed_limit;  // a follower's reading that moves faster is a fault; 0 turns the check off [rad/s]
+  uint8_t runaway_limit;  // way of a follower against its voltage of at least 2 V, without slowing down, that becomes a fault; 0 turns the check off [1/128 rad]
+  uint8_t stall_volts;  // voltage above which a follower must move; more than any joint needs to hold its load. 0 turns the check off [1/10 V]
+  uint8_t stall_ms;  // time above stall_volts without motion that becomes a fault; half of it with more than half the supply, and time below takes off three times as much [4 ms]
+  uint8_t estop_input;  // the emergency stop: 0 is none, 1 a button that closes to ground (without one, nothing is stopped), 2 one that opens, so that a broken wire stops as well
 };
 
-constexpr uint16_t table_size = 189;
+constexpr uint16_t table_size = 194;
 static_assert(sizeof(Table) == table_size, "the table must have no padding");
 
 enum class Kind : uint8_t { u8, i8, u16, i16, u32, i32 };

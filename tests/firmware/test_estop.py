@@ -1,0 +1,120 @@
+"""The emergency stop on the real images: from the pin going low to no duty, at any moment of a tick."""
+
+from __future__ import annotations
+
+import struct
+
+import numpy as np
+import pytest
+
+from greywhale.protocol import schema
+from greywhale_sim.wiring import BOARDS
+from tests.firmware.test_stop import enable, motors_on, status
+from tests.firmware.test_unrest import apply
+from tools.bench.bench_tick import CYCLES_PER_TICK, Bench
+
+PHASES = 200
+TICK_AND_ITS_WORK_MS = 1.06  # the pin is read once in each tick, after the potentiometers
+PIN = {wiring.mcu: wiring.estop for wiring in BOARDS.values()}
+OPENING = 2
+
+
+def press(bench: Bench, low: bool = True) -> None:
+    pin = PIN[bench.board.chip]
+    bench.board.hold_pin(pin.port, pin.bit, not low)
+
+
+def release(bench: Bench) -> None:
+    pin = PIN[bench.board.chip]
+    bench.board.let_pin_go(pin.port, pin.bit)
+
+
+def drive(bench: Bench) -> None:
+    """Motors on, with a duty on joint 0: its leader is 0.2 rad away."""
+    bench.millivolts[0] = 2700.0
+    bench.board.set_millivolts(bench.millivolts)
+    bench.wait(30)
+    enable(bench)
+    bench.wait(bench.random.uniform(120, 125))
+    assert bench.board.duty(*bench.output) > 0.0
+
+
+def ms_until_off(bench: Bench) -> float:
+    """Until the drivers are off and the duty is gone, to 4 us."""
+    begun = bench.board.cycle
+    while motors_on(bench) or bench.board.duty(*bench.output) > 0.0:
+        bench.board.run_until(bench.board.cycle + 64)
+        assert bench.board.cycle - begun < 10 * CYCLES_PER_TICK
+    return float((bench.board.cycle - begun) / CYCLES_PER_TICK)
+
+
+@pytest.mark.slow
+def test_motors_are_off_within_a_tick_of_the_pin_going_low(bench: Bench) -> None:
+    took = []
+    for _ in range(PHASES):
+        drive(bench)
+        press(bench)
+        took.append(ms_until_off(bench))
+        release(bench)
+    seen = status(bench)
+    assert (seen.state, seen.fault, seen.stop_reason) == (
+        schema.State.FAULT,
+        schema.Fault.ESTOP,
+        schema.StopReason.FAULT,
+    )
+    assert seen.late_ticks == 0
+    assert max(took) <= TICK_AND_ITS_WORK_MS
+    assert np.ptp(took) > 0.9, "the presses came in all phases of the tick"
+
+
+def test_a_pressed_stop_cannot_be_cleared_and_a_released_one_can(bench: Bench) -> None:
+    drive(bench)
+    press(bench)
+    bench.wait(2)
+    with pytest.raises(RuntimeError, match="ClearFault"):
+        bench.ask(schema.ClearFaultRequest)
+    release(bench)
+    bench.wait(1000)
+    assert not motors_on(bench), "it is latched"
+    assert status(bench).fault is schema.Fault.ESTOP
+    with pytest.raises(RuntimeError, match="Enable"):
+        bench.ask(schema.EnableRequest, struct.pack("<H", 0))
+    enable(bench)
+
+
+def test_a_tap_while_the_motors_are_off_keeps_them_off(bench: Bench) -> None:
+    press(bench)
+    bench.wait(5)
+    release(bench)
+    bench.wait(5)
+    assert (status(bench).state, status(bench).fault) == (schema.State.FAULT, schema.Fault.ESTOP)
+    with pytest.raises(RuntimeError, match="Enable"):
+        bench.ask(schema.EnableRequest, struct.pack("<H", 0))
+
+
+def test_a_stop_that_is_pressed_through_a_reset_keeps_the_motors_off(bench: Bench) -> None:
+    press(bench)
+    bench.board.reset()
+    bench.wait(60)
+    assert (status(bench).state, status(bench).fault) == (schema.State.FAULT, schema.Fault.ESTOP)
+
+
+def test_an_opening_button_stops_when_it_opens_or_its_wire_breaks(bench: Bench) -> None:
+    apply(bench, "estop_input", OPENING)
+    assert status(bench).fault is schema.Fault.ESTOP, "nothing is wired: the pull-up holds the pin high"
+    press(bench, low=True)
+    bench.wait(2)
+    drive(bench)
+    release(bench)
+    assert ms_until_off(bench) <= TICK_AND_ITS_WORK_MS
+
+
+def test_without_a_stop_the_pin_means_nothing(bench: Bench) -> None:
+    apply(bench, "estop_input", 0)
+    press(bench)
+    drive(bench)
+    bench.wait(20)
+    assert motors_on(bench)
+    release(bench)
+    bench.wait(20)
+    assert motors_on(bench)
