@@ -16,13 +16,14 @@ SOURCE = ROOT / "host" / "src"
 ALLOWED = {
     "errors": set(),
     "formats": {"errors"},
-    "protocol": {"errors"},
+    "runtime": {"errors"},
+    "protocol": {"errors", "runtime"},
     "firmware": {"protocol"},
     "table": {"errors", "firmware", "protocol"},
     "trajectory": {"firmware"},
     "arm": {"errors", "firmware", "formats"},
     "files": {"arm", "errors", "firmware", "formats", "protocol", "table", "trajectory"},
-    "board": {"errors", "files", "firmware", "formats", "protocol", "table", "trajectory"},
+    "board": {"errors", "files", "firmware", "formats", "protocol", "runtime", "table", "trajectory"},
     "loop": {"arm", "errors", "files", "firmware", "protocol", "table", "trajectory"},
     "optimise": {"errors", "formats"},
 }

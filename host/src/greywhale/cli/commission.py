@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from greywhale.board.session import Session
 from greywhale.cli.output import json_option, port_option, progress, show
 from greywhale.errors import BAD_USAGE, UserError
 from greywhale.protocol.ports import choose_port
@@ -84,7 +85,8 @@ def command(
         resume=resume,
     )
     try:
-        with progress(as_json) as report:
+        # Also while it computes: whoever stops it does not expect the arm to move again.
+        with Session.of(options.port), progress(as_json) as report:
             outcome = commission(options, report)
     except KeyboardInterrupt as interrupt:
         interrupt.add_note(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+import threading
 
 import serial
 
@@ -22,6 +23,7 @@ class Transport:
     def __init__(self, port: str) -> None:
         self.port = port
         self._serial = open_serial(port, BAUD, _READ_WAIT_S)
+        self._writing = threading.Lock()  # two threads never mix their frames
 
     def read(self) -> bytes:
         """Return what has arrived; wait a moment when nothing has, and then return perhaps nothing."""
@@ -32,7 +34,8 @@ class Transport:
 
     def write(self, data: bytes) -> None:
         try:
-            self._serial.write(data)
+            with self._writing:
+                self._serial.write(data)
         except serial.SerialTimeoutException:
             raise UserError(
                 f"{self.port}: the port takes no data; unplug the board, plug it in and try again."
@@ -41,7 +44,8 @@ class Transport:
             raise self._gone(error) from None
 
     def close(self) -> None:
-        self._serial.close()
+        with self._writing:
+            self._serial.close()
 
     def _gone(self, error: Exception) -> UserError:
         reason = os_reason(error) if isinstance(error, OSError) else "it was closed"
