@@ -1,4 +1,4 @@
-"""`greywhale stop` while another process leads the arm on the bench: motors off at once, without a restart of the board."""
+"""`greywhale stop` while another process leads the arm on the bench: motors off at once, the board not restarted."""
 
 from __future__ import annotations
 
