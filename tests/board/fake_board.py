@@ -86,6 +86,9 @@ class FakeBoard:
     def __enter__(self) -> Self:
         self._master, self._slave = os.openpty()
         tty.setraw(self._slave)
+        flags = termios.tcgetattr(self._slave)
+        flags[2] |= termios.HUPCL  # as serial ports have it, unlike pseudo-terminals
+        termios.tcsetattr(self._slave, termios.TCSANOW, flags)
         os.set_blocking(self._master, False)
         self.port = os.ttyname(self._slave)
         self._wake_out, self._wake_in = os.pipe()

@@ -146,7 +146,7 @@ def test_info_names_a_fault_with_its_place_and_remedy(capsys: Captured) -> None:
 def test_the_port_may_come_from_the_environment(capsys: Captured, monkeypatch: pytest.MonkeyPatch) -> None:
     with FakeBoard() as board:
         monkeypatch.setenv("GREYWHALE_PORT", board.port)
-        assert ask(capsys, "stop")[1] == {"port": board.port, "state": "disabled"}
+        assert ask(capsys, "stop")[1] == {"port": board.port, "state": "disabled", "restarted": True}
 
 
 def test_stop_clears_a_fault_when_asked(capsys: Captured) -> None:

@@ -10,8 +10,12 @@ from pathlib import Path
 
 import pytest
 
+from greywhale.board.device import Device
+from greywhale.board.record import record
 from greywhale.demo import BenchProcess
+from greywhale.errors import UserError
 from greywhale.files.log import read_log
+from greywhale.protocol.schema import State
 
 Start = Callable[..., BenchProcess]
 
@@ -44,3 +48,31 @@ def test_what_runs_ends_with_a_whole_log(
     assert host.returncode == 130
     assert "stopped with `greywhale stop` from another terminal" in said
     assert not log.exists() or not read_log(log).complete
+
+
+def test_a_fault_is_cleared_without_a_restart(start_bench: Start, tmp_path: Path) -> None:
+    bench = start_bench()
+    with Device(bench.port) as device, pytest.raises(UserError, match="potentiometer 2"):
+        record(device, tmp_path / "log.csv", 60.0, enable=True, progress=lambda *_: breaks(bench))
+    bench.command("pot follower 2 connected")
+    resets = bench.command("status")["resets"]
+    with Device(bench.port, restart=False) as device:
+        assert device.status().state is State.FAULT
+    with greywhale("stop", "--clear-fault", "--port", bench.port, "--json") as stop:
+        answer, _ = stop.communicate()
+    assert json.loads(answer) == {"port": bench.port, "state": "disabled", "restarted": False}
+    assert bench.command("status")["resets"] == resets
+    with Device(bench.port) as device:
+        assert device.restarted
+    assert bench.command("status")["resets"] == resets + 1
+
+
+def breaks(bench: BenchProcess) -> None:
+    bench.command("pot follower 2 open")
+
+
+def test_opening_a_port_for_the_first_time_restarts_the_board_and_that_is_said(start_bench: Start) -> None:
+    bench = start_bench()
+    with greywhale("stop", "--port", bench.port) as stop:
+        answer, _ = stop.communicate()
+    assert answer == f"{bench.port}: motors off, state disabled. Opening the port restarted the board.\n"

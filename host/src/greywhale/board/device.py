@@ -46,7 +46,10 @@ class NoAnswerError(UserError):
 class Device:
     """An open and greeted board. Leaving the context, for whatever reason, stops the motors if they may be on."""
 
-    def __init__(self, port: str, quiet_s: float = QUIET_S, patience_s: float = PATIENCE_S) -> None:
+    def __init__(
+        self, port: str, quiet_s: float = QUIET_S, patience_s: float = PATIENCE_S, *, restart: bool = True
+    ) -> None:
+        """Open the port and greet the board, which restarts; without `restart` only where the system cannot help it."""
         self.port = port
         self.lease_ms = 0
         self._decoder = FrameDecoder()
@@ -62,10 +65,10 @@ class Device:
         with contextlib.ExitStack() as held:
             self._session = held.enter_context(Session.of(port))
             held.callback(self._session.detach)
-            self._transport = Transport(port)
+            self._transport = Transport(port, restart)
             held.callback(self._transport.close)
             self._session.attach(self._send_stop)
-            self.hello: schema.HelloReply = self._greet(quiet_s, patience_s)
+            self.hello: schema.HelloReply = self._greet(quiet_s if self.restarted else 0.0, patience_s)
             self._held = held.pop_all()
 
     def __enter__(self) -> Self:
@@ -89,6 +92,11 @@ class Device:
                 self.stop()
         finally:
             self._held.close()
+
+    @property
+    def restarted(self) -> bool:
+        """Whether opening the port restarted the board (False: it runs on from the session before)."""
+        return self._transport.restarted
 
     @property
     def firmware_version(self) -> str:

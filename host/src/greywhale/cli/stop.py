@@ -20,6 +20,9 @@ def command(clear_fault: bool, port: str | None, as_json: bool) -> None:
 
     What holds the port (record, replay, commission, demo, a notebook) is ended as Ctrl-C would, in whatever terminal it
     runs: it turns the motors off at once, without a restart of the board, and keeps what it recorded.
+
+    A free port is opened without a restart of the board too, if a greywhale had it last; after any other program, or
+    after the cable was plugged in, opening it restarts an Arduino, which also turns the motors off and clears a fault.
     """
     chosen = choose_port(port)
     session = ask_to_stop(chosen, wait_for_end=clear_fault)
@@ -28,10 +31,15 @@ def command(clear_fault: bool, port: str | None, as_json: bool) -> None:
         state = f", state {session['state']}" if session["state"] else ""
         show(as_json, facts, f"{chosen}: motors off{state}; what held the port (process {session['pid']}) ends.")
         return
-    with Device(chosen) as device:
+    with Device(chosen, restart=False) as device:
         device.stop()
         if clear_fault:
             device.ask(schema.ClearFaultRequest())
         state = device.status().state.key
     ended = {} if session is None else {"ended": session["pid"]}
-    show(as_json, {"port": device.port, "state": state, **ended}, f"{device.port}: motors off, state {state}.")
+    restart = " Opening the port restarted the board." if device.restarted else ""
+    show(
+        as_json,
+        {"port": device.port, "state": state, "restarted": device.restarted, **ended},
+        f"{device.port}: motors off, state {state}.{restart}",
+    )
