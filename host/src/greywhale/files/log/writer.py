@@ -16,7 +16,7 @@ from typing import Self
 
 from greywhale.errors import UserError, os_reason
 from greywhale.files.log.layout import COMPLETE, HEADING, INTERRUPTED, STATES, TITLE, UNFINISHED, Origin
-from greywhale.formats.whole import temporary_beside
+from greywhale.formats.whole import keep, temporary_beside
 
 _ROWS_PER_WRITE = 256
 # Two facts are known only at the end; the header keeps so many characters free for each.
@@ -108,9 +108,8 @@ class LogWriter:
             self._file.seek(0)
             complete = kind is None and problem is None
             self._file.write(self._header(COMPLETE if complete else INTERRUPTED).encode("ascii"))
-            os.fsync(self._file.fileno())
+            keep(self._file, self._temporary, self.path)
             self._file.close()
-            os.replace(self._temporary, self.path)
             if isinstance(raised, KeyboardInterrupt):
                 raised.add_note(f"What was recorded is in {self.path}, marked as interrupted.")
         except OSError as error:
