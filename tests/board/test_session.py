@@ -77,6 +77,7 @@ def test_a_recording_ends_as_on_ctrl_c(tmp_path: Path) -> None:
     assert other.answer == {"pid": os.getpid(), "state": "disabled"}
     assert NOTE in caught.value.__notes__
     assert not read_log(log).complete
+    assert read_log(log).ended_by == NOTE
     assert ask_to_stop(board.port) is None, "the session is over"
 
 

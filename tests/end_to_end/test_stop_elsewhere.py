@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import signal
 import subprocess
 import sys
 from collections.abc import Callable
@@ -76,3 +77,23 @@ def test_opening_a_port_for_the_first_time_restarts_the_board_and_that_is_said(s
     with greywhale("stop", "--port", bench.port) as stop:
         answer, _ = stop.communicate()
     assert answer == f"{bench.port}: motors off, state disabled. Opening the port restarted the board.\n"
+
+
+@pytest.mark.slow
+def test_a_host_that_stood_still_is_told_of_the_lease(start_bench: Start, tmp_path: Path) -> None:
+    """A laptop that slept, Ctrl-Z in the terminal: the board is well, and stopped the motors by itself."""
+    bench = start_bench("--speed", "1")
+    log = tmp_path / "log.csv"
+    arguments = ("record", "--enable", "--seconds", "600", "--out", str(log), "--port", bench.port)
+    with greywhale(*arguments) as host:
+        while not bench.command("status")["motors_enabled"]:
+            assert host.poll() is None, host.communicate()
+        host.send_signal(signal.SIGSTOP)
+        stopped = bench.command("status")["time_s"]
+        while (status := bench.command("status"))["time_s"] < stopped + 3.0:
+            pass
+        assert not status["motors_enabled"]
+        host.send_signal(signal.SIGCONT)
+        _, said = host.communicate()
+    assert host.returncode == 1
+    assert "did not renew the lease of 500 ms: was it stopped or asleep?" in said

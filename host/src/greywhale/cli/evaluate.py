@@ -28,7 +28,13 @@ def command(logs: tuple[Path, ...], picture: Path | None, as_json: bool) -> None
     read = [read_log(path) for path in logs]
     evaluations = [evaluate(log) for log in read]
     results = [
-        {"log": log.name, "dropped": log.dropped, "complete": log.complete, **evaluation.as_dict()}
+        {
+            "log": log.name,
+            "dropped": log.dropped,
+            "complete": log.complete,
+            "ended_by": log.ended_by,
+            **evaluation.as_dict(),
+        }
         for log, evaluation in zip(read, evaluations, strict=True)
     ]
     text = "\n\n".join(_text(log, evaluation) for log, evaluation in zip(read, evaluations, strict=True))
@@ -52,7 +58,7 @@ def _text(log: Log, evaluation: Evaluation) -> str:
     if log.dropped:
         notes.append(f"{log.dropped} dropped")
     if not log.complete:
-        notes.append("recording interrupted")
+        notes.append("recording interrupted" + (f" ({log.ended_by.rstrip('.')})" if log.ended_by else ""))
     if not evaluation.following:
         notes.append("the motors never followed; the whole log is measured")
     lines = [

@@ -37,7 +37,9 @@ from greywhale.identify import METHODS, identify
     help="A controller.toml or `params backup` file that logs were recorded with; logs find theirs by its CRC.",
 )
 @click.option("--method", type=click.Choice(METHODS), default="default", show_default=True)
-@click.option("--seed", type=int, default=0, show_default=True, help="Where all random numbers start.")
+@click.option(
+    "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Where all random numbers start."
+)
 @click.option("--pictures", type=click.Path(path_type=Path), help="Folder for pictures of responses and convergence.")
 @json_option
 def command(

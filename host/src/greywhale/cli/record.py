@@ -51,7 +51,7 @@ _OF_EXCITE = {
     metavar="J:MIN:MAX",
     help="With --excite: range of a joint in rad, instead of 1 rad to either side of where it is.",
 )
-@click.option("--seed", type=int, help="With --excite: another seed, another motion.  [default: 0]")
+@click.option("--seed", type=click.IntRange(min=0), help="With --excite: another seed, another motion.  [default: 0]")
 @click.option(
     "--budget", type=int, help="With --excite: motions to try; more take longer and show a little more.  [default: 300]"
 )
@@ -90,6 +90,7 @@ def command(
     bench.
     """
     if not excite:
+        require_folders(out)
         _refuse_without_excite(arm_file=arm_file, ranges=ranges, save_motion=save_motion, seed=seed, budget=budget)
         with Device(choose_port(port)) as device, progress(as_json) as report:
             length = RECORDED_S if seconds is None else seconds

@@ -1,7 +1,7 @@
 """The journal of a commissioning: what each step gave, so that an interrupted commissioning can go on.
 
-It is a JSON file with a check, in the folder that also keeps logs, models and controllers. A step that is in the journal
-is not done again; everything between the steps follows from their results alone.
+It is a JSON file with a check, in the folder that also keeps logs, models and controllers. A step that is in the
+journal is not done again; everything between the steps follows from their results alone.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from greywhale.errors import UserError, os_reason
+from greywhale.errors import UserError, cut, os_reason
 from greywhale.formats.whole import refuse_devices
 
 
@@ -35,9 +35,9 @@ class CsvTable:
             try:
                 values[row] = float(cell)
             except ValueError:
-                raise self.error(row, column, f"{cell!r} is not a number") from None
+                raise self.error(row, column, f"{cut(repr(cell))} is not a number") from None
             if not math.isfinite(values[row]):
-                raise self.error(row, column, f"{cell} is not a finite number")
+                raise self.error(row, column, f"{cut(cell)} is not a finite number")
         return values
 
     def increasing(self, column: str) -> NDArray[np.float64]:
@@ -47,7 +47,9 @@ class CsvTable:
         if steps.size:
             row = int(steps[0]) + 1
             before = self.columns[column][row - 1]
-            raise self.error(row, column, f"time must increase, but {self.columns[column][row]} follows {before}")
+            raise self.error(
+                row, column, f"time must increase, but {cut(self.columns[column][row])} follows {cut(before)}"
+            )
         return values
 
     def error(self, row: int, column: str, problem: str) -> UserError:
@@ -59,11 +61,22 @@ def read(path: str | Path, columns: Sequence[str], minimum_rows: int = 1) -> Csv
     try:
         refuse_devices(path)
         with open(path, encoding="utf-8-sig", newline="") as file:
-            return _table(file.read().splitlines(), columns, str(path), minimum_rows)
+            return _table(_whole_lines(file.read(), str(path)), columns, str(path), minimum_rows)
     except OSError as error:
         raise UserError(f"{path}: cannot be read: {os_reason(error)}.") from None
     except UnicodeDecodeError as error:
         raise UserError(f"{path}: byte {error.start} is not UTF-8; a CSV file must be plain text.") from None
+
+
+def _whole_lines(text: str, name: str) -> list[str]:
+    """The lines of a file that ends with the end of a line. A number that was cut off is another number."""
+    lines = text.splitlines()
+    if text and not text.endswith(("\n", "\r")):
+        raise UserError(
+            f"{name}, line {len(lines)}: the file ends in the middle of this line; copy it again, or end the line "
+            "(Enter) if it is whole."
+        )
+    return lines
 
 
 def _table(text: list[str], wanted: Sequence[str], name: str, minimum_rows: int) -> CsvTable:
@@ -105,7 +118,7 @@ def _column_problem(found: Sequence[str], wanted: Sequence[str]) -> str:
     if missing:
         problem = f"column {missing[0]} is missing"
     elif unknown:
-        problem = f"column {unknown[0]!r} is unknown"
+        problem = f"column {cut(repr(unknown[0]))} is unknown"
     else:
         problem = "the columns are not in order"
     return f"{problem}; the columns must be {','.join(wanted)}"

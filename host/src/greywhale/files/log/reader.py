@@ -10,11 +10,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from greywhale.errors import UserError
+from greywhale.errors import UserError, cut
 from greywhale.files.log.layout import COLUMNS, COMPLETE, ENDINGS, STATES, TITLE, Origin
 from greywhale.firmware import JOINTS
 from greywhale.formats import csv_file
 
+_MOST_WHOLE = (1 << 63) - 1
 # No board sends larger values: 16 bits of 1/4096 rad and of mV. Such values are another tool's degrees or millivolts.
 _MOST = {"leader": (8.0, "rad"), "follower": (8.0, "rad"), "voltage": (33.0, "V")}
 
@@ -32,6 +33,7 @@ class Log:
     state: NDArray[np.str_]
     dropped: int
     complete: bool
+    ended_by: str = ""
 
 
 def read_log(path: str | Path) -> Log:
@@ -42,10 +44,12 @@ def read_log(path: str | Path) -> Log:
     time = table.increasing("time_s")
     for row, cell in enumerate(table.columns["state"]):
         if cell not in STATES:
-            raise table.error(row, "state", f"{cell!r} is not one of {', '.join(STATES)}")
+            raise table.error(row, "state", f"{cut(repr(cell))} is not one of {', '.join(STATES)}")
     ending = facts.get("recording", COMPLETE)
     if ending not in ENDINGS:
-        raise UserError(f"{path}: recording is {ending!r} in the header; it must be one of {', '.join(ENDINGS)}.")
+        raise UserError(
+            f"{path}: recording is {cut(repr(ending))} in the header; it must be one of {', '.join(ENDINGS)}."
+        )
     return Log(
         name=str(path),
         origin=_origin(facts, str(path)),
@@ -54,8 +58,9 @@ def read_log(path: str | Path) -> Log:
         follower=_joints(table, "follower"),
         voltage=_joints(table, "voltage"),
         state=np.array(table.columns["state"]),
-        dropped=_whole(facts, "dropped_samples", str(path)) or 0,
+        dropped=_whole(facts, "dropped_samples", str(path), 0, _MOST_WHOLE) or 0,
         complete=ending == COMPLETE,
+        ended_by=facts.get("ended_by", ""),
     )
 
 
@@ -63,7 +68,7 @@ def _check_version(table: csv_file.CsvTable) -> None:
     for comment in table.comments:
         if comment.startswith(TITLE.rstrip("0123456789")) and comment != TITLE:
             raise UserError(
-                f'{table.name} is a "{comment}", but this greywhale reads "{TITLE}"; '
+                f'{table.name} is a "{cut(comment)}", but this greywhale reads "{TITLE}"; '
                 "read it with the version that wrote it."
             )
 
@@ -92,20 +97,22 @@ def _origin(facts: dict[str, str], name: str) -> Origin:
     return Origin(
         firmware=facts.get("firmware"),
         board=facts.get("board"),
-        param_crc=_whole(facts, "parameter_crc", name),
-        period_ms=_whole(facts, "period_ms", name),
-        every_ticks=_whole(facts, "every_ticks", name),
+        param_crc=_whole(facts, "parameter_crc", name, 0, 0xFFFF),
+        period_ms=_whole(facts, "period_ms", name, 1, 50),
+        every_ticks=_whole(facts, "every_ticks", name, 1, 0xFFFF),
     )
 
 
-def _whole(facts: dict[str, str], key: str, name: str) -> int | None:
+def _whole(facts: dict[str, str], key: str, name: str, least: int, most: int) -> int | None:
     text = facts.get(key)
     if text is None:
         return None
     try:
         value = int(text, 0)
     except ValueError:
-        value = -1
-    if value < 0:
-        raise UserError(f"{name}: {key} is {text!r} in the header; it must be a whole number from 0.")
+        value = least - 1
+    if not least <= value <= most:
+        raise UserError(
+            f"{name}: {key} is {cut(repr(text))} in the header; it must be a whole number from {least} to {most}."
+        )
     return value
