@@ -95,7 +95,6 @@ def test_help_needs_no_heavy_imports() -> None:
         (["identify", "a.csv", "--seed", "-1"], "-1 is not in the range x>=0"),
         (["record", "--excite", "--seed", "-1"], "-1 is not in the range x>=0"),
         (["demo", "--seed", "-1"], "-1 is not in the range x>=0"),
-        (["tune", "a.toml", "--seed", "-1"], "-1 is not in the range x>=0"),
         (["record", "-o", "none/log.csv"], "none/log.csv: the folder none does not exist; create it"),
         (["export", "--urdf", "default", "--out", "none/a"], "none/a: the folder none does not exist; create it"),
         (["sim", "--eeprom", "none/e.bin"], "none/e.bin: the folder none does not exist; create it"),

@@ -44,7 +44,7 @@ EXISTING = click.Path(path_type=Path)
 )
 @click.option("--budget", type=int, help="Evaluations of every joint's controller; without it, the method's own.")
 @click.option(
-    "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Where all random numbers start."
+    "--seed", type=int, default=0, show_default=True, help="Where all random numbers start."
 )
 @click.option("--workers", type=int, help="Threads; without it, one for every processor.")
 @click.option(
