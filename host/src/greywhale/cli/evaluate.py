@@ -25,8 +25,11 @@ def command(logs: tuple[Path, ...], picture: Path | None, as_json: bool) -> None
     Several logs are measured one by one and drawn into one picture.
     """
     refuse_inputs(picture, *logs)
-    read = [read_log(path) for path in logs]
-    evaluations = [evaluate(log) for log in read]
+    read, evaluations = [], []
+    for path in logs:
+        log = read_log(path, voltages=False)
+        evaluations.append(evaluate(log))
+        read.append(log if picture is not None else log.without_samples())
     results = [
         {
             "log": log.name,

@@ -43,9 +43,7 @@ EXISTING = click.Path(path_type=Path)
     help=f"default, paper (its objective, bounds and budget), or an optimiser: {', '.join(METHODS[2:])}.",
 )
 @click.option("--budget", type=int, help="Evaluations of every joint's controller; without it, the method's own.")
-@click.option(
-    "--seed", type=int, default=0, show_default=True, help="Where all random numbers start."
-)
+@click.option("--seed", type=int, default=0, show_default=True, help="Where all random numbers start.")
 @click.option("--workers", type=int, help="Threads; without it, one for every processor.")
 @click.option(
     "--start", type=EXISTING, help="A controller.toml to begin with; without it, what the board of the logs ran."
