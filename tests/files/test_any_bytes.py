@@ -155,3 +155,10 @@ def test_dots_and_brackets_in_texts_and_comments_are_no_depth(tmp_path: Path) ->
     text = "# " + "a." * 100 + "[" * 100 + '\na = "' + "b." * 100 + "[" * 100 + "\"\nc = '''\n" + "[[{" * 30 + "'''\n"
     (tmp_path / "file").write_text(text)
     assert toml_file.read(tmp_path / "file") == {"a": "b." * 100 + "[" * 100, "c": "[[{" * 30}
+
+
+def test_many_numbers_are_no_depth(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text(
+        "a = [" + "0.5, " * 500 + "]\n" + "b = 1.5\n" + "[c]\n" + "d = [[0.5, 1.5], [2.5]]\n"
+    )
+    assert toml_file.read(tmp_path / "file")["a"] == [0.5] * 500

@@ -26,10 +26,11 @@ _LONGEST = 1 << 22
 _DEEPEST = 24
 _LARGEST = 1 << 63
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
-# Strings and comments as a whole, so that nothing in them counts; spaces may stand between the parts of a key.
+# Strings and comments as a whole, so that nothing in them counts, and all else one by one. Spaces may stand between the
+# parts of a key.
 _TOKEN = re.compile(
     r"""(?P<part>\"{3}(?:[^\\]|\\.)*?\"{3}|'{3}.*?'{3}|"(?:[^"\\\n]|\\.)*"|'[^'\n]*'|[^\W]+|-+|[^\S\n]+)"""
-    r"""|(?P<comment>\#[^\n]*)|[\[\]{}.]|\n""",
+    r"""|\#[^\n]*|.""",
     re.DOTALL,
 )
 
