@@ -56,7 +56,7 @@ def command(
 ) -> None:
     """Identify the arm that made the logs, starting from your arm file.
 
-    Of a log longer than 90 s the pieces that show most are used. Writes a model.toml: an arm file with a table on how
+    Of a log longer than 60 s the pieces that show most are used. Writes a model.toml: an arm file with a table on how
     sure each value is, what these logs cannot tell and which motion would. Ctrl-C writes the best model so far, marked
     as unfinished.
     """

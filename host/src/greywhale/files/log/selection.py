@@ -19,7 +19,7 @@ Floats = NDArray[np.float64]
 
 # A log with more than this is cut down to it, s. Identifying takes a time that grows with the length; after this a log
 # that moves all joints tells little more.
-MOST_S = 90.0
+MOST_S = 60.0
 _PIECE_S = 5.0
 # Readings are averaged over this time, s, so that speed is not noise.
 _STEP_S = 0.02
