@@ -72,6 +72,11 @@ def _text(log: Log, evaluation: Evaluation) -> str:
         steady, delay, onset = map(_number, (joint.steady_state_error, joint.delay_s, joint.onset_delay_s))
         lines.append(f"joint {number}   {joint.mse:10.6f}   {steady:>24}   {delay:>9}   {onset:>15}")
     lines.append(f"total     {evaluation.total_mse:10.6f}")
+    lines += [
+        f"Joint {number} does not follow its leader at all: check its potentiometers, its motor and their signs."
+        for number, joint in enumerate(evaluation.joints)
+        if evaluation.following and not joint.follows
+    ]
     return "\n".join(lines)
 
 

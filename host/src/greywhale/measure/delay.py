@@ -36,7 +36,7 @@ def correlation_delay(leader: Floats, follower: Floats, period: float, longest_s
     last = max(2, round(longest_s / period))
     if (len(leader) - last) * period < _SHORTEST_OVERLAP_S:
         return None
-    likeness = _correlations(leader, follower, first, last)
+    likeness = correlations(leader, follower, first, last)
     best = int(np.argmax(likeness))
     if likeness[best] < _LOWEST_CORRELATION or best in (0, len(likeness) - 1):
         return None
@@ -46,7 +46,7 @@ def correlation_delay(leader: Floats, follower: Floats, period: float, longest_s
     return float((first + best + between) * period)
 
 
-def _correlations(leader: Floats, follower: Floats, first: int, last: int) -> Floats:
+def correlations(leader: Floats, follower: Floats, first: int, last: int) -> Floats:
     """Pearson's correlation of leader[k] and follower[k + lag] over the samples that both have, for every lag."""
     a, b = leader - leader.mean(), follower - follower.mean()
     lags = np.arange(first, last + 1)
