@@ -40,7 +40,9 @@ def prepare_motion(port: str, yes: bool) -> Callable[[], None]:
 
 def count_down(wait: Callable[[float], None] = time.sleep) -> None:
     """Count the seconds on stderr."""
-    for left in range(SECONDS, 0, -1):
-        click.echo(f"\rThe arm moves by itself in {left} s; Ctrl-C keeps it still. ", nl=False, err=True)
-        wait(1.0)
-    click.echo(f"\r{'The arm moves by itself; Ctrl-C stops it.':<60}", err=True)
+    try:
+        for left in range(SECONDS, 0, -1):
+            click.echo(f"\rThe arm moves by itself in {left} s; Ctrl-C keeps it still. ", nl=False, err=True)
+            wait(1.0)
+    finally:
+        click.echo(err=True)
