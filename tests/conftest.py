@@ -37,6 +37,7 @@ def _temporary_folder_of_our_own(tmp_path_factory: pytest.TempPathFactory) -> It
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("TMPDIR", folder)  # for children
         patch.setattr(tempfile, "tempdir", folder)
+        patch.delenv("XDG_RUNTIME_DIR", raising=False)  # the temporary folder then also holds what runs
         yield
 
 

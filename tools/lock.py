@@ -1,4 +1,7 @@
-"""Pins every Python package that the two pyproject.toml files lead to: `make lock` writes requirements.txt."""
+"""Pins every Python package that the two pyproject.toml files lead to: `make lock` writes requirements.txt.
+
+Every version comes with the digests of its files, for all platforms, so that the set-up installs these files or none.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,15 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 OWN = {"greywhale", "greywhale-sim"}
-HEADER = "# Every Python package of the project, pinned. Written by `make lock` from the two pyproject.toml files.\n"
+HEADER = """\
+# Every Python package of the project, pinned with the digests of its files. Written by `make lock` from the two
+# pyproject.toml files.
+"""
+# Nothing of this machine's package index goes into the file.
+COMPILE = (
+    "--generate-hashes", "--no-annotate", "--no-header", "--strip-extras", "--quiet",
+    "--no-emit-index-url", "--no-emit-find-links", "--no-emit-trusted-host",
+)  # fmt: skip
 
 
 def runtime() -> list[str]:
@@ -39,10 +50,13 @@ def _foreign(requirements: list[str]) -> list[str]:
 def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run([sys.executable, "-m", "venv", folder], check=True)
-        python = str(Path(folder) / "bin/python")
-        subprocess.run([python, "-m", "pip", "install", "--quiet", *wanted()], check=True)
-        freeze = subprocess.run([python, "-m", "pip", "freeze"], check=True, capture_output=True, text=True)
-    (ROOT / "requirements.txt").write_text(HEADER + freeze.stdout, encoding="utf-8")
+        python, asked, pinned = str(Path(folder) / "bin/python"), Path(folder) / "in", Path(folder) / "out"
+        subprocess.run([python, "-m", "pip", "install", "--quiet", "pip-tools"], check=True)
+        asked.write_text("\n".join(wanted()) + "\n", encoding="utf-8")
+        command = [python, "-m", "piptools", "compile", *COMPILE, "--output-file", str(pinned), str(asked)]
+        subprocess.run(command, check=True)
+        lines = [line for line in pinned.read_text(encoding="utf-8").splitlines() if line and not line.startswith("#")]
+    (ROOT / "requirements.txt").write_text(HEADER + "\n".join(lines) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

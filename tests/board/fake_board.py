@@ -47,6 +47,7 @@ class Faults:
     read_error: int = 0  # added to the index that param_get answers
     read_garbled: int | None = None  # index of a parameter of which another value is answered
     lose_ticks: frozenset[int] = frozenset()  # samples that get lost
+    repeat_ticks: frozenset[int] = frozenset()  # samples that come twice
     restart_at: int | None = None  # tick at which the board restarts
     restart_says_hello: bool = True
     unplug_at: int | None = None
@@ -86,6 +87,9 @@ class FakeBoard:
     def __enter__(self) -> Self:
         self._master, self._slave = os.openpty()
         tty.setraw(self._slave)
+        flags = termios.tcgetattr(self._slave)
+        flags[2] |= termios.HUPCL  # as serial ports have it, unlike pseudo-terminals
+        termios.tcsetattr(self._slave, termios.TCSANOW, flags)
         os.set_blocking(self._master, False)
         self.port = os.ttyname(self._slave)
         self._wake_out, self._wake_in = os.pipe()
@@ -204,7 +208,8 @@ class FakeBoard:
             return
         angles = (self.tick % 4096, 0, -100, 200)
         sample = schema.Sample(self.tick, self.state, self.fault, angles, (1, 2, 3, 4), (15000, -15000, 0, 1))
-        self.say(encode_frame(schema.Sample.TYPE, self._samples % 256, sample.pack()))
+        times = 2 if self.tick in self.faults.repeat_ticks else 1
+        self.say(times * encode_frame(schema.Sample.TYPE, self._samples % 256, sample.pack()))
 
     def _unplug(self) -> None:
         # The host holds the other end of the pair; hanging up means closing both of ours.

@@ -15,6 +15,7 @@ from serial.tools import list_ports
 from greywhale.errors import UserError
 from greywhale.protocol import ports
 from greywhale.protocol.ports import Port
+from greywhale.runtime import make_runtime_directory
 
 
 @pytest.fixture(autouse=True)
@@ -36,8 +37,7 @@ def plug(monkeypatch: pytest.MonkeyPatch, *found: SimpleNamespace) -> None:
 
 
 def bench(name: str, target: str) -> Path:
-    folder = ports.bench_directory()
-    folder.mkdir(exist_ok=True)
+    folder = make_runtime_directory()
     link = folder / name
     link.symlink_to(target)
     return link
@@ -62,12 +62,12 @@ def test_the_link_of_a_killed_bench_may_lead_to_somebody_elses_terminal() -> Non
     assert ports.find_ports() == []
 
 
-def test_a_folder_of_somebody_else_is_not_trusted(monkeypatch: pytest.MonkeyPatch) -> None:
-    bench(f"mega-{os.getpid()}", "/dev/null")
-    folder = ports.bench_directory()
-    monkeypatch.setattr(ports, "bench_directory", lambda: folder)
-    monkeypatch.setattr(os, "getuid", lambda: os.geteuid() + 1)
+def test_a_folder_that_others_can_write_is_not_trusted() -> None:
+    folder = bench(f"mega-{os.getpid()}", "/dev/null").parent
+    assert ports.is_bench("/dev/null")
+    folder.chmod(0o777)
     assert ports.find_ports() == []
+    assert not ports.is_bench("/dev/null")
 
 
 def test_boards_are_known_by_their_usb_numbers(monkeypatch: pytest.MonkeyPatch) -> None:

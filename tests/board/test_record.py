@@ -193,3 +193,35 @@ def test_the_lease_running_out_is_named(tmp_path: Path) -> None:
             record(device, tmp_path / "log.csv", 10.0, enable=True)
     log = read_log(tmp_path / "log.csv")
     assert len(log.time) <= LEASE_MS
+
+
+def test_a_sample_that_comes_twice_is_taken_once(tmp_path: Path) -> None:
+    with FakeBoard(Faults(repeat_ticks=frozenset({20, 21, 50}))) as board, open_device(board) as device:
+        recording = record(device, tmp_path / "log.csv", 0.2)
+    assert (recording.rows, recording.dropped) == (200, 0)
+    assert len(read_log(tmp_path / "log.csv").time) == 200
+
+
+def test_a_fault_tells_which_log_was_kept_and_the_log_why_it_ended(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    with FakeBoard(Faults(fault_at=(150, Fault.POT_LOW, 5))) as board:
+        with pytest.raises(UserError) as caught, open_device(board) as device:
+            record(device, path, 60.0, enable=True)
+        text = caught.value.message
+    assert caught.value.__notes__ == [f"What was recorded is in {path}, marked as interrupted."]
+    log = read_log(path)
+    assert not log.complete
+    assert log.ended_by.startswith(text[:60])
+    assert "follower potentiometer 1" in log.ended_by
+
+
+def test_a_log_says_when_a_person_ended_it(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+
+    def press(what: str, fraction: float) -> None:
+        if what == "recording":
+            raise KeyboardInterrupt
+
+    with FakeBoard() as board, pytest.raises(KeyboardInterrupt), open_device(board) as device:
+        record(device, path, 60.0, progress=press)
+    assert read_log(path).ended_by == "Ctrl-C, or a signal to end."

@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -87,6 +88,16 @@ def test_help_needs_no_heavy_imports() -> None:
         (["params", "set", "joint0.kp=1e-9"], "joint0.kp is 1e-09 1/rad, which the board would store as 0"),
         (["params", "set", "joint0.kq=1"], 'there is no parameter "joint0.kq"'),
         (["params", "set", "joint0.kp=65"], "joint0.kp is 65 1/rad, which is out of range"),
+        (["params", "set", "joint0.kp=1e308"], "joint0.kp is 1e+308 1/rad, which is out of range"),
+        (["params", "set", "joint0.kp=-1e300"], "which is out of range"),
+        (["params", "set", "joint0.kp=1", "joint0.kp=2"], "joint0.kp is given twice"),
+        (["params", "get", "\x1b[31m" + "x" * 5000], "there is no parameter"),
+        (["identify", "a.csv", "--seed", "-1"], "-1 is not in the range x>=0"),
+        (["record", "--excite", "--seed", "-1"], "-1 is not in the range x>=0"),
+        (["demo", "--seed", "-1"], "-1 is not in the range x>=0"),
+        (["record", "-o", "none/log.csv"], "none/log.csv: the folder none does not exist; create it"),
+        (["export", "--urdf", "default", "--out", "none/a"], "none/a: the folder none does not exist; create it"),
+        (["sim", "--eeprom", "none/e.bin"], "none/e.bin: the folder none does not exist; create it"),
         (["record", "--out", ""], "the value of --out is empty; give one, or leave it out."),
         (["info", "--port="], "the value of --port is empty"),
         (["evaluate", ""], "an argument is empty"),
@@ -146,7 +157,7 @@ def test_info_names_a_fault_with_its_place_and_remedy(capsys: Captured) -> None:
 def test_the_port_may_come_from_the_environment(capsys: Captured, monkeypatch: pytest.MonkeyPatch) -> None:
     with FakeBoard() as board:
         monkeypatch.setenv("GREYWHALE_PORT", board.port)
-        assert ask(capsys, "stop")[1] == {"port": board.port, "state": "disabled"}
+        assert ask(capsys, "stop")[1] == {"port": board.port, "state": "disabled", "restarted": True}
 
 
 def test_stop_clears_a_fault_when_asked(capsys: Captured) -> None:
@@ -233,7 +244,7 @@ def test_a_bad_log_leaves_no_picture(tmp_path: Path, capsys: Captured) -> None:
     (tmp_path / "log.csv").write_text(text.replace("0.100000", "inf", 1))
     code, answer = ask(capsys, "evaluate", str(tmp_path / "log.csv"), "--picture", str(tmp_path / "p.png"))
     assert code == 1
-    assert "line 10, column leader_0: inf is not a finite number" in answer["error"]
+    assert "line 11, column leader_0: inf is not a finite number" in answer["error"]
     assert not (tmp_path / "p.png").exists()
 
 
@@ -266,7 +277,7 @@ import sys
 from greywhale.board import device
 device.Device.__init__.__defaults__ = (0.0, 0.5)
 from greywhale.cli import main
-main(sys.argv[1:])
+main()
 """
 
 
@@ -307,3 +318,53 @@ def test_a_reader_that_goes_away_is_no_traceback(tmp_path: Path) -> None:
     os.close(write)
     assert done.returncode == 1
     assert done.stderr == ""
+
+
+def closed(*numbers: int) -> Callable[[], None]:
+    def close() -> None:
+        for number in numbers:
+            os.close(number)
+
+    return close
+
+
+@pytest.mark.parametrize("numbers", [(1,), (2,), (0, 1, 2)])
+def test_closed_streams_are_nobodys(numbers: tuple[int, ...]) -> None:
+    """`greywhale info >&-`: what is printed must not end up in the port, which would get the free number."""
+    with FakeBoard() as board:
+        command = [sys.executable, "-c", RUN, "info", "--port", board.port]
+        done = subprocess.run(command, preexec_fn=closed(*numbers), capture_output=True, text=True, check=False)
+        assert board.problem is None
+        assert {kind for kind, _ in board.requests} <= {schema.HelloRequest.TYPE, schema.StatusRequest.TYPE}
+    assert (done.returncode, done.stderr) == (0, "")
+    assert bool(done.stdout) == (1 not in numbers)
+
+
+def test_ctrl_c_at_any_moment_of_the_start_is_no_traceback() -> None:
+    """The verbs are being imported then. Before `main` runs, Python itself starts, and has no word of ours to say."""
+    program = """
+import builtins, os, signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)
+imported = builtins.__import__
+count = 0
+
+from greywhale.cli import main
+place = int(sys.argv[1])
+sys.argv = ["greywhale", "--version"]
+
+def press(name, *arguments, **options):
+    global count
+    count += 1
+    if count == place:
+        os.kill(os.getpid(), signal.SIGINT)
+    return imported(name, *arguments, **options)
+
+builtins.__import__ = press
+main()
+"""
+    codes = set()
+    for place in (1, 5, 50, 200):
+        done = subprocess.run([sys.executable, "-c", program, str(place)], capture_output=True, text=True, check=False)
+        assert "Traceback" not in done.stderr
+        codes.add(done.returncode)
+    assert codes <= {-signal.SIGINT, entry.INTERRUPTED}

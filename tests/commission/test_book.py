@@ -47,8 +47,28 @@ def test_nothing_to_go_on_with_is_said(tmp_path: Path) -> None:
         Book(tmp_path, REQUEST, resume=True)
 
 
-@pytest.mark.parametrize("text", ["", "[]", "{", '{"greywhale_commission": 1}'])
+@pytest.mark.parametrize(
+    "text", ["", "[]", "{", '{"greywhale_commission": 2}', "[" * 100_000, "\x00", '{"greywhale_commission": NaN}']
+)
 def test_a_file_that_is_no_journal_is_refused(tmp_path: Path, text: str) -> None:
     (tmp_path / NAME).write_text(text)
     with pytest.raises(UserError, match="no journal of a commissioning"):
+        Book(tmp_path, REQUEST, resume=True)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"), [('"stopped": ""', '"stopped": "x"'), ('"seed": 0', '"seed": 1'), ("0.5", "0.4")]
+)
+def test_a_changed_journal_is_refused(tmp_path: Path, old: str, new: str) -> None:
+    Book(tmp_path, REQUEST, resume=False).note("before", {"stopped": ""})
+    text = (tmp_path / NAME).read_text()
+    assert old in text
+    (tmp_path / NAME).write_text(text.replace(old, new))
+    with pytest.raises(UserError, match="the journal is damaged; begin anew"):
+        Book(tmp_path, REQUEST, resume=True)
+
+
+def test_a_journal_of_another_version_is_named_as_that(tmp_path: Path) -> None:
+    (tmp_path / NAME).write_text('{"greywhale_commission": 1, "request": {}, "steps": {}}')
+    with pytest.raises(UserError, match="it is of another version"):
         Book(tmp_path, REQUEST, resume=True)

@@ -6,6 +6,7 @@ import contextlib
 import os
 import resource
 import stat
+import tracemalloc
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -17,6 +18,8 @@ from hypothesis import strategies as st
 from greywhale.errors import UserError
 from greywhale.files.log import Log, LogWriter, read_log
 from greywhale.files.log.layout import HEADING, STATES, Origin
+from greywhale.files.log.rows import parse_rows
+from greywhale.formats import csv_file
 
 ORIGIN = Origin("1.2.3", "mega2560", 0xBEEF, 20, 5)
 ROW = ([0.1, 0.2, 0.3, 0.4], [-0.1, -0.2, -0.3, -0.4], [1.0, -2.0, 15.0, 0.001], "following")
@@ -186,15 +189,15 @@ def changed(folder: Path, old: str, new: str) -> Log:
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ("following\n", "dancing\n", "line 10, column state: 'dancing' is not one of boot, disabled"),
-        ("0.005000,", "0.000000,", "line 11, column time_s: time must increase"),
-        ("-0.300000,", "nan,", "line 10, column follower_2: nan is not a finite number"),
-        ("0.400000,-", "-", "line 10: 13 values where 14 columns are named"),
-        ("-0.300000,", "-57.3,", "line 10, column follower_2: -57.3 rad is beyond 8 rad; logs are in rad"),
-        ("0.200000,", "8.001,", "line 10, column leader_1: 8.001 rad is beyond 8 rad"),
-        (",15.000,", ",15000,", "line 10, column voltage_2: 15000 V is beyond 33 V; logs are in V"),
+        ("following\n", "dancing\n", "line 11, column state: 'dancing' is not one of boot, disabled"),
+        ("0.005000,", "0.000000,", "line 12, column time_s: time must increase"),
+        ("-0.300000,", "nan,", "line 11, column follower_2: nan is not a finite number"),
+        ("0.400000,-", "-", "line 11: 13 values where 14 columns are named"),
+        ("-0.300000,", "-57.3,", "line 11, column follower_2: -57.3 rad is beyond 8 rad; logs are in rad"),
+        ("0.200000,", "8.001,", "line 11, column leader_1: 8.001 rad is beyond 8 rad"),
+        (",15.000,", ",15000,", "line 11, column voltage_2: 15000 V is beyond 33 V; logs are in V"),
         ("greywhale log 1", "greywhale log 2", 'is a "greywhale log 2", but this greywhale reads "greywhale log 1"'),
-        ("voltage_3", "volts_3", "line 9: column voltage_3 is missing"),
+        ("voltage_3", "volts_3", "line 10: column voltage_3 is missing"),
         ("parameter_crc: 0xbeef", "parameter_crc: beef", "parameter_crc is 'beef' in the header"),
         ("dropped_samples: 0", "dropped_samples: -1", "dropped_samples is '-1' in the header"),
         ("recording: complete", "recording: perhaps", "recording is 'perhaps' in the header"),
@@ -213,3 +216,115 @@ def test_a_log_of_another_tool_needs_no_header(tmp_path: Path) -> None:
     path.write_text(f"{HEADING}\n0,{row}\n1,{row}\n")
     log = read_log(path)
     assert (log.origin, log.dropped, log.complete) == (Origin(), 0, True)
+
+
+# --- long logs, a block at a time -----------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def small_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(csv_file, "BLOCK", 1000)
+
+
+@given(st.lists(samples, min_size=2, max_size=30))
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+def test_rows_parsed_at_once_are_those_of_float(
+    tmp_path: Path, rows: list[tuple[int, tuple[int, ...], tuple[int, ...], str]]
+) -> None:
+    """Bit for bit, signs of zero included."""
+    lines, numbers, states = [], [], []
+    for tick, (_, angles, volts, state) in enumerate(rows):
+        cells = [
+            f"{tick / 1000:.6f}",
+            *(f"{one / 4096:.6f}" for one in angles),
+            *(f"{one / 1000:.3f}" for one in volts),
+        ]
+        lines.append(",".join([*cells, state]) + "\n")
+        numbers.append([float(cell) for cell in cells])
+        states.append(STATES.index(state))
+    parsed = parse_rows("".join(lines).encode())
+    assert parsed is not None
+    assert parsed[0].tobytes() == np.array(numbers).tobytes()
+    assert parsed[1].tolist() == states
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        (b"0.100000", b"0.1"),
+        (b"0.100000", b" 0.100000"),
+        (b"0.100000", b"+0.100000"),
+        (b"0.100000", b".100000"),
+        (b"0.100000", b"-.100000"),
+        (b"0.100000", b"1e-1"),
+        (b"0.100000", b"0.10:000"),
+        (b"0.100000", b"0-100000"),
+        (b"0.100000", b"-"),
+        (b"0.100000", b""),
+        (b"0.100000", b"1234567.100000"),
+        (b"following", b"followinG"),
+        (b"following", b"following\r"),
+        (b"following", b""),
+        (b",", b";"),
+        (b",", b",,"),
+        (b"\n", b",\n"),
+        (b"\n", b"\n\n"),
+    ],
+)
+def test_rows_in_any_other_form_are_left_to_the_cells(old: bytes, new: bytes) -> None:
+    row = b"0.001000," + b"0.100000," * 8 + b"-1.000," * 4 + b"following\n"
+    rows = row + row.replace(b"0.001", b"0.002")
+    assert parse_rows(rows) is not None
+    assert parse_rows(rows.replace(old, new, 1)) is None
+
+
+@pytest.mark.usefixtures("small_blocks")
+def test_a_log_in_many_blocks_is_the_same(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    write(path, 50)
+    log = read_log(path)
+    assert np.array_equal(log.time, np.arange(50) / 200)
+    assert np.array_equal(log.leader, np.tile(ROW[0], (50, 1)))
+    assert np.array_equal(log.voltage, np.tile(ROW[2], (50, 1)))
+    other = read_log(path, voltages=False)
+    assert other.voltage.shape == (50, 0)
+    assert np.array_equal(other.follower, log.follower)
+
+
+@pytest.mark.usefixtures("small_blocks")
+def test_a_bad_cell_in_a_later_block_is_named_by_its_line(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    write(path, 50)
+    lines = path.read_text().splitlines(keepends=True)
+    lines[40] = lines[40].replace("0.300000", "x")
+    path.write_text("".join(lines))
+    with pytest.raises(UserError, match="line 41, column leader_2: 'x' is not a number"):
+        read_log(path)
+    lines[40] = lines[10]
+    path.write_text("".join(lines))
+    with pytest.raises(UserError, match="line 41, column time_s: time must increase, but"):
+        read_log(path)
+
+
+def test_only_an_unfinished_log_may_end_in_the_middle_of_a_line(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    write(path, 5)
+    text = path.read_text()[:-30]
+    path.write_text(text)
+    with pytest.raises(UserError, match="line 15: the file ends in the middle of this line"):
+        read_log(path)
+    path.write_text(text.replace("recording: complete", "recording: unfinished"))
+    assert len(read_log(path).time) == 4
+
+
+def test_a_log_takes_no_more_memory_than_its_numbers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(csv_file, "BLOCK", 1 << 16)
+    path = tmp_path / "log.csv"
+    write(path, 60_000)
+    tracemalloc.start()
+    log = read_log(path)
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert len(log.time) == 60_000
+    block = 40 * csv_file.BLOCK  # what the parsing of one block takes
+    assert most < 60_000 * 13 * 8 + 60_000 + block

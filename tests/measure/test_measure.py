@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -12,6 +14,7 @@ from greywhale.errors import UserError
 from greywhale.files.log import Log
 from greywhale.files.log.layout import Origin
 from greywhale.measure import Settings, evaluate
+from greywhale.measure.delay import correlations
 from greywhale.measure.runs import gap_free_runs, resting
 
 Floats = NDArray[np.float64]
@@ -185,3 +188,45 @@ def test_runs_hold_every_wanted_neighbour_pair_once(steps: list[tuple[int, bool]
     }
     assert pairs == expected
     assert sum(run.stop - run.start - 1 for run in runs) == len(pairs)
+
+
+@pytest.mark.parametrize(
+    ("follower", "follows"),
+    [
+        (lambda leader: leader - 0.2, True),
+        (lambda leader: 0.5 * leader, True),
+        (lambda leader: np.full_like(leader, leader.mean() + 0.1), False),  # its motor has no wires
+        (lambda leader: np.full_like(leader, -2.4), False),  # its potentiometer has none
+        (lambda leader: -leader, False),  # it runs the wrong way
+    ],
+)
+def test_a_joint_that_does_not_follow_at_all_is_told(follower: Callable[[Floats], Floats], follows: bool) -> None:
+    time = np.arange(0, 10, 0.01)
+    leader = np.sin(2 * time)
+    assert [joint.follows for joint in evaluate(log(time, leader, follower(leader))).joints] == [follows] * 4
+
+
+def test_a_joint_whose_leader_rests_need_not_follow() -> None:
+    time = np.arange(0, 10, 0.01)
+    assert evaluate(log(time, 0.001 * np.sin(time), np.full_like(time, 0.5))).joints[0].follows
+
+
+def test_the_delay_of_a_long_log_is_that_of_its_parts() -> None:
+    """More samples than are transformed at once: every lag still meets all of its products."""
+    time = np.arange(150_000) / 1000
+    leader = np.sin(0.7 * time) + 0.3 * np.sin(2.9 * time)
+    follower = np.sin(0.7 * (time - 0.123)) + 0.3 * np.sin(2.9 * (time - 0.123))
+    assert evaluate(log(time, leader, follower)).joints[0].delay_s == pytest.approx(0.123, abs=1e-5)
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(1500, 70_000))
+@settings(max_examples=20, deadline=None)
+def test_correlations_are_pearsons(seed: int, length: int) -> None:
+    """Against numpy's, at every lag: ends, means and scales of exactly the samples that both have."""
+    random = np.random.default_rng(seed)
+    a, b = random.normal(0.3, 1.0, length).cumsum(), random.normal(0.0, 1.0, length).cumsum()
+    found = correlations(a, b, -100, 1000)
+    for lag in (-100, -1, 0, 1, 999, 1000):
+        one = a[: length - lag] if lag >= 0 else a[-lag:]
+        other = b[lag:] if lag >= 0 else b[: length + lag]
+        assert found[lag + 100] == pytest.approx(np.corrcoef(one, other)[0, 1], abs=1e-9)

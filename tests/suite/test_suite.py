@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from greywhale.protocol.ports import bench_directory
+from greywhale.runtime import runtime_directory
 from tests.conftest import LONGEST
 
 ROOT = Path(__file__).parents[2]
@@ -47,7 +47,7 @@ def test_a_suite_that_ignores_signals_has_children_that_hear_them(options: tuple
 
 def test_benches_of_this_session_are_out_of_sight_of_others(tmp_path_factory: pytest.TempPathFactory) -> None:
     ours = tmp_path_factory.getbasetemp()
-    assert bench_directory().is_relative_to(ours)
+    assert runtime_directory().is_relative_to(ours)
     ask = [sys.executable, "-c", "import tempfile; print(tempfile.gettempdir())"]
     assert subprocess.run(ask, capture_output=True, text=True, check=True).stdout.strip() == tempfile.gettempdir()
 

@@ -1,4 +1,4 @@
-"""The project's own Python environment, .venv, with exactly the packages of requirements.txt."""
+"""The project's own Python environment, .venv: the packages of requirements.txt, down to the bytes of their files."""
 
 from __future__ import annotations
 
@@ -42,5 +42,6 @@ def step() -> None:
     elif stamps.is_current("venv", wanted):
         return
     say("installing the pinned Python packages (about a minute the first time)")
-    pip_install("--requirement", REQUIREMENTS, what="Installing the Python packages of requirements.txt")
+    pinned = ("--require-hashes", "--no-deps", "--requirement", REQUIREMENTS)
+    pip_install(*pinned, what="Installing the Python packages of requirements.txt")
     stamps.set_current("venv", wanted)

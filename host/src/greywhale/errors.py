@@ -9,13 +9,35 @@ FAILED = 1
 BAD_USAGE = 2
 
 
+# A sentence is no longer than this: what a file holds may be as long as it likes.
+LONGEST = 1000
+
+
 class UserError(Exception):
-    """A failure the user can act on; `message` is one whole sentence, `exit_code` is 1 (failed) or 2 (bad usage)."""
+    """A failure the user can act on; `message` is one whole sentence, `exit_code` is 1 (failed) or 2 (bad usage).
+
+    Nothing that a file or a board says reaches a terminal as a control character, or without end.
+    """
 
     def __init__(self, message: str, exit_code: int = FAILED) -> None:
-        super().__init__(message)
-        self.message = message
+        self.message = cut(printable(message), LONGEST)
+        super().__init__(self.message)
         self.exit_code = exit_code
+
+
+def printable(text: str) -> str:
+    """Text without control characters, which a terminal would obey; lines stay lines."""
+    if text.isprintable():
+        return text
+    return "".join(one if one.isprintable() or one == "\n" else one.encode("unicode_escape").decode() for one in text)
+
+
+def cut(text: str, most: int = 60) -> str:
+    """Text of at most so many characters; what is too much is left out before its last third."""
+    if len(text) <= most:
+        return text
+    end = most // 3
+    return f"{text[: most - end - 3]}...{text[-end:]}"
 
 
 def os_reason(error: OSError) -> str:

@@ -46,8 +46,11 @@ def main() -> int:
     def ready(port: str) -> None:
         print(json.dumps({"port": port}) if as_json else port, flush=True)
 
+    def note(text: str) -> None:
+        print(f"greywhale_sim: {text}", file=sys.stderr, flush=True)
+
     try:
-        serve(ServeOptions(**arguments), ready)
+        serve(ServeOptions(**arguments), ready, note=note)
     except UserError as error:
         print(f"greywhale_sim: {error.message}", file=sys.stderr)
         return error.exit_code

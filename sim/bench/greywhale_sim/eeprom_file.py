@@ -4,7 +4,6 @@ board's power.
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import IO
 
@@ -35,5 +34,3 @@ def save(path: Path, data: bytes) -> None:
 
 def _write(file: IO[bytes], data: bytes) -> None:
     file.write(data)
-    file.flush()
-    os.fsync(file.fileno())  # a power cut of the real machine must not cost the simulated one its memory

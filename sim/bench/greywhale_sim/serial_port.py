@@ -1,7 +1,9 @@
 """The host's end of the serial line: a pseudo-terminal that behaves like the USB port of an Arduino.
 
-An Arduino resets when its port is opened (the DTR edge). A pseudo-terminal has no modem lines, so inotify on its path
-watches for opening and closing. The bench keeps one descriptor of its own open, so that the port outlives its users.
+An Arduino resets when DTR rises: when its port is opened, unless whoever had it before switched HUPCL off, and so left
+DTR up. A pseudo-terminal has no modem lines, so inotify on its path watches for opening and closing. It cannot see that
+avrdude lowers and raises DTR by itself; a new speed on a port whose DTR was left up is taken for that. The bench keeps
+one descriptor of its own open, so that the port outlives its users.
 """
 
 from __future__ import annotations
@@ -23,6 +25,7 @@ IN_OPEN = 0x20
 IN_CLOSE = 0x08 | 0x10
 EVENT = struct.Struct("iIII")  # struct inotify_event, without a name: the watch is on a file
 TCGETS2 = 0x802C542A  # tells any speed, where tcgetattr knows the classic ones only
+CFLAG = 2  # place of the control flags in what termios returns
 SPEED_OFFSET = 40  # c_ospeed in struct termios2
 
 
@@ -32,10 +35,15 @@ class SerialPort:
     def __init__(self, links: Sequence[Path] = ()) -> None:
         self._master, self._slave = os.openpty()
         tty.setraw(self._slave)
+        flags = termios.tcgetattr(self._slave)
+        flags[CFLAG] |= termios.HUPCL  # as serial ports have it, unlike pseudo-terminals
+        termios.tcsetattr(self._slave, termios.TCSANOW, flags)
         os.set_blocking(self._master, False)
         self.path = os.ttyname(self._slave)
         self._notify = _watch(self.path)
         self._users = 0
+        self._left_up = False  # DTR, by the last user, or for the user there is
+        self._speed = self.baud()
         self._unseen = 0  # bytes written since the host was last known to have read all
         self._links: list[Path] = []
         try:
@@ -47,7 +55,14 @@ class SerialPort:
             raise
 
     def poll(self) -> bool:
-        """Take note of opens and closes since the last call; true if the port was opened by its first user."""
+        """Take note of opens and closes since the last call; true if DTR rose."""
+        speed, self._speed = self._speed, self.baud()
+        opened = self._note_users()
+        if self._users and self._left_up and self._speed != speed:
+            opened, self._left_up = True, False
+        return opened
+
+    def _note_users(self) -> bool:
         try:
             events = os.read(self._notify, 4096)
         except BlockingIOError:
@@ -56,10 +71,12 @@ class SerialPort:
         for offset in range(0, len(events), EVENT.size):
             _, mask, _, _ = EVENT.unpack_from(events, offset)
             if mask & IN_OPEN:
-                opened |= self._users == 0
+                opened |= self._users == 0 and not self._left_up
                 self._users += 1
             elif mask & IN_CLOSE:
                 self._users = max(0, self._users - 1)
+                if self._users == 0:
+                    self._left_up = not termios.tcgetattr(self._slave)[CFLAG] & termios.HUPCL
         return opened
 
     @property

@@ -16,8 +16,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from types import FrameType
 
-from greywhale.errors import UserError, os_reason
-from greywhale.protocol.ports import bench_directory
+from greywhale.errors import UserError
+from greywhale.protocol.ports import forget_dead_benches
+from greywhale.runtime import make_runtime_directory
 from greywhale_sim import commands
 from greywhale_sim.assemble import BenchOptions, build_bench, wiring_of
 from greywhale_sim.bench import Plant
@@ -37,12 +38,23 @@ class ServeOptions(BenchOptions):
 
 
 @contextmanager
-def running(options: ServeOptions, plant: Plant | None = None) -> Iterator[Server]:
-    """A server with an open port; it is cleaned up whatever happens. `plant` takes the place of the built-in arm."""
+def running(
+    options: ServeOptions, plant: Plant | None = None, note: Callable[[str], None] = lambda text: None
+) -> Iterator[Server]:
+    """A server with an open port; it is cleaned up whatever happens. `plant` takes the place of the built-in arm.
+
+    `note` is told in a sentence what the bench does without.
+    """
     if options.speed not in ("1", "max"):
         raise UserError(f'speed "{options.speed}" is not known; say 1 (real time) or max.', 2)
+    if options.eeprom is not None and not options.eeprom.parent.is_dir():
+        raise UserError(
+            f"{options.eeprom}: the folder {options.eeprom.parent} does not exist; create it, or keep the EEPROM "
+            "elsewhere.",
+            2,
+        )
     bench = build_bench(options, plant)
-    port = SerialPort(_links(options))
+    port = SerialPort(_links(options, note))
     server = Server(
         bench, bench.board, wiring_of(options.board), port, fast=options.speed == "max", eeprom=options.eeprom
     )
@@ -52,11 +64,16 @@ def running(options: ServeOptions, plant: Plant | None = None) -> Iterator[Serve
         server.close()
 
 
-def serve(options: ServeOptions, on_ready: Callable[[str], None], plant: Plant | None = None) -> None:
+def serve(
+    options: ServeOptions,
+    on_ready: Callable[[str], None],
+    plant: Plant | None = None,
+    note: Callable[[str], None] = lambda text: None,
+) -> None:
     """Serve until Ctrl-C, a request to terminate or, with control, the end of standard input; all these ends are
     normal.
     """
-    with running(options, plant) as server, _ending_on_signals(server):
+    with running(options, plant, note) as server, _ending_on_signals(server):
         on_ready(server.port.path if options.link is None else str(options.link))
         if options.control:
             server.while_waiting = Control(server).look
@@ -87,15 +104,15 @@ def _ending_on_signals(server: Server) -> Iterator[None]:
             signal.signal(number, handler)
 
 
-def _links(options: ServeOptions) -> list[Path]:
+def _links(options: ServeOptions, note: Callable[[str], None]) -> list[Path]:
     """Names of the port: the one that `greywhale ports` looks for, and the one asked for."""
-    directory = bench_directory()
+    named = [] if options.link is None else [options.link]
     try:
-        directory.mkdir(mode=0o700, exist_ok=True)
-    except OSError as error:
-        raise UserError(f"{directory}: cannot be made: {os_reason(error)}.") from None
-    announced = directory / f"{options.board}-{os.getpid()}"
-    return [announced] if options.link is None else [announced, options.link]
+        forget_dead_benches()
+        return [make_runtime_directory() / f"{options.board}-{os.getpid()}", *named]
+    except UserError as error:
+        note(f"{error.message} This bench runs, but no other program finds it by itself: name its port with --port.")
+        return named
 
 
 class Control:

@@ -80,8 +80,10 @@ class Server:
             self.board.power_on(self._seed)
 
     def close(self) -> None:
-        self._keep_eeprom(now=True)
-        self.port.close()
+        try:
+            self._keep_eeprom(now=True)
+        finally:
+            self.port.close()
 
     def _receive(self) -> None:
         data = self.port.read()

@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from greywhale.errors import UserError
 from greywhale.loop import default_controller
@@ -111,7 +113,17 @@ def test_other_candidates_than_the_journals_are_refused(tmp_path: Path) -> None:
         (lambda lines: [lines[0], b"\xff\xfe", *lines[2:]], "line 2 is not a line"),
         (lambda lines: [lines[0], lines[1].replace(b"0.1", b'"x"'), *lines[2:]], "line 2 is not a line"),
         (lambda lines: [lines[0], lines[1].replace(b"[", b"[[0.5],", 1), *lines[2:]], "line 2 is not a line"),
-        (lambda lines: [lines[0].replace(b":2,", b":1,", 1), *lines[1:]], "of another version of greywhale"),
+        (lambda lines: [lines[0], lines[1].replace(b"0.1", b"NaN"), *lines[2:]], "line 2 is not a line"),
+        (lambda lines: [lines[0], lines[1].replace(b"0.1", b"1e999"), *lines[2:]], "line 2 is not a line"),
+        (lambda lines: [lines[0], b"[" * 100_000, *lines[2:]], "line 2 is not a line"),
+        (
+            lambda lines: [lines[0], lines[1].replace(b"0.1", b"0.2"), *lines[2:]],
+            "line 2 is damaged; remove it and all",
+        ),
+        (lambda lines: [lines[0].replace(b'"seed":1', b'"seed":2'), *lines[1:]], "line 1 is damaged; start anew"),
+        (lambda lines: [lines[0], *lines[2:]], "line 2 is damaged"),
+        (lambda lines: [*lines[:2], lines[1], *lines[2:]], "line 3 is damaged"),
+        (lambda lines: [lines[0].replace(b":3,", b":1,", 1), *lines[1:]], "of another version of greywhale"),
     ],
 )
 def test_what_is_no_journal_is_refused(tmp_path: Path, spoil: Any, sentence: str) -> None:
@@ -119,6 +131,27 @@ def test_what_is_no_journal_is_refused(tmp_path: Path, spoil: Any, sentence: str
     path.write_bytes(b"\n".join(spoil(written(path).split(b"\n"))))
     with pytest.raises(UserError, match=sentence):
         Journal(path, REQUEST, resume=True)
+
+
+@given(st.data())
+@settings(deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_no_changed_byte_gives_another_cost(tmp_path: Path, data: st.DataObject) -> None:
+    """It is told in a sentence, or torn off with the last line."""
+    path = tmp_path / "j"
+    whole = written(path)
+    place = data.draw(st.integers(0, len(whole) - 1))
+    spoilt = bytearray(whole)
+    spoilt[place] = data.draw(st.integers(0, 255).filter(lambda byte: byte != whole[place]))
+    path.write_bytes(spoilt)
+    try:
+        book = Journal(path, REQUEST, resume=True)
+    except UserError:
+        return
+    with book:
+        for number in range(2):  # the last line may be torn off
+            costs = book.costs(f"stage {number}", ROWS + number)
+            np.testing.assert_array_equal(costs, COSTS * (number + 1))
+        assert not book.replaying
 
 
 def test_places_that_cannot_hold_a_journal_are_refused(tmp_path: Path) -> None:

@@ -17,6 +17,7 @@ from types import TracebackType
 from typing import Self
 
 from greywhale.board.refusal import RefusedError
+from greywhale.board.session import Session
 from greywhale.errors import UserError
 from greywhale.protocol import schema
 from greywhale.protocol.declared import Reply_co, Request
@@ -45,10 +46,12 @@ class NoAnswerError(UserError):
 class Device:
     """An open and greeted board. Leaving the context, for whatever reason, stops the motors if they may be on."""
 
-    def __init__(self, port: str, quiet_s: float = QUIET_S, patience_s: float = PATIENCE_S) -> None:
+    def __init__(
+        self, port: str, quiet_s: float = QUIET_S, patience_s: float = PATIENCE_S, *, restart: bool = True
+    ) -> None:
+        """Open the port and greet the board, which restarts; without `restart` only where the system cannot help it."""
         self.port = port
         self.lease_ms = 0
-        self._transport = Transport(port)
         self._decoder = FrameDecoder()
         self._replies: deque[Frame] = deque(maxlen=32)
         self._samples: list[schema.Sample] = []
@@ -59,11 +62,14 @@ class Device:
         self._started: bytes | None = None
         self._greeted = False
         self._motors_may_run = False
-        try:
-            self.hello: schema.HelloReply = self._greet(quiet_s, patience_s)
-        except BaseException:
-            self._transport.close()
-            raise
+        with contextlib.ExitStack() as held:
+            self._session = held.enter_context(Session.of(port))
+            held.callback(self._session.detach)
+            self._transport = Transport(port, restart)
+            held.callback(self._transport.close)
+            self._session.attach(self._send_stop)
+            self.hello: schema.HelloReply = self._greet(quiet_s if self.restarted else 0.0, patience_s)
+            self._held = held.pop_all()
 
     def __enter__(self) -> Self:
         return self
@@ -71,6 +77,7 @@ class Device:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        self._session.explain(error)
         try:
             self.close()
         except UserError as problem:
@@ -81,10 +88,15 @@ class Device:
     def close(self) -> None:
         """Stop the motors if they may run, then close the port."""
         try:
-            if self._motors_may_run:
+            if self._motors_may_run or self._session.waiting:
                 self.stop()
         finally:
-            self._transport.close()
+            self._held.close()
+
+    @property
+    def restarted(self) -> bool:
+        """Whether opening the port restarted the board (False: it runs on from the session before)."""
+        return self._transport.restarted
 
     @property
     def firmware_version(self) -> str:
@@ -92,6 +104,7 @@ class Device:
 
     def ask(self, request: Request[Reply_co]) -> Reply_co:
         """Send a request until it is answered, and return the answer; a refusal is a UserError with its remedy."""
+        self._session.check()
         payload = self._exchange(request.TYPE, request.NAME, request.pack(), ATTEMPTS)
         try:
             return request.reply(payload)
@@ -117,12 +130,14 @@ class Device:
 
     def enable(self, lease_ms: int) -> None:
         """Start the motors. They go off by themselves when the lease is not renewed in time (0: only on stop)."""
+        self._session.refuse_motion()
         self._motors_may_run = True
         self.lease_ms = lease_ms
         self.ask(schema.EnableRequest(lease_ms))
 
     def lead(self, lease_ms: int) -> schema.LeadReply:
         """Start the motors with this host in the leader's place; `lead_point` sends the points of the reference."""
+        self._session.refuse_motion()
         self._motors_may_run = True
         self.lease_ms = lease_ms
         self._lead_progress = self._lead_refused = None
@@ -130,6 +145,7 @@ class Device:
 
     def lead_point(self, number: int, step: tuple[int, int, int, int]) -> None:
         """Send a point of the reference without waiting for the answer; `lead_progress` returns that later."""
+        self._session.refuse_motion()
         request = schema.LeadPointRequest(number, step)
         self._transport.write(encode_frame(request.TYPE, self._next_sequence(), request.pack()))
 
@@ -158,6 +174,7 @@ class Device:
             start()
             yield
         except BaseException as error:
+            self._session.explain(error)
             try:
                 self.stop()
             except UserError as problem:
@@ -175,16 +192,22 @@ class Device:
         with hold_ctrl_c():
             try:
                 message = stop_message(self._next_sequence())
-                self._repeat(message, schema.StopRequest.TYPE, schema.StopRequest.NAME, STOP_ATTEMPTS, STOP_REPEAT_S)
+                answer = self._repeat(
+                    message, schema.StopRequest.TYPE, schema.StopRequest.NAME, STOP_ATTEMPTS, STOP_REPEAT_S
+                )
+                self._session.confirm({"state": schema.StopReply.unpack(answer).state.key})
             except UserError as error:
                 # After one failed attempt, closing need not try again. After a restart the motors are off anyway.
                 self._motors_may_run = False
                 if self._started is None:
-                    raise UserError(f"{error.message} {self._unconfirmed_stop()}") from None
+                    problem = UserError(f"{error.message} {self._unconfirmed_stop()}")
+                    self._session.confirm({"problem": problem.message})
+                    raise problem from None
         self._motors_may_run = False
 
     def samples(self) -> list[schema.Sample]:
         """The samples received since the last call; waits a moment when there are none."""
+        self._session.check()
         if not self._samples:
             self._receive()
             self._check_restart()
@@ -214,6 +237,10 @@ class Device:
             f"{self.port}: the board did not answer {name}, sent {attempts} times in {attempts * wait_s:.1f} s; "
             "check the cable, reset the board and try again."
         )
+
+    def _send_stop(self) -> None:
+        """Send a stop from any thread. Nobody waits for the answer, whose number no request has."""
+        self._transport.write(stop_message(_UNASKED))
 
     def _next_sequence(self) -> int:
         self._sequence = self._sequence % 255 + 1

@@ -19,6 +19,8 @@ _TICKS = 1 << 32
 # No sample for this long, and at least five sample periods, means that something is wrong.
 _SILENCE_S = 2.0
 _RENEWALS_PER_LEASE = 4
+# A host that looks at the port more seldom was stopped itself (Ctrl-Z, a sleeping laptop).
+_PAUSE_S = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,16 +42,20 @@ def _samples(device: Device, every: int) -> Iterator[Received]:
     silence_s = max(_SILENCE_S, 5 * every / 1000)
     last: int | None = None
     elapsed = renewed = 0
-    heard = time.monotonic()
+    heard = looked = time.monotonic()
     while True:
         samples = device.samples()
         now = time.monotonic()
-        if samples:
-            heard = now
-        elif now > heard + silence_s:
+        if now > looked + _PAUSE_S:
+            heard += now - looked  # this host stood still, not the board
+        looked = now
+        if not samples and now > heard + silence_s:
             raise _silence(device, last, silence_s)
         for sample in samples:
             step = every if last is None else (sample.tick - last) % _TICKS
+            if step == 0:
+                continue  # the same sample again says nothing new
+            heard = now
             if step > _TICKS // 2:
                 raise UserError(
                     f"{device.port}: the board's clock went backwards: it restarted in the middle; try again."
@@ -69,6 +75,8 @@ def _silence(device: Device, last: int | None, silence_s: float) -> UserError:
         return UserError(
             f"{device.port}: the board restarted in the middle and its motors are off; check its supply and try again."
         )
+    if device.lease_ms and status.stop_reason is schema.StopReason.LEASE:
+        return why_stopped(device)
     return UserError(
         f"{device.port}: the board answers but sent no sample for {silence_s:g} s (state {status.state.key}); "
         "reset it and try again."
@@ -83,7 +91,7 @@ def why_stopped(device: Device) -> UserError:
     if status.stop_reason is schema.StopReason.LEASE:
         return UserError(
             f"{device.port}: the board stopped the motors because this host did not renew the lease of "
-            f"{device.lease_ms} ms; close other programs, or use a larger --every."
+            f"{device.lease_ms} ms: was it stopped or asleep? If not, close other programs, or use a larger --every."
         )
     return UserError(
         f"{device.port}: the motors went off in the middle: {lower_first(status.stop_reason.description)}; try again."

@@ -6,6 +6,8 @@ from pathlib import Path
 
 import click
 
+from greywhale.board.session import Session
+from greywhale.cli.countdown import prepare_motion, yes_option
 from greywhale.cli.output import json_option, port_option, progress, show
 from greywhale.errors import BAD_USAGE, UserError
 from greywhale.protocol.ports import choose_port
@@ -36,6 +38,7 @@ EXISTING = click.Path(path_type=Path)
 )
 @click.option("--workers", type=click.IntRange(min=1), help="Threads; without it, one for every processor.")
 @click.option("--resume", is_flag=True, help="Go on where an interrupted commissioning in this folder ended.")
+@yes_option
 @port_option
 @json_option
 def command(
@@ -49,6 +52,7 @@ def command(
     seed: int,
     workers: int | None,
     resume: bool,
+    yes: bool,
     port: str | None,
     as_json: bool,
 ) -> None:
@@ -60,7 +64,8 @@ def command(
     first. A joint that hunts is stopped at once.
 
     The board ends with the best that was measured, joint by joint, never worse than before; until then it keeps the
-    controllers from before. Ctrl-C stops the motors at any point; --resume goes on. FOLDER/report.html tells the story.
+    controllers from before. A countdown on the terminal comes first, but not on the simulated bench. Ctrl-C stops the
+    motors at any point; --resume goes on. FOLDER/report.html tells the story.
     """
     # Scipy and the native simulation take a moment to import.
     from greywhale.commission import Options, commission
@@ -83,9 +88,13 @@ def command(
         threads=workers or 0,
         resume=resume,
     )
+    warn = prepare_motion(options.port, yes)
     try:
-        with progress(as_json) as report:
-            outcome = commission(options, report)
+        # Also while it computes: whoever stops it does not expect the arm to move again.
+        with Session.of(options.port):
+            warn()
+            with progress(as_json) as report:
+                outcome = commission(options, report)
     except KeyboardInterrupt as interrupt:
         interrupt.add_note(
             f"The board keeps the controllers from before; the same command with --resume goes on in {out}."

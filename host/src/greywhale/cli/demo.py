@@ -28,7 +28,7 @@ from greywhale.cli.output import json_option, progress, show
 @click.option("--arm", type=click.Path(path_type=Path), help="TOML with the arm; without it, the built-in one.")
 @click.option("--speed", type=click.Choice(["1", "max"]), default="max", show_default=True, help="Real time or faster.")
 @click.option("--duration", type=float, default=20.0, show_default=True, help="Seconds of generated motion.")
-@click.option("--seed", type=int, default=1, show_default=True, help="Seed of the generated motion.")
+@click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of the generated motion.")
 @click.option(
     "--controller",
     type=click.Path(path_type=Path),

@@ -6,7 +6,6 @@ A failure is one sentence on stderr; with --json also {"error": ...} as the one 
 from __future__ import annotations
 
 import contextlib
-import json
 import os
 import signal
 import sys
@@ -16,19 +15,23 @@ from typing import NoReturn
 
 import click
 
+from greywhale.cli.output import json_of
 from greywhale.cli.verbs import greywhale
-from greywhale.errors import BAD_USAGE, FAILED, UserError, os_reason
+from greywhale.errors import BAD_USAGE, FAILED, UserError, os_reason, printable
 
 INTERRUPTED = 130
 
 
-def main(arguments: Sequence[str] | None = None) -> NoReturn:
+def main() -> NoReturn:
     """Run the command line and exit."""
-    sys.exit(run(sys.argv[1:] if arguments is None else arguments))
+    sys.exit(run(sys.argv[1:]))
 
 
 def run(arguments: Sequence[str]) -> int:
     """Run the command line; its exit code."""
+    _open_closed_streams()
+    if signal.getsignal(signal.SIGINT) is signal.SIG_DFL:  # as at the start, before a Ctrl-C could be answered
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     signal.signal(signal.SIGTERM, _terminated)
     if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:  # nohup means what it says
         signal.signal(signal.SIGHUP, _terminated)
@@ -55,6 +58,16 @@ def run(arguments: Sequence[str]) -> int:
         return _failed(f"{named}{os_reason(error)}.", FAILED, as_json)
 
 
+def _open_closed_streams() -> None:
+    """Give what was closed (`>&-`) to nobody: else a port or a file would take the number, and get what is printed."""
+    for number, name, mode in ((0, "stdin", "r"), (1, "stdout", "w"), (2, "stderr", "w")):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # takes the lowest free number
+            setattr(sys, name, open(number, mode, encoding="utf-8", closefd=False))  # noqa: SIM115 (until the end)
+
+
 def _refuse_empty(arguments: Sequence[str]) -> None:
     """Refuse an empty name, mostly of an unset shell variable: it would be taken for the current folder."""
     for before, argument in zip(["", *arguments], arguments, strict=False):
@@ -71,9 +84,9 @@ def _terminated(number: int, frame: FrameType | None) -> None:
 
 def _failed(message: str, code: int, as_json: bool) -> int:
     if as_json:
-        print(json.dumps({"error": message, "exit_code": code}, ensure_ascii=False))
+        print(json_of({"error": message, "exit_code": code}))
     with contextlib.suppress(OSError):  # the terminal may be gone
-        print(f"greywhale: {message}", file=sys.stderr)
+        print(f"greywhale: {printable(message)}", file=sys.stderr)
     return code
 
 

@@ -25,10 +25,19 @@ def command(logs: tuple[Path, ...], picture: Path | None, as_json: bool) -> None
     Several logs are measured one by one and drawn into one picture.
     """
     refuse_inputs(picture, *logs)
-    read = [read_log(path) for path in logs]
-    evaluations = [evaluate(log) for log in read]
+    read, evaluations = [], []
+    for path in logs:
+        log = read_log(path, voltages=False)
+        evaluations.append(evaluate(log))
+        read.append(log if picture is not None else log.without_samples())
     results = [
-        {"log": log.name, "dropped": log.dropped, "complete": log.complete, **evaluation.as_dict()}
+        {
+            "log": log.name,
+            "dropped": log.dropped,
+            "complete": log.complete,
+            "ended_by": log.ended_by,
+            **evaluation.as_dict(),
+        }
         for log, evaluation in zip(read, evaluations, strict=True)
     ]
     text = "\n\n".join(_text(log, evaluation) for log, evaluation in zip(read, evaluations, strict=True))
@@ -52,7 +61,7 @@ def _text(log: Log, evaluation: Evaluation) -> str:
     if log.dropped:
         notes.append(f"{log.dropped} dropped")
     if not log.complete:
-        notes.append("recording interrupted")
+        notes.append("recording interrupted" + (f" ({log.ended_by.rstrip('.')})" if log.ended_by else ""))
     if not evaluation.following:
         notes.append("the motors never followed; the whole log is measured")
     lines = [
@@ -63,6 +72,11 @@ def _text(log: Log, evaluation: Evaluation) -> str:
         steady, delay, onset = map(_number, (joint.steady_state_error, joint.delay_s, joint.onset_delay_s))
         lines.append(f"joint {number}   {joint.mse:10.6f}   {steady:>24}   {delay:>9}   {onset:>15}")
     lines.append(f"total     {evaluation.total_mse:10.6f}")
+    lines += [
+        f"Joint {number} does not follow its leader at all: check its potentiometers, its motor and their signs."
+        for number, joint in enumerate(evaluation.joints)
+        if evaluation.following and not joint.follows
+    ]
     return "\n".join(lines)
 
 

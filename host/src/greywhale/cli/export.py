@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from greywhale.cli.output import json_option, show
+from greywhale.cli.record import require_folders
 from greywhale.formats.whole import refuse_inputs, write_text
 
 
@@ -28,6 +29,7 @@ def command(fis: Path | None, urdf: str | None, mjcf: str | None, out: Path, joi
         raise click.UsageError("Give exactly one of --fis, --urdf and --mjcf.")
     if joint is not None and fis is None:
         raise click.UsageError("--joint goes with --fis: an arm is written whole.")
+    require_folders(out)
     written = _export_fis(fis, out, joint) if fis is not None else [_export_arm(urdf, mjcf, out)]
     names = [str(path) for path in written]
     show(as_json, {"written": names}, "\n".join(names))

@@ -9,7 +9,8 @@ import click
 from greywhale.cli.output import json_option, progress, show
 from greywhale.errors import BAD_USAGE, UserError
 from greywhale.files.arm import load_arm
-from greywhale.files.log import read_log
+from greywhale.files.log import Log, read_log
+from greywhale.files.log.selection import MOST_S, informative
 from greywhale.files.parameter_file import load_table
 from greywhale.formats.whole import refuse_inputs
 from greywhale.identify import METHODS, identify
@@ -37,7 +38,9 @@ from greywhale.identify import METHODS, identify
     help="A controller.toml or `params backup` file that logs were recorded with; logs find theirs by its CRC.",
 )
 @click.option("--method", type=click.Choice(METHODS), default="default", show_default=True)
-@click.option("--seed", type=int, default=0, show_default=True, help="Where all random numbers start.")
+@click.option(
+    "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Where all random numbers start."
+)
 @click.option("--pictures", type=click.Path(path_type=Path), help="Folder for pictures of responses and convergence.")
 @json_option
 def command(
@@ -53,15 +56,17 @@ def command(
 ) -> None:
     """Identify the arm that made the logs, starting from your arm file.
 
-    Writes a model.toml: an arm file with a table on how sure each value is, what these logs cannot tell and which
-    motion would. Ctrl-C writes the best model so far, marked as unfinished.
+    Of a log longer than 60 s the pieces that show most are used. Writes a model.toml: an arm file with a table on how
+    sure each value is, what these logs cannot tell and which motion would. Ctrl-C writes the best model so far, marked
+    as unfinished.
     """
     if not out.parent.is_dir():
         raise UserError(f"{out}: the folder {out.parent} does not exist; create it, or write elsewhere.", BAD_USAGE)
     refuse_inputs(out, *logs, *validate, arm_file, *controllers)
     arm = load_arm(arm_file)
     tables = [load_table(path) for path in controllers]
-    fit, second = [read_log(path) for path in logs], [read_log(path) for path in validate]
+    notes: list[str] = []
+    fit, second = [_read(path, notes) for path in logs], [_read(path, notes) for path in validate]
     with progress(as_json) as report:
         outcome = identify(fit, arm, validate=second, tables=tables, method=method, seed=seed, report=report)
     outcome.save(out)
@@ -76,4 +81,15 @@ def command(
 
         files += draw(outcome, pictures)
     written = "\n\nWritten: " + ", ".join(str(path) for path in files)
-    show(as_json, {**outcome.as_dict(), "files": [str(path) for path in files]}, outcome.text() + written)
+    facts = {**outcome.as_dict(), "files": [str(path) for path in files], "notes": notes}
+    show(as_json, facts, "\n".join([*notes, outcome.text() + written]))
+
+
+def _read(path: Path, notes: list[str]) -> Log:
+    """What is used of a log; a note says so where that is not all of it."""
+    whole = read_log(path)
+    used = informative(whole)
+    if used is not whole:
+        length = whole.time[-1] - whole.time[0]
+        notes.append(f"{path}: of {length:.0f} s the {MOST_S:g} s that show most about the arm are used.")
+    return used

@@ -17,9 +17,10 @@ from greywhale.protocol.ports import choose_port
 def command(port: str | None, as_json: bool) -> None:
     """Tell a board's version, state, faults and counters.
 
-    Opening the port resets an Arduino, so motors that were on are off afterwards, and counters start at zero.
+    The board is not restarted if a greywhale had its port last, so that a fault is still there to be seen. Otherwise
+    opening the port restarts an Arduino: motors that were on are off afterwards, and counters start at zero.
     """
-    with Device(choose_port(port)) as device:
+    with Device(choose_port(port), restart=False) as device:
         hello, status = device.hello, device.status()
     show(as_json, _facts(device, hello, status), _text(device, hello, status))
 

@@ -12,6 +12,8 @@ import click
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
+from greywhale.errors import printable
+
 WHOLE = 10_000  # parts of a progress bar
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -38,7 +40,16 @@ def port_option(command: Command) -> Command:
 
 def show(as_json: bool, result: Mapping[str, Any], text: str) -> None:
     """Print the result of a verb: for programs or for people."""
-    click.echo(json.dumps(result, ensure_ascii=False) if as_json else text)
+    if as_json:
+        click.echo(json_of(result))
+    else:
+        click.echo(printable(text))
+
+
+def json_of(result: Mapping[str, Any]) -> str:
+    """One line of JSON, readable in every language, that no terminal obeys: JSON itself escapes not all controls."""
+    text = json.dumps(result, ensure_ascii=False)
+    return text if text.isprintable() else json.dumps(result)
 
 
 @contextlib.contextmanager

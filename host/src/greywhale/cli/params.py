@@ -11,7 +11,7 @@ import click
 from greywhale.board.device import Device
 from greywhale.board.upload import change_parameters, read_parameters
 from greywhale.cli.output import json_option, port_option, progress, show
-from greywhale.errors import BAD_USAGE, UserError
+from greywhale.errors import BAD_USAGE, UserError, cut
 from greywhale.files import parameter_file
 from greywhale.protocol import schema
 from greywhale.protocol.declared import Parameter
@@ -46,7 +46,11 @@ def get(names: tuple[str, ...], port: str | None, as_json: bool) -> None:
 @json_option
 def set_(settings: tuple[str, ...], port: str | None, as_json: bool) -> None:
     """Change parameters, all together: run them and store them."""
-    changes = dict(_setting(setting) for setting in settings)
+    changes: dict[str, int] = {}
+    for name, raw in map(_setting, settings):
+        if name in changes:
+            raise UserError(f"{name} is given twice; give it once.", BAD_USAGE)
+        changes[name] = raw
     with Device(choose_port(port)) as device, progress(as_json) as report:
         done = change_parameters(device, changes, report)
     stored = {name: parameter_file.physical(schema.PARAMETER_BY_NAME[name], raw) for name, raw in changes.items()}
@@ -116,19 +120,19 @@ def _parameter(name: str) -> Parameter:
         return schema.PARAMETER_BY_NAME[name]
     except KeyError:
         raise UserError(
-            f"there is no parameter {json.dumps(name)}; `greywhale params get` shows all names.", BAD_USAGE
+            f"there is no parameter {cut(json.dumps(name))}; `greywhale params get` shows all names.", BAD_USAGE
         ) from None
 
 
 def _setting(text: str) -> tuple[str, int]:
     name, equals, value = text.partition("=")
     if not equals:
-        raise UserError(f"{json.dumps(text)} is not NAME=VALUE, such as joint0.kp=0.5.", BAD_USAGE)
+        raise UserError(f"{cut(json.dumps(text))} is not NAME=VALUE, such as joint0.kp=0.5.", BAD_USAGE)
     parameter = _parameter(name.strip())
     try:
         number = float(value)
     except ValueError:
-        raise UserError(f"{name} is {json.dumps(value)}, but it must be a number.", BAD_USAGE) from None
+        raise UserError(f"{name} is {cut(json.dumps(value))}, but it must be a number.", BAD_USAGE) from None
     return parameter.name, parameter.to_raw_as_given(number)
 
 

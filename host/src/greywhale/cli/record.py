@@ -12,6 +12,7 @@ import click
 from greywhale.board.device import Device
 from greywhale.board.record import Recording, check_every_led, pose_of, record, record_led
 from greywhale.board.upload import read_parameters
+from greywhale.cli.countdown import prepare_motion, yes_option
 from greywhale.cli.output import json_option, port_option, progress, show
 from greywhale.errors import BAD_USAGE, UserError
 from greywhale.files.leader import save_leader
@@ -50,7 +51,7 @@ _OF_EXCITE = {
     metavar="J:MIN:MAX",
     help="With --excite: range of a joint in rad, instead of 1 rad to either side of where it is.",
 )
-@click.option("--seed", type=int, help="With --excite: another seed, another motion.  [default: 0]")
+@click.option("--seed", type=click.IntRange(min=0), help="With --excite: another seed, another motion.  [default: 0]")
 @click.option(
     "--budget", type=int, help="With --excite: motions to try; more take longer and show a little more.  [default: 300]"
 )
@@ -59,6 +60,7 @@ _OF_EXCITE = {
     type=click.Path(path_type=Path),
     help="With --excite: also write the motion, for `replay` or `sim --leader`.",
 )
+@yes_option
 @port_option
 @json_option
 def command(
@@ -72,6 +74,7 @@ def command(
     seed: int | None,
     budget: int | None,
     save_motion: Path | None,
+    yes: bool,
     port: str | None,
     as_json: bool,
 ) -> None:
@@ -83,9 +86,11 @@ def command(
 
     With --excite nobody needs to move the leader: this program leads the arm along a motion designed for `identify`,
     from where the arm is and back. It keeps the joints' limits, but knows of no table and no link in the way: clear the
-    arm's surroundings, or narrow the joints' --range.
+    arm's surroundings, or narrow the joints' --range. A countdown on the terminal comes first, but not on the simulated
+    bench.
     """
     if not excite:
+        require_folders(out)
         _refuse_without_excite(arm_file=arm_file, ranges=ranges, save_motion=save_motion, seed=seed, budget=budget)
         with Device(choose_port(port)) as device, progress(as_json) as report:
             length = RECORDED_S if seconds is None else seconds
@@ -101,12 +106,17 @@ def command(
     if save_motion is not None and save_motion.resolve() == out.resolve():
         raise UserError(f"{out}: the log and the motion cannot be one file; give --save-motion another.", BAD_USAGE)
     plan = _plan(arm_file, ranges, seconds, seed, budget)
-    with Device(choose_port(port)) as device, progress(as_json) as report:
-        running = read_parameters(device, report)
-        designed = plan(pose_of(device), table=running, report=report)
+    chosen = choose_port(port)
+    warn = prepare_motion(chosen, yes)
+    with Device(chosen) as device:
+        with progress(as_json) as report:
+            running = read_parameters(device, report)
+            designed = plan(pose_of(device), table=running, report=report)
         if save_motion is not None:
             save_leader(save_motion, designed.motion)
-        recording = record_led(device, out, designed.motion, every, report, running)
+        warn()
+        with progress(as_json) as report:
+            recording = record_led(device, out, designed.motion, every, report, running)
     saved = {} if save_motion is None else {"motion": str(save_motion)}
     result = {"port": device.port, **recording.as_dict(), "design": designed.as_dict(), **saved}
     show(as_json, result, f"{describe(recording)}\n{designed.text()}")

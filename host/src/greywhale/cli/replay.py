@@ -8,6 +8,7 @@ import click
 
 from greywhale.board.device import Device
 from greywhale.board.record import check_every_led, record_led
+from greywhale.cli.countdown import prepare_motion, yes_option
 from greywhale.cli.output import json_option, port_option, progress, show
 from greywhale.cli.record import describe, require_folders
 from greywhale.files.leader import load_leader
@@ -21,20 +22,25 @@ from greywhale.protocol.ports import choose_port
     "--out", "-o", type=click.Path(path_type=Path), default=Path("log.csv"), show_default=True, help="The log."
 )
 @click.option("--every", type=int, default=1, show_default=True, help="One sample every so many ticks of 1 ms.")
+@yes_option
 @port_option
 @json_option
-def command(motion: Path, out: Path, every: int, port: str | None, as_json: bool) -> None:
+def command(motion: Path, out: Path, every: int, yes: bool, port: str | None, as_json: bool) -> None:
     """Turn the motors on, lead the arm along the motion in FILE and record that.
 
     FILE has the columns time_s, leader_0 .. leader_3 (s, rad), or is a log. The arm first goes slowly from where it is
     to the first pose, and at the end its motors go off. The board keeps the joints' limits; a motion faster than
-    7.7 rad/s is refused.
+    7.7 rad/s is refused. A countdown on the terminal comes first, but not on the simulated bench.
     Ctrl-C stops the motors and keeps what was recorded, marked as interrupted.
     """
     check_every_led(every)
     require_folders(out)
     refuse_inputs(out, motion)
     trajectory = load_leader(motion)
-    with Device(choose_port(port)) as device, progress(as_json) as report:
-        recording = record_led(device, out, trajectory, every, report)
+    chosen = choose_port(port)
+    warn = prepare_motion(chosen, yes)
+    with Device(chosen) as device:
+        warn()
+        with progress(as_json) as report:
+            recording = record_led(device, out, trajectory, every, report)
     show(as_json, {"port": device.port, "motion": str(motion), **recording.as_dict()}, describe(recording))

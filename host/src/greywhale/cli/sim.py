@@ -39,4 +39,4 @@ def command(
     def ready(port: str) -> None:
         click.echo(json.dumps({"port": port}) if as_json else port)
 
-    serve.serve(options, on_ready=ready)
+    serve.serve(options, on_ready=ready, note=lambda text: click.echo(f"greywhale: {text}", err=True))

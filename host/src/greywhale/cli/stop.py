@@ -1,10 +1,11 @@
-"""`greywhale stop`: motors off, now."""
+"""`greywhale stop`: motors off, now, also while another terminal uses the port."""
 
 from __future__ import annotations
 
 import click
 
 from greywhale.board.device import Device
+from greywhale.board.session import ask_to_stop
 from greywhale.cli.output import json_option, port_option, show
 from greywhale.protocol import schema
 from greywhale.protocol.ports import choose_port
@@ -15,10 +16,30 @@ from greywhale.protocol.ports import choose_port
 @port_option
 @json_option
 def command(clear_fault: bool, port: str | None, as_json: bool) -> None:
-    """Stop the motors; clear a fault."""
-    with Device(choose_port(port)) as device:
+    """Stop the motors; clear a fault.
+
+    What holds the port (record, replay, commission, demo, a notebook) is ended as Ctrl-C would, in whatever terminal it
+    runs: it turns the motors off at once, without a restart of the board, and keeps what it recorded.
+
+    A free port is opened without a restart of the board too, if a greywhale had it last; after any other program, or
+    after the cable was plugged in, opening it restarts an Arduino, which also turns the motors off and clears a fault.
+    """
+    chosen = choose_port(port)
+    session = ask_to_stop(chosen, wait_for_end=clear_fault)
+    if session is not None and not clear_fault:
+        facts = {"port": chosen, "state": session["state"], "ended": session["pid"]}
+        state = f", state {session['state']}" if session["state"] else ""
+        show(as_json, facts, f"{chosen}: motors off{state}; what held the port (process {session['pid']}) ends.")
+        return
+    with Device(chosen, restart=False) as device:
         device.stop()
         if clear_fault:
             device.ask(schema.ClearFaultRequest())
-        state = device.status().state
-    show(as_json, {"port": device.port, "state": state.key}, f"{device.port}: motors off, state {state.key}.")
+        state = device.status().state.key
+    ended = {} if session is None else {"ended": session["pid"]}
+    restart = " Opening the port restarted the board." if device.restarted else ""
+    show(
+        as_json,
+        {"port": device.port, "state": state, "restarted": device.restarted, **ended},
+        f"{device.port}: motors off, state {state}.{restart}",
+    )

@@ -1,20 +1,22 @@
 """The journal of a commissioning: what each step gave, so that an interrupted commissioning can go on.
 
-It is a JSON file in the folder that also keeps logs, models and controllers. A step that is in the journal is not done
-again; everything between the steps follows from their results alone.
+It is a JSON file with a check, in the folder that also keeps logs, models and controllers. A step that is in the
+journal is not done again; everything between the steps follows from their results alone.
 """
 
 from __future__ import annotations
 
 import json
+import zlib
 from pathlib import Path
 from typing import Any
 
 from greywhale.errors import BAD_USAGE, UserError, os_reason
+from greywhale.formats import json_text
 from greywhale.formats.whole import write_text
 
 NAME = "commission.json"
-VERSION = 1
+VERSION = 2
 
 
 class Book:
@@ -55,13 +57,14 @@ class Book:
         return self.folder / name
 
     def _write(self) -> None:
-        book = {"greywhale_commission": VERSION, "request": self._request, "steps": self._steps}
-        write_text(self._path, json.dumps(book, indent=1) + "\n")
+        check = _check(self._request, self._steps)
+        book = {"greywhale_commission": VERSION, "request": self._request, "steps": self._steps, "check": check}
+        write_text(self._path, json.dumps(book, indent=1, allow_nan=False) + "\n")
 
     def _read(self) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
         """Request and steps of the journal in the folder."""
         try:
-            book = json.loads(self._path.read_text(encoding="utf-8"))
+            book = json_text.loads(self._path.read_text(encoding="utf-8"))
             version, request, steps = book["greywhale_commission"], dict(book["request"]), dict(book["steps"])
         except FileNotFoundError:
             raise UserError(
@@ -71,6 +74,8 @@ class Book:
             raise UserError(f"{self._path}: this is no journal of a commissioning; begin anew.", BAD_USAGE) from None
         if version != VERSION:
             raise UserError(f"{self._path}: it is of another version of greywhale; begin anew.", BAD_USAGE)
+        if book.get("check") != _check(request, steps):
+            raise UserError(f"{self._path}: the journal is damaged; begin anew.", BAD_USAGE)
         return request, steps
 
     def _require_same(self, request: dict[str, Any]) -> None:
@@ -81,3 +86,7 @@ class Book:
                     "or begin anew in another folder.",
                     BAD_USAGE,
                 )
+
+
+def _check(request: dict[str, Any], steps: dict[str, dict[str, Any]]) -> str:
+    return f"{zlib.crc32(json.dumps([request, steps], sort_keys=True).encode()):08x}"

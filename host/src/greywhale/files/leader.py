@@ -5,10 +5,13 @@ A bad file is refused before anything moves, with one sentence naming file, line
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
+from greywhale.errors import UserError
 from greywhale.files.log.layout import COLUMNS as LOG_COLUMNS
 from greywhale.firmware import JOINTS
 from greywhale.formats import csv_file
@@ -22,29 +25,57 @@ FASTEST_RAD_S = 250.0
 COLUMNS = ("time_s", *(f"leader_{joint}" for joint in range(JOINTS)))
 
 
+@dataclass(frozen=True)
+class _Rows:
+    """Times (n,), angles (n, 4) and the lines that they stand on."""
+
+    name: str
+    time_s: Array
+    angles: Array
+    lines: npt.NDArray[np.int64]
+
+    def error(self, row: int, column: str, problem: str) -> UserError:
+        return UserError(f"{self.name}, line {self.lines[row]}, column {column}: {problem}.")
+
+
 def load_leader(path: str | Path) -> Trajectory:
     """Read and check a leader file or a log; its first row becomes time 0."""
-    table = csv_file.read(path, LOG_COLUMNS if _is_log(path) else COLUMNS, minimum_rows=2)
-    time_s = table.increasing("time_s")
-    angles = np.column_stack([table.numbers(column) for column in COLUMNS[1:]])
-    outside = np.argwhere(np.abs(angles) > POT_RANGE_RAD)
+    rows = _read(path)
+    outside = np.argwhere(np.abs(rows.angles) > POT_RANGE_RAD)
     if len(outside):
         row, joint = (int(index) for index in outside[0])
         problem = (
-            f"{angles[row, joint]:g} rad is out of the potentiometers' range [-{POT_RANGE_RAD}, {POT_RANGE_RAD}] rad; "
-            "shift or scale this joint"
+            f"{rows.angles[row, joint]:g} rad is out of the potentiometers' range "
+            f"[-{POT_RANGE_RAD}, {POT_RANGE_RAD}] rad; shift or scale this joint"
         )
-        raise table.error(row, COLUMNS[1 + joint], problem)
-    _check_pace(table, time_s, angles)
-    return Trajectory(time_s - time_s[0], angles)
+        raise rows.error(row, COLUMNS[1 + joint], problem)
+    _check_pace(rows)
+    return Trajectory(rows.time_s - rows.time_s[0], rows.angles)
 
 
-def _check_pace(table: csv_file.CsvTable, time_s: Array, angles: Array) -> None:
+def _read(path: str | Path) -> _Rows:
+    """The columns of the leader, a block of the file after another."""
+    time_s, angles, lines = [np.empty(0)], [np.empty((0, JOINTS))], [np.empty(0, dtype=np.int64)]
+    before = -np.inf
+    with csv_file.CsvFile(path, LOG_COLUMNS if _is_log(path) else COLUMNS) as file:
+        for block in file.blocks():
+            table = file.table(block)
+            time_s.append(table.increasing("time_s", before))
+            angles.append(np.column_stack([table.numbers(column) for column in COLUMNS[1:]]))
+            lines.append(np.array(table.lines, dtype=np.int64))
+            before = float(time_s[-1][-1]) if table.lines else before
+        rows = _Rows(file.name, np.concatenate(time_s), np.concatenate(angles), np.concatenate(lines))
+        file.require_rows(len(rows.lines), 2)
+    return rows
+
+
+def _check_pace(rows: _Rows) -> None:
     """Refuse what takes too long to play, and speeds that no leader has; these are mostly wrong units."""
+    time_s, angles = rows.time_s, rows.angles
     late = np.flatnonzero(time_s - time_s[0] > LONGEST_S)
     if late.size:
         problem = f"{time_s[late[0]]:g} s is more than {LONGEST_S:g} s after the first row; times are in s"
-        raise table.error(int(late[0]), "time_s", problem)
+        raise rows.error(int(late[0]), "time_s", problem)
     speed = np.abs(np.diff(angles, axis=0)) / np.diff(time_s)[:, None]
     jumps = np.argwhere(speed > FASTEST_RAD_S)
     if len(jumps):
@@ -53,7 +84,7 @@ def _check_pace(table: csv_file.CsvTable, time_s: Array, angles: Array) -> None:
             f"from {angles[row, joint]:g} to {angles[row + 1, joint]:g} rad in {time_s[row + 1] - time_s[row]:g} s is "
             f"faster than {FASTEST_RAD_S:g} rad/s; give a jump more time"
         )
-        raise table.error(row + 1, COLUMNS[1 + joint], problem)
+        raise rows.error(row + 1, COLUMNS[1 + joint], problem)
 
 
 def save_leader(path: str | Path, trajectory: Trajectory) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-from greywhale.errors import UserError
+from greywhale.errors import UserError, cut
 from greywhale.files import controller
 from greywhale.formats import toml_file
 from greywhale.formats.whole import write_text
@@ -48,7 +48,7 @@ def load(path: str | Path) -> ParameterTable:
     found = _flat(toml_file.read(path), path)
     unknown = [name for name in found if name not in schema.PARAMETER_BY_NAME]
     if unknown:
-        raise UserError(f"{path}: unknown key {unknown[0]}; remove it or check its spelling.")
+        raise UserError(f"{path}: unknown key {toml_file.key_path(unknown[:1])}; remove it or check its spelling.")
     values = []
     older = not any(name in found for name in SINCE_LAYOUT_2)
     for parameter in schema.PARAMETERS:
@@ -59,7 +59,7 @@ def load(path: str | Path) -> ParameterTable:
             raise UserError(f"{path}: {parameter.name} is missing; a parameter file holds all of them.")
         value = found[parameter.name]
         if isinstance(value, bool) or not isinstance(value, int | float):
-            raise UserError(f"{path}: {parameter.name} is {value!r}, but it must be a number.")
+            raise UserError(f"{path}: {parameter.name} is {cut(repr(value))}, but it must be a number.")
         try:
             values.append(parameter.to_raw_as_given(value))
         except UserError as error:

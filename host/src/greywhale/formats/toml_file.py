@@ -1,13 +1,15 @@
 """Reads a TOML file into a pydantic model; whatever is wrong becomes one sentence that names file, key, value and
 range.
 
-Unknown keys and non-finite numbers are refused for every model, whatever its own configuration says.
+Unknown keys and non-finite numbers are refused for every model, whatever its own configuration says. So is what only a
+broken or malicious file has: depth, length and integers that would keep the parser busy for ever or overflow numbers.
 """
 
 from __future__ import annotations
 
 import json
 import math
+import re
 import tomllib
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -15,10 +17,22 @@ from typing import Any, NamedTuple, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from greywhale.errors import UserError, os_reason
+from greywhale.errors import UserError, cut, os_reason
 from greywhale.formats.whole import refuse_devices
 
 Model = TypeVar("Model", bound=BaseModel)
+
+_LONGEST = 1 << 22
+_DEEPEST = 24
+_LARGEST = 1 << 63
+_BARE = re.compile(r"[A-Za-z0-9_-]+")
+# Strings and comments as a whole, so that nothing in them counts, and all else one by one. Spaces may stand between the
+# parts of a key.
+_TOKEN = re.compile(
+    r"""(?P<part>\"{3}(?:[^\\]|\\.)*?\"{3}|'{3}.*?'{3}|"(?:[^"\\\n]|\\.)*"|'[^'\n]*'|[^\W]+|-+|[^\S\n]+)"""
+    r"""|\#[^\n]*|.""",
+    re.DOTALL,
+)
 
 
 class Table(BaseModel):
@@ -53,9 +67,7 @@ def read(path: str | Path) -> dict[str, Any]:
 
 def check(data: dict[str, Any], model: type[Model], name: str) -> Model:
     """Check parsed TOML against `model`."""
-    for location, value in _numbers(data, ()):
-        if not math.isfinite(value):
-            raise UserError(f"{name}: {key_path(location)} is {value}; it must be a finite number.")
+    _refuse_odd_numbers(data, name)
     try:
         # Through JSON, so that in strict mode arrays may still become tuples, and words may become enumerations.
         return model.model_validate_json(json.dumps(data, default=str), extra="forbid")
@@ -67,25 +79,62 @@ def key_path(location: Sequence[str | int]) -> str:
     """A key as people write it: joint[2].sets.Ne_c."""
     path = ""
     for part in location:
-        path += f"[{part}]" if isinstance(part, int) else f".{part}" if path else part
-    return path or "the file"
+        word = part if isinstance(part, int) or _BARE.fullmatch(part) else json.dumps(part)
+        path += f"[{word}]" if isinstance(word, int) else f".{cut(word)}" if path else cut(word)
+    return cut(path, 120) or "the file"
 
 
 def _parse(text: str, name: str) -> dict[str, Any]:
+    _refuse_depth(text, name)
     try:
-        return tomllib.loads(text)
+        data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise UserError(f"{name}: not valid TOML: {_lower_first(str(error))}.") from None
+        raise UserError(f"{name}: not valid TOML: {_lower_first(cut(str(error), 200))}.") from None
+    except RecursionError:
+        raise UserError(f"{name}: not valid TOML: it is nested too deeply.") from None
+    except ValueError:  # Python reads no integer of thousands of digits
+        raise UserError(f"{name}: not valid TOML: a number in it has too many digits.") from None
+    _refuse_odd_numbers(data, name)
+    return data
 
 
-def _numbers(value: object, location: tuple[str | int, ...]) -> Iterator[tuple[tuple[str | int, ...], float]]:
+def _refuse_depth(text: str, name: str) -> None:
+    """Refuse what would keep the parser busy: a file, a key or brackets beyond any that greywhale writes."""
+    if len(text) > _LONGEST:
+        raise UserError(f"{name}: {len(text)} characters; a TOML file of greywhale has at most {_LONGEST}.")
+    depth = parts = 0
+    for found in _TOKEN.finditer(text):
+        token = found.group()
+        if token in ("[", "{"):
+            depth += 1
+        elif token in ("]", "}"):
+            depth -= 1
+        elif token == ".":
+            parts += 1
+            continue
+        if found.lastgroup != "part":
+            parts = 0
+        if depth > _DEEPEST or parts > _DEEPEST:
+            line = text.count("\n", 0, found.start()) + 1
+            raise UserError(f"{name}, line {line}: nested more than {_DEEPEST} deep; no file of greywhale is.")
+
+
+def _refuse_odd_numbers(data: dict[str, Any], name: str) -> None:
+    for location, value in _numbers(data, ()):
+        if isinstance(value, int) and abs(value) > _LARGEST:
+            raise UserError(f"{name}: {key_path(location)} is {cut(str(value), 30)}, which is out of any range.")
+        if not math.isfinite(value):
+            raise UserError(f"{name}: {key_path(location)} is {value}; it must be a finite number.")
+
+
+def _numbers(value: object, location: tuple[str | int, ...]) -> Iterator[tuple[tuple[str | int, ...], int | float]]:
     if isinstance(value, dict):
         for key, item in value.items():
             yield from _numbers(item, (*location, key))
     elif isinstance(value, list):
         for index, item in enumerate(value):
             yield from _numbers(item, (*location, index))
-    elif isinstance(value, float):
+    elif isinstance(value, int | float):
         yield location, value
 
 
@@ -120,7 +169,7 @@ def _problem(problem: Problem, model: type[BaseModel]) -> str:
         return f"{key} is missing"
     if problem.kind in _BOUNDS:
         bounds = _range(model.model_json_schema(), problem.location)
-        return f"{key} is {json.dumps(problem.value)}, but it must be {bounds}"
+        return f"{key} is {cut(json.dumps(problem.value))}, but it must be {bounds}"
     if problem.kind in ("too_short", "too_long") and isinstance(problem.value, list):
         count = _fixed_count(model.model_json_schema(), problem.location)
         if count is not None:
@@ -131,7 +180,7 @@ def _problem(problem: Problem, model: type[BaseModel]) -> str:
     if isinstance(problem.value, dict | list):
         # A rule over a whole table words its own sentence; printing the table itself would not help.
         return f"{key}: {message}" if problem.location else message
-    return f"{key} is {json.dumps(problem.value)}, but {message}"
+    return f"{key} is {cut(json.dumps(problem.value))}, but {message}"
 
 
 # Kinds of complaint about a number out of range; the words for each bound in a JSON schema.

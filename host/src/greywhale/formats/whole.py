@@ -1,4 +1,7 @@
-"""Reads whole files only, and writes a file whole or not at all: into a temporary file beside it, then renamed."""
+"""Reads whole files only, and writes a file whole or not at all: into a temporary file beside it, then renamed.
+
+What was written is on the disk before it gets its name, and its name is too before the writer says so.
+"""
 
 from __future__ import annotations
 
@@ -44,6 +47,31 @@ def temporary_beside(path: Path) -> tuple[int, str]:
     return descriptor, name
 
 
+def keep(file: IO[bytes], temporary: str, target: Path) -> None:
+    """Give a temporary file its name, so that no power cut can take either: OSError where the disk does not promise."""
+    sync(file)
+    os.replace(temporary, target)
+    sync_folder(target.parent)
+
+
+def sync(file: IO[bytes]) -> None:
+    """Have on the disk what was written."""
+    file.flush()
+    os.fsync(file.fileno())
+
+
+def sync_folder(folder: Path) -> None:
+    """Have the names in a folder on the disk, where its file system can promise that."""
+    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        os.fsync(descriptor)
+    except OSError as error:
+        if error.errno not in (errno.EINVAL, errno.ENOTSUP):
+            raise
+    finally:
+        os.close(descriptor)
+
+
 def write_whole(path: str | Path, write: Callable[[IO[bytes]], None]) -> None:
     """Let `write` fill the file; `path` appears, or is replaced, only when that went well."""
     target = Path(path)
@@ -54,7 +82,7 @@ def write_whole(path: str | Path, write: Callable[[IO[bytes]], None]) -> None:
     try:
         with open(descriptor, "wb") as file:
             write(file)
-        os.replace(name, target)
+            keep(file, name, target)
     except OSError as error:
         _discard(name)
         raise UserError(f"{path}: cannot be written: {os_reason(error)}.") from None

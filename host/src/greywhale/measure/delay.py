@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.fft import irfft, next_fast_len, rfft
 
 Floats = NDArray[np.float64]
 
@@ -19,6 +20,10 @@ _SMALLEST_MOTION = 0.05
 _LOWEST_CORRELATION = 0.5
 # Lags below zero are searched this far (s), only to tell a peak at zero from the edge of the search.
 _BEFORE_ZERO_S = 0.1
+# Overlaps that vary less than this share of the whole show no likeness.
+_STILL = 1e-9
+# Samples that are transformed at once, so that a log of an hour needs little memory.
+_PIECE = 1 << 16
 # At the longest lag the two signals must still overlap for so many seconds.
 _SHORTEST_OVERLAP_S = 1.0
 
@@ -31,7 +36,7 @@ def correlation_delay(leader: Floats, follower: Floats, period: float, longest_s
     last = max(2, round(longest_s / period))
     if (len(leader) - last) * period < _SHORTEST_OVERLAP_S:
         return None
-    likeness = np.array([_correlation(leader, follower, lag) for lag in range(first, last + 1)])
+    likeness = correlations(leader, follower, first, last)
     best = int(np.argmax(likeness))
     if likeness[best] < _LOWEST_CORRELATION or best in (0, len(likeness) - 1):
         return None
@@ -41,15 +46,45 @@ def correlation_delay(leader: Floats, follower: Floats, period: float, longest_s
     return float((first + best + between) * period)
 
 
-def _correlation(leader: Floats, follower: Floats, lag: int) -> float:
-    """Pearson's correlation of leader[k] and follower[k + lag] over the samples that both have."""
-    count = len(leader) - abs(lag)
-    a = leader[:count] if lag >= 0 else leader[-lag:]
-    b = follower[lag:] if lag >= 0 else follower[:count]
-    a = a - a.mean()
-    b = b - b.mean()
-    scale = float(np.sqrt(a.dot(a) * b.dot(b)))
-    return float(a.dot(b)) / scale if scale > 0.0 else 0.0
+def correlations(leader: Floats, follower: Floats, first: int, last: int) -> Floats:
+    """Pearson's correlation of leader[k] and follower[k + lag] over the samples that both have, for every lag."""
+    a, b = leader - leader.mean(), follower - follower.mean()
+    lags = np.arange(first, last + 1)
+    products = _products(a, b, first, last)
+    # What a lag leaves out lies at the end of one signal and at the beginning of the other.
+    ahead, behind = np.maximum(lags, 0), np.maximum(-lags, 0)
+    count = len(a) - np.abs(lags)
+    sum_a, sum_b = _sums(a, behind, ahead), _sums(b, ahead, behind)
+    spread_a = _sums(a * a, behind, ahead) - sum_a**2 / count
+    spread_b = _sums(b * b, ahead, behind) - sum_b**2 / count
+    scale = np.sqrt(np.maximum(spread_a, 0.0) * np.maximum(spread_b, 0.0))
+    still = scale <= _STILL * np.sqrt(a.dot(a) * b.dot(b))
+    likeness: Floats = np.where(still, 0.0, (products - sum_a * sum_b / count) / np.where(still, 1.0, scale))
+    return likeness
+
+
+def _sums(values: Floats, without_first: NDArray[np.intp], without_last: NDArray[np.intp]) -> Floats:
+    """Sums of the values without so many first and last ones."""
+    most = int(max(without_first.max(), without_last.max()))
+    head = np.concatenate(([0.0], np.cumsum(values[:most])))
+    tail = np.concatenate(([0.0], np.cumsum(values[::-1][:most])))
+    sums: Floats = values.sum() - head[without_first] - tail[without_last]
+    return sums
+
+
+def _products(a: Floats, b: Floats, first: int, last: int) -> Floats:
+    """Sums of a[k] b[k + lag] for the lags first..last: pieces of `a` against what they can meet in `b`."""
+    span = last - first
+    size = next_fast_len(_PIECE + span, real=True)
+    sums = np.zeros(span + 1)
+    for start in range(0, len(a), _PIECE):
+        piece = a[start : start + _PIECE]
+        low, high = start + first, start + len(piece) + last
+        met = np.zeros(high - low)
+        inside = slice(max(low, 0), min(high, len(b)))
+        met[inside.start - low : inside.stop - low] = b[inside]
+        sums += irfft(np.conj(rfft(piece, size)) * rfft(met, size), size)[: span + 1]
+    return sums
 
 
 def onset_delays(

@@ -44,13 +44,18 @@ class Settings:
 
 @dataclass(frozen=True)
 class JointMeasures:
-    """rad^2, rad, s, s; None where the motion does not define the measure."""
+    """rad^2, rad, s, s; None where the motion does not define the measure.
+
+    A joint does not follow at all (`follows` False) where its leader moved, and the follower was further from it than a
+    follower that had stood still in the middle.
+    """
 
     mse: float
     steady_state_error: float | None
     delay_s: float | None
     onset_delay_s: float | None
     steps: int
+    follows: bool = True
 
 
 @dataclass(frozen=True)
@@ -74,6 +79,7 @@ class Evaluation:
                     "time_delay_s": joint.delay_s,
                     "onset_delay_s": joint.onset_delay_s,
                     "steps": joint.steps,
+                    "follows": joint.follows,
                     "leader_rested_s": rested,
                 }
                 for joint, rested in zip(self.joints, self.rests_s, strict=True)
@@ -131,15 +137,18 @@ def _joint(
             settings.step_size,
             run.samples(settings.step_s),
         )
+    mse = float(np.mean(error[measured] ** 2))
+    led = leader[measured]
     longest = max(runs, key=lambda run: run.stop - run.start)
     measures = JointMeasures(
-        mse=float(np.mean(error[measured] ** 2)),
+        mse=mse,
         steady_state_error=float(np.mean(np.abs(error[at_rest]))) if at_rest.any() else None,
         delay_s=correlation_delay(
             leader[longest.slice], follower[longest.slice], longest.period, settings.longest_delay_s
         ),
         onset_delay_s=float(np.mean(onsets)) if onsets else None,
         steps=len(onsets),
+        follows=bool(np.ptp(led) < settings.onset_band or mse < np.var(led)),
     )
     period = longest.period
     return measures, float(np.count_nonzero(at_rest) * period)

@@ -129,6 +129,10 @@ class Group:
     fields: tuple[Field, ...]
 
 
+# Beyond the range of every parameter.
+_BEYOND = 1 << 63
+
+
 @dataclass(frozen=True, slots=True)
 class Parameter:
     """One entry of the table: "joint2.kp". minimum, maximum and default are raw."""
@@ -154,7 +158,8 @@ class Parameter:
         """The nearest raw value; UserError when it is not finite or out of range."""
         if not math.isfinite(physical):
             raise UserError(f"{self.name} is {physical}, but it must be a finite number; {self._advice()}", BAD_USAGE)
-        raw = math.floor(physical / self.lsb + 0.5)
+        scaled = physical / self.lsb + 0.5
+        raw = math.floor(scaled) if math.isfinite(scaled) else _BEYOND
         self._check(raw, physical)
         return raw
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
 from serial.tools import list_ports
 
 from greywhale.errors import BAD_USAGE, UserError
+from greywhale.runtime import private_runtime_directory
 
 BOARDS = {"mega": "Arduino Mega 2560", "nano": "Arduino Nano (ATmega328P)"}
 
@@ -45,11 +45,6 @@ class Port:
         return {"port": self.device, "description": self.description, "board": self.board, "bench": self.bench}
 
 
-def bench_directory() -> Path:
-    """Where running benches leave a link to their port, named board-process: /tmp/greywhale-bench-1000/mega-4711."""
-    return Path(tempfile.gettempdir()) / f"greywhale-bench-{os.getuid()}"
-
-
 def find_ports() -> list[Port]:
     """List benches first, then every serial port of this machine."""
     return _benches() + _hardware()
@@ -72,6 +67,12 @@ def choose_port(named: str | None) -> str:
     raise UserError(f"several ports may be the board: {names}; choose one with --port.", BAD_USAGE)
 
 
+def is_bench(device: str) -> bool:
+    """Whether the port named `device` is a simulated board's."""
+    real = os.path.realpath(device)
+    return any(port.bench and os.path.realpath(port.device) == real for port in find_ports())
+
+
 def board_of(device: str) -> str | None:
     """mega or nano, if the port named `device` says so."""
     real = os.path.realpath(device)
@@ -81,17 +82,28 @@ def board_of(device: str) -> str | None:
     return None
 
 
+def forget_dead_benches() -> None:
+    """Remove the links that killed benches left."""
+    for link in _links():
+        if not _runs(link.name.partition("-")[2]):
+            link.unlink(missing_ok=True)
+
+
 def _benches() -> list[Port]:
-    directory = bench_directory()
-    if not directory.is_dir() or directory.stat().st_uid != os.getuid():
-        return []
     ports = []
-    for link in sorted(directory.iterdir()):
+    for link in _links():
         board, _, process = link.name.partition("-")
         # A killed bench leaves its link behind, and its pseudo-terminal may be somebody else's by now.
-        if board in BOARDS and link.exists() and _runs(process):
+        if link.exists() and _runs(process):
             ports.append(Port(str(link), f"bench, simulated {BOARDS[board]}", board, bench=True, usb=False))
     return ports
+
+
+def _links() -> list[Path]:
+    """What benches left in the runtime folder: each a link to its port, named board-process, mega-4711."""
+    directory = private_runtime_directory()
+    found = [] if directory is None else sorted(directory.iterdir())
+    return [link for link in found if link.is_symlink() and link.name.partition("-")[0] in BOARDS]
 
 
 def _runs(process: str) -> bool:

@@ -1,9 +1,18 @@
-"""The serial port as bytes: opened exclusively at 1 Mbaud; every failure of it becomes one sentence."""
+"""The serial port as bytes: opened exclusively at 1 Mbaud; every failure of it becomes one sentence.
+
+An Arduino restarts when its DTR line rises. The system raises DTR when a port is opened, and lets it fall when the port
+is closed, unless the terminal's flag HUPCL is off. A session switches that flag off at its end. So the next one can
+open the port without a restart, or lets DTR fall first where it wants one.
+"""
 
 from __future__ import annotations
 
+import contextlib
 import errno
 import os
+import termios
+import threading
+import time
 
 import serial
 
@@ -14,14 +23,20 @@ BAUD = 1_000_000
 # How long a read waits for the first byte. Short, so that deadlines are kept; long enough not to spin.
 _READ_WAIT_S = 0.02
 _WRITE_WAIT_S = 1.0
+# So long is DTR down before it rises again: a board's reset line needs some 2 ms.
+_DTR_DOWN_S = 0.05
+_CFLAG = 2  # place of the control flags in what termios returns
 
 
 class Transport:
     """An open port; every failure of it is a UserError that names it."""
 
-    def __init__(self, port: str) -> None:
+    def __init__(self, port: str, restart: bool = True) -> None:
+        """Open the port, with a `restart` of the board or, if that can be, without: `restarted` tells."""
         self.port = port
-        self._serial = open_serial(port, BAUD, _READ_WAIT_S)
+        self._serial = open_serial(port, BAUD, _READ_WAIT_S, restart)
+        self.restarted = restart or not _stays_up(self._serial)
+        self._writing = threading.Lock()  # two threads never mix their frames
 
     def read(self) -> bytes:
         """Return what has arrived; wait a moment when nothing has, and then return perhaps nothing."""
@@ -32,7 +47,8 @@ class Transport:
 
     def write(self, data: bytes) -> None:
         try:
-            self._serial.write(data)
+            with self._writing:
+                self._serial.write(data)
         except serial.SerialTimeoutException:
             raise UserError(
                 f"{self.port}: the port takes no data; unplug the board, plug it in and try again."
@@ -41,7 +57,10 @@ class Transport:
             raise self._gone(error) from None
 
     def close(self) -> None:
-        self._serial.close()
+        with self._writing:
+            if self._serial.is_open:
+                _keep_up(self._serial, True)
+            self._serial.close()
 
     def _gone(self, error: Exception) -> UserError:
         reason = os_reason(error) if isinstance(error, OSError) else "it was closed"
@@ -50,8 +69,18 @@ class Transport:
         )
 
 
-def open_serial(port: str, baud: int, read_wait_s: float) -> serial.Serial:
-    """Open the port for this process alone."""
+def open_serial(port: str, baud: int, read_wait_s: float, restart: bool = True) -> serial.Serial:
+    """Open the port for this process alone; with `restart`, the board behind it restarts for sure."""
+    line = _open(port, baud, read_wait_s)
+    if restart and _stays_up(line):
+        _keep_up(line, False)
+        line.close()
+        time.sleep(_DTR_DOWN_S)
+        line = _open(port, baud, read_wait_s)
+    return line
+
+
+def _open(port: str, baud: int, read_wait_s: float) -> serial.Serial:
     if not os.path.exists(port):
         raise UserError(f"{port}: there is no such port; `greywhale ports` lists those there are.")
     try:
@@ -60,6 +89,22 @@ def open_serial(port: str, baud: int, read_wait_s: float) -> serial.Serial:
         raise UserError(f"{port}: cannot be opened: {error}.") from None
     except OSError as error:
         raise UserError(_why_not_open(port, error)) from None
+
+
+def _stays_up(line: serial.Serial) -> bool:
+    """Whether DTR is not lowered at the end; it was up already, then, when the port was opened."""
+    try:
+        return not termios.tcgetattr(line.fileno())[_CFLAG] & termios.HUPCL
+    except termios.error:
+        return False
+
+
+def _keep_up(line: serial.Serial, up: bool) -> None:
+    """Say whether DTR stays up when the port is closed."""
+    with contextlib.suppress(termios.error):  # an unplugged cable has no DTR
+        flags = termios.tcgetattr(line.fileno())
+        flags[_CFLAG] = flags[_CFLAG] & ~termios.HUPCL if up else flags[_CFLAG] | termios.HUPCL
+        termios.tcsetattr(line.fileno(), termios.TCSANOW, flags)
 
 
 def _why_not_open(port: str, error: OSError) -> str:

@@ -4,19 +4,23 @@ column.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from greywhale.errors import UserError
-from greywhale.files.log.layout import COLUMNS, COMPLETE, ENDINGS, STATES, TITLE, Origin
+from greywhale.errors import UserError, cut
+from greywhale.files.log.layout import COLUMNS, COMPLETE, ENDINGS, STATES, TITLE, UNFINISHED, Origin
+from greywhale.files.log.rows import parse_rows
 from greywhale.firmware import JOINTS
 from greywhale.formats import csv_file
 
+_MOST_WHOLE = (1 << 63) - 1
 # No board sends larger values: 16 bits of 1/4096 rad and of mV. Such values are another tool's degrees or millivolts.
 _MOST = {"leader": (8.0, "rad"), "follower": (8.0, "rad"), "voltage": (33.0, "V")}
+# Where each quantity stands in a row of numbers, behind the time.
+_PLACES = {name: slice(1 + place * JOINTS, 1 + (place + 1) * JOINTS) for place, name in enumerate(_MOST)}
 
 
 @dataclass(frozen=True)
@@ -32,38 +36,114 @@ class Log:
     state: NDArray[np.str_]
     dropped: int
     complete: bool
+    ended_by: str = ""
+
+    def without_samples(self) -> Log:
+        """What is known of the log apart from its samples, which take most of the memory."""
+        none = np.empty((0, JOINTS))
+        return replace(self, time=np.empty(0), leader=none, follower=none, voltage=none, state=self.state[:0].copy())
 
 
-def read_log(path: str | Path) -> Log:
-    """Read a log written by `greywhale record`, or by another tool with the same columns and any comments."""
-    table = csv_file.read(path, COLUMNS, minimum_rows=2)
-    _check_version(table)
-    facts = _facts(table.comments)
-    time = table.increasing("time_s")
-    for row, cell in enumerate(table.columns["state"]):
-        if cell not in STATES:
-            raise table.error(row, "state", f"{cell!r} is not one of {', '.join(STATES)}")
-    ending = facts.get("recording", COMPLETE)
-    if ending not in ENDINGS:
-        raise UserError(f"{path}: recording is {ending!r} in the header; it must be one of {', '.join(ENDINGS)}.")
+def read_log(path: str | Path, voltages: bool = True) -> Log:
+    """Read a log written by `greywhale record`, or by another tool with the same columns and any comments.
+
+    Without `voltages` those are checked, but not kept: the log then has none, (rows, 0), and needs less memory.
+    """
+    with csv_file.CsvFile(path, COLUMNS) as file:
+        _check_version(file)
+        facts = _facts(file.comments)
+        ending = facts.get("recording", COMPLETE)
+        if ending not in ENDINGS:
+            raise UserError(
+                f"{path}: recording is {cut(repr(ending))} in the header; it must be one of {', '.join(ENDINGS)}."
+            )
+        origin = _origin(facts, str(path))
+        dropped = _whole(facts, "dropped_samples", str(path), 0, _MOST_WHOLE) or 0
+        columns = _Columns(_count_lines(path), voltages)
+        for block in file.blocks(torn=ending == UNFINISHED):
+            columns.take(file, block)
+        file.require_rows(columns.rows, 2)
     return Log(
         name=str(path),
-        origin=_origin(facts, str(path)),
-        time=time,
-        leader=_joints(table, "leader"),
-        follower=_joints(table, "follower"),
-        voltage=_joints(table, "voltage"),
-        state=np.array(table.columns["state"]),
-        dropped=_whole(facts, "dropped_samples", str(path)) or 0,
+        origin=origin,
+        time=columns.time[: columns.rows],
+        leader=columns.leader[: columns.rows],
+        follower=columns.follower[: columns.rows],
+        voltage=columns.voltage[: columns.rows],
+        state=_words(columns.state[: columns.rows]),
+        dropped=dropped,
         complete=ending == COMPLETE,
+        ended_by=facts.get("ended_by", ""),
     )
 
 
-def _check_version(table: csv_file.CsvTable) -> None:
-    for comment in table.comments:
+class _Columns:
+    """Room for so many rows, filled a block after another."""
+
+    def __init__(self, room: int, voltages: bool) -> None:
+        self.rows = 0
+        self.time = np.empty(room)
+        self.leader, self.follower = np.empty((room, JOINTS)), np.empty((room, JOINTS))
+        self.voltage = np.empty((room, JOINTS if voltages else 0))
+        self.state = np.empty(room, dtype=np.int8)
+
+    def take(self, file: csv_file.CsvFile, block: csv_file.Block) -> None:
+        """Add the rows of a block; what is wrong in them is a UserError that names the cell."""
+        before = float(self.time[self.rows - 1]) if self.rows else -np.inf
+        parsed = parse_rows(block.data)
+        if parsed is None or not _is_good(parsed[0], before):
+            parsed = _cell_by_cell(file.table(block), before)
+        numbers, states = parsed
+        here = slice(self.rows, self.rows + len(numbers))
+        self.time[here] = numbers[:, 0]
+        self.leader[here] = numbers[:, _PLACES["leader"]]
+        self.follower[here] = numbers[:, _PLACES["follower"]]
+        if self.voltage.shape[1]:
+            self.voltage[here] = numbers[:, _PLACES["voltage"]]
+        self.state[here] = states
+        self.rows = here.stop
+
+
+def _is_good(numbers: NDArray[np.float64], before: float) -> bool:
+    """Whether time goes on, and all is within what a board can say."""
+    return bool((np.diff(numbers[:, 0], prepend=before) > 0.0).all()) and all(
+        bool((np.abs(numbers[:, _PLACES[quantity]]) <= most).all()) for quantity, (most, _) in _MOST.items()
+    )
+
+
+def _cell_by_cell(table: csv_file.CsvTable, before: float) -> tuple[NDArray[np.float64], NDArray[np.int8]]:
+    """The same as `parse_rows`, of rows in any form of CSV, each cell checked."""
+    time = table.increasing("time_s", before)
+    for row, cell in enumerate(table.columns["state"]):
+        if cell not in STATES:
+            raise table.error(row, "state", f"{cut(repr(cell))} is not one of {', '.join(STATES)}")
+    quantities = [_joints(table, quantity) for quantity in _PLACES]
+    states = np.array([STATES.index(cell) for cell in table.columns["state"]], dtype=np.int8)
+    return np.column_stack([time, *quantities]), states
+
+
+def _words(places: NDArray[np.int8]) -> NDArray[np.str_]:
+    """The states as words. A recording has mostly one, which is kept once."""
+    words = np.array(STATES)
+    if places.size and (places == places[0]).all():
+        return np.broadcast_to(words[places[0]], places.shape)
+    return words[places]
+
+
+def _count_lines(path: str | Path) -> int:
+    """How many lines a file has at most."""
+    count = 1
+    with open(path, "rb") as file:
+        while data := file.read(csv_file.BLOCK):
+            count += data.count(b"\n")
+    return count
+
+
+def _check_version(file: csv_file.CsvFile) -> None:
+    for comment in file.comments:
         if comment.startswith(TITLE.rstrip("0123456789")) and comment != TITLE:
             raise UserError(
-                f'{table.name} is a "{comment}", but this greywhale reads "{TITLE}"; '
+                f'{file.name} is a "{cut(comment)}", but this greywhale reads "{TITLE}"; '
                 "read it with the version that wrote it."
             )
 
@@ -92,20 +172,22 @@ def _origin(facts: dict[str, str], name: str) -> Origin:
     return Origin(
         firmware=facts.get("firmware"),
         board=facts.get("board"),
-        param_crc=_whole(facts, "parameter_crc", name),
-        period_ms=_whole(facts, "period_ms", name),
-        every_ticks=_whole(facts, "every_ticks", name),
+        param_crc=_whole(facts, "parameter_crc", name, 0, 0xFFFF),
+        period_ms=_whole(facts, "period_ms", name, 1, 50),
+        every_ticks=_whole(facts, "every_ticks", name, 1, 0xFFFF),
     )
 
 
-def _whole(facts: dict[str, str], key: str, name: str) -> int | None:
+def _whole(facts: dict[str, str], key: str, name: str, least: int, most: int) -> int | None:
     text = facts.get(key)
     if text is None:
         return None
     try:
         value = int(text, 0)
     except ValueError:
-        value = -1
-    if value < 0:
-        raise UserError(f"{name}: {key} is {text!r} in the header; it must be a whole number from 0.")
+        value = least - 1
+    if not least <= value <= most:
+        raise UserError(
+            f"{name}: {key} is {cut(repr(text))} in the header; it must be a whole number from {least} to {most}."
+        )
     return value

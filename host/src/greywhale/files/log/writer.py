@@ -14,13 +14,14 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from greywhale.errors import UserError, os_reason
+from greywhale.errors import UserError, cut, os_reason
 from greywhale.files.log.layout import COMPLETE, HEADING, INTERRUPTED, STATES, TITLE, UNFINISHED, Origin
-from greywhale.formats.whole import temporary_beside
+from greywhale.formats.whole import keep, temporary_beside
 
 _ROWS_PER_WRITE = 256
-# Two facts are known only at the end; the header keeps so many characters free for each.
+# What is known only at the end: the header keeps so many characters free for each number or word, and for the reason.
 _ROOM = 12
+_REASON = 320
 
 
 class LogWriter:
@@ -39,7 +40,7 @@ class LogWriter:
         except OSError as error:
             raise self._cannot_be_written(error) from None
         self._file = open(descriptor, "r+b", buffering=0)
-        self._waiting = [self._header(UNFINISHED), HEADING + "\n"]
+        self._waiting = [self._header(UNFINISHED, "").decode("ascii"), HEADING + "\n"]
         try:
             self.flush()
         except UserError:
@@ -107,11 +108,11 @@ class LogWriter:
         try:
             self._file.seek(0)
             complete = kind is None and problem is None
-            self._file.write(self._header(COMPLETE if complete else INTERRUPTED).encode("ascii"))
-            os.fsync(self._file.fileno())
+            reason = "" if complete else _reason(raised or problem)
+            self._file.write(self._header(COMPLETE if complete else INTERRUPTED, reason))
+            keep(self._file, self._temporary, self.path)
             self._file.close()
-            os.replace(self._temporary, self.path)
-            if isinstance(raised, KeyboardInterrupt):
+            if isinstance(raised, KeyboardInterrupt | UserError):
                 raised.add_note(f"What was recorded is in {self.path}, marked as interrupted.")
         except OSError as error:
             with contextlib.suppress(OSError):
@@ -124,7 +125,7 @@ class LogWriter:
     def _cannot_be_written(self, error: OSError) -> UserError:
         return UserError(f"{self.path}: cannot be written: {os_reason(error)}.")
 
-    def _header(self, ending: str) -> str:
+    def _header(self, ending: str, reason: str) -> bytes:
         """The header. Its length is always the same, so that the end of a recording can rewrite it in place."""
         origin = self.origin
         facts = {
@@ -136,4 +137,15 @@ class LogWriter:
         }
         lines = [f"# {TITLE}", *(f"# {key}: {value}" for key, value in facts.items() if value is not None)]
         lines += [f"# dropped_samples: {self.dropped:<{_ROOM}d}", f"# recording: {ending:<{_ROOM}}"]
-        return "\n".join(lines) + "\n"
+        lines.append(f"# ended_by: {cut(reason, _REASON):<{_REASON}}")
+        return "\n".join(lines).encode("ascii", "replace") + b"\n"
+
+
+def _reason(raised: BaseException | None) -> str:
+    """Why a recording ended early, in one line."""
+    notes = getattr(raised, "__notes__", ())
+    if isinstance(raised, UserError):
+        return raised.message.replace("\n", " ")
+    if isinstance(raised, KeyboardInterrupt):
+        return notes[0] if notes else "Ctrl-C, or a signal to end."
+    return type(raised).__name__

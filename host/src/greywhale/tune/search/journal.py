@@ -1,8 +1,9 @@
 """The journal of a tuning: every cost that an optimiser was told, so that an interrupted tuning can go on.
 
-It is a file of JSON lines. The first says what was asked for. Each further line holds the costs of one batch and a
-digest of its candidates. Resuming plays the optimisers through the same batches with the costs from the file, without
-simulation, and then goes on. File and result become the same, byte for byte, as those of a run without a break.
+It is a file of JSON lines, each with a check over itself and all lines before. The first says what was asked for. Each
+further line holds the costs of one batch and a digest of its candidates. Resuming plays the optimisers through the same
+batches with the costs from the file, without simulation, and then goes on. File and result become the same, byte for
+byte, as those of a run without a break.
 """
 
 from __future__ import annotations
@@ -18,12 +19,13 @@ import numpy as np
 import numpy.typing as npt
 
 from greywhale.errors import UserError, os_reason
-from greywhale.formats.whole import refuse_devices
+from greywhale.formats import json_text
+from greywhale.formats.whole import refuse_devices, sync, sync_folder
 
 Floats = npt.NDArray[np.float64]
 Controllers = npt.NDArray[np.int32]
 
-VERSION = 2
+VERSION = 3
 _CHOSEN = ("strategy", "method", "budget", "seed", "bounds", "before")
 
 
@@ -35,6 +37,7 @@ class Journal:
         self._told: list[dict[str, Any]] = []
         self._next = 0
         self._file: IO[bytes] | None = None
+        self._check = 0  # of the last line
         if path is None:
             return
         heading = {"greywhale_tune_journal": VERSION, "request": request}
@@ -44,6 +47,7 @@ class Journal:
             else:
                 self._file = path.open("wb", buffering=0)
                 self._write(heading)
+            sync_folder(path.parent)
         except OSError as error:
             raise UserError(f"{path}: cannot be used as a journal: {os_reason(error)}.") from None
 
@@ -71,10 +75,16 @@ class Journal:
             self._write({"stage": stage, "candidates": _digest(candidates), "costs": costs.tolist()})
 
     def close(self) -> None:
-        """Close the file."""
-        if self._file is not None:
-            self._file.close()
-            self._file = None
+        """Close the file; it is on the disk then."""
+        if self._file is None:
+            return
+        file, self._file = self._file, None
+        try:
+            sync(file)
+        except OSError as error:
+            raise self._cannot_be_written(error) from None
+        finally:
+            file.close()
 
     def __enter__(self) -> Self:
         return self
@@ -86,20 +96,23 @@ class Journal:
 
     def _write(self, line: dict[str, Any]) -> None:
         assert self._file is not None
+        data, self._check = json_text.checked_line(line, self._check)
         # A single unbuffered write: a crash can tear the last line only.
         try:
-            self._file.write(json.dumps(line, separators=(",", ":")).encode() + b"\n")
+            self._file.write(data)
         except OSError as error:
-            raise UserError(
-                f"{self._path}: cannot be written: {os_reason(error)}; make room and go on with --resume."
-            ) from None
+            raise self._cannot_be_written(error) from None
+
+    def _cannot_be_written(self, error: OSError) -> UserError:
+        return UserError(f"{self._path}: cannot be written: {os_reason(error)}; make room and go on with --resume.")
 
     def _reopened(self, path: Path, heading: dict[str, Any]) -> IO[bytes]:
         refuse_devices(path)
         whole = path.read_bytes()
-        lines, length = _whole_lines(path, whole)
+        lines, length, self._check = _whole_lines(path, whole)
         if not lines:
             # It ends within its first line: nothing was told yet.
+            self._check = 0
             file = path.open("wb", buffering=0)
             self._file = file
             self._write(heading)
@@ -110,20 +123,29 @@ class Journal:
         return path.open("ab", buffering=0)
 
 
-def _whole_lines(path: Path, content: bytes) -> tuple[list[dict[str, Any]], int]:
-    """The lines that were written to their end, and their length in bytes; a torn last line is dropped."""
+def _whole_lines(path: Path, content: bytes) -> tuple[list[dict[str, Any]], int, int]:
+    """The lines that were written to their end, their length in bytes, and the check of the last; a torn last line is
+    dropped. A line that is damaged is refused: what follows it may rest on it.
+    """
     length = content.rfind(b"\n") + 1
-    lines = []
-    for number, line in enumerate(content[:length].splitlines(), start=1):
+    lines: list[dict[str, Any]] = []
+    check = 0
+    for number, line in enumerate(content[:length].split(b"\n")[:-1], start=1):
         try:
-            value = json.loads(line)
+            value = json_text.loads(line)
         except ValueError:
             value = None
         good = isinstance(value, dict) and (isinstance(value.get("request"), dict) if number == 1 else _is_batch(value))
-        if not good:
-            raise UserError(f"{path}: line {number} is not a line of a tuning's journal; start anew without --resume.")
+        if good and number == 1:
+            _require_this_version(path, value)
+        found = json_text.check_of(line, check)
+        if not good or found is None:
+            what = "is damaged" if good else "is not a line of a tuning's journal"
+            remedy = "remove it and all lines after it, or start anew" if number > 1 else "start anew"
+            raise UserError(f"{path}: line {number} {what}; {remedy} without --resume.")
+        check = found
         lines.append(value)
-    return lines, length
+    return lines, length, check
 
 
 def _is_batch(value: dict[str, Any]) -> bool:
@@ -138,9 +160,12 @@ def _is_batch(value: dict[str, Any]) -> bool:
     )
 
 
-def _require_same(path: Path, found: dict[str, Any], wanted: dict[str, Any]) -> None:
-    if found.get("greywhale_tune_journal") != VERSION:
+def _require_this_version(path: Path, heading: dict[str, Any]) -> None:
+    if heading.get("greywhale_tune_journal") != VERSION:
         raise UserError(f"{path}: this journal is of another version of greywhale; start anew without --resume.")
+
+
+def _require_same(path: Path, found: dict[str, Any], wanted: dict[str, Any]) -> None:
     # Compare in the form that JSON gives: tuples become lists there.
     now = json.loads(json.dumps(wanted["request"]))
     then = found["request"]

@@ -1,0 +1,48 @@
+"""Before the arm moves by itself: a countdown on the terminal, in which Ctrl-C and `greywhale stop` keep it still.
+
+A simulated arm hurts nobody and moves at once. A script, which shows nobody a countdown, must say --yes.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+import click
+
+from greywhale.errors import BAD_USAGE, UserError
+from greywhale.protocol.ports import is_bench
+
+SECONDS = 3
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+
+def yes_option(command: Command) -> Command:
+    return click.option("--yes", "-y", is_flag=True, help="Move the arm without the countdown; scripts need this.")(
+        command
+    )
+
+
+def prepare_motion(port: str, yes: bool) -> Callable[[], None]:
+    """What to call just before the arm on `port` moves by itself; refused at once where nobody would be warned."""
+    if yes or is_bench(port):
+        return lambda: None
+    if not sys.stderr.isatty():
+        raise UserError(
+            "the arm would move by itself, and without a terminal nobody sees the countdown; clear its surroundings "
+            "and say --yes.",
+            BAD_USAGE,
+        )
+    return count_down
+
+
+def count_down(wait: Callable[[float], None] = time.sleep) -> None:
+    """Count the seconds on stderr."""
+    try:
+        for left in range(SECONDS, 0, -1):
+            click.echo(f"\rThe arm moves by itself in {left} s; Ctrl-C keeps it still. ", nl=False, err=True)
+            wait(1.0)
+    finally:
+        click.echo(err=True)

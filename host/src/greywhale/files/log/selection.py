@@ -1,0 +1,101 @@
+"""The part of a long log that shows most about the arm.
+
+The log is cut into pieces of five seconds, without a gap and with the motors following. Each piece shows so much of
+five things, for every joint: speed, acceleration, voltage, a joint that holds still against a voltage (friction), and
+poses away from the usual one (gravity). Pieces are taken one after another, each time the one that adds most to the sum
+of the logarithms of all that is shown. So what is rare counts, and no joint and no thing is left out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from greywhale.files.log.reader import Log
+
+Floats = NDArray[np.float64]
+
+# A log with more than this is cut down to it, s. Identifying takes a time that grows with the length; after this a log
+# that moves all joints tells little more.
+MOST_S = 60.0
+_PIECE_S = 5.0
+# Readings are averaged over this time, s, so that speed is not noise.
+_STEP_S = 0.02
+# Slower than this (rad/s) at more than this voltage (V), a joint holds still against it.
+_STILL_RAD_S, _PUSHED_V = 0.05, 0.3
+# A longer spacing of rows, in periods, is a gap.
+_GAP = 1.5
+
+
+def informative(log: Log, most_s: float = MOST_S) -> Log:
+    """The pieces of a log that show most, `most_s` in all, with gaps between them; a log that is shorter as it is."""
+    if len(log.time) < 2 or log.time[-1] - log.time[0] <= most_s:
+        return log
+    pieces = _pieces(log)
+    count = round(most_s / _PIECE_S)
+    if len(pieces) <= count:
+        return log
+    usual = log.follower[:: max(1, len(log.time) // 10_000)].mean(axis=0)
+    chosen = _choose(np.array([_shown(log, piece, usual) for piece in pieces]), count)
+    rows = np.concatenate([np.arange(pieces[one].start, pieces[one].stop) for one in sorted(chosen)])
+    return replace(
+        log,
+        time=log.time[rows],
+        leader=log.leader[rows],
+        follower=log.follower[rows],
+        voltage=log.voltage[rows],
+        state=log.state[rows],
+    )
+
+
+def _pieces(log: Log) -> list[slice]:
+    """Pieces of equal length without a gap, in which the motors followed (or, where they never did, all)."""
+    following = log.state == "following"
+    wanted = following if following.any() else np.ones(len(log.time), dtype=bool)
+    steps = np.diff(log.time)
+    period = float(np.median(steps))
+    length = max(2, round(_PIECE_S / period))
+    joined = (steps <= _GAP * period) & wanted[1:] & wanted[:-1]
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], joined, [False])).astype(np.int8)))
+    return [
+        slice(begin, begin + length)
+        for start, stop in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
+        for begin in range(start, stop + 2 - length, length)
+    ]
+
+
+def _shown(log: Log, piece: slice, usual: Floats) -> Floats:
+    """How much a piece shows: five things of every joint, (20,)."""
+    time = log.time[piece]
+    period = float(time[-1] - time[0]) / (len(time) - 1)
+    size = max(1, round(_STEP_S / period))
+    angle, volts = _averaged(log.follower[piece], size), _averaged(log.voltage[piece], size)
+    speed = np.diff(angle, axis=0) / (size * period)
+    bend = np.diff(speed, axis=0) / (size * period)
+    held = (np.abs(speed) < _STILL_RAD_S) & (np.abs(volts[1:]) > _PUSHED_V)
+    things = (speed**2, bend**2, volts**2, held, (angle - usual) ** 2)
+    return np.concatenate([thing.mean(axis=0) if len(thing) else np.zeros(angle.shape[1]) for thing in things])
+
+
+def _averaged(values: Floats, size: int) -> Floats:
+    whole = len(values) // size * size
+    means: Floats = values[:whole].reshape(-1, size, values.shape[1]).mean(axis=1)
+    return means
+
+
+def _choose(shown: Floats, count: int) -> list[int]:
+    """The places of `count` pieces, (pieces, things) each, by what the next one adds."""
+    average = shown.mean(axis=0)
+    shown = shown[:, average > 0.0] / average[average > 0.0]
+    total = np.zeros(shown.shape[1])
+    chosen: list[int] = []
+    left = np.ones(len(shown), dtype=bool)
+    for _ in range(count):
+        gains = np.log1p(total + shown).sum(axis=1)
+        best = int(np.argmax(np.where(left, gains, -np.inf)))
+        left[best] = False
+        total += shown[best]
+        chosen.append(best)
+    return chosen

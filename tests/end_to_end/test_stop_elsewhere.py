@@ -1,0 +1,99 @@
+"""`greywhale stop` while another process leads the arm on the bench: motors off at once, the board not restarted."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from greywhale.board.device import Device
+from greywhale.board.record import record
+from greywhale.demo import BenchProcess
+from greywhale.errors import UserError
+from greywhale.files.log import read_log
+from greywhale.protocol.schema import State
+
+Start = Callable[..., BenchProcess]
+
+
+def greywhale(*arguments: str) -> subprocess.Popen[str]:
+    command = [sys.executable, "-m", "greywhale", *arguments]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+@pytest.mark.timeout(120)
+@pytest.mark.parametrize("verb", [("record", "--enable", "--seconds", "600"), ("replay",)], ids=["record", "replay"])
+def test_what_runs_ends_with_a_whole_log(
+    start_bench: Start, tmp_path: Path, leader_file: Path, verb: tuple[str, ...]
+) -> None:
+    bench = start_bench("--speed", "1")
+    log = tmp_path / "log.csv"
+    motion = [str(leader_file)] if verb == ("replay",) else []
+    with greywhale(*verb, *motion, "--out", str(log), "--port", bench.port) as host:
+        while not bench.command("status")["motors_enabled"]:
+            assert host.poll() is None, host.communicate()
+        resets = bench.command("status")["resets"]
+        with greywhale("stop", "--port", bench.port, "--json") as stop:
+            answer, _ = stop.communicate()
+        after = bench.command("status")
+        _, said = host.communicate()
+    assert stop.returncode == 0, answer
+    assert json.loads(answer) == {"port": bench.port, "state": "disabled", "ended": host.pid}
+    assert not after["motors_enabled"]
+    assert after["resets"] == resets
+    assert host.returncode == 130
+    assert "stopped with `greywhale stop` from another terminal" in said
+    assert not log.exists() or not read_log(log).complete
+
+
+def test_a_fault_is_cleared_without_a_restart(start_bench: Start, tmp_path: Path) -> None:
+    bench = start_bench()
+    with Device(bench.port) as device, pytest.raises(UserError, match="potentiometer 2"):
+        record(device, tmp_path / "log.csv", 60.0, enable=True, progress=lambda *_: breaks(bench))
+    bench.command("pot follower 2 connected")
+    resets = bench.command("status")["resets"]
+    with Device(bench.port, restart=False) as device:
+        assert device.status().state is State.FAULT
+    with greywhale("stop", "--clear-fault", "--port", bench.port, "--json") as stop:
+        answer, _ = stop.communicate()
+    assert json.loads(answer) == {"port": bench.port, "state": "disabled", "restarted": False}
+    assert bench.command("status")["resets"] == resets
+    with Device(bench.port) as device:
+        assert device.restarted
+    assert bench.command("status")["resets"] == resets + 1
+
+
+def breaks(bench: BenchProcess) -> None:
+    bench.command("pot follower 2 open")
+
+
+def test_opening_a_port_for_the_first_time_restarts_the_board_and_that_is_said(start_bench: Start) -> None:
+    bench = start_bench()
+    with greywhale("stop", "--port", bench.port) as stop:
+        answer, _ = stop.communicate()
+    assert answer == f"{bench.port}: motors off, state disabled. Opening the port restarted the board.\n"
+
+
+@pytest.mark.slow
+def test_a_host_that_stood_still_is_told_of_the_lease(start_bench: Start, tmp_path: Path) -> None:
+    """A laptop that slept, Ctrl-Z in the terminal: the board is well, and stopped the motors by itself."""
+    bench = start_bench("--speed", "1")
+    log = tmp_path / "log.csv"
+    arguments = ("record", "--enable", "--seconds", "600", "--out", str(log), "--port", bench.port)
+    with greywhale(*arguments) as host:
+        while not bench.command("status")["motors_enabled"]:
+            assert host.poll() is None, host.communicate()
+        host.send_signal(signal.SIGSTOP)
+        stopped = bench.command("status")["time_s"]
+        while (status := bench.command("status"))["time_s"] < stopped + 3.0:
+            pass
+        assert not status["motors_enabled"]
+        host.send_signal(signal.SIGCONT)
+        _, said = host.communicate()
+    assert host.returncode == 1
+    assert "did not renew the lease of 500 ms: was it stopped or asleep?" in said

@@ -1,0 +1,101 @@
+"""Files are whole, and on the disk with their names, before anybody says that they are written."""
+
+from __future__ import annotations
+
+import errno
+import os
+import stat
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from greywhale.errors import UserError
+from greywhale.files.leader import save_leader
+from greywhale.files.log import LogWriter
+from greywhale.files.log.layout import Origin
+from greywhale.files.parameter_file import save
+from greywhale.formats.whole import write_text
+from greywhale.table import ParameterTable
+from greywhale.trajectory import Trajectory
+from greywhale.tune.search.journal import Journal
+
+
+def write_log(path: Path) -> None:
+    with LogWriter(path, Origin()) as log:
+        log.append(0.0, [0.0] * 4, [0.0] * 4, [0.0] * 4, "following")
+
+
+def write_leader(path: Path) -> None:
+    save_leader(path, Trajectory(np.array([0.0, 1.0]), np.zeros((2, 4))))
+
+
+WRITERS = {
+    "text": lambda path: write_text(path, "text"),
+    "log": write_log,
+    "leader": write_leader,
+    "parameters": lambda path: save(path, ParameterTable.defaults()),
+}
+
+
+class Disk:
+    """Notes in which order files are brought to the disk and get their names."""
+
+    def __init__(self, patch: pytest.MonkeyPatch) -> None:
+        self.done: list[str] = []
+        sync, replace = os.fsync, os.replace
+
+        def note_sync(descriptor: int) -> None:
+            mode = os.fstat(descriptor).st_mode
+            self.done.append("folder" if stat.S_ISDIR(mode) else f"file of {os.fstat(descriptor).st_size}")
+            sync(descriptor)
+
+        def note_replace(old: str, new: Path) -> None:
+            replace(old, new)
+            self.done.append("name")
+
+        patch.setattr(os, "fsync", note_sync)
+        patch.setattr(os, "replace", note_replace)
+
+
+@pytest.mark.parametrize("write", WRITERS.values(), ids=WRITERS)
+def test_the_file_then_its_name_are_on_the_disk(
+    write: Callable[[Path], None], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    disk = Disk(monkeypatch)
+    write(tmp_path / "file")
+    assert disk.done == [f"file of {(tmp_path / 'file').stat().st_size}", "name", "folder"]
+
+
+def test_a_journal_is_on_the_disk_when_it_is_closed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    disk = Disk(monkeypatch)
+    with Journal(tmp_path / "journal", {"seed": 1}) as book:
+        assert disk.done == ["folder"]
+        book.tell("stage", np.zeros((2, 12), dtype=np.int32), np.ones((2, 4)))
+    assert disk.done == ["folder", f"file of {(tmp_path / 'journal').stat().st_size}"]
+
+
+def test_a_disk_that_fails_is_told_and_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(descriptor: int) -> None:
+        raise OSError(errno.EIO, os.strerror(errno.EIO))
+
+    monkeypatch.setattr(os, "fsync", fail)
+    with pytest.raises(UserError, match="file: cannot be written: input/output error"):
+        write_text(tmp_path / "file", "text")
+    assert os.listdir(tmp_path) == []
+
+
+def test_a_file_system_without_such_a_promise_for_folders_will_do(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sync = os.fsync
+
+    def refuse_folders(descriptor: int) -> None:
+        if stat.S_ISDIR(os.fstat(descriptor).st_mode):
+            raise OSError(errno.EINVAL, os.strerror(errno.EINVAL))
+        sync(descriptor)
+
+    monkeypatch.setattr(os, "fsync", refuse_folders)
+    write_text(tmp_path / "file", "text")
+    assert (tmp_path / "file").read_text() == "text"
