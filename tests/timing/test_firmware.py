@@ -113,7 +113,8 @@ def test_no_loop_runs_more_often_than_its_fact_says(traced: tuple[Target, Progra
 @BOARDS
 def test_the_dearest_tick_and_interrupts_stay_below_their_bounds(target: Target) -> None:
     found, bounds = worst(target, sets=12), times(target)
-    assert found["tick"] <= bounds.tick < 1.25 * found["tick"]
+    # A pot at a rail keeps its last value, so the dearest paths of a tick exclude each other; the bound adds them up.
+    assert found["tick"] <= bounds.tick < 1.5 * found["tick"]
     for role, bound in bounds.interrupts.items():
         assert found[role] <= bound < found[role] + 16, role
 

@@ -29,12 +29,11 @@ HELD = {"byte received": 2, "byte sent": 1}
 
 @dataclass(frozen=True)
 class Target:
-    """A board's image and which vector does what. `unused` vectors are in the image, but never turned on."""
+    """A board's image and which vector does what."""
 
     chip: Chip
     environment: str
     vectors: Mapping[str, int]
-    unused: frozenset[int]
 
     @property
     def elf(self) -> Path:
@@ -51,10 +50,9 @@ def _vectors(tick: int, chain: int, received: int, sent: int, conversion: int) -
     }
 
 
-# The framework's millis() interrupt is in every image; hal::begin() turns it off for good.
 TARGETS = (
-    Target(MEGA, "megaatmega2560", _vectors(21, 22, 25, 26, 29), frozenset({23})),
-    Target(NANO, "nanoatmega328", _vectors(14, 15, 18, 19, 21), frozenset({16})),
+    Target(MEGA, "megaatmega2560", _vectors(21, 22, 25, 26, 29)),
+    Target(NANO, "nanoatmega328", _vectors(14, 15, 18, 19, 21)),
 )
 
 
@@ -89,7 +87,7 @@ class Times:
 def _handlers(program: Program, target: Target) -> dict[str, int]:
     """Role -> address; a handler that has no role is refused."""
     found = {int(name[9:]) for name in program.symbols if name.startswith("__vector_") and name[9:].isdigit()}
-    known = set(target.vectors.values()) | target.unused
+    known = set(target.vectors.values())
     if found != known:
         more, less = sorted(found - known), sorted(known - found)
         raise ImageError(f"the image has the interrupts {more} without a role and lacks {less}.")

@@ -28,8 +28,9 @@ Controllers = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
 Progress = Callable[[str, float], None]
 
-# Faults that a bad controller causes. Every other fault is one of the arm or the board, and ends the commissioning.
-OF_A_CONTROLLER = ("tracking", "unrest")
+# Faults that a bad controller causes, on an arm that has just moved well. Every other fault is one of the arm or the
+# board, and ends the commissioning.
+OF_A_CONTROLLER = ("tracking", "unrest", "runaway", "stalled")
 
 
 @dataclass(frozen=True)
