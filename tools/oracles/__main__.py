@@ -24,10 +24,11 @@ REQUIREMENTS = ROOT / "tools" / "oracles" / "requirements.txt"
 def main() -> int:
     try:
         debian.ensure(DEBIAN)
-        wanted = stamps.digest([REQUIREMENTS, venv.REQUIREMENTS])
+        wanted = stamps.digest([REQUIREMENTS])
         if not stamps.is_current("oracles", wanted):
             say("installing the outside references (some hundred megabytes)")
-            venv.pip_install("--requirement", REQUIREMENTS, "--constraint", venv.REQUIREMENTS, what="Installing them")
+            # Without their dependencies: all of them are in this file or in the project's own.
+            venv.pip_install("--no-deps", "--requirement", REQUIREMENTS, what="Installing them")
             stamps.set_current("oracles", wanted)
         wheelhouse.step()
         node.step()

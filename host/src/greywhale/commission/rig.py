@@ -106,7 +106,8 @@ class Rig:
             self.device.telemetry(0)
             self.device.ask(schema.ClearFaultRequest())
             where = status.fault_where if status.fault_where < len(table.controllers) else None
-            return Played(read_log(path), f"the board stopped: {status.fault.description}", where)
+            whose = "" if where is None else f" (joint {where})"
+            return Played(read_log(path), f"the board stopped: {status.fault.description}{whose}", where)
         return Played(read_log(path))
 
     def _status(self) -> schema.StatusReply | None:
