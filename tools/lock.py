@@ -38,6 +38,12 @@ def wanted() -> list[str]:
     return _foreign([*runtime(), *extras, *host["dependency-groups"]["dev"]])
 
 
+def versions() -> list[str]:
+    """The pinned packages as name==version, without the digests of their files."""
+    lines = (ROOT / "requirements.txt").read_text(encoding="utf-8").splitlines()
+    return [line.rstrip(" \\") for line in lines if re.match(r"[\w.-]+==", line)]
+
+
 def _project(file: str) -> dict[str, list[str]]:
     project: dict[str, list[str]] = tomllib.loads((ROOT / file).read_text(encoding="utf-8"))["project"]
     return project

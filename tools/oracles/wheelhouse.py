@@ -9,6 +9,7 @@ from tools.setup import stamps, venv
 from tools.setup.console import ROOT, run, say
 
 WHEELHOUSE = ROOT / "build" / "wheelhouse"
+VERSIONS = ROOT / "build" / "versions.txt"
 
 
 def step() -> None:
@@ -19,6 +20,8 @@ def step() -> None:
     say("fetching what the packages depend on, for installations without a network")
     shutil.rmtree(WHEELHOUSE, ignore_errors=True)
     pip = [str(venv.PYTHON), "-m", "pip", "wheel", "--quiet", "--disable-pip-version-check", "--no-input"]
-    constraint = ["--constraint", str(venv.REQUIREMENTS), "--wheel-dir", str(WHEELHOUSE)]
+    # Where a file has digests, pip takes nothing that is not pinned on the command line; versions alone will do.
+    VERSIONS.write_text("\n".join(lock.versions()) + "\n", encoding="utf-8")
+    constraint = ["--constraint", str(VERSIONS), "--wheel-dir", str(WHEELHOUSE)]
     run([*pip, *constraint, *needed], what="Fetching wheels", env=venv.environment())
     stamps.set_current("wheelhouse", wanted)
