@@ -34,6 +34,13 @@ def test_every_package_has_digests() -> None:
     assert all(pinned().values())
 
 
+def test_versions_alone_can_be_had_too() -> None:
+    """For a constraint: with digests, pip takes nothing else that is not pinned on the command line."""
+    versions = lock.versions()
+    assert {normal(line.partition("==")[0]) for line in versions} == set(pinned())
+    assert all(re.fullmatch(r"[\w.-]+==[\w.!+-]+", line) for line in versions)
+
+
 def test_all_that_is_asked_for_is_pinned() -> None:
     asked = {normal(re.split(r"[^\w.-]", name)[0]) for name in lock.wanted()}
     assert asked - set(pinned()) == set()
