@@ -25,7 +25,7 @@ from greywhale.identify.candidate import Candidate, Observed, WindowsAndLoop
 from greywhale.identify.closed_loop import Loop, LoopResidual
 from greywhale.identify.data import FINE_STEP_S, Prepared
 from greywhale.identify.fit import Pattern, least_squares_fit, pick_different
-from greywhale.identify.space import COUPLED, KINDS, MOTOR, Space
+from greywhale.identify.space import COUPLED, MOTOR, Space
 from greywhale.identify.steps import WindowFit
 from greywhale.identify.windows import WindowResidual
 from greywhale.optimise import DEFAULT, create
@@ -154,23 +154,16 @@ class Search:
             if not hopeful:
                 return
             found = [self._measure(self._fit_order(one, order)) for one, order in hopeful]
-            errors = [
-                np.inf if _is_nothing(one, order) else float(one.held_out or 0.0)
-                for one, (_, order) in zip(found, hopeful, strict=True)
-            ]
+            errors = [float(one.held_out or 0.0) for one in found]
             winner = int(np.argmin(errors))
-            if errors[winner] < np.inf:
-                self._take(found[winner])
+            self._take(found[winner])
             if self.best is before:
                 return
             left = [order for order in left if self._may_follow(order)]
 
     def _fit_order(self, candidate: Candidate, order: str) -> Candidate:
-        """Fit an order's quantities along with the others, those of gears from several starts.
-
-        On top of play from one start only: the best of several gaps explains some of whatever else is missing.
-        """
-        if order != "backlash" or "play" in candidate.kinds:
+        """Fit an order's quantities along with the others, those of gears from several starts."""
+        if order != "backlash":
             return self._settle(self._fitted, candidate)
         return self._fit_best([candidate, *(_with_values(candidate, gear) for gear in GEARS)])
 
@@ -392,12 +385,3 @@ def _with_values(candidate: Candidate, values: Mapping[str, float]) -> Candidate
         if one.kind in values:
             x[index] = candidate.space.kind(index).to_search(values[one.kind])
     return replace(candidate, x=x)
-
-
-def _is_nothing(candidate: Candidate, order: str) -> bool:
-    """Whether an order has come out as nothing on every joint: gaps without a width, for example."""
-    kind = KINDS[ORDERS[order][0]]
-    numbers = [
-        x for x, one in zip(candidate.x, candidate.space.parameters, strict=True) if one.kind == ORDERS[order][0]
-    ]
-    return not kind.logarithmic and bool(np.max(np.abs(numbers)) < kind.step)
