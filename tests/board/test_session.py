@@ -188,6 +188,24 @@ def test_what_holds_a_port_now_and_then_is_stopped_in_between() -> None:
     assert caught.value.__notes__ == [NOTE]
 
 
+def test_an_interrupt_that_comes_just_before_a_long_wait_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Here the signal goes to another thread: the main thread's system call does not end by it, as in that race."""
+    kill = signal.pthread_kill
+
+    def kill_without_waking(thread: int, number: int) -> None:
+        kill(threading.get_ident() if number == signal.SIGINT else thread, number)
+
+    monkeypatch.setattr(signal, "pthread_kill", kill_without_waking)
+    before = signal.getsignal(signal.SIGURG)
+    with FakeBoard() as board, Asker(board.port) as other:
+        with pytest.raises(KeyboardInterrupt), Session.of(board.port):
+            other.ask()
+            threading.Event().wait()
+        other.join()
+    assert other.answer == {"pid": os.getpid(), "state": None}
+    assert signal.getsignal(signal.SIGURG) is before
+
+
 def test_nobody_takes_the_port_of_another_session() -> None:
     with FakeBoard() as board:
         reader, writer = os.pipe()

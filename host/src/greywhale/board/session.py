@@ -26,6 +26,10 @@ from greywhale.runtime import make_runtime_directory, private_runtime_directory
 NOTE = "It was stopped with `greywhale stop` from another terminal."
 # A session that was asked to stop answers within this time, or says that the board does not confirm.
 _CONFIRM_S = 5.0
+# An interrupt that comes just before the main thread falls asleep in a system call is noticed only when the call ends.
+# So this signal, which nobody else uses and which does nothing, ends the call, again and again until the session does.
+_WAKE = signal.SIGURG
+_WAKE_S = 0.05
 _open: dict[str, Session] = {}
 
 
@@ -43,6 +47,7 @@ class Session:
         self._send_stop: Callable[[], None] | None = None
         self._told = False
         self._interrupts = threading.current_thread() is threading.main_thread()
+        self._interrupted = False
         self._outcome: dict[str, Any] = {}
         self._confirmed = threading.Event()
         self._thread: threading.Thread | None = None
@@ -124,6 +129,8 @@ class Session:
             os.close(self._lock)
             return
         self._wake_out, self._wake_in = os.pipe()
+        if self._interrupts:
+            self._woken_before = signal.signal(_WAKE, lambda number, frame: None)
         self._thread = threading.Thread(target=self._serve, name="greywhale-stop", daemon=True)
         self._thread.start()
 
@@ -150,6 +157,8 @@ class Session:
         os.write(self._wake_in, b"x")
         self._thread.join()
         self._thread = None
+        if self._interrupts:
+            signal.signal(_WAKE, self._woken_before)
         self._path.unlink(missing_ok=True)
         os.close(self._lock)
 
@@ -158,7 +167,7 @@ class Session:
         clients: list[socket.socket] = []
         ended = False
         while not ended:
-            ready, _, _ = select.select([self._listener.fileno(), self._wake_out], [], [])
+            ready, _, _ = select.select([self._listener.fileno(), self._wake_out], [], [], self._wake_main_thread())
             ended = self._wake_out in ready
             if self._listener.fileno() in ready:
                 client, _ = self._listener.accept()
@@ -195,8 +204,15 @@ class Session:
             with contextlib.suppress(UserError):  # the main thread finds out by itself
                 send()
         if self._interrupts and callable(signal.getsignal(signal.SIGINT)) and not self._told:
-            self._told = True
+            self._told = self._interrupted = True
             signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
+
+    def _wake_main_thread(self) -> float | None:
+        """See that an interrupt is noticed: in how many seconds again, None where none was sent."""
+        if not self._interrupted:
+            return None
+        signal.pthread_kill(threading.main_thread().ident or 0, _WAKE)
+        return _WAKE_S
 
 
 def socket_name(port: str) -> str:
