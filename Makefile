@@ -21,7 +21,7 @@ SIDE_BY_SIDE := $(MAKE) READY= --no-print-directory --jobs=$(shell nproc) --outp
 PYTEST := $(PYTHON) -m pytest -n auto
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build firmware demo check test lint oracles bench docs dist format lock hooks clean $(LINT) $(UNIT_TESTS) $(IMAGES)
+.PHONY: help setup build firmware demo check test lint oracles bench campaign docs dist format lock hooks clean $(LINT) $(UNIT_TESTS) $(IMAGES)
 
 help: ## list the targets
 	@sed -n 's/^\([a-z]*\):[^#]*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12
@@ -91,6 +91,9 @@ oracles: setup ## tests against heavy outside references (installs them first)
 bench: setup ## measure the figures of the design beside others; a table here, JSON in build/bench.json
 	@python3 -m tools.oracles
 	@$(PYTHON) -m tools.bench $(ARGS)
+
+campaign: setup firmware ## attack everything at full size and write docs/reliability.md; goes on where it stopped
+	@$(PYTHON) -m tools.campaign --publish $(ARGS)
 
 docs: setup ## write the generated files (link schema, reference page, copies of the version) again
 	$(PYTHON) -m tools.generate_link

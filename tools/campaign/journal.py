@@ -1,0 +1,55 @@
+"""What the campaign has done so far, a line for each piece: a campaign that was interrupted goes on from it."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterable
+from dataclasses import asdict
+from pathlib import Path
+
+from tools.campaign.part import Part, Piece, Row
+
+ROOT = Path(__file__).parents[2]
+
+
+def identity(part: Part) -> str:
+    """A digest of all that a part's result is about."""
+    digest = hashlib.sha256()
+    for name in (*part.depends, "tools/campaign"):
+        path = ROOT / name
+        for file in sorted(path.rglob("*")) if path.is_dir() else [path]:
+            if file.is_file() and "__pycache__" not in file.parts and ".pio" not in file.relative_to(ROOT).parts:
+                digest.update(str(file.relative_to(ROOT)).encode() + b"\0" + file.read_bytes() + b"\0")
+    return digest.hexdigest()[:16]
+
+
+class Journal:
+    """The finished pieces of one part, in a file that another state of the code does not share."""
+
+    def __init__(self, folder: Path, part: Part) -> None:
+        folder.mkdir(parents=True, exist_ok=True)
+        self.path = folder / f"{part.name}-{identity(part)}.jsonl"
+        self._done: dict[str, list[Row]] = {}
+        if self.path.exists():
+            whole, _, torn = self.path.read_text(encoding="utf-8").rpartition("\n")
+            if torn:  # it was being written when the campaign was killed
+                self.path.write_text(whole + "\n", encoding="utf-8")
+            for entry in map(json.loads, whole.splitlines()):
+                self._done[_key(entry["piece"])] = [Row(**row) for row in entry["rows"]]
+
+    def add(self, piece: Piece, rows: Iterable[Row]) -> None:
+        self._done[_key(piece)] = list(rows)
+        with self.path.open("a", encoding="utf-8") as file:
+            file.write(json.dumps({"piece": piece, "rows": [asdict(row) for row in rows]}) + "\n")
+
+    def missing(self, pieces: Iterable[Piece]) -> list[Piece]:
+        return [piece for piece in pieces if _key(piece) not in self._done]
+
+    def rows(self, pieces: Iterable[Piece]) -> list[Row]:
+        """The rows of these pieces that are done, in their order."""
+        return [row for piece in pieces for row in self._done.get(_key(piece), [])]
+
+
+def _key(piece: Piece) -> str:
+    return json.dumps(piece, sort_keys=True)

@@ -1,0 +1,7 @@
+"""All parts of the campaign, in the order of the page."""
+
+from __future__ import annotations
+
+from tools.campaign.part import Part
+
+PARTS: tuple[Part, ...] = ()
