@@ -3,5 +3,6 @@
 from __future__ import annotations
 
 from tools.campaign.part import Part
+from tools.campaign.parts import faults, line
 
-PARTS: tuple[Part, ...] = ()
+PARTS: tuple[Part, ...] = (faults.PART, line.PART)
