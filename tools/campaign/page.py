@@ -41,7 +41,7 @@ def write_summary(results: Iterable[tuple[Part, list[Row]]]) -> str:
 
 def write_page(results: list[tuple[Part, list[Row]]]) -> str:
     sections = [
-        f"## {part.title}\n\n{part.holds}\n\n{write_table(rows)}\n"
+        f"## {part.title}\n\n{' '.join(part.holds.split())}\n\n{write_table(rows)}\n"
         f"`python -m tools.campaign {part.name}`; digest `{identity(part)}`.\n"
         for part, rows in results
     ]
