@@ -3,6 +3,6 @@
 from __future__ import annotations
 
 from tools.campaign.part import Part
-from tools.campaign.parts import cuts, faults, line
+from tools.campaign.parts import cuts, faults, line, soak
 
-PARTS: tuple[Part, ...] = (faults.PART, line.PART, cuts.PART)
+PARTS: tuple[Part, ...] = (faults.PART, line.PART, cuts.PART, soak.PART)
