@@ -18,6 +18,7 @@ REPORTED = {
     "hang, interrupts on": {"watchdog"},
     "hang, interrupts off": {"watchdog"},
     "bit of the running set flips": {"memory", "estop"},
+    "supply sinks by 0.1 V a ms": {"none"},
     "motor dead": {"stalled", "runaway", "motors stayed on"},
     "motor reversed": {"runaway", "motors stayed on"},
     "follower pot reversed": {"runaway", "speed", "motors stayed on"},

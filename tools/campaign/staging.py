@@ -21,6 +21,7 @@ SOFT_START_MS = 100
 CHATTER = ((2, 3), (1, 2), (2, 4), (2, 10))  # ms at the rail, of so many
 NOISE_MV = 2.4
 LEASE_MS = 20
+SINKS_MV_PER_MS = 100.0
 FLOOD_BYTES = 20  # in each slice of 250 us: 80 a millisecond
 
 
@@ -138,6 +139,17 @@ def _flip_bit(rig: Rig, joint: int) -> None:
     rig.board.poke(at, bytes([rig.board.peek(at, 1)[0] ^ 1 << int(rig.random.integers(8))]))
 
 
+def _sink(rig: Rig, joint: int) -> None:
+    """The board's supply falls by 0.1 V a millisecond to 2 V, the potentiometers' with it."""
+
+    def fall(volts: Array, since: float) -> None:
+        supply = max(2000.0, 5000.0 - SINKS_MV_PER_MS * 1000 * since)
+        rig.board.set_supply(round(supply))
+        volts *= supply / 5000.0
+
+    rig.lie = fall
+
+
 def faults() -> dict[str, Inject]:
     """Everything that can be staged, by name."""
     found: dict[str, Inject] = {
@@ -148,6 +160,7 @@ def faults() -> dict[str, Inject]:
         "hang, interrupts on": _hang(True),
         "hang, interrupts off": _hang(False),
         "bit of the running set flips": _flip_bit,
+        "supply sinks by 0.1 V a ms": _sink,
     }
     for side, follower in (("leader", False), ("follower", True)):
         for state, rail in (("open", 0.0), ("shorted", 5000.0)):
@@ -199,5 +212,6 @@ def suffer(rig: Rig, inject: Inject, joint: int) -> Trial:
         grown = max(grown, abs(rig.true_error[joint]) - before)
         gone = max(gone, abs(rig.angles[joint] - place))
     rig.lie = None
+    rig.board.set_supply(5000)
     status = rig.status()
     return Trial(off_ms, float(grown), float(gone), status.fault.key, status.fault_where)

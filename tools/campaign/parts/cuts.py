@@ -15,6 +15,7 @@ from tools.campaign.copies import in_a_copy
 from tools.campaign.part import Part, Piece, Row, split
 
 CUTS, PER_PIECE = 10_000, 250
+SUPPLY_MV = 5000.0
 SAVE_MS = 900.0  # a save of a whole set takes up to 750 ms
 HISTORIES = ("the first save of a blank EEPROM", "the second save, into the other bank", "the third, over the oldest")
 SAVE = frames.encode_frame(schema.ParamSaveRequest.TYPE, 9, b"")
@@ -49,11 +50,23 @@ def save(bench: Bench) -> None:
 
 
 def cut(bench: Bench, seed: int) -> None:
-    """The supply goes, a byte that was being written is torn, and it comes back."""
-    bench.board.power_off(seed)
-    bench.board.power_on(seed + 1)
+    """The supply goes and comes back, at once (even seeds) or on a slope. A byte that was being written is torn."""
+    if seed % 2:
+        sink(bench, np.random.default_rng(seed), seed)
+    else:
+        bench.board.power_off(seed)
+        bench.board.power_on(seed + 1)
     bench.board.set_millivolts(bench.millivolts)
     bench.wait(80)
+
+
+def sink(bench: Bench, random: np.random.Generator, seed: int) -> None:
+    """Down to some voltage below the brown-out detector's level within up to 60 ms, and up again as slowly."""
+    down = np.linspace(SUPPLY_MV, random.uniform(500.0, 2690.0), int(random.integers(2, 60)))
+    for millivolts in (*down, *down[::-1]):
+        bench.board.set_supply(round(millivolts), seed)
+        bench.board.set_millivolts(bench.millivolts * millivolts / SUPPLY_MV)
+        bench.wait(1)
 
 
 def judge(bench: Bench, old: int, new: int, writes: int, saved: bool) -> str:
@@ -109,7 +122,7 @@ def cut_a_save(board: str, earlier: int, trials: int, seed: int) -> Row:
     begun, found = bench.board.cycle, Counter[str]()
     for number, at in enumerate(np.sort(random.integers(0, round(1.02 * length), trials)).tolist()):
         bench.board.run_until(begun + at)
-        found[in_a_copy(partial(cut_and_look, bench, old, new, 10 * number + 1, writes))["found"]] += 1
+        found[in_a_copy(partial(cut_and_look, bench, old, new, 11 * number + 1, writes))["found"]] += 1
     wrong = sum(count for name, count in found.items() if name.startswith("wrong"))
     return Row(f"{board}: {HISTORIES[earlier]}", trials, wrong, dict(sorted(found.items())))
 
@@ -131,10 +144,11 @@ def pieces(share: float) -> list[Piece]:
 PART = Part(
     "cuts",
     "Power cuts while parameters are stored",
-    """The real images on both simulated boards. The supply goes at a random cycle of a save, and a byte of the EEPROM
-        that was being written is torn. Afterwards the old or the new set must run, the new one if its save had ended,
-        and a new set that was lost must be told as the fault `params`. Then a set is stored again, which must end
-        well and outlast another cut.""",
+    """The real images on both simulated boards. The supply goes at a random cycle of a save, at once or on a slope
+        of up to 60 ms through the brown-out detector's level, and a byte of the EEPROM that was being written is
+        torn. Afterwards the old or the new set must run, the new one if its save had ended, and a new set that was
+        lost must be told as the fault `params`. Then a set is stored again, which must end well and outlast another
+        cut.""",
     ("firmware/lib", "firmware/src", "shared", "sim/board"),
     pieces,
     run,
