@@ -3,5 +3,6 @@
 from __future__ import annotations
 
 from tools.campaign.part import Part
+from tools.campaign.parts import eeprom
 
-PARTS: tuple[Part, ...] = ()
+PARTS: tuple[Part, ...] = (eeprom.PART,)
