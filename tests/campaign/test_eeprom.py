@@ -45,7 +45,7 @@ def test_a_broken_store_is_found(tmp_path: Path, right: str, wrong: str, kind: s
     text = (firmware / file).read_text(encoding="utf-8")
     assert right in text
     (firmware / file).write_text(text.replace(right, wrong), encoding="utf-8")
-    broken = replace(eeprom.PROGRAM, name="broken_eeprom", firmware=firmware, command=("g++", "-std=c++14"))
+    broken = replace(eeprom.PROGRAM, name="broken_eeprom", firmware=firmware)
     row = eeprom.judge(kind, run_counts(broken, [kind, 1, 2000]))
     assert row.violations > 100
 

@@ -43,28 +43,41 @@ def _sources(program: Program) -> list[Path]:
     ]
 
 
-def _digest(program: Program) -> str:
-    total = hashlib.sha256(repr(program.command).encode())
-    headers = [*sorted(program.firmware.rglob("*.h")), *sorted(SOURCES.glob("*.h"))]
-    for file in _sources(program) + headers:
-        total.update(file.name.encode() + b"\0" + file.read_bytes() + b"\0")
+def _digest(*contents: object) -> str:
+    total = hashlib.sha256()
+    for content in contents:
+        total.update(content.read_bytes() if isinstance(content, Path) else repr(content).encode())
     return total.hexdigest()[:16]
 
 
+def _compile(source: Path, contents: str, command: Sequence[str]) -> Path:
+    """The object file of a source, made if need be. `contents` stands for all else that it depends on."""
+    path = BUILT / "objects" / f"{source.stem}-{_digest(source, contents)}.o"
+    if not path.exists():
+        half = path.with_suffix(".part")
+        subprocess.run([*command, "-c", str(source), "-o", str(half)], check=True)
+        half.rename(path)
+    return path
+
+
 def build(program: Program) -> Path:
-    """The program, made if need be. One process makes it while others wait.
+    """The program, made if need be. One process makes programs while others wait.
 
     subprocess.CalledProcessError when it does not compile.
     """
-    BUILT.mkdir(parents=True, exist_ok=True)
-    path = BUILT / f"{program.name}-{_digest(program)}"
-    with (BUILT / f"{program.name}.lock").open("w") as lock:
+    (BUILT / "objects").mkdir(parents=True, exist_ok=True)
+    rooms = [f"-I{room / 'src'}" for room in sorted(program.firmware.iterdir())]
+    headers = _digest(*sorted(program.firmware.rglob("*.h")), *sorted(SOURCES.glob("*.h")))
+    path = BUILT / f"{program.name}-{_digest(*_sources(program), headers, program.command)}"
+    with (BUILT / "lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         if not path.exists():
-            rooms = [f"-I{room / 'src'}" for room in sorted(program.firmware.iterdir())]
-            sources = map(str, _sources(program))
+            objects = [
+                str(_compile(source, _digest(headers, program.command), [*program.command, *rooms, f"-I{SOURCES}"]))
+                for source in _sources(program)
+            ]
             half = path.with_suffix(".part")
-            subprocess.run([*program.command, *rooms, f"-I{SOURCES}", *sources, "-o", str(half)], check=True)
+            subprocess.run([*program.command, *objects, "-o", str(half)], check=True)
             half.rename(path)
     return path
 

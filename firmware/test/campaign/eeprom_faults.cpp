@@ -13,6 +13,7 @@
 #include <string>
 
 #include "counts.h"
+#include "definition.h"
 #include "must.h"
 #include "sets.h"
 
@@ -34,16 +35,6 @@ Bank read_bank(unsigned b) {
 
 void write_bank(unsigned b, const Bank& bytes) {
   std::copy(bytes.begin(), bytes.end(), board.eeprom.begin() + static_cast<std::ptrdiff_t>(start(b)));
-}
-
-// Bit by bit, as the polynomial is defined.
-std::uint16_t crc_by_definition(const std::uint8_t* at, std::size_t count) {
-  unsigned crc = 0xFFFF;
-  for (; count != 0; --count, ++at) {
-    crc ^= static_cast<unsigned>(*at) << 8;
-    for (int bit = 0; bit < 8; ++bit) crc = (crc & 0x8000 ? crc << 1 ^ 0x1021 : crc << 1) & 0xFFFF;
-  }
-  return static_cast<std::uint16_t>(crc);
 }
 
 std::size_t table_bytes(const Bank& bytes) {

@@ -80,6 +80,7 @@ Piece Machine::service() {
   std::copy(board.received.begin(), board.received.end(), before.begin());
   piece.more = app_->service();
   const std::size_t taken = had - board.received.size();
+  taken_ += taken;
   for (std::size_t i = 0; i < taken; ++i) {
     in_frame_ = before[i] != 0;
     if (!heard_.push(before[i])) continue;

@@ -62,6 +62,8 @@ class Machine {
   void tick();
   Piece service();
 
+  std::uint64_t taken() const { return taken_; }  // bytes from the line, since the board was made
+
   // --- what a copy of the board says when it is asked
   wire::StatusReply status() const;
   params::Table running() const;
@@ -73,7 +75,8 @@ class Machine {
   void end_frame() const;
 
   std::unique_ptr<app::App> app_;
-  wire::Decoder heard_;    // takes what the firmware takes
+  wire::Decoder heard_;  // takes what the firmware takes
+  std::uint64_t taken_ = 0;
   bool in_frame_ = false;  // it has taken a part of a frame
   wire::Decoder answers_;  // takes what it sends
 };

@@ -3,6 +3,6 @@
 from __future__ import annotations
 
 from tools.campaign.part import Part
-from tools.campaign.parts import eeprom
+from tools.campaign.parts import eeprom, link
 
-PARTS: tuple[Part, ...] = (eeprom.PART,)
+PARTS: tuple[Part, ...] = (link.PART, eeprom.PART)
