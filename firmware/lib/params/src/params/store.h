@@ -13,7 +13,8 @@
 //
 // A bank that is neither whole nor blank held a set once, or was to hold one: rot, another layout, or a save that a
 // power cut ended. Nobody can tell any more whether that set was the newest. So lost() is true then, whatever the other
-// bank holds. The next save makes both banks whole again, in turn.
+// bank holds. The same goes for a blank bank beside a whole one, unless that one is of the first save: bank A with
+// sequence 1. The next save makes both banks whole again, in turn.
 //
 // Eeprom has `uint8_t read(uint16_t)`, `void begin_write(uint16_t, uint8_t)` and `bool busy()`. While it is busy,
 // neither of the other two is called.
@@ -54,7 +55,7 @@ class Store {
   // left behind.
   wire::ParamSource load(Table& table);
 
-  // True while a bank is neither whole nor blank: what ran before this boot may have been another set.
+  // True while a bank that held a set does not any more: what ran before this boot may have been another set.
   bool lost() const { return spoilt_ != 0; }
 
   // Starts to save. `table` must stay as it is until state() is no longer saving. Does nothing while saving.
@@ -73,6 +74,7 @@ class Store {
 
   bool whole(uint8_t b, uint16_t& sequence);
   bool blank(uint8_t b);
+  bool never_used(uint8_t b, bool other_is_good, uint16_t other_sequence);
   uint8_t table_bytes(uint8_t b);
   bool fetch(uint8_t b, Table& table);
   uint16_t read_u16(uint16_t at) { return static_cast<uint16_t>(eeprom_.read(at) | (eeprom_.read(at + 1) << 8)); }
@@ -91,7 +93,7 @@ class Store {
   uint8_t position_ = 0;
   uint8_t current_ = no_bank;  // the bank that a boot would load
   uint8_t target_ = 0;
-  uint8_t spoilt_ = 0;  // bit b: bank b is neither whole nor blank
+  uint8_t spoilt_ = 0;  // bit b: bank b held a set, or was to, and does not
   Phase phase_ = Phase::idle;
   wire::SaveState state_ = wire::SaveState::idle;
 };
@@ -104,8 +106,9 @@ bool Store<Eeprom>::whole(uint8_t b, uint16_t& sequence) {
   const auto crc_at = static_cast<uint8_t>(bank::payload_at + bytes);
   wire::Crc16 crc;
   for (uint8_t i = bank::layout_at; i < crc_at; ++i) crc.add(eeprom_.read(static_cast<uint16_t>(at + i)));
+  if (crc.value() != read_u16(static_cast<uint16_t>(at + crc_at))) return false;
   sequence = read_u16(at + bank::sequence_at);
-  return crc.value() == read_u16(static_cast<uint16_t>(at + crc_at));
+  return true;
 }
 
 // How much of the table a bank of its layout holds; 0 for a layout that is not known.
@@ -121,6 +124,12 @@ bool Store<Eeprom>::blank(uint8_t b) {
     if (eeprom_.read(static_cast<uint16_t>(start(b) + i)) != 0xFF) return false;
   }
   return true;
+}
+
+// The first save goes to bank A with sequence 1, the second one to bank B.
+template <class Eeprom>
+bool Store<Eeprom>::never_used(uint8_t b, bool other_is_good, uint16_t other_sequence) {
+  return blank(b) && (!other_is_good || (b == 1 && other_sequence == 1));
 }
 
 template <class Eeprom>
@@ -149,7 +158,7 @@ wire::ParamSource Store<Eeprom>::load(Table& table) {
     if (good[b] && current_ != no_bank) continue;  // the older set
     if (good[b] && fetch(b, table)) {
       current_ = b;
-    } else if (good[b] || !blank(b)) {
+    } else if (good[b] || !never_used(b, good[b ^ 1], sequences[b ^ 1])) {
       spoilt_ = static_cast<uint8_t>(spoilt_ | (1 << b));
     }
   }

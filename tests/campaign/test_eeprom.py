@@ -1,0 +1,76 @@
+"""The campaign's damaged EEPROMs: a share of each kind, the odds of the CRC, and a store that is broken on purpose."""
+
+from __future__ import annotations
+
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from tools.campaign import crc
+from tools.campaign.native import run_counts
+from tools.campaign.parts import eeprom
+
+
+def test_pieces_have_every_kind_at_any_share() -> None:
+    assert {piece["kind"] for piece in eeprom.pieces(1e-9)} == set(eeprom.TITLES)
+    assert sum(piece["trials"] for piece in eeprom.pieces(1.0)) >= 10**7
+
+
+@pytest.mark.parametrize("kind", eeprom.TRIALS)
+def test_a_share_holds(kind: str) -> None:
+    trials = 500 if kind == "migration" else 20_000
+    (row,) = eeprom.run({"kind": kind, "seed": 1, "trials": trials})
+    assert (row.trials, row.violations) == (trials, 0)
+    assert sum(row.counts.values()) == trials
+    assert kind == "migration" or row.counts["lost and told"] > trials / 3
+
+
+CRC_COUNTS = "if (crc.value() != read_u16(static_cast<uint16_t>(at + crc_at))) return false;"
+BLANK_IS_LOST = "!never_used(b, good[b ^ 1], sequences[b ^ 1])"
+OLD_LACKS = "load_defaults(table);\n  for"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("right", "wrong", "kind"),
+    [(CRC_COUNTS, "", "bytes"), (BLANK_IS_LOST, "!blank(b)", "erased"), (OLD_LACKS, "for", "migration")],
+    ids=["a CRC that does not count", "a blank bank that is no loss", "no defaults for what an old set lacks"],
+)
+def test_a_broken_store_is_found(tmp_path: Path, right: str, wrong: str, kind: str) -> None:
+    file = "params/src/params/store.h"
+    firmware = tmp_path / "lib"
+    shutil.copytree(eeprom.PROGRAM.firmware, firmware)
+    text = (firmware / file).read_text(encoding="utf-8")
+    assert right in text
+    (firmware / file).write_text(text.replace(right, wrong), encoding="utf-8")
+    broken = replace(eeprom.PROGRAM, name="broken_eeprom", firmware=firmware)
+    row = eeprom.judge(kind, run_counts(broken, [kind, 1, 2000]))
+    assert row.violations > 100
+
+
+def test_the_odds_of_the_crc_are_those_of_all_words() -> None:
+    bits, data = 26, 10
+    words = []
+    for value in range(1 << data):
+        register = 0
+        for bit in reversed(range(data)):
+            feedback = (register >> 15 ^ value >> bit) & 1
+            register = (register << 1 & 0xFFFF) ^ (crc.POLYNOMIAL if feedback else 0)
+        words.append((value << 16 | register).bit_count())
+    assert [crc.unnoticed_patterns(bits, weight) for weight in range(9)] == [words.count(weight) for weight in range(9)]
+    rate = 0.2
+    exact = sum(rate**weight * (1 - rate) ** (bits - weight) for weight in words if weight)
+    assert crc.unnoticed_at(bits, rate) == pytest.approx(exact, rel=1e-9)
+
+
+def test_up_to_three_flipped_bits_never_pass() -> None:
+    assert [crc.unnoticed_patterns(eeprom.SUMMED_BITS, weight) for weight in (1, 2, 3, 5, 7)] == [0] * 5
+    assert crc.unnoticed_patterns(eeprom.SUMMED_BITS, 4) > 0
+
+
+def test_more_than_chance_is_too_many() -> None:
+    assert crc.too_many(150, 152.0) == 0
+    assert crc.too_many(300, 152.0) > 0
+    assert crc.too_many(100, 0.0) > 0
