@@ -88,7 +88,15 @@ PART = Part(
         person moves that joint. Then a way counts, at most {FARTHEST_RAD} rad: of the follower where a motor does
         not obey (dead, reversed, blocked) or a potentiometer turns the other way, and by which the true error has
         grown where one lies. `ms` is the longest time, `rad` the greatest such way.""",
-    ("firmware/lib", "firmware/src", "shared", "sim/board", "sim/arm"),
+    (
+        "firmware/lib",
+        "firmware/src",
+        "shared",
+        "sim/board",
+        "sim/arm",
+        "tools/campaign/rig.py",
+        "tools/campaign/staging.py",
+    ),
     pieces,
     run,
 )

@@ -156,7 +156,7 @@ clear_fault, hello, status), and {SHARES} % of the bytes are damaged, one kind o
 belong to a request that was sent and repeat its values, the running set must be one whose CRC was sent, no motor may
 be on unless an enable was sent after the last confirmed stop. After every {CLEAN_EVERY} requests the line is well
 again: a zero and a `stop` must then be answered within {RECOVERY_MS} ms. A trial is one place of damage.""",
-    ("firmware/lib", "firmware/src", "shared", "sim/board"),
+    ("firmware/lib", "firmware/src", "shared", "sim/board", "tools/campaign/damage.py"),
     pieces,
     run,
 )
