@@ -70,7 +70,7 @@ class Outcome:
         """What changed on the arm, joint by joint, for people."""
         before, after = self.trials.before.measured, self.best.measured
         played = len(self.trials.done) - 1
-        lines = [f"{played} sets of controllers tried on the arm in {len(self.rounds)} rounds."]
+        lines = [f"{_count(played, 'set')} of controllers tried on the arm in {_count(len(self.rounds), 'round')}."]
         if not self.improved:
             return "\n".join([*lines, "None passed on every joint: the controllers from before stay on the board."])
         head = "".join(f"{part:>24}" for part in PARTS)
@@ -91,3 +91,7 @@ class Outcome:
 
 def _pair(before: float, after: float) -> str:
     return f"{before:.2e} -> {after:.2e}"
+
+
+def _count(number: int, what: str) -> str:
+    return f"{number} {what}" + ("" if number == 1 else "s")

@@ -24,6 +24,7 @@ MEASURES: tuple[Measure, ...] = (
     ("chatter", "chatter", "1/s", 1.0, ".0f"),
     ("voltage", "voltage, most", "V", 1.0, ".2f"),
 )
+NOTHING = {"predicted": "-", "measured": "-"}
 
 
 def save_page(outcome: Outcome, path: Path) -> Path:
@@ -70,7 +71,7 @@ def _trial(outcome: Outcome, trial: Trial) -> dict[str, Any]:
             "; ".join(verdict.faults) if verdict.faults else "passed" if verdict.known else "not judged"
             for verdict in trial.verdicts
         ],
-        "rows": rows,
+        "rows": [row for row in rows if any(cell != NOTHING for cell in row["cells"])],
     }
 
 
