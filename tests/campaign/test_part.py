@@ -8,7 +8,8 @@ from pathlib import Path
 from greywhale.protocol.schema import Fault
 from tools.campaign.journal import Journal, identity
 from tools.campaign.page import STAGED_AS, write_page
-from tools.campaign.part import Part, Row, add_up, split
+from tools.campaign.part import Part, Piece, Row, add_up, split
+from tools.campaign.runner import Result, Work, do_all, in_turn
 from tools.campaign.staging import faults
 
 
@@ -49,16 +50,48 @@ def test_the_identity_follows_what_a_part_depends_on() -> None:
 
 
 def test_the_page_shows_every_violation() -> None:
-    page = write_page([(make_part(), [Row("a | b", 1000, 2, {"fault": 3}, {"ms": 1.5})])])
-    assert "| [Nothing at all](#nothing-at-all) | 1,000 | 2 |" in page
+    rows = [Row("a", 1000, 2, {"fault": 3}, {"ms": 1.5})]
+    page = write_page([Result(make_part(), rows, 3, 3)])
+    assert "| [Nothing at all](#nothing-at-all) | 1,000 | 2 | all |" in page
+    assert "| 1,000 | 2 | 2 of 3 pieces |" in write_page([Result(make_part(), rows, 2, 3)])
     assert "**2** | 1.5 ms | fault 3 |" in page
 
 
 def test_the_page_lists_the_faults_with_their_times_on_both_boards() -> None:
     part = Part("faults", "Faults", "", ("Makefile",), lambda share: [], lambda piece: [])
     rows = [Row(f"{board}: {staged}", 5, 0, {}, {"ms": 3.25}) for board in ("mega", "nano") for staged in faults()]
-    page = write_page([(part, rows)])
+    page = write_page([Result(part, rows, 1, 1)])
     for name in STAGED_AS:
         assert re.search(rf"\| `{name}` \| .+ \| .+ \| 3.25 \| 3.25 \|", page), name
     assert set(STAGED_AS.values()) <= set(faults())
     assert set(STAGED_AS) | {"none", "params", "tracking", "unrest"} == {fault.key for fault in Fault}
+
+
+def double(piece: Piece) -> list[Row]:
+    return [Row("doubled", piece["trials"], 0, {"sum": 2 * piece["trials"]})]
+
+
+def make_work(folder: Path, name: str, total: int) -> Work:
+    part = Part(name, name, "", ("Makefile",), lambda share: split(total, share, 2), double)
+    return Work(part, part.pieces(1.0), Journal(folder, part))
+
+
+def test_parts_advance_together(tmp_path: Path) -> None:
+    works = [make_work(tmp_path, "short", 4), make_work(tmp_path, "long", 8)]
+    assert [work.part.name for work, _ in in_turn(works)] == ["long", "short", "long", "long", "short", "long"]
+
+
+def test_what_is_missing_is_done_once_and_kept(tmp_path: Path) -> None:
+    told: list[tuple[int, int]] = []
+    works = [make_work(tmp_path, "short", 4), make_work(tmp_path, "long", 8)]
+    do_all(works[:1], 1, 1e9, lambda done, pieces, seconds: told.append((done, pieces)))
+    do_all(works, 2, 1e9, lambda done, pieces, seconds: told.append((done, pieces)))
+    assert told == [(1, 2), (2, 2), (1, 4), (2, 4), (3, 4), (4, 4)]
+    again = make_work(tmp_path, "long", 8).result()
+    assert (again.rows, again.whole) == ([Row("doubled", 8, 0, {"sum": 16})], True)
+
+
+def test_no_piece_is_begun_after_the_time(tmp_path: Path) -> None:
+    work = make_work(tmp_path, "short", 4)
+    do_all([work], 1, -1.0, lambda done, pieces, seconds: None)
+    assert (work.result().done, work.result().whole) == (0, False)

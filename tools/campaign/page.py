@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from tools.campaign.journal import ROOT, identity
-from tools.campaign.part import Part, Row
+from tools.campaign.part import Row
+from tools.campaign.runner import Result
 from tools.link_generator.declaration import load
 
 HEAD = """<!-- Written by `make campaign`; change the campaign, not this page. -->
@@ -15,7 +16,8 @@ HEAD = """<!-- Written by `make campaign`; change the campaign, not this page. -
 What was attacked, how often, and what came of it. Every figure on this page was counted by `make campaign` on the code
 whose digest stands below its table. A small share of the same campaign runs in every `make test`.
 
-A violation is a trial that broke what the section says must hold.
+A violation is a trial that broke what the section says must hold. A part that is not yet at its full size says so;
+`make campaign` goes on with it.
 """
 
 FAULTS_HEAD = """## The faults and how soon the motors are off
@@ -51,13 +53,14 @@ def write_table(rows: Iterable[Row]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def write_summary(results: Iterable[tuple[Part, list[Row]]]) -> str:
+def write_summary(results: Iterable[Result]) -> str:
     """One line for each part."""
-    lines = ["| | trials | violations |", "|---|--:|--:|"]
-    for part, rows in results:
-        trials, violations = sum(row.trials for row in rows), sum(row.violations for row in rows)
-        anchor = part.title.lower().replace(" ", "-").replace(",", "")
-        lines.append(f"| [{part.title}](#{anchor}) | {trials:,} | {violations:,} |")
+    lines = ["| | trials | violations | done |", "|---|--:|--:|--:|"]
+    for one in results:
+        trials, violations = sum(row.trials for row in one.rows), sum(row.violations for row in one.rows)
+        anchor = one.part.title.lower().replace(" ", "-").replace(",", "")
+        share = "all" if one.whole else f"{one.done} of {one.pieces} pieces"
+        lines.append(f"| [{one.part.title}](#{anchor}) | {trials:,} | {violations:,} | {share} |")
     return "\n".join(lines) + "\n"
 
 
@@ -74,11 +77,11 @@ def write_faults(rows: Iterable[Row]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def write_page(results: list[tuple[Part, list[Row]]]) -> str:
+def write_page(results: Sequence[Result]) -> str:
     sections = [
-        f"## {part.title}\n\n{' '.join(part.holds.split())}\n\n{write_table(rows)}\n"
-        f"`python -m tools.campaign {part.name}`; digest `{identity(part)}`.\n"
-        for part, rows in results
+        f"## {one.part.title}\n\n{' '.join(one.part.holds.split())}\n\n{write_table(one.rows)}\n"
+        f"`python -m tools.campaign {one.part.name}`; digest `{identity(one.part)}`.\n"
+        for one in results
     ]
-    faults = [row for part, rows in results if part.name == "faults" for row in rows]
+    faults = [row for one in results if one.part.name == "faults" for row in one.rows]
     return "\n".join([HEAD, write_summary(results), FAULTS_HEAD, write_faults(faults), *sections])

@@ -1,41 +1,79 @@
-"""Does the pieces of a part in processes of their own."""
+"""Does the pieces of all parts in processes of their own, every part as far as the others."""
 
 from __future__ import annotations
 
 import signal
 import time
-from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from dataclasses import dataclass
 
 from tools.campaign.journal import Journal
-from tools.campaign.part import Part, Piece
+from tools.campaign.part import Part, Piece, Row, add_up
+
+Report = Callable[[int, int, float], None]  # pieces done, pieces in all, seconds so far
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a part has come to: the rows of its finished pieces."""
+
+    part: Part
+    rows: list[Row]
+    done: int
+    pieces: int
+
+    @property
+    def whole(self) -> bool:
+        return self.done == self.pieces
+
+
+@dataclass(frozen=True)
+class Work:
+    """A part, its pieces at this share, and those of them that are finished."""
+
+    part: Part
+    pieces: Sequence[Piece]
+    journal: Journal
+
+    def result(self) -> Result:
+        rows = add_up(self.journal.rows(self.pieces))
+        return Result(self.part, rows, len(self.pieces) - len(self.journal.missing(self.pieces)), len(self.pieces))
+
+
+def in_turn(works: Iterable[Work]) -> list[tuple[Work, Piece]]:
+    """All that is missing, so that at any time every part is about as far as the others."""
+    order = [
+        ((place + 0.5) / len(work.pieces), number, work, piece)
+        for number, work in enumerate(works)
+        for place, piece in enumerate(work.pieces)
+        if work.journal.missing([piece])
+    ]
+    return [(work, piece) for _, _, work, piece in sorted(order, key=lambda one: one[:2])]
+
+
+def do_all(works: Sequence[Work], workers: int, seconds: float, report: Report) -> None:
+    """Do what is missing, a process for each piece; each that is finished is kept at once.
+
+    After so many seconds, or with Ctrl-C, no other piece is begun.
+    """
+    queue, began = in_turn(works), time.monotonic()
+    total, done = len(queue), 0
+    running: dict[Future[list[Row]], tuple[Work, Piece]] = {}
+    with ProcessPoolExecutor(workers, initializer=_ignore_interrupts, max_tasks_per_child=1) as pool:
+        while queue or running:
+            if time.monotonic() - began > seconds:
+                queue.clear()
+            while queue and len(running) < workers:
+                work, piece = queue.pop(0)
+                running[pool.submit(work.part.run, piece)] = (work, piece)
+            for future in wait(running, return_when=FIRST_COMPLETED).done:
+                work, piece = running.pop(future)
+                work.journal.add(piece, future.result())
+                done += 1
+                report(done, total, time.monotonic() - began)
 
 
 def _ignore_interrupts() -> None:
     """Ctrl-C reaches every process of the terminal; the first one ends the others."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-
-
-@contextmanager
-def open_pool(workers: int) -> Iterator[ProcessPoolExecutor]:
-    """A process for each piece. Ctrl-C lets those that run end, and begins no other."""
-    with ProcessPoolExecutor(workers, initializer=_ignore_interrupts, max_tasks_per_child=1) as pool:
-        try:
-            yield pool
-        except KeyboardInterrupt:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
-
-
-def do_all(part: Part, pieces: list[Piece], journal: Journal, pool: ProcessPoolExecutor) -> None:
-    """Do what is missing; each piece that is finished is kept at once."""
-    missing = journal.missing(pieces)
-    running = {pool.submit(part.run, piece): piece for piece in missing}
-    began = time.monotonic()
-    for number, future in enumerate(as_completed(running), 1):
-        journal.add(running[future], future.result())
-        left = (time.monotonic() - began) / number * (len(missing) - number)
-        print(f"\r{part.name}: {number} of {len(missing)} pieces, about {left / 60:.0f} min left ", end="", flush=True)
-    if missing:
-        print()
