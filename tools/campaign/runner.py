@@ -69,7 +69,7 @@ def do_all(works: Sequence[Work], workers: int, seconds: float, report: Report) 
                 running[pool.submit(work.part.run, piece)] = (work, piece)
             for future in wait(running, return_when=FIRST_COMPLETED).done:
                 work, piece = running.pop(future)
-                work.journal.add(piece, future.result())
+                work.journal.add(piece, add_up(future.result()))
                 done += 1
                 report(done, total, time.monotonic() - began)
 
