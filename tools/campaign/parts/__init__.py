@@ -3,6 +3,6 @@
 from __future__ import annotations
 
 from tools.campaign.part import Part
-from tools.campaign.parts import eeprom, link
+from tools.campaign.parts import eeprom, fuzz, link
 
-PARTS: tuple[Part, ...] = (link.PART, eeprom.PART)
+PARTS: tuple[Part, ...] = (fuzz.PART, link.PART, eeprom.PART)
