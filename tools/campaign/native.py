@@ -18,7 +18,7 @@ SOURCES = ROOT / "firmware/test/campaign"
 BUILT = ROOT / "build/campaign/native"
 WARNINGS = ("-std=c++14", "-Wall", "-Wextra", "-Wconversion", "-Werror")
 FAST = ("g++", "-O2", *WARNINGS)
-WATCHED = ("clang++", "-O1", "-g", "-fno-sanitize-recover=all", *WARNINGS)  # and sanitizers
+WATCHED = ("clang++", "-O2", "-gline-tables-only", "-fno-sanitize-recover=all", *WARNINGS)  # and sanitizers
 # What the parameter sets need of the firmware.
 ROOMS_OF_SETS = (
     "params/src/params/*.cpp app/src/parameter_sets.cpp app/src/controllers.cpp fuzzy_pdi/src/*.cpp hal/src/fake/*.cpp"
