@@ -116,6 +116,9 @@ void bind_running(BoardClass& c) {
       .def("power_on", &PyBoard::power_on, "seed"_a = 1, "Start with PORF set; the seed makes what is in RAM.")
       .def("power_off", &PyBoard::power_off, "seed"_a = 1,
            "Cut the supply; an EEPROM byte being written is torn as the seed says.")
+      .def("set_supply", &PyBoard::set_supply, "millivolts"_a, "seed"_a = 1,
+           "The supply's voltage from now on. Below 2.7 V the brown-out detector holds the chip in reset until 2.75 V, "
+           "and an EEPROM byte being written is torn as the seed says; below 1.1 V memory is lost as well.")
       .def("reset", &PyBoard::reset, "Pulse the RESET pin: RAM stays, EXTRF is set.")
       .def_prop_ro("powered", &PyBoard::powered)
 

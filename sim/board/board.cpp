@@ -17,6 +17,9 @@ namespace {
 
 constexpr uint32_t crystal_hertz = 16000000;
 constexpr uint32_t supply_millivolts = 5000;
+// The detector's level by the fuses of an Arduino, and its hysteresis (data sheet, typical). Below the last one the
+// power-on reset acts.
+constexpr uint32_t brown_out_millivolts = 2700, hysteresis_millivolts = 50, memory_millivolts = 1100;
 constexpr avr_cycle_count_t longest_run = 1000000000;             // events bound a run of the CPU, nothing else
 constexpr uint32_t eeprom_base = 0x810000, fuse_base = 0x820000;  // where avr-gcc's linker puts other memories
 constexpr uint8_t sleep_enable = 0x01;
@@ -167,6 +170,7 @@ void Board::power_on(uint64_t seed) {
   for (uint32_t address = 0; address <= avr.ramend; ++address)
     if (address < 32 || address > avr.ioend) avr.data[address] = static_cast<uint8_t>(random.next());
   powered_ = true;
+  browned_out_ = false;
   ++stats_.resets;
   restart(PORF);
 }
@@ -178,8 +182,27 @@ void Board::power_off(uint64_t seed) {
   powered_ = false;
 }
 
+void Board::set_supply(uint32_t millivolts, uint64_t seed) {
+  avr_->vcc = avr_->avcc = avr_->aref = millivolts;
+  const bool enough = millivolts >= brown_out_millivolts + hysteresis_millivolts;
+  if (!powered_) {
+    if (enough) power_on(seed);
+  } else if (millivolts < memory_millivolts) {
+    power_off(seed);
+  } else if (millivolts < brown_out_millivolts && !browned_out_) {
+    eeprom_->lose_power(seed);
+    uart_->drop_pending();
+    restart(BORF);
+    browned_out_ = true;
+  } else if (browned_out_ && enough) {
+    browned_out_ = false;
+    ++stats_.resets;
+    restart(BORF);
+  }
+}
+
 void Board::reset() {
-  if (!powered_) return;
+  if (!powered_ || browned_out_) return;
   ++stats_.resets;
   restart(EXTRF);
 }
@@ -220,7 +243,7 @@ void Board::step() {
 
 RunState Board::run_until(uint64_t cycle) {
   avr_t& avr = *avr_;
-  if (!powered_) {
+  if (!powered_ || browned_out_) {
     avr.cycle = std::max(avr.cycle, cycle);
     return RunState::running;
   }
@@ -278,7 +301,7 @@ uint64_t Board::call(uint32_t address, uint64_t limit) {
 }
 
 void Board::send(const std::string& bytes) {
-  if (powered_) uart_->send(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size());
+  if (powered_ && !browned_out_) uart_->send(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size());
 }
 
 // ---- memory ----

@@ -48,6 +48,10 @@ class Board {
   void power_on(uint64_t seed);
   void power_off(uint64_t seed);
   void reset();  // the RESET pin
+  // The supply's voltage from now on; the converter's references follow it. Below its level the brown-out detector
+  // holds the chip in reset, and an EEPROM byte being written is torn as the seed says. Far below, memory is lost as
+  // well.
+  void set_supply(uint32_t millivolts, uint64_t seed);
   bool powered() const { return powered_; }
 
   // Runs to the first instruction boundary at or after the cycle. Without power only time passes.
@@ -133,6 +137,7 @@ class Board {
   uint32_t boot_start_ = UINT32_MAX;
   uint64_t stop_at_ = 0;
   bool powered_ = false;
+  bool browned_out_ = false;  // powered, but held in reset
   bool reference_decoder_ = false;
 };
 

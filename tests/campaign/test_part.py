@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
+from greywhale.protocol.schema import Fault
 from tools.campaign.journal import Journal, identity
-from tools.campaign.page import write_page
+from tools.campaign.page import STAGED_AS, write_page
 from tools.campaign.part import Part, Row, add_up, split
+from tools.campaign.staging import faults
 
 
 def make_part(name: str = "none") -> Part:
@@ -49,3 +52,13 @@ def test_the_page_shows_every_violation() -> None:
     page = write_page([(make_part(), [Row("a | b", 1000, 2, {"fault": 3}, {"ms": 1.5})])])
     assert "| [Nothing at all](#nothing-at-all) | 1,000 | 2 |" in page
     assert "**2** | 1.5 ms | fault 3 |" in page
+
+
+def test_the_page_lists_the_faults_with_their_times_on_both_boards() -> None:
+    part = Part("faults", "Faults", "", ("Makefile",), lambda share: [], lambda piece: [])
+    rows = [Row(f"{board}: {staged}", 5, 0, {}, {"ms": 3.25}) for board in ("mega", "nano") for staged in faults()]
+    page = write_page([(part, rows)])
+    for name in STAGED_AS:
+        assert re.search(rf"\| `{name}` \| .+ \| .+ \| 3.25 \| 3.25 \|", page), name
+    assert set(STAGED_AS.values()) <= set(faults())
+    assert set(STAGED_AS) | {"none", "params", "tracking", "unrest"} == {fault.key for fault in Fault}

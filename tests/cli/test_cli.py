@@ -144,6 +144,7 @@ def test_info_tells_version_crc_state_and_counters(capsys: Captured) -> None:
     assert (answer["state"], answer["fault"], answer["tick_us_max"]) == ("disabled", "none", 300)
     assert "Arduino Mega 2560" in text
     assert "longest tick   300 us of 1000, 0 late" in text
+    assert "pots           none is at a rail" in text
 
 
 def test_info_names_a_fault_with_its_place_and_remedy(capsys: Captured) -> None:

@@ -17,6 +17,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(900)  # a whole commissioning: two minutes on a quiet machine
 def test_the_demo_tells_its_story_and_proves_its_controllers_on_the_arm(tmp_path: Path) -> None:
     """The third recording is with what commissioning left on the board: nowhere worse than the tuned controllers."""
     told: list[str] = []

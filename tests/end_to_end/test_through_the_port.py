@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import signal
 import subprocess
 import sys
@@ -15,6 +16,7 @@ import pytest
 from greywhale.board.device import Device
 from greywhale.board.record import record
 from greywhale.board.upload import upload_controller
+from greywhale.cli import entry
 from greywhale.demo import BenchProcess
 from greywhale.errors import UserError
 from greywhale.files.log import read_log
@@ -109,6 +111,19 @@ def test_a_broken_potentiometer_ends_the_recording(start_bench: Start, tmp_path:
     assert reported
     assert not bench.command("status")["motors_enabled"]
     assert not read_log(tmp_path / "log.csv").complete
+
+
+@pytest.mark.slow
+def test_info_names_broken_potentiometers_before_anyone_enables(
+    start_bench: Start, capsys: pytest.CaptureFixture[str]
+) -> None:
+    bench = start_bench()
+    bench.command("pot leader 1 shorted")
+    bench.command("pot follower 3 open")
+    assert entry.run(["info", "--port", bench.port]) == 0
+    told = capsys.readouterr().out
+    broken = re.findall(r"(leader|follower) potentiometer (\d) reads (\d+)\.\.(\d+) of 1023, at a rail", told)
+    assert broken == [("leader", "1", "1023", "1023"), ("follower", "3", "0", "0")]
 
 
 @pytest.mark.slow

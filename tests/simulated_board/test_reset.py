@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from tests.simulated_board.avr import MakeProgram
@@ -62,6 +63,59 @@ def test_without_power_only_time_passes(program: MakeProgram) -> None:
     assert not run.board.powered
     run.board.reset()
     assert not run.board.powered
+
+
+BORF = 4
+
+
+@pytest.mark.parametrize("chip", ["atmega2560", "atmega328p"])
+def test_the_brown_out_detector_holds_the_chip_in_reset_and_memory_stays(program: MakeProgram, chip: str) -> None:
+    run = program(CAUSE.replace("CLEAR", "1"), chip).start()
+    run.run(1000)
+    run.set_u8("kept", 0xA7)
+    run.board.set_supply(2700)
+    run.run(1000)
+    assert run.board.pin("B", 0), "the level itself is enough"
+    run.board.set_supply(2699)
+    assert not run.board.pin("B", 0)
+    at = run.board.cycle
+    run.run(1000)
+    run.board.set_supply(2749)
+    run.run(1000)
+    assert (run.board.pc, run.board.cycle) == (0, at + 2000)
+    run.board.set_supply(2750)
+    run.run(1000)
+    assert run.u8("cause") == [BORF]
+    assert run.u8("kept") == [0xA7]
+
+
+def test_a_supply_that_falls_far_is_a_loss_of_power(program: MakeProgram) -> None:
+    run = program(CAUSE.replace("CLEAR", "1")).start()
+    run.run(1000)
+    run.set_u8("kept", 0xA7)
+    for millivolts in (2000, 1099):
+        run.board.set_supply(millivolts)
+    assert not run.board.powered
+    run.board.set_supply(2000)
+    assert not run.board.powered
+    run.board.set_supply(5000, seed=3)
+    run.run(1000)
+    assert run.u8("cause") == [PORF]
+    assert run.u8("kept") != [0xA7]
+
+
+def test_the_converters_reference_is_the_supply(program: MakeProgram) -> None:
+    source = """
+    volatile uint16_t seen;
+    int main(void) {
+        ADMUX = 0x40; ADCSRA = _BV(ADEN) | _BV(ADSC) | 7;
+        while (ADCSRA & _BV(ADSC)); seen = ADC; DONE();
+    }
+    """
+    run = program(source)
+    run.board.set_millivolts(np.full(8, 2000.0))
+    run.board.set_supply(4000)
+    assert run.finish().u16("seen") == [512]
 
 
 WATCHDOG = """

@@ -11,12 +11,12 @@ def test_interrupts_add_to_the_tick_as_often_as_they_may_come() -> None:
         "start of the chain": 10,
         "conversion done": 20,
         "byte received": 50,
-        "byte sent": 50,
+        "byte sent": 30,
     }
     bounds = Times(tick=1000, interrupts=quiet, waking=0)
-    assert bounds.response(receiving=False, sending=False) == 1020
-    assert bounds.response(receiving=True, sending=False) == 1020 + (11 + 2) * 50
+    assert bounds.response(receiving=False) == 1020 + 2 * 30
+    assert bounds.response(receiving=True) == 1080 + (11 + 2) * 50
     longer = Times(tick=3000, interrupts=quiet, waking=0)
-    assert longer.response(receiving=False, sending=False) == 3020 + 2 * 20
+    assert longer.response(receiving=False) == 3080 + 2 * 20
     full = Times(tick=1000, interrupts=quiet | {"byte received": 161}, waking=0)
-    assert full.response(receiving=True, sending=False) is None
+    assert full.response(receiving=True) is None

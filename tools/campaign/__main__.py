@@ -10,34 +10,14 @@ from __future__ import annotations
 
 import argparse
 import os
-import signal
 import sys
-import time
-from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 
 from tools.campaign.journal import ROOT, Journal
 from tools.campaign.page import write_page, write_table
-from tools.campaign.part import Part, Piece, Row, add_up
+from tools.campaign.part import Part, Row, add_up
 from tools.campaign.parts import PARTS
-
-
-def do_all(part: Part, pieces: list[Piece], journal: Journal, pool: ProcessPoolExecutor) -> None:
-    """Do what is missing; each piece that is finished is kept at once."""
-    missing = journal.missing(pieces)
-    running = {pool.submit(part.run, piece): piece for piece in missing}
-    began = time.monotonic()
-    for number, future in enumerate(as_completed(running), 1):
-        journal.add(running[future], future.result())
-        left = (time.monotonic() - began) / number * (len(missing) - number)
-        print(f"\r{part.name}: {number} of {len(missing)} pieces, about {left / 60:.0f} min left ", end="", flush=True)
-    if missing:
-        print()
-
-
-def ignore_interrupts() -> None:
-    """Ctrl-C reaches every process of the terminal; the first one ends the others."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+from tools.campaign.runner import do_all, open_pool
 
 
 def main(arguments: list[str]) -> int:
@@ -54,14 +34,10 @@ def main(arguments: list[str]) -> int:
     if options.publish and (options.part or options.share != 1.0):
         parser.error("only the whole campaign at its full size can be published")
     results: list[tuple[Part, list[Row]]] = []
-    with ProcessPoolExecutor(options.workers, initializer=ignore_interrupts, max_tasks_per_child=1) as pool:
+    with open_pool(options.workers) as pool:
         for part in [names[name] for name in options.part] or PARTS:
             pieces, journal = part.pieces(options.share), Journal(options.out, part)
-            try:
-                do_all(part, pieces, journal, pool)
-            except KeyboardInterrupt:
-                pool.shutdown(wait=False, cancel_futures=True)
-                raise
+            do_all(part, pieces, journal, pool)
             results.append((part, add_up(journal.rows(pieces))))
             print(write_table(results[-1][1]))
     if options.publish:

@@ -16,7 +16,7 @@ ROOT = Path(__file__).parents[2]
 def identity(part: Part) -> str:
     """A digest of all that a part's result is about."""
     digest = hashlib.sha256()
-    for name in (*part.depends, "tools/campaign"):
+    for name in (*part.depends, f"tools/campaign/parts/{part.name}.py"):
         path = ROOT / name
         for file in sorted(path.rglob("*")) if path.is_dir() else [path]:
             if file.is_file() and "__pycache__" not in file.parts and ".pio" not in file.relative_to(ROOT).parts:

@@ -19,6 +19,7 @@ from greywhale.files.arm import default_arm
 from greywhale.protocol import frames, schema
 from greywhale.protocol.declared import Message
 from greywhale_sim._board import Board
+from greywhale_sim.symbols import read_symbols
 from greywhale_sim.wiring import BOARDS
 
 Array = npt.NDArray[np.float64]
@@ -28,6 +29,8 @@ Leader = Callable[[float], Array]
 BUILD = Path(__file__).parents[2] / "firmware/.pio/build"
 SLICE_CYCLES, SLICE_S = 4000, 250e-6
 CYCLES_PER_MS = 16_000
+ASK_AGAIN_MS = 50
+RAM = {"atmega2560": 0x200, "atmega328p": 0x100}
 
 
 class Rig:
@@ -41,6 +44,7 @@ class Rig:
         self.arm = Arm(parameters, seed=seed)
         self._pots = [Potentiometers(parameters.leader_pots, seed), Potentiometers(parameters.follower_pots, seed + 1)]
         self.leader_of = leader
+        self.running_set = 0
         self.motion_s = 0.0
         self.leader = leader(0.0)
         self.angles: Array = self.leader.copy()
@@ -49,7 +53,9 @@ class Rig:
         self.motor_signs = np.ones(4)
         self.stuck: dict[int, float] = {}
         self.board: Any = Board(self.wiring.mcu)
-        self.board.load_elf(str(BUILD / self.wiring.environment / "firmware.elf"))
+        elf = BUILD / self.wiring.environment / "firmware.elf"
+        self.symbols = read_symbols(elf)
+        self.board.load_elf(str(elf))
         self.board.power_on(seed)
         self.board.add_pin_output(self.wiring.enable.port, self.wiring.enable.bit)
         for motor in self.wiring.motors:
@@ -102,11 +108,12 @@ class Rig:
     # --- the host
 
     def ask(self, message: type[Message], payload: bytes = b"") -> bytes:
-        """The payload of the answer; RuntimeError when the board refuses."""
+        """The payload of the answer; RuntimeError when the board refuses. A board that restarts is asked again."""
         self.board.uart_receive()
-        self.board.uart_send(frames.encode_frame(message.TYPE, 1, payload))
         decoder = frames.FrameDecoder()
-        for _ in range(100):
+        for attempt in range(200):
+            if attempt % ASK_AGAIN_MS == 0:
+                self.board.uart_send(b"\0" + frames.encode_frame(message.TYPE, 1, payload))
             self.run(0.001)
             for frame in decoder.feed(self.board.uart_receive()):
                 if frame.type == message.TYPE | 0x80:
@@ -117,7 +124,7 @@ class Rig:
         return schema.StatusReply.unpack(self.ask(schema.StatusRequest))
 
     def apply(self, changes: dict[str, int]) -> None:
-        """Run the defaults with these raw values."""
+        """Run the defaults with these raw values, and find out where they lie."""
         values = list(schema.DEFAULTS)
         for name, raw in changes.items():
             index = schema.PARAMETER_BY_NAME[name].index
@@ -125,6 +132,8 @@ class Rig:
             self.ask(schema.ParamSetRequest, struct.pack("<Hi", index, raw))
         self.ask(schema.ParamApplyRequest, struct.pack("<H", schema.param_crc(values)))
         self.run(0.005)
+        start = RAM[self.wiring.mcu]
+        self.running_set = start + self.board.peek(start, 2048).index(schema.TABLE.pack(values))
 
     def start(self) -> None:
         """All in order again, motors on, soft start over."""

@@ -20,6 +20,9 @@ REPLY_BIT = 0x80
 _TYPE = re.compile(r"(u8|i8|u16|i16|u32|i32)(?:\[(\d+)\])?")
 
 
+_MORE_WORDS = ("remedy", "detail", "cause")
+
+
 class DeclarationError(Exception):
     """One sentence: which file, which entry, what to change."""
 
@@ -31,6 +34,7 @@ class EnumValue:
     description: str
     remedy: str
     detail: str
+    cause: str = ""
 
 
 @dataclass(frozen=True)
@@ -157,7 +161,7 @@ def _read(path: Path) -> dict[str, Any]:
 
 def _enum(entry: dict[str, Any]) -> Enum:
     values = tuple(
-        EnumValue(value["name"], value["value"], value["description"], value.get("remedy", ""), value.get("detail", ""))
+        EnumValue(value["name"], value["value"], value["description"], *(value.get(key, "") for key in _MORE_WORDS))
         for value in entry["values"]
     )
     if len({value.value for value in values}) != len(values) or not all(0 <= value.value <= 255 for value in values):

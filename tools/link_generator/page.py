@@ -78,9 +78,14 @@ def _messages(declaration: Declaration) -> list[str]:
 def _enum(enum: Enum) -> str:
     remedies = any(value.remedy for value in enum.values)
     details = any(value.detail for value in enum.values)
-    head = ["value", "name", "meaning"] + ["detail"] * details + ["what to do"] * remedies
+    causes = any(value.cause for value in enum.values)
+    more = ["detail"] * details + ["raised when"] * causes + ["what to do"] * remedies
+    head = ["value", "name", "meaning", *more]
     rows = [
-        [str(value.value), f"`{value.name}`", value.description] + [value.detail] * details + [value.remedy] * remedies
+        [str(value.value), f"`{value.name}`", value.description]
+        + [value.detail] * details
+        + [value.cause] * causes
+        + [value.remedy] * remedies
         for value in enum.values
     ]
     lines = [

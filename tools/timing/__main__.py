@@ -16,8 +16,8 @@ def _row(what: str, bound: int, measured: int) -> str:
     return f"  {what:24} {bound:7} {measured:9}   {bound / measured - 1:+.0%}"
 
 
-def _response(found: Times, receiving: bool, sending: bool) -> str:
-    cycles = found.response(receiving, sending)
+def _response(found: Times, receiving: bool) -> str:
+    cycles = found.response(receiving)
     return "no bound below a tick" if cycles is None else f"{cycles} cycles, {cycles / 16:.0f} us"
 
 
@@ -26,10 +26,9 @@ def _print(target: Target, found: Times) -> None:
     print(f"{target.chip.name:26} {'bound':>7} {'measured':>9}   cycles")
     for what, bound in budget.flat(found).items():
         print(_row(what, bound, worst[what]))
-    print(f"  tick with its interrupts: {_response(found, False, False)} when the line is quiet,")
-    print(f"    {_response(found, True, False)} when bytes come without a gap,")
-    print(f"    {_response(found, False, True)} when bytes go without a gap, {_response(found, True, True)} with both,")
-    print(f"    of which the longest that was found is {measure.busiest(target)}")
+    print(f"  tick with its interrupts: {_response(found, False)} when nothing is received,")
+    print(f"    {_response(found, True)} when bytes come without a gap; the longest that was found with both")
+    print(f"    directions full is {measure.busiest(target)} cycles")
 
 
 def main(arguments: list[str]) -> int:

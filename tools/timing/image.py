@@ -22,9 +22,9 @@ BYTE = 160  # cycles that a byte takes on the line at 1 Mbaud
 CONVERSION = 416
 CONVERSIONS = 32  # in a tick
 FIRST_CONVERSION = 33 * 64 + CONVERSION  # its end, in cycles after the tick's interrupt: hal's chain_start, and itself
-RING = 127  # bytes: no more are received, or sent, while the main loop does not get to the rings
-# The chip holds two received bytes while a third comes in, so three interrupts may be due at once; of sent bytes two.
-HELD = {"byte received": 2, "byte sent": 1}
+RING = 127  # bytes: no more are received while the main loop does not get to the ring
+HELD = 2  # received bytes in the chip while a third comes in, so three interrupts may be due at once
+SENT = 2  # interrupts of sent bytes between the tick's interrupt and hal::tick_begin(), which ends them
 
 
 @dataclass(frozen=True)
@@ -64,20 +64,20 @@ class Times:
     interrupts: dict[str, int]
     waking: int
 
-    def response(self, receiving: bool, sending: bool) -> int | None:
+    def response(self, receiving: bool) -> int | None:
         """The tick with all interrupts that may come until its end; None if that is not before the next tick.
 
-        Every kind comes as often as its least distance allows, conversions not before the chain has begun. The tick's
-        own may end a sleep; during a tick there is none.
+        Every kind comes as often as its least distance allows, conversions not before the chain has begun. The tick
+        begins with a pause of sending. The tick's own interrupt may end a sleep; during a tick there is none.
         """
         during = {kind: cycles - self.waking for kind, cycles in self.interrupts.items()}
         once = self.tick + self.interrupts["tick's interrupt"] + during["start of the chain"]
+        once += SENT * during["byte sent"]
         end = once
         while end <= PERIOD:
             conversions = math.ceil(max(0, end - FIRST_CONVERSION) / CONVERSION)
             longer = once + min(CONVERSIONS, conversions) * during["conversion done"]
-            for kind, on in (("byte received", receiving), ("byte sent", sending)):
-                longer += on * min(RING, math.ceil(end / BYTE) + HELD[kind]) * during[kind]
+            longer += receiving * min(RING, math.ceil(end / BYTE) + HELD) * during["byte received"]
             if longer == end:
                 return end
             end = longer

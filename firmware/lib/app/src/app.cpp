@@ -10,6 +10,8 @@ uint16_t add_saturated(uint16_t count, uint8_t more) {
   return count > UINT16_MAX - more ? uint16_t{UINT16_MAX} : static_cast<uint16_t>(count + more);
 }
 
+constexpr uint8_t watched_parts = hal::joint_count + 2;
+
 }  // namespace
 
 void App::begin() {
@@ -28,6 +30,35 @@ void App::take_running_set() {
   drive_.configure(table);
   supervisor_.set_limits({table.enable_limit, table.tracking_limit, table.tracking_ms, table.soft_start_ms});
   supervisor_.set_unrest_limits({table.unrest_amplitude, table.unrest_rate, table.unrest_time});
+  learn_memory();
+}
+
+// What a set has become, part by part.
+Part App::watched(uint8_t part) const {
+  if (part < hal::joint_count) return controllers_.coefficients(part);
+  if (part == hal::joint_count) return {reinterpret_cast<const uint8_t*>(&sets_.running()), sizeof(params::Table)};
+  return drive_.settings();
+}
+
+// Some bytes; false at the end of a round.
+__attribute__((noinline)) bool App::look_on() {
+  memory_.add(watched(memory_.part()));
+  return memory_.part() < watched_parts;
+}
+
+void App::learn_memory() {
+  memory_.restart();
+  while (look_on()) {
+  }
+  memory_.learn();
+}
+
+// Some bytes after each tick, but not while a set is being applied.
+__attribute__((noinline)) void App::watch_memory() {
+  if (sets_.applying()) return memory_.restart();
+  if (look_on() || memory_.ends_well()) return;
+  supervisor_.lose_params();
+  follow_supervisor();
 }
 
 void App::tick() {
@@ -44,8 +75,7 @@ void App::tick() {
   show_state();
   const uint16_t age_us = hal::tick_age_us();
   if (age_us > tick_us_max_ && !excused_) tick_us_max_ = age_us;
-  excused_ = false;
-  heard_this_tick_ = false;
+  excused_ = heard_this_tick_ = false;
   hal::watchdog_kick();
   hal::tick_end();
 }

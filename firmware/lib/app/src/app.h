@@ -8,6 +8,7 @@
 #include "controllers.h"
 #include "drive.h"
 #include "lead.h"
+#include "memory_watch.h"
 #include "parameter_sets.h"
 #include "sampling.h"
 
@@ -15,6 +16,7 @@ namespace app {
 
 class App {
  public:
+  App() : sample_due_(false), heard_this_tick_(false), excused_(false), hello_due_(false) {}
   // begin() and service() are not inlined into main(): their variables would stay on the stack for ever.
   __attribute__((noinline)) void begin();
   void tick();  // when hal::tick_pending()
@@ -37,6 +39,10 @@ class App {
   void schedule_sample();
   void show_state();
   void take_running_set();
+  Part watched(uint8_t part) const;
+  bool look_on();
+  void learn_memory();
+  void watch_memory();
 
   // requests.cpp: the link
   void receive();
@@ -94,10 +100,11 @@ class App {
   uint8_t until_control_ = 1;  // ticks
   uint8_t sample_seq_ = 0;
   uint8_t looked_at_ = 0;  // lower byte of the tick of the last look_at_joint()
-  bool sample_due_ = false;
-  bool heard_this_tick_ = false;
-  bool excused_ = false;  // the next tick may be late without being counted, because a set is being applied
-  bool hello_due_ = false;
+  MemoryWatch memory_;
+  bool sample_due_ : 1;
+  bool heard_this_tick_ : 1;
+  bool excused_ : 1;  // the next tick may be late without being counted, because a set is being applied
+  bool hello_due_ : 1;
   bool drivers_on_ = false;
   uint8_t request_ = 0, seq_ = 0;  // of the frame that is being answered
   Lead lead_;

@@ -6,6 +6,8 @@
 #include <signal_chain/duty.h>
 #include <stdint.h>
 
+#include "memory_watch.h"
+
 namespace app {
 
 // The part of fuzzy_pdi::Output that the app uses.
@@ -66,6 +68,9 @@ class Controllers {
   int16_t volts_mv(uint8_t joint) const {
     const auto size = static_cast<int16_t>(size_mv_[joint]);
     return static_cast<int16_t>(sign_[joint] & 0x80 ? -size : size);
+  }
+  Part coefficients(uint8_t joint) const {
+    return {reinterpret_cast<const uint8_t*>(&joints_[joint].coefficients), sizeof(fuzzy_pdi::Coefficients)};
   }
   uint16_t no_rule() const { return no_rule_; }  // stops at 65535
 

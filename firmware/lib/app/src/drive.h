@@ -5,6 +5,8 @@
 #include <signal_chain/duty.h>
 #include <stdint.h>
 
+#include "memory_watch.h"
+
 namespace app {
 
 class Drive {
@@ -14,6 +16,7 @@ class Drive {
   template <uint8_t joint>
   void set(uint16_t size_mv, uint8_t sign) const;
   void release() const;  // all duties 0
+  Part settings() const { return {reinterpret_cast<const uint8_t*>(motors_), sizeof(motors_)}; }
 
  private:
   struct Motor {

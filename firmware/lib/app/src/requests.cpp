@@ -28,7 +28,10 @@ uint16_t pair(uint8_t high, uint16_t low) { return static_cast<uint16_t>(high <<
 
 bool App::service() {
   if (lead_.on() && work_on_lead()) return true;
-  if (looked_at_ != static_cast<uint8_t>(tick_)) look_at_joint();
+  if (looked_at_ != static_cast<uint8_t>(tick_)) {
+    look_at_joint();
+    watch_memory();
+  }
   const uint16_t age_us = hal::tick_age_us();
   const bool late_in_tick = age_us > latest_start_us;
   if (late_in_tick && heard_this_tick_) return false;

@@ -37,19 +37,25 @@ void Supervisor::tick(const Observation& seen) {
     }
     return;
   }
-  if (seen.estop) press_estop();
+  if (seen.estop) raise_always(Fault::estop);
   if (motors_on()) watch(seen);
   if (state_ == State::soft_start && soft_start_.advance()) state_ = State::following;
 }
 
-// A stop that is pressed counts with the motors off as well: somebody wants nothing to start. A fault that stands
-// already stays to be seen, but not one after which the board would start the motors again by itself.
-__attribute__((noinline)) void Supervisor::press_estop() {
-  if (motors_on()) return raise(Fault::estop, nowhere);
+// A stop that is pressed counts with the motors off as well: somebody wants nothing to start. So does damaged memory. A
+// fault that stands already stays to be seen, but not one after which the board would start the motors again by itself.
+__attribute__((noinline)) void Supervisor::raise_always(Fault fault) {
+  if (motors_on()) return raise(fault, nowhere);
   if (state_ == State::fault && fault_ != Fault::unrest) return;
   state_ = State::fault;
-  fault_ = Fault::estop;
+  fault_ = fault;
   fault_where_ = nowhere;
+}
+
+void Supervisor::lose_params() {
+  params_ok_ = false;
+  if (state_ == State::boot) boot_fault_ = Fault::memory;
+  else raise_always(Fault::memory);
 }
 
 // Faults come before the lease, the gravest first: only one is reported.

@@ -29,7 +29,8 @@ enum class Fault : uint8_t {
   estop,
   speed,
   runaway,
-  stalled
+  stalled,
+  memory
 };
 
 struct Limits {
@@ -72,6 +73,8 @@ class Supervisor {
   void begin(bool after_watchdog, bool params_ok);
   void set_limits(const Limits& limits);  // only while the motors are off
   void set_unrest_limits(const UnrestLimits& limits) { unrest_.configure(limits); }
+  // What the controllers work by has changed in memory. The fault stands until a set is applied: params_mended().
+  void lose_params();
   void params_mended();
 
   void tick(const Observation& seen);
@@ -100,7 +103,7 @@ class Supervisor {
   void switch_off(State next, StopReason reason);
   void raise(Fault fault, uint8_t where);
   void forget_fault();
-  void press_estop();
+  void raise_always(Fault fault);
   void watch(const Observation& seen);
   bool is_lost(uint8_t joint, uint16_t distance);
   void watch_joint(uint8_t joint, const JointSeen& seen, const MotionLimits& limits);

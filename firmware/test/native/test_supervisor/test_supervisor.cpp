@@ -395,3 +395,29 @@ TEST_CASE("the emergency stop comes before every other fault of its tick, but le
   CHECK(later.fault() == Fault::late_tick);
   CHECK(later.clear_fault().answer == Answer::estop);
 }
+
+TEST_CASE("damaged parameters are a fault in every state, which stands until a set is applied") {
+  Arm boot;
+  boot.lose_params();
+  CHECK(boot.run(30).fault() == Fault::memory);
+
+  Arm disabled;
+  disabled.booted().lose_params();
+  CHECK(disabled.fault() == Fault::memory);
+  CHECK(disabled.stop_reason() == StopReason::reset);
+
+  Arm arm;
+  arm.following().lose_params();
+  CHECK(arm.state() == State::fault);
+  CHECK(arm.fault() == Fault::memory);
+  CHECK(arm.stop_reason() == StopReason::fault);
+  CHECK(arm.clear_fault().answer == Answer::params);
+  arm.params_mended();
+  CHECK(arm.clear_fault().answer == Answer::ok);
+  CHECK(arm.enable(0).answer == Answer::ok);
+
+  Arm late_before;
+  late_before.following().run(1, late()).lose_params();
+  CHECK(late_before.fault() == Fault::late_tick);
+  CHECK(late_before.clear_fault().answer == Answer::params);
+}

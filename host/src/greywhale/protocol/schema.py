@@ -18,7 +18,7 @@ from typing import ClassVar
 from .declared import Described, Field, Group, Message, Parameter, Table, check_length
 
 PROTOCOL = 1
-SCHEMA_HASH = 0x5E1C25F6
+SCHEMA_HASH = 0x4B725FA5
 MAX_PAYLOAD = 48
 REPLY_BIT = 0x80
 LAYOUT = 2
@@ -60,6 +60,7 @@ class Fault(Described):
     SPEED = 10, "a follower's potentiometer jumped, or turned faster than any joint does", "Check that potentiometer's three wires, its wiper and its coupling to the joint, or raise speed_limit, then clear the fault."
     RUNAWAY = 11, "a follower moved against its motor's voltage, faster and faster", "Check motor_sign, both motor wires and the sign of the potentiometer's scale, and that the potentiometer is that joint's own, then clear the fault."
     STALLED = 12, "a motor had voltage, but its follower did not move", "Check for something in the joint's way, its motor supply, and that its potentiometer turns with it; for a heavy load raise stall_volts or stall_ms, then clear the fault."
+    MEMORY = 13, "the running parameters had changed in the board's memory", "Upload a controller file with `greywhale upload` or reset the board; if it comes back, check the board's supply for noise."
 
 
 class NackCode(Described):
@@ -80,7 +81,7 @@ class NackCode(Described):
     BOOTING = 12, "the board is still starting", "Try again in a moment.", "0"
     INCONSISTENT = 13, "parameters contradict each other", "Give limit_max above limit_min, a motor_sign of 1 or -1 and a pot scale other than 0, and upload again.", "the flat index of the first parameter that does not fit"
     LEAD_REFUSED = 14, "the host cannot lead like this", "Correct the motion and start it again.", "joint << 8 | LeadRefusal"
-    SET_LOST = 15, "stored parameters were lost, and nobody has confirmed those that run now", "Bring your parameters back with `greywhale params restore`, or upload a controller file with `greywhale upload`, then clear the fault.", "0"
+    SET_LOST = 15, "parameters were lost, and nobody has confirmed those that run now", "Bring your parameters back with `greywhale params restore`, or upload a controller file with `greywhale upload`, then clear the fault.", "0"
     ESTOP_PRESSED = 16, "the emergency stop is pressed", "Release the emergency stop once it is safe; without such a button set estop_input to 0, or check its wire.", "0"
 
 

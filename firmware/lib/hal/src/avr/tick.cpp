@@ -93,6 +93,7 @@ bool tick_pending() { return running != 0; }
 
 TickStart tick_begin() {
   cli();
+  UCSR0B = static_cast<uint8_t>(UCSR0B & ~(1 << UDRIE0));  // what is to be sent waits for the end of the tick
   const TickStart start = {internal::elapsed, late != 0};
   internal::elapsed = 0;
   late = 0;
@@ -103,6 +104,9 @@ TickStart tick_begin() {
 void tick_end() {
   internal::missed_ticks = 0;
   running = 0;
+  cli();
+  if (hal_tx_head != TX_TAIL) UCSR0B = static_cast<uint8_t>(UCSR0B | (1 << UDRIE0));
+  sei();
 }
 
 const uint16_t* pot_sums() { return !full ? nullptr : filling ? hal_sums[0] : hal_sums[1]; }

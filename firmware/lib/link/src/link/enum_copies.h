@@ -66,6 +66,7 @@ constexpr bool is_copy(Fault, Copy value = Copy()) {
   static_assert(same_number(Copy::speed, Fault::speed), "Fault::speed");
   static_assert(same_number(Copy::runaway, Fault::runaway), "Fault::runaway");
   static_assert(same_number(Copy::stalled, Fault::stalled), "Fault::stalled");
+  static_assert(same_number(Copy::memory, Fault::memory), "Fault::memory");
   switch (value) {
     case Copy::none:
     case Copy::pot_low:
@@ -80,6 +81,7 @@ constexpr bool is_copy(Fault, Copy value = Copy()) {
     case Copy::speed:
     case Copy::runaway:
     case Copy::stalled:
+    case Copy::memory:
       break;
   }
   return true;

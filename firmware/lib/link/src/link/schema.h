@@ -9,7 +9,7 @@
 namespace wire {
 
 constexpr uint8_t protocol = 1;
-constexpr uint32_t schema_hash = 0x5E1C25F6;
+constexpr uint32_t schema_hash = 0x4B725FA5;
 constexpr uint8_t max_payload = 48;
 constexpr uint8_t reply_bit = 0x80;
 
@@ -64,6 +64,7 @@ enum class Fault : uint8_t {
   speed = 10,  // a follower's potentiometer jumped, or turned faster than any joint does
   runaway = 11,  // a follower moved against its motor's voltage, faster and faster
   stalled = 12,  // a motor had voltage, but its follower did not move
+  memory = 13,  // the running parameters had changed in the board's memory
 };
 
 // Why a request was refused.
@@ -83,7 +84,7 @@ enum class NackCode : uint8_t {
   booting = 12,  // the board is still starting
   inconsistent = 13,  // parameters contradict each other
   lead_refused = 14,  // the host cannot lead like this
-  set_lost = 15,  // stored parameters were lost, and nobody has confirmed those that run now
+  set_lost = 15,  // parameters were lost, and nobody has confirmed those that run now
   estop_pressed = 16,  // the emergency stop is pressed
 };
 

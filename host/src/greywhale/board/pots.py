@@ -1,0 +1,62 @@
+"""What the potentiometers read while the motors are off: an open or shorted wire is named before it is a fault."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import islice
+
+import numpy as np
+from numpy.typing import NDArray
+
+from greywhale.board.device import Device
+from greywhale.board.refusal import lower_first, pot_name
+from greywhale.board.stream import stream
+from greywhale.board.upload import read_parameter
+from greywhale.protocol import schema
+
+POTS = tuple(f"{side}{joint}" for side in ("leader", "follower") for joint in range(4))
+LOOKS = 100  # samples, of a millisecond each
+FULL_SCALE = 1023
+_ANGLE_SHIFT = 13  # angle = ((count14 - zero) * scale) >> 13
+_COUNT14 = 16  # in a count of the converter
+
+
+@dataclass(frozen=True)
+class PotReadings:
+    """Counts of the 10-bit converter, one row a sample, columns leader 0..3 and follower 0..3, after the low-pass."""
+
+    counts: NDArray[np.int64]
+    rail_counts: int
+
+    def at_rail(self, pot: int) -> schema.Fault:
+        """The rail at which a pot reads in any of the samples, else `none`."""
+        counts = self.counts[:, pot]
+        if np.any(counts <= self.rail_counts):
+            return schema.Fault.POT_LOW
+        if np.any(counts >= FULL_SCALE - self.rail_counts):
+            return schema.Fault.POT_HIGH
+        return schema.Fault.NONE
+
+    def complaints(self) -> list[str]:
+        """A sentence for each pot at a rail: which, what it reads, what to do."""
+        told = []
+        for pot in range(len(POTS)):
+            if (fault := self.at_rail(pot)) is not schema.Fault.NONE:
+                reads = f"{self.counts[:, pot].min()}..{self.counts[:, pot].max()} of {FULL_SCALE}"
+                remedy = fault.remedy.removesuffix(", then clear the fault.")
+                told.append(f"{pot_name(pot)} reads {reads}, at a rail ({fault.key}): {lower_first(remedy)}.")
+        return told
+
+
+def read_pots(device: Device) -> PotReadings:
+    """Look at all potentiometers for some samples. The motors must be off. Telemetry is off afterwards."""
+    scales = np.array([read_parameter(device, f"{pot}.scale") for pot in POTS], dtype=float)
+    zeros = np.array([read_parameter(device, f"{pot}.zero") for pot in POTS], dtype=float)
+    rail_counts = read_parameter(device, "rail_counts")
+    try:
+        samples = [one.sample for one in islice(stream(device, 1), LOOKS)]
+    finally:
+        device.telemetry(0)
+    angles = np.array([(*sample.leader, *sample.follower) for sample in samples], dtype=float)
+    counts = np.rint((angles * 2**_ANGLE_SHIFT / scales + zeros) / _COUNT14)
+    return PotReadings(np.clip(counts, 0, FULL_SCALE).astype(np.int64), rail_counts)

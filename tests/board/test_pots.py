@@ -1,0 +1,40 @@
+"""Potentiometers at a rail are named while the motors are off."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from greywhale.board.device import Device
+from greywhale.board.pots import FULL_SCALE, LOOKS, POTS, PotReadings, read_pots
+from greywhale.protocol import schema
+from greywhale.protocol.schema import Fault
+from tests.board.fake_board import FakeBoard
+
+
+def readings(pot: int, counts: int, seen_in: int = LOOKS) -> PotReadings:
+    table = np.full((LOOKS, len(POTS)), 500)
+    table[:seen_in, pot] = counts
+    return PotReadings(table, 4)
+
+
+@pytest.mark.parametrize(("counts", "fault"), [(4, "pot_low"), (5, "none"), (1018, "none"), (1019, "pot_high")])
+def test_a_reading_within_rail_counts_of_an_end_is_at_the_rail(counts: int, fault: str) -> None:
+    found = readings(6, counts)
+    assert [found.at_rail(pot).key for pot in range(8)] == ["none"] * 6 + [fault, "none"]
+
+
+def test_one_reading_at_a_rail_is_enough_and_is_told_in_a_sentence() -> None:
+    (told,) = readings(2, 0, seen_in=1).complaints()
+    assert told.startswith("leader potentiometer 2 reads 0..500 of 1023, at a rail (pot_low): check that")
+
+
+def test_the_counts_are_those_that_the_board_has_converted() -> None:
+    with FakeBoard() as board, Device(board.port, quiet_s=0.0, patience_s=0.5) as device:
+        found = read_pots(device)
+        assert board.asked(schema.TelemetryRequest) == 2, "on, and off again"
+    assert found.counts.shape == (LOOKS, len(POTS))
+    assert np.all((found.counts > 0) & (found.counts < FULL_SCALE))
+    assert found.counts[0].tolist() == [512, 512, 507, 521, 512, 512, 512, 512]
+    assert found.complaints() == []
+    assert found.at_rail(0) is Fault.NONE

@@ -1,0 +1,101 @@
+"""A bit that flips in memory on the real images: what a set has become is looked over all the time."""
+
+from __future__ import annotations
+
+import struct
+
+import pytest
+
+from greywhale.fuzzy import twin
+from greywhale.fuzzy.settings import JointSettings
+from greywhale.protocol import schema
+from tests.firmware.test_stop import enable, motors_on, status
+from tests.firmware.test_unrest import apply
+from tools.bench.bench_tick import CYCLES_PER_TICK, Bench
+
+FLIPS = 60
+ROUND_MS = 51.0  # 376 bytes, eight after each tick, part by part; a flip behind the eye waits for the next round
+SOFT_START = ("soft_start_ms", schema.DEFAULTS[schema.PARAMETER_BY_NAME["soft_start_ms"].index])
+JOINT_FIELDS = ("ne_c", "ze_a", "ze_c", "pe_b", "nce_c", "zce_a", "zce_c", "pce_b", "kp", "kd", "ki", "ku_mv")
+
+
+def coefficients(joint: int) -> bytes:
+    """A joint's coefficients of the default set as they lie in memory."""
+    values = schema.DEFAULTS
+    settings = JointSettings(
+        *(values[schema.PARAMETER_BY_NAME[f"joint{joint}.{field}"].index] for field in JOINT_FIELDS)
+    )
+    found = twin.compile_settings(settings, values[schema.PARAMETER_BY_NAME["period_ms"].index])
+    sides = b"".join(
+        struct.pack("<IIB", side.zero, side.outer, side.zero_short | side.outer_short << 1)
+        for side in (*found.e, *found.ce)
+    )
+    return sides + struct.pack("<IH", found.integral, found.ku_mv)
+
+
+def watched(bench: Bench) -> list[tuple[int, int]]:
+    """Address and size of the running table and of each joint's coefficients. The staged table lies behind."""
+    start, _ = bench.ram
+    memory = bench.board.peek(start, bench.statics)
+    parts = [schema.TABLE.pack(schema.DEFAULTS), *(coefficients(joint) for joint in range(4))]
+    return [(start + memory.index(part), len(part)) for part in parts]
+
+
+def flip(bench: Bench, address: int) -> None:
+    bench.board.poke(address, bytes([bench.board.peek(address, 1)[0] ^ 1 << int(bench.random.integers(8))]))
+
+
+def ms_until_off(bench: Bench) -> float:
+    begun = bench.board.cycle
+    while motors_on(bench) and bench.board.cycle - begun < 1000 * CYCLES_PER_TICK:
+        bench.wait(0.25)
+    return float((bench.board.cycle - begun) / CYCLES_PER_TICK)
+
+
+@pytest.mark.slow
+def test_motors_are_off_soon_after_any_bit_of_the_running_set_has_flipped(bench: Bench) -> None:
+    parts = watched(bench)
+    for trial in range(FLIPS):
+        address, size = parts[trial % len(parts)]
+        enable(bench)
+        bench.wait(bench.random.uniform(0, 60))
+        flip(bench, address + int(bench.random.integers(size)))
+        assert ms_until_off(bench) <= 2 * ROUND_MS + 1
+        seen = status(bench)
+        assert seen.late_ticks == 0
+        assert seen.fault in (schema.Fault.MEMORY, schema.Fault.ESTOP), "a flipped estop_input means an opening button"
+        apply(bench, *SOFT_START)
+
+
+def test_damaged_parameters_are_told_with_the_motors_off_as_well_until_a_set_is_applied(bench: Bench) -> None:
+    address, _ = watched(bench)[1]
+    flip(bench, address)
+    bench.wait(2 * ROUND_MS)
+    assert (status(bench).state, status(bench).fault) == (schema.State.FAULT, schema.Fault.MEMORY)
+    with pytest.raises(RuntimeError, match="ClearFault"):
+        bench.ask(schema.ClearFaultRequest)
+    apply(bench, *SOFT_START)
+    enable(bench)
+    bench.wait(2 * ROUND_MS)
+    assert motors_on(bench)
+
+
+def test_the_staged_set_is_not_looked_over(bench: Bench) -> None:
+    running, size = watched(bench)[0]
+    flip(bench, running + size)
+    enable(bench)
+    bench.wait(4 * ROUND_MS)
+    assert motors_on(bench)
+
+
+def test_a_set_that_is_refused_or_saved_is_no_damage(bench: Bench) -> None:
+    index = schema.PARAMETER_BY_NAME["joint2.ze_c"].index
+    values = list(schema.DEFAULTS)
+    values[index] = 1  # narrower than any set may be
+    bench.ask(schema.ParamSetRequest, struct.pack("<Hi", index, 1))
+    with pytest.raises(RuntimeError, match="Apply"):
+        bench.ask(schema.ParamApplyRequest, struct.pack("<H", schema.param_crc(values)))
+    bench.ask(schema.ParamSaveRequest)
+    enable(bench)
+    bench.wait(1000)
+    assert motors_on(bench)
