@@ -50,7 +50,7 @@ BROKEN = {
     ),
     "an emergency stop that is not seen": (
         "supervisor/src/supervisor.cpp",
-        "if (seen.estop) press_estop();",
+        "if (seen.estop) raise_always(Fault::estop);",
         "",
         "the motors are off while the emergency stop is pressed",
     ),
@@ -76,7 +76,7 @@ BROKEN = {
         "app/src/parameter_sets.cpp",
         "controllers.take(sets_.running(), at_++);",
         "++at_;",
-        "the voltage is that of the law",
+        "the voltage is that of the law|memory that nobody has changed",
     ),
     "a safe set that is none": (
         "app/src/parameter_sets.cpp",
@@ -95,6 +95,12 @@ BROKEN = {
         "steps_[(first_ + waiting_) % room]",
         "steps_[first_ + waiting_]",
         "runtime error|AddressSanitizer",
+    ),
+    "a memory watch that cries wolf": (
+        "app/src/app.cpp",
+        "memory_.learn();",
+        "",
+        "memory that nobody has changed",
     ),
     "a controller that is not reset": (
         "app/src/app.cpp",
