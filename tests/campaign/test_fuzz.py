@@ -23,12 +23,14 @@ def test_the_corpora_are_small(tmp_path: Path) -> None:
         assert sum(path.stat().st_size for path in inputs) < 100_000
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("target", fuzz.TARGETS)
 def test_the_corpus_breaks_nothing(target: str) -> None:
     failed, report = fuzz.replay(fuzz.TARGETS[target], target)
     assert not failed, fuzz.reason(report)
 
 
+@pytest.mark.slow
 def test_more_runs_break_nothing() -> None:
     row = fuzz.fuzz(fuzz.TARGETS["app"], "app", 1, 400)
     assert (row.trials, row.violations) == (400, 0)
