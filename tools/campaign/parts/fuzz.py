@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from tools.campaign.journal import ROOT
-from tools.campaign.native import DEPENDS, ROOMS_OF_SETS, SOURCES, WATCHED, Program, build
+from tools.campaign.native import ROOMS_OF_SETS, SOURCES, WATCHED, Program, build, depends
 from tools.campaign.part import Part, Piece, Row, split
 from tools.campaign.stories import STORIES
 
@@ -116,7 +116,7 @@ What must hold is judged from outside, through the line, the pins and the EEPROM
 
 The frame codec is judged by a second decoder, written from the definition of COBS and the CRC; the parameter table by
 the ranges of its values.""",
-    DEPENDS,
+    (*depends(*TARGETS.values()), "firmware/test/campaign/corpus", "tools/campaign/stories.py"),
     pieces,
     run,
 )
