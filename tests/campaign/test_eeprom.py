@@ -18,6 +18,7 @@ def test_pieces_have_every_kind_at_any_share() -> None:
     assert sum(piece["trials"] for piece in eeprom.pieces(1.0)) >= 10**7
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", eeprom.TRIALS)
 def test_a_share_holds(kind: str) -> None:
     trials = 500 if kind == "migration" else 20_000

@@ -18,6 +18,7 @@ def test_pieces_have_every_kind_at_any_share() -> None:
     assert sum(piece["trials"] for piece in link.pieces(1.0) if piece["what"] == "session") >= 10**7
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rate", link.SESSIONS)
 def test_sessions_hold(rate: int) -> None:
     faults = max(50, rate // 2)
@@ -27,6 +28,7 @@ def test_sessions_hold(rate: int) -> None:
     assert row.counts["frames hit"] > faults / 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rate", link.REPLIES)
 def test_the_hosts_decoder_holds(rate: int) -> None:
     (row,) = link.run({"what": "replies", "how": rate, "seed": 1, "trials": 5000})
@@ -34,6 +36,7 @@ def test_the_hosts_decoder_holds(rate: int) -> None:
     assert row.counts["frames"] > 1000
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("bits", link.FLIPPED)
 def test_flipped_bits_pass_as_computed(bits: int) -> None:
     (row,) = link.run({"what": "flips", "how": bits, "seed": 1, "trials": 200_000})
@@ -76,6 +79,7 @@ def test_a_broken_link_is_found(tmp_path: Path, file: str, right: str, wrong: st
     assert row.violations > 0
 
 
+@pytest.mark.slow
 def test_a_decoder_that_misses_or_invents_is_found() -> None:
     records = list(link.read_replies(["replies", 1, 200, 10_000]))
     silent = [(frame, b"", must) for frame, _, must in records]

@@ -1,6 +1,6 @@
 """The campaign's programs in C++: the firmware's rooms on the fake board, and those who attack them.
 
-A program is built when its sources have changed, in build/campaign/native.
+A program is built when its sources have changed, in build/campaign/native. What was not used for a week goes.
 """
 
 from __future__ import annotations
@@ -8,6 +8,7 @@ from __future__ import annotations
 import fcntl
 import hashlib
 import subprocess
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,10 +17,14 @@ from tools.campaign.journal import ROOT
 
 SOURCES = ROOT / "firmware/test/campaign"
 BUILT = ROOT / "build/campaign/native"
+WEEK_S = 7 * 86_400
 WARNINGS = ("-std=c++14", "-Wall", "-Wextra", "-Wconversion", "-Werror")
 FAST = ("g++", "-O2", *WARNINGS)
-WATCHED = ("clang++", "-O1", "-g", "-fno-sanitize-recover=all", *WARNINGS)  # and sanitizers
-DEPENDS = ("firmware/lib", "firmware/test/campaign")
+WATCHED = ("clang++", "-O2", "-gline-tables-only", "-fno-sanitize-recover=all", *WARNINGS)  # and sanitizers
+# What the parameter sets need of the firmware.
+ROOMS_OF_SETS = (
+    "params/src/params/*.cpp app/src/parameter_sets.cpp app/src/controllers.cpp fuzzy_pdi/src/*.cpp hal/src/fake/*.cpp"
+)
 
 
 @dataclass(frozen=True)
@@ -31,6 +36,12 @@ class Program:
     command: tuple[str, ...]  # the compiler and its options
     rooms: str = "*/src/**/*.cpp"  # what is compiled of the firmware
     firmware: Path = ROOT / "firmware/lib"  # another one in tests that break it
+
+
+def depends(*programs: Program) -> tuple[str, ...]:
+    """What the results of these programs are about, for a part."""
+    own = {*SOURCES.glob("*.h"), *(SOURCES / f"{part}.cpp" for program in programs for part in program.parts)}
+    return ("firmware/lib", "tools/campaign/native.py", *sorted(str(file.relative_to(ROOT)) for file in own))
 
 
 def _sources(program: Program) -> list[Path]:
@@ -57,7 +68,14 @@ def _compile(source: Path, contents: str, command: Sequence[str]) -> Path:
         half = path.with_suffix(".part")
         subprocess.run([*command, "-c", str(source), "-o", str(half)], check=True)
         half.rename(path)
+    path.touch()
     return path
+
+
+def _forget_old() -> None:
+    for file in BUILT.rglob("*"):
+        if file.is_file() and time.time() - file.stat().st_mtime > WEEK_S:
+            file.unlink()
 
 
 def build(program: Program) -> Path:
@@ -72,6 +90,7 @@ def build(program: Program) -> Path:
     with (BUILT / "lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         if not path.exists():
+            _forget_old()
             objects = [
                 str(_compile(source, _digest(headers, program.command), [*program.command, *rooms, f"-I{SOURCES}"]))
                 for source in _sources(program)
@@ -79,6 +98,7 @@ def build(program: Program) -> Path:
             half = path.with_suffix(".part")
             subprocess.run([*program.command, *objects, "-o", str(half)], check=True)
             half.rename(path)
+        path.touch()
     return path
 
 

@@ -23,6 +23,8 @@ PACKAGES = (
     "doctest-dev",
     "cppcheck",
     "clang-tidy",
+    "clang",  # libFuzzer and the sanitizers, over the firmware
+    "libclang-rt-dev",
 )
 
 

@@ -140,9 +140,17 @@ class Story {
     const std::uint8_t how = in_.u8();
     const bool damaged = how & 8;
     watcher_.before_cut();
-    for (int k = how >> 4; damaged && k >= 0; --k) board.eeprom[in_.u16() % board.eeprom.size()] = in_.u8();
+    for (int k = how >> 4; damaged && k >= 0; --k) {
+      std::uint8_t& cell = board.eeprom[in_.u16() % board.eeprom.size()];
+      cell = in_.u8();
+    }
     boot(static_cast<hal::ResetCause>(how % 5), damaged);
     ask(wire::TelemetryRequest{1});
+  }
+
+  void move_pot() {
+    std::uint16_t& count = board.counts[in_.u8() % hal::pot_count];
+    count = in_.u16() % 1024;
   }
 
   void shake() {
@@ -189,7 +197,7 @@ class Story {
     switch (what) {
       case 14: return ticks(in_.u8() % 64);
       case 15: return ticks(in_.u16() % 2000);
-      case 16: board.counts[in_.u8() % hal::pot_count] = in_.u16() % 1024; return;
+      case 16: return move_pot();
       case 17: return fail_next_tick();
       case 18: board.age_us = in_.u16() % 1100; return;
       case 19: return cut_power();

@@ -39,6 +39,7 @@ void Watcher::before_cut() {
   const wire::SaveState state = machine_.status().save_state;
   must(state == wire::SaveState::saving || state == wire::SaveState::saved, "a save goes on or has ended well");
   if (state == wire::SaveState::saved) stored_.clear();
+  else may_have_lost_ = true;
   stored_.push_back(saving_);
 }
 
@@ -48,6 +49,7 @@ void Watcher::after_boot(bool damaged) {
   must(params::first_invalid(running_) == params::none, "only a valid set runs after a boot");
   const bool known = std::any_of(stored_.begin(), stored_.end(), [&](const auto& one) { return same(one, running_); });
   must(known || damaged, "after a boot the saved set runs");
+  may_have_lost_ = may_have_lost_ || damaged;
   must(!board.drivers, "the motors are off after a boot");
   law_.take(running_);
   staged_ = running_;
@@ -188,17 +190,17 @@ void Watcher::went_on(const Piece& piece) {
 void Watcher::went_off(bool by_host) {
   const bool host_led = leading_;
   leading_ = just_granted_ = reference_known_ = false;
-  if (by_host || host_led || safe_used_ || !restarts_by_itself()) return;
+  const wire::StatusReply status = machine_.status();
+  judge_memory(status);
+  if (by_host || host_led || safe_used_ || !restarts_by_itself(status)) return;
   safe_begun_ = safe_used_ = true;
   running_ = staged_ = safe_form(running_);
   law_.take(running_);
 }
 
-bool Watcher::restarts_by_itself() const {
-  if (running_.unrest_action != 1) return false;
-  const wire::StatusReply status = machine_.status();
-  return status.stop_reason == wire::StopReason::fault && status.fault == wire::Fault::unrest &&
-         status.save_state != wire::SaveState::saving;
+bool Watcher::restarts_by_itself(const wire::StatusReply& status) const {
+  return running_.unrest_action == 1 && status.stop_reason == wire::StopReason::fault &&
+         status.fault == wire::Fault::unrest && status.save_state != wire::SaveState::saving;
 }
 
 // --- what the board says
@@ -264,7 +266,13 @@ void Watcher::judge_reference(const wire::Sample& sample) {
   }
 }
 
+void Watcher::judge_memory(const wire::StatusReply& status) const {
+  must(may_have_lost_ || status.fault != wire::Fault::params, "no set is called lost that is not");
+  must(status.fault != wire::Fault::memory, "memory that nobody has changed is found as it was");
+}
+
 void Watcher::at_end() {
+  judge_memory(machine_.status());
   if (!applying_) must(same(machine_.running(), running_), "the set that runs is the one that was applied last");
 }
 

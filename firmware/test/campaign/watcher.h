@@ -35,7 +35,8 @@ class Watcher {
   void follow_drivers(const Piece& piece);
   void went_on(const Piece& piece);
   void went_off(bool by_host);
-  bool restarts_by_itself() const;
+  bool restarts_by_itself(const wire::StatusReply& status) const;
+  void judge_memory(const wire::StatusReply& status) const;
   bool at_rail(std::uint8_t pot) const;
   bool estop_pressed() const;
   void note_rails();
@@ -46,6 +47,7 @@ class Watcher {
   std::vector<params::Table> stored_;  // one of these is what a boot must find
   params::Table saving_ = {};
   bool save_asked_ = false;
+  bool may_have_lost_ = false;  // a save was cut, or the EEPROM was damaged
   bool applying_ = false;
   std::uint16_t apply_crc_ = 0;
   std::uint16_t lease_ = 0;  // ticks, 0 = until stop

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from tools.campaign import crc
-from tools.campaign.native import DEPENDS, FAST, Program, run_counts
+from tools.campaign.native import FAST, ROOMS_OF_SETS, Program, depends, run_counts
 from tools.campaign.part import Part, Piece, Row, split
 
 ROOMS = (
     "params/src/params/*.cpp app/src/parameter_sets.cpp app/src/controllers.cpp fuzzy_pdi/src/*.cpp hal/src/fake/*.cpp"
 )
-PROGRAM = Program("eeprom_faults", ("eeprom_faults", "sets"), FAST, ROOMS)
+PROGRAM = Program("eeprom_faults", ("eeprom_faults", "sets"), FAST, ROOMS_OF_SETS)
 BANK_BITS = 203 * 8
 SUMMED_BITS = (2 + 194 + 2) * 8  # sequence, table and CRC: damage to the rest of a bank is always noticed
 PIECE, SAVES_PIECE = 5_000_000, 200_000
@@ -85,7 +85,7 @@ that bank twice; the banks take turns. So each cell is written at most once per 
 in a bank lasts for 100,000 saves: ten a day for 27 years. A save of what is stored already writes nothing, and a
 byte that is right already is not written. Nothing else writes the EEPROM. The number of saves stands in the newer
 bank, modulo 65,536 (its sequence).""",
-    (*DEPENDS, "tools/campaign/crc.py"),
+    (*depends(PROGRAM), "tools/campaign/crc.py"),
     pieces,
     run,
 )

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from greywhale.protocol.frames import FrameDecoder, decode_frame
 from tools.campaign import crc
-from tools.campaign.native import DEPENDS, FAST, Program, build, run_counts
+from tools.campaign.native import FAST, Program, build, depends, run_counts
 from tools.campaign.part import Part, Piece, Row, split
 
 PROGRAM = Program("link_faults", ("link_faults", "channel", "host", "machine", "sets"), FAST)
@@ -128,7 +128,7 @@ become damage without order. The rows for frames with flipped bits, all of them 
 More than they explain would be violations, in every row.
 
 The other way, the host's decoder takes what a board sends, samples and status, over the same line.""",
-    (*DEPENDS, "tools/campaign/crc.py", "host/src/greywhale/protocol"),
+    (*depends(PROGRAM), "tools/campaign/crc.py", "host/src/greywhale/protocol"),
     pieces,
     run,
 )
