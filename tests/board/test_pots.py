@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from greywhale.board.device import Device
-from greywhale.board.pots import FULL_SCALE, LOOKS, POTS, PotReadings, read_pots
+from greywhale.board.pots import FOLLOWERS, FULL_SCALE, LOOKS, POTS, PotReadings, read_pots, require_good_pots
+from greywhale.errors import UserError
 from greywhale.protocol import schema
 from greywhale.protocol.schema import Fault
 from tests.board.fake_board import FakeBoard
@@ -27,6 +28,18 @@ def test_a_reading_within_rail_counts_of_an_end_is_at_the_rail(counts: int, faul
 def test_one_reading_at_a_rail_is_enough_and_is_told_in_a_sentence() -> None:
     (told,) = readings(2, 0, seen_in=1).complaints()
     assert told.startswith("leader potentiometer 2 reads 0..500 of 1023, at a rail (pot_low): check that")
+
+
+def test_without_rail_counts_nothing_is_a_rail() -> None:
+    assert PotReadings(np.zeros((LOOKS, 8), dtype=np.int64), 0).complaints() == []
+
+
+def test_an_arm_with_a_broken_potentiometer_among_those_that_count_is_refused() -> None:
+    with FakeBoard() as board, Device(board.port, quiet_s=0.0, patience_s=0.5) as device:
+        board.running[schema.PARAMETER_BY_NAME["leader2.zero"].index] = 16  # its angle is then below the track
+        require_good_pots(device, FOLLOWERS)
+        with pytest.raises(UserError, match=rf"^{board.port}: leader potentiometer 2 reads 0..0 of 1023, at a rail"):
+            require_good_pots(device, range(8))
 
 
 def test_the_counts_are_those_that_the_board_has_converted() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import islice
 
@@ -12,8 +13,10 @@ from greywhale.board.device import Device
 from greywhale.board.refusal import lower_first, pot_name
 from greywhale.board.stream import stream
 from greywhale.board.upload import read_parameter
+from greywhale.errors import UserError
 from greywhale.protocol import schema
 
+FOLLOWERS = range(4, 8)
 POTS = tuple(f"{side}{joint}" for side in ("leader", "follower") for joint in range(4))
 LOOKS = 100  # samples, of a millisecond each
 FULL_SCALE = 1023
@@ -29,18 +32,20 @@ class PotReadings:
     rail_counts: int
 
     def at_rail(self, pot: int) -> schema.Fault:
-        """The rail at which a pot reads in any of the samples, else `none`."""
+        """The rail at which a pot reads in any of the samples, else `none`. `rail_counts` 0 turns this off."""
         counts = self.counts[:, pot]
+        if self.rail_counts == 0:
+            return schema.Fault.NONE
         if np.any(counts <= self.rail_counts):
             return schema.Fault.POT_LOW
         if np.any(counts >= FULL_SCALE - self.rail_counts):
             return schema.Fault.POT_HIGH
         return schema.Fault.NONE
 
-    def complaints(self) -> list[str]:
-        """A sentence for each pot at a rail: which, what it reads, what to do."""
+    def complaints(self, pots: Iterable[int] = range(len(POTS))) -> list[str]:
+        """A sentence for each of these pots at a rail: which, what it reads, what to do."""
         told = []
-        for pot in range(len(POTS)):
+        for pot in pots:
             if (fault := self.at_rail(pot)) is not schema.Fault.NONE:
                 reads = f"{self.counts[:, pot].min()}..{self.counts[:, pot].max()} of {FULL_SCALE}"
                 remedy = fault.remedy.removesuffix(", then clear the fault.")
@@ -60,3 +65,9 @@ def read_pots(device: Device) -> PotReadings:
     angles = np.array([(*sample.leader, *sample.follower) for sample in samples], dtype=float)
     counts = np.rint((angles * 2**_ANGLE_SHIFT / scales + zeros) / _COUNT14)
     return PotReadings(np.clip(counts, 0, FULL_SCALE).astype(np.int64), rail_counts)
+
+
+def require_good_pots(device: Device, pots: Iterable[int]) -> None:
+    """Refuse an arm of which one of these potentiometers is broken before anything is planned for it."""
+    for complaint in read_pots(device).complaints(pots):
+        raise UserError(f"{device.port}: {complaint}")
