@@ -23,8 +23,8 @@ def test_nothing_is_late_or_lost_while_everything_happens_at_once(board: str, mo
 
 def test_a_sample_that_is_missing_and_a_request_without_an_answer_are_seen() -> None:
     late = Soak("Nano", 1)
-    late._take(7, 41)
-    late._take(9, 43)
+    late.take(7, 41)
+    late.take(9, 43)
     late.bench.board.pc = late.bench.symbols["_exit"].address  # it hangs
     assert late.ask(schema.StatusRequest) == b""
     assert late.counts.lost_samples == 1

@@ -127,12 +127,13 @@ class Soak:
         answers = []
         for frame in self._decoder.feed(self.bench.board.uart_receive()):
             if frame.type == schema.Sample.TYPE:
-                self._take(frame.seq, int.from_bytes(frame.payload[:4], "little"))
+                self.take(frame.seq, int.from_bytes(frame.payload[:4], "little"))
             else:
                 answers.append(frame)
         return answers
 
-    def _take(self, seq: int, tick: int) -> None:
+    def take(self, seq: int, tick: int) -> None:
+        """A sample has come."""
         self.counts.samples += 1
         if self._last is not None:
             missing = (tick - self._last[1] - 1) & MASK
