@@ -25,6 +25,9 @@ from greywhale.protocol.frames import FrameDecoder, encode_frame
 from greywhale.protocol.schema import Fault, NackCode, SaveState, State, StopReason
 
 SOFT_START_TICKS = 20
+FOLLOWERS = (1, 2, 3, 4)
+# A host that leads: room for so many points, one played every so many ticks.
+_ROOM, _POINT_TICKS = 12, 16
 SAVE_POLLS = 3
 # More unread bytes than this stop the board's time, as they stop the bench's.
 _UNREAD = 256
@@ -72,6 +75,10 @@ class FakeBoard:
         self.staged = list(schema.DEFAULTS)
         self.requests: list[tuple[int, int]] = []  # type, seq
         self.problem: BaseException | None = None
+        self.leading = False
+        self._points: list[tuple[int, int, int, int]] = []  # that wait to be played
+        self._next_point = 0
+        self._reference = FOLLOWERS
         self._every = 0
         self._lease_ms = 0
         self._lease_end = 0
@@ -139,6 +146,10 @@ class FakeBoard:
             schema.ResetCause.EXTERNAL,
         ).pack()  # fmt: skip
 
+    def lose_unread(self) -> None:
+        """Drop what the host has not read, as a line does at whose end nobody listens: the board's time goes on."""
+        termios.tcflush(self._slave, termios.TCIFLUSH)
+
     def say(self, data: bytes) -> None:
         """Bytes to the host, whatever they mean."""
         while data and not self._end.is_set():
@@ -194,6 +205,9 @@ class FakeBoard:
                 self.state, self.stop_reason = State.DISABLED, StopReason.LEASE
             elif self.tick >= self._enabled_at + SOFT_START_TICKS:
                 self.state = State.FOLLOWING
+            if self._points and self.tick % _POINT_TICKS == 0:
+                (a, b, c, d), (to_a, to_b, to_c, to_d) = self._reference, self._points.pop(0)
+                self._reference = (a + 4 * to_a, b + 4 * to_b, c + 4 * to_c, d + 4 * to_d)
         with self._changed:
             self._ticks_in_state = self._ticks_in_state + 1 if self.state is before else 0
             self._changed.notify_all()
@@ -206,8 +220,10 @@ class FakeBoard:
         stopped = self.faults.stop_sampling_at is not None and self.tick >= self.faults.stop_sampling_at
         if lost or stopped:
             return
-        angles = (self.tick % 4096, 0, -100, 200)
-        sample = schema.Sample(self.tick, self.state, self.fault, angles, (1, 2, 3, 4), (15000, -15000, 0, 1))
+        # An arm that is led follows at once; another one stays where it is.
+        leaders = self._reference if self.leading else (self.tick % 4096, 0, -100, 200)
+        followers = self._reference if self.leading else FOLLOWERS
+        sample = schema.Sample(self.tick, self.state, self.fault, leaders, followers, (15000, -15000, 0, 1))
         times = 2 if self.tick in self.faults.repeat_ticks else 1
         self.say(times * encode_frame(schema.Sample.TYPE, self._samples % 256, sample.pack()))
 
@@ -269,6 +285,16 @@ class FakeBoard:
                 return schema.ParamSaveReply(schema.param_crc(self.running)).pack()
             case schema.EnableRequest.TYPE | schema.RenewRequest.TYPE:
                 return self._lease(kind, schema.EnableRequest.unpack(payload).lease_ms)
+            case schema.LeadRequest.TYPE:
+                self.leading, self._points, self._next_point, self._reference = True, [], 0, FOLLOWERS
+                state = schema.EnableReply.unpack(self._lease(kind, schema.LeadRequest.unpack(payload).lease_ms)).state
+                return schema.LeadReply(state, 0, self._reference).pack()
+            case schema.LeadPointRequest.TYPE:
+                point = schema.LeadPointRequest.unpack(payload)
+                if point.number == self._next_point and len(self._points) < _ROOM:
+                    self._points.append(point.step)
+                    self._next_point = (self._next_point + 1) % 256
+                return schema.LeadPointReply(self._next_point, len(self._points)).pack()
             case schema.StopRequest.TYPE:
                 self.state, self.stop_reason = State.DISABLED, StopReason.HOST
                 return schema.StopReply(self.state).pack()
@@ -281,7 +307,9 @@ class FakeBoard:
         raise AssertionError(f"unexpected request {kind:#04x}")
 
     def _lease(self, kind: int, lease_ms: int) -> bytes:
-        if kind == schema.EnableRequest.TYPE and self.state is State.DISABLED:
+        if kind == schema.EnableRequest.TYPE:
+            self.leading = False
+        if kind != schema.RenewRequest.TYPE and self.state is State.DISABLED:
             self.state, self._enabled_at = State.SOFT_START, self.tick
         self._lease_ms = lease_ms
         self._lease_end = self.tick + lease_ms

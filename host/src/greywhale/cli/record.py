@@ -82,7 +82,7 @@ def command(
 
     Without --enable the motors stay off and the log shows what the potentiometers say. With it the log begins when the
     soft start is over. Ctrl-C stops the motors and keeps what was recorded, marked as interrupted.
-    A recording that is killed leaves a hidden file beside the log, .NAME.*.part, that `evaluate` reads as unfinished.
+    A recording that is killed leaves what it has in log.unfinished.csv beside log.csv, which all verbs read.
 
     With --excite nobody needs to move the leader: this program leads the arm along a motion designed for `identify`,
     from where the arm is and back. It keeps the joints' limits, but knows of no table and no link in the way: clear the
