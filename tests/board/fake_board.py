@@ -13,6 +13,7 @@ import struct
 import subprocess
 import termios
 import threading
+import time
 import tty
 from collections import Counter
 from dataclasses import dataclass, field
@@ -75,6 +76,7 @@ class FakeBoard:
         self.staged = list(schema.DEFAULTS)
         self.requests: list[tuple[int, int]] = []  # type, seq
         self.problem: BaseException | None = None
+        self._alone = self._busy = False
         self.leading = False
         self._points: list[tuple[int, int, int, int]] = []  # that wait to be played
         self._next_point = 0
@@ -121,6 +123,11 @@ class FakeBoard:
         """How many frames of this request arrived, repeats included."""
         return sum(1 for kind, _ in self.requests if kind == request.TYPE)
 
+    @property
+    def lease_ms(self) -> int:
+        """The lease of the motors, 0 for none."""
+        return self._lease_ms
+
     def wait_for(self, state: State, ticks: int, host: subprocess.Popen[str]) -> None:
         """Return when the board has been in this state for so many ticks, or fail when its host ends before."""
 
@@ -146,13 +153,17 @@ class FakeBoard:
             schema.ResetCause.EXTERNAL,
         ).pack()  # fmt: skip
 
-    def lose_unread(self) -> None:
-        """Drop what the host has not read, as a line does at whose end nobody listens: the board's time goes on."""
-        termios.tcflush(self._slave, termios.TCIFLUSH)
+    def hurry(self) -> None:
+        """Nobody listens any more: what the board says is lost, and its time goes on as quickly as it can. Returns when
+        it has done what it was asked to.
+        """
+        self._alone = True
+        while self.problem is None and (select.select([self._master], [], [], 0)[0] or self._busy):
+            time.sleep(0.0002)
 
     def say(self, data: bytes) -> None:
         """Bytes to the host, whatever they mean."""
-        while data and not self._end.is_set():
+        while data and not self._alone and not self._end.is_set():
             try:
                 data = data[os.write(self._master, data) :]
             except BlockingIOError:
@@ -163,17 +174,19 @@ class FakeBoard:
     def _run(self) -> None:
         try:
             while not self._end.is_set() and self._master >= 0:
-                room = self._unread() < _UNREAD
+                room = self._alone or self._unread() < _UNREAD
                 sampling = self._every > 0 and room
                 chattering = bool(self.faults.chatter) and (self.faults.silent or not self.requests)
                 # A tick takes a moment, in which the kernel moves what was written to where it counts as unread.
-                timeout = _TICK_S if self._every or chattering else None
+                timeout = 0.0 if self._alone else _TICK_S if self._every or chattering else None
                 ready, _, _ = select.select([self._master, self._wake_out], [], [], timeout)
                 if self._master in ready:
+                    self._busy = True
                     for frame in self._decoder.feed(os.read(self._master, 4096)):
                         self.requests.append((frame.type, frame.seq))
                         if not self.faults.silent:
                             self._request(frame.type, frame.seq, frame.payload)
+                    self._busy = False
                 elif sampling:
                     self._live_a_tick()
                 elif chattering and room:

@@ -3,5 +3,6 @@
 from __future__ import annotations
 
 from tools.campaign.part import Part
+from tools.campaign.parts import kills
 
-PARTS: tuple[Part, ...] = ()
+PARTS: tuple[Part, ...] = (kills.PART,)
