@@ -11,16 +11,19 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from greywhale.board import device
 from greywhale.cli import entry
 from greywhale.cli.verbs import VERBS
+from greywhale.files.leader import save_leader
 from greywhale.files.log import LogWriter, read_log
 from greywhale.files.log.layout import Origin
 from greywhale.protocol import schema
 from greywhale.protocol.schema import State
-from tests.board.fake_board import FakeBoard
+from greywhale.trajectory import Trajectory
+from tests.board.fake_board import FakeBoard, Faults
 
 ROOT = Path(__file__).parents[2]
 TABLE_10 = str(ROOT / "shared" / "fuzzy_tables" / "table_10.toml")
@@ -224,6 +227,23 @@ def test_params_set_get_backup_diff_restore(tmp_path: Path, capsys: Captured) ->
         assert ask(capsys, "params", "restore", backup, *at)[0] == 0
         assert board.stored == list(schema.DEFAULTS)
         assert ask(capsys, "params", "diff", backup, *at)[1]["differences"] == {}
+
+
+@pytest.mark.parametrize("verb", ["record", "record --enable", "replay"])
+def test_a_port_that_goes_away_ends_the_log_whole_and_says_so_once(verb: str, tmp_path: Path, capsys: Captured) -> None:
+    out, motion = tmp_path / "log.csv", tmp_path / "motion.csv"
+    save_leader(motion, Trajectory(np.array([0.0, 600.0]), np.zeros((2, 4))))
+    options = {"record": ["-s", "600"], "record --enable": ["-s", "600"], "replay": [str(motion), "--yes"]}[verb]
+    with FakeBoard(Faults(unplug_at=300)) as board:
+        code = entry.run([*verb.split(), *options, "-o", str(out), "--port", board.port])
+    lost = f"{board.port}: the port went away in the middle; check the cable and try again."
+    stops = "" if verb == "record" else " The stop is not confirmed; the board stops by itself within 500 ms."
+    said = capsys.readouterr().err.strip()
+    assert (code, said) == (1, f"greywhale: {lost}{stops} What was recorded is in {out}, marked as interrupted.")
+    log = read_log(out)
+    assert (log.complete, log.ended_by) == (False, lost)
+    assert 200 < len(log.time) < 300
+    assert sorted(os.listdir(tmp_path)) == ["log.csv", "motion.csv"]
 
 
 # --- evaluate -------------------------------------------------------------------------------------------------------
