@@ -59,6 +59,7 @@ class Faults:
     fault_at: tuple[int, Fault, int] | None = None  # tick, fault, where
     save_result: SaveState = SaveState.SAVED
     wrong_crc_after_apply: bool = False
+    followers: tuple[int, int, int, int] = FOLLOWERS  # where the arm is
 
 
 class FakeBoard:
@@ -235,7 +236,7 @@ class FakeBoard:
             return
         # An arm that is led follows at once; another one stays where it is.
         leaders = self._reference if self.leading else (self.tick % 4096, 0, -100, 200)
-        followers = self._reference if self.leading else FOLLOWERS
+        followers = self._reference if self.leading else self.faults.followers
         sample = schema.Sample(self.tick, self.state, self.fault, leaders, followers, (15000, -15000, 0, 1))
         times = 2 if self.tick in self.faults.repeat_ticks else 1
         self.say(times * encode_frame(schema.Sample.TYPE, self._samples % 256, sample.pack()))

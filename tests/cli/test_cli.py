@@ -95,6 +95,8 @@ def test_help_needs_no_heavy_imports() -> None:
         (["params", "set", "joint0.kp=-1e300"], "which is out of range"),
         (["params", "set", "joint0.kp=1", "joint0.kp=2"], "joint0.kp is given twice"),
         (["params", "get", "\x1b[31m" + "x" * 5000], "there is no parameter"),
+        (["record", "--every", "9" * 5000], "is not a valid integer"),
+        (["no\x1b[31mverb" + "x" * 5000], "No such command 'no"),
         (["identify", "a.csv", "--seed", "-1"], "-1 is not in the range x>=0"),
         (["record", "--excite", "--seed", "-1"], "-1 is not in the range x>=0"),
         (["demo", "--seed", "-1"], "-1 is not in the range x>=0"),
@@ -113,6 +115,8 @@ def test_bad_usage_is_exit_code_2_and_one_sentence(arguments: list[str], words: 
     assert captured.out == ""
     assert captured.err.startswith("greywhale: ")
     assert words in captured.err
+    assert len(captured.err) < 1020
+    assert captured.err[:-1].isprintable()
     code, answer = ask(capsys, *arguments)
     assert (code, answer["exit_code"]) == (2, 2)
     assert words in answer["error"]
@@ -155,6 +159,20 @@ def test_info_names_a_fault_with_its_place_and_remedy(capsys: Captured) -> None:
     with board:
         assert entry.run(["info", "--port", board.port]) == 0
     assert "lower rail (follower potentiometer 1): check that" in capsys.readouterr().out
+
+
+def test_a_broken_pot_is_named_before_anything_moves(tmp_path: Path, capsys: Captured) -> None:
+    with FakeBoard(Faults(followers=(0, 0, -10725, 0))) as board:
+        assert entry.run(["info", "--port", board.port]) == 0
+        text = capsys.readouterr().out
+        _, answer = ask(capsys, "info", "--port", board.port)
+        out = tmp_path / "log.csv"
+        code, refused = ask(capsys, "record", "--excite", "--yes", "--port", board.port, "-o", str(out))
+        assert board.asked(schema.LeadRequest) == 0
+    assert text.splitlines()[-1].startswith("Broken: follower potentiometer 2 reads at the lower rail: check that")
+    assert answer["bad_pots"] == [{"pot": "follower potentiometer 2", "fault": "pot_low"}]
+    assert code == 1
+    assert "follower potentiometer 2 reads at the lower rail: check that potentiometer's wiper" in refused["error"]
 
 
 def test_the_port_may_come_from_the_environment(capsys: Captured, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -355,7 +373,8 @@ def test_closed_streams_are_nobodys(numbers: tuple[int, ...]) -> None:
         command = [sys.executable, "-c", RUN, "info", "--port", board.port]
         done = subprocess.run(command, preexec_fn=closed(*numbers), capture_output=True, text=True, check=False)
         assert board.problem is None
-        assert {kind for kind, _ in board.requests} <= {schema.HelloRequest.TYPE, schema.StatusRequest.TYPE}
+        asks = (schema.HelloRequest, schema.StatusRequest, schema.ParamGetRequest, schema.TelemetryRequest)
+        assert {kind for kind, _ in board.requests} <= {request.TYPE for request in asks}
     assert (done.returncode, done.stderr) == (0, "")
     assert bool(done.stdout) == (1 not in numbers)
 

@@ -114,8 +114,8 @@ VERBS = (
         "demo, simulated board",
         f"demo -o demo --duration 5 --controller {TABLES}/table_10.toml",
         vary=True,
-        trials=20,
-        size=5,
+        trials=10,
+        size=2,
     ),
     Verb(
         "commission, simulated board",
@@ -124,8 +124,8 @@ VERBS = (
         board="bench",
         vary=True,
         needs=("greywhale.commission", "greywhale.commission.page", "greywhale.excite"),
-        trials=10,
-        size=2,
+        trials=6,
+        size=1,
     ),
 )
 

@@ -84,7 +84,7 @@ class Stand:
 
     def run(self, folder: Path, board: Board, moment: Moment = NEVER, again: bool = False) -> Ending:
         """Run the verb. A second run is one from its beginning, and goes on from a journal."""
-        if self._held is not None:
+        if self._held is not None and not again:
             return self._held.run(folder, moment)
         arguments = self._arguments(board.port)
         if again and self.verb.journal and (folder / self.verb.journal).exists():
@@ -117,7 +117,8 @@ class Stand:
         with self.board() as board:
             sets = [board.stored]
             self.ending = self._run_whole(folder, board)
-            self._sets = [*sets, board.stored]
+            # What commissioning finds depends on how the arm moved.
+            self._sets = [] if self.verb.vary else [*sets, board.stored]
         written = _files(folder)
         self.whole = {name: path.read_bytes() for name, path in written.items() if name not in self.verb.logs}
         wanted = {*self.verb.logs, *(self.whole if self.verb.vary else self.verb.files)}
@@ -208,7 +209,7 @@ def try_once(stand: Stand, moment: Moment, old: bool) -> tuple[list[str], list[s
             wrong += board.settle()
             after, _, hidden = look(stand, folder)
             wrong += [f"after the next run: {one}" for one in after]
-            wrong += [f"{name} stays" for name in [*hidden, verb.journal] if name and (folder / name).exists()]
+            wrong += [f"{name} stays" for name in hidden]
             missing = [name for name in promised if not (folder / name).exists() or _is_old(folder / name)]
             wrong += [f"the next run wrote no {name}" for name in missing]
     shutil.rmtree(folder)

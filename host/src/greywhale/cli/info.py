@@ -5,7 +5,9 @@ from __future__ import annotations
 import click
 
 from greywhale.board.device import Device
+from greywhale.board.pots import bad_pots
 from greywhale.board.refusal import fault_text
+from greywhale.board.upload import read_parameters
 from greywhale.cli.output import json_option, port_option, show
 from greywhale.protocol import schema
 from greywhale.protocol.ports import choose_port
@@ -15,14 +17,16 @@ from greywhale.protocol.ports import choose_port
 @port_option
 @json_option
 def command(port: str | None, as_json: bool) -> None:
-    """Tell a board's version, state, faults and counters.
+    """Tell a board's version, state, faults and counters, and which potentiometers read at a rail.
 
     The board is not restarted if a greywhale had its port last, so that a fault is still there to be seen. Otherwise
     opening the port restarts an Arduino: motors that were on are off afterwards, and counters start at zero.
     """
     with Device(choose_port(port), restart=False) as device:
         hello, status = device.hello, device.status()
-    show(as_json, _facts(device, hello, status), _text(device, hello, status))
+        pots = bad_pots(device, read_parameters(device))
+    facts = _facts(device, hello, status) | {"bad_pots": [pot.as_dict() for pot in pots]}
+    show(as_json, facts, "\n".join([_text(device, hello, status), *(f"Broken: {pot}" for pot in pots)]))
 
 
 def _facts(device: Device, hello: schema.HelloReply, status: schema.StatusReply) -> dict[str, object]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from greywhale.board.device import Device
+from greywhale.board.pots import FOLLOWERS, require_good_pots
 from greywhale.board.record import Recording, check_every_led, pose_of, record, record_led
 from greywhale.board.upload import read_parameters
 from greywhale.cli.countdown import prepare_motion, yes_option
@@ -111,6 +112,7 @@ def command(
     with Device(chosen) as device:
         with progress(as_json) as report:
             running = read_parameters(device, report)
+            require_good_pots(device, running, FOLLOWERS)
             designed = plan(pose_of(device), table=running, report=report)
         if save_motion is not None:
             save_leader(save_motion, designed.motion)
