@@ -38,7 +38,8 @@ class BadPot:
 
     def __str__(self) -> str:
         what = self.fault.description.removeprefix("a potentiometer ")
-        return f"{pot_name(self.number)} {what}: {lower_first(self.fault.remedy)}"
+        remedy = self.fault.remedy.replace(", then clear the fault", "")  # there is none yet
+        return f"{pot_name(self.number)} {what}: {lower_first(remedy)}"
 
 
 def bad_pots(device: Device, table: ParameterTable) -> list[BadPot]:
