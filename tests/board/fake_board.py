@@ -60,6 +60,7 @@ class Faults:
     save_result: SaveState = SaveState.SAVED
     wrong_crc_after_apply: bool = False
     followers: tuple[int, int, int, int] = FOLLOWERS  # where the arm is
+    patience_s: float = 0.0  # so long it waits for a busy host before a lease runs out
 
 
 class FakeBoard:
@@ -78,6 +79,7 @@ class FakeBoard:
         self.requests: list[tuple[int, int]] = []  # type, seq
         self.problem: BaseException | None = None
         self._alone = self._busy = False
+        self._heard_s = 0.0
         self.leading = False
         self._points: list[tuple[int, int, int, int]] = []  # that wait to be played
         self._next_point = 0
@@ -175,14 +177,14 @@ class FakeBoard:
     def _run(self) -> None:
         try:
             while not self._end.is_set() and self._master >= 0:
-                room = self._alone or self._unread() < _UNREAD
+                room = self._alone or (self._unread() < _UNREAD and not self._waits_for_host())
                 sampling = self._every > 0 and room
                 chattering = bool(self.faults.chatter) and (self.faults.silent or not self.requests)
                 # A tick takes a moment, in which the kernel moves what was written to where it counts as unread.
                 timeout = 0.0 if self._alone else _TICK_S if self._every or chattering else None
                 ready, _, _ = select.select([self._master, self._wake_out], [], [], timeout)
                 if self._master in ready:
-                    self._busy = True
+                    self._busy, self._heard_s = True, time.monotonic()
                     for frame in self._decoder.feed(os.read(self._master, 4096)):
                         self.requests.append((frame.type, frame.seq))
                         if not self.faults.silent:
@@ -196,6 +198,13 @@ class FakeBoard:
             with self._changed:
                 self.problem = error
                 self._changed.notify_all()
+
+    def _waits_for_host(self) -> bool:
+        """What this side wrote is some time on its way, on a busy machine for longer than many ticks take."""
+        late = self._lease_ms and self.state in (State.SOFT_START, State.FOLLOWING)
+        if not late or self.tick < self._lease_end - self._lease_ms // 2:
+            return False
+        return time.monotonic() < self._heard_s + self.faults.patience_s
 
     def _unread(self) -> int:
         # What this side wrote and the host has not read waits in the other end's input queue.

@@ -43,6 +43,8 @@ def test_a_broken_pot_is_named_with_its_remedy() -> None:
     with FakeBoard(Faults(followers=(0, low, 0, 0))) as board:
         with Device(board.port, quiet_s=0.0, patience_s=0.5) as device:
             require_good_pots(device, TABLE, range(4))
-            with pytest.raises(UserError, match="follower potentiometer 1 reads at the lower rail: check that p") as caught:
+            with pytest.raises(
+                UserError, match="follower potentiometer 1 reads at the lower rail: check that p"
+            ) as caught:
                 require_good_pots(device, TABLE, FOLLOWERS)
     assert "clear the fault" not in caught.value.message

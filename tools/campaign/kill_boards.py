@@ -12,7 +12,7 @@ from greywhale.board.upload import change_parameters
 from greywhale.demo import BenchProcess
 from greywhale.protocol import schema
 from greywhale.table import ParameterTable
-from tests.board.fake_board import FakeBoard
+from tests.board.fake_board import FakeBoard, Faults
 
 # After this much of its own time a board whose host was killed has its motors off: its lease, and what was on its way.
 LEASE_TICKS = 600
@@ -60,7 +60,7 @@ class Fake:
 
     def __init__(self, stack: ExitStack, sets: Sequence[object]) -> None:
         self._stack, self._sets = stack, sets
-        self._board = stack.enter_context(FakeBoard())
+        self._board = stack.enter_context(FakeBoard(Faults(patience_s=_PATIENCE_S)))
 
     @property
     def port(self) -> str:
@@ -88,7 +88,7 @@ class Fake:
     def restart(self) -> None:
         """As the opening of its port does: it runs what it keeps."""
         stored = self.stored
-        self._board = self._stack.enter_context(FakeBoard())
+        self._board = self._stack.enter_context(FakeBoard(Faults(patience_s=_PATIENCE_S)))
         for values in (self._board.stored, self._board.running, self._board.staged):
             values[:] = stored
 
