@@ -25,7 +25,8 @@ ORACLES_HEADER = """\
 # The outside references of tests/oracles, pinned with the digests of their files. What the project's own
 # requirements.txt holds is not repeated. Written by `make lock`.
 """
-REFERENCES = ("mujoco", "numba", "pin", "scikit-fuzzy", "sympy")
+# scikit-fuzzy imports networkx, but does not ask for it.
+REFERENCES = ("mujoco", "networkx", "numba", "pin", "scikit-fuzzy", "sympy")
 # Nothing of this machine's package index goes into the file.
 COMPILE = (
     "--generate-hashes", "--no-annotate", "--no-header", "--strip-extras", "--quiet",
