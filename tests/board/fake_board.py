@@ -60,7 +60,7 @@ class Faults:
     save_result: SaveState = SaveState.SAVED
     wrong_crc_after_apply: bool = False
     followers: tuple[int, int, int, int] = FOLLOWERS  # where the arm is
-    patience_s: float = 0.0  # so long it waits for a busy host before a lease runs out
+    patience_s: float = 5.0  # so long it waits for a busy host before a lease runs out
 
 
 class FakeBoard:
