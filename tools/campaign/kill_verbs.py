@@ -88,8 +88,8 @@ VERBS = (
         files=("controller.toml",),
         journal="controller.toml.journal",
         needs=("greywhale.tune",),
-        trials=200,
-        size=40,
+        trials=100,
+        size=25,
     ),
     Verb(
         "identify",
