@@ -125,8 +125,8 @@ def test_a_circle_would_be_found(tmp_path: Path) -> None:
         ("_native.simulate_windows", "greywhale/identify/windows.py"),
         ("_native.plant_row", "greywhale/arm/plants.py"),
         ("PARAMETERS[", "greywhale/board/upload.py greywhale/board/refusal.py"),
-        ("os.replace(", "greywhale/formats/whole.py"),
-        ("os.fsync(", "greywhale/formats/whole.py"),
+        ("os.replace(", "greywhale/formats/draft.py"),
+        ("os.fsync(", "greywhale/formats/draft.py"),
         ("serial.Serial(", "greywhale/protocol/transport.py"),
     ],
 )

@@ -1,4 +1,5 @@
-"""Pins every Python package that the two pyproject.toml files lead to: `make lock` writes requirements.txt.
+"""Pins every Python package that the two pyproject.toml files lead to: `make lock` writes requirements.txt, and
+tools/oracles/requirements.txt with what the outside references need beside it.
 
 Every version comes with the digests of its files, for all platforms, so that the set-up installs these files or none.
 """
@@ -10,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 import tomllib
+from collections.abc import Sequence
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -18,6 +20,13 @@ HEADER = """\
 # Every Python package of the project, pinned with the digests of its files. Written by `make lock` from the two
 # pyproject.toml files.
 """
+ORACLES = ROOT / "tools/oracles/requirements.txt"
+ORACLES_HEADER = """\
+# The outside references of tests/oracles, pinned with the digests of their files. What the project's own
+# requirements.txt holds is not repeated. Written by `make lock`.
+"""
+# scikit-fuzzy imports networkx, but does not ask for it.
+REFERENCES = ("mujoco", "networkx", "numba", "pin", "scikit-fuzzy", "sympy")
 # Nothing of this machine's package index goes into the file.
 COMPILE = (
     "--generate-hashes", "--no-annotate", "--no-header", "--strip-extras", "--quiet",
@@ -53,16 +62,43 @@ def _foreign(requirements: list[str]) -> list[str]:
     return sorted(name for name in set(requirements) if re.split(r"[^\w-]", name)[0] not in OWN)
 
 
+def name_of(line: str) -> str:
+    """The package that a requirement is about, in the form in which names are compared."""
+    return re.sub(r"[-_.]+", "-", re.split(r"[^\w.-]", line)[0]).lower()
+
+
+def without(lines: list[str], names: set[str]) -> list[str]:
+    """Pinned packages, each a line with the lines of its digests below it, without some."""
+    kept: list[str] = []
+    keep = True
+    for line in lines:
+        if not line.startswith(" "):
+            keep = name_of(line) not in names
+        kept += [line] if keep else []
+    return kept
+
+
+def _compile(python: str, folder: Path, asked: Sequence[str], pinned: Sequence[str] = ()) -> list[str]:
+    """The lines that pin what is asked for and all that it needs; what is pinned already keeps its version."""
+    (folder / "in").write_text("\n".join(asked) + "\n", encoding="utf-8")
+    (folder / "pinned").write_text("\n".join(pinned) + "\n", encoding="utf-8")
+    (folder / "out").unlink(missing_ok=True)
+    files = ["--constraint", str(folder / "pinned"), "--output-file", str(folder / "out"), str(folder / "in")]
+    subprocess.run([python, "-m", "piptools", "compile", *COMPILE, *files], check=True)
+    lines = (folder / "out").read_text(encoding="utf-8").splitlines()
+    return [line for line in lines if line and not line.startswith("#")]
+
+
 def main() -> None:
-    with tempfile.TemporaryDirectory() as folder:
-        subprocess.run([sys.executable, "-m", "venv", folder], check=True)
-        python, asked, pinned = str(Path(folder) / "bin/python"), Path(folder) / "in", Path(folder) / "out"
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        subprocess.run([sys.executable, "-m", "venv", name], check=True)
+        python = str(folder / "bin/python")
         subprocess.run([python, "-m", "pip", "install", "--quiet", "pip-tools"], check=True)
-        asked.write_text("\n".join(wanted()) + "\n", encoding="utf-8")
-        command = [python, "-m", "piptools", "compile", *COMPILE, "--output-file", str(pinned), str(asked)]
-        subprocess.run(command, check=True)
-        lines = [line for line in pinned.read_text(encoding="utf-8").splitlines() if line and not line.startswith("#")]
-    (ROOT / "requirements.txt").write_text(HEADER + "\n".join(lines) + "\n", encoding="utf-8")
+        own = _compile(python, folder, wanted())
+        (ROOT / "requirements.txt").write_text(HEADER + "\n".join(own) + "\n", encoding="utf-8")
+        others = without(_compile(python, folder, REFERENCES, versions()), {name_of(line) for line in versions()})
+        ORACLES.write_text(ORACLES_HEADER + "\n".join(others) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

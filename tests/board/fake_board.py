@@ -13,6 +13,7 @@ import struct
 import subprocess
 import termios
 import threading
+import time
 import tty
 from collections import Counter
 from dataclasses import dataclass, field
@@ -25,6 +26,9 @@ from greywhale.protocol.frames import FrameDecoder, encode_frame
 from greywhale.protocol.schema import Fault, NackCode, SaveState, State, StopReason
 
 SOFT_START_TICKS = 20
+FOLLOWERS = (1, 2, 3, 4)
+# A host that leads: room for so many points, one played every so many ticks.
+_ROOM, _POINT_TICKS = 12, 16
 SAVE_POLLS = 3
 # More unread bytes than this stop the board's time, as they stop the bench's.
 _UNREAD = 256
@@ -55,6 +59,8 @@ class Faults:
     fault_at: tuple[int, Fault, int] | None = None  # tick, fault, where
     save_result: SaveState = SaveState.SAVED
     wrong_crc_after_apply: bool = False
+    followers: tuple[int, int, int, int] = FOLLOWERS  # where the arm is
+    patience_s: float = 5.0  # so long it waits for a busy host before a lease runs out
 
 
 class FakeBoard:
@@ -72,6 +78,12 @@ class FakeBoard:
         self.staged = list(schema.DEFAULTS)
         self.requests: list[tuple[int, int]] = []  # type, seq
         self.problem: BaseException | None = None
+        self._alone = self._busy = False
+        self._heard_s = 0.0
+        self.leading = False
+        self._points: list[tuple[int, int, int, int]] = []  # that wait to be played
+        self._next_point = 0
+        self._reference = FOLLOWERS
         self._every = 0
         self._lease_ms = 0
         self._lease_end = 0
@@ -114,6 +126,11 @@ class FakeBoard:
         """How many frames of this request arrived, repeats included."""
         return sum(1 for kind, _ in self.requests if kind == request.TYPE)
 
+    @property
+    def lease_ms(self) -> int:
+        """The lease of the motors, 0 for none."""
+        return self._lease_ms
+
     def wait_for(self, state: State, ticks: int, host: subprocess.Popen[str]) -> None:
         """Return when the board has been in this state for so many ticks, or fail when its host ends before."""
 
@@ -139,9 +156,17 @@ class FakeBoard:
             schema.ResetCause.EXTERNAL,
         ).pack()  # fmt: skip
 
+    def hurry(self) -> None:
+        """Nobody listens any more: what the board says is lost, and its time goes on as quickly as it can. Returns when
+        it has done what it was asked to.
+        """
+        self._alone = True
+        while self.problem is None and (select.select([self._master], [], [], 0)[0] or self._busy):
+            time.sleep(0.0002)
+
     def say(self, data: bytes) -> None:
         """Bytes to the host, whatever they mean."""
-        while data and not self._end.is_set():
+        while data and not self._alone and not self._end.is_set():
             try:
                 data = data[os.write(self._master, data) :]
             except BlockingIOError:
@@ -152,17 +177,19 @@ class FakeBoard:
     def _run(self) -> None:
         try:
             while not self._end.is_set() and self._master >= 0:
-                room = self._unread() < _UNREAD
+                room = self._alone or (self._unread() < _UNREAD and not self._waits_for_host())
                 sampling = self._every > 0 and room
                 chattering = bool(self.faults.chatter) and (self.faults.silent or not self.requests)
                 # A tick takes a moment, in which the kernel moves what was written to where it counts as unread.
-                timeout = _TICK_S if self._every or chattering else None
+                timeout = 0.0 if self._alone else _TICK_S if self._every or chattering else None
                 ready, _, _ = select.select([self._master, self._wake_out], [], [], timeout)
                 if self._master in ready:
+                    self._busy, self._heard_s = True, time.monotonic()
                     for frame in self._decoder.feed(os.read(self._master, 4096)):
                         self.requests.append((frame.type, frame.seq))
                         if not self.faults.silent:
                             self._request(frame.type, frame.seq, frame.payload)
+                    self._busy = False
                 elif sampling:
                     self._live_a_tick()
                 elif chattering and room:
@@ -171,6 +198,13 @@ class FakeBoard:
             with self._changed:
                 self.problem = error
                 self._changed.notify_all()
+
+    def _waits_for_host(self) -> bool:
+        """What this side wrote is some time on its way, on a busy machine for longer than many ticks take."""
+        late = self._lease_ms and self.state in (State.SOFT_START, State.FOLLOWING)
+        if not late or self.tick < self._lease_end - self._lease_ms // 2:
+            return False
+        return time.monotonic() < self._heard_s + self.faults.patience_s
 
     def _unread(self) -> int:
         # What this side wrote and the host has not read waits in the other end's input queue.
@@ -194,6 +228,9 @@ class FakeBoard:
                 self.state, self.stop_reason = State.DISABLED, StopReason.LEASE
             elif self.tick >= self._enabled_at + SOFT_START_TICKS:
                 self.state = State.FOLLOWING
+            if self._points and self.tick % _POINT_TICKS == 0:
+                (a, b, c, d), (to_a, to_b, to_c, to_d) = self._reference, self._points.pop(0)
+                self._reference = (a + 4 * to_a, b + 4 * to_b, c + 4 * to_c, d + 4 * to_d)
         with self._changed:
             self._ticks_in_state = self._ticks_in_state + 1 if self.state is before else 0
             self._changed.notify_all()
@@ -206,8 +243,10 @@ class FakeBoard:
         stopped = self.faults.stop_sampling_at is not None and self.tick >= self.faults.stop_sampling_at
         if lost or stopped:
             return
-        angles = (self.tick % 4096, 0, -100, 200)
-        sample = schema.Sample(self.tick, self.state, self.fault, angles, (1, 2, 3, 4), (15000, -15000, 0, 1))
+        # An arm that is led follows at once; another one stays where it is.
+        leaders = self._reference if self.leading else (self.tick % 4096, 0, -100, 200)
+        followers = self._reference if self.leading else self.faults.followers
+        sample = schema.Sample(self.tick, self.state, self.fault, leaders, followers, (15000, -15000, 0, 1))
         times = 2 if self.tick in self.faults.repeat_ticks else 1
         self.say(times * encode_frame(schema.Sample.TYPE, self._samples % 256, sample.pack()))
 
@@ -269,6 +308,16 @@ class FakeBoard:
                 return schema.ParamSaveReply(schema.param_crc(self.running)).pack()
             case schema.EnableRequest.TYPE | schema.RenewRequest.TYPE:
                 return self._lease(kind, schema.EnableRequest.unpack(payload).lease_ms)
+            case schema.LeadRequest.TYPE:
+                self.leading, self._points, self._next_point, self._reference = True, [], 0, FOLLOWERS
+                state = schema.EnableReply.unpack(self._lease(kind, schema.LeadRequest.unpack(payload).lease_ms)).state
+                return schema.LeadReply(state, 0, self._reference).pack()
+            case schema.LeadPointRequest.TYPE:
+                point = schema.LeadPointRequest.unpack(payload)
+                if point.number == self._next_point and len(self._points) < _ROOM:
+                    self._points.append(point.step)
+                    self._next_point = (self._next_point + 1) % 256
+                return schema.LeadPointReply(self._next_point, len(self._points)).pack()
             case schema.StopRequest.TYPE:
                 self.state, self.stop_reason = State.DISABLED, StopReason.HOST
                 return schema.StopReply(self.state).pack()
@@ -281,7 +330,9 @@ class FakeBoard:
         raise AssertionError(f"unexpected request {kind:#04x}")
 
     def _lease(self, kind: int, lease_ms: int) -> bytes:
-        if kind == schema.EnableRequest.TYPE and self.state is State.DISABLED:
+        if kind == schema.EnableRequest.TYPE:
+            self.leading = False
+        if kind != schema.RenewRequest.TYPE and self.state is State.DISABLED:
             self.state, self._enabled_at = State.SOFT_START, self.tick
         self._lease_ms = lease_ms
         self._lease_end = self.tick + lease_ms

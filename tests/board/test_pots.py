@@ -10,7 +10,10 @@ from greywhale.board.pots import FOLLOWERS, FULL_SCALE, LOOKS, POTS, PotReadings
 from greywhale.errors import UserError
 from greywhale.protocol import schema
 from greywhale.protocol.schema import Fault
+from greywhale.table import ParameterTable
 from tests.board.fake_board import FakeBoard
+
+TABLE = ParameterTable.defaults()
 
 
 def readings(pot: int, counts: int, seen_in: int = LOOKS) -> PotReadings:
@@ -36,15 +39,15 @@ def test_without_rail_counts_nothing_is_a_rail() -> None:
 
 def test_an_arm_with_a_broken_potentiometer_among_those_that_count_is_refused() -> None:
     with FakeBoard() as board, Device(board.port, quiet_s=0.0, patience_s=0.5) as device:
-        board.running[schema.PARAMETER_BY_NAME["leader2.zero"].index] = 16  # its angle is then below the track
-        require_good_pots(device, FOLLOWERS)
+        table = TABLE.with_raw({"leader2.zero": 5})  # its angle is then below the track
+        require_good_pots(device, table, FOLLOWERS)
         with pytest.raises(UserError, match=rf"^{board.port}: leader potentiometer 2 reads 0..0 of 1023, at a rail"):
-            require_good_pots(device, range(8))
+            require_good_pots(device, table, range(8))
 
 
 def test_the_counts_are_those_that_the_board_has_converted() -> None:
     with FakeBoard() as board, Device(board.port, quiet_s=0.0, patience_s=0.5) as device:
-        found = read_pots(device)
+        found = read_pots(device, TABLE)
         assert board.asked(schema.TelemetryRequest) == 2, "on, and off again"
     assert found.counts.shape == (LOOKS, len(POTS))
     assert np.all((found.counts > 0) & (found.counts < FULL_SCALE))

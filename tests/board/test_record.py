@@ -187,7 +187,7 @@ def test_bad_settings_are_bad_usage(tmp_path: Path, seconds: float, every: int, 
 
 
 def test_the_lease_running_out_is_named(tmp_path: Path) -> None:
-    with FakeBoard() as board, open_device(board) as device:
+    with FakeBoard(Faults(patience_s=0.0)) as board, open_device(board) as device:
         device.renew = lambda: None  # type: ignore[method-assign]
         with pytest.raises(UserError, match="did not renew the lease of 500 ms"):
             record(device, tmp_path / "log.csv", 10.0, enable=True)

@@ -11,16 +11,19 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from greywhale.board import device
 from greywhale.cli import entry
 from greywhale.cli.verbs import VERBS
+from greywhale.files.leader import save_leader
 from greywhale.files.log import LogWriter, read_log
 from greywhale.files.log.layout import Origin
 from greywhale.protocol import schema
 from greywhale.protocol.schema import State
-from tests.board.fake_board import FakeBoard
+from greywhale.trajectory import Trajectory
+from tests.board.fake_board import FakeBoard, Faults
 
 ROOT = Path(__file__).parents[2]
 TABLE_10 = str(ROOT / "shared" / "fuzzy_tables" / "table_10.toml")
@@ -92,6 +95,8 @@ def test_help_needs_no_heavy_imports() -> None:
         (["params", "set", "joint0.kp=-1e300"], "which is out of range"),
         (["params", "set", "joint0.kp=1", "joint0.kp=2"], "joint0.kp is given twice"),
         (["params", "get", "\x1b[31m" + "x" * 5000], "there is no parameter"),
+        (["record", "--every", "9" * 5000], "is not a valid integer"),
+        (["no\x1b[31mverb" + "x" * 5000], "No such command 'no"),
         (["identify", "a.csv", "--seed", "-1"], "-1 is not in the range x>=0"),
         (["record", "--excite", "--seed", "-1"], "-1 is not in the range x>=0"),
         (["demo", "--seed", "-1"], "-1 is not in the range x>=0"),
@@ -110,6 +115,8 @@ def test_bad_usage_is_exit_code_2_and_one_sentence(arguments: list[str], words: 
     assert captured.out == ""
     assert captured.err.startswith("greywhale: ")
     assert words in captured.err
+    assert len(captured.err) < 1020
+    assert captured.err[:-1].isprintable()
     code, answer = ask(capsys, *arguments)
     assert (code, answer["exit_code"]) == (2, 2)
     assert words in answer["error"]
@@ -153,6 +160,21 @@ def test_info_names_a_fault_with_its_place_and_remedy(capsys: Captured) -> None:
     with board:
         assert entry.run(["info", "--port", board.port]) == 0
     assert "lower rail (follower potentiometer 1): check that" in capsys.readouterr().out
+
+
+def test_a_broken_pot_is_named_before_anything_moves(tmp_path: Path, capsys: Captured) -> None:
+    with FakeBoard(Faults(followers=(0, 0, -10725, 0))) as board:
+        assert entry.run(["info", "--port", board.port]) == 0
+        text = capsys.readouterr().out
+        _, answer = ask(capsys, "info", "--port", board.port)
+        out = tmp_path / "log.csv"
+        code, refused = ask(capsys, "record", "--excite", "--yes", "--port", board.port, "-o", str(out))
+        assert board.asked(schema.LeadRequest) == 0
+    told = "follower potentiometer 2 reads 0..0 of 1023, at a rail (pot_low): check that potentiometer's wiper"
+    assert text.splitlines()[-1].startswith(f"pots           {told}")
+    assert [pot["pot"] for pot in answer["pots"] if pot["fault"] == "pot_low"] == ["follower2"]
+    assert code == 1
+    assert told in refused["error"]
 
 
 def test_the_port_may_come_from_the_environment(capsys: Captured, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -225,6 +247,23 @@ def test_params_set_get_backup_diff_restore(tmp_path: Path, capsys: Captured) ->
         assert ask(capsys, "params", "restore", backup, *at)[0] == 0
         assert board.stored == list(schema.DEFAULTS)
         assert ask(capsys, "params", "diff", backup, *at)[1]["differences"] == {}
+
+
+@pytest.mark.parametrize("verb", ["record", "record --enable", "replay"])
+def test_a_port_that_goes_away_ends_the_log_whole_and_says_so_once(verb: str, tmp_path: Path, capsys: Captured) -> None:
+    out, motion = tmp_path / "log.csv", tmp_path / "motion.csv"
+    save_leader(motion, Trajectory(np.array([0.0, 600.0]), np.zeros((2, 4))))
+    options = {"record": ["-s", "600"], "record --enable": ["-s", "600"], "replay": [str(motion), "--yes"]}[verb]
+    with FakeBoard(Faults(unplug_at=300)) as board:
+        code = entry.run([*verb.split(), *options, "-o", str(out), "--port", board.port])
+    lost = f"{board.port}: the port went away in the middle; check the cable and try again."
+    stops = "" if verb == "record" else " The stop is not confirmed; the board stops by itself within 500 ms."
+    said = capsys.readouterr().err.strip()
+    assert (code, said) == (1, f"greywhale: {lost}{stops} What was recorded is in {out}, marked as interrupted.")
+    log = read_log(out)
+    assert (log.complete, log.ended_by) == (False, lost)
+    assert 200 < len(log.time) < 300
+    assert sorted(os.listdir(tmp_path)) == ["log.csv", "motion.csv"]
 
 
 # --- evaluate -------------------------------------------------------------------------------------------------------
@@ -336,7 +375,8 @@ def test_closed_streams_are_nobodys(numbers: tuple[int, ...]) -> None:
         command = [sys.executable, "-c", RUN, "info", "--port", board.port]
         done = subprocess.run(command, preexec_fn=closed(*numbers), capture_output=True, text=True, check=False)
         assert board.problem is None
-        assert {kind for kind, _ in board.requests} <= {schema.HelloRequest.TYPE, schema.StatusRequest.TYPE}
+        asks = (schema.HelloRequest, schema.StatusRequest, schema.ParamGetRequest, schema.TelemetryRequest)
+        assert {kind for kind, _ in board.requests} <= {request.TYPE for request in asks}
     assert (done.returncode, done.stderr) == (0, "")
     assert bool(done.stdout) == (1 not in numbers)
 

@@ -275,7 +275,7 @@ def test_interrupted_and_resumed_is_the_same_file_as_uninterrupted(no_floors: No
         assert unfinished.tuning["status"].startswith("unfinished")
         assert unfinished.source.endswith("(unfinished)")
         assert journal.exists()
-        assert not list(folder.glob(".*.part"))
+        assert not list(folder.glob(".*"))
     assert entry.run(["tune", str(model), "--out", str(out), *LONG, "--resume", "--json"]) == 0
     assert not journal.exists()
     whole = folder / "whole.toml"

@@ -131,6 +131,7 @@ MONSTERS = {
     "key of quoted parts": (b" . ".join([b'"a"'] * 20_000) + b" = 1", "nested more than"),
     "heading of parts": (b"[" + b".".join([b"a"] * 20_000) + b"]", "nested more than"),
     "digits": (b"a = " + b"9" * 5000, "too many digits"),
+    "hexadecimal digits": (b"a = 0x" + b"f" * 5000, "a is a number of 20000 bits, which is out of any range"),
     "fewer digits": (b"a = " + b"9" * 4000, "out of any range"),
     "long key": (b'"' + b"k" * 1_000_000 + b'" = 1', "kkk..."),
     "key that colours": (b'"\\u001b[31mred" = 1', '"\\u001b[31mred"'),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 import resource
 import stat
@@ -137,14 +138,30 @@ def test_an_empty_recording_leaves_the_old_file_and_nothing_else(tmp_path: Path)
     assert os.listdir(tmp_path) == ["log.csv"]
 
 
-def test_a_killed_recording_can_be_told_from_a_whole_one(tmp_path: Path) -> None:
-    log = LogWriter(tmp_path / "log.csv", ORIGIN).__enter__()
-    for row in range(3):
-        log.append(row * 0.001, *ROW)
-    log.flush()  # the process dies here
-    (part,) = tmp_path.iterdir()
-    assert not read_log(part).complete
-    log.__exit__(None, None, None)
+def test_a_killed_recording_is_there_to_see_and_to_read(tmp_path: Path) -> None:
+    for name in ("log.unfinished.csv", "log.unfinished-2.csv"):
+        log = LogWriter(tmp_path / "log.csv", ORIGIN).__enter__()
+        for row in range(3):
+            log.append(row * 0.001, *ROW)
+        assert not (tmp_path / name).exists()
+        log.flush()  # the process dies here
+        found = read_log(tmp_path / name)
+        assert (len(found.time), found.complete) == (3, False)
+    write(tmp_path / "log.csv", 5)
+    assert sorted(os.listdir(tmp_path)) == ["log.csv", "log.unfinished-2.csv", "log.unfinished.csv"]
+
+
+def test_what_cannot_be_brought_to_the_disk_stays_unfinished(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(descriptor: int) -> None:
+        raise OSError(errno.EIO, os.strerror(errno.EIO))
+
+    monkeypatch.setattr(os, "fsync", fail)
+    with pytest.raises(UserError, match="input/output error") as caught:
+        write(tmp_path / "log.csv", 5)
+    kept = tmp_path / "log.unfinished.csv"
+    assert caught.value.__notes__ == [f"What was recorded is in {kept}."]
+    log = read_log(kept)
+    assert (len(log.time), log.complete) == (5, False)
 
 
 def test_the_file_has_the_rights_of_any_new_file(tmp_path: Path) -> None:

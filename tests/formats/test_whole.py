@@ -44,28 +44,46 @@ class Disk:
 
     def __init__(self, patch: pytest.MonkeyPatch) -> None:
         self.done: list[str] = []
-        sync, replace = os.fsync, os.replace
+        sync, link, replace = os.fsync, os.link, os.replace
 
         def note_sync(descriptor: int) -> None:
             mode = os.fstat(descriptor).st_mode
             self.done.append("folder" if stat.S_ISDIR(mode) else f"file of {os.fstat(descriptor).st_size}")
             sync(descriptor)
 
-        def note_replace(old: str, new: Path) -> None:
+        def note_link(old: Path, new: Path, *, src_dir_fd: int) -> None:
+            link(old, new, src_dir_fd=src_dir_fd)
+            self.done.append(f"name {'hidden' if new.name.startswith('.') else new.name}")
+
+        def note_replace(old: Path, new: Path) -> None:
             replace(old, new)
-            self.done.append("name")
+            self.done.append(f"name {new.name}")
 
         patch.setattr(os, "fsync", note_sync)
+        patch.setattr(os, "link", note_link)
         patch.setattr(os, "replace", note_replace)
 
 
-@pytest.mark.parametrize("write", WRITERS.values(), ids=WRITERS)
+@pytest.mark.parametrize("write", [WRITERS[name] for name in WRITERS if name != "log"])
 def test_the_file_then_its_name_are_on_the_disk(
     write: Callable[[Path], None], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     disk = Disk(monkeypatch)
     write(tmp_path / "file")
-    assert disk.done == [f"file of {(tmp_path / 'file').stat().st_size}", "name", "folder"]
+    whole = f"file of {(tmp_path / 'file').stat().st_size}"
+    assert disk.done == [whole, "name file", "folder"]
+    disk.done.clear()
+    write(tmp_path / "file")
+    assert disk.done == [whole, "name hidden", "name file", "folder"]
+
+
+def test_a_log_is_on_the_disk_before_it_says_that_it_is_complete(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    disk = Disk(monkeypatch)
+    write_log(tmp_path / "log.csv")
+    whole = f"file of {(tmp_path / 'log.csv').stat().st_size}"
+    assert disk.done == ["name log.unfinished.csv", whole, whole, "name log.csv", "folder"]
 
 
 def test_a_journal_is_on_the_disk_when_it_is_closed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -7,20 +7,18 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 from tools import lock
 from tools.setup.venv import REQUIREMENTS
 
 
-def normal(name: str) -> str:
-    return re.sub(r"[-_.]+", "-", name).lower()
-
-
-def pinned() -> dict[str, list[str]]:
-    """Digests by package and version."""
+def pinned(file: Path = REQUIREMENTS) -> dict[str, list[str]]:
+    """Digests by package."""
     found: dict[str, list[str]] = {}
-    for line in REQUIREMENTS.read_text(encoding="utf-8").splitlines():
-        if match := re.match(r"([\w.-]+)==\S+", line):
-            name = normal(match[1])
+    for line in file.read_text(encoding="utf-8").splitlines():
+        if re.match(r"([\w.-]+)==\S+", line):
+            name = lock.name_of(line)
             assert name not in found
             found[name] = []
         elif match := re.match(r"    --hash=sha256:([0-9a-f]{64})", line):
@@ -30,19 +28,32 @@ def pinned() -> dict[str, list[str]]:
     return found
 
 
-def test_every_package_has_digests() -> None:
-    assert all(pinned().values())
+@pytest.mark.parametrize("file", [REQUIREMENTS, lock.ORACLES], ids=["own", "oracles"])
+def test_every_package_has_digests(file: Path) -> None:
+    assert len(pinned(file)) > 10
+    assert all(pinned(file).values())
+
+
+def test_the_outside_references_come_beside_the_projects_own_packages() -> None:
+    references = pinned(lock.ORACLES)
+    assert set(lock.REFERENCES) <= set(references)
+    assert not set(references) & set(pinned())
+
+
+def test_a_package_is_left_out_with_its_digests() -> None:
+    lines = ["a==1 \\", "    --hash=sha256:1", "B.c==2 \\", "    --hash=sha256:2 \\", "    --hash=sha256:3", "d==4"]
+    assert lock.without(lines, {"b-c"}) == ["a==1 \\", "    --hash=sha256:1", "d==4"]
 
 
 def test_versions_alone_can_be_had_too() -> None:
     """For a constraint: with digests, pip takes nothing else that is not pinned on the command line."""
     versions = lock.versions()
-    assert {normal(line.partition("==")[0]) for line in versions} == set(pinned())
+    assert {lock.name_of(line) for line in versions} == set(pinned())
     assert all(re.fullmatch(r"[\w.-]+==[\w.!+-]+", line) for line in versions)
 
 
 def test_all_that_is_asked_for_is_pinned() -> None:
-    asked = {normal(re.split(r"[^\w.-]", name)[0]) for name in lock.wanted()}
+    asked = {lock.name_of(name) for name in lock.wanted()}
     assert asked - set(pinned()) == set()
 
 

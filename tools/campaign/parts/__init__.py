@@ -3,6 +3,15 @@
 from __future__ import annotations
 
 from tools.campaign.part import Part
-from tools.campaign.parts import cuts, eeprom, faults, fuzz, line, link, soak
+from tools.campaign.parts import cuts, eeprom, faults, fuzz, kills, line, link, soak
 
-PARTS: tuple[Part, ...] = (faults.PART, line.PART, link.PART, fuzz.PART, cuts.PART, eeprom.PART, soak.PART)
+PARTS: tuple[Part, ...] = (
+    faults.PART,
+    line.PART,
+    link.PART,
+    fuzz.PART,
+    cuts.PART,
+    eeprom.PART,
+    kills.PART,
+    soak.PART,
+)

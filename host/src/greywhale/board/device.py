@@ -22,7 +22,7 @@ from greywhale.errors import UserError
 from greywhale.protocol import schema
 from greywhale.protocol.declared import Reply_co, Request
 from greywhale.protocol.frames import Frame, FrameDecoder, encode_frame
-from greywhale.protocol.transport import Transport
+from greywhale.protocol.transport import PortLostError, Transport
 
 # After this long without an answer a request is repeated, unchanged. Every request may be repeated safely.
 REPLY_WAIT_S = 0.3
@@ -178,7 +178,8 @@ class Device:
             try:
                 self.stop()
             except UserError as problem:
-                error.add_note(problem.message)
+                gone = isinstance(error, PortLostError)  # which needs not be said twice
+                error.add_note(self._unconfirmed_stop() if gone else problem.message)
             raise
         self.stop()
 

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from greywhale.board.device import Device
 from greywhale.board.refusal import lower_first, pot_name
 from greywhale.board.stream import stream
-from greywhale.board.upload import read_parameter
 from greywhale.errors import UserError
 from greywhale.protocol import schema
+from greywhale.table import ParameterTable
 
 FOLLOWERS = range(4, 8)
 POTS = tuple(f"{side}{joint}" for side in ("leader", "follower") for joint in range(4))
@@ -53,21 +53,23 @@ class PotReadings:
         return told
 
 
-def read_pots(device: Device) -> PotReadings:
-    """Look at all potentiometers for some samples. The motors must be off. Telemetry is off afterwards."""
-    scales = np.array([read_parameter(device, f"{pot}.scale") for pot in POTS], dtype=float)
-    zeros = np.array([read_parameter(device, f"{pot}.zero") for pot in POTS], dtype=float)
-    rail_counts = read_parameter(device, "rail_counts")
+def read_pots(device: Device, table: ParameterTable) -> PotReadings:
+    """Look at all potentiometers for some samples; `table` runs on the board. Its motors must be off.
+
+    Telemetry is off afterwards.
+    """
+    scales = np.array([table[f"{pot}.scale"] for pot in POTS], dtype=float)
+    zeros = np.array([table[f"{pot}.zero"] for pot in POTS], dtype=float)
     try:
         samples = [one.sample for one in islice(stream(device, 1), LOOKS)]
     finally:
         device.telemetry(0)
     angles = np.array([(*sample.leader, *sample.follower) for sample in samples], dtype=float)
     counts = np.rint((angles * 2**_ANGLE_SHIFT / scales + zeros) / _COUNT14)
-    return PotReadings(np.clip(counts, 0, FULL_SCALE).astype(np.int64), rail_counts)
+    return PotReadings(np.clip(counts, 0, FULL_SCALE).astype(np.int64), table["rail_counts"])
 
 
-def require_good_pots(device: Device, pots: Iterable[int]) -> None:
+def require_good_pots(device: Device, table: ParameterTable, pots: Iterable[int]) -> None:
     """Refuse an arm of which one of these potentiometers is broken before anything is planned for it."""
-    for complaint in read_pots(device).complaints(pots):
+    for complaint in read_pots(device, table).complaints(pots):
         raise UserError(f"{device.port}: {complaint}")

@@ -17,7 +17,7 @@ import click
 
 from greywhale.cli.output import json_of
 from greywhale.cli.verbs import greywhale
-from greywhale.errors import BAD_USAGE, FAILED, UserError, os_reason, printable
+from greywhale.errors import BAD_USAGE, FAILED, LONGEST, UserError, cut, os_reason, printable
 
 INTERRUPTED = 130
 
@@ -83,6 +83,7 @@ def _terminated(number: int, frame: FrameType | None) -> None:
 
 
 def _failed(message: str, code: int, as_json: bool) -> int:
+    message = cut(message, LONGEST)
     if as_json:
         print(json_of({"error": message, "exit_code": code}))
     with contextlib.suppress(OSError):  # the terminal may be gone

@@ -7,6 +7,7 @@ import click
 from greywhale.board.device import Device
 from greywhale.board.pots import POTS, PotReadings, read_pots
 from greywhale.board.refusal import fault_text
+from greywhale.board.upload import read_parameters
 from greywhale.cli.output import json_option, port_option, show
 from greywhale.protocol import schema
 from greywhale.protocol.ports import choose_port
@@ -23,7 +24,7 @@ def command(port: str | None, as_json: bool) -> None:
     """
     with Device(choose_port(port), restart=False) as device:
         hello, status = device.hello, device.status()
-        pots = read_pots(device) if status.state in _MOTORS_OFF else None
+        pots = read_pots(device, read_parameters(device)) if status.state in _MOTORS_OFF else None
     show(as_json, _facts(device, hello, status, pots), _text(device, hello, status, pots))
 
 

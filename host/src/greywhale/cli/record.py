@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from greywhale.board.device import Device
+from greywhale.board.pots import FOLLOWERS, require_good_pots
 from greywhale.board.record import Recording, check_every_led, pose_of, record, record_led
 from greywhale.board.upload import read_parameters
 from greywhale.cli.countdown import prepare_motion, yes_option
@@ -82,7 +83,7 @@ def command(
 
     Without --enable the motors stay off and the log shows what the potentiometers say. With it the log begins when the
     soft start is over. Ctrl-C stops the motors and keeps what was recorded, marked as interrupted.
-    A recording that is killed leaves a hidden file beside the log, .NAME.*.part, that `evaluate` reads as unfinished.
+    A recording that is killed leaves what it has in log.unfinished.csv beside log.csv, which all verbs read.
 
     With --excite nobody needs to move the leader: this program leads the arm along a motion designed for `identify`,
     from where the arm is and back. It keeps the joints' limits, but knows of no table and no link in the way: clear the
@@ -111,6 +112,7 @@ def command(
     with Device(chosen) as device:
         with progress(as_json) as report:
             running = read_parameters(device, report)
+            require_good_pots(device, running, FOLLOWERS)
             designed = plan(pose_of(device), table=running, report=report)
         if save_motion is not None:
             save_leader(save_motion, designed.motion)

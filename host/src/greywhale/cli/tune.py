@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -11,7 +10,7 @@ import click
 from greywhale.cli.output import json_option, progress, show
 from greywhale.errors import BAD_USAGE, UserError, os_reason
 from greywhale.files import controller as controller_file
-from greywhale.formats.whole import refuse_inputs, temporary_beside
+from greywhale.formats.whole import refuse_inputs, require_writable
 from greywhale.loop import controller_row
 from greywhale.tune import METHODS, STRATEGIES, check_request, tune
 from greywhale.tune.model import SAMPLES, load_model
@@ -177,8 +176,6 @@ def _check_files(
 
 def _refuse_unwritable(path: Path) -> None:
     try:
-        descriptor, name = temporary_beside(path)
+        require_writable(path)
     except OSError as error:
         raise UserError(f"{path}: cannot be written: {os_reason(error)}.", BAD_USAGE) from None
-    os.close(descriptor)
-    os.unlink(name)

@@ -122,7 +122,9 @@ def _refuse_depth(text: str, name: str) -> None:
 def _refuse_odd_numbers(data: dict[str, Any], name: str) -> None:
     for location, value in _numbers(data, ()):
         if isinstance(value, int) and abs(value) > _LARGEST:
-            raise UserError(f"{name}: {key_path(location)} is {cut(str(value), 30)}, which is out of any range.")
+            # Python writes no integer of thousands of digits, but reads one from hexadecimal digits.
+            shown = cut(str(value), 30) if value.bit_length() < 1000 else f"a number of {value.bit_length()} bits"
+            raise UserError(f"{name}: {key_path(location)} is {shown}, which is out of any range.")
         if not math.isfinite(value):
             raise UserError(f"{name}: {key_path(location)} is {value}; it must be a finite number.")
 

@@ -1,20 +1,19 @@
-"""Reads whole files only, and writes a file whole or not at all: into a temporary file beside it, then renamed.
+"""Reads whole files only, and writes a file whole or not at all: it has no name before it is whole.
 
 What was written is on the disk before it gets its name, and its name is too before the writer says so.
 """
 
 from __future__ import annotations
 
-import contextlib
 import errno
 import os
 import stat
-import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import IO
 
 from greywhale.errors import BAD_USAGE, UserError, os_reason
+from greywhale.formats.draft import Draft
 
 
 def refuse_devices(path: str | Path) -> None:
@@ -31,64 +30,24 @@ def refuse_inputs(out: Path | None, *inputs: str | Path | None) -> None:
             raise UserError(f"{out}: this file is read from; write elsewhere.", BAD_USAGE)
 
 
-def temporary_beside(path: Path) -> tuple[int, str]:
-    """An open, empty file in the folder of `path`, with the access rights that any new file of the user gets.
-
-    Refused where `path` is not a file: a folder cannot be replaced, and a device (/dev/null) must not be.
-    """
-    if path.is_dir():
-        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
-    if path.exists() and not path.is_file():
-        raise OSError(errno.EINVAL, "not an ordinary file", str(path))
-    descriptor, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
-    mask = os.umask(0)
-    os.umask(mask)
-    os.chmod(name, 0o666 & ~mask)
-    return descriptor, name
-
-
-def keep(file: IO[bytes], temporary: str, target: Path) -> None:
-    """Give a temporary file its name, so that no power cut can take either: OSError where the disk does not promise."""
-    sync(file)
-    os.replace(temporary, target)
-    sync_folder(target.parent)
-
-
-def sync(file: IO[bytes]) -> None:
-    """Have on the disk what was written."""
-    file.flush()
-    os.fsync(file.fileno())
-
-
-def sync_folder(folder: Path) -> None:
-    """Have the names in a folder on the disk, where its file system can promise that."""
-    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
-    try:
-        os.fsync(descriptor)
-    except OSError as error:
-        if error.errno not in (errno.EINVAL, errno.ENOTSUP):
-            raise
-    finally:
-        os.close(descriptor)
+def require_writable(path: Path) -> None:
+    """OSError where `path` could not be written: no folder, no room, no permission, or not a file."""
+    Draft(path).discard()
 
 
 def write_whole(path: str | Path, write: Callable[[IO[bytes]], None]) -> None:
     """Let `write` fill the file; `path` appears, or is replaced, only when that went well."""
-    target = Path(path)
     try:
-        descriptor, name = temporary_beside(target)
+        draft = Draft(Path(path))
     except OSError as error:
         raise UserError(f"{path}: cannot be written: {os_reason(error)}.") from None
     try:
-        with open(descriptor, "wb") as file:
-            write(file)
-            keep(file, name, target)
+        write(draft.file)
+        draft.keep()
     except OSError as error:
-        _discard(name)
         raise UserError(f"{path}: cannot be written: {os_reason(error)}.") from None
-    except BaseException:
-        _discard(name)
-        raise
+    finally:
+        draft.discard()
 
 
 def write_text(path: str | Path, text: str) -> None:
@@ -98,8 +57,3 @@ def write_text(path: str | Path, text: str) -> None:
 
 def _write_all(file: IO[bytes], data: bytes) -> None:
     file.write(data)
-
-
-def _discard(name: str) -> None:
-    with contextlib.suppress(OSError):
-        os.unlink(name)

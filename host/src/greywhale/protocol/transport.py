@@ -28,6 +28,13 @@ _DTR_DOWN_S = 0.05
 _CFLAG = 2  # place of the control flags in what termios returns
 
 
+class PortLostError(UserError):
+    """The port went away: an unplugged cable, or the end of a bench."""
+
+    def __init__(self, port: str) -> None:
+        super().__init__(f"{port}: the port went away in the middle; check the cable and try again.")
+
+
 class Transport:
     """An open port; every failure of it is a UserError that names it."""
 
@@ -42,8 +49,8 @@ class Transport:
         """Return what has arrived; wait a moment when nothing has, and then return perhaps nothing."""
         try:
             return bytes(self._serial.read(self._serial.in_waiting or 1))
-        except (OSError, TypeError) as error:  # pyserial reads from a port closed under it as a TypeError
-            raise self._gone(error) from None
+        except (OSError, TypeError):  # pyserial reads from a port closed under it as a TypeError
+            raise PortLostError(self.port) from None
 
     def write(self, data: bytes) -> None:
         try:
@@ -53,20 +60,14 @@ class Transport:
             raise UserError(
                 f"{self.port}: the port takes no data; unplug the board, plug it in and try again."
             ) from None
-        except (OSError, TypeError) as error:
-            raise self._gone(error) from None
+        except (OSError, TypeError):
+            raise PortLostError(self.port) from None
 
     def close(self) -> None:
         with self._writing:
             if self._serial.is_open:
                 _keep_up(self._serial, True)
             self._serial.close()
-
-    def _gone(self, error: Exception) -> UserError:
-        reason = os_reason(error) if isinstance(error, OSError) else "it was closed"
-        return UserError(
-            f"{self.port}: the port went away in the middle ({reason.rstrip('.')}); check the cable and try again."
-        )
 
 
 def open_serial(port: str, baud: int, read_wait_s: float, restart: bool = True) -> serial.Serial:

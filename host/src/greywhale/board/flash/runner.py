@@ -11,7 +11,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
+from typing import IO
 
 from greywhale.errors import UserError
 
@@ -39,7 +39,7 @@ class Tool:
 def run_tool(tool: Tool, look: Callable[[str], None]) -> str:
     """Run to the end; all output. `look` sees the output so far, again and again, and may raise to end the tool. The
     output goes through a file, because a pipe that nobody empties in time would stop the tool."""
-    with tempfile.NamedTemporaryFile(prefix="greywhale-", suffix=".txt") as output:
+    with tempfile.TemporaryFile() as output:  # without a name, so that a kill leaves none
         try:
             process = subprocess.Popen(
                 tool.command,
@@ -52,17 +52,17 @@ def run_tool(tool: Tool, look: Callable[[str], None]) -> str:
         except OSError as error:
             raise UserError(f"{tool.name} cannot be started: {error.strerror}.") from None
         try:
-            code = _wait(process, tool, Path(output.name), look)
+            code = _wait(process, tool, output, look)
         except BaseException:
             _end(process)
             raise
-        text = _read(Path(output.name))
+        text = _read(output)
     if code != 0:
         raise UserError(f"{tool.name} failed with exit code {code}: {_problem(text)}{_remedy(text)}")
     return text
 
 
-def _wait(process: subprocess.Popen[bytes], tool: Tool, output: Path, look: Callable[[str], None]) -> int:
+def _wait(process: subprocess.Popen[bytes], tool: Tool, output: IO[bytes], look: Callable[[str], None]) -> int:
     deadline = time.monotonic() + tool.limit_s
     while True:
         look(_read(output))
@@ -89,8 +89,10 @@ def _signal_all(process: subprocess.Popen[bytes], number: signal.Signals) -> Non
         os.killpg(process.pid, number)
 
 
-def _read(path: Path) -> str:
-    return _ESCAPE.sub("", path.read_text(encoding="utf-8", errors="replace"))
+def _read(output: IO[bytes]) -> str:
+    """All that is there. The tool writes where this process would read: its place in the file is the same."""
+    written = os.pread(output.fileno(), os.fstat(output.fileno()).st_size, 0)
+    return _ESCAPE.sub("", written.decode("utf-8", "replace"))
 
 
 def _problem(text: str) -> str:

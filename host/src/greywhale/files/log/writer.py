@@ -1,12 +1,13 @@
-"""Writes a log so that the named file is always whole: into a temporary file beside it, renamed when closed.
+"""Writes a log so that the named file is always whole: it gets its name when it is closed.
 
 Whatever ends the recording, also an error or Ctrl-C, the samples received so far are kept and the header says
-`interrupted`. Only when nothing was recorded is no file left. Dropped samples are counted, never filled in.
+`interrupted`. Of a recording that is killed what was received stays in log.unfinished.csv beside log.csv, or in
+log.unfinished-2.csv where that is taken; its header says `unfinished`. Only when nothing was recorded is no file left.
+Dropped samples are counted, never filled in.
 """
 
 from __future__ import annotations
 
-import contextlib
 import math
 import os
 from collections.abc import Sequence
@@ -16,7 +17,7 @@ from typing import Self
 
 from greywhale.errors import UserError, cut, os_reason
 from greywhale.files.log.layout import COMPLETE, HEADING, INTERRUPTED, STATES, TITLE, UNFINISHED, Origin
-from greywhale.formats.whole import keep, temporary_beside
+from greywhale.formats.draft import Draft, sync
 
 _ROWS_PER_WRITE = 256
 # What is known only at the end: the header keeps so many characters free for each number or word, and for the reason.
@@ -33,19 +34,19 @@ class LogWriter:
         self.rows = 0
         self.dropped = 0
         self._last_us: int | None = None
+        self._shown = False
 
     def __enter__(self) -> Self:
         try:
-            descriptor, self._temporary = temporary_beside(self.path)
+            self._draft = Draft(self.path, buffering=0)
         except OSError as error:
             raise self._cannot_be_written(error) from None
-        self._file = open(descriptor, "r+b", buffering=0)
+        self._file = self._draft.file
         self._waiting = [self._header(UNFINISHED, "").decode("ascii"), HEADING + "\n"]
         try:
             self.flush()
         except UserError:
-            self._file.close()
-            os.unlink(self._temporary)
+            self._draft.discard()
             raise
         return self
 
@@ -77,7 +78,9 @@ class LogWriter:
             self.flush()
 
     def flush(self) -> None:
-        """Write what waits. If the disk takes only a part of it, the whole lines stay."""
+        """Write what waits. If the disk takes only a part of it, the whole lines stay. From the first rows on a kill
+        leaves what was written.
+        """
         data = "".join(self._waiting).encode("ascii")
         self._waiting.clear()
         end = self._file.seek(0, os.SEEK_END)
@@ -88,6 +91,12 @@ class LogWriter:
         except OSError as error:
             self._file.truncate(end + data.rfind(b"\n", 0, done) + 1)
             raise self._cannot_be_written(error) from None
+        if self.rows and not self._shown:
+            self._shown = True
+            try:
+                self._draft.show_as(self.path.with_name(f"{self.path.stem}.{UNFINISHED}{self.path.suffix}"))
+            except OSError as error:
+                raise self._cannot_be_written(error) from None
 
     def drop(self, samples: int) -> None:
         """Count samples that the board sent, or should have sent, and that never arrived."""
@@ -97,8 +106,7 @@ class LogWriter:
         self, kind: type[BaseException] | None, raised: BaseException | None, trace: TracebackType | None
     ) -> None:
         if self.rows == 0:
-            self._file.close()
-            os.unlink(self._temporary)
+            self._draft.discard()
             return
         problem: UserError | None = None
         try:
@@ -106,19 +114,20 @@ class LogWriter:
         except UserError as full:
             problem = full
         try:
+            sync(self._file)  # before anything says that it is there
             self._file.seek(0)
             complete = kind is None and problem is None
             reason = "" if complete else _reason(raised or problem)
             self._file.write(self._header(COMPLETE if complete else INTERRUPTED, reason))
-            keep(self._file, self._temporary, self.path)
-            self._file.close()
+            self._draft.keep()
             if isinstance(raised, KeyboardInterrupt | UserError):
                 raised.add_note(f"What was recorded is in {self.path}, marked as interrupted.")
         except OSError as error:
-            with contextlib.suppress(OSError):
-                self._file.close()
-                os.unlink(self._temporary)
-            raise self._cannot_be_written(error) from None
+            self._draft.discard()
+            unkept = self._cannot_be_written(error)
+            if self._draft.path is not None:
+                unkept.add_note(f"What was recorded is in {self._draft.path}.")
+            raise unkept from None
         if problem is not None and kind is None:
             raise problem
 

@@ -20,7 +20,8 @@ import numpy.typing as npt
 
 from greywhale.errors import UserError, os_reason
 from greywhale.formats import json_text
-from greywhale.formats.whole import refuse_devices, sync, sync_folder
+from greywhale.formats.draft import sync, sync_folder
+from greywhale.formats.whole import refuse_devices
 
 Floats = npt.NDArray[np.float64]
 Controllers = npt.NDArray[np.int32]
