@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import csv
+import os
+import select
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -29,6 +33,30 @@ def test_processes_change_nothing_and_progress_ends_at_one(small: Comparison) ->
     assert (parallel.costs == small.costs).all()
     assert seen == sorted(seen)
     assert seen[-1] == 1.0
+
+
+ENDLESS = """
+from greywhale.optimise.comparison import Plan, compare
+if __name__ == "__main__":
+    plan = Plan(("sphere",), ("shifted",), ("pso",), dimensions=2, budget=3000, runs=100_000)
+    compare(plan, jobs=2, progress=lambda what, fraction: print(fraction, flush=True))
+"""
+
+
+@pytest.mark.slow
+def test_processes_end_with_a_parent_that_is_killed(tmp_path: Path) -> None:
+    script = tmp_path / "endless.py"
+    script.write_text(ENDLESS)
+    with subprocess.Popen([sys.executable, str(script)], stdout=subprocess.PIPE) as parent:
+        assert parent.stdout is not None
+        assert parent.stdout.readline(), "the processes work"
+        children = Path(f"/proc/{parent.pid}/task/{parent.pid}/children").read_text().split()
+        handles = [os.pidfd_open(int(child)) for child in children]
+        parent.kill()
+        assert len(handles) >= 2
+        for handle in handles:
+            assert select.select([handle], [], [], 30.0)[0], "it has ended"
+            os.close(handle)
 
 
 def test_runs_split_into_parts_are_the_runs_in_their_order() -> None:

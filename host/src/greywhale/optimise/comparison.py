@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import multiprocessing
+import os
 import signal
 import threading
 import zlib
@@ -16,6 +17,7 @@ from collections.abc import Callable, Generator, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 from multiprocessing import resource_tracker
+from multiprocessing.connection import wait
 
 import numpy as np
 
@@ -179,7 +181,8 @@ def _run_here(plan: Plan, parts: list[Part]) -> Results:
 def _run_in_processes(plan: Plan, parts: list[Part], jobs: int) -> Results:
     # Spawned, not forked: a fork would copy the state of other threads (a progress bar's, for example) with their
     # locks.
-    pool = ProcessPoolExecutor(min(jobs, len(parts)), mp_context=multiprocessing.get_context("spawn"))
+    context = multiprocessing.get_context("spawn")
+    pool = ProcessPoolExecutor(min(jobs, len(parts)), mp_context=context, initializer=_end_with_parent)
     try:
         with _hold_interrupts():
             futures = {pool.submit(_run_part, plan, part): part for part in parts}
@@ -187,6 +190,18 @@ def _run_in_processes(plan: Plan, parts: list[Part], jobs: int) -> Results:
             yield futures[future], future.result()
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _end_with_parent() -> None:
+    """In a process of the pool: a parent that was killed could not end it."""
+    parent = multiprocessing.parent_process()
+    assert parent is not None
+
+    def follow() -> None:
+        wait([parent.sentinel])
+        os._exit(1)
+
+    threading.Thread(target=follow, daemon=True).start()
 
 
 @contextlib.contextmanager
