@@ -1,5 +1,5 @@
-// Whether what the tick works by is still as it was when a set was applied. A CRC goes over it, part by part, some bytes
-// after each tick; a bit that flips in memory is found at the end of the round.
+// Whether what the tick works by is still as it was when a set was applied. A CRC goes over it, part by part, some
+// bytes after each tick; a bit that flips in memory is found at the end of the round.
 #pragma once
 #include <link/crc16.h>
 #include <stdint.h>
