@@ -136,7 +136,7 @@ def _end_during_the_check(bench: BenchProcess, folder: Path, number: int) -> tup
     """Send a commissioning the signal while it leads the arm along the check."""
     command = [sys.executable, "-m", "greywhale", "commission", "-p", bench.port, "-o", str(folder / "out")]
     with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
-        while not list((folder / "out").glob(".before.csv.*")):
+        while not list((folder / "out").glob("before.unfinished*.csv")):
             assert process.poll() is None, process.communicate()[1]
         while not bench.command("status")["motors_enabled"]:
             assert process.poll() is None, process.communicate()[1]
