@@ -14,6 +14,7 @@ from tools.campaign.part import Part, Piece, Row, split
 
 HOURS, PIECE_S = 2.0, 450
 ANSWER_MS = 25  # a set that is applied takes 12
+EXCUSED = 4  # samples after the answer: what was lost shows at the next one
 WRAP_AFTER = 60_000  # ticks, until the counter of 32 bits begins anew
 MASK = (1 << 32) - 1
 
@@ -49,7 +50,7 @@ class Soak:
         self._decoder = frames.FrameDecoder()
         self._seq = 0
         self._last: tuple[int, int] | None = None  # sequence number and tick of the last sample
-        self._excused = False
+        self._excused = 0  # samples from now on of which some may be missing
         self._phase = 0.0
         self.bench.board.uart_receive()
 
@@ -102,10 +103,10 @@ class Soak:
         self.ask(schema.StopRequest)
         if schema.StatusReply.unpack(self.ask(schema.StatusRequest)).save_state is schema.SaveState.SAVING:
             return
-        self._excused = True
-        self.counts.applied += bool(
-            self.ask(schema.ParamApplyRequest, struct.pack("<H", schema.param_crc(self._values)))
-        )
+        self._excused = ANSWER_MS + EXCUSED
+        crc = struct.pack("<H", schema.param_crc(self._values))
+        self.counts.applied += bool(self.ask(schema.ParamApplyRequest, crc))
+        self._excused = EXCUSED
 
     def ask(self, message: type[Message], payload: bytes = b"") -> bytes:
         """The payload of the answer; empty, and counted, where none comes."""
@@ -141,8 +142,7 @@ class Soak:
                 self.counts.lost_in_apply += missing
             elif missing or (seq - self._last[0]) & 255 != 1:
                 self.counts.lost_samples += max(missing, 1)
-            elif self._excused and self.counts.applied:
-                self._excused = False
+            self._excused = max(0, self._excused - 1)
             self.counts.wraps += tick < self._last[1]
         self._last = (seq, tick)
 
