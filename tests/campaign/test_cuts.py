@@ -21,8 +21,8 @@ def test_a_foreign_set_a_lost_save_and_a_silent_loss_are_seen() -> None:
     bench = Bench("Nano")
     runs = running_crc(bench)
     cut(bench, 1)
-    assert judge(bench, runs ^ 1, runs ^ 2, 5, False) == "wrong: a set that was never stored runs"
-    assert judge(bench, runs, runs ^ 2, 5, True) == "wrong: a finished save is lost"
-    assert judge(bench, runs, runs ^ 2, 5, False) == "wrong: the new set is lost without a word"
-    assert judge(bench, runs, runs ^ 2, 0, False) == "old set"
-    assert judge(bench, runs ^ 1, runs, 5, True) == "new set"
+    assert judge(bench, runs ^ 1, runs ^ 2, True, False) == "wrong: a set that was never stored runs"
+    assert judge(bench, runs, runs ^ 2, True, True) == "wrong: a finished save is lost"
+    assert judge(bench, runs, runs ^ 2, True, False) == "wrong: the new set is lost without a word"
+    assert judge(bench, runs, runs ^ 2, False, False) == "old set"
+    assert judge(bench, runs ^ 1, runs, True, True) == "new set"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 import signal
 import time
 from collections.abc import Callable, Iterable, Sequence
@@ -42,14 +43,19 @@ class Work:
 
 
 def in_turn(works: Iterable[Work]) -> list[tuple[Work, Piece]]:
-    """All that is missing, so that at any time every part is about as far as the others."""
+    """All that is missing, so that at any time every part, and each kind of piece in it, is as far as the others."""
     order = [
         ((place + 0.5) / len(work.pieces), number, work, piece)
         for number, work in enumerate(works)
-        for place, piece in enumerate(work.pieces)
+        for place, piece in enumerate(_mixed(work.pieces))
         if work.journal.missing([piece])
     ]
     return [(work, piece) for _, _, work, piece in sorted(order, key=lambda one: one[:2])]
+
+
+def _mixed(pieces: Sequence[Piece]) -> list[Piece]:
+    """Boards and kinds mixed, in the same way each time."""
+    return random.Random(len(pieces)).sample(list(pieces), len(pieces))
 
 
 def do_all(works: Sequence[Work], workers: int, seconds: float, report: Report) -> None:

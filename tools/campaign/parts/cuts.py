@@ -69,15 +69,15 @@ def sink(bench: Bench, random: np.random.Generator, seed: int) -> None:
         bench.wait(1)
 
 
-def judge(bench: Bench, old: int, new: int, writes: int, saved: bool) -> str:
-    """What came of a cut; what must not be begins with "wrong"."""
+def judge(bench: Bench, old: int, new: int, changed: bool, saved: bool) -> str:
+    """What came of a cut; what must not be begins with "wrong". `changed`: the EEPROM is not as before the save."""
     running, fault = running_crc(bench), status(bench).fault
     told = fault is schema.Fault.PARAMS
     if running not in (old, new):
         return "wrong: a set that was never stored runs"
     if saved:
         return "new set" if running == new and not told else "wrong: a finished save is lost"
-    if running == old and writes and not told:
+    if running == old and changed and not told:
         return "wrong: the new set is lost without a word"
     if fault not in (schema.Fault.NONE, schema.Fault.PARAMS):
         return f"wrong: fault {fault.key}"
@@ -89,11 +89,11 @@ def is_saved(bench: Bench) -> bool:
     return bool(in_a_copy(lambda: status(bench).save_state is schema.SaveState.SAVED))
 
 
-def cut_and_look(bench: Bench, old: int, new: int, seed: int, writes_before: int) -> dict[str, Any]:
+def cut_and_look(bench: Bench, old: int, new: int, seed: int, before: bytes) -> dict[str, Any]:
     """A cut now. After it a set is stored again, which must end well."""
-    writes, saved = bench.board.stats().eeprom_writes - writes_before, is_saved(bench)
+    saved = is_saved(bench)
     cut(bench, seed)
-    found = judge(bench, old, new, writes, saved)
+    found = judge(bench, old, new, bench.board.eeprom() != before, saved)
     again = stage_another(bench, np.random.default_rng(seed))
     save(bench)
     cut(bench, seed + 2)
@@ -117,12 +117,12 @@ def cut_a_save(board: str, earlier: int, trials: int, seed: int) -> Row:
         old = stage_another(bench, random)
         save(bench)
     new = stage_another(bench, random)
-    writes, length = bench.board.stats().eeprom_writes, in_a_copy(partial(cycles_of_a_save, bench))
+    before, length = bench.board.eeprom(), in_a_copy(partial(cycles_of_a_save, bench))
     bench.board.uart_send(SAVE)
     begun, found = bench.board.cycle, Counter[str]()
     for number, at in enumerate(np.sort(random.integers(0, round(1.02 * length), trials)).tolist()):
         bench.board.run_until(begun + at)
-        found[in_a_copy(partial(cut_and_look, bench, old, new, 11 * number + 1, writes))["found"]] += 1
+        found[in_a_copy(partial(cut_and_look, bench, old, new, 11 * number + 1, before))["found"]] += 1
     wrong = sum(count for name, count in found.items() if name.startswith("wrong"))
     return Row(f"{board}: {HISTORIES[earlier]}", trials, wrong, dict(sorted(found.items())))
 
@@ -147,8 +147,8 @@ PART = Part(
     """The real images on both simulated boards. The supply goes at a random cycle of a save, at once or on a slope
         of up to 60 ms through the brown-out detector's level, and a byte of the EEPROM that was being written is
         torn. Afterwards the old or the new set must run, the new one if its save had ended, and a new set that was
-        lost must be told as the fault `params`. Then a set is stored again, which must end well and outlast another
-        cut.""",
+        lost must be told as the fault `params`, unless the EEPROM is bit by bit as if the save had never begun.
+        Then a set is stored again, which must end well and outlast another cut.""",
     ("firmware/lib", "firmware/src", "shared", "sim/board"),
     pieces,
     run,
