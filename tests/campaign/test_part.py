@@ -59,12 +59,19 @@ def test_the_page_shows_every_violation() -> None:
 
 def test_the_page_lists_the_faults_with_their_times_on_both_boards() -> None:
     part = Part("faults", "Faults", "", ("Makefile",), lambda share: [], lambda piece: [])
-    rows = [Row(f"{board}: {staged}", 5, 0, {}, {"ms": 3.25}) for board in ("mega", "nano") for staged in faults()]
+    names = {staged: name for name, staged in STAGED_AS.items()}
+    rows = [
+        Row(f"{board}: {staged}", 5, 0, {names.get(staged, "none"): 5}, {"ms": 3.25})
+        for board in ("mega", "nano")
+        for staged in faults()
+    ]
     page = write_page([Result(part, rows, 1, 1)])
     for name in STAGED_AS:
         assert re.search(rf"\| `{name}` \| .+ \| .+ \| 3.25 \| 3.25 \|", page), name
     assert set(STAGED_AS.values()) <= set(faults())
-    assert set(STAGED_AS) | {"none", "params", "tracking", "unrest"} == {fault.key for fault in Fault}
+    mixed = Row("mega: joint blocked", 5, 0, {"stalled": 3, "speed": 2}, {"ms": 1.5})
+    assert re.search(r"\| joint blocked \|  \|  \|", write_page([Result(part, [mixed], 1, 1)])), "whose time is it?"
+    assert set(STAGED_AS) | {"none", "late_tick", "params", "tracking", "unrest"} == {fault.key for fault in Fault}
 
 
 def double(piece: Piece) -> list[Row]:
