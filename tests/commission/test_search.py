@@ -132,3 +132,22 @@ def test_every_proposal_is_one_that_the_firmware_takes() -> None:
                     break
                 check_controllers(np.tile(row, (4, 1)))
                 search.add(row, verdict(0.2, restless=restless), f"trial-{number + 2}")
+
+
+def test_a_step_that_promises_nothing_is_left_out() -> None:
+    search = begun()
+    search.add(TUNED, verdict(0.5), "trial-1")
+    first = search.propose()
+    other = begun()
+    other.add(TUNED, verdict(0.5), "trial-1")
+    assert first is not None
+    second = other.propose(lambda row: not np.array_equal(row, first))
+    assert second is not None
+    assert not np.array_equal(second, first)
+    assert other.propose(lambda row: False) is None
+
+
+def test_a_restless_joint_gets_softer_whatever_it_promises() -> None:
+    search = begun()
+    search.add(TUNED, verdict(0.5, restless=True), "trial-1")
+    assert search.propose(lambda row: False) is not None

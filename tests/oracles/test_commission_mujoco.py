@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from greywhale.commission.judge import MOST_UNREST
+from greywhale.commission.judge import KEPT_SHARE, MOST_UNREST
 from greywhale.trajectory import human_reaches, multi_steps
-from tools.bench.bench_commission import commissioned
+from tools.bench.bench_commission import Commissioned, commissioned
 
 SEED = 2
 BUDGET, TRIALS = 400, 4  # a small share of the usual effort
@@ -18,10 +18,22 @@ HUMAN_SHARE = 0.15
 def test_an_arm_of_another_engine_follows_better_and_rests(tmp_path: Path) -> None:
     """Through the serial port, the AVR binary in between."""
     unseen = {"multi-steps": multi_steps(), "human reaches": human_reaches(1, 12.0)}
-    before, after, _ = commissioned(SEED, tmp_path, unseen, budget=BUDGET, rounds=1, trials=TRIALS)
+    done = commissioned(SEED, tmp_path, unseen, budget=BUDGET, trials=TRIALS)
+    before, after = done.before, done.after
+    # A joint that keeps its controller feels its neighbours' quicker moves.
+    most = np.where(done.kept, 1.0 + KEPT_SHARE, 1.0)
     for name in unseen:
-        assert np.all(after.error[name] <= before.error[name]), f"no joint follows {name} worse"
+        ratios = after.error[name] / before.error[name]
+        assert np.all(ratios <= most), f"a joint follows {name} worse, {ratios} of before; {tried(done)}"
     reaches = after.error["human reaches"].sum() / before.error["human reaches"].sum()
-    assert reaches <= HUMAN_SHARE
+    assert reaches <= HUMAN_SHARE, tried(done)
     rests, rested = after.unrest["multi-steps"], before.unrest["multi-steps"]
-    assert np.all(rests <= np.minimum(MOST_UNREST, 2.0 * rested))
+    assert np.all(rests <= np.minimum(MOST_UNREST, 2.0 * rested)), tried(done)
+
+
+def tried(done: Commissioned) -> str:
+    """What the arm said about every trial: without it a failure elsewhere could not be understood."""
+    trials = (
+        f"{one.name} {one.stopped} {[verdict.faults for verdict in one.verdicts]}" for one in done.outcome.trials.done
+    )
+    return f"kept {done.kept}; {'; '.join(trials)}"

@@ -19,6 +19,7 @@ import numpy.typing as npt
 from greywhale.commission import Options, commission
 from greywhale.commission.judge import MOST_UNREST
 from greywhale.commission.measures import unrest
+from greywhale.commission.outcome import Outcome
 from greywhale.demo import BenchProcess, record_motion
 from greywhale.files.leader import save_leader
 from greywhale.firmware import TICK_S
@@ -42,14 +43,30 @@ class Run:
     unrest: dict[str, Floats]
 
 
-def commissioned(seed: int, folder: Path, unseen: Mapping[str, Trajectory], **options: Any) -> tuple[Run, Run, float]:
-    """How an arm follows unseen motions before and after, and the wall time of the commissioning (s)."""
+@dataclass(frozen=True)
+class Commissioned:
+    """How an arm followed unseen motions before and after, what was tried in between, and its wall time (s)."""
+
+    before: Run
+    after: Run
+    outcome: Outcome
+    wall_s: float
+
+    @property
+    def kept(self) -> npt.NDArray[np.bool_]:
+        """(4,): joints that keep their controllers from before."""
+        same: npt.NDArray[np.bool_] = (self.outcome.best.rows == self.outcome.trials.before.rows).all(axis=1)
+        return same
+
+
+def commissioned(seed: int, folder: Path, unseen: Mapping[str, Trajectory], **options: Any) -> Commissioned:
+    """Commission the arm of that seed through its serial port."""
     with BenchProcess(str(seed), "1", str(folder), module="tools.bench.foreign_arm") as bench:
         before = recorded(bench, folder, "before", unseen)
         started = time.monotonic()
-        commission(Options(port=bench.port, out=folder / "commission", **options))
+        outcome = commission(Options(port=bench.port, out=folder / "commission", **options))
         wall = time.monotonic() - started
-        return before, recorded(bench, folder, "after", unseen), wall
+        return Commissioned(before, recorded(bench, folder, "after", unseen), outcome, wall)
 
 
 def recorded(bench: BenchProcess, folder: Path, when: str, unseen: Mapping[str, Trajectory]) -> Run:
@@ -74,7 +91,8 @@ def run() -> list[Figure]:
     reaches = []
     for seed in SEEDS:
         with tempfile.TemporaryDirectory() as folder:
-            before, after, wall = commissioned(seed, Path(folder), motions())
+            done = commissioned(seed, Path(folder), motions())
+        before, after = done.before, done.after
         head = f"foreign arm {seed}"
         for name, was in before.error.items():
             ratios = after.error[name] / was
@@ -93,7 +111,7 @@ def run() -> list[Figure]:
         figures += [
             Figure(f"{head}: most unrest at rest", 1e3 * float(rests.max()), "mrad rms"),
             Figure(f"{head}: joints that hunt at rest", hunting, "", "0", hunting == 0),
-            Figure(f"{head}: wall time", wall, "s", f"<= {WALL_S:g}", wall <= WALL_S),
+            Figure(f"{head}: wall time", done.wall_s, "s", f"<= {WALL_S:g}", done.wall_s <= WALL_S),
         ]
     median = float(np.median(reaches))
     holds = median <= HUMAN_SHARE

@@ -19,10 +19,11 @@ from greywhale.commission import learn, start
 from greywhale.commission.book import Book
 from greywhale.commission.choose import confirm
 from greywhale.commission.evidence import failing_plants, gather
+from greywhale.commission.foresee import foresee
 from greywhale.commission.motions import Room, check_motion
 from greywhale.commission.outcome import Outcome, Round
 from greywhale.commission.rig import Rig, connected
-from greywhale.commission.search import JointSearch
+from greywhale.commission.search import JointSearch, Row
 from greywhale.commission.trials import Controllers, Trials
 from greywhale.errors import UserError
 from greywhale.excite import design
@@ -149,6 +150,10 @@ class _Campaign:
             begin = self.rounds[-1].learnt.arm if self.rounds else None
             path = learn.find_model(book, f"model-{number}", self.nominal, known, options.seed, report, begin)
         model = learn.read_model(path, options.seed, book.path("before.toml"))
+        trials = self.trials
+        trials.foresight = foresee(
+            model.arm, trials.table, self.room, trials.check, trials.before.traces, trials.before.measured
+        )
         return learn.find_controllers(
             book,
             f"controller-{number}",
@@ -198,9 +203,19 @@ class _Campaign:
                 joint = search.joint
                 if wanted[joint] is not None and verdict.known:
                     search.add(rows[joint], verdict, trial.name)
-                    wanted[joint] = None if _is_good(search) else search.propose()
+                    wanted[joint] = None if _is_good(search) else search.propose(self._promises(joint))
             if all(row is None for row in wanted):
                 break
+
+    def _promises(self, joint: int) -> Callable[[Row], bool]:
+        """Whether the model has nothing against a joint's controller, beside the best of the others."""
+
+        def promises(row: Row) -> bool:
+            rows = self._best_rows()
+            rows[joint] = row
+            return self.trials.foresight is None or not self.trials.foresight.clauses(rows)[joint]
+
+        return promises
 
     def _best_rows(self) -> Controllers:
         """Every joint's best so far, of whatever trial."""

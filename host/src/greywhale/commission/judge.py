@@ -73,12 +73,20 @@ class Verdict:
         return self.known and not self.faults
 
 
-def judge(measured: Measures, before: Measures, limits: Limits, guilty: Sequence[str]) -> tuple[Verdict, ...]:
-    """A verdict for every joint; `guilty` has a clause for each joint that ended the trial, "" for the others."""
-    return tuple(_judge(measured, before, limits, joint, guilty[joint]) for joint in range(JOINTS))
+def judge(
+    measured: Measures,
+    before: Measures,
+    limits: Limits,
+    guilty: Sequence[str],
+    foreseen: Sequence[str] = ("",) * JOINTS,
+) -> tuple[Verdict, ...]:
+    """A verdict for every joint; `guilty` has a clause for each joint that ended the trial, `foreseen` for each that a
+    model speaks against, "" for the others.
+    """
+    return tuple(_judge(measured, before, limits, joint, guilty[joint], foreseen[joint]) for joint in range(JOINTS))
 
 
-def _judge(measured: Measures, before: Measures, limits: Limits, joint: int, guilty: str) -> Verdict:
+def _judge(measured: Measures, before: Measures, limits: Limits, joint: int, guilty: str, foreseen: str) -> Verdict:
     faults = [guilty] if guilty else []
     excess = np.inf if guilty else 0.0
     unrest, rattle, chatter = (float(measured.worst(name)[joint]) for name in ("unrest", "rattle", "chatter"))
@@ -96,6 +104,8 @@ def _judge(measured: Measures, before: Measures, limits: Limits, joint: int, gui
         if measured.error[place, joint] > limits.error[place, joint]:
             ratio = measured.error[place, joint] / before.error[place, joint]
             faults.append(f"it follows {part} worse than before ({ratio:.2g} times the error)")
+    if foreseen:
+        faults.append(foreseen)
     ratios = measured.error[:, joint] / np.maximum(before.error[:, joint], 1e-9)
     score = float(np.exp(np.mean(np.log(np.maximum(ratios, 1e-9)))))
     return Verdict(joint, tuple(faults), restless, restless and quiet, excess, score, measured.whole or bool(faults))

@@ -6,6 +6,7 @@ asks for the same: less gain, more damping, another integral part.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -72,8 +73,11 @@ class JointSearch:
         """Note a judged controller."""
         self.tried.append(Tried(row.copy(), verdict, trial))
 
-    def propose(self) -> Row | None:
-        """The next controller to try; None where there is nothing left to vary."""
+    def propose(self, promises: Callable[[Row], bool] = lambda row: True) -> Row | None:
+        """The next controller to try; None where there is nothing left to vary.
+
+        Of the steps of the search, those that promise nothing are left out; a restless joint gets softer in any case.
+        """
         if self.tried and self.tried[-1].verdict.restless and self._softened < MOST_SOFTER:
             softer = self._soften(self.tried[-1])
             if softer is not None:
@@ -90,7 +94,7 @@ class JointSearch:
         while self._step < len(STEPS):
             row = self._scaled(centre.row, STEPS[self._step])
             self._step += 1
-            if row is not None and not any(np.array_equal(row, one.row) for one in self.tried):
+            if row is not None and not any(np.array_equal(row, one.row) for one in self.tried) and promises(row):
                 return row
         return None
 

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from greywhale.commission.book import Book
+from greywhale.commission.foresee import Foresight
 from greywhale.commission.judge import Limits, Verdict, judge
 from greywhale.commission.measures import Measures, Traces, measure, traces_of
 from greywhale.commission.motions import Check
@@ -67,6 +68,7 @@ class Trials:
         self.check = check
         self.table = before
         self.done: list[Trial] = []
+        self.foresight: Foresight | None = None  # of the model of this round
         self._befores: list[Measures] = []
 
     @property
@@ -134,5 +136,6 @@ class Trials:
         measured = measure(traces, self.check, self.table.supply_v)
         guilty = [played.stopped if joint == played.joint else "" for joint in range(JOINTS)]
         kept = (rows == controllers_of(self.table)).all(axis=1)
-        verdicts = judge(measured, self._befores[0], Limits.of(self._befores, kept), guilty)
+        foreseen = ("",) * JOINTS if self.foresight is None else self.foresight.clauses(rows)
+        verdicts = judge(measured, self._befores[0], Limits.of(self._befores, kept), guilty, foreseen)
         return Trial(name, rows.copy(), path, played.stopped, measured, verdicts, traces)

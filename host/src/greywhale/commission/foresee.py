@@ -1,0 +1,89 @@
+"""What a round's model says about steps, which no check can have: a host leads slower than a leader can be thrown.
+
+The model predicts how a controller's error on steps compares with that of the controller from before. On arms of
+another engine these ratios came out within 0.015, and near 1 within 0.007, of what the arm then did. So a joint that
+should follow steps worse does not pass, however well it does in the check; unless its neighbours' quicker moves are the
+reason, and its controller from before would do worse still. A joint whose model is wrong about quick moves is not
+judged by it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.arm import ArmParameters
+from greywhale.arm.plants import plant_row
+from greywhale.commission.measures import Measures, Traces, measure
+from greywhale.commission.motions import PARTS, Check, Room
+from greywhale.commission.predict import predict
+from greywhale.firmware import JOINTS
+from greywhale.loop import Experiment
+from greywhale.loop.controllers import controllers_of
+from greywhale.table import ParameterTable
+from greywhale.trajectory import multi_steps
+from greywhale.tune.search.training import clip_motion
+
+Floats = npt.NDArray[np.float64]
+Controllers = npt.NDArray[np.int32]
+
+# Of the error before, at most so much: the rest of the way to 1 is the model's own error.
+MOST = 0.99
+# A model is believed that predicts the error before, in the check's moves, to within this share.
+BELIEVED = 0.1
+SEED = 7
+
+
+@dataclass(frozen=True)
+class Foresight:
+    """The errors on steps with the controllers from before, by a model; `believed` (4,) marks the joints it knows."""
+
+    experiment: Experiment
+    plant: Floats
+    before: Controllers
+    error: Floats  # (4,) rad²
+    believed: npt.NDArray[np.bool_]
+
+    def ratios(self, rows: Controllers) -> Floats:
+        """(4,): each joint's error on steps with controllers (4, 12), as a share of that before."""
+        ratios: Floats = _errors(self.experiment, self.plant, rows) / self.error
+        return ratios
+
+    def clauses(self, rows: Controllers) -> tuple[str, ...]:
+        """(4): what speaks against each joint's controller, "" for nothing; a controller from before always passes."""
+        changed = (rows != self.before).any(axis=1)
+        ratios = self.ratios(rows)
+        suspects = changed & self.believed & (ratios > MOST)
+        return tuple(
+            f"by the model, it follows steps worse than before ({ratios[joint]:.3g} times the error)"
+            if suspects[joint] and not self._is_better_than_before(rows, joint, float(ratios[joint]))
+            else ""
+            for joint in range(JOINTS)
+        )
+
+    def _is_better_than_before(self, rows: Controllers, joint: int, ratio: float) -> bool:
+        """Whether the joint's own controller from before would do worse beside these neighbours."""
+        reverted = rows.copy()
+        reverted[joint] = self.before[joint]
+        return ratio < float(self.ratios(reverted)[joint])
+
+
+def foresee(
+    arm: ArmParameters, table: ParameterTable, room: Room, check: Check, traces: Traces, measured: Measures
+) -> Foresight:
+    """What a model of this arm foresees; `traces` and `measured` are those of the check before, with `table`."""
+    moves = PARTS.index("moves")
+    predicted = measure(predict(arm, table, traces)[0], check, table.supply_v).error[moves]
+    believed = np.abs(predicted / measured.error[moves] - 1.0) <= BELIEVED
+    motion = clip_motion(multi_steps(), room.low, room.high)
+    experiment = Experiment(motion, arm, table=table, seed=SEED)
+    plant, before = plant_row(arm)[None], controllers_of(table)
+    return Foresight(experiment, plant, before, _errors(experiment, plant, before), believed)
+
+
+def _errors(experiment: Experiment, plant: Floats, rows: Controllers) -> Floats:
+    angles = experiment.run_single(rows[None], plant, every=1).angles[0]
+    errors: Floats = np.mean((experiment.leader - angles) ** 2, axis=0)
+    return errors

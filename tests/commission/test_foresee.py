@@ -1,0 +1,82 @@
+"""What a model says about steps: nothing about what was there before, the truth about what it knows, else nothing."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from greywhale.commission.foresee import MOST, Foresight, foresee
+from greywhale.commission.search import KI, KP
+from greywhale.commission.trials import Trials
+from greywhale.files.arm import default_arm
+from greywhale.loop.controllers import controllers_of
+from greywhale.trajectory import multi_steps
+from greywhale.tune.search.training import clip_motion
+from tests.commission.simulated import ROOM, SimulatedRig
+
+
+@pytest.fixture
+def foresight(trials: Trials, rig: SimulatedRig) -> Foresight:
+    before = trials.play_before(rig)  # type: ignore[arg-type]
+    return foresee(default_arm(), trials.table, ROOM, trials.check, before.traces, before.measured)
+
+
+def scaled(trials: Trials, joint: int, factor: float) -> np.ndarray:
+    rows = controllers_of(trials.table).copy()
+    rows[joint, [KP, KI]] = np.rint(factor * rows[joint, [KP, KI]])
+    return rows
+
+
+def test_the_controllers_from_before_always_pass(trials: Trials, foresight: Foresight) -> None:
+    assert foresight.clauses(controllers_of(trials.table)) == ("",) * 4
+    assert foresight.ratios(controllers_of(trials.table)) == pytest.approx(np.ones(4), abs=1e-12)
+
+
+def test_a_joint_that_would_follow_steps_worse_is_named_and_no_other(trials: Trials, foresight: Foresight) -> None:
+    clauses = foresight.clauses(scaled(trials, 1, 0.5))
+    assert "follows steps worse than before" in clauses[1]
+    assert [bool(clause) for clause in clauses] == [False, True, False, False]
+
+
+def test_a_joint_is_not_blamed_for_its_neighbours(trials: Trials, foresight: Foresight) -> None:
+    """A quicker joint 1 disturbs joint 2, whose stiffer controller only makes up for a part of that."""
+    rows = scaled(trials, 1, 4.0)
+    assert foresight.ratios(rows)[2] > 1.02
+    assert not foresight.clauses(rows)[2], "it keeps its controller"
+    rows[2] = scaled(trials, 2, 1.1)[2]
+    assert foresight.ratios(rows)[2] > MOST
+    assert not foresight.clauses(rows)[2], "it would be worse without"
+    rows[2] = scaled(trials, 2, 0.9)[2]
+    assert "follows steps worse" in foresight.clauses(rows)[2]
+
+
+def test_what_is_foreseen_happens_on_the_arm(trials: Trials, rig: SimulatedRig, foresight: Foresight) -> None:
+    """The arm is led along the same steps with noise of its own."""
+    motion = clip_motion(multi_steps(), ROOM.low, ROOM.high)
+    rows = scaled(trials, 1, 0.5)
+    errors = []
+    for name, table in (("before", trials.table), ("after", trials.table_of(rows))):
+        log = rig.play(motion, trials.book.path(f"{name}.csv"), table, watched=False).log
+        errors.append(np.mean((log.leader[:, 1] - log.follower[:, 1]) ** 2))
+    assert errors[1] / errors[0] == pytest.approx(foresight.ratios(rows)[1], abs=0.01)
+    assert errors[1] / errors[0] > MOST
+
+
+def test_a_model_that_is_wrong_about_quick_moves_is_not_asked(trials: Trials, rig: SimulatedRig) -> None:
+    before = trials.play_before(rig)  # type: ignore[arg-type]
+    error = before.measured.error.copy()
+    error[:, 1] *= 1.2
+    doubted = replace(before.measured, error=error)
+    foresight = foresee(default_arm(), trials.table, ROOM, trials.check, before.traces, doubted)
+    assert foresight.believed.tolist() == [True, False, True, True]
+    assert foresight.clauses(scaled(trials, 1, 0.5)) == ("",) * 4
+
+
+def test_a_trial_with_such_a_joint_does_not_pass(trials: Trials, rig: SimulatedRig, foresight: Foresight) -> None:
+    trials.foresight = foresight
+    trial = trials.play(rig, scaled(trials, 1, 0.5))  # type: ignore[arg-type]
+    assert not trial.passed
+    assert any("by the model" in fault for fault in trial.verdicts[1].faults)
+    assert not any("by the model" in fault for joint in (0, 2, 3) for fault in trial.verdicts[joint].faults)
