@@ -13,6 +13,8 @@ VERBS = {
     "ports": ("ports", "List the serial ports and what is behind them."),
     "flash": ("flash", "Put the firmware onto a board."),
     "info": ("info", "Tell a board's version, state, faults and counters."),
+    "doctor": ("doctor", "Say what is wrong with this set-up, and how to mend it."),
+    "udev": ("udev", "Print the rules that let this user open an Arduino's port."),
     "upload": ("upload", "Run and store the controllers of a controller.toml."),
     "params": ("params", "Read and change a board's parameter table."),
     "record": ("record", "Record leader, follower and voltages into a CSV log."),

@@ -1,0 +1,60 @@
+"""`greywhale doctor`: what is wrong with this set-up, and how to mend it."""
+
+from __future__ import annotations
+
+import shutil
+import textwrap
+from pathlib import Path
+
+import click
+
+from greywhale.cli.output import json_option, port_option, progress, show
+from greywhale.doctor import Finding, Options, Verdict, examine, worst
+from greywhale.doctor.examine import LINK_S
+from greywhale.errors import BAD_USAGE, UserError
+from greywhale.protocol.ports import choose_port
+from greywhale.tune.progress import report_nothing
+
+LONGEST_S = 3600.0
+INDENT = 21  # of what is said, behind verdict and check
+
+
+@click.command("doctor")
+@port_option
+@click.option(
+    "--params", type=click.Path(path_type=Path), metavar="FILE", help="A parameter file that the board should run."
+)
+@click.option("--seconds", default=LINK_S, show_default=True, help="How long the link is loaded.")
+@json_option
+@click.pass_context
+def command(context: click.Context, port: str | None, params: Path | None, seconds: float, as_json: bool) -> None:
+    """Look at port, firmware, parameters, potentiometers and link: what is wrong, and how to mend it.
+
+    The motors stay off. Keep both arms still. The exit code is 1 when something must be mended.
+    """
+    if not 0.5 <= seconds <= LONGEST_S:
+        raise UserError(f"--seconds is {seconds:g}; it must be 0.5 to {LONGEST_S:g}.", BAD_USAGE)
+    chosen = choose_port(port)
+    with progress(as_json) as report:
+        findings = examine(Options(chosen, params, seconds), report or report_nothing)
+    verdict = worst(findings)
+    facts = {"port": chosen, "verdict": verdict.value, "findings": [one.as_dict() for one in findings]}
+    show(as_json, facts, "\n".join([*map(_line, findings), "", _summary(findings)]))
+    context.exit(int(verdict is Verdict.BAD))
+
+
+def _line(one: Finding) -> str:
+    """Wrapped to the terminal, the remedy below."""
+    width = max(60, min(120, shutil.get_terminal_size().columns))
+    lines = textwrap.wrap(one.says, width - INDENT) or [""]
+    lines += textwrap.wrap(one.remedy, width - INDENT, initial_indent="-> ", subsequent_indent="   ")
+    head = f"{one.verdict.value:<5} {one.check:<14} "
+    return "\n".join(f"{head if number == 0 else '':<{INDENT}}{line}" for number, line in enumerate(lines))
+
+
+def _summary(findings: list[Finding]) -> str:
+    bad = sum(one.verdict is Verdict.BAD for one in findings)
+    notes = sum(one.verdict is Verdict.NOTE for one in findings)
+    if bad:
+        return f"{bad} of {len(findings)} findings must be mended before the arm moves."
+    return f"Nothing must be mended{f'; {notes} notes' if notes else ''}."

@@ -1,0 +1,18 @@
+"""`greywhale udev`: rules that let this machine's user open an Arduino's port."""
+
+from __future__ import annotations
+
+import click
+
+from greywhale.cli.output import json_option, show
+from greywhale.doctor.port import RULES_FILE, udev_rules
+
+
+@click.command("udev")
+@json_option
+def command(as_json: bool) -> None:
+    """Print udev rules for Linux: whoever sits at the machine may open an Arduino's port, no modem software does.
+
+    Install them with: greywhale udev | sudo tee /etc/udev/rules.d/60-greywhale.rules
+    """
+    show(as_json, {"file": RULES_FILE, "rules": udev_rules()}, udev_rules())

@@ -1,0 +1,115 @@
+"""The board and its parameters: versions, how it started, faults, late ticks, the set that it runs, calibration."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from greywhale import __version__
+from greywhale.board.pots import POTS
+from greywhale.board.refusal import fault_text
+from greywhale.doctor.finding import Finding, Verdict
+from greywhale.files.parameter_file import load_table, physical
+from greywhale.protocol import schema
+from greywhale.table import ParameterTable
+
+_SHOWN = 3  # differences that are told one by one
+_FLASH = "Flash this host's firmware with `greywhale flash`."
+_STARTS = {
+    schema.ResetCause.BROWN_OUT: (
+        "Its supply sank: give the motors a supply of their own, with a common ground, and a large capacitor."
+    ),
+    schema.ResetCause.WATCHDOG: "Look for noise on its supply and reset line; if it comes back, report it.",
+}
+
+
+def examine_hello(hello: schema.HelloReply, firmware_version: str) -> list[Finding]:
+    """The firmware's version, and where its set came from. (Another schema is refused when the port is opened.)"""
+    mine = str(__version__)
+    same = mine.split(".")[:3] == firmware_version.split(".")
+    firmware = Finding(
+        "firmware",
+        Verdict.GOOD if same else Verdict.NOTE,
+        f"{hello.board.description}, firmware {firmware_version}, this host {mine}; both speak schema "
+        f"{hello.schema_hash:#010x}.",
+        "" if same else _FLASH,
+    )
+    if hello.param_source is schema.ParamSource.DEFAULTS:
+        source = Finding(
+            "stored set",
+            Verdict.NOTE,
+            "The board runs its built-in parameters: nothing valid is stored.",
+            "Store some with `greywhale upload`, `greywhale params set` or `greywhale params restore`.",
+        )
+    else:
+        source = Finding("stored set", Verdict.GOOD, f"It started from {hello.param_source.description}.")
+    return [firmware, source]
+
+
+def examine_status(hello: schema.HelloReply, status: schema.StatusReply) -> list[Finding]:
+    """How it started, its fault, and whether its ticks are in time."""
+    remedy = _STARTS.get(hello.reset_cause, "")
+    start = Finding(
+        "last start",
+        Verdict.BAD if remedy else Verdict.GOOD,
+        f"{_sentence(hello.reset_cause.description)}, {status.tick / 1000:.1f} s ago.",
+        remedy,
+    )
+    if status.fault is schema.Fault.NONE:
+        fault = Finding("fault", Verdict.GOOD, "None.")
+    else:
+        fault = Finding("fault", Verdict.BAD, _sentence(fault_text(status)))
+    late = Finding(
+        "ticks",
+        Verdict.BAD if status.late_ticks else Verdict.GOOD,
+        f"{status.late_ticks} late; the longest took {status.tick_us_max} of 1000 us.",
+        "Flash the firmware again, and report it if ticks are still late." if status.late_ticks else "",
+    )
+    return [start, fault, late]
+
+
+def examine_table(table: ParameterTable, path: Path | None) -> list[Finding]:
+    """The running set against its file, and whether potentiometers were ever calibrated."""
+    findings = [] if path is None else [_against(table, load_table(path), path)]
+    return [*findings, _calibration(table)]
+
+
+def _against(table: ParameterTable, wanted: ParameterTable, path: Path) -> Finding:
+    names = [name for name, raw in wanted.by_name().items() if table[name] != raw]
+    if not names:
+        return Finding("parameters", Verdict.GOOD, f"The board runs what {path} says (CRC {table.crc:#06x}).")
+    shown = ", ".join(_difference(name, table, wanted) for name in names[:_SHOWN])
+    more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
+    return Finding(
+        "parameters",
+        Verdict.BAD,
+        f"Not as in {path}: {shown}{more}.",
+        "`greywhale params diff FILE` shows all; `greywhale params restore FILE` stores the file's.",
+    )
+
+
+def _difference(name: str, table: ParameterTable, wanted: ParameterTable) -> str:
+    parameter = schema.PARAMETER_BY_NAME[name]
+    return f"{name} is {physical(parameter, table[name]):g}, not {physical(parameter, wanted[name]):g}"
+
+
+def _calibration(table: ParameterTable) -> Finding:
+    shipped: Mapping[str, int] = ParameterTable.defaults().by_name()
+    plain = [pot for pot in POTS if all(table[f"{pot}.{key}"] == shipped[f"{pot}.{key}"] for key in ("zero", "scale"))]
+    if not plain:
+        return Finding("calibration", Verdict.GOOD, "All eight potentiometers have a zero or scale of their own.")
+    return Finding(
+        "calibration",
+        Verdict.NOTE,
+        f"{_count(len(plain), 'potentiometer')} {'has' if len(plain) == 1 else 'have'} the shipped zero and scale "
+        f"({', '.join(plain)}): right for a 300 degree track mounted in its middle only.",
+        "Compare angles with a protractor; set leaderN and followerN .zero and .scale with `greywhale params set`.",
+    )
+
+
+def _sentence(text: str) -> str:
+    return text[0].upper() + text[1:]
+
+
+def _count(number: int, what: str) -> str:
+    return f"{number} {what}" + ("" if number == 1 else "s")

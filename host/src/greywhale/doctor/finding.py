@@ -1,0 +1,34 @@
+"""One finding of an examination: what was looked at, how it is, and what to do."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class Verdict(StrEnum):
+    """How something is: `note` is worth knowing, `bad` must be mended before an arm moves."""
+
+    GOOD = "good"
+    NOTE = "note"
+    BAD = "bad"
+
+
+@dataclass(frozen=True)
+class Finding:
+    """`says` is a sentence; `remedy`, another one, is empty where nothing has to be done."""
+
+    check: str
+    verdict: Verdict
+    says: str
+    remedy: str = ""
+
+    def as_dict(self) -> dict[str, str]:
+        return {"check": self.check, "verdict": self.verdict.value, "says": self.says, "remedy": self.remedy}
+
+
+def worst(findings: Iterable[Finding]) -> Verdict:
+    """The gravest verdict; good where there is nothing."""
+    order = list(Verdict)
+    return max((one.verdict for one in findings), key=order.index, default=Verdict.GOOD)
