@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from greywhale.errors import UserError
 from greywhale.trajectory import Trajectory
 from greywhale_sim.leader import BRING_BACK_S, LET_GO_S, LeaderPlayer
 
@@ -121,3 +122,34 @@ def test_another_motion_taken_up_right_after_a_stop_still_shows_the_fall(motion:
     assert player.hold is None
     advance(player, BRING_BACK_S + SLICE, enabled=False)
     np.testing.assert_array_equal(player.hold, motion.angles[0] - 1.0)
+
+
+def test_brings_one_held_arm_elsewhere_while_the_other_stays(motion: Trajectory) -> None:
+    player = LeaderPlayer(motion, SLICE, START)
+    place = np.array([0.5, -0.5, 0.2, 0.0])
+    player.bring(None, place, 2.0)
+    advance(player, 1.0, enabled=False)
+    assert player.hold is not None
+    np.testing.assert_allclose(player.hold, (motion.angles[0] + place) / 2)
+    np.testing.assert_array_equal(player.angles, motion.angles[0])
+    player.bring(place, None, 1.0)
+    advance(player, 10.0, enabled=False)
+    np.testing.assert_allclose(player.hold, place)
+    np.testing.assert_allclose(player.angles, place)
+
+
+def test_after_a_run_both_arms_are_brought_to_the_motion_and_not_where_hands_had_them(motion: Trajectory) -> None:
+    player = LeaderPlayer(motion, SLICE, START)
+    player.bring(np.ones(4), None, 1.0)
+    advance(player, 1.0 + SLICE, enabled=False)
+    advance(player, START + motion.duration_s + 0.05, enabled=True)
+    advance(player, LET_GO_S + BRING_BACK_S + SLICE, enabled=False)
+    np.testing.assert_array_equal(player.angles, motion.angles[0])
+    np.testing.assert_array_equal(player.hold, motion.angles[0])
+
+
+def test_no_hand_is_on_an_arm_whose_motors_are_on(motion: Trajectory) -> None:
+    player = LeaderPlayer(motion, SLICE, START)
+    player.step(True, FALLEN)
+    with pytest.raises(UserError, match="only while the motors are off"):
+        player.bring(np.ones(4), None, 1.0)

@@ -16,6 +16,7 @@ import numpy.typing as npt
 from greywhale import arm
 from greywhale.errors import UserError
 from greywhale_sim.leader import LeaderPlayer
+from greywhale_sim.lies import Lies
 from greywhale_sim.wiring import Wiring
 
 Array = npt.NDArray[np.float64]
@@ -82,6 +83,9 @@ class Bench:
         self.board = board
         self.wiring = wiring
         self.estop_pressed = False
+        self.lies = Lies()
+        self.motor_signs = [1.0] * 4  # -1: both wires of a motor are swapped; 0: one is off
+        self.motor_wires = [0, 1, 2, 3]  # which driver each motor is on
         self.floating = 0  # bit i: the wire of potentiometer i is off and nothing pulls its input
         self.plant = plant
         self.leader = leader
@@ -119,6 +123,11 @@ class Bench:
             self.board.let_pin_go(pin.port, pin.bit)
         self.estop_pressed = pressed
 
+    def wire_motor(self, joint: int, sign: float, driver: int) -> None:
+        """Put a motor on a driver (0..3), the right way (1), the wrong way (-1) or with a wire off (0)."""
+        self.motor_signs[joint], self.motor_wires[joint] = sign, driver
+        self._last_outputs = b""
+
     def let_float(self, pot: int, floats: bool) -> None:
         """Take the wire off a potentiometer (0..3 leader, 4..7 follower) without a pull-down, or put it back."""
         self.floating = self.floating & ~(1 << pot) | floats << pot
@@ -154,6 +163,8 @@ class Bench:
             advance(self._enabled, angles)
             leader_pots(leader.angles, leader_millivolts)
             follower_pots(angles, follower_millivolts)
+            if self.lies.any:
+                self.lies.apply(millivolts)
             set_millivolts(millivolts)
             if run_until(target) == CRASHED:
                 raise CrashError(
@@ -179,5 +190,6 @@ class Bench:
         enable, *values = pins.tolist()
         self._enabled = bool(enable)
         supply = self.supply_v if enable else 0.0
-        for joint in range(4):  # quicker than array arithmetic on so few numbers
-            self.voltages[joint] = values[joint] * supply if values[joint + 4] else -values[joint] * supply
+        for joint, driver in enumerate(self.motor_wires):  # quicker than array arithmetic on so few numbers
+            volts = self.motor_signs[joint] * supply * values[driver]
+            self.voltages[joint] = volts if values[driver + 4] else -volts

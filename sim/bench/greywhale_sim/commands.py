@@ -2,10 +2,14 @@
 
 status                             time, motors, voltages, angles, resets, EEPROM, serial line
 leader FILE                        the person takes up another motion, while the motors are off
+hand leader|follower|both A0 A1 A2 A3 [S]  bring a held arm to a pose (rad) within S seconds, while the motors are off
 pot leader|follower 0..3 STATE     a potentiometer: connected, open (its wire is off, a pull-down wins), floating
-                                   (the same without a pull-down) or shorted (to the supply)
+                                   (the same without a pull-down) or shorted (to the supply), frozen (its shaft
+                                   does not turn), slipping (3 in 10 of every way up are lost), loose (off 2 ms in 230)
+swap POT POT                       exchange the wires of two potentiometers: leader0..3, follower0..3
 line flip|lose PROBABILITY         damage or lose bytes on the serial line, per byte
 estop press|release                the emergency stop's button, which closes its pin to ground
+motor 0..3 STATE                   a motor's wires: connected, reversed, dead (one is off), or on another's driver, 0..3
 power off|on                       cut or restore the board's supply
 speed 1|max                        real time, or as fast as possible
 """
@@ -16,12 +20,23 @@ import shlex
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 from greywhale import arm
 from greywhale.errors import UserError
 from greywhale.files.leader import load_leader
+from greywhale_sim import lies
 from greywhale_sim.server import Server
 
 Answer = dict[str, Any]
+FARTHEST_RAD = 6.28
+POTS = tuple(f"{side}{joint}" for side in ("leader", "follower") for joint in range(4))
+_WIRINGS = {
+    "connected": arm.Wiring.CONNECTED,
+    "open": arm.Wiring.OPEN,
+    "floating": arm.Wiring.CONNECTED,
+    "shorted": arm.Wiring.SHORTED,
+}
 
 
 def run(server: Server, text: str) -> Answer:
@@ -69,14 +84,39 @@ def leader(server: Server, file: str) -> Answer:
     return {"leader": file, "duration_s": motion.duration_s}
 
 
+def hand(server: Server, side: str, *words: str) -> Answer:
+    angles, seconds = np.array([float(word) for word in words[:4]]), float(words[4]) if len(words) == 5 else 1.0
+    if side not in ("leader", "follower", "both") or not 4 <= len(words) <= 5 or not 0.0 < seconds <= 60.0:
+        raise ValueError
+    if not np.all(np.abs(angles) <= FARTHEST_RAD):
+        raise ValueError
+    server.bench.leader.bring(angles if side != "follower" else None, angles if side != "leader" else None, seconds)
+    return {"hand": side, "arrives_s": round(server.bench.time_s + seconds, 6)}
+
+
 def pot(server: Server, side: str, joint: str, state: str) -> Answer:
     pots = {"leader": server.bench.leader_pots, "follower": server.bench.follower_pots}
-    if side not in pots or not 0 <= int(joint) <= 3 or state not in ("connected", "open", "floating", "shorted"):
+    if side not in pots or not 0 <= int(joint) <= 3 or state not in (*_WIRINGS, *lies.KINDS):
         raise ValueError
-    wiring = arm.Wiring.CONNECTED if state == "floating" else arm.Wiring[state.upper()]
-    pots[side].set_wiring(int(joint), wiring)  # type: ignore[attr-defined]
-    server.bench.let_float(int(joint) + (4 if side == "follower" else 0), state == "floating")
+    number = int(joint) + (4 if side == "follower" else 0)
+    pots[side].set_wiring(int(joint), _WIRINGS.get(state, arm.Wiring.CONNECTED))  # type: ignore[attr-defined]
+    server.bench.let_float(number, state == "floating")
+    server.bench.lies.stage(number, state if state in lies.KINDS else None)
     return {"pot": f"{side}_{joint}", "state": state}
+
+
+def swap(server: Server, one: str, other: str) -> Answer:
+    server.bench.lies.swap(POTS.index(one), POTS.index(other))
+    return {"swapped": [one, other]}
+
+
+def motor(server: Server, joint: str, state: str) -> Answer:
+    signs = {"connected": 1.0, "reversed": -1.0, "dead": 0.0}
+    driver = int(joint) if state in signs else int(state)
+    if not 0 <= int(joint) <= 3 or not 0 <= driver <= 3:
+        raise ValueError
+    server.bench.wire_motor(int(joint), signs.get(state, 1.0), driver)
+    return {"motor": int(joint), "state": state}
 
 
 def estop(server: Server, action: str) -> Answer:
@@ -111,7 +151,10 @@ def speed(server: Server, value: str) -> Answer:
 COMMANDS: dict[str, tuple[Callable[..., Answer], str]] = {
     "status": (status, ""),
     "leader": (leader, "FILE.csv"),
-    "pot": (pot, "leader|follower 0..3 connected|open|floating|shorted"),
+    "hand": (hand, "leader|follower|both A0 A1 A2 A3 [SECONDS]"),
+    "pot": (pot, "leader|follower 0..3 connected|open|floating|shorted|frozen|slipping|loose"),
+    "swap": (swap, "POT POT"),
+    "motor": (motor, "0..3 connected|reversed|dead|0..3"),
     "estop": (estop, "press|release"),
     "line": (line, "flip|lose PROBABILITY"),
     "power": (power, "on|off [WRITES]"),

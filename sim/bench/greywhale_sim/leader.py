@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from greywhale.errors import UserError
 from greywhale.trajectory import Trajectory
 
 Array = npt.NDArray[np.float64]
@@ -30,8 +31,10 @@ class LeaderPlayer:
         self._bring_back = max(1, round(BRING_BACK_S / slice_s))
         self._learn(motion)
         self._on = 0  # slices since the motors went on
-        self._off = self._let_go + self._bring_back  # slices since they went off
+        self._off = self._let_go + self._bring_back  # slices since they went off, or since the hands set out
         self._left_at = (self._row(0), self._row(0))  # both arms when the hand takes them
+        self._rest = (self.home, self.home)  # where the hands bring leader and follower
+        self._way = self._bring_back  # slices until they are there
         self.angles: Array = self.home
         self._taken_at: Array = self.home  # the leader arm when the motors went on
         self.hold: Array | None = self.home
@@ -40,9 +43,16 @@ class LeaderPlayer:
     def take_up(self, motion: Trajectory) -> None:
         """Play another motion from the next enable on; held arms are brought to its first pose within a second."""
         self._learn(motion)
+        self._rest = (self.home, self.home)
         if self.hold is not None:
-            self._left_at = (self.angles, self.hold)
-            self._off = self._let_go
+            self._set_out(self._bring_back)
+
+    def bring(self, leader: Array | None, follower: Array | None, seconds: float) -> None:
+        """Bring a held arm, or both, to angles (4,) rad within so many seconds; both are held until the next enable."""
+        if self.hold is None:
+            raise UserError("the hands are on the arms only while the motors are off; stop them first.")
+        self._rest = (self._rest[0] if leader is None else leader, self._rest[1] if follower is None else follower)
+        self._set_out(max(1, round(seconds / self._slice_s)))
 
     def step(self, enabled: bool, follower: Array) -> None:
         """Advance one slice; `follower` is where the follower is now."""
@@ -52,19 +62,25 @@ class LeaderPlayer:
             self._off += 1
             self._on = 0
             self._left_at = (self.angles, follower.copy())
-        elif self._off < self._let_go + self._bring_back:
+        elif self._off < self._let_go + self._way:
             self._off += 1
-            share = (self._off - self._let_go) / self._bring_back
-            self.angles = self._left_at[0] + share * (self.home - self._left_at[0])
-            self.hold = self._left_at[1] + share * (self.home - self._left_at[1])
+            share = (self._off - self._let_go) / self._way
+            self.angles = self._left_at[0] + share * (self._rest[0] - self._left_at[0])
+            self.hold = self._left_at[1] + share * (self._rest[1] - self._left_at[1])
         else:
-            self.angles = self.hold = self.home
+            self.angles, self.hold = self._rest
             self._on = 0
 
     @property
     def finished(self) -> bool:
         """The motion was played to its end since the motors went on."""
         return self._on >= self._start + self._rows
+
+    def _set_out(self, way: int) -> None:
+        """Begin to bring both arms to their places, from where they are held."""
+        assert self.hold is not None
+        self._left_at = (self.angles, self.hold)
+        self._off, self._way = self._let_go, way
 
     def _learn(self, motion: Trajectory) -> None:
         self._motion = motion
@@ -77,6 +93,7 @@ class LeaderPlayer:
         if self._on == 0:
             self._off = 0
             self.hold = None
+            self._rest, self._way = (self.home, self.home), self._bring_back
             self._taken_at = self.angles
         self._on += 1
         row = self._on - self._start

@@ -21,7 +21,7 @@ POTS = tuple(f"{side}{joint}" for side in ("leader", "follower") for joint in ra
 LOOKS = 100  # samples, of a millisecond each
 FULL_SCALE = 1023
 _ANGLE_SHIFT = 13  # angle = ((count14 - zero) * scale) >> 13
-_COUNT14 = 16  # in a count of the converter
+COUNT14 = 16  # in a count of the converter
 
 
 @dataclass(frozen=True)
@@ -58,15 +58,29 @@ def read_pots(device: Device, table: ParameterTable) -> PotReadings:
 
     Telemetry is off afterwards.
     """
-    scales = np.array([table[f"{pot}.scale"] for pot in POTS], dtype=float)
-    zeros = np.array([table[f"{pot}.zero"] for pot in POTS], dtype=float)
+    counts = np.rint(read_counts(device, table, LOOKS))
+    return PotReadings(np.clip(counts, 0, FULL_SCALE).astype(np.int64), table["rail_counts"])
+
+
+def read_counts(device: Device, table: ParameterTable, samples: int) -> NDArray[np.float64]:
+    """What the converter reads, (samples, 8), a row a millisecond, with the fractions that the low-pass leaves.
+
+    `table` runs on the board. Telemetry is off afterwards.
+    """
     try:
-        samples = [one.sample for one in islice(stream(device, 1), LOOKS)]
+        taken = [one.sample for one in islice(stream(device, 1), samples)]
     finally:
         device.telemetry(0)
-    angles = np.array([(*sample.leader, *sample.follower) for sample in samples], dtype=float)
-    counts = np.rint((angles * 2**_ANGLE_SHIFT / scales + zeros) / _COUNT14)
-    return PotReadings(np.clip(counts, 0, FULL_SCALE).astype(np.int64), table["rail_counts"])
+    return counts_of(taken, table)
+
+
+def counts_of(samples: Iterable[schema.Sample], table: ParameterTable) -> NDArray[np.float64]:
+    """(n, 8) counts from the angles in samples, which the board worked out with `table`."""
+    scales = np.array([table[f"{pot}.scale"] for pot in POTS], dtype=float)
+    zeros = np.array([table[f"{pot}.zero"] for pot in POTS], dtype=float)
+    angles = np.array([(*sample.leader, *sample.follower) for sample in samples], dtype=float).reshape(-1, len(POTS))
+    counts: NDArray[np.float64] = (angles * 2**_ANGLE_SHIFT / scales + zeros) / COUNT14
+    return counts
 
 
 def require_good_pots(device: Device, table: ParameterTable, pots: Iterable[int]) -> None:

@@ -14,6 +14,7 @@ VERBS = {
     "flash": ("flash", "Put the firmware onto a board."),
     "info": ("info", "Tell a board's version, state, faults and counters."),
     "doctor": ("doctor", "Say what is wrong with this set-up, and how to mend it."),
+    "calibrate": ("calibrate", "From potentiometers mounted anyhow to angles, directions and limits."),
     "udev": ("udev", "Print the rules that let this user open an Arduino's port."),
     "upload": ("upload", "Run and store the controllers of a controller.toml."),
     "params": ("params", "Read and change a board's parameter table."),

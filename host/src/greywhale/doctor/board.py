@@ -103,7 +103,7 @@ def _calibration(table: ParameterTable) -> Finding:
         Verdict.NOTE,
         f"{_count(len(plain), 'potentiometer')} {'has' if len(plain) == 1 else 'have'} the shipped zero and scale "
         f"({', '.join(plain)}): right for a 300 degree track mounted in its middle only.",
-        "Compare angles with a protractor; set leaderN and followerN .zero and .scale with `greywhale params set`.",
+        "If they are mounted otherwise, run `greywhale calibrate`.",
     )
 
 

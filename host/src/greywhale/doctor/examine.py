@@ -4,29 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import islice
 from pathlib import Path
 
-import numpy as np
-import numpy.typing as npt
-
 from greywhale.board.device import REPLY_WAIT_S, Device
-from greywhale.board.pots import POTS, read_pots
-from greywhale.board.stream import stream
+from greywhale.board.pots import read_counts, read_pots
 from greywhale.board.upload import read_parameters
 from greywhale.doctor import board, link, pots
 from greywhale.doctor.finding import Finding, Verdict
 from greywhale.doctor.port import examine_port
 from greywhale.errors import UserError
 from greywhale.protocol import schema
-from greywhale.table import ParameterTable
 from greywhale.tune.progress import Report, report_nothing
 
-Floats = npt.NDArray[np.float64]
-
 LINK_S, REST_S = 10.0, 2.0
-_COUNT14 = 16
-_ANGLE_SHIFT = 13
 
 
 @dataclass(frozen=True)
@@ -62,20 +52,7 @@ def _examine_board(device: Device, options: Options, report: Report) -> Iterator
         return
     report("potentiometers", 0.0)
     rails = read_pots(device, table).complaints()
-    yield from pots.examine_pots(_counts(device, table, REST_S), rails)
+    yield from pots.examine_pots(read_counts(device, table, round(REST_S * 1000)), rails)
     yield link.examine_traffic(
         link.exchange(device, table, options.link_s, lambda fraction: report("link", fraction)), REPLY_WAIT_S
     )
-
-
-def _counts(device: Device, table: ParameterTable, seconds: float) -> Floats:
-    """What the converter reads, (rows, 8), with the fractions that the low-pass leaves."""
-    scales = np.array([table[f"{pot}.scale"] for pot in POTS], dtype=float)
-    zeros = np.array([table[f"{pot}.zero"] for pot in POTS], dtype=float)
-    try:
-        samples = [one.sample for one in islice(stream(device, 1), round(seconds * 1000))]
-    finally:
-        device.telemetry(0)
-    angles = np.array([(*sample.leader, *sample.follower) for sample in samples], dtype=float)
-    counts: Floats = (angles * 2**_ANGLE_SHIFT / scales + zeros) / _COUNT14
-    return counts

@@ -1,0 +1,124 @@
+"""Short weak pulses of one motor at a time: which joint moves, and which way, before anything follows.
+
+The firmware itself limits a pulse. A set of parameters that is never stored gives this joint's controller so many volts
+at most (`ku_mv`, with neither integral part nor damping) and the others none; the lease ends it after LEASE_MS; and
+`tracking_limit` makes it a fault when the joint is farther than FARTHEST_RAD from where it is told to be.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.board.device import Device
+from greywhale.board.upload import run_set
+from greywhale.errors import UserError
+from greywhale.firmware import ANGLE_LSB, JOINTS, STEP_LSB
+from greywhale.protocol import schema
+from greywhale.table import ParameterTable
+
+Floats = npt.NDArray[np.float64]
+
+SHARES = (0.1, 0.17, 0.25, 0.35)  # of the supply, tried one after the other
+LEASE_MS = 160  # motors off by the firmware, whatever this host does; soft start is 100 of it
+WAY_RAD = 0.08  # where a pulse sends its joint
+FARTHEST_RAD = 0.16
+LEAST_RAD = 0.02  # between a pulse one way and one the other: less is no motion
+OTHERS_SHARE = 2.0  # another joint that moves so many times farther has this motor
+SETTLE_TICKS = 250
+_STIFF = 64.0
+
+
+@dataclass(frozen=True)
+class Pulse:
+    """What a pulse did: the way of each joint (4,) rad, and the most that the firmware put on the motor (V)."""
+
+    moved: Floats
+    most_v: float
+
+
+@dataclass(frozen=True)
+class Motor:
+    """A motor that turned: `sign` 1 as its parameter says, -1 the other way, and the voltage that did it."""
+
+    joint: int
+    sign: int
+    volts: float
+
+
+def examine_motor(device: Device, table: ParameterTable, joint: int) -> Motor:
+    """Try a motor with ever more voltage. `table` is what the board shall run otherwise, with the potentiometers
+    calibrated; the pulses' own set runs afterwards. Raises UserError where no joint moves, or another one.
+    """
+    for share in SHARES:
+        volts = share * table.supply_v
+        weak = pulse_table(table, joint, volts)
+        forward, backward = pulse(device, weak, joint, 1), pulse(device, weak, joint, -1)
+        way = (forward.moved - backward.moved) / 2.0
+        farthest = int(np.argmax(np.abs(way)))
+        if abs(way[farthest]) < LEAST_RAD / 2.0:
+            continue
+        if farthest != joint and abs(way[farthest]) > OTHERS_SHARE * abs(way[joint]):
+            raise UserError(
+                f"{device.port}: the motor of joint {joint} moved joint {farthest}: their motors, or their followers' "
+                "potentiometers, are swapped; exchange the wires at the board, and begin anew."
+            )
+        if abs(way[joint]) >= LEAST_RAD / 2.0:
+            return Motor(joint, 1 if way[joint] > 0.0 else -1, volts)
+    raise UserError(
+        f"{device.port}: the motor of joint {joint} did not move it with {SHARES[-1] * table.supply_v:.1f} V: check "
+        "that the motors' supply is on, the driver's enable, PWM and direction wires, the motor's own wires, and that "
+        "the joint moves freely."
+    )
+
+
+def pulse_table(table: ParameterTable, joint: int, volts: float) -> ParameterTable:
+    """The set with which a pulse runs; it is for this joint only, and never stored."""
+    parameters = schema.PARAMETER_BY_NAME
+    widest = parameters["joint0.limit_max"].maximum
+    changes = {
+        "period_ms": 1,
+        "soft_start_ms": 100,
+        "tracking_limit": parameters["tracking_limit"].to_raw(FARTHEST_RAD),
+        "tracking_ms": 1,
+        "stall_volts": 0,
+        "unrest_amplitude": 0,
+    }
+    for other in range(JOINTS):
+        changes |= {
+            f"joint{other}.kp": parameters[f"joint{other}.kp"].to_raw(_STIFF),
+            f"joint{other}.kd": 0,
+            f"joint{other}.ki": 0,
+            f"joint{other}.ku_mv": round(1000.0 * volts) if other == joint else 0,
+            f"joint{other}.limit_min": -widest,
+            f"joint{other}.limit_max": widest,
+        }
+    return table.with_raw(changes)
+
+
+def pulse(device: Device, weak: ParameterTable, joint: int, way: int) -> Pulse:
+    """One pulse, `way` 1 or -1, with the set of `pulse_table`; the motors are off afterwards."""
+    run_set(device, weak)
+    step = [0, 0, 0, 0]
+    step[joint] = way * round(WAY_RAD / STEP_LSB)
+    device.telemetry(1)
+    samples: list[schema.Sample] = []
+    try:
+        begun = device.lead(LEASE_MS)
+        device.lead_point(begun.next, (step[0], step[1], step[2], step[3]))
+        while not samples or samples[-1].tick - samples[0].tick < LEASE_MS + SETTLE_TICKS:
+            samples += device.samples()
+    finally:
+        device.stop()
+        device.telemetry(0)
+    if device.status().state is schema.State.FAULT:
+        # Cleared where any distance from the leader will do: nobody holds the arm.
+        run_set(device, weak.with_raw({"tracking_limit": 0}))
+        device.ask(schema.ClearFaultRequest())
+    angles = np.array([one.follower for one in samples], dtype=np.float64) * ANGLE_LSB
+    away = angles - np.array(begun.reference) * ANGLE_LSB
+    most = np.argmax(np.abs(away), axis=0)
+    volts = max(abs(one.voltage[joint]) for one in samples) / 1000.0
+    return Pulse(away[most, np.arange(JOINTS)], volts)

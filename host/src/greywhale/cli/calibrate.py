@@ -1,0 +1,171 @@
+"""`greywhale calibrate`: zero, scale and direction of every potentiometer, and the joints' limits, by hand."""
+
+from __future__ import annotations
+
+import queue
+import sys
+import threading
+from pathlib import Path
+
+import click
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.board.device import Device
+from greywhale.board.pots import FULL_SCALE, POTS
+from greywhale.board.upload import upload_set
+from greywhale.calibrate import Options, Result, calibrate
+from greywhale.cli.output import json_option, port_option, show
+from greywhale.errors import BAD_USAGE, UserError, cut
+from greywhale.files import parameter_file
+from greywhale.firmware import JOINTS
+from greywhale.protocol.ports import choose_port
+
+TRACK_DEG = (180.0, 450.0)
+FARTHEST_DEG = 359.0
+
+
+@click.command("calibrate")
+@port_option
+@click.option("--first", metavar="A0,A1,A2,A3", default="0,0,0,0", show_default=True, help="The first pose, degrees.")
+@click.option("--second", metavar="A0,A1,A2,A3", help="A second known pose, degrees; then the tracks' length is found.")
+@click.option("--track", default=300.0, show_default=True, help="The tracks' length, degrees, without a second pose.")
+@click.option(
+    "--backup",
+    type=click.Path(path_type=Path),
+    default=Path("before-calibration.toml"),
+    show_default=True,
+    help="Where the parameters from before are kept.",
+)
+@click.option("--no-motors", is_flag=True, help="Leave the motors alone; motor_sign stays as it is.")
+@click.option("--yes", "-y", is_flag=True, help="Store the result without asking.")
+@json_option
+def command(
+    port: str | None,
+    first: str,
+    second: str | None,
+    track: float,
+    backup: Path,
+    no_motors: bool,
+    yes: bool,
+    as_json: bool,
+) -> None:
+    """Find zero, scale and direction of all eight potentiometers, the joints' limits, and each motor's direction.
+
+    You turn every joint to both ends, then hold both arms in a pose, motors off. Then each motor gets short weak
+    pulses. Enter confirms each step; a script may write the lines. What is wired or mounted wrongly is named. The end
+    shows the result, stores it, and says how to undo it.
+    """
+    if not TRACK_DEG[0] <= track <= TRACK_DEG[1]:
+        raise UserError(f"--track is {track:g} degrees; it must be {TRACK_DEG[0]:g} to {TRACK_DEG[1]:g}.", BAD_USAGE)
+    poses = Options(
+        _angles("--first", first),
+        None if second is None else _angles("--second", second),
+        float(np.radians(track)),
+        motors=not no_motors,
+    )
+    if backup.exists():
+        raise UserError(f"{backup}: exists already; move it away, or name another file with --backup.", BAD_USAGE)
+    with Device(choose_port(port)) as device:
+        person = Terminal()
+        result = calibrate(device, person, poses)
+        text = _text(result)
+        if not yes:
+            person.tell(text)
+            person.ask("Store this?")
+            person.wait()
+        parameter_file.save(backup, result.before)
+        upload_set(device, result.after)
+    undo = f"Stored. To undo: greywhale params restore {backup}"
+    show(as_json, _facts(device.port, result, backup), f"{text}\n\n{undo}" if yes else undo)
+
+
+class Terminal:
+    """The person at this terminal, or a script that writes a line for each step."""
+
+    def __init__(self) -> None:
+        self._lines: queue.SimpleQueue[bool] = queue.SimpleQueue()
+        self._live = sys.stderr.isatty()
+        threading.Thread(target=self._read, daemon=True).start()
+
+    def ask(self, what: str) -> None:
+        click.echo(f"{what} [Enter]", err=True)
+
+    def show(self, live: str) -> None:
+        if self._live:
+            click.echo(f"\r  {live:<20}", nl=False, err=True)
+
+    def is_done(self) -> bool:
+        try:
+            confirmed = self._lines.get_nowait()
+        except queue.Empty:
+            return False
+        return self._check(confirmed)
+
+    def wait(self) -> None:
+        """Until the person confirms."""
+        self._check(self._lines.get())
+
+    def tell(self, what: str) -> None:
+        click.echo(what, err=True)
+
+    def _check(self, confirmed: bool) -> bool:
+        if not confirmed:
+            raise UserError("the input ended in the middle of the calibration; nothing was changed.")
+        if self._live:
+            click.echo("\r" + " " * 24 + "\r", nl=False, err=True)
+        return True
+
+    def _read(self) -> None:
+        for _ in sys.stdin:
+            self._lines.put(True)
+        self._lines.put(False)
+
+
+def _angles(option: str, text: str) -> npt.NDArray[np.float64]:
+    try:
+        degrees = np.array([float(part) for part in text.split(",")])
+    except ValueError:
+        degrees = np.empty(0)
+    if degrees.shape != (JOINTS,) or not np.all(np.abs(degrees) <= FARTHEST_DEG):
+        raise UserError(
+            f"{option} is {cut(repr(text))}; give four angles in degrees within {FARTHEST_DEG:g}, such as 0,45,-30,20.",
+            BAD_USAGE,
+        )
+    angles: npt.NDArray[np.float64] = np.radians(degrees)
+    return angles
+
+
+def _facts(port: str, result: Result, backup: Path) -> dict[str, object]:
+    found = result.calibration
+    return {
+        "port": port,
+        "backup": str(backup),
+        "parameter_crc": f"0x{result.after.crc:04x}",
+        "changed": result.changes,
+        "track_deg": [round(float(np.degrees(abs(scale) * FULL_SCALE)), 2) for scale in found.scale],
+        "limits_rad": [[round(float(end), 4) for end in pair] for pair in found.limits],
+        "motors": [{"joint": one.joint, "sign": one.sign, "volts": round(one.volts, 3)} for one in result.motors],
+        "apart_rad": [round(float(value), 5) for value in result.apart],
+    }
+
+
+def _text(result: Result) -> str:
+    found = result.calibration
+    lines = [f"{'':12}{'zero, counts':>14}{'track, degrees':>16}  direction"]
+    for pot, name in enumerate(POTS):
+        track = np.degrees(abs(found.scale[pot]) * FULL_SCALE)
+        way = "as the joint" if found.scale[pot] > 0 else "reversed"
+        lines.append(f"{name:12}{found.zero[pot]:>14.1f}{track:>16.1f}  {way}")
+    lines += ["", f"{'':12}{'limits, degrees':>18}{'the arms differ by':>22}"]
+    for joint in range(JOINTS):
+        low, high = np.degrees(found.limits[joint])
+        lines.append(f"{f'joint {joint}':12}{f'{low:.0f} to {high:.0f}':>18}{1e3 * result.apart[joint]:>17.1f} mrad")
+    if result.motors:
+        told = (f"joint {one.joint} {_way(one.sign)} ({one.volts:.1f} V)" for one in result.motors)
+        lines += ["", f"Motors: {', '.join(told)}."]
+    return "\n".join(lines)
+
+
+def _way(sign: int) -> str:
+    return "turns as it should" if sign > 0 else "turned the wrong way, motor_sign is changed"

@@ -1,0 +1,135 @@
+"""A whole calibration on the bench: potentiometers mounted anyhow, hands that do what is asked, a real port."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import ExitStack
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from greywhale.board.device import Device
+from greywhale.board.stream import stream
+from greywhale.board.upload import read_parameters
+from greywhale.demo import BenchProcess
+from greywhale.files.arm import default_arm
+from greywhale.firmware import ANGLE_LSB
+from tools.bench.hands import SECOND_DEG, Hands, bench_of, mounted_anyhow, run_calibrate
+
+SECOND = ("--second", ",".join(f"{angle:g}" for angle in SECOND_DEG))
+POSE = np.array([-30.0, 20.0, 35.0, -25.0])
+
+
+@pytest.fixture
+def benches() -> Iterator[ExitStack]:
+    with ExitStack() as started:
+        yield started
+
+
+def shown(bench: BenchProcess, degrees: np.ndarray) -> np.ndarray:
+    """The eight angles (rad) that the board reads while both arms are held there."""
+    arrived = threading.Event()
+
+    def bring() -> None:
+        Hands(bench).bring("both", degrees, 0.2)
+        arrived.set()
+
+    with Device(bench.port) as device:
+        received = stream(device, 1)
+        worker = threading.Thread(target=bring)
+        worker.start()
+        while not arrived.is_set():
+            next(received)
+        worker.join()
+        samples = [next(received).sample for _ in range(600)][-300:]
+        device.telemetry(0)
+    angles: np.ndarray = np.mean([(*one.leader, *one.follower) for one in samples], axis=0) * ANGLE_LSB
+    return angles
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_arms_mounted_anyhow_show_true_angles_after_two_known_poses(
+    benches: ExitStack, tmp_path: Path, seed: int
+) -> None:
+    """And a motor that turns the wrong way is turned round."""
+    bench = benches.enter_context(bench_of(mounted_anyhow(seed), tmp_path))
+    bench.command(f"motor {seed} reversed")
+    done = run_calibrate(Hands(bench), tmp_path, *SECOND)
+    assert done.code == 0, done.said
+    assert not bench.command("status")["motors_enabled"]
+    assert shown(bench, POSE) == pytest.approx(np.tile(np.radians(POSE), 2), abs=0.004)
+    facts = json.loads(done.printed)
+    assert np.degrees(facts["limits_rad"]) == pytest.approx(np.tile((-68.3, 73.3), (4, 1)), abs=0.6)
+    assert [motor["sign"] for motor in facts["motors"]] == [-1 if joint == seed else 1 for joint in range(4)]
+    with Device(bench.port) as device:
+        assert read_parameters(device).each("joint", "motor_sign")[seed] == -1
+
+
+def test_without_a_protractor_the_two_arms_agree(benches: ExitStack, tmp_path: Path) -> None:
+    bench = benches.enter_context(bench_of(mounted_anyhow(3), tmp_path))
+    done = run_calibrate(Hands(bench), tmp_path, "--no-motors")
+    assert done.code == 0, done.said
+    angles = shown(bench, POSE)
+    assert angles[4:] == pytest.approx(angles[:4], abs=0.004)
+
+
+def test_what_is_undone_is_as_before(benches: ExitStack, tmp_path: Path) -> None:
+    bench = benches.enter_context(bench_of(mounted_anyhow(4), tmp_path))
+    with Device(bench.port) as device:
+        before = read_parameters(device)
+    done = run_calibrate(Hands(bench), tmp_path, "--backup", "mine.toml")
+    assert done.code == 0, done.said
+    with Device(bench.port) as device:
+        assert read_parameters(device) != before
+    command = [sys.executable, "-m", "greywhale", "params", "restore", "mine.toml", "--port", bench.port]
+    subprocess.run(command, cwd=tmp_path, check=True, capture_output=True)
+    with Device(bench.port) as device:
+        assert replace(read_parameters(device), name=before.name) == before
+
+
+@pytest.mark.parametrize(
+    ("commands", "says"),
+    [
+        (["swap leader0 leader2"], "Leader potentiometer 0 reads .* but leader potentiometer 2 did: their wires"),
+        (["swap leader0 follower0"], "but follower potentiometer 0 did: the two arms are swapped"),
+        (["pot follower 1 frozen"], "Follower potentiometer 1 reads .* did not move: check that its shaft"),
+        (["pot leader 3 open"], "Leader potentiometer 3 reads 0 to 0 of 1023, at a rail"),
+        (["pot follower 0 shorted"], "Follower potentiometer 0 reads 1023 to 1023 of 1023, at a rail"),
+        (["pot leader 2 loose"], r"Leader potentiometer 2 jumped \d+ times"),
+        (["pot follower 2 slipping"], "[Ff]ollower potentiometer 2 read"),
+        (["motor 2 3", "motor 3 2"], "the motor of joint 2 moved joint 3: their motors, or .* are swapped"),
+        (["motor 1 dead"], "the motor of joint 1 did not move it with 5.2 V: check that the motors' supply is on"),
+    ],
+    ids=["pots swapped", "arms swapped", "frozen", "open", "shorted", "loose", "slipping", "motors swapped", "dead"],
+)
+def test_a_mistake_is_named_and_nothing_is_stored(
+    benches: ExitStack, tmp_path: Path, commands: list[str], says: str
+) -> None:
+    bench = benches.enter_context(bench_of(default_arm(), tmp_path))
+    with Device(bench.port) as device:
+        before = device.hello.param_crc
+    for command in commands:
+        bench.command(command)
+    writes = bench.command("status")["eeprom_writes"]
+    done = run_calibrate(Hands(bench), tmp_path, *SECOND)
+    assert done.code == 1
+    assert re.search(says, done.said), done.said
+    assert bench.command("status")["eeprom_writes"] == writes
+    assert list(tmp_path.glob("*before*")) == []
+    with Device(bench.port, restart=False) as device:
+        assert device.hello.param_crc == before, "what ran before runs again, also without a restart"
+
+
+def test_an_input_that_ends_changes_nothing(benches: ExitStack, tmp_path: Path) -> None:
+    bench = benches.enter_context(bench_of(default_arm(), tmp_path))
+    command = [sys.executable, "-m", "greywhale", "calibrate", "--port", bench.port]
+    done = subprocess.run(command, cwd=tmp_path, stdin=subprocess.DEVNULL, capture_output=True, text=True)
+    assert done.returncode == 1
+    assert "the input ended in the middle of the calibration; nothing was changed" in done.stderr

@@ -1,0 +1,118 @@
+"""A person at the bench who does what `greywhale calibrate` asks, line by line; and arms mounted anyhow."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import threading
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.arm import ArmParameters
+from greywhale.demo import BenchProcess
+from greywhale.files.arm import default_arm
+from greywhale.files.model import to_toml
+from greywhale.firmware import JOINTS
+
+Floats = npt.NDArray[np.float64]
+
+SWEEP_DEG = (75.0, -70.0)
+SECOND_DEG = np.array([60.0, 50.0, -45.0, 40.0])
+TRACK_RAD, CENTRE_RAD = (4.7, 5.8), (-0.6, 0.6)
+
+
+def mounted_anyhow(seed: int) -> ArmParameters:
+    """The default arm with another zero, direction and track at each of the eight potentiometers."""
+    random = np.random.default_rng(seed)
+    arm = default_arm()
+
+    def bank() -> Any:
+        made = [
+            pot.model_copy(
+                update={
+                    "track": float(random.uniform(*TRACK_RAD)),
+                    "centre": float(random.uniform(*CENTRE_RAD)),
+                    "direction": int(random.choice((-1, 1))),
+                }
+            )
+            for pot in arm.leader_pots.joint
+        ]
+        return arm.leader_pots.model_copy(update={"joint": tuple(made)})
+
+    return arm.model_copy(update={"leader_pots": bank(), "follower_pots": bank()})
+
+
+def bench_of(arm: ArmParameters, folder: Path, *options: str) -> BenchProcess:
+    """A running bench with this arm."""
+    path = folder / "arm.toml"
+    path.write_text(to_toml(arm, {}).replace("[identification]\n", ""), encoding="utf-8")
+    return BenchProcess("--speed", "max", "--arm", str(path), *options)
+
+
+@dataclass
+class Hands:
+    """Turns joints, holds poses; `second` is what it holds where the second pose is asked for, in degrees."""
+
+    bench: BenchProcess
+    second: Floats = field(default_factory=SECOND_DEG.copy)
+    poses: int = 0
+    at: dict[str, Floats] = field(default_factory=lambda: {"leader": np.zeros(JOINTS), "follower": np.zeros(JOINTS)})
+
+    def follow(self, asked: str) -> None:
+        """Do what a line of `greywhale calibrate` asks."""
+        if asked.startswith("Turn "):
+            side, _, number = asked.removeprefix("Turn ").partition(" joint ")
+            for angle in (*SWEEP_DEG, 0.0):
+                self.at[side][int(number[0])] = angle
+                self.bring(side, self.at[side])
+        elif " pose" in asked:
+            self.poses += 1
+            pose = self.second if self.poses == 2 else np.zeros(JOINTS)
+            self.at = {side: pose.copy() for side in self.at}
+            self.bring("both", pose)
+
+    def bring(self, side: str, degrees: Floats, seconds: float = 1.0) -> None:
+        """Bring one arm or both there, and wait until they are."""
+        angles = " ".join(f"{angle:.6f}" for angle in np.radians(degrees))
+        arrives = self.bench.command(f"hand {side} {angles} {seconds}")["arrives_s"]
+        while self.bench.command("status")["time_s"] < arrives:
+            pass
+
+
+@dataclass(frozen=True)
+class Calibrated:
+    """How a run of the verb ended, what it printed, and what it said on its way."""
+
+    code: int
+    printed: str
+    said: str
+
+
+def run_calibrate(hands: Hands, folder: Path, *more: str) -> Calibrated:
+    """`greywhale calibrate` in a process of its own, in that folder."""
+    command = [sys.executable, "-m", "greywhale", "calibrate", "--port", hands.bench.port, "--yes", "--json", *more]
+    with subprocess.Popen(
+        command, cwd=folder, text=True, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as process:
+        assert process.stdin is not None
+        assert process.stdout is not None
+        assert process.stderr is not None
+        out, said, printed = process.stdout, [], [""]
+
+        def read() -> None:
+            printed[0] = out.read()
+
+        reader = threading.Thread(target=read)
+        reader.start()
+        for line in process.stderr:
+            said.append(line)
+            if line.rstrip().endswith("[Enter]"):
+                hands.follow(line)
+                process.stdin.write("\n")
+                process.stdin.flush()
+        reader.join()
+    return Calibrated(process.returncode, printed[0], "".join(said))
