@@ -57,12 +57,14 @@ def write_log(path: Path, seconds: float = 1.0) -> None:
 # --- every verb -----------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("verb", [*VERBS, "params get", "params set", "params backup", "params restore", "params diff"])
+@pytest.mark.parametrize(
+    "verb", [*VERBS, "params get", "params set", "params backup", "params restore", "params diff", "arm import"]
+)
 def test_every_verb_has_help_and_json(verb: str, capsys: Captured) -> None:
     assert entry.run([*verb.split(), "--help"]) == 0
     text = capsys.readouterr().out
     assert text.startswith(f"Usage: greywhale {verb}")
-    assert "--json" in text or verb == "params"
+    assert "--json" in text or verb in ("params", "arm")
 
 
 def test_the_list_of_verbs_is_complete(capsys: Captured) -> None:

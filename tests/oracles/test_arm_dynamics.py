@@ -7,6 +7,7 @@ from pathlib import Path
 
 import mujoco
 import numpy as np
+import pinocchio
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -14,7 +15,9 @@ from arm_engines import MuJoCo, Pinocchio, arm_with_tip, random_states
 
 from greywhale.arm import Arm, ArmParameters
 from greywhale.arm.export import mjcf
+from greywhale.arm.from_urdf import import_urdf
 from greywhale.files.arm import default_arm, load_arm
+from tests.arm.reframed import reframed
 
 STATES = 500
 TOLERANCE = 1e-9
@@ -64,3 +67,25 @@ def test_motion_under_voltage_agrees_with_mujoco(arm_name: str) -> None:
     assert travel > 0.1, "every joint must have moved"
     assert worst_fine < 2e-5
     assert worst_usual < 2e-3
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_an_imported_urdf_moves_as_pinocchio_says(tmp_path: Path, seed: int) -> None:
+    """Frames, signs and zero pose at random: Pinocchio reads the URDF itself, greywhale what it has made of it."""
+    random = np.random.default_rng(seed)
+    flips = tuple(joint for joint in range(4) if random.random() < 0.5)
+    zero = (0.0, float(random.uniform(-1.2, 1.2)), float(random.uniform(-1.2, 1.2)), 0.0)
+    path = tmp_path / "arm.urdf"
+    path.write_text(reframed(arm_with_tip(), seed, flips, zero))
+    found = import_urdf(path, 15.0)
+    body = Arm(found.arm).body
+    model = pinocchio.buildModelFromXML(path.read_text())
+    data = model.createData()
+    signs = np.diag(found.signs)
+    for q, v in zip(*random_states(100, seed), strict=True):
+        upper = np.triu(pinocchio.crba(model, data, q))
+        mass = upper + upper.T - np.diag(np.diag(upper))
+        bias = pinocchio.rnea(model, data, q, v, np.zeros(4))
+        own = found.signs * q + found.offsets
+        np.testing.assert_allclose(signs @ body.mass_matrix(own) @ signs, mass, rtol=0, atol=TOLERANCE)
+        np.testing.assert_allclose(signs @ body.bias(own, signs @ v), bias, rtol=0, atol=TOLERANCE)

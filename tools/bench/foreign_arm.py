@@ -19,7 +19,7 @@ import numpy.typing as npt
 from greywhale.arm import ArmParameters
 from greywhale.arm.export import JOINT_IDS, mjcf
 from greywhale.files.arm import load_arm
-from greywhale.files.model import to_toml
+from greywhale.files.model import arm_toml
 from greywhale.firmware import JOINTS
 
 Floats = npt.NDArray[np.float64]
@@ -111,7 +111,7 @@ def _with_stops(parameters: ArmParameters) -> str:
 
 def save(arm: ForeignArm, path: Path) -> Path:
     """Write the arm file that a bench needs for potentiometers and supply."""
-    path.write_text(to_toml(arm.parameters, {}).replace("[identification]\n", ""), encoding="utf-8")
+    path.write_text(arm_toml(arm.parameters, "An arm of another engine."), encoding="utf-8")
     return path
 
 

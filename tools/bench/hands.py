@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
 import subprocess
 import sys
 import threading
@@ -15,7 +17,7 @@ import numpy.typing as npt
 from greywhale.arm import ArmParameters
 from greywhale.demo import BenchProcess
 from greywhale.files.arm import default_arm
-from greywhale.files.model import to_toml
+from greywhale.files.model import arm_toml
 from greywhale.firmware import JOINTS
 
 Floats = npt.NDArray[np.float64]
@@ -49,7 +51,7 @@ def mounted_anyhow(seed: int) -> ArmParameters:
 def bench_of(arm: ArmParameters, folder: Path, *options: str) -> BenchProcess:
     """A running bench with this arm."""
     path = folder / "arm.toml"
-    path.write_text(to_toml(arm, {}).replace("[identification]\n", ""), encoding="utf-8")
+    path.write_text(arm_toml(arm, "Mounted anyhow."), encoding="utf-8")
     return BenchProcess("--speed", "max", "--arm", str(path), *options)
 
 
@@ -112,7 +114,7 @@ def run_calibrate(hands: Hands, folder: Path, *more: str) -> Calibrated:
             said.append(line)
             if line.rstrip().endswith("[Enter]"):
                 hands.follow(line)
-                process.stdin.write("\n")
-                process.stdin.flush()
+                with contextlib.suppress(BrokenPipeError):  # it has ended, and says why
+                    os.write(process.stdin.fileno(), b"\n")
         reader.join()
     return Calibrated(process.returncode, printed[0], "".join(said))

@@ -7,12 +7,14 @@ at most (`ku_mv`, with neither integral part nor damping) and the others none; t
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from greywhale.board.device import Device
+from greywhale.board.stream import stream
 from greywhale.board.upload import run_set
 from greywhale.errors import UserError
 from greywhale.firmware import ANGLE_LSB, JOINTS, STEP_LSB
@@ -25,7 +27,8 @@ SHARES = (0.1, 0.17, 0.25, 0.35)  # of the supply, tried one after the other
 LEASE_MS = 160  # motors off by the firmware, whatever this host does; soft start is 100 of it
 WAY_RAD = 0.08  # where a pulse sends its joint
 FARTHEST_RAD = 0.16
-LEAST_RAD = 0.02  # between a pulse one way and one the other: less is no motion
+LEAST_RAD = 0.02  # half of what lies between a pulse one way and one the other: less is no motion
+STILL_TICKS, STILL_RAD, PATIENCE_TICKS = 200, 0.008, 5000  # an arm that still falls would hide a weak pulse
 OTHERS_SHARE = 2.0  # another joint that moves so many times farther has this motor
 SETTLE_TICKS = 250
 _STIFF = 64.0
@@ -58,14 +61,14 @@ def examine_motor(device: Device, table: ParameterTable, joint: int) -> Motor:
         forward, backward = pulse(device, weak, joint, 1), pulse(device, weak, joint, -1)
         way = (forward.moved - backward.moved) / 2.0
         farthest = int(np.argmax(np.abs(way)))
-        if abs(way[farthest]) < LEAST_RAD / 2.0:
+        if abs(way[farthest]) < LEAST_RAD:
             continue
         if farthest != joint and abs(way[farthest]) > OTHERS_SHARE * abs(way[joint]):
             raise UserError(
                 f"{device.port}: the motor of joint {joint} moved joint {farthest}: their motors, or their followers' "
                 "potentiometers, are swapped; exchange the wires at the board, and begin anew."
             )
-        if abs(way[joint]) >= LEAST_RAD / 2.0:
+        if abs(way[joint]) >= LEAST_RAD:
             return Motor(joint, 1 if way[joint] > 0.0 else -1, volts)
     raise UserError(
         f"{device.port}: the motor of joint {joint} did not move it with {SHARES[-1] * table.supply_v:.1f} V: check "
@@ -101,6 +104,7 @@ def pulse_table(table: ParameterTable, joint: int, volts: float) -> ParameterTab
 def pulse(device: Device, weak: ParameterTable, joint: int, way: int) -> Pulse:
     """One pulse, `way` 1 or -1, with the set of `pulse_table`; the motors are off afterwards."""
     run_set(device, weak)
+    _wait_until_still(device)
     step = [0, 0, 0, 0]
     step[joint] = way * round(WAY_RAD / STEP_LSB)
     device.telemetry(1)
@@ -122,3 +126,17 @@ def pulse(device: Device, weak: ParameterTable, joint: int, way: int) -> Pulse:
     most = np.argmax(np.abs(away), axis=0)
     volts = max(abs(one.voltage[joint]) for one in samples) / 1000.0
     return Pulse(away[most, np.arange(JOINTS)], volts)
+
+
+def _wait_until_still(device: Device) -> None:
+    """Until the follower has rested for a while; it may have been falling since the last pulse."""
+    angles: deque[tuple[int, ...]] = deque(maxlen=STILL_TICKS)
+    try:
+        for one in stream(device, 1):
+            angles.append(one.sample.follower)
+            if len(angles) == STILL_TICKS and np.ptp(np.array(angles), axis=0).max() * ANGLE_LSB <= STILL_RAD:
+                return
+            if one.elapsed > PATIENCE_TICKS:
+                raise UserError(f"{device.port}: the follower does not come to rest; lay it down, and begin anew.")
+    finally:
+        device.telemetry(0)

@@ -11,21 +11,27 @@ from greywhale.arm import ArmParameters
 
 def to_toml(arm: ArmParameters, identification: Mapping[str, Any]) -> str:
     """The text of a model.toml."""
-    data = arm.model_dump(exclude={"identification"})
-    tables = {key: value for key, value in data.items() if isinstance(value, dict | list | tuple)}
-    lines = ["# Written by greywhale identify. An arm file like any other, with one table more: [identification].", ""]
-    lines += [f"{key} = {_value(value)}" for key, value in data.items() if key not in tables]
-    for key, value in tables.items():
-        for one in value if isinstance(value, list | tuple) else [value]:
-            header = f"[[{key}]]" if isinstance(value, list | tuple) else f"[{key}]"
-            lines += ["", header, *(f"{name} = {_value(item)}" for name, item in one.items())]
-    lines += ["", "[identification]"]
+    head = "Written by greywhale identify. An arm file like any other, with one table more: [identification]."
+    lines = ["", "[identification]"]
     lines += [f"{key} = {_value(value)}" for key, value in identification.items() if not _is_table_array(value)]
     for key, value in identification.items():
         if _is_table_array(value):
             for one in value:
                 lines += ["", f"[[identification.{key}]]"]
                 lines += [f"{name} = {_value(item)}" for name, item in one.items()]
+    return arm_toml(arm, head) + "\n".join(lines) + "\n"
+
+
+def arm_toml(arm: ArmParameters, head: str) -> str:
+    """The text of an arm.toml, below a comment."""
+    data = arm.model_dump(exclude={"identification"})
+    tables = {key: value for key, value in data.items() if isinstance(value, dict | list | tuple)}
+    lines = [f"# {head}", ""]
+    lines += [f"{key} = {_value(value)}" for key, value in data.items() if key not in tables]
+    for key, value in tables.items():
+        for one in value if isinstance(value, list | tuple) else [value]:
+            header = f"[[{key}]]" if isinstance(value, list | tuple) else f"[{key}]"
+            lines += ["", header, *(f"{name} = {_value(item)}" for name, item in one.items())]
     return "\n".join(lines) + "\n"
 
 

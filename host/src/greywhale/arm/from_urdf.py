@@ -1,0 +1,232 @@
+"""An arm from a URDF: a yaw, two parallel pitches and a roll along the last link, in whatever frames and zero pose.
+
+greywhale's own zero pose has all links stretched out level. `Imported` says where that is in the URDF's angles.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.arm.parameters import JOINT_NAMES, ArmParameters
+from greywhale.arm.urdf import Body, TurningJoint, read_chain
+from greywhale.errors import BAD_USAGE, UserError, cut
+
+Floats = npt.NDArray[np.float64]
+
+UP = np.array([0.0, 0.0, 1.0])
+PARALLEL = math.cos(math.radians(1.0))
+ACROSS = math.sin(math.radians(1.0))
+BESIDE_M = 1e-3  # axes that shall meet may pass each other so far
+ASIDE_SHARE, ASIDE_M = 0.15, 5e-3  # of a link's length, a centre of mass beside the link
+SHORTEST_M = 1e-3
+ROUNDING_M = 1e-9
+GUESSED_INERTIA = (0.02, 0.03, 0.015, 0.005)  # kg m² at the joint, of motor and gears: a URDF does not say
+
+
+@dataclass(frozen=True)
+class Imported:
+    """An arm, and q = sign x (URDF's angle) + offset (rad) for each joint; `remarks`: what was left out or guessed."""
+
+    arm: ArmParameters
+    signs: Floats
+    offsets: Floats
+    remarks: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class _Frames:
+    """The arm at the URDF's zero pose: points (3,) m and directions (3,), all in the base's frame."""
+
+    points: tuple[Floats, Floats, Floats, Floats]  # of the four joints, on the arm's plane
+    along: tuple[Floats, Floats, Floats, Floats]  # each link's x
+    pitch: Floats  # the axis about which a positive pitch raises
+    lengths: tuple[float, float, float]
+
+
+def import_urdf(path: Path, supply_v: float) -> Imported:
+    """Read a URDF; effort and velocity limits are what the motors give at `supply_v`. Raises UserError by name."""
+    name, joints = read_chain(path)
+    if len(joints) != len(JOINT_NAMES):
+        raise UserError(
+            f"{path}: it has {len(joints)} turning joints, but greywhale's arm has four: {', '.join(JOINT_NAMES)}.",
+            BAD_USAGE,
+        )
+    frames = _find_frames(path, joints)
+    signs, offsets = _angles(joints, frames)
+    remarks: list[str] = []
+    links = [_link(path, number, joints[number], frames, remarks) for number in range(len(joints))]
+    data: dict[str, Any] = {
+        "name": name,
+        "source": path.name,
+        "link": links,
+        "joint": [
+            _joint(number, joint, signs[number], offsets[number], supply_v, remarks)
+            for number, joint in enumerate(joints)
+        ],
+        "drive": {"supply": supply_v},
+    }
+    try:
+        arm = ArmParameters.model_validate(data, strict=False)
+    except ValueError as error:
+        raise UserError(f"{path}: {_first_line(error)}.", BAD_USAGE) from None
+    return Imported(arm, signs, offsets, tuple(remarks))
+
+
+def _find_frames(path: Path, joints: list[TurningJoint]) -> _Frames:
+    yaw, shoulder, wrist, roll = joints
+
+    def bad(joint: TurningJoint, what: str) -> UserError:
+        place = JOINT_NAMES[joints.index(joint)]
+        return UserError(f"{path}: joint {cut(joint.name)}, the {place}, {what}.", BAD_USAGE)
+
+    if abs(yaw.axis @ UP) < PARALLEL:
+        raise bad(yaw, "does not turn about the vertical")
+    if abs(shoulder.axis @ UP) > ACROSS:
+        raise bad(shoulder, "does not turn about a level axis")
+    if abs(wrist.axis @ shoulder.axis) < PARALLEL:
+        raise bad(wrist, "does not turn about an axis parallel to the shoulder's")
+    if abs(roll.axis @ shoulder.axis) > ACROSS:
+        raise bad(roll, "does not turn about an axis across the wrist's")
+    pitch = shoulder.axis - (shoulder.axis @ UP) * UP
+    pitch /= np.linalg.norm(pitch)
+    # Points of the pitch axes in the upright plane through the yaw axis.
+    points = [yaw.point, *(one.point - ((one.point - yaw.point) @ pitch) * pitch for one in (shoulder, wrist))]
+    beside = (points[1] - yaw.point) @ np.cross(UP, pitch)
+    if abs(beside) > BESIDE_M:
+        raise bad(shoulder, f"has its axis {1e3 * abs(beside):.0f} mm beside the yaw's, which this arm cannot have")
+    points[1] = points[1] - beside * np.cross(UP, pitch)
+    first = points[2] - points[1]
+    if np.linalg.norm(first) < SHORTEST_M:
+        raise bad(wrist, "has the shoulder's axis")
+    away = roll.point - points[2]
+    for direction, what in ((pitch, "the arm's plane"), (np.cross(pitch, roll.axis), "the wrist's axis")):
+        if abs(away @ direction) > BESIDE_M:
+            raise bad(roll, f"has its axis {1e3 * abs(away @ direction):.0f} mm beside {what}")
+    outwards = roll.body.centre - points[2] if roll.body.mass else away
+    second = roll.axis * (1.0 if outwards @ roll.axis >= 0.0 else -1.0)
+    # Where on its axis the roll joint stands changes nothing; between the two centres of mass it fits this arm.
+    centres = [float((one.body.centre - points[2]) @ second) for one in (wrist, roll)]
+    length = max(SHORTEST_M, min(max(float(away @ second), centres[0]), centres[1]))
+    points.append(points[2] + length * second)
+    along = first / np.linalg.norm(first)
+    forward = _forward(along, second, pitch)
+    if np.cross(forward, UP) @ pitch < 0.0:
+        pitch = -pitch
+    height = max(float((points[1] - points[0]) @ UP), SHORTEST_M)
+    return _Frames(
+        (points[0], points[1], points[2], points[3]),
+        (UP, along, second, second),
+        pitch,
+        (height, float(np.linalg.norm(first)), length),
+    )
+
+
+def _forward(along: Floats, second: Floats, pitch: Floats) -> Floats:
+    """The level direction in which the arm reaches; any, where it stands upright as a whole."""
+    for direction in (along, second):
+        level = direction - (direction @ UP) * UP
+        if np.linalg.norm(level) > 0.1:
+            return np.asarray(level / np.linalg.norm(level))
+    return np.asarray(np.cross(UP, pitch))
+
+
+def _angles(joints: list[TurningJoint], frames: _Frames) -> tuple[Floats, Floats]:
+    """Signs and offsets of greywhale's angles, (4,) each."""
+    axes = (UP, frames.pitch, frames.pitch, frames.along[3])
+    signs = np.array([1.0 if joint.axis @ axis > 0.0 else -1.0 for joint, axis in zip(joints, axes, strict=True)])
+    forward = np.cross(UP, frames.pitch)
+    raised = [math.atan2(float(one @ UP), float(one @ forward)) for one in frames.along[1:3]]
+    bent = math.remainder(raised[1] - raised[0], math.tau)
+    return signs, np.array([0.0, raised[0], bent, 0.0])
+
+
+def _link(path: Path, number: int, joint: TurningJoint, frames: _Frames, remarks: list[str]) -> dict[str, Any]:
+    """Mass, length, centre and inertias in the link's own axes."""
+    body, along = joint.body, frames.along[number]
+    if body.mass <= 0.0:
+        raise UserError(f"{path}: link {cut(body.names[0])} has no mass; every moving link needs one.", BAD_USAGE)
+    axes = _axes(number, along, frames.pitch)
+    inertia = axes @ body.inertia @ axes.T
+    centre = axes @ (body.centre - frames.points[number])
+    if number == 0:  # only what turns about the vertical counts
+        turning = float(inertia[1, 1] + body.mass * (centre[0] ** 2 + centre[2] ** 2))
+        length = max(frames.lengths[0], 2.0 * abs(float(centre[1])))
+        return _table(body, length, length / 2.0, np.array([turning, turning, turning]))
+    reach = float(centre[0])
+    length = frames.lengths[number] if number < 3 else max(2.0 * reach, SHORTEST_M)
+    aside = float(np.linalg.norm(centre[1:]))
+    if aside > max(ASIDE_SHARE * length, ASIDE_M):
+        raise UserError(
+            f"{path}: the centre of mass of link {cut(body.names[0])} is {1e3 * aside:.0f} mm beside the line of the "
+            "link, which this arm cannot have.",
+            BAD_USAGE,
+        )
+    if not -ROUNDING_M <= reach <= length + ROUNDING_M:
+        raise UserError(
+            f"{path}: the centre of mass of link {cut(body.names[0])} is {1e3 * reach:.0f} mm along a link of "
+            f"{1e3 * length:.0f} mm; it must lie between the link's joints.",
+            BAD_USAGE,
+        )
+    if aside > 1e-6:
+        remarks.append(f"the centre of mass of {cut(body.names[0])} was moved by {1e3 * aside:.1f} mm onto the link")
+    products = float(np.abs(inertia - np.diag(np.diag(inertia))).max() / np.diag(inertia).max())
+    if products > 0.02:
+        share = f"{100 * products:.0f} % of the largest moment"
+        remarks.append(f"products of inertia of {cut(body.names[0])} were left out ({share})")
+    return _table(body, length, min(max(reach, 0.0), length), np.diag(inertia))
+
+
+def _axes(number: int, along: Floats, pitch: Floats) -> Floats:
+    """(3, 3): rows are the link's x, y and z; link 0 stands upright, its y is up."""
+    if number == 0:
+        return np.array([np.cross(UP, pitch), UP, pitch])
+    return np.array([along, np.cross(pitch, along), pitch])
+
+
+def _table(body: Body, length: float, centre: float, inertia: Floats) -> dict[str, Any]:
+    xx, yy, zz = map(float, inertia)
+    return {"mass": body.mass, "length": length, "centre": centre, "inertia": {"xx": xx, "yy": yy, "zz": zz}}
+
+
+def _joint(
+    number: int, joint: TurningJoint, sign: float, offset: float, supply_v: float, remarks: list[str]
+) -> dict[str, Any]:
+    """Motor and friction at the joint itself (gear ratio 1): half the damping is the motor's, half its own."""
+    if not (joint.effort > 0.0 and joint.velocity > 0.0):
+        raise UserError(
+            f"joint {cut(joint.name)} has no effort or velocity limit above 0, from which its motor would follow; add "
+            'them: <limit effort="N m" velocity="rad/s" .../>.',
+            BAD_USAGE,
+        )
+    torque_per_volt = joint.effort / supply_v
+    damping = joint.effort / joint.velocity
+    friction = 0.0 if math.isnan(joint.friction) else max(joint.friction, 0.0)
+    ends = sorted(sign * end + offset for end in (joint.low, joint.high))
+    remarks.append(f"the inertia of the {JOINT_NAMES[number]}'s motor is a guess, {GUESSED_INERTIA[number]:g} kg m2")
+    return {
+        "name": JOINT_NAMES[number],
+        "motor": {
+            "inertia": GUESSED_INERTIA[number],
+            "resistance": 0.5 * damping / torque_per_volt**2,
+            "torque_constant": 0.5 * damping / torque_per_volt,
+            "viscous": 0.5 * damping,
+            "gear_ratio": 1.0,
+        },
+        "friction": {"coulomb": friction, "breakaway": friction},
+        "stops": {"min": max(ends[0], -math.tau), "max": min(ends[1], math.tau)},
+    }
+
+
+def _first_line(error: ValueError) -> str:
+    details: list[Mapping[str, Any]] = getattr(error, "errors", list)()
+    if not details:
+        return cut(str(error))
+    first = details[0]
+    return cut(f"{'.'.join(map(str, first['loc']))}: {first['msg']}")

@@ -1,0 +1,62 @@
+"""`greywhale arm`: arm files from descriptions that other programs made."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+import numpy as np
+
+from greywhale.arm.from_urdf import Imported, import_urdf
+from greywhale.arm.parameters import JOINT_NAMES
+from greywhale.cli.output import json_option, show
+from greywhale.cli.record import require_folders
+from greywhale.errors import BAD_USAGE, UserError
+from greywhale.files.model import arm_toml
+from greywhale.formats.whole import refuse_inputs, write_text
+
+SUPPLY_V = (1.0, 60.0)
+
+
+@click.group("arm")
+def command() -> None:
+    """Make an arm.toml, which describes geometry, masses, motors and stops of an arm."""
+
+
+@command.command("import")
+@click.argument("urdf", type=click.Path(path_type=Path))
+@click.option("--out", "-o", type=click.Path(path_type=Path), default=Path("arm.toml"), show_default=True)
+@click.option("--supply", default=15.0, show_default=True, help="The motors' supply, V.")
+@json_option
+def import_(urdf: Path, out: Path, supply: float, as_json: bool) -> None:
+    """Read a URDF: a yaw, two parallel pitches and a roll along the last link.
+
+    Frames and zero pose may be any; fixed joints are welded. What this arm cannot have is refused by its name. A URDF
+    says nothing about gears, and its motors only by their effort and velocity limits: `greywhale identify` finds what
+    they really are.
+    """
+    if not SUPPLY_V[0] <= supply <= SUPPLY_V[1]:
+        raise UserError(f"--supply is {supply:g} V; it must be {SUPPLY_V[0]:g} to {SUPPLY_V[1]:g}.", BAD_USAGE)
+    require_folders(out)
+    refuse_inputs(out, urdf)
+    if out.exists():
+        raise UserError(f"{out}: exists already; move it away, or name another file with --out.", BAD_USAGE)
+    found = import_urdf(urdf, supply)
+    write_text(out, arm_toml(found.arm, f"Made by greywhale arm import from {urdf.name}."))
+    show(as_json, _facts(out, found), _text(out, found))
+
+
+def _facts(out: Path, found: Imported) -> dict[str, object]:
+    return {
+        "written": str(out),
+        "signs": [int(sign) for sign in found.signs],
+        "offsets_rad": [round(float(offset), 6) for offset in found.offsets],
+        "remarks": list(found.remarks),
+    }
+
+
+def _text(out: Path, found: Imported) -> str:
+    lines = [f"{out}: {found.arm.name}.", "greywhale's angles, from those of the URDF (degrees):"]
+    for name, sign, offset in zip(JOINT_NAMES, found.signs, np.degrees(found.offsets), strict=True):
+        lines.append(f"  {name:16}{'-' if sign < 0 else ' '}q {offset:+.1f}")
+    return "\n".join([*lines, *(f"Note: {remark}." for remark in found.remarks)])

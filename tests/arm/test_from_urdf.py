@@ -1,0 +1,114 @@
+"""Arms from URDFs: whatever frames, signs and zero pose, the same physics; what does not fit is refused by name."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from greywhale.arm import Arm
+from greywhale.arm.export import urdf
+from greywhale.arm.from_urdf import import_urdf
+from greywhale.cli.entry import run
+from greywhale.errors import UserError
+from greywhale.files.arm import default_arm, load_arm
+from tests.arm.reframed import reframed
+
+SUPPLY = default_arm().drive.supply
+
+
+def written(folder: Path, text: str) -> Path:
+    path = folder / "arm.urdf"
+    path.write_text(text)
+    return path
+
+
+@pytest.mark.parametrize("name", ["default", "white_box", "grey_box", "worn"])
+def test_an_exported_arm_comes_back(tmp_path: Path, name: str) -> None:
+    arm = load_arm(name)
+    found = import_urdf(written(tmp_path, urdf(arm)), arm.drive.supply)
+    assert found.signs.tolist() == [1, 1, 1, 1]
+    assert found.offsets == pytest.approx(np.zeros(4), abs=1e-9)
+    same_physics(found.arm, arm)
+    for joint in range(4):
+        one, other = arm.actuator(joint), found.arm.actuator(joint)
+        assert other.torque_per_volt == pytest.approx(one.torque_per_volt)
+        assert other.damping == pytest.approx(one.damping)
+        assert found.arm.joint[joint].stops.max == pytest.approx(arm.joint[joint].stops.max)
+        assert found.arm.joint[joint].friction.coulomb == pytest.approx(arm.joint[joint].friction.coulomb)
+
+
+def same_physics(found: object, arm: object) -> None:
+    bodies = Arm(found).body, Arm(arm).body  # type: ignore[arg-type]
+    random = np.random.default_rng(0)
+    for q, v in zip(random.uniform(-2, 2, (40, 4)), random.uniform(-3, 3, (40, 4)), strict=True):
+        assert bodies[0].mass_matrix(q) == pytest.approx(bodies[1].mass_matrix(q), abs=1e-9)
+        assert bodies[0].bias(q, v) == pytest.approx(bodies[1].bias(q, v), abs=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_frames_signs_and_zero_pose_do_not_matter(tmp_path: Path, seed: int) -> None:
+    random = np.random.default_rng(seed)
+    flips = tuple(joint for joint in range(4) if random.random() < 0.5)
+    zero = (0.0, float(random.uniform(-1.2, 1.2)), float(random.uniform(-1.2, 1.2)), 0.0)
+    arm = default_arm()
+    found = import_urdf(written(tmp_path, reframed(arm, seed, flips, zero)), SUPPLY)
+    assert found.signs.tolist() == [-1.0 if joint in flips else 1.0 for joint in range(4)]
+    assert found.offsets == pytest.approx(zero, abs=1e-9)
+    same_physics(found.arm, arm)
+    for joint in range(4):
+        stops = found.arm.joint[joint].stops
+        assert (stops.min, stops.max) == pytest.approx((arm.joint[joint].stops.min, arm.joint[joint].stops.max))
+
+
+def test_links_that_are_welded_count_as_one(tmp_path: Path) -> None:
+    arm = default_arm()
+    text = urdf(arm)
+    hand = text.index('<link name="hand">')
+    mass = text.index("<mass value=", hand)
+    end = text.index("/>", mass)
+    whole = float(text[mass:end].split('"')[1])
+    half = text[:mass] + f'<mass value="{whole / 2!r}" ' + text[end:]
+    inertial = text[text.index("<origin", hand) : mass]
+    tool = (
+        f'<link name="tool"><inertial>{inertial}<mass value="{whole / 2!r}"/>'
+        '<inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial></link>'
+        '<joint name="mount" type="fixed"><parent link="hand"/><child link="tool"/></joint>'
+    )
+    found = import_urdf(written(tmp_path, half.replace("</robot>", tool + "</robot>")), SUPPLY)
+    same_physics(found.arm, arm)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ('type="revolute"', 'type="prismatic"', "joint base_yaw is prismatic, but every joint must be revolute"),
+        ('<axis xyz="1 0 0"', '<axis xyz="0 1 0"', "joint wrist_roll, the wrist roll, has its axis"),
+        ('<axis xyz="1 0 0"', '<axis xyz="0 0 1"', "does not turn about an axis across the wrist's"),
+        ('<axis xyz="0 1 0"', '<axis xyz="1 0 0"', "joint base_yaw, the base yaw, does not turn about the vertical"),
+        ('<child link="hand"', '<child link="base"', "link base has two parents"),
+        ('<parent link="wrist"', '<parent link="base"', "the chain branches"),
+        ("<mass value=", "<mass kg=", "value of base is missing"),
+        ("<robot", "<!DOCTYPE x><robot", "declares entities"),
+        ("</robot>", "", "this is no XML"),
+        ("effort=", "strength=", "joint base_yaw has no effort or velocity limit above 0"),
+    ],
+)
+def test_what_does_not_fit_is_refused_by_name(tmp_path: Path, old: str, new: str, says: str) -> None:
+    text = urdf(default_arm())
+    assert old in text
+    with pytest.raises(UserError) as refused:
+        import_urdf(written(tmp_path, text.replace(old, new, 1)), SUPPLY)
+    assert says in refused.value.message
+
+
+def test_the_verb_writes_an_arm_that_other_verbs_read_and_no_file_twice(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    source = written(tmp_path, reframed(default_arm(), 3, (1,), (0.0, 0.4, -0.2, 0.0)))
+    out = tmp_path / "mine.toml"
+    assert run(["arm", "import", str(source), "--out", str(out)]) == 0
+    same_physics(load_arm(out), default_arm())
+    assert "shoulder pitch  -q +22.9" in capsys.readouterr().out
+    assert run(["arm", "import", str(source), "--out", str(out)]) == 2
