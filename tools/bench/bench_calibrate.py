@@ -73,7 +73,7 @@ MISTAKES = (
     Mistake(
         "shaft slips",
         lambda joint: [f"pot follower {joint} slipping"],
-        lambda joint: rf"ollower potentiometer {joint} (reads? \d+|turned the other way)",
+        lambda joint: rf"ollower potentiometer {joint} (reads? \d+|reaches an end|turned the other way)",
     ),
     Mistake(
         "motors swapped",

@@ -22,7 +22,7 @@ from greywhale.firmware import JOINTS
 
 Floats = npt.NDArray[np.float64]
 
-SWEEP_DEG = (75.0, -70.0)
+SWEEP_DEG, SWEEP_S = (75.0, -70.0), 0.5  # a way; a person is slower
 SECOND_DEG = np.array([60.0, 50.0, -45.0, 40.0])
 TRACK_RAD, CENTRE_RAD = (4.7, 5.8), (-0.6, 0.6)
 
@@ -70,7 +70,7 @@ class Hands:
             side, _, number = asked.removeprefix("Turn ").partition(" joint ")
             for angle in (*SWEEP_DEG, 0.0):
                 self.at[side][int(number[0])] = angle
-                self.bring(side, self.at[side])
+                self.bring(side, self.at[side], SWEEP_S)
         elif " pose" in asked:
             self.poses += 1
             pose = self.second if self.poses == 2 else np.zeros(JOINTS)

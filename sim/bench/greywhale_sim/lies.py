@@ -10,7 +10,7 @@ Array = npt.NDArray[np.float64]
 KINDS = ("frozen", "slipping", "loose")
 SLIPS = 0.3  # of every way up is lost, so that the same angle reads lower each time
 LOOSE_EVERY, LOOSE_FOR = 920, 8  # slices: a wire with a pull-down is off for 2 ms in 230 ms
-SUPPLY_MV = 5000.0
+SUPPLY_MV, NOISE_MV = 5000.0, 30.0
 
 
 class Lies:
@@ -46,9 +46,13 @@ class Lies:
                 shown = 0.0 if self._slice % LOOSE_EVERY < LOOSE_FOR else true
             elif kind == "slipping":
                 way = true - had
-                shown = min(max(shown + (way * (1.0 - SLIPS) if way > 0.0 else way), 0.0), SUPPLY_MV)
+                if abs(way) < NOISE_MV:  # does not move the shaft
+                    millivolts[pot] = min(max(shown + way, 0.0), SUPPLY_MV)
+                    self._last[pot] = (had, shown)
+                    continue
+                shown += way * (1.0 - SLIPS) if way > 0.0 else way
             self._last[pot] = (true, shown)
-            millivolts[pot] = shown
+            millivolts[pot] = min(max(shown, 0.0), SUPPLY_MV)
         millivolts[:] = millivolts[self.order]
 
     def _look(self) -> None:
