@@ -32,6 +32,7 @@ class Verb:
     board: str = ""  # fake or bench
     held: bool = False
     vary: bool = False
+    more: str = ""  # pattern of results of which another run may have others
     needs: tuple[str, ...] = ()
     trials: int = 1000
     size: int = 250  # trials in a piece
@@ -121,6 +122,7 @@ VERBS = (
         "commission, simulated board",
         "commission -o c --model {in}/model.toml --rounds 1 --trials 1 --budget 4 --workers 1 --port {port}",
         journal="c/commission.json",
+        more=r"c/trial-\d\d\.csv",  # how many it tries depends on what the arm did
         board="bench",
         vary=True,
         needs=("greywhale.commission", "greywhale.commission.page", "greywhale.excite"),

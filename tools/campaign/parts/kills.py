@@ -7,6 +7,7 @@ import importlib
 import json
 import os
 import random
+import re
 import shutil
 import tempfile
 import tomllib
@@ -225,7 +226,7 @@ def look(stand: Stand, folder: Path) -> tuple[list[str], list[str], list[str]]:
             hidden.append(name)
         elif name == verb.journal:
             seen.append("journal kept")
-        elif name in verb.logs or name in stand.whole:
+        elif name in verb.logs or name in stand.whole or (verb.more and re.fullmatch(verb.more, name)):
             if _is_old(path):
                 continue
             problem = stand.problem_of(name, path)
