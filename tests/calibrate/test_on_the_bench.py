@@ -80,6 +80,20 @@ def test_without_a_protractor_the_two_arms_agree(benches: ExitStack, tmp_path: P
     assert angles[4:] == pytest.approx(angles[:4], abs=0.004)
 
 
+@pytest.mark.parametrize(("degrees", "passes"), [(4.0, True), (12.0, False)])
+def test_the_third_pose_shows_how_far_the_arms_are_really_apart(
+    benches: ExitStack, tmp_path: Path, degrees: float, passes: bool
+) -> None:
+    bench = benches.enter_context(bench_of(mounted_anyhow(5), tmp_path))
+    done = run_calibrate(Hands(bench, apart=degrees), tmp_path, *SECOND, "--no-motors")
+    assert (done.code == 0) == passes, done.said
+    if passes:
+        apart = json.loads(done.printed)["apart_rad"]
+        assert apart == pytest.approx([0.0, np.radians(degrees), 0.0, 0.0], abs=0.004)
+    else:
+        assert "leader and follower differ by 0.21 rad at joint 1" in done.said
+
+
 def test_what_is_undone_is_as_before(benches: ExitStack, tmp_path: Path) -> None:
     bench = benches.enter_context(bench_of(mounted_anyhow(4), tmp_path))
     with Device(bench.port) as device:

@@ -24,6 +24,7 @@ Floats = npt.NDArray[np.float64]
 
 SWEEP_DEG, SWEEP_S = (75.0, -70.0), 0.5  # a way; a person is slower
 SECOND_DEG = np.array([60.0, 50.0, -45.0, 40.0])
+THIRD_DEG = np.array([-35.0, -20.0, 30.0, -40.0])
 TRACK_RAD, CENTRE_RAD = (4.7, 5.8), (-0.6, 0.6)
 
 
@@ -61,6 +62,7 @@ class Hands:
 
     bench: BenchProcess
     second: Floats = field(default_factory=SECOND_DEG.copy)
+    apart: float = 0.0  # degrees by which the follower's joint 1 is held elsewhere in the third pose
     poses: int = 0
     at: dict[str, Floats] = field(default_factory=lambda: {"leader": np.zeros(JOINTS), "follower": np.zeros(JOINTS)})
 
@@ -73,9 +75,11 @@ class Hands:
                 self.bring(side, self.at[side], SWEEP_S)
         elif " pose" in asked:
             self.poses += 1
-            pose = self.second if self.poses == 2 else np.zeros(JOINTS)
+            pose = {2: self.second, 4: THIRD_DEG}.get(self.poses, np.zeros(JOINTS))
             self.at = {side: pose.copy() for side in self.at}
             self.bring("both", pose)
+            if self.poses == 4 and self.apart:
+                self.bring("follower", pose + self.apart * np.eye(JOINTS)[1])
 
     def bring(self, side: str, degrees: Floats, seconds: float = 1.0) -> None:
         """Bring one arm or both there, and wait until they are."""

@@ -65,6 +65,11 @@ def fault_text(status: schema.StatusReply) -> str:
     return f"{fault.description}{place}: {lower_first(fault.remedy)}"
 
 
+def upper_first(text: str) -> str:
+    """Make a clause begin a sentence."""
+    return text[:1].upper() + text[1:]
+
+
 def lower_first(text: str) -> str:
     """Make a sentence fit inside another; a first word such as EEPROM keeps its capitals."""
     return text if text[1:2].isupper() else text[:1].lower() + text[1:]

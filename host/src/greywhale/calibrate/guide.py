@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from greywhale.board.device import Device, hold_ctrl_c
 from greywhale.board.pots import FULL_SCALE, POTS, counts_of, read_counts
-from greywhale.board.refusal import pot_name
+from greywhale.board.refusal import pot_name, upper_first
 from greywhale.board.stream import stream
 from greywhale.board.upload import read_parameters, run_set
 from greywhale.calibrate.motors import Motor, examine_motor
@@ -32,6 +32,7 @@ STILL_COUNTS = 3.0  # of the mean over a tenth of a second, meanwhile
 SHOWN_EVERY = 100  # ticks between two live angles
 LONGEST_TICKS = 600_000
 TRIES = 3
+MOST_APART_RAD = 0.15  # between the arms in the last pose: 9 degrees, more than a hand is wrong by
 USUAL_TRACK_RAD = float(np.radians(300.0))
 
 
@@ -65,8 +66,8 @@ class Options:
 
 @dataclass(frozen=True)
 class Result:
-    """The calibration, the table before, how far the arms are apart in the second pose (4,) rad, and the motors, none
-    where they were not tried.
+    """The calibration, the table before, how far the arms are apart (4,) rad in a pose from which nothing was worked
+    out, and the motors, none where they were not tried.
     """
 
     calibration: Calibration
@@ -109,9 +110,22 @@ def calibrate(device: Device, guide: Guide, options: Options) -> Result:
     moved = slipped(first, again)
     if moved:
         raise UserError(" ".join(moved))
-    angles = found.angles(second.counts)
-    apart = np.abs(angles[JOINTS:] - angles[:JOINTS])
+    apart = _compare(device, table, found, guide)
     return Result(found, table, apart, _motors(device, table, found, guide) if options.motors else ())
+
+
+def _compare(device: Device, table: ParameterTable, found: Calibration, guide: Guide) -> Floats:
+    """How far the arms are apart (4,) rad in one more pose; the poses before fit by themselves."""
+    what = "Last, hold both arms in one and the same third pose, away from the other two."
+    angles = found.angles(_pose(device, table, guide, np.zeros(JOINTS), what).counts)
+    apart: Floats = np.abs(angles[JOINTS:] - angles[:JOINTS])
+    worst = int(np.argmax(apart))
+    if apart[worst] > MOST_APART_RAD:
+        raise UserError(
+            f"{device.port}: held in the same pose, leader and follower differ by {apart[worst]:.2f} rad at joint "
+            f"{worst}; hold the poses more exactly, check that no shaft slips, and begin anew."
+        )
+    return apart
 
 
 def _motors(device: Device, table: ParameterTable, found: Calibration, guide: Guide) -> tuple[Motor, ...]:
@@ -171,8 +185,7 @@ def _pose(device: Device, table: ParameterTable, guide: Guide, angles: Floats, w
         worst = int(np.argmax(wandered))
         if wandered[worst] <= STILL_COUNTS:
             return Pose(angles, counts.mean(axis=0))
-        name = pot_name(worst)
-        guide.tell(f"{name[0].upper()}{name[1:]} moved by {wandered[worst]:.0f} counts; hold both arms still.")
+        guide.tell(f"{upper_first(pot_name(worst))} moved by {wandered[worst]:.0f} counts; hold both arms still.")
     raise UserError(f"{device.port}: the arms were not held still; lay them on a support, and begin anew.")
 
 

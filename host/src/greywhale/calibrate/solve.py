@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from greywhale.board.pots import COUNT14, FULL_SCALE, POTS
-from greywhale.board.refusal import pot_name
+from greywhale.board.refusal import pot_name, upper_first
 from greywhale.calibrate.sweep import Sweep
 from greywhale.errors import UserError
 from greywhale.firmware import JOINTS
@@ -96,7 +96,7 @@ def slipped(before: Pose, after: Pose) -> list[str]:
     """What differs where the same pose was held twice: a sentence for each potentiometer."""
     apart = np.abs(after.counts - before.counts)
     return [
-        f"{pot_name(pot)[0].upper()}{pot_name(pot)[1:]} reads {apart[pot]:.0f} counts elsewhere in the same pose: it "
+        f"{upper_first(pot_name(pot))} reads {apart[pot]:.0f} counts elsewhere in the same pose: it "
         "slips on its shaft; tighten it, and begin anew."
         for pot in range(len(POTS))
         if apart[pot] > SLIPPED_COUNTS

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from scipy.ndimage import median_filter
 
 from greywhale.board.pots import FULL_SCALE, POTS
-from greywhale.board.refusal import pot_name
+from greywhale.board.refusal import pot_name, upper_first
 
 Floats = npt.NDArray[np.float64]
 
@@ -38,7 +38,7 @@ class Sweep:
 def judge_sweep(counts: Floats, pot: int) -> Sweep:
     """Judge counts (rows, 8) from a sweep of `pot`; each mistake is a sentence with its remedy."""
     smooth = median_filter(counts, size=(SMOOTH_TICKS, 1), mode="nearest")
-    own, name = smooth[:, pot], _name(pot)
+    own, name = smooth[:, pot], upper_first(pot_name(pot))
     low, high = float(own.min()), float(own.max())
     direction = 1 if int(np.argmax(own)) < int(np.argmin(own)) else -1
     mistakes = _wiring(smooth, pot)
@@ -50,7 +50,7 @@ def judge_sweep(counts: Floats, pot: int) -> Sweep:
 def _wiring(smooth: Floats, pot: int) -> list[str]:
     """Whether this potentiometer moved, and no other."""
     spans = np.ptp(smooth, axis=0)
-    name, span = _name(pot), float(spans[pot])
+    name, span = upper_first(pot_name(pot)), float(spans[pot])
     others = [other for other in range(len(POTS)) if other != pot and spans[other] >= LEAST_COUNTS]
     if span >= LEAST_COUNTS:
         also = [other for other in others if spans[other] > OTHERS_SHARE * span]
@@ -104,8 +104,3 @@ def _contact(raw: Floats, own: Floats, name: str) -> list[str]:
 
 def _reading(counts: Floats) -> str:
     return f"{round(float(counts.min()))} to {round(float(counts.max()))} of {FULL_SCALE}"
-
-
-def _name(pot: int) -> str:
-    name = pot_name(pot)
-    return name[0].upper() + name[1:]

@@ -13,7 +13,7 @@ from greywhale.cli.output import json_option, show
 from greywhale.cli.record import require_folders
 from greywhale.errors import BAD_USAGE, UserError
 from greywhale.files.model import arm_toml
-from greywhale.formats.whole import refuse_inputs, write_text
+from greywhale.formats.whole import refuse_existing, refuse_inputs, write_text
 
 SUPPLY_V = (1.0, 60.0)
 
@@ -39,8 +39,7 @@ def import_(urdf: Path, out: Path, supply: float, as_json: bool) -> None:
         raise UserError(f"--supply is {supply:g} V; it must be {SUPPLY_V[0]:g} to {SUPPLY_V[1]:g}.", BAD_USAGE)
     require_folders(out)
     refuse_inputs(out, urdf)
-    if out.exists():
-        raise UserError(f"{out}: exists already; move it away, or name another file with --out.", BAD_USAGE)
+    refuse_existing(out, "--out")
     found = import_urdf(urdf, supply)
     write_text(out, arm_toml(found.arm, f"Made by greywhale arm import from {urdf.name}."))
     show(as_json, _facts(out, found), _text(out, found))

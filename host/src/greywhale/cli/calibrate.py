@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import queue
+import shutil
 import sys
+import textwrap
 import threading
 from pathlib import Path
 
@@ -19,6 +21,7 @@ from greywhale.cli.output import json_option, port_option, show
 from greywhale.errors import BAD_USAGE, UserError, cut
 from greywhale.files import parameter_file
 from greywhale.firmware import JOINTS
+from greywhale.formats.whole import refuse_existing
 from greywhale.protocol.ports import choose_port
 
 TRACK_DEG = (180.0, 450.0)
@@ -64,8 +67,7 @@ def command(
         float(np.radians(track)),
         motors=not no_motors,
     )
-    if backup.exists():
-        raise UserError(f"{backup}: exists already; move it away, or name another file with --backup.", BAD_USAGE)
+    refuse_existing(backup, "--backup")
     with Device(choose_port(port)) as device:
         person = Terminal()
         result = calibrate(device, person, poses)
@@ -89,7 +91,7 @@ class Terminal:
         threading.Thread(target=self._read, daemon=True).start()
 
     def ask(self, what: str) -> None:
-        click.echo(f"{what} [Enter]", err=True)
+        self.tell(f"{what} [Enter]")
 
     def show(self, live: str) -> None:
         if self._live:
@@ -107,6 +109,9 @@ class Terminal:
         self._check(self._lines.get())
 
     def tell(self, what: str) -> None:
+        if self._live:
+            width = min(120, shutil.get_terminal_size().columns)
+            what = "\n".join(textwrap.fill(line, width) if len(line) > width else line for line in what.splitlines())
         click.echo(what, err=True)
 
     def _check(self, confirmed: bool) -> bool:
@@ -162,8 +167,7 @@ def _text(result: Result) -> str:
         low, high = np.degrees(found.limits[joint])
         lines.append(f"{f'joint {joint}':12}{f'{low:.0f} to {high:.0f}':>18}{1e3 * result.apart[joint]:>17.1f} mrad")
     if result.motors:
-        told = (f"joint {one.joint} {_way(one.sign)} ({one.volts:.1f} V)" for one in result.motors)
-        lines += ["", f"Motors: {', '.join(told)}."]
+        lines += ["", *(f"motor {one.joint}     {_way(one.sign)} ({one.volts:.1f} V)" for one in result.motors)]
     return "\n".join(lines)
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from greywhale import __version__
 from greywhale.board.pots import POTS
-from greywhale.board.refusal import fault_text
+from greywhale.board.refusal import fault_text, upper_first
 from greywhale.doctor.finding import Finding, Verdict
 from greywhale.files.parameter_file import load_table, physical
 from greywhale.protocol import schema
@@ -52,13 +52,13 @@ def examine_status(hello: schema.HelloReply, status: schema.StatusReply) -> list
     start = Finding(
         "last start",
         Verdict.BAD if remedy else Verdict.GOOD,
-        f"{_sentence(hello.reset_cause.description)}, {status.tick / 1000:.1f} s ago.",
+        f"{upper_first(hello.reset_cause.description)}, {status.tick / 1000:.1f} s ago.",
         remedy,
     )
     if status.fault is schema.Fault.NONE:
         fault = Finding("fault", Verdict.GOOD, "None.")
     else:
-        fault = Finding("fault", Verdict.BAD, _sentence(fault_text(status)))
+        fault = Finding("fault", Verdict.BAD, upper_first(fault_text(status)))
     late = Finding(
         "ticks",
         Verdict.BAD if status.late_ticks else Verdict.GOOD,
@@ -105,10 +105,6 @@ def _calibration(table: ParameterTable) -> Finding:
         f"({', '.join(plain)}): right for a 300 degree track mounted in its middle only.",
         "If they are mounted otherwise, run `greywhale calibrate`.",
     )
-
-
-def _sentence(text: str) -> str:
-    return text[0].upper() + text[1:]
 
 
 def _count(number: int, what: str) -> str:

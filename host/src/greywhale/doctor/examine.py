@@ -8,6 +8,7 @@ from pathlib import Path
 
 from greywhale.board.device import REPLY_WAIT_S, Device
 from greywhale.board.pots import read_counts, read_pots
+from greywhale.board.refusal import upper_first
 from greywhale.board.upload import read_parameters
 from greywhale.doctor import board, link, pots
 from greywhale.doctor.finding import Finding, Verdict
@@ -37,7 +38,7 @@ def examine(options: Options, report: Report = report_nothing) -> list[Finding]:
         with Device(options.port, restart=False) as device:
             found += _examine_board(device, options, report)
     except UserError as error:
-        found.append(Finding("board", Verdict.BAD, error.message[0].upper() + error.message[1:]))
+        found.append(Finding("board", Verdict.BAD, upper_first(error.message)))
     return found
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import stat
 
+from greywhale.board.refusal import upper_first
 from greywhale.doctor.finding import Finding, Verdict
 from greywhale.protocol.ports import find_ports, is_bench
 
@@ -49,7 +50,7 @@ def _permission_remedy(port: str) -> str:
     install = f"`greywhale udev | sudo tee {RULES_FILE}` lets whoever sits here open it (then plug the board in again)."
     group = group_of(port)
     if group in ("", "root"):
-        return install[0].upper() + install[1:]
+        return upper_first(install)
     return f"`sudo usermod -aG {group} $USER` and log in again; or {install}"
 
 

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from scipy.ndimage import median_filter, uniform_filter1d
 
 from greywhale.board.pots import POTS
-from greywhale.board.refusal import pot_name
+from greywhale.board.refusal import pot_name, upper_first
 from greywhale.doctor.finding import Finding, Verdict
 from greywhale.firmware import TICK_S
 
@@ -62,7 +62,7 @@ def look(counts: Floats) -> Quiet:
 
 def examine_pots(counts: Floats, rails: list[str]) -> list[Finding]:
     """Findings about counts (rows, 8), leader 0..3, follower 0..3; `rails` are the sentences about pots at a rail."""
-    findings = [Finding("rails", Verdict.BAD, told[0].upper() + told[1:]) for told in rails]
+    findings = [Finding("rails", Verdict.BAD, upper_first(told)) for told in rails]
     if not rails:
         findings.append(Finding("rails", Verdict.GOOD, "No potentiometer reads at a rail."))
     quiet = [look(counts[:, pot]) for pot in range(len(POTS))]
@@ -152,4 +152,4 @@ def _hum(rest: Floats, hertz: float) -> float:
 def _names(pots: list[int]) -> str:
     told = [pot_name(pot) for pot in pots]
     text = told[0] if len(told) == 1 else ", ".join(told[:-1]) + " and " + told[-1]
-    return text[0].upper() + text[1:]
+    return upper_first(text)
