@@ -64,6 +64,9 @@ class FakeBoard:
     def set_floating(self, inputs: int) -> None:
         self.events.append(f"floating {inputs:#x}")
 
+    def set_supply(self, millivolts: int, seed: int = 1) -> None:
+        self.events.append(f"supply {millivolts}")
+
     def run_until(self, cycle: int) -> int:
         self.cycle = cycle + 1  # the last instruction ends a little late, as on the real thing
         return self.result

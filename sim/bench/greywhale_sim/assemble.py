@@ -15,6 +15,7 @@ from greywhale.trajectory import human_reaches
 from greywhale_sim import eeprom_file
 from greywhale_sim.bench import SLICE_S, Bench, Plant
 from greywhale_sim.leader import LeaderPlayer
+from greywhale_sim.mistakes import stage
 from greywhale_sim.wiring import BOARDS, Wiring
 
 BUILDS = Path(__file__).resolve().parents[3] / "firmware" / ".pio" / "build"
@@ -31,6 +32,7 @@ class BenchOptions:
     blank: bool = False  # a board with nothing but its bootloader
     eeprom: Path | None = None  # file that keeps the EEPROM; None: forgotten at the end
     seed: int = 1  # of everything random
+    mistakes: tuple[str, ...] = ()  # staged from the beginning: NAME or NAME:PLACE
 
 
 def wiring_of(board: str) -> Wiring:
@@ -67,7 +69,7 @@ def build_bench(options: BenchOptions, plant: Plant | None = None) -> Bench:
     """The whole bench; `plant` may be any object with step(voltages, dt) -> angles instead of the built-in arm."""
     parameters = load_arm(options.arm or "default")
     motion = human_reaches(options.seed) if options.leader is None else load_leader(options.leader)
-    return Bench(
+    bench = Bench(
         board=build_board(options),
         wiring=wiring_of(options.board),
         plant=Arm(parameters, seed=options.seed) if plant is None else plant,
@@ -76,6 +78,9 @@ def build_bench(options: BenchOptions, plant: Plant | None = None) -> Bench:
         follower_pots=Potentiometers(parameters.follower_pots, options.seed + 1),
         supply_v=parameters.drive.supply,
     )
+    for mistake in options.mistakes:
+        stage(bench, mistake)
+    return bench
 
 
 def _firmware(options: BenchOptions, wiring: Wiring) -> Path:

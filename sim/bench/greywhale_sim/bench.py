@@ -15,8 +15,10 @@ import numpy.typing as npt
 
 from greywhale import arm
 from greywhale.errors import UserError
+from greywhale_sim.board_supply import SharedSupply
 from greywhale_sim.leader import LeaderPlayer
 from greywhale_sim.lies import Lies
+from greywhale_sim.pins_seen import PinsSeen
 from greywhale_sim.wiring import Wiring
 
 Array = npt.NDArray[np.float64]
@@ -44,6 +46,7 @@ class Board(Protocol):
     def outputs(self) -> Array: ...
     def set_millivolts(self, millivolts: Array) -> None: ...
     def set_floating(self, inputs: int) -> None: ...
+    def set_supply(self, millivolts: int, seed: int = 1) -> None: ...
     def run_until(self, cycle: int) -> int: ...
 
 
@@ -84,14 +87,16 @@ class Bench:
         self.wiring = wiring
         self.estop_pressed = False
         self.lies = Lies()
-        self.motor_signs = [1.0] * 4  # -1: both wires of a motor are swapped; 0: one is off
+        self.motor_gains = [1.0] * 4  # -1: both wires of a motor are swapped; 0: one is off; 0.2: it is weak
         self.motor_wires = [0, 1, 2, 3]  # which driver each motor is on
         self.floating = 0  # bit i: the wire of potentiometer i is off and nothing pulls its input
         self.plant = plant
         self.leader = leader
         self.leader_pots = leader_pots
         self.follower_pots = follower_pots
-        self.supply_v = supply_v
+        self.supply_v = self.own_supply_v = supply_v
+        self.shared_supply: SharedSupply | None = None  # None: the board has a supply of its own
+        self.seen = PinsSeen()
         self.voltages: Array = np.zeros(4)
         self.angles: Array = leader.home.copy()
         self.trace: Trace | None = None
@@ -123,9 +128,14 @@ class Bench:
             self.board.let_pin_go(pin.port, pin.bit)
         self.estop_pressed = pressed
 
-    def wire_motor(self, joint: int, sign: float, driver: int) -> None:
-        """Put a motor on a driver (0..3), the right way (1), the wrong way (-1) or with a wire off (0)."""
-        self.motor_signs[joint], self.motor_wires[joint] = sign, driver
+    def wire_motor(self, joint: int, gain: float, driver: int) -> None:
+        """Put a motor on a driver (0..3), the right way (1), the wrong way (-1) a wire off (0), or weak."""
+        self.motor_gains[joint], self.motor_wires[joint] = gain, driver
+        self._last_outputs = b""
+
+    def change_supply(self, volts: float) -> None:
+        """Give the motors another supply."""
+        self.supply_v = volts
         self._last_outputs = b""
 
     def let_float(self, pot: int, floats: bool) -> None:
@@ -166,6 +176,8 @@ class Bench:
             if self.lies.any:
                 self.lies.apply(millivolts)
             set_millivolts(millivolts)
+            if self.shared_supply is not None:
+                self.shared_supply.look(self.voltages)
             if run_until(target) == CRASHED:
                 raise CrashError(
                     f"the program on the simulated board crashed at address {board.pc:#07x}: {board.crash_reason}."
@@ -189,7 +201,8 @@ class Bench:
         self._last_outputs = pins.tobytes()
         enable, *values = pins.tolist()
         self._enabled = bool(enable)
+        self.seen.look(self.board.cycle, self._enabled, values[:4])
         supply = self.supply_v if enable else 0.0
         for joint, driver in enumerate(self.motor_wires):  # quicker than array arithmetic on so few numbers
-            volts = self.motor_signs[joint] * supply * values[driver]
+            volts = self.motor_gains[joint] * supply * values[driver]
             self.voltages[joint] = volts if values[driver + 4] else -volts
