@@ -20,12 +20,12 @@ from greywhale.protocol.ports import choose_port
 
 
 @click.command("match")
-@click.argument("arm", type=click.Path(path_type=Path))
+@click.argument("arm")
 @port_option
 @click.option("--out", "-o", type=click.Path(path_type=Path), default=Path("matched.toml"), show_default=True)
 @json_option
-def match(arm: Path, port: str | None, out: Path, as_json: bool) -> None:
-    """Write an arm file anew, with the potentiometers as the board is calibrated for them.
+def match(arm: str, port: str | None, out: Path, as_json: bool) -> None:
+    """Write an arm file, or one that comes with greywhale, with the potentiometers as the board is calibrated.
 
     After `greywhale calibrate`, commission and tune refuse an arm file that says other tracks or zeros than the board.
     """
@@ -36,7 +36,7 @@ def match(arm: Path, port: str | None, out: Path, as_json: bool) -> None:
     with Device(choose_port(port)) as device:
         table = read_parameters(device)
     found = with_board_pots(before, table)
-    write_text(out, arm_toml(found, f"Made by greywhale arm match from {arm.name}."))
+    write_text(out, arm_toml(found, f"Made by greywhale arm match from {Path(arm).name}."))
     facts = {
         "written": str(out),
         "track_deg": {

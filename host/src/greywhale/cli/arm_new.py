@@ -39,7 +39,7 @@ def new(answers: Path | None, out: Path, as_json: bool) -> None:
     given, left_out = read_answers(answers) if answers is not None else (collect(person), ())
     arm = assemble(given)
     found = summarise(arm)
-    text = "\n".join([*_table(arm, found), *_notes(out, found, left_out)])
+    text = "\n".join([*_table(arm, found), *_notes(found, left_out)])
     if answers is None:
         click.echo(f"\n{text}\n", err=True)
         person.confirm(f"Write {out}?")
@@ -90,16 +90,16 @@ def _table(arm: ArmParameters, found: Summary) -> list[str]:
     return lines
 
 
-def _notes(out: Path, found: Summary, left_out: tuple[str, ...]) -> list[str]:
+def _notes(found: Summary, left_out: tuple[str, ...]) -> list[str]:
     notes = [f"Warning: {warning}" for warning in found.warnings]
-    if advice := _advice(out, found):
+    if advice := _advice(found):
         notes.append(f"Before it moves: {advice}")
     if left_out:
         notes.append(f"Note: the file leaves out {len(left_out)} answers, taken as usual: {', '.join(left_out)}.")
     return ["", *notes] if notes else []
 
 
-def _advice(out: Path, found: Summary) -> str:
+def _advice(found: Summary) -> str:
     """What a board as shipped needs for an arm whose motors have much to hold; "" where it needs nothing."""
     hold = max(one.hold_v for one in found.joints)
     shipped = ParameterTable.defaults().physical("stall_volts")
@@ -107,8 +107,7 @@ def _advice(out: Path, found: Summary) -> str:
         return ""
     return (
         f"a joint needs {hold:.1f} V to hold still, and the board takes more than stall_volts ({shipped:g} V) without "
-        f"motion for a stall. Run `greywhale params set stall_volts={np.ceil(1.5 * hold):.0f}`, and let "
-        f"`greywhale tune {out} --force --out first.toml` make controllers that are stiff enough to begin with."
+        f"motion for a stall: run `greywhale params set stall_volts={np.ceil(1.5 * hold):.0f}`."
     )
 
 
@@ -128,6 +127,6 @@ def _facts(out: Path, found: Summary, left_out: tuple[str, ...]) -> dict[str, ob
         "mass_kg": round(found.mass, 6),
         "joints": joints,
         "warnings": list(found.warnings),
-        "before_it_moves": _advice(out, found),
+        "before_it_moves": _advice(found),
         "left_out": list(left_out),
     }
