@@ -6,7 +6,12 @@ from pathlib import Path
 
 import pytest
 
+<<<<<<< HEAD
 from greywhale_sim.wiring import BOARDS, Motor, Pin, Pwm, Wiring, markdown_table
+=======
+from greywhale_sim.wiring import BOARDS, Wiring, markdown_table
+from tools.wiring_pictures import IMAGES, PICTURES
+>>>>>>> yourarm
 
 ROOT = Path(__file__).resolve().parents[2]
 # Which compare output is on which Arduino pin, from the boards' own pin tables.
@@ -43,3 +48,21 @@ def test_pwm_pins_are_those_of_the_timers(wiring: Wiring) -> None:
 
 def test_readme_shows_this_table() -> None:
     assert markdown_table() in (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", PICTURES)
+def test_the_pictures_show_these_pins(name: str) -> None:
+    """If not: `python -m tools.wiring_pictures`."""
+    assert (IMAGES / name).read_text(encoding="utf-8") == PICTURES[name]().svg()
+
+
+def test_the_page_for_a_new_arm_shows_these_pins() -> None:
+    page = (ROOT / "docs" / "your-arm.md").read_text(encoding="utf-8")
+    boards = (BOARDS["mega"], BOARDS["nano"])
+    for name, of in (
+        ("PWM, motors 0 to 3", lambda one: one.pwm_arduino),
+        ("direction, motors 0 to 3", lambda one: one.direction.arduino),
+    ):
+        cells = [", ".join(of(motor) for motor in board.motors) for board in boards]
+        assert f"| {name} | {cells[0]} | {cells[1]} |" in page
+    assert f"| enable of all drivers | {boards[0].enable.arduino} | {boards[1].enable.arduino} |" in page

@@ -157,4 +157,4 @@ def test_a_set_that_is_not_whole_is_refused() -> None:
     with pytest.raises(UserError, match=r"94 values, but 93"):
         param_crc(DEFAULTS[:-1])
     with pytest.raises(UserError, match=r"195 bytes, but 194"):
-        unpack_parameters(bytes(193))
+        unpack_parameters(bytes(194))

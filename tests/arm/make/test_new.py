@@ -128,6 +128,18 @@ def test_a_motor_that_cannot_lift_the_arm_is_warned_of(tmp_path: Path, capsys: p
     assert lifts.startswith("joint 1 (shoulder pitch) cannot lift the arm: stretched out it needs ")
 
 
+def test_an_arm_that_is_heavy_for_its_motors_gets_advice_for_the_board(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    heavy = ANSWERS.replace("tip_g = 50", "tip_g = 200")
+    _, facts = ask(capsys, "--answers", written(tmp_path, heavy), "--out", str(tmp_path / "arm.toml"))
+    assert facts["joints"][1]["hold_v"] > 3.2
+    assert "params set stall_volts=" in facts["before_it_moves"]
+    _, light = ask(capsys, "--answers", written(tmp_path, ANSWERS.replace("tip_g = 50", "tip_g = 0")), "--out",
+                   str(tmp_path / "light.toml"))  # fmt: skip
+    assert light["joints"][1]["hold_v"] < facts["joints"][1]["hold_v"]
+
+
 def test_a_person_is_asked_again_with_the_reason(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

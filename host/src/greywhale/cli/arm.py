@@ -9,6 +9,7 @@ import numpy as np
 
 from greywhale.arm.from_urdf import Imported, import_urdf
 from greywhale.arm.parameters import JOINT_NAMES
+from greywhale.cli.arm_match import match
 from greywhale.cli.arm_new import new
 from greywhale.cli.output import json_option, show
 from greywhale.cli.record import require_folders
@@ -25,6 +26,7 @@ def command() -> None:
 
 
 command.add_command(new)
+command.add_command(match)
 
 
 @command.command("import")

@@ -17,6 +17,9 @@ from greywhale.cli.record import require_folders
 from greywhale.errors import UserError
 from greywhale.files.model import arm_toml
 from greywhale.formats.whole import refuse_existing, refuse_inputs, write_text
+from greywhale.table import ParameterTable
+
+MUCH_TO_HOLD = 0.6  # of stall_volts: the rest is for starting
 
 
 @click.command("new")
@@ -89,9 +92,23 @@ def _table(arm: ArmParameters, found: Summary) -> list[str]:
 
 def _notes(found: Summary, left_out: tuple[str, ...]) -> list[str]:
     notes = [f"Warning: {warning}" for warning in found.warnings]
+    if advice := _advice(found):
+        notes.append(f"Before it moves: {advice}")
     if left_out:
         notes.append(f"Note: the file leaves out {len(left_out)} answers, taken as usual: {', '.join(left_out)}.")
     return ["", *notes] if notes else []
+
+
+def _advice(found: Summary) -> str:
+    """What a board as shipped needs for an arm whose motors have much to hold; "" where it needs nothing."""
+    hold = max(one.hold_v for one in found.joints)
+    shipped = ParameterTable.defaults().physical("stall_volts")
+    if hold <= MUCH_TO_HOLD * shipped or any(one.share >= 1.0 for one in found.joints):
+        return ""
+    return (
+        f"a joint needs {hold:.1f} V to hold still, and the board takes more than stall_volts ({shipped:g} V) without "
+        f"motion for a stall: run `greywhale params set stall_volts={np.ceil(1.5 * hold):.0f}`."
+    )
 
 
 def _facts(out: Path, found: Summary, left_out: tuple[str, ...]) -> dict[str, object]:
@@ -100,6 +117,7 @@ def _facts(out: Path, found: Summary, left_out: tuple[str, ...]) -> dict[str, ob
             "gravity_nm": round(one.gravity, 6),
             "stall_nm": round(one.stall, 6),
             "no_load_speed_rad_s": round(one.no_load_speed, 6),
+            "hold_v": round(one.hold_v, 4),
             "holds_without_power": one.holds,
         }
         for one in found.joints
@@ -109,5 +127,6 @@ def _facts(out: Path, found: Summary, left_out: tuple[str, ...]) -> dict[str, ob
         "mass_kg": round(found.mass, 6),
         "joints": joints,
         "warnings": list(found.warnings),
+        "before_it_moves": _advice(found),
         "left_out": list(left_out),
     }

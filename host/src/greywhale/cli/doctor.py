@@ -63,4 +63,4 @@ def _summary(findings: list[Finding]) -> str:
     notes = sum(one.verdict is Verdict.NOTE for one in findings)
     if bad:
         return f"{bad} of {len(findings)} findings must be mended before the arm moves."
-    return f"Nothing must be mended{f'; {notes} notes' if notes else ''}."
+    return f"Nothing must be mended{f'; {notes} note' + 's' * (notes > 1) if notes else ''}."

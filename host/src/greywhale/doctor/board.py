@@ -39,7 +39,7 @@ def examine_hello(hello: schema.HelloReply, firmware_version: str) -> list[Findi
         source = Finding(
             "stored set",
             Verdict.NOTE,
-            "The board runs its built-in parameters: nothing valid is stored.",
+            "It started from its built-in parameters: nothing valid was stored then.",
             "Store some with `greywhale upload`, `greywhale params set` or `greywhale params restore`.",
         )
     else:

@@ -22,6 +22,7 @@ class JointSummary:
     gravity: float
     stall: float
     no_load_speed: float  # rad/s
+    hold_v: float  # V that hold the largest gravity torque
     holds: bool  # without power
 
     @property
@@ -49,7 +50,8 @@ def summarise(arm: ArmParameters) -> Summary:
 def _joint(arm: ArmParameters, joint: int, gravity: float) -> JointSummary:
     actuator, friction = arm.actuator(joint), arm.joint[joint].friction
     stall = actuator.torque_per_volt * arm.drive.supply - friction.coulomb
-    return JointSummary(gravity, stall, stall / actuator.damping, friction.breakaway >= gravity)
+    hold = gravity / actuator.torque_per_volt
+    return JointSummary(gravity, stall, stall / actuator.damping, hold, friction.breakaway >= gravity)
 
 
 def _warnings(arm: ArmParameters, joint: int, one: JointSummary) -> list[str]:
