@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-<<<<<<< HEAD
 from greywhale_sim.wiring import BOARDS, Motor, Pin, Pwm, Wiring, markdown_table
-=======
-from greywhale_sim.wiring import BOARDS, Wiring, markdown_table
 from tools.wiring_pictures import IMAGES, PICTURES
->>>>>>> yourarm
 
 ROOT = Path(__file__).resolve().parents[2]
 # Which compare output is on which Arduino pin, from the boards' own pin tables.
@@ -59,10 +56,16 @@ def test_the_pictures_show_these_pins(name: str) -> None:
 def test_the_page_for_a_new_arm_shows_these_pins() -> None:
     page = (ROOT / "docs" / "your-arm.md").read_text(encoding="utf-8")
     boards = (BOARDS["mega"], BOARDS["nano"])
-    for name, of in (
-        ("PWM, motors 0 to 3", lambda one: one.pwm_arduino),
-        ("direction, motors 0 to 3", lambda one: one.direction.arduino),
-    ):
-        cells = [", ".join(of(motor) for motor in board.motors) for board in boards]
+    rows: tuple[tuple[str, Callable[[Motor], str]], ...] = (
+        ("PWM, motors 0 to 3", lambda motor: motor.pwm.arduino),
+        ("direction, motors 0 to 3", lambda motor: motor.direction.arduino),
+    )
+    for name, pin in rows:
+        cells = [", ".join(map(pin, board.motors)) for board in boards]
         assert f"| {name} | {cells[0]} | {cells[1]} |" in page
+    for number, motor in enumerate(boards[0].motors):
+        assert motor.second_pwm is not None
+        assert motor.second_direction is not None
+        both = f"{motor.pwm.arduino}, {motor.direction.arduino}, {motor.second_direction.arduino}"
+        assert f"| {number} | {both} | {motor.pwm.arduino}, {motor.second_pwm.arduino} |" in page
     assert f"| enable of all drivers | {boards[0].enable.arduino} | {boards[1].enable.arduino} |" in page
