@@ -71,14 +71,13 @@ def examine_motor(device: Device, table: ParameterTable, joint: int) -> Motor:
         volts = share * table.supply_v
         weak = pulse_table(table, joint, volts)
         try:
-            forward, backward = pulse(device, weak, joint, 1), pulse(device, weak, joint, -1)
+            way = _answer(device, weak, joint)
         except RestartedError as error:
             raise UserError(
                 f"{device.port}: the board restarted while the motor of joint {joint} was driven with {volts:.1f} V "
                 f"({error.cause}): its supply sinks when a motor draws. Give the motors a supply of their own, with a "
                 "common ground, and 1000 uF or more at the drivers, and begin anew."
             ) from None
-        way = (forward.moved - backward.moved) / 2.0
         farthest = int(np.argmax(np.abs(way)))
         if abs(way[farthest]) < LEAST_RAD:
             continue
@@ -94,6 +93,25 @@ def examine_motor(device: Device, table: ParameterTable, joint: int) -> Motor:
         "that the motors' supply is on, the driver's enable, PWM and direction wires, the motor's own wires, and that "
         "the joint moves freely."
     )
+
+
+def _answer(device: Device, weak: ParameterTable, joint: int) -> Floats:
+    """Half of what lies between pulses one way and the other, (4,) rad; 0 where two tries do not agree.
+
+    An arm that falls when nobody holds it falls in one pulse and lies still in the next. So the second try has the
+    other order, and the smaller of both counts.
+    """
+    once = _between(device, weak, joint, 1)
+    if np.abs(once).max() < LEAST_RAD:
+        return once
+    again = -_between(device, weak, joint, -1)
+    return np.where(once * again > 0.0, np.sign(once) * np.minimum(np.abs(once), np.abs(again)), 0.0)
+
+
+def _between(device: Device, weak: ParameterTable, joint: int, way: int) -> Floats:
+    one, other = pulse(device, weak, joint, way), pulse(device, weak, joint, -way)
+    half: Floats = (one.moved - other.moved) / 2.0
+    return half
 
 
 def remarks(motors: Sequence[Motor], supply_v: float) -> tuple[str, ...]:

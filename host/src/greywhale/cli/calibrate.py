@@ -78,7 +78,10 @@ def command(
             person.wait()
         parameter_file.save(backup, result.before)
         upload_set(device, result.after)
-    undo = f"Stored. To undo: greywhale params restore {backup}"
+    undo = (
+        f"Stored. To undo: greywhale params restore {backup}\n"
+        "An arm file needs these potentiometers too: greywhale arm match arm.toml"
+    )
     show(as_json, _facts(device.port, result, backup), f"{text}\n\n{undo}" if yes else undo)
 
 
