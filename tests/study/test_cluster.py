@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
-import subprocess
 import sys
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -27,52 +24,7 @@ from greywhale.study import (
     run_study,
 )
 from tests.study import jobs
-
-ROOT = Path(__file__).parents[2]
-
-
-@dataclass
-class Cluster:
-    """A scheduler and its workers, each a process of its own."""
-
-    address: str
-    scheduler: subprocess.Popen[str]
-    workers: list[subprocess.Popen[str]]
-
-
-def begin(module: str, *options: str, **settings: str) -> subprocess.Popen[str]:
-    command = [sys.executable, "-m", f"distributed.cli.{module}", *options, "--no-dashboard"]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT), **settings}
-    return subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=environment)
-
-
-def wait_for(process: subprocess.Popen[str], words: str) -> str:
-    """The line of a process's messages that holds these words."""
-    assert process.stderr is not None
-    for line in process.stderr:
-        if words in line:
-            return line
-    raise AssertionError(f"it ended before it said {words!r}")
-
-
-@contextlib.contextmanager
-def cluster_of(workers: int, **settings: str) -> Iterator[Cluster]:
-    with contextlib.ExitStack() as stack:
-        scheduler = begin("dask_scheduler", "--host", "127.0.0.1", "--port", "0", **settings)
-        stack.callback(end, scheduler)
-        address = wait_for(scheduler, "Scheduler at:").rpartition("tcp://")[2].strip()
-        running = []
-        for _ in range(workers):
-            running.append(begin("dask_worker", f"tcp://{address}", "--nthreads", "1", "--no-nanny"))
-            stack.callback(end, running[-1])
-        for worker in running:
-            wait_for(worker, "Registered to:")
-        yield Cluster(address, scheduler, running)
-
-
-def end(process: subprocess.Popen[str]) -> None:
-    process.kill()
-    process.communicate()
+from tests.study.cluster import cluster_of
 
 
 @pytest.mark.slow
@@ -138,7 +90,9 @@ def test_a_scheduler_that_goes_away_ends_the_study_with_a_sentence(tmp_path: Pat
 
         with pytest.raises(UserError, match=f"{cluster.address}: no Dask scheduler answers there") as error:
             run_study(tasks, DaskWorkers(cluster.address, wait_s=1.0), tmp_path / "r", go)
-    assert error.value.__notes__ == [f"2 of 3 tasks are done and kept in {tmp_path / 'r'}."]
+    assert error.value.__notes__ == [
+        f"2 of 3 tasks are done and kept in {tmp_path / 'r'}; with it the same study goes on."
+    ]
     assert list(run_study(tasks, SerialWorkers(), tmp_path / "r")) == ["note 0", "note 1", "long"]
     assert jobs.done(tmp_path) == [0, 1]
 

@@ -81,7 +81,8 @@ class SlurmWorkers:
         chosen = {key: dask.config.get(f"jobqueue.slurm.{key}", None) or value for key, value in JOB.items()}
         if self.partition is not None:
             chosen["queue"] = self.partition
-        return self._jobqueue.SLURMCluster(**chosen, scheduler_options={"dashboard": False})
+        # Several studies may run here, so any free port will do for the dashboard.
+        return self._jobqueue.SLURMCluster(**chosen, scheduler_options={"dashboard_address": ":0"})
 
 
 def _package(name: str, extra: str) -> ModuleType:
