@@ -6,7 +6,7 @@ import contextlib
 import os
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -22,10 +22,15 @@ class Cluster:
     workers: list[subprocess.Popen[str]]
 
 
-def begin(module: str, *options: str, **settings: str) -> subprocess.Popen[str]:
-    command = [sys.executable, "-m", f"distributed.cli.{module}", *options, "--no-dashboard"]
+def begin(module: str, *options: str, python: Sequence[str] = (), **settings: str) -> subprocess.Popen[str]:
+    command = [sys.executable, *python, "-m", f"distributed.cli.{module}", *options, "--no-dashboard"]
     environment = {**os.environ, "PYTHONPATH": str(ROOT), **settings}
     return subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=environment)
+
+
+def begin_worker(address: str, python: Sequence[str] = (), **settings: str) -> subprocess.Popen[str]:
+    options = (f"tcp://{address}", "--nthreads", "1", "--no-nanny")
+    return begin("dask_worker", *options, python=python, **settings)
 
 
 def wait_for(process: subprocess.Popen[str], words: str) -> str:
@@ -45,7 +50,7 @@ def cluster_of(workers: int, **settings: str) -> Iterator[Cluster]:
         address = wait_for(scheduler, "Scheduler at:").rpartition("tcp://")[2].strip()
         running = []
         for _ in range(workers):
-            running.append(begin("dask_worker", f"tcp://{address}", "--nthreads", "1", "--no-nanny"))
+            running.append(begin_worker(address))
             stack.callback(end, running[-1])
         for worker in running:
             wait_for(worker, "Registered to:")

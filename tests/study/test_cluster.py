@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import os
 import sys
+import sysconfig
 from collections.abc import Iterator
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 import pytest
@@ -24,7 +26,7 @@ from greywhale.study import (
     run_study,
 )
 from tests.study import jobs
-from tests.study.cluster import cluster_of
+from tests.study.cluster import begin_worker, cluster_of, end, wait_for
 
 
 @pytest.mark.slow
@@ -100,6 +102,38 @@ def test_a_scheduler_that_goes_away_ends_the_study_with_a_sentence(tmp_path: Pat
 def test_a_scheduler_that_is_not_there() -> None:
     with pytest.raises(UserError, match="^127.0.0.1:1: no Dask scheduler answers there"):
         run_study(jobs.draws(1), DaskWorkers("127.0.0.1:1", wait_s=1.0))
+
+
+@pytest.mark.slow
+def test_a_worker_without_greywhale_is_named_before_it_gets_a_task(tmp_path: Path) -> None:
+    """It would end without a word when it gets one. Here it sees all packages of this environment but that one."""
+    for entry in Path(sysconfig.get_path("purelib")).iterdir():
+        if "greywhale" not in entry.name:
+            (tmp_path / entry.name).symlink_to(entry)
+    with cluster_of(0) as cluster:
+        worker = begin_worker(cluster.address, python=["-S"], PYTHONPATH=str(tmp_path))
+        try:
+            wait_for(worker, "Registered to:")
+            sentence = r"the worker tcp://\S+ has no greywhale; install greywhale \S+ there\."
+            with pytest.raises(UserError, match=sentence):
+                run_study(jobs.draws(1), DaskWorkers(cluster.address))
+        finally:
+            end(worker)
+
+
+@pytest.mark.slow
+def test_a_worker_that_cannot_import_a_task_says_so(dask: DaskWorkers, monkeypatch: pytest.MonkeyPatch) -> None:
+    only_here = ModuleType("only_here")
+    monkeypatch.setitem(sys.modules, "only_here", only_here)
+    exec("def job(seed): return seed", vars(only_here))
+    with pytest.raises(UserError, match="a worker cannot import what the study does: No module named 'only_here'"):
+        run_study([Task("x", only_here.job, 0)], dask)
+
+
+def test_slurm_is_asked_for_only_where_it_is(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(UserError, match="sbatch was not found; begin the study on a machine that submits jobs"):
+        run_study(jobs.draws(1), SlurmWorkers("normal"))
 
 
 def test_slurm_would_be_given_jobs_of_the_partition() -> None:

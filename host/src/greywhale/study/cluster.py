@@ -5,12 +5,15 @@ from __future__ import annotations
 import contextlib
 import importlib
 import logging
+import shutil
 from collections.abc import Iterator
 from concurrent.futures import BrokenExecutor, Executor
+from importlib.metadata import PackageNotFoundError, version
 from types import ModuleType
 from typing import Any
 
 from greywhale.errors import BAD_USAGE, UserError
+from greywhale.study.task import versions
 
 # What a job gets where the user's own jobqueue.yaml does not say.
 JOB: dict[str, Any] = {"cores": 1, "processes": 1, "memory": "2GB"}
@@ -33,6 +36,7 @@ class DaskWorkers:
     @contextlib.contextmanager
     def executor(self) -> Iterator[Executor]:
         with _quiet(), self._client() as client:
+            self._require_same_versions(client)
             # Not pure: a task that is tried again must not be answered with its last error.
             yield client.get_executor(pure=False)
 
@@ -46,6 +50,18 @@ class DaskWorkers:
             return self._distributed.Client(f"tcp://{self.address}", timeout=self._wait_s, set_as_default=False)
         except (OSError, ValueError):
             raise UserError(f"{self.address}: no Dask scheduler answers there.") from None
+
+    def _require_same_versions(self, client: Any) -> None:
+        """Every task asks for them too, but a worker without greywhale ends when it gets one, and says nothing."""
+        for package, wanted in versions().items():
+            for worker, found in client.run(version, package, on_error="return").items():
+                if isinstance(found, PackageNotFoundError):
+                    raise UserError(f"the worker {worker} has no {package}; install {package} {wanted} there.")
+                if isinstance(found, str) and found != wanted:
+                    raise UserError(
+                        f"the worker {worker} has {package} {found}, but this study needs {wanted}; install the same "
+                        "there."
+                    )
 
 
 class SlurmWorkers:
@@ -64,6 +80,8 @@ class SlurmWorkers:
 
     @contextlib.contextmanager
     def executor(self) -> Iterator[Executor]:
+        if shutil.which("sbatch") is None:
+            raise UserError("sbatch was not found; begin the study on a machine that submits jobs to Slurm.")
         with _quiet(), self.cluster() as cluster:
             cluster.scale(jobs=self.jobs)
             with self._distributed.Client(cluster, set_as_default=False) as client:

@@ -60,7 +60,10 @@ class TaskFailed(Exception):
 
 def do(packed: bytes) -> str:
     """In a worker: do a task. What it returned, as JSON."""
-    key, function, seed, arguments, process, wanted = pickle.loads(packed)
+    try:
+        key, function, seed, arguments, process, wanted = pickle.loads(packed)
+    except (ImportError, AttributeError) as error:
+        raise UserError(f"a worker cannot import what the study does: {error}; install the same there.") from None
     # Sums in several threads may have other last bits; and the other processors have workers of their own.
     limits = threadpool_limits(limits=1, user_api="blas")
     try:
