@@ -8,8 +8,8 @@ from __future__ import annotations
 import re
 import tempfile
 from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -18,9 +18,11 @@ from greywhale.demo import BenchProcess, record_motion
 from greywhale.files.arm import default_arm
 from greywhale.files.leader import save_leader
 from greywhale.measure import evaluate
+from greywhale.study import Task
 from greywhale.trajectory import human_reaches
 from tools.bench.figure import Figure
 from tools.bench.hands import SECOND_DEG, Hands, bench_of, mounted_anyhow, run_calibrate
+from tools.bench.study import repeat
 
 ASSEMBLIES = 20
 WORKERS = 2
@@ -104,7 +106,7 @@ def assembled(seed: int) -> float:
         return error_of(bench, Path(name)) if done.code == 0 else np.inf
 
 
-def is_named(number: int, seed: int) -> bool:
+def is_named(seed: int, number: int) -> bool:
     """Whether a mistake of a random assembly is named, at the first try, and nothing is stored."""
     mistake, joint = MISTAKES[number], (seed + number) % 4
     with tempfile.TemporaryDirectory() as name, bench_of(mounted_anyhow(seed), Path(name)) as bench:
@@ -119,9 +121,13 @@ def run() -> list[Figure]:
     with tempfile.TemporaryDirectory() as name, bench_of(default_arm(), Path(name)) as bench:
         usual = error_of(bench, Path(name))
     seeds = range(1, ASSEMBLIES + 1)
-    with ProcessPoolExecutor(WORKERS) as pool:
-        ratios = np.array(list(pool.map(assembled, seeds))) / usual
-        named = [sum(pool.map(is_named, [number] * ASSEMBLIES, seeds)) for number in range(len(MISTAKES))]
+    tries = [
+        [Task(f"{seed}, {one.name}", is_named, seed, {"number": n}) for seed in seeds] for n, one in enumerate(MISTAKES)
+    ]
+    tasks = [Task(f"{seed}", assembled, seed) for seed in seeds]
+    found = repeat("calibrate", [*tasks, *chain(*tries)], WORKERS)
+    ratios = np.array([found[task.key] for task in tasks]) / usual
+    named = [sum(found[task.key] for task in of_mistake) for of_mistake in tries]
     apart = float(np.abs(ratios - 1.0).max())
     return [
         Figure("error of 20 assemblies / calibrated bench, farthest from 1", apart, "", f"<= {LIKE}", apart <= LIKE),
