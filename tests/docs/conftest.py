@@ -15,18 +15,22 @@ import greywhale.demo
 from greywhale.arm.export import urdf
 from greywhale.cli import identify as identify_verb
 from greywhale.cli import tune as tune_verb
-from greywhale.commission import Options
+from greywhale.commission import Options, campaign, learn
+from greywhale.commission.book import Book
+from greywhale.commission.learn import Learnt
+from greywhale.commission.search import KI, KP
 from greywhale.demo import BenchProcess, DemoOptions
 from greywhale.files import parameter_file
-from greywhale.files.arm import content_of, load_arm
+from greywhale.files.arm import content_of, default_arm, load_arm
 from greywhale.files.leader import save_leader
 from greywhale.files.log import read_log
 from greywhale.identify import identify
 from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory
 from greywhale.tune import tune
-from greywhale.tune.model import load_model
+from greywhale.tune.model import Model, load_model
 from greywhale_sim import serve as bench_serve
+from tests.commission.simulated import SimulatedRig
 from tests.docs.running import Once, run
 from tests.tune.models import write_model
 from tools.bench.recordings import TABLES, random_arm, record_three, table_of
@@ -100,18 +104,23 @@ def tuned(yours: Path) -> Once:
 
 
 @pytest.fixture(scope="session")
-def commissioned(yours: Path, bench: BenchProcess, tmp_path_factory: pytest.TempPathFactory) -> Once:
-    """One round of one trial on the bench, really."""
+def commissioned(yours: Path, tmp_path_factory: pytest.TempPathFactory) -> Once:
+    """One round on an arm that the native loop simulates; the controllers to try are found at once."""
     real = greywhale.commission.commission
-    out = tmp_path_factory.mktemp("commission")
-    options = Options(
-        port=bench.port, out=out, model=yours / "model.toml", rounds=1, trials=1, budget=4, threads=1, ranges={}
-    )
+    out = tmp_path_factory.mktemp("commission") / "out"
+    rig = SimulatedRig(default_arm())
+
+    def find(book: Book, name: str, model: Model, start: np.ndarray, **options: object) -> Learnt:
+        rows = start.copy()
+        rows[:, [KP, KI]] *= 2
+        book.note(name, {})
+        return Learnt(model.arm, rows, (), True)
 
     def compute() -> Any:
-        restored = run(["params", "restore", str(yours / "board.toml"), "--port", bench.port])
-        assert restored.code == 0, restored.err
-        return real(options, None)
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(campaign, "connected", rig.connected)
+            patch.setattr(learn, "find_controllers", find)
+            return real(Options(port="port", out=out, model=yours / "model.toml", rounds=1, trials=1, budget=4), None)
 
     return Once(compute)
 
