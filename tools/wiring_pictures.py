@@ -164,68 +164,75 @@ def potentiometer() -> Picture:
     return drawn
 
 
-def pwm_direction() -> Picture:
-    """A driver with PWM, direction and enable, and the pull-down that keeps it off while the board starts."""
-    motor = MEGA.motors[0]
-    drawn = Picture(760, 330, "A driver with PWM, direction and enable inputs")
-    drawn.box(20, 60, 150, 190, "Arduino\nMega 2560")
-    drawn.box(400, 60, 150, 190, "driver of\nmotor 0")
-    rows = (
-        (90, motor.pwm_arduino, "PWM"),
-        (140, motor.direction.arduino, "DIR (PHASE)"),
-        (190, MEGA.enable.arduino, "EN (nSLEEP)"),
-        (240, "GND", "GND"),
-    )
-    for y, pin, name in rows:
-        colour = GROUND if pin == "GND" else SIGNAL
-        drawn.wire([(170, y), (400, y)], colour)
+def driver(title: str, signals: Sequence[tuple[str, str]], enable: str, note: str = "") -> Picture:
+    """A driver beside the board: pins and the driver's names for them; a pull-down keeps its enable input low."""
+    wires = [*signals, ("GND", "GND"), (MEGA.enable.arduino, enable)]
+    last = 90 + 45 * (len(wires) - 1)
+    drawn = Picture(800, last + (150 if note else 125), title)
+    drawn.box(20, 60, 150, last, "Arduino\nMega 2560")
+    drawn.box(440, 60, 150, last, "driver of\nmotor 0")
+    for number, (pin, name) in enumerate(wires):
+        y, colour = 90 + 45 * number, GROUND if pin == "GND" else SIGNAL
+        drawn.wire([(170, y), (440, y)], colour)
         drawn.text(178, y - 6, pin, "start", colour)
-        drawn.text(392, y - 6, name, "end", colour)
-    drawn.dot(240, 190, SIGNAL)
-    drawn.wire([(240, 190), (240, 250)], SIGNAL)
-    drawn.resistor(240, 250, "10 k, once for all drivers")
-    drawn.ground(240, 290)
-    drawn.dot(290, 190, SIGNAL)
-    drawn.wire([(290, 190), (290, 215)], SIGNAL)
-    drawn.text(296, 214, "other drivers", "start", SIGNAL)
-    drawn.box(640, 110, 90, 90, "motor 0", "#eafaf1")
-    drawn.wire([(550, 130), (640, 130)], POWER, 3)
-    drawn.wire([(550, 180), (640, 180)], POWER, 3)
-    drawn.text(470, 30, "supply, behind fuse and emergency stop", "middle", POWER)
-    drawn.wire([(470, 36), (470, 60)], POWER, 3)
+        drawn.text(432, y - 6, name, "end", colour)
+    drawn.dot(220, last, SIGNAL)
+    drawn.wire([(220, last), (220, last + 50)], SIGNAL)
+    drawn.resistor(220, last + 50, "10 k, once for all drivers")
+    drawn.ground(220, last + 90)
+    drawn.dot(300, last, SIGNAL)
+    drawn.wire([(300, last), (300, last + 35)], SIGNAL)
+    drawn.text(308, last + 28, "other drivers", "start", SIGNAL)
+    drawn.box(680, 110, 90, 90, "motor 0", "#eafaf1")
+    drawn.wire([(590, 130), (680, 130)], POWER, 3)
+    drawn.wire([(590, 180), (680, 180)], POWER, 3)
+    drawn.text(510, 30, "supply, behind fuse and emergency stop", "middle", POWER)
+    drawn.wire([(510, 36), (510, 60)], POWER, 3)
+    drawn.text(20, last + 138, note)
     return drawn
 
 
-def gated() -> Picture:
-    """A driver without an enable input: a gate lets the PWM through only while the board enables."""
-    drawn = Picture(760, 330, "A driver without an enable input, behind an AND gate")
-    drawn.box(20, 60, 150, 190, "Arduino\nMega 2560")
-    drawn.box(300, 70, 110, 90, "1 of 4 in a\n74HC08 (AND)", "#fef9e7")
-    drawn.box(520, 60, 150, 190, "driver without\nenable input")
+def pwm_direction() -> Picture:
+    """PWM and direction."""
     motor = MEGA.motors[0]
-    for y, pin in ((90, motor.pwm_arduino), (140, MEGA.enable.arduino)):
-        drawn.wire([(170, y), (300, y)], SIGNAL)
-        drawn.text(178, y - 6, pin, "start", SIGNAL)
-    drawn.wire([(410, 115), (520, 115)], SIGNAL)
-    drawn.text(512, 108, "PWM", "end", SIGNAL)
-    drawn.wire([(170, 190), (520, 190)], SIGNAL)
-    drawn.text(178, 184, motor.direction.arduino, "start", SIGNAL)
-    drawn.text(512, 184, "DIR", "end", SIGNAL)
-    drawn.wire([(170, 235), (520, 235)], GROUND)
-    drawn.text(178, 229, "GND", "start", GROUND)
-    drawn.text(512, 229, "GND", "end", GROUND)
-    drawn.dot(225, 140, SIGNAL)
-    drawn.wire([(225, 140), (225, 250)], SIGNAL)
-    drawn.resistor(225, 250, "10 k, once for all four gates")
-    drawn.ground(225, 290)
-    return drawn
+    rows = (
+        (motor.pwm.arduino, "PWM"),
+        (motor.direction.arduino, "DIR (PHASE)"),
+    )
+    note = "A driver without an enable input needs no such wire."
+    return driver("A driver with PWM and direction: driver = 0", rows, "EN (nSLEEP)", note)
+
+
+def two_directions() -> Picture:
+    """PWM and two directions."""
+    motor = MEGA.motors[0]
+    assert motor.second_direction is not None
+    rows = (
+        (motor.pwm.arduino, "PWM (ENA)"),
+        (motor.direction.arduino, "IN1"),
+        (motor.second_direction.arduino, "IN2"),
+    )
+    return driver("A driver with PWM, IN1 and IN2: driver = 1", rows, "STBY", "An L298N has no such input.")
+
+
+def two_pwm() -> Picture:
+    """Two PWM inputs."""
+    motor = MEGA.motors[0]
+    assert motor.second_pwm is not None
+    rows = (
+        (motor.pwm.arduino, "IN1 (RPWM)"),
+        (motor.second_pwm.arduino, "IN2 (LPWM)"),
+    )
+    note = "nSLEEP of a DRV8833; R_EN and L_EN of a BTS7960. A DRV8871 has no such input."
+    return driver("A driver with two PWM inputs: driver = 2 or 3", rows, "enable", note)
 
 
 PICTURES = {
     "wiring-power.svg": power,
     "wiring-potentiometer.svg": potentiometer,
     "wiring-pwm-direction.svg": pwm_direction,
-    "wiring-gated.svg": gated,
+    "wiring-two-directions.svg": two_directions,
+    "wiring-two-pwm.svg": two_pwm,
 }
 
 

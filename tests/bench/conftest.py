@@ -33,7 +33,7 @@ class FakeBoard:
     result: int = 0
     crash_reason: str = "a write to nowhere"
     registered: list[tuple[object, ...]] = field(default_factory=list)
-    pins: np.ndarray = field(default_factory=lambda: np.zeros(9))
+    pins: np.ndarray = field(default_factory=lambda: np.zeros(17))
     millivolts: list[np.ndarray] = field(default_factory=list)
     received: bytearray = field(default_factory=bytearray)  # from the host
     to_send: bytearray = field(default_factory=bytearray)  # to the host

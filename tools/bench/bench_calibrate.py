@@ -9,7 +9,7 @@ import re
 import subprocess
 import sys
 import tempfile
-from concurrent.futures import ProcessPoolExecutor
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -19,10 +19,12 @@ from greywhale.demo import BenchProcess, record_motion
 from greywhale.files.arm import default_arm
 from greywhale.files.leader import save_leader
 from greywhale.measure import evaluate
+from greywhale.study import Task
 from greywhale.trajectory import human_reaches
 from greywhale_sim.mistakes import BY_NAME, MISTAKES, WHERE
 from tools.bench.figure import Figure
 from tools.bench.hands import SECOND_DEG, Hands, bench_of, mounted_anyhow, run_calibrate
+from tools.bench.study import repeat
 
 ASSEMBLIES = 20
 WORKERS = 2
@@ -46,7 +48,7 @@ def assembled(seed: int) -> float:
         return error_of(bench, Path(name)) if done.code == 0 else np.inf
 
 
-def is_named(name: str, seed: int) -> bool:
+def is_named(seed: int, name: str) -> bool:
     """Whether its verb names a mistake of a random assembly, at the first try, and stores nothing it should not."""
     mistake = BY_NAME[name]
     places = WHERE[mistake.on]
@@ -71,9 +73,11 @@ def run() -> list[Figure]:
     with tempfile.TemporaryDirectory() as name, bench_of(default_arm(), Path(name)) as bench:
         usual = error_of(bench, Path(name))
     seeds = range(1, ASSEMBLIES + 1)
-    with ProcessPoolExecutor(WORKERS) as pool:
-        ratios = np.array(list(pool.map(assembled, seeds))) / usual
-        named = [sum(pool.map(is_named, [one.name] * ASSEMBLIES, seeds)) for one in MISTAKES]
+    tries = [[Task(f"{seed}, {one.name}", is_named, seed, {"name": one.name}) for seed in seeds] for one in MISTAKES]
+    tasks = [Task(f"{seed}", assembled, seed) for seed in seeds]
+    found = repeat("calibrate", [*tasks, *chain(*tries)], WORKERS)
+    ratios = np.array([found[task.key] for task in tasks]) / usual
+    named = [sum(found[task.key] for task in of_mistake) for of_mistake in tries]
     apart = float(np.abs(ratios - 1.0).max())
     return [
         Figure("error of 20 assemblies / calibrated bench, farthest from 1", apart, "", f"<= {LIKE}", apart <= LIKE),

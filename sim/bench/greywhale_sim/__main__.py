@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 from greywhale.errors import UserError
+from greywhale_sim.drivers import CHIPS
 from greywhale_sim.mistakes import listed
 from greywhale_sim.serve import ServeOptions, serve
 from greywhale_sim.wiring import BOARDS
@@ -22,6 +23,7 @@ def parser() -> argparse.ArgumentParser:
         "--leader", type=Path, metavar="FILE.csv", help="the leader's motion (default: generated reaches)"
     )
     text.add_argument("--arm", type=Path, metavar="FILE.toml", help="the follower arm (default: the built-in one)")
+    text.add_argument("--driver", choices=list(CHIPS), default="drv8838", help="the motor drivers' chip")
     text.add_argument("--speed", choices=("1", "max"), default="1", help="real time, or as fast as possible")
     text.add_argument(
         "--firmware",

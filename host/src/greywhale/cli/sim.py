@@ -15,6 +15,7 @@ from greywhale.cli.output import json_option, show
 @click.option("--board", type=click.Choice(["mega", "nano"]), default="mega", show_default=True, help="The board.")
 @click.option("--leader", type=click.Path(path_type=Path), help="CSV with the leader's motion.")
 @click.option("--arm", type=click.Path(path_type=Path), help="TOML with the arm; without it, the built-in one.")
+@click.option("--driver", default="drv8838", show_default=True, help="The motor drivers' chip; a wrong name lists all.")
 @click.option("--speed", type=click.Choice(["1", "max"]), default="1", show_default=True, help="Real time or faster.")
 @click.option("--eeprom", type=click.Path(path_type=Path), help="File that keeps the EEPROM between starts.")
 @click.option("--firmware", type=click.Path(path_type=Path), help="HEX file to start with, as if flashed.")
@@ -27,6 +28,7 @@ def command(
     board: str,
     leader: Path | None,
     arm: Path | None,
+    driver: str,
     speed: str,
     eeprom: Path | None,
     firmware: Path | None,
@@ -44,6 +46,7 @@ def command(
         board=board,
         leader=leader,
         arm=arm,
+        driver=driver,
         speed=speed,
         eeprom=eeprom,
         blank=blank,
