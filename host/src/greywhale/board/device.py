@@ -46,6 +46,17 @@ class NoAnswerError(UserError):
     """The board stayed silent through all repeats of a request."""
 
 
+class RestartedError(UserError):
+    """The board restarted in the middle; its motors are off, and it runs its stored set. `cause` is in words."""
+
+    def __init__(self, port: str, cause: str) -> None:
+        super().__init__(
+            f"{port}: the board restarted in the middle ({cause}) and its motors are off; check its supply and try "
+            "again."
+        )
+        self.cause = cause
+
+
 class Device:
     """An open and greeted board. Leaving the context, for whatever reason, stops the motors if they may be on."""
 
@@ -290,10 +301,7 @@ class Device:
         if self._started is not None and self._greeted:
             self._motors_may_run = False
             cause = schema.HelloReply.unpack(self._started).reset_cause
-            raise UserError(
-                f"{self.port}: the board restarted in the middle ({cause.description}) and its motors are off; "
-                "check its supply and try again."
-            )
+            raise RestartedError(self.port, cause.description)
 
     def _unconfirmed_stop(self) -> str:
         if self.lease_ms:

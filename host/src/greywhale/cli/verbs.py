@@ -28,7 +28,7 @@ VERBS = {
     "commission": ("commission", "Identify, tune and prove the controllers on the connected arm itself."),
     "identify": ("identify", "Find the arm that made a log: a model with its uncertainties."),
     "tune": ("tune", "Find controllers for a model: a controller.toml for upload."),
-    "arm": ("arm", "Make an arm.toml from a URDF."),
+    "arm": ("arm", "Make an arm.toml: from a ruler, a scale and data sheets, or from a URDF."),
     "export": ("export", "Write a controller as .fis (MATLAB), an arm as URDF or MJCF."),
     "compare": ("compare", "Compare optimisers at equal budgets, over many seeds."),
 }
