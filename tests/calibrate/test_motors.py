@@ -147,7 +147,8 @@ def test_a_joint_that_falls_in_one_pulse_is_not_taken_for_one_that_the_motor_mov
     monkeypatch.setattr("greywhale.calibrate.motors.pulse", scripted)
     device: Any = SimpleNamespace(port="port")
     found = examine_motor(device, table, 0)
-    assert (found.sign, found.volts) == (1, pytest.approx(0.25 * table.supply_v))
+    assert found.sign == 1
+    assert found.volts == pytest.approx(0.25 * table.supply_v)
     pulses = iter(range(1000))
     with pytest.raises(UserError, match="the motor of joint 1 did not move it"):
         examine_motor(device, table, 1)
