@@ -25,7 +25,8 @@ ALLOWED = {
     "files": {"arm", "errors", "firmware", "formats", "protocol", "table", "trajectory"},
     "board": {"errors", "files", "firmware", "formats", "protocol", "runtime", "table", "trajectory"},
     "loop": {"arm", "errors", "files", "firmware", "protocol", "table", "trajectory"},
-    "optimise": {"errors", "formats"},
+    "study": {"errors", "formats"},
+    "optimise": {"errors", "formats", "study"},
 }
 # Extension modules whose names begin with an underscore. Both are rooms of their own with public classes and functions.
 EXTENSIONS = {"_native", "_board"}

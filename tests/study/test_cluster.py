@@ -1,0 +1,209 @@
+"""Studies on a real Dask scheduler with two workers, one of which is killed; and what Slurm would be given."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+from dask import config as dask_config
+
+from greywhale.errors import UserError
+from greywhale.study import (
+    DaskWorkers,
+    LocalWorkers,
+    LostTasks,
+    SerialWorkers,
+    SlurmWorkers,
+    Task,
+    TaskFailed,
+    choose_workers,
+    run_study,
+)
+from tests.study import jobs
+
+ROOT = Path(__file__).parents[2]
+
+
+@dataclass
+class Cluster:
+    """A scheduler and its workers, each a process of its own."""
+
+    address: str
+    scheduler: subprocess.Popen[str]
+    workers: list[subprocess.Popen[str]]
+
+
+def begin(module: str, *options: str, **settings: str) -> subprocess.Popen[str]:
+    command = [sys.executable, "-m", f"distributed.cli.{module}", *options, "--no-dashboard"]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), **settings}
+    return subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=environment)
+
+
+def wait_for(process: subprocess.Popen[str], words: str) -> str:
+    """The line of a process's messages that holds these words."""
+    assert process.stderr is not None
+    for line in process.stderr:
+        if words in line:
+            return line
+    raise AssertionError(f"it ended before it said {words!r}")
+
+
+@contextlib.contextmanager
+def cluster_of(workers: int, **settings: str) -> Iterator[Cluster]:
+    with contextlib.ExitStack() as stack:
+        scheduler = begin("dask_scheduler", "--host", "127.0.0.1", "--port", "0", **settings)
+        stack.callback(end, scheduler)
+        address = wait_for(scheduler, "Scheduler at:").rpartition("tcp://")[2].strip()
+        running = []
+        for _ in range(workers):
+            running.append(begin("dask_worker", f"tcp://{address}", "--nthreads", "1", "--no-nanny"))
+            stack.callback(end, running[-1])
+        for worker in running:
+            wait_for(worker, "Registered to:")
+        yield Cluster(address, scheduler, running)
+
+
+def end(process: subprocess.Popen[str]) -> None:
+    process.kill()
+    process.communicate()
+
+
+@pytest.mark.slow
+def test_a_killed_dask_worker_changes_no_bit(tmp_path: Path) -> None:
+    """The first of two workers that begins the task in the middle is killed with it in its hands."""
+    tasks = jobs.draws(12)
+    serial = run_study(tasks, SerialWorkers())
+    local = run_study(tasks, LocalWorkers(2))
+    killer = jobs.kill_who_hangs(tmp_path)
+    hanging = Task("draw 5", jobs.hang_first, 5, {"folder": str(tmp_path), "count": 45})
+    with cluster_of(2) as cluster:
+        there = [hanging if task.seed == 5 else task for task in tasks]
+        dask = run_study(there, DaskWorkers(cluster.address), tmp_path / "r")
+        killer.join()
+        ended = [worker.wait(timeout=60) for worker in cluster.workers if worker.pid == jobs.killed(tmp_path)]
+        assert ended == [-9]
+    for other in (local, dask):
+        assert list(other) == list(serial)
+        np.testing.assert_equal(other, serial)
+        for key, found in other.items():
+            assert found["values"].tobytes() == serial[key]["values"].tobytes()
+            assert np.array(found["odd"]).tobytes() == np.array(serial[key]["odd"]).tobytes()
+    assert run_study(there, SerialWorkers(), tmp_path / "r").keys() == serial.keys(), "another executor goes on with it"
+
+
+@pytest.fixture(scope="module")
+def dask() -> Iterator[DaskWorkers]:
+    with cluster_of(1) as cluster:
+        yield DaskWorkers(cluster.address)
+
+
+@pytest.mark.slow
+def test_errors_of_tasks_come_back_from_dask(dask: DaskWorkers, tmp_path: Path) -> None:
+    with pytest.raises(TaskFailed, match=r"task 'bad': KeyError: 'seed 7'\nTraceback"):
+        run_study([Task("bad", jobs.fail, 7)], dask)
+    with pytest.raises(UserError, match="seed 1 is refused.") as refused:
+        run_study([*jobs.notes(2, tmp_path), Task("other", jobs.refuse, 1)], dask, tmp_path / "r")
+    assert refused.value.exit_code == 2
+
+
+@pytest.mark.slow
+def test_dask_gives_up_a_task_that_kills_its_workers_and_the_study_names_it(tmp_path: Path) -> None:
+    """With a scheduler that gives a task up after its first lost worker: the study gives it a second chance, alone."""
+    tasks = [*jobs.notes(3, tmp_path), Task("deadly", jobs.die, 0)]
+    with cluster_of(3, DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES="0") as cluster:
+        with pytest.raises(LostTasks, match="^task 'deadly' was given up") as lost:
+            run_study(tasks, DaskWorkers(cluster.address))
+        assert sum(worker.poll() is None for worker in cluster.workers) == 1
+    assert lost.value.results == {f"note {seed}": seed * seed for seed in range(3)}
+
+
+@pytest.mark.slow
+def test_a_scheduler_that_goes_away_ends_the_study_with_a_sentence(tmp_path: Path) -> None:
+    """What was done is kept, and another executor goes on with it."""
+    os.mkfifo(tmp_path / "who")
+    tasks = [*jobs.notes(2, tmp_path), Task("long", jobs.hang_first, 3, {"folder": str(tmp_path), "count": 5})]
+    with cluster_of(1) as cluster:
+
+        def go(what: str, share: float) -> None:
+            if share == 2 / 3:
+                (tmp_path / "who").read_text()  # the worker has the last task
+                cluster.scheduler.kill()
+
+        with pytest.raises(UserError, match=f"{cluster.address}: no Dask scheduler answers there") as error:
+            run_study(tasks, DaskWorkers(cluster.address, wait_s=1.0), tmp_path / "r", go)
+    assert error.value.__notes__ == [f"2 of 3 tasks are done and kept in {tmp_path / 'r'}."]
+    assert list(run_study(tasks, SerialWorkers(), tmp_path / "r")) == ["note 0", "note 1", "long"]
+    assert jobs.done(tmp_path) == [0, 1]
+
+
+def test_a_scheduler_that_is_not_there() -> None:
+    with pytest.raises(UserError, match="^127.0.0.1:1: no Dask scheduler answers there"):
+        run_study(jobs.draws(1), DaskWorkers("127.0.0.1:1", wait_s=1.0))
+
+
+def test_slurm_would_be_given_jobs_of_the_partition() -> None:
+    """No Slurm is here: this is the script that `sbatch` would get for every job, of which none is submitted."""
+    workers = choose_workers("slurm://long", 7)
+    assert isinstance(workers, SlurmWorkers)
+    assert (workers.partition, workers.jobs) == ("long", 7)
+    with workers.cluster() as cluster:
+        script = cluster.job_script()
+        address = cluster.scheduler_address
+    lines = script.splitlines()
+    assert {"#SBATCH -p long", "#SBATCH -n 1", "#SBATCH --cpus-per-task=1", "#SBATCH --mem=2G"} <= set(lines)
+    assert lines[-1].startswith(f"{sys.executable} -m distributed.cli.dask_worker {address} ")
+    assert " --nthreads 1 " in lines[-1]
+
+
+def test_what_a_users_jobqueue_file_says_holds() -> None:
+    with dask_config.set({"jobqueue.slurm.memory": "9GB", "jobqueue.slurm.account": "arms"}):
+        with SlurmWorkers().cluster() as cluster:
+            lines = set(cluster.job_script().splitlines())
+    assert {"#SBATCH -A arms", "#SBATCH --mem=9G"} <= lines
+    assert not [line for line in lines if line.startswith("#SBATCH -p")]
+
+
+@pytest.mark.parametrize(
+    ("executor", "count", "kind"),
+    [
+        ("local", 1, SerialWorkers),
+        ("local", 2, LocalWorkers),
+        ("local", None, LocalWorkers),
+        ("dask://10.0.0.5:8786", None, DaskWorkers),
+        ("dask://[::1]:8786", None, DaskWorkers),
+        ("slurm://", None, SlurmWorkers),
+    ],
+)
+def test_the_options_of_a_verb_choose_the_workers(executor: str, count: int | None, kind: type) -> None:
+    assert isinstance(choose_workers(executor, count), kind)
+
+
+@pytest.mark.parametrize(
+    ("executor", "count", "sentence"),
+    [
+        ("local", 0, "workers is 0, but it must be at least 1."),
+        ("dask://host", None, "there is no executor 'dask://host'; it is local, dask://HOST:PORT or slurm://"),
+        ("mpi", None, "there is no executor 'mpi'"),
+        ("dask://host:1", 3, "--workers is for local and slurm://; a Dask scheduler has its own."),
+    ],
+)
+def test_other_options_are_refused(executor: str, count: int | None, sentence: str) -> None:
+    with pytest.raises(UserError) as refused:
+        choose_workers(executor, count)
+    assert refused.value.message.startswith(sentence)
+    assert refused.value.exit_code == 2
+
+
+def test_a_missing_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(UserError, match=r"^distributed is not installed; pip install 'greywhale\[dask\]'\.$"):
+        choose_workers("dask://host:1")
+    with pytest.raises(UserError, match=r"^distributed is not installed; pip install 'greywhale\[slurm\]'\.$"):
+        choose_workers("slurm://")
