@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from pathlib import Path
 
 import click
@@ -25,8 +24,16 @@ from greywhale.cli.output import json_option, progress, show
 @click.option("--seeds", type=int, help="Runs of everything random; without it 10, with --quick 3.")
 @click.option("--seed", type=int, default=0, show_default=True, help="The first of them.")
 @click.option("--workers", type=click.IntRange(min=1), help="Processes; without it, one for every processor.")
+@click.option(
+    "--executor",
+    default="local",
+    show_default=True,
+    help="Where the work is done: local, dask://HOST:PORT or slurm://[PARTITION].",
+)
 @json_option
-def command(out: Path, quick: bool, seeds: int | None, seed: int, workers: int | None, as_json: bool) -> None:
+def command(
+    out: Path, quick: bool, seeds: int | None, seed: int, workers: int | None, executor: str, as_json: bool
+) -> None:
     """Reproduce the paper: every table and figure with our numbers beside the printed ones.
 
     Writes report.html, which needs no other file, report.pdf and report.json into the folder. The experiment is the
@@ -39,10 +46,11 @@ def command(out: Path, quick: bool, seeds: int | None, seed: int, workers: int |
     from greywhale.reproduce.found import Found
     from greywhale.reproduce.request import Request
     from greywhale.reproduce.run import run
+    from greywhale.study import choose_workers
 
     request = Request.of(seed, seeds, quick)
     with progress(as_json) as report:
-        results = run(request, out, workers or os.cpu_count() or 1, report)
+        results = run(request, out, choose_workers(executor, workers), report)
         # Slow to import, and of no use before all is done.
         from greywhale.reproduce.render import write_html, write_pdf
         from greywhale.reproduce.report import document

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 TITLE = (
     "Obadina, Thaha, Mohamed, Shaheed: Grey-box modelling and fuzzy logic control of a Leader–Follower robot "
-    "manipulator system: A hybrid Grey Wolf–Whale Optimisation approach. ISA Transactions 129 (2022)"
+    "manipulator system: A hybrid Grey Wolf–Whale Optimisation approach. ISA Transactions (2022)"
 )
 
 TABLE_2 = {

@@ -151,7 +151,7 @@ def sets_before(controllers: Controllers) -> bytes:
         for axes, title in zip(row, ("error $K_p\\,e$", "change of error $K_d\\,ce$", "output"), strict=True):
             axes.set_title(title, fontsize=9)
             axes.set_xlabel("normalised")
-            axes.legend(frameon=False, fontsize=8, loc="center right")
+            axes.legend(frameon=False, fontsize=8, loc="center", bbox_to_anchor=(0.77, 0.5))
         row[0].set_ylabel("membership")
         return png(figure)
 
@@ -168,17 +168,18 @@ def tuneable() -> bytes:
         for axes, own, words in zip(row, names, (_SETS["e"], _SETS["ce"]), strict=True):
             corners = (-0.6, -0.5, 0.5, 0.6)
             _draw_sets(axes, corners, words)
-            for x, y, name, place in zip(corners, (1.0, 0.0, 0.0, 1.0), own, (0.72, 0.28, 0.28, 0.72), strict=True):
+            for x, y, name, place in zip(corners, (1.0, 0.0, 0.0, 1.0), own, (0.6, 0.16, 0.16, 0.6), strict=True):
+                side = 1.0 if x > 0.0 else -1.0
                 axes.plot([x], [y], "o", color=GREEN, zorder=4)
                 axes.annotate(
-                    name, (x, y), (x, place), ha="center", fontsize=8, color=GREEN,
+                    name, (x, y), (0.97 * side, place), ha="right" if x > 0.0 else "left", fontsize=8, color=GREEN,
                     arrowprops={"arrowstyle": "-", "color": GREEN, "linewidth": 0.7},
                 )  # fmt: skip
             axes.annotate("", (-1.0, 1.05), (0.0, 1.05), arrowprops={"arrowstyle": "<->", "color": "#777777"})
             axes.annotate("", (0.0, 1.05), (1.0, 1.05), arrowprops={"arrowstyle": "<->", "color": "#777777"})
             axes.set_title("error" if words is _SETS["e"] else "change of error", fontsize=9)
             axes.set_xlabel("normalised")
-            axes.legend(frameon=False, fontsize=8, loc="center left", ncols=1)
+            axes.legend(frameon=False, fontsize=8, loc="center left", bbox_to_anchor=(0.0, 0.38))
         row[0].set_ylabel("membership")
         return png(figure)
 
@@ -227,6 +228,7 @@ def surfaces(controllers: Mapping[str, Controllers], joint: int) -> bytes:
             axes.contour(x, y, u, levels=(-0.5, 0.0, 0.5), colors=DARK, linewidths=0.7)
             axes.set_title(name, fontsize=9)
             axes.set_xlabel("error $K_p\\,e$")
+            axes.set_xticks((-1.0, -0.5, 0.0, 0.5, 1.0), ("−1", "−0.5", "0", "0.5", "1"))
             axes.grid(False)
         np.atleast_1d(row)[0].set_ylabel("change of error $K_d\\,ce$")
         bar = figure.colorbar(shade, cax=figure.add_axes((0.915, 0.13, 0.02, 0.76)), ticks=(-1.0, -0.5, 0.0, 0.5, 1.0))

@@ -79,7 +79,7 @@ def system() -> bytes:
         (((2.15, 1.6), (3.25, 1.6)), "angles"),
         (((5.15, 1.6), (6.15, 1.6)), "duty"),
         (((7.85, 1.6), (8.75, 1.6)), "voltage"),
-        (((9.7, 2.1), (9.7, 2.6), (4.2, 2.6), (4.2, 2.1)), ""),
+        (((9.7, 2.1), (9.7, 2.6), (4.2, 2.6), (4.2, 2.1)), "angles"),
         (((4.2, 1.1), (4.2, 0.65)), "serial link"),
     )
     return diagram(boxes, arrows, (9.0, 2.5), (10.9, 2.9))
@@ -159,13 +159,13 @@ def closed_loop() -> bytes:
     )
     arrows = (
         (((0.2, 1.6), (1.47, 1.6)), "leader"),
-        (((1.93, 1.6), (2.75, 1.6)), "e(k)"),
-        (((4.45, 1.6), (6.0, 1.6)), "u(k)"),
+        (((1.93, 1.6), (2.75, 1.6)), ""),
+        (((4.45, 1.6), (6.0, 1.6)), ""),
         (((7.8, 1.6), (9.3, 1.6)), "follower"),
         (((8.6, 1.6), (8.6, 0.5), (1.7, 0.5), (1.7, 1.37)), ""),
-        (((2.3, 1.6), (2.3, 3.1), (3.75, 3.1)), ""),
-        (((5.2, 1.6), (5.2, 2.54)), ""),
-        (((3.75, 2.75), (3.2, 2.75), (3.2, 1.96)), ""),
+        (((2.3, 1.6), (2.3, 3.1), (3.75, 3.1)), "e(k)"),
+        (((5.2, 1.6), (5.2, 2.54)), "u(k)"),
+        (((3.75, 2.75), (3.2, 2.75), (3.2, 1.96)), "sets"),
     )
     return diagram(boxes, arrows, (9.0, 3.0), (9.6, 3.5))
 
@@ -191,8 +191,9 @@ def arm() -> bytes:
             axes.text(aside[0], aside[1], words, fontsize=8, va="bottom", ha="left" if number == 3 else "right")
         for place, word in ((0, "base yaw $\\theta_0$"), (1, "shoulder $\\theta_1$"), (2, "wrist pitch $\\theta_2$")):
             axes.plot(*path[place], "o", color=DARK, markersize=8, fillstyle="none", markeredgewidth=1.6)
-            axes.annotate(word, path[place] + (0.012, -0.012), fontsize=8, va="top")
-        axes.annotate("wrist roll $\\theta_3$", path[3] + (0.0, -0.03), fontsize=8, va="top")
+            aside = (0.0, -0.05) if place == 2 else (0.012, -0.012)
+            axes.annotate(word, path[place] + aside, fontsize=8, va="top", ha="center" if place == 2 else "left")
+        axes.annotate("wrist roll $\\theta_3$", path[3] + (0.004, -0.012), fontsize=8, va="top")
         axes.plot(*path[3], "s", color=DARK, markersize=7, fillstyle="none", markeredgewidth=1.6)
         axes.set_xlim(-0.13, 0.4)
         axes.set_ylim(-0.03, 0.24)
