@@ -8,8 +8,8 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import pytest
 
-from greywhale.reproduce.document import Chapter, Code, Document, Entry, Picture, Row, Status, sheet, words
 from greywhale.reproduce.pages import law, system
+from greywhale.reproduce.pages.document import Chapter, Code, Document, Entry, Picture, Row, Status, sheet, words
 from greywhale.reproduce.pages.numbers import one, percent, several
 from greywhale.reproduce.pictures.drawing import png
 from greywhale.reproduce.render import write_html, write_pdf
@@ -32,7 +32,8 @@ def small() -> Document:
 class Reader(HTMLParser):
     def __init__(self) -> None:
         super().__init__()
-        self.text, self.sources, self.open = "", [], 0
+        self.text = ""
+        self.sources: list[str | None] = []
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         self.sources += [value for key, value in attrs if key in ("src", "href")]

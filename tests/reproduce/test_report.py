@@ -45,9 +45,7 @@ def reproduce(folder: Path, captured: pytest.CaptureFixture[str]) -> dict[str, A
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("_small")
-def test_every_table_and_figure_is_there_and_stays_the_same(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_every_table_and_figure_is_there_and_stays_the_same(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     answer = reproduce(tmp_path / "one", capsys)
     assert set(answer["entries"]) == LABELS
     open_ones = {label for label, status in answer["entries"].items() if status == "cannot be reproduced"}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import click
@@ -15,10 +16,10 @@ from greywhale.files.leader import load_leader
 from greywhale.firmware import FASTEST_LED_RAD_S
 from greywhale.formats.whole import refuse_inputs
 from greywhale.protocol.ports import choose_port
-from greywhale.trajectory import multi_steps, steps
+from greywhale.trajectory import Trajectory, multi_steps, steps
 
 # The paper's motions by name, and the share of the fastest that a board can be led at which their edges use.
-MOTIONS = {"steps": steps, "multi-steps": multi_steps}
+MOTIONS: dict[str, Callable[..., Trajectory]] = {"steps": steps, "multi-steps": multi_steps}
 SHARE = 0.9
 
 
@@ -34,10 +35,10 @@ SHARE = 0.9
 def command(motion: Path, out: Path, every: int, yes: bool, port: str | None, as_json: bool) -> None:
     """Turn the motors on, lead the arm along the motion in FILE and record that.
 
-    FILE has the columns time_s, leader_0 .. leader_3 (s, rad), or is a log; or it is steps or multi-steps, the
-    paper's motions, with edges as steep as a board can be led (a file of that name: ./steps). The arm first goes slowly from where it is
-    to the first pose, and at the end its motors go off. The board keeps the joints' limits; a motion faster than
-    7.7 rad/s is refused. A countdown on the terminal comes first, but not on the simulated bench.
+    FILE has the columns time_s, leader_0 .. leader_3 (s, rad), or is a log. It may also be steps or multi-steps: the
+    paper's motions, with edges as steep as a board can be led. The arm first goes slowly from where it is to the first
+    pose, and at the end its motors go off. The board keeps the joints' limits; a motion faster than 7.7 rad/s is
+    refused. A countdown on the terminal comes first, but not on the simulated bench.
     Ctrl-C stops the motors and keeps what was recorded, marked as interrupted.
     """
     check_every_led(every)

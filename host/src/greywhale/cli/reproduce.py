@@ -43,7 +43,7 @@ def command(
     """
     need_bench("greywhale_sim")
     from greywhale.formats.whole import write_text
-    from greywhale.reproduce.found import Found
+    from greywhale.reproduce.pages.found import Found
     from greywhale.reproduce.request import Request
     from greywhale.reproduce.run import run
     from greywhale.study import choose_workers
@@ -52,8 +52,8 @@ def command(
     with progress(as_json) as report:
         results = run(request, out, choose_workers(executor, workers), report)
         # Slow to import, and of no use before all is done.
+        from greywhale.reproduce.pages.report import document
         from greywhale.reproduce.render import write_html, write_pdf
-        from greywhale.reproduce.report import document
 
         made = document(Found(request, results))
         files = [write_html(made, out / "report.html"), write_pdf(made, out / "report.pdf")]

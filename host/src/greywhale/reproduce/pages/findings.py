@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 
 from greywhale.arm.printed import ERRATA
-from greywhale.reproduce.document import Chapter, Entry, Row, Sheet, Status, sheet, words
-from greywhale.reproduce.found import Found
+from greywhale.reproduce.pages.document import Chapter, Entry, Row, Sheet, Status, sheet, words
 from greywhale.reproduce.pages.experiment import changes
+from greywhale.reproduce.pages.found import Found
 from greywhale.reproduce.pages.numbers import lower, one, percent, several
 from greywhale.reproduce.pages.optimisers import SAID, function_ranks
+from greywhale.reproduce.pages.printed import GREY_BOX_BETTER, STEPS_LOWER
 from greywhale.reproduce.pages.tuning import totals
-from greywhale.reproduce.printed import GREY_BOX_BETTER, STEPS_LOWER
 from greywhale.reproduce.work.findings import COULOMB_V
 from greywhale.reproduce.work.motions import PERIOD_MS
 from greywhale.reproduce.work.optimisers import METHODS, SETTINGS

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from greywhale.fuzzy.rules import RULES
-from greywhale.reproduce.document import Chapter, Entry, Picture, Row, Status, sheet, words
+from greywhale.reproduce.pages.document import Chapter, Entry, Picture, Row, Status, sheet, words
 from greywhale.reproduce.pictures import curves, diagrams
 from greywhale.reproduce.work.motions import printed
 

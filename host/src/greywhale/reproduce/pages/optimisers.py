@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from greywhale.reproduce.document import Chapter, Entry, Picture, Row, Sheet, Status, sheet, words
-from greywhale.reproduce.found import Found
+from greywhale.reproduce.pages.document import Chapter, Entry, Picture, Row, Sheet, Status, sheet, words
+from greywhale.reproduce.pages.found import Found
 from greywhale.reproduce.pages.numbers import several
 from greywhale.reproduce.pages.significance import FEWEST, SIGNIFICANCE, against, mean_ranks
 from greywhale.reproduce.pictures import curves

@@ -9,12 +9,12 @@ import numpy as np
 
 from greywhale.firmware import JOINTS
 from greywhale.loop import CONTROLLER_COLUMNS
-from greywhale.reproduce.document import Chapter, Entry, Picture, Row, Sheet, Status, sheet, words
-from greywhale.reproduce.found import Controllers, Found, controllers
+from greywhale.reproduce.pages.document import Chapter, Entry, Picture, Row, Sheet, Status, sheet, words
+from greywhale.reproduce.pages.found import Controllers, Found, controllers
 from greywhale.reproduce.pages.numbers import lower, one, several
+from greywhale.reproduce.pages.printed import FIG_19_FLAT, TABLE_7
 from greywhale.reproduce.pictures import curves
 from greywhale.reproduce.pictures.curves import Trace
-from greywhale.reproduce.printed import FIG_19_FLAT, TABLE_7
 from greywhale.reproduce.work.grey_box import STRATEGIES, supply_of
 from greywhale.reproduce.work.motions import PERIOD_MS, printed
 from greywhale.tune.paper import AGENTS, ITERATIONS

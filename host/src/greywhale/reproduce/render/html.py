@@ -9,7 +9,7 @@ from typing import Any
 import jinja2
 
 from greywhale.formats.whole import write_text
-from greywhale.reproduce.document import Block, Code, Document, Picture, Sheet
+from greywhale.reproduce.pages.document import Block, Code, Document, Picture, Sheet
 
 
 def write_html(document: Document, path: Path) -> Path:

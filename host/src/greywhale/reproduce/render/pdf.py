@@ -19,7 +19,7 @@ from reportlab.pdfgen.canvas import Canvas
 from reportlab.platypus import Image, KeepTogether, LongTable, Paragraph, Preformatted, SimpleDocTemplate, Spacer
 
 from greywhale.formats.whole import write_whole
-from greywhale.reproduce.document import Block, Chapter, Code, Document, Entry, Picture, Sheet
+from greywhale.reproduce.pages.document import Block, Chapter, Code, Document, Entry, Picture, Sheet
 
 MARGIN = 16 * mm
 WIDTH = A4[0] - 2 * MARGIN

@@ -34,6 +34,8 @@ SUPPLY_V = 15.0
 BENCH_SEED = 1
 # The log begins after the soft start (1 s), the leader 0.5 s later; it ends so long after the leader's last move.
 BEFORE_S, AFTER_S = 0.5, 0.2
+# By then a joint that will rest does.
+LAST_S = 1.0
 # The paper's arm had no supervisor, and each experiment shall be seen to its end.
 UNGUARDED = {
     "tracking_limit": 0,
@@ -87,6 +89,13 @@ def record_data(seconds: float, period_ms: int) -> tuple[tuple[Log, ...], tuple[
     return tuple(logs), tuple(board(printed(name), period_ms).with_name(name) for name in names)
 
 
+def swings(log: Log) -> list[float]:
+    """How far each joint swings to and fro, from end to end, in the log's last second, rad."""
+    last = log.time > log.time[-1] - LAST_S
+    found: list[float] = np.ptp(log.follower[last], axis=0).tolist()
+    return found
+
+
 def try_controllers(seed: int, rows: list[list[int]], period_ms: int, traces: bool = True) -> dict[str, Any]:
     """Steps and multi-steps of controllers (4, 12) on the bench: the paper's measures of the logs.
 
@@ -97,7 +106,8 @@ def try_controllers(seed: int, rows: list[list[int]], period_ms: int, traces: bo
     with tempfile.TemporaryDirectory(prefix="greywhale-reproduce-") as folder:
         for motion, make in MOTIONS.items():
             log = record(Path(folder), motion, make(), table, BENCH_SEED + seed)
-            one: dict[str, Any] = {"after": measures(evaluate(log)), "stopped": log.ended_by, "samples": len(log.time)}
+            numbers = measures(evaluate(log)) | {"swing": swings(log)}
+            one: dict[str, Any] = {"after": numbers, "stopped": log.ended_by, "samples": len(log.time)}
             if traces:
                 every = round(SHOWN_S / float(log.time[1] - log.time[0]))
                 one["trace"] = shown(log.time, log.leader, every) | {"after": rounded(log.follower[::every])}

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 
-from greywhale.reproduce.document import Document, Status
-from greywhale.reproduce.found import Found
 from greywhale.reproduce.pages import experiment, findings, identification, law, optimisers, system, tuning
-from greywhale.reproduce.printed import TITLE
+from greywhale.reproduce.pages.document import Document, Status
+from greywhale.reproduce.pages.found import Found
+from greywhale.reproduce.pages.printed import TITLE
 
 
 def document(found: Found) -> Document:
