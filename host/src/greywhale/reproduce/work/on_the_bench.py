@@ -24,6 +24,7 @@ def identify_on_bench(seconds: float, period_ms: int, method: str, seed: int, tr
     """A model from data set 1, judged on all three; with it the text of its model.toml."""
     logs, tables = record_data(seconds, period_ms)
     outcome = identify(logs[:1], load_arm("white_box"), validate=logs[1:], tables=tables, method=method, seed=seed)
+    _require_whole(outcome.complete)
     found = _facts(outcome)
     if traces:
         found["responses"] = [_responses(outcome, place) for place in range(2)]
@@ -32,6 +33,12 @@ def identify_on_bench(seconds: float, period_ms: int, method: str, seed: int, tr
         outcome.save(path)
         found["model"] = path.read_text(encoding="utf-8")
     return found
+
+
+def _require_whole(complete: bool) -> None:
+    """Identification and tuning answer an interrupt with the best so far, which is no result here."""
+    if not complete:
+        raise KeyboardInterrupt
 
 
 def _facts(outcome: Outcome) -> dict[str, Any]:
@@ -85,6 +92,7 @@ def follow_as_default(seed: int, seconds: float, period_ms: int, budget: int | N
     found = {"identified": identify_on_bench(seconds, period_ms, "default", seed, traces)}
     model = _model(found["identified"]["model"], seed)
     outcome = tune(model, budget=budget, seed=seed, threads=1, start=printed("before_tuning"), floors=False)
+    _require_whole(outcome.complete)
     found["tuned"] = {
         "controllers": outcome.after.tolist(),
         "cost_before": list(outcome.cost_before),
