@@ -17,6 +17,8 @@ from greywhale.reproduce.tasks import OWN_PERIOD_MS
 from greywhale.reproduce.work.motions import PERIOD_MS
 from greywhale.tune.report.tables import PAPER_DELAY, PAPER_MULTI_STEP_MSE, PAPER_STEADY_STATE, PAPER_STEP_MSE
 
+# A joint that swings by more than this after a step does not rest, rad.
+RESTLESS_RAD = 0.03
 COLUMNS = (
     "before, printed",
     "after, printed",
@@ -69,8 +71,8 @@ def _figure(found: Found, motion: str) -> tuple[Any, ...]:
     if motion == "steps":
         shown.append(
             Picture(
-                curves.responses(leader, traces, "The same steps close up", (0.9, 2.4)),
-                "The first second and a half after the soft start's end and the leader's move.",
+                curves.responses(leader, traces, "The same steps close up", window=(1.3, 2.7)),
+                "What happens around the leader's move.",
             )
         )
     return tuple(shown)
@@ -115,6 +117,7 @@ def _table_11(found: Found) -> tuple[Any, ...]:
         ("Steady-state error (rad)", "steady", PAPER_STEADY_STATE, ".3f"),
         ("Time delay (s), from onset to onset", "onset", PAPER_DELAY, ".3f"),
         ("Time delay (s), of best correlation; not in the paper", "delay", None, ".3f"),
+        ("Swing in the last second (rad, from end to end); not in the paper", "swing", None, ".3f"),
     ):
         rows.append(Row(heading))
         columns = _columns(found, "steps", measure)
@@ -122,7 +125,21 @@ def _table_11(found: Found) -> tuple[Any, ...]:
             cells = ["–", "–"] if theirs is None else [one(side[joint], ".2f") for side in theirs]
             cells += [several([run[joint] for run in runs], form) for runs in columns]
             rows.append(Row(f"Joint {joint}", tuple(cells)))
-    return _sheet(found, rows), _summary(found, "steps", STEPS_LOWER)
+    return _sheet(found, rows), _summary(found, "steps", STEPS_LOWER), _hunting(found)
+
+
+def _hunting(found: Found) -> Any:
+    """How many joints never come to rest after the step."""
+    hunting = []
+    for runs in _columns(found, "steps", "swing"):
+        swings = [swing or 0.0 for run in runs for swing in run]
+        hunting.append(f"{sum(swing > RESTLESS_RAD for swing in swings)} of {len(swings)}")
+    before, paper, table_10, own, ours = hunting
+    return words(
+        f"Joints that still swing by more than {RESTLESS_RAD:g} rad in the last second of the step, over all seeds: "
+        f"before tuning {before} ({PERIOD_MS} ms) and {own} ({OWN_PERIOD_MS} ms), paper's method {paper}, Table 10 "
+        f"{table_10}, greywhale {ours}. A joint that hunts costs more than the paper's measures show."
+    )
 
 
 def _table_12(found: Found) -> tuple[Any, ...]:

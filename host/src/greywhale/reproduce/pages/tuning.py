@@ -17,11 +17,13 @@ from greywhale.reproduce.pictures import curves
 from greywhale.reproduce.pictures.curves import Trace
 from greywhale.reproduce.work.grey_box import STRATEGIES, supply_of
 from greywhale.reproduce.work.motions import PERIOD_MS, printed
-from greywhale.tune.paper import AGENTS, ITERATIONS
+from greywhale.tune.paper import AGENTS, ITERATIONS, LARGEST_SUPPLY_V
 from greywhale.tune.report.tables import FACTORS, SETS
 
 NAMES = {"sf": "scaling factors", "both": "scaling factors and sets", "mf": "sets"}
 FIGURES = {"sf": "Fig. 14", "both": "Fig. 15", "mf": "Fig. 17"}
+# K_u counts as at its bound from this share of it on.
+AT_BOUND = 0.99
 ASIDE = "in simulation, on the paper's grey-box arm of Table 4"
 
 
@@ -68,44 +70,70 @@ def value_of(rows: Controllers, joint: int, column: str, unit: int) -> float:
 
 
 def _values(found: Found, strategy: str, wanted: Mapping[str, tuple[str, int]]) -> tuple[Any, ...]:
-    theirs, before = printed(STRATEGIES[strategy]), printed("before_tuning")
-    runs = [controllers(run) for run in found.grey_box(strategy)]
-    own = [controllers(run["tuned"]) for run in found.default()] if strategy == "both" else []
-    rows = []
-    for name, (column, unit) in wanted.items():
-        rows.append(Row(name))
-        for joint in range(JOINTS):
-            cells = [one(value_of(rows_, joint, column, unit)) for rows_ in (before, theirs)]
-            cells.append(several([value_of(run, joint, column, unit) for run in runs]))
-            if own:
-                cells.append(several([value_of(run, joint, column, unit) for run in own]))
-            rows.append(Row(f"Joint {joint}", tuple(cells)))
-    columns = ["", "before tuning", "printed", "paper's method"] + (["greywhale, on the bench's model"] if own else [])
-    notes = [
-        f"Paper's method: {found.seeds}, {ASIDE}, {PERIOD_MS} ms, {supply_of(strategy):g} V. K_p in 1/rad, K_d in "
-        f"1/rad over {PERIOD_MS} ms, K_i in V/(rad s), K_u in V."
-    ]
-    if own:
-        notes.append(f"greywhale tunes both by its own objective, for the model that it identified: {found.few_seeds}.")
+    """The paper's layout: a row a parameter, a column a joint; ours beside it."""
+    results = found.grey_box(strategy)
+    runs = [controllers(run) for run in results]
+    before = printed("before_tuning") if strategy == "mf" else None
+    note = f"{found.seeds[0].upper()}{found.seeds[1:]}, {ASIDE}, {PERIOD_MS} ms, {supply_of(strategy):g} V."
+    units = f"K_p in 1/rad, K_d in 1/rad over {PERIOD_MS} ms, K_i in V/(rad s), K_u in V."
+    notes = [note, units] if "K_p" in wanted else [note]
+    if strategy == "both":
         notes.append("The paper prints joint 0's Ze_trimf_c as 0, a set without width; 0.01, the least, stands here.")
-    return sheet(columns, rows, (1, 2), notes), _width(runs, wanted)
+    blocks: list[Any] = [_beside(wanted, printed(STRATEGIES[strategy]), runs, before, notes)]
+    if strategy == "both":
+        own = [controllers(run["tuned"]) for run in found.default()]
+        note = f"greywhale's own tuning, by its own objective, for the model that it identified: {found.few_seeds}."
+        rows = [
+            Row(name, tuple(several([value_of(run, joint, *where) for run in own]) for joint in range(JOINTS)))
+            for name, where in wanted.items()
+        ]
+        blocks.append(sheet(("", *(f"Joint {joint}" for joint in range(JOINTS))), rows, notes=(note,)))
+    return (*blocks, *_spread(results, runs, wanted))
 
 
-def _width(runs: Sequence[Controllers], wanted: Mapping[str, tuple[str, int]]) -> Any:
-    """How far the values of the seeds are apart, beside the width of the box."""
-    if len(runs) < 2:
-        return words("With one seed nothing can be said about how far the values differ from seed to seed.")
-    ranges = []
-    for column, unit in (wanted[name] for name in wanted if name in SETS):
-        values = np.array([[value_of(run, joint, column, unit) for run in runs] for joint in range(JOINTS)])
-        ranges += np.ptp(values, axis=1).tolist()
-    if not ranges:
-        return words("K_u ends at its bound wherever effort is cheaper than error within the time that J counts.")
-    return words(
-        f"The corners are searched over a width of 1. From seed to seed they differ by {np.median(ranges):.2f} in the "
-        f"median and by {max(ranges):.2f} at most: the search does not find one best set, it finds many that cost the "
-        "same. A single printed run says little about the values."
-    )
+def _beside(
+    wanted: Mapping[str, tuple[str, int]],
+    theirs: Controllers,
+    runs: Sequence[Controllers],
+    before: Controllers | None,
+    notes: Sequence[str],
+) -> Sheet:
+    start = ("",) if before is None else ("", "before")
+    pairs = [word for joint in range(JOINTS) for word in (f"J{joint}, printed", f"J{joint}, here")]
+    rows = []
+    for name, where in wanted.items():
+        cells = [] if before is None else [one(value_of(before, 0, *where))]
+        for joint in range(JOINTS):
+            cells += [one(value_of(theirs, joint, *where)), several([value_of(run, joint, *where) for run in runs])]
+        rows.append(Row(name, tuple(cells)))
+    first = len(start)
+    printed_columns = [*range(1, first), *range(first, first + 2 * JOINTS, 2)]
+    return sheet((*start, *pairs), rows, printed_columns, notes)
+
+
+def _spread(
+    results: Sequence[Any], runs: Sequence[Controllers], wanted: Mapping[str, tuple[str, int]]
+) -> tuple[Any, ...]:
+    """How far the seeds are apart in what they found, and in what it costs."""
+    said = []
+    if "K_u" in wanted:
+        found = np.array([[value_of(run, joint, *wanted["K_u"]) for joint in range(JOINTS)] for run in runs])
+        at_bound = int((found >= AT_BOUND * LARGEST_SUPPLY_V).sum())
+        said.append(f"K_u ends at its bound of {LARGEST_SUPPLY_V:g} V in {at_bound} of {found.size} searches.")
+    corners = [wanted[name] for name in wanted if name in SETS]
+    if len(runs) > 1 and corners:
+        values = np.array(
+            [[[value_of(run, joint, *where) for where in corners] for joint in range(JOINTS)] for run in runs]
+        )
+        apart = np.ptp(values, axis=0)
+        costs = np.array([run["cost"] for run in results])
+        cheap = 100.0 * (np.ptp(costs, axis=0) / costs.min(axis=0))
+        said.append(
+            f"The corners are searched over a width of 1. From seed to seed they differ by {np.median(apart):.2f} in "
+            f"the median and by {apart.max():.2f} at most, while a joint's J differs by {np.median(cheap):.1f} % in "
+            f"the median and by {cheap.max():.0f} % at most. One printed run says little about the values."
+        )
+    return (words(*said),) if said else ()
 
 
 def _figure(found: Found, strategy: str) -> Entry:

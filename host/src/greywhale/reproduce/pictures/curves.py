@@ -35,18 +35,29 @@ class Trace:
     angles: Any
 
 
-def responses(leader: Trace, traces: Sequence[Trace], title: str, window: tuple[float, float] | None = None) -> bytes:
-    """Two by two panels: the leader, and whoever follows it."""
+def responses(
+    first: Trace,
+    traces: Sequence[Trace],
+    title: str,
+    *,
+    window: tuple[float, float] | None = None,
+    faint: Trace | None = None,
+) -> bytes:
+    """Two by two panels: what all others are compared with, then these; `faint` is shown behind all."""
     with styled():
         figure, grid = plt.subplots(2, 2, figsize=(9.0, 6.4), sharex=True)
         figure.subplots_adjust(left=0.08, right=0.985, bottom=0.14, top=0.9, wspace=0.18, hspace=0.2)
         figure.suptitle(title, fontsize=11, fontweight="bold", y=0.975)
         for joint, axes in enumerate(grid.flat):
-            axes.plot(leader.time, np.array(leader.angles)[:, joint], color=DARK, linewidth=1.4, label=leader.name)
+            if faint is not None:
+                axes.plot(
+                    faint.time, np.array(faint.angles)[:, joint], ":", color=DARK, linewidth=0.9, label=faint.name
+                )
+            axes.plot(first.time, np.array(first.angles)[:, joint], color=DARK, linewidth=1.4, label=first.name)
             for one, colour in zip(traces, COLOURS, strict=False):
                 axes.plot(one.time, np.array(one.angles)[:, joint], color=colour, linewidth=1.1, label=one.name)
             axes.set_title(TITLES[joint], fontsize=9)
-            axes.margins(y=0.08)
+            axes.margins(x=0.01, y=0.08)
             if window is not None:
                 axes.set_xlim(*window)
         _label(grid, "time [s]", "angle [rad]")
@@ -242,12 +253,12 @@ def ranks(places: Mapping[str, Mapping[str, float]], title: str) -> bytes:
     methods = list(next(iter(places.values())))
     with styled():
         figure, axes = plt.subplots(figsize=(9.4, 3.6))
-        figure.subplots_adjust(left=0.07, right=0.985, bottom=0.24, top=0.9)
+        figure.subplots_adjust(left=0.07, right=0.985, bottom=0.14, top=0.9)
         width = 0.8 / len(problems)
         for number, (problem, colour) in enumerate(zip(problems, (DARK, *COLOURS), strict=False)):
             at = np.arange(len(methods)) + (number - 0.5 * (len(problems) - 1)) * width
             axes.bar(at, [places[problem][method] for method in methods], width, color=colour, label=problem)
-        axes.set_xticks(range(len(methods)), methods, rotation=18, ha="right")
+        axes.set_xticks(range(len(methods)), [method.replace(", ", ",\n") for method in methods], fontsize=8)
         axes.set_ylabel("mean rank (1 is best)")
         axes.grid(axis="x", visible=False)
         axes.set_title(title, fontsize=10)
