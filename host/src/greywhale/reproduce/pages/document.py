@@ -44,6 +44,16 @@ class Sheet:
             if row.cells and len(row.cells) + 1 != len(self.columns):
                 raise ValueError(f"{row.label!r} has {len(row.cells)} cells for {len(self.columns) - 1} columns")
 
+    @property
+    def texts(self) -> frozenset[int]:
+        """The columns (by place) of words, which begin at the left; numbers end at the right."""
+        found = {0}
+        for place in range(1, len(self.columns)):
+            cells = [row.cells[place - 1] for row in self.rows if row.cells and row.cells[place - 1]]
+            if cells and 2 * sum(cell[0].isalpha() or cell[0] == "{" for cell in cells) > len(cells):
+                found.add(place)
+        return frozenset(found)
+
     def as_dict(self) -> dict[str, Any]:
         return {
             "columns": list(self.columns),

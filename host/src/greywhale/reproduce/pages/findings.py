@@ -199,9 +199,9 @@ def _objective(found: Found) -> tuple[Any, ...]:
     ku = [value for run in found.objective() for value in run["ku"]]
     before, idle = first["J"]["before"]["two-sided"], first["J"]["doing nothing"]["two-sided"]
     return table, words(
-        f"On moves to both sides J is {100 * first['share_of_effort']['before']:.0f} % effort, and that of doing nothing "
-        f"at all is {percent(before, idle)} than that of the controllers from before. A search for the scaling factors "
-        f"on such moves turns K_u down to {several(ku, '.3f')} V of 20. Training on a single step hides this."
+        f"On moves to both sides J is {100 * first['share_of_effort']['before']:.0f} % effort, and that of doing "
+        f"nothing at all is {percent(before, idle)} than that of the controllers from before. A search for the scaling "
+        f"factors on such moves turns K_u down to {several(ku, '.3f')} V of 20. Training on a single step hides this."
     )
 
 

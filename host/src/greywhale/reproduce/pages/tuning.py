@@ -104,7 +104,10 @@ def _beside(
     for name, where in wanted.items():
         cells = [] if before is None else [one(value_of(before, 0, *where))]
         for joint in range(JOINTS):
-            cells += [one(value_of(theirs, joint, *where)), several([value_of(run, joint, *where) for run in runs])]
+            cells += [
+                one(value_of(theirs, joint, *where)),
+                several([value_of(run, joint, *where) for run in runs], ".3f"),
+            ]
         rows.append(Row(name, tuple(cells)))
     first = len(start)
     printed_columns = [*range(1, first), *range(first, first + 2 * JOINTS, 2)]

@@ -16,13 +16,23 @@ from reportlab.lib.utils import ImageReader
 from reportlab.pdfbase import pdfmetrics
 from reportlab.pdfbase.ttfonts import TTFont
 from reportlab.pdfgen.canvas import Canvas
-from reportlab.platypus import Image, KeepTogether, LongTable, Paragraph, Preformatted, SimpleDocTemplate, Spacer
+from reportlab.platypus import (
+    CondPageBreak,
+    Image,
+    KeepTogether,
+    LongTable,
+    Paragraph,
+    Preformatted,
+    SimpleDocTemplate,
+    Spacer,
+)
 
 from greywhale.formats.whole import write_whole
 from greywhale.reproduce.pages.document import Block, Chapter, Code, Document, Entry, Picture, Sheet
 
 MARGIN = 16 * mm
 WIDTH = A4[0] - 2 * MARGIN
+TITLE_AND_SOME_ROWS = 40 * mm
 TALLEST = A4[1] - 2 * MARGIN - 40
 # Matplotlib brings these, with every sign that the report needs.
 FONTS = {"Body": "DejaVuSans", "Strong": "DejaVuSans-Bold", "Fixed": "DejaVuSansMono"}
@@ -86,17 +96,23 @@ def _entry(entry: Entry, head: list[Any]) -> list[Any]:
     named = f"{entry.label}. {entry.title}" if entry.label else entry.title
     title = f'{escape(named)} <font name="Body" size="7" color="#777777">({escape(entry.status.value)})</font>'
     first = [*head, _Bookmark(named, 2), Spacer(0, 9), Paragraph(title, _style("Strong", 10))]
-    blocks = [_block(block) for block in entry.blocks]
-    if blocks and not isinstance(entry.blocks[0], Sheet):
-        return [KeepTogether([*first, *blocks[0]]), *(one for rest in blocks[1:] for one in rest)]
-    return [KeepTogether(first), *(one for block in blocks for one in block)]
+    parts: list[Any] = []
+    for block in entry.blocks:
+        shown = _block(block)
+        if isinstance(block, Sheet):
+            # A long table may break, but not between its title and its first rows.
+            parts += [CondPageBreak(TITLE_AND_SOME_ROWS), *first, *shown] if first else shown
+        else:
+            parts.append(KeepTogether([*first, *shown]))
+        first = []
+    return parts
 
 
 def _block(block: Block) -> list[Any]:
     if isinstance(block, Sheet):
         return [_table(block), *(Paragraph(escape(note), _style("Body", 7, "#555555")) for note in block.notes)]
     if isinstance(block, Picture):
-        return [KeepTogether([_image(block), Paragraph(escape(block.shows), _style("Body", 7, "#555555"))])]
+        return [_image(block), Paragraph(escape(block.shows), _style("Body", 7, "#555555"))]
     if isinstance(block, Code):
         return [Preformatted("\n".join(block.lines), _style("Fixed", 7))]
     return [Paragraph(escape(one), _style("Body", 8.5)) for one in block.paragraphs]
@@ -113,7 +129,6 @@ def _table(sheet: Sheet) -> LongTable:
     style: list[Any] = [
         ("FONT", (0, 0), (-1, -1), "Body", points, points * 1.25),
         ("FONT", (0, 0), (-1, 0), "Strong", points, points * 1.25),
-        ("ALIGN", (1, 0), (-1, -1), "RIGHT"),
         ("VALIGN", (0, 0), (-1, -1), "TOP"),
         ("LINEABOVE", (0, 0), (-1, 0), 0.8, colors.black),
         ("LINEBELOW", (0, 0), (-1, 0), 0.4, colors.black),
@@ -124,20 +139,25 @@ def _table(sheet: Sheet) -> LongTable:
         ("RIGHTPADDING", (0, 0), (-1, -1), 2.5),
     ]
     style += [("BACKGROUND", (place, 0), (place, -1), PRINTED) for place in sorted(sheet.printed)]
-    cells: list[list[Any]] = [[_cell(name, "Strong", points, place) for place, name in enumerate(sheet.columns)]]
+    cells: list[list[Any]] = [
+        [_cell(name, "Strong", points, place in sheet.texts) for place, name in enumerate(sheet.columns)]
+    ]
     for number, row in enumerate(sheet.rows, 1):
         if row.heading:
             style += [("SPAN", (0, number), (-1, number)), ("FONT", (0, number), (0, number), "Strong", points)]
             cells.append([row.label, *[""] * (len(sheet.columns) - 1)])
         else:
-            cells.append([_cell(text, "Body", points, place) for place, text in enumerate((row.label, *row.cells))])
+            cells.append(
+                [
+                    _cell(text, "Body", points, place in sheet.texts)
+                    for place, text in enumerate((row.label, *row.cells))
+                ]
+            )
     return LongTable(cells, colWidths=widths, style=style, repeatRows=1, hAlign="LEFT", spaceBefore=3, spaceAfter=3)
 
 
-def _cell(text: str, font: str, points: float, place: int) -> Paragraph:
-    style = ParagraphStyle(
-        "cell", fontName=font, fontSize=points, leading=points * 1.25, alignment=0 if not place else 2
-    )
+def _cell(text: str, font: str, points: float, left: bool) -> Paragraph:
+    style = ParagraphStyle("cell", fontName=font, fontSize=points, leading=points * 1.25, alignment=0 if left else 2)
     return Paragraph(escape(text), style)
 
 
