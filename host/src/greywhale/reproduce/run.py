@@ -28,7 +28,7 @@ def run(request: Request, folder: Path, workers: Workers, report: Report | None 
     except OSError as error:
         raise UserError(f"{folder}: cannot be made: {os_reason(error)}.") from None
     about = {"request": request.as_dict(), "program": program_digest()}
-    return run_study(tasks_of(request), workers, results_file(request, folder), report, about=about, what="reproducing")
+    return run_study(tasks_of(request), workers, results_file(request, folder), report, about=about)
 
 
 def results_file(request: Request, folder: Path) -> Path:
