@@ -11,7 +11,6 @@ import contextlib
 import logging
 import signal
 import threading
-import time
 from collections import deque
 from collections.abc import Callable, Iterator
 from types import TracebackType
@@ -23,7 +22,7 @@ from greywhale.errors import UserError
 from greywhale.protocol import schema
 from greywhale.protocol.declared import Reply_co, Request
 from greywhale.protocol.frames import Frame, FrameDecoder, encode_frame
-from greywhale.protocol.transport import PortLostError, Transport
+from greywhale.protocol.transport import Line, PortLostError, Transport
 
 # After this long without an answer a request is repeated, unchanged. Every request may be repeated safely.
 REPLY_WAIT_S = 0.3
@@ -61,9 +60,18 @@ class Device:
     """An open and greeted board. Leaving the context, for whatever reason, stops the motors if they may be on."""
 
     def __init__(
-        self, port: str, quiet_s: float = QUIET_S, patience_s: float = PATIENCE_S, *, restart: bool = True
+        self,
+        port: str,
+        quiet_s: float = QUIET_S,
+        patience_s: float = PATIENCE_S,
+        *,
+        restart: bool = True,
+        line: Line | None = None,
     ) -> None:
-        """Open the port and greet the board, which restarts; without `restart` only where the system cannot help it."""
+        """Open the port and greet the board, which restarts; without `restart` only where the system cannot help it.
+
+        A `line` that is open already takes the port's place, and `port` is then only its name.
+        """
         self.port = port
         self.lease_ms = 0
         self._decoder = FrameDecoder()
@@ -79,7 +87,7 @@ class Device:
         with contextlib.ExitStack() as held:
             self._session = held.enter_context(Session.of(port))
             held.callback(self._session.detach)
-            self._transport = Transport(port, restart)
+            self._transport: Line = Transport(port, restart) if line is None else line
             held.callback(self._transport.close)
             self._session.attach(self._send_stop)
             self.hello: schema.HelloReply = self._greet(quiet_s if self.restarted else 0.0, patience_s)
@@ -249,8 +257,8 @@ class Device:
         for attempt in range(1, attempts + 1):
             logger.debug("%s: %s, attempt %d of %d: %s", self.port, name, attempt, attempts, message.hex())
             self._transport.write(message)
-            deadline = time.monotonic() + wait_s
-            while time.monotonic() < deadline:
+            deadline = self._transport.clock() + wait_s
+            while self._transport.clock() < deadline:
                 self._receive()
                 self._check_restart()
                 for frame in self._answers():
@@ -309,15 +317,16 @@ class Device:
         return "The stop is not confirmed: switch the motors' supply off."
 
     def _greet(self, quiet_s: float, patience_s: float) -> schema.HelloReply:
-        opened = time.monotonic()
-        while self._started is None and not self._samples and time.monotonic() < opened + quiet_s:
+        clock = self._transport.clock
+        opened = clock()
+        while self._started is None and not self._samples and clock() < opened + quiet_s:
             self._receive()
         while True:
             try:
                 payload = self._exchange(schema.HelloRequest.TYPE, schema.HelloRequest.NAME, b"", attempts=1)
                 break
             except NoAnswerError:
-                if time.monotonic() >= opened + patience_s:
+                if clock() >= opened + patience_s:
                     raise self._silent(patience_s) from None
         self._started = None
         self._greeted = True

@@ -30,6 +30,7 @@ VERBS = {
     "tune": ("tune", "Find controllers for a model: a controller.toml for upload."),
     "arm": ("arm", "Make an arm.toml: from a ruler, a scale and data sheets, or from a URDF."),
     "export": ("export", "Write a controller as .fis (MATLAB), an arm as URDF or MJCF."),
+    "reproduce": ("reproduce", "The paper from end to end: every table and figure beside ours."),
     "compare": ("compare", "Compare optimisers at equal budgets, over many seeds."),
 }
 
