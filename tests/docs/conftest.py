@@ -64,6 +64,8 @@ def yours(tmp_path_factory: pytest.TempPathFactory) -> Path:
         parameter_file.save(folder / name, ParameterTable.defaults())
     times = np.arange(0.0, 2.0, 0.02)
     save_leader(folder / "motion.csv", Trajectory(times, 0.1 * np.sin(3.0 * times)[:, None] * np.ones(4)))
+    page = (ROOT / "docs" / "your-arm.md").read_text(encoding="utf-8")
+    (folder / "answers.toml").write_text(page.partition("```toml\n")[2].partition("```")[0], encoding="utf-8")
     for name in ("firmware.hex", "firmware.elf"):
         shutil.copy(IMAGE / name, folder / name)
     return folder

@@ -2,7 +2,8 @@
 
 The rule, in order:
 
-1. What a page marks as `parsed only`, what needs hands, `sudo`, a shell's start file or a real port is parsed, not run.
+1. What a page marks as `parsed only`, what needs hands or answers, `sudo`, a shell's start file, a real port or another
+   machine is parsed, not run.
 2. `make`, `pip` and `python -m` are looked at: the target, the package or the module must exist.
 3. Every other verb is run as printed, with files of the scratch folder where a page speaks of yours. What would only
    take long is shortened by options behind the printed ones (SHORTER).
@@ -18,6 +19,7 @@ import io
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import click
@@ -35,7 +37,6 @@ SHORTER = {
     "flash": "--hex firmware.hex",  # PlatformIO would build it anew
     "tune": "--force",  # the model is one of six seconds of log
 }
-NEEDS_HANDS = ("calibrate",)
 PACKAGES = {"greywhale", "greywhale-sim"}
 
 
@@ -83,6 +84,7 @@ def run_line(line: str, parsed_only: bool = False) -> str:
         return "a test must learn what this is"
     if parsed_only or _is_parsed_only(command):
         return parse(words[1:])
+    _make_room(words)
     done = run([*words[1:], *_shorter(words[1:])])
     return "" if done.code == 0 else f"{done.code}: {done.err}"
 
@@ -115,11 +117,20 @@ def _commands(group: click.Group, arguments: list[str]) -> list[click.Command]:
 
 def _is_parsed_only(command: Command) -> bool:
     everything = [*command.variables.values(), *command.words, *command.rest]
-    return (
-        any(word in NEEDS_HANDS for word in command.words[1:2])
-        or "sudo" in everything
-        or any(word.startswith(("/dev/tty", "~")) for word in everything)
+    needs_a_person = command.words[1:2] == ["calibrate"] or (
+        command.words[1:3] == ["arm", "new"] and "--answers" not in command.words
     )
+    return (
+        needs_a_person
+        or "sudo" in everything
+        or any(word.startswith(("/dev/tty", "~")) or "://" in word for word in everything)
+    )
+
+
+def _make_room(words: list[str]) -> None:
+    """Remove what a verb would not write over: a page's reader does not have it yet."""
+    if words[1:2] == ["arm"] and "--out" in words:
+        Path(words[words.index("--out") + 1]).unlink(missing_ok=True)
 
 
 def _shorter(arguments: list[str]) -> list[str]:

@@ -40,6 +40,8 @@ CALLS = {
     "demo": ["--controller controller.toml"],
     "sim": ["--speed max"],
     "export": ["--fis controller.toml --out c.fis", "--urdf arm.toml --out a.urdf"],
+    "arm new": ["--answers answers.toml --out new.toml"],
+    "arm match": ["arm.toml --out matched.toml"],
     "arm import": ["arm.urdf --out imported.toml"],
     "compare": ["--functions sphere --methods gwo-woa,de --budget 60 --seeds 2 --jobs 1"],
 }
