@@ -98,9 +98,10 @@ bench: setup ## measure the figures of the design beside others; a table here, J
 campaign: setup firmware ## attack everything at full size and write docs/reliability.md; goes on where it stopped
 	@$(PYTHON) -m tools.campaign --publish $(ARGS)
 
-docs: setup ## write the generated files (link schema, reference page, copies of the version) again
+docs: setup ## write the generated files again (link schema, reference page, version, schemas), and build the site in build/site
 	$(PYTHON) -m tools.generate_link
 	$(PYTHON) -m tools.version
+	$(PYTHON) -m tools.docs
 
 dist: setup ## build source distributions and wheels of both packages for this machine, in build/dist
 	$(PYTHON) -m tools.dist $(ARGS)

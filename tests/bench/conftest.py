@@ -33,7 +33,7 @@ class FakeBoard:
     result: int = 0
     crash_reason: str = "a write to nowhere"
     registered: list[tuple[object, ...]] = field(default_factory=list)
-    pins: np.ndarray = field(default_factory=lambda: np.zeros(9))
+    pins: np.ndarray = field(default_factory=lambda: np.zeros(17))
     millivolts: list[np.ndarray] = field(default_factory=list)
     received: bytearray = field(default_factory=bytearray)  # from the host
     to_send: bytearray = field(default_factory=bytearray)  # to the host
@@ -63,6 +63,9 @@ class FakeBoard:
 
     def set_floating(self, inputs: int) -> None:
         self.events.append(f"floating {inputs:#x}")
+
+    def set_supply(self, millivolts: int, seed: int = 1) -> None:
+        self.events.append(f"supply {millivolts}")
 
     def run_until(self, cycle: int) -> int:
         self.cycle = cycle + 1  # the last instruction ends a little late, as on the real thing

@@ -17,6 +17,8 @@ def test_outputs_are_registered_in_the_order_they_are_read(board: Any, bench: Be
         ("H", 6),
         *((3, "A"), (4, "A"), (4, "B"), (4, "C")),
         *(("A", 0), ("A", 2), ("A", 4), ("A", 6)),
+        *((3, "B"), (5, "A"), (5, "B"), (5, "C")),
+        *(("A", 1), ("A", 3), ("A", 5), ("A", 7)),
     ]
 
 

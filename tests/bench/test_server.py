@@ -227,11 +227,11 @@ def test_the_emergency_stop_closes_its_pin_to_ground_until_it_is_released(server
 def test_the_person_takes_up_another_motion_between_two_enables(server: Server, board: Any, tmp_path: Path) -> None:
     file = tmp_path / "another motion.csv"
     save_leader(file, Trajectory(np.array([0.0, 2.0]), np.array([[0.5] * 4, [1.0] * 4])))
-    board.pins = np.ones(9)
+    board.pins = np.ones(17)
     server.turn()
     with pytest.raises(UserError, match="motors are off"):
         commands.run(server, f"leader '{file}'")
-    board.pins = np.zeros(9)
+    board.pins = np.zeros(17)
     assert commands.run(server, f"leader '{file}'") == {"leader": str(file), "duration_s": 2.0}
     server.bench.run(2.0)
     assert commands.run(server, "status")["follower"] == [0.5] * 4

@@ -2,26 +2,35 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from greywhale_sim.wiring import BOARDS, Wiring, markdown_table
+from greywhale_sim.wiring import BOARDS, Motor, Pin, Pwm, Wiring, markdown_table
+from tools.wiring_pictures import IMAGES, PICTURES
 
 ROOT = Path(__file__).resolve().parents[2]
 # Which compare output is on which Arduino pin, from the boards' own pin tables.
 PWM_PINS = {
-    "mega": {"D5": (3, "A"), "D6": (4, "A"), "D7": (4, "B"), "D8": (4, "C")},
+    "mega": {
+        "D5": (3, "A"), "D6": (4, "A"), "D7": (4, "B"), "D8": (4, "C"),
+        "D2": (3, "B"), "D46": (5, "A"), "D45": (5, "B"), "D44": (5, "C"),
+    },
     "nano": {"D9": (1, "A"), "D10": (1, "B"), "D11": (2, "A"), "D3": (2, "B")},
 }
 SERIAL_PINS = {"D0", "D1"}
 
 
+def wires(motor: Motor) -> list[Pin | Pwm]:
+    return [one for one in (motor.pwm, motor.direction, motor.second_pwm, motor.second_direction) if one is not None]
+
+
 @pytest.mark.parametrize("wiring", BOARDS.values(), ids=BOARDS.keys())
 def test_every_wire_has_a_pin_of_its_own(wiring: Wiring) -> None:
-    pins = [motor.pwm_arduino for motor in wiring.motors] + [motor.direction.arduino for motor in wiring.motors]
+    pins = [wire.arduino for motor in wiring.motors for wire in wires(motor)]
     pins += [wiring.enable.arduino, wiring.led.arduino, wiring.estop.arduino]
-    assert len(set(pins)) == 11
+    assert len(set(pins)) == len(pins)
     assert not SERIAL_PINS & set(pins)
     bits = [(motor.direction.port, motor.direction.bit) for motor in wiring.motors]
     others = [(pin.port, pin.bit) for pin in (wiring.enable, wiring.led, wiring.estop)]
@@ -30,8 +39,33 @@ def test_every_wire_has_a_pin_of_its_own(wiring: Wiring) -> None:
 
 @pytest.mark.parametrize("wiring", BOARDS.values(), ids=BOARDS.keys())
 def test_pwm_pins_are_those_of_the_timers(wiring: Wiring) -> None:
-    assert {motor.pwm_arduino: (motor.timer, motor.channel) for motor in wiring.motors} == PWM_PINS[wiring.name]
+    used = [pwm for motor in wiring.motors for pwm in (motor.pwm, motor.second_pwm) if pwm is not None]
+    assert {pwm.arduino: (pwm.timer, pwm.channel) for pwm in used} == PWM_PINS[wiring.name]
 
 
 def test_readme_shows_this_table() -> None:
     assert markdown_table() in (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", PICTURES)
+def test_the_pictures_show_these_pins(name: str) -> None:
+    """If not: `python -m tools.wiring_pictures`."""
+    assert (IMAGES / name).read_text(encoding="utf-8") == PICTURES[name]().svg()
+
+
+def test_the_page_for_a_new_arm_shows_these_pins() -> None:
+    page = (ROOT / "docs" / "your-arm.md").read_text(encoding="utf-8")
+    boards = (BOARDS["mega"], BOARDS["nano"])
+    rows: tuple[tuple[str, Callable[[Motor], str]], ...] = (
+        ("PWM, motors 0 to 3", lambda motor: motor.pwm.arduino),
+        ("direction, motors 0 to 3", lambda motor: motor.direction.arduino),
+    )
+    for name, pin in rows:
+        cells = [", ".join(map(pin, board.motors)) for board in boards]
+        assert f"| {name} | {cells[0]} | {cells[1]} |" in page
+    for number, motor in enumerate(boards[0].motors):
+        assert motor.second_pwm is not None
+        assert motor.second_direction is not None
+        both = f"{motor.pwm.arduino}, {motor.direction.arduino}, {motor.second_direction.arduino}"
+        assert f"| {number} | {both} | {motor.pwm.arduino}, {motor.second_pwm.arduino} |" in page
+    assert f"| enable of all drivers | {boards[0].enable.arduino} | {boards[1].enable.arduino} |" in page

@@ -3,17 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
+from greywhale.arm import ArmParameters
 from greywhale.board.device import Device
 from greywhale.board.upload import read_parameters, run_set
-from greywhale.calibrate.motors import FARTHEST_RAD, LEASE_MS, SHARES, examine_motor, pulse, pulse_table
+from greywhale.calibrate.motors import FARTHEST_RAD, LEASE_MS, SHARES, Pulse, examine_motor, pulse, pulse_table
 from greywhale.demo import BenchProcess
 from greywhale.errors import UserError
+from greywhale.files.arm import default_arm
 from greywhale.protocol import schema
 from greywhale.table import ParameterTable
+from tools.bench.hands import bench_of
 
 # At the strongest pulse a motor that runs away is at 5 rad/s when it is stopped, and coasts.
 WITH_COASTING_RAD = 0.45
@@ -101,3 +107,48 @@ def test_a_dead_motor_is_named(bench: BenchProcess, device: Device, joint: int) 
     bench.command(f"motor {joint} dead")
     with pytest.raises(UserError, match=f"the motor of joint {joint} did not move it with 5.2 V"):
         examine_motor(device, read_parameters(device), joint)
+
+
+def sinking(seed: int) -> ArmParameters:
+    """An arm whose gears do not hold it, with motors of uneven strength."""
+    random = np.random.default_rng(seed)
+    data = default_arm().model_dump()
+    for one in data["joint"]:
+        one["friction"]["coulomb"] *= 0.3
+        one["friction"]["breakaway"] *= 0.3
+        one["motor"]["resistance"] *= float(random.uniform(1.0, 2.5))
+    return ArmParameters.model_validate(data, strict=False)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_an_arm_that_sinks_while_it_is_pulsed_is_told_right(tmp_path: Path, seed: int) -> None:
+    """It is held level, as nobody should: it falls in some pulses, and lies still in others."""
+    with bench_of(sinking(seed), tmp_path) as bench:
+        bench.command("hand follower 0.3 0.2 -0.4 0.2")
+        bench.command(f"motor {seed} reversed")
+        with Device(bench.port) as device:
+            table = read_parameters(device)
+            signs = [examine_motor(device, table, joint).sign for joint in range(4)]
+        assert signs == [-1 if joint == seed else 1 for joint in range(4)]
+
+
+@pytest.mark.parametrize("falling", [0, 1, 2, 3])
+def test_a_joint_that_falls_in_one_pulse_is_not_taken_for_one_that_the_motor_moves(
+    monkeypatch: pytest.MonkeyPatch, falling: int
+) -> None:
+    """Whichever of the first pulses it is: neither swapped motors nor a direction follow from that."""
+    table, pulses = ParameterTable.defaults(), iter(range(1000))
+
+    def scripted(device: object, weak: ParameterTable, joint: int, way: int) -> Pulse:
+        moved = np.array([0.05 * way * (weak.each("joint", "ku_mv")[0] > 3000), 0.0, 0.0, 0.0])
+        moved[1] = -0.1 if next(pulses) == falling else 0.0
+        return Pulse(moved, 0.0)
+
+    monkeypatch.setattr("greywhale.calibrate.motors.pulse", scripted)
+    device: Any = SimpleNamespace(port="port")
+    found = examine_motor(device, table, 0)
+    assert found.sign == 1
+    assert found.volts == pytest.approx(0.25 * table.supply_v)
+    pulses = iter(range(1000))
+    with pytest.raises(UserError, match="the motor of joint 1 did not move it"):
+        examine_motor(device, table, 1)

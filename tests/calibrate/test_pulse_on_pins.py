@@ -1,4 +1,4 @@
-"""A pulse as the drivers see it: voltage, time and way on the pins of the real image, not as the firmware reports them."""
+"""A pulse as the drivers see it: voltage, time and way on the pins of the real image, not as it reports them."""
 
 from __future__ import annotations
 

@@ -58,7 +58,18 @@ def write_log(path: Path, seconds: float = 1.0) -> None:
 
 
 @pytest.mark.parametrize(
-    "verb", [*VERBS, "params get", "params set", "params backup", "params restore", "params diff", "arm import"]
+    "verb",
+    [
+        *VERBS,
+        "params get",
+        "params set",
+        "params backup",
+        "params restore",
+        "params diff",
+        "arm import",
+        "arm new",
+        "arm match",
+    ],
 )
 def test_every_verb_has_help_and_json(verb: str, capsys: Captured) -> None:
     assert entry.run([*verb.split(), "--help"]) == 0

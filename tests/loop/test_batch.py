@@ -10,6 +10,7 @@ from greywhale import _native
 from greywhale.arm.plants import columns
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.loop import PLANT_COLUMNS, Experiment, Result, default_controller, plant_row
+from greywhale.table import ParameterTable
 from greywhale.trajectory import human_reaches
 
 Array = npt.NDArray[np.float64]
@@ -52,6 +53,13 @@ def test_threads_neighbours_and_instruction_sets_change_no_bit(experiment: Exper
     shuffled = experiment.run(np.ascontiguousarray(controllers[order]), np.ascontiguousarray(plants[order]), every=7)
     np.testing.assert_array_equal(shuffled.mse, first.mse[order])
     np.testing.assert_array_equal(shuffled.duties, first.duties[order])
+
+
+def test_the_wires_of_a_motor_change_nothing() -> None:
+    """An arm's model knows no wires: a board whose motor_sign puts them right follows like any other."""
+    motion, table = human_reaches(4, 2.0), ParameterTable.defaults()
+    wired = Experiment(motion, default_arm(), table=table.with_raw({"joint2.motor_sign": -1}))
+    same(wired.run(every=5), Experiment(motion, default_arm(), table=table).run(every=5))
 
 
 def test_steps_of_a_slice_follow_the_single_run_tick_by_tick() -> None:

@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from greywhale.cli import entry
+from tests.study.cluster import cluster_of
 
 Captured = pytest.CaptureFixture[str]
 QUICK = ("compare", "--functions", "sphere,ackley", "--methods", "gwo, de", "--dimensions", "3", "--seeds", "3")
@@ -21,14 +22,16 @@ BUDGET = ("--budget", "40")
 
 
 @pytest.mark.slow
-def test_json_is_one_object_the_same_with_any_number_of_processes(capsys: Captured) -> None:
+def test_json_is_one_object_the_same_on_every_executor(capsys: Captured) -> None:
     answers = []
-    for jobs in ("1", "2"):
-        assert entry.run([*QUICK, *BUDGET, "--jobs", jobs, "--json"]) == 0
-        out = capsys.readouterr().out
-        assert out.count("\n") == 1
-        answers.append(json.loads(out))
-    assert answers[0] == answers[1]
+    with cluster_of(1) as cluster:
+        where = (("--workers", "1"), ("--jobs", "2"), ("--executor", f"dask://{cluster.address}"))
+        for options in where:
+            assert entry.run([*QUICK, *BUDGET, *options, "--json"]) == 0
+            out = capsys.readouterr().out
+            assert out.count("\n") == 1
+            answers.append(json.loads(out))
+    assert answers[0] == answers[1] == answers[2]
     assert list(answers[0]["median_cost"]["shifted"]["ackley"]) == ["gwo", "de"]
     assert (answers[0]["dimensions"], answers[0]["budget"], answers[0]["seeds"]) == (3, 40, 3)
 
@@ -63,13 +66,19 @@ def test_another_seed_other_costs(capsys: Captured) -> None:
         (("--settings", "plain,turned"), "there is no setting 'turned'; there are plain, shifted, rotated."),
         (("--dimensions", "1"), "dimensions is 1, but must be at least 2."),
         (("--seeds", "0"), "seeds is 0, but must be at least 1."),
-        (("--jobs", "0"), "Invalid value for '--jobs'"),
+        (("--jobs", "0"), "Invalid value for '--workers' / '--jobs'"),
+        (
+            ("--executor", "cloud"),
+            "there is no executor 'cloud'; it is local, dask://HOST:PORT or slurm://[PARTITION].",
+        ),
+        (("--executor", "dask://127.0.0.1:1", "--workers", "2"), "--workers is for local and slurm://;"),
+        (("--results", "r.csv", "--out", "r.csv"), "r.csv: this is the results file; write the report elsewhere."),
         (("--pack", "2"), "the pack is 2, but gwo-woa-relative needs at least 3."),
         (("--out", "r.txt"), "r.txt: reports end in .csv, .png, .svg, .pdf."),
     ],
 )
 def test_bad_usage_is_one_sentence_and_code_2(
-    capsys: Captured, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: tuple[str, str], sentence: str
+    capsys: Captured, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: tuple[str, ...], sentence: str
 ) -> None:
     monkeypatch.chdir(tmp_path)
     assert entry.run(["compare", *arguments]) == 2
@@ -117,3 +126,41 @@ def test_interrupt_ends_all_processes_and_writes_nothing(tmp_path: Path, started
         assert select.select([end], [], [], 60)[0], "a process of the comparison is still there"
         os.close(end)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("jobs", ["1", "2"])
+def test_an_interrupted_comparison_goes_on_from_its_results_file(tmp_path: Path, jobs: str) -> None:
+    """To the same answer as without a break; with other options the file is refused."""
+    verb = [
+        sys.executable,
+        "-m",
+        "greywhale",
+        "compare",
+        "--methods",
+        "pso",
+        "--functions",
+        "sphere",
+        "--budget",
+        "1000",
+    ]
+    verb += ["--seeds", "40", "--workers", jobs, "--json"]
+    whole = subprocess.run(verb, capture_output=True, check=True).stdout
+    results = tmp_path / "pso.study"
+    with subprocess.Popen(
+        [*verb, "--results", str(results)], stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as running:
+        while not (results.exists() and results.read_bytes().count(b"\n") > 2):
+            assert running.poll() is None, "it ended before it could be interrupted"
+        running.send_signal(signal.SIGINT)
+        out, err = running.communicate(timeout=120)
+    assert running.returncode == 130
+    told = json.loads(out)["error"]
+    assert err.decode().strip() == f"greywhale: {told}"
+    kept = results.read_bytes().count(b"\n") - 1
+    assert told == f"interrupted. {kept} of 16 tasks are done and kept in {results}; with it the same study goes on."
+    assert subprocess.run([*verb, "--results", str(results)], capture_output=True, check=True).stdout == whole
+    assert results.read_bytes().count(b"\n") == 17
+    other = subprocess.run([*verb, "--results", str(results), "--seed", "1"], capture_output=True, check=False)
+    assert other.returncode == 1
+    assert f"{results}: the results file is of another study: its seed is 0, now it is 1; " in other.stderr.decode()

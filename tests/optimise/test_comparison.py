@@ -17,6 +17,7 @@ from greywhale.optimise import DEFAULT
 from greywhale.optimise.comparison import Comparison, Duel, Plan, compare, run_once
 from greywhale.optimise.comparison_report import as_dict, statement, text, write_report
 from greywhale.optimise.functions import SETTINGS
+from greywhale.study import LocalWorkers
 
 SMALL = Plan(("sphere", "ackley"), SETTINGS, ("gwo-woa", "de", "cma-es"), dimensions=3, budget=60, runs=4, seed=7)
 
@@ -29,7 +30,7 @@ def small() -> Comparison:
 @pytest.mark.slow
 def test_processes_change_nothing_and_progress_ends_at_one(small: Comparison) -> None:
     seen: list[float] = []
-    parallel = compare(SMALL, jobs=2, progress=lambda what, fraction: seen.append(fraction))
+    parallel = compare(SMALL, LocalWorkers(2), lambda what, fraction: seen.append(fraction))
     assert (parallel.costs == small.costs).all()
     assert seen == sorted(seen)
     assert seen[-1] == 1.0
@@ -37,9 +38,10 @@ def test_processes_change_nothing_and_progress_ends_at_one(small: Comparison) ->
 
 ENDLESS = """
 from greywhale.optimise.comparison import Plan, compare
+from greywhale.study import LocalWorkers
 if __name__ == "__main__":
     plan = Plan(("sphere",), ("shifted",), ("pso",), dimensions=2, budget=3000, runs=100_000)
-    compare(plan, jobs=2, progress=lambda what, fraction: print(fraction, flush=True))
+    compare(plan, LocalWorkers(2), lambda what, fraction: print(fraction, flush=True))
 """
 
 
@@ -49,6 +51,7 @@ def test_processes_end_with_a_parent_that_is_killed(tmp_path: Path) -> None:
     script.write_text(ENDLESS)
     with subprocess.Popen([sys.executable, str(script)], stdout=subprocess.PIPE) as parent:
         assert parent.stdout is not None
+        assert parent.stdout.readline() == b"0.0\n"
         assert parent.stdout.readline(), "the processes work"
         children = Path(f"/proc/{parent.pid}/task/{parent.pid}/children").read_text().split()
         handles = [os.pidfd_open(int(child)) for child in children]

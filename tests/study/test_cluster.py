@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
+import signal
 import subprocess
 import sys
+import sysconfig
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 import pytest
@@ -27,52 +28,7 @@ from greywhale.study import (
     run_study,
 )
 from tests.study import jobs
-
-ROOT = Path(__file__).parents[2]
-
-
-@dataclass
-class Cluster:
-    """A scheduler and its workers, each a process of its own."""
-
-    address: str
-    scheduler: subprocess.Popen[str]
-    workers: list[subprocess.Popen[str]]
-
-
-def begin(module: str, *options: str, **settings: str) -> subprocess.Popen[str]:
-    command = [sys.executable, "-m", f"distributed.cli.{module}", *options, "--no-dashboard"]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT), **settings}
-    return subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=environment)
-
-
-def wait_for(process: subprocess.Popen[str], words: str) -> str:
-    """The line of a process's messages that holds these words."""
-    assert process.stderr is not None
-    for line in process.stderr:
-        if words in line:
-            return line
-    raise AssertionError(f"it ended before it said {words!r}")
-
-
-@contextlib.contextmanager
-def cluster_of(workers: int, **settings: str) -> Iterator[Cluster]:
-    with contextlib.ExitStack() as stack:
-        scheduler = begin("dask_scheduler", "--host", "127.0.0.1", "--port", "0", **settings)
-        stack.callback(end, scheduler)
-        address = wait_for(scheduler, "Scheduler at:").rpartition("tcp://")[2].strip()
-        running = []
-        for _ in range(workers):
-            running.append(begin("dask_worker", f"tcp://{address}", "--nthreads", "1", "--no-nanny"))
-            stack.callback(end, running[-1])
-        for worker in running:
-            wait_for(worker, "Registered to:")
-        yield Cluster(address, scheduler, running)
-
-
-def end(process: subprocess.Popen[str]) -> None:
-    process.kill()
-    process.communicate()
+from tests.study.cluster import ROOT, begin_worker, cluster_of, end, wait_for
 
 
 @pytest.mark.slow
@@ -96,6 +52,19 @@ def test_a_killed_dask_worker_changes_no_bit(tmp_path: Path) -> None:
             assert found["values"].tobytes() == serial[key]["values"].tobytes()
             assert np.array(found["odd"]).tobytes() == np.array(serial[key]["odd"]).tobytes()
     assert run_study(there, SerialWorkers(), tmp_path / "r").keys() == serial.keys(), "another executor goes on with it"
+
+
+@pytest.mark.slow
+def test_results_that_are_lost_with_their_worker_before_they_are_fetched_are_worked_out_again() -> None:
+    tasks = jobs.draws(150)
+    with cluster_of(2) as cluster:
+
+        def kill_one(what: str, share: float) -> None:
+            if share > 0.1:
+                cluster.workers[0].kill()
+
+        found = run_study(tasks, DaskWorkers(cluster.address), progress=kill_one)
+    np.testing.assert_equal(found, run_study(tasks, SerialWorkers()))
 
 
 @pytest.fixture(scope="module")
@@ -138,14 +107,81 @@ def test_a_scheduler_that_goes_away_ends_the_study_with_a_sentence(tmp_path: Pat
 
         with pytest.raises(UserError, match=f"{cluster.address}: no Dask scheduler answers there") as error:
             run_study(tasks, DaskWorkers(cluster.address, wait_s=1.0), tmp_path / "r", go)
-    assert error.value.__notes__ == [f"2 of 3 tasks are done and kept in {tmp_path / 'r'}."]
+    assert error.value.__notes__ == [
+        f"2 of 3 tasks are done and kept in {tmp_path / 'r'}; with it the same study goes on."
+    ]
     assert list(run_study(tasks, SerialWorkers(), tmp_path / "r")) == ["note 0", "note 1", "long"]
     assert jobs.done(tmp_path) == [0, 1]
+
+
+SCRIPT = """
+import sys
+from pathlib import Path
+from greywhale.study import DaskWorkers, Task, run_study
+from tests.study import jobs
+folder = Path(sys.argv[1])
+tasks = [*jobs.notes(2, folder), Task("long", jobs.hang_first, 3, {"folder": str(folder), "count": 5})]
+run_study(tasks, DaskWorkers(sys.argv[2]), folder / "r", lambda *one: print(*one, flush=True))
+"""
+
+
+@pytest.mark.slow
+def test_ctrl_c_leaves_a_dask_cluster_at_once_and_keeps_what_is_done(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "who")
+    with cluster_of(1) as cluster:
+        command = [sys.executable, "-c", SCRIPT, str(tmp_path), cluster.address]
+        environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+        running = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment)
+        try:
+            (tmp_path / "who").read_text()  # the worker has the task that never ends
+            assert running.stdout is not None
+            while f"working {2 / 3}\n".encode() != running.stdout.readline():
+                assert running.poll() is None
+            running.send_signal(signal.SIGINT)
+            _, errors = running.communicate(timeout=60)
+        finally:
+            running.kill()
+        assert running.returncode == -signal.SIGINT
+        assert errors.count(b"Traceback") == 1, errors
+        assert f"2 of 3 tasks are done and kept in {tmp_path / 'r'};".encode() in errors
+        assert cluster.workers[0].poll() is None, "the worker is not ours to end"
 
 
 def test_a_scheduler_that_is_not_there() -> None:
     with pytest.raises(UserError, match="^127.0.0.1:1: no Dask scheduler answers there"):
         run_study(jobs.draws(1), DaskWorkers("127.0.0.1:1", wait_s=1.0))
+
+
+@pytest.mark.slow
+def test_a_worker_without_greywhale_is_named_before_it_gets_a_task(tmp_path: Path) -> None:
+    """It would end without a word when it gets one. Here it sees all packages of this environment but that one."""
+    for entry in Path(sysconfig.get_path("purelib")).iterdir():
+        if "greywhale" not in entry.name:
+            (tmp_path / entry.name).symlink_to(entry)
+    with cluster_of(0) as cluster:
+        worker = begin_worker(cluster.address, python=["-S"], PYTHONPATH=str(tmp_path))
+        try:
+            wait_for(worker, "Registered to:")
+            sentence = r"the worker tcp://\S+ has no greywhale; install greywhale \S+ there\."
+            with pytest.raises(UserError, match=sentence):
+                run_study(jobs.draws(1), DaskWorkers(cluster.address))
+        finally:
+            end(worker)
+
+
+@pytest.mark.slow
+def test_a_worker_that_cannot_import_a_task_says_so(dask: DaskWorkers, monkeypatch: pytest.MonkeyPatch) -> None:
+    only_here = ModuleType("only_here")
+    monkeypatch.setitem(sys.modules, "only_here", only_here)
+    exec("def job(seed): return seed", vars(only_here))
+    with pytest.raises(UserError, match="a worker cannot import what the study does: No module named 'only_here'"):
+        run_study([Task("x", only_here.job, 0)], dask)
+
+
+def test_slurm_is_asked_for_only_where_it_is(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(UserError, match="sbatch was not found; begin the study on a machine that submits jobs"):
+        run_study(jobs.draws(1), SlurmWorkers("normal"))
 
 
 def test_slurm_would_be_given_jobs_of_the_partition() -> None:

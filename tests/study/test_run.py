@@ -133,7 +133,9 @@ def test_a_task_that_kills_three_workers_is_given_up_and_no_other(tmp_path: Path
         run_study(tasks, LocalWorkers(2), tmp_path / "r")
     assert lost.value.results == {f"note {seed}": seed * seed for seed in range(5)}
     assert list(lost.value.results) == [task.key for task in others]
-    assert lost.value.__notes__ == [f"5 of 6 tasks are done and kept in {tmp_path / 'r'}."]
+    assert lost.value.__notes__ == [
+        f"5 of 6 tasks are done and kept in {tmp_path / 'r'}; with it the same study goes on."
+    ]
     assert set(jobs.done(tmp_path)) == set(range(5))
 
 
@@ -165,7 +167,9 @@ def test_an_error_of_a_task_is_told_with_the_workers_traceback(
         run_study(
             [*jobs.notes(2, tmp_path), Task("bad", jobs.fail, 7), Task("never", jobs.note, 9)], workers, tmp_path / "r"
         )
-    assert failed.value.__notes__ == [f"2 of 4 tasks are done and kept in {tmp_path / 'r'}."]
+    assert failed.value.__notes__ == [
+        f"2 of 4 tasks are done and kept in {tmp_path / 'r'}; with it the same study goes on."
+    ]
     assert jobs.done(tmp_path) == [0, 1]
 
 
@@ -250,7 +254,7 @@ def test_an_interrupted_study_keeps_what_is_done_and_goes_on(
     assert running.returncode == -number
     if number == signal.SIGINT:
         assert errors.count(b"Traceback") == 1, "only the first process answers"
-        assert f"{kept} of 7 tasks are done and kept in {tmp_path / 'r'}.".encode() in errors
+        assert f"{kept} of 7 tasks are done and kept in {tmp_path / 'r'}; with it".encode() in errors
     (tmp_path / "who").unlink()
     again = begin(tmp_path, count)
     out, errors = again.communicate(timeout=120)

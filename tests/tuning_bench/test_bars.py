@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import asdict, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 from greywhale.measure import Evaluation, JointMeasures
-from tools.bench import bench_tune_arms, bench_tune_methods
+from greywhale.study import Task, TaskFailed
+from greywhale.study.plain import decode, encode
+from greywhale.tune.judge.margins import Margin
+from tests.study import jobs
+from tools.bench import bench_tune_arms, bench_tune_methods, study
 from tools.bench.figure import Figure
 from tools.bench.tuning import Judged, figures
 
@@ -104,3 +109,43 @@ def test_methods_are_compared_by_arm_and_seed() -> None:
     assert "| 2.00 |  |" in text
     assert "| 1.00 | higher, p = " in text
     assert text.count("| lower, p = ") == 2
+
+
+def test_a_verdict_comes_back_from_the_process_that_judged() -> None:
+    """As the fields that a study can carry, numbers bit for bit."""
+    four = np.array([0.1, 1 / 3, np.inf, 5e-324])
+    margins = (Margin("at rest", 1, 4, 12.5, 2, 8), Margin("while moving", 3, 0, 0.0, 0, 8, 1e-3))
+    verdict = bench_tune_arms.Verdict(7, {"steps": four}, {"steps": 0.5 * four}, four, margins, (0, 2))
+    back = bench_tune_arms.verdict_of(decode(encode(asdict(verdict))))
+    assert asdict(back) | {"before": 0, "after": 0, "floor": 0} == asdict(verdict) | {
+        "before": 0,
+        "after": 0,
+        "floor": 0,
+    }
+    assert back.failing == [margins[0]]
+    for one, other in (
+        (back.before, verdict.before),
+        (back.after, verdict.after),
+        ({"steps": back.floor}, {"steps": four}),
+    ):
+        assert one["steps"].tobytes() == other["steps"].tobytes()
+
+
+def test_what_a_benchmark_repeats_goes_on_after_a_break_and_is_measured_anew_when_it_was_done(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(study, "FOLDER", tmp_path)
+    monkeypatch.delenv("GREYWHALE_EXECUTOR", raising=False)
+    monkeypatch.delenv("GREYWHALE_WORKERS", raising=False)
+    stop = tmp_path / "stop"
+    stop.touch()
+    tasks = [*jobs.notes(2, tmp_path), Task("stopped", jobs.fail_while, 0, {"path": str(stop)})]
+    with pytest.raises(TaskFailed):
+        study.repeat("squares", tasks)
+    assert len(list(tmp_path.glob("squares-*.study"))) == 1
+    stop.unlink()
+    assert study.repeat("squares", tasks) == {"note 0": 0, "note 1": 1, "stopped": None}
+    assert jobs.done(tmp_path) == [0, 1]
+    assert not list(tmp_path.glob("*.study"))
+    study.repeat("squares", tasks)
+    assert jobs.done(tmp_path) == [0, 0, 1, 1]

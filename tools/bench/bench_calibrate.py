@@ -6,86 +6,30 @@ Each assembly has another zero, direction and track at all eight potentiometers,
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
 import tempfile
-from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
 
+from greywhale.calibrate.motors import SHARES
 from greywhale.demo import BenchProcess, record_motion
 from greywhale.files.arm import default_arm
 from greywhale.files.leader import save_leader
 from greywhale.measure import evaluate
+from greywhale.study import Task
 from greywhale.trajectory import human_reaches
+from greywhale_sim.mistakes import BY_NAME, MISTAKES, WHERE
 from tools.bench.figure import Figure
 from tools.bench.hands import SECOND_DEG, Hands, bench_of, mounted_anyhow, run_calibrate
+from tools.bench.study import repeat
 
 ASSEMBLIES = 20
 WORKERS = 2
 LIKE = 0.1
 SECOND = ("--second", ",".join(f"{angle:g}" for angle in SECOND_DEG))
-
-
-@dataclass(frozen=True)
-class Mistake:
-    """`stage` gives the bench's commands for a joint; the verb must then say what `says` matches."""
-
-    name: str
-    stage: Callable[[int], list[str]]
-    says: Callable[[int], str]
-
-
-def _next(joint: int) -> int:
-    return (joint + 1) % 4
-
-
-MISTAKES = (
-    Mistake(
-        "potentiometers swapped",
-        lambda joint: [f"swap leader{joint} leader{_next(joint)}"],
-        lambda joint: rf"eader potentiometer {min(joint, _next(joint))} .* their wires are swapped",
-    ),
-    Mistake(
-        "arms swapped",
-        lambda joint: [f"swap leader{joint} follower{joint}"],
-        lambda joint: rf"eader potentiometer {joint} .* the two arms are swapped",
-    ),
-    Mistake(
-        "shaft does not turn",
-        lambda joint: [f"pot follower {joint} frozen"],
-        lambda joint: rf"ollower potentiometer {joint} .* did not move: check that its shaft",
-    ),
-    Mistake(
-        "open", lambda joint: [f"pot leader {joint} open"], lambda joint: rf"eader potentiometer {joint} .* a rail"
-    ),
-    Mistake(
-        "shorted",
-        lambda joint: [f"pot follower {joint} shorted"],
-        lambda joint: rf"ollower potentiometer {joint} .* at a rail",
-    ),
-    Mistake(
-        "loose wire",
-        lambda joint: [f"pot leader {joint} loose"],
-        lambda joint: rf"eader potentiometer {joint} (jumped \d+ times|reaches an end)",
-    ),
-    Mistake(
-        "shaft slips",
-        lambda joint: [f"pot follower {joint} slipping"],
-        lambda joint: rf"ollower potentiometer {joint} (reads? \d+|reaches an end|turned the other way)",
-    ),
-    Mistake(
-        "motors swapped",
-        lambda joint: [f"motor {joint} {_next(joint)}", f"motor {_next(joint)} {joint}"],
-        lambda joint: r"the motor of joint \d moved joint \d: their motors",
-    ),
-    Mistake(
-        "motor dead",
-        lambda joint: [f"motor {joint} dead"],
-        lambda joint: rf"the motor of joint {joint} did not move it",
-    ),
-)
 
 
 def error_of(bench: BenchProcess, folder: Path) -> float:
@@ -104,24 +48,36 @@ def assembled(seed: int) -> float:
         return error_of(bench, Path(name)) if done.code == 0 else np.inf
 
 
-def is_named(number: int, seed: int) -> bool:
-    """Whether a mistake of a random assembly is named, at the first try, and nothing is stored."""
-    mistake, joint = MISTAKES[number], (seed + number) % 4
-    with tempfile.TemporaryDirectory() as name, bench_of(mounted_anyhow(seed), Path(name)) as bench:
-        for command in mistake.stage(joint):
-            bench.command(command)
-        done = run_calibrate(Hands(bench), Path(name), *SECOND)
-        named = re.search(mistake.says(joint), done.said) is not None
-        return done.code == 1 and named and not bench.command("status")["eeprom_writes"]
+def is_named(seed: int, name: str) -> bool:
+    """Whether its verb names a mistake of a random assembly, at the first try, and stores nothing it should not."""
+    mistake = BY_NAME[name]
+    places = WHERE[mistake.on]
+    number = (seed + MISTAKES.index(mistake)) % len(places)
+    with tempfile.TemporaryDirectory() as folder, bench_of(mounted_anyhow(seed), Path(folder)) as bench:
+        bench.command(f"mistake {name}" + (f":{places[number]}" if places[number] else ""))
+        if mistake.verb == "calibrate":
+            done = run_calibrate(Hands(bench), Path(folder), *SECOND)
+            code, told = done.code, done.said + done.printed
+        else:
+            bench.command("hand both 0.1 -0.6 0.7 0.4")
+            command = [sys.executable, "-m", "greywhale", "doctor", "--port", bench.port, "--seconds", "0.5", "--json"]
+            looked = subprocess.run([*command, *mistake.options], capture_output=True, text=True, check=False)
+            code, told = looked.returncode, looked.stdout
+        named = re.search(mistake.tells(number), told) is not None
+        within = max(bench.command("pins")["duties"]) <= SHARES[-1] + 1 / 400
+        stored = bool(bench.command("status")["eeprom_writes"])
+        return named and within and code == int(mistake.ends == "refused") and (code == 0 or not stored)
 
 
 def run() -> list[Figure]:
     with tempfile.TemporaryDirectory() as name, bench_of(default_arm(), Path(name)) as bench:
         usual = error_of(bench, Path(name))
     seeds = range(1, ASSEMBLIES + 1)
-    with ProcessPoolExecutor(WORKERS) as pool:
-        ratios = np.array(list(pool.map(assembled, seeds))) / usual
-        named = [sum(pool.map(is_named, [number] * ASSEMBLIES, seeds)) for number in range(len(MISTAKES))]
+    tries = [[Task(f"{seed}, {one.name}", is_named, seed, {"name": one.name}) for seed in seeds] for one in MISTAKES]
+    tasks = [Task(f"{seed}", assembled, seed) for seed in seeds]
+    found = repeat("calibrate", [*tasks, *chain(*tries)], WORKERS)
+    ratios = np.array([found[task.key] for task in tasks]) / usual
+    named = [sum(found[task.key] for task in of_mistake) for of_mistake in tries]
     apart = float(np.abs(ratios - 1.0).max())
     return [
         Figure("error of 20 assemblies / calibrated bench, farthest from 1", apart, "", f"<= {LIKE}", apart <= LIKE),

@@ -20,9 +20,11 @@ from greywhale.identify.paper import PaperSearch
 from greywhale.identify.space import MOTOR, Space
 from greywhale.loop import plant_row
 from greywhale.optimise import minimise
+from greywhale.study import Task
 from greywhale.table import ParameterTable
 from tools.bench.figure import Figure
 from tools.bench.recordings import Recorded, random_arm, record_three, table_of
+from tools.bench.study import repeat
 
 ARMS = 10
 PAPER_BUDGET = 500
@@ -38,6 +40,8 @@ def identified(recorded: Recorded) -> tuple[Outcome, float]:
     outcome = identify(
         [recorded.fit], load_arm("white_box"), validate=[recorded.second, recorded.changed], tables=tables()
     )
+    if not outcome.complete:
+        raise KeyboardInterrupt
     return outcome, time.perf_counter() - begin
 
 
@@ -100,6 +104,14 @@ def truth(outcome: Outcome, arm: ArmParameters) -> float:
     return 1.0 - float(loop.error(plant_row(arm)[None]).sum()) / sum(verdict.white_box)
 
 
+def of_random_arm(seed: int) -> dict[str, float]:
+    """How much better the model is than the white box, and the true arm itself; how long it took."""
+    arm = random_arm(seed)
+    outcome, seconds = of_arm(arm, seed)
+    second, changed = (verdict.improvement for verdict in outcome.verdicts[1:3])
+    return {"second": second, "changed": changed, "true arm": truth(outcome, arm), "seconds": seconds}
+
+
 def run() -> list[Figure]:
     outcome, seconds = of_arm(default_arm(), 1)
     default = outcome
@@ -109,14 +121,10 @@ def run() -> list[Figure]:
         Figure("default arm: the same, changed controller", gains[2], "%", ">= 90", gains[2] >= 90),
         Figure("identification of a 30 s log", seconds, "s", "<= 30", seconds <= 30),
     ]
-    second, changed, times, ceiling = [], [], [], []
-    for seed in range(1, ARMS + 1):
-        arm = random_arm(seed)
-        outcome, seconds = of_arm(arm, seed)
-        ceiling.append(100 * truth(outcome, arm))
-        second.append(100 * outcome.verdicts[1].improvement)
-        changed.append(100 * outcome.verdicts[2].improvement)
-        times.append(seconds)
+    tasks = [Task(f"random arm {seed}", of_random_arm, seed) for seed in range(1, ARMS + 1)]
+    found = repeat("identify", tasks).values()
+    second, changed, ceiling = ([100 * one[key] for one in found] for key in ("second", "changed", "true arm"))
+    times = [one["seconds"] for one in found]
     middle, least, other = float(np.median(second)), min(second), float(np.median(changed))
     figures += [
         Figure(f"{ARMS} random arms: set 2, median", middle, "%", ">= 97", middle >= 97),

@@ -7,8 +7,9 @@ The recordings and the verdicts come from the native closed loop, which repeats 
 from __future__ import annotations
 
 import tempfile
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from greywhale.demo.practice import tables
 from greywhale.files.arm import load_arm
 from greywhale.loop import Experiment, default_controller, plant_row
 from greywhale.loop.controllers import Controllers
+from greywhale.study import Task
 from greywhale.table import ParameterTable
 from greywhale.trajectory import human_reaches, multi_steps, steps
 from greywhale.trajectory.motion import Array
@@ -25,6 +27,7 @@ from greywhale.tune.judge.floor import saturation_floor
 from greywhale.tune.judge.margins import Margin, Margins
 from tools.bench.figure import Figure
 from tools.bench.recordings import random_arm
+from tools.bench.study import repeat
 from tools.bench.tuning import practised
 
 ARMS = range(1, 11)
@@ -52,12 +55,18 @@ class Verdict:
         return float(self.after[motion].sum() / self.before[motion].sum())
 
 
-def judged(seed: int) -> Verdict:
+def judged(seed: int) -> dict[str, Any]:
+    """A whole arm's Verdict, as its fields."""
     arm = random_arm(seed)
     with tempfile.TemporaryDirectory() as folder:
         fit, *checks = practised(arm, Path(folder), seed)
         learnt = learn(fit, checks, tables(ParameterTable.defaults()), load_arm("white_box"), Path(folder))
-    return on_the_true_arm(seed, arm, learnt.tuning.after)
+    return asdict(on_the_true_arm(seed, arm, learnt.tuning.after))
+
+
+def verdict_of(facts: dict[str, Any]) -> Verdict:
+    margins = tuple(Margin(**one) for one in facts["margins"])
+    return Verdict(**(facts | {"margins": margins, "cycling": tuple(facts["cycling"])}))
 
 
 def on_the_true_arm(seed: int, arm: ArmParameters, tuned: Controllers) -> Verdict:
@@ -104,7 +113,8 @@ def reversals(path: Array) -> int:
 
 
 def run() -> list[Figure]:
-    verdicts = [judged(seed) for seed in ARMS]
+    found = repeat("tune_arms", [Task(f"random arm {seed}", judged, seed) for seed in ARMS])
+    verdicts = [verdict_of(facts) for facts in found.values()]
     figures = []
     for one in verdicts:
         head = f"random arm {one.seed}"

@@ -10,16 +10,18 @@ from __future__ import annotations
 
 import os
 import tempfile
-from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 from scipy.stats import rankdata, wilcoxon
 
+from greywhale import study
 from greywhale.arm import ArmParameters
 from greywhale.demo.practice import tables
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.identify import identify
+from greywhale.optimise import DEFAULT
 from greywhale.table import ParameterTable
 from greywhale.trajectory.motion import Array
 from greywhale.tune.default import SEARCH_PLANTS, DefaultMethod
@@ -29,6 +31,7 @@ from greywhale.tune.progress import report_nothing
 from greywhale.tune.search.journal import Journal
 from tools.bench.figure import Figure
 from tools.bench.recordings import random_arm
+from tools.bench.study import repeat, threads
 from tools.bench.tuning import practised
 from tools.setup.console import ROOT
 
@@ -37,38 +40,47 @@ OURS = METHODS[0]
 BUDGET = int(os.environ.get("GREYWHALE_BUDGET", "3000"))
 SEEDS = range(int(os.environ.get("GREYWHALE_SEEDS", "20")))
 ARMS = range(int(os.environ.get("GREYWHALE_ARMS", "5")))  # 0 is the default arm, the others are drawn at random
-WORKERS = int(os.environ.get("GREYWHALE_WORKERS", "0"))
 OTHER_SEED = 999  # of the sensor noise of the judgement
 SIGNIFICANCE = 0.05
 TABLE = ROOT / "build" / "bench_tune_methods.md"
 
 
-def identified(number: int) -> Model:
-    """An arm as its recordings show it."""
+def identified(seed: int, number: int) -> str:
+    """The model.toml of an arm as its recordings show it."""
     arm: ArmParameters = default_arm() if number == 0 else random_arm(number)
     with tempfile.TemporaryDirectory() as folder:
-        fit, *checks = practised(arm, Path(folder), number + 1)
+        fit, *checks = practised(arm, Path(folder), seed)
         path = Path(folder) / "model.toml"
-        identify([fit], load_arm("white_box"), validate=checks, tables=tables(ParameterTable.defaults())).save(path)
-        return load_model(path, force=True, samples=SEARCH_PLANTS)
+        found = identify([fit], load_arm("white_box"), validate=checks, tables=tables(ParameterTable.defaults()))
+        if not found.complete:
+            raise KeyboardInterrupt
+        found.save(path)
+        return path.read_text(encoding="utf-8")
 
 
-def method_of(model: Model, method: str, seed: int) -> DefaultMethod:
+@cache
+def judged_model(text: str) -> tuple[Model, DefaultMethod]:
+    """A model, and the judge of what is found for it."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "model.toml"
+        path.write_text(text, encoding="utf-8")
+        model = load_model(path, force=True, samples=SEARCH_PLANTS)
+    return model, method_of(model, DEFAULT, OTHER_SEED, 1)
+
+
+def method_of(model: Model, method: str, seed: int, budget: int) -> DefaultMethod:
     """The stages of the default method with an optimiser, before its search."""
     before = model.controllers
-    return DefaultMethod(Task(model, "both", method, BUDGET, seed, WORKERS, before, {}, report_nothing, floors=False))
+    return DefaultMethod(Task(model, "both", method, budget, seed, threads(), before, {}, report_nothing, floors=False))
 
 
-def cost(model: Model, judge: DefaultMethod, method: str, seed: int) -> float:
-    """What a method found with one seed, judged with other noise."""
-    search = method_of(model, method, seed)
+def cost(seed: int, model: str, method: str, budget: int) -> float:
+    """What a method found with one seed and so many evaluations for a model.toml, judged with other noise."""
+    known, judge = judged_model(model)
+    search = method_of(known, method, seed, budget)
     with Journal(None, {}) as book:
         search.search(book)
-    found = float(judge.costs(search.found.best[None]).sum())
-    # The whole takes hours, so what is known is kept beside the table.
-    with TABLE.with_suffix(".log").open("a", encoding="utf-8") as log:
-        log.write(f"{model.name}, {method}, seed {seed}: {found:.4f}\n")
-    return found
+    return float(judge.costs(search.found.best[None]).sum())
 
 
 def verdict(own: Array, other: Array) -> tuple[str, float]:
@@ -100,16 +112,24 @@ def table(found: list[dict[str, Array]]) -> str:
 
 
 def run() -> list[Figure]:
-    TABLE.parent.mkdir(exist_ok=True)
     names = ["default arm" if number == 0 else f"random arm {number}" for number in ARMS]
-    models = [replace(identified(number), name=name) for number, name in zip(ARMS, names, strict=True)]
-    judges = [method_of(model, OURS, OTHER_SEED) for model in models]
-    known: list[dict[str, list[float]]] = [{method: [] for method in METHODS} for _ in models]
-    for seed in SEEDS:
-        for model, judge, one in zip(models, judges, known, strict=True):
-            for method in METHODS:
-                one[method].append(cost(model, judge, method, seed))
-    found = [{method: np.array(values) for method, values in of_model.items()} for of_model in known]
+    arms = [
+        study.Task(name, identified, number + 1, {"number": number}) for name, number in zip(names, ARMS, strict=True)
+    ]
+    models = repeat("tune_methods_arms", arms)
+    tasks = {
+        (name, method, seed): study.Task(
+            f"{name}, {method}, seed {seed}", cost, seed, {"model": model, "method": method, "budget": BUDGET}
+        )
+        for seed in SEEDS
+        for name, model in models.items()
+        for method in METHODS
+    }
+    costs = repeat("tune_methods", list(tasks.values()))
+    found = [
+        {method: np.array([costs[tasks[name, method, seed].key] for seed in SEEDS]) for method in METHODS}
+        for name in names
+    ]
     TABLE.write_text(table(found), encoding="utf-8")
     figures = []
     for name, of_model in zip(names, found, strict=True):

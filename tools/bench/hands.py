@@ -25,6 +25,7 @@ Floats = npt.NDArray[np.float64]
 SWEEP_DEG, SWEEP_S = (75.0, -70.0), 0.5  # a way; a person is slower
 SECOND_DEG = np.array([60.0, 50.0, -45.0, 40.0])
 THIRD_DEG = np.array([-35.0, -20.0, 30.0, -40.0])
+HANGING_DEG = np.array([0.0, -80.0, 0.0, 0.0])
 TRACK_RAD, CENTRE_RAD = (4.7, 5.8), (-0.6, 0.6)
 
 
@@ -73,6 +74,8 @@ class Hands:
             for angle in (*SWEEP_DEG, 0.0):
                 self.at[side][int(number[0])] = angle
                 self.bring(side, self.at[side], SWEEP_S)
+        elif asked.startswith("Each motor"):
+            self.bring("follower", HANGING_DEG)
         elif " pose" in asked:
             self.poses += 1
             pose = {2: self.second, 4: THIRD_DEG}.get(self.poses, np.zeros(JOINTS))

@@ -2,26 +2,20 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Iterable
 from dataclasses import asdict
 from pathlib import Path
 
 from tools.campaign.part import Part, Piece, Row
+from tools.sources import digest_of
 
 ROOT = Path(__file__).parents[2]
 
 
 def identity(part: Part) -> str:
     """A digest of all that a part's result is about."""
-    digest = hashlib.sha256()
-    for name in (*part.depends, f"tools/campaign/parts/{part.name}.py"):
-        path = ROOT / name
-        for file in sorted(path.rglob("*")) if path.is_dir() else [path]:
-            if file.is_file() and "__pycache__" not in file.parts and ".pio" not in file.relative_to(ROOT).parts:
-                digest.update(str(file.relative_to(ROOT)).encode() + b"\0" + file.read_bytes() + b"\0")
-    return digest.hexdigest()[:16]
+    return digest_of((*part.depends, f"tools/campaign/parts/{part.name}.py"))
 
 
 class Journal:

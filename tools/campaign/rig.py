@@ -59,7 +59,7 @@ class Rig:
         self.board.power_on(seed)
         self.board.add_pin_output(self.wiring.enable.port, self.wiring.enable.bit)
         for motor in self.wiring.motors:
-            self.board.add_duty_output(motor.timer, motor.channel)
+            self.board.add_duty_output(motor.pwm.timer, motor.pwm.channel)
         for motor in self.wiring.motors:
             self.board.add_pin_output(motor.direction.port, motor.direction.bit)
         self._millivolts = np.zeros(8)

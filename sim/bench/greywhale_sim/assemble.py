@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from greywhale.arm import Arm, Potentiometers
 from greywhale.board.flash import packaged_image
 from greywhale.errors import UserError
@@ -14,7 +16,9 @@ from greywhale.files.leader import load_leader
 from greywhale.trajectory import human_reaches
 from greywhale_sim import eeprom_file
 from greywhale_sim.bench import SLICE_S, Bench, Plant
+from greywhale_sim.drivers import CHIPS, Chip
 from greywhale_sim.leader import LeaderPlayer
+from greywhale_sim.mistakes import stage
 from greywhale_sim.wiring import BOARDS, Wiring
 
 BUILDS = Path(__file__).resolve().parents[3] / "firmware" / ".pio" / "build"
@@ -28,9 +32,17 @@ class BenchOptions:
     leader: Path | None = None  # CSV of the leader's motion; None: generated human-like reaches
     arm: Path | None = None  # TOML of the arm; None: the default one
     firmware: Path | None = None  # HEX to start with; None: the last build, or what came with greywhale
+    driver: str = "drv8838"  # the motor drivers' chip
     blank: bool = False  # a board with nothing but its bootloader
     eeprom: Path | None = None  # file that keeps the EEPROM; None: forgotten at the end
     seed: int = 1  # of everything random
+    mistakes: tuple[str, ...] = ()  # staged from the beginning: NAME or NAME:PLACE
+
+
+def chip_of(driver: str) -> Chip:
+    if driver not in CHIPS:
+        raise UserError(f'motor driver "{driver}" is not known; there are: {", ".join(CHIPS)}.', 2)
+    return CHIPS[driver]
 
 
 def wiring_of(board: str) -> Wiring:
@@ -67,7 +79,7 @@ def build_bench(options: BenchOptions, plant: Plant | None = None) -> Bench:
     """The whole bench; `plant` may be any object with step(voltages, dt) -> angles instead of the built-in arm."""
     parameters = load_arm(options.arm or "default")
     motion = human_reaches(options.seed) if options.leader is None else load_leader(options.leader)
-    return Bench(
+    bench = Bench(
         board=build_board(options),
         wiring=wiring_of(options.board),
         plant=Arm(parameters, seed=options.seed) if plant is None else plant,
@@ -75,7 +87,12 @@ def build_bench(options: BenchOptions, plant: Plant | None = None) -> Bench:
         leader_pots=Potentiometers(parameters.leader_pots, options.seed),
         follower_pots=Potentiometers(parameters.follower_pots, options.seed + 1),
         supply_v=parameters.drive.supply,
+        chip=chip_of(options.driver),
+        emf=np.array([motor.torque_per_volt * motor.resistance for motor in map(parameters.actuator, range(4))]),
     )
+    for mistake in options.mistakes:
+        stage(bench, mistake)
+    return bench
 
 
 def _firmware(options: BenchOptions, wiring: Wiring) -> Path:

@@ -7,6 +7,7 @@ wall clock: the same bytes into the serial port at the same cycles give the same
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Protocol
 
@@ -15,8 +16,11 @@ import numpy.typing as npt
 
 from greywhale import arm
 from greywhale.errors import UserError
+from greywhale_sim.board_supply import SharedSupply
+from greywhale_sim.drivers import CHIPS, OPEN, Chip, Pins, mean_volts
 from greywhale_sim.leader import LeaderPlayer
 from greywhale_sim.lies import Lies
+from greywhale_sim.pins_seen import PinsSeen
 from greywhale_sim.wiring import Wiring
 
 Array = npt.NDArray[np.float64]
@@ -44,6 +48,7 @@ class Board(Protocol):
     def outputs(self) -> Array: ...
     def set_millivolts(self, millivolts: Array) -> None: ...
     def set_floating(self, inputs: int) -> None: ...
+    def set_supply(self, millivolts: int, seed: int = 1) -> None: ...
     def run_until(self, cycle: int) -> int: ...
 
 
@@ -79,27 +84,36 @@ class Bench:
         leader_pots: Potentiometers,
         follower_pots: Potentiometers,
         supply_v: float,
+        chip: Chip = CHIPS["drv8838"],
+        emf: Array | None = None,  # V s of each motor at its output shaft; needed where a chip lets motors coast
     ) -> None:
         self.board = board
         self.wiring = wiring
+        self.chip = chip
+        self.emf: Array = np.zeros(4) if emf is None else emf
         self.estop_pressed = False
         self.lies = Lies()
-        self.motor_signs = [1.0] * 4  # -1: both wires of a motor are swapped; 0: one is off
+        self.motor_gains = [1.0] * 4  # -1: both wires of a motor are swapped; 0: one is off; 0.2: it is weak
         self.motor_wires = [0, 1, 2, 3]  # which driver each motor is on
         self.floating = 0  # bit i: the wire of potentiometer i is off and nothing pulls its input
         self.plant = plant
         self.leader = leader
         self.leader_pots = leader_pots
         self.follower_pots = follower_pots
-        self.supply_v = supply_v
+        self.supply_v = self.own_supply_v = supply_v
+        self.shared_supply: SharedSupply | None = None  # None: the board has a supply of its own
+        self.seen = PinsSeen()
         self.voltages: Array = np.zeros(4)
         self.angles: Array = leader.home.copy()
         self.trace: Trace | None = None
         board.add_pin_output(wiring.enable.port, wiring.enable.bit)
         for motor in wiring.motors:
-            board.add_duty_output(motor.timer, motor.channel)
+            board.add_duty_output(motor.pwm.timer, motor.pwm.channel)
         for motor in wiring.motors:
             board.add_pin_output(motor.direction.port, motor.direction.bit)
+        self._second = add_second_outputs(board, wiring)
+        self._bridges = [OPEN] * 4
+        self._coasts = False
         self._millivolts = np.zeros(8)
         self._last_outputs = b""
         self._enabled = False
@@ -123,9 +137,14 @@ class Bench:
             self.board.let_pin_go(pin.port, pin.bit)
         self.estop_pressed = pressed
 
-    def wire_motor(self, joint: int, sign: float, driver: int) -> None:
-        """Put a motor on a driver (0..3), the right way (1), the wrong way (-1) or with a wire off (0)."""
-        self.motor_signs[joint], self.motor_wires[joint] = sign, driver
+    def wire_motor(self, joint: int, gain: float, driver: int) -> None:
+        """Put a motor on a driver (0..3), the right way (1), the wrong way (-1) a wire off (0), or weak."""
+        self.motor_gains[joint], self.motor_wires[joint] = gain, driver
+        self._last_outputs = b""
+
+    def change_supply(self, volts: float) -> None:
+        """Give the motors another supply."""
+        self.supply_v = volts
         self._last_outputs = b""
 
     def let_float(self, pot: int, floats: bool) -> None:
@@ -156,6 +175,8 @@ class Bench:
             pins = outputs()
             if pins.tobytes() != self._last_outputs:
                 self._drive(pins)
+            if self._coasts:
+                self._coast()
             if leader.hold is None:
                 step(self.voltages, SLICE_S, angles)
             else:
@@ -166,6 +187,8 @@ class Bench:
             if self.lies.any:
                 self.lies.apply(millivolts)
             set_millivolts(millivolts)
+            if self.shared_supply is not None:
+                self.shared_supply.look(self.voltages)
             if run_until(target) == CRASHED:
                 raise CrashError(
                     f"the program on the simulated board crashed at address {board.pc:#07x}: {board.crash_reason}."
@@ -185,11 +208,41 @@ class Bench:
         return step
 
     def _drive(self, pins: Array) -> None:
-        """Sign-magnitude drive: voltage is duty x supply, its sign the direction pin; drivers off brake with 0 V."""
+        """What the drivers' chips make of the pins: voltages, or motors that coast between pulses."""
         self._last_outputs = pins.tobytes()
         enable, *values = pins.tolist()
         self._enabled = bool(enable)
-        supply = self.supply_v if enable else 0.0
-        for joint, driver in enumerate(self.motor_wires):  # quicker than array arithmetic on so few numbers
-            volts = self.motor_signs[joint] * supply * values[driver]
-            self.voltages[joint] = volts if values[driver + 4] else -volts
+        self.seen.look(self.board.cycle, self._enabled, values[:4])
+        for driver in range(4):  # quicker than array arithmetic on so few numbers
+            second = values[driver + 8 :: 4] if self._second else (0.0, 0.0)
+            levels = Pins(self._enabled, values[driver], bool(values[driver + 4]), second[0], bool(second[1]))
+            self._bridges[driver] = self.chip.bridge(levels)
+        self._coasts = any(bridge.open > 0.0 for bridge in self._bridges)
+        for joint, driver in enumerate(self.motor_wires):
+            bridge = self._bridges[driver]
+            self.voltages[joint] = self.motor_gains[joint] * self.supply_v * (bridge.forwards - bridge.backwards)
+
+    def _coast(self) -> None:
+        """The voltages of motors whose bridges are open for a while depend on how fast these motors turn."""
+        speeds = getattr(self.plant, "motor_velocities", None)
+        emf = self.emf * speeds if speeds is not None else np.zeros(4)
+        for joint, driver in enumerate(self.motor_wires):
+            gain, bridge = self.motor_gains[joint], self._bridges[driver]
+            if bridge.open > 0.0:
+                self.voltages[joint] = math.copysign(1.0, gain) * mean_volts(
+                    bridge, abs(gain) * self.supply_v, math.copysign(1.0, gain) * float(emf[joint])
+                )
+
+
+def add_second_outputs(board: Board, wiring: Wiring) -> bool:
+    """Read the second inputs of the motors as well, all PWM first; False for a board that has no pins for them."""
+    pairs = [(motor.second_pwm, motor.second_direction) for motor in wiring.motors]
+    if any(pwm is None or direction is None for pwm, direction in pairs):
+        return False
+    for pwm, _ in pairs:
+        assert pwm is not None
+        board.add_duty_output(pwm.timer, pwm.channel)
+    for _, direction in pairs:
+        assert direction is not None
+        board.add_pin_output(direction.port, direction.bit)
+    return True

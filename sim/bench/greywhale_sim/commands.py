@@ -5,11 +5,15 @@ leader FILE                        the person takes up another motion, while the
 hand leader|follower|both A0 A1 A2 A3 [S]  bring a held arm to a pose (rad) within S seconds, while the motors are off
 pot leader|follower 0..3 STATE     a potentiometer: connected, open (its wire is off, a pull-down wins), floating
                                    (the same without a pull-down) or shorted (to the supply), frozen (its shaft
-                                   does not turn), slipping (3 in 10 of every way up are lost), loose (off 2 ms in 230)
+                                   does not turn), slipping (3 in 10 of every way up are lost), loose (off 2 ms in
+                                   230), noisy, humming, reversed, turned (its dead zone first), crossed (wiper and end)
 swap POT POT                       exchange the wires of two potentiometers: leader0..3, follower0..3
 line flip|lose PROBABILITY         damage or lose bytes on the serial line, per byte
+mistake NAME[:PLACE]|none|list     stage what a person may do wrong (greywhale_sim.mistakes), or take all back
+pins                               the highest duty of each driver, and how long they were on, since the last `pins`
 estop press|release                the emergency stop's button, which closes its pin to ground
-motor 0..3 STATE                   a motor's wires: connected, reversed, dead (one is off), or on another's driver, 0..3
+motor 0..3 STATE                   a motor's wires: connected, reversed, dead (one is off), weak, or
+                                   on another's driver, 0..3
 power off|on                       cut or restore the board's supply
 speed 1|max                        real time, or as fast as possible
 """
@@ -25,12 +29,14 @@ import numpy as np
 from greywhale import arm
 from greywhale.errors import UserError
 from greywhale.files.leader import load_leader
-from greywhale_sim import lies
+from greywhale_sim import lies, mistakes
+from greywhale_sim.bench import CLOCK_HZ
+from greywhale_sim.mistakes import POTS
+from greywhale_sim.pins_seen import PinsSeen
 from greywhale_sim.server import Server
 
 Answer = dict[str, Any]
 FARTHEST_RAD = 6.28
-POTS = tuple(f"{side}{joint}" for side in ("leader", "follower") for joint in range(4))
 _WIRINGS = {
     "connected": arm.Wiring.CONNECTED,
     "open": arm.Wiring.OPEN,
@@ -110,12 +116,24 @@ def swap(server: Server, one: str, other: str) -> Answer:
     return {"swapped": [one, other]}
 
 
+def mistake(server: Server, words: str) -> Answer:
+    if words == "list":
+        return {"mistakes": {one.name: one.says for one in mistakes.MISTAKES}}
+    return {"staged": words, "says": mistakes.stage(server.bench, words)}
+
+
+def pins(server: Server) -> Answer:
+    seen, server.bench.seen = server.bench.seen, PinsSeen()
+    longest = seen.longest(server.board.cycle) / CLOCK_HZ
+    return {"duties": [round(duty, 5) for duty in seen.duties], "longest_on_s": round(longest, 6)}
+
+
 def motor(server: Server, joint: str, state: str) -> Answer:
-    signs = {"connected": 1.0, "reversed": -1.0, "dead": 0.0}
-    driver = int(joint) if state in signs else int(state)
+    gains = {"connected": 1.0, "reversed": -1.0, "dead": 0.0, "weak": mistakes.WEAK_GAIN}
+    driver = int(joint) if state in gains else int(state)
     if not 0 <= int(joint) <= 3 or not 0 <= driver <= 3:
         raise ValueError
-    server.bench.wire_motor(int(joint), signs.get(state, 1.0), driver)
+    server.bench.wire_motor(int(joint), gains.get(state, 1.0), driver)
     return {"motor": int(joint), "state": state}
 
 
@@ -152,9 +170,11 @@ COMMANDS: dict[str, tuple[Callable[..., Answer], str]] = {
     "status": (status, ""),
     "leader": (leader, "FILE.csv"),
     "hand": (hand, "leader|follower|both A0 A1 A2 A3 [SECONDS]"),
-    "pot": (pot, "leader|follower 0..3 connected|open|floating|shorted|frozen|slipping|loose"),
+    "pot": (pot, f"leader|follower 0..3 {'|'.join((*_WIRINGS, *lies.KINDS))}"),
     "swap": (swap, "POT POT"),
-    "motor": (motor, "0..3 connected|reversed|dead|0..3"),
+    "mistake": (mistake, "NAME[:PLACE]|none|list"),
+    "pins": (pins, ""),
+    "motor": (motor, "0..3 connected|reversed|dead|weak|0..3"),
     "estop": (estop, "press|release"),
     "line": (line, "flip|lose PROBABILITY"),
     "power": (power, "on|off [WRITES]"),

@@ -29,13 +29,22 @@ class Pin:
 
 
 @dataclass(frozen=True)
-class Motor:
-    """The two wires of one motor driver: PWM (compare output `channel` of `timer`) and direction."""
+class Pwm:
+    """A pin with PWM: compare output `channel` of `timer`."""
 
-    pwm_arduino: str
+    arduino: str
     timer: int
     channel: str
+
+
+@dataclass(frozen=True)
+class Motor:
+    """The wires of one motor driver: PWM and direction, and where the board has the pins a second one of each."""
+
+    pwm: Pwm
     direction: Pin
+    second_pwm: Pwm | None = None
+    second_direction: Pin | None = None
 
 
 @dataclass(frozen=True)
@@ -62,10 +71,10 @@ MEGA = Wiring(
     bootloader=_bootloader("mega", "stk500v2/stk500boot_v2_mega2560.hex"),
     bootloader_baud=115200,
     motors=(
-        Motor("D5", 3, "A", Pin("D22", "A", 0)),
-        Motor("D6", 4, "A", Pin("D24", "A", 2)),
-        Motor("D7", 4, "B", Pin("D26", "A", 4)),
-        Motor("D8", 4, "C", Pin("D28", "A", 6)),
+        Motor(Pwm("D5", 3, "A"), Pin("D22", "A", 0), Pwm("D2", 3, "B"), Pin("D23", "A", 1)),
+        Motor(Pwm("D6", 4, "A"), Pin("D24", "A", 2), Pwm("D46", 5, "A"), Pin("D25", "A", 3)),
+        Motor(Pwm("D7", 4, "B"), Pin("D26", "A", 4), Pwm("D45", 5, "B"), Pin("D27", "A", 5)),
+        Motor(Pwm("D8", 4, "C"), Pin("D28", "A", 6), Pwm("D44", 5, "C"), Pin("D29", "A", 7)),
     ),
     enable=Pin("D9", "H", 6),
     led=Pin("D13", "B", 7),
@@ -81,10 +90,10 @@ NANO = Wiring(
     bootloader=_bootloader("nano", "atmega/ATmegaBOOT_168_atmega328.hex"),
     bootloader_baud=57600,
     motors=(
-        Motor("D9", 1, "A", Pin("D2", "D", 2)),
-        Motor("D10", 1, "B", Pin("D4", "D", 4)),
-        Motor("D11", 2, "A", Pin("D7", "D", 7)),
-        Motor("D3", 2, "B", Pin("D8", "B", 0)),
+        Motor(Pwm("D9", 1, "A"), Pin("D2", "D", 2)),
+        Motor(Pwm("D10", 1, "B"), Pin("D4", "D", 4)),
+        Motor(Pwm("D11", 2, "A"), Pin("D7", "D", 7)),
+        Motor(Pwm("D3", 2, "B"), Pin("D8", "B", 0)),
     ),
     enable=Pin("D12", "B", 4),
     led=Pin("D13", "B", 5),
@@ -103,7 +112,7 @@ def markdown_table() -> str:
         pins = ", ".join(f"A{first + joint}" for joint in range(4))
         rows.append([f"{side} potentiometers, joints 0 to 3", *([pins] * len(boards))])
     for joint, name in enumerate(joints):
-        rows.append([f"motor {joint} ({name}), PWM", *(board.motors[joint].pwm_arduino for board in boards)])
+        rows.append([f"motor {joint} ({name}), PWM", *(board.motors[joint].pwm.arduino for board in boards)])
         rows.append([f"motor {joint}, direction", *(board.motors[joint].direction.arduino for board in boards)])
     rows.append(["enable of all drivers", *(board.enable.arduino for board in boards)])
     rows.append(["emergency stop, a button to ground (optional)", *(board.estop.arduino for board in boards)])

@@ -4,9 +4,9 @@
 namespace app {
 
 void Drive::configure(const params::Table& table) {
+  hal::choose_driver(static_cast<hal::Driver>(table.driver));
   for (uint8_t i = 0; i < hal::joint_count; ++i) {
-    motors_[i].scale = signal_chain::duty_scale(hal::full_duty(i), table.supply_mv);
-    motors_[i].sign = table.joint[i].motor_sign;
+    scale_[i] = signal_chain::duty_scale(hal::full_duty(i), table.supply_mv);
   }
 }
 

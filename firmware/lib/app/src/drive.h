@@ -12,24 +12,20 @@ namespace app {
 class Drive {
  public:
   void configure(const params::Table& table);
-  // size_mv <= the supply; bit 7 of sign: the voltage is negative
+  // size_mv <= the supply; bit 7 of sign: the voltage is negative; motor_sign below 0: the motor turns the other way
   template <uint8_t joint>
-  void set(uint16_t size_mv, uint8_t sign) const;
+  void set(uint16_t size_mv, uint8_t sign, int8_t motor_sign) const;
   void release() const;  // all duties 0
-  Part settings() const { return {reinterpret_cast<const uint8_t*>(motors_), sizeof(motors_)}; }
+  Part settings() const { return {reinterpret_cast<const uint8_t*>(scale_), sizeof(scale_)}; }
 
  private:
-  struct Motor {
-    uint16_t scale;  // see signal_chain::duty_scale()
-    int8_t sign;     // below 0: the motor turns the other way
-  };
-  Motor motors_[hal::joint_count] = {};
+  uint16_t scale_[hal::joint_count] = {};  // see signal_chain::duty_scale()
 };
 
 template <uint8_t joint>
-inline __attribute__((always_inline)) void Drive::set(uint16_t size_mv, uint8_t sign) const {
-  const uint16_t duty = signal_chain::duty(size_mv, motors_[joint].scale);
-  const auto direction = static_cast<int8_t>(sign ^ static_cast<uint8_t>(motors_[joint].sign));
+inline __attribute__((always_inline)) void Drive::set(uint16_t size_mv, uint8_t sign, int8_t motor_sign) const {
+  const uint16_t duty = signal_chain::duty(size_mv, scale_[joint]);
+  const auto direction = static_cast<int8_t>(sign ^ static_cast<uint8_t>(motor_sign));
   hal::set_duty<joint>(direction >= 0, duty);
 }
 

@@ -2,12 +2,17 @@
 #include "parameter_sets.h"
 
 namespace app {
+namespace {
+
+bool has_pins(const params::Table& table) { return hal::has_driver(static_cast<hal::Driver>(table.driver)); }
+
+}  // namespace
 
 // Loads the table where it will be staged. A third table, on the stack, would take a tenth of a Nano's memory.
 bool ParameterSets::begin(Controllers& controllers) {
   params::Table& table = sets_.staged();
   source_ = store_.load(table);
-  bool runs = true;
+  bool runs = has_pins(table);
   for (uint8_t i = 0; i < hal::joint_count && runs; ++i) runs = take(controllers, table, i);
   if (!runs) {
     params::load_defaults(table);
@@ -57,6 +62,7 @@ ParameterSets::Progress ParameterSets::work_on_apply(Controllers& controllers) {
     case Step::consistency:
       at_ = params::first_inconsistent(sets_.staged());
       if (at_ != params::none) return end(Progress::inconsistent);
+      if (!has_pins(sets_.staged())) return end(Progress::no_pins);
       at_ = 0;
       step_ = Step::joints;
       break;

@@ -36,7 +36,7 @@ class ParameterSets {
 
   // Checks the staged set and hands it to the controllers, one step in each call. A step takes up to a millisecond.
   // When a joint refuses its settings, the joints before it get their running settings back.
-  enum class Progress : uint8_t { going_on, applied, crc_differs, inconsistent, refused };
+  enum class Progress : uint8_t { going_on, applied, crc_differs, inconsistent, no_pins, refused };
   void begin_apply(uint16_t crc);
   bool applying() const { return step_ != Step::none; }
   // The same for the safe set, by the board itself: the running set with the controllers of the defaults, and with no
@@ -49,6 +49,7 @@ class ParameterSets {
   // What was wrong: the CRC of the staged set, the index of the parameter that contradicts another, the joint.
   uint16_t staged_crc() const { return apply_crc_; }
   uint8_t misfit() const { return at_; }
+  uint8_t staged_driver() const { return sets_.staged().driver; }
   Unfit unfit() const { return unfit_; }  // also when begin() has found that the stored set cannot be run
 
   void save() { store_.save(sets_.running()); }

@@ -260,6 +260,7 @@ void App::work_on_apply() {
     case ParameterSets::Progress::going_on: break;
     case ParameterSets::Progress::crc_differs: refuse(wire::NackCode::crc_mismatch, sets_.staged_crc()); break;
     case ParameterSets::Progress::inconsistent: refuse(wire::NackCode::inconsistent, sets_.misfit()); break;
+    case ParameterSets::Progress::no_pins: refuse(wire::NackCode::no_pins, sets_.staged_driver()); break;
     case ParameterSets::Progress::refused: refuse_set(); break;
     case ParameterSets::Progress::applied:
       take_running_set();

@@ -39,12 +39,25 @@ uint16_t tick_age_us();  // time since the timer started this tick, resolution 4
 const uint16_t* pot_sums();
 void release_pots();
 
+// --- Motor drivers: the signals that each motor's driver takes. The numbers are those of the parameter `driver`.
+enum class Driver : uint8_t {
+  pwm_direction,
+  pwm_two_directions,
+  two_pwm_low,   // between pulses both inputs are low
+  two_pwm_high,  // between pulses both inputs are high
+};
+bool has_driver(Driver driver);     // whether this board has the pins
+void choose_driver(Driver driver);  // one that it has; another one than before only while the drivers are off
+
 // --- Outputs. A duty is a size of 0..full_duty(joint), the PWM's own steps, and a sign: positive sets the direction
-// pin. set_duty<joint>() is the same for a joint known at compile time, in a few cycles.
+// pin, or takes the first of two inputs. set_duty<joint>() is the same for a joint known at compile time, in a few
+// cycles.
 uint16_t full_duty(uint8_t joint);
 void set_duty(uint8_t joint, bool positive, uint16_t size);
 template <uint8_t joint>
 void set_duty(bool positive, uint16_t size);
+// The enable pin, and the PWM on the motors' pins: off, all of them are low, also for drivers that have no enable
+// input.
 void set_drivers(bool on);
 void set_led(bool on);
 

@@ -71,6 +71,34 @@ TEST_CASE("apply is refused while the motors are on, and the running set stays")
   CHECK(board.drivers);
 }
 
+TEST_CASE("a set chooses the motor drivers when it is applied, and after a power cycle") {
+  Bench arm;
+  arm.boot();
+  CHECK(board.driver == hal::Driver::pwm_direction);
+  params::Table table = changed();
+  table.driver = static_cast<std::uint8_t>(hal::Driver::two_pwm_high);
+  REQUIRE(arm.apply(table).type == 0x85);
+  CHECK(board.driver == hal::Driver::two_pwm_high);
+  arm.get<wire::ParamSaveReply>(wire::ParamSaveRequest{});
+  arm.run(2000);
+  arm.power_on();
+  CHECK(board.driver == hal::Driver::two_pwm_high);
+}
+
+TEST_CASE("motor drivers that the board has no pins for are refused") {
+  Bench arm;
+  arm.boot();
+  params::Table table = changed();
+  table.driver = static_cast<std::uint8_t>(hal::Driver::two_pwm_low);
+  board.last_driver = hal::Driver::pwm_direction;  // a Nano
+  CHECK(arm.apply(table).type == 0xff);
+  const wire::Nack nack = arm.refused(wire::ParamApplyRequest{params::crc(table)});
+  CHECK(nack.code == wire::NackCode::no_pins);
+  CHECK(nack.detail == static_cast<int>(hal::Driver::two_pwm_low));
+  CHECK(board.driver == hal::Driver::pwm_direction);
+  CHECK(value_of(arm, 1) == 15000);  // nothing of it runs
+}
+
 TEST_CASE("apply is refused for another CRC, for contradictions and for a set that cannot run") {
   Bench arm;
   arm.boot();

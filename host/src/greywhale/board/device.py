@@ -8,6 +8,7 @@ firmware (which sends one hello by itself when it starts) or until the bootloade
 from __future__ import annotations
 
 import contextlib
+import logging
 import signal
 import threading
 from collections import deque
@@ -34,12 +35,25 @@ QUIET_S = 2.0
 # A port that says nothing is greeted for this long, counted from its opening.
 PATIENCE_S = 5.0
 
+logger = logging.getLogger(__name__)
+
 # Requests count 1..255; the hello that a starting board sends by itself has this sequence number.
 _UNASKED = 0
 
 
 class NoAnswerError(UserError):
     """The board stayed silent through all repeats of a request."""
+
+
+class RestartedError(UserError):
+    """The board restarted in the middle; its motors are off, and it runs its stored set. `cause` is in words."""
+
+    def __init__(self, port: str, cause: str) -> None:
+        super().__init__(
+            f"{port}: the board restarted in the middle ({cause}) and its motors are off; check its supply and try "
+            "again."
+        )
+        self.cause = cause
 
 
 class Device:
@@ -78,6 +92,11 @@ class Device:
             self._session.attach(self._send_stop)
             self.hello: schema.HelloReply = self._greet(quiet_s if self.restarted else 0.0, patience_s)
             self._held = held.pop_all()
+        logger.info(
+            "%s: %s, firmware %s, parameters 0x%04x, %s",
+            port, self.hello.board.key, self.firmware_version, self.hello.param_crc,
+            "restarted" if self.restarted else "not restarted",
+        )  # fmt: skip
 
     def __enter__(self) -> Self:
         return self
@@ -141,6 +160,7 @@ class Device:
         self._session.refuse_motion()
         self._motors_may_run = True
         self.lease_ms = lease_ms
+        logger.info("%s: motors on, lease %d ms", self.port, lease_ms)
         self.ask(schema.EnableRequest(lease_ms))
 
     def lead(self, lease_ms: int) -> schema.LeadReply:
@@ -149,6 +169,7 @@ class Device:
         self._motors_may_run = True
         self.lease_ms = lease_ms
         self._lead_progress = self._lead_refused = None
+        logger.info("%s: motors on, led by this host, lease %d ms", self.port, lease_ms)
         return self.ask(schema.LeadRequest(lease_ms))
 
     def lead_point(self, number: int, step: tuple[int, int, int, int]) -> None:
@@ -204,7 +225,9 @@ class Device:
                 answer = self._repeat(
                     message, schema.StopRequest.TYPE, schema.StopRequest.NAME, STOP_ATTEMPTS, STOP_REPEAT_S
                 )
-                self._session.confirm({"state": schema.StopReply.unpack(answer).state.key})
+                state = schema.StopReply.unpack(answer).state.key
+                logger.info("%s: motors off, state %s", self.port, state)
+                self._session.confirm({"state": state})
             except UserError as error:
                 # After one failed attempt, closing need not try again. After a restart the motors are off anyway.
                 self._motors_may_run = False
@@ -231,13 +254,15 @@ class Device:
 
     def _repeat(self, message: bytes, kind: int, name: str, attempts: int, wait_s: float) -> bytes:
         """Send a message again and again until its request is answered."""
-        for _ in range(attempts):
+        for attempt in range(1, attempts + 1):
+            logger.debug("%s: %s, attempt %d of %d: %s", self.port, name, attempt, attempts, message.hex())
             self._transport.write(message)
             deadline = self._transport.clock() + wait_s
             while self._transport.clock() < deadline:
                 self._receive()
                 self._check_restart()
                 for frame in self._answers():
+                    logger.debug("%s: %s answered: %02x %s", self.port, name, frame.type, frame.payload.hex())
                     if frame.type == kind | schema.REPLY_BIT:
                         return frame.payload
                     if frame.type == schema.Nack.TYPE:
@@ -284,10 +309,7 @@ class Device:
         if self._started is not None and self._greeted:
             self._motors_may_run = False
             cause = schema.HelloReply.unpack(self._started).reset_cause
-            raise UserError(
-                f"{self.port}: the board restarted in the middle ({cause.description}) and its motors are off; "
-                "check its supply and try again."
-            )
+            raise RestartedError(self.port, cause.description)
 
     def _unconfirmed_stop(self) -> str:
         if self.lease_ms:

@@ -6,18 +6,19 @@ has been measured and the person has agreed.
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
-from greywhale.board.device import Device, hold_ctrl_c
+from greywhale.board.device import Device, RestartedError, hold_ctrl_c
 from greywhale.board.pots import FULL_SCALE, POTS, counts_of, read_counts
 from greywhale.board.refusal import pot_name, upper_first
 from greywhale.board.stream import stream
 from greywhale.board.upload import read_parameters, run_set
-from greywhale.calibrate.motors import Motor, examine_motor
+from greywhale.calibrate.motors import Motor, examine_motor, remarks
 from greywhale.calibrate.solve import Calibration, Pose, match, slipped, solve
 from greywhale.calibrate.sweep import Sweep, judge_sweep
 from greywhale.errors import UserError
@@ -85,6 +86,16 @@ class Result:
         return self.calibration.changes() | signs
 
     @property
+    def reversed(self) -> tuple[str, ...]:
+        """The potentiometers that read the other way, which the scale's sign puts right."""
+        return tuple(name for name, scale in zip(POTS, self.calibration.scale, strict=True) if scale < 0.0)
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """Sentences about what is not wrong enough to refuse it."""
+        return remarks(self.motors, self.before.supply_v)
+
+    @property
     def after(self) -> ParameterTable:
         return self.before.with_raw(self.changes)
 
@@ -130,16 +141,17 @@ def _compare(device: Device, table: ParameterTable, found: Calibration, guide: G
 
 def _motors(device: Device, table: ParameterTable, found: Calibration, guide: Guide) -> tuple[Motor, ...]:
     guide.ask(
-        "Each motor now gets short weak pulses, of a tenth to a third of the supply. Let the follower hang or lie so "
-        "that every joint can move by 20 degrees to both sides, switch the motors' supply on, and keep a hand on its "
-        "switch."
+        "Each motor now gets short weak pulses, of a tenth to a third of the supply. The board counts on "
+        f"{table.supply_v:g} V: if the motors' supply has not, end here and set supply_mv first. Let the follower hang "
+        "or lie so that every joint can move by 20 degrees to both sides, switch the motors' supply on, and keep a "
+        "hand on its switch."
     )
     _watch(device, table, guide, 0)
     calibrated = table.with_raw(found.changes())
     try:
         return tuple(examine_motor(device, calibrated, joint) for joint in range(JOINTS))
     finally:
-        with hold_ctrl_c():
+        with hold_ctrl_c(), suppress(RestartedError):  # it runs its stored set again by itself
             run_set(device, table)
 
 

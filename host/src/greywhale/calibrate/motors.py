@@ -8,12 +8,13 @@ at most (`ku_mv`, with neither integral part nor damping) and the others none; t
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from greywhale.board.device import Device
+from greywhale.board.device import Device, RestartedError
 from greywhale.board.stream import stream
 from greywhale.board.upload import run_set
 from greywhale.errors import UserError
@@ -29,6 +30,8 @@ WAY_RAD = 0.08  # where a pulse sends its joint
 FARTHEST_RAD = 0.16
 LEAST_RAD = 0.02  # half of what lies between a pulse one way and one the other: less is no motion
 STILL_TICKS, STILL_RAD, PATIENCE_TICKS = 200, 0.008, 5000  # an arm that still falls would hide a weak pulse
+WEAK_SHARE = 0.4  # of the others' way a volt: healthy motors of unlike joints are above 0.6
+MUCH_SHARE = 0.2  # of the supply, if every motor needs it
 OTHERS_SHARE = 2.0  # another joint that moves so many times farther has this motor
 SETTLE_TICKS = 250
 _STIFF = 64.0
@@ -44,11 +47,20 @@ class Pulse:
 
 @dataclass(frozen=True)
 class Motor:
-    """A motor that turned: `sign` 1 as its parameter says, -1 the other way, and the voltage that did it."""
+    """A motor that turned: `sign` 1 as its parameter says, -1 the other way, and the voltage that did it.
+
+    `way` (rad) is half of what lies between a pulse one way and one the other, so gravity has no part in it.
+    """
 
     joint: int
     sign: int
     volts: float
+    way: float
+
+    @property
+    def answer(self) -> float:
+        """rad a volt."""
+        return self.way / self.volts
 
 
 def examine_motor(device: Device, table: ParameterTable, joint: int) -> Motor:
@@ -58,8 +70,14 @@ def examine_motor(device: Device, table: ParameterTable, joint: int) -> Motor:
     for share in SHARES:
         volts = share * table.supply_v
         weak = pulse_table(table, joint, volts)
-        forward, backward = pulse(device, weak, joint, 1), pulse(device, weak, joint, -1)
-        way = (forward.moved - backward.moved) / 2.0
+        try:
+            way = _answer(device, weak, joint)
+        except RestartedError as error:
+            raise UserError(
+                f"{device.port}: the board restarted while the motor of joint {joint} was driven with {volts:.1f} V "
+                f"({error.cause}): its supply sinks when a motor draws. Give the motors a supply of their own, with a "
+                "common ground, and 1000 uF or more at the drivers, and begin anew."
+            ) from None
         farthest = int(np.argmax(np.abs(way)))
         if abs(way[farthest]) < LEAST_RAD:
             continue
@@ -69,12 +87,50 @@ def examine_motor(device: Device, table: ParameterTable, joint: int) -> Motor:
                 "potentiometers, are swapped; exchange the wires at the board, and begin anew."
             )
         if abs(way[joint]) >= LEAST_RAD:
-            return Motor(joint, 1 if way[joint] > 0.0 else -1, volts)
+            return Motor(joint, 1 if way[joint] > 0.0 else -1, volts, float(abs(way[joint])))
     raise UserError(
         f"{device.port}: the motor of joint {joint} did not move it with {SHARES[-1] * table.supply_v:.1f} V: check "
         "that the motors' supply is on, the driver's enable, PWM and direction wires, the motor's own wires, and that "
         "the joint moves freely."
     )
+
+
+def _answer(device: Device, weak: ParameterTable, joint: int) -> Floats:
+    """Half of what lies between pulses one way and the other, (4,) rad; 0 where two tries do not agree.
+
+    An arm that falls when nobody holds it falls in one pulse and lies still in the next. So the second try has the
+    other order, and the smaller of both counts.
+    """
+    once = _between(device, weak, joint, 1)
+    if np.abs(once).max() < LEAST_RAD:
+        return once
+    again = -_between(device, weak, joint, -1)
+    return np.where(once * again > 0.0, np.sign(once) * np.minimum(np.abs(once), np.abs(again)), 0.0)
+
+
+def _between(device: Device, weak: ParameterTable, joint: int, way: int) -> Floats:
+    one, other = pulse(device, weak, joint, way), pulse(device, weak, joint, -way)
+    half: Floats = (one.moved - other.moved) / 2.0
+    return half
+
+
+def remarks(motors: Sequence[Motor], supply_v: float) -> tuple[str, ...]:
+    """Sentences about motors that moved their joints, but with more voltage than one expects."""
+    if motors and min(one.volts for one in motors) >= MUCH_SHARE * supply_v:
+        return (
+            f"Every motor needed {min(one.volts for one in motors):.1f} V or more to move its joint: check the motors' "
+            f"supply; the board counts on {supply_v:g} V (supply_mv).",
+        )
+    told = []
+    for motor in motors:
+        usual = float(np.median([other.answer for other in motors if other is not motor] or [0.0]))
+        if motor.answer < WEAK_SHARE * usual:
+            told.append(
+                f"The motor of joint {motor.joint} moved it by {1e3 * motor.answer:.0f} mrad a volt, the others theirs "
+                f"by {1e3 * usual:.0f}: it is weak, or its joint turns hard; check its wires, its driver's current "
+                "limit, and that the joint turns freely by hand."
+            )
+    return tuple(told)
 
 
 def pulse_table(table: ParameterTable, joint: int, volts: float) -> ParameterTable:

@@ -20,6 +20,7 @@ SMOOTH_TICKS = 9  # a reading that differs from its neighbours for less time is 
 LEAST_COUNTS = 40.0  # 12 degrees of a usual track: less is no sweep
 OTHERS_SHARE = 0.5  # of the sweep: another reading that moves as far is moved as well
 RAIL_COUNTS = 4.0
+CROSSED_FROM, CROSSED_SPAN = 0.88 * FULL_SCALE, 0.12 * FULL_SCALE  # a pull-down of some ten times the track
 DEAD_ZONE_COUNTS = 300.0  # a jump so far, from near one end to near the other, crosses the gap of the track
 JUMP_COUNTS, MOST_JUMPS = 15.0, 2
 
@@ -61,6 +62,8 @@ def _wiring(smooth: Floats, pot: int) -> list[str]:
             ]
         return []
     reading = _reading(smooth[:, pot])
+    if not others and _is_crossed(smooth[:, pot]):
+        return [_crossed(name, reading)]
     if others:
         moved = max(others, key=lambda other: float(spans[other]))
         swapped = "the two arms are swapped" if moved % 4 == pot % 4 else "their wires are swapped"
@@ -81,6 +84,8 @@ def _wiring(smooth: Floats, pot: int) -> list[str]:
 
 def _contact(raw: Floats, own: Floats, name: str) -> list[str]:
     """Whether the track is whole where the joint goes, and the contact good."""
+    if _is_crossed(own):
+        return [_crossed(name, _reading(own))]
     steps = np.abs(own[8:] - own[:-8])
     if float(steps.max(initial=0.0)) > DEAD_ZONE_COUNTS:
         return [
@@ -100,6 +105,19 @@ def _contact(raw: Floats, own: Floats, name: str) -> list[str]:
             "wires, else replace it."
         ]
     return []
+
+
+def _is_crossed(own: Floats) -> bool:
+    """Whether it stays near 5 V but is at no rail: what a pull-down makes of an end of the track on the pin."""
+    low, high = float(own.min()), float(own.max())
+    return low > CROSSED_FROM and high < FULL_SCALE - RAIL_COUNTS and RAIL_COUNTS < high - low < CROSSED_SPAN
+
+
+def _crossed(name: str, reading: str) -> str:
+    return (
+        f"{name} reads {reading} and hardly changes near 5 V: its wiper's wire and an end's are exchanged; the wiper "
+        "is mostly the middle one of the three. Change them: near an end of the track this shorts 5 V to ground."
+    )
 
 
 def _reading(counts: Floats) -> str:

@@ -1,4 +1,4 @@
-"""`greywhale arm`: arm files from descriptions that other programs made."""
+"""`greywhale arm`: arm files from answers, and from descriptions that other programs made."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ import numpy as np
 
 from greywhale.arm.from_urdf import Imported, import_urdf
 from greywhale.arm.parameters import JOINT_NAMES
+from greywhale.cli.arm_match import match
+from greywhale.cli.arm_new import new
 from greywhale.cli.output import json_option, show
 from greywhale.cli.record import require_folders
 from greywhale.errors import BAD_USAGE, UserError
@@ -21,6 +23,10 @@ SUPPLY_V = (1.0, 60.0)
 @click.group("arm")
 def command() -> None:
     """Make an arm.toml, which describes geometry, masses, motors and stops of an arm."""
+
+
+command.add_command(new)
+command.add_command(match)
 
 
 @command.command("import")

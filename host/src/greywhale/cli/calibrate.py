@@ -78,7 +78,10 @@ def command(
             person.wait()
         parameter_file.save(backup, result.before)
         upload_set(device, result.after)
-    undo = f"Stored. To undo: greywhale params restore {backup}"
+    undo = (
+        f"Stored. To undo: greywhale params restore {backup}\n"
+        "An arm file needs these potentiometers too: greywhale arm match arm.toml"
+    )
     show(as_json, _facts(device.port, result, backup), f"{text}\n\n{undo}" if yes else undo)
 
 
@@ -150,7 +153,12 @@ def _facts(port: str, result: Result, backup: Path) -> dict[str, object]:
         "changed": result.changes,
         "track_deg": [round(float(np.degrees(abs(scale) * FULL_SCALE)), 2) for scale in found.scale],
         "limits_rad": [[round(float(end), 4) for end in pair] for pair in found.limits],
-        "motors": [{"joint": one.joint, "sign": one.sign, "volts": round(one.volts, 3)} for one in result.motors],
+        "motors": [
+            {"joint": one.joint, "sign": one.sign, "volts": round(one.volts, 3), "way_rad": round(one.way, 4)}
+            for one in result.motors
+        ],
+        "reversed": list(result.reversed),
+        "remarks": list(result.remarks),
         "apart_rad": [round(float(value), 5) for value in result.apart],
     }
 
@@ -168,7 +176,7 @@ def _text(result: Result) -> str:
         lines.append(f"{f'joint {joint}':12}{f'{low:.0f} to {high:.0f}':>18}{1e3 * result.apart[joint]:>17.1f} mrad")
     if result.motors:
         lines += ["", *(f"motor {one.joint}     {_way(one.sign)} ({one.volts:.1f} V)" for one in result.motors)]
-    return "\n".join(lines)
+    return "\n".join([*lines, *([""] if result.remarks else []), *result.remarks])
 
 
 def _way(sign: int) -> str:

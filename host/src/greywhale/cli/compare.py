@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import cast
 
 import click
 
 from greywhale.cli.output import json_option, progress, show
+from greywhale.cli.workers import executor_options, results_option
+from greywhale.errors import BAD_USAGE, UserError
 from greywhale.optimise.comparison import Plan, compare
 from greywhale.optimise.comparison_report import as_dict, check_format, text, write_report
 from greywhale.optimise.functions import FUNCTIONS, Setting
 from greywhale.optimise.methods import METHODS
+from greywhale.study import choose_workers
 
 # With fewer evaluations in all, starting other processes takes longer than they save.
 SMALL = 300_000
@@ -33,7 +35,8 @@ SMALL = 300_000
 @click.option("--seeds", type=int, default=25, show_default=True, help="Runs of every method on every function.")
 @click.option("--pack", type=int, help="Pack of every method; without it, each method's own.")
 @click.option("--seed", type=int, default=0, show_default=True, help="Where all random numbers start.")
-@click.option("--jobs", type=click.IntRange(min=1), help="Processes; without it, one for every processor.")
+@executor_options("--jobs")
+@results_option
 @click.option(
     "--out",
     "-o",
@@ -51,7 +54,9 @@ def command(
     seeds: int,
     pack: int | None,
     seed: int,
-    jobs: int | None,
+    executor: str,
+    workers: int | None,
+    results: Path | None,
     out: tuple[Path, ...],
     as_json: bool,
 ) -> None:
@@ -59,7 +64,7 @@ def command(
 
     Grey wolf and whale optimisers favour the origin of the coordinates, where most standard functions have their
     minimum. The same functions shifted show what they are worth elsewhere. The result depends on --seed alone, not on
-    the number of processes.
+    where and in how many processes it is computed.
     """
     plan = Plan(
         functions=_names(functions, tuple(FUNCTIONS)),
@@ -74,10 +79,12 @@ def command(
     plan.check()
     for path in out:
         check_format(path)
-    if jobs is None:
-        jobs = 1 if plan.evaluations < SMALL else os.cpu_count() or 1
+        if results is not None and path.absolute() == results.absolute():
+            raise UserError(f"{path}: this is the results file; write the report elsewhere.", BAD_USAGE)
+    if executor == "local" and workers is None and plan.evaluations < SMALL:
+        workers = 1
     with progress(as_json) as report:
-        comparison = compare(plan, jobs, report)
+        comparison = compare(plan, choose_workers(executor, workers), report, results)
     for path in out:
         write_report(path, comparison)
     written = "".join(f"\nWritten: {path}" for path in out)

@@ -16,6 +16,7 @@ from greywhale.protocol.ports import choose_port
 from greywhale.tune.progress import report_nothing
 
 LONGEST_S = 3600.0
+SUPPLY_V = (1.0, 60.0)
 INDENT = 21  # of what is said, behind verdict and check
 
 
@@ -25,18 +26,23 @@ INDENT = 21  # of what is said, behind verdict and check
     "--params", type=click.Path(path_type=Path), metavar="FILE", help="A parameter file that the board should run."
 )
 @click.option("--seconds", default=LINK_S, show_default=True, help="How long the link is loaded.")
+@click.option("--supply", type=float, metavar="VOLTS", help="What you measured at the motors' supply.")
 @json_option
 @click.pass_context
-def command(context: click.Context, port: str | None, params: Path | None, seconds: float, as_json: bool) -> None:
+def command(
+    context: click.Context, port: str | None, params: Path | None, seconds: float, supply: float | None, as_json: bool
+) -> None:
     """Look at port, firmware, parameters, potentiometers and link: what is wrong, and how to mend it.
 
     The motors stay off. Keep both arms still. The exit code is 1 when something must be mended.
     """
     if not 0.5 <= seconds <= LONGEST_S:
         raise UserError(f"--seconds is {seconds:g}; it must be 0.5 to {LONGEST_S:g}.", BAD_USAGE)
+    if supply is not None and not SUPPLY_V[0] <= supply <= SUPPLY_V[1]:
+        raise UserError(f"--supply is {supply:g} V; it must be {SUPPLY_V[0]:g} to {SUPPLY_V[1]:g}.", BAD_USAGE)
     chosen = choose_port(port)
     with progress(as_json) as report:
-        findings = examine(Options(chosen, params, seconds), report or report_nothing)
+        findings = examine(Options(chosen, params, seconds, supply), report or report_nothing)
     verdict = worst(findings)
     facts = {"port": chosen, "verdict": verdict.value, "findings": [one.as_dict() for one in findings]}
     show(as_json, facts, "\n".join([*map(_line, findings), "", _summary(findings)]))
@@ -57,4 +63,4 @@ def _summary(findings: list[Finding]) -> str:
     notes = sum(one.verdict is Verdict.NOTE for one in findings)
     if bad:
         return f"{bad} of {len(findings)} findings must be mended before the arm moves."
-    return f"Nothing must be mended{f'; {notes} notes' if notes else ''}."
+    return f"Nothing must be mended{f'; {notes} note' + 's' * (notes > 1) if notes else ''}."

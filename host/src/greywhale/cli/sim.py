@@ -8,32 +8,50 @@ from pathlib import Path
 import click
 
 from greywhale.cli.bench import need_bench
-from greywhale.cli.output import json_option
+from greywhale.cli.output import json_option, show
 
 
 @click.command("sim")
 @click.option("--board", type=click.Choice(["mega", "nano"]), default="mega", show_default=True, help="The board.")
 @click.option("--leader", type=click.Path(path_type=Path), help="CSV with the leader's motion.")
 @click.option("--arm", type=click.Path(path_type=Path), help="TOML with the arm; without it, the built-in one.")
+@click.option("--driver", default="drv8838", show_default=True, help="The motor drivers' chip; a wrong name lists all.")
 @click.option("--speed", type=click.Choice(["1", "max"]), default="1", show_default=True, help="Real time or faster.")
 @click.option("--eeprom", type=click.Path(path_type=Path), help="File that keeps the EEPROM between starts.")
 @click.option("--firmware", type=click.Path(path_type=Path), help="HEX file to start with, as if flashed.")
 @click.option("--blank", is_flag=True, help="Start with nothing but the bootloader.")
+@click.option(
+    "--mistake", multiple=True, metavar="NAME", help="Wire it wrongly, NAME or NAME:PLACE; `--mistake list` names all."
+)
 @json_option
 def command(
     board: str,
     leader: Path | None,
     arm: Path | None,
+    driver: str,
     speed: str,
     eeprom: Path | None,
     firmware: Path | None,
     blank: bool,
+    mistake: tuple[str, ...],
     as_json: bool,
 ) -> None:
     """Start the simulated bench and print its serial port; Ctrl-C ends it."""
     serve = need_bench("greywhale_sim.serve")
+    mistakes = need_bench("greywhale_sim.mistakes")
+    if "list" in mistake:
+        show(as_json, {"mistakes": {one.name: one.says for one in mistakes.MISTAKES}}, mistakes.listed())
+        return
     options = serve.ServeOptions(
-        board=board, leader=leader, arm=arm, speed=speed, eeprom=eeprom, blank=blank, firmware=firmware
+        board=board,
+        leader=leader,
+        arm=arm,
+        driver=driver,
+        speed=speed,
+        eeprom=eeprom,
+        blank=blank,
+        firmware=firmware,
+        mistakes=mistake,
     )
 
     def ready(port: str) -> None:

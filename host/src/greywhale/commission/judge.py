@@ -19,7 +19,7 @@ Floats = npt.NDArray[np.float64]
 # whatever they were. Other motions show more unrest than the check: so its limit keeps clear of twice what it was.
 MOST_UNREST, LEAST_UNREST = 0.005, 0.0015
 MOST_RATTLE, LEAST_RATTLE = 0.005, 0.002
-UNREST_GROWTH, RATTLE_GROWTH = 1.5, 2.0
+UNREST_GROWTH, RATTLE_GROWTH = 1.2, 2.0
 # Two recordings with the same controllers may differ by so much more than two others did: as a share, and in rad² (1
 # mrad rms). Friction holds a joint now here, now there.
 SAME_SHARE, SAME_RAD2 = 0.02, 1e-6

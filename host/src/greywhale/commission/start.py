@@ -14,7 +14,7 @@ from greywhale.errors import UserError
 from greywhale.files.log import Log
 from greywhale.firmware import JOINTS
 from greywhale.table import ParameterTable
-from greywhale.tune.model_checks import CONVERTER_SPAN, doubt_other_board
+from greywhale.tune.model_checks import CONVERTER_SPAN, MATCH, doubt_other_board
 
 Floats = npt.NDArray[np.float64]
 
@@ -38,7 +38,8 @@ def refuse_uncalibrated(arm: ArmParameters, table: ParameterTable) -> None:
             state = "was never calibrated" if table[name] == usual[name] else "is calibrated for another arm"
             raise UserError(
                 f"joint {joint} ({JOINT_NAMES[joint]}) {state}: its potentiometer's middle is {pot.centre:.2f} rad "
-                f"by the arm file, but the board's {name} makes it {middle:.2f} rad; correct the one that is wrong."
+                f"by the arm file, but the board's {name} makes it {middle:.2f} rad; correct the one that is wrong "
+                f"({MATCH})."
             )
 
 

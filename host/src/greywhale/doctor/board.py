@@ -13,6 +13,7 @@ from greywhale.files.parameter_file import load_table, physical
 from greywhale.protocol import schema
 from greywhale.table import ParameterTable
 
+SUPPLY_SHARE = 0.1  # a battery's voltage differs by so much between full and flat
 _SHOWN = 3  # differences that are told one by one
 _FLASH = "Flash this host's firmware with `greywhale flash`."
 _STARTS = {
@@ -38,7 +39,7 @@ def examine_hello(hello: schema.HelloReply, firmware_version: str) -> list[Findi
         source = Finding(
             "stored set",
             Verdict.NOTE,
-            "The board runs its built-in parameters: nothing valid is stored.",
+            "It started from its built-in parameters: nothing valid was stored then.",
             "Store some with `greywhale upload`, `greywhale params set` or `greywhale params restore`.",
         )
     else:
@@ -66,6 +67,22 @@ def examine_status(hello: schema.HelloReply, status: schema.StatusReply) -> list
         "Flash the firmware again, and report it if ticks are still late." if status.late_ticks else "",
     )
     return [start, fault, late]
+
+
+def examine_supply(table: ParameterTable, measured_v: float | None) -> Finding:
+    """What the board takes the motors' supply for, against what somebody measured there."""
+    counts = f"The board counts on {table.supply_v:g} V for the motors"
+    if measured_v is None:
+        return Finding("supply", Verdict.GOOD, f"{counts}; it cannot measure them (--supply VOLTS compares).")
+    if abs(table.supply_v - measured_v) <= SUPPLY_SHARE * measured_v:
+        return Finding("supply", Verdict.GOOD, f"{counts}, and they have {measured_v:g} V.")
+    return Finding(
+        "supply",
+        Verdict.BAD,
+        f"{counts}, not {measured_v:g} V.",
+        f"Every voltage would be {measured_v / table.supply_v:.2g} times what it should be: set it with `greywhale "
+        f"params set supply_mv={1000.0 * measured_v:.0f}`, or give the motors {table.supply_v:g} V.",
+    )
 
 
 def examine_table(table: ParameterTable, path: Path | None) -> list[Finding]:

@@ -22,11 +22,13 @@ LINK_S, REST_S = 10.0, 2.0
 
 @dataclass(frozen=True)
 class Options:
-    """`params` is a file of parameters that the board should run; `link_s` is how long the link is loaded."""
+    """`params` is a file of parameters that the board should run; `link_s` is how long the link is loaded;
+    `supply_v` is what a person measured at the motors' supply."""
 
     port: str
     params: Path | None = None
     link_s: float = LINK_S
+    supply_v: float | None = None
 
 
 def examine(options: Options, report: Report = report_nothing) -> list[Finding]:
@@ -48,6 +50,7 @@ def _examine_board(device: Device, options: Options, report: Report) -> Iterator
     yield from board.examine_status(device.hello, status)
     table = read_parameters(device)
     yield from board.examine_table(table, options.params)
+    yield board.examine_supply(table, options.supply_v)
     if status.state not in (schema.State.DISABLED, schema.State.FAULT):
         yield Finding("potentiometers", Verdict.NOTE, "Not looked at: the motors are on.", "Run `greywhale stop`.")
         return

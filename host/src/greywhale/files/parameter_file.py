@@ -15,7 +15,7 @@ from greywhale.table import ParameterTable
 
 SINCE_LAYOUT_2 = (
     *("unrest_amplitude", "unrest_rate", "unrest_time", "unrest_action"),
-    *("speed_limit", "runaway_limit", "stall_volts", "stall_ms", "estop_input"),
+    *("speed_limit", "runaway_limit", "stall_volts", "stall_ms", "estop_input", "driver"),
 )
 
 

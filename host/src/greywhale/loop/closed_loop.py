@@ -205,6 +205,11 @@ def with_ideal_follower(table: ParameterTable) -> ParameterTable:
     return table.with_raw({name: usual[name] for name in names})
 
 
+def with_right_motors(table: ParameterTable) -> ParameterTable:
+    """The same board with every `motor_sign` 1: it says how a motor's wires are, and an arm's model has none."""
+    return table.with_raw({f"joint{joint}.motor_sign": 1 for joint in range(JOINTS)})
+
+
 def shown_angles(angles: npt.NDArray[np.float32], plants: Plants, row_s: float) -> Array:
     """What the plants' potentiometers show, (n, rows, 4) rad, of their joints' angles with a row every `row_s` seconds.
 

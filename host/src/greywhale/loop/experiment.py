@@ -11,7 +11,7 @@ from greywhale.arm import ArmParameters
 from greywhale.arm.plants import check_plants, column, plant_row
 from greywhale.errors import UserError
 from greywhale.firmware import JOINTS, TICK_S
-from greywhale.loop.closed_loop import DEFAULT_TIMING, ClosedLoop, Result, Timing, read_leader
+from greywhale.loop.closed_loop import DEFAULT_TIMING, ClosedLoop, Result, Timing, read_leader, with_right_motors
 from greywhale.loop.controllers import check_controllers, controllers_of
 from greywhale.loop.leader import SLICES_PER_TICK, leader_slices
 from greywhale.table import ParameterTable
@@ -25,9 +25,9 @@ class Experiment:
     """Leader, sensors and board settings, shared by all candidates; `run` simulates any number of them.
 
     `leader` is a motion, or angles (rad) in every slice of 250 us as float64 (slices, 4). `table` is the parameter
-    table of the board; its controllers are the candidate unless others are given. With `noise` False the potentiometers
-    are quiet. `weight_s` (ticks,) weighs |e| and |u| in ITAE and ITAU; by default it is the time since the leader may
-    move.
+    table of the board; its controllers are the candidate unless others are given, and its motors turn as the arm's,
+    whatever their wires. With `noise` False the potentiometers are quiet. `weight_s` (ticks,) weighs the sizes of e and
+    u in ITAE and ITAU; by default it is the time since the leader may move.
     """
 
     def __init__(
@@ -59,7 +59,7 @@ class Experiment:
         self.weight_s = _check_weight(weight_s, time_s, wait_s)
         gap = np.random.default_rng(seed).uniform(-1.0, 1.0, JOINTS) if gap_position is None else np.array(gap_position)
         self._loop = ClosedLoop(
-            self.table,
+            with_right_motors(self.table),
             readings,
             arm.follower_pots,
             seed=seed + 1,

@@ -7,17 +7,12 @@ problems.
 
 from __future__ import annotations
 
-import contextlib
-import multiprocessing
-import os
-import signal
-import threading
 import zlib
-from collections.abc import Callable, Generator, Iterator
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from dataclasses import dataclass
-from multiprocessing import resource_tracker
-from multiprocessing.connection import wait
+from collections.abc import Callable
+from concurrent.futures import Executor
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -25,11 +20,12 @@ from greywhale.errors import BAD_USAGE, UserError
 from greywhale.optimise.box import Floats
 from greywhale.optimise.functions import FUNCTIONS, SETTINGS, Setting, place
 from greywhale.optimise.methods import METHODS, create, minimise
+from greywhale.study import SerialWorkers, Task, Workers, run_study
 
 Progress = Callable[[str, float], None]
 # Two samples count as different when chance would separate them as far in fewer cases than this share.
 SIGNIFICANCE = 0.05
-# Evaluations that a process does in one go: short enough for a smooth progress bar and a quick end at Ctrl-C.
+# Evaluations that a worker does in one go: short enough for a smooth progress bar, long enough to be worth a message.
 PART = 5000
 
 
@@ -142,100 +138,55 @@ class Comparison:
         return 1 if balance > 0 else -1
 
 
-def compare(plan: Plan, jobs: int = 1, progress: Progress | None = None) -> Comparison:
-    """Run the plan in `jobs` processes; the result does not depend on how many."""
+def compare(
+    plan: Plan,
+    executor: Executor | Workers | None = None,
+    progress: Progress | None = None,
+    results: Path | None = None,
+) -> Comparison:
+    """Run the plan, in this process or on an executor (greywhale.study); the result does not depend on where. With a
+    results file an interrupted comparison goes on.
+    """
     plan.check()
     shape = (len(plan.functions), len(plan.settings), len(plan.methods))
     costs = np.empty((*shape, plan.runs))
     length = max(1, PART // plan.budget)
-    parts = [
-        Part(cell, range(first, min(first + length, plan.runs)))
+    parts = {
+        (*cell, first): _part(plan, cell, range(first, min(first + length, plan.runs)))
         for cell in np.ndindex(*shape)
         for first in range(0, plan.runs, length)
-    ]
-    results = _run_here(plan, parts) if min(jobs, len(parts)) <= 1 else _run_in_processes(plan, parts, jobs)
-    with contextlib.closing(results):
-        for done, (part, values) in enumerate(results, start=1):
-            costs[part.cell][part.runs] = values
-            if progress is not None:
-                progress("comparing", done / len(parts))
+    }
+    tasks, workers = list(parts.values()), SerialWorkers() if executor is None else executor
+    found = run_study(tasks, workers, results, progress, about=asdict(plan), what="comparing")
+    for (*cell, first), part in parts.items():
+        values = found[part.key]
+        costs[tuple(cell)][first : first + len(values)] = values
     return Comparison(plan, costs)
 
 
-@dataclass(frozen=True)
-class Part:
-    """Some runs of one method on one problem: a process does them in one go."""
-
-    cell: tuple[int, ...]
-    runs: range
-
-
-Results = Generator[tuple[Part, list[float]], None, None]
-
-
-def _run_here(plan: Plan, parts: list[Part]) -> Results:
-    for part in parts:
-        yield part, _run_part(plan, part)
-
-
-def _run_in_processes(plan: Plan, parts: list[Part], jobs: int) -> Results:
-    # Spawned, not forked: a fork would copy the state of other threads (a progress bar's, for example) with their
-    # locks.
-    context = multiprocessing.get_context("spawn")
-    pool = ProcessPoolExecutor(min(jobs, len(parts)), mp_context=context, initializer=_end_with_parent)
-    try:
-        with _hold_interrupts():
-            futures = {pool.submit(_run_part, plan, part): part for part in parts}
-        for future in as_completed(futures):
-            yield futures[future], future.result()
-    finally:
-        pool.shutdown(wait=True, cancel_futures=True)
-
-
-def _end_with_parent() -> None:
-    """In a process of the pool: a parent that was killed could not end it."""
-    parent = multiprocessing.parent_process()
-    assert parent is not None
-
-    def follow() -> None:
-        wait([parent.sentinel])
-        os._exit(1)
-
-    threading.Thread(target=follow, daemon=True).start()
-
-
-@contextlib.contextmanager
-def _hold_interrupts() -> Iterator[None]:
-    """Hold Ctrl-C back while the other processes are started.
-
-    Ctrl-C reaches all processes of a terminal, but only this one may answer it. The others inherit the mask. This
-    process may receive the signal in any of its threads, and notes it for later.
-    """
-    if threading.current_thread() is not threading.main_thread() or not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    # Starting it removes the mask, so it must run already when the others start.
-    resource_tracker.ensure_running()
-    noted: list[int] = []
-    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
-    for number in before:
-        signal.signal(number, lambda number, frame: noted.append(number))
-    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
-        for number, handler in before.items():
-            # None: not a handler of Python's, which cannot be put back.
-            signal.signal(number, signal.SIG_DFL if handler is None else handler)
-        if noted:
-            signal.raise_signal(noted[0])
-
-
-def _run_part(plan: Plan, part: Part) -> list[float]:
-    function, setting, method = part.cell
+def _part(plan: Plan, cell: tuple[int, ...], runs: range) -> Task:
+    """Some runs of one method on one problem: a worker does them in one go."""
+    function, setting, method = cell
     names = plan.functions[function], plan.settings[setting], plan.methods[method]
-    return [run_once(plan, *names, run) for run in part.runs]
+    arguments = {
+        "function": names[0],
+        "setting": names[1],
+        "method": names[2],
+        "first": runs.start,
+        "count": len(runs),
+        "dimensions": plan.dimensions,
+        "budget": plan.budget,
+        "pack": plan.pack,
+    }
+    return Task(" ".join((*names, f"{runs.start}-{runs.stop - 1}")), run_part, plan.seed, arguments)
+
+
+def run_part(
+    seed: int, function: str, setting: Setting, method: str, first: int, count: int, **plan: Any
+) -> list[float]:
+    """The lowest costs of some runs, in their order; the other arguments are the plan's."""
+    whole = Plan(seed=seed, **plan)
+    return [run_once(whole, function, setting, method, run) for run in range(first, first + count)]
 
 
 def run_once(plan: Plan, function: str, setting: Setting, method: str, run: int) -> float:

@@ -18,7 +18,7 @@ from typing import ClassVar
 from .declared import Described, Field, Group, Message, Parameter, Table, check_length
 
 PROTOCOL = 1
-SCHEMA_HASH = 0x4B725FA5
+SCHEMA_HASH = 0x5D75516A
 MAX_PAYLOAD = 48
 REPLY_BIT = 0x80
 LAYOUT = 2
@@ -83,6 +83,7 @@ class NackCode(Described):
     LEAD_REFUSED = 14, "the host cannot lead like this", "Correct the motion and start it again.", "joint << 8 | LeadRefusal"
     SET_LOST = 15, "parameters were lost, and nobody has confirmed those that run now", "Bring your parameters back with `greywhale params restore`, or upload a controller file with `greywhale upload`, then clear the fault.", "0"
     ESTOP_PRESSED = 16, "the emergency stop is pressed", "Release the emergency stop once it is safe; without such a button set estop_input to 0, or check its wire.", "0"
+    NO_PINS = 17, "this board has too few pins for these motor drivers", "Set driver to 0 and use motor drivers with PWM and direction, or take an Arduino Mega.", "the driver"
 
 
 class LeadRefusal(Described):
@@ -1029,6 +1030,9 @@ TABLE = Table((
     )),
     Group("", 1, "A button that turns the motors off, between the emergency stop's pin and ground.", (
         Field("estop_input", "u8", "", 1.0, 0, 2, (1,), False, None, "the emergency stop: 0 is none, 1 a button that closes to ground (without one, nothing is stopped), 2 one that opens, so that a broken wire stops as well"),
+    )),
+    Group("", 1, "Which signals the motor drivers take. docs/firmware.md has the pins.", (
+        Field("driver", "u8", "", 1.0, 0, 3, (0,), False, None, "the signals of a motor: 0 PWM and direction, 1 PWM and two directions (IN1, IN2), 2 two PWM inputs, both low between pulses, 3 two PWM inputs, both high between pulses; 1 to 3 need a Mega"),
     )),
 ))
 PARAMETERS: tuple[Parameter, ...] = TABLE.parameters

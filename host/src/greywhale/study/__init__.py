@@ -23,6 +23,8 @@
 - `progress(what, share)` is told after every task.
 - A task whose worker was lost is done again. One that ends its worker three times is given up: when all others are
   done, `LostTasks` names it (its `results` are those of the others).
+- A function that answers Ctrl-C itself, as `identify` and `tune` do, must raise KeyboardInterrupt where what they gave
+  back is not `complete`: half a result is none.
 - A UserError of a task ends the study; so does any other error, as `TaskFailed` with the worker's traceback. Ctrl-C
   ends it too, at once. What is done stays in the file.
 """

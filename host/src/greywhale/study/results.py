@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -20,7 +21,8 @@ class Results:
     def __init__(self, path: Path | None, tasks: Sequence[Task], about: Mapping[str, Any]) -> None:
         self.path = path
         self._found: dict[str, Any] = {}
-        self._lines = None if path is None else CheckedLines(path, KIND, _identity(tasks, about), keep=True)
+        kind = replace(KIND, choices=(*about, "versions", "number of tasks"))
+        self._lines = None if path is None else CheckedLines(path, kind, _identity(tasks, about), keep=True)
         for line in () if self._lines is None else self._lines.found:
             self._found[line["task"]] = decode(line["result"])
 

@@ -48,7 +48,9 @@ def run_study(
             run.do_all()
         except (Exception, KeyboardInterrupt) as error:
             if results is not None:
-                error.add_note(f"{len(book)} of {len(tasks)} tasks are done and kept in {results}.")
+                error.add_note(
+                    f"{len(book)} of {len(tasks)} tasks are done and kept in {results}; with it the same study goes on."
+                )
             raise
         return book.of(tasks)
 

@@ -38,6 +38,7 @@ SAME_SUPPLY, SAME_SLOPE, SAME_VALUE, SAME_GAP = 0.02, 0.1, 1e-3, 1e-5
 # Quantities that the search may leave at next to nothing.
 OFTEN_NOTHING = ("half_gap", "pot_play", "pot_lag", "load_friction", "creep_velocity", "supply_resistance")
 CERTAIN = 1e-20  # a variance of next to nothing
+MATCH = "after `greywhale calibrate`, `greywhale arm match` writes the arm file anew"
 CONVERTER_SPAN = 16368  # four conversions of 10 bits, as the board counts a potentiometer's whole track
 
 
@@ -393,7 +394,7 @@ def _doubt_slopes(arm: ArmParameters, table: ParameterTable) -> list[Doubt]:
                     Doubt(
                         f"its {side} potentiometer {joint} turns {wanted:.3g} rad from end to end, but the board's "
                         f"{scale} makes it {track:.3g} rad",
-                        "correct the one that is wrong",
+                        f"correct the one that is wrong ({MATCH})",
                     )
                 ]
     return []

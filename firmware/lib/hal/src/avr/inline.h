@@ -25,8 +25,18 @@ inline __attribute__((always_inline)) void run_tick() {
         "r19", "r20", "r21", "r22", "r23", "r24", "r25", "r26", "r27", "r30", "r31", "memory");
 }
 
+namespace internal {
+
+extern Driver driver;
+
+// Kept out of the tick's usual path.
+void set_two_pwm(uint8_t joint, bool positive, uint16_t size);
+
+}  // namespace internal
+
 template <uint8_t joint>
 inline void set_duty(bool positive, uint16_t size) {
+  if (pins::has_two_pwm(internal::driver)) return internal::set_two_pwm(joint, positive, size);
   pins::direction(joint, positive);
   pins::compare(joint, size);
 }

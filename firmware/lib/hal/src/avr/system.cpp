@@ -63,9 +63,31 @@ void begin() {
   sei();
 }
 
+namespace internal {
+
+BEHIND_RINGS Driver driver = Driver::pwm_direction;
+
+__attribute__((noinline)) void set_two_pwm(uint8_t joint, bool positive, uint16_t size) {
+  const bool high = driver == Driver::two_pwm_high;
+  const uint16_t driven = high ? pins::top(joint) : size;
+  const uint16_t other = high ? static_cast<uint16_t>(pins::top(joint) - size) : 0;
+  if (positive) pins::compare_pair(joint, driven, other);
+  else pins::compare_pair(joint, other, driven);
+}
+
+}  // namespace internal
+
+bool has_driver(Driver driver) { return driver <= pins::last_driver; }
+
+void choose_driver(Driver driver) {
+  internal::driver = driver;
+  pins::wire(driver);
+}
+
 uint16_t full_duty(uint8_t joint) { return pins::top(joint); }
 
 void set_duty(uint8_t joint, bool positive, uint16_t size) {
+  if (pins::has_two_pwm(internal::driver)) return internal::set_two_pwm(joint, positive, size);
   pins::direction(joint, positive);
   pins::compare(joint, size);
 }
@@ -73,7 +95,7 @@ void set_duty(uint8_t joint, bool positive, uint16_t size) {
 // The tick's interrupt may turn the drivers off at any moment, so there must be none between read and write.
 void set_drivers(bool on) {
   cli();
-  if (on) pins::drivers_on();
+  if (on) pins::drivers_on(internal::driver);
   else pins::drivers_off();
   sei();
 }

@@ -54,6 +54,9 @@ const std::uint16_t* pot_sums() {
 
 void release_pots() {}
 
+bool has_driver(Driver driver) { return driver <= fake::board.last_driver; }
+void choose_driver(Driver driver) { fake::board.driver = driver; }
+
 std::uint16_t full_duty(std::uint8_t) { return fake::full_duty; }
 
 void set_duty(std::uint8_t joint, bool positive, std::uint16_t size) {

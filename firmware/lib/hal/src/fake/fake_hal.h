@@ -25,6 +25,7 @@ struct FakeBoard {
   bool late = false;         // the next tick finds the last one unfinished
   bool samples_ready = true;
   bool estop_low = false;
+  Driver last_driver = Driver::two_pwm_high;  // that it has pins for
   std::uint16_t age_us = 100;
   std::array<std::uint8_t, eeprom_size> eeprom;
   // out
@@ -32,6 +33,7 @@ struct FakeBoard {
   std::uint8_t tx_room = tx_capacity;      // places left; sending takes them, the test gives them back
   std::array<int, joint_count> duty = {};  // -full_duty..full_duty
   bool drivers = false;
+  Driver driver = Driver::pwm_direction;
   bool drivers_when_sending = false;  // at the last tx_write()
   bool led = false;
   bool watchdog_on = false;

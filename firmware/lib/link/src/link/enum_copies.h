@@ -106,6 +106,7 @@ constexpr bool is_copy(NackCode, Copy value = Copy()) {
   static_assert(same_number(Copy::lead_refused, NackCode::lead_refused), "NackCode::lead_refused");
   static_assert(same_number(Copy::set_lost, NackCode::set_lost), "NackCode::set_lost");
   static_assert(same_number(Copy::estop_pressed, NackCode::estop_pressed), "NackCode::estop_pressed");
+  static_assert(same_number(Copy::no_pins, NackCode::no_pins), "NackCode::no_pins");
   switch (value) {
     case Copy::none:
     case Copy::unknown_type:
@@ -124,6 +125,7 @@ constexpr bool is_copy(NackCode, Copy value = Copy()) {
     case Copy::lead_refused:
     case Copy::set_lost:
     case Copy::estop_pressed:
+    case Copy::no_pins:
       break;
   }
   return true;

@@ -9,7 +9,7 @@
 namespace wire {
 
 constexpr uint8_t protocol = 1;
-constexpr uint32_t schema_hash = 0x4B725FA5;
+constexpr uint32_t schema_hash = 0x5D75516A;
 constexpr uint8_t max_payload = 48;
 constexpr uint8_t reply_bit = 0x80;
 
@@ -86,6 +86,7 @@ enum class NackCode : uint8_t {
   lead_refused = 14,  // the host cannot lead like this
   set_lost = 15,  // parameters were lost, and nobody has confirmed those that run now
   estop_pressed = 16,  // the emergency stop is pressed
+  no_pins = 17,  // this board has too few pins for these motor drivers
 };
 
 // Why a reference of the host was refused; the low byte of lead_refused.

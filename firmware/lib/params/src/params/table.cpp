@@ -44,6 +44,7 @@ const Field fields[field_count] PROGMEM = {
     {Kind::u8, offsetof(Table, stall_volts), no_field, false, 0, 250},
     {Kind::u8, offsetof(Table, stall_ms), no_field, false, 5, 125},
     {Kind::u8, offsetof(Table, estop_input), no_field, false, 0, 2},
+    {Kind::u8, offsetof(Table, driver), no_field, false, 0, 3},
 };
 
 const Group groups[group_count] PROGMEM = {
@@ -54,6 +55,7 @@ const Group groups[group_count] PROGMEM = {
     {1, 4, 27, 0, 0},
     {1, 4, 31, 0, 0},
     {1, 1, 35, 0, 0},
+    {1, 1, 36, 0, 0},
 };
 
 const Table default_table PROGMEM = {
@@ -79,6 +81,7 @@ const Table default_table PROGMEM = {
     10, 6, 11, 0,
     25, 40, 32, 42,
     1,
+    0,
 };
 
 }  // namespace params

@@ -8,9 +8,9 @@
 namespace params {
 
 constexpr uint8_t layout = 2;
-constexpr uint8_t count = 93;
-constexpr uint8_t field_count = 36;
-constexpr uint8_t group_count = 7;
+constexpr uint8_t count = 94;
+constexpr uint8_t field_count = 37;
+constexpr uint8_t group_count = 8;
 
 // Packed, so that the bytes in RAM are the bytes on the link and in EEPROM, in the order of the flat index.
 // Read members by value: a reference to a packed member does not compile.
@@ -58,9 +58,10 @@ struct __attribute__((packed)) Table {
   uint8_t stall_volts;  // voltage above which a follower must move; more than any joint needs to hold its load. 0 turns the check off [1/10 V]
   uint8_t stall_ms;  // time above stall_volts without motion that becomes a fault; half of it with more than half the supply, and time below takes off three times as much [4 ms]
   uint8_t estop_input;  // the emergency stop: 0 is none, 1 a button that closes to ground (without one, nothing is stopped), 2 one that opens, so that a broken wire stops as well
+  uint8_t driver;  // the signals of a motor: 0 PWM and direction, 1 PWM and two directions (IN1, IN2), 2 two PWM inputs, both low between pulses, 3 two PWM inputs, both high between pulses; 1 to 3 need a Mega
 };
 
-constexpr uint16_t table_size = 194;
+constexpr uint16_t table_size = 195;
 static_assert(sizeof(Table) == table_size, "the table must have no padding");
 
 enum class Kind : uint8_t { u8, i8, u16, i16, u32, i32 };

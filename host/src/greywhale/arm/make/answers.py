@@ -1,0 +1,73 @@
+"""Answers from a TOML file: what it leaves out is taken as usual and told; what nobody asks for is refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from greywhale.arm.make.questions import MOTOR_KEYS, SAME_MOTOR, Answers, Question, collect
+from greywhale.arm.parameters import JOINT_NAMES
+from greywhale.errors import BAD_USAGE, UserError, cut
+from greywhale.formats import toml_file
+
+TABLES = ("link", "joint")
+
+
+def read_answers(path: Path) -> tuple[Answers, tuple[str, ...]]:
+    """The answers, and the keys of those that the file leaves out. Raises UserError naming file, key and reason."""
+    source = AnswersFile(path)
+    answers = collect(source)
+    source.refuse_rest()
+    return answers, tuple(source.left_out)
+
+
+class AnswersFile:
+    """Answers each question once from the file."""
+
+    def __init__(self, path: Path) -> None:
+        self.left_out: list[str] = []
+        self._path = path
+        self._rest = toml_file.read(path)
+        self._tables = {(name, number): one for name in TABLES for number, one in enumerate(self._take(name))}
+
+    def heading(self, text: str) -> None:
+        """A file needs none."""
+
+    def ask(self, question: Question) -> float | str:
+        table = self._rest if question.table is None else self._tables.get(question.table, {})
+        if question.key not in table:
+            if question.key == SAME_MOTOR:
+                return "no" if any(key in table for key in MOTOR_KEYS) else "yes"
+            self.left_out.append(question.where)
+            return question.usual
+        given = table.pop(question.key)
+        try:
+            return question.read(given)
+        except ValueError as error:
+            raise UserError(f"{self._path}: {question.where} is {cut(repr(given))}: {error}.", BAD_USAGE) from None
+
+    def refuse_rest(self) -> None:
+        """Refuse what was not asked for."""
+        rest = [
+            *self._rest,
+            *(f"{name}[{number}].{key}" for (name, number), one in self._tables.items() for key in one),
+        ]
+        if rest:
+            raise UserError(
+                f"{self._path}: {cut(rest[0])} answers no question that is asked here; remove it, or correct its name "
+                "or place (docs/your-arm.md has an example).",
+                BAD_USAGE,
+            )
+
+    def _take(self, name: str) -> list[dict[str, Any]]:
+        given = self._rest.pop(name, [])
+        if (
+            not isinstance(given, list)
+            or not all(isinstance(one, dict) for one in given)
+            or len(given) > len(JOINT_NAMES)
+        ):
+            raise UserError(
+                f"{self._path}: {name} must be tables [[{name}]], one for each of the four {name}s from the base on.",
+                BAD_USAGE,
+            )
+        return given

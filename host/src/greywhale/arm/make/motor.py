@@ -1,0 +1,70 @@
+"""A geared motor from its data sheet: torque and speed at the gear's shaft, current at the wires.
+
+A data sheet's line torque = stall x (1 - speed / no-load speed) is kept exactly, with the dry friction that the current
+without load tells; what back-EMF leaves of the slope is viscous friction.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+RAD_S_PER_RPM = math.tau / 60.0
+USUAL_NO_LOAD_SHARE = 0.05  # of the stall current
+BREAKAWAY = 1.25  # of the sliding friction
+USUAL_TIME_S = 0.02  # a brushed motor alone is at full speed about three times as late
+BACK_EMF_SHARE = 0.95  # of the slope at most: some of it is viscous
+
+
+@dataclass(frozen=True)
+class DataSheet:
+    """Values at `rated_v`; torque (N m) and speed (rad/s) at the joint, currents (A) at the wires."""
+
+    rated_v: float
+    gear_ratio: float
+    stall_torque: float
+    stall_current: float
+    no_load_speed: float
+    no_load_current: float
+    rotor_inertia: float | None = None  # kg m², of the motor alone
+
+    @property
+    def slope(self) -> float:
+        """N m s: torque lost for each rad/s."""
+        return self.stall_torque / self.no_load_speed
+
+
+def contradiction(stall_torque: float, stall_current: float, no_load_speed: float, rated_v: float) -> str:
+    """Why no motor can have these values; "" where one can."""
+    mechanical, electrical = stall_torque * no_load_speed, rated_v * stall_current
+    if mechanical <= electrical:
+        return ""
+    return (
+        f"stall torque x no-load speed is {mechanical:.3g} W, more than voltage x stall current = {electrical:.3g} W, "
+        "which no motor can have; look at the units, and whether torque and speed are both those behind the gear"
+    )
+
+
+def usual_rotor_inertia(sheet: DataSheet) -> float:
+    """kg m² of a motor of which only this is known."""
+    return USUAL_TIME_S * sheet.slope / sheet.gear_ratio**2
+
+
+def tables(sheet: DataSheet) -> dict[str, dict[str, float]]:
+    """`motor` and `friction` of an arm file's joint."""
+    coulomb = sheet.stall_torque * sheet.no_load_current / sheet.stall_current
+    per_volt = (sheet.stall_torque + coulomb) / sheet.rated_v
+    ratio = sheet.gear_ratio
+    at_joint = min((sheet.stall_torque + coulomb) / sheet.stall_current, BACK_EMF_SHARE * sheet.slope / per_volt)
+    viscous = sheet.slope - per_volt * at_joint
+    inertia = sheet.rotor_inertia if sheet.rotor_inertia is not None else usual_rotor_inertia(sheet)
+    return {
+        "motor": {
+            "inertia": inertia,
+            "resistance": at_joint / per_volt,
+            "torque_constant": at_joint / ratio,
+            "viscous": viscous / ratio**2,
+            "gear_ratio": ratio,
+        },
+        "friction": {"coulomb": coulomb, "breakaway": BREAKAWAY * coulomb},
+    }

@@ -1,0 +1,51 @@
+"""`greywhale arm match`: an arm file with the potentiometers of a calibrated board."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+import numpy as np
+
+from greywhale.arm.parameters import JOINT_NAMES
+from greywhale.board.device import Device
+from greywhale.board.upload import read_parameters
+from greywhale.calibrate.match import with_board_pots
+from greywhale.cli.output import json_option, port_option, show
+from greywhale.cli.record import require_folders
+from greywhale.files.arm import load_arm
+from greywhale.files.model import arm_toml
+from greywhale.formats.whole import refuse_existing, refuse_inputs, write_text
+from greywhale.protocol.ports import choose_port
+
+
+@click.command("match")
+@click.argument("arm")
+@port_option
+@click.option("--out", "-o", type=click.Path(path_type=Path), default=Path("matched.toml"), show_default=True)
+@json_option
+def match(arm: str, port: str | None, out: Path, as_json: bool) -> None:
+    """Write an arm file, or one that comes with greywhale, with the potentiometers as the board is calibrated.
+
+    After `greywhale calibrate`, commission and tune refuse an arm file that says other tracks or zeros than the board.
+    """
+    require_folders(out)
+    refuse_inputs(out, arm)
+    refuse_existing(out, "--out")
+    before = load_arm(arm)
+    with Device(choose_port(port)) as device:
+        table = read_parameters(device)
+    found = with_board_pots(before, table)
+    write_text(out, arm_toml(found, f"Made by greywhale arm match from {Path(arm).name}."))
+    facts = {
+        "written": str(out),
+        "track_deg": {
+            side: [round(float(np.degrees(pot.track)), 2) for pot in bank.joint]
+            for side, bank in (("leader", found.leader_pots), ("follower", found.follower_pots))
+        },
+    }
+    lines = [f"{out} is written. Tracks in degrees, leader and follower:"]
+    for joint, name in enumerate(JOINT_NAMES):
+        pair = (found.leader_pots.joint[joint], found.follower_pots.joint[joint])
+        lines.append(f"  {name:16}" + "".join(f"{np.degrees(pot.direction * pot.track):>9.1f}" for pot in pair))
+    show(as_json, facts, "\n".join(lines))

@@ -1,0 +1,132 @@
+"""`greywhale arm new`: an arm.toml from a ruler, a scale and data sheets."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+import numpy as np
+
+from greywhale.arm.make import Summary, assemble, summarise
+from greywhale.arm.make.answers import read_answers
+from greywhale.arm.make.questions import Question, collect
+from greywhale.arm.parameters import JOINT_NAMES, ArmParameters
+from greywhale.cli.output import json_option, show
+from greywhale.cli.record import require_folders
+from greywhale.errors import UserError
+from greywhale.files.model import arm_toml
+from greywhale.formats.whole import refuse_existing, refuse_inputs, write_text
+from greywhale.table import ParameterTable
+
+MUCH_TO_HOLD = 0.6  # of stall_volts: the rest is for starting
+
+
+@click.command("new")
+@click.option("--answers", type=click.Path(path_type=Path), metavar="FILE", help="TOML with the answers, for scripts.")
+@click.option("--out", "-o", type=click.Path(path_type=Path), default=Path("arm.toml"), show_default=True)
+@json_option
+def new(answers: Path | None, out: Path, as_json: bool) -> None:
+    """Ask for lengths, masses or materials, motors' data sheets and ranges; write an arm.toml.
+
+    Enter takes what stands in brackets. A number may have another unit: 14 cm, 5 kg cm. Before it writes, it shows
+    what the arm can lift and how fast it is.
+    """
+    require_folders(out)
+    refuse_inputs(out, answers)
+    refuse_existing(out, "--out")
+    person = Person()
+    given, left_out = read_answers(answers) if answers is not None else (collect(person), ())
+    arm = assemble(given)
+    found = summarise(arm)
+    text = "\n".join([*_table(arm, found), *_notes(found, left_out)])
+    if answers is None:
+        click.echo(f"\n{text}\n", err=True)
+        person.confirm(f"Write {out}?")
+    write_text(out, arm_toml(arm, "Made by greywhale arm new."))
+    show(as_json, _facts(out, found, left_out), f"{text}\n\n{out} is written." if answers else f"{out} is written.")
+
+
+class Person:
+    """Somebody at this terminal, or a script that writes a line for each question."""
+
+    def heading(self, text: str) -> None:
+        click.echo(f"\n{text}", err=True)
+
+    def ask(self, question: Question) -> float | str:
+        while True:
+            answer = self._line(f"  {_asked(question)}: ")
+            try:
+                return question.read(answer) if answer else question.usual
+            except ValueError as error:
+                click.echo(f"    Not {answer[:40]!r}: {error}.", err=True)
+
+    def confirm(self, what: str) -> None:
+        """Until Enter; anything else leaves everything as it is."""
+        if self._line(f"{what} [Enter; no]: ").lower() not in ("", "y", "yes"):
+            raise UserError("nothing was written.")
+
+    def _line(self, prompt: str) -> str:
+        click.echo(prompt, nl=False, err=True)
+        line = sys.stdin.readline()
+        if not line:
+            raise UserError("the input ended in the middle of the questions; nothing was written.")
+        return line.strip()
+
+
+def _asked(question: Question) -> str:
+    usual = question.usual if isinstance(question.usual, str) else f"{question.usual:.6g}"
+    return f"{question.text}{', ' if question.unit.name else ''}{question.unit.name} [{usual}]"
+
+
+def _table(arm: ArmParameters, found: Summary) -> list[str]:
+    lines = [f"{arm.name}: {found.mass:.3g} kg, motors at {arm.drive.supply:g} V.", ""]
+    lines.append(f"{'':16}{'gravity, at most':>18}{'motor at standstill':>21}{'share':>8}{'fastest':>14}")
+    for name, one in zip(JOINT_NAMES, found.joints, strict=True):
+        lines.append(
+            f"{name:16}{one.gravity:>14.3g} N m{one.stall:>17.3g} N m{100 * one.share:>6.0f} %"
+            f"{np.degrees(one.no_load_speed):>8.0f} deg/s"
+        )
+    return lines
+
+
+def _notes(found: Summary, left_out: tuple[str, ...]) -> list[str]:
+    notes = [f"Warning: {warning}" for warning in found.warnings]
+    if advice := _advice(found):
+        notes.append(f"Before it moves: {advice}")
+    if left_out:
+        notes.append(f"Note: the file leaves out {len(left_out)} answers, taken as usual: {', '.join(left_out)}.")
+    return ["", *notes] if notes else []
+
+
+def _advice(found: Summary) -> str:
+    """What a board as shipped needs for an arm whose motors have much to hold; "" where it needs nothing."""
+    hold = max(one.hold_v for one in found.joints)
+    shipped = ParameterTable.defaults().physical("stall_volts")
+    if hold <= MUCH_TO_HOLD * shipped or any(one.share >= 1.0 for one in found.joints):
+        return ""
+    return (
+        f"a joint needs {hold:.1f} V to hold still, and the board takes more than stall_volts ({shipped:g} V) without "
+        f"motion for a stall: run `greywhale params set stall_volts={np.ceil(1.5 * hold):.0f}`."
+    )
+
+
+def _facts(out: Path, found: Summary, left_out: tuple[str, ...]) -> dict[str, object]:
+    joints = [
+        {
+            "gravity_nm": round(one.gravity, 6),
+            "stall_nm": round(one.stall, 6),
+            "no_load_speed_rad_s": round(one.no_load_speed, 6),
+            "hold_v": round(one.hold_v, 4),
+            "holds_without_power": one.holds,
+        }
+        for one in found.joints
+    ]
+    return {
+        "written": str(out),
+        "mass_kg": round(found.mass, 6),
+        "joints": joints,
+        "warnings": list(found.warnings),
+        "before_it_moves": _advice(found),
+        "left_out": list(left_out),
+    }

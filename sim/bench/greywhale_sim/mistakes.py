@@ -1,0 +1,241 @@
+"""What a person may do wrong with an arm, each by name: what it does to the bench, and which verb says so.
+
+The one list behind `greywhale sim --mistake`, the bench's command `mistake`, docs/bench.md and the tests.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from greywhale import arm
+from greywhale.board.refusal import pot_name
+from greywhale.errors import UserError
+from greywhale.firmware import JOINTS
+from greywhale_sim.bench import Bench
+from greywhale_sim.board_supply import SharedSupply
+from greywhale_sim.lies import Lies
+
+POTS = tuple(f"{side}{joint}" for side in ("leader", "follower") for joint in range(JOINTS))
+WHERE = {"pot": POTS, "motor": tuple(map(str, range(JOINTS))), "arm": ("",)}
+USUAL = {"pot": "follower1", "motor": "1", "arm": ""}
+WEAK_GAIN = 0.2
+OTHER_SUPPLY_V = 24.0
+NOTHING = "none"
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """A mistake: `stage` does it to a bench at the potentiometer 0..7 or the joint 0..3 in question.
+
+    `verb` then says what `told` matches, a regular expression with <pot>, <other>, <first>, <second> (potentiometers)
+    and <joint>, <near>, <low>, <high> (joints; `near` is the one with which something is exchanged). What is `mended`
+    is found and put right by the verb itself; of all others the exit code is 1, unless it is but a `note`.
+    """
+
+    name: str
+    on: Literal["pot", "motor", "arm"]
+    says: str
+    verb: Literal["calibrate", "doctor"]
+    told: str
+    stage: Callable[[Bench, int], None]
+    ends: Literal["refused", "mended", "noted"] = "refused"
+    options: tuple[str, ...] = ()
+
+    def tells(self, number: int) -> str:
+        """The regular expression for this place."""
+        joint = number % JOINTS
+        near = (joint + 1) % JOINTS
+        other = number - joint + near
+        pots = {"pot": number, "other": other, "first": min(number, other), "second": max(number, other)}
+        joints = {"joint": joint, "near": near, "low": min(joint, near), "high": max(joint, near)}
+        text = self.told
+        for key, value in pots.items():
+            text = text.replace(f"<{key}>", pot_name(value)[1:])
+        for key, value in joints.items():
+            text = text.replace(f"<{key}>", str(value))
+        return text.replace("<id>", POTS[number])
+
+
+def _near(number: int) -> int:
+    return number - number % JOINTS + (number + 1) % JOINTS
+
+
+def _lie(kind: str) -> Callable[[Bench, int], None]:
+    return lambda bench, pot: bench.lies.stage(pot, kind)
+
+
+def _wire(wiring: Any) -> Callable[[Bench, int], None]:
+    def stage(bench: Bench, pot: int) -> None:
+        bank: Any = bench.leader_pots if pot < JOINTS else bench.follower_pots
+        bank.set_wiring(pot % JOINTS, wiring)
+
+    return stage
+
+
+def _motor(gain: float) -> Callable[[Bench, int], None]:
+    return lambda bench, joint: bench.wire_motor(joint, gain, joint)
+
+
+def _swap_motors(bench: Bench, joint: int) -> None:
+    near = (joint + 1) % JOINTS
+    bench.wire_motor(joint, 1.0, near)
+    bench.wire_motor(near, 1.0, joint)
+
+
+def _swap_arms(bench: Bench, number: int) -> None:
+    for joint in range(JOINTS):
+        bench.lies.swap(joint, joint + JOINTS)
+
+
+def _cut_supply(bench: Bench, number: int) -> None:
+    for joint in range(JOINTS):
+        bench.wire_motor(joint, 0.0, joint)
+
+
+def _share_supply(bench: Bench, number: int) -> None:
+    bench.shared_supply = SharedSupply(bench.board)
+
+
+MISTAKES = (
+    Mistake(
+        "pot-swapped", "pot", "the wires of this potentiometer and of the next joint's are exchanged", "calibrate",
+        "<first> reads .* and did not move, but .<second> did: their wires are swapped",
+        lambda bench, pot: bench.lies.swap(pot, _near(pot)),
+    ),
+    Mistake(
+        "arms-swapped", "arm", "the leader's plug is where the follower's belongs, and the other way round",
+        "calibrate", "eader potentiometer 0 reads .* but follower potentiometer 0 did: the two arms are swapped",
+        _swap_arms,
+    ),
+    Mistake(
+        "pot-reversed", "pot", "the two ends of the track are exchanged, so that it reads the other way", "calibrate",
+        r'"reversed": \["<id>"\]', _lie("reversed"), ends="mended",
+    ),
+    Mistake(
+        "pot-crossed", "pot", "the wiper is on 5 V and an end of the track on the pin", "calibrate",
+        "<pot> reads .* and hardly changes .* its wiper's wire and an end's are exchanged", _lie("crossed"),
+    ),
+    Mistake(
+        "pot-open", "pot", "the wiper's wire is off, and a pull-down wins", "doctor",
+        "<pot> reads 0..0 of 1023, at a rail", _wire(arm.Wiring.OPEN),
+    ),
+    Mistake(
+        "pot-floating", "pot", "the wiper's wire is off, and nothing pulls the pin down", "doctor",
+        "These read alike: .*<pot>", lambda bench, pot: bench.let_float(pot, True),
+    ),
+    Mistake(
+        "pot-shorted", "pot", "the wiper's wire touches 5 V", "doctor",
+        "<pot> reads 1023..1023 of 1023, at a rail", _wire(arm.Wiring.SHORTED),
+    ),
+    Mistake(
+        "pot-touching", "pot", "the wiper's wire touches that of the next joint", "doctor",
+        "These read alike: .<first> and .<second>", lambda bench, pot: bench.lies.touch(pot, _near(pot)),
+    ),
+    Mistake(
+        "pot-loose", "pot", "the wiper's wire is off for 2 ms again and again", "doctor",
+        r"Readings jumped: .<pot> \d+ times", _lie("loose"),
+    ),
+    Mistake(
+        "pot-noisy", "pot", "the wiper's wire runs along a motor's", "doctor",
+        r"Noisy, in counts rms: .<pot> \d", _lie("noisy"),
+    ),
+    Mistake(
+        "pot-humming", "pot", "the mains reach the wiper's wire", "doctor",
+        r"Mains hum: .<pot> \d.* counts at 50 Hz", _lie("humming"), ends="noted",
+    ),
+    Mistake(
+        "pot-dead-zone", "pot", "the track is mounted so that its dead zone lies within the joint's range",
+        "calibrate", "<pot> jumps from one end of its track to the other .* its dead zone lies there", _lie("turned"),
+    ),
+    Mistake(
+        "pot-slipping", "pot", "its shaft slips and loses a part of every way up", "calibrate",
+        r"<pot> (reads? \d+|reaches an end|turned the other way)", _lie("slipping"),
+    ),
+    Mistake(
+        "pot-frozen", "pot", "its shaft does not turn with the joint", "calibrate",
+        "<pot> reads .* and did not move: check that its shaft", _lie("frozen"),
+    ),
+    Mistake(
+        "motor-swapped", "motor", "this motor and the next joint's are on each other's drivers", "calibrate",
+        "the motor of joint <low> moved joint <high>: their motors, or .* are swapped", _swap_motors,
+    ),
+    Mistake(
+        "motor-reversed", "motor", "both wires of the motor are exchanged", "calibrate",
+        r'"joint": <joint>, "sign": -1', _motor(-1.0), ends="mended",
+    ),
+    Mistake(
+        "motor-weak", "motor", "the motor or its driver gives a fifth of its torque", "calibrate",
+        "The motor of joint <joint> moved it by .* mrad a volt, .* it is weak", _motor(WEAK_GAIN), ends="noted",
+    ),
+    Mistake(
+        "motor-dead", "motor", "a wire of the motor is off", "calibrate",
+        "the motor of joint <joint> did not move it", _motor(0.0),
+    ),
+    Mistake(
+        "no-supply", "arm", "the motors' supply is off", "calibrate",
+        "the motor of joint 0 did not move it with .* check that the motors' supply is on", _cut_supply,
+    ),
+    Mistake(
+        "wrong-supply", "arm", f"the motors' supply has {OTHER_SUPPLY_V:g} V, and the board counts on another one",
+        "doctor", "The board counts on 15 V for the motors, not 24 V",
+        lambda bench, number: bench.change_supply(OTHER_SUPPLY_V), options=("--supply", f"{OTHER_SUPPLY_V:g}"),
+    ),
+    Mistake(
+        "brown-out", "arm", "the board lives on the motors' supply, which sinks when a motor draws", "calibrate",
+        "restarted while the motor of joint 0 was driven", _share_supply,
+    ),
+)  # fmt: skip
+BY_NAME = {mistake.name: mistake for mistake in MISTAKES}
+
+
+def stage(bench: Bench, words: str) -> str:
+    """Stage NAME or NAME:PLACE, or take all back (`none`); a sentence says what was done. Raises UserError."""
+    name, _, where = words.partition(":")
+    if words == NOTHING:
+        take_back(bench)
+        return "every mistake is taken back."
+    if name not in BY_NAME:
+        raise UserError(f'"{name}" is no mistake; there are: {", ".join(BY_NAME)}, and {NOTHING}.', 2)
+    mistake = BY_NAME[name]
+    place = where or USUAL[mistake.on]
+    if place not in WHERE[mistake.on]:
+        places = WHERE[mistake.on]
+        remedy = f"say {name}:{places[0]} to {name}:{places[-1]}" if places[0] else f"say {name} alone"
+        raise UserError(f'"{where}" is no place for {name}; {remedy}.', 2)
+    mistake.stage(bench, WHERE[mistake.on].index(place))
+    return f"{place}{': ' if place else ''}{mistake.says}."
+
+
+def take_back(bench: Bench) -> None:
+    """Wire everything rightly again."""
+    bench.lies = Lies()
+    for pot in range(len(POTS)):
+        _wire(arm.Wiring.CONNECTED)(bench, pot)
+        bench.let_float(pot, False)
+    for joint in range(JOINTS):
+        bench.wire_motor(joint, 1.0, joint)
+    bench.change_supply(bench.own_supply_v)
+    if bench.shared_supply is not None:
+        bench.shared_supply.mend()
+        bench.shared_supply = None
+
+
+def listed() -> str:
+    """All mistakes, a line each."""
+    return "\n".join(f"{_usage(one):<28} {one.says[:1].upper()}{one.says[1:]}." for one in MISTAKES)
+
+
+def markdown_table() -> str:
+    """The table in docs/bench.md."""
+    rows = ["| mistake | what is wrong | found by |", "|---|---|---|"]
+    found = {"refused": "", "mended": ", which puts it right", "noted": ", as a note"}
+    for one in MISTAKES:
+        verb = " ".join((one.verb, *one.options))
+        rows.append(f"| `{_usage(one)}` | {one.says} | `{verb}`{found[one.ends]} |")
+    return "\n".join(rows)
+
+
+def _usage(mistake: Mistake) -> str:
+    return f"{mistake.name}{ {'pot': ':leader0', 'motor': ':0', 'arm': ''}[mistake.on] }"

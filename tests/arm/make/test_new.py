@@ -1,0 +1,180 @@
+"""`greywhale arm new`: one question after the other, wrong answers asked again, files by their keys, what it lifts."""
+
+from __future__ import annotations
+
+import io
+import json
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from greywhale.arm import Arm
+from greywhale.arm.make.units import DEGREE, GRAM, MM, NEWTON_METRE, RPM, read_number
+from greywhale.cli.entry import run
+from greywhale.files.arm import load_arm
+
+MOTOR = """gear_ratio = 131
+stall_torque_nm = "18 kg cm"
+stall_current_a = 5.0
+no_load_rpm = 76
+"""
+ANSWERS = f"""name = "bench arm"
+supply_v = 12
+tip_g = 50
+[[link]]
+length_mm = 80
+mass_g = 200
+[[link]]
+length_mm = "14 cm"
+section = "bar"
+width_mm = 30
+height_mm = 5
+mass_g = "aluminium"
+parts_g = 120
+[[link]]
+length_mm = 50
+[[link]]
+length_mm = 120
+[[joint]]
+{MOTOR}[[joint]]
+min_deg = -60
+max_deg = 80
+[[joint]]
+[[joint]]
+stall_torque_nm = 0.4
+stall_current_a = 1.2
+"""
+
+
+def ask(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, dict[str, Any]]:
+    code = run(["arm", "new", "--json", *arguments])
+    return code, json.loads(capsys.readouterr().out)
+
+
+def written(folder: Path, text: str) -> str:
+    path = folder / "answers.toml"
+    path.write_text(text)
+    return str(path)
+
+
+def test_answers_of_a_file_become_an_arm_that_moves(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "arm.toml"
+    code, facts = ask(capsys, "--answers", written(tmp_path, ANSWERS), "--out", str(out))
+    assert code == 0
+    arm = load_arm(out)
+    assert arm.link[0].mass == pytest.approx(0.2)
+    assert arm.link[1].mass == pytest.approx(2700 * 0.03 * 0.005 * 0.14 + 0.12)
+    assert arm.joint[1].motor == arm.joint[0].motor, "joint 1 has the motor of joint 0"
+    assert arm.actuator(0).torque_per_volt * 12 - arm.joint[0].friction.coulomb == pytest.approx(18 * 0.0980665)
+    assert arm.joint[3].motor.gear_ratio == 131, "what joint 3 leaves out is as at joint 2"
+    assert np.degrees([arm.joint[1].stops.min, arm.joint[1].stops.max]) == pytest.approx([-60, 80])
+    assert "joint[0].rated_v" in facts["left_out"]
+    assert "link[2].section" in facts["left_out"]
+    body = Arm(arm)
+    for _ in range(1000):
+        angles = body.step([6.0, 0.0, 0.0, 0.0], 0.001)
+    assert 1.0 < angles[0] <= np.pi / 2
+    assert np.all(np.isfinite(angles))
+
+
+def test_gravity_is_that_of_the_arm_stretched_out(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "arm.toml"
+    _, facts = ask(capsys, "--answers", written(tmp_path, ANSWERS), "--out", str(out))
+    arm = load_arm(out)
+    levers = np.cumsum([0.0, arm.link[1].length, arm.link[2].length])
+    reach = [lever + link.centre for lever, link in zip(levers, arm.link[1:], strict=True)]
+    torque = sum(9.81 * link.mass * lever for link, lever in zip(arm.link[1:], reach, strict=True))
+    torque += 9.81 * 0.05 * (levers[2] + arm.link[3].length)
+    assert facts["joints"][1]["gravity_nm"] == pytest.approx(torque, abs=1e-6)
+    assert facts["joints"][0]["gravity_nm"] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        (
+            ("no_load_rpm = 76", "no_load_rpm = 900"),
+            "joint[0].no_load_rpm is 900: stall torque x no-load speed is 166 W",
+        ),
+        (('"14 cm"', '"14 ft"'), "link[1].length_mm is '14 ft': the unit \"ft\" is not known here; there are: mm, cm"),
+        (("length_mm = 80", "length_mm = 0"), "link[0].length_mm is 0: it must be 5 to 2000 mm"),
+        (("length_mm = 80", "length = 80"), "link[0].length answers no question"),
+        (('"aluminium"', '"cheese"'), "link[1].mass_g is 'cheese': that is no number; or say one of: aluminium, steel"),
+        (("max_deg = 80", "max_deg = -70"), "joint[1].max_deg is -70: it must be -59 to 360 degrees"),
+        (("tip_g = 50", "tip_g = true"), "tip_g is True: that is no number"),
+        (("[[joint]]\n[[joint]]", "[[joint]]\n[[joint]]\n[[joint]]"), "joint must be tables [[joint]]"),
+        (("supply_v = 12", "supply_v = 12\nlinks = 3"), "links answers no question"),
+        (('section = "bar"', 'section = "I"'), "link[1].section is 'I': say one of: tube, bar"),
+    ],
+)
+def test_a_wrong_answer_of_a_file_is_named_by_its_key(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], change: tuple[str, str], says: str
+) -> None:
+    assert change[0] in ANSWERS
+    out = tmp_path / "arm.toml"
+    code, facts = ask(capsys, "--answers", written(tmp_path, ANSWERS.replace(*change)), "--out", str(out))
+    assert code == 2
+    assert says in facts["error"]
+    assert not out.exists()
+
+
+def test_a_motor_that_cannot_lift_the_arm_is_warned_of(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    weak = ANSWERS.replace('"18 kg cm"', "0.3").replace("no_load_rpm = 76", "no_load_rpm = 60")
+    _, facts = ask(capsys, "--answers", written(tmp_path, weak), "--out", str(tmp_path / "arm.toml"))
+    (lifts, *_) = facts["warnings"]
+    assert lifts.startswith("joint 1 (shoulder pitch) cannot lift the arm: stretched out it needs ")
+
+
+def test_an_arm_that_is_heavy_for_its_motors_gets_advice_for_the_board(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    heavy = ANSWERS.replace("tip_g = 50", "tip_g = 200")
+    _, facts = ask(capsys, "--answers", written(tmp_path, heavy), "--out", str(tmp_path / "arm.toml"))
+    assert facts["joints"][1]["hold_v"] > 3.2
+    assert "params set stall_volts=" in facts["before_it_moves"]
+    _, light = ask(capsys, "--answers", written(tmp_path, ANSWERS.replace("tip_g = 50", "tip_g = 0")), "--out",
+                   str(tmp_path / "light.toml"))  # fmt: skip
+    assert light["joints"][1]["hold_v"] < facts["joints"][1]["hold_v"]
+
+
+def test_a_person_is_asked_again_with_the_reason(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    out = tmp_path / "arm.toml"
+    lines = ["my own", "much", "0,5", "70", "6 V", *[""] * 100]
+    monkeypatch.setattr("sys.stdin", io.StringIO("\n".join(lines) + "\n"))
+    assert run(["arm", "new", "--out", str(out)]) == 0
+    said = capsys.readouterr().err
+    assert "Not 'much': that is no number." in said
+    assert "write a point, not a comma" in said
+    assert "Not '70': it must be 1 to 60 V." in said
+    assert said.index("motor at standstill") < said.index(f"Write {out}?"), "the summary comes before it writes"
+    arm = tomllib.loads(out.read_text())
+    assert arm["name"] == "my own"
+    assert arm["drive"]["supply"] == 6.0
+
+
+@pytest.mark.parametrize(("lines", "says"), [([""] * 10, "the input ended"), ([""] * 46 + ["no"] * 9, "nothing was")])
+def test_nothing_is_written_without_a_yes(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, lines: list[str], says: str
+) -> None:
+    monkeypatch.setattr("sys.stdin", io.StringIO("".join(f"{line}\n" for line in lines)))
+    assert run(["arm", "new", "--out", str(tmp_path / "arm.toml")]) == 1
+    assert says in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "value"),
+    [
+        ("140", MM, 140.0), ("14 cm", MM, 140.0), (".14m", MM, 140.0), ("1e-1 kg", GRAM, 100.0),
+        ("5 kg·cm", NEWTON_METRE, 0.490333), ("5 kg-cm", NEWTON_METRE, 0.490333), ("70 oz in", NEWTON_METRE, 0.494312),
+        ("1 N m", NEWTON_METRE, 1.0), ("6.2832 rad/s", RPM, 60.0), ("-1.5708 rad", DEGREE, -90.0),
+        ("90°", DEGREE, 90.0),
+    ],
+)  # fmt: skip
+def test_units_as_people_write_them(text: str, unit: Any, value: float) -> None:
+    assert read_number(text, unit) == pytest.approx(value, rel=1e-4)

@@ -1,0 +1,132 @@
+"""Motor drivers: what each chip makes of its pins, the current in an open bridge, following through each of them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from greywhale.firmware import TICK_S
+from greywhale.protocol import schema
+from greywhale_sim.assemble import BenchOptions, build_bench
+from greywhale_sim.drivers import CHIPS, ELECTRICAL_S, OPEN, PWM_S, SHORTED, Bridge, Pins, mean_volts
+from tests.end_to_end.conftest import LockStep
+from tests.end_to_end.test_lock_step import set_parameters
+
+SUPPLY_V = 12.0
+STEPS = 1000  # of a PWM period, in the integration
+
+
+def bridge(chip: str, *, enable: bool = True, **pins: float) -> Bridge:
+    levels = {"pwm": 0.0, "direction": 0.0, "second_pwm": 0.0, "second_direction": 0.0, **pins}
+    return CHIPS[chip].bridge(
+        Pins(
+            enable,
+            levels["pwm"],
+            bool(levels["direction"]),
+            levels["second_pwm"],
+            bool(levels["second_direction"]),
+        )
+    )
+
+
+@pytest.mark.parametrize(
+    ("chip", "pins", "expected"),
+    [
+        ("drv8838", {"pwm": 0.25, "direction": 1}, Bridge(0.25, 0.0, 0.75)),
+        ("drv8838", {"pwm": 0.25}, Bridge(0.0, 0.25, 0.75)),
+        ("tb6612", {"pwm": 0.25, "direction": 1}, Bridge(0.25, 0.0, 0.75)),
+        ("tb6612", {"pwm": 0.25, "second_direction": 1}, Bridge(0.0, 0.25, 0.75)),
+        ("tb6612", {"pwm": 0.25, "direction": 1, "second_direction": 1}, SHORTED),
+        ("tb6612", {"pwm": 0.25}, OPEN),
+        ("l298n", {"pwm": 0.25, "direction": 1}, Bridge(0.25, 0.0, 0.0)),
+        ("l298n", {"pwm": 0.25, "second_direction": 1}, Bridge(0.0, 0.25, 0.0)),
+        ("l298n", {"pwm": 0.25}, Bridge(0.0, 0.0, 0.25)),
+        ("drv8871", {"pwm": 0.25}, Bridge(0.25, 0.0, 0.0)),
+        ("drv8871", {"second_pwm": 0.25}, Bridge(0.0, 0.25, 0.0)),
+        ("drv8871", {"pwm": 1.0, "second_pwm": 0.75}, Bridge(0.25, 0.0, 0.75)),
+        ("drv8871", {"pwm": 0.75, "second_pwm": 1.0}, Bridge(0.0, 0.25, 0.75)),
+        ("bts7960", {"pwm": 0.25}, Bridge(0.25, 0.0, 0.75)),
+        ("bts7960", {"pwm": 1.0, "second_pwm": 0.75}, Bridge(0.25, 0.0, 0.75)),
+    ],
+)
+def test_a_chip_does_what_its_truth_table_says(chip: str, pins: dict[str, float], expected: Bridge) -> None:
+    assert bridge(chip, **pins) == expected
+
+
+@pytest.mark.parametrize("chip", ["tb6612", "drv8833", "bts7960"])
+def test_a_disabled_chip_lets_its_motor_coast(chip: str) -> None:
+    assert bridge(chip, enable=False, pwm=1.0, direction=1) == OPEN
+
+
+@pytest.mark.parametrize("chip", CHIPS)
+def test_pins_that_are_low_drive_no_motor(chip: str) -> None:
+    """As after a reset, when the board drives no pin and the chips' pull-downs do."""
+    low = bridge(chip, enable=False)
+    assert low.forwards == low.backwards == 0.0
+
+
+@pytest.mark.parametrize("emf_v", [-11.0, -4.0, -0.5, 0.0, 0.5, 4.0, 11.0])
+@pytest.mark.parametrize("duty", [0.02, 0.1, 0.4, 0.6, 0.95])
+def test_the_current_of_an_open_bridge_is_that_of_the_circuit(duty: float, emf_v: float) -> None:
+    found = mean_volts(Bridge(duty, 0.0, 0.0), SUPPLY_V, emf_v)
+    assert found == pytest.approx(emf_v + integrated_current(duty, emf_v), abs=0.03)
+    assert mean_volts(Bridge(0.0, duty, 0.0), SUPPLY_V, -emf_v) == pytest.approx(-found)
+
+
+def integrated_current(duty: float, emf_v: float) -> float:
+    """Mean current times resistance: the circuit in small steps, its diodes too, until its periods are the same."""
+    dt, current, mean, before = PWM_S / STEPS / ELECTRICAL_S, 0.0, 0.0, math.inf
+    while abs(mean - before) > 1e-6:
+        before, total = mean, 0.0
+        for step in range(STEPS):
+            on = step < duty * STEPS
+            if not on and current == 0.0:
+                break
+            volts = SUPPLY_V if on else -math.copysign(SUPPLY_V, current)
+            after = current + dt * (volts - emf_v - current)
+            total += current
+            current = 0.0 if not on and after * current < 0.0 else after
+        mean = total / STEPS
+    return mean
+
+
+def test_an_open_bridge_without_pulses_leaves_a_motor_alone() -> None:
+    assert mean_volts(OPEN, SUPPLY_V, 3.0) == 3.0
+    assert mean_volts(SHORTED, SUPPLY_V, 3.0) == 0.0
+
+
+def following_error(chip: str, signals: int, **parameters: int) -> np.ndarray:
+    """(4,) rad rms over two seconds with the paper's controllers, from the arm itself."""
+    host = LockStep(build_bench(BenchOptions(driver=chip)))
+    host.boot()
+    set_parameters(host, {"driver": signals, **parameters})
+    host.ask(schema.EnableRequest(0))
+    host.run(1.5)
+    apart: list[np.ndarray] = []
+    host.bench.trace = lambda cycle, pins, angles: apart.append(host.bench.leader.angles - angles)
+    host.run(2000 * TICK_S)
+    assert host.status().fault is schema.Fault.NONE
+    rms: np.ndarray = np.sqrt(np.mean(np.array(apart) ** 2, axis=0))
+    return rms
+
+
+@pytest.fixture(scope="module")
+def usual() -> np.ndarray:
+    return following_error("drv8838", 0)
+
+
+@pytest.mark.parametrize(
+    ("chip", "signals"), [("tb6612", 1), ("drv8871", 3), ("drv8833", 3), ("bts7960", 2), ("l298n-jumpers", 3)]
+)
+def test_an_arm_follows_alike_through_every_driver_that_brakes(chip: str, signals: int, usual: np.ndarray) -> None:
+    assert following_error(chip, signals) == pytest.approx(usual, rel=0.02)
+
+
+@pytest.mark.parametrize(("chip", "signals"), [("l298n", 1), ("drv8871", 2), ("drv8833", 2)])
+def test_an_arm_follows_through_drivers_that_coast(chip: str, signals: int, usual: np.ndarray) -> None:
+    """Short pulses give hardly any current, so it stays behind. By the default limit a joint would count as stalled."""
+    found = following_error(chip, signals, stall_volts=0)
+    assert np.all(found < 0.2)
+    assert np.any(found > 2.0 * usual)

@@ -1,0 +1,93 @@
+"""The list of mistakes: each can be staged and taken back, and command line and page show the same list."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from greywhale.cli.entry import run
+from greywhale.errors import UserError
+from greywhale_sim import mistakes
+from greywhale_sim.bench import Bench
+from greywhale_sim.board_supply import FULL_MV, SUNK_MV, SUNK_SLICES, SharedSupply
+from greywhale_sim.mistakes import BY_NAME, MISTAKES, WHERE, Mistake
+from greywhale_sim.pins_seen import PinsSeen
+from tests.bench.conftest import FakeBoard
+
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "bench.md"
+
+
+def wired(bench: Bench) -> tuple[object, ...]:
+    return (bench.lies.any, bench.floating, *bench.motor_gains, *bench.motor_wires, bench.supply_v, bench.shared_supply)
+
+
+@pytest.mark.parametrize("mistake", MISTAKES, ids=lambda one: one.name)
+def test_each_is_staged_at_every_place_and_taken_back(bench: Bench, mistake: Mistake) -> None:
+    before = wired(bench)
+    for place in WHERE[mistake.on]:
+        mistakes.stage(bench, f"{mistake.name}:{place}" if place else mistake.name)
+        wires = [*bench.leader_pots.wirings.values(), *bench.follower_pots.wirings.values()]  # type: ignore[attr-defined]
+        assert wired(bench) != before or any(wire != wires[0] for wire in wires) or len(wires) == 1
+        mistakes.take_back(bench)
+        assert wired(bench) == before
+
+
+@pytest.mark.parametrize("mistake", MISTAKES, ids=lambda one: one.name)
+def test_what_a_verb_says_is_a_pattern_for_each_place(mistake: Mistake) -> None:
+    told = {mistake.tells(number) for number in range(len(WHERE[mistake.on]))}
+    assert len(told) >= len(WHERE[mistake.on]) - 2, "next joints go round"
+    for pattern in told:
+        re.compile(pattern)
+        assert "<" not in pattern
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        ("pot-open:leader7", '"leader7" is no place for pot-open; say pot-open:leader0 to pot-open:follower3'),
+        ("no-supply:1", '"1" is no place for no-supply; say no-supply alone'),
+        ("pot-eaten", '"pot-eaten" is no mistake; there are: pot-swapped, '),
+    ],
+)
+def test_what_is_not_understood_changes_nothing(bench: Bench, words: str, says: str) -> None:
+    before = wired(bench)
+    with pytest.raises(UserError, match=re.escape(says)):
+        mistakes.stage(bench, words)
+    assert wired(bench) == before
+
+
+def test_the_command_line_lists_them_all(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["sim", "--mistake", "list"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [re.split("[: ]", line)[0] for line in lines] == list(BY_NAME)
+
+
+def test_the_page_shows_the_same_list() -> None:
+    assert mistakes.markdown_table() in PAGE.read_text(encoding="utf-8")
+
+
+def test_a_shared_supply_sinks_while_a_motor_draws_and_comes_back() -> None:
+    board = FakeBoard()
+    supply = SharedSupply(board)
+    supply.look(np.zeros(4))
+    assert board.events == []
+    supply.look(np.array([0.0, -1.5, 0.0, 0.0]))
+    assert board.events == [f"supply {SUNK_MV}"]
+    for _ in range(SUNK_SLICES):
+        supply.look(np.zeros(4))
+    assert board.events == [f"supply {SUNK_MV}", f"supply {FULL_MV}"]
+
+
+def test_the_pins_are_seen_only_while_the_drivers_are_on() -> None:
+    seen = PinsSeen()
+    seen.look(0, False, [0.9] * 4)
+    seen.look(100, True, [0.1, 0.0, 0.0, 0.2])
+    seen.look(150, True, [0.3, 0.0, 0.0, 0.1])
+    seen.look(400, False, [0.8] * 4)
+    seen.look(1000, True, [0.0] * 4)
+    assert seen.duties == [0.3, 0.0, 0.0, 0.2]
+    assert seen.longest(1100) == 300
+    assert seen.longest(1500) == 500
