@@ -41,6 +41,7 @@ CALLS = {
     "sim": ["--speed max"],
     "export": ["--fis controller.toml --out c.fis", "--urdf arm.toml --out a.urdf"],
     "arm import": ["arm.urdf --out imported.toml"],
+    "reproduce": ["--quick --out report"],
     "compare": ["--functions sphere --methods gwo-woa,de --budget 60 --seeds 2 --jobs 1"],
 }
 
