@@ -43,6 +43,7 @@ CALLS = {
     "arm new": ["--answers answers.toml --out new.toml"],
     "arm match": ["arm.toml --out matched.toml"],
     "arm import": ["arm.urdf --out imported.toml"],
+    "reproduce": ["--quick --out report"],
     "compare": ["--functions sphere --methods gwo-woa,de --budget 60 --seeds 2 --jobs 1"],
 }
 
