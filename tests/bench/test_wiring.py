@@ -14,8 +14,14 @@ ROOT = Path(__file__).resolve().parents[2]
 # Which compare output is on which Arduino pin, from the boards' own pin tables.
 PWM_PINS = {
     "mega": {
-        "D5": (3, "A"), "D6": (4, "A"), "D7": (4, "B"), "D8": (4, "C"),
-        "D2": (3, "B"), "D46": (5, "A"), "D45": (5, "B"), "D44": (5, "C"),
+        "D5": (3, "A"),
+        "D6": (4, "A"),
+        "D7": (4, "B"),
+        "D8": (4, "C"),
+        "D2": (3, "B"),
+        "D46": (5, "A"),
+        "D45": (5, "B"),
+        "D44": (5, "C"),
     },
     "nano": {"D9": (1, "A"), "D10": (1, "B"), "D11": (2, "A"), "D3": (2, "B")},
 }
