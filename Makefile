@@ -21,7 +21,7 @@ SIDE_BY_SIDE := $(MAKE) READY= --no-print-directory --jobs=$(shell nproc) --outp
 PYTEST := $(PYTHON) -m pytest -n auto
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build firmware demo check test lint oracles bench campaign docs dist format lock hooks clean $(LINT) $(UNIT_TESTS) $(IMAGES)
+.PHONY: help setup build firmware demo report check test lint oracles bench campaign docs dist format lock hooks clean $(LINT) $(UNIT_TESTS) $(IMAGES)
 
 help: ## list the targets
 	@sed -n 's/^\([a-z]*\):[^#]*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12
@@ -35,6 +35,9 @@ firmware: gates ## build the firmware for both boards, show its size, check its 
 
 demo: setup ## the whole story on the simulated bench; options in ARGS, e.g. ARGS="--leader motion.csv"
 	@$(PYTHON) -m greywhale demo --out build/demo --prove $(ARGS)
+
+report: setup ## the paper from end to end, in build/report/report.html and .pdf; options in ARGS, e.g. ARGS=--quick
+	@$(PYTHON) -m greywhale reproduce --out build/report $(ARGS)
 
 lint: $(READY) ## ruff, mypy --strict, cppcheck, clang-tidy, generated files
 	@$(SIDE_BY_SIDE) $(LINT)
@@ -95,9 +98,10 @@ bench: setup ## measure the figures of the design beside others; a table here, J
 campaign: setup firmware ## attack everything at full size and write docs/reliability.md; goes on where it stopped
 	@$(PYTHON) -m tools.campaign --publish $(ARGS)
 
-docs: setup ## write the generated files (link schema, reference page, copies of the version) again
+docs: setup ## write the generated files again (link schema, reference page, version, schemas), and build the site in build/site
 	$(PYTHON) -m tools.generate_link
 	$(PYTHON) -m tools.version
+	$(PYTHON) -m tools.docs
 
 dist: setup ## build source distributions and wheels of both packages for this machine, in build/dist
 	$(PYTHON) -m tools.dist $(ARGS)

@@ -18,7 +18,7 @@ SUPPLY_V = 12.0
 STEPS = 1000  # of a PWM period, in the integration
 
 
-def bridge(chip: str, *, enable: bool = True, **pins: float) -> Bridge:
+def bridge(chip: str, pins: dict[str, float], enable: bool = True) -> Bridge:
     levels = {"pwm": 0.0, "direction": 0.0, "second_pwm": 0.0, "second_direction": 0.0, **pins}
     return CHIPS[chip].bridge(
         Pins(
@@ -52,18 +52,18 @@ def bridge(chip: str, *, enable: bool = True, **pins: float) -> Bridge:
     ],
 )
 def test_a_chip_does_what_its_truth_table_says(chip: str, pins: dict[str, float], expected: Bridge) -> None:
-    assert bridge(chip, **pins) == expected
+    assert bridge(chip, pins) == expected
 
 
 @pytest.mark.parametrize("chip", ["tb6612", "drv8833", "bts7960"])
 def test_a_disabled_chip_lets_its_motor_coast(chip: str) -> None:
-    assert bridge(chip, enable=False, pwm=1.0, direction=1) == OPEN
+    assert bridge(chip, {"pwm": 1.0, "direction": 1}, enable=False) == OPEN
 
 
 @pytest.mark.parametrize("chip", CHIPS)
 def test_pins_that_are_low_drive_no_motor(chip: str) -> None:
     """As after a reset, when the board drives no pin and the chips' pull-downs do."""
-    low = bridge(chip, enable=False)
+    low = bridge(chip, {}, enable=False)
     assert low.forwards == low.backwards == 0.0
 
 

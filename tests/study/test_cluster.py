@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import signal
+import subprocess
 import sys
 import sysconfig
 from collections.abc import Iterator
@@ -26,7 +28,7 @@ from greywhale.study import (
     run_study,
 )
 from tests.study import jobs
-from tests.study.cluster import begin_worker, cluster_of, end, wait_for
+from tests.study.cluster import ROOT, begin_worker, cluster_of, end, wait_for
 
 
 @pytest.mark.slow
@@ -50,6 +52,19 @@ def test_a_killed_dask_worker_changes_no_bit(tmp_path: Path) -> None:
             assert found["values"].tobytes() == serial[key]["values"].tobytes()
             assert np.array(found["odd"]).tobytes() == np.array(serial[key]["odd"]).tobytes()
     assert run_study(there, SerialWorkers(), tmp_path / "r").keys() == serial.keys(), "another executor goes on with it"
+
+
+@pytest.mark.slow
+def test_results_that_are_lost_with_their_worker_before_they_are_fetched_are_worked_out_again() -> None:
+    tasks = jobs.draws(150)
+    with cluster_of(2) as cluster:
+
+        def kill_one(what: str, share: float) -> None:
+            if share > 0.1:
+                cluster.workers[0].kill()
+
+        found = run_study(tasks, DaskWorkers(cluster.address), progress=kill_one)
+    np.testing.assert_equal(found, run_study(tasks, SerialWorkers()))
 
 
 @pytest.fixture(scope="module")
@@ -97,6 +112,39 @@ def test_a_scheduler_that_goes_away_ends_the_study_with_a_sentence(tmp_path: Pat
     ]
     assert list(run_study(tasks, SerialWorkers(), tmp_path / "r")) == ["note 0", "note 1", "long"]
     assert jobs.done(tmp_path) == [0, 1]
+
+
+SCRIPT = """
+import sys
+from pathlib import Path
+from greywhale.study import DaskWorkers, Task, run_study
+from tests.study import jobs
+folder = Path(sys.argv[1])
+tasks = [*jobs.notes(2, folder), Task("long", jobs.hang_first, 3, {"folder": str(folder), "count": 5})]
+run_study(tasks, DaskWorkers(sys.argv[2]), folder / "r", lambda *one: print(*one, flush=True))
+"""
+
+
+@pytest.mark.slow
+def test_ctrl_c_leaves_a_dask_cluster_at_once_and_keeps_what_is_done(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "who")
+    with cluster_of(1) as cluster:
+        command = [sys.executable, "-c", SCRIPT, str(tmp_path), cluster.address]
+        environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+        running = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment)
+        try:
+            (tmp_path / "who").read_text()  # the worker has the task that never ends
+            assert running.stdout is not None
+            while f"working {2 / 3}\n".encode() != running.stdout.readline():
+                assert running.poll() is None
+            running.send_signal(signal.SIGINT)
+            _, errors = running.communicate(timeout=60)
+        finally:
+            running.kill()
+        assert running.returncode == -signal.SIGINT
+        assert errors.count(b"Traceback") == 1, errors
+        assert f"2 of 3 tasks are done and kept in {tmp_path / 'r'};".encode() in errors
+        assert cluster.workers[0].poll() is None, "the worker is not ours to end"
 
 
 def test_a_scheduler_that_is_not_there() -> None:

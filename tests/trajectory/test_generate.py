@@ -68,3 +68,11 @@ def longest_rest_slice(angles: np.ndarray) -> slice:
     longest = int(np.argmax(edges[1::2] - edges[::2]))
     begin, end = edges[2 * longest], edges[2 * longest + 1]
     return slice(begin + 20, end - 20)  # away from the reaches on both sides
+
+
+def test_edges_keep_below_a_given_speed() -> None:
+    fastest = 7.0
+    motion = multi_steps(fastest_rad_s=fastest)
+    speed = np.abs(np.diff(motion.angles[:, 0])) / np.diff(motion.time_s)
+    assert 0.9 * fastest < speed.max() <= fastest
+    assert np.allclose(motion.at(np.array([3.4]))[0], 1.0)  # and every level is still reached

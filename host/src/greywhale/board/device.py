@@ -8,9 +8,9 @@ firmware (which sends one hello by itself when it starts) or until the bootloade
 from __future__ import annotations
 
 import contextlib
+import logging
 import signal
 import threading
-import time
 from collections import deque
 from collections.abc import Callable, Iterator
 from types import TracebackType
@@ -22,7 +22,7 @@ from greywhale.errors import UserError
 from greywhale.protocol import schema
 from greywhale.protocol.declared import Reply_co, Request
 from greywhale.protocol.frames import Frame, FrameDecoder, encode_frame
-from greywhale.protocol.transport import PortLostError, Transport
+from greywhale.protocol.transport import Line, PortLostError, Transport
 
 # After this long without an answer a request is repeated, unchanged. Every request may be repeated safely.
 REPLY_WAIT_S = 0.3
@@ -34,6 +34,8 @@ STOP_ATTEMPTS = round(ATTEMPTS * REPLY_WAIT_S / STOP_REPEAT_S)
 QUIET_S = 2.0
 # A port that says nothing is greeted for this long, counted from its opening.
 PATIENCE_S = 5.0
+
+logger = logging.getLogger(__name__)
 
 # Requests count 1..255; the hello that a starting board sends by itself has this sequence number.
 _UNASKED = 0
@@ -58,9 +60,18 @@ class Device:
     """An open and greeted board. Leaving the context, for whatever reason, stops the motors if they may be on."""
 
     def __init__(
-        self, port: str, quiet_s: float = QUIET_S, patience_s: float = PATIENCE_S, *, restart: bool = True
+        self,
+        port: str,
+        quiet_s: float = QUIET_S,
+        patience_s: float = PATIENCE_S,
+        *,
+        restart: bool = True,
+        line: Line | None = None,
     ) -> None:
-        """Open the port and greet the board, which restarts; without `restart` only where the system cannot help it."""
+        """Open the port and greet the board, which restarts; without `restart` only where the system cannot help it.
+
+        A `line` that is open already takes the port's place, and `port` is then only its name.
+        """
         self.port = port
         self.lease_ms = 0
         self._decoder = FrameDecoder()
@@ -76,11 +87,16 @@ class Device:
         with contextlib.ExitStack() as held:
             self._session = held.enter_context(Session.of(port))
             held.callback(self._session.detach)
-            self._transport = Transport(port, restart)
+            self._transport: Line = Transport(port, restart) if line is None else line
             held.callback(self._transport.close)
             self._session.attach(self._send_stop)
             self.hello: schema.HelloReply = self._greet(quiet_s if self.restarted else 0.0, patience_s)
             self._held = held.pop_all()
+        logger.info(
+            "%s: %s, firmware %s, parameters 0x%04x, %s",
+            port, self.hello.board.key, self.firmware_version, self.hello.param_crc,
+            "restarted" if self.restarted else "not restarted",
+        )  # fmt: skip
 
     def __enter__(self) -> Self:
         return self
@@ -144,6 +160,7 @@ class Device:
         self._session.refuse_motion()
         self._motors_may_run = True
         self.lease_ms = lease_ms
+        logger.info("%s: motors on, lease %d ms", self.port, lease_ms)
         self.ask(schema.EnableRequest(lease_ms))
 
     def lead(self, lease_ms: int) -> schema.LeadReply:
@@ -152,6 +169,7 @@ class Device:
         self._motors_may_run = True
         self.lease_ms = lease_ms
         self._lead_progress = self._lead_refused = None
+        logger.info("%s: motors on, led by this host, lease %d ms", self.port, lease_ms)
         return self.ask(schema.LeadRequest(lease_ms))
 
     def lead_point(self, number: int, step: tuple[int, int, int, int]) -> None:
@@ -207,7 +225,9 @@ class Device:
                 answer = self._repeat(
                     message, schema.StopRequest.TYPE, schema.StopRequest.NAME, STOP_ATTEMPTS, STOP_REPEAT_S
                 )
-                self._session.confirm({"state": schema.StopReply.unpack(answer).state.key})
+                state = schema.StopReply.unpack(answer).state.key
+                logger.info("%s: motors off, state %s", self.port, state)
+                self._session.confirm({"state": state})
             except UserError as error:
                 # After one failed attempt, closing need not try again. After a restart the motors are off anyway.
                 self._motors_may_run = False
@@ -234,13 +254,15 @@ class Device:
 
     def _repeat(self, message: bytes, kind: int, name: str, attempts: int, wait_s: float) -> bytes:
         """Send a message again and again until its request is answered."""
-        for _ in range(attempts):
+        for attempt in range(1, attempts + 1):
+            logger.debug("%s: %s, attempt %d of %d: %s", self.port, name, attempt, attempts, message.hex())
             self._transport.write(message)
-            deadline = time.monotonic() + wait_s
-            while time.monotonic() < deadline:
+            deadline = self._transport.clock() + wait_s
+            while self._transport.clock() < deadline:
                 self._receive()
                 self._check_restart()
                 for frame in self._answers():
+                    logger.debug("%s: %s answered: %02x %s", self.port, name, frame.type, frame.payload.hex())
                     if frame.type == kind | schema.REPLY_BIT:
                         return frame.payload
                     if frame.type == schema.Nack.TYPE:
@@ -295,15 +317,16 @@ class Device:
         return "The stop is not confirmed: switch the motors' supply off."
 
     def _greet(self, quiet_s: float, patience_s: float) -> schema.HelloReply:
-        opened = time.monotonic()
-        while self._started is None and not self._samples and time.monotonic() < opened + quiet_s:
+        clock = self._transport.clock
+        opened = clock()
+        while self._started is None and not self._samples and clock() < opened + quiet_s:
             self._receive()
         while True:
             try:
                 payload = self._exchange(schema.HelloRequest.TYPE, schema.HelloRequest.NAME, b"", attempts=1)
                 break
             except NoAnswerError:
-                if time.monotonic() >= opened + patience_s:
+                if clock() >= opened + patience_s:
                     raise self._silent(patience_s) from None
         self._started = None
         self._greeted = True

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from greywhale.board.session import Session
+from greywhale.cli import completion
 from greywhale.cli.countdown import prepare_motion, yes_option
 from greywhale.cli.output import json_option, port_option, progress, show
 from greywhale.errors import BAD_USAGE, UserError
@@ -18,7 +19,10 @@ EXISTING = click.Path(path_type=Path)
 @click.command("commission")
 @click.option("--out", "-o", type=EXISTING, default=Path("commission"), show_default=True, help="Folder for all files.")
 @click.option(
-    "--arm", "arm_file", help="Your arm.toml: geometry, nominal motors.  [default: the model's arm, or white_box]"
+    "--arm",
+    "arm_file",
+    shell_complete=completion.arms,
+    help="Your arm.toml: geometry, nominal motors.  [default: the model's arm, or white_box]",
 )
 @click.option("--model", type=EXISTING, help="A model.toml of this arm to begin with, instead of identifying first.")
 @click.option(

@@ -6,20 +6,24 @@ A failure is one sentence on stderr; with --json also {"error": ...} as the one 
 from __future__ import annotations
 
 import contextlib
+import logging
 import os
 import signal
 import sys
+import time
 from collections.abc import Sequence
 from types import FrameType
 from typing import NoReturn
 
 import click
 
+from greywhale.cli import tracing
 from greywhale.cli.output import json_of
 from greywhale.cli.verbs import greywhale
 from greywhale.errors import BAD_USAGE, FAILED, LONGEST, UserError, cut, os_reason, printable
 
 INTERRUPTED = 130
+logger = logging.getLogger(__name__)
 
 
 def main() -> NoReturn:
@@ -35,10 +39,19 @@ def run(arguments: Sequence[str]) -> int:
     signal.signal(signal.SIGTERM, _terminated)
     if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:  # nohup means what it says
         signal.signal(signal.SIGHUP, _terminated)
-    as_json = "--json" in arguments
+    begun = time.monotonic()
+    try:
+        code = _run(arguments, as_json="--json" in arguments)
+        logger.info("exit code %d after %.3f s", code, time.monotonic() - begun)
+        return code
+    finally:
+        tracing.end()
+
+
+def _run(arguments: Sequence[str], as_json: bool) -> int:
     try:
         _refuse_empty(arguments)
-        code = greywhale.main(list(arguments), prog_name="greywhale", standalone_mode=False)
+        code = greywhale.main(list(arguments), prog_name="greywhale", standalone_mode=False, obj=list(arguments))
         sys.stdout.flush()
         return code if isinstance(code, int) else 0
     except UserError as error:
@@ -84,6 +97,8 @@ def _terminated(number: int, frame: FrameType | None) -> None:
 
 def _failed(message: str, code: int, as_json: bool) -> int:
     message = cut(message, LONGEST)
+    logger.info("failed: %s", printable(message))
+    logger.debug("where:", exc_info=True)
     if as_json:
         print(json_of({"error": message, "exit_code": code}))
     with contextlib.suppress(OSError):  # the terminal may be gone

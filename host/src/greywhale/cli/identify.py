@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from greywhale.cli import completion
 from greywhale.cli.output import json_option, progress, show
 from greywhale.errors import BAD_USAGE, UserError
 from greywhale.files.arm import load_arm
@@ -26,7 +27,12 @@ from greywhale.identify import METHODS, identify
     help="A log that only judges the model; best are one of the same and one of another controller.",
 )
 @click.option(
-    "--arm", "arm_file", default="white_box", show_default=True, help="Your arm.toml: geometry, nominal motors."
+    "--arm",
+    "arm_file",
+    default="white_box",
+    show_default=True,
+    shell_complete=completion.arms,
+    help="Your arm.toml: geometry, nominal motors.",
 )
 @click.option("--out", "-o", type=click.Path(path_type=Path), default=Path("model.toml"), show_default=True)
 @click.option(

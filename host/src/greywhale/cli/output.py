@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import json
+import logging
 import sys
+import time
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Protocol, TypeVar
 
@@ -12,9 +14,11 @@ import click
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
+from greywhale.cli import completion
 from greywhale.errors import printable
 
 WHOLE = 10_000  # parts of a progress bar
+logger = logging.getLogger(__name__)
 Command = TypeVar("Command", bound=Callable[..., Any])
 
 
@@ -34,6 +38,7 @@ def port_option(command: Command) -> Command:
         "-p",
         envvar="GREYWHALE_PORT",
         metavar="PORT",
+        shell_complete=completion.ports,
         help="Serial port of the board; without it, the only board found. [env: GREYWHALE_PORT]",
     )(command)
 
@@ -54,10 +59,11 @@ def json_of(result: Mapping[str, Any]) -> str:
 
 @contextlib.contextmanager
 def progress(as_json: bool) -> Iterator[Report | None]:
-    """A bar on stderr with the time left; None with --json or without a terminal."""
+    """A bar on stderr with the time left; None with --json or without a terminal, unless the steps are logged."""
     console = Console(stderr=True)
+    steps = Steps() if logger.isEnabledFor(logging.INFO) else None
     if as_json or not sys.stderr.isatty() or not console.is_terminal:
-        yield None
+        yield steps
         return
     columns = (
         TextColumn("{task.description}"),
@@ -78,5 +84,23 @@ def progress(as_json: bool) -> Iterator[Report | None]:
                 # What was done at the beginning shows nothing about the speed.
                 tasks[what] = bars.add_task(what, total=WHOLE, completed=round(WHOLE * fraction), note=note)
             bars.update(tasks[what], completed=WHOLE * fraction, note=note)
+            if steps is not None:
+                steps(what, fraction, note)
 
         yield report
+
+
+class Steps:
+    """Logs the steps of a verb, each when it begins."""
+
+    def __init__(self) -> None:
+        self._what = ""
+        self._begun = 0.0
+
+    def __call__(self, what: str, fraction: float, note: str = "") -> None:
+        if what != self._what:
+            now = time.monotonic()
+            if self._what:
+                logger.info("%s: took %.3f s", self._what, now - self._begun)
+            logger.info("%s", what)
+            self._what, self._begun = what, now

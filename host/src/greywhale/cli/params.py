@@ -10,6 +10,7 @@ import click
 
 from greywhale.board.device import Device
 from greywhale.board.upload import change_parameters, read_parameters
+from greywhale.cli import completion
 from greywhale.cli.output import json_option, port_option, progress, show
 from greywhale.errors import BAD_USAGE, UserError, cut
 from greywhale.files import parameter_file
@@ -27,7 +28,7 @@ def command() -> None:
 
 
 @command.command("get")
-@click.argument("names", metavar="[NAME]...", nargs=-1)
+@click.argument("names", metavar="[NAME]...", nargs=-1, shell_complete=completion.parameters)
 @port_option
 @json_option
 def get(names: tuple[str, ...], port: str | None, as_json: bool) -> None:
@@ -41,7 +42,7 @@ def get(names: tuple[str, ...], port: str | None, as_json: bool) -> None:
 
 
 @command.command("set")
-@click.argument("settings", metavar="NAME=VALUE...", nargs=-1, required=True)
+@click.argument("settings", metavar="NAME=VALUE...", nargs=-1, required=True, shell_complete=completion.settings)
 @port_option
 @json_option
 def set_(settings: tuple[str, ...], port: str | None, as_json: bool) -> None:

@@ -13,6 +13,7 @@ from greywhale.board.device import Device
 from greywhale.board.pots import FOLLOWERS, require_good_pots
 from greywhale.board.record import Recording, check_every_led, pose_of, record, record_led
 from greywhale.board.upload import read_parameters
+from greywhale.cli import completion
 from greywhale.cli.countdown import prepare_motion, yes_option
 from greywhale.cli.output import json_option, port_option, progress, show
 from greywhale.errors import BAD_USAGE, UserError
@@ -44,7 +45,12 @@ _OF_EXCITE = {
 @click.option(
     "--excite", is_flag=True, help="Turn the motors on and lead the arm along the motion that shows most about it."
 )
-@click.option("--arm", "arm_file", help="With --excite: your arm.toml or a model.toml.  [default: white_box]")
+@click.option(
+    "--arm",
+    "arm_file",
+    shell_complete=completion.arms,
+    help="With --excite: your arm.toml or a model.toml.  [default: white_box]",
+)
 @click.option(
     "--range",
     "ranges",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import click
@@ -12,8 +13,14 @@ from greywhale.cli.countdown import prepare_motion, yes_option
 from greywhale.cli.output import json_option, port_option, progress, show
 from greywhale.cli.record import describe, require_folders
 from greywhale.files.leader import load_leader
+from greywhale.firmware import FASTEST_LED_RAD_S
 from greywhale.formats.whole import refuse_inputs
 from greywhale.protocol.ports import choose_port
+from greywhale.trajectory import Trajectory, multi_steps, steps
+
+# The paper's motions by name, and the share of the fastest that a board can be led at which their edges use.
+MOTIONS: dict[str, Callable[..., Trajectory]] = {"steps": steps, "multi-steps": multi_steps}
+SHARE = 0.9
 
 
 @click.command("replay")
@@ -28,15 +35,17 @@ from greywhale.protocol.ports import choose_port
 def command(motion: Path, out: Path, every: int, yes: bool, port: str | None, as_json: bool) -> None:
     """Turn the motors on, lead the arm along the motion in FILE and record that.
 
-    FILE has the columns time_s, leader_0 .. leader_3 (s, rad), or is a log. The arm first goes slowly from where it is
-    to the first pose, and at the end its motors go off. The board keeps the joints' limits; a motion faster than
-    7.7 rad/s is refused. A countdown on the terminal comes first, but not on the simulated bench.
+    FILE has the columns time_s, leader_0 .. leader_3 (s, rad), or is a log. It may also be steps or multi-steps: the
+    paper's motions, with edges as steep as a board can be led. The arm first goes slowly from where it is to the first
+    pose, and at the end its motors go off. The board keeps the joints' limits; a motion faster than 7.7 rad/s is
+    refused. A countdown on the terminal comes first, but not on the simulated bench.
     Ctrl-C stops the motors and keeps what was recorded, marked as interrupted.
     """
     check_every_led(every)
     require_folders(out)
     refuse_inputs(out, motion)
-    trajectory = load_leader(motion)
+    made = MOTIONS.get(str(motion))
+    trajectory = load_leader(motion) if made is None else made(fastest_rad_s=SHARE * FASTEST_LED_RAD_S)
     chosen = choose_port(port)
     warn = prepare_motion(chosen, yes)
     with Device(chosen) as device:

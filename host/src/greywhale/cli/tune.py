@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from greywhale.cli import completion
 from greywhale.cli.output import json_option, progress, show
 from greywhale.errors import BAD_USAGE, UserError, os_reason
 from greywhale.files import controller as controller_file
@@ -53,7 +54,9 @@ EXISTING = click.Path(path_type=Path)
     metavar="NAME=LOW..HIGH",
     help="Narrow what is searched, in the file's units, for all joints: Ku=3..9. May be given more than once.",
 )
-@click.option("--arm", help="Your arm.toml, to make sure that the model is of this arm.")
+@click.option(
+    "--arm", shell_complete=completion.arms, help="Your arm.toml, to make sure that the model is of this arm."
+)
 @click.option(
     "--params", type=EXISTING, help="The board's table (`params backup`); without it, that of the model's logs."
 )

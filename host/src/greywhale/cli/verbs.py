@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import importlib
+from pathlib import Path
 
 import click
+
+from greywhale.cli import tracing
 
 # verb -> (module in this folder, what it does)
 VERBS = {
@@ -27,6 +30,7 @@ VERBS = {
     "tune": ("tune", "Find controllers for a model: a controller.toml for upload."),
     "arm": ("arm", "Make an arm.toml: from a ruler, a scale and data sheets, or from a URDF."),
     "export": ("export", "Write a controller as .fis (MATLAB), an arm as URDF or MJCF."),
+    "reproduce": ("reproduce", "The paper from end to end: every table and figure beside ours."),
     "compare": ("compare", "Compare optimisers at equal budgets, over many seeds."),
 }
 
@@ -52,8 +56,18 @@ class Verbs(click.Group):
 
 @click.group(cls=Verbs, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
 @click.version_option(package_name="greywhale", prog_name="greywhale")
-def greywhale() -> None:
+@click.option("--verbose", "-v", count=True, help="Tell on stderr what is being done; -vv: every request too.")
+@click.option(
+    "--log-file",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Append all of that to a file, for a bug report.",
+)
+@click.pass_context
+def greywhale(context: click.Context, verbose: int, log_file: Path | None) -> None:
     """Identify, tune and run leader-follower robot arms. Every verb has --help and --json.
 
     Exit codes: 0 done, 1 failed, 2 bad usage, 130 interrupted (motors off, files whole).
     """
+    tracing.begin(verbose, log_file)
+    tracing.tell_command(context.obj or ())

@@ -41,5 +41,5 @@ def results_option(command: Command) -> Command:
     return click.option(
         "--results",
         type=click.Path(path_type=Path),
-        help="Keep here what is done; the same command goes on from it after Ctrl-C, a kill or a power cut.",
+        help="Keep here what is done; the same command goes on from it after Ctrl-C or a kill.",
     )(command)

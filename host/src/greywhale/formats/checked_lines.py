@@ -140,7 +140,7 @@ class CheckedLines:
                     number, "is damaged" if good else f"is not a line of a {self.kind.subject}'s {self.kind.noun}"
                 )
             self._check = check
-            lines.append(value)
+            lines.append({key: one for key, one in value.items() if key != "check"})
         return lines
 
     def _bad(self, number: int, what: str) -> UserError:

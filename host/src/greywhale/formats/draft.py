@@ -10,11 +10,14 @@ from __future__ import annotations
 import contextlib
 import errno
 import fcntl
+import logging
 import os
 import re
 import secrets
 from pathlib import Path
 from typing import IO
+
+logger = logging.getLogger(__name__)
 
 _HIDDEN = re.compile(r"\.greywhale-[0-9a-f]{16}\.new")
 # What a file system says that has no files without a name, or a kernel that does not know them.
@@ -67,6 +70,7 @@ class Draft:
             os.replace(self.path, self.target)
             self.path = self.target
         sync_folder(self.target.parent)
+        logger.info("%s: written, %d bytes", self.target, os.fstat(self.file.fileno()).st_size)
         self.file.close()
 
     def discard(self) -> None:

@@ -26,8 +26,8 @@ class Experiment:
 
     `leader` is a motion, or angles (rad) in every slice of 250 us as float64 (slices, 4). `table` is the parameter
     table of the board; its controllers are the candidate unless others are given, and its motors turn as the arm's,
-    whatever their wires. With `noise` False the potentiometers are quiet. `weight_s` (ticks,) weighs |e| and |u| in
-    ITAE and ITAU; by default it is the time since the leader may move.
+    whatever their wires. With `noise` False the potentiometers are quiet. `weight_s` (ticks,) weighs the sizes of e and
+    u in ITAE and ITAU; by default it is the time since the leader may move.
     """
 
     def __init__(

@@ -13,6 +13,7 @@ import os
 import termios
 import threading
 import time
+from typing import Protocol
 
 import serial
 
@@ -33,6 +34,17 @@ class PortLostError(UserError):
 
     def __init__(self, port: str) -> None:
         super().__init__(f"{port}: the port went away in the middle; check the cable and try again.")
+
+
+class Line(Protocol):
+    """What a device needs of a line to a board. Its `clock` (s) times what the host waits for."""
+
+    restarted: bool
+
+    def read(self) -> bytes: ...
+    def write(self, data: bytes) -> None: ...
+    def close(self) -> None: ...
+    def clock(self) -> float: ...
 
 
 class Transport:
@@ -62,6 +74,10 @@ class Transport:
             ) from None
         except (OSError, TypeError):
             raise PortLostError(self.port) from None
+
+    def clock(self) -> float:
+        """This machine's own."""
+        return time.monotonic()
 
     def close(self) -> None:
         with self._writing:

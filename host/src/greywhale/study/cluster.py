@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import importlib
 import logging
 import shutil
-from collections.abc import Iterator
-from concurrent.futures import BrokenExecutor, Executor
+from collections.abc import Callable, Iterator
+from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
 from importlib.metadata import PackageNotFoundError, version
 from types import ModuleType
-from typing import Any
+from typing import Any, ParamSpec, TypeVar
 
 from greywhale.errors import BAD_USAGE, UserError
 from greywhale.study.task import versions
 
+P = ParamSpec("P")
+T = TypeVar("T")
 # What a job gets where the user's own jobqueue.yaml does not say.
 JOB: dict[str, Any] = {"cores": 1, "processes": 1, "memory": "2GB"}
 
@@ -37,8 +40,7 @@ class DaskWorkers:
     def executor(self) -> Iterator[Executor]:
         with _quiet(), self._client() as client:
             self._require_same_versions(client)
-            # Not pure: a task that is tried again must not be answered with its last error.
-            yield client.get_executor(pure=False)
+            yield _Executor(client, self._distributed.comm.CommClosedError)
 
     def deaths(self, error: BaseException) -> int:
         if isinstance(error, self._distributed.KilledWorker):
@@ -64,6 +66,37 @@ class DaskWorkers:
                     )
 
 
+class _Executor(Executor):
+    """`Client.get_executor()` may mistake a result for an error if its worker is lost at that moment: it asks for the
+    result and then for the state. Here the client alone decides, which asks again until the result is there.
+    """
+
+    def __init__(self, client: Any, closed: type[Exception]) -> None:
+        self._client = client
+        self._closed = closed
+
+    def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
+        future: Future[T] = Future()
+
+        def pass_on(task: Any) -> None:
+            """In a thread of the client's."""
+            try:
+                result = task.result()
+            except (CancelledError, asyncio.CancelledError, self._closed):  # the scheduler is lost
+                future.cancel()
+                future.set_running_or_notify_cancel()
+            except Exception as error:
+                if future.set_running_or_notify_cancel():
+                    future.set_exception(error)
+            else:
+                if future.set_running_or_notify_cancel():
+                    future.set_result(result)
+
+        # Not pure: a task that is tried again must not be answered with its last error.
+        self._client.submit(fn, *args, **kwargs, pure=False).add_done_callback(pass_on)
+        return future
+
+
 class SlurmWorkers:
     """Jobs that greywhale submits to a Slurm partition (None: the cluster's own choice) and ends with the study.
 
@@ -85,7 +118,7 @@ class SlurmWorkers:
         with _quiet(), self.cluster() as cluster:
             cluster.scale(jobs=self.jobs)
             with self._distributed.Client(cluster, set_as_default=False) as client:
-                yield client.get_executor(pure=False)
+                yield _Executor(client, self._distributed.comm.CommClosedError)
 
     def deaths(self, error: BaseException) -> int:
         if isinstance(error, self._distributed.KilledWorker):

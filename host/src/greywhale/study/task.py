@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import json
+import os
 import pickle
 import sys
 import traceback
@@ -20,8 +21,7 @@ from greywhale.study.plain import decode, encode
 
 # Other versions of these may compute other bits.
 _PACKAGES = ("greywhale", "numpy", "scipy")
-# A worker that has the same is in this process.
-_PROCESS = uuid.uuid4().hex
+_MODULE = uuid.uuid4().hex
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class Task:
 
     def packed(self) -> bytes:
         """What a worker gets."""
-        return pickle.dumps((self.key, self.function, self.seed, encode(self.arguments), _PROCESS, versions()))
+        return pickle.dumps((self.key, self.function, self.seed, encode(self.arguments), _process(), versions()))
 
 
 class TaskFailed(Exception):
@@ -64,11 +64,10 @@ def do(packed: bytes) -> str:
         key, function, seed, arguments, process, wanted = pickle.loads(packed)
     except (ImportError, AttributeError) as error:
         raise UserError(f"a worker cannot import what the study does: {error}; install the same there.") from None
-    # Sums in several threads may have other last bits; and the other processors have workers of their own.
-    limits = threadpool_limits(limits=1, user_api="blas")
     try:
-        if process != _PROCESS:
+        if process != _process():  # else `run_study` has set the threads of numpy
             _require_same_versions(wanted)
+            _use_one_thread(function)
         return json.dumps(encode(function(seed=seed, **decode(arguments))), separators=(",", ":"), allow_nan=False)
     except UserError as error:
         error.add_note(f"(In task {key!r}.)")
@@ -77,9 +76,20 @@ def do(packed: bytes) -> str:
         # Not the error itself: a process that cannot unpickle an exception loses all its workers.
         told = "".join(traceback.format_exception(error))
         raise TaskFailed(f"task {key!r}: {type(error).__name__}: {error}\n{told}") from None
-    finally:
-        if process == _PROCESS:  # a worker stays so: it may have other tasks in other threads
-            limits.restore_original_limits()
+
+
+def _process() -> str:
+    """This process, among all of all machines; a fork has the module's number, too."""
+    return f"{_MODULE} {os.getpid()}"
+
+
+@functools.cache
+def _use_one_thread(function: Callable[..., Any]) -> None:
+    """Sums in several threads may have other last bits; and the other processors have workers of their own.
+
+    A library can be told once it is loaded, which the import of the function's module has done.
+    """
+    threadpool_limits(limits=1, user_api="blas")
 
 
 @functools.cache

@@ -18,6 +18,9 @@ PAUSE_S = (0.8, 1.3)
 ONSET_SPREAD_S = 0.08  # joints of one reach do not start in the same instant
 TREMOR_HZ = (8.0, 12.0)
 TREMOR_RAD = 0.002  # root mean square
+# The edge of a step (s), and how many times as fast as on average such a path is in its middle.
+EDGE_S = 0.04
+MINIMUM_JERK_PEAK = 1.875
 # Comfortable range of each joint, rad: base yaw, shoulder pitch, wrist pitch, wrist roll.
 RANGE_RAD = np.array([[-1.0, 1.0], [-0.2, 1.1], [-0.9, 0.7], [-1.2, 1.2]])
 
@@ -67,15 +70,20 @@ def _tremor(random: np.random.Generator, samples: int) -> Array:
     return tremor
 
 
-def steps(amplitude_rad: float = 1.0, before_s: float = 1.0, after_s: float = 4.0) -> Trajectory:
+def steps(
+    amplitude_rad: float = 1.0, before_s: float = 1.0, after_s: float = 4.0, fastest_rad_s: float = np.inf
+) -> Trajectory:
     """One step of every joint at the same instant, as in the paper's section 5.3."""
-    return multi_steps([0.0, amplitude_rad], [before_s, after_s])
+    return multi_steps([0.0, amplitude_rad], [before_s, after_s], fastest_rad_s)
 
 
-def multi_steps(levels_rad: list[float] | None = None, hold_s: list[float] | None = None) -> Trajectory:
+def multi_steps(
+    levels_rad: list[float] | None = None, hold_s: list[float] | None = None, fastest_rad_s: float = np.inf
+) -> Trajectory:
     """A staircase through `levels_rad`, the same on every joint, each level held for its own time (section 5.4).
 
-    A hand cannot jump: each edge takes 40 ms, which the follower's drive cannot tell from a jump.
+    A hand cannot jump: each edge takes 40 ms, which the follower's drive cannot tell from a jump, or as long as it
+    takes at `fastest_rad_s`.
     """
     levels = [0.0, 1.0, 0.4, -0.6, -1.0, 0.2, 0.0] if levels_rad is None else levels_rad
     holds = [1.0] + [2.5] * (len(levels) - 1) if hold_s is None else hold_s
@@ -83,5 +91,6 @@ def multi_steps(levels_rad: list[float] | None = None, hold_s: list[float] | Non
     time_s = np.arange(round(float(edges[-1]) * RATE_HZ) + 1) / RATE_HZ
     angle = np.full(len(time_s), levels[0])
     for edge, low, high in zip(edges[:-1], levels[:-1], levels[1:], strict=True):
-        angle += (high - low) * minimum_jerk((time_s - edge) / 0.04)
+        takes_s = max(EDGE_S, MINIMUM_JERK_PEAK * abs(high - low) / fastest_rad_s)
+        angle += (high - low) * minimum_jerk((time_s - edge) / takes_s)
     return Trajectory(time_s, np.tile(angle[:, None], (1, JOINTS)))

@@ -1,0 +1,68 @@
+"""`greywhale reproduce`: the paper from end to end, every table and figure beside what is printed."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import click
+
+from greywhale.cli.bench import need_bench
+from greywhale.cli.output import json_option, progress, show
+
+
+@click.command("reproduce")
+@click.option(
+    "--out",
+    "-o",
+    type=click.Path(path_type=Path),
+    default=Path("reproduce"),
+    show_default=True,
+    help="Folder for the report and the results of its parts.",
+)
+@click.option("--quick", is_flag=True, help="Fewer seeds, shorter logs, smaller budgets: a look at everything.")
+@click.option("--seeds", type=int, help="Runs of everything random; without it 10, with --quick 3.")
+@click.option("--seed", type=int, default=0, show_default=True, help="The first of them.")
+@click.option("--workers", type=click.IntRange(min=1), help="Processes; without it, one for every processor.")
+@click.option(
+    "--executor",
+    default="local",
+    show_default=True,
+    help="Where the work is done: local, dask://HOST:PORT or slurm://[PARTITION].",
+)
+@json_option
+def command(
+    out: Path, quick: bool, seeds: int | None, seed: int, workers: int | None, executor: str, as_json: bool
+) -> None:
+    """Reproduce the paper: every table and figure with our numbers beside the printed ones.
+
+    Writes report.html, which needs no other file, report.pdf and report.json into the folder. The experiment is the
+    compiled firmware on the simulated bench, seen through its logs alone; tables and figures that need the authors' own
+    arm are named. The numbers depend on --seed, --seeds and --quick alone. What was done before Ctrl-C is kept: the
+    same command goes on from there.
+    """
+    need_bench("greywhale_sim")
+    from greywhale.formats.whole import write_text
+    from greywhale.reproduce.pages.found import Found
+    from greywhale.reproduce.request import Request
+    from greywhale.reproduce.run import run
+    from greywhale.study import choose_workers
+
+    request = Request.of(seed, seeds, quick)
+    with progress(as_json) as report:
+        results = run(request, out, choose_workers(executor, workers), report)
+        # Slow to import, and of no use before all is done.
+        from greywhale.reproduce.pages.report import document
+        from greywhale.reproduce.render import write_html, write_pdf
+
+        made = document(Found(request, results))
+        files = [write_html(made, out / "report.html"), write_pdf(made, out / "report.pdf")]
+        facts = {"request": request.as_dict(), **made.as_dict()}
+        write_text(out / "report.json", json.dumps(facts, indent=1, ensure_ascii=False) + "\n")
+    files.append(out / "report.json")
+    statuses = {entry.label: entry.status.value for entry in made.entries if entry.label}
+    show(
+        as_json,
+        {"request": request.as_dict(), "files": [str(path) for path in files], "entries": statuses},
+        "\n".join([*made.about, f"Written: {', '.join(map(str, files))}"]),
+    )

@@ -1,0 +1,1 @@
+"""The chapters of the report, from the results of the work."""

@@ -1,0 +1,75 @@
+"""The results of a request by what they are about."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.reproduce.request import Request
+from greywhale.reproduce.work import errata, optimisers
+
+Result = Mapping[str, Any]
+Controllers = npt.NDArray[np.int32]
+
+
+@dataclass(frozen=True)
+class Found:
+    """`results` by the keys of the tasks."""
+
+    request: Request
+    results: Mapping[str, Any]
+
+    def __getitem__(self, key: str) -> Any:
+        return self.results[key]
+
+    def paper(self) -> list[Any]:
+        """The paper's way on the bench, a result a seed."""
+        return [self[f"paper {seed}"] for seed in self.request.every_seed]
+
+    def default(self) -> list[Any]:
+        """greywhale's own way on the bench, a result a seed."""
+        return [self[f"default {seed}"] for seed in self.request.few_seeds]
+
+    def grey_box(self, strategy: str) -> list[Any]:
+        """The paper's tuning on the paper's arm, a result a seed."""
+        return [self[f"grey box {strategy} {seed}"] for seed in self.request.every_seed]
+
+    def problem(self, name: str) -> dict[str, list[Any]]:
+        """The results of all optimisers on "identify" or "sets": method -> a result a seed."""
+        seeds = self.request.every_seed
+        return {method: [self[f"{name} {method} {seed}"] for seed in seeds] for method in optimisers.METHODS}
+
+    def functions(self) -> dict[str, Any]:
+        """Function -> setting -> method -> costs."""
+        return {name: self[f"functions {name}"]["costs"] for name in optimisers.functions()}
+
+    def errata(self) -> dict[str, Any]:
+        """What each erratum does."""
+        return {name: self[f"errata {name}"] for name in errata.cases()}
+
+    def objective(self) -> list[Any]:
+        """What the paper's J rewards, a result a seed."""
+        return [self[f"objective {seed}"] for seed in self.request.every_seed]
+
+    @property
+    def seeds(self) -> str:
+        """How many, in words."""
+        return _count(len(self.request.every_seed))
+
+    @property
+    def few_seeds(self) -> str:
+        """Of greywhale's own tuning."""
+        return _count(len(self.request.few_seeds))
+
+
+def _count(seeds: int) -> str:
+    return "one seed" if seeds == 1 else f"median of {seeds} seeds (lowest to highest)"
+
+
+def controllers(result: Result) -> Controllers:
+    """What a tuning found: int32 (4, 12)."""
+    return np.array(result["controllers"], dtype=np.int32)

@@ -1,0 +1,37 @@
+"""Numbers as they stand in the report: one, or the median of several with their range."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+NONE = "–"
+Number = float | None
+
+
+def one(value: Number, form: str = ".4f") -> str:
+    """A number, or a dash where there is none."""
+    return NONE if value is None else f"{value:{form}}"
+
+
+def several(values: Sequence[Number], form: str = ".4f") -> str:
+    """Median (lowest to highest); a single one stands alone, and so do those that look the same."""
+    known = [value for value in values if value is not None]
+    if not known:
+        return NONE
+    low, high = f"{min(known):{form}}", f"{max(known):{form}}"
+    middle = f"{float(np.median(known)):{form}}"
+    missing = f", {len(values) - len(known)} without" if len(known) < len(values) else ""
+    return f"{middle}{missing and ' (' + missing[2:] + ')'}" if low == high else f"{middle} ({low} to {high}{missing})"
+
+
+def lower(before: float, after: float) -> float:
+    """By how many per cent it fell."""
+    return 100.0 * (1.0 - after / before)
+
+
+def percent(before: float, after: float) -> str:
+    """The same, as words."""
+    change = lower(before, after)
+    return f"{change:.1f} % lower" if change >= 0.0 else f"{-change:.1f} % higher"

@@ -1,0 +1,42 @@
+"""The whole report: the chapters in the paper's order, from one request's results."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from greywhale.reproduce.pages import experiment, findings, identification, law, optimisers, system, tuning
+from greywhale.reproduce.pages.document import Document, Status
+from greywhale.reproduce.pages.found import Found
+from greywhale.reproduce.pages.printed import TITLE
+
+
+def document(found: Found) -> Document:
+    """All chapters, with what this run was."""
+    request = found.request
+    chapters = (
+        system.chapter(),
+        identification.chapter(found),
+        law.chapter(),
+        tuning.chapter(found),
+        experiment.chapter(found),
+        optimisers.chapter(found),
+        findings.chapter(found),
+    )
+    counts = Counter(entry.status for chapter in chapters for entry in chapter.entries if entry.label)
+    told = ", ".join(f"{counts[status]} {status.value}" for status in Status if counts[status])
+    size = (
+        "A quick look: shorter logs, fewer seeds, a smaller budget of greywhale's own tuning. " if request.quick else ""
+    )
+    return Document(
+        "The paper, computed anew",
+        (
+            f"{TITLE}.",
+            f"Of its 12 tables and 20 figures: {told}. Shaded columns are printed in the paper; every other number is "
+            "computed by this run.",
+            f"{size}Seeds {request.seed} to {request.every_seed[-1]} for the paper's methods and the optimisers, "
+            f"{request.few_seeds[0]} to {request.few_seeds[-1]} for greywhale's own. The experiment is the compiled "
+            "firmware on the simulated board with the default arm, seen through its logs only; it runs in lock step, "
+            "so the same seeds give the same numbers.",
+        ),
+        chapters,
+    )

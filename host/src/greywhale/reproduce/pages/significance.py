@@ -1,0 +1,63 @@
+"""Whether two samples of costs differ by more than chance: Mann-Whitney, with Holm's correction for many questions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import mannwhitneyu, rankdata
+
+SIGNIFICANCE = 0.05
+# With fewer runs no difference can be significant.
+FEWEST = 4
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """A method against a rival: its costs are `lower`, `higher` or `not told apart`; `chance` is Holm's p."""
+
+    word: str
+    chance: float
+
+    def __str__(self) -> str:
+        return f"{self.word}, p = {self.chance:.2g}"
+
+
+def against(costs: Mapping[str, Sequence[float]], method: str) -> dict[str, Verdict]:
+    """`method` against every other."""
+    own = np.array(costs[method])
+    rivals = [name for name in costs if name != method]
+    raw = [_chance(own, np.array(costs[name])) for name in rivals]
+    return {
+        name: Verdict(_word(own, np.array(costs[name]), chance), chance)
+        for name, chance in zip(rivals, holm(raw), strict=True)
+    }
+
+
+def _chance(own: np.ndarray, other: np.ndarray) -> float:
+    if np.array_equal(np.sort(own), np.sort(other)):
+        return 1.0
+    return float(mannwhitneyu(own, other).pvalue)
+
+
+def _word(own: np.ndarray, other: np.ndarray, chance: float) -> str:
+    if chance >= SIGNIFICANCE:
+        return "not told apart"
+    return "lower" if (own[:, None] < other).sum() > (own[:, None] > other).sum() else "higher"
+
+
+def holm(chances: Sequence[float]) -> list[float]:
+    """Holm's corrected values, in the order given."""
+    order = np.argsort(chances)
+    corrected, highest = [0.0] * len(chances), 0.0
+    for place, index in enumerate(order):
+        highest = max(highest, min(1.0, (len(chances) - place) * chances[index]))
+        corrected[index] = highest
+    return corrected
+
+
+def mean_ranks(costs: Mapping[str, Sequence[float]]) -> dict[str, float]:
+    """Rank 1 is the lowest of a run; the mean over the runs, ties shared."""
+    ranks = rankdata(np.array(list(costs.values())), axis=0).mean(axis=1)
+    return dict(zip(costs, map(float, ranks), strict=True))

@@ -1,0 +1,37 @@
+"""The report as one HTML file that needs no other: pictures are inside."""
+
+from __future__ import annotations
+
+import base64
+from pathlib import Path
+from typing import Any
+
+import jinja2
+
+from greywhale.formats.whole import write_text
+from greywhale.reproduce.pages.document import Block, Code, Document, Picture, Sheet
+
+
+def write_html(document: Document, path: Path) -> Path:
+    """Write the page, whole or not at all."""
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("greywhale.reproduce", "data"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    write_text(path, environment.get_template("report.html").render(document=document, kind=_kind, url=_url))
+    return path
+
+
+def _kind(block: Block) -> str:
+    if isinstance(block, Sheet):
+        return "sheet"
+    if isinstance(block, Picture):
+        return "picture"
+    return "code" if isinstance(block, Code) else "words"
+
+
+def _url(picture: Any) -> str:
+    return "data:image/png;base64," + base64.b64encode(picture.png).decode("ascii")

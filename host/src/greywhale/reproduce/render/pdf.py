@@ -1,0 +1,197 @@
+"""The report as a PDF on A4, with bookmarks; a picture keeps with its words, a table breaks only between rows."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from typing import IO, Any
+from xml.sax.saxutils import escape
+
+import matplotlib
+from reportlab.lib import colors
+from reportlab.lib.pagesizes import A4
+from reportlab.lib.styles import ParagraphStyle
+from reportlab.lib.units import mm
+from reportlab.lib.utils import ImageReader
+from reportlab.pdfbase import pdfmetrics
+from reportlab.pdfbase.ttfonts import TTFont
+from reportlab.pdfgen.canvas import Canvas
+from reportlab.platypus import (
+    CondPageBreak,
+    Image,
+    KeepTogether,
+    LongTable,
+    Paragraph,
+    Preformatted,
+    SimpleDocTemplate,
+    Spacer,
+)
+
+from greywhale.formats.whole import write_whole
+from greywhale.reproduce.pages.document import Block, Chapter, Code, Document, Entry, Picture, Sheet
+
+MARGIN = 16 * mm
+WIDTH = A4[0] - 2 * MARGIN
+TITLE_AND_SOME_ROWS = 40 * mm
+TALLEST = A4[1] - 2 * MARGIN - 40
+# Matplotlib brings these, with every sign that the report needs.
+FONTS = {"Body": "DejaVuSans", "Strong": "DejaVuSans-Bold", "Fixed": "DejaVuSansMono"}
+PRINTED = colors.HexColor("#f6f3e8")
+MOST_POINTS, LEAST_POINTS = 8.0, 4.8
+
+
+def write_pdf(document: Document, path: Path) -> Path:
+    """Write the PDF, whole or not at all."""
+    for name, file in FONTS.items():
+        pdfmetrics.registerFont(TTFont(name, str(Path(matplotlib.get_data_path()) / "fonts" / "ttf" / f"{file}.ttf")))
+    made = io.BytesIO()
+    pages = SimpleDocTemplate(
+        made,
+        pagesize=A4,
+        leftMargin=MARGIN,
+        rightMargin=MARGIN,
+        topMargin=MARGIN,
+        bottomMargin=MARGIN,
+        title=document.title,
+        author="greywhale reproduce",
+        invariant=1,
+    )
+    story: list[Any] = [_Bookmark(document.title, 0), Paragraph(escape(document.title), _style("Strong", 15))]
+    story += [Paragraph(escape(sentence), _style("Body", 9)) for sentence in document.about]
+    for chapter in document.chapters:
+        story += _chapter(chapter)
+    pages.build(story, onFirstPage=_number, onLaterPages=_number)
+    write_whole(path, lambda file: _fill(file, made.getvalue()))
+    return path
+
+
+def _fill(file: IO[bytes], data: bytes) -> None:
+    file.write(data)
+
+
+class _Bookmark(Spacer):
+    """A place for the list of contents of a viewer."""
+
+    def __init__(self, title: str, level: int) -> None:
+        super().__init__(0, 0)
+        self._title, self._level = title, level
+
+    def draw(self) -> None:
+        canvas = self.canv
+        key = f"{self._level} {self._title}"
+        canvas.bookmarkPage(key)
+        canvas.addOutlineEntry(self._title, key, self._level, closed=self._level > 0)
+
+
+def _chapter(chapter: Chapter) -> list[Any]:
+    head = [_Bookmark(chapter.title, 1), Spacer(0, 14), Paragraph(escape(chapter.title), _style("Strong", 13))]
+    story: list[Any] = []
+    for entry in chapter.entries:
+        story += _entry(entry, head)
+        head = []
+    return story
+
+
+def _entry(entry: Entry, head: list[Any]) -> list[Any]:
+    named = f"{entry.label}. {entry.title}" if entry.label else entry.title
+    title = f'{escape(named)} <font name="Body" size="7" color="#777777">({escape(entry.status.value)})</font>'
+    first = [*head, _Bookmark(named, 2), Spacer(0, 9), Paragraph(title, _style("Strong", 10))]
+    parts: list[Any] = []
+    for block in entry.blocks:
+        shown = _block(block)
+        if isinstance(block, Sheet):
+            # A long table may break, but not between its title and its first rows.
+            parts += [CondPageBreak(TITLE_AND_SOME_ROWS), *first, *shown] if first else shown
+        else:
+            parts.append(KeepTogether([*first, *shown]))
+        first = []
+    return parts
+
+
+def _block(block: Block) -> list[Any]:
+    if isinstance(block, Sheet):
+        return [_table(block), *(Paragraph(escape(note), _style("Body", 7, "#555555")) for note in block.notes)]
+    if isinstance(block, Picture):
+        return [_image(block), Paragraph(escape(block.shows), _style("Body", 7, "#555555"))]
+    if isinstance(block, Code):
+        return [Preformatted("\n".join(block.lines), _style("Fixed", 7))]
+    return [Paragraph(escape(one), _style("Body", 8.5)) for one in block.paragraphs]
+
+
+def _image(picture: Picture) -> Image:
+    wide, high = ImageReader(io.BytesIO(picture.png)).getSize()
+    share = min(WIDTH / wide, TALLEST / high)
+    return Image(io.BytesIO(picture.png), wide * share, high * share)
+
+
+def _table(sheet: Sheet) -> LongTable:
+    points, widths = _fit(sheet)
+    style: list[Any] = [
+        ("FONT", (0, 0), (-1, -1), "Body", points, points * 1.25),
+        ("FONT", (0, 0), (-1, 0), "Strong", points, points * 1.25),
+        ("VALIGN", (0, 0), (-1, -1), "TOP"),
+        ("LINEABOVE", (0, 0), (-1, 0), 0.8, colors.black),
+        ("LINEBELOW", (0, 0), (-1, 0), 0.4, colors.black),
+        ("LINEBELOW", (0, -1), (-1, -1), 0.8, colors.black),
+        ("TOPPADDING", (0, 0), (-1, -1), 1),
+        ("BOTTOMPADDING", (0, 0), (-1, -1), 1.5),
+        ("LEFTPADDING", (0, 0), (-1, -1), 2.5),
+        ("RIGHTPADDING", (0, 0), (-1, -1), 2.5),
+    ]
+    style += [("BACKGROUND", (place, 0), (place, -1), PRINTED) for place in sorted(sheet.printed)]
+    cells: list[list[Any]] = [
+        [_cell(name, "Strong", points, place in sheet.texts) for place, name in enumerate(sheet.columns)]
+    ]
+    for number, row in enumerate(sheet.rows, 1):
+        if row.heading:
+            style += [("SPAN", (0, number), (-1, number)), ("FONT", (0, number), (0, number), "Strong", points)]
+            cells.append([row.label, *[""] * (len(sheet.columns) - 1)])
+        else:
+            cells.append(
+                [
+                    _cell(text, "Body", points, place in sheet.texts)
+                    for place, text in enumerate((row.label, *row.cells))
+                ]
+            )
+    return LongTable(cells, colWidths=widths, style=style, repeatRows=1, hAlign="LEFT", spaceBefore=3, spaceAfter=3)
+
+
+def _cell(text: str, font: str, points: float, left: bool) -> Paragraph:
+    style = ParagraphStyle("cell", fontName=font, fontSize=points, leading=points * 1.25, alignment=0 if left else 2)
+    return Paragraph(escape(text), style)
+
+
+def _fit(sheet: Sheet) -> tuple[float, list[float]]:
+    """Type size and column widths: as wide as the words at the largest size that fits, at the least size broken."""
+    rows = [sheet.columns, *((row.label, *row.cells) for row in sheet.rows if not row.heading)]
+    points = MOST_POINTS
+    while True:
+        wide = [
+            max(pdfmetrics.stringWidth(row[place], "Strong" if row is rows[0] else "Body", points) for row in rows)
+            + 6.5
+            for place in range(len(sheet.columns))
+        ]
+        if sum(wide) <= WIDTH:
+            return points, wide
+        if points <= LEAST_POINTS:
+            return points, _squeeze(wide)
+        points = max(LEAST_POINTS, points - 0.4)
+
+
+def _squeeze(wide: list[float]) -> list[float]:
+    """The widest columns give way until all fit; their words break."""
+    most = max(wide)
+    while sum(min(one, most) for one in wide) > WIDTH:
+        most *= 0.98
+    return [min(one, most) for one in wide]
+
+
+def _style(font: str, points: float, colour: str = "#222222") -> ParagraphStyle:
+    return ParagraphStyle(
+        font, fontName=font, fontSize=points, leading=points * 1.35, textColor=colors.HexColor(colour), spaceAfter=3
+    )
+
+
+def _number(canvas: Canvas, pages: Any) -> None:
+    canvas.setFont("Body", 7)
+    canvas.drawCentredString(A4[0] / 2, 8 * mm, str(pages.page))

@@ -1,0 +1,61 @@
+"""How much of the paper is done: all of it, or a quick look at all of it."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from greywhale.errors import BAD_USAGE, UserError
+
+SEEDS, QUICK_SEEDS = 10, 3
+MOST_SEEDS = 1000
+# greywhale's own tuning takes a hundred times the paper's, so it is done for fewer seeds.
+DEFAULT_SEEDS, QUICK_DEFAULT_SEEDS = 3, 1
+
+
+@dataclass(frozen=True)
+class Request:
+    """`seeds` runs of everything random, counted from `seed`."""
+
+    seed: int = 0
+    seeds: int = SEEDS
+    quick: bool = False
+
+    def __post_init__(self) -> None:
+        for name, value, least, most in (("seed", self.seed, 0, 1 << 31), ("seeds", self.seeds, 1, MOST_SEEDS)):
+            if not least <= value <= most:
+                raise UserError(f"{name} is {value}, but it must be {least} to {most}.", BAD_USAGE)
+
+    @classmethod
+    def of(cls, seed: int, seeds: int | None, quick: bool) -> Request:
+        """With the usual number of seeds where none is given."""
+        usual = QUICK_SEEDS if quick else SEEDS
+        return cls(seed, usual if seeds is None else seeds, quick)
+
+    @property
+    def every_seed(self) -> tuple[int, ...]:
+        """For what is cheap."""
+        return tuple(range(self.seed, self.seed + self.seeds))
+
+    @property
+    def few_seeds(self) -> tuple[int, ...]:
+        """For greywhale's own tuning."""
+        return self.every_seed[: QUICK_DEFAULT_SEEDS if self.quick else DEFAULT_SEEDS]
+
+    @property
+    def tuning_budget(self) -> int | None:
+        """Of greywhale's own tuning; None is its default."""
+        return 300 if self.quick else None
+
+    @property
+    def logged_s(self) -> float:
+        """Length of the recordings for the identification."""
+        return 12.0 if self.quick else 20.0
+
+    @property
+    def function_runs(self) -> int:
+        """Of each optimiser on each standard function."""
+        return max(self.seeds, 7 if self.quick else 25)
+
+    def as_dict(self) -> dict[str, Any]:
+        return asdict(self)

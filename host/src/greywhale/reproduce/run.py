@@ -1,0 +1,49 @@
+"""Does the pieces of work of a request as a study: on any workers, and on from where it was ended."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from greywhale.errors import UserError, os_reason
+from greywhale.reproduce.request import Request
+from greywhale.reproduce.tasks import tasks_of
+from greywhale.study import Workers, run_study
+
+Results = dict[str, dict[str, Any]]
+Report = Callable[[str, float], None]
+SOURCE = Path(__file__).resolve().parents[1]
+# What only shows: a change of it makes no result old.
+SHOWING = {"cli", "pages", "pictures", "render"}
+
+
+def run(request: Request, folder: Path, workers: Workers, report: Report | None = None) -> Results:
+    """Everything that a request asks for, by the tasks' keys. An interrupt keeps what is done in `folder`."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UserError(f"{folder}: cannot be made: {os_reason(error)}.") from None
+    about = {"request": request.as_dict(), "program": program_digest()}
+    return run_study(tasks_of(request), workers, results_file(request, folder), report, about=about)
+
+
+def results_file(request: Request, folder: Path) -> Path:
+    """Where the results of a request to this very program are kept; another request has another file."""
+    asked = json.dumps([request.as_dict(), program_digest()])
+    return folder / f"results-{hashlib.sha256(asked.encode()).hexdigest()[:12]}.study"
+
+
+@cache
+def program_digest() -> str:
+    """SHA-256 of this package's files, what only shows apart: results of another program are not taken."""
+    digest = hashlib.sha256()
+    for path in sorted(SOURCE.rglob("*")):
+        name = path.relative_to(SOURCE)
+        if path.suffix in (".py", ".toml", ".so") and not SHOWING & set(name.parts) and path.is_file():
+            digest.update(str(name).encode())
+            digest.update(path.read_bytes())
+    return digest.hexdigest()

@@ -1,0 +1,115 @@
+"""The experiment: the compiled firmware on the simulated board drives the default arm; all that comes back are logs.
+
+The bench runs in lock step with its host, so the logs are the same byte for byte whenever they are recorded again.
+"""
+
+from __future__ import annotations
+
+import importlib
+import tempfile
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from greywhale.errors import UserError
+from greywhale.files.leader import save_leader
+from greywhale.files.log import Log, read_log
+from greywhale.measure import evaluate
+from greywhale.reproduce.work.motions import (
+    MOTIONS,
+    SHOWN_S,
+    Controllers,
+    measures,
+    paper_board,
+    printed,
+    rounded,
+    shown,
+)
+from greywhale.table import ParameterTable
+from greywhale.trajectory import Trajectory, human_reaches
+
+SUPPLY_V = 15.0
+BENCH_SEED = 1
+# The log begins after the soft start (1 s), the leader 0.5 s later; it ends so long after the leader's last move.
+BEFORE_S, AFTER_S = 0.5, 0.2
+# By then a joint that will rest does.
+LAST_S = 1.0
+# The paper's arm had no supervisor, and each experiment shall be seen to its end.
+UNGUARDED = {
+    "tracking_limit": 0,
+    "unrest_amplitude": 0,
+    "speed_limit": 0,
+    "runaway_limit": 0,
+    "stall_volts": 0,
+}
+# The motions from which models are identified: name, seed of the hand, controllers.
+DATA_SETS = (
+    ("data set 1", 1001, "before_tuning"),
+    ("data set 2", 1002, "before_tuning"),
+    ("data set 3", 1003, "table_9"),
+)
+
+
+def board(rows: Controllers, period_ms: int) -> ParameterTable:
+    """The bench's board with controllers (4, 12) at a control period, without the supervisor's checks of motion."""
+    return paper_board(SUPPLY_V, period_ms).with_raw(UNGUARDED).with_controllers(rows.tolist())
+
+
+def record(folder: Path, name: str, motion: Trajectory, table: ParameterTable, seed: int = BENCH_SEED) -> Log:
+    """The log `name`.csv of the arm that follows a motion; the leader's own file lies beside it."""
+    lock_step: Any = importlib.import_module("greywhale_sim.lockstep")
+    assemble: Any = importlib.import_module("greywhale_sim.assemble")
+    leader, path = folder / f"{name}.leader.csv", folder / f"{name}.csv"
+    save_leader(leader, motion)
+    options = assemble.BenchOptions(leader=leader, seed=seed)
+    seconds = BEFORE_S + motion.duration_s + AFTER_S
+    try:
+        lock_step.record_in_lock_step(path, options, table, seconds)
+    except UserError as error:
+        if not path.is_file():  # nothing at all was recorded
+            raise
+        error.add_note("The log so far is taken.")
+    return read_log(path)
+
+
+@cache
+def record_data(seconds: float, period_ms: int) -> tuple[tuple[Log, ...], tuple[ParameterTable, ...]]:
+    """The data sets at a control period, and the tables with which they were recorded.
+
+    Every process records them for itself, once: they come out the same.
+    """
+    logs = []
+    with tempfile.TemporaryDirectory(prefix="greywhale-reproduce-") as folder:
+        for number, (_, seed, controllers) in enumerate(DATA_SETS, 1):
+            motion, table = human_reaches(seed, seconds), board(printed(controllers), period_ms)
+            logs.append(record(Path(folder), f"data set {number}", motion, table))
+    names = dict.fromkeys(controllers for _, _, controllers in DATA_SETS)
+    return tuple(logs), tuple(board(printed(name), period_ms).with_name(name) for name in names)
+
+
+def swings(log: Log) -> list[float]:
+    """How far each joint swings to and fro, from end to end, in the log's last second, rad."""
+    last = log.time > log.time[-1] - LAST_S
+    found: list[float] = np.ptp(log.follower[last], axis=0).tolist()
+    return found
+
+
+def try_controllers(seed: int, rows: list[list[int]], period_ms: int, traces: bool = True) -> dict[str, Any]:
+    """Steps and multi-steps of controllers (4, 12) on the bench: the paper's measures of the logs.
+
+    `seed` changes the noise of the bench's potentiometers, and where its gears stand.
+    """
+    table = board(np.array(rows, dtype=np.int32), period_ms)
+    found: dict[str, Any] = {}
+    with tempfile.TemporaryDirectory(prefix="greywhale-reproduce-") as folder:
+        for motion, make in MOTIONS.items():
+            log = record(Path(folder), motion, make(), table, BENCH_SEED + seed)
+            numbers = measures(evaluate(log)) | {"swing": swings(log)}
+            one: dict[str, Any] = {"after": numbers, "stopped": log.ended_by, "samples": len(log.time)}
+            if traces:
+                every = round(SHOWN_S / float(log.time[1] - log.time[0]))
+                one["trace"] = shown(log.time, log.leader, every) | {"after": rounded(log.follower[::every])}
+            found[motion] = one
+    return found

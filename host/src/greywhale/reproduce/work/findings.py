@@ -1,0 +1,211 @@
+"""What decides whether the paper's figures come out: feet, period, objective, friction, and what motion can show.
+
+A `seed` that draws nothing is taken all the same, as every task has one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from greywhale.arm.plants import column, plant_row
+from greywhale.files.arm import load_arm
+from greywhale.firmware import JOINTS
+from greywhale.fuzzy.settings import GAIN_UNIT
+from greywhale.identify.closed_loop import Loop
+from greywhale.identify.data import prepare
+from greywhale.identify.paper import VALUES, PaperSearch
+from greywhale.loop import CONTROLLER_COLUMNS, Experiment
+from greywhale.reproduce.work.bench import record_data
+from greywhale.reproduce.work.errata import Law, follow
+from greywhale.reproduce.work.grey_box import setting, supply_of
+from greywhale.reproduce.work.motions import (
+    MOTIONS,
+    WAIT_S,
+    Controllers,
+    Floats,
+    judged,
+    paper_board,
+    play,
+    printed,
+)
+from greywhale.tune.model import load_model
+from greywhale.tune.paper import AGENTS, BUDGET, METHOD, Loops
+from greywhale.tune.search.journal import Journal
+from greywhale.tune.search.lockstep import Found, search_in_lockstep
+from greywhale.tune.search.space import Space
+
+PERIODS_MS = (1, 2, 5, 10, 20, 50)
+# Readings of the sets' feet and of the change of error: name -> crisp, rate.
+READINGS = {
+    "feet at 0, ce(k) = e(k) - e(k-1)": (False, False),
+    "feet at 0, ce = de/dt": (False, True),
+    "crisp feet, ce(k) = e(k) - e(k-1)": (True, False),
+}
+PLANE = 201  # points a side
+COULOMB_V = 4.0
+# Another motor that moves the same: its Kt/R, J r and Kt² r/R are the same.
+OTHER = {"inertia": 0.1, "resistance": 0.1, "torque_constant": 0.1, "viscous": 1.0, "gear_ratio": 10.0}
+STEP = 0.05  # of a logarithm, for differences
+
+
+def feet(seed: int) -> dict[str, Any]:
+    """Each reading on the paper's grey-box arm: total MSE (rad²) of the multi-step, and the plane without any rule."""
+    found: dict[str, Any] = {}
+    for name, (crisp, rate) in READINGS.items():
+        one: dict[str, Any] = {}
+        for table in ("before_tuning", "table_10"):
+            law = Law.of(printed(table), crisp, rate)
+            one[table] = {"mse": follow("grey_box", frozenset(), law)[1], "silent": _silent(law)}
+        found[name] = one
+    return found
+
+
+def _silent(law: Law) -> list[float]:
+    """The share of the plane of both inputs, from -1 to 1, on which no rule of a joint fires."""
+    axis = np.linspace(-1.0, 1.0, PLANE)
+    x, y = np.meshgrid(axis, axis)
+    unit = replace(law, gains=np.ones_like(law.gains), rate=False)
+    points = [np.repeat(one.ravel()[:, None], JOINTS, axis=1) for one in (x, y)]
+    shares: list[float] = unit.fuzzy(points[0], points[1])[1].mean(axis=0).tolist()
+    return shares
+
+
+def periods(seed: int) -> dict[str, Any]:
+    """The paper's grey-box arm with its controllers at other control periods; Kd is scaled with the period."""
+    model = load_model("grey_box", force=True)
+    controllers = {"before": printed("before_tuning"), "after": printed("table_10")}
+    found = {}
+    for period in PERIODS_MS:
+        _, plant = setting(model, supply_of("mf"))
+        found[str(period)] = judged(model.arm, paper_board(supply_of("mf"), period), plant, controllers)
+    return found
+
+
+def friction(seed: int) -> dict[str, Any]:
+    """The paper's grey-box arm with Coulomb friction of so many volts, which the paper leaves out."""
+    model = load_model("grey_box", force=True)
+    table, plant = setting(model, supply_of("mf"))
+    for joint in range(JOINTS):
+        pull = COULOMB_V * plant[column("torque_per_volt", joint)]
+        plant[column("coulomb", joint)] = plant[column("breakaway", joint)] = pull
+    controllers = {"before": printed("before_tuning"), "after": printed("table_10")}
+    return {"volts": COULOMB_V, "motions": judged(model.arm, table, plant, controllers)}
+
+
+class TwoSided:
+    """The paper's J over a multi-step to both sides, all four joints at once, instead of one joint's step."""
+
+    def __init__(self) -> None:
+        model = load_model("grey_box", force=True)
+        supply = supply_of("sf")
+        table, self.plant = setting(model, supply)
+        motion = MOTIONS["multi-steps"]()
+        self._experiment = Experiment(motion, model.arm, table=table, noise=False, wait_s=WAIT_S, soft_start=False)
+
+    def parts(self, rows: Controllers) -> tuple[Floats, Floats]:
+        """ITAE and ITAU, (n, 4) each, for (n, 4, 12)."""
+        result = self._experiment.run(rows, self.plant, threads=1)
+        return result.itae, result.itau
+
+    def costs(self, rows: Controllers) -> Floats:
+        itae, itau = self.parts(rows)
+        return itae + itau
+
+
+def objective(seed: int) -> dict[str, Any]:
+    """What J rewards: the effort's share of it, J of doing nothing, and what a search on moves to both sides finds."""
+    before = printed("before_tuning")
+    idle = before.copy()
+    idle[:, CONTROLLER_COLUMNS.index("ku_mv")] = idle[:, CONTROLLER_COLUMNS.index("ki")] = 0
+    model, both = load_model("grey_box", force=True), TwoSided()
+    loops = Loops(model, "sf", before, 1)
+    rows = {"doing nothing": idle, "before": before, "table_8": printed("table_8"), "table_10": printed("table_10")}
+    found: dict[str, Any] = {"J": {}, "share_of_effort": {}}
+    for name, row in rows.items():
+        itae, itau = both.parts(row[None])
+        found["J"][name] = {
+            "one-sided": float(loops.costs(row[None]).sum()),
+            "two-sided": float((itae + itau).sum()),
+        }
+        found["share_of_effort"][name] = float(itau.sum() / (itae + itau).sum())
+    space = Space.paper("sf", before)
+    best = Found.nothing(before)
+    with Journal(None, {}) as book:
+        search_in_lockstep(
+            space, both.costs, best, book, stage="two-sided", method=METHOD, budget=BUDGET, seed=(seed,),
+            tick=lambda now: None, pack=AGENTS,
+        )  # fmt: skip
+    found["ku"] = (best.best[:, CONTROLLER_COLUMNS.index("ku_mv")] / 1000.0).tolist()
+    found["ki"] = (best.best[:, CONTROLLER_COLUMNS.index("ki")] / GAIN_UNIT).tolist()
+    return found
+
+
+def identifiability(seed: int, seconds: float, period_ms: int) -> dict[str, Any]:
+    """What data set 1 can show of the 20 motor values of Table 4, around the white box, by logarithms.
+
+    `rank`: of how many combinations the equation depends. `condition`: of the Fisher information of those. `angle`: how
+    far (rad) an arm of other values, but the same combinations, moves elsewhere in the closed loop.
+    """
+    logs, tables = record_data(seconds, period_ms)
+    table = tables[0]
+    arm = load_arm("white_box")
+    loop = Loop(prepare(logs[0], table["filter_shift"]), table, arm)
+    search = PaperSearch(arm, [loop], 0, lambda what, fraction: None)
+    centre = np.array([getattr(joint.motor, name) for joint in arm.joint for name in VALUES])
+    twin = centre * np.tile([OTHER[name] for name in VALUES], JOINTS)
+    alike = loop.angles(search.plants(np.stack([centre, twin])), threads=1)
+    rows = np.tile(plant_row(arm), (2 * 3 * JOINTS, 1))
+    for place in range(3 * JOINTS):
+        joint, which = divmod(place, 3)
+        for row, sign in ((place, 1.0), (place + 3 * JOINTS, -1.0)):
+            _scale(rows[row], joint, which, float(np.exp(sign * STEP)))
+    twelve = _sensitivity(loop, rows, STEP)
+    return {
+        "values": len(centre),
+        "rank": int(np.linalg.matrix_rank(_combinations_by_values(search, centre), tol=1e-6)),
+        "condition": float(np.linalg.cond(twelve.T @ twelve)),
+        "factors": OTHER,
+        "angle": float(np.abs(alike[1] - alike[0]).max()),
+    }
+
+
+def _combinations_by_values(search: PaperSearch, centre: Floats) -> Floats:
+    """(12, 20): the change of the logarithms of what the equation holds with those of the motor values."""
+    small = 1e-4
+    points = centre * np.exp(small * np.vstack([np.eye(len(centre)), -np.eye(len(centre))]))
+    names = ("torque_per_volt", "inertia", "damping")
+    columns = [column(name, joint) for joint in range(JOINTS) for name in names]
+    logs = np.log(search.plants(points)[:, columns])
+    found: Floats = ((logs[: len(centre)] - logs[len(centre) :]) / (2.0 * small)).T
+    return found
+
+
+def _sensitivity(loop: Loop, plants: Floats, step: float) -> Floats:
+    """(rows x 4, values): how the angles change with the logarithm of each value."""
+    angles = loop.angles(plants, threads=1).reshape(len(plants), -1)
+    half = len(plants) // 2
+    found: Floats = ((angles[:half] - angles[half:]) / (2.0 * step)).T
+    return found
+
+
+def _scale(plant: Floats, joint: int, which: int, factor: float) -> None:
+    """Multiply one combination of a joint: the volts that torque, acceleration or speed need, the others as before."""
+    if which == 0:  # torque per volt changes, inertia and damping with it, so that their volts stay
+        for name in ("torque_per_volt", "inertia", "damping"):
+            plant[column(name, joint)] /= factor
+    else:
+        plant[column(("inertia", "damping")[which - 1], joint)] *= factor
+
+
+def white_box_at_rest(seed: int) -> dict[str, Any]:
+    """The white box under the printed controllers at 20 ms: whether it comes to rest."""
+    arm = load_arm("white_box")
+    table = paper_board(float(arm.drive.supply))
+    rows = np.stack([printed("before_tuning"), printed("table_10")])
+    time_s, _, angles = play(arm, table, plant_row(arm), rows, MOTIONS["steps"]())
+    rest = time_s > time_s[-1] - 1.0
+    swings = np.ptp(angles[:, rest], axis=1)
+    return {"swing_before": swings[0].tolist(), "swing_table_10": swings[1].tolist()}

@@ -1,0 +1,76 @@
+"""Optimisers side by side at the paper's budgets: on its two problems, and on standard functions plain and shifted."""
+
+from __future__ import annotations
+
+from typing import Any, cast
+
+import numpy as np
+
+from greywhale.files.arm import load_arm
+from greywhale.identify.closed_loop import Loop
+from greywhale.identify.data import prepare
+from greywhale.identify.paper import AGENTS, ITERATIONS, PaperSearch
+from greywhale.optimise import minimise
+from greywhale.optimise.comparison import Plan, compare
+from greywhale.optimise.functions import FUNCTIONS, Setting
+from greywhale.reproduce.work.bench import record_data
+from greywhale.reproduce.work.motions import printed
+from greywhale.tune.model import load_model
+from greywhale.tune.paper import BUDGET, Loops
+from greywhale.tune.search.journal import Journal
+from greywhale.tune.search.lockstep import Found, search_in_lockstep
+from greywhale.tune.search.space import Space
+
+# The paper's hybrid first, then what it is made of, then established others, then chance.
+METHODS = ("gwo-woa", "gwo-woa-printed", "gwo-woa-relative", "gwo", "woa", "pso", "de", "cma-es", "random")
+IDENTIFYING = AGENTS * ITERATIONS
+SETTINGS: tuple[Setting, ...] = ("plain", "shifted")
+
+
+def box() -> tuple[list[float], list[float]]:
+    """Table 2's bounds."""
+    from greywhale.identify.paper import LOWER, UPPER
+
+    return list(np.tile(LOWER, 4)), list(np.tile(UPPER, 4))
+
+
+def identify_with(seed: int, seconds: float, period_ms: int, method: str) -> dict[str, Any]:
+    """The lowest summed MSE (rad²) on data set 1 that a method finds, and where."""
+    logs, tables = record_data(seconds, period_ms)
+    table = tables[0]
+    loop = Loop(prepare(logs[0], table["filter_shift"]), table, load_arm("white_box"))
+    search = PaperSearch(load_arm("white_box"), [loop], 0, lambda what, fraction: None)
+    lower, upper = (np.array(one) for one in box())
+    best = minimise(search.costs, lower, upper, method=method, budget=IDENTIFYING, seed=seed)
+    return {"cost": float(best.cost), "point": best.x.tolist()}
+
+
+def tune_with(seed: int, method: str) -> dict[str, Any]:
+    """The paper's J of the sets, summed over the joints of its grey-box arm, that a method finds."""
+    model, before = load_model("grey_box", force=True), printed("before_tuning")
+    loops = Loops(model, "mf", before, 1)
+    space = Space.paper("mf", before)
+    found = Found.nothing(before)
+    with Journal(None, {}) as book:
+        search_in_lockstep(
+            space, loops.costs, found, book, stage="paper", method=method, budget=BUDGET, seed=(seed,),
+            tick=lambda now: None,
+        )  # fmt: skip
+    return {"cost": float(found.cost.sum()), "before": float(loops.costs(before[None]).sum())}
+
+
+def compare_on(seed: int, function: str, runs: int) -> dict[str, Any]:
+    """The lowest costs of all methods on one function: setting -> method -> runs."""
+    plan = Plan(functions=(function,), settings=SETTINGS, methods=METHODS, runs=runs, seed=seed)
+    comparison = compare(plan)
+    return {
+        "costs": {
+            setting: {method: comparison.of(function, setting, method).tolist() for method in METHODS}
+            for setting in SETTINGS
+        }
+    }
+
+
+def functions() -> tuple[str, ...]:
+    """The standard functions."""
+    return cast(tuple[str, ...], tuple(FUNCTIONS))

@@ -1,0 +1,154 @@
+"""A bench, the files that pages call yours, and long computations that are done once."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import greywhale.commission
+import greywhale.demo
+from greywhale.arm.export import urdf
+from greywhale.cli import identify as identify_verb
+from greywhale.cli import tune as tune_verb
+from greywhale.commission import Options, campaign, learn
+from greywhale.commission.book import Book
+from greywhale.commission.learn import Learnt
+from greywhale.commission.search import KI, KP
+from greywhale.demo import BenchProcess, DemoOptions
+from greywhale.files import parameter_file
+from greywhale.files.arm import content_of, default_arm, load_arm
+from greywhale.files.leader import save_leader
+from greywhale.files.log import read_log
+from greywhale.identify import identify
+from greywhale.table import ParameterTable
+from greywhale.trajectory import Trajectory
+from greywhale.tune import tune
+from greywhale.tune.model import Model, load_model
+from greywhale_sim import serve as bench_serve
+from tests.commission.simulated import SimulatedRig
+from tests.docs.running import Once, run
+from tests.tune.models import write_model
+from tools.bench.recordings import TABLES, random_arm, record_three, table_of
+from tools.docs.site import ROOT
+
+IMAGE = ROOT / "firmware" / ".pio" / "build" / "megaatmega2560"
+LOGS = ("fit", "log1", "log2", "log3", "log", "before", "after", "second")
+
+
+@pytest.fixture(scope="session")
+def bench() -> Iterator[BenchProcess]:
+    """One bench for all; `ports` finds it, so that no command has to name it."""
+    with BenchProcess("--speed", "max") as running:
+        yield running
+
+
+@pytest.fixture(scope="session")
+def yours(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with what the pages call yours: arms, logs, a motion, tables, an image."""
+    folder = tmp_path_factory.mktemp("yours")
+    recorded = record_three(random_arm(2), folder, seed=1, seconds=6.0)
+    for name in LOGS:
+        if not (folder / f"{name}.csv").exists():
+            shutil.copy(recorded.fit.name, folder / f"{name}.csv")
+    (folder / "arm.toml").write_bytes(content_of("default"))
+    (folder / "arm.urdf").write_text(urdf(load_arm("default")), encoding="utf-8")
+    write_model(folder / "model.toml")
+    for name in ("controller.toml", "table.toml"):
+        shutil.copy(TABLES / "table_10.toml", folder / name)
+    for name in ("board.toml", "mine.toml", "before-calibration.toml"):
+        parameter_file.save(folder / name, ParameterTable.defaults())
+    times = np.arange(0.0, 2.0, 0.02)
+    save_leader(folder / "motion.csv", Trajectory(times, 0.1 * np.sin(3.0 * times)[:, None] * np.ones(4)))
+    for name in ("firmware.hex", "firmware.elf"):
+        shutil.copy(IMAGE / name, folder / name)
+    return folder
+
+
+@pytest.fixture
+def scratch(yours: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A copy of it to work in."""
+    for path in yours.iterdir():
+        if path.is_file():
+            shutil.copy(path, tmp_path)
+    (tmp_path / "shared").symlink_to(ROOT / "shared")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("GREYWHALE_PORT", raising=False)
+    return tmp_path
+
+
+@pytest.fixture
+def fresh_board(bench: BenchProcess, yours: Path) -> None:
+    """The bench's board with the parameters that it came with."""
+    done = run(["params", "restore", str(yours / "board.toml"), "--port", bench.port])
+    assert done.code == 0, done.err
+
+
+@pytest.fixture(scope="session")
+def identified(yours: Path) -> Once:
+    """A model of six seconds of log."""
+    fit, second = (read_log(yours / f"{name}.csv") for name in ("fit", "second"))
+    return Once(lambda: identify([fit], load_arm("white_box"), validate=[second], tables=[table_of("before_tuning")]))
+
+
+@pytest.fixture(scope="session")
+def tuned(yours: Path) -> Once:
+    """Controllers after four tries, without the least possible errors, which take longest."""
+    return Once(
+        lambda: tune(load_model(yours / "model.toml", samples=1), method="random", budget=4, floors=False, threads=1)
+    )
+
+
+@pytest.fixture(scope="session")
+def commissioned(yours: Path, tmp_path_factory: pytest.TempPathFactory) -> Once:
+    """One round on an arm that the native loop simulates; the controllers to try are found at once."""
+    real = greywhale.commission.commission
+    out = tmp_path_factory.mktemp("commission") / "out"
+    rig = SimulatedRig(default_arm())
+
+    def find(book: Book, name: str, model: Model, start: np.ndarray, **options: object) -> Learnt:
+        rows = start.copy()
+        rows[:, [KP, KI]] *= 2
+        book.note(name, {})
+        return Learnt(model.arm, rows, (), True)
+
+    def compute() -> Any:
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(campaign, "connected", rig.connected)
+            patch.setattr(learn, "find_controllers", find)
+            return real(Options(port="port", out=out, model=yours / "model.toml", rounds=1, trials=1, budget=4), None)
+
+    return Once(compute)
+
+
+@pytest.fixture(scope="session")
+def demonstrated(yours: Path, tmp_path_factory: pytest.TempPathFactory) -> Once:
+    """Four seconds with controllers that are there."""
+    real = greywhale.demo.run
+    out = tmp_path_factory.mktemp("demo")
+    return Once(lambda: real(DemoOptions(out=out, duration_s=4.0, controller=yours / "controller.toml"), None))
+
+
+@pytest.fixture
+def once(
+    monkeypatch: pytest.MonkeyPatch, identified: Once, tuned: Once, commissioned: Once, demonstrated: Once
+) -> None:
+    """The verbs around what was computed for all of them; `sim` ends when its port is there."""
+
+    def commission(options: Options, report: Any) -> Any:
+        options.out.mkdir(exist_ok=True)
+        return commissioned()
+
+    def serve(options: bench_serve.ServeOptions, on_ready: Any, note: Any) -> None:
+        with bench_serve.running(options, note=note) as server:
+            on_ready(server.port.path)
+
+    monkeypatch.setattr(identify_verb, "identify", lambda *logs, **options: identified())
+    monkeypatch.setattr(tune_verb, "tune", lambda model, **options: tuned())
+    monkeypatch.setattr(greywhale.commission, "commission", commission)
+    monkeypatch.setattr(greywhale.demo, "run", lambda options, report: demonstrated())
+    monkeypatch.setattr(bench_serve, "serve", serve)

@@ -1,0 +1,127 @@
+"""What every verb really prints with --json is what its schema in docs/schemas says."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import click
+import pytest
+from jsonschema import Draft202012Validator, ValidationError
+
+from greywhale.cli.verbs import VERBS, greywhale
+from greywhale.demo.learn import Learnt
+from tests.docs.running import Once, run
+from tools.bench.hands import SECOND_DEG, Hands, bench_of, mounted_anyhow, run_calibrate
+from tools.docs.schemas import SCHEMAS, schema_name
+from tools.docs.site import ROOT
+
+# Verb -> ways to call it that print different keys.
+CALLS = {
+    "ports": [""],
+    "udev": [""],
+    "info": [""],
+    "doctor": ["--seconds 0.5"],
+    "upload": ["controller.toml"],
+    "params get": ["", "joint0.kp"],
+    "params set": ["joint0.kp=0.8 supply_mv=14000"],
+    "params backup": ["new.toml"],
+    "params diff": ["board.toml"],
+    "params restore": ["board.toml"],
+    "record": ["--seconds 0.5", "--excite --seconds 4 --budget 2 --save-motion new.csv"],
+    "replay": ["motion.csv --out replayed.csv"],
+    "stop": ["", "--clear-fault"],
+    "evaluate": ["log.csv", "log.csv before.csv --picture both.svg"],
+    "identify": ["fit.csv --validate second.csv"],
+    "tune": ["model.toml", "model.toml --tables"],
+    "commission": ["--model model.toml"],
+    "demo": ["--controller controller.toml"],
+    "sim": ["--speed max"],
+    "export": ["--fis controller.toml --out c.fis", "--urdf arm.toml --out a.urdf"],
+    "arm import": ["arm.urdf --out imported.toml"],
+    "compare": ["--functions sphere --methods gwo-woa,de --budget 60 --seeds 2 --jobs 1"],
+}
+
+
+def schema_of(verb: str) -> Draft202012Validator:
+    return Draft202012Validator(json.loads((SCHEMAS / schema_name(verb)).read_text(encoding="utf-8")))
+
+
+def refuse_constant(name: str) -> Any:
+    raise ValueError(f"{name} is no JSON")
+
+
+def read(text: str) -> Any:
+    """One line that holds one object, without the NaN that Python would let pass."""
+    assert text.count("\n") == 1
+    return json.loads(text, parse_constant=refuse_constant)
+
+
+def leaves(group: click.Group, above: str = "") -> set[str]:
+    """The commands that run something, by their words."""
+    context = click.Context(group)
+    found: set[str] = set()
+    for name in group.list_commands(context):
+        command = group.get_command(context, name)
+        found |= leaves(command, f"{above}{name} ") if isinstance(command, click.Group) else {f"{above}{name}"}
+    return found
+
+
+def test_every_verb_is_called_and_has_a_schema() -> None:
+    assert {name.split()[0] for name in leaves(greywhale)} == set(VERBS)
+    assert leaves(greywhale) == {*CALLS, "flash", "calibrate"}
+    wanted = {schema_name(verb) for verb in (*CALLS, "flash", "calibrate", "error")}
+    assert {path.name for path in SCHEMAS.glob("*.json")} == wanted
+    page = (ROOT / "docs" / "json.md").read_text(encoding="utf-8")
+    assert [name for name in sorted(wanted) if f"docs/schemas/{name}" not in page] == []
+
+
+@pytest.mark.parametrize("path", sorted(SCHEMAS.glob("*.json")), ids=lambda path: path.stem)
+def test_a_schema_is_one_and_leaves_no_key_open(path: Path) -> None:
+    schema = json.loads(path.read_text(encoding="utf-8"))
+    Draft202012Validator.check_schema(schema)
+    assert schema["additionalProperties"] is False
+    with pytest.raises(ValidationError):
+        Draft202012Validator(schema).validate({"unheard_of": 1})
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("verb", CALLS)
+def test_what_a_verb_prints_is_what_its_schema_says(verb: str, scratch: Path, fresh_board: None, once: None) -> None:
+    for call in CALLS[verb]:
+        force = ["--force"] if verb == "tune" else []
+        done = run([*verb.split(), *call.split(), *force, "--json"])
+        assert done.code == 0, done.err
+        schema_of(verb).validate(read(done.out))
+
+
+@pytest.mark.slow
+def test_flash(scratch: Path, fresh_board: None) -> None:
+    done = run(["flash", "--hex", "firmware.hex", "--json"])
+    assert done.code == 0, done.err
+    schema_of("flash").validate(read(done.out))
+
+
+@pytest.mark.slow
+def test_calibrate(tmp_path: Path) -> None:
+    with bench_of(mounted_anyhow(1), tmp_path) as bench:
+        done = run_calibrate(Hands(bench), tmp_path, "--second", ",".join(f"{angle:g}" for angle in SECOND_DEG))
+    assert done.code == 0, done.said
+    schema_of("calibrate").validate(read(done.printed))
+
+
+@pytest.mark.slow
+def test_a_demo_that_learns(demonstrated: Once, identified: Once, tuned: Once) -> None:
+    learnt = Learnt(Path("model.toml"), Path("controller.toml"), identified(), tuned(), 1.0, 2.0)
+    facts = replace(demonstrated(), learnt=learnt).as_dict()
+    schema_of("demo").validate(read(json.dumps(facts) + "\n"))
+
+
+@pytest.mark.parametrize("arguments", ["evaluate none.csv", "record --budget 3", "dance"])
+def test_a_failure(arguments: str, scratch: Path) -> None:
+    done = run([*arguments.split(), "--json"])
+    answer = read(done.out)
+    schema_of("error").validate(answer)
+    assert answer["exit_code"] == done.code

@@ -1,0 +1,89 @@
+"""A document as HTML and PDF: everything is in it, nothing else is needed, and it is the same every time."""
+
+from __future__ import annotations
+
+from html.parser import HTMLParser
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import pytest
+
+from greywhale.reproduce.pages import law, system
+from greywhale.reproduce.pages.document import Chapter, Code, Document, Entry, Picture, Row, Status, sheet, words
+from greywhale.reproduce.pages.numbers import one, percent, several
+from greywhale.reproduce.pictures.drawing import png
+from greywhale.reproduce.render import write_html, write_pdf
+
+
+def small() -> Document:
+    figure, axes = plt.subplots(figsize=(2.0, 1.0))
+    axes.plot([0, 1], [1, 0])
+    many = [Row(f"row {number}", ("1 < 2 & θ", "x" * 40, "–")) for number in range(120)]
+    blocks = (
+        words("Less < more & θ²."),
+        Code(("a = b", "  c")),
+        Picture(png(figure), "A line that falls."),
+        sheet(("row", "one", "two", "three"), [Row("a heading"), *many], (1,), ("A note.",)),
+    )
+    entries = (Entry("Table 9", "Words", Status.COMPUTED, blocks), Entry("", "Own <b>", Status.OURS, (words("x"),)))
+    return Document("A report", ("About it.",), (Chapter("Section 1", entries),))
+
+
+class Reader(HTMLParser):
+    def __init__(self) -> None:
+        super().__init__()
+        self.text = ""
+        self.sources: list[str | None] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.sources += [value for key, value in attrs if key in ("src", "href")]
+
+    def handle_data(self, data: str) -> None:
+        self.text += data
+
+
+def test_the_page_holds_everything_and_needs_no_other_file(tmp_path: Path) -> None:
+    reader = Reader()
+    reader.feed(write_html(small(), tmp_path / "report.html").read_text(encoding="utf-8"))
+    for part in ("A report", "Less < more & θ².", "  c", "1 < 2 & θ", "row 119", "A note.", "Own <b>", "computed anew"):
+        assert part in reader.text
+    assert reader.sources
+    assert all(source is not None and source.startswith(("#", "data:image/png;base64,")) for source in reader.sources)
+
+
+def test_the_same_document_gives_the_same_bytes(tmp_path: Path) -> None:
+    for write, name in ((write_html, "report.html"), (write_pdf, "report.pdf")):
+        assert (
+            write(small(), tmp_path / f"a {name}").read_bytes() == write(small(), tmp_path / f"b {name}").read_bytes()
+        )
+
+
+def test_a_long_table_goes_on_over_pages_of_the_pdf(tmp_path: Path) -> None:
+    data = write_pdf(small(), tmp_path / "report.pdf").read_bytes()
+    assert data.startswith(b"%PDF-")
+    assert data.count(b"/Type /Page\n") + data.count(b"/Type /Page ") >= 2
+
+
+def test_a_row_with_too_few_cells_is_refused() -> None:
+    with pytest.raises(ValueError, match="1 cells for 2 columns"):
+        sheet(("a", "b", "c"), [Row("x", ("1",))])
+
+
+def test_numbers_are_medians_with_their_range() -> None:
+    assert several([3.0, 1.0, 2.0], ".1f") == "2.0 (1.0 to 3.0)"
+    assert several([2.0], ".1f") == several([2.0, 2.0], ".1f") == "2.0"
+    assert several([None, None]) == one(None) == "–"
+    assert "1 without" in several([1.0, None, 2.0], ".0f")
+    assert percent(2.0, 1.0) == "50.0 % lower"
+    assert percent(1.0, 2.0) == "100.0 % higher"
+
+
+def test_the_rules_of_the_firmware_are_the_printed_ones() -> None:
+    rules = next(entry for entry in law.chapter().entries if entry.label == "Table 6").as_dict()["blocks"][0]
+    assert len(rules["rows"]) == 9
+    assert all(printed == used for _, printed, used in rules["rows"])
+
+
+def test_table_3_differs_from_the_print_in_one_value_only() -> None:
+    rows = next(entry for entry in system.chapter().entries if entry.label == "Table 3").as_dict()["blocks"][0]["rows"]
+    assert [symbol for symbol, _, printed, used, *_ in rows if printed != used] == ["Iyy0"]

@@ -1,0 +1,75 @@
+"""The pieces of work, each against what is known otherwise."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from greywhale.reproduce.work import bench, errata, findings, grey_box
+from greywhale.reproduce.work.motions import PERIOD_MS, printed
+from greywhale.trajectory import human_reaches
+
+
+def test_corrected_equations_neither_gain_energy_nor_move_otherwise() -> None:
+    assert errata.swing(frozenset()) == pytest.approx(0.0, abs=1e-6)
+
+
+@pytest.mark.slow
+def test_four_times_the_inertia_changes_the_white_box_and_not_the_grey_one() -> None:
+    effect = errata.effect(0, ["E1"])
+    assert effect["energy"] > 0.1
+    assert effect["white_box"]["angle"] > 0.1
+    assert effect["grey_box"]["angle"] < 1e-3
+
+
+@pytest.mark.slow
+def test_the_bench_gives_the_same_log_byte_for_byte(tmp_path: Path) -> None:
+    table = bench.board(printed("before_tuning"), PERIOD_MS)
+    logs = []
+    for name in ("one", "two"):
+        log = bench.record(tmp_path, name, human_reaches(3, 4.0), table)
+        assert log.complete
+        assert set(log.state) == {"following"}
+        assert log.origin.param_crc == table.crc
+        logs.append((tmp_path / f"{name}.csv").read_bytes())
+    assert logs[0] == logs[1]
+    other = bench.record(tmp_path, "three", human_reaches(3, 4.0), table, bench.BENCH_SEED + 1)
+    assert other.follower.shape != (0, 4)
+    assert (tmp_path / "three.csv").read_bytes() != logs[0]
+
+
+def test_the_floor_lies_below_every_printed_controller() -> None:
+    found, floors = grey_box.print_on_grey_box(0), grey_box.floors(0)
+    for strategy in grey_box.STRATEGIES:
+        for motion in ("steps", "multi-steps"):
+            floor = sum(floors[f"{'mf' if strategy == 'mf' else 'sf'} {motion}"]["mse"])
+            assert floor < min(sum(found[strategy][motion][which]["mse"]) for which in ("before", "after"))
+
+
+def test_a_seed_gives_the_same_controllers_again() -> None:
+    first, again, other = (grey_box.tune_on_grey_box(seed, "mf", False) for seed in (1, 1, 2))
+    assert first == again
+    assert first["controllers"] != other["controllers"]
+    assert all(after <= before for before, after in zip(first["cost_before"], first["cost"], strict=True))
+
+
+def test_crisp_feet_leave_a_part_of_the_plane_without_a_rule() -> None:
+    rows = printed("table_10")
+    silent = {crisp: errata.Law.of(rows, crisp) for crisp in (False, True)}
+    axis = np.linspace(-1.0, 1.0, 41)
+    x, y = (np.repeat(one.ravel()[:, None], 4, axis=1) for one in np.meshgrid(axis, axis))
+    shares = {
+        crisp: errata.Law(law.sets, np.ones((4, 4)), crisp).fuzzy(x, y)[1].mean(axis=0) for crisp, law in silent.items()
+    }
+    assert not shares[False].any()
+    assert shares[True].max() > 0.2
+
+
+def test_the_printed_objective_rewards_doing_nothing() -> None:
+    found = findings.objective(0)
+    cost = found["J"]
+    assert cost["doing nothing"]["two-sided"] < cost["before"]["two-sided"]
+    assert cost["doing nothing"]["one-sided"] > cost["before"]["one-sided"]
+    assert max(found["ku"]) < 1.0

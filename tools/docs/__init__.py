@@ -1,0 +1,1 @@
+"""The site of the documentation: what it needs beside the pages in docs/."""

@@ -1,0 +1,90 @@
+"""A Sphinx extension: what the pages do not say themselves.
+
+Below the options of every verb it adds the exit codes and the schema of what the verb prints with --json. Classes get
+a list of what the comments behind their fields say: units, shapes. In a toctree a page with a question mark, `study?`,
+may be missing.
+"""
+
+from __future__ import annotations
+
+import inspect
+import re
+from pathlib import Path
+
+import click
+from pydantic import BaseModel
+from sphinx.application import Sphinx
+
+from tools.docs.schemas import SCHEMAS, schema_name
+
+CODES = "Exit codes: 0 done; 1 failed; 2 bad usage; 130 interrupted (motors off, files whole)."
+OWN_CODES = {"doctor": "Exit codes: 0 nothing must be mended; 1 something must, or failed; 2 bad usage."}
+OPTIONAL = re.compile(r"^([\w-]+)\?\n", re.MULTILINE)
+SLASH = chr(92)  # a backslash
+PATH = re.compile(r"PosixPath\('([^']*)'\)")
+# numpy's own way of writing an array of any shape.
+ARRAY = re.compile(r"~?numpy\.ndarray\[tuple\[~?(?:typing\.)?Any, \.\.\.\], ~?numpy\.dtype\[~?numpy\.(\w+)\]\]")
+# A field of a class with a comment behind it: name, default, comment.
+FIELD = re.compile(r"^    (\w+): [^=\n]*?(?: = ([^\n]+?))?  # (?!type:|noqa)([^\n]+)$", re.MULTILINE)
+
+
+def add_notes(app: Sphinx, context: click.Context, lines: list[str]) -> None:
+    """Add what a command's own help does not say."""
+    verb = context.command_path.removeprefix("greywhale").strip()
+    if isinstance(context.command, click.Group):
+        return
+    lines += ["", OWN_CODES.get(verb, CODES), ""]
+    schema = schema_name(verb)
+    if (SCHEMAS / schema).exists():
+        lines += [f"With ``--json`` it prints one object: `{schema} <../_static/{schema}>`__.", ""]
+
+
+def name_paths(app: Sphinx, context: click.Context, lines: list[str]) -> None:
+    """Show a default as it is typed."""
+    lines[:] = [PATH.sub(r"'\1'", line) for line in lines]
+
+
+def keep_pages(app: Sphinx, docname: str, source: list[str]) -> None:
+    """Leave out pages that may be missing and are."""
+    source[0] = OPTIONAL.sub(
+        lambda found: f"{found[1]}\n" if (Path(app.srcdir) / f"{found[1]}.md").exists() else "", source[0]
+    )
+
+
+def shorten_arrays(
+    app: Sphinx, what: str, name: str, subject: object, options: object, signature: str | None, returned: str | None
+) -> tuple[str | None, str | None]:
+    """NDArray[float64], as the code has it; nothing for what is read from a file, whose fields are listed."""
+    if inspect.isclass(subject) and issubclass(subject, BaseModel):
+        return "", None
+    return tuple(None if part is None else ARRAY.sub(r"NDArray[\1]", part) for part in (signature, returned))  # type: ignore[return-value]
+
+
+def list_fields(app: Sphinx, what: str, name: str, subject: object, options: object, lines: list[str]) -> None:
+    """Add what the comments behind a class's fields say: their units, shapes and meanings."""
+    if what == "class":
+        lines += fields_of(subject)
+
+
+def fields_of(subject: object) -> list[str]:
+    """The fields of a class that have a comment, as a list in reStructuredText."""
+    if not inspect.isclass(subject):
+        return []
+    try:
+        text = inspect.getsource(subject)
+    except (OSError, TypeError):  # an extension module, or a class that no file holds
+        return []
+    found = []
+    for field, default, comment in FIELD.findall(text):
+        given = f" (``{default}``)" if default else ""
+        found.append(f"- ``{field}``{given}: {comment.replace('*', SLASH + '*').replace('|', SLASH + '|')}")
+    return ["", *found, ""] if found else []
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    app.connect("sphinx-click-process-epilog", add_notes)
+    app.connect("sphinx-click-process-options", name_paths)
+    app.connect("source-read", keep_pages)
+    app.connect("autodoc-process-signature", shorten_arrays)
+    app.connect("autodoc-process-docstring", list_fields)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

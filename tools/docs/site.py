@@ -1,0 +1,18 @@
+"""Builds the site with Sphinx; every warning is an error."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from sphinx.cmd.build import build_main
+
+ROOT = Path(__file__).resolve().parents[2]
+SITE = ROOT / "build" / "site"
+
+
+def build(out: Path, builder: str = "html") -> int:
+    """Build the pages of docs/ into a folder; Sphinx's exit code."""
+    sys.path.insert(0, str(ROOT))  # settings and extension are modules of tools
+    doctrees = ["-d", str(out.parent / f"{out.name}-doctrees")]
+    return build_main(["-b", builder, "-W", "--keep-going", "-q", "-E", *doctrees, str(ROOT / "docs"), str(out)])
