@@ -212,11 +212,12 @@ class Bench:
         self._last_outputs = pins.tobytes()
         enable, *values = pins.tolist()
         self._enabled = bool(enable)
-        self.seen.look(self.board.cycle, self._enabled, values[:4])
         for driver in range(4):  # quicker than array arithmetic on so few numbers
             second = values[driver + 8 :: 4] if self._second else (0.0, 0.0)
             levels = Pins(self._enabled, values[driver], bool(values[driver + 4]), second[0], bool(second[1]))
             self.bridges[driver] = self.chip.bridge(levels)
+        duties = [max(bridge.forwards, bridge.backwards) for bridge in self.bridges]
+        self.seen.look(self.board.cycle, self._enabled or any(duties), duties)
         self._coasts = any(bridge.open > 0.0 for bridge in self.bridges)
         for joint, driver in enumerate(self.motor_wires):
             bridge = self.bridges[driver]
