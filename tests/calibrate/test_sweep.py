@@ -63,6 +63,16 @@ def test_the_dead_zone_within_the_range_is_told() -> None:
     assert "its dead zone lies there" in mistake(counts, 4)
 
 
+def test_another_one_that_jumps_across_its_dead_zone_at_rest_is_named_itself() -> None:
+    counts = swept(0)
+    counts[::2, 5] = 1023.0
+    counts[1500:1700, 5] = 0.0
+    counts[:1500, 5] = 1023.0
+    told = mistake(counts, 0)
+    assert told.startswith("Follower potentiometer 1 jumps")
+    assert "its dead zone lies there" in told
+
+
 def test_a_track_that_ends_within_the_range_is_told() -> None:
     counts = swept(4, 400.0, 700.0)
     counts[:, 4] = np.minimum(counts[:, 4], 1023.0)

@@ -52,8 +52,12 @@ def is_named(seed: int, name: str) -> bool:
     """Whether its verb names a mistake of a random assembly, at the first try, and stores nothing it should not."""
     mistake = BY_NAME[name]
     places = WHERE[mistake.on]
+    arm = mounted_anyhow(seed)
+    pots = (*arm.leader_pots.joint, *arm.follower_pots.joint)
     number = (seed + MISTAKES.index(mistake)) % len(places)
-    with tempfile.TemporaryDirectory() as folder, bench_of(mounted_anyhow(seed), Path(folder)) as bench:
+    if name == "pot-reversed":  # one that is the right way round before
+        number = next(pot for pot in (*range(number, 8), *range(8)) if pots[pot].direction > 0)
+    with tempfile.TemporaryDirectory() as folder, bench_of(arm, Path(folder)) as bench:
         bench.command(f"mistake {name}" + (f":{places[number]}" if places[number] else ""))
         if mistake.verb == "calibrate":
             done = run_calibrate(Hands(bench), Path(folder), *SECOND)

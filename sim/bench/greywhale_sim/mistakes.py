@@ -111,7 +111,7 @@ MISTAKES = (
     ),
     Mistake(
         "pot-reversed", "pot", "the two ends of the track are exchanged, so that it reads the other way", "calibrate",
-        r'"reversed": \["<id>"\]', _lie("reversed"), ends="mended",
+        r'"reversed": \[[^]]*"<id>"', _lie("reversed"), ends="mended",
     ),
     Mistake(
         "pot-crossed", "pot", "the wiper is on 5 V and an end of the track on the pin", "calibrate",

@@ -55,6 +55,9 @@ def _wiring(smooth: Floats, pot: int) -> list[str]:
     others = [other for other in range(len(POTS)) if other != pot and spans[other] >= LEAST_COUNTS]
     if span >= LEAST_COUNTS:
         also = [other for other in others if spans[other] > OTHERS_SHARE * span]
+        across = [other for other in also if _jumps_across(smooth[:, other])]
+        if across:  # it stands at an end of its track, and noise alone makes it jump
+            return [_dead_zone(upper_first(pot_name(across[0])))]
         if also:
             return [
                 f"{name} moved, and so did {pot_name(also[0])}: turn one joint at a time, or if only one was turned, "
@@ -86,12 +89,8 @@ def _contact(raw: Floats, own: Floats, name: str) -> list[str]:
     """Whether the track is whole where the joint goes, and the contact good."""
     if _is_crossed(own):
         return [_crossed(name, _reading(own))]
-    steps = np.abs(own[8:] - own[:-8])
-    if float(steps.max(initial=0.0)) > DEAD_ZONE_COUNTS:
-        return [
-            f"{name} jumps from one end of its track to the other within the joint's range: its dead zone lies there; "
-            "turn its shaft by half a turn in its coupling and begin anew."
-        ]
+    if _jumps_across(own):
+        return [_dead_zone(name)]
     if own.min() <= RAIL_COUNTS or own.max() >= FULL_SCALE - RAIL_COUNTS:
         return [
             f"{name} reaches an end of its track ({_reading(own)}) within the joint's range: turn its "
@@ -105,6 +104,17 @@ def _contact(raw: Floats, own: Floats, name: str) -> list[str]:
             "wires, else replace it."
         ]
     return []
+
+
+def _jumps_across(own: Floats) -> bool:
+    return float(np.abs(own[8:] - own[:-8]).max(initial=0.0)) > DEAD_ZONE_COUNTS
+
+
+def _dead_zone(name: str) -> str:
+    return (
+        f"{name} jumps from one end of its track to the other within the joint's range: its dead zone lies there; "
+        "turn its shaft by half a turn in its coupling and begin anew."
+    )
 
 
 def _is_crossed(own: Floats) -> bool:
