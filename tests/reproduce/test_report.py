@@ -13,6 +13,7 @@ from greywhale.cli.verbs import VERBS
 from greywhale.reproduce.work import errata, findings, on_the_bench, optimisers
 from greywhale.reproduce.work.motions import MOTIONS
 from greywhale.trajectory import multi_steps, steps
+from tools.docs.schemas import read_answer, validate
 
 LABELS = {f"Table {number}" for number in range(1, 13)} | {f"Fig. {number}" for number in range(1, 21)}
 METHODS = ("gwo-woa", "gwo", "woa", "pso")
@@ -44,7 +45,8 @@ def _small(monkeypatch: pytest.MonkeyPatch) -> None:
 def reproduce(folder: Path, captured: pytest.CaptureFixture[str]) -> dict[str, Any]:
     arguments = ["reproduce", "--quick", "--seeds", "1", "--workers", "1", "--out", str(folder), "--json"]
     assert entry.run(arguments) == 0
-    answer = json.loads(captured.readouterr().out)
+    answer = read_answer(captured.readouterr().out)
+    validate("reproduce", answer)
     assert isinstance(answer, dict)
     return answer
 
