@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 
 from greywhale.firmware import TICK_S
 from greywhale.protocol import schema
-from greywhale_sim.assemble import BenchOptions, build_bench
+from greywhale_sim.assemble import BUILDS, BenchOptions, build_bench
 from greywhale_sim.drivers import CHIPS, ELECTRICAL_S, OPEN, PWM_S, SHORTED, Bridge, Pins, mean_volts
+from greywhale_sim.symbols import read_symbols
 from tests.end_to_end.conftest import LockStep
 from tests.end_to_end.test_lock_step import set_parameters
 
@@ -97,13 +99,19 @@ def test_an_open_bridge_without_pulses_leaves_a_motor_alone() -> None:
     assert mean_volts(SHORTED, SUPPLY_V, 3.0) == 0.0
 
 
-def following_error(chip: str, signals: int, **parameters: int) -> np.ndarray:
-    """(4,) rad rms over two seconds with the paper's controllers, from the arm itself."""
+def following(chip: str, signals: int, **parameters: int) -> LockStep:
+    """An arm that follows through these drivers, past the soft start."""
     host = LockStep(build_bench(BenchOptions(driver=chip)))
     host.boot()
     set_parameters(host, {"driver": signals, **parameters})
     host.ask(schema.EnableRequest(0))
     host.run(1.5)
+    return host
+
+
+def following_error(chip: str, signals: int, **parameters: int) -> np.ndarray:
+    """(4,) rad rms over two seconds with the paper's controllers, from the arm itself."""
+    host = following(chip, signals, **parameters)
     apart: list[np.ndarray] = []
     host.bench.trace = lambda cycle, pins, angles: apart.append(host.bench.leader.angles - angles)
     host.run(2000 * TICK_S)
@@ -130,3 +138,39 @@ def test_an_arm_follows_through_drivers_that_coast(chip: str, signals: int, usua
     found = following_error(chip, signals, stall_volts=0)
     assert np.all(found < 0.2)
     assert np.any(found > 2.0 * usual)
+
+
+@pytest.mark.parametrize("end", ["stop", "reset", "hang"])
+@pytest.mark.parametrize(
+    ("chip", "signals"),
+    [("tb6612", 1), ("l298n", 1), ("drv8871", 2), ("drv8871", 3), ("bts7960", 2), ("l298n-jumpers", 3)],
+)
+def test_no_motor_is_driven_after_the_end(chip: str, signals: int, end: str) -> None:
+    """Not in any slice of 250 us, also by chips that have no enable input; a hang may take its 16 ms to end."""
+    host = following(chip, signals, stall_volts=0)
+    assert any(driven(one) for one in host.bench.bridges)
+    if end == "stop":
+        host.ask(schema.StopRequest())
+    elif end == "reset":
+        board: Any = host.bench.board
+        board.reset()
+    else:
+        hang(host)
+        host.run(0.018)
+    host.run(0.001)
+    pulses: list[bool] = []
+    host.bench.trace = lambda cycle, pins, angles: pulses.append(any(driven(one) for one in host.bench.bridges))
+    host.run(1.0)
+    assert pulses
+    assert not any(pulses)
+
+
+def hang(host: LockStep) -> None:
+    """Send the processor into avr-libc's endless loop behind main(), which begins with turning interrupts off."""
+    symbols = read_symbols(BUILDS / host.bench.wiring.environment / "firmware.elf")
+    board: Any = host.bench.board
+    board.pc = symbols["_exit"].address
+
+
+def driven(bridge: Bridge) -> bool:
+    return bridge.forwards > 0.0 or bridge.backwards > 0.0

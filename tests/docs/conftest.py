@@ -25,6 +25,9 @@ from greywhale.files.arm import content_of, default_arm, load_arm
 from greywhale.files.leader import save_leader
 from greywhale.files.log import read_log
 from greywhale.identify import identify
+from greywhale.reproduce import run as reproduce_run
+from greywhale.reproduce.pages import report as reproduce_report
+from greywhale.reproduce.request import Request
 from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory
 from greywhale.tune import tune
@@ -32,6 +35,7 @@ from greywhale.tune.model import Model, load_model
 from greywhale_sim import serve as bench_serve
 from tests.commission.simulated import SimulatedRig
 from tests.docs.running import Once, run
+from tests.reproduce.small import small_document
 from tests.tune.models import write_model
 from tools.bench.recordings import TABLES, random_arm, record_three, table_of
 from tools.docs.site import ROOT
@@ -135,9 +139,20 @@ def demonstrated(yours: Path, tmp_path_factory: pytest.TempPathFactory) -> Once:
     return Once(lambda: real(DemoOptions(out=out, duration_s=4.0, controller=yours / "controller.toml"), None))
 
 
+@pytest.fixture(scope="session")
+def reproduced() -> Once:
+    """The report at its smallest."""
+    return Once(small_document)
+
+
 @pytest.fixture
 def once(
-    monkeypatch: pytest.MonkeyPatch, identified: Once, tuned: Once, commissioned: Once, demonstrated: Once
+    monkeypatch: pytest.MonkeyPatch,
+    identified: Once,
+    tuned: Once,
+    commissioned: Once,
+    demonstrated: Once,
+    reproduced: Once,
 ) -> None:
     """The verbs around what was computed for all of them; `sim` ends when its port is there."""
 
@@ -149,6 +164,12 @@ def once(
         with bench_serve.running(options, note=note) as server:
             on_ready(server.port.path)
 
+    def reproduce(request: Request, folder: Path, workers: object, report: object) -> dict[str, object]:
+        folder.mkdir(exist_ok=True)
+        return {}
+
+    monkeypatch.setattr(reproduce_run, "run", reproduce)
+    monkeypatch.setattr(reproduce_report, "document", lambda found: reproduced())
     monkeypatch.setattr(identify_verb, "identify", lambda *logs, **options: identified())
     monkeypatch.setattr(tune_verb, "tune", lambda model, **options: tuned())
     monkeypatch.setattr(greywhale.commission, "commission", commission)

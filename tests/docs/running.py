@@ -7,8 +7,8 @@ The rule, in order:
 2. `make`, `pip` and `python -m` are looked at: the target, the package or the module must exist.
 3. Every other verb is run as printed, with files of the scratch folder where a page speaks of yours. What would only
    take long is shortened by options behind the printed ones (SHORTER).
-4. `identify`, `tune`, `commission` and `demo` compute once for all pages (`Once`); reading, checking and writing is
-   done for each. `sim` puts its bench and port together and ends.
+4. `identify`, `tune`, `commission`, `demo` and `reproduce` compute once for all pages (`Once`); reading, checking and
+   writing is done for each. `sim` puts its bench and port together and ends.
 """
 
 from __future__ import annotations

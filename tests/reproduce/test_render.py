@@ -12,7 +12,8 @@ from greywhale.reproduce.pages import law, system
 from greywhale.reproduce.pages.document import Chapter, Code, Document, Entry, Picture, Row, Status, sheet, words
 from greywhale.reproduce.pages.numbers import one, percent, several
 from greywhale.reproduce.pictures.drawing import png
-from greywhale.reproduce.render import write_html, write_pdf
+from greywhale.reproduce.render.html import write_html
+from greywhale.reproduce.render.pdf import write_pdf
 
 
 def small() -> Document:

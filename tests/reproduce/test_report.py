@@ -10,43 +10,20 @@ import pytest
 
 from greywhale.cli import entry
 from greywhale.cli.verbs import VERBS
-from greywhale.reproduce.work import errata, findings, on_the_bench, optimisers
-from greywhale.reproduce.work.motions import MOTIONS
-from greywhale.trajectory import multi_steps, steps
-from tools.docs.schemas import read_answer, validate
+from tests.reproduce.small import shrink
 
 LABELS = {f"Table {number}" for number in range(1, 13)} | {f"Fig. {number}" for number in range(1, 21)}
-METHODS = ("gwo-woa", "gwo", "woa", "pso")
-
-
-def as_paper(seed: int, seconds: float, period_ms: int, budget: int | None, traces: bool) -> dict[str, Any]:
-    """In the place of greywhale's own tuning, which takes a hundred times as long."""
-    assert budget is not None
-    return on_the_bench.follow_as_paper(seed, seconds, period_ms, traces)
 
 
 @pytest.fixture
 def _small(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(on_the_bench, "follow_as_default", as_paper)
-    monkeypatch.setattr(optimisers, "METHODS", METHODS)
-    for name in ("pages.optimisers", "pages.findings"):
-        monkeypatch.setattr(f"greywhale.reproduce.{name}.METHODS", METHODS)
-    monkeypatch.setattr(optimisers, "functions", lambda: ("sphere",))
-    monkeypatch.setattr(errata, "cases", lambda: {"E14": ("E14",), "E1 to E8": ("E2",)})
-    monkeypatch.setattr(errata, "HOLD_S", 0.2)
-    monkeypatch.setattr(errata, "SWING_S", 0.1)
-    monkeypatch.setattr(findings, "PERIODS_MS", (1, 20))
-    monkeypatch.setitem(MOTIONS, "steps", lambda: steps(1.0, 0.8, 1.8))
-    monkeypatch.setitem(MOTIONS, "multi-steps", lambda: multi_steps([0.0, 1.0, -0.5], [0.8, 1.2, 1.8]))
-    monkeypatch.setattr("greywhale.reproduce.request.Request.logged_s", 5.0)
-    monkeypatch.setattr("greywhale.reproduce.request.Request.function_runs", 4)
+    shrink(monkeypatch)
 
 
 def reproduce(folder: Path, captured: pytest.CaptureFixture[str]) -> dict[str, Any]:
     arguments = ["reproduce", "--quick", "--seeds", "1", "--workers", "1", "--out", str(folder), "--json"]
     assert entry.run(arguments) == 0
-    answer = read_answer(captured.readouterr().out)
-    validate("reproduce", answer)
+    answer = json.loads(captured.readouterr().out)
     assert isinstance(answer, dict)
     return answer
 

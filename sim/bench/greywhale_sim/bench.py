@@ -112,7 +112,7 @@ class Bench:
         for motor in wiring.motors:
             board.add_pin_output(motor.direction.port, motor.direction.bit)
         self._second = add_second_outputs(board, wiring)
-        self._bridges = [OPEN] * 4
+        self.bridges = [OPEN] * 4
         self._coasts = False
         self._millivolts = np.zeros(8)
         self._last_outputs = b""
@@ -212,14 +212,15 @@ class Bench:
         self._last_outputs = pins.tobytes()
         enable, *values = pins.tolist()
         self._enabled = bool(enable)
-        self.seen.look(self.board.cycle, self._enabled, values[:4])
         for driver in range(4):  # quicker than array arithmetic on so few numbers
             second = values[driver + 8 :: 4] if self._second else (0.0, 0.0)
             levels = Pins(self._enabled, values[driver], bool(values[driver + 4]), second[0], bool(second[1]))
-            self._bridges[driver] = self.chip.bridge(levels)
-        self._coasts = any(bridge.open > 0.0 for bridge in self._bridges)
+            self.bridges[driver] = self.chip.bridge(levels)
+        duties = [max(bridge.forwards, bridge.backwards) for bridge in self.bridges]
+        self.seen.look(self.board.cycle, self._enabled or any(duties), duties)
+        self._coasts = any(bridge.open > 0.0 for bridge in self.bridges)
         for joint, driver in enumerate(self.motor_wires):
-            bridge = self._bridges[driver]
+            bridge = self.bridges[driver]
             self.voltages[joint] = self.motor_gains[joint] * self.supply_v * (bridge.forwards - bridge.backwards)
 
     def _coast(self) -> None:
@@ -227,7 +228,7 @@ class Bench:
         speeds = getattr(self.plant, "motor_velocities", None)
         emf = self.emf * speeds if speeds is not None else np.zeros(4)
         for joint, driver in enumerate(self.motor_wires):
-            gain, bridge = self.motor_gains[joint], self._bridges[driver]
+            gain, bridge = self.motor_gains[joint], self.bridges[driver]
             if bridge.open > 0.0:
                 self.voltages[joint] = math.copysign(1.0, gain) * mean_volts(
                     bridge, abs(gain) * self.supply_v, math.copysign(1.0, gain) * float(emf[joint])

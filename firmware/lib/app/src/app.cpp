@@ -124,7 +124,7 @@ void App::control() {
 template <uint8_t joint>
 inline __attribute__((always_inline)) void App::control_joint(uint16_t limit_mv) {
   const Outcome out = controllers_.step(joint, sampling_.error(joint), limit_mv);
-  drive_.set<joint>(out.size_mv, out.sign, sets_.running().joint[joint].motor_sign);
+  drive_.set<joint>(out.size_mv, out.sign, sets_.running());
 }
 
 // A sample is dropped when it could not be sent before the next one is due. Its sequence number is then never sent.

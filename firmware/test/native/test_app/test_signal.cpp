@@ -150,24 +150,25 @@ TEST_CASE("a duty is the PWM step nearest to voltage over supply, odd in the vol
   for (const int supply : {3000, 3001, 7777, 12000, 15000, 24000, 29999, 30000}) {
     params::Table table = defaults();
     table.supply_mv = static_cast<std::uint16_t>(supply);
+    table.joint[1].motor_sign = -1;
     app::Drive drive;
     drive.configure(table);
     double worst = 0;
     int unequal = 0;
     for (int mv = 0; mv <= supply; ++mv) {
-      drive.set<0>(static_cast<std::uint16_t>(mv), 0, 1);
-      drive.set<1>(static_cast<std::uint16_t>(mv), 0, -1);
+      drive.set<0>(static_cast<std::uint16_t>(mv), 0, table);
+      drive.set<1>(static_cast<std::uint16_t>(mv), 0, table);
       const int positive = bench::board.duty[0];
       unequal += bench::board.duty[1] != -positive;
-      drive.set<0>(static_cast<std::uint16_t>(mv), 0x80, 1);
+      drive.set<0>(static_cast<std::uint16_t>(mv), 0x80, table);
       unequal += bench::board.duty[0] != -positive;
       worst = std::max(worst, std::abs(positive - mv * bench::full_duty / double(supply)));
     }
     CHECK(worst < 0.56);  // half a step, and what the rounded quotient costs at the highest supply
     CHECK(unequal == 0);
-    drive.set<0>(static_cast<std::uint16_t>(supply), 0, 1);
+    drive.set<0>(static_cast<std::uint16_t>(supply), 0, table);
     CHECK(bench::board.duty[0] == bench::full_duty);
-    drive.set<0>(0, 0, 1);
+    drive.set<0>(0, 0, table);
     CHECK(bench::board.duty[0] == 0);
   }
 }

@@ -53,7 +53,8 @@ def command(
         results = run(request, out, choose_workers(executor, workers), report)
         # Slow to import, and of no use before all is done.
         from greywhale.reproduce.pages.report import document
-        from greywhale.reproduce.render import write_html, write_pdf
+        from greywhale.reproduce.render.html import write_html
+        from greywhale.reproduce.render.pdf import write_pdf
 
         made = document(Found(request, results))
         files = [write_html(made, out / "report.html"), write_pdf(made, out / "report.pdf")]

@@ -16,7 +16,7 @@ from greywhale.firmware import JOINTS
 from greywhale.fuzzy.settings import GAIN_UNIT
 from greywhale.identify.closed_loop import Loop
 from greywhale.identify.data import prepare
-from greywhale.identify.paper import VALUES, PaperSearch
+from greywhale.identify.paper import LOWER, UPPER, VALUES, PaperSearch
 from greywhale.loop import CONTROLLER_COLUMNS, Experiment
 from greywhale.reproduce.work.bench import record_data
 from greywhale.reproduce.work.errata import Law, follow
@@ -48,6 +48,8 @@ PLANE = 201  # points a side
 COULOMB_V = 4.0
 # Another motor that moves the same: its Kt/R, J r and Kt² r/R are the same.
 OTHER = {"inertia": 0.1, "resistance": 0.1, "torque_constant": 0.1, "viscous": 1.0, "gear_ratio": 10.0}
+# Of so many arms, a joint that does not reach this speed (rad/s) under the whole supply counts as stuck.
+DRAWS, STUCK_RAD_S = 2000, 0.1
 STEP = 0.05  # of a logarithm, for differences
 
 
@@ -147,7 +149,8 @@ def identifiability(seed: int, seconds: float, period_ms: int) -> dict[str, Any]
     """What data set 1 can show of the 20 motor values of Table 4, around the white box, by logarithms.
 
     `rank`: of how many combinations the equation depends. `condition`: of the Fisher information of those. `angle`: how
-    far (rad) an arm of other values, but the same combinations, moves elsewhere in the closed loop.
+    far (rad) an arm of other values, but the same combinations, moves elsewhere in the closed loop. `stuck`: the share
+    of joints drawn from Table 2's box that hardly move.
     """
     logs, tables = record_data(seconds, period_ms)
     table = tables[0]
@@ -169,7 +172,19 @@ def identifiability(seed: int, seconds: float, period_ms: int) -> dict[str, Any]
         "condition": float(np.linalg.cond(twelve.T @ twelve)),
         "factors": OTHER,
         "angle": float(np.abs(alike[1] - alike[0]).max()),
+        "stuck": _stuck(search, seed, float(arm.drive.supply)),
     }
+
+
+def _stuck(search: PaperSearch, seed: int, supply_v: float) -> float:
+    """The share of joints, drawn uniformly from Table 2's box, that the whole supply hardly moves."""
+    low, high = np.tile(LOWER, JOINTS), np.tile(UPPER, JOINTS)
+    plants = search.plants(np.random.default_rng(seed).uniform(low, high, (DRAWS, len(low))))
+    speeds = [
+        supply_v * plants[:, column("torque_per_volt", joint)] / plants[:, column("damping", joint)]
+        for joint in range(JOINTS)
+    ]
+    return float((np.array(speeds) < STUCK_RAD_S).mean())
 
 
 def _combinations_by_values(search: PaperSearch, centre: Floats) -> Floats:

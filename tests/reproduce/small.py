@@ -1,0 +1,50 @@
+"""The whole of the report's work at its smallest, for tests: half a minute of one core."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from greywhale.reproduce.pages.document import Document
+from greywhale.reproduce.pages.found import Found
+from greywhale.reproduce.pages.report import document
+from greywhale.reproduce.request import Request
+from greywhale.reproduce.tasks import tasks_of
+from greywhale.reproduce.work import errata, findings, on_the_bench, optimisers
+from greywhale.reproduce.work.motions import MOTIONS
+from greywhale.study import SerialWorkers, run_study
+from greywhale.trajectory import multi_steps, steps
+
+METHODS = ("gwo-woa", "gwo", "woa", "pso")
+
+
+def as_paper(seed: int, seconds: float, period_ms: int, budget: int | None, traces: bool) -> dict[str, Any]:
+    """In the place of greywhale's own tuning, which takes a hundred times as long."""
+    assert budget is not None
+    return on_the_bench.follow_as_paper(seed, seconds, period_ms, traces)
+
+
+def shrink(patch: pytest.MonkeyPatch) -> None:
+    """Few methods, short motions, no long tuning; the request is for one seed, quick."""
+    patch.setattr(on_the_bench, "follow_as_default", as_paper)
+    patch.setattr(optimisers, "METHODS", METHODS)
+    for name in ("pages.optimisers", "pages.findings"):
+        patch.setattr(f"greywhale.reproduce.{name}.METHODS", METHODS)
+    patch.setattr(optimisers, "functions", lambda: ("sphere",))
+    patch.setattr(errata, "cases", lambda: {"E14": ("E14",), "E1 to E8": ("E2",)})
+    patch.setattr(errata, "HOLD_S", 0.2)
+    patch.setattr(errata, "SWING_S", 0.1)
+    patch.setattr(findings, "PERIODS_MS", (1, 20))
+    patch.setitem(MOTIONS, "steps", lambda: steps(1.0, 0.8, 1.8))
+    patch.setitem(MOTIONS, "multi-steps", lambda: multi_steps([0.0, 1.0, -0.5], [0.8, 1.2, 1.8]))
+    patch.setattr("greywhale.reproduce.request.Request.logged_s", 5.0)
+    patch.setattr("greywhale.reproduce.request.Request.function_runs", 4)
+
+
+def small_document() -> Document:
+    """A report of one seed."""
+    with pytest.MonkeyPatch.context() as patch:
+        shrink(patch)
+        request = Request.of(0, 1, True)
+        return document(Found(request, run_study(tasks_of(request), SerialWorkers())))
