@@ -44,9 +44,9 @@ IMAGE = ROOT / "firmware" / ".pio" / "build" / "megaatmega2560"
 LOGS = ("fit", "log1", "log2", "log3", "log", "before", "after", "second")
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def bench() -> Iterator[BenchProcess]:
-    """One bench for all; `ports` finds it, so that no command has to name it."""
+    """One bench for all tests of a file; `ports` finds it, so that no command has to name it."""
     with BenchProcess("--speed", "max") as running:
         yield running
 

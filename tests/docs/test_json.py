@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import click
 import pytest
@@ -15,7 +14,7 @@ from greywhale.cli.verbs import VERBS, greywhale
 from greywhale.demo.learn import Learnt
 from tests.docs.running import Once, run
 from tools.bench.hands import SECOND_DEG, Hands, bench_of, mounted_anyhow, run_calibrate
-from tools.docs.schemas import SCHEMAS, schema_name
+from tools.docs.schemas import SCHEMAS, read_answer, schema_name, validate
 from tools.docs.site import ROOT
 
 # Verb -> ways to call it that print different keys.
@@ -46,20 +45,8 @@ CALLS = {
     "reproduce": ["--quick --out report"],
     "compare": ["--functions sphere --methods gwo-woa,de --budget 60 --seeds 2 --jobs 1"],
 }
-
-
-def schema_of(verb: str) -> Draft202012Validator:
-    return Draft202012Validator(json.loads((SCHEMAS / schema_name(verb)).read_text(encoding="utf-8")))
-
-
-def refuse_constant(name: str) -> Any:
-    raise ValueError(f"{name} is no JSON")
-
-
-def read(text: str) -> Any:
-    """One line that holds one object, without the NaN that Python would let pass."""
-    assert text.count("\n") == 1
-    return json.loads(text, parse_constant=refuse_constant)
+# Verbs with a test of their own.
+BELOW = ("flash", "calibrate")
 
 
 def leaves(group: click.Group, above: str = "") -> set[str]:
@@ -74,8 +61,8 @@ def leaves(group: click.Group, above: str = "") -> set[str]:
 
 def test_every_verb_is_called_and_has_a_schema() -> None:
     assert {name.split()[0] for name in leaves(greywhale)} == set(VERBS)
-    assert leaves(greywhale) == {*CALLS, "flash", "calibrate"}
-    wanted = {schema_name(verb) for verb in (*CALLS, "flash", "calibrate", "error")}
+    assert leaves(greywhale) == {*CALLS, *BELOW}
+    wanted = {schema_name(verb) for verb in (*CALLS, *BELOW, "error")}
     assert {path.name for path in SCHEMAS.glob("*.json")} == wanted
     page = (ROOT / "docs" / "json.md").read_text(encoding="utf-8")
     assert [name for name in sorted(wanted) if f"docs/schemas/{name}" not in page] == []
@@ -90,6 +77,12 @@ def test_a_schema_is_one_and_leaves_no_key_open(path: Path) -> None:
         Draft202012Validator(schema).validate({"unheard_of": 1})
 
 
+@pytest.mark.parametrize("text", ['{"a": NaN}\n', '{"a": 1}\n{}\n', '{"a": 1}'])
+def test_what_is_no_line_of_json_is_found(text: str) -> None:
+    with pytest.raises(ValueError, match="NaN is no JSON|where there must be one"):
+        read_answer(text)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("verb", CALLS)
 def test_what_a_verb_prints_is_what_its_schema_says(verb: str, scratch: Path, fresh_board: None, once: None) -> None:
@@ -97,14 +90,14 @@ def test_what_a_verb_prints_is_what_its_schema_says(verb: str, scratch: Path, fr
         force = ["--force"] if verb == "tune" else []
         done = run([*verb.split(), *call.split(), *force, "--json"])
         assert done.code == 0, done.err
-        schema_of(verb).validate(read(done.out))
+        validate(verb, read_answer(done.out))
 
 
 @pytest.mark.slow
 def test_flash(scratch: Path, fresh_board: None) -> None:
     done = run(["flash", "--hex", "firmware.hex", "--json"])
     assert done.code == 0, done.err
-    schema_of("flash").validate(read(done.out))
+    validate("flash", read_answer(done.out))
 
 
 @pytest.mark.slow
@@ -112,19 +105,19 @@ def test_calibrate(tmp_path: Path) -> None:
     with bench_of(mounted_anyhow(1), tmp_path) as bench:
         done = run_calibrate(Hands(bench), tmp_path, "--second", ",".join(f"{angle:g}" for angle in SECOND_DEG))
     assert done.code == 0, done.said
-    schema_of("calibrate").validate(read(done.printed))
+    validate("calibrate", read_answer(done.printed))
 
 
 @pytest.mark.slow
 def test_a_demo_that_learns(demonstrated: Once, identified: Once, tuned: Once) -> None:
     learnt = Learnt(Path("model.toml"), Path("controller.toml"), identified(), tuned(), 1.0, 2.0)
     facts = replace(demonstrated(), learnt=learnt).as_dict()
-    schema_of("demo").validate(read(json.dumps(facts) + "\n"))
+    validate("demo", read_answer(json.dumps(facts) + "\n"))
 
 
 @pytest.mark.parametrize("arguments", ["evaluate none.csv", "record --budget 3", "dance"])
 def test_a_failure(arguments: str, scratch: Path) -> None:
     done = run([*arguments.split(), "--json"])
-    answer = read(done.out)
-    schema_of("error").validate(answer)
+    answer = read_answer(done.out)
+    validate("error", answer)
     assert answer["exit_code"] == done.code

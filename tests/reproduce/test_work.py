@@ -9,7 +9,7 @@ import pytest
 
 from greywhale.reproduce.work import bench, errata, findings, grey_box
 from greywhale.reproduce.work.motions import PERIOD_MS, printed
-from greywhale.trajectory import human_reaches
+from greywhale.trajectory import human_reaches, steps
 
 
 def test_corrected_equations_neither_gain_energy_nor_move_otherwise() -> None:
@@ -31,6 +31,7 @@ def test_the_bench_gives_the_same_log_byte_for_byte(tmp_path: Path) -> None:
     for name in ("one", "two"):
         log = bench.record(tmp_path, name, human_reaches(3, 4.0), table)
         assert log.complete
+        assert (log.name, bench.why_ended(log)) == (f"{name}.csv", "")
         assert set(log.state) == {"following"}
         assert log.origin.param_crc == table.crc
         logs.append((tmp_path / f"{name}.csv").read_bytes())
@@ -73,3 +74,15 @@ def test_the_printed_objective_rewards_doing_nothing() -> None:
     assert cost["doing nothing"]["two-sided"] < cost["before"]["two-sided"]
     assert cost["doing nothing"]["one-sided"] > cost["before"]["one-sided"]
     assert max(found["ku"]) < 1.0
+
+
+def test_a_reason_does_not_name_the_line(tmp_path: Path) -> None:
+    table = bench.board(printed("before_tuning"), PERIOD_MS)
+    odd = table.with_raw({"tracking_limit": 2048, "tracking_ms": 10})  # 0.5 rad: a step is beyond it
+    reasons = set()
+    for name in ("one", "two"):
+        log = bench.record(tmp_path, name, steps(1.0, 0.2, 0.5), odd)
+        assert not log.complete
+        reasons.add(bench.why_ended(log))
+    assert len(reasons) == 1
+    assert reasons.pop().startswith("the board stopped the motors")

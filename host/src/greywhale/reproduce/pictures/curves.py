@@ -253,12 +253,14 @@ def ranks(places: Mapping[str, Mapping[str, float]], title: str) -> bytes:
     methods = list(next(iter(places.values())))
     with styled():
         figure, axes = plt.subplots(figsize=(9.4, 3.6))
-        figure.subplots_adjust(left=0.07, right=0.985, bottom=0.14, top=0.9)
+        figure.subplots_adjust(left=0.07, right=0.985, bottom=0.19, top=0.9)
         width = 0.8 / len(problems)
         for number, (problem, colour) in enumerate(zip(problems, (DARK, *COLOURS), strict=False)):
             at = np.arange(len(methods)) + (number - 0.5 * (len(problems) - 1)) * width
             axes.bar(at, [places[problem][method] for method in methods], width, color=colour, label=problem)
-        axes.set_xticks(range(len(methods)), [method.replace(", ", ",\n") for method in methods], fontsize=8)
+        axes.set_xticks(
+            range(len(methods)), [method.replace(", ", ",\n").replace(" (", "\n(") for method in methods], fontsize=8
+        )
         axes.set_ylabel("mean rank (1 is best)")
         axes.grid(axis="x", visible=False)
         axes.set_title(title, fontsize=10)

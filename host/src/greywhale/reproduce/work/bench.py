@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import importlib
 import tempfile
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -71,7 +72,8 @@ def record(folder: Path, name: str, motion: Trajectory, table: ParameterTable, s
         if not path.is_file():  # nothing at all was recorded
             raise
         error.add_note("The log so far is taken.")
-    return read_log(path)
+    # Where the file lay changes from run to run, and would go into models and reports.
+    return replace(read_log(path), name=path.name)
 
 
 @cache
@@ -87,6 +89,12 @@ def record_data(seconds: float, period_ms: int) -> tuple[tuple[Log, ...], tuple[
             logs.append(record(Path(folder), f"data set {number}", motion, table))
     names = dict.fromkeys(controllers for _, _, controllers in DATA_SETS)
     return tuple(logs), tuple(board(printed(name), period_ms).with_name(name) for name in names)
+
+
+def why_ended(log: Log) -> str:
+    """Why a recording ended early, "" if it did not, without the name of the line, which no other run has."""
+    line, _, reason = log.ended_by.partition(": ")
+    return reason or line
 
 
 def swings(log: Log) -> list[float]:
@@ -107,7 +115,7 @@ def try_controllers(seed: int, rows: list[list[int]], period_ms: int, traces: bo
         for motion, make in MOTIONS.items():
             log = record(Path(folder), motion, make(), table, BENCH_SEED + seed)
             numbers = measures(evaluate(log)) | {"swing": swings(log)}
-            one: dict[str, Any] = {"after": numbers, "stopped": log.ended_by, "samples": len(log.time)}
+            one: dict[str, Any] = {"after": numbers, "stopped": why_ended(log), "samples": len(log.time)}
             if traces:
                 every = round(SHOWN_S / float(log.time[1] - log.time[0]))
                 one["trace"] = shown(log.time, log.leader, every) | {"after": rounded(log.follower[::every])}
