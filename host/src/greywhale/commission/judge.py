@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,7 +19,7 @@ Floats = npt.NDArray[np.float64]
 # whatever they were. Other motions show more unrest than the check: so its limit keeps clear of twice what it was.
 MOST_UNREST, LEAST_UNREST = 0.005, 0.0015
 MOST_RATTLE, LEAST_RATTLE = 0.005, 0.002
-UNREST_GROWTH, RATTLE_GROWTH = 1.2, 2.0
+UNREST_GROWTH, RATTLE_GROWTH = 1.5, 2.0
 # Two recordings with the same controllers may differ by so much more than two others did: as a share, and in rad² (1
 # mrad rms). Friction holds a joint now here, now there.
 SAME_SHARE, SAME_RAD2 = 0.02, 1e-6
@@ -44,8 +44,8 @@ class Limits:
         before = Measures(**{name: np.fmax.reduce([getattr(one, name) for one in befores]) for name in NAMES})
         share = np.where(kept, KEPT_SHARE, SAME_SHARE)
         return cls(
-            unrest=_allowed(before.worst("unrest"), UNREST_GROWTH, LEAST_UNREST, MOST_UNREST),
-            rattle=_allowed(before.worst("rattle"), RATTLE_GROWTH, LEAST_RATTLE, MOST_RATTLE),
+            unrest=_allowed(before.worst("unrest"), _grow_beyond_noise, LEAST_UNREST, MOST_UNREST),
+            rattle=_allowed(before.worst("rattle"), lambda known: RATTLE_GROWTH * known, LEAST_RATTLE, MOST_RATTLE),
             chatter=np.maximum(CHATTER_HZ, 1.1 * np.nan_to_num(before.worst("chatter"))),
             error=(1.0 + share) * before.error + SAME_RAD2,
         )
@@ -111,7 +111,14 @@ def _judge(measured: Measures, before: Measures, limits: Limits, joint: int, gui
     return Verdict(joint, tuple(faults), restless, restless and quiet, excess, score, measured.whole or bool(faults))
 
 
-def _allowed(before: Floats, growth: float, least: float, most: float) -> Floats:
+def _allowed(before: Floats, grow: Callable[[Floats], Floats], least: float, most: float) -> Floats:
     known = np.nan_to_num(before)
-    allowed: Floats = np.maximum(np.clip(growth * known, least, most), known * (1.0 + SAME_SHARE))
+    allowed: Floats = np.maximum(np.clip(grow(known), least, most), known * (1.0 + SAME_SHARE))
     return allowed
+
+
+def _grow_beyond_noise(unrest: Floats) -> Floats:
+    """The potentiometers' noise, which does not grow, is at most what the quietest joint shows."""
+    noise = float(unrest.min())
+    grown: Floats = np.sqrt(noise**2 + UNREST_GROWTH**2 * (unrest**2 - noise**2))
+    return grown
