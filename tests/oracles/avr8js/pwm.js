@@ -1,22 +1,19 @@
-// The PWM pins by avr8js's own timers: `node pwm.js FIRMWARE.hex A B C D` with four compare values; mean levels and
-// periods (cycles) of the four pins as JSON on stdout.
+// The PWM pins by avr8js's own timers, while the firmware drives four motors: `node pwm.js FIRMWARE.hex FRAME` with the
+// bytes of an enable request in hexadecimal. JSON on stdout: each pin's compare value, mean level and period (cycles),
+// and whether the pins moved at all before the board was enabled.
 "use strict";
 
 const { Nano, HZ } = require("./nano.js");
 
-const [hexFile, ...values] = process.argv.slice(2);
+const [hexFile, frame] = process.argv.slice(2);
 const nano = new Nano(hexFile, true);
 const { cpu, ports } = nano;
-nano.adc.voltage = () => 2.5;
-nano.runUntil(HZ / 50); // the firmware has set its timers up
+// Leaders are off their followers by up to 0.3 rad: voltages that stay as they are, too small for a fault.
+const leaders = [2.52, 2.54, 2.44, 2.57];
+nano.adc.voltage = (channel) => (channel < 4 ? leaders[channel] : 2.5);
 
-const [a, b, c, d] = values.map(Number);
-const writes = [[0x89, a >> 8], [0x88, a & 255], [0x8b, b >> 8], [0x8a, b & 255], [0xb3, c], [0xb4, d]];
-for (const [register, value] of writes) cpu.writeData(register, value);
-nano.runUntil(cpu.cycles + HZ / 1000);
-
-// D9, D10, D11, D3
-const places = [["B", 1], ["B", 2], ["B", 3], ["D", 3]];
+// D9, D10, D11, D3; the low byte of each compare register, and its high byte
+const places = [["B", 1, 0x88, 0x89], ["B", 2, 0x8a, 0x8b], ["B", 3, 0xb3], ["D", 3, 0xb4]];
 const pins = places.map(([port, bit]) => ({ port, mask: 1 << bit, high: 0, rises: [], since: 0 }));
 for (const pin of pins) {
   ports[pin.port].addListener((now, before) => {
@@ -25,10 +22,17 @@ for (const pin of pins) {
     else if (pin.rises.length) pin.high += cpu.cycles - pin.since;
   });
 }
+nano.runUntil(HZ / 20);
+const early = pins.some((pin) => pin.rises.length > 0);
+nano.usart.waiting.push(...Buffer.from(frame, "hex"));
+nano.runUntil(cpu.cycles + 1.2 * HZ); // past the soft start
+for (const pin of pins) Object.assign(pin, { high: 0, rises: [] });
 nano.runUntil(cpu.cycles + HZ / 100);
-const result = pins.map(({ high, rises }) => {
+const result = pins.map(({ high, rises }, place) => {
+  const [, , low, upper] = places[place];
   const turns = rises.length - 1;
   const span = rises[turns] - rises[0];
-  return { mean: high / (span + span / turns), period: span / turns };
+  const compare = cpu.data[low] | (upper ? cpu.data[upper] << 8 : 0);
+  return { compare, mean: high / (span + span / turns), period: span / turns };
 });
-process.stdout.write(JSON.stringify(result));
+process.stdout.write(JSON.stringify({ early, pins: result }));
