@@ -116,6 +116,7 @@ def test_help_needs_no_heavy_imports() -> None:
         (["record", "-o", "none/log.csv"], "none/log.csv: the folder none does not exist; create it"),
         (["export", "--urdf", "default", "--out", "none/a"], "none/a: the folder none does not exist; create it"),
         (["sim", "--eeprom", "none/e.bin"], "none/e.bin: the folder none does not exist; create it"),
+        (["calibrate", "--backup", "none/b.toml"], "none/b.toml: the folder none does not exist; create it"),
         (["record", "--out", ""], "the value of --out is empty; give one, or leave it out."),
         (["info", "--port="], "the value of --port is empty"),
         (["evaluate", ""], "an argument is empty"),

@@ -22,7 +22,8 @@ def test_the_demo_tells_its_story_and_proves_its_controllers_on_the_arm(tmp_path
     """The third recording is with what commissioning left on the board: nowhere worse than the tuned controllers."""
     told: list[str] = []
     out = tmp_path / "new" / "demo"
-    options = DemoOptions(out, duration_s=8.0, budget=300, prove=True)
+    # With 300 candidates a joint's share of its error before differs by a factor of four from run to run.
+    options = DemoOptions(out, duration_s=8.0, budget=800, prove=True)
     result = run(options, lambda what, fraction, note="": told.append(what))
     recordings = ["before", "after", "proven", "practice", "check", "check_changed"]
     leaders = ["leader", "rest_leader", "practice_leader", "check_leader", "check_changed_leader"]

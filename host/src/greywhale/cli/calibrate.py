@@ -18,6 +18,7 @@ from greywhale.board.pots import FULL_SCALE, POTS
 from greywhale.board.upload import upload_set
 from greywhale.calibrate import Options, Result, calibrate
 from greywhale.cli.output import json_option, port_option, show
+from greywhale.cli.record import require_folders
 from greywhale.errors import BAD_USAGE, UserError, cut
 from greywhale.files import parameter_file
 from greywhale.firmware import JOINTS
@@ -67,6 +68,7 @@ def command(
         float(np.radians(track)),
         motors=not no_motors,
     )
+    require_folders(backup)
     refuse_existing(backup, "--backup")
     with Device(choose_port(port)) as device:
         person = Terminal()
