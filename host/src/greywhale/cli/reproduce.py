@@ -9,6 +9,7 @@ import click
 
 from greywhale.cli.bench import need_bench
 from greywhale.cli.output import json_option, progress, show
+from greywhale.cli.workers import executor_options
 
 
 @click.command("reproduce")
@@ -23,13 +24,7 @@ from greywhale.cli.output import json_option, progress, show
 @click.option("--quick", is_flag=True, help="Fewer seeds, shorter logs, smaller budgets: a look at everything.")
 @click.option("--seeds", type=int, help="Runs of everything random; without it 10, with --quick 3.")
 @click.option("--seed", type=int, default=0, show_default=True, help="The first of them.")
-@click.option("--workers", type=click.IntRange(min=1), help="Processes; without it, one for every processor.")
-@click.option(
-    "--executor",
-    default="local",
-    show_default=True,
-    help="Where the work is done: local, dask://HOST:PORT or slurm://[PARTITION].",
-)
+@executor_options()
 @json_option
 def command(
     out: Path, quick: bool, seeds: int | None, seed: int, workers: int | None, executor: str, as_json: bool
