@@ -19,14 +19,16 @@ ALLOWED = {
     "runtime": {"errors"},
     "protocol": {"errors", "runtime"},
     "firmware": {"protocol"},
-    "table": {"errors", "firmware", "protocol"},
+    "joints": {"errors", "firmware"},
+    "table": {"errors", "firmware", "joints", "protocol"},
     "trajectory": {"firmware"},
-    "arm": {"errors", "firmware", "formats"},
-    "files": {"arm", "errors", "firmware", "formats", "protocol", "table", "trajectory"},
-    "board": {"errors", "files", "firmware", "formats", "protocol", "runtime", "table", "trajectory"},
-    "loop": {"arm", "errors", "files", "firmware", "protocol", "table", "trajectory"},
+    "arm": {"errors", "firmware", "formats", "joints"},
+    "files": {"arm", "errors", "firmware", "formats", "joints", "protocol", "table", "trajectory"},
+    "board": {"errors", "files", "firmware", "formats", "joints", "protocol", "runtime", "table", "trajectory"},
+    "loop": {"arm", "errors", "files", "firmware", "joints", "protocol", "table", "trajectory"},
     "study": {"errors", "formats"},
-    "optimise": {"errors", "formats", "study"},
+    "drawing": {"arm", "errors", "firmware", "formats"},
+    "optimise": {"drawing", "errors", "formats", "study"},
 }
 # Extension modules whose names begin with an underscore. Both are rooms of their own with public classes and functions.
 EXTENSIONS = {"_native", "_board"}

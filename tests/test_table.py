@@ -42,12 +42,18 @@ def test_controllers_are_rows_of_the_table_and_back() -> None:
     [
         ({"period_ms": 51}, "period_ms is 51 ms, which is out of range"),
         ({"joint1.limit_min": 10240}, r"joint1.limit_min is 2.5 and joint1.limit_max is 2.5 rad"),
-        ({"leader0.scale": 0}, "leader0.scale is 0"),
+        ({"joint0.motor_sign": 0}, "joint0.motor_sign is 0"),
     ],
 )
 def test_what_no_board_would_run_is_no_table(changes: dict[str, int], words: str) -> None:
     with pytest.raises(UserError, match=words):
         DEFAULTS.with_raw(changes)
+
+
+def test_a_follower_without_a_potentiometer_is_a_joint_that_is_not_in_use() -> None:
+    assert DEFAULTS.joints_in_use == (0, 1, 2, 3)
+    assert DEFAULTS.with_raw({"follower1.scale": 0, "follower2.scale": -5}).joints_in_use == (0, 2, 3)
+    assert DEFAULTS.with_raw({"leader1.scale": 0}).joints_in_use == (0, 1, 2, 3)  # a host leads it
 
 
 def test_equal_values_on_another_board_are_another_table() -> None:
@@ -66,3 +72,13 @@ def test_an_unknown_name_is_told_with_its_place() -> None:
     refuse_unknown(("joint0.kp",), "model.toml", "identify again")
     with pytest.raises(UserError, match=r"model.toml: joint0.kq is no parameter of a board; identify again\."):
         refuse_unknown(("joint0.kp", "joint0.kq"), "model.toml", "identify again")
+
+
+def test_a_table_for_fewer_joints_leaves_the_others_no_range() -> None:
+    table = DEFAULTS.with_joints((1,))
+    assert table.joints_in_use == (1,)
+    assert table.each("leader", "scale")[2] == 0
+    lower, upper = table.limits_raw()
+    assert (lower[1], upper[1]) == (DEFAULTS["joint1.limit_min"], DEFAULTS["joint1.limit_max"])
+    assert (lower[0], upper[0], lower[3], upper[3]) == (0, 0, 0, 0)
+    assert table.each("joint", "limit_min") == DEFAULTS.each("joint", "limit_min"), "the stored ones stay"

@@ -211,14 +211,14 @@ T corrected_worn_slip(const Friction<T>& friction, const Terms<T>& t, const Side
   return choose(side.slip != zero, stays, starts);
 }
 
-// A stop holds a link that would pass it and lets go of one that it would have to pull.
+// A stop holds a link that would pass it and lets go of one that it would have to pull, unless there is no room to go.
 template <class T>
 T corrected_stop(const Stops<T>& stops, T side, T reached, T stop_impulse) {
   const T zero = constant<T>(0.0);
   const T one = constant<T>(1.0);
   const T arrives = choose(reached > stops.max, one, choose(reached < stops.min, -one, zero));
   const T stays = choose(side * stop_impulse > constant<T>(kNoPull), zero, side);
-  return choose(side != zero, stays, arrives);
+  return choose(side != zero, choose(stops.max > stops.min, stays, side), arrives);
 }
 
 }  // namespace greywhale::arm

@@ -54,10 +54,13 @@ struct Gear {
   T drag;       // N m s, of the grease, also with the teeth apart
 };
 
+// Without room between them they hold a joint that is not in use: it is rigid there, and its stop never lets go.
 template <class T>
 struct Stops {
   T min, max;  // rad
 };
+
+inline bool has_room(const Stops<double>& stops) { return stops.max > stops.min; }
 
 // How a potentiometer follows its joint.
 template <class T>

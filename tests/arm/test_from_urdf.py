@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from xml.etree import ElementTree as xml
 
 import numpy as np
 import pytest
@@ -112,3 +113,45 @@ def test_the_verb_writes_an_arm_that_other_verbs_read_and_no_file_twice(
     same_physics(load_arm(out), default_arm())
     assert "shoulder pitch  -q +22.9" in capsys.readouterr().out
     assert run(["arm", "import", str(source), "--out", str(out)]) == 2
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+@pytest.mark.parametrize("seed", [None, 1, 2])
+def test_a_chain_that_ends_earlier_is_an_arm_with_fewer_joints(tmp_path: Path, count: int, seed: int | None) -> None:
+    """The exported arm's welds are not in the URDF's chain any more; what moves is the same."""
+    joints = [one.model_copy(update={"fixed": number >= count}) for number, one in enumerate(default_arm().joint)]
+    arm = default_arm().model_copy(update={"joint": tuple(joints)})
+    text = urdf(arm) if seed is None else welded(reframed(default_arm(), seed), count)
+    found = import_urdf(written(tmp_path, text), SUPPLY)
+    assert found.arm.joints_in_use == tuple(range(count))
+    assert found.offsets == pytest.approx(np.zeros(4), abs=0.35)
+    bodies = Arm(found.arm).body, Arm(arm).body
+    random = np.random.default_rng(0)
+    for q, v in zip(random.uniform(-2, 2, (40, 4)), random.uniform(-3, 3, (40, 4)), strict=True):
+        q[count:] = v[count:] = 0.0
+        own = found.signs * q + found.offsets
+        own[count:] = 0.0
+        one, other = bodies[0].mass_matrix(own), bodies[1].mass_matrix(q)
+        assert one[:count, :count] == pytest.approx(other[:count, :count], abs=1e-6)
+        assert bodies[0].bias(own, v)[:count] == pytest.approx(bodies[1].bias(q, v)[:count], abs=1e-5)
+    for joint in range(count):
+        assert found.arm.joint[joint].stops.max == pytest.approx(arm.joint[joint].stops.max, abs=0.35)
+
+
+def test_a_shorter_chain_must_be_one_of_this_arm_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = welded(urdf(default_arm()), 2)
+    with pytest.raises(UserError, match="joint base_yaw, the base yaw, does not turn about the vertical"):
+        import_urdf(written(tmp_path, text.replace('<axis xyz="0 1 0"', '<axis xyz="1 0 0"')), SUPPLY)
+    with pytest.raises(UserError, match="it has 0 turning joints, but greywhale's arm has one to four: base yaw, "):
+        import_urdf(written(tmp_path, welded(text, 0)), SUPPLY)
+    assert run(["arm", "import", str(written(tmp_path, text)), "--out", str(tmp_path / "two.toml")]) == 0
+    assert "wrist roll       not in use" in capsys.readouterr().out
+    assert load_arm(tmp_path / "two.toml").joints_in_use == (0, 1)
+
+
+def welded(text: str, count: int) -> str:
+    """The URDF with all joints but the first `count` fixed."""
+    robot = xml.fromstring(text)
+    for joint in robot.findall("joint")[count:]:
+        joint.set("type", "fixed")
+    return xml.tostring(robot, encoding="unicode")

@@ -15,10 +15,11 @@ DEFAULT = resources.files("greywhale.arm").joinpath("data", "default.toml").read
 
 
 def test_shipped_arms_load_and_move() -> None:
-    assert arm_names() == ["default", "grey_box", "white_box", "worn"]
+    assert arm_names() == ["default", "grey_box", "two_joints", "white_box", "worn"]
     for name in arm_names():
         arm = Arm(load_arm(name))
-        assert abs(arm.step([10.0] * 4, 0.5)).min() > 0.05
+        moved = abs(arm.step([10.0] * 4, 0.5))
+        assert moved[list(arm.parameters.joints_in_use)].min() > 0.05
 
 
 def test_paper_arms_hold_the_papers_values() -> None:
@@ -52,7 +53,7 @@ def test_default_motors_are_near_the_white_box_but_not_equal() -> None:
 @pytest.mark.parametrize(
     ("old", "new", "sentence"),
     [
-        ("mass = 0.21\n", "mass = -0.21\n", "link[0].mass is -0.21, but it must be greater than 0"),
+        ("mass = 0.21\n", "mass = -0.21\n", "link[0].mass is -0.21, but it must be at least 1e-09"),
         ("mass = 0.0   ", "mass = -0.1   ", "tip.mass is -0.1, but it must be at least 0"),
         (
             "yy = 8.26e-5",
@@ -62,17 +63,29 @@ def test_default_motors_are_near_the_white_box_but_not_equal() -> None:
             "the paper's Table 3 prints this value for link 0, 8.26e-5 is probably meant",
         ),
         ("zz = 1.13e-4", "zz = 1.14e-4", "link[2].inertia: zz is 0.000114, more than xx + yy = 0.0001133"),
-        ("xx = 3.17e-5", "xx = 0", "link[1].inertia.xx is 0, but it must be greater than 0"),
+        ("xx = 3.17e-5", "xx = 0", "link[1].inertia.xx is 0, but it must be at least 1e-18 and at most 1e+08."),
         ("centre = 0.07\n", "centre = 0.2\n", "link[1]: centre is 0.2 m, beyond the link's length of 0.14 m"),
         (
             "min = -2.55, max = 2.55",
             "min = 2.55, max = -2.55",
             "joint[0].stops: min is 2.55 rad, not below max = -2.55 rad",
         ),
-        ("resistance = 3.9", "resistance = 0", "joint[0].motor.resistance is 0, but it must be greater than 0"),
+        (
+            "resistance = 3.9",
+            "resistance = 0",
+            "joint[0].motor.resistance is 0, but it must be at least 1e-18 and at",
+        ),
         ("coulomb = 0.078", "coulomb = 0.2", "joint[0].friction: breakaway is 0.1 N m, below coulomb = 0.2 N m"),
         ("stiffness = 320.0", "stiffness = 0.0", "joint[0].gear: half_gap is 0.004 rad, so stiffness must be above 0"),
         ("viscous = 0.055", "viscous = 0.055, viscosity = 1", "unknown key joint[0].motor.viscosity"),
+        ("mass = 0.21", "mass = 1e308", "link[0].mass is 1e+308, but it must be at least 1e-09 and at most 10000."),
+        ("gear_ratio = 0.8", "gear_ratio = 1e-30", "joint[0].motor.gear_ratio is 1e-30, but it must be at least 0.001"),
+        (
+            "coulomb = 0.078",
+            "coulomb = 1e7",
+            "joint[0].friction.coulomb is 10000000.0, but it must be at least 0",
+        ),
+        ("gravity = 9.81", "gravity = 981", "gravity is 981, but it must be at least 0 and at most 100."),
         ("gravity = 9.81", "gravity = nan", "gravity is nan; it must be a finite number"),
         ("gravity = 9.81", 'gravity = "9.81"', 'gravity is "9.81", but it should be a valid number'),
         ("supply = 15.0", "supply = 150.0", "drive.supply is 150.0, but it must be greater than 0 and at most 60"),
@@ -82,7 +95,7 @@ def test_default_motors_are_near_the_white_box_but_not_equal() -> None:
             'motor_equation = "printed"',
             "motor_equation is \"printed\", but it should be 'physical' or 'paper'",
         ),
-        ("[drive]\nsupply = 15.0", "[drives]\nsupply = 15.0", "drive is missing"),
+        ("[drive]\nsupply = 15.0", "[drives]\nsupply = 15.0", "unknown key drives; perhaps drive is meant"),
     ],
 )
 def test_bad_values_are_refused_by_file_key_value_and_reason(tmp_path: Path, old: str, new: str, sentence: str) -> None:

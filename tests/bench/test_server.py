@@ -255,3 +255,8 @@ def test_bad_commands_are_answered_with_a_sentence(server: Server, text: str) ->
     assert server.fast
     assert server.board.powered
     assert server.noise.flip == 0.0
+
+
+def test_a_wrong_command_is_told_all_that_there_are(server: Server) -> None:
+    with pytest.raises(UserError, match=r'"explode" is not a bench command; there are: status, .*, speed, quit\.$'):
+        commands.run(server, "explode")

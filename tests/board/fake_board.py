@@ -89,6 +89,7 @@ class FakeBoard:
         self._lease_end = 0
         self._saving = 0
         self._save_state = SaveState.IDLE
+        self.saves = 0
         self._samples = 0
         self._enabled_at = 0
         self._decoder = FrameDecoder()
@@ -344,7 +345,9 @@ class FakeBoard:
             if self._saving == 0:
                 self._save_state = self.faults.save_result
                 if self._save_state is SaveState.SAVED:
+                    self.saves += self.stored != self.running
                     self.stored = list(self.running)
         return schema.StatusReply(
-            self.state, self.stop_reason, self.fault, self.fault_where, self.tick, 0, 0, 0, 0, 0, 300, self._save_state
-        ).pack()
+            self.state, self.stop_reason, self.fault, self.fault_where, self.tick, 0, 0, 0, 0, 0, 300, self._save_state,
+            self.saves,
+        ).pack()  # fmt: skip

@@ -6,7 +6,17 @@ import numpy as np
 import pytest
 
 from greywhale.board.device import Device
-from greywhale.board.pots import FOLLOWERS, FULL_SCALE, LOOKS, POTS, PotReadings, read_pots, require_good_pots
+from greywhale.board.pots import (
+    FOLLOWERS,
+    FULL_SCALE,
+    LOOKS,
+    POTS,
+    PotReadings,
+    counts_of,
+    pots_there,
+    read_pots,
+    require_good_pots,
+)
 from greywhale.errors import UserError
 from greywhale.protocol import schema
 from greywhale.protocol.schema import Fault
@@ -54,3 +64,13 @@ def test_the_counts_are_those_that_the_board_has_converted() -> None:
     assert found.counts[0].tolist() == [512, 512, 507, 521, 512, 512, 512, 512]
     assert found.complaints() == []
     assert found.at_rail(0) is Fault.NONE
+
+
+def test_a_potentiometer_that_is_not_there_reads_nothing_wrong() -> None:
+    table = ParameterTable.defaults().with_raw({"follower3.scale": 0})
+    assert pots_there(table) == tuple(range(7))
+    sample = schema.Sample(1, schema.State.DISABLED, Fault.NONE, (0,) * 4, (0,) * 4, (0,) * 4)
+    (counts,) = counts_of([sample], table)
+    assert counts[7] == FULL_SCALE / 2
+    assert counts[6] == pytest.approx(8184 / 16)
+    assert PotReadings(np.zeros((LOOKS, 8), dtype=np.int64), 4, (0,)).complaints(range(1, 8)) == []

@@ -17,7 +17,7 @@ import pytest
 
 from greywhale.board.device import Device
 from greywhale.board.stream import stream
-from greywhale.board.upload import read_parameters
+from greywhale.board.upload import read_parameters, upload_set
 from greywhale.demo import BenchProcess
 from greywhale.files.arm import default_arm
 from greywhale.firmware import ANGLE_LSB
@@ -92,6 +92,46 @@ def test_the_third_pose_shows_how_far_the_arms_are_really_apart(
         assert apart == pytest.approx([0.0, np.radians(degrees), 0.0, 0.0], abs=0.004)
     else:
         assert "leader and follower differ by 0.21 rad at joint 1" in done.said
+
+
+def test_an_arm_of_two_joints_is_asked_for_two_joints_and_the_others_are_not_in_use(
+    benches: ExitStack, tmp_path: Path
+) -> None:
+    """Their inputs are open all the time. Undone, the board counts on four joints again."""
+    fixed = [one.model_copy(update={"fixed": joint > 1}) for joint, one in enumerate(default_arm().joint)]
+    arm = mounted_anyhow(6).model_copy(update={"joint": tuple(fixed)})
+    bench = benches.enter_context(bench_of(arm, tmp_path))
+    with Device(bench.port) as device:
+        before = read_parameters(device)
+    done = run_calibrate(Hands(bench), tmp_path, *SECOND, "--joints", "0,1")
+    assert done.code == 0, done.said
+    assert done.said.count("Turn ") == 4
+    assert "joint 2" not in done.said
+    facts = json.loads(done.printed)
+    assert facts["joints"] == [0, 1]
+    assert [motor["joint"] for motor in facts["motors"]] == [0, 1]
+    assert not any(name.startswith(("joint2", "joint3")) for name in facts["changed"])
+    assert shown(bench, POSE) == pytest.approx(np.tile(np.radians(POSE) * (1, 1, 0, 0), 2), abs=0.004)
+    with Device(bench.port) as device:
+        table = read_parameters(device)
+    assert table.joints_in_use == (0, 1)
+    assert table.each("leader", "scale")[2:] == (0, 0)
+    verb = [sys.executable, "-m", "greywhale"]
+    restore = [*verb, "params", "restore", "before-calibration.toml", "--port", bench.port]
+    subprocess.run(restore, cwd=tmp_path, check=True, capture_output=True)
+    with Device(bench.port) as device:
+        assert replace(read_parameters(device), name=before.name) == before
+
+
+def test_a_joint_that_was_not_in_use_can_be_again(benches: ExitStack, tmp_path: Path) -> None:
+    bench = benches.enter_context(bench_of(mounted_anyhow(7), tmp_path))
+    with Device(bench.port) as device:
+        before = read_parameters(device)
+        idle = before.with_raw({f"{side}{joint}.scale": 0 for side in ("leader", "follower") for joint in (1, 3)})
+        upload_set(device, idle)
+    done = run_calibrate(Hands(bench), tmp_path, *SECOND, "--no-motors")
+    assert done.code == 0, done.said
+    assert shown(bench, POSE) == pytest.approx(np.tile(np.radians(POSE), 2), abs=0.004)
 
 
 def test_what_is_undone_is_as_before(benches: ExitStack, tmp_path: Path) -> None:

@@ -9,8 +9,9 @@ from pathlib import Path
 import pytest
 
 from greywhale.board.device import Device
+from greywhale.cli import verbs as cli
 from greywhale.formats import draft
-from tools.campaign.kill_verbs import VERBS
+from tools.campaign.kill_verbs import LEFT_OUT, VERBS
 from tools.campaign.killing import Moment, run
 from tools.campaign.parts.kills import PART, Stand, try_once
 
@@ -34,7 +35,13 @@ def try_all(stand: Stand, old: bool = True) -> tuple[Counter[str], Counter[str]]
     return wrong, seen
 
 
-@pytest.mark.parametrize("verb", ["record", "record --enable", "upload", "params backup", "export --fis"])
+@pytest.mark.parametrize(
+    "verb",
+    [
+        *("record", "record --enable", "record --reconnect", "upload", "params backup", "export --fis", "info", "stop"),
+        *("calibrate, the person's part left out", "arm new", "arm match", "arm import"),
+    ],
+)
 def test_a_share_of_the_trials_breaks_nothing(verb: str) -> None:
     (row,) = PART.run({"verb": verb, "seed": 7, "trials": 16})
     assert (row.trials, row.violations) == (16, 0)
@@ -44,8 +51,11 @@ def test_every_verb_that_writes_or_moves_is_tried() -> None:
     tried = {piece["verb"].partition(",")[0].split(" --")[0] for piece in PART.pieces(1.0)}
     assert tried == {
         *("record", "replay", "upload", "params set", "params restore", "params backup", "export", "evaluate"),
-        *("compare", "tune", "identify", "demo", "commission"),
+        *("compare", "tune", "identify", "demo", "commission", "calibrate", "doctor", "arm new", "arm match"),
+        *("arm import", "params get", "params diff", "info", "stop"),
     }
+    assert {one.split()[0] for one in tried} | set(LEFT_OUT) == set(cli.VERBS)
+    assert not {one.split()[0] for one in tried} & set(LEFT_OUT)
     assert sum(piece["trials"] for piece in PART.pieces(1.0) if piece["verb"] == "replay") == 1000
 
 

@@ -98,6 +98,31 @@ def test_what_is_missing_is_done_once_and_kept(tmp_path: Path) -> None:
     assert (again.rows, again.whole) == ([Row("doubled", 8, 0, {"sum": 16})], True)
 
 
+def make_long_work(folder: Path, share: float) -> Work:
+    part = Part("long", "Long", "", ("Makefile",), lambda share: split(4, share, 2), double, longest=3.0)
+    return Work(part, part.pieces(share), Journal(folder, part))
+
+
+def test_a_long_run_is_done_in_pieces_here_and_elsewhere_and_adds_up(tmp_path: Path) -> None:
+    here, there = tmp_path / "here", tmp_path / "there"
+    do_all([make_long_work(here, 1.0)], 1, 1e9, lambda *told: None)
+    result = make_long_work(here, 1.0).result()
+    assert (result.whole, result.longer, result.most_longer) == (True, 0, 4)
+    asked = make_long_work(here, 3.0)
+    asked.journal.add(asked.pieces[3], double(asked.pieces[3]))  # a piece of the long run, then the time was over
+    elsewhere = make_long_work(there, 3.0)
+    for piece in elsewhere.pieces[2:5]:
+        elsewhere.journal.add(piece, double(piece))
+    full = make_long_work(here, 1.0)
+    assert full.journal.take_over(there) == 2, "the third of them is known"
+    assert full.journal.take_over(there) == full.journal.take_over(tmp_path) == 0
+    result = make_long_work(here, 1.0).result()
+    assert (result.whole, result.longer, result.rows[0].trials) == (True, 3, 10)
+    assert "| [Long](#long) | 10 | 0 | all, and 3 of 4 beyond |" in write_page([result])
+    assert make_long_work(here, 3.0).result().done == 5
+    assert make_long_work(here, 0.5).result().rows[0].trials == 2, "a smaller share is only itself"
+
+
 def test_no_piece_is_begun_after_the_time(tmp_path: Path) -> None:
     work = make_work(tmp_path, "short", 4)
     do_all([work], 1, -1.0, lambda done, pieces, seconds: None)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import signal
 import subprocess
 import sys
 from collections.abc import Callable
@@ -18,12 +17,15 @@ from greywhale.board import device
 from greywhale.cli import entry
 from greywhale.cli.verbs import VERBS
 from greywhale.files.leader import save_leader
-from greywhale.files.log import LogWriter, read_log
-from greywhale.files.log.layout import Origin
+from greywhale.files.log import read_log
 from greywhale.protocol import schema
+from greywhale.protocol.ports import find_ports
 from greywhale.protocol.schema import State
+from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory
+from greywhale_sim.serve import ServeOptions, running
 from tests.board.fake_board import FakeBoard, Faults
+from tests.cli.example_log import write_log
 
 ROOT = Path(__file__).parents[2]
 TABLE_10 = str(ROOT / "shared" / "fuzzy_tables" / "table_10.toml")
@@ -46,12 +48,6 @@ def ask(captured: Captured, *arguments: str) -> tuple[int, dict[str, Any]]:
     answer = json.loads(out)
     assert isinstance(answer, dict)
     return code, answer
-
-
-def write_log(path: Path, seconds: float = 1.0) -> None:
-    with LogWriter(path, Origin("0.1.0", "mega2560", 1, 1, 1)) as log:
-        for row in range(int(seconds * 1000)):
-            log.append(row / 1000, [0.1] * 4, [0.0] * 4, [0.0] * 4, "following")
 
 
 # --- every verb -----------------------------------------------------------------------------------------------------
@@ -84,6 +80,14 @@ def test_the_list_of_verbs_is_complete(capsys: Captured) -> None:
     assert all(f"  {verb} " in text for verb in VERBS)
 
 
+@pytest.mark.parametrize("group", [[], ["params"], ["arm"]])
+def test_alone_the_program_and_its_groups_show_their_help(group: list[str], capsys: Captured) -> None:
+    assert entry.run([*group, "--help"]) == 0
+    help_text = capsys.readouterr().out
+    assert entry.run(group) == 0
+    assert capsys.readouterr() == (help_text, "")
+
+
 def test_help_needs_no_heavy_imports() -> None:
     code = "import sys; from greywhale.cli import entry; entry.run(['--help']); sys.exit('matplotlib' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False, stdout=subprocess.DEVNULL).returncode == 0
@@ -92,7 +96,12 @@ def test_help_needs_no_heavy_imports() -> None:
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["dance"], "No such command 'dance'"),
+        (["dance"], "No such command 'dance'. Try `greywhale --help`."),
+        (["recrod"], "No such command 'recrod'. Did you mean re"),
+        (["params", "gett"], "No such command 'gett'. Did you mean get?"),
+        (["arm", "mach"], "No such command 'mach'. Did you mean match?"),
+        (["record", "--secnds", "3"], "No such option '--secnds'. (Did you mean one of: '--seconds'"),
+        (["record", "-o", "-"], "-: a result goes into a file, never to standard output"),
         (["info", "--prt", "x"], "No such option '--prt'"),
         (["upload"], "Missing argument 'CONTROLLER'"),
         (["record", "--seconds", "long"], "'long' is not a valid float"),
@@ -102,7 +111,10 @@ def test_help_needs_no_heavy_imports() -> None:
         (["params", "set", "period_ms=1.5"], "period_ms is 1.5 ms, but it must be a whole number"),
         (["params", "set", "joint0.motor_sign=0.7"], "joint0.motor_sign is 0.7, but it must be a whole number"),
         (["params", "set", "joint0.kp=1e-9"], "joint0.kp is 1e-09 1/rad, which the board would store as 0"),
-        (["params", "set", "joint0.kq=1"], 'there is no parameter "joint0.kq"'),
+        (
+            ["params", "set", "joint0.kq=1"],
+            'there is no parameter "joint0.kq"; `greywhale params get` shows all names. Did you mean joint0.k',
+        ),
         (["params", "set", "joint0.kp=65"], "joint0.kp is 65 1/rad, which is out of range"),
         (["params", "set", "joint0.kp=1e308"], "joint0.kp is 1e+308 1/rad, which is out of range"),
         (["params", "set", "joint0.kp=-1e300"], "which is out of range"),
@@ -110,9 +122,14 @@ def test_help_needs_no_heavy_imports() -> None:
         (["params", "get", "\x1b[31m" + "x" * 5000], "there is no parameter"),
         (["record", "--every", "9" * 5000], "is not a valid integer"),
         (["no\x1b[31mverb" + "x" * 5000], "No such command 'no"),
-        (["identify", "a.csv", "--seed", "-1"], "-1 is not in the range x>=0"),
-        (["record", "--excite", "--seed", "-1"], "-1 is not in the range x>=0"),
-        (["demo", "--seed", "-1"], "-1 is not in the range x>=0"),
+        (["identify", "a.csv", "--seed", "-1"], "-1 is not in the range 0<=x<=2147483647"),
+        (["record", "--excite", "--seed", "-1"], "-1 is not in the range 0<=x<=2147483647"),
+        (["record", "--excite", "--budget", "1000000"], "budget is 1000000, but it must be at most 100000."),
+        (["demo", "--seed", "-1"], "-1 is not in the range 0<=x<=2147483647"),
+        (["demo", "--budget", "9" * 20], "is not in the range 1<=x<=1000000"),
+        (["commission", "--trials", "1000"], "1000 is not in the range 1<=x<=100"),
+        (["compare", "--jobs", "100000"], "100000 is not in the range 1<=x<=1024"),
+        (["reproduce", "--seeds", "1001"], "seeds is 1001, but it must be at most 1000."),
         (["record", "-o", "none/log.csv"], "none/log.csv: the folder none does not exist; create it"),
         (["export", "--urdf", "default", "--out", "none/a"], "none/a: the folder none does not exist; create it"),
         (["sim", "--eeprom", "none/e.bin"], "none/e.bin: the folder none does not exist; create it"),
@@ -142,6 +159,8 @@ def test_bad_usage_is_exit_code_2_and_one_sentence(arguments: list[str], words: 
         (["info", "--port", "/dev/none"], "/dev/none: there is no such port"),
         (["evaluate", "none.csv"], "none.csv: cannot be read: no such file or directory."),
         (["upload", "none.toml"], "none.toml: cannot be read"),
+        (["upload", "before_tunning"], "no such file or directory. Did you mean before_tuning?"),
+        (["export", "--urdf", "defalt", "--out", "a"], "no such file or directory. Did you mean default?"),
         (["params", "restore", "none.toml"], "none.toml: cannot be read"),
     ],
 )
@@ -215,6 +234,16 @@ def test_upload_tells_what_changed(capsys: Captured) -> None:
     assert "nothing had to change" in capsys.readouterr().out
 
 
+def test_upload_knows_the_controllers_that_come_with_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    with FakeBoard() as board:
+        assert ask(capsys, "upload", "table_10", "--port", board.port)[0] == 0
+        code, answer = ask(capsys, "upload", TABLE_10, "--port", board.port)
+    assert (code, answer["changed"]) == (0, [])
+
+
 def test_a_bad_controller_is_refused_before_the_board_is_touched(tmp_path: Path, capsys: Captured) -> None:
     bad = tmp_path / "bad.toml"
     bad.write_text(Path(TABLE_10).read_text().replace("Pce_b = 1.0", "Pce_b = 1.5", 1))
@@ -232,6 +261,7 @@ def test_record_and_evaluate(tmp_path: Path, capsys: Captured) -> None:
         assert board.state is State.DISABLED
     assert code == 0
     assert (answer["samples"], answer["dropped"], answer["log"]) == (300, 0, str(out))
+    assert read_log(out).origin.table == ParameterTable.defaults()
     picture = tmp_path / "picture.png"
     code, answer = ask(capsys, "evaluate", str(out), "--picture", str(picture))
     assert code == 0
@@ -255,6 +285,11 @@ def test_params_set_get_backup_diff_restore(tmp_path: Path, capsys: Captured) ->
         assert rounded["stored"] == {"joint1.kp": 0.5}
         values = ask(capsys, "params", "get", "joint1.kp", "supply_mv", *at)[1]["parameters"]
         assert values == {"joint1.kp": 0.5, "supply_mv": 12000}
+        group = ask(capsys, "params", "get", "joint1", "joint1.kp", "stall", *at)[1]["parameters"]
+        assert set(group) == {
+            *(one.name for one in schema.PARAMETERS if one.name.startswith("joint1.")), "stall_volts", "stall_ms",
+        }  # fmt: skip
+        assert (group["joint1.kp"], len(group)) == (0.5, 17)
         differences = ask(capsys, "params", "diff", backup, *at)[1]["differences"]
         assert differences["supply_mv"] == {"board": 12000, "file": 15000}
         assert set(differences) == {"supply_mv", "joint1.kp"}
@@ -278,6 +313,14 @@ def test_a_port_that_goes_away_ends_the_log_whole_and_says_so_once(verb: str, tm
     assert (log.complete, log.ended_by) == (False, lost)
     assert 200 < len(log.time) < 300
     assert sorted(os.listdir(tmp_path)) == ["log.csv", "motion.csv"]
+
+
+@pytest.mark.parametrize("motors", ["--enable", "--excite"])
+def test_reconnecting_is_for_logs_with_the_motors_off(motors: str, tmp_path: Path, capsys: Captured) -> None:
+    out = tmp_path / "log.csv"
+    assert entry.run(["record", "--reconnect", motors, "-o", str(out), "--port", "/dev/none"]) == 2
+    assert capsys.readouterr().err.startswith("greywhale: --reconnect is for logs with the motors off")
+    assert not out.exists()
 
 
 # --- evaluate -------------------------------------------------------------------------------------------------------
@@ -312,6 +355,38 @@ def test_ports_without_any(capsys: Captured, monkeypatch: pytest.MonkeyPatch) ->
     assert "greywhale sim" in capsys.readouterr().out
 
 
+def test_sim_says_on_stderr_the_name_that_other_verbs_use(
+    tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """And what to do next; standard output is the port alone."""
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    monkeypatch.delenv("XDG_RUNTIME_DIR", raising=False)
+    found: list[str] = []
+
+    def serve_once(options: ServeOptions, on_ready: Callable[[str], None], note: Callable[[str], None]) -> None:
+        with running(options, note=note) as server:
+            on_ready(server.port.path)
+            found.extend([server.port.path, *(port.device for port in find_ports() if port.bench)])
+
+    monkeypatch.setattr("greywhale_sim.serve.serve", serve_once)
+    assert entry.run(["sim", "--speed", "max"]) == 0
+    captured = capsys.readouterr()
+    port, name = found
+    assert captured.out == f"{port}\n"
+    assert captured.err.startswith(f"greywhale: the other verbs call this port {name}, and take it by themselves")
+    assert "greywhale info" in captured.err
+
+
+def test_a_bench_whose_eeprom_has_no_place_does_not_start(tmp_path: Path, capsys: Captured) -> None:
+    reasons = {
+        "/proc/eeprom.bin": "cannot be written: no such file or directory; write elsewhere.",
+        str(tmp_path): "this is a folder; name a file in it.",
+    }
+    for place, reason in reasons.items():
+        code, answer = ask(capsys, "sim", "--eeprom", place)
+        assert (code, answer["error"]) == (2, f"{place}: {reason}")
+
+
 @pytest.mark.parametrize("verb", ["sim", "demo"])
 def test_a_missing_bench_is_one_sentence(capsys: Captured, monkeypatch: pytest.MonkeyPatch, verb: str) -> None:
     monkeypatch.setitem(sys.modules, "greywhale_sim", None)
@@ -322,104 +397,3 @@ def test_a_missing_bench_is_one_sentence(capsys: Captured, monkeypatch: pytest.M
         "the simulated bench is a package of its own, greywhale-sim, and is not installed; "
         "run `pip install greywhale-sim`, or `make setup` in a checkout."
     )
-
-
-# --- signals and pipes, in a process of its own ---------------------------------------------------------------------
-
-RUN = """
-import sys
-from greywhale.board import device
-device.Device.__init__.__defaults__ = (0.0, 0.5)
-from greywhale.cli import main
-main()
-"""
-
-
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_ctrl_c_leaves_motors_off_and_the_log_whole(tmp_path: Path, number: signal.Signals) -> None:
-    out = tmp_path / "log.csv"
-    with FakeBoard() as board:
-        arguments = ["record", "--port", board.port, "-o", str(out), "-s", "600", "--enable", "--json"]
-        process = subprocess.Popen(
-            [sys.executable, "-c", RUN, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-        )
-        board.wait_for(State.FOLLOWING, 300, process)
-        process.send_signal(number)
-        output, errors = process.communicate(timeout=60)
-        assert board.state is State.DISABLED
-        assert board.asked(schema.StopRequest) >= 1
-    assert process.returncode == 130
-    kept = f"interrupted. What was recorded is in {out}, marked as interrupted."
-    assert json.loads(output) == {"error": kept, "exit_code": 130}
-    assert "Traceback" not in errors
-    log = read_log(out)
-    assert not log.complete
-    assert set(log.state) == {"following"}
-    assert os.listdir(tmp_path) == ["log.csv"]
-
-
-def test_a_reader_that_goes_away_is_no_traceback(tmp_path: Path) -> None:
-    write_log(tmp_path / "log.csv")
-    read, write = os.pipe()
-    os.close(read)
-    done = subprocess.run(
-        [sys.executable, "-c", RUN, "evaluate", str(tmp_path / "log.csv")],
-        stdout=write,
-        stderr=subprocess.PIPE,
-        text=True,
-        check=False,
-    )
-    os.close(write)
-    assert done.returncode == 1
-    assert done.stderr == ""
-
-
-def closed(*numbers: int) -> Callable[[], None]:
-    def close() -> None:
-        for number in numbers:
-            os.close(number)
-
-    return close
-
-
-@pytest.mark.parametrize("numbers", [(1,), (2,), (0, 1, 2)])
-def test_closed_streams_are_nobodys(numbers: tuple[int, ...]) -> None:
-    """`greywhale info >&-`: what is printed must not end up in the port, which would get the free number."""
-    with FakeBoard() as board:
-        command = [sys.executable, "-c", RUN, "info", "--port", board.port]
-        done = subprocess.run(command, preexec_fn=closed(*numbers), capture_output=True, text=True, check=False)
-        assert board.problem is None
-        asks = (schema.HelloRequest, schema.StatusRequest, schema.ParamGetRequest, schema.TelemetryRequest)
-        assert {kind for kind, _ in board.requests} <= {request.TYPE for request in asks}
-    assert (done.returncode, done.stderr) == (0, "")
-    assert bool(done.stdout) == (1 not in numbers)
-
-
-def test_ctrl_c_at_any_moment_of_the_start_is_no_traceback() -> None:
-    """The verbs are being imported then. Before `main` runs, Python itself starts, and has no word of ours to say."""
-    program = """
-import builtins, os, signal, sys
-signal.signal(signal.SIGINT, signal.default_int_handler)
-imported = builtins.__import__
-count = 0
-
-from greywhale.cli import main
-place = int(sys.argv[1])
-sys.argv = ["greywhale", "--version"]
-
-def press(name, *arguments, **options):
-    global count
-    count += 1
-    if count == place:
-        os.kill(os.getpid(), signal.SIGINT)
-    return imported(name, *arguments, **options)
-
-builtins.__import__ = press
-main()
-"""
-    codes = set()
-    for place in (1, 5, 50, 200):
-        done = subprocess.run([sys.executable, "-c", program, str(place)], capture_output=True, text=True, check=False)
-        assert "Traceback" not in done.stderr
-        codes.add(done.returncode)
-    assert codes <= {-signal.SIGINT, entry.INTERRUPTED}

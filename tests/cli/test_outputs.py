@@ -1,12 +1,15 @@
-"""No verb writes over a file that it reads."""
+"""No verb writes over a file that it reads, nor over one that is there already, unless it is told to."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
+import click
 import pytest
 
 from greywhale.cli.entry import run
+from greywhale.cli.verbs import greywhale
 
 Captured = pytest.CaptureFixture[str]
 
@@ -44,3 +47,153 @@ def test_log_and_motion_are_two_files(tmp_path: Path, monkeypatch: pytest.Monkey
     monkeypatch.chdir(tmp_path)
     assert run(["record", "--excite", "--out", "a.csv", "--save-motion", "./a.csv"]) == 2
     assert "the log and the motion cannot be one file" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (("identify", "log", "-o", "folder"), "folder: this is a folder; name a file in it."),
+        (("identify", "log", "--pictures", "log"), "log: pictures go into a folder, and this is a file."),
+        (("record", "-o", "folder"), "folder: this is a folder; name a file in it."),
+        (("record", "--excite", "--save-motion", "folder"), "folder: this is a folder; name a file in it."),
+        (("record", "--excite", "--save-motion", "no/m.csv"), "no/m.csv: the folder no does not exist; create it,"),
+        (("replay", "steps", "-o", "folder"), "folder: this is a folder; name a file in it."),
+        (("evaluate", "log", "--picture", "no/a.png"), "no/a.png: the folder no does not exist; create it,"),
+        (("tune", "log", "-o", "folder"), "folder: this is a folder; name a file in it."),
+        (("tune", "log", "-o", "no/c.toml"), "no/c.toml: the folder no does not exist; create it,"),
+        (("tune", "log", "--pictures", "log"), "log: pictures go into a folder, and this is a file."),
+        (("export", "--urdf", "default", "--out", "folder"), "folder: this is a folder; name a file in it."),
+        (("export", "--fis", "table", "--out", "no/x"), "no/x_joint0.fis: the folder no does not exist; create it,"),
+        (("params", "backup", "no/b.toml"), "no/b.toml: the folder no does not exist; create it,"),
+        (("compare", "-o", "no/a.csv"), "no/a.csv: the folder no does not exist; create it,"),
+        (("commission", "-o", "log"), "log: logs, models and controllers go into a folder, and this is a file."),
+        (("reproduce", "-o", "log"), "log: report and results go into a folder, and this is a file."),
+        (("reproduce", "-o", "log/report"), "log/report: "),
+        (("demo", "-o", "log"), "log: logs and pictures go into a folder, and this is a file."),
+    ],
+)
+def test_outputs_come_before_any_work(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured, arguments: tuple[str, ...], sentence: str
+) -> None:
+    """The log is none, and there is no board, so whatever came first would say so."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("greywhale.protocol.ports.find_ports", list)
+    monkeypatch.delenv("GREYWHALE_PORT", raising=False)
+    Path("log").write_text("nothing")
+    Path("folder").mkdir()
+    Path("table").write_bytes((Path(__file__).parents[2] / "shared/fuzzy_tables/table_10.toml").read_bytes())
+    assert run(list(arguments)) == 2
+    said = capsys.readouterr().err
+    assert said.startswith(f"greywhale: {sentence}")
+    assert said.count("\n") == 1
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["folder", "log", "table"]
+
+
+# Verbs that write files, with what they need to come to the outputs; `there` is there already.
+WRITERS = (
+    ("record", "-o", "there"),
+    ("record", "--excite", "-o", "there"),
+    ("record", "--excite", "--save-motion", "there"),
+    ("replay", "steps", "-o", "there"),
+    ("identify", "none", "-o", "there"),
+    ("tune", "none", "-o", "there"),
+    ("evaluate", "none", "--picture", "there"),
+    ("export", "--urdf", "default", "--out", "there"),
+    ("export", "--fis", "table_10", "--joint", "0", "--out", "there"),
+    ("compare", "-o", "there.csv"),
+    ("params", "backup", "there"),
+    ("calibrate", "--backup", "there"),
+    ("arm", "new", "--answers", "none", "-o", "there"),
+    ("arm", "import", "none", "-o", "there"),
+    ("arm", "match", "default", "-o", "there"),
+)
+
+
+@pytest.fixture
+def alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty folder, and no board."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("greywhale.protocol.ports.find_ports", list)
+    monkeypatch.delenv("GREYWHALE_PORT", raising=False)
+    return tmp_path
+
+
+@pytest.mark.parametrize("arguments", WRITERS, ids=" ".join)
+def test_a_file_that_is_there_is_kept_unless_told(alone: Path, capsys: Captured, arguments: tuple[str, ...]) -> None:
+    """Refused before anything else: there is no board, and no input. With --overwrite that is what is missing."""
+    name = arguments[-1]
+    Path(name).write_text("kept")
+    told = f"greywhale: {name}: exists already; write over it with --overwrite, or name another file.\n"
+    assert run(list(arguments)) == 2
+    assert capsys.readouterr().err == told
+    assert Path(name).read_text() == "kept"
+    if arguments[0] in ("export", "compare"):  # which need nothing else
+        more = ["--functions", "sphere", "--methods", "gwo,woa", "--budget", "30", "--seeds", "2", "--jobs", "1"]
+        assert run([*arguments, "--overwrite", *(more if arguments[0] == "compare" else [])]) == 0
+        assert Path(name).read_text() != "kept"
+        return
+    assert run([*arguments, "--overwrite"]) != 0
+    assert "exists already" not in capsys.readouterr().err
+    assert Path(name).read_text() == "kept"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "name"),
+    [
+        (("record",), "log.csv"),
+        (("replay", "steps"), "log.csv"),
+        (("identify", "none"), "model.toml"),
+        (("tune", "none"), "controller.toml"),
+        (("calibrate",), "before-calibration.toml"),
+        (("arm", "new"), "arm.toml"),
+        (("arm", "match", "default"), "matched.toml"),
+        (("export", "--fis", "table_10", "--out", "c.fis"), "c_joint2.fis"),
+        (("identify", "none", "--pictures", "."), "responses_1.png"),
+        (("tune", "none", "--pictures", "."), "sets.png"),
+    ],
+)
+def test_so_is_one_with_a_name_that_nobody_gave(
+    alone: Path, capsys: Captured, arguments: tuple[str, ...], name: str
+) -> None:
+    Path(name).write_text("kept")
+    assert run(list(arguments)) == 2
+    assert capsys.readouterr().err.startswith(f"greywhale: {name}: exists already; write over it with --overwrite")
+    assert [path.name for path in alone.iterdir()] == [name]
+
+
+def test_every_verb_that_writes_a_file_is_among_them() -> None:
+    """Those with --overwrite; the folders of demo, commission and reproduce belong to these verbs."""
+    for verb, option in WRITES.items():
+        assert option == ("overwrite" in {one.name for one in command_of(verb).params}), verb
+    assert {verb for verb, option in WRITES.items() if option} == {
+        " ".join(words[: 2 if words[0] in ("params", "arm") else 1]) for words in WRITERS
+    }
+
+
+def leaves(group: click.Group, before: str = "") -> Iterator[str]:
+    context = click.Context(group)
+    for name in group.list_commands(context):
+        command = group.get_command(context, name)
+        if isinstance(command, click.Group):
+            yield from leaves(command, f"{before}{name} ")
+        else:
+            yield f"{before}{name}"
+
+
+def command_of(verb: str) -> click.Command:
+    command: click.Command = greywhale
+    for word in verb.split():
+        assert isinstance(command, click.Group)
+        found = command.get_command(click.Context(command), word)
+        assert found is not None
+        command = found
+    return command
+
+
+_OUTPUTS = {"out", "backup", "picture", "save_motion", "pictures"}
+_FOLDERS = ("demo", "commission", "reproduce")
+WRITES = {
+    verb: verb == "params backup"
+    or (verb not in _FOLDERS and bool(_OUTPUTS & {str(one.name) for one in command_of(verb).params}))
+    for verb in leaves(greywhale)
+}

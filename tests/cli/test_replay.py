@@ -32,4 +32,4 @@ def test_the_steep_ones_of_a_hand_are_refused(name: str) -> None:
 
 def test_any_other_name_is_a_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert entry.run(["replay", "step", "--out", str(tmp_path / "log.csv")]) == 1
-    assert "step: cannot be read" in capsys.readouterr().err
+    assert "step: cannot be read: no such file or directory. Did you mean steps" in capsys.readouterr().err

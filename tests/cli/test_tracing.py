@@ -28,7 +28,7 @@ def _quick_and_alone(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_verbose_tells_the_steps_on_stderr_and_leaves_stdout_alone(capsys: Captured, tmp_path: Path) -> None:
     with FakeBoard() as board:
-        arguments = ["params", "backup", str(tmp_path / "b.toml"), "--port", board.port, "--json"]
+        arguments = ["params", "backup", str(tmp_path / "b.toml"), "--port", board.port, "--json", "--overwrite"]
         assert entry.run(["-v", *arguments]) == 0
         said = capsys.readouterr()
         assert entry.run(["-vv", *arguments]) == 0
@@ -100,6 +100,7 @@ def test_control_characters_reach_no_terminal(capsys: Captured) -> None:
         ("greywhale params set joint0.k", ["joint0.kp=", "joint0.kd=", "joint0.ki=", "joint0.ku_mv="]),
         ("greywhale params get supply", ["supply_mv"]),
         ("greywhale identify --arm gre", ["grey_box"]),
+        ("greywhale upload bef", ["before_tuning"]),
         ("greywhale record --ena", ["--enable"]),
     ],
 )

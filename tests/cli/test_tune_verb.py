@@ -23,14 +23,17 @@ from greywhale.cli import entry
 from greywhale.cli import tune as verb
 from greywhale.files import controller
 from greywhale.loop import CONTROLLER_COLUMNS, controller_row, default_controller
+from greywhale.protocol import schema
 from greywhale.tune import tune
 from tests.board.fake_board import FakeBoard
 from tests.tune.models import log_facts, write_model
 
 Captured = pytest.CaptureFixture[str]
+CHANGING = (schema.ParamSetRequest, schema.ParamApplyRequest, schema.ParamSaveRequest)
 # Small, but the whole way: a search, its margins, its held-out motions.
 QUICK = ("--method", "random", "--budget", "4", "--samples", "1")
 DEADLINE_S = 120.0
+ROOT = Path(__file__).parents[2]
 
 
 @pytest.fixture
@@ -75,15 +78,20 @@ def no_floors(monkeypatch: pytest.MonkeyPatch) -> None:
         (("--bounds", "ku=3..9", "--strategy", "mf"), "Ku is not searched by strategy mf; leave out its bounds."),
         (("--bounds", "Ku=3-9"), "--bounds Ku=3-9: bounds look like NAME=LOW..HIGH, Ku=3..9 for one."),
         (("--bounds", "Ku=a..9"), "--bounds Ku=a..9: bounds look like NAME=LOW..HIGH, Ku=3..9 for one."),
-        (("--bounds", "Ku=nan..9"), "the bounds of Ku are nan and 9;"),
+        (("--bounds", "Ku=nan..9"), "the bounds of Ku are nan and 9; give two finite numbers."),
+        (("--bounds", "Ku=3..inf"), "the bounds of Ku are 3 and inf; give two finite numbers."),
+        (("--budget", "1" + 30 * "0"), f"budget is 1{30 * '0'}, but it must be at most 1000000."),
+        (("--seed", "2147483648"), "seed is 2147483648, but it must be at most 2147483647."),
+        (("--workers", "100000"), "workers is 100000, but it must be at most 1024."),
+        (("--samples", "1000000"), "samples is 1000000, but it must be at most 1000."),
         (("--bounds", "Ku=3..9", "--bounds", "ku=3..8"), "--bounds ku=3..8: Ku has bounds already; give them once."),
         (
             ("--out", "nowhere/controller.toml"),
             "nowhere/controller.toml: the folder nowhere does not exist; create it,",
         ),
         (("--out", "model.toml"), "model.toml: this file is read from; write elsewhere."),
-        (("--out", "."), ".: cannot be written: is a directory."),
-        (("--out", "/dev/null"), "/dev/null: cannot be written: not an ordinary file."),
+        (("--out", "."), ".: this is a folder; name a file in it."),
+        (("--out", "/dev/null"), "/dev/null: cannot be written: not an ordinary file; write elsewhere."),
         (("--resume",), "controller.toml.journal: no interrupted tuning is there to go on with; leave --resume out."),
         (("--pictures", "model.toml"), "model.toml: pictures go into a folder, and this is a file."),
         (("--out", ""), "the value of --out is empty; give one, or leave it out."),
@@ -107,7 +115,15 @@ def test_bad_usage_is_one_sentence_and_code_2_before_any_work(
     [
         (("none.toml",), "none.toml: cannot be read: no such file or directory."),
         (("model.toml", "--start", "none.toml"), "none.toml: cannot be read: no such file or directory."),
-        (("model.toml", "--start", "model.toml"), "model.toml: joint[0].kp is missing"),
+        (("model.toml", "--start", "model.toml"), "model.toml: this is a model, but a controller file is needed here"),
+        (
+            ("table.toml",),
+            "table.toml: this is a controller file, but an arm file or a model is needed here (greywhale",
+        ),
+        (
+            ("model.toml", "--params", "table.toml"),
+            "table.toml: this is a controller file, but a parameter file is needed here (greywhale upload takes",
+        ),
         (("model.toml", "--params", "none.toml"), "none.toml: cannot be read: no such file or directory."),
         (("model.toml", "--arm", "none.toml"), "none.toml: cannot be read: no such file or directory."),
         (("doubtful.toml",), "doubtful.toml: it was not validated on a second log; record another one and identify"),
@@ -122,6 +138,7 @@ def test_files_that_will_not_do_are_named_before_any_work(
     monkeypatch.chdir(model.parent)
     write_model(Path("doubtful.toml"), log=[log_facts()])
     Path("log.csv").write_text("time_s,leader_0\n0.0,1.0\n", encoding="utf-8")
+    Path("table.toml").write_bytes((ROOT / "shared/fuzzy_tables/table_10.toml").read_bytes())
     before = sorted(path.name for path in model.parent.iterdir())
     assert entry.run(["tune", *arguments]) == 1
     said = capsys.readouterr()
@@ -155,7 +172,7 @@ def test_any_number_of_workers_writes_the_same_file(no_floors: None, model: Path
     texts = []
     for options in (("--workers", "1"), ("--workers", "3"), ("--seed", "1")):
         out = model.parent / "controller.toml"
-        assert entry.run(["tune", str(model), "-o", str(out), *many, *options, "--json"]) == 0
+        assert entry.run(["tune", str(model), "-o", str(out), "--overwrite", *many, *options, "--json"]) == 0
         texts.append(out.read_bytes())
     assert texts[0] == texts[1]
     assert texts[2] != texts[0]
@@ -229,7 +246,25 @@ def test_an_upload_warns_where_board_and_tuning_differ(
         assert entry.run(["upload", str(tmp_path / "c.toml"), "--port", board.port, "--json"]) == 0
         assert json.loads(capsys.readouterr().out)["warnings"] == warnings
         assert entry.run(["upload", str(tmp_path / "c.toml"), "--port", board.port]) == 0
-    assert capsys.readouterr().out.count("Warning: ") == len(warnings)
+    said = capsys.readouterr()
+    assert said.err == "".join(f"Warning: {warning}\n" for warning in warnings)
+    assert "Warning" not in said.out
+
+
+def test_an_upload_warns_before_it_stores(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:
+    """Whoever sees the warning and presses Ctrl-C keeps what the board had."""
+    monkeypatch.setattr(device.Device.__init__, "__defaults__", (0.0, 0.5))
+    controller.save(tmp_path / "c.toml", default_controller(), tuning={"period_ms": 20})
+
+    def echo(text: str, err: bool) -> None:
+        assert "period_ms = 20" in text
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("greywhale.cli.upload.click.echo", echo)
+    with FakeBoard() as board:
+        assert entry.run(["upload", str(tmp_path / "c.toml"), "--port", board.port]) == 130
+        assert board.asked(schema.ParamGetRequest) > 0
+        assert [board.asked(request) for request in CHANGING] == [0, 0, 0]
 
 
 # --- Ctrl-C ---------------------------------------------------------------------------------------------------------

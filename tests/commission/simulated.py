@@ -82,7 +82,8 @@ def _write(
 ) -> int | None:
     """The log of the traces; the joint for which the watch stopped it."""
     counts = np.round(np.stack([leader, follower]) / ANGLE_LSB).astype(int)
-    with LogWriter(path, Origin("0.1.0", table.board.key, table.crc, table.period_ms, EVERY)) as log:
+    origin = Origin("0.1.0", table.board.key, table.crc, table.period_ms, EVERY, joints=table.joints_in_use)
+    with LogWriter(path, origin) as log:
         for row in range(len(leader)):
             tick = EVERY * row
             log.append(tick / 1000, leader[row], follower[row], volts[row], "following")

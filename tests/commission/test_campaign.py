@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,9 +15,11 @@ from greywhale.commission.learn import Learnt
 from greywhale.commission.page import facts, save_page
 from greywhale.commission.search import KD, KI, KP
 from greywhale.errors import UserError
-from greywhale.files.arm import default_arm
+from greywhale.files.arm import default_arm, load_arm
 from greywhale.files.leader import load_leader
+from greywhale.files.model import arm_toml
 from greywhale.loop.controllers import controllers_of
+from greywhale.table import ParameterTable
 from greywhale.tune.model import Model
 from tests.commission.simulated import SimulatedRig
 from tests.tune.models import write_model
@@ -175,3 +178,32 @@ def test_the_report_shows_predicted_beside_measured(rig: SimulatedRig, options: 
     assert error["cells"][0]["measured"] in page
     assert "data:image/png;base64," in page
     assert page.count("now on the board") == 1
+
+
+def test_of_an_arm_with_two_joints_those_are_tried_and_the_others_keep_what_they_had(
+    tmp_path: Path, options: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    arm, before = load_arm("two_joints"), ParameterTable.defaults().with_joints((0, 1))
+    rig = SimulatedRig(arm, before)
+    monkeypatch.setattr(campaign, "connected", rig.connected)
+    (tmp_path / "arm.toml").write_text(arm_toml(arm, "Two joints."), encoding="utf-8")
+    model = write_model(tmp_path / "two.toml", arm, joints=(0, 1), parameters=before.changes())
+    outcome = commission(options(model=model, arm_file=str(tmp_path / "arm.toml")))
+    assert outcome.improved
+    assert outcome.best.passed
+    assert [verdict.score < 0.5 for verdict in outcome.best.verdicts] == [True] * 4
+    assert outcome.best.score > 1e-3, "joints that are not in use do not count"
+    assert rig.stored.joints_in_use == (0, 1)
+    assert "joint 2" not in outcome.text()
+    assert "joints 0 and 1: " in outcome.text()
+    told = facts(outcome)
+    assert told["joints"] == ["0 base yaw", "1 shoulder pitch"]
+    assert len(told["before"]["rows"][0]["cells"]) == 2
+    save_page(outcome, tmp_path / "report.html")
+
+
+def test_an_arm_file_of_other_joints_is_refused(tmp_path: Path, rig: SimulatedRig, options: Make) -> None:
+    (tmp_path / "arm.toml").write_text(arm_toml(load_arm("two_joints"), "Two joints."), encoding="utf-8")
+    with pytest.raises(UserError, match="the arm file uses joints 0 and 1, but the board uses all four joints"):
+        commission(options(model=None, arm_file=str(tmp_path / "arm.toml")))
+    assert rig.played == []

@@ -75,6 +75,31 @@ def test_a_joint_that_keeps_its_controller_may_feel_its_neighbours() -> None:
     assert not verdict(with_joint("error", 3, 1.11e-3), 3, kept).passed
 
 
+def test_a_joint_that_keeps_its_controller_may_rest_less_quietly() -> None:
+    kept = np.array([False, False, False, True])
+    restless = replace(BEFORE, unrest=np.tile([0.001, 0.002, 0.002, 0.002], (len(PARTS), 1)))
+    limits = Limits.of([restless], kept)
+    noise, beyond = 0.001**2, 0.002**2 - 0.001**2
+    assert limits.unrest[2] == pytest.approx(np.sqrt(noise + 1.5**2 * beyond))
+    assert limits.unrest[3] == pytest.approx(np.sqrt(noise + 2.0**2 * beyond))
+
+
+def test_only_a_little_unrest_can_be_borne() -> None:
+    assert verdict(BEFORE, 2).bearable
+    little, much = with_joint("unrest", 2, 0.00172), with_joint("unrest", 2, 0.00173)
+    assert verdict(little, 2).bearable
+    assert not verdict(little, 2).passed
+    assert 1.9 < verdict(little, 2).value / verdict(little, 2).score < 2.0
+    assert verdict(much, 2).value == np.inf
+    assert not verdict(much, 2).bearable
+    error = BEFORE.error.copy()
+    error[1, 2] = 1.1e-3
+    assert not verdict(replace(little, error=error), 2).bearable, "it follows worse too"
+    assert not verdict(with_joint("rattle", 2, 0.0025), 2).bearable
+    error[1:] = np.nan
+    assert not verdict(replace(BEFORE, error=error), 0).bearable, "it was not seen to the end"
+
+
 def test_a_joint_that_ended_the_trial_failed_and_the_others_are_not_judged() -> None:
     error = BEFORE.error.copy()
     error[1:] = np.nan

@@ -21,7 +21,7 @@ def verdict(
     score: float, *, restless: bool = False, chatters: bool = False, worse: bool = False, excess: float = 3.0
 ) -> Verdict:
     faults = (("restless",) if restless or chatters else ()) + (("worse",) if worse else ())
-    return Verdict(0, faults, restless or chatters, chatters and not restless, excess, score, True)
+    return Verdict(0, faults, restless or chatters, chatters and not restless, excess, score, True, not faults)
 
 
 def begun() -> JointSearch:

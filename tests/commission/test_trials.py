@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from greywhale.commission.choose import confirm
+from greywhale.commission.judge import BEARABLE
+from greywhale.commission.outcome import Outcome
 from greywhale.commission.rig import Rig
 from greywhale.commission.search import KD, KI, KP, JointSearch
 from greywhale.commission.trials import Trial, Trials
@@ -40,8 +43,39 @@ def test_better_controllers_pass_and_are_ranked(trials: Trials, rig: SimulatedRi
     some = play(trials, rig, stiffer(trials, [1], BETTER))
     more = play(trials, rig, stiffer(trials, [0, 1, 2], BETTER))
     assert all(trial.passed for trial in (before, some, more))
-    assert trials.passing() == [more, some, before]
+    assert trials.ranked() == [more, some, before]
     assert more.verdicts[1].score < 0.7
+
+
+def judged(trial: Trial, faults: tuple[str, ...], bearable: bool, score: float) -> Trial:
+    """The trial with other verdicts: joint 0 has these faults, and all joints follow alike."""
+    verdicts = [replace(one, faults=(), bearable=True, score=score) for one in trial.verdicts]
+    verdicts[0] = replace(verdicts[0], faults=faults, bearable=bearable, excess=BEARABLE)
+    return replace(trial, verdicts=tuple(verdicts))
+
+
+@pytest.mark.parametrize(
+    ("bearable", "score", "taken"),
+    [(True, 0.67, True), (True, 0.68, False), (False, 0.1, False)],
+    ids=["follows far better", "follows hardly better", "is too restless"],
+)
+def test_a_little_unrest_has_its_price(
+    trials: Trials, rig: SimulatedRig, bearable: bool, score: float, taken: bool
+) -> None:
+    """One of four joints rests as unquietly as can be borne: its error counts twice."""
+    trial = play_before(trials, rig)
+    quiet = judged(trial, (), True, 0.8)
+    restless = judged(trial, ("it hunts at rest",), bearable, score)
+    trials.done += [quiet, restless]
+    assert trials.ranked()[0] is (restless if taken else quiet)
+
+
+def test_the_summary_says_what_is_borne(trials: Trials, rig: SimulatedRig) -> None:
+    fault = "it hunts at rest (2.2 mrad rms, at most 2.0)"
+    restless = judged(play_before(trials, rig), (fault,), True, 0.1)
+    said = f"Joint 0 (base yaw): {fault}. Nothing quieter follows so well."
+    assert said in Outcome(trials, (), restless).text()
+    assert said not in Outcome(trials, (), judged(trials.before, (), True, 0.1)).text()
 
 
 def test_a_joint_that_hunts_is_stopped_and_named(trials: Trials, rig: SimulatedRig) -> None:

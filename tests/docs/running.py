@@ -19,7 +19,6 @@ import io
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import click
@@ -32,6 +31,7 @@ from tools.docs.site import ROOT
 SHORTER = {
     "record": "--seconds 2",
     "record --excite": "--seconds 4 --budget 2",
+    "info --watch": "--seconds 0.5",
     "doctor": "--seconds 0.5",
     "compare": "--functions sphere --budget 60 --seeds 2 --jobs 1",
     "flash": "--hex firmware.hex",  # PlatformIO would build it anew
@@ -84,8 +84,7 @@ def run_line(line: str, parsed_only: bool = False) -> str:
         return "a test must learn what this is"
     if parsed_only or _is_parsed_only(command):
         return parse(words[1:])
-    _make_room(words)
-    done = run([*words[1:], *_shorter(words[1:])])
+    done = run([*words[1:], *_shorter(words[1:]), *writes_over(words[1:])])
     return "" if done.code == 0 else f"{done.code}: {done.err}"
 
 
@@ -127,15 +126,17 @@ def _is_parsed_only(command: Command) -> bool:
     )
 
 
-def _make_room(words: list[str]) -> None:
-    """Remove what a verb would not write over: a page's reader does not have it yet."""
-    if words[1:2] == ["arm"] and "--out" in words:
-        Path(words[words.index("--out") + 1]).unlink(missing_ok=True)
+def writes_over(arguments: list[str]) -> list[str]:
+    """--overwrite, where the verb has it: a page's reader does not have the files yet."""
+    commands = _commands(greywhale, arguments)
+    has = bool(commands) and any(one.name == "overwrite" for one in commands[-1].params)
+    return ["--overwrite"] if has and "--overwrite" not in arguments else []
 
 
 def _shorter(arguments: list[str]) -> list[str]:
     verb = next((word for word in arguments if word in VERBS), "")
-    key = "record --excite" if verb == "record" and "--excite" in arguments else verb
+    longer = {"record": "--excite", "info": "--watch"}.get(verb)
+    key = f"{verb} {longer}" if longer in arguments else verb
     return [] if "--hex" in arguments else SHORTER.get(key, "").split()
 
 

@@ -12,7 +12,7 @@ from jsonschema import Draft202012Validator, ValidationError
 
 from greywhale.cli.verbs import VERBS, greywhale
 from greywhale.demo.learn import Learnt
-from tests.docs.running import Once, run
+from tests.docs.running import Once, run, writes_over
 from tools.bench.hands import SECOND_DEG, Hands, bench_of, mounted_anyhow, run_calibrate
 from tools.docs.schemas import SCHEMAS, read_answer, schema_name, validate
 from tools.docs.site import ROOT
@@ -88,7 +88,8 @@ def test_what_is_no_line_of_json_is_found(text: str) -> None:
 def test_what_a_verb_prints_is_what_its_schema_says(verb: str, scratch: Path, fresh_board: None, once: None) -> None:
     for call in CALLS[verb]:
         force = ["--force"] if verb == "tune" else []
-        done = run([*verb.split(), *call.split(), *force, "--json"])
+        words = [*verb.split(), *call.split()]
+        done = run([*words, *force, *writes_over(words), "--json"])
         assert done.code == 0, done.err
         validate(verb, read_answer(done.out))
 

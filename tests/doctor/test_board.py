@@ -21,7 +21,7 @@ HELLO = schema.HelloReply(
 )  # fmt: skip
 STATUS = schema.StatusReply(
     schema.State.DISABLED, schema.StopReason.NONE, schema.Fault.NONE, 255, 5000, 0, 0, 0, 0, 0, 120,
-    schema.SaveState.IDLE,
+    schema.SaveState.IDLE, 12,
 )  # fmt: skip
 
 
@@ -30,7 +30,7 @@ def verdict(check: str, *, hello: schema.HelloReply = HELLO, status: schema.Stat
     return next(one.verdict for one in found if one.check == check)
 
 
-@pytest.mark.parametrize("check", ["firmware", "stored set", "last start", "fault", "ticks"])
+@pytest.mark.parametrize("check", ["firmware", "stored set", "last start", "fault", "ticks", "EEPROM"])
 def test_a_sound_board_is_good_in_every_way(check: str) -> None:
     assert verdict(check) is Verdict.GOOD
 
@@ -41,6 +41,21 @@ def test_each_trouble_is_told_in_its_own_finding() -> None:
         assert verdict("last start", hello=replace(HELLO, reset_cause=cause)) is Verdict.BAD
     assert verdict("fault", status=replace(STATUS, fault=schema.Fault.TRACKING, fault_where=2)) is Verdict.BAD
     assert verdict("ticks", status=replace(STATUS, late_ticks=1)) is Verdict.BAD
+
+
+@pytest.mark.parametrize(
+    ("saves", "expected", "says"),
+    [
+        (0, Verdict.GOOD, "No set is stored"),
+        (1, Verdict.GOOD, "1 save: less than 0.1 % of the 100,000"),
+        (12_345, Verdict.GOOD, "12,345 saves: 12.3 % of the 100,000"),
+        (50_000, Verdict.NOTE, "50,000 saves: 50.0 % of the 100,000"),
+    ],
+)
+def test_the_saves_are_told_against_what_a_cell_is_made_for(saves: int, expected: Verdict, says: str) -> None:
+    (wear,) = (one for one in examine_status(HELLO, replace(STATUS, saves=saves)) if one.check == "EEPROM")
+    assert wear.verdict is expected
+    assert wear.says.startswith(says)
 
 
 def test_another_version_is_worth_a_note() -> None:
@@ -70,3 +85,14 @@ def test_a_calibration_is_missed_until_every_potentiometer_has_one() -> None:
     assert one.says.startswith("1 potentiometer has the shipped zero and scale (follower3)")
     (done,) = examine_table(ParameterTable.defaults().with_raw(some | {"follower3.zero": 9000}), None)
     assert done.verdict is Verdict.GOOD
+
+
+def test_joints_that_are_not_in_use_are_told_and_no_trouble() -> None:
+    def told(*idle: int) -> list[str]:
+        table = ParameterTable.defaults().with_raw({f"follower{joint}.scale": 0 for joint in idle})
+        return [f"{one.verdict.name}: {one.says}" for one in examine_table(table, None) if one.check == "joints"]
+
+    assert told() == []
+    assert told(2, 3) == ["GOOD: Joints 2 and 3 are not in use (follower's scale 0)."]
+    assert told(1) == ["GOOD: Joint 1 is not in use (follower's scale 0)."]
+    assert told(0, 1, 2, 3) == ["BAD: No joint is in use: every follower's scale is 0."]

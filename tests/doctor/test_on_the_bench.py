@@ -89,3 +89,20 @@ def test_a_board_without_power_is_named_and_the_port_is_still_good(
     assert code == 1
     assert found["port"].startswith("good")
     assert "nothing answers" in found["board"]
+
+
+def test_open_inputs_of_joints_that_are_not_in_use_are_no_trouble(capsys: pytest.CaptureFixture[str]) -> None:
+    with BenchProcess("--speed", "max", "--arm", "two_joints") as two:
+        code, found = doctor(two, capsys)
+        assert code == 1
+        assert "These read alike" in found["inputs"]
+        idle = [f"{side}{joint}.scale=0" for side in ("leader", "follower") for joint in (2, 3)]
+        assert run(["params", "set", *idle, "--port", two.port]) == 0
+        capsys.readouterr()
+        code, found = doctor(two, capsys)
+        assert code == 0
+        assert found["joints"].startswith("good: Joints 2 and 3 are not in use")
+        assert run(["info", "--port", two.port]) == 0
+        assert "not in use: leader potentiometer 2, leader potentiometer 3, follower potentiometer 2" in (
+            capsys.readouterr().out
+        )

@@ -224,7 +224,7 @@ def test_the_bench_ends_with_its_parent_and_leaves_no_link(start_bench: Start, t
         (("--arm", "nowhere.toml"), "nowhere.toml"),
         (("--firmware", "nowhere.hex"), "nowhere.hex"),
         (("--firmware", "pyproject.toml"), "pyproject.toml, line 1: a record must begin with a colon"),
-        (("--eeprom", "/proc/version"), "EEPROM"),
+        (("--eeprom", "/proc/version"), "/proc/version: cannot be written"),
         (("--speed", "7"), "invalid choice"),
     ],
 )

@@ -118,3 +118,10 @@ def test_a_design_tells_itself_in_a_sentence_and_in_numbers() -> None:
     assert "joint3.alpha" in told["expected_deviation"]  # type: ignore[operator]
     assert made.text().endswith(".")
     assert " % after this motion" in made.text()
+
+
+def test_of_an_arm_with_fewer_joints_only_those_move() -> None:
+    found = design(load_arm("two_joints"), np.zeros(4), seconds=4.0, budget=8)
+    assert np.all(found.motion.angles[:, 2:] == 0.0)
+    assert np.ptp(found.motion.angles, axis=0)[:2].min() > 0.3
+    assert {one.joint for one in found.problem.parameters} == {0, 1}

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from greywhale.arm import ArmParameters
+from greywhale.arm.plants import columns
 from greywhale.errors import BAD_USAGE, UserError
 from greywhale.excite.limits import MARGIN_RAD, REACH_RAD, family, limits_of, parse_range
 from greywhale.files.arm import load_arm
@@ -97,3 +98,16 @@ def test_a_range_that_is_none_is_refused(text: str) -> None:
 
 def test_a_range_is_a_joint_and_two_angles() -> None:
     assert parse_range("2:-0.5:0.75") == (2, (-0.5, 0.75))
+
+
+def test_joints_that_are_not_in_use_stay_at_0() -> None:
+    arm, board = load_arm("two_joints"), DEFAULTS.with_joints((0, 1))
+    limits = limits_of(arm, board, np.zeros(4), {})
+    assert np.all(limits.low[2:] == 0.0)
+    assert np.all(limits.high[2:] == 0.0)
+    assert np.all(limits.high[:2] > 0.5)
+    assert np.all(family(arm)[:, columns("stop_max")][:, 2:] == 0.0)
+    with pytest.raises(UserError, match="--range names joint 2, which is not in use"):
+        limits_of(arm, board, np.zeros(4), {2: (-0.5, 0.5)})
+    with pytest.raises(UserError, match="the arm file uses joints 0 and 1, but the board uses all four joints"):
+        limits_of(arm, DEFAULTS, np.zeros(4), {})

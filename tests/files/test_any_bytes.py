@@ -29,7 +29,8 @@ SLOWEST_S = 5.0  # a machine may be busy; what these tests guard against took 14
 
 
 def log(path: Path) -> None:
-    with LogWriter(path, Origin("1.2.3", "mega2560", 0xBEEF, 20, 5)) as writer:
+    table = ParameterTable.defaults()
+    with LogWriter(path, Origin("1.2.3", "mega2560", table.crc, 20, 5, table)) as writer:
         for row in range(4):
             writer.append(row * 0.005, [0.1] * 4, [-0.1] * 4, [1.0] * 4, "following")
 

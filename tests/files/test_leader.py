@@ -48,7 +48,7 @@ def test_a_log_is_a_leader_file(tmp_path: Path) -> None:
     [
         ("", ["no columns"]),
         (HEADER, ["0 rows"]),
-        (HEADER + "0,0,0,0,0\n", ["1 rows"]),
+        (HEADER + "0,0,0,0,0\n", ["1 row of"]),
         ("time,leader_0,leader_1,leader_2,leader_3\n0,0,0,0,0\n", ["column time_s is missing"]),
         ("time_s,leader_0,leader_1,leader_2\n0,0,0,0\n", ["column leader_3 is missing"]),
         (HEADER.strip() + ",elbow\n0,0,0,0,0,0\n", ["elbow"]),

@@ -9,6 +9,7 @@ import resource
 import stat
 import tracemalloc
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -189,6 +190,28 @@ def test_the_writer_refuses_what_the_reader_would(tmp_path: Path, time: float, l
             log.append(time, leader, ROW[1], ROW[2], state)
 
 
+@pytest.mark.parametrize("voltages", [True, False])
+def test_a_period_that_the_rows_contradict_is_refused(tmp_path: Path, voltages: bool) -> None:
+    """The voltages change at every row of 1 ms, or at every 20th."""
+    path = tmp_path / "log.csv"
+
+    def write_changing(every: int, period_ms: int) -> None:
+        with LogWriter(path, replace(ORIGIN, period_ms=period_ms, every_ticks=1)) as log:
+            for row in range(3000):
+                log.append(row * 0.001, ROW[0], ROW[1], [0.1 * (row // every % 7)] * 4, "following")
+
+    for every, period_ms in ((1, 1), (20, 20), (20, 1), (40, 20)):
+        write_changing(every, period_ms)
+        assert len(read_log(path, voltages).time) == 3000
+    write_changing(1, 20)
+    with pytest.raises(UserError) as refused:
+        read_log(path, voltages)
+    assert refused.value.message == (
+        f"{path}: period_ms is 20 in the header, but by the time column voltages change every 1 ms: "
+        "it is the header of another log, or was edited."
+    )
+
+
 def test_a_folder_that_is_not_there_is_named(tmp_path: Path) -> None:
     with pytest.raises(UserError, match=r"none/log\.csv: cannot be written: no such file or directory"):
         write(tmp_path / "none" / "log.csv")
@@ -345,3 +368,18 @@ def test_a_log_takes_no_more_memory_than_its_numbers(tmp_path: Path, monkeypatch
     assert len(log.time) == 60_000
     block = 40 * csv_file.BLOCK  # what the parsing of one block takes
     assert most < 60_000 * 13 * 8 + 60_000 + block
+
+
+def test_the_header_says_which_joints_are_in_use_where_not_all_are(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    with LogWriter(path, Origin(joints=(0, 2))) as log:
+        for row in range(3):
+            log.append(row * 0.005, *ROW)
+    assert "# joints_in_use: 0,2\n" in path.read_text()
+    assert read_log(path).joints_in_use == (0, 2)
+    path.write_text(path.read_text().replace("joints_in_use: 0,2", "joints_in_use: 0,7"))
+    with pytest.raises(UserError, match=r"log\.csv: joints_in_use: '0,7' is no list of joints"):
+        read_log(path)
+    write(path)
+    assert "joints_in_use" not in path.read_text()
+    assert read_log(path).joints_in_use == (0, 1, 2, 3)

@@ -12,7 +12,7 @@ from greywhale.errors import UserError
 from greywhale.files import parameter_file
 from greywhale.protocol import schema
 from greywhale.protocol.declared import Parameter
-from greywhale.table import ParameterTable
+from greywhale.table import ParameterTable, physical
 
 
 @st.composite
@@ -41,7 +41,7 @@ def test_every_raw_value_survives(tmp_path: Path, values: tuple[int, ...]) -> No
 @pytest.mark.parametrize("parameter", schema.PARAMETERS, ids=lambda p: p.name)
 def test_neighbouring_raw_values_stay_apart_at_the_ends_of_the_range(parameter: Parameter) -> None:
     for raw in {parameter.minimum, parameter.minimum + 1, parameter.maximum - 1, parameter.maximum} - {0}:
-        assert parameter.to_raw(parameter_file.physical(parameter, raw)) == raw
+        assert parameter.to_raw(physical(parameter, raw)) == raw
 
 
 def test_a_backup_of_layout_1_gets_the_defaults_of_what_it_lacks(tmp_path: Path) -> None:
@@ -61,7 +61,7 @@ def test_a_backup_of_layout_1_gets_the_defaults_of_what_it_lacks(tmp_path: Path)
         ("kp = 0.513", "kp = 1e-9", "joint0.kp is 1e-09 1/rad, which the board would store as 0"),
         ("period_ms = 1", "", "period_ms is missing"),
         ("unrest_rate = 6", "", "unrest_rate is missing"),
-        ("period_ms = 1", "period_ms = 1\nperiod = 2", "unknown key period"),
+        ("period_ms = 1", "period_ms = 1\nperiod = 2", "unknown key period; perhaps period_ms is meant."),
         ("period_ms = 1", "period_ms = true", "period_ms is True, but it must be a number"),
         ("period_ms = 1", "period_ms = inf", "period_ms is inf"),
         ("period_ms = 1", "period_ms =", "not valid TOML"),

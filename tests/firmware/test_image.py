@@ -54,6 +54,22 @@ def test_no_tick_is_late_while_a_set_is_staged_applied_and_saved_with_telemetry_
     assert seen.tick_us_max < 500
 
 
+def test_the_board_counts_the_sets_that_were_stored(bench: Bench) -> None:
+    assert status(bench).saves == 0, "its EEPROM is blank"
+    values = list(schema.DEFAULTS)
+    for saves, limit in enumerate((1.0, 1.1, 1.1, 1.2)):
+        parameter = schema.PARAMETER_BY_NAME["tracking_limit"]
+        values[parameter.index] = parameter.to_raw(limit)
+        bench.ask(schema.ParamSetRequest, struct.pack("<Hi", parameter.index, values[parameter.index]))
+        bench.ask(schema.ParamApplyRequest, struct.pack("<H", schema.param_crc(values)))
+        bench.ask(schema.ParamSaveRequest)
+        bench.wait(1500)
+        assert status(bench).saves == (saves + 1 if saves < 2 else saves), "the same set again writes nothing"
+    bench.board.reset()
+    bench.wait(100)
+    assert status(bench).saves == 3
+
+
 def test_enabling_right_after_applying_works(bench: Bench) -> None:
     bench.ask(schema.ParamApplyRequest, struct.pack("<H", schema.param_crc(schema.DEFAULTS)))
     bench.ask(schema.EnableRequest, struct.pack("<H", 0))

@@ -26,10 +26,7 @@ def coefficients(joint: int) -> bytes:
         *(values[schema.PARAMETER_BY_NAME[f"joint{joint}.{field}"].index] for field in JOINT_FIELDS)
     )
     found = twin.compile_settings(settings, values[schema.PARAMETER_BY_NAME["period_ms"].index])
-    sides = b"".join(
-        struct.pack("<IIB", side.zero, side.outer, side.zero_short | side.outer_short << 1)
-        for side in (*found.e, *found.ce)
-    )
+    sides = b"".join(struct.pack("<IIB", side.zero, side.outer, side.short_ramps) for side in (*found.e, *found.ce))
     return sides + struct.pack("<IH", found.integral, found.ku_mv)
 
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import ClassVar
 
 import pytest
 from pydantic import BaseModel, Field
 
 from greywhale.errors import UserError
 from greywhale.formats import toml_file
+from greywhale.formats.kinds import Kind
 
 
 class Wheel(toml_file.Table):
@@ -19,6 +21,12 @@ class Wheel(toml_file.Table):
 class Cart(toml_file.Table):
     name: str = ""
     wheel: tuple[Wheel, ...] = Field(min_length=1, max_length=2)
+
+
+class Mast(toml_file.Table):
+    kinds: ClassVar = (Kind.ARM, Kind.MODEL)
+
+    height: float
 
 
 class Loose(BaseModel):
@@ -52,7 +60,10 @@ def test_a_good_file_is_read(tmp_path: Path) -> None:
         ("colour = 1\n" + GOOD, "f.toml: unknown key colour; remove it or check its spelling."),
         (GOOD * 3, "f.toml: wheel: "),
         ("wheel = []", "f.toml: wheel: "),
-        ("radius = 3\n", "f.toml: wheel is missing (and 1 more in this file)."),
+        ("radius = 3\n", "f.toml: unknown key radius; remove it or check its spelling (and 1 more in this file)."),
+        ("[[wheel]]\nraduis = 1\n", "f.toml: unknown key wheel[0].raduis; perhaps radius is meant (and 1 more in this"),
+        (GOOD.replace("whe", "hwe"), "f.toml: unknown key hweel; perhaps wheel is meant (and 1 more in this file)."),
+        ("# a log\n\ntime_s,leader_0\n0.0,1.0\n", "f.toml: not valid TOML: this is a log or a motion (CSV)."),
         ("radius = \n", "f.toml: not valid TOML: invalid value (at line 1, column 10)."),
     ],
 )
@@ -62,6 +73,17 @@ def test_a_bad_file_is_one_sentence(text: str, sentence: str) -> None:
     assert caught.value.message.startswith(sentence)
     assert caught.value.message.count("\n") == 0
     assert caught.value.exit_code == 1
+
+
+def test_a_file_of_another_kind_is_told_by_its_name() -> None:
+    with pytest.raises(UserError) as caught:
+        toml_file.loads("[[joint]]\nkp = 1.0\n", Mast, "f.toml")
+    assert caught.value.message == (
+        "f.toml: this is a controller file, but an arm file or a model is needed here "
+        "(greywhale upload takes a controller file)."
+    )
+    with pytest.raises(UserError, match=r"f\.toml: unknown key link; remove it"):
+        toml_file.loads("[[link]]\ncentre = 1.0\n", Mast, "f.toml")
 
 
 def test_strictness_does_not_depend_on_the_model() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from greywhale.fuzzy import twin
-from greywhale.fuzzy.settings import JointSettings
+from greywhale.fuzzy.settings import SET_UNIT, JointSettings
 from greywhale.protocol.schema import Refusal
 from tools.bench.fuzzy_on_board import FuzzyOnBoard
 
@@ -90,14 +91,42 @@ def _at_the_ends_of_the_integral(
             assert got.integral == run.integral[0]
 
 
+FINE = JointSettings(-4915, -4915, 4915, 4915, -1638, -1638, 1638, 1638, 33620, 10486, 20513, 15000)
+
+
+def _gain(width: int, end: float) -> int:
+    """The gain with which a ramp of this width is full at this size."""
+    return round(width * SET_UNIT / end)
+
+
+@pytest.mark.parametrize("end", [13, 100, 127.9, 128.1, 190, 255.9, 256.1, 400], ids=str)
+@pytest.mark.parametrize("outer", [1.0, 3.0], ids=["alike", "outer is long"])
+def test_short_and_medium_ramps_at_every_size(board: FuzzyOnBoard, end: float, outer: float) -> None:
+    width = 3000
+    far = round(width * outer)
+    sets = {"ze_a": -width, "ze_c": width, "ne_c": -far, "pe_b": far}
+    changes = {"zce_a": -width, "zce_c": width, "nce_c": -far, "pce_b": far}
+    gain = _gain(width, end)
+    joint = replace(FINE, **sets, **changes, kp=gain, kd=gain)
+    side = twin.compile_settings(joint, 20).e[0]
+    assert side.zero_shift == (8 if end < 128 else 1 if end < 256 else 0)
+    assert board.compile(joint, 20)[0] is Refusal.NONE
+    random = np.random.default_rng(0)
+    e = np.arange(-300, 301)
+    for ce in (e, -e, random.integers(-300, 301, len(e))):
+        expected = twin.infer(twin.compile_settings(joint, 20), e, ce).u
+        for error, change, u in zip(e.tolist(), ce.tolist(), expected.tolist(), strict=True):
+            board.set_state(0, error - change)
+            assert board.step(error, 32767).u_fuzzy == np.clip(u, -LARGEST, LARGEST), (error, change)
+
+
 def test_refusals(board: FuzzyOnBoard) -> None:
-    fine = JointSettings(-4915, -4915, 4915, 4915, -1638, -1638, 1638, 1638, 33620, 10486, 20513, 15000)
-    assert board.compile(fine, 20)[0] is Refusal.NONE
-    assert board.compile(fine, 51)[0] is Refusal.PERIOD
+    assert board.compile(FINE, 20)[0] is Refusal.NONE
+    assert board.compile(FINE, 51)[0] is Refusal.PERIOD
     board.set_state(0, 900)
     before = board.step(1000, 32767)
     for spoiled in ({"ne_c": 200}, {"ze_c": 16385}, {"pce_b": 163}, {"kd": (64 << 16) + 1}):
-        settings_ = JointSettings(**{**fine.__dict__, **spoiled})
+        settings_ = JointSettings(**{**FINE.__dict__, **spoiled})
         assert board.compile(settings_, 20)[0] is settings_.refusal(20)
     board.set_state(0, 900)
     assert board.step(1000, 32767) == before

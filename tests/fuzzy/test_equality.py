@@ -37,9 +37,7 @@ def test_coefficients(cases: st.SearchStrategy[Case], data: st.DataObject) -> No
     joint, period = data.draw(cases)
     native = joint.controller(period).coefficients
     ours = twin.compile_settings(joint, period)
-    sides = [
-        (side.zero, side.outer, side.zero_short | side.outer_short << 1) for pair in (ours.e, ours.ce) for side in pair
-    ]
+    sides = [(side.zero, side.outer, side.short_ramps) for pair in (ours.e, ours.ce) for side in pair]
     assert native == {"sides": sides, "integral": ours.integral, "ku_mv": ours.ku_mv}
 
 

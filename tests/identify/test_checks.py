@@ -97,6 +97,11 @@ def test_controllers_are_found_by_their_crc(recorded: Recorded, tables: list[Par
         replace(recorded.fit, origin=Origin(board="nano328", param_crc=defaults.crc)), []
     ) == defaults.for_board(Board.NANO328)
     assert table_of(recorded.changed, []) is None
+    itself = replace(recorded.changed.origin, table=tables[1])
+    for given in ([], [tables[0]], tables):
+        assert table_of(replace(recorded.changed, origin=itself), given) == tables[1]
+    alone = replace(itself, param_crc=None)
+    assert table_of(replace(recorded.changed, origin=alone), [tables[0]]) == tables[1]
 
 
 def test_another_controller_than_the_logs_is_refused(recorded: Recorded, white_box: ArmParameters) -> None:

@@ -15,10 +15,12 @@ from greywhale.errors import UserError
 from greywhale.files.arm import load_arm
 from greywhale.files.log import Log
 from greywhale.identify import Outcome, identify
-from greywhale.identify.judge import CHANGED, FIT, SECOND, Verdict, warnings_of
+from greywhale.identify.judge import CHANGED, FIT, SECOND, Verdict, judge, warnings_of
 from greywhale.loop import plant_row
 from greywhale.table import ParameterTable
-from tools.bench.recordings import Recorded
+from greywhale.trajectory import human_reaches
+from greywhale.tune.model import load_model
+from tools.bench.recordings import Recorded, record
 
 
 @pytest.mark.slow
@@ -159,7 +161,74 @@ def test_model_that_learnt_its_controller_is_warned_about() -> None:
     assert any("learnt that controller" in one for one in warnings_of([*good, verdict("c", CHANGED, 1.5)]))
     worse = warnings_of([good[0], verdict("b", SECOND, 2.0), verdict("c", CHANGED, 1.5)])
     assert len(worse) == 2
-    assert all("no better" in one for one in worse)
+    assert all("worse than the arm file" in one for one in worse)
+
+
+def test_chance_decides_whether_a_model_is_worse() -> None:
+    def verdict(model: float, chance: float) -> Verdict:
+        return Verdict("a", SECOND, "closed loop", (1.0, 1.0, 0.0, 0.0), (model, 1.0, 0.0, 0.0), chance=chance)
+
+    assert (verdict(1.2, 0.3).is_as_good, verdict(1.2, 0.3).is_worse) == (True, False)
+    assert (verdict(1.4, 0.3).is_as_good, verdict(1.4, 0.3).is_worse) == (False, True)
+    assert (verdict(0.4, 0.3).is_as_good, verdict(0.4, 0.3).is_worse) == (False, False)
+    assert warnings_of([verdict(1.2, 0.3), verdict(0.4, 0.3)]) == []
+    assert "by more than chance explains (2.4 against 2 rad²)" in warnings_of([verdict(1.4, 0.3)])[0]
+
+
+@pytest.mark.slow
+def test_chance_is_what_plants_that_the_fit_allows_are_worse_by(outcome: Outcome, white_box: ArmParameters) -> None:
+    """It is far below what the white box is off, and the converter's steps where the fit allows its estimate alone."""
+    second, found = outcome.subjects[1], outcome.found
+    assert found.draws is not None
+    same = judge(second, white_box, found.plant, found.zero, found.joints, np.tile(found.plant, (5, 1)))
+    steps = 4 * (np.radians(300.0) / 1024) ** 2 / 12
+    assert same.chance == pytest.approx(steps)
+    assert judge(second, white_box, found.plant, found.zero, found.joints).chance == pytest.approx(steps)
+    few = judge(second, white_box, found.plant, found.zero, (0, 2))
+    assert few.chance == pytest.approx(steps / 2)
+    spread = [judge(second, white_box, draw, found.zero, found.joints) for draw in found.draws]
+    chance = outcome.verdicts[1].chance - steps
+    beyond = [one for one in spread if sum(one.model) - sum(same.model) > chance]
+    assert len(beyond) == round(0.05 * len(spread))
+    assert 0.0 < outcome.verdicts[1].chance < 0.1 * sum(outcome.verdicts[1].white_box)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("begun", ["model", "exact"])
+def test_second_round_is_as_good_as_the_arm_that_it_began_with(
+    outcome: Outcome, recorded: Recorded, hidden: ArmParameters, tables: list[ParameterTable], tmp_path: Path,
+    begun: str,
+) -> None:  # fmt: skip
+    """A model of before, or an arm file that is exact: there is little to learn, and that is no fault."""
+    arm = outcome.arm if begun == "model" else hidden
+    if begun == "model":
+        outcome.save(tmp_path / "model.toml")
+        arm = load_arm(tmp_path / "model.toml")
+    more = record(hidden, human_reaches(77, 10.0), tmp_path / "more.csv", tables[0], 77)
+    again = identify([more], arm, validate=[recorded.second, recorded.changed], tables=tables)
+    assert not any(verdict.is_worse for verdict in again.verdicts)
+    assert again.warnings == ()
+    again.save(tmp_path / "again.toml")
+    text = again.text()
+    assert load_model(tmp_path / "again.toml").doubts == again.warnings
+    if begun == "model":
+        assert "white box" not in text
+        assert "as good as the model before, as far as noise lets tell" in text
+        assert again.arm.name == outcome.arm.name
+    assert "-" not in "".join(line.rpartition("   ")[2] for line in text.splitlines() if line.startswith("all joints"))
+
+
+@pytest.mark.slow
+def test_model_that_is_really_worse_is_told(outcome: Outcome) -> None:
+    """A joint's friction half of what it is: the arm file that the search began with knew better."""
+    found = outcome.found
+    assert found.draws is not None
+    worse = np.vstack([found.plant, found.draws])
+    for name in ("coulomb", "breakaway"):
+        worse[:, column(name, 1)] *= 0.5
+    verdict = judge(outcome.subjects[1], outcome.arm, worse[0], found.zero, found.joints, worse[1:])
+    assert verdict.is_worse
+    assert warnings_of([verdict])
 
 
 def test_unknown_method_and_no_logs_are_bad_usage(recorded: Recorded, white_box: ArmParameters) -> None:

@@ -25,6 +25,7 @@ ADC_CLOCK_CYCLES = 32
 CONVERSION_CYCLES = 416
 HOLD_CYCLES = 48
 CHAIN_AFTER_TICK = 2208
+INSIDE_CYCLES = 200  # a tick begins so far inside of a slice, so that there is no doubt in which
 ADATE = 0x20  # set while a tick's conversions follow each other
 BOOT_S = 4.0
 
@@ -75,10 +76,8 @@ def _clearance(start: int, written: Array, held: npt.NDArray[np.intp]) -> float:
 def clear_of_slices(written: Array) -> Timing:
     """The timing with slice boundaries furthest from all that matters; `written` (4, 2): earliest and latest cycle."""
     held = CONVERSION_CYCLES * np.arange(32, dtype=np.intp) + HOLD_CYCLES
-
-    best = max(
-        range(CHAIN_AFTER_TICK, CHAIN_AFTER_TICK + SLICE_CYCLES, 8), key=lambda start: _clearance(start, written, held)
-    )
+    first, last = CHAIN_AFTER_TICK + INSIDE_CYCLES, CHAIN_AFTER_TICK + SLICE_CYCLES - INSIDE_CYCLES
+    best = max(range(first, last, 8), key=lambda start: _clearance(start, written, held))
     assert _clearance(best, written, held) > 0, f"the firmware's writes are spread too far: {written}"
     acts = [int(slice_number) + 1 for slice_number in (written[:, 0] + best) // SLICE_CYCLES]
     return Timing(best, (acts[0], acts[1], acts[2], acts[3]))
@@ -166,7 +165,8 @@ class _Watched:
         assert bench.motors_enabled, "the motors went off on the way"
         leader, duties, angles = (np.array(column) for column in zip(*rows, strict=True))
         chain_start = self._chain_start()
-        tick_slice = (self.board.cycle - CHAIN_AFTER_TICK) // SLICE_CYCLES * SLICE_CYCLES
+        first_conversion = self.board.cycle + ADC_CLOCK_CYCLES // 2
+        tick_slice = (first_conversion - CHAIN_AFTER_TICK) // SLICE_CYCLES * SLICE_CYCLES
         on = (start[0][0] - tick_slice - SLICE_CYCLES) % TICK_CYCLES // SLICE_CYCLES + 1
         return Recording(
             timing=Timing(chain_start, drivers_on=on),

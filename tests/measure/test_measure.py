@@ -230,3 +230,24 @@ def test_correlations_are_pearsons(seed: int, length: int) -> None:
         one = a[: length - lag] if lag >= 0 else a[-lag:]
         other = b[lag:] if lag >= 0 else b[: length + lag]
         assert found[lag + 100] == pytest.approx(np.corrcoef(one, other)[0, 1], abs=1e-9)
+
+
+def test_only_joints_in_use_count() -> None:
+    time = np.arange(2000) / 1000
+    leader = np.zeros((2000, 4))
+    leader[:, :2] = np.sin(2.0 * time)[:, None]
+    log = Log(
+        "log",
+        Origin(joints=(0, 1)),
+        time,
+        leader,
+        0.9 * leader,
+        np.zeros((2000, 4)),
+        np.full(2000, "following"),
+        0,
+        True,
+    )
+    found = evaluate(log)
+    assert found.joints_in_use == (0, 1)
+    assert found.total_mse == pytest.approx(found.joints[0].mse + found.joints[1].mse)
+    assert [joint["in_use"] for joint in found.as_dict()["joints"]] == [True, True, False, False]  # type: ignore[attr-defined]

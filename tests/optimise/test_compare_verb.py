@@ -58,14 +58,15 @@ def test_another_seed_other_costs(capsys: Captured) -> None:
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
-        (("--budget", "0"), "budget is 0, but must be at least 1."),
+        (("--budget", "0"), "budget is 0, but it must be at least 1."),
         (("--budget", "many"), "Invalid value for '--budget': 'many' is not a valid integer."),
         (("--methods", "gwo,newton"), "there is no method 'newton'; there are gwo-woa-relative, gwo-woa,"),
         (("--functions", "cube"), "there is no function 'cube'; there are sphere,"),
         (("--functions", ","), "no function was chosen; there are sphere,"),
         (("--settings", "plain,turned"), "there is no setting 'turned'; there are plain, shifted, rotated."),
-        (("--dimensions", "1"), "dimensions is 1, but must be at least 2."),
-        (("--seeds", "0"), "seeds is 0, but must be at least 1."),
+        (("--pack", "1000000"), "pack is 1000000, but it must be at most 10000."),
+        (("--dimensions", "1"), "dimensions is 1, but it must be at least 2."),
+        (("--seeds", "0"), "seeds is 0, but it must be at least 1."),
         (("--jobs", "0"), "Invalid value for '--workers' / '--jobs'"),
         (
             ("--executor", "cloud"),
@@ -91,8 +92,8 @@ def test_bad_usage_is_one_sentence_and_code_2(
 
 def test_folder_that_is_not_there(capsys: Captured, tmp_path: Path) -> None:
     path = tmp_path / "none" / "r.csv"
-    assert entry.run([*QUICK, *BUDGET, "--out", str(path)]) == 1
-    assert f"{path}: cannot be written: no such file or directory." in capsys.readouterr().err
+    assert entry.run([*QUICK, *BUDGET, "--out", str(path)]) == 2
+    assert f"{path}: the folder {path.parent} does not exist; create it, or write elsewhere." in capsys.readouterr().err
 
 
 # Interrupted while only the first process of the three has started, and with all of them there.

@@ -9,15 +9,19 @@ import subprocess
 import sys
 from pathlib import Path
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
+from greywhale.drawing.page import style
 from greywhale.errors import UserError
 from greywhale.optimise import DEFAULT
 from greywhale.optimise.comparison import Comparison, Duel, Plan, compare, run_once
-from greywhale.optimise.comparison_report import as_dict, statement, text, write_report
+from greywhale.optimise.comparison_report import as_dict, plot_ranks, statement, text, write_report
 from greywhale.optimise.functions import SETTINGS
+from greywhale.optimise.methods import METHODS
 from greywhale.study import LocalWorkers
+from tests.drawing.sight import faults
 
 SMALL = Plan(("sphere", "ackley"), SETTINGS, ("gwo-woa", "de", "cma-es"), dimensions=3, budget=60, runs=4, seed=7)
 
@@ -154,6 +158,22 @@ def test_pictures_are_the_same_byte_for_byte(small: Comparison, tmp_path: Path, 
     assert len(first.read_bytes()) > 5_000
 
 
+@pytest.mark.parametrize("noise", [0.0, 1.0, 100.0])
+def test_every_method_is_named_beside_its_line_and_no_name_is_over_another(noise: float) -> None:
+    """Without noise all ranks are apart; the noisier the costs, the closer they are."""
+    methods = tuple(METHODS)
+    costs = np.arange(len(methods))[:, None] + noise * np.random.default_rng(1).normal(size=(1, 3, len(methods), 40))
+    with style():
+        figure = plot_ranks(Comparison(Plan(("sphere",), SETTINGS, methods, runs=40), costs))
+        try:
+            assert faults(figure) == []
+            assert [one.get_text() for one in figure.axes[0].texts] == list(methods)
+            looks = {(line.get_color(), line.get_linestyle()) for line in figure.axes[0].get_lines()}
+            assert len(looks) == len(methods)
+        finally:
+            plt.close(figure)
+
+
 @pytest.mark.slow
 def test_default_is_ahead_of_differential_evolution_on_shifted_functions() -> None:
     names = ("sphere", "elliptic", "schwefel221", "rosenbrock", "ackley", "griewank", "levy")
@@ -172,10 +192,15 @@ def test_default_is_ahead_of_differential_evolution_on_shifted_functions() -> No
         ({"methods": ()}, "no method was chosen"),
         ({"methods": ("de", "de")}, "method 'de' was chosen twice"),
         ({"settings": ("moved",)}, "there is no setting 'moved'; there are plain, shifted, rotated."),
-        ({"dimensions": 1}, "dimensions is 1, but must be at least 2."),
-        ({"budget": 0}, "budget is 0, but must be at least 1."),
-        ({"runs": 0}, "seeds is 0, but must be at least 1."),
-        ({"seed": -1}, "seed is -1, but must be at least 0."),
+        ({"dimensions": 1}, "dimensions is 1, but it must be at least 2."),
+        ({"budget": 0}, "budget is 0, but it must be at least 1."),
+        ({"runs": 0}, "seeds is 0, but it must be at least 1."),
+        ({"dimensions": 1001}, "dimensions is 1001, but it must be at most 1000."),
+        ({"budget": 10**12}, "budget is 1000000000000, but it must be at most 10000000."),
+        ({"runs": 10**9}, "seeds is 1000000000, but it must be at most 100000."),
+        ({"pack": 10**9}, "pack is 1000000000, but it must be at most 10000."),
+        ({"seed": 1 << 31}, "seed is 2147483648, but it must be at most 2147483647."),
+        ({"seed": -1}, "seed is -1, but it must be at least 0."),
         ({"methods": ("de",), "pack": 4}, "the pack is 4, but de needs at least 5."),
     ],
 )

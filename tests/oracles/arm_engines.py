@@ -18,6 +18,12 @@ def arm_with_tip() -> ArmParameters:
     return arm.model_copy(update={"tip": arm.tip.model_copy(update={"mass": TIP_MASS})})
 
 
+def without(arm: ArmParameters, used: tuple[int, ...]) -> ArmParameters:
+    """The same arm with all but these joints rigid."""
+    joints = tuple(one.model_copy(update={"fixed": n not in used}) for n, one in enumerate(arm.joint))
+    return arm.model_copy(update={"joint": joints})
+
+
 def random_states(count: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
     rng = np.random.default_rng(seed)
     return rng.uniform(-np.pi, np.pi, (count, 4)), rng.uniform(-8, 8, (count, 4))
@@ -33,7 +39,7 @@ class Pinocchio:
         return upper + np.triu(upper, 1).T
 
     def bias(self, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        return np.array(pinocchio.rnea(self.model, self.data, q, v, np.zeros(4)))
+        return np.array(pinocchio.rnea(self.model, self.data, q, v, np.zeros(len(q))))
 
 
 class MuJoCo:
@@ -47,9 +53,9 @@ class MuJoCo:
         mujoco.mj_forward(self.model, self.data)
 
     def mass_matrix(self, q: np.ndarray) -> np.ndarray:
-        self._place(q, np.zeros(4))
-        full = np.zeros((4, 4))
-        for column, unit in enumerate(np.eye(4)):
+        self._place(q, np.zeros(len(q)))
+        full = np.zeros((len(q), len(q)))
+        for column, unit in enumerate(np.eye(len(q))):
             mujoco.mj_mulM(self.model, self.data, full[column], unit)
         return full
 

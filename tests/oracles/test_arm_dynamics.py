@@ -11,7 +11,7 @@ import pinocchio
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parent))
-from arm_engines import MuJoCo, Pinocchio, arm_with_tip, random_states
+from arm_engines import MuJoCo, Pinocchio, arm_with_tip, random_states, without
 
 from greywhale.arm import Arm, ArmParameters
 from greywhale.arm.export import mjcf
@@ -31,6 +31,39 @@ def test_mass_matrix_and_bias_agree(engine: type[Pinocchio | MuJoCo], parameters
     for q, v in zip(*random_states(STATES, seed=1), strict=True):
         np.testing.assert_allclose(body.mass_matrix(q), other.mass_matrix(q), rtol=0, atol=TOLERANCE)
         np.testing.assert_allclose(body.bias(q, v), other.bias(q, v), rtol=0, atol=TOLERANCE)
+
+
+@pytest.mark.parametrize("used", [(0,), (2,), (0, 1), (1, 2), (0, 3), (1, 2, 3), (0, 2, 3)])
+@pytest.mark.parametrize("engine", [Pinocchio, MuJoCo])
+def test_joints_that_are_not_in_use_are_welded(engine: type[Pinocchio | MuJoCo], used: tuple[int, ...]) -> None:
+    """The engines' own arm of fewer joints has the rows and columns of the whole arm with the others at 0."""
+    whole = arm_with_tip()
+    body, kept = Arm(whole).body, list(used)
+    other = engine(without(whole, used))
+    for q, v in zip(*random_states(100, seed=2), strict=True):
+        own_q, own_v = np.zeros(4), np.zeros(4)
+        own_q[kept], own_v[kept] = q[kept], v[kept]
+        mass = body.mass_matrix(own_q)[np.ix_(kept, kept)]
+        np.testing.assert_allclose(other.mass_matrix(q[kept]), mass, rtol=0, atol=TOLERANCE)
+        np.testing.assert_allclose(other.bias(q[kept], v[kept]), body.bias(own_q, own_v)[kept], rtol=0, atol=TOLERANCE)
+
+
+@pytest.mark.parametrize("used", [(0, 1), (1,), (0, 2, 3)])
+def test_an_arm_with_fewer_joints_moves_as_in_mujoco(used: tuple[int, ...]) -> None:
+    parameters = without(load_arm("white_box"), used)
+    model = mujoco.MjModel.from_xml_string(mjcf(parameters, motors=True))
+    assert model.nv == len(used)
+    model.opt.timestep = 1e-4
+    model.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4
+    data = mujoco.MjData(model)
+    arm = Arm(parameters, longest_step=2e-6)
+    for block in range(20):
+        volts = 4.0 * np.sin(np.array([0.2, 0.25, 0.3, 0.35]) * (block + 1))
+        data.ctrl[:] = volts[list(used)]
+        for _ in range(500):
+            mujoco.mj_step(model, data)
+        assert np.abs(arm.step(volts, 0.05)[list(used)] - data.qpos).max() < 2e-5
+    assert np.abs(data.qpos).min() > 0.1
 
 
 def test_averaging_link_3_changes_no_entry_much() -> None:

@@ -136,7 +136,7 @@ def test_to_raw_takes_the_nearest(parameter: Parameter, share: float) -> None:
         ("joint0.ne_c", math.nan, r"joint0\.ne_c is nan, but it must be a finite number"),
         ("joint0.ne_c", math.inf, r"joint0\.ne_c is inf"),
         ("joint0.motor_sign", 0, r"joint0\.motor_sign is 0.*from -1 to 1, other than 0"),
-        ("leader3.scale", 1e-12, r"leader3\.scale is 1e-12.*other than 0"),
+        ("leader3.scale", 5e-4, r"leader3\.scale is 0\.0005.*out of range"),
     ],
 )
 def test_values_out_of_range_are_refused_with_the_range(name: str, value: float, sentence: str) -> None:

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
+from greywhale.drawing import looks
+from greywhale.drawing.page import style
 from greywhale.errors import UserError
 from greywhale.files.log import Log
 from greywhale.files.log.layout import Origin
 from greywhale.report import Trace, draw_following, follow, trace
+from greywhale.table import ParameterTable
+from tests.drawing.sight import faults
 
 
 def log(gain: float, seed: int = 1) -> Log:
@@ -55,35 +60,85 @@ def test_leaders_of_the_same_motion_are_one_line_and_others_two() -> None:
     assert labels([before, other]) == ["leader, before", "leader, other", "follower, before", "follower, other"]
 
 
+@pytest.mark.parametrize(("late_s", "lines"), [(0.02, ["leader"]), (0.2, ["leader, first", "leader, again"])])
+def test_steps_that_are_played_again_are_one_leader_if_they_come_at_the_same_moment(
+    late_s: float, lines: list[str]
+) -> None:
+    time = np.arange(0.0, 4.0, 0.005)
+    first, again = (np.repeat((time > start)[:, None], 4, axis=1).astype(float) for start in (1.0, 1.0 + late_s))
+    drawn = [Trace(name, time, rad, rad, (0.0,) * 4) for name, rad in (("first", first), ("again", again))]
+    assert labels(drawn)[: len(lines)] == lines
+    assert labels(drawn)[len(lines)] == "follower, first"
+
+
 def test_axes_have_units_and_titles_their_figures() -> None:
     figure = follow.plot_following([trace(log(0.8), "before")], "A title")
     try:
         axes = figure.get_axes()
-        assert len(axes) == 8
-        assert {one.get_ylabel() for one in axes} == {"angle [rad]", "error [rad]"}
-        assert {one.get_xlabel() for one in axes[1::2]} == {"time [s]"}
-        assert "Joint 3, wrist roll" in axes[6].get_title()
+        assert len(axes) == 12
+        assert [one.get_ylabel() for one in axes[:3]] == ["angle [rad]", "error [rad]", "voltage [V]"]
+        assert {one.get_xlabel() for one in axes[2::3]} == {"time [s]"}
+        assert "Joint 3, wrist roll" in axes[9].get_title()
         assert figure.get_suptitle() == "A title"
     finally:
         plt.close(figure)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [0.0008, 0.02, 0.4])
-def test_no_label_is_cut_off_or_runs_into_the_next_panel(size: float) -> None:
+@pytest.mark.parametrize("names", [("log",), ("before", "after tuning"), ("a/…/log", "bb/…/log", "c" * 30, "d")])
+def test_nothing_is_cut_off_overlaps_or_lacks_a_unit(size: float, names: tuple[str, ...]) -> None:
     # Reaches of a real log, and errors from those of a follower at rest to those of a step: the finer, the wider.
     time = np.arange(0, 20, 0.01)
     leader = np.column_stack([reach * np.sin(time + reach) - 0.1 for reach in (1.0, 0.65, 0.8, 1.2)])
     error = size * np.column_stack([np.sin(3 * time + joint) for joint in range(4)])
-    with follow.set_style():
-        figure = follow.plot_following([Trace("log", time, leader, leader - error, (0.1,) * 4)], "A title")
+    one = Trace("", time, leader, leader - error, (0.000123, 0.1, 1.23e-5, 0.1), 9.0 * np.sin(leader), 12.0)
+    with style():
+        figure = follow.plot_following([replace(one, label=name) for name in names], "A title")
         try:
-            renderer = figure.canvas.get_renderer()  # type: ignore[attr-defined]
-            figure.draw(renderer)
-            axes = figure.get_axes()
-            ends = {0.0, *(one.get_window_extent(renderer).x1 for one in axes)}
-            for one in axes:
-                panel, label = one.get_window_extent(renderer), one.yaxis.label.get_window_extent(renderer)
-                assert label.x0 >= max(end for end in ends if end <= panel.x0) + 4, one.get_title()
+            assert faults(figure) == []
+        finally:
+            plt.close(figure)
+
+
+def test_voltages_are_drawn_within_their_limit() -> None:
+    """The limit is the supply where that is known, else the largest voltage in the logs."""
+    one = trace(replace(log(0.8), voltage=6.0 * log(0.8).leader), "before")
+    assert one.voltage is not None
+    largest = f"largest voltage, {abs(one.voltage).max():.1f} V"
+    assert labels([one]) == ["leader", "follower, before", "voltage", largest]
+    known = replace(one, supply_v=12.0)
+    assert labels([known])[-1] == "voltage limit, 12 V"
+    assert labels([known, one])[-1] == "voltage limit, 12 V"
+    figure = follow.plot_following([known], "Title")
+    try:
+        voltage = figure.axes[2]
+        assert voltage.get_ylabel() == "voltage [V]"
+        limits = voltage.get_lines()[:2]
+        assert sorted(float(np.asarray(line.get_ydata())[0]) for line in limits) == [-12.0, 12.0]
+        assert {line.get_linestyle() for line in limits} == {looks.VOLTAGE_LIMIT.style}
+        np.testing.assert_array_equal(np.asarray(voltage.get_lines()[2].get_ydata()), one.voltage[:, 0])
+        assert voltage.get_ylim()[0] < -12.0 < 12.0 < voltage.get_ylim()[1]
+    finally:
+        plt.close(figure)
+
+
+def test_the_supply_is_known_of_a_log_with_its_parameters_or_with_the_defaults() -> None:
+    default = ParameterTable.defaults()
+    with_table = Origin(param_crc=default.crc ^ 1, table=default.with_raw({"supply_mv": 7400}))
+    assert trace(replace(log(0.8), origin=with_table), "x").supply_v == 7.4
+    assert trace(replace(log(0.8), origin=Origin(param_crc=default.crc)), "x").supply_v == default.supply_v
+    assert trace(replace(log(0.8), origin=Origin(param_crc=default.crc ^ 1)), "x").supply_v is None
+    assert trace(log(0.8), "x", 9.0).supply_v == 9.0
+
+
+def test_one_log_has_the_followers_colour_and_two_those_of_before_and_after() -> None:
+    for names, colours in ((["x"], [looks.FOLLOWER]), (["x", "y"], [looks.BEFORE, looks.AFTER])):
+        figure = follow.plot_following([replace(trace(log(0.8), ""), label=name) for name in names], "Title")
+        try:
+            lines = figure.axes[0].get_lines()
+            assert lines[0].get_color() == looks.LEADER.colour
+            assert [line.get_color() for line in lines[1:]] == [look.colour for look in colours]
         finally:
             plt.close(figure)
 
@@ -97,3 +152,17 @@ def test_bad_requests_leave_no_file(tmp_path: Path) -> None:
     with pytest.raises(UserError, match=r"none/picture\.png: cannot be written: no such file"):
         draw_following(tmp_path / "none" / "picture.png", [one], "")
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("joints", [(0, 1), (2,), (0, 1, 3)])
+def test_only_joints_in_use_have_a_panel(joints: tuple[int, ...]) -> None:
+    one = replace(trace(log(0.8), "before"), joints=joints)
+    with style():
+        figure = follow.plot_following([one], "A title")
+        try:
+            assert faults(figure) == []
+            titles = [axes.get_title() for axes in figure.get_axes() if axes.get_title()]
+            assert [title[:7] for title in titles] == [f"Joint {joint}" for joint in joints]
+        finally:
+            plt.close(figure)

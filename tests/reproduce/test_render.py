@@ -7,13 +7,28 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import pytest
+from reportlab.pdfbase import pdfmetrics
 
+from greywhale.drawing.page import png
 from greywhale.reproduce.pages import law, system
 from greywhale.reproduce.pages.document import Chapter, Code, Document, Entry, Picture, Row, Status, sheet, words
 from greywhale.reproduce.pages.numbers import one, percent, several
-from greywhale.reproduce.pictures.drawing import png
 from greywhale.reproduce.render.html import write_html
-from greywhale.reproduce.render.pdf import write_pdf
+from greywhale.reproduce.render.pdf import (
+    GOOD_POINTS,
+    LEAST_POINTS,
+    MOST_POINTS,
+    WIDTH,
+    fit_columns,
+    register_fonts,
+    write_pdf,
+)
+from greywhale.reproduce.render.ranges import keep_ranges
+
+
+@pytest.fixture(autouse=True)
+def _fonts() -> None:
+    register_fonts()
 
 
 def small() -> Document:
@@ -63,6 +78,32 @@ def test_a_long_table_goes_on_over_pages_of_the_pdf(tmp_path: Path) -> None:
     data = write_pdf(small(), tmp_path / "report.pdf").read_bytes()
     assert data.startswith(b"%PDF-")
     assert data.count(b"/Type /Page\n") + data.count(b"/Type /Page ") >= 2
+
+
+def test_a_line_breaks_before_a_range_and_not_inside_of_it() -> None:
+    assert keep_ranges("0.1 (0.05 to 0.2) of it") == "0.1 (0.05\xa0to\xa00.2) of it"
+    long = "(a remark in brackets that needs several lines)"
+    assert keep_ranges(long) == long
+
+
+def test_a_wide_table_breaks_its_lines_before_its_letters_get_small() -> None:
+    row = Row("Ne_trapmf_c", ("-0.425 (-0.505 to -0.381)",) * 4 + ("-0.0785",) * 4)
+    points, widths = fit_columns(sheet(("", *("J0, printed",) * 8), [row]))
+    assert points >= GOOD_POINTS - 0.5
+    assert sum(widths) <= WIDTH + 1e-6
+    assert widths[1] > pdfmetrics.stringWidth("(-0.505 to -0.381)", "Body", points)
+
+
+def test_a_table_that_fits_has_large_letters_and_one_line_a_row() -> None:
+    points, widths = fit_columns(sheet(("", "two"), [Row("x", ("1 (0 to 2)",))]))
+    assert points == MOST_POINTS
+    assert widths[1] > pdfmetrics.stringWidth("1 (0 to 2)", "Body", points)
+
+
+def test_a_table_too_wide_for_all_letters_still_fits_the_page() -> None:
+    points, widths = fit_columns(sheet(("",) * 3, [Row("x" * 200, ("y" * 200, "z" * 200))]))
+    assert points == LEAST_POINTS
+    assert sum(widths) <= WIDTH + 1e-6
 
 
 def test_a_row_with_too_few_cells_is_refused() -> None:

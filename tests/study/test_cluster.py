@@ -148,7 +148,7 @@ def test_ctrl_c_leaves_a_dask_cluster_at_once_and_keeps_what_is_done(tmp_path: P
 
 
 def test_a_scheduler_that_is_not_there() -> None:
-    with pytest.raises(UserError, match="^127.0.0.1:1: no Dask scheduler answers there"):
+    with pytest.raises(UserError, match="^127.0.0.1:1: no Dask scheduler answers there; start one with `dask sch"):
         run_study(jobs.draws(1), DaskWorkers("127.0.0.1:1", wait_s=1.0))
 
 

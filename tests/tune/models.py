@@ -31,6 +31,7 @@ def log_facts(role: str = "fit", improvement: float = 0.99, **more: Any) -> dict
         "white_box_mse_rad2": white,
         "model_mse_rad2": [(1.0 - improvement) * value for value in white],
         "improvement": improvement,
+        "chance_rad2": 1e-3,
     } | more
 
 

@@ -85,6 +85,20 @@ def test_a_backup_of_the_board_comes_before_the_logs(tmp_path: Path) -> None:
     assert not model.doubts
 
 
+def test_a_model_as_good_as_a_good_arm_file_is_taken(tmp_path: Path) -> None:
+    """Of an arm that was known already, identified once more or exact, noise decides which model is nearer."""
+    logs = [log_facts(), log_facts("validation", -0.09), log_facts("validation, changed controller", 0.0)]
+    assert load_model(write_model(tmp_path / "model.toml", log=logs)).doubts == ()
+    worse = [log_facts(), log_facts("validation", -0.09, chance_rad2=0.8e-3)]
+    assert "worse than the arm file it began with" in refused(write_model(tmp_path / "worse.toml", log=worse))
+
+
+def test_a_model_of_before_that_does_not_state_chance_must_not_be_worse(tmp_path: Path) -> None:
+    logs = [log_facts(), log_facts("validation", -0.01)]
+    del logs[1]["chance_rad2"]
+    assert "worse than the arm file" in refused(write_model(tmp_path / "model.toml", log=logs))
+
+
 def test_warnings_of_the_identification_go_along(tmp_path: Path) -> None:
     warning = "fit.csv: joint 0 was at full voltage 60 % of the time; slower motion would tell more."
     assert load_model(write_model(tmp_path / "model.toml", warnings=[warning])).doubts == (warning,)
@@ -100,11 +114,12 @@ def test_warnings_of_the_identification_go_along(tmp_path: Path) -> None:
         ({"log": [log_facts()]}, "it was not validated on a second log; record another one and identify again with"),
         (
             {"log": [log_facts(), log_facts("validation", -0.5)]},
-            "on validation.csv (validation) it is no better than the arm file it began with (0.015 against 0.01 rad²);",
+            "on validation.csv (validation) it is worse than the arm file it began with, by more than chance explains "
+            "(0.015 against 0.01 rad²);",
         ),
         (
-            {"log": [log_facts(), log_facts("validation"), log_facts("validation, changed controller", 0.0)]},
-            "(0.01 against 0.01 rad²), though on others it is: it may have learnt its controller, not the arm; check",
+            {"log": [log_facts(), log_facts("validation"), log_facts("validation, changed controller", -0.2)]},
+            "(0.012 against 0.01 rad²), though on others it is not: it may have learnt its controller, not the arm;",
         ),
         ({"covariance": None, "method": "paper"}, "it does not say how uncertain it is (method paper does not);"),
         ({"joints": (0, 1, 3)}, "joint 2 (wrist pitch) did not move in its logs, so nothing of it was identified;"),

@@ -17,9 +17,11 @@ import numpy as np
 from greywhale.arm import ArmParameters
 from greywhale.demo import BenchProcess
 from greywhale.files.arm import default_arm
+from greywhale.study import Task
 from tools.bench.bench_calibrate import LIKE, SECOND, error_of
 from tools.bench.figure import Figure
 from tools.bench.hands import Hands, bench_of, mounted_anyhow, run_calibrate
+from tools.bench.study import repeat
 
 SEEDS = tuple(map(int, os.environ.get("GREYWHALE_ASSEMBLIES", " ".join(map(str, range(1, 21)))).split()))
 NOMINAL = "white_box"  # what the person knows of the arm
@@ -33,9 +35,10 @@ def verb(bench: BenchProcess, folder: Path, *words: str) -> None:
         raise RuntimeError(f"greywhale {' '.join(words)}: {done.stderr}")
 
 
-def commissioned(arm: ArmParameters, folder: Path, calibrate: bool, reversed_motor: int | None) -> float:
+def commissioned(arm: ArmParameters, calibrate: bool, reversed_motor: int | None) -> float:
     """The mean squared error (rad²) under a person's motion after all steps, from a blank board on."""
-    with bench_of(arm, folder, "--blank") as bench:
+    with tempfile.TemporaryDirectory() as name, bench_of(arm, Path(name), "--blank") as bench:
+        folder = Path(name)
         if reversed_motor is not None:
             bench.command(f"motor {reversed_motor} reversed")
         verb(bench, folder, "flash")
@@ -48,14 +51,20 @@ def commissioned(arm: ArmParameters, folder: Path, calibrate: bool, reversed_mot
         return error_of(bench, folder)
 
 
+def on_the_calibrated_bench(seed: int) -> float:
+    """The same for the default arm; its firmware's own parameters are its calibration."""
+    return commissioned(default_arm(), calibrate=False, reversed_motor=None)
+
+
+def assembled(seed: int) -> float:
+    return commissioned(mounted_anyhow(seed), calibrate=True, reversed_motor=seed % 4)
+
+
 def run() -> list[Figure]:
-    with tempfile.TemporaryDirectory() as name:
-        usual = commissioned(default_arm(), Path(name), calibrate=False, reversed_motor=None)
-    ratios = []
-    for seed in SEEDS:
-        with tempfile.TemporaryDirectory() as name:
-            error = commissioned(mounted_anyhow(seed), Path(name), calibrate=True, reversed_motor=seed % 4)
-        ratios.append(error / usual)
+    tasks = [Task("calibrated bench", on_the_calibrated_bench, 0)]
+    tasks += [Task(f"assembly {seed}", assembled, seed) for seed in SEEDS]
+    usual, *errors = repeat("assembly", tasks).values()
+    ratios = [error / usual for error in errors]
     worse = float(np.max(ratios))
     return [
         Figure("calibrated bench, commissioned from a blank board: MSE", 1e6 * usual, "mrad²"),

@@ -9,7 +9,7 @@ import os
 import tempfile
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -24,8 +24,10 @@ from greywhale.demo import BenchProcess, record_motion
 from greywhale.files.leader import save_leader
 from greywhale.firmware import TICK_S
 from greywhale.measure import evaluate
+from greywhale.study import Task
 from greywhale.trajectory import Trajectory
 from tools.bench.figure import Figure
+from tools.bench.study import repeat
 from tools.bench.tuning import motions
 
 Floats = npt.NDArray[np.float64]
@@ -86,34 +88,46 @@ def recorded(bench: BenchProcess, folder: Path, when: str, unseen: Mapping[str, 
     return Run(errors, rests)
 
 
+def followed(seed: int) -> dict[str, Any]:
+    """How the arm of that seed follows before and after: a Run's fields each, and the wall time."""
+    with tempfile.TemporaryDirectory() as folder:
+        done = commissioned(seed, Path(folder), motions())
+    return {"before": asdict(done.before), "after": asdict(done.after), "wall_s": done.wall_s}
+
+
 def run() -> list[Figure]:
+    found = repeat("commission", [Task(f"foreign arm {seed}", followed, seed) for seed in SEEDS])
     figures: list[Figure] = []
     reaches = []
-    for seed in SEEDS:
-        with tempfile.TemporaryDirectory() as folder:
-            done = commissioned(seed, Path(folder), motions())
-        before, after = done.before, done.after
-        head = f"foreign arm {seed}"
-        for name, was in before.error.items():
-            ratios = after.error[name] / was
-            total = float(after.error[name].sum() / was.sum())
-            worst = float(ratios.max())
-            # A joint that holds still has next to no error: a ratio alone says little there.
-            more = 1e3 * float((np.sqrt(after.error[name]) - np.sqrt(was)).max())
-            figures += [
-                Figure(f"{head}, {name}: MSE after / before", total, "x"),
-                Figure(f"{head}, {name}: worst joint", worst, "x", "<= 1", worst <= 1.0),
-                Figure(f"{head}, {name}: most that a joint's error grew", more, "mrad rms"),
-            ]
+    for head, facts in found.items():
+        before, after = Run(**facts["before"]), Run(**facts["after"])
+        figures += judged(head, before, after, facts["wall_s"])
         reaches.append(float(after.error["human reaches"].sum() / before.error["human reaches"].sum()))
-        rests, rested = after.unrest["multi-steps"], before.unrest["multi-steps"]
-        hunting = int(((rests > MOST_UNREST) | (rests > 2.0 * rested)).sum())
-        figures += [
-            Figure(f"{head}: most unrest at rest", 1e3 * float(rests.max()), "mrad rms"),
-            Figure(f"{head}: joints that hunt at rest", hunting, "", "0", hunting == 0),
-            Figure(f"{head}: wall time", done.wall_s, "s", f"<= {WALL_S:g}", done.wall_s <= WALL_S),
-        ]
     median = float(np.median(reaches))
     holds = median <= HUMAN_SHARE
     figures.append(Figure("foreign arms, human reaches: median", median, "x", f"<= {HUMAN_SHARE}", holds))
     return figures
+
+
+def judged(head: str, before: Run, after: Run, wall_s: float) -> list[Figure]:
+    """The figures of one arm."""
+    figures = []
+    for name, was in before.error.items():
+        ratios = after.error[name] / was
+        total = float(after.error[name].sum() / was.sum())
+        worst = float(ratios.max())
+        # A joint that holds still has next to no error: a ratio alone says little there.
+        more = 1e3 * float((np.sqrt(after.error[name]) - np.sqrt(was)).max())
+        figures += [
+            Figure(f"{head}, {name}: MSE after / before", total, "x"),
+            Figure(f"{head}, {name}: worst joint", worst, "x", "<= 1", worst <= 1.0),
+            Figure(f"{head}, {name}: most that a joint's error grew", more, "mrad rms"),
+        ]
+    rests, rested = after.unrest["multi-steps"], before.unrest["multi-steps"]
+    hunting = int(((rests > MOST_UNREST) | (rests > 2.0 * rested)).sum())
+    return [
+        *figures,
+        Figure(f"{head}: most unrest at rest", 1e3 * float(rests.max()), "mrad rms"),
+        Figure(f"{head}: joints that hunt at rest", hunting, "", "0", hunting == 0),
+        Figure(f"{head}: wall time", wall_s, "s", f"<= {WALL_S:g}", wall_s <= WALL_S),
+    ]

@@ -5,8 +5,9 @@ identification makes of the log, on the default arm and on random ones that it m
 from __future__ import annotations
 
 import tempfile
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -15,11 +16,13 @@ from greywhale.excite import Design, design
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.identify import Outcome, identify
 from greywhale.identify.space import MOTOR, Space
+from greywhale.study import Task
 from greywhale.trajectory import Trajectory, human_reaches
 from greywhale.trajectory.motion import Array
 from tools.bench.bench_identify import tables
 from tools.bench.figure import Figure
 from tools.bench.recordings import random_arm, record, table_of
+from tools.bench.study import repeat
 
 ARMS = 6
 SECONDS = 20.0
@@ -37,7 +40,6 @@ class Compared:
     errors: Array
     second: float
     changed: float
-    outcome: Outcome
 
 
 def rows_of(motion: Trajectory) -> Array:
@@ -62,7 +64,14 @@ def compare(arm: ArmParameters, motion: Trajectory, seed: int) -> Compared:
         changed = record(arm, human_reaches(10 * seed + 3, SECONDS), folder / "changed.csv", after, 10 * seed + 3)
         outcome = identify([fit], load_arm("white_box"), validate=[second, changed], tables=tables())
     gains = [verdict.improvement for verdict in outcome.verdicts]
-    return Compared(errors_of(outcome, arm), gains[1], gains[2], outcome)
+    return Compared(errors_of(outcome, arm), gains[1], gains[2])
+
+
+def both_ways(seed: int, time_s: Array, angles: Array) -> list[dict[str, Any]]:
+    """The arm of that seed (0: the default arm) with both motions, designed first: each a Compared's fields."""
+    arm, number = (random_arm(seed), seed) if seed else (default_arm(), 1)
+    motions = (Trajectory(time_s, angles), human_reaches(10 * number + 1, SECONDS))
+    return [asdict(compare(arm, motion, number)) for motion in motions]
 
 
 def half_log_det(made: Design, motion: Trajectory) -> float:
@@ -86,14 +95,16 @@ def run() -> list[Figure]:
             made.judgement.excess == 0,
         ),
     ]
-    arms = [("default arm", default_arm(), 1), *((f"random arm {n}", random_arm(n), n) for n in range(1, ARMS + 1))]
+    told = {"time_s": made.motion.time_s, "angles": made.motion.angles}
+    tasks = [Task(f"random arm {seed}" if seed else "default arm", both_ways, seed, told) for seed in range(ARMS + 1)]
     designed, human = [], []
-    for name, arm, seed in arms:
-        designed.append(compare(arm, made.motion, seed))
-        human.append(compare(arm, human_reaches(10 * seed + 1, SECONDS), seed))
+    for name, facts in repeat("excite", tasks).items():
+        pair = [Compared(**one) for one in facts]
+        designed.append(pair[0])
+        human.append(pair[1])
         figures += [
             Figure(f"{name}: {what}, {motion}", 100 * value, "%")
-            for motion, one in (("designed", designed[-1]), ("human", human[-1]))
+            for motion, one in zip(("designed", "human"), pair, strict=True)
             for what, value in (
                 ("motors and friction wrong by, median", float(np.median(np.abs(one.errors)))),
                 ("second log better by", one.second),

@@ -6,6 +6,8 @@ that only the search differs. The tables go to build/bench_tune_paper.txt.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from greywhale.arm.plants import column
@@ -13,12 +15,15 @@ from greywhale.files import controller
 from greywhale.files.paper_tables import paper_table
 from greywhale.loop import Experiment, controller_row
 from greywhale.loop.controllers import Controllers
+from greywhale.study import Task
+from greywhale.table import ParameterTable
 from greywhale.trajectory import multi_steps, steps
 from greywhale.trajectory.motion import Array
-from greywhale.tune import Outcome, tune
+from greywhale.tune import tune
 from greywhale.tune.model import load_model
 from greywhale.tune.report.tables import tables_of
 from tools.bench.figure import Figure
+from tools.bench.study import repeat
 from tools.setup.console import ROOT
 
 # Strategy, what it is called here, where the paper prints its result.
@@ -28,26 +33,44 @@ PAPER_LOWER = 78.0  # %, Table 11
 TABLES = ROOT / "build" / "bench_tune_paper.txt"
 
 
-def errors(outcome: Outcome, rows: Controllers) -> tuple[Array, Array]:
+def tuned(seed: int, strategy: str) -> dict[str, Any]:
+    """One run of the search: its controllers as found; of seed 0 also those before, parameters and tables."""
+    outcome = tune(load_model("grey_box", force=True), method="paper", strategy=strategy, seed=seed, floors=seed == 0)
+    facts: dict[str, Any] = {"after": outcome.after}
+    if seed == 0:
+        tables = "\n\n".join(one.text() for one in tables_of(outcome, paper=True))
+        facts |= {"before": outcome.before, "table": list(outcome.table.raw), "tables": tables}
+    return facts
+
+
+def errors(table: ParameterTable, rows: Controllers) -> tuple[Array, Array]:
     """Total MSE of controllers (n, 4, 12) on the steps and the multi-steps, (n,) each."""
-    plant = outcome.model.plants[0].copy()
-    plant[column("supply")] = outcome.supply_v
+    model = load_model("grey_box", force=True)
+    plant = model.plants[0].copy()
+    plant[column("supply")] = table.supply_v
     found = []
     for motion in (steps(), multi_steps()):
-        experiment = Experiment(motion, outcome.model.arm, table=outcome.table, noise=False)
+        experiment = Experiment(motion, model.arm, table=table, noise=False)
         found.append(experiment.run_single(rows, plant).mse.sum(axis=1))
     return found[0], found[1]
 
 
 def run() -> list[Figure]:
-    model = load_model("grey_box", force=True)
+    tasks = [
+        Task(f"{strategy}, seed {seed}", tuned, seed, {"strategy": strategy})
+        for strategy, *_ in STRATEGIES
+        for seed in SEEDS
+    ]
+    results = repeat("tune_paper", tasks)
     figures, texts = [], []
     for strategy, name, printed in STRATEGIES:
-        outcomes = [tune(model, method="paper", strategy=strategy, seed=seed, floors=seed == 0) for seed in SEEDS]
+        outcomes = [results[f"{strategy}, seed {seed}"] for seed in SEEDS]
         first = outcomes[0]
         theirs = controller_row(controller.load(paper_table(printed)))
-        rows = np.stack([first.before, theirs, *(one.after for one in outcomes)])
-        for motion, found in zip(("steps", "multi-steps"), errors(first, rows), strict=True):
+        rows = np.stack([first["before"], theirs, *(one["after"] for one in outcomes)])
+        for motion, found in zip(
+            ("steps", "multi-steps"), errors(ParameterTable(tuple(first["table"])), rows), strict=True
+        ):
             head = f"paper's method, {name}, {motion}"
             ours = float(np.median(found[2:]))
             lower = 100.0 * (1.0 - ours / found[0])
@@ -59,9 +82,6 @@ def run() -> list[Figure]:
                 Figure(f"{head}: highest", float(found[2:].max()), "rad2"),
                 Figure(f"{head}: lower by (median)", lower, "%", f"paper: {PAPER_LOWER:g} on its arm"),
             ]
-        texts.append(
-            f"Strategy {strategy} ({name}), seed 0\n\n"
-            + "\n\n".join(one.text() for one in tables_of(first, paper=True))
-        )
+        texts.append(f"Strategy {strategy} ({name}), seed 0\n\n" + first["tables"])
     TABLES.write_text("\n\n\n".join(texts) + "\n", encoding="utf-8")
     return figures

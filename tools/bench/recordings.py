@@ -62,7 +62,7 @@ def record(
         raise RuntimeError("the recorded arm left the range of numbers")
     follower = _readings(np.asarray(result.angles[0], dtype=np.float64), arm, table, seed)
     volts = result.duties[0].astype(np.float64) / pwm_steps(table.board) * arm.drive.supply
-    origin = Origin("0.1.0", table.board.key, table.crc, table.period_ms, every)
+    origin = Origin("0.1.0", table.board.key, table.crc, table.period_ms, every, joints=table.joints_in_use)
     first = round(START_S * 1000)
     with LogWriter(path, origin) as log:
         for row, tick in enumerate(range(first, len(volts), every)):

@@ -1,9 +1,13 @@
 """Attack the whole project at scale and publish the counts.
 
-python -m tools.campaign [PART ...] [--share 1.0] [--workers N] [--minutes M] [--out build/campaign] [--publish]
+python -m tools.campaign [PART ...] [--share 1.0] [--workers N] [--minutes M] [--out build/campaign] [--add FOLDER]
+                         [--publish]
 
-A run that was interrupted, or that has ended after its minutes, goes on where it stopped. `--publish` writes
-docs/reliability.md, which says how far each part is. The exit code is 1 when anything was violated.
+A run that was interrupted, or that has ended after its minutes, goes on where it stopped. So a long part can be done in
+pieces: `soak --share 12 --minutes 30` again and again comes to 24 hours. `--add` takes over the pieces that another
+machine has done for the same state of the code. `--publish` writes docs/reliability.md, which says how far each part is
+and counts what was done beyond the full size; with `--minutes 0` it only adds up. The exit code is 1 when anything was
+violated.
 """
 
 from __future__ import annotations
@@ -28,6 +32,7 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("--workers", type=int, default=os.cpu_count())
     parser.add_argument("--minutes", type=float, default=math.inf, help="begin no other piece after them")
     parser.add_argument("--out", type=Path, default=ROOT / "build/campaign")
+    parser.add_argument("--add", type=Path, action="append", default=[], metavar="FOLDER", help="another --out")
     parser.add_argument("--publish", action="store_true", help="write docs/reliability.md")
     options = parser.parse_args(arguments)
     if unknown := [name for name in options.part if name not in names]:
@@ -36,6 +41,9 @@ def main(arguments: list[str]) -> int:
         parser.error("only the whole campaign can be published")
     parts = [names[name] for name in options.part] or PARTS
     works = [Work(part, part.pieces(options.share), Journal(options.out, part)) for part in parts]
+    for folder in options.add:
+        taken = sum(work.journal.take_over(folder) for work in works)
+        print(f"{folder}: {taken} pieces taken over")
     try:
         do_all(works, options.workers, 60 * options.minutes, tell)
     finally:

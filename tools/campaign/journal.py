@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import asdict
 from pathlib import Path
 
@@ -29,8 +29,16 @@ class Journal:
             whole, _, torn = self.path.read_text(encoding="utf-8").rpartition("\n")
             if torn:  # it was being written when the campaign was killed
                 self.path.write_text(whole + "\n", encoding="utf-8")
-            for entry in map(json.loads, whole.splitlines()):
-                self._done[_key(entry["piece"])] = [Row(**row) for row in entry["rows"]]
+            self._done = {_key(piece): rows for piece, rows in _read(whole)}
+
+    def take_over(self, folder: Path) -> int:
+        """Add what was done elsewhere for the same state of the code, another machine's folder; how many pieces."""
+        other = folder / self.path.name
+        text = other.read_text(encoding="utf-8") if other.exists() else ""
+        new = [(piece, rows) for piece, rows in _read(text.rpartition("\n")[0]) if self.missing([piece])]
+        for piece, rows in new:
+            self.add(piece, rows)
+        return len(new)
 
     def add(self, piece: Piece, rows: Iterable[Row]) -> None:
         self._done[_key(piece)] = list(rows)
@@ -43,6 +51,12 @@ class Journal:
     def rows(self, pieces: Iterable[Piece]) -> list[Row]:
         """The rows of these pieces that are done, in their order."""
         return [row for piece in pieces for row in self._done.get(_key(piece), [])]
+
+
+def _read(text: str) -> Iterator[tuple[Piece, list[Row]]]:
+    """Each piece of whole lines, and its rows."""
+    for entry in map(json.loads, text.splitlines()):
+        yield entry["piece"], [Row(**row) for row in entry["rows"]]
 
 
 def _key(piece: Piece) -> str:

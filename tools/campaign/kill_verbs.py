@@ -8,11 +8,14 @@ from pathlib import Path
 
 import numpy as np
 
+from greywhale.arm.export import urdf
 from greywhale.files import parameter_file
+from greywhale.files.arm import load_arm
 from greywhale.files.leader import save_leader
 from greywhale.trajectory import Trajectory
 from tests.tune.models import write_model
 from tools.bench.recordings import TABLES, random_arm, record_three, table_of
+from tools.campaign.journal import ROOT
 
 
 @dataclass(frozen=True)
@@ -21,7 +24,8 @@ class Verb:
 
     {in} in its arguments is the folder of the inputs, {port} the board's port, `needs` what it imports when it runs.
     Where it is `held`, what it computes before its first change is done once for all trials. Where its results `vary`
-    from run to run, `files` are those of a run, and each is judged by what it is.
+    from run to run, `files` are those of a run, and each is judged by what it is. One that `refuses` never writes over
+    a file, so none is put in the place of a result, and a result is taken away before the next run.
     """
 
     name: str
@@ -32,6 +36,7 @@ class Verb:
     board: str = ""  # fake or bench
     held: bool = False
     vary: bool = False
+    refuses: bool = False
     more: str = ""  # pattern of results of which another run may have others
     needs: tuple[str, ...] = ()
     trials: int = 1000
@@ -53,11 +58,41 @@ VERBS = (
         trials=200,
         size=50,
     ),
+    Verb("record --reconnect", "record -s 0.4 --reconnect -o log.csv --port {port}", {"log.csv": 400}, board="fake"),
     Verb("replay", f"replay {{in}}/motion.csv {_LED}", {"log.csv": 0}, board="fake"),
     Verb("upload", f"upload {TABLES}/table_10.toml --port {{port}}", board="fake"),
     Verb("params set", "params set joint0.kp=0.5 supply_mv=12000 --port {port}", board="fake"),
     Verb("params restore", "params restore {in}/table.toml --port {port}", board="fake"),
     Verb("params backup", "params backup backup.toml --port {port}", files=("backup.toml",), board="fake"),
+    Verb("params get", "params get --port {port}", board="fake", trials=250),
+    Verb("params diff", "params diff {in}/table.toml --port {port}", board="fake", trials=250),
+    Verb("info", "info --port {port}", board="fake", needs=("greywhale.doctor.board",), trials=250),
+    Verb("stop", "stop --clear-fault --port {port}", board="fake", trials=250),
+    Verb(
+        "calibrate, the person's part left out",
+        "calibrate --yes --backup before.toml --port {port}",
+        files=("before.toml",),
+        board="fake",
+        refuses=True,
+        trials=500,
+    ),
+    Verb(
+        "arm new",
+        "arm new --answers {in}/answers.toml -o arm.toml",
+        files=("arm.toml",),
+        refuses=True,
+        needs=("greywhale.cli.arm_new",),
+    ),
+    Verb(
+        "arm match",
+        "arm match default -o matched.toml --port {port}",
+        files=("matched.toml",),
+        board="fake",
+        refuses=True,
+        needs=("greywhale.cli.arm_match",),
+        trials=500,
+    ),
+    Verb("arm import", "arm import {in}/arm.urdf -o arm.toml", files=("arm.toml",), refuses=True),
     Verb(
         "export --fis",
         f"export --fis {TABLES}/table_10.toml --out c.fis",
@@ -69,6 +104,13 @@ VERBS = (
         "export --urdf default --out arm.urdf",
         files=("arm.urdf",),
         needs=("greywhale.arm.export", "greywhale.files.arm"),
+    ),
+    Verb(
+        "export --mjcf",
+        "export --mjcf default --out arm.xml",
+        files=("arm.xml",),
+        needs=("greywhale.arm.export", "greywhale.files.arm"),
+        trials=500,
     ),
     Verb(
         "evaluate --picture",
@@ -112,6 +154,22 @@ VERBS = (
         "upload, simulated board", f"upload {TABLES}/table_10.toml --port {{port}}", board="bench", trials=40, size=20
     ),
     Verb(
+        "doctor, simulated board",
+        "doctor --seconds 0.5 --port {port}",
+        board="bench",
+        needs=("greywhale.doctor",),
+        trials=20,
+        size=10,
+    ),
+    Verb(
+        "doctor --image, simulated board",
+        "doctor --image --seconds 0.5 --port {port}",
+        board="bench",
+        needs=("greywhale.doctor",),
+        trials=8,
+        size=4,
+    ),
+    Verb(
         "demo, simulated board",
         f"demo -o demo --duration 5 --controller {TABLES}/table_10.toml",
         vary=True,
@@ -132,6 +190,16 @@ VERBS = (
 )
 
 
+# Verbs of the command line that are not killed, and why.
+LEFT_OUT = {
+    "sim": "it runs until it is ended; the next bench sweeps what a killed one leaves, and `cuts` cuts its EEPROM",
+    "ports": "it neither writes a file nor opens a port",
+    "udev": "it only prints",
+    "flash": "avrdude and the bootloader do the work, and go on when their caller is killed",
+    "reproduce": "it takes minutes; its results are a study's, like those of `compare`",
+}
+
+
 def make_inputs(verb: Verb, folder: Path) -> None:
     """What the verb reads."""
     if "{in}/motion.csv" in verb.arguments:
@@ -142,5 +210,10 @@ def make_inputs(verb: Verb, folder: Path) -> None:
     if "{in}/fit.csv" in verb.arguments or "{in}/log.csv" in verb.arguments:
         record_three(random_arm(2), folder, seed=1, seconds=6.0)
         shutil.copy(folder / "fit.csv", folder / "log.csv")
+    if "{in}/answers.toml" in verb.arguments:
+        answers = (ROOT / "docs/your-arm.md").read_text(encoding="utf-8").partition("```toml\n")[2].partition("```")[0]
+        (folder / "answers.toml").write_text(answers, encoding="utf-8")
+    if "{in}/arm.urdf" in verb.arguments:
+        (folder / "arm.urdf").write_text(urdf(load_arm("default")), encoding="utf-8")
     if "{in}/table.toml" in verb.arguments:
         parameter_file.save(folder / "table.toml", table_of("table_8"))

@@ -17,12 +17,17 @@ Report = Callable[[int, int, float], None]  # pieces done, pieces in all, second
 
 @dataclass(frozen=True)
 class Result:
-    """What a part has come to: the rows of its finished pieces."""
+    """What a part has come to: the rows of its finished pieces.
+
+    `longer` of the `most_longer` pieces beyond its full size are done as well.
+    """
 
     part: Part
     rows: list[Row]
     done: int
     pieces: int
+    longer: int = 0
+    most_longer: int = 0
 
     @property
     def whole(self) -> bool:
@@ -38,8 +43,12 @@ class Work:
     journal: Journal
 
     def result(self) -> Result:
-        rows = add_up(self.journal.rows(self.pieces))
-        return Result(self.part, rows, len(self.pieces) - len(self.journal.missing(self.pieces)), len(self.pieces))
+        asked, full = list(self.pieces), self.part.pieces(1.0)
+        longest = self.part.pieces(self.part.longest) if asked == full else []
+        beyond = [piece for piece in longest if piece not in full]
+        rows = add_up(self.journal.rows([*asked, *beyond]))
+        done, longer = (len(some) - len(self.journal.missing(some)) for some in (asked, beyond))
+        return Result(self.part, rows, done, len(asked), longer, len(beyond))
 
 
 def in_turn(works: Iterable[Work]) -> list[tuple[Work, Piece]]:

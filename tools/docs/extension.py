@@ -25,7 +25,8 @@ PATH = re.compile(r"PosixPath\('([^']*)'\)")
 # numpy's own way of writing an array of any shape.
 ARRAY = re.compile(r"~?numpy\.ndarray\[tuple\[~?(?:typing\.)?Any, \.\.\.\], ~?numpy\.dtype\[~?numpy\.(\w+)\]\]")
 # A field of a class with a comment behind it: name, default, comment.
-FIELD = re.compile(r"^    (\w+): [^=\n]*?(?: = ([^\n]+?))?  # (?!type:|noqa)([^\n]+)$", re.MULTILINE)
+_TYPE = r"[^=\n\[]*(?:\[.*?\])?[^=\n\[]*?"
+FIELD = re.compile(rf"^    (\w+): {_TYPE}(?: = ([^\n]+?))?  # (?!type:|noqa)([^\n]+)$", re.MULTILINE)
 
 
 def add_notes(app: Sphinx, context: click.Context, lines: list[str]) -> None:

@@ -35,6 +35,7 @@ class Run {
     plant_.step = all(static_cast<float>(h));
     plant_.travel = all(static_cast<float>(h) * kRadian);
     plant_.per_step = all(static_cast<float>(1.0 / h));
+    plant_.rigid = has_rigid_joint(block);
     for (std::size_t i = 0; i < kJoints; ++i) {
       plant_.joints[i] = joint_of(block, i, h, x.settings.pwm_top[i]);
       laws_[i] = law_of(block, i, short_ramps_);

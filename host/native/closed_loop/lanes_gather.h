@@ -137,13 +137,23 @@ inline bool is_worn(const Block& block) {
   return worn;
 }
 
+inline bool has_rigid_joint(const Block& block) {
+  bool found = false;
+  for (const PlantRow* row : block.plants) {
+    for (const arm::Joint<double>& joint : row->plant.joints) found = found || !arm::has_room(joint.stops);
+  }
+  return found;
+}
+
 inline Side side_of(const Block& block, std::size_t joint, fuzzy_pdi::Side (fuzzy_pdi::Coefficients::*input)[2],
                     std::size_t below) {
   const auto of = [&](auto value) {
     return gather_int([&](std::size_t n) { return value((block.controllers[n][joint].*input)[below]); });
   };
   return {of([](const fuzzy_pdi::Side& s) { return s.zero; }), of([](const fuzzy_pdi::Side& s) { return s.outer; }),
-          of([](const fuzzy_pdi::Side& s) { return s.short_ramps & 1 ? 8 : 0; }),
+          of([](const fuzzy_pdi::Side& s) { return s.short_ramps & 1   ? 8
+                                                   : s.short_ramps & 4 ? 1
+                                                                       : 0; }),
           of([](const fuzzy_pdi::Side& s) { return s.short_ramps & 2 ? 8 : 0; })};
 }
 

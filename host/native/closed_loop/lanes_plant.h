@@ -50,6 +50,7 @@ struct Plant {
   Float step;    // s
   Float travel;  // 2^-30 turns per rad/s
   Float per_step;
+  bool rigid;  // some joint has no room between its stops, so it is always at one
 };
 
 GREYWHALE_INLINE Float negate_where(Float a, Int bit31) { return float_of_bits(bits_of(a) ^ (bit31 & all(INT32_MIN))); }
@@ -223,12 +224,12 @@ GREYWHALE_INLINE void solve_held(const Row& a, const Row& b, Float coupling, con
   vb = (aa * br - ba * ar) * scale;
 }
 
-// A stop holds a link that would pass it and lets go of one that it would have to pull.
+// A stop holds a link that would pass it and lets go of one that it would have to pull, unless there is no room to go.
 GREYWHALE_INLINE Mask correct_stop(const Joint& j, Int reached, Float impulse, Trial& t) {
   const Float zero = all(0.0f);
   const Float arrives = choose(reached > j.stop_max, all(1.0f), choose(reached < j.stop_min, all(-1.0f), zero));
   const Float stays = choose(t.stop * impulse > j.no_pull, zero, t.stop);
-  const Float stop = choose(t.stop != zero, stays, arrives);
+  const Float stop = choose(t.stop != zero, choose(j.stop_max > j.stop_min, stays, t.stop), arrives);
   const Mask changed = stop != t.stop;
   t.stop = stop;
   return changed;
@@ -303,6 +304,10 @@ __attribute__((noinline)) void advance_at_stops(const Plant& plant, const Geomet
 
 template <bool kWorn>
 GREYWHALE_INLINE void advance(const Plant& plant, const Geometry& g, State (&s)[4], const Float (&duty)[4]) {
+  if (__builtin_expect(plant.rigid, 0)) {
+    advance_at_stops<kWorn>(plant, g, s, duty);
+    return;
+  }
   Trial t[4];
   Row r[4];
   Float momentum[4];

@@ -71,6 +71,8 @@ class Law {
     for (std::size_t i = 0; i < kJoints; ++i) {
       const arm::Joint<double>& joint = plant_.joints[i];
       const Tuning& tuning = tuning_[i];
+      u[i] = 0.0;
+      if (!arm::has_room(joint.stops)) continue;  // it is not in use
       learn(joint.gear, leader[i] - s.q[i], give_[i]);
       const double error = leader[i] + give(joint, bias[i]) + give_[i] - s.motor_q[i];
       const double inertia = own[i] + joint.actuator.inertia;

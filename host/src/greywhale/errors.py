@@ -13,6 +13,12 @@ BAD_USAGE = 2
 LONGEST = 1000
 
 
+# No seed is larger: what it is multiplied with and added to must fit into the native code's 64 bits.
+MOST_SEED = (1 << 31) - 1
+# So many processes or threads no machine of today keeps busy; more would only take its memory.
+MOST_WORKERS = 1024
+
+
 class UserError(Exception):
     """A failure the user can act on; `message` is one whole sentence, `exit_code` is 1 (failed) or 2 (bad usage).
 
@@ -23,6 +29,19 @@ class UserError(Exception):
         self.message = cut(printable(message), LONGEST)
         super().__init__(self.message)
         self.exit_code = exit_code
+
+
+def require_within(what: str, value: int, least: int, most: int) -> None:
+    """Refuse a whole number that is out of its range, as bad usage."""
+    if value < least:
+        raise UserError(f"{what} is {value}, but it must be at least {least}.", BAD_USAGE)
+    if value > most:
+        raise UserError(f"{what} is {value}, but it must be at most {most}.", BAD_USAGE)
+
+
+def counted(number: int, thing: str) -> str:
+    """A number of things: 1 sample, 2 samples."""
+    return f"{number} {thing}{'' if number == 1 else 's'}"
 
 
 def printable(text: str) -> str:

@@ -5,13 +5,16 @@ Values are raw, the integers that a board stores, unless a name says otherwise.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Self
 
 from greywhale.errors import UserError
 from greywhale.firmware import JOINTS
+from greywhale.joints import ALL, Joints, unused
 from greywhale.protocol import schema
+from greywhale.protocol.declared import Parameter
 from greywhale.protocol.schema import Board
 
 # One joint's controller as the table holds it: sets q14, gains q16, mV.
@@ -50,6 +53,11 @@ class ParameterTable:
         return tuple(self[f"{group}{number}.{key}"] for number in range(JOINTS))
 
     @property
+    def joints_in_use(self) -> Joints:
+        """Those whose follower has a potentiometer: its scale is not 0."""
+        return tuple(joint for joint, scale in enumerate(self.each("follower", "scale")) if scale != 0)
+
+    @property
     def crc(self) -> int:
         """The CRC that the board computes over the same set."""
         return schema.param_crc(self.raw)
@@ -84,6 +92,19 @@ class ParameterTable:
             values[schema.PARAMETER_BY_NAME[name].index] = raw
         return replace(self, raw=tuple(values))
 
+    def with_joints(self, joints: Joints) -> Self:
+        """The same table with neither potentiometer of the joints that are not among these."""
+        return self.with_raw({f"{side}{joint}.scale": 0 for side in ("leader", "follower") for joint in unused(joints)})
+
+    def limits_raw(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
+        """Lower and upper limits as the firmware keeps them: 0 for joints that are not in use."""
+        used = [joint in self.joints_in_use for joint in ALL]
+        lower, upper = (self.each("joint", end) for end in ("limit_min", "limit_max"))
+        return (
+            tuple(limit * one for limit, one in zip(lower, used, strict=True)),
+            tuple(limit * one for limit, one in zip(upper, used, strict=True)),
+        )
+
     def with_controllers(self, rows: Iterable[Iterable[int]]) -> Self:
         """The same table with other controllers, (4, 12) raw."""
         return self.with_raw(
@@ -101,6 +122,13 @@ class ParameterTable:
     def with_name(self, name: str) -> Self:
         """The same table under another name."""
         return replace(self, name=name)
+
+
+def physical(parameter: Parameter, raw: int) -> float:
+    """The value in the parameter's unit, rounded to the digits that still tell neighbouring raw values apart."""
+    digits = max(0, 1 - math.floor(math.log10(parameter.lsb)))
+    value = round(parameter.to_physical(raw), digits)
+    return int(value) if parameter.lsb == 1.0 else value
 
 
 def find_board(key: str | None) -> Board:

@@ -83,12 +83,13 @@ def build_bench(options: BenchOptions, plant: Plant | None = None) -> Bench:
         board=build_board(options),
         wiring=wiring_of(options.board),
         plant=Arm(parameters, seed=options.seed) if plant is None else plant,
-        leader=LeaderPlayer(motion, SLICE_S),
+        leader=LeaderPlayer(motion, SLICE_S, joints=parameters.joints_in_use),
         leader_pots=Potentiometers(parameters.leader_pots, options.seed),
         follower_pots=Potentiometers(parameters.follower_pots, options.seed + 1),
         supply_v=parameters.drive.supply,
         chip=chip_of(options.driver),
         emf=np.array([motor.torque_per_volt * motor.resistance for motor in map(parameters.actuator, range(4))]),
+        joints=parameters.joints_in_use,
     )
     for mistake in options.mistakes:
         stage(bench, mistake)

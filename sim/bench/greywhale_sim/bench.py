@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from greywhale import arm
 from greywhale.errors import UserError
+from greywhale.joints import ALL, Joints
 from greywhale_sim.board_supply import SharedSupply
 from greywhale_sim.drivers import CHIPS, OPEN, Chip, Pins, mean_volts
 from greywhale_sim.leader import LeaderPlayer
@@ -86,6 +87,7 @@ class Bench:
         supply_v: float,
         chip: Chip = CHIPS["drv8838"],
         emf: Array | None = None,  # V s of each motor at its output shaft; needed where a chip lets motors coast
+        joints: Joints = ALL,  # in use; the others have no potentiometers and no motor
     ) -> None:
         self.board = board
         self.wiring = wiring
@@ -93,7 +95,9 @@ class Bench:
         self.emf: Array = np.zeros(4) if emf is None else emf
         self.estop_pressed = False
         self.lies = Lies()
-        self.motor_gains = [1.0] * 4  # -1: both wires of a motor are swapped; 0: one is off; 0.2: it is weak
+        self.joints = joints
+        # -1: both wires of a motor are swapped; 0: one is off; 0.2: it is weak
+        self.motor_gains = [1.0 if joint in joints else 0.0 for joint in ALL]
         self.motor_wires = [0, 1, 2, 3]  # which driver each motor is on
         self.floating = 0  # bit i: the wire of potentiometer i is off and nothing pulls its input
         self.plant = plant
@@ -117,6 +121,8 @@ class Bench:
         self._millivolts = np.zeros(8)
         self._last_outputs = b""
         self._enabled = False
+        if joints != ALL:
+            self.connect_all()
         self.place(leader.home)
 
     @property
@@ -138,9 +144,17 @@ class Bench:
         self.estop_pressed = pressed
 
     def wire_motor(self, joint: int, gain: float, driver: int) -> None:
-        """Put a motor on a driver (0..3), the right way (1), the wrong way (-1) a wire off (0), or weak."""
-        self.motor_gains[joint], self.motor_wires[joint] = gain, driver
+        """Put a motor on a driver (0..3), the right way (1), the wrong way (-1) a wire off (0), or weak (0.2)."""
+        self.motor_gains[joint] = gain if joint in self.joints else 0.0
+        self.motor_wires[joint] = driver
         self._last_outputs = b""
+
+    def connect_all(self) -> None:
+        """Put every motor and potentiometer where it belongs; those of joints that are not in use are not there."""
+        for joint in ALL:
+            self.wire_motor(joint, 1.0, joint)
+            for pot in (joint, joint + len(ALL)):
+                self.let_float(pot, False)
 
     def change_supply(self, volts: float) -> None:
         """Give the motors another supply."""
@@ -149,6 +163,7 @@ class Bench:
 
     def let_float(self, pot: int, floats: bool) -> None:
         """Take the wire off a potentiometer (0..3 leader, 4..7 follower) without a pull-down, or put it back."""
+        floats = floats or pot % len(ALL) not in self.joints
         self.floating = self.floating & ~(1 << pot) | floats << pot
         self.board.set_floating(self.floating)
 

@@ -16,6 +16,7 @@ motor 0..3 STATE                   a motor's wires: connected, reversed, dead (o
                                    on another's driver, 0..3
 power off|on                       cut or restore the board's supply
 speed 1|max                        real time, or as fast as possible
+quit                               end the bench; there is no answer
 """
 
 from __future__ import annotations
@@ -36,6 +37,7 @@ from greywhale_sim.pins_seen import PinsSeen
 from greywhale_sim.server import Server
 
 Answer = dict[str, Any]
+QUIT = "quit"  # obeyed by whoever reads the commands
 FARTHEST_RAD = 6.28
 _WIRINGS = {
     "connected": arm.Wiring.CONNECTED,
@@ -52,7 +54,7 @@ def run(server: Server, text: str) -> Answer:
     except ValueError as error:
         raise UserError(f'"{text.strip()}" is not understood: {error}.', 2) from None
     if name not in COMMANDS:
-        raise UserError(f'"{name}" is not a bench command; there are: {", ".join(COMMANDS)}.', 2)
+        raise UserError(f'"{name}" is not a bench command; there are: {", ".join((*COMMANDS, QUIT))}.', 2)
     command, usage = COMMANDS[name]
     try:
         return command(server, *words)

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from greywhale.errors import UserError
+from greywhale.joints import ALL, Joints
 from greywhale.trajectory import Trajectory
 
 Array = npt.NDArray[np.float64]
@@ -22,10 +23,14 @@ BRING_BACK_S = 1.0
 
 
 class LeaderPlayer:
-    """Leader angles for every slice; `hold` is the pose in which the hand holds the follower, None when it is free."""
+    """Leader angles for every slice; `hold` is the pose in which the hand holds the follower, None when it is free.
 
-    def __init__(self, motion: Trajectory, slice_s: float, start_s: float = START_S) -> None:
+    Joints that are not in use stay at 0, whatever the motion and the hands want.
+    """
+
+    def __init__(self, motion: Trajectory, slice_s: float, start_s: float = START_S, joints: Joints = ALL) -> None:
         self._slice_s = slice_s
+        self._in_use = np.array([float(joint in joints) for joint in ALL])
         self._start = round(start_s / slice_s)
         self._let_go = round(LET_GO_S / slice_s)
         self._bring_back = max(1, round(BRING_BACK_S / slice_s))
@@ -51,7 +56,10 @@ class LeaderPlayer:
         """Bring a held arm, or both, to angles (4,) rad within so many seconds; both are held until the next enable."""
         if self.hold is None:
             raise UserError("the hands are on the arms only while the motors are off; stop them first.")
-        self._rest = (self._rest[0] if leader is None else leader, self._rest[1] if follower is None else follower)
+        self._rest = (
+            self._rest[0] if leader is None else leader * self._in_use,
+            self._rest[1] if follower is None else follower * self._in_use,
+        )
         self._set_out(max(1, round(seconds / self._slice_s)))
 
     def step(self, enabled: bool, follower: Array) -> None:
@@ -110,7 +118,7 @@ class LeaderPlayer:
         if not 0 <= offset < len(self._chunk):
             self._chunk_first = index
             times = np.arange(index, index + max(1, round(1.0 / self._slice_s)), dtype=np.float64) * self._slice_s
-            self._chunk = self._motion.at(times)
+            self._chunk = self._motion.at(times) * self._in_use
             offset = 0
         row: Array = self._chunk[offset]
         return row

@@ -213,9 +213,7 @@ def take_back(bench: Bench) -> None:
     bench.lies = Lies()
     for pot in range(len(POTS)):
         _wire(arm.Wiring.CONNECTED)(bench, pot)
-        bench.let_float(pot, False)
-    for joint in range(JOINTS):
-        bench.wire_motor(joint, 1.0, joint)
+    bench.connect_all()
     bench.change_supply(bench.own_supply_v)
     if bench.shared_supply is not None:
         bench.shared_supply.mend()

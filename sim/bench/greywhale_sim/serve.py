@@ -17,6 +17,7 @@ from pathlib import Path
 from types import FrameType
 
 from greywhale.errors import UserError
+from greywhale.files.outputs import require_files
 from greywhale.protocol.ports import forget_dead_benches
 from greywhale.runtime import make_runtime_directory
 from greywhale_sim import commands
@@ -47,12 +48,7 @@ def running(
     """
     if options.speed not in ("1", "max"):
         raise UserError(f'speed "{options.speed}" is not known; say 1 (real time) or max.', 2)
-    if options.eeprom is not None and not options.eeprom.parent.is_dir():
-        raise UserError(
-            f"{options.eeprom}: the folder {options.eeprom.parent} does not exist; create it, or keep the EEPROM "
-            "elsewhere.",
-            2,
-        )
+    require_files(options.eeprom)  # else the first save fails, when the board already runs
     bench = build_bench(options, plant)
     port = SerialPort(_links(options, note))
     server = Server(
@@ -135,7 +131,7 @@ class Control:
                 self._answer(text.decode("utf-8", "replace"))
 
     def _answer(self, text: str) -> None:
-        if text.strip() == "quit":
+        if text.strip() == commands.QUIT:
             self._server.ending = True
             return
         try:

@@ -178,3 +178,21 @@ def test_nothing_is_written_without_a_yes(
 )  # fmt: skip
 def test_units_as_people_write_them(text: str, unit: Any, value: float) -> None:
     assert read_number(text, unit) == pytest.approx(value, rel=1e-4)
+
+
+def test_an_arm_with_two_joints_is_asked_for_their_motors_alone(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = ANSWERS.split("[[joint]]\nstall")[0]
+    for given in ('"0,1"', "[0, 1]"):
+        out = tmp_path / f"arm{len(given)}.toml"
+        code, facts = ask(capsys, "--answers", written(tmp_path, f"joints = {given}\n{text}"), "--out", str(out))
+        assert code == 0, facts
+        arm = load_arm(out)
+        assert arm.joints_in_use == (0, 1)
+        assert [one["joint"] for one in facts["joints"]] == [0, 1]
+        assert not any(name.startswith(("joint[2]", "joint[3]")) for name in facts["left_out"])
+        assert arm.link[3].mass > 0.0
+    code, facts = ask(capsys, "--answers", written(tmp_path, 'joints = "0,4"'), "--out", str(tmp_path / "no.toml"))
+    assert code == 2
+    assert "joints is '0,4': give one or more of 0 to 3, each once" in facts["error"]

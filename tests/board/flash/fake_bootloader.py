@@ -18,8 +18,12 @@ ATMEGA328P = b"\x1e\x95\x0f"
 class FakeBootloader(threading.Thread):
     """The other end of a line; `port` is what a host opens, `heard` is the speeds at which it was spoken to."""
 
-    def __init__(self, baud: int, signature: bytes) -> None:
+    def __init__(self, baud: int, signature: bytes, memory: bytes = b"", garble: int = 0) -> None:
+        """`memory` is the program memory; of its first `garble` answers to a read the last byte is wrong."""
         super().__init__(daemon=True)
+        self.memory, self.garble = memory, garble
+        self.left = False  # whether the host has sent it back to the firmware
+        self.word = 0  # the address that was loaded last
         self.signature = signature
         self.master, self.slave = os.openpty()
         tty.setraw(self.slave)
@@ -29,6 +33,19 @@ class FakeBootloader(threading.Thread):
         self._buffer = b""
         self._ending = threading.Event()
         self.start()
+
+    def read(self, count: int) -> bytes:
+        """So many bytes from the address on that was loaded last."""
+        start = 2 * self.word
+        self.word += count // 2
+        return self.memory[start : start + count].ljust(count, b"\xff")
+
+    def garbled(self, answer: bytes) -> bytes:
+        """An answer to a read, the first ones with a wrong byte."""
+        if self.garble == 0:
+            return answer
+        self.garble -= 1
+        return answer[:-1] + bytes([answer[-1] ^ 0xFF])
 
     def answer(self, data: bytes) -> tuple[bytes, bytes]:
         """What to say to `data`, and what of it is kept until more comes."""
@@ -62,9 +79,22 @@ class Version1(FakeBootloader):
     def answer(self, data: bytes) -> tuple[bytes, bytes]:
         said = b""
         while len(data) >= 2:
-            command, data = data[:2], data[2:]
-            said += {b"0 ": b"\x14\x10", b"u ": b"\x14" + self.signature + b"\x10"}.get(command, b"")
+            length = {b"U": 4, b"t": 5}.get(data[:1], 2)
+            if len(data) < length:
+                break
+            command, data = data[:length], data[length:]
+            said += self._say(command)
         return said, data
+
+    def _say(self, command: bytes) -> bytes:
+        if command[:1] == b"U":
+            self.word = int.from_bytes(command[1:3], "little")
+            return b"\x14\x10"
+        if command[:1] == b"t":
+            return self.garbled(b"\x14" + self.read(int.from_bytes(command[1:3], "big")) + b"\x10")
+        self.left = self.left or command == b"Q "
+        known = {b"0 ": b"\x14\x10", b"u ": b"\x14" + self.signature + b"\x10", b"Q ": b"\x14\x10"}
+        return known.get(command, b"")
 
 
 class Version2(FakeBootloader):
@@ -85,8 +115,16 @@ class Version2(FakeBootloader):
     def _reply(self, sequence: int, body: bytes) -> bytes:
         if body == b"\x01":
             answer = b"\x01\x00\x08AVRISP_2"
+        elif body[:1] == b"\x06":
+            self.word = int.from_bytes(body[1:5], "big")
+            answer = b"\x06\x00"
+        elif body[:1] == b"\x14":
+            answer = b"\x14\x00" + self.read(int.from_bytes(body[1:3], "big")) + b"\x00"
+        elif body[:1] == b"\x11":
+            self.left, answer = True, b"\x11\x00"
         else:
             assert body[:6] == b"\x1d\x04\x04\x00\x30\x00", "only the signature is read"
             answer = bytes([0x1D, 0, 0, 0x30, 0, self.signature[body[6]], 0])
         message = bytes([0x1B, sequence]) + len(answer).to_bytes(2, "big") + b"\x0e" + answer
-        return message + bytes([reduce(xor, message)])
+        whole = message + bytes([reduce(xor, message)])
+        return self.garbled(whole) if body[:1] == b"\x14" else whole

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import cast
@@ -11,9 +12,9 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.text import Text
-from matplotlib.transforms import BboxBase
 
+from greywhale.drawing import looks
+from greywhale.drawing.page import style
 from greywhale.errors import UserError
 from greywhale.files.controller import load
 from greywhale.files.paper_tables import paper_table
@@ -22,6 +23,7 @@ from greywhale.trajectory import multi_steps
 from greywhale.tune.outcome import Outcome
 from greywhale.tune.report import pictures
 from greywhale.tune.report.pictures import Controllers, Floats, Response
+from tests.drawing.sight import faults
 
 
 def controllers(name: str) -> Controllers:
@@ -47,49 +49,85 @@ def y_of(line: Line2D) -> Floats:
 
 
 def figure_of(name: str) -> Figure:
-    with pictures.set_style():
+    with style():
         if name == "sets":
             return pictures.plot_sets(controllers("before_tuning"), controllers("table_10"))
+        if name == "unchanged sets":
+            return pictures.plot_sets(controllers("before_tuning"), controllers("before_tuning"))
         if name == "responses":
             return pictures.plot_responses(*motion(), "Response to multi-steps")
         evaluations = np.arange(10, 310, 10)
+        cost = pictures.cost_words("default")
         costs = [np.maximum(scale / evaluations, 1.2e-3 * scale) for scale in (1e-3, 1.0, 123456.0, 7e5)]
-        return pictures.plot_convergence([(evaluations, cost) for cost in costs], "Convergence")
+        return pictures.plot_convergence([(evaluations, one) for one in costs], "Convergence", cost)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["sets", "responses", "convergence"])
-def test_no_text_runs_into_another_or_over_the_edge(name: str) -> None:
-    figure = figure_of(name)
+@pytest.mark.parametrize("name", ["sets", "unchanged sets", "responses", "convergence"])
+def test_nothing_is_cut_off_overlaps_or_lacks_a_unit(name: str) -> None:
+    with style():
+        try:
+            assert faults(figure_of(name)) == []
+        finally:
+            plt.close("all")
+
+
+def test_sets_that_did_not_change_are_drawn_once_and_said_to_be_unchanged() -> None:
+    figure = figure_of("unchanged sets")
     try:
-        renderer = figure.canvas.get_renderer()  # type: ignore[attr-defined]
-        figure.draw(renderer)
-        texts = [one for one in figure.findobj() if isinstance(one, Text) and one.get_visible()]
-        boxes = [(text.get_text(), text.get_window_extent(renderer)) for text in texts if text.get_text().strip()]
-        width, height = figure.canvas.get_width_height()
-        shown = [(text, box) for text, box in boxes if box.width > 0 and not _is_unused_tick(figure, text, box)]
-        assert len(shown) > 20
-        for place, (text, box) in enumerate(shown):
-            assert min(box.x0, box.y0, width - box.x1, height - box.y1) >= 0, f"{text} is cut off"
-            for other, other_box in shown[place + 1 :]:
-                assert not box.overlaps(other_box), f"{text} and {other} overlap"
+        assert "unchanged" in figure.get_suptitle()
+        assert [text.get_text() for text in figure.legends[0].get_texts()] == ["NE / NCE", "ZE / ZCE", "PE / PCE"]
+        assert {len(axes.get_lines()) for axes in figure.axes} == {3}
+        assert {line.get_linestyle() for axes in figure.axes for line in axes.get_lines()} == {"-"}
     finally:
         plt.close("all")
 
 
-def _is_unused_tick(figure: Figure, text: str, box: BboxBase) -> bool:
-    """Matplotlib keeps labels of ticks that lie outside of their axis, or are switched off, without drawing them."""
-    renderer = figure.canvas.get_renderer()  # type: ignore[attr-defined]
-    drawn = set()
-    for axes in figure.axes:
-        for axis in (axes.xaxis, axes.yaxis):
-            low, high = sorted(axis.get_view_interval())
-            for tick in axis.get_major_ticks() + axis.get_minor_ticks():
-                label = tick.label1
-                inside = low - 1e-9 <= tick.get_loc() <= high + 1e-9
-                if label.get_text() == text and label.get_window_extent(renderer).bounds == box.bounds:
-                    drawn.add(inside and label.get_visible())
-    return bool(drawn) and not any(drawn)
+def test_a_panel_without_change_says_so_among_others() -> None:
+    before, after = controllers("before_tuning"), controllers("before_tuning").copy()
+    after[2] = controllers("table_10")[2]
+    figure = pictures.plot_sets(before, after)
+    try:
+        unchanged = ["unchanged" in axes.get_title() for axes in figure.axes]
+        assert unchanged == [True] * 4 + [False] * 2 + [True] * 2
+        assert [len(axes.get_lines()) for axes in figure.axes] == [3] * 4 + [6] * 2 + [3] * 2
+    finally:
+        plt.close("all")
+
+
+def test_every_follower_looks_the_same_in_all_panels_and_in_the_legend() -> None:
+    figure = figure_of("responses")
+    try:
+        shown = [(line.get_color(), line.get_linestyle()) for line in figure.legends[0].get_lines()[:4]]
+        assert shown == [(look.colour, look.style) for look in (looks.LEADER, looks.BEFORE, looks.AFTER, looks.FLOOR)]
+        for whole, error, near in zip(figure.axes[::3], figure.axes[1::3], figure.axes[2::3], strict=True):
+            for axes, expected in ((whole, shown), (error, shown[1:]), (near, shown)):
+                lines = axes.get_lines()[: len(expected)]
+                assert [(line.get_color(), line.get_linestyle()) for line in lines] == expected
+    finally:
+        plt.close("all")
+
+
+def test_an_error_that_leaves_its_panel_is_marked() -> None:
+    figure = figure_of("responses")
+    try:
+        error = figure.axes[1]
+        assert error.get_ylim() == (-0.2, 0.2)
+        marks = [line for line in error.get_lines() if line.get_marker() in ("^", "v") and len(x_of(line))]
+        assert {line.get_color() for line in marks} == {looks.BEFORE.colour, looks.AFTER.colour, looks.FLOOR.colour}
+        assert any("beyond ±0.2 rad (up to 1.2)" in text.get_text() for text in figure.legends[0].get_texts())
+    finally:
+        plt.close("all")
+
+
+def test_costs_have_a_unit() -> None:
+    assert pictures.cost_words("paper") == "best J = ITAE [rad s²] + ITAU [V s²]"
+    assert "1: before tuning" in pictures.cost_words("cma-es")
+    figure = figure_of("convergence")
+    try:
+        assert figure.get_supylabel() == pictures.cost_words("default")
+    finally:
+        plt.close("all")
 
 
 def test_the_sets_have_their_corners_where_the_board_has_them() -> None:
@@ -118,7 +156,7 @@ def test_responses_show_every_follower_its_error_and_its_figure() -> None:
         assert (whole.get_ylabel(), error.get_ylabel()) == ("angle [rad]", "error [rad]")
         first, last = near.get_xlim()
         assert first < 11.0 < last, "the largest of the steps, 1.2 rad, comes at 11 s"
-        assert [text.get_text() for text in figure.legends[0].get_texts()] == ["leader", *followers]
+        assert [text.get_text() for text in figure.legends[0].get_texts()][:4] == ["leader", *followers]
         assert time[0] == whole.get_xlim()[0]
     finally:
         plt.close("all")
@@ -167,6 +205,7 @@ def test_a_tuning_gets_all_its_pictures_and_an_unfinished_one_those_there_are(tm
         floor=floor,
     )
     outcome = SimpleNamespace(
+        model=SimpleNamespace(arm=SimpleNamespace(joints_in_use=(0, 1, 2, 3))),
         method="paper",
         strategy="mf",
         before=controllers("before_tuning"),
@@ -179,3 +218,45 @@ def test_a_tuning_gets_all_its_pictures_and_an_unfinished_one_those_there_are(tm
     assert all(path.read_bytes().startswith(b"\x89PNG") for path in drawn)
     outcome.held_out, outcome.curves = (), ()
     assert [path.name for path in pictures.draw(cast(Outcome, outcome), tmp_path)] == ["sets.png"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("joints", [(0, 1), (2,), (0, 1, 3)])
+def test_only_joints_in_use_have_a_panel(joints: tuple[int, ...]) -> None:
+    costs = [(np.arange(10, 310, 10), 1.0 / np.arange(10, 310, 10))] * 4
+    with style():
+        figures = (
+            pictures.plot_sets(controllers("before_tuning"), controllers("table_10"), joints),
+            pictures.plot_responses(*motion(), "Response to multi-steps", joints),
+            pictures.plot_convergence(costs, "Convergence", pictures.cost_words("default"), joints),
+        )
+        for figure in figures:
+            try:
+                assert faults(figure) == []
+                told = " ".join(axes.get_title() + axes.get_title(loc="left") for axes in figure.get_axes())
+                assert {joint for joint in range(4) if f"Joint {joint}" in told} == set(joints)
+            finally:
+                plt.close(figure)
+
+
+def test_the_lowest_panel_of_each_column_has_its_axis() -> None:
+    costs = [(np.arange(10, 310, 10), 1.0 / np.arange(10, 310, 10))] * 4
+    figure = pictures.plot_convergence(costs, "Convergence", pictures.cost_words("default"), (0, 1, 3))
+    try:
+        assert [axes.get_xlabel() for axes in figure.axes] == ["", "evaluations", "evaluations"]
+        figure.canvas.draw()
+        assert figure.axes[1].xaxis.get_major_ticks()[0].label1.get_visible()
+    finally:
+        plt.close(figure)
+
+
+def test_an_error_of_an_unused_joint_is_not_spoken_of() -> None:
+    time, leader, followers = motion()
+    still = {
+        name: replace(one, angles=np.hstack([leader[:, :1], one.angles[:, 1:]])) for name, one in followers.items()
+    }
+    figure = pictures.plot_responses(time, leader, still, "Response", (0,))
+    try:
+        assert not any("beyond" in text.get_text() for text in figure.legends[0].get_texts())
+    finally:
+        plt.close(figure)

@@ -71,11 +71,9 @@ void App::tick() {
   supervise(start.late);
   follow_supervisor();
   if (drivers_on_) control();
-  schedule_sample();
-  show_state();
   const uint16_t age_us = hal::tick_age_us();
   if (age_us > tick_us_max_ && !excused_) tick_us_max_ = age_us;
-  excused_ = heard_this_tick_ = false;
+  excused_ = heard_this_tick_ = looked_ = false;
   hal::watchdog_kick();
   hal::tick_end();
 }
@@ -97,6 +95,7 @@ void App::supervise(bool late) {
   seen_.estop = estop_pressed();
   const bool booting = supervisor_.state() == supervisor::State::boot;
   supervisor_.tick(seen_);
+  if ((seen_.rail_low | seen_.rail_high) != 0) look_at_rails();
   if (booting && supervisor_.state() != supervisor::State::boot) hello_due_ = true;
 }
 
@@ -107,6 +106,7 @@ __attribute__((noinline)) void App::switch_drivers() {
   drive_.release();
   sampling_.hold(drivers_on_);
   until_control_ = 1;
+  set_limit();
   if (drivers_on_) hal::set_drivers(true);
 }
 
@@ -114,7 +114,7 @@ __attribute__((noinline)) void App::switch_drivers() {
 void App::control() {
   if (--until_control_) return;
   until_control_ = sets_.running().period_ms;
-  const uint16_t limit_mv = controllers_.limit_mv(supervisor_.share_q15());
+  const uint16_t limit_mv = controllers_.limit_mv();
   control_joint<0>(limit_mv);
   control_joint<1>(limit_mv);
   control_joint<2>(limit_mv);
@@ -126,6 +126,16 @@ inline __attribute__((always_inline)) void App::control_joint(uint16_t limit_mv)
   const Outcome out = controllers_.step(joint, sampling_.error(joint), limit_mv);
   drive_.set<joint>(out.size_mv, out.sign, sets_.running());
 }
+
+// What each tick leaves for the time before the next one: nothing here matters to its own duties.
+__attribute__((noinline)) void App::after_tick() {
+  sampling_.prepare();
+  set_limit();
+  schedule_sample();
+  show_state();
+}
+
+void App::set_limit() { controllers_.set_limit(sets_.running().supply_mv, supervisor_.share_q15()); }
 
 // A sample is dropped when it could not be sent before the next one is due. Its sequence number is then never sent.
 void App::schedule_sample() {

@@ -16,7 +16,7 @@ namespace app {
 
 class App {
  public:
-  App() : sample_due_(false), heard_this_tick_(false), excused_(false), hello_due_(false) {}
+  App() : sample_due_(false), heard_this_tick_(false), looked_(true), excused_(false), hello_due_(false) {}
   // begin() and service() are not inlined into main(): their variables would stay on the stack for ever.
   __attribute__((noinline)) void begin();
   void tick();  // when hal::tick_pending()
@@ -34,6 +34,8 @@ class App {
   }
   void switch_drivers();
   void control();
+  void after_tick();
+  void set_limit();
   template <uint8_t joint>
   void control_joint(uint16_t limit_mv);
   void schedule_sample();
@@ -66,9 +68,10 @@ class App {
   bool granted(const supervisor::Reply& result);
   void note_lost_bytes(uint8_t lost);
   bool work_on_lead();
+  void look_at_rails();
   void look_at_joint();
   void restart_safe();
-  void see_distances();
+  supervisor::Distances distances() const;
   void work_on_apply();
   void send_hello(uint8_t seq);
   void send_status();
@@ -99,10 +102,10 @@ class App {
   uint16_t every_ = 0, until_sample_ = 0;
   uint8_t until_control_ = 1;  // ticks
   uint8_t sample_seq_ = 0;
-  uint8_t looked_at_ = 0;  // lower byte of the tick of the last look_at_joint()
   MemoryWatch memory_;
   bool sample_due_ : 1;
   bool heard_this_tick_ : 1;
+  bool looked_ : 1;   // all that is done once after each tick has been done
   bool excused_ : 1;  // the next tick may be late without being counted, because a set is being applied
   bool hello_due_ : 1;
   bool drivers_on_ = false;

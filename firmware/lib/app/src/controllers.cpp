@@ -12,16 +12,13 @@ fuzzy_pdi::Settings settings_of(const params::Table& table, uint8_t joint) {
 }  // namespace
 
 fuzzy_pdi::Refusal Controllers::take(const params::Table& table, uint8_t joint) {
-  const auto refusal = fuzzy_pdi::compile(settings_of(table, joint), table.period_ms, joints_[joint].coefficients);
-  if (refusal != fuzzy_pdi::Refusal::none) return refusal;
-  supply_mv_ = table.supply_mv;
-  return refusal;
+  return fuzzy_pdi::compile(settings_of(table, joint), table.period_ms, joints_[joint].coefficients);
 }
 
 void Controllers::reset() {
   for (uint8_t i = 0; i < hal::joint_count; ++i) {
     fuzzy_pdi::reset(joints_[i].state);
-    size_mv_[i] = 0;
+    volts_[i] = 0;
   }
 }
 

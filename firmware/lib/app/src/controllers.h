@@ -13,7 +13,8 @@ namespace app {
 // The part of fuzzy_pdi::Output that the app uses.
 struct Outcome {
   uint16_t size_mv;
-  uint8_t sign;  // bit 7: the voltage is negative
+  uint8_t sign;       // bit 7: the voltage is negative
+  uint16_t volts_mv;  // both: bit 15 is the sign
   bool no_rule;
 };
 
@@ -29,12 +30,17 @@ inline __attribute__((always_inline)) Outcome step_in_registers(fuzzy_pdi::Joint
   register uint16_t r26 __asm__("r26");
   register uint8_t r17 __asm__("r17");
   register uint8_t r6 __asm__("r6");
-  __asm__ volatile("%~call fuzzy_pdi_step_bare"
-                   : "+r"(r30), "+r"(r24), "=r"(r26), "=r"(r17), "=r"(r6)
-                   : "r"(r4)
-                   : "r2", "r3", "r7", "r8", "r9", "r10", "r11", "r12", "r13", "r14", "r15", "r16", "r18", "r19", "r20",
-                     "r21", "r22", "r23", "memory");
-  return {r26, r17, r6 != 0};
+  register uint16_t r2 __asm__("r2");
+  __asm__ volatile(
+      "%~call fuzzy_pdi_step_bare\n\t"
+      "movw r2, r26\n\t"
+      "bst r17, 7\n\t"
+      "bld r3, 7"
+      : "+r"(r30), "+r"(r24), "=r"(r26), "=r"(r17), "=r"(r6), "=r"(r2)
+      : "r"(r4)
+      : "r7", "r8", "r9", "r10", "r11", "r12", "r13", "r14", "r15", "r16", "r18", "r19", "r20", "r21", "r22", "r23",
+        "memory");
+  return {r26, r17, r2, r6 != 0};
 }
 
 #else
@@ -42,7 +48,8 @@ inline __attribute__((always_inline)) Outcome step_in_registers(fuzzy_pdi::Joint
 inline Outcome step_in_registers(fuzzy_pdi::Joint& joint, int16_t error, uint16_t limit) {
   const fuzzy_pdi::Output out = fuzzy_pdi::step_error(joint, error, limit);
   const bool negative = out.volts_mv < 0;
-  return {static_cast<uint16_t>(negative ? -out.volts_mv : out.volts_mv), static_cast<uint8_t>(negative ? 0x80 : 0),
+  const auto size = static_cast<uint16_t>(negative ? -out.volts_mv : out.volts_mv);
+  return {size, static_cast<uint8_t>(negative ? 0x80 : 0), static_cast<uint16_t>(negative ? size | 0x8000 : size),
           out.no_rule};
 }
 
@@ -54,20 +61,20 @@ class Controllers {
   fuzzy_pdi::Refusal take(const params::Table& table, uint8_t joint);
 
   void reset();
-  // The voltage that may be used now, for a share of the supply.
-  uint16_t limit_mv(uint16_t share_q15) const { return signal_chain::limit_mv(supply_mv_, share_q15); }
+  // The voltage that may be used from the next tick on: a share of the supply.
+  void set_limit(uint16_t supply_mv, uint16_t share_q15) { limit_mv_ = signal_chain::limit_mv(supply_mv, share_q15); }
+  uint16_t limit_mv() const { return limit_mv_; }
   // One control period of a joint: the voltage for its motor.
   Outcome step(uint8_t joint, int16_t error, uint16_t limit_mv) {
     const Outcome out = step_in_registers(joints_[joint], error, limit_mv);
     if (out.no_rule) count_no_rule();
-    size_mv_[joint] = out.size_mv;
-    sign_[joint] = out.sign;
+    volts_[joint] = out.volts_mv;
     return out;
   }
 
   int16_t volts_mv(uint8_t joint) const {
-    const auto size = static_cast<int16_t>(size_mv_[joint]);
-    return static_cast<int16_t>(sign_[joint] & 0x80 ? -size : size);
+    const auto size = static_cast<int16_t>(volts_[joint] & 0x7fff);
+    return static_cast<int16_t>(volts_[joint] & 0x8000 ? -size : size);
   }
   Part coefficients(uint8_t joint) const {
     return {reinterpret_cast<const uint8_t*>(&joints_[joint].coefficients), sizeof(fuzzy_pdi::Coefficients)};
@@ -78,9 +85,8 @@ class Controllers {
   void count_no_rule();
 
   fuzzy_pdi::Joint joints_[hal::joint_count] = {};
-  uint16_t size_mv_[hal::joint_count] = {};  // of the voltages, and their signs as in Outcome
-  uint8_t sign_[hal::joint_count] = {};
-  uint16_t supply_mv_ = 0;
+  uint16_t volts_[hal::joint_count] = {};  // as in Outcome::volts_mv
+  uint16_t limit_mv_ = 0;
   uint16_t no_rule_ = 0;
 };
 

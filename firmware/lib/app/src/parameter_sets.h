@@ -55,6 +55,7 @@ class ParameterSets {
   void save() { store_.save(sets_.running()); }
   bool work_on_save();  // at most one byte; true when the next can follow at once
   wire::SaveState save_state() const { return store_.state(); }
+  uint16_t saves() const { return store_.sequence(); }
 
  private:
   enum class Step : uint8_t { none, crc, consistency, joints, undo, finish };

@@ -11,10 +11,7 @@ namespace {
 // After this time of a tick no piece of work is begun, so that the next tick starts in time even while bytes pour in.
 constexpr uint16_t latest_start_us = 800;
 constexpr uint16_t latest_apply_us = 300;  // a joint's compilation takes most of a tick
-constexpr uint8_t bytes_per_piece = 16;
-
-// Farther than two angles can be apart. It stands until a tick has seen the pots through the new set.
-constexpr uint16_t not_seen = UINT16_MAX;
+constexpr uint8_t bytes_per_piece = 20;
 
 // A distance in 1/32 rad, as error_too_large carries it.
 uint8_t coarse(uint16_t distance_q12) {
@@ -28,9 +25,11 @@ uint16_t pair(uint8_t high, uint16_t low) { return static_cast<uint16_t>(high <<
 
 bool App::service() {
   if (lead_.on() && work_on_lead()) return true;
-  if (looked_at_ != static_cast<uint8_t>(tick_)) {
+  if (!looked_) {
+    looked_ = true;
     look_at_joint();
     watch_memory();
+    after_tick();
   }
   const uint16_t age_us = hal::tick_age_us();
   const bool late_in_tick = age_us > latest_start_us;
@@ -79,17 +78,22 @@ bool App::work_on_lead() {
   }
   lead_.end();
   sampling_.configure(sets_.running());
-  see_distances();
   return true;
+}
+
+__attribute__((noinline)) void App::look_at_rails() {
+  const uint8_t pots = sampling_.pots_in_use();
+  seen_.rail_low &= pots;
+  seen_.rail_high &= pots;
+  supervisor_.look_at_rails(seen_);
 }
 
 // At one joint after each tick.
 __attribute__((noinline)) void App::look_at_joint() {
-  looked_at_ = static_cast<uint8_t>(tick_);
-  const uint8_t joint = looked_at_ % hal::joint_count;
+  const uint8_t joint = static_cast<uint8_t>(tick_) % hal::joint_count;
   const params::Table& table = sets_.running();
   supervisor_.look(joint,
-                   {sampling_.follower(joint), sampling_.error(joint), seen_.distance[joint],
+                   {sampling_.follower(joint), sampling_.error(joint), sampling_.distance(joint),
                     controllers_.volts_mv(joint), table.supply_mv},
                    {table.speed_limit, table.runaway_limit, table.stall_volts, table.stall_ms});
   if (!drivers_on_ || supervisor_.motors_on()) return;
@@ -101,12 +105,14 @@ __attribute__((noinline)) void App::look_at_joint() {
 
 void App::restart_safe() {
   sets_.safe_runs();
-  supervisor_.restart(seen_);
+  supervisor_.restart(seen_, distances());
   follow_supervisor();
 }
 
-void App::see_distances() {
-  for (uint8_t i = 0; i < hal::joint_count; ++i) seen_.distance[i] = sampling_.distance(i);
+supervisor::Distances App::distances() const {
+  supervisor::Distances now;
+  for (uint8_t i = 0; i < hal::joint_count; ++i) now.of[i] = sampling_.distance(i);
+  return now;
 }
 
 void App::receive() {
@@ -159,7 +165,7 @@ void App::serve(const wire::TelemetryRequest& request) {
 void App::serve(const wire::EnableRequest& request) {
   // While the host leads, the leader arm cannot take over: it may be anywhere.
   if (lead_.on()) return refuse_not_disabled();
-  if (granted(supervisor_.enable(request.lease_ms, seen_))) reply(wire::EnableReply{state_on_link()});
+  if (granted(supervisor_.enable(request.lease_ms, seen_, distances()))) reply(wire::EnableReply{state_on_link()});
 }
 
 void App::serve(const wire::StopRequest&) {
@@ -176,7 +182,7 @@ void App::serve(const wire::RenewRequest& request) {
 }
 
 void App::serve(const wire::ClearFaultRequest&) {
-  if (granted(supervisor_.clear_fault(seen_))) reply(wire::ClearFaultReply{state_on_link()});
+  if (granted(supervisor_.clear_fault(seen_, distances()))) reply(wire::ClearFaultReply{state_on_link()});
 }
 
 // When the supervisor refuses, the motors stay off; service() then gives the lead back to the leader arm before it does
@@ -184,11 +190,8 @@ void App::serve(const wire::ClearFaultRequest&) {
 void App::serve(const wire::LeadRequest& request) {
   if (request.lease_ms == 0) return refuse_lead(wire::LeadRefusal::no_lease, 0);
   if (supervisor_.motors_on() && !lead_.on()) return refuse_not_disabled();
-  if (!supervisor_.motors_on()) {
-    lead_.begin(sampling_);
-    see_distances();
-  }
-  if (!granted(supervisor_.enable(request.lease_ms, seen_))) return;
+  if (!supervisor_.motors_on()) lead_.begin(sampling_);
+  if (!granted(supervisor_.enable(request.lease_ms, seen_, distances()))) return;
   wire::LeadReply out;
   out.state = state_on_link();
   out.next = lead_.next();
@@ -265,7 +268,7 @@ void App::work_on_apply() {
     case ParameterSets::Progress::applied:
       take_running_set();
       if (sets_.safe() == ParameterSets::Safe::applied) return;  // no host waits for an answer
-      for (uint16_t& distance : seen_.distance) distance = not_seen;
+      sampling_.forget();
       supervisor_.params_mended();
       reply(wire::ParamApplyReply{sets_.crc()});
       break;
@@ -300,6 +303,7 @@ void App::send_status() {
   status.no_rule = controllers_.no_rule();
   status.tick_us_max = tick_us_max_;
   status.save_state = sets_.save_state();
+  status.saves = sets_.saves();
   reply(status);
 }
 

@@ -10,9 +10,16 @@ namespace app {
 
 class Sampling {
  public:
+  Sampling() : shift_(0), primed_(false) {}
   void configure(const params::Table& table);
-  // Takes the sums of all pots, as hal::pot_sums() gives them, and writes rails and distances into `seen`.
+  // Takes the sums of all pots, as hal::pot_sums() gives them, and writes the rails into `seen`.
   void tick(const uint16_t* sums, supervisor::Observation& seen);
+
+  void forget();
+  // A bit for each that has a scale. The others are not there, and their inputs say nothing.
+  uint8_t pots_in_use() const { return pots_in_use_; }
+  // Once between two ticks: what the next one's low-pass can have beforehand.
+  void prepare();
 
   // The leader's angle, or the host's reference while the host leads.
   int16_t leader(uint8_t joint) const { return signal_chain::angle(signals_.joint[joint].leader); }  // q12 rad
@@ -25,7 +32,8 @@ class Sampling {
   // are.
   void hold(bool on) { signals_.rails = static_cast<uint8_t>((signals_.rails & tell_rails) | (on ? hold_rails : 0)); }
   int16_t within_limits(uint8_t joint, int16_t angle) const;
-  // Between reference and follower, as they are now. The last tick may have seen another reference.
+  // Between reference and follower, as they are now; the last tick may have seen another reference. Farther than two
+  // angles can be apart until a tick has seen the pots after forget().
   uint16_t distance(uint8_t joint) const;
 
   // Puts a reference in the place of a leader pot until configure() is called. The reference is a line of slope 0, so a
@@ -34,9 +42,12 @@ class Sampling {
   void move_lead(uint8_t joint, int32_t by);
 
  private:
+  static constexpr int16_t not_seen = INT16_MIN;  // the least error is one more
+
   Signals signals_ = {signal_chain::low_pass(0), 0, hal::rail_mark - 1, 0, {}};  // the first sample is taken whole
-  uint8_t shift_ = 0;
-  bool primed_ = false;
+  uint8_t pots_in_use_ = 0;
+  uint8_t shift_ : 7;
+  bool primed_ : 1;
 };
 
 }  // namespace app

@@ -11,12 +11,13 @@ namespace app {
 #if defined(__AVR__)
 
 // Every place that signals_avr.S reads or writes.
-static_assert(offsetof(signal_chain::LowPass, keep) == SIGNALS_KEEP &&
-                  offsetof(signal_chain::LowPass, gain) == SIGNALS_GAIN && offsetof(Signals, low_pass) == 0 &&
+static_assert(offsetof(signal_chain::LowPass, gain) == SIGNALS_GAIN && offsetof(Signals, low_pass) == 0 &&
                   offsetof(Signals, lowest) == SIGNALS_LOWEST && offsetof(Signals, span) == SIGNALS_SPAN &&
                   offsetof(Signals, rails) == SIGNALS_RAILS && offsetof(Signals, joint) == SIGNALS_JOINT,
               "signals_layout.h");
 static_assert(offsetof(JointSignals, leader) == JOINT_LEADER && offsetof(JointSignals, follower) == JOINT_FOLLOWER &&
+                  offsetof(JointSignals, leader_kept) == JOINT_LEADER_KEPT &&
+                  offsetof(JointSignals, follower_kept) == JOINT_FOLLOWER_KEPT &&
                   offsetof(JointSignals, follower_angle) == JOINT_FOLLOWER_ANGLE &&
                   offsetof(JointSignals, limit_min) == JOINT_LIMIT_MIN &&
                   offsetof(JointSignals, limit_max) == JOINT_LIMIT_MAX &&
@@ -25,8 +26,7 @@ static_assert(offsetof(JointSignals, leader) == JOINT_LEADER && offsetof(JointSi
 static_assert(offsetof(signal_chain::Pot, filtered) == POT_FILTERED &&
                   offsetof(signal_chain::Pot, scale) == POT_SCALE && offsetof(signal_chain::Pot, offset) == POT_OFFSET,
               "signals_layout.h");
-static_assert(offsetof(supervisor::Observation, distance) == SEEN_DISTANCE &&
-                  offsetof(supervisor::Observation, rail_low) == SEEN_RAIL_LOW &&
+static_assert(offsetof(supervisor::Observation, rail_low) == SEEN_RAIL_LOW &&
                   offsetof(supervisor::Observation, rail_high) == SEEN_RAIL_LOW + 1,
               "signals_layout.h");
 static_assert(hal::joint_count == 4 && supervisor::joint_count == 4 && hal::pot_count == 8,
@@ -53,25 +53,32 @@ bool note_rail(uint8_t pot, uint16_t& sum, const Signals& signals, uint16_t filt
   return (signals.rails & hold_rails) != 0;
 }
 
-int16_t follow(signal_chain::Pot& pot, uint8_t number, uint16_t sum, const Signals& signals,
+int16_t follow(signal_chain::Pot& pot, uint16_t kept, uint8_t number, uint16_t sum, const Signals& signals,
                supervisor::Observation& seen) {
   const bool hold = note_rail(number, sum, signals, pot.filtered, seen);
-  if (!hold) pot.filtered = signal_chain::filter(pot.filtered, sum, signals.low_pass);
+  if (!hold) pot.filtered = signal_chain::add_to_kept(kept, sum, signals.low_pass);
   return signal_chain::angle(pot);
 }
 
 }  // namespace
 
 void follow_pots_portable(const uint16_t* sums, Signals* signals, supervisor::Observation* seen) {
+  seen->rail_low = seen->rail_high = 0;
   for (uint8_t i = 0; i < hal::joint_count; ++i) {
     const uint8_t other = static_cast<uint8_t>(i + hal::joint_count);
     JointSignals& joint = signals->joint[i];
-    const int16_t wanted =
-        signal_chain::clamp(follow(joint.leader, i, sums[i], *signals, *seen), joint.limit_min, joint.limit_max);
-    const int16_t is = follow(joint.follower, other, sums[other], *signals, *seen);
+    const int16_t wanted = signal_chain::clamp(follow(joint.leader, joint.leader_kept, i, sums[i], *signals, *seen),
+                                               joint.limit_min, joint.limit_max);
+    const int16_t is = follow(joint.follower, joint.follower_kept, other, sums[other], *signals, *seen);
     joint.follower_angle = is;
     joint.error = fuzzy_pdi::difference(wanted, is);
-    seen->distance[i] = signal_chain::distance(wanted, is);
+  }
+}
+
+void keep_filtered(Signals& signals) {
+  for (JointSignals& joint : signals.joint) {
+    joint.leader_kept = signal_chain::kept(joint.leader.filtered, signals.low_pass);
+    joint.follower_kept = signal_chain::kept(joint.follower.filtered, signals.low_pass);
   }
 }
 

@@ -9,9 +9,10 @@ namespace app {
 
 struct JointSignals {
   signal_chain::Pot leader, follower;
-  int16_t follower_angle;        // q12 rad
-  int16_t limit_min, limit_max;  // of the reference, which is the leader within them
-  int16_t error;                 // reference - follower, saturated at +-32767
+  uint16_t leader_kept, follower_kept;  // of the low-passes, for the next tick: keep_filtered()
+  int16_t follower_angle;               // q12 rad
+  int16_t limit_min, limit_max;         // of the reference, which is the leader within them
+  int16_t error;                        // reference - follower, saturated at +-32767
 };
 
 // A rail is told in Observation. The sum is not taken: the angle stays that of the last good one.
@@ -24,9 +25,11 @@ struct Signals {
   JointSignals joint[hal::joint_count];
 };
 
-// `sums` are those of all pots, as hal::pot_sums() gives them, marks included. Writes all of `seen` but `late`; its
-// rails must be 0 before.
+// `sums` are those of all pots, as hal::pot_sums() gives them, marks included. Writes the rails of `seen`.
 void follow_pots_portable(const uint16_t* sums, Signals* signals, supervisor::Observation* seen);
+
+// Between ticks: takes the next one's share of the work.
+void keep_filtered(Signals& signals);
 
 #if defined(__AVR__)
 
@@ -38,8 +41,8 @@ inline void follow_pots(const uint16_t* sums, Signals* signals, supervisor::Obse
   __asm__ volatile("%~call app_follow_pots"
                    : "+r"(r24), "+r"(r22), "+r"(r20)
                    :
-                   : "r8", "r9", "r10", "r11", "r12", "r13", "r14", "r15", "r16", "r17", "r18", "r19", "r26", "r27",
-                     "r30", "r31", "memory");
+                   : "r6", "r7", "r8", "r9", "r10", "r11", "r12", "r13", "r14", "r15", "r16", "r17", "r18", "r19",
+                     "r26", "r27", "r30", "r31", "memory");
 }
 
 #else

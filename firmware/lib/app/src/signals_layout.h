@@ -2,7 +2,6 @@
 #pragma once
 
 // In Signals
-#define SIGNALS_KEEP 0
 #define SIGNALS_GAIN 1
 #define SIGNALS_LOWEST 2
 #define SIGNALS_SPAN 4
@@ -12,17 +11,18 @@
 // In JointSignals, which are in a row
 #define JOINT_LEADER 0
 #define JOINT_FOLLOWER 8
-#define JOINT_FOLLOWER_ANGLE 16
-#define JOINT_LIMIT_MIN 18
-#define JOINT_LIMIT_MAX 20
-#define JOINT_ERROR 22
-#define JOINT_SIZE 24
+#define JOINT_LEADER_KEPT 16
+#define JOINT_FOLLOWER_KEPT 18
+#define JOINT_FOLLOWER_ANGLE 20
+#define JOINT_LIMIT_MIN 22
+#define JOINT_LIMIT_MAX 24
+#define JOINT_ERROR 26
+#define JOINT_SIZE 28
 
 // In Pot
 #define POT_FILTERED 0
 #define POT_SCALE 2
 #define POT_OFFSET 4
 
-// In Observation: the distances of all joints in a row, the upper rails just behind the lower ones
-#define SEEN_DISTANCE 0
-#define SEEN_RAIL_LOW 8
+// In Observation: the lower rails, just behind them the upper ones
+#define SEEN_RAIL_LOW 0

@@ -30,20 +30,20 @@ uint32_t divide(uint32_t high, uint32_t low, uint32_t divisor) {
   return low + ((high >= divisor - high && low != largest_slope) ? 1 : 0);
 }
 
-struct Slope {
-  uint32_t slope;
-  bool is_short;
+// A ramp is full at size width * 2^14 / gain (width in q14, gain in q16, or both times the same factor). Its slope is
+// (2^24 - 1) * 2^16 / full size: what these 64 bits are, (2^24 - 1) * 4 gain, divided by the width.
+struct Rise {
+  uint32_t high, low;
+  explicit Rise(uint32_t gain) : high(gain >> 6), low(gain << 26) {
+    const uint32_t below = gain << 2;
+    if (low < below) --high;
+    low -= below;
+  }
+  uint32_t slope(uint32_t width) const { return divide(high, low, width); }
+  // Full within the first 2^8 sizes, or within the first 2^7.
+  bool is_short(uint32_t width) const { return high >= width; }
+  bool is_very_short(uint32_t width) const { return high >= width << 1; }
 };
-
-// The slope of a ramp that is full at size width * 2^14 / gain (width in q14, gain in q16, or both times the same
-// factor): (2^24 - 1) * 2^16 / full size, or 2^8 for a short ramp.
-Slope make_slope(uint32_t width, uint32_t gain) {
-  const uint32_t below = gain << 2;
-  const uint32_t low = gain << 26;
-  const uint32_t high = (gain >> 6) - (low < below ? 1 : 0);
-  const bool is_short = high >= width;
-  return {divide(high, low - below, is_short ? width << 8 : width), is_short};
-}
 
 // A rising ramp needs relative precision only: 24 bits of slope, in the upper three bytes unless the slope is below
 // 2^24.
@@ -53,11 +53,19 @@ uint32_t without_low_byte(uint32_t slope) {
 }
 
 void make_side(uint32_t zero_width, uint32_t outer_width, uint32_t gain, Side& out) {
-  const Slope zero = make_slope(zero_width, gain);
-  const Slope outer = make_slope(outer_width, gain);
-  out.zero = zero.slope;
-  out.outer = without_low_byte(outer.slope);
-  out.short_ramps = static_cast<uint8_t>((zero.is_short ? 1 : 0) | (outer.is_short ? 2 : 0));
+  const Rise rise(gain);
+  const bool outer_short = rise.is_short(outer_width);
+  uint8_t ramps = 0, finer = 0;
+  if (rise.is_very_short(zero_width)) {
+    ramps = zero_is_short;
+    finer = 8;
+  } else if (rise.is_short(zero_width)) {
+    ramps = zero_is_medium;
+    finer = 1;
+  }
+  out.zero = rise.slope(zero_width << finer);
+  out.outer = without_low_byte(rise.slope(outer_short ? outer_width << 8 : outer_width));
+  out.short_ramps = static_cast<uint8_t>(ramps | (outer_short ? outer_is_short : 0));
 }
 
 // outward: a set's width, counted away from zero on its own side.

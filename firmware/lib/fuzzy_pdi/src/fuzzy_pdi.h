@@ -30,11 +30,14 @@ enum class Refusal : uint8_t {
   period = 5,  // a control period outside 1..50 ms
 };
 
+// Bits of Side::short_ramps. Each has bit 7 too, so that the assembly finds them and small sizes by one comparison.
+enum ShortRamp : uint8_t { zero_is_short = 0x81, outer_is_short = 0x82, zero_is_medium = 0x84 };
+
 // One side of one input: slopes of the two sets active there. inference.h says what a slope is.
 struct Side {
   uint32_t zero;        // how ZE (ZCE) falls from 1
   uint32_t outer;       // how PE, NE (PCE, NCE) rises to 1
-  uint8_t short_ramps;  // bit 0: zero's ramp is a short one, bit 1: outer's
+  uint8_t short_ramps;  // bits of ShortRamp
 };
 
 // Everything the tick needs of one joint.

@@ -28,7 +28,8 @@ struct Rules {
 };
 
 // A ramp from 0 at size 0 to 1: round(size * slope / 2^16), half up. A short ramp, full within the first 256 sizes, has
-// a slope 2^8 times finer, so that every ramp keeps its precision.
+// a slope 2^8 times finer, so that every ramp keeps its precision. One of ZE or ZCE that is full within 129 to 256
+// sizes is a medium one: its slope is twice as fine, and takes all 32 bits.
 inline uint32_t climb(uint32_t slope, bool is_short, uint16_t size) {
   if (is_short) {
     if (size > 255) return one;
@@ -40,7 +41,8 @@ inline uint32_t climb(uint32_t slope, bool is_short, uint16_t size) {
 }
 
 inline Memberships fuzzify(const Side& side, uint16_t size) {
-  return {one - climb(side.zero, side.short_ramps & 1, size), climb(side.outer, side.short_ramps & 2, size)};
+  const auto of_zero = static_cast<uint16_t>(side.short_ramps & 4 ? size << 1 : size);
+  return {one - climb(side.zero, side.short_ramps & 1, of_zero), climb(side.outer, side.short_ramps & 2, size)};
 }
 
 inline uint32_t lesser(uint32_t a, uint32_t b) { return a < b ? a : b; }

@@ -41,16 +41,16 @@
   sbc \high, ZERO
 .endm
 
-// r27:r26 = size in mV of drive (r27..r24, at least 0) + integral (r23..r20), rounded half away from zero. All is seen from
+// r27:r26 = size in mV of drive (r27..r24, at least 0) + integral (i3..i0), rounded half away from zero. All is seen from
 // u's side: where u is below 0 the integral is taken off, and SIGN begins as negative.
-.macro volts
+.macro volts i0, i1, i2, i3
   mov SIGN, U_SIGN
   sbrc U_SIGN, 7
   rjmp 4f
-  add r24, r20
-  adc r25, r21
-  adc r26, r22
-  adc r27, r23
+  add r24, \i0
+  adc r25, \i1
+  adc r26, \i2
+  adc r27, \i3
   brmi 5f
 3:lsl r24
   rol r25
@@ -60,10 +60,10 @@
   adc r26, ZERO
   adc r27, ZERO
   rjmp 6f
-4:sub r24, r20
-  sbc r25, r21
-  sbc r26, r22
-  sbc r27, r23
+4:sub r24, \i0
+  sbc r25, \i1
+  sbc r26, \i2
+  sbc r27, \i3
   brpl 3b
 5:com SIGN
   lsl r24
@@ -96,9 +96,7 @@
   .type fuzzy_pdi_step_detours, @function
 fuzzy_pdi_step_detours:
 .Lslow_e:
-  rjmp .Lslow_e_far
-.Lsmall_e:
-  rjmp .Lsmall_e_far
+  rjmp .Lslow_far_e
 
 .Lfirst:
   ldi S, 1
@@ -154,22 +152,22 @@ fuzzy_pdi_step_bare:
 fuzzy_pdi_inference:
   ldi HALF, 0x80
   .set SIDE, 0
-  fuzzify .Lslow_e, .Lslow_e_far, .Lsmall_e, r8, r9, a0, a1, a2, A0, A1, A2
+  fuzzify e, r8, r9, a0, a1, a2, A0, A1, A2
+  rjmp .Ldone_e
+  fuzzify_detours e, r8, r9, a0, a1, a2, A0, A1, A2
+  fuzzify_slowly e, r8, r9, a0, a1, a2, A0, A1, A2
+  .set SIDE, C_CE
+  fuzzify_slowly ce, r18, r19, b0, b1, b2, B0, B1, B2
 .Lslow_ce:
-  rjmp .Lslow_ce_far
-.Lsmall_ce:
-  rjmp .Lsmall_ce_far
-  fuzzify_small .Lsmall_e_far, r8, a0, a1, a2, A0, A1, A2
-19:
+  rjmp .Lslow_far_ce
+.Ldone_e:
   brtc 1f
   adiw r30, SIDE_SIZE  // the other side
   sbrc E_SIGN, 7
   sbiw r30, 2 * SIDE_SIZE
 1:
-  .set SIDE, C_CE
-  fuzzify .Lslow_ce, .Lslow_ce_far, .Lsmall_ce, r18, r19, b0, b1, b2, B0, B1, B2
-  fuzzify_small .Lsmall_ce_far, r18, b0, b1, b2, B0, B1, B2
-19:
+  fuzzify ce, r18, r19, b0, b1, b2, B0, B1, B2
+.Ldone_ce:
 #include "rules_avr.inc"
 fuzzy_pdi_inferred:
 
@@ -210,9 +208,17 @@ fuzzy_pdi_inferred:
   integral_row 1, r11, r12, r13
   integral_row 2, r12, r13, r14
   ldd SCRATCH, Z+(C_INTEGRAL + 3)
-  cpse SCRATCH, ZERO
-  rjmp .Lhigh_byte
-  clr r15  // as with any ordinary Ki
+  clr r15
+  tst SCRATCH
+  breq .Lmore  // as with any ordinary Ki
+  mul r9, SCRATCH
+  mov r15, r1
+  add r14, r0
+  adc r15, ZERO
+  mul r8, SCRATCH
+  add r13, r0
+  adc r14, r1
+  adc r15, ZERO
 .Lmore:
   ldd r18, Z+STATE_FRACTION
   ldd r19, Z+STATE_FRACTION+1
@@ -220,13 +226,15 @@ fuzzy_pdi_inferred:
   ldd r21, Z+STATE_INTEGRAL+1
   ldd r22, Z+STATE_INTEGRAL+2
   ldd r23, Z+STATE_INTEGRAL+3
-  brts .Ldown
-  add r18, r10
-  adc r19, r11
-  adc r20, r12
-  adc r21, r13
-  adc r22, r14
-  adc r23, r15
+  movw r8, r20  // the integral as it was goes to r11..r8
+  brtc .Lup  // e below 0 is the dearer side until here
+  sub r18, r10
+  sbc r19, r11
+  movw r10, r22
+  sbc r20, r12
+  sbc r21, r13
+  sbc r22, r14
+  sbc r23, r15
 .Ltaken:
   mov SCRATCH, r23
   lsl SCRATCH
@@ -235,7 +243,7 @@ fuzzy_pdi_inferred:
 .Lclamped:
   movw r12, r24
   movw r14, r26
-  volts
+  volts r20, r21, r22, r23
   cp r4, r26
   cpc r5, r27
   brcs .Lsaturated
@@ -250,13 +258,14 @@ fuzzy_pdi_inferred:
   clr r1
   ret
 
-.Ldown:
-  sub r18, r10
-  sbc r19, r11
-  sbc r20, r12
-  sbc r21, r13
-  sbc r22, r14
-  sbc r23, r15
+.Lup:
+  add r18, r10
+  adc r19, r11
+  movw r10, r22
+  adc r20, r12
+  adc r21, r13
+  adc r22, r14
+  adc r23, r15
   rjmp .Ltaken
 
 // Beyond +-2^30: 2^30 - 2^-16 or -2^30.
@@ -267,26 +276,20 @@ fuzzy_pdi_inferred:
   ldi r18, 0x00
   ldi r23, 0xC0
 1:mov r19, r18
-  mov r20, r18
-  mov r21, r18
+  movw r20, r18
   mov r22, r18
   rjmp .Lclamped
 
 // Beyond the limit: on e's own side the integral stays as it was.
 .Lsaturated:
-  mov r0, SIGN
-  brtc 1f
-  com r0
-1:set
+  bld r0, 7
+  eor r0, SIGN
+  set
   sbrc r0, 7
   rjmp 2f
-  ldd r20, Z+STATE_INTEGRAL
-  ldd r21, Z+STATE_INTEGRAL+1
-  ldd r22, Z+STATE_INTEGRAL+2
-  ldd r23, Z+STATE_INTEGRAL+3
   movw r24, r12
   movw r26, r14
-  volts
+  volts r8, r9, r10, r11
   cp r4, r26
   cpc r5, r27
   brcc 3f
@@ -296,9 +299,6 @@ fuzzy_pdi_inferred:
 2:movw r26, r4
   rjmp .Lstore
 
-.Lhigh_byte:
-  integral_row 3, r13, r14, r15
-  rjmp .Lmore
   .size fuzzy_pdi_step_bare, . - fuzzy_pdi_step_bare
 
   .global fuzzy_pdi_step_error

@@ -7,7 +7,7 @@
 //
 // No honest host comes near. It waits for the answer to a request before it sends another. Without waiting it sends
 // points of a reference, at most 12 x 11 bytes in 192 ms, and a renewal of 8. These 140 bytes take 1.4 ms on the wire.
-// The receiver holds 129 (127 in its ring and two in the chip), and the board takes 16 more in each tick, however busy
+// The receiver holds 129 (127 in its ring and two in the chip), and the board takes 20 more in each tick, however busy
 // it is. So such a host loses nothing.
 #pragma once
 #include <stdint.h>

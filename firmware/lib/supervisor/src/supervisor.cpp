@@ -26,7 +26,6 @@ void Supervisor::set_limits(const Limits& limits) {
 }
 
 void Supervisor::tick(const Observation& seen) {
-  if ((seen.rail_low | seen.rail_high) != 0) rails_.fill(seen.rail_low, seen.rail_high);
   if (state_ == State::boot) {
     if (--boot_left_ == 0) {
       state_ = State::disabled;
@@ -39,7 +38,7 @@ void Supervisor::tick(const Observation& seen) {
   }
   if (seen.estop) raise_always(Fault::estop);
   if (motors_on()) watch(seen);
-  if (state_ == State::soft_start && soft_start_.advance()) state_ = State::following;
+  if (state_ == State::soft_start && soft_start_.ended()) state_ = State::following;
 }
 
 // A stop that is pressed counts with the motors off as well: somebody wants nothing to start. So does damaged memory. A
@@ -61,8 +60,6 @@ void Supervisor::lose_params() {
 // Faults come before the lease, the gravest first: only one is reported.
 void Supervisor::watch(const Observation& seen) {
   if (seen.late) return raise(Fault::late_tick, nowhere);
-  if (rails_.bad_low()) return raise(Fault::pot_low, lowest_bit(rails_.bad_low()));
-  if (rails_.bad_high()) return raise(Fault::pot_high, lowest_bit(rails_.bad_high()));
   if (lease_ && --lease_ == 0) switch_off(State::disabled, StopReason::lease);
 }
 
@@ -76,10 +73,10 @@ void Supervisor::forget_fault() {
   fault_where_ = nowhere;
 }
 
-bool Supervisor::restart(const Observation& seen) {
+bool Supervisor::restart(const Observation& seen, const Distances& distances) {
   if (fault_ != Fault::unrest || state_ != State::fault) return false;
   state_ = State::disabled;
-  if (enable(lease_, seen).answer == Answer::ok) return true;
+  if (enable(lease_, seen, distances).answer == Answer::ok) return true;
   state_ = State::fault;
   return false;
 }
@@ -88,8 +85,16 @@ void Supervisor::bytes_lost(uint16_t tick) {
   if (motors_on() && overruns_.lost(tick)) raise(Fault::flood, nowhere);
 }
 
+void Supervisor::look_at_rails(const Observation& seen) {
+  if ((seen.rail_low | seen.rail_high) != 0) rails_.fill(seen.rail_low, seen.rail_high);
+  if (!motors_on()) return;
+  if (rails_.bad_low()) return raise(Fault::pot_low, lowest_bit(rails_.bad_low()));
+  if (rails_.bad_high()) raise(Fault::pot_high, lowest_bit(rails_.bad_high()));
+}
+
 void Supervisor::look(uint8_t joint, const JointSeen& seen, const MotionLimits& limits) {
   rails_.leak(joint);
+  if (state_ == State::soft_start && !soft_start_.ended()) soft_start_.advance();
   if (motors_on()) watch_joint(joint, seen, limits);
 }
 
@@ -128,7 +133,7 @@ void Supervisor::raise(Fault fault, uint8_t where) {
   fault_where_ = where;
 }
 
-Reply Supervisor::enable(uint16_t lease_ms, const Observation& seen) {
+Reply Supervisor::enable(uint16_t lease_ms, const Observation& seen, const Distances& distances) {
   if (motors_on()) {
     lease_ = lease_ms;
     return {Answer::ok, nowhere, 0};
@@ -140,12 +145,13 @@ Reply Supervisor::enable(uint16_t lease_ms, const Observation& seen) {
   if (low) return {Answer::pot_bad, lowest_bit(low), static_cast<uint16_t>(Fault::pot_low)};
   if (high) return {Answer::pot_bad, lowest_bit(high), static_cast<uint16_t>(Fault::pot_high)};
   for (uint8_t i = 0; i < joint_count; ++i) {
-    const uint16_t distance = seen.distance[i];
+    const uint16_t distance = distances.of[i];
     if (distance > limits_.enable_limit) return {Answer::too_far, i, distance};
     lost_ms_[i] = 0;
   }
   state_ = State::soft_start;
   soft_start_.start(limits_.soft_start_ms);
+  soft_start_.advance();
   overruns_.forget();
   unrest_.forget();
   motion_.forget();
@@ -161,7 +167,7 @@ void Supervisor::renew(uint16_t lease_ms) {
   if (motors_on()) lease_ = lease_ms;
 }
 
-Reply Supervisor::clear_fault(const Observation& seen) {
+Reply Supervisor::clear_fault(const Observation& seen, const Distances& distances) {
   if (state_ == State::boot) return {Answer::booting, nowhere, 0};
   if (state_ != State::fault) return {Answer::ok, nowhere, 0};
   if (seen.estop) return {Answer::estop, nowhere, 0};
@@ -171,7 +177,7 @@ Reply Supervisor::clear_fault(const Observation& seen) {
   if (!params_ok_) return {Answer::params, nowhere, static_cast<uint16_t>(Fault::params)};
   if (fault_ == Fault::late_tick && seen.late) return {Answer::in_fault, nowhere, static_cast<uint16_t>(fault_)};
   if (fault_ == Fault::tracking) {
-    const uint16_t distance = seen.distance[fault_where_];
+    const uint16_t distance = distances.of[fault_where_];
     if (distance > limits_.tracking_limit) return {Answer::too_far, fault_where_, distance};
   }
   state_ = State::disabled;

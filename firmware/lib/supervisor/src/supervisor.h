@@ -40,14 +40,17 @@ struct Limits {
   uint16_t soft_start_ms;
 };
 
-// What a tick has seen. A joint's distance is between its reference (the leader within the joint's limits) and its
-// follower, in q12 rad. Bit i of a rail mask is pot i: 0..3 leader, 4..7 follower.
+// What a tick has seen. Bit i of a rail mask is pot i: 0..3 leader, 4..7 follower.
 struct Observation {
-  uint16_t distance[joint_count];
   uint8_t rail_low;
   uint8_t rail_high;
   bool late;
   bool estop;  // the emergency stop is pressed
+};
+
+// A joint's distance is between its reference (the leader within the joint's limits) and its follower, in q12 rad.
+struct Distances {
+  uint16_t of[joint_count];
 };
 
 // What the last tick has seen of a joint, and what its motor was told.
@@ -80,14 +83,16 @@ class Supervisor {
   void tick(const Observation& seen);
   // Bytes of the link were lost in this tick: a stop may have been among them.
   void bytes_lost(uint16_t tick);
-  // Between ticks, the next joint after each.
+  // Right after tick() when it has seen potentiometers at a rail.
+  void look_at_rails(const Observation& seen);
+  // Between ticks, the next joint after each. It also moves the soft start on, which a tick has no time for.
   void look(uint8_t joint, const JointSeen& seen, const MotionLimits& limits);
   // After unrest: starts the motors again, within the lease as it was. The fault stays to be seen. False when refused.
-  bool restart(const Observation& seen);
+  bool restart(const Observation& seen, const Distances& distances);
 
   // enable() and clear_fault() judge by what the last tick has seen. enable() renews the lease when the motors are on.
-  Reply enable(uint16_t lease_ms, const Observation& seen);
-  Reply clear_fault(const Observation& seen);
+  Reply enable(uint16_t lease_ms, const Observation& seen, const Distances& distances);
+  Reply clear_fault(const Observation& seen, const Distances& distances);
   void stop();
   void renew(uint16_t lease_ms);
 
@@ -96,7 +101,7 @@ class Supervisor {
   Fault fault() const { return fault_; }
   uint8_t fault_where() const { return fault_where_; }
   bool motors_on() const { return state_ == State::soft_start || state_ == State::following; }
-  // Share of the supply that the controllers may use now; 32768 is all of it.
+  // Share of the supply that the controllers may use in the next tick; 32768 is all of it.
   uint16_t share_q15() const { return soft_start_.share_q15(); }
 
  private:

@@ -18,6 +18,11 @@ int angle_of(int sum, int zero, int scale) {
   return static_cast<int>(product >= 0 ? product / 8192 : -((-product + 8191) / 8192));
 }
 
+void tick(app::Sampling& sampling, const std::uint16_t* sums, supervisor::Observation& seen) {
+  sampling.tick(sums, seen);
+  sampling.prepare();
+}
+
 }  // namespace
 
 TEST_CASE("an unfiltered angle is what the definition says, for every reading and extreme pots") {
@@ -36,7 +41,7 @@ TEST_CASE("an unfiltered angle is what the definition says, for every reading an
       for (int sum = 0; sum <= 4092; sum += 4) {
         std::uint16_t sums[8];
         for (int i = 0; i < 8; ++i) sums[i] = static_cast<std::uint16_t>(std::min(sum + i % 4, 4092));
-        sampling.tick(sums, seen);
+        tick(sampling, sums, seen);
         for (std::uint8_t i = 0; i < 4; ++i) {
           wrong += sampling.leader(i) != angle_of(sums[i], zero, scale);
           wrong += sampling.follower(i) != angle_of(sums[i + 4], zero, scale);
@@ -58,13 +63,13 @@ TEST_CASE("the filter reaches a step from both sides, never overshoots, and its 
         sampling.configure(table);
         std::uint16_t sums[8];
         std::fill(sums, sums + 8, static_cast<std::uint16_t>(from));
-        sampling.tick(sums, seen);
+        tick(sampling, sums, seen);
         CHECK(sampling.leader(0) == angle_of(from, 8184, 10734));
         std::fill(sums, sums + 8, static_cast<std::uint16_t>(to));
         const int goal = angle_of(to, 8184, 10734);
         int before = std::abs(sampling.leader(0) - goal), worse = 0;
         for (int i = 0; i < 300; ++i) {
-          sampling.tick(sums, seen);
+          tick(sampling, sums, seen);
           const int now = sampling.leader(0) - goal;
           if ((from < to) ? now > 0 : now < 0) ++worse;
           if (std::abs(now) > before) ++worse;
@@ -85,11 +90,11 @@ TEST_CASE("filter_shift is the share of a step taken each tick") {
   supervisor::Observation seen = {};
   sampling.configure(table);
   std::uint16_t sums[8] = {};
-  sampling.tick(sums, seen);
+  tick(sampling, sums, seen);
   sums[0] = 4000;
-  sampling.tick(sums, seen);
+  tick(sampling, sums, seen);
   CHECK(sampling.leader(0) == 4000);  // 16000 / 4
-  sampling.tick(sums, seen);
+  tick(sampling, sums, seen);
   CHECK(sampling.leader(0) == 7000);
 }
 
@@ -109,14 +114,14 @@ TEST_CASE("an error is that from the follower to the leader within its joint's l
   for (int step = 0; step <= 4092; step += 11) {
     std::uint16_t sums[8];
     for (int i = 0; i < 8; ++i) sums[i] = static_cast<std::uint16_t>((step * (i + 1)) % 4093);
-    sampling.tick(sums, seen);
+    tick(sampling, sums, seen);
     for (std::uint8_t i = 0; i < 4; ++i) {
       const int leader = (sums[i] * 4 - 8184) * 2, follower = (8184 - sums[i + 4] * 4) * 2;
       const int wanted = std::max<int>(table.joint[i].limit_min, std::min<int>(table.joint[i].limit_max, leader));
       wrong += sampling.leader(i) != leader;
       wrong += sampling.error(i) != wanted - follower;
       wrong += sampling.follower(i) != follower;
-      wrong += seen.distance[i] != std::abs(wanted - follower);
+      wrong += sampling.distance(i) != std::abs(wanted - follower);
     }
   }
   CHECK(wrong == 0);
@@ -133,7 +138,7 @@ TEST_CASE("rails are flagged per pot on the raw reading, and rail_counts 0 turns
     const auto bit = 1u << pot;
     for (const int sum : {0, 15, 16, 17, 4075, 4076, 4077, 4092}) {
       sums[pot] = static_cast<std::uint16_t>(sum);
-      sampling.tick(sums, seen);
+      tick(sampling, sums, seen);
       CHECK(seen.rail_low == (sum <= 16 ? bit : 0u));     // 4 counts x 4 conversions
       CHECK(seen.rail_high == (sum >= 4076 ? bit : 0u));  // 1019 x 4
     }
@@ -141,7 +146,7 @@ TEST_CASE("rails are flagged per pot on the raw reading, and rail_counts 0 turns
   table.rail_counts = 0;
   sampling.configure(table);
   std::uint16_t sums[8] = {0, 4092, 0, 4092, 0, 4092, 0, 4092};
-  sampling.tick(sums, seen);
+  tick(sampling, sums, seen);
   CHECK(seen.rail_low == 0);
   CHECK(seen.rail_high == 0);
 }

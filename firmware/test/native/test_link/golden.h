@@ -89,21 +89,21 @@ constexpr Range ranges[] = {  // in index order
     {-25723, 25723, -10240, false},
     {-25723, 25723, 10240, false},
     {0, 16368, 8184, false},
-    {-16384, 16384, 10734, true},
+    {-16384, 16384, 10734, false},
     {0, 16368, 8184, false},
-    {-16384, 16384, 10734, true},
+    {-16384, 16384, 10734, false},
     {0, 16368, 8184, false},
-    {-16384, 16384, 10734, true},
+    {-16384, 16384, 10734, false},
     {0, 16368, 8184, false},
-    {-16384, 16384, 10734, true},
+    {-16384, 16384, 10734, false},
     {0, 16368, 8184, false},
-    {-16384, 16384, 10734, true},
+    {-16384, 16384, 10734, false},
     {0, 16368, 8184, false},
-    {-16384, 16384, 10734, true},
+    {-16384, 16384, 10734, false},
     {0, 16368, 8184, false},
-    {-16384, 16384, 10734, true},
+    {-16384, 16384, 10734, false},
     {0, 16368, 8184, false},
-    {-16384, 16384, 10734, true},
+    {-16384, 16384, 10734, false},
     {0, 205, 10, false},
     {1, 10, 6, false},
     {2, 60, 11, false},
@@ -220,9 +220,10 @@ void for_each(Visit visit) {
     message.no_rule = 0;
     message.tick_us_max = 0;
     message.save_state = static_cast<wire::SaveState>(0);
-    const uint8_t payload[] = {0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00};
-    const uint8_t wire_bytes[] = {0x02, 0x82, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x03, 0xD1, 0x9F, 0x00};
-    visit("StatusReply", 0, message, payload, size_t{21}, wire_bytes, size_t{27});
+    message.saves = 0;
+    const uint8_t payload[] = {0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00};
+    const uint8_t wire_bytes[] = {0x02, 0x82, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x03, 0x89, 0xD3, 0x00};
+    visit("StatusReply", 0, message, payload, size_t{23}, wire_bytes, size_t{29});
   }
   {
     wire::StatusReply message{};
@@ -238,9 +239,10 @@ void for_each(Visit visit) {
     message.no_rule = 65535;
     message.tick_us_max = 65535;
     message.save_state = static_cast<wire::SaveState>(3);
-    const uint8_t payload[] = {0x04, 0x04, 0x0D, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x03};
-    const uint8_t wire_bytes[] = {0x1A, 0x82, 0xFF, 0x04, 0x04, 0x0D, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x03, 0x4F, 0xB4, 0x00};
-    visit("StatusReply", 255, message, payload, size_t{21}, wire_bytes, size_t{27});
+    message.saves = 65535;
+    const uint8_t payload[] = {0x04, 0x04, 0x0D, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x03, 0xFF, 0xFF};
+    const uint8_t wire_bytes[] = {0x1C, 0x82, 0xFF, 0x04, 0x04, 0x0D, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x03, 0xFF, 0xFF, 0xED, 0x76, 0x00};
+    visit("StatusReply", 255, message, payload, size_t{23}, wire_bytes, size_t{29});
   }
   {
     wire::StatusReply message{};
@@ -256,45 +258,48 @@ void for_each(Visit visit) {
     message.no_rule = 61146;
     message.tick_us_max = 27197;
     message.save_state = static_cast<wire::SaveState>(1);
-    const uint8_t payload[] = {0x01, 0x03, 0x02, 0x8F, 0x94, 0xB1, 0xAC, 0x98, 0xF4, 0x53, 0x0E, 0x58, 0x3D, 0xDD, 0xF1, 0x17, 0xDA, 0xEE, 0x3D, 0x6A, 0x01};
-    const uint8_t wire_bytes[] = {0x1A, 0x82, 0xC5, 0x01, 0x03, 0x02, 0x8F, 0x94, 0xB1, 0xAC, 0x98, 0xF4, 0x53, 0x0E, 0x58, 0x3D, 0xDD, 0xF1, 0x17, 0xDA, 0xEE, 0x3D, 0x6A, 0x01, 0xB0, 0xF6, 0x00};
-    visit("StatusReply", 197, message, payload, size_t{21}, wire_bytes, size_t{27});
+    message.saves = 50492;
+    const uint8_t payload[] = {0x01, 0x03, 0x02, 0x8F, 0x94, 0xB1, 0xAC, 0x98, 0xF4, 0x53, 0x0E, 0x58, 0x3D, 0xDD, 0xF1, 0x17, 0xDA, 0xEE, 0x3D, 0x6A, 0x01, 0x3C, 0xC5};
+    const uint8_t wire_bytes[] = {0x1C, 0x82, 0xDA, 0x01, 0x03, 0x02, 0x8F, 0x94, 0xB1, 0xAC, 0x98, 0xF4, 0x53, 0x0E, 0x58, 0x3D, 0xDD, 0xF1, 0x17, 0xDA, 0xEE, 0x3D, 0x6A, 0x01, 0x3C, 0xC5, 0xCE, 0xBA, 0x00};
+    visit("StatusReply", 218, message, payload, size_t{23}, wire_bytes, size_t{29});
   }
   {
     wire::StatusReply message{};
-    message.state = static_cast<wire::State>(3);
+    message.state = static_cast<wire::State>(4);
     message.stop_reason = static_cast<wire::StopReason>(4);
-    message.fault = static_cast<wire::Fault>(8);
+    message.fault = static_cast<wire::Fault>(4);
     message.fault_where = 154;
-    message.tick = 4005053597u;
-    message.late_ticks = 65303;
-    message.frames_bad = 1216;
-    message.rx_overruns = 22687;
-    message.telemetry_dropped = 27618;
-    message.no_rule = 4694;
-    message.tick_us_max = 46838;
-    message.save_state = static_cast<wire::SaveState>(2);
-    const uint8_t payload[] = {0x03, 0x04, 0x08, 0x9A, 0x9D, 0x44, 0xB8, 0xEE, 0x17, 0xFF, 0xC0, 0x04, 0x9F, 0x58, 0xE2, 0x6B, 0x56, 0x12, 0xF6, 0xB6, 0x02};
-    const uint8_t wire_bytes[] = {0x1A, 0x82, 0xF1, 0x03, 0x04, 0x08, 0x9A, 0x9D, 0x44, 0xB8, 0xEE, 0x17, 0xFF, 0xC0, 0x04, 0x9F, 0x58, 0xE2, 0x6B, 0x56, 0x12, 0xF6, 0xB6, 0x02, 0x11, 0xCE, 0x00};
-    visit("StatusReply", 241, message, payload, size_t{21}, wire_bytes, size_t{27});
+    message.tick = 91747024u;
+    message.late_ticks = 1216;
+    message.frames_bad = 22687;
+    message.rx_overruns = 27618;
+    message.telemetry_dropped = 4694;
+    message.no_rule = 46838;
+    message.tick_us_max = 42634;
+    message.save_state = static_cast<wire::SaveState>(3);
+    message.saves = 56757;
+    const uint8_t payload[] = {0x04, 0x04, 0x04, 0x9A, 0xD0, 0xF2, 0x77, 0x05, 0xC0, 0x04, 0x9F, 0x58, 0xE2, 0x6B, 0x56, 0x12, 0xF6, 0xB6, 0x8A, 0xA6, 0x03, 0xB5, 0xDD};
+    const uint8_t wire_bytes[] = {0x1C, 0x82, 0xC2, 0x04, 0x04, 0x04, 0x9A, 0xD0, 0xF2, 0x77, 0x05, 0xC0, 0x04, 0x9F, 0x58, 0xE2, 0x6B, 0x56, 0x12, 0xF6, 0xB6, 0x8A, 0xA6, 0x03, 0xB5, 0xDD, 0x25, 0xE5, 0x00};
+    visit("StatusReply", 194, message, payload, size_t{23}, wire_bytes, size_t{29});
   }
   {
     wire::StatusReply message{};
-    message.state = static_cast<wire::State>(3);
+    message.state = static_cast<wire::State>(1);
     message.stop_reason = static_cast<wire::StopReason>(3);
-    message.fault = static_cast<wire::Fault>(3);
-    message.fault_where = 236;
-    message.tick = 2877108944u;
-    message.late_ticks = 43449;
-    message.frames_bad = 42561;
-    message.rx_overruns = 15460;
-    message.telemetry_dropped = 60590;
-    message.no_rule = 19849;
-    message.tick_us_max = 41467;
-    message.save_state = static_cast<wire::SaveState>(0);
-    const uint8_t payload[] = {0x03, 0x03, 0x03, 0xEC, 0xD0, 0x32, 0x7D, 0xAB, 0xB9, 0xA9, 0x41, 0xA6, 0x64, 0x3C, 0xAE, 0xEC, 0x89, 0x4D, 0xFB, 0xA1, 0x00};
-    const uint8_t wire_bytes[] = {0x17, 0x82, 0xD0, 0x03, 0x03, 0x03, 0xEC, 0xD0, 0x32, 0x7D, 0xAB, 0xB9, 0xA9, 0x41, 0xA6, 0x64, 0x3C, 0xAE, 0xEC, 0x89, 0x4D, 0xFB, 0xA1, 0x03, 0x9A, 0x99, 0x00};
-    visit("StatusReply", 208, message, payload, size_t{21}, wire_bytes, size_t{27});
+    message.fault = static_cast<wire::Fault>(2);
+    message.fault_where = 2;
+    message.tick = 1423740730u;
+    message.late_ticks = 15460;
+    message.frames_bad = 60590;
+    message.rx_overruns = 19849;
+    message.telemetry_dropped = 41467;
+    message.no_rule = 15518;
+    message.tick_us_max = 53449;
+    message.save_state = static_cast<wire::SaveState>(2);
+    message.saves = 11133;
+    const uint8_t payload[] = {0x01, 0x03, 0x02, 0x02, 0x3A, 0x8F, 0xDC, 0x54, 0x64, 0x3C, 0xAE, 0xEC, 0x89, 0x4D, 0xFB, 0xA1, 0x9E, 0x3C, 0xC9, 0xD0, 0x02, 0x7D, 0x2B};
+    const uint8_t wire_bytes[] = {0x1C, 0x82, 0xE8, 0x01, 0x03, 0x02, 0x02, 0x3A, 0x8F, 0xDC, 0x54, 0x64, 0x3C, 0xAE, 0xEC, 0x89, 0x4D, 0xFB, 0xA1, 0x9E, 0x3C, 0xC9, 0xD0, 0x02, 0x7D, 0x2B, 0x98, 0xAA, 0x00};
+    visit("StatusReply", 232, message, payload, size_t{23}, wire_bytes, size_t{29});
   }
   {
     wire::ParamGetRequest message{};
@@ -312,24 +317,24 @@ void for_each(Visit visit) {
   }
   {
     wire::ParamGetRequest message{};
-    message.index = 59608;
-    const uint8_t payload[] = {0xD8, 0xE8};
-    const uint8_t wire_bytes[] = {0x07, 0x03, 0x5D, 0xD8, 0xE8, 0x2B, 0xE3, 0x00};
-    visit("ParamGetRequest", 93, message, payload, size_t{2}, wire_bytes, size_t{8});
+    message.index = 60010;
+    const uint8_t payload[] = {0x6A, 0xEA};
+    const uint8_t wire_bytes[] = {0x07, 0x03, 0x8F, 0x6A, 0xEA, 0xF2, 0xB0, 0x00};
+    visit("ParamGetRequest", 143, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::ParamGetRequest message{};
-    message.index = 26360;
-    const uint8_t payload[] = {0xF8, 0x66};
-    const uint8_t wire_bytes[] = {0x07, 0x03, 0xEA, 0xF8, 0x66, 0xE4, 0xEE, 0x00};
-    visit("ParamGetRequest", 234, message, payload, size_t{2}, wire_bytes, size_t{8});
+    message.index = 3284;
+    const uint8_t payload[] = {0xD4, 0x0C};
+    const uint8_t wire_bytes[] = {0x07, 0x03, 0xFB, 0xD4, 0x0C, 0xD0, 0x14, 0x00};
+    visit("ParamGetRequest", 251, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::ParamGetRequest message{};
-    message.index = 36638;
-    const uint8_t payload[] = {0x1E, 0x8F};
-    const uint8_t wire_bytes[] = {0x07, 0x03, 0x0C, 0x1E, 0x8F, 0x66, 0x2A, 0x00};
-    visit("ParamGetRequest", 12, message, payload, size_t{2}, wire_bytes, size_t{8});
+    message.index = 12077;
+    const uint8_t payload[] = {0x2D, 0x2F};
+    const uint8_t wire_bytes[] = {0x07, 0x03, 0x46, 0x2D, 0x2F, 0x26, 0x15, 0x00};
+    visit("ParamGetRequest", 70, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::ParamGetReply message{};
@@ -349,27 +354,27 @@ void for_each(Visit visit) {
   }
   {
     wire::ParamGetReply message{};
-    message.index = 18059;
-    message.value = -716673369;
-    const uint8_t payload[] = {0x8B, 0x46, 0xA7, 0x6E, 0x48, 0xD5};
-    const uint8_t wire_bytes[] = {0x0B, 0x83, 0x5F, 0x8B, 0x46, 0xA7, 0x6E, 0x48, 0xD5, 0x57, 0x8B, 0x00};
-    visit("ParamGetReply", 95, message, payload, size_t{6}, wire_bytes, size_t{12});
+    message.index = 24488;
+    message.value = -79801475;
+    const uint8_t payload[] = {0xA8, 0x5F, 0x7D, 0x53, 0x3E, 0xFB};
+    const uint8_t wire_bytes[] = {0x0B, 0x83, 0xE6, 0xA8, 0x5F, 0x7D, 0x53, 0x3E, 0xFB, 0x2E, 0x25, 0x00};
+    visit("ParamGetReply", 230, message, payload, size_t{6}, wire_bytes, size_t{12});
   }
   {
     wire::ParamGetReply message{};
-    message.index = 24769;
-    message.value = 1810876892;
-    const uint8_t payload[] = {0xC1, 0x60, 0xDC, 0xC9, 0xEF, 0x6B};
-    const uint8_t wire_bytes[] = {0x0B, 0x83, 0x1B, 0xC1, 0x60, 0xDC, 0xC9, 0xEF, 0x6B, 0xC4, 0x18, 0x00};
-    visit("ParamGetReply", 27, message, payload, size_t{6}, wire_bytes, size_t{12});
+    message.index = 36377;
+    message.value = -1812201464;
+    const uint8_t payload[] = {0x19, 0x8E, 0x08, 0x00, 0xFC, 0x93};
+    const uint8_t wire_bytes[] = {0x06, 0x83, 0x51, 0x19, 0x8E, 0x08, 0x05, 0xFC, 0x93, 0x97, 0x89, 0x00};
+    visit("ParamGetReply", 81, message, payload, size_t{6}, wire_bytes, size_t{12});
   }
   {
     wire::ParamGetReply message{};
-    message.index = 58900;
-    message.value = 1202465966;
-    const uint8_t payload[] = {0x14, 0xE6, 0xAE, 0x2C, 0xAC, 0x47};
-    const uint8_t wire_bytes[] = {0x0B, 0x83, 0x27, 0x14, 0xE6, 0xAE, 0x2C, 0xAC, 0x47, 0x6F, 0x42, 0x00};
-    visit("ParamGetReply", 39, message, payload, size_t{6}, wire_bytes, size_t{12});
+    message.index = 10807;
+    message.value = 653879893;
+    const uint8_t payload[] = {0x37, 0x2A, 0x55, 0x6A, 0xF9, 0x26};
+    const uint8_t wire_bytes[] = {0x0B, 0x83, 0x8A, 0x37, 0x2A, 0x55, 0x6A, 0xF9, 0x26, 0x83, 0x8D, 0x00};
+    visit("ParamGetReply", 138, message, payload, size_t{6}, wire_bytes, size_t{12});
   }
   {
     wire::ParamSetRequest message{};
@@ -389,27 +394,27 @@ void for_each(Visit visit) {
   }
   {
     wire::ParamSetRequest message{};
-    message.index = 10807;
-    message.value = 653879893;
-    const uint8_t payload[] = {0x37, 0x2A, 0x55, 0x6A, 0xF9, 0x26};
-    const uint8_t wire_bytes[] = {0x0B, 0x04, 0x8A, 0x37, 0x2A, 0x55, 0x6A, 0xF9, 0x26, 0x1A, 0xB7, 0x00};
-    visit("ParamSetRequest", 138, message, payload, size_t{6}, wire_bytes, size_t{12});
+    message.index = 13777;
+    message.value = -1224434842;
+    const uint8_t payload[] = {0xD1, 0x35, 0x66, 0x9B, 0x04, 0xB7};
+    const uint8_t wire_bytes[] = {0x0B, 0x04, 0x78, 0xD1, 0x35, 0x66, 0x9B, 0x04, 0xB7, 0x49, 0x0A, 0x00};
+    visit("ParamSetRequest", 120, message, payload, size_t{6}, wire_bytes, size_t{12});
   }
   {
     wire::ParamSetRequest message{};
-    message.index = 50136;
-    message.value = 440574272;
-    const uint8_t payload[] = {0xD8, 0xC3, 0x40, 0xA1, 0x42, 0x1A};
-    const uint8_t wire_bytes[] = {0x09, 0x04, 0x35, 0xD8, 0xC3, 0x40, 0xA1, 0x42, 0x1A, 0x02, 0x56, 0x00};
-    visit("ParamSetRequest", 53, message, payload, size_t{6}, wire_bytes, size_t{12});
+    message.index = 64981;
+    message.value = 484532669;
+    const uint8_t payload[] = {0xD5, 0xFD, 0xBD, 0x61, 0xE1, 0x1C};
+    const uint8_t wire_bytes[] = {0x0B, 0x04, 0x9F, 0xD5, 0xFD, 0xBD, 0x61, 0xE1, 0x1C, 0x93, 0x45, 0x00};
+    visit("ParamSetRequest", 159, message, payload, size_t{6}, wire_bytes, size_t{12});
   }
   {
     wire::ParamSetRequest message{};
-    message.index = 28169;
-    message.value = -1975375699;
-    const uint8_t payload[] = {0x09, 0x6E, 0xAD, 0x28, 0x42, 0x8A};
-    const uint8_t wire_bytes[] = {0x0B, 0x04, 0xFD, 0x09, 0x6E, 0xAD, 0x28, 0x42, 0x8A, 0xAC, 0xC2, 0x00};
-    visit("ParamSetRequest", 253, message, payload, size_t{6}, wire_bytes, size_t{12});
+    message.index = 24887;
+    message.value = 1028561145;
+    const uint8_t payload[] = {0x37, 0x61, 0xF9, 0x98, 0x4E, 0x3D};
+    const uint8_t wire_bytes[] = {0x0B, 0x04, 0x07, 0x37, 0x61, 0xF9, 0x98, 0x4E, 0x3D, 0xC8, 0x07, 0x00};
+    visit("ParamSetRequest", 7, message, payload, size_t{6}, wire_bytes, size_t{12});
   }
   {
     wire::ParamSetReply message{};
@@ -429,27 +434,27 @@ void for_each(Visit visit) {
   }
   {
     wire::ParamSetReply message{};
-    message.index = 24887;
-    message.value = 1028561145;
-    const uint8_t payload[] = {0x37, 0x61, 0xF9, 0x98, 0x4E, 0x3D};
-    const uint8_t wire_bytes[] = {0x0B, 0x84, 0x07, 0x37, 0x61, 0xF9, 0x98, 0x4E, 0x3D, 0x49, 0xFA, 0x00};
-    visit("ParamSetReply", 7, message, payload, size_t{6}, wire_bytes, size_t{12});
+    message.index = 43715;
+    message.value = 1337245163;
+    const uint8_t payload[] = {0xC3, 0xAA, 0xEB, 0xBD, 0xB4, 0x4F};
+    const uint8_t wire_bytes[] = {0x0B, 0x84, 0xD8, 0xC3, 0xAA, 0xEB, 0xBD, 0xB4, 0x4F, 0xB2, 0x40, 0x00};
+    visit("ParamSetReply", 216, message, payload, size_t{6}, wire_bytes, size_t{12});
   }
   {
     wire::ParamSetReply message{};
-    message.index = 30327;
-    message.value = 1760633884;
-    const uint8_t payload[] = {0x77, 0x76, 0x1C, 0x24, 0xF1, 0x68};
-    const uint8_t wire_bytes[] = {0x0B, 0x84, 0xAA, 0x77, 0x76, 0x1C, 0x24, 0xF1, 0x68, 0x80, 0x6B, 0x00};
-    visit("ParamSetReply", 170, message, payload, size_t{6}, wire_bytes, size_t{12});
+    message.index = 26816;
+    message.value = -642553966;
+    const uint8_t payload[] = {0xC0, 0x68, 0x92, 0x67, 0xB3, 0xD9};
+    const uint8_t wire_bytes[] = {0x0B, 0x84, 0xA5, 0xC0, 0x68, 0x92, 0x67, 0xB3, 0xD9, 0xBD, 0xFE, 0x00};
+    visit("ParamSetReply", 165, message, payload, size_t{6}, wire_bytes, size_t{12});
   }
   {
     wire::ParamSetReply message{};
-    message.index = 4571;
-    message.value = -1268770490;
-    const uint8_t payload[] = {0xDB, 0x11, 0x46, 0x19, 0x60, 0xB4};
-    const uint8_t wire_bytes[] = {0x0B, 0x84, 0xF2, 0xDB, 0x11, 0x46, 0x19, 0x60, 0xB4, 0x36, 0x3D, 0x00};
-    visit("ParamSetReply", 242, message, payload, size_t{6}, wire_bytes, size_t{12});
+    message.index = 5994;
+    message.value = 1013004264;
+    const uint8_t payload[] = {0x6A, 0x17, 0xE8, 0x37, 0x61, 0x3C};
+    const uint8_t wire_bytes[] = {0x0B, 0x84, 0x8A, 0x6A, 0x17, 0xE8, 0x37, 0x61, 0x3C, 0x29, 0xAF, 0x00};
+    visit("ParamSetReply", 138, message, payload, size_t{6}, wire_bytes, size_t{12});
   }
   {
     wire::ParamApplyRequest message{};
@@ -467,24 +472,24 @@ void for_each(Visit visit) {
   }
   {
     wire::ParamApplyRequest message{};
-    message.crc = 41119;
-    const uint8_t payload[] = {0x9F, 0xA0};
-    const uint8_t wire_bytes[] = {0x07, 0x05, 0x8A, 0x9F, 0xA0, 0x21, 0x79, 0x00};
-    visit("ParamApplyRequest", 138, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::ParamApplyRequest message{};
-    message.crc = 53155;
-    const uint8_t payload[] = {0xA3, 0xCF};
-    const uint8_t wire_bytes[] = {0x07, 0x05, 0x48, 0xA3, 0xCF, 0x07, 0xEC, 0x00};
-    visit("ParamApplyRequest", 72, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::ParamApplyRequest message{};
     message.crc = 29550;
     const uint8_t payload[] = {0x6E, 0x73};
     const uint8_t wire_bytes[] = {0x07, 0x05, 0x7A, 0x6E, 0x73, 0x9D, 0x41, 0x00};
     visit("ParamApplyRequest", 122, message, payload, size_t{2}, wire_bytes, size_t{8});
+  }
+  {
+    wire::ParamApplyRequest message{};
+    message.crc = 48045;
+    const uint8_t payload[] = {0xAD, 0xBB};
+    const uint8_t wire_bytes[] = {0x07, 0x05, 0x07, 0xAD, 0xBB, 0x87, 0xC0, 0x00};
+    visit("ParamApplyRequest", 7, message, payload, size_t{2}, wire_bytes, size_t{8});
+  }
+  {
+    wire::ParamApplyRequest message{};
+    message.crc = 15384;
+    const uint8_t payload[] = {0x18, 0x3C};
+    const uint8_t wire_bytes[] = {0x07, 0x05, 0x66, 0x18, 0x3C, 0x4B, 0x6C, 0x00};
+    visit("ParamApplyRequest", 102, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::ParamApplyReply message{};
@@ -502,24 +507,24 @@ void for_each(Visit visit) {
   }
   {
     wire::ParamApplyReply message{};
-    message.param_crc = 15384;
-    const uint8_t payload[] = {0x18, 0x3C};
-    const uint8_t wire_bytes[] = {0x07, 0x85, 0x66, 0x18, 0x3C, 0x73, 0xB1, 0x00};
-    visit("ParamApplyReply", 102, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::ParamApplyReply message{};
-    message.param_crc = 21239;
-    const uint8_t payload[] = {0xF7, 0x52};
-    const uint8_t wire_bytes[] = {0x07, 0x85, 0x33, 0xF7, 0x52, 0xA9, 0x89, 0x00};
-    visit("ParamApplyReply", 51, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::ParamApplyReply message{};
     message.param_crc = 21689;
     const uint8_t payload[] = {0xB9, 0x54};
     const uint8_t wire_bytes[] = {0x07, 0x85, 0x67, 0xB9, 0x54, 0xA2, 0x45, 0x00};
     visit("ParamApplyReply", 103, message, payload, size_t{2}, wire_bytes, size_t{8});
+  }
+  {
+    wire::ParamApplyReply message{};
+    message.param_crc = 42513;
+    const uint8_t payload[] = {0x11, 0xA6};
+    const uint8_t wire_bytes[] = {0x07, 0x85, 0x6D, 0x11, 0xA6, 0xE9, 0xD9, 0x00};
+    visit("ParamApplyReply", 109, message, payload, size_t{2}, wire_bytes, size_t{8});
+  }
+  {
+    wire::ParamApplyReply message{};
+    message.param_crc = 52720;
+    const uint8_t payload[] = {0xF0, 0xCD};
+    const uint8_t wire_bytes[] = {0x07, 0x85, 0x75, 0xF0, 0xCD, 0x65, 0xCD, 0x00};
+    visit("ParamApplyReply", 117, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::ParamSaveRequest message{};
@@ -543,24 +548,24 @@ void for_each(Visit visit) {
   }
   {
     wire::ParamSaveReply message{};
-    message.param_crc = 30192;
-    const uint8_t payload[] = {0xF0, 0x75};
-    const uint8_t wire_bytes[] = {0x07, 0x86, 0xE6, 0xF0, 0x75, 0x03, 0x51, 0x00};
-    visit("ParamSaveReply", 230, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::ParamSaveReply message{};
-    message.param_crc = 58410;
-    const uint8_t payload[] = {0x2A, 0xE4};
-    const uint8_t wire_bytes[] = {0x07, 0x86, 0xD7, 0x2A, 0xE4, 0xE2, 0xCA, 0x00};
-    visit("ParamSaveReply", 215, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::ParamSaveReply message{};
     message.param_crc = 64663;
     const uint8_t payload[] = {0x97, 0xFC};
     const uint8_t wire_bytes[] = {0x07, 0x86, 0x7C, 0x97, 0xFC, 0xE7, 0x7C, 0x00};
     visit("ParamSaveReply", 124, message, payload, size_t{2}, wire_bytes, size_t{8});
+  }
+  {
+    wire::ParamSaveReply message{};
+    message.param_crc = 44495;
+    const uint8_t payload[] = {0xCF, 0xAD};
+    const uint8_t wire_bytes[] = {0x07, 0x86, 0xB6, 0xCF, 0xAD, 0x13, 0x50, 0x00};
+    visit("ParamSaveReply", 182, message, payload, size_t{2}, wire_bytes, size_t{8});
+  }
+  {
+    wire::ParamSaveReply message{};
+    message.param_crc = 12881;
+    const uint8_t payload[] = {0x51, 0x32};
+    const uint8_t wire_bytes[] = {0x07, 0x86, 0x85, 0x51, 0x32, 0x54, 0x85, 0x00};
+    visit("ParamSaveReply", 133, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::ParamDefaultsRequest message{};
@@ -590,24 +595,24 @@ void for_each(Visit visit) {
   }
   {
     wire::EnableRequest message{};
-    message.lease_ms = 13522;
-    const uint8_t payload[] = {0xD2, 0x34};
-    const uint8_t wire_bytes[] = {0x07, 0x08, 0xE8, 0xD2, 0x34, 0x01, 0x0D, 0x00};
-    visit("EnableRequest", 232, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::EnableRequest message{};
-    message.lease_ms = 62705;
-    const uint8_t payload[] = {0xF1, 0xF4};
-    const uint8_t wire_bytes[] = {0x07, 0x08, 0x53, 0xF1, 0xF4, 0xF6, 0x89, 0x00};
-    visit("EnableRequest", 83, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::EnableRequest message{};
     message.lease_ms = 42684;
     const uint8_t payload[] = {0xBC, 0xA6};
     const uint8_t wire_bytes[] = {0x07, 0x08, 0x66, 0xBC, 0xA6, 0x84, 0xA6, 0x00};
     visit("EnableRequest", 102, message, payload, size_t{2}, wire_bytes, size_t{8});
+  }
+  {
+    wire::EnableRequest message{};
+    message.lease_ms = 57566;
+    const uint8_t payload[] = {0xDE, 0xE0};
+    const uint8_t wire_bytes[] = {0x07, 0x08, 0x24, 0xDE, 0xE0, 0x03, 0x90, 0x00};
+    visit("EnableRequest", 36, message, payload, size_t{2}, wire_bytes, size_t{8});
+  }
+  {
+    wire::EnableRequest message{};
+    message.lease_ms = 40651;
+    const uint8_t payload[] = {0xCB, 0x9E};
+    const uint8_t wire_bytes[] = {0x07, 0x08, 0xB9, 0xCB, 0x9E, 0xB4, 0xC9, 0x00};
+    visit("EnableRequest", 185, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::EnableReply message{};
@@ -625,24 +630,24 @@ void for_each(Visit visit) {
   }
   {
     wire::EnableReply message{};
-    message.state = static_cast<wire::State>(2);
-    const uint8_t payload[] = {0x02};
-    const uint8_t wire_bytes[] = {0x06, 0x88, 0xB9, 0x02, 0xB0, 0xDA, 0x00};
-    visit("EnableReply", 185, message, payload, size_t{1}, wire_bytes, size_t{7});
-  }
-  {
-    wire::EnableReply message{};
-    message.state = static_cast<wire::State>(2);
-    const uint8_t payload[] = {0x02};
-    const uint8_t wire_bytes[] = {0x06, 0x88, 0x38, 0x02, 0x19, 0xF2, 0x00};
-    visit("EnableReply", 56, message, payload, size_t{1}, wire_bytes, size_t{7});
-  }
-  {
-    wire::EnableReply message{};
     message.state = static_cast<wire::State>(4);
     const uint8_t payload[] = {0x04};
     const uint8_t wire_bytes[] = {0x06, 0x88, 0x58, 0x04, 0xF5, 0x99, 0x00};
     visit("EnableReply", 88, message, payload, size_t{1}, wire_bytes, size_t{7});
+  }
+  {
+    wire::EnableReply message{};
+    message.state = static_cast<wire::State>(2);
+    const uint8_t payload[] = {0x02};
+    const uint8_t wire_bytes[] = {0x06, 0x88, 0x44, 0x02, 0x2D, 0xBF, 0x00};
+    visit("EnableReply", 68, message, payload, size_t{1}, wire_bytes, size_t{7});
+  }
+  {
+    wire::EnableReply message{};
+    message.state = static_cast<wire::State>(2);
+    const uint8_t payload[] = {0x02};
+    const uint8_t wire_bytes[] = {0x06, 0x88, 0x13, 0x02, 0x05, 0x28, 0x00};
+    visit("EnableReply", 19, message, payload, size_t{1}, wire_bytes, size_t{7});
   }
   {
     wire::StopRequest message{};
@@ -666,24 +671,24 @@ void for_each(Visit visit) {
   }
   {
     wire::StopReply message{};
+    message.state = static_cast<wire::State>(4);
+    const uint8_t payload[] = {0x04};
+    const uint8_t wire_bytes[] = {0x06, 0x89, 0x26, 0x04, 0x93, 0x85, 0x00};
+    visit("StopReply", 38, message, payload, size_t{1}, wire_bytes, size_t{7});
+  }
+  {
+    wire::StopReply message{};
     message.state = static_cast<wire::State>(0);
     const uint8_t payload[] = {0x00};
-    const uint8_t wire_bytes[] = {0x03, 0x89, 0x3F, 0x03, 0xFC, 0x7C, 0x00};
-    visit("StopReply", 63, message, payload, size_t{1}, wire_bytes, size_t{7});
+    const uint8_t wire_bytes[] = {0x03, 0x89, 0x5C, 0x03, 0x85, 0x22, 0x00};
+    visit("StopReply", 92, message, payload, size_t{1}, wire_bytes, size_t{7});
   }
   {
     wire::StopReply message{};
-    message.state = static_cast<wire::State>(4);
-    const uint8_t payload[] = {0x04};
-    const uint8_t wire_bytes[] = {0x06, 0x89, 0xC8, 0x04, 0x2E, 0xB6, 0x00};
-    visit("StopReply", 200, message, payload, size_t{1}, wire_bytes, size_t{7});
-  }
-  {
-    wire::StopReply message{};
-    message.state = static_cast<wire::State>(4);
-    const uint8_t payload[] = {0x04};
-    const uint8_t wire_bytes[] = {0x06, 0x89, 0x60, 0x04, 0xF9, 0x22, 0x00};
-    visit("StopReply", 96, message, payload, size_t{1}, wire_bytes, size_t{7});
+    message.state = static_cast<wire::State>(0);
+    const uint8_t payload[] = {0x00};
+    const uint8_t wire_bytes[] = {0x03, 0x89, 0x7D, 0x03, 0x52, 0x17, 0x00};
+    visit("StopReply", 125, message, payload, size_t{1}, wire_bytes, size_t{7});
   }
   {
     wire::RenewRequest message{};
@@ -701,24 +706,24 @@ void for_each(Visit visit) {
   }
   {
     wire::RenewRequest message{};
-    message.lease_ms = 23710;
-    const uint8_t payload[] = {0x9E, 0x5C};
-    const uint8_t wire_bytes[] = {0x07, 0x0A, 0x35, 0x9E, 0x5C, 0xA3, 0x62, 0x00};
+    message.lease_ms = 41324;
+    const uint8_t payload[] = {0x6C, 0xA1};
+    const uint8_t wire_bytes[] = {0x07, 0x0A, 0x35, 0x6C, 0xA1, 0xB2, 0x29, 0x00};
     visit("RenewRequest", 53, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::RenewRequest message{};
-    message.lease_ms = 32161;
-    const uint8_t payload[] = {0xA1, 0x7D};
-    const uint8_t wire_bytes[] = {0x07, 0x0A, 0x4C, 0xA1, 0x7D, 0xD2, 0x05, 0x00};
-    visit("RenewRequest", 76, message, payload, size_t{2}, wire_bytes, size_t{8});
+    message.lease_ms = 8287;
+    const uint8_t payload[] = {0x5F, 0x20};
+    const uint8_t wire_bytes[] = {0x07, 0x0A, 0x15, 0x5F, 0x20, 0x1B, 0x7E, 0x00};
+    visit("RenewRequest", 21, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::RenewRequest message{};
-    message.lease_ms = 22912;
-    const uint8_t payload[] = {0x80, 0x59};
-    const uint8_t wire_bytes[] = {0x07, 0x0A, 0xA1, 0x80, 0x59, 0x83, 0xB6, 0x00};
-    visit("RenewRequest", 161, message, payload, size_t{2}, wire_bytes, size_t{8});
+    message.lease_ms = 41901;
+    const uint8_t payload[] = {0xAD, 0xA3};
+    const uint8_t wire_bytes[] = {0x07, 0x0A, 0xF7, 0xAD, 0xA3, 0x02, 0x64, 0x00};
+    visit("RenewRequest", 247, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::RenewReply message{};
@@ -736,24 +741,24 @@ void for_each(Visit visit) {
   }
   {
     wire::RenewReply message{};
+    message.state = static_cast<wire::State>(3);
+    const uint8_t payload[] = {0x03};
+    const uint8_t wire_bytes[] = {0x06, 0x8A, 0xA5, 0x03, 0xEF, 0xE2, 0x00};
+    visit("RenewReply", 165, message, payload, size_t{1}, wire_bytes, size_t{7});
+  }
+  {
+    wire::RenewReply message{};
     message.state = static_cast<wire::State>(0);
     const uint8_t payload[] = {0x00};
-    const uint8_t wire_bytes[] = {0x03, 0x8A, 0xA3, 0x03, 0x2A, 0x78, 0x00};
-    visit("RenewReply", 163, message, payload, size_t{1}, wire_bytes, size_t{7});
+    const uint8_t wire_bytes[] = {0x03, 0x8A, 0x01, 0x03, 0x36, 0x03, 0x00};
+    visit("RenewReply", 1, message, payload, size_t{1}, wire_bytes, size_t{7});
   }
   {
     wire::RenewReply message{};
     message.state = static_cast<wire::State>(3);
     const uint8_t payload[] = {0x03};
-    const uint8_t wire_bytes[] = {0x06, 0x8A, 0xF8, 0x03, 0x0C, 0x9A, 0x00};
-    visit("RenewReply", 248, message, payload, size_t{1}, wire_bytes, size_t{7});
-  }
-  {
-    wire::RenewReply message{};
-    message.state = static_cast<wire::State>(1);
-    const uint8_t payload[] = {0x01};
-    const uint8_t wire_bytes[] = {0x06, 0x8A, 0xEF, 0x01, 0xAA, 0x20, 0x00};
-    visit("RenewReply", 239, message, payload, size_t{1}, wire_bytes, size_t{7});
+    const uint8_t wire_bytes[] = {0x06, 0x8A, 0x4E, 0x03, 0xA7, 0x2E, 0x00};
+    visit("RenewReply", 78, message, payload, size_t{1}, wire_bytes, size_t{7});
   }
   {
     wire::ClearFaultRequest message{};
@@ -777,24 +782,24 @@ void for_each(Visit visit) {
   }
   {
     wire::ClearFaultReply message{};
+    message.state = static_cast<wire::State>(1);
+    const uint8_t payload[] = {0x01};
+    const uint8_t wire_bytes[] = {0x06, 0x8B, 0x1B, 0x01, 0x9F, 0xC8, 0x00};
+    visit("ClearFaultReply", 27, message, payload, size_t{1}, wire_bytes, size_t{7});
+  }
+  {
+    wire::ClearFaultReply message{};
     message.state = static_cast<wire::State>(3);
     const uint8_t payload[] = {0x03};
-    const uint8_t wire_bytes[] = {0x06, 0x8B, 0x4E, 0x03, 0x97, 0x19, 0x00};
-    visit("ClearFaultReply", 78, message, payload, size_t{1}, wire_bytes, size_t{7});
+    const uint8_t wire_bytes[] = {0x06, 0x8B, 0x50, 0x03, 0xEB, 0x39, 0x00};
+    visit("ClearFaultReply", 80, message, payload, size_t{1}, wire_bytes, size_t{7});
   }
   {
     wire::ClearFaultReply message{};
     message.state = static_cast<wire::State>(4);
     const uint8_t payload[] = {0x04};
-    const uint8_t wire_bytes[] = {0x06, 0x8B, 0x37, 0x04, 0xB1, 0xDB, 0x00};
-    visit("ClearFaultReply", 55, message, payload, size_t{1}, wire_bytes, size_t{7});
-  }
-  {
-    wire::ClearFaultReply message{};
-    message.state = static_cast<wire::State>(2);
-    const uint8_t payload[] = {0x02};
-    const uint8_t wire_bytes[] = {0x06, 0x8B, 0x07, 0x02, 0xE2, 0xBE, 0x00};
-    visit("ClearFaultReply", 7, message, payload, size_t{1}, wire_bytes, size_t{7});
+    const uint8_t wire_bytes[] = {0x06, 0x8B, 0xCF, 0x04, 0xD9, 0x41, 0x00};
+    visit("ClearFaultReply", 207, message, payload, size_t{1}, wire_bytes, size_t{7});
   }
   {
     wire::TelemetryRequest message{};
@@ -812,24 +817,24 @@ void for_each(Visit visit) {
   }
   {
     wire::TelemetryRequest message{};
-    message.every = 56951;
-    const uint8_t payload[] = {0x77, 0xDE};
-    const uint8_t wire_bytes[] = {0x07, 0x0C, 0x50, 0x77, 0xDE, 0x41, 0x2E, 0x00};
-    visit("TelemetryRequest", 80, message, payload, size_t{2}, wire_bytes, size_t{8});
+    message.every = 52277;
+    const uint8_t payload[] = {0x35, 0xCC};
+    const uint8_t wire_bytes[] = {0x07, 0x0C, 0x84, 0x35, 0xCC, 0xC8, 0xCE, 0x00};
+    visit("TelemetryRequest", 132, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::TelemetryRequest message{};
-    message.every = 53030;
-    const uint8_t payload[] = {0x26, 0xCF};
-    const uint8_t wire_bytes[] = {0x07, 0x0C, 0xC7, 0x26, 0xCF, 0x76, 0xEC, 0x00};
-    visit("TelemetryRequest", 199, message, payload, size_t{2}, wire_bytes, size_t{8});
+    message.every = 27134;
+    const uint8_t payload[] = {0xFE, 0x69};
+    const uint8_t wire_bytes[] = {0x07, 0x0C, 0x99, 0xFE, 0x69, 0x1B, 0xE0, 0x00};
+    visit("TelemetryRequest", 153, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::TelemetryRequest message{};
-    message.every = 22413;
-    const uint8_t payload[] = {0x8D, 0x57};
-    const uint8_t wire_bytes[] = {0x07, 0x0C, 0xCC, 0x8D, 0x57, 0xB2, 0xDF, 0x00};
-    visit("TelemetryRequest", 204, message, payload, size_t{2}, wire_bytes, size_t{8});
+    message.every = 52578;
+    const uint8_t payload[] = {0x62, 0xCD};
+    const uint8_t wire_bytes[] = {0x07, 0x0C, 0x28, 0x62, 0xCD, 0x3C, 0x81, 0x00};
+    visit("TelemetryRequest", 40, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::TelemetryReply message{};
@@ -847,24 +852,24 @@ void for_each(Visit visit) {
   }
   {
     wire::TelemetryReply message{};
-    message.every = 39231;
-    const uint8_t payload[] = {0x3F, 0x99};
-    const uint8_t wire_bytes[] = {0x07, 0x8C, 0xCD, 0x3F, 0x99, 0x57, 0x75, 0x00};
-    visit("TelemetryReply", 205, message, payload, size_t{2}, wire_bytes, size_t{8});
+    message.every = 37092;
+    const uint8_t payload[] = {0xE4, 0x90};
+    const uint8_t wire_bytes[] = {0x07, 0x8C, 0x1C, 0xE4, 0x90, 0x07, 0x7F, 0x00};
+    visit("TelemetryReply", 28, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::TelemetryReply message{};
-    message.every = 10353;
-    const uint8_t payload[] = {0x71, 0x28};
-    const uint8_t wire_bytes[] = {0x07, 0x8C, 0x20, 0x71, 0x28, 0x0E, 0x0E, 0x00};
-    visit("TelemetryReply", 32, message, payload, size_t{2}, wire_bytes, size_t{8});
+    message.every = 54528;
+    const uint8_t payload[] = {0x00, 0xD5};
+    const uint8_t wire_bytes[] = {0x03, 0x8C, 0x23, 0x04, 0xD5, 0x84, 0x52, 0x00};
+    visit("TelemetryReply", 35, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::TelemetryReply message{};
-    message.every = 50612;
-    const uint8_t payload[] = {0xB4, 0xC5};
-    const uint8_t wire_bytes[] = {0x07, 0x8C, 0x90, 0xB4, 0xC5, 0xD3, 0x35, 0x00};
-    visit("TelemetryReply", 144, message, payload, size_t{2}, wire_bytes, size_t{8});
+    message.every = 32947;
+    const uint8_t payload[] = {0xB3, 0x80};
+    const uint8_t wire_bytes[] = {0x07, 0x8C, 0x28, 0xB3, 0x80, 0x7B, 0xE3, 0x00};
+    visit("TelemetryReply", 40, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::LeadRequest message{};
@@ -882,24 +887,24 @@ void for_each(Visit visit) {
   }
   {
     wire::LeadRequest message{};
-    message.lease_ms = 9101;
-    const uint8_t payload[] = {0x8D, 0x23};
-    const uint8_t wire_bytes[] = {0x07, 0x0D, 0x80, 0x8D, 0x23, 0xD9, 0xFF, 0x00};
-    visit("LeadRequest", 128, message, payload, size_t{2}, wire_bytes, size_t{8});
+    message.lease_ms = 38532;
+    const uint8_t payload[] = {0x84, 0x96};
+    const uint8_t wire_bytes[] = {0x07, 0x0D, 0x49, 0x84, 0x96, 0x59, 0x0A, 0x00};
+    visit("LeadRequest", 73, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::LeadRequest message{};
-    message.lease_ms = 10343;
-    const uint8_t payload[] = {0x67, 0x28};
-    const uint8_t wire_bytes[] = {0x07, 0x0D, 0xA5, 0x67, 0x28, 0xFD, 0xDC, 0x00};
-    visit("LeadRequest", 165, message, payload, size_t{2}, wire_bytes, size_t{8});
+    message.lease_ms = 29883;
+    const uint8_t payload[] = {0xBB, 0x74};
+    const uint8_t wire_bytes[] = {0x07, 0x0D, 0xDC, 0xBB, 0x74, 0x57, 0x51, 0x00};
+    visit("LeadRequest", 220, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::LeadRequest message{};
-    message.lease_ms = 28614;
-    const uint8_t payload[] = {0xC6, 0x6F};
-    const uint8_t wire_bytes[] = {0x07, 0x0D, 0x96, 0xC6, 0x6F, 0x64, 0x56, 0x00};
-    visit("LeadRequest", 150, message, payload, size_t{2}, wire_bytes, size_t{8});
+    message.lease_ms = 52425;
+    const uint8_t payload[] = {0xC9, 0xCC};
+    const uint8_t wire_bytes[] = {0x07, 0x0D, 0x11, 0xC9, 0xCC, 0x19, 0x7D, 0x00};
+    visit("LeadRequest", 17, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::LeadReply message{};
@@ -927,39 +932,39 @@ void for_each(Visit visit) {
   }
   {
     wire::LeadReply message{};
-    message.state = static_cast<wire::State>(3);
-    message.next = 204;
-    message.reference[0] = -28324;
-    message.reference[1] = -18563;
-    message.reference[2] = -28193;
-    message.reference[3] = 4081;
-    const uint8_t payload[] = {0x03, 0xCC, 0x5C, 0x91, 0x7D, 0xB7, 0xDF, 0x91, 0xF1, 0x0F};
-    const uint8_t wire_bytes[] = {0x0F, 0x8D, 0xDC, 0x03, 0xCC, 0x5C, 0x91, 0x7D, 0xB7, 0xDF, 0x91, 0xF1, 0x0F, 0x90, 0xEA, 0x00};
-    visit("LeadReply", 220, message, payload, size_t{10}, wire_bytes, size_t{16});
-  }
-  {
-    wire::LeadReply message{};
-    message.state = static_cast<wire::State>(4);
-    message.next = 140;
-    message.reference[0] = 16007;
-    message.reference[1] = 14971;
-    message.reference[2] = 17405;
-    message.reference[3] = -25925;
-    const uint8_t payload[] = {0x04, 0x8C, 0x87, 0x3E, 0x7B, 0x3A, 0xFD, 0x43, 0xBB, 0x9A};
-    const uint8_t wire_bytes[] = {0x0F, 0x8D, 0x3D, 0x04, 0x8C, 0x87, 0x3E, 0x7B, 0x3A, 0xFD, 0x43, 0xBB, 0x9A, 0xD1, 0xD7, 0x00};
-    visit("LeadReply", 61, message, payload, size_t{10}, wire_bytes, size_t{16});
+    message.state = static_cast<wire::State>(2);
+    message.next = 220;
+    message.reference[0] = 3203;
+    message.reference[1] = 16007;
+    message.reference[2] = 14971;
+    message.reference[3] = 17405;
+    const uint8_t payload[] = {0x02, 0xDC, 0x83, 0x0C, 0x87, 0x3E, 0x7B, 0x3A, 0xFD, 0x43};
+    const uint8_t wire_bytes[] = {0x0F, 0x8D, 0x1A, 0x02, 0xDC, 0x83, 0x0C, 0x87, 0x3E, 0x7B, 0x3A, 0xFD, 0x43, 0xD2, 0x4F, 0x00};
+    visit("LeadReply", 26, message, payload, size_t{10}, wire_bytes, size_t{16});
   }
   {
     wire::LeadReply message{};
     message.state = static_cast<wire::State>(0);
-    message.next = 185;
-    message.reference[0] = -29595;
-    message.reference[1] = -8969;
-    message.reference[2] = 26435;
-    message.reference[3] = -11328;
-    const uint8_t payload[] = {0x00, 0xB9, 0x65, 0x8C, 0xF7, 0xDC, 0x43, 0x67, 0xC0, 0xD3};
-    const uint8_t wire_bytes[] = {0x03, 0x8D, 0xFE, 0x0C, 0xB9, 0x65, 0x8C, 0xF7, 0xDC, 0x43, 0x67, 0xC0, 0xD3, 0x2E, 0x0C, 0x00};
-    visit("LeadReply", 254, message, payload, size_t{10}, wire_bytes, size_t{16});
+    message.next = 33;
+    message.reference[0] = 14639;
+    message.reference[1] = -29595;
+    message.reference[2] = -8969;
+    message.reference[3] = 26435;
+    const uint8_t payload[] = {0x00, 0x21, 0x2F, 0x39, 0x65, 0x8C, 0xF7, 0xDC, 0x43, 0x67};
+    const uint8_t wire_bytes[] = {0x03, 0x8D, 0x53, 0x0C, 0x21, 0x2F, 0x39, 0x65, 0x8C, 0xF7, 0xDC, 0x43, 0x67, 0xDE, 0xE1, 0x00};
+    visit("LeadReply", 83, message, payload, size_t{10}, wire_bytes, size_t{16});
+  }
+  {
+    wire::LeadReply message{};
+    message.state = static_cast<wire::State>(3);
+    message.next = 76;
+    message.reference[0] = 10;
+    message.reference[1] = 17422;
+    message.reference[2] = -15775;
+    message.reference[3] = 7427;
+    const uint8_t payload[] = {0x03, 0x4C, 0x0A, 0x00, 0x0E, 0x44, 0x61, 0xC2, 0x03, 0x1D};
+    const uint8_t wire_bytes[] = {0x06, 0x8D, 0xC8, 0x03, 0x4C, 0x0A, 0x09, 0x0E, 0x44, 0x61, 0xC2, 0x03, 0x1D, 0x29, 0x77, 0x00};
+    visit("LeadReply", 200, message, payload, size_t{10}, wire_bytes, size_t{16});
   }
   {
     wire::LeadPointRequest message{};
@@ -985,17 +990,6 @@ void for_each(Visit visit) {
   }
   {
     wire::LeadPointRequest message{};
-    message.number = 196;
-    message.step[0] = -62;
-    message.step[1] = 29;
-    message.step[2] = 72;
-    message.step[3] = -59;
-    const uint8_t payload[] = {0xC4, 0xC2, 0x1D, 0x48, 0xC5};
-    const uint8_t wire_bytes[] = {0x0A, 0x0E, 0x24, 0xC4, 0xC2, 0x1D, 0x48, 0xC5, 0x23, 0x18, 0x00};
-    visit("LeadPointRequest", 36, message, payload, size_t{5}, wire_bytes, size_t{11});
-  }
-  {
-    wire::LeadPointRequest message{};
     message.number = 146;
     message.step[0] = 45;
     message.step[1] = -78;
@@ -1017,6 +1011,17 @@ void for_each(Visit visit) {
     visit("LeadPointRequest", 28, message, payload, size_t{5}, wire_bytes, size_t{11});
   }
   {
+    wire::LeadPointRequest message{};
+    message.number = 178;
+    message.step[0] = -89;
+    message.step[1] = 70;
+    message.step[2] = 113;
+    message.step[3] = -125;
+    const uint8_t payload[] = {0xB2, 0xA7, 0x46, 0x71, 0x83};
+    const uint8_t wire_bytes[] = {0x0A, 0x0E, 0x7C, 0xB2, 0xA7, 0x46, 0x71, 0x83, 0x51, 0x69, 0x00};
+    visit("LeadPointRequest", 124, message, payload, size_t{5}, wire_bytes, size_t{11});
+  }
+  {
     wire::LeadPointReply message{};
     message.next = 0;
     message.waiting = 0;
@@ -1034,27 +1039,27 @@ void for_each(Visit visit) {
   }
   {
     wire::LeadPointReply message{};
-    message.next = 198;
-    message.waiting = 241;
-    const uint8_t payload[] = {0xC6, 0xF1};
-    const uint8_t wire_bytes[] = {0x07, 0x8E, 0x03, 0xC6, 0xF1, 0x3E, 0xE1, 0x00};
-    visit("LeadPointReply", 3, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::LeadPointReply message{};
-    message.next = 124;
-    message.waiting = 228;
-    const uint8_t payload[] = {0x7C, 0xE4};
-    const uint8_t wire_bytes[] = {0x07, 0x8E, 0x5D, 0x7C, 0xE4, 0xA3, 0x17, 0x00};
-    visit("LeadPointReply", 93, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::LeadPointReply message{};
     message.next = 102;
     message.waiting = 41;
     const uint8_t payload[] = {0x66, 0x29};
     const uint8_t wire_bytes[] = {0x07, 0x8E, 0xE2, 0x66, 0x29, 0x34, 0x21, 0x00};
     visit("LeadPointReply", 226, message, payload, size_t{2}, wire_bytes, size_t{8});
+  }
+  {
+    wire::LeadPointReply message{};
+    message.next = 202;
+    message.waiting = 179;
+    const uint8_t payload[] = {0xCA, 0xB3};
+    const uint8_t wire_bytes[] = {0x07, 0x8E, 0xEF, 0xCA, 0xB3, 0x85, 0x19, 0x00};
+    visit("LeadPointReply", 239, message, payload, size_t{2}, wire_bytes, size_t{8});
+  }
+  {
+    wire::LeadPointReply message{};
+    message.next = 130;
+    message.waiting = 104;
+    const uint8_t payload[] = {0x82, 0x68};
+    const uint8_t wire_bytes[] = {0x07, 0x8E, 0xDE, 0x82, 0x68, 0x63, 0x15, 0x00};
+    visit("LeadPointReply", 222, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::Sample message{};
@@ -1100,66 +1105,66 @@ void for_each(Visit visit) {
   }
   {
     wire::Sample message{};
-    message.tick = 2006533010u;
+    message.tick = 707322993u;
+    message.state = static_cast<wire::State>(0);
+    message.fault = static_cast<wire::Fault>(13);
+    message.leader[0] = -26732;
+    message.leader[1] = -2191;
+    message.leader[2] = -29237;
+    message.leader[3] = 11510;
+    message.follower[0] = -22596;
+    message.follower[1] = 21432;
+    message.follower[2] = 31307;
+    message.follower[3] = 10890;
+    message.voltage[0] = 9977;
+    message.voltage[1] = 19550;
+    message.voltage[2] = 23677;
+    message.voltage[3] = 21061;
+    const uint8_t payload[] = {0x71, 0xE4, 0x28, 0x2A, 0x00, 0x0D, 0x94, 0x97, 0x71, 0xF7, 0xCB, 0x8D, 0xF6, 0x2C, 0xBC, 0xA7, 0xB8, 0x53, 0x4B, 0x7A, 0x8A, 0x2A, 0xF9, 0x26, 0x5E, 0x4C, 0x7D, 0x5C, 0x45, 0x52};
+    const uint8_t wire_bytes[] = {0x07, 0x40, 0x34, 0x71, 0xE4, 0x28, 0x2A, 0x1C, 0x0D, 0x94, 0x97, 0x71, 0xF7, 0xCB, 0x8D, 0xF6, 0x2C, 0xBC, 0xA7, 0xB8, 0x53, 0x4B, 0x7A, 0x8A, 0x2A, 0xF9, 0x26, 0x5E, 0x4C, 0x7D, 0x5C, 0x45, 0x52, 0xD8, 0xE6, 0x00};
+    visit("Sample", 52, message, payload, size_t{30}, wire_bytes, size_t{36});
+  }
+  {
+    wire::Sample message{};
+    message.tick = 12820477u;
+    message.state = static_cast<wire::State>(4);
+    message.fault = static_cast<wire::Fault>(1);
+    message.leader[0] = -2030;
+    message.leader[1] = -23845;
+    message.leader[2] = -9034;
+    message.leader[3] = 8978;
+    message.follower[0] = 2884;
+    message.follower[1] = 3978;
+    message.follower[2] = 1950;
+    message.follower[3] = 25058;
+    message.voltage[0] = 27425;
+    message.voltage[1] = 21288;
+    message.voltage[2] = 9116;
+    message.voltage[3] = 82;
+    const uint8_t payload[] = {0xFD, 0x9F, 0xC3, 0x00, 0x04, 0x01, 0x12, 0xF8, 0xDB, 0xA2, 0xB6, 0xDC, 0x12, 0x23, 0x44, 0x0B, 0x8A, 0x0F, 0x9E, 0x07, 0xE2, 0x61, 0x21, 0x6B, 0x28, 0x53, 0x9C, 0x23, 0x52, 0x00};
+    const uint8_t wire_bytes[] = {0x06, 0x40, 0xBD, 0xFD, 0x9F, 0xC3, 0x1A, 0x04, 0x01, 0x12, 0xF8, 0xDB, 0xA2, 0xB6, 0xDC, 0x12, 0x23, 0x44, 0x0B, 0x8A, 0x0F, 0x9E, 0x07, 0xE2, 0x61, 0x21, 0x6B, 0x28, 0x53, 0x9C, 0x23, 0x52, 0x03, 0x8C, 0x7D, 0x00};
+    visit("Sample", 189, message, payload, size_t{30}, wire_bytes, size_t{36});
+  }
+  {
+    wire::Sample message{};
+    message.tick = 2909498430u;
     message.state = static_cast<wire::State>(1);
-    message.fault = static_cast<wire::Fault>(6);
-    message.leader[0] = -15462;
-    message.leader[1] = -6101;
-    message.leader[2] = -11183;
-    message.leader[3] = 27186;
-    message.follower[0] = -25698;
-    message.follower[1] = -26732;
-    message.follower[2] = -2191;
-    message.follower[3] = -29237;
-    message.voltage[0] = 11510;
-    message.voltage[1] = -22596;
-    message.voltage[2] = 21432;
-    message.voltage[3] = 31307;
-    const uint8_t payload[] = {0x92, 0x43, 0x99, 0x77, 0x01, 0x06, 0x9A, 0xC3, 0x2B, 0xE8, 0x51, 0xD4, 0x32, 0x6A, 0x9E, 0x9B, 0x94, 0x97, 0x71, 0xF7, 0xCB, 0x8D, 0xF6, 0x2C, 0xBC, 0xA7, 0xB8, 0x53, 0x4B, 0x7A};
-    const uint8_t wire_bytes[] = {0x23, 0x40, 0xAA, 0x92, 0x43, 0x99, 0x77, 0x01, 0x06, 0x9A, 0xC3, 0x2B, 0xE8, 0x51, 0xD4, 0x32, 0x6A, 0x9E, 0x9B, 0x94, 0x97, 0x71, 0xF7, 0xCB, 0x8D, 0xF6, 0x2C, 0xBC, 0xA7, 0xB8, 0x53, 0x4B, 0x7A, 0x74, 0xE7, 0x00};
-    visit("Sample", 170, message, payload, size_t{30}, wire_bytes, size_t{36});
-  }
-  {
-    wire::Sample message{};
-    message.tick = 1400695378u;
-    message.state = static_cast<wire::State>(3);
-    message.fault = static_cast<wire::Fault>(6);
-    message.leader[0] = -19326;
-    message.leader[1] = -25103;
-    message.leader[2] = -30402;
-    message.leader[3] = -32377;
-    message.follower[0] = -22822;
-    message.follower[1] = -22677;
-    message.follower[2] = -2030;
-    message.follower[3] = -23845;
-    message.voltage[0] = -9034;
-    message.voltage[1] = 8978;
-    message.voltage[2] = 2884;
-    message.voltage[3] = 3978;
-    const uint8_t payload[] = {0x52, 0xEA, 0x7C, 0x53, 0x03, 0x06, 0x82, 0xB4, 0xF1, 0x9D, 0x3E, 0x89, 0x87, 0x81, 0xDA, 0xA6, 0x6B, 0xA7, 0x12, 0xF8, 0xDB, 0xA2, 0xB6, 0xDC, 0x12, 0x23, 0x44, 0x0B, 0x8A, 0x0F};
-    const uint8_t wire_bytes[] = {0x23, 0x40, 0x87, 0x52, 0xEA, 0x7C, 0x53, 0x03, 0x06, 0x82, 0xB4, 0xF1, 0x9D, 0x3E, 0x89, 0x87, 0x81, 0xDA, 0xA6, 0x6B, 0xA7, 0x12, 0xF8, 0xDB, 0xA2, 0xB6, 0xDC, 0x12, 0x23, 0x44, 0x0B, 0x8A, 0x0F, 0x36, 0xF5, 0x00};
-    visit("Sample", 135, message, payload, size_t{30}, wire_bytes, size_t{36});
-  }
-  {
-    wire::Sample message{};
-    message.tick = 3335820814u;
-    message.state = static_cast<wire::State>(3);
-    message.fault = static_cast<wire::Fault>(6);
-    message.leader[0] = 9116;
-    message.leader[1] = 82;
-    message.leader[2] = 15697;
-    message.leader[3] = -31589;
-    message.follower[0] = -14465;
-    message.follower[1] = -28212;
-    message.follower[2] = 1181;
-    message.follower[3] = 6873;
-    message.voltage[0] = -22256;
-    message.voltage[1] = 21651;
-    message.voltage[2] = -14157;
-    message.voltage[3] = 18377;
-    const uint8_t payload[] = {0x0E, 0x96, 0xD4, 0xC6, 0x03, 0x06, 0x9C, 0x23, 0x52, 0x00, 0x51, 0x3D, 0x9B, 0x84, 0x7F, 0xC7, 0xCC, 0x91, 0x9D, 0x04, 0xD9, 0x1A, 0x10, 0xA9, 0x93, 0x54, 0xB3, 0xC8, 0xC9, 0x47};
-    const uint8_t wire_bytes[] = {0x0C, 0x40, 0x79, 0x0E, 0x96, 0xD4, 0xC6, 0x03, 0x06, 0x9C, 0x23, 0x52, 0x17, 0x51, 0x3D, 0x9B, 0x84, 0x7F, 0xC7, 0xCC, 0x91, 0x9D, 0x04, 0xD9, 0x1A, 0x10, 0xA9, 0x93, 0x54, 0xB3, 0xC8, 0xC9, 0x47, 0x6F, 0x8C, 0x00};
-    visit("Sample", 121, message, payload, size_t{30}, wire_bytes, size_t{36});
+    message.fault = static_cast<wire::Fault>(0);
+    message.leader[0] = 1181;
+    message.leader[1] = 6873;
+    message.leader[2] = -22256;
+    message.leader[3] = 21651;
+    message.follower[0] = -14157;
+    message.follower[1] = 18377;
+    message.follower[2] = -1690;
+    message.follower[3] = 21705;
+    message.voltage[0] = 4265;
+    message.voltage[1] = 20279;
+    message.voltage[2] = 16507;
+    message.voltage[3] = -13553;
+    const uint8_t payload[] = {0x3E, 0x6C, 0x6B, 0xAD, 0x01, 0x00, 0x9D, 0x04, 0xD9, 0x1A, 0x10, 0xA9, 0x93, 0x54, 0xB3, 0xC8, 0xC9, 0x47, 0x66, 0xF9, 0xC9, 0x54, 0xA9, 0x10, 0x37, 0x4F, 0x7B, 0x40, 0x0F, 0xCB};
+    const uint8_t wire_bytes[] = {0x08, 0x40, 0x1F, 0x3E, 0x6C, 0x6B, 0xAD, 0x01, 0x1B, 0x9D, 0x04, 0xD9, 0x1A, 0x10, 0xA9, 0x93, 0x54, 0xB3, 0xC8, 0xC9, 0x47, 0x66, 0xF9, 0xC9, 0x54, 0xA9, 0x10, 0x37, 0x4F, 0x7B, 0x40, 0x0F, 0xCB, 0xF4, 0x6D, 0x00};
+    visit("Sample", 31, message, payload, size_t{30}, wire_bytes, size_t{36});
   }
   {
     wire::Nack message{};
@@ -1181,30 +1186,30 @@ void for_each(Visit visit) {
   }
   {
     wire::Nack message{};
-    message.request = 207;
-    message.code = static_cast<wire::NackCode>(12);
-    message.detail = 19215;
-    const uint8_t payload[] = {0xCF, 0x0C, 0x0F, 0x4B};
-    const uint8_t wire_bytes[] = {0x09, 0xFF, 0x1F, 0xCF, 0x0C, 0x0F, 0x4B, 0xB6, 0xC0, 0x00};
-    visit("Nack", 31, message, payload, size_t{4}, wire_bytes, size_t{10});
+    message.request = 72;
+    message.code = static_cast<wire::NackCode>(11);
+    message.detail = 63422;
+    const uint8_t payload[] = {0x48, 0x0B, 0xBE, 0xF7};
+    const uint8_t wire_bytes[] = {0x09, 0xFF, 0xCC, 0x48, 0x0B, 0xBE, 0xF7, 0x68, 0x5B, 0x00};
+    visit("Nack", 204, message, payload, size_t{4}, wire_bytes, size_t{10});
   }
   {
     wire::Nack message{};
-    message.request = 183;
-    message.code = static_cast<wire::NackCode>(10);
-    message.detail = 18489;
-    const uint8_t payload[] = {0xB7, 0x0A, 0x39, 0x48};
-    const uint8_t wire_bytes[] = {0x09, 0xFF, 0xBB, 0xB7, 0x0A, 0x39, 0x48, 0x92, 0x89, 0x00};
-    visit("Nack", 187, message, payload, size_t{4}, wire_bytes, size_t{10});
+    message.request = 98;
+    message.code = static_cast<wire::NackCode>(15);
+    message.detail = 64833;
+    const uint8_t payload[] = {0x62, 0x0F, 0x41, 0xFD};
+    const uint8_t wire_bytes[] = {0x09, 0xFF, 0x45, 0x62, 0x0F, 0x41, 0xFD, 0x54, 0xF0, 0x00};
+    visit("Nack", 69, message, payload, size_t{4}, wire_bytes, size_t{10});
   }
   {
     wire::Nack message{};
-    message.request = 247;
-    message.code = static_cast<wire::NackCode>(12);
-    message.detail = 25267;
-    const uint8_t payload[] = {0xF7, 0x0C, 0xB3, 0x62};
-    const uint8_t wire_bytes[] = {0x09, 0xFF, 0xF0, 0xF7, 0x0C, 0xB3, 0x62, 0x42, 0xD9, 0x00};
-    visit("Nack", 240, message, payload, size_t{4}, wire_bytes, size_t{10});
+    message.request = 157;
+    message.code = static_cast<wire::NackCode>(14);
+    message.detail = 34313;
+    const uint8_t payload[] = {0x9D, 0x0E, 0x09, 0x86};
+    const uint8_t wire_bytes[] = {0x09, 0xFF, 0x02, 0x9D, 0x0E, 0x09, 0x86, 0xE2, 0xB1, 0x00};
+    visit("Nack", 2, message, payload, size_t{4}, wire_bytes, size_t{10});
   }
 }
 

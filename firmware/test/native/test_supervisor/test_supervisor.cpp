@@ -10,29 +10,34 @@ using namespace supervisor;
 namespace {
 
 constexpr Limits limits = {3277, 10240, 500, 1000};  // 0.8 rad, 2.5 rad
-constexpr Observation calm = {{0, 0, 0, 0}, 0, 0, false, false};
 
-Observation apart(std::uint8_t joint, std::uint16_t distance) {
-  Observation seen = calm;
-  seen.distance[joint] = distance;
+// What a tick has seen, and how far apart the joints are then.
+struct Seen : Observation {
+  Distances distances;
+};
+const Seen calm = {};
+
+Seen apart(std::uint8_t joint, std::uint16_t distance) {
+  Seen seen = calm;
+  seen.distances.of[joint] = distance;
   return seen;
 }
 
-Observation with_rails(std::uint8_t low, std::uint8_t high) {
-  Observation seen = calm;
+Seen with_rails(std::uint8_t low, std::uint8_t high) {
+  Seen seen = calm;
   seen.rail_low = low;
   seen.rail_high = high;
   return seen;
 }
 
-Observation late() {
-  Observation seen = calm;
+Seen late() {
+  Seen seen = calm;
   seen.late = true;
   return seen;
 }
 
-Observation pressed() {
-  Observation seen = calm;
+Seen pressed() {
+  Seen seen = calm;
   seen.estop = true;
   return seen;
 }
@@ -42,19 +47,20 @@ struct Arm : Supervisor {
     set_limits(limits);
     begin(after_watchdog, params_ok);
   }
-  // Ticks, each followed by the look at a joint. A set of limits turns the checks of the motion off.
-  Arm& run(unsigned ticks, const Observation& seen = calm) {
+  // Ticks, each followed by the looks at the rails and at a joint. A set of limits turns the checks of the motion off.
+  Arm& run(unsigned ticks, const Seen& seen = calm) {
     for (; ticks > 0; --ticks, ++now) {
       tick(seen);
+      look_at_rails(seen);
       const auto joint = static_cast<std::uint8_t>(now % joint_count);
-      look(joint, {0, 0, seen.distance[joint], 0, 15000}, {});
+      look(joint, {0, 0, seen.distances.of[joint], 0, 15000}, {});
     }
     last = seen;
     return *this;
   }
-  Reply enable(std::uint16_t lease) { return Supervisor::enable(lease, last); }
-  Reply clear_fault() { return Supervisor::clear_fault(last); }
-  Observation last = calm;
+  Reply enable(std::uint16_t lease) { return Supervisor::enable(lease, last, last.distances); }
+  Reply clear_fault() { return Supervisor::clear_fault(last, last.distances); }
+  Seen last = calm;
   unsigned now = 0;
   Arm& booted() { return run(20); }
   Arm& enabled(std::uint16_t lease = 0) {
@@ -140,17 +146,18 @@ TEST_CASE("soft start rises evenly from 0 to the whole supply in soft_start_ms")
     Arm arm;
     arm.set_limits({3277, 10240, 500, ms});
     arm.enabled();
-    CHECK(arm.share_q15() == 0);
     int before = 0, widest = 0, narrowest = 32768;
     unsigned ticks = 0;
     while (arm.state() == State::soft_start && ticks < 20000) {
+      const int share = arm.share_q15();  // of the tick that comes
       arm.run(1);
       ++ticks;
-      const int step = arm.share_q15() - before;
+      const int step = share - before;
       widest = step > widest ? step : widest;
       narrowest = step < narrowest ? step : narrowest;
-      before = arm.share_q15();
+      before = share;
     }
+    CHECK(before == 32768);
     CHECK(ticks == ms);
     CHECK(widest - narrowest <= 1);
     CHECK(arm.state() == State::following);
@@ -164,7 +171,7 @@ TEST_CASE("a second enable ramps from zero again") {
   CHECK(arm.share_q15() == 0);
   CHECK(arm.enable(0).answer == Answer::ok);
   CHECK(arm.state() == State::soft_start);
-  CHECK(arm.share_q15() == 0);
+  CHECK(arm.share_q15() == 32768 / limits.soft_start_ms);
 }
 
 TEST_CASE("stop works in every state") {
@@ -209,7 +216,7 @@ TEST_CASE("a pot at a rail for three ticks in a row is a fault and names the pot
   for (std::uint8_t pot = 0; pot < 8; ++pot) {
     for (bool high : {false, true}) {
       const auto bit = static_cast<std::uint8_t>(1u << pot);
-      const Observation rail = high ? with_rails(0, bit) : with_rails(bit, 0);
+      const Seen rail = high ? with_rails(0, bit) : with_rails(bit, 0);
       Arm arm;
       arm.following().run(2, rail).run(40).run(2, rail);
       CHECK(arm.state() == State::following);
@@ -384,7 +391,7 @@ TEST_CASE("the emergency stop is latched, and neither clear_fault nor enable wor
 }
 
 TEST_CASE("the emergency stop comes before every other fault of its tick, but leaves one that stands") {
-  Observation all = pressed();
+  Seen all = pressed();
   all.late = true;
   all.rail_low = 1;
   Arm together;

@@ -27,7 +27,10 @@ class _Body:
 
 
 def urdf(parameters: ArmParameters) -> str:
-    """The arm as URDF; joint limits are the stops, effort and velocity what the motor gives at the full supply."""
+    """The arm as URDF; joint limits are the stops, effort and velocity what the motor gives at the full supply.
+
+    Joints that are not in use are fixed ones.
+    """
     robot = xml.Element("robot", name=parameters.name)
     xml.SubElement(robot, "link", name="world")
     parent = "world"
@@ -39,31 +42,41 @@ def urdf(parameters: ArmParameters) -> str:
         xx, yy, zz = map(repr, body.inertia)
         xml.SubElement(inertial, "inertia", ixx=xx, ixy="0", ixz="0", iyy=yy, iyz="0", izz=zz)
 
-        joint = xml.SubElement(robot, "joint", name=JOINT_IDS[index], type="revolute")
+        kind = "fixed" if parameters.joint[index].fixed else "revolute"
+        joint = xml.SubElement(robot, "joint", name=JOINT_IDS[index], type=kind)
         xml.SubElement(joint, "parent", link=parent)
         xml.SubElement(joint, "child", link=LINK_NAMES[index])
         upright = (math.pi / 2, 0.0, 0.0) if index == 0 else (0.0, 0.0, 0.0)
         xml.SubElement(joint, "origin", xyz=_text(body.origin), rpy=_text(upright))
-        xml.SubElement(joint, "axis", xyz=_text(_AXES[index]))
-        actuator = parameters.actuator(index)
-        effort = actuator.torque_per_volt * parameters.drive.supply
-        stops = parameters.joint[index].stops
-        xml.SubElement(
-            joint,
-            "limit",
-            lower=repr(stops.min),
-            upper=repr(stops.max),
-            effort=repr(effort),
-            velocity=repr(effort / actuator.damping),
-        )
-        friction = parameters.joint[index].friction.coulomb
-        xml.SubElement(joint, "dynamics", damping=repr(actuator.damping), friction=repr(friction))
+        if not parameters.joint[index].fixed:
+            _add_turning(joint, parameters, index)
         parent = LINK_NAMES[index]
     return _document(robot)
 
 
+def _add_turning(joint: xml.Element, parameters: ArmParameters, index: int) -> None:
+    """Axis, limits and friction of a URDF's joint."""
+    xml.SubElement(joint, "axis", xyz=_text(_AXES[index]))
+    actuator = parameters.actuator(index)
+    effort = actuator.torque_per_volt * parameters.drive.supply
+    stops = parameters.joint[index].stops
+    xml.SubElement(
+        joint,
+        "limit",
+        lower=repr(stops.min),
+        upper=repr(stops.max),
+        effort=repr(effort),
+        velocity=repr(effort / actuator.damping),
+    )
+    friction = parameters.joint[index].friction.coulomb
+    xml.SubElement(joint, "dynamics", damping=repr(actuator.damping), friction=repr(friction))
+
+
 def mjcf(parameters: ArmParameters, motors: bool = False) -> str:
-    """The arm as MJCF: the links alone, or with motors driven in volts (rigid gears, Coulomb friction, no stops)."""
+    """The arm as MJCF: the links alone, or with motors driven in volts (rigid gears, Coulomb friction, no stops).
+
+    The link of a joint that is not in use is welded to the one before: it has no joint.
+    """
     model = xml.Element("mujoco", model=parameters.name)
     xml.SubElement(model, "compiler", angle="radian")
     xml.SubElement(model, "option", gravity=_text((0.0, 0.0, -parameters.gravity)))
@@ -79,12 +92,14 @@ def mjcf(parameters: ArmParameters, motors: bool = False) -> str:
             joint["armature"] = repr(actuator.inertia)
             joint["damping"] = repr(actuator.damping)
             joint["frictionloss"] = repr(parameters.joint[index].friction.coulomb)
-        xml.SubElement(parent, "joint", joint)
+        if index in parameters.joints_in_use:
+            xml.SubElement(parent, "joint", joint)
         inertia = _text(body.inertia)
         xml.SubElement(parent, "inertial", pos=_text(body.centre), mass=repr(body.mass), diaginertia=inertia)
     if motors:
         actuators = xml.SubElement(model, "actuator")
-        for index, name in enumerate(JOINT_IDS):
+        for index in parameters.joints_in_use:
+            name = JOINT_IDS[index]
             gear = parameters.actuator(index).torque_per_volt
             supply = parameters.drive.supply
             xml.SubElement(

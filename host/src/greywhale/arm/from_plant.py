@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -28,6 +30,8 @@ def arm_of(
     data |= {"name": name, "source": source}
     for joint in range(JOINTS):
         one = data["joint"][joint]
+        if arm.joint[joint].fixed:
+            continue
         one["motor"] = _motor(arm, joint, plant)
         one["friction"] = {
             "coulomb": _cell(plant, joint, "coulomb"),
@@ -52,6 +56,22 @@ def arm_of(
     data["drive"]["resistance"] = 0.0  # the motors' resistance now has the driver's in it
     data["drive"]["supply_resistance"] = float(plant[column("supply_resistance")])
     return ArmParameters.model_validate(data, strict=False)
+
+
+def known_before(arm: ArmParameters) -> dict[str, Any]:
+    """The values of an arm file that no identification changes: those that `arm_of` does not write."""
+    data = arm.model_dump(exclude={"name", "source", "identification"})
+    for joint, follower, leader in zip(
+        data["joint"], data["follower_pots"]["joint"], data["leader_pots"]["joint"], strict=True
+    ):
+        for pot, found in ((follower, ("play", "lag", "centre", "noise")), (leader, ("noise",))):
+            for name in found:
+                del pot[name]
+        if not joint.get("fixed"):
+            joint["motor"] = {"gear_ratio": joint["motor"]["gear_ratio"]}
+            del joint["friction"], joint["gear"], joint["name"]
+    del data["drive"]["resistance"], data["drive"]["supply_resistance"]
+    return data
 
 
 def _cell(plant: Floats, joint: int, name: str) -> float:

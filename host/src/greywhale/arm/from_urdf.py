@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from greywhale.arm.fewer_joints import complete
 from greywhale.arm.parameters import JOINT_NAMES, ArmParameters
 from greywhale.arm.urdf import Body, TurningJoint, read_chain
 from greywhale.errors import BAD_USAGE, UserError, cut
@@ -51,13 +52,13 @@ class _Frames:
 
 
 def import_urdf(path: Path, supply_v: float) -> Imported:
-    """Read a URDF; effort and velocity limits are what the motors give at `supply_v`. Raises UserError by name."""
+    """Read a URDF; effort and velocity limits are what the motors give at `supply_v`. Raises UserError by name.
+
+    A chain that ends before the wrist's roll is an arm whose last joints are fixed.
+    """
     name, joints = read_chain(path)
-    if len(joints) != len(JOINT_NAMES):
-        raise UserError(
-            f"{path}: it has {len(joints)} turning joints, but greywhale's arm has four: {', '.join(JOINT_NAMES)}.",
-            BAD_USAGE,
-        )
+    used = len(joints)
+    joints = complete(path, joints)
     frames = _find_frames(path, joints)
     signs, offsets = _angles(joints, frames)
     remarks: list[str] = []
@@ -68,6 +69,8 @@ def import_urdf(path: Path, supply_v: float) -> Imported:
         "link": links,
         "joint": [
             _joint(number, joint, signs[number], offsets[number], supply_v, remarks)
+            if number < used
+            else {"name": JOINT_NAMES[number], "fixed": True}
             for number, joint in enumerate(joints)
         ],
         "drive": {"supply": supply_v},

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Any, ClassVar, Literal, TypeVar
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
 from greywhale import _native
+from greywhale.formats.kinds import Kind
 from greywhale.formats.toml_file import Table
+from greywhale.joints import Joints
 
 # The usual potentiometer: a track of 300 degrees, and noise of half a step of the board's converter (V rms).
 USUAL_TRACK_RAD = math.radians(300.0)
@@ -17,8 +19,13 @@ MOST_NOISE_V = 0.5
 JOINT_NAMES = ("base yaw", "shoulder pitch", "wrist pitch", "wrist roll")
 PAPER_IYY0 = 8.26e-3  # as printed in the paper's Table 3
 
-Positive = Annotated[float, Field(gt=0)]
-NotNegative = Annotated[float, Field(ge=0)]
+# Ranges that every arm keeps by far, from a wristwatch's gears to the largest industrial robots: what lies beyond is a
+# slip of the keys or another unit, and would only make numbers overflow. The paper's method may find odd motors.
+Mass = Annotated[float, Field(ge=1e-9, le=1e4)]  # kg
+Length = Annotated[float, Field(ge=1e-4, le=100)]  # m
+Moment = Annotated[float, Field(ge=1e-18, le=1e8)]  # kg m2
+Torque = Annotated[float, Field(ge=0, le=1e6)]  # N m
+Viscosity = Annotated[float, Field(ge=0, le=1e12)]  # N m s
 Item = TypeVar("Item")
 
 
@@ -31,9 +38,9 @@ def _one_per_joint(items: tuple[Item, ...]) -> tuple[Item, ...]:
 class Inertia(Table):
     """Principal moments about the centre of mass, kg m2; x along the link, y up at zero pitch, z the pitch axis."""
 
-    xx: Positive
-    yy: Positive
-    zz: Positive
+    xx: Moment
+    yy: Moment
+    zz: Moment
 
     @model_validator(mode="after")
     def _is_a_body(self) -> Inertia:
@@ -60,9 +67,9 @@ def _printed_value(key: str, value: float) -> str:
 class Link(Table):
     """One rigid link."""
 
-    mass: Positive  # kg
-    length: Positive  # m
-    centre: NotNegative  # m, centre of mass from the nearer joint
+    mass: Mass  # kg
+    length: Length  # m
+    centre: Annotated[float, Field(ge=0, le=100)]  # m, centre of mass from the nearer joint
     inertia: Inertia
 
     @model_validator(mode="after")
@@ -75,25 +82,27 @@ class Link(Table):
 class Tip(Table):
     """What the arm carries at the end of link 3."""
 
-    mass: NotNegative = 0.0  # kg
+    mass: Annotated[float, Field(ge=0, le=1e4)] = 0.0  # kg
 
 
 class Motor(Table):
     """A geared DC motor; motor speed = gear_ratio x joint speed, back-EMF constant = torque constant."""
 
-    inertia: Positive  # J, kg m2
-    resistance: Positive  # R, ohm
-    torque_constant: Positive  # Kt, N m/A
-    viscous: NotNegative  # Bm, N m s
-    gear_ratio: Positive  # N
+    inertia: Moment  # J, kg m2
+    resistance: Annotated[float, Field(ge=1e-18, le=1e12)]  # R, ohm
+    torque_constant: Annotated[float, Field(ge=1e-18, le=1e6)]  # Kt, N m/A
+    viscous: Viscosity  # Bm, N m s
+    gear_ratio: Annotated[float, Field(ge=1e-3, le=1e6)]  # N
 
 
 class Friction(Table):
     """Dry friction of motor and gear train, as torque at the joint."""
 
-    coulomb: NotNegative = 0.0  # N m, sliding
-    breakaway: NotNegative = 0.0  # N m, at rest
-    stribeck_velocity: Positive = 0.1  # rad/s, where the excess of breakaway over coulomb has halved
+    coulomb: Torque = 0.0  # N m, sliding
+    breakaway: Torque = 0.0  # N m, at rest
+    stribeck_velocity: Annotated[float, Field(ge=1e-9, le=1e3)] = (
+        0.1  # rad/s, where the excess of breakaway over coulomb has halved
+    )
     load: Annotated[float, Field(ge=0, le=0.9)] = 0.0  # share of the torque passed on, which adds to both
     creep_velocity: Annotated[float, Field(ge=0, le=1)] = 0.0  # rad/s just below breakaway; 0: holds still
 
@@ -111,9 +120,9 @@ class Gear(Table):
     """The mesh between motor and link, at the joint; all zero is a rigid gear."""
 
     half_gap: Annotated[float, Field(ge=0, le=0.5)] = 0.0  # rad, to either side
-    stiffness: NotNegative = 0.0  # N m/rad, of the teeth in contact
-    damping: NotNegative = 0.0  # N m s, of the teeth in contact
-    drag: NotNegative = 0.0  # N m s, of the grease, also with the teeth apart
+    stiffness: Annotated[float, Field(ge=0, le=1e9)] = 0.0  # N m/rad, of the teeth in contact
+    damping: Viscosity = 0.0  # N m s, of the teeth in contact
+    drag: Viscosity = 0.0  # N m s, of the grease, also with the teeth apart
 
     @model_validator(mode="after")
     def _gap_needs_teeth(self) -> Gear:
@@ -135,14 +144,38 @@ class Stops(Table):
         return self
 
 
+# What stands for the motor and the stops that a joint which is not in use need not have; nothing works with them.
+_NO_MOTOR = {"inertia": 1e-3, "resistance": 1.0, "torque_constant": 1.0, "viscous": 0.0, "gear_ratio": 1.0}
+_NO_STOPS = {"min": -1.0, "max": 1.0}
+
+
 class Joint(Table):
-    """Everything between a joint's two wires and its output shaft."""
+    """Everything between a joint's two wires and its output shaft.
+
+    A `fixed` joint is not in use: it is rigid at 0 rad, whatever else is said of it.
+    """
 
     name: str = ""
+    fixed: bool = False
     motor: Motor
     friction: Friction = Friction()
     gear: Gear = Gear()
     stops: Stops
+
+    @model_validator(mode="before")
+    @classmethod
+    def _needs_nothing_when_fixed(cls, data: Any) -> Any:
+        if isinstance(data, dict) and data.get("fixed") is True:
+            return {"motor": _NO_MOTOR, "stops": _NO_STOPS} | data
+        return data
+
+    @model_serializer(mode="wrap")
+    def _say_nothing_else_when_fixed(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        if self.fixed:
+            return {"name": self.name, "fixed": True}
+        data: dict[str, Any] = whole(self)
+        del data["fixed"]
+        return data
 
 
 class Drive(Table):
@@ -158,7 +191,7 @@ class Potentiometer(Table):
     """One joint potentiometer across the board's supply."""
 
     track: Annotated[float, Field(gt=0, le=10 * math.tau)] = USUAL_TRACK_RAD  # rad, end to end
-    centre: float = 0.0  # rad, joint angle at mid-track
+    centre: Annotated[float, Field(ge=-10 * math.tau, le=10 * math.tau)] = 0.0  # rad, joint angle at mid-track
     direction: Literal[1, -1] = 1  # sign of the voltage's slope
     noise: Annotated[float, Field(ge=0, le=MOST_NOISE_V)] = 0.0  # V rms
     linearity: Annotated[float, Field(ge=0, le=0.05)] = 0.0  # largest deviation, share of full scale
@@ -169,7 +202,7 @@ class Potentiometer(Table):
 class PotentiometerBank(Table):
     """The four potentiometers of one arm."""
 
-    supply: Positive = 5.0  # V, also the converter's reference
+    supply: Annotated[float, Field(ge=0.1, le=60)] = 5.0  # V, also the converter's reference
     joint: Annotated[tuple[Potentiometer, ...], AfterValidator(_one_per_joint)] = (Potentiometer(),) * 4
 
 
@@ -181,9 +214,11 @@ def usual_pots() -> PotentiometerBank:
 class ArmParameters(Table):
     """A leader-follower arm as simulated: the follower's mechanics and both arms' potentiometers."""
 
+    kinds: ClassVar[tuple[Kind, ...]] = (Kind.ARM, Kind.MODEL)
+
     name: str
     source: str = ""
-    gravity: NotNegative = 9.81  # m/s2
+    gravity: Annotated[float, Field(ge=0, le=100)] = 9.81  # m/s2
     motor_equation: Literal["physical", "paper"] = "physical"
     link: Annotated[tuple[Link, ...], AfterValidator(_one_per_joint)]
     tip: Tip = Tip()
@@ -193,8 +228,21 @@ class ArmParameters(Table):
     follower_pots: PotentiometerBank = PotentiometerBank()
     identification: dict[str, Any] | None = None  # how `greywhale identify` found this arm; the plant ignores it
 
+    @model_validator(mode="after")
+    def _moves(self) -> ArmParameters:
+        if not self.joints_in_use:
+            raise ValueError("all four joints are fixed; an arm needs one that moves")
+        return self
+
+    @property
+    def joints_in_use(self) -> Joints:
+        """The joints that are not fixed."""
+        return tuple(number for number, joint in enumerate(self.joint) if not joint.fixed)
+
     def actuator(self, joint: int) -> _native.Actuator:
-        """The motor of one joint as its output shaft feels it, by this arm's motor equation."""
+        """The motor of one joint as its output shaft feels it, by this arm's motor equation; a fixed one has none."""
+        if self.joint[joint].fixed:
+            return _native.physical_actuator(**(_NO_MOTOR | {"torque_constant": 0.0}))
         motor = self.joint[joint].motor
         equation = _native.physical_actuator if self.motor_equation == "physical" else _native.paper_actuator
         return equation(
@@ -219,6 +267,10 @@ class ArmParameters(Table):
 
     def _native_joint(self, index: int) -> _native.Joint:
         joint, pot = self.joint[index], self.follower_pots.joint[index]
+        if joint.fixed:
+            rigid = {"coulomb": 0.0, "breakaway": 0.0, "stribeck_velocity": 1.0}
+            rigid |= dict.fromkeys(("half_gap", "stiffness", "damping", "drag", "min", "max"), 0.0)
+            return _native.Joint(actuator=self.actuator(index), **rigid)
         return _native.Joint(
             actuator=self.actuator(index),
             coulomb=joint.friction.coulomb,

@@ -50,6 +50,12 @@ def plant_row(parameters: ArmParameters) -> Plants:
     return np.asarray(_native.plant_row(parameters.native()), dtype=np.float64)
 
 
+def rigid_joints(plants: Plants) -> npt.NDArray[np.bool_]:
+    """Which joints are not in use, (4,) or (n, 4): those without room between their stops."""
+    rigid: npt.NDArray[np.bool_] = plants[..., columns("stop_max")] <= plants[..., columns("stop_min")]
+    return rigid
+
+
 def check_plants(plants: Plants) -> Plants:
     """Check one row or many with numbers that an arm can have; the first axis is added where it was missing."""
     check_type("plants", plants, np.float64)

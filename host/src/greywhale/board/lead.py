@@ -50,9 +50,11 @@ class Plan:
     def of(cls, motion: Trajectory, start: Floats, limits: Floats, rest_s: float = 0.0) -> Plan:
         """From `start` (rad) at rest to the motion's first pose, then the motion, then `rest_s` at its last pose.
 
-        All is within the joints' `limits` (2, 4), which the board also sets for a leader arm.
+        All is within the joints' `limits` (2, 4), which the board also sets for a leader arm. Joints that are not in
+        use have no room between theirs.
         """
-        low, high = limits[0] + STEP_LSB, limits[1] - STEP_LSB  # points are rounded to steps
+        rounding = np.where(limits[1] > limits[0], STEP_LSB, 0.0)  # points are rounded to steps
+        low, high = limits[0] + rounding, limits[1] - rounding
         first = np.clip(motion.angles[0], low, high)
         way = float(np.abs(first - start).max())
         # A minimum-jerk path is 1.875 times as fast in its middle as on average.

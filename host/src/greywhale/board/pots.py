@@ -30,11 +30,12 @@ class PotReadings:
 
     counts: NDArray[np.int64]
     rail_counts: int
+    there: tuple[int, ...] = tuple(range(len(POTS)))  # the potentiometers that the board has; others show nothing
 
     def at_rail(self, pot: int) -> schema.Fault:
         """The rail at which a pot reads in any of the samples, else `none`. `rail_counts` 0 turns this off."""
         counts = self.counts[:, pot]
-        if self.rail_counts == 0:
+        if self.rail_counts == 0 or pot not in self.there:
             return schema.Fault.NONE
         if np.any(counts <= self.rail_counts):
             return schema.Fault.POT_LOW
@@ -59,7 +60,12 @@ def read_pots(device: Device, table: ParameterTable) -> PotReadings:
     Telemetry is off afterwards.
     """
     counts = np.rint(read_counts(device, table, LOOKS))
-    return PotReadings(np.clip(counts, 0, FULL_SCALE).astype(np.int64), table["rail_counts"])
+    return PotReadings(np.clip(counts, 0, FULL_SCALE).astype(np.int64), table["rail_counts"], pots_there(table))
+
+
+def pots_there(table: ParameterTable) -> tuple[int, ...]:
+    """The potentiometers that a board has: their scale is not 0."""
+    return tuple(number for number, pot in enumerate(POTS) if table[f"{pot}.scale"] != 0)
 
 
 def read_counts(device: Device, table: ParameterTable, samples: int) -> NDArray[np.float64]:
@@ -75,12 +81,16 @@ def read_counts(device: Device, table: ParameterTable, samples: int) -> NDArray[
 
 
 def counts_of(samples: Iterable[schema.Sample], table: ParameterTable) -> NDArray[np.float64]:
-    """(n, 8) counts from the angles in samples, which the board worked out with `table`."""
+    """(n, 8) counts from the angles in samples, which the board worked out with `table`.
+
+    A potentiometer that is not there, of scale 0, is said to read the middle: nobody knows, and nothing is wrong.
+    """
     scales = np.array([table[f"{pot}.scale"] for pot in POTS], dtype=float)
     zeros = np.array([table[f"{pot}.zero"] for pot in POTS], dtype=float)
     angles = np.array([(*sample.leader, *sample.follower) for sample in samples], dtype=float).reshape(-1, len(POTS))
-    counts: NDArray[np.float64] = (angles * 2**_ANGLE_SHIFT / scales + zeros) / COUNT14
-    return counts
+    there = scales != 0.0
+    counts: NDArray[np.float64] = (angles * 2**_ANGLE_SHIFT / np.where(there, scales, 1.0) + zeros) / COUNT14
+    return np.where(there, counts, FULL_SCALE / 2)
 
 
 def require_good_pots(device: Device, table: ParameterTable, pots: Iterable[int]) -> None:

@@ -18,7 +18,7 @@ import numpy.typing as npt
 from greywhale.board.device import Device
 from greywhale.board.lead import Leading, Plan
 from greywhale.board.stream import Received, stream, why_stopped
-from greywhale.board.upload import read_parameter, read_parameters
+from greywhale.board.upload import read_parameters
 from greywhale.errors import BAD_USAGE, UserError
 from greywhale.files.log.layout import Origin
 from greywhale.files.log.writer import LogWriter
@@ -46,7 +46,6 @@ REST_S = 0.3
 _ENABLE_TICKS = 1000
 _ROWS_PER_REPORT = 50
 _POSE_SAMPLES = 21
-_LIMITS = ("limit_min", "limit_max")
 _MOVING = (schema.State.SOFT_START, schema.State.FOLLOWING)
 _VOLT = schema.Sample.LSB["voltage"]
 
@@ -56,6 +55,7 @@ class Recording:
     """What was recorded: rows in the log, samples that the link lost, duration by the board's clock.
 
     For a motion that this host led also its `slowest` pace (1: as planned), and how often the board had to wait for it.
+    `gaps` are those in which the port was away: when each began and its length, s.
     """
 
     path: Path
@@ -64,6 +64,7 @@ class Recording:
     duration_s: float
     slowest: float | None = None
     waits: int | None = None
+    gaps: tuple[tuple[float, float], ...] = ()
 
     def as_dict(self) -> dict[str, object]:
         led = {} if self.slowest is None else {"slowest_pace": round(self.slowest, 2), "waits": self.waits}
@@ -73,6 +74,7 @@ class Recording:
             "dropped": self.dropped,
             "duration_s": self.duration_s,
             **led,
+            **({"gaps_s": [list(gap) for gap in self.gaps]} if self.gaps else {}),
         }
 
 
@@ -85,18 +87,18 @@ def record(
     progress: Progress | None = None,
 ) -> Recording:
     """Record `seconds` of samples, one every `every` ticks of 1 ms."""
-    _check(seconds, every, enable)
+    check_request(seconds, every, enable)
     report = progress or (lambda what, fraction: None)
-    origin = _origin(device, read_parameter(device, "period_ms"), every)
+    origin = origin_of(device, read_parameters(device), every)
     length = round(seconds * 1000)
     with LogWriter(path, origin) as log:
         received = stream(device, every)
         if enable:
             with device.enabled(max(LEASE_MS, 20 * every)):
                 received = _await_following(device, received, report)
-                duration = _write(device, log, received, length, True, report)
+                duration = write_samples(device, log, received, length, True, report)
         else:
-            duration = _write(device, log, received, length, False, report)
+            duration = write_samples(device, log, received, length, False, report)
     device.telemetry(0)
     return Recording(Path(path), log.rows, log.dropped, duration)
 
@@ -121,9 +123,9 @@ def record_led(
     check_every_led(every)
     report = progress or (lambda what, fraction: None)
     running = read_parameters(device, report) if table is None else table
-    limits = np.array([running.each("joint", end) for end in _LIMITS]) * ANGLE_LSB
+    limits = np.array(running.limits_raw()) * ANGLE_LSB
     Plan.of(motion, motion.angles[0], limits)  # too fast a motion is refused with the motors off
-    origin = _origin(device, running.period_ms, every)
+    origin = origin_of(device, running, every)
     with LogWriter(path, origin) as log:
         received = stream(device, every)
         with device.leading(LEASE_MS) as begun:
@@ -155,7 +157,8 @@ def pose_of(device: Device) -> Floats:
     return pose
 
 
-def _check(seconds: float, every: int, enable: bool) -> None:
+def check_request(seconds: float, every: int, enable: bool) -> None:
+    """Refuse a length, or samples so rare, that no board can record."""
     if not _SHORTEST_S <= seconds <= _LONGEST_S:
         raise UserError(f"the duration is {seconds:g} s; it must be {_SHORTEST_S:g} to {_LONGEST_S:g} s.", BAD_USAGE)
     longest = _LONGEST_EVERY_ENABLED if enable else _LONGEST_EVERY
@@ -166,8 +169,19 @@ def _check(seconds: float, every: int, enable: bool) -> None:
         )
 
 
-def _origin(device: Device, period_ms: int, every: int) -> Origin:
-    return Origin(device.firmware_version, device.hello.board.key, device.hello.param_crc, period_ms, every)
+def origin_of(device: Device, running: ParameterTable, every: int) -> Origin:
+    """The log's header. A table that is given is in it only if it is what the board runs."""
+    crc = device.hello.param_crc
+    table = running if running.crc == crc else None
+    return Origin(
+        device.firmware_version,
+        device.hello.board.key,
+        crc,
+        running.period_ms,
+        every,
+        table,
+        running.joints_in_use,
+    )
 
 
 def _await_following(
@@ -190,10 +204,16 @@ def _await_following(
     raise AssertionError("a stream of samples has no end")
 
 
-def _write(
-    device: Device, log: LogWriter, received: Iterator[Received], length: int, enabled: bool, report: Progress
+def write_samples(
+    device: Device,
+    log: LogWriter,
+    received: Iterator[Received],
+    length: int,
+    enabled: bool,
+    report: Progress,
+    begin: int = 0,
 ) -> float:
-    """Fill the log for `length` ticks, and return its duration in s."""
+    """Fill the log up to `length` ticks, with the first sample at the tick `begin`, and return its duration in s."""
     start: int | None = None
     for one in received:
         if enabled and one.sample.state is not schema.State.FOLLOWING:
@@ -202,7 +222,7 @@ def _write(
             start = one.elapsed
         else:
             log.drop(one.lost)
-        ticks = one.elapsed - start
+        ticks = begin + one.elapsed - start
         if ticks >= length:
             return ticks / 1000
         _append(log, ticks / 1000, one.sample)

@@ -71,9 +71,15 @@ def upload_controller(device: Device, path: str | Path, progress: Progress | Non
     return change_parameters(device, controller_file.load(path).raw_values(), progress)
 
 
-def change_parameters(device: Device, changes: Mapping[str, int], progress: Progress | None = None) -> Uploaded:
-    """Take the running set, make the `changes` (name -> raw value), then run and store it."""
-    running = read_parameters(device, progress)
+def change_parameters(
+    device: Device,
+    changes: Mapping[str, int],
+    progress: Progress | None = None,
+    running: ParameterTable | None = None,
+) -> Uploaded:
+    """Take the running set, which is read unless given, make the `changes` (name -> raw value), run and store it."""
+    if running is None:
+        running = read_parameters(device, progress)
     wanted = running.with_raw(changes)
     upload_set(device, wanted, progress)
     pairs = zip(schema.PARAMETERS, running.raw, wanted.raw, strict=True)

@@ -23,6 +23,7 @@ from greywhale.calibrate.solve import Calibration, Pose, match, slipped, solve
 from greywhale.calibrate.sweep import Sweep, judge_sweep
 from greywhale.errors import UserError
 from greywhale.firmware import JOINTS
+from greywhale.joints import ALL, Joints
 from greywhale.protocol import schema
 from greywhale.table import ParameterTable
 
@@ -35,6 +36,7 @@ LONGEST_TICKS = 600_000
 TRIES = 3
 MOST_APART_RAD = 0.15  # between the arms in the last pose: 9 degrees, more than a hand is wrong by
 USUAL_TRACK_RAD = float(np.radians(300.0))
+_COUNTS = {2: "two", 4: "four", 6: "six", 8: "eight"}
 
 
 class Guide(Protocol):
@@ -56,13 +58,14 @@ class Guide(Protocol):
 @dataclass(frozen=True)
 class Options:
     """`first` and `second` are poses (4,) rad; without a second, the tracks' length counts, and one more pose in which
-    both arms agree.
+    both arms agree. Of joints that are not in use nothing is asked, and the board is told that they are not.
     """
 
     first: Floats = field(default_factory=lambda: np.zeros(JOINTS))
     second: Floats | None = None
     track_rad: float = USUAL_TRACK_RAD
     motors: bool = True  # whether to pulse them
+    joints: Joints = ALL  # in use
 
 
 @dataclass(frozen=True)
@@ -88,7 +91,7 @@ class Result:
     @property
     def reversed(self) -> tuple[str, ...]:
         """The potentiometers that read the other way, which the scale's sign puts right."""
-        return tuple(name for name, scale in zip(POTS, self.calibration.scale, strict=True) if scale < 0.0)
+        return tuple(POTS[pot] for pot in self.calibration.pots if self.calibration.scale[pot] < 0.0)
 
     @property
     def remarks(self) -> tuple[str, ...]:
@@ -106,23 +109,47 @@ def calibrate(device: Device, guide: Guide, options: Options) -> Result:
     if state not in (schema.State.DISABLED, schema.State.FAULT):
         raise UserError(f"{device.port}: the motors are on; stop them with `greywhale stop` first.")
     table = read_parameters(device)
-    sweeps = [_sweep(device, table, guide, pot) for pot in range(len(POTS))]
-    guide.tell("All eight potentiometers turn with their joints.")
-    first = _pose(device, table, guide, options.first, f"Hold both arms in this pose: {_told(options.first)}.")
+    if all((table[f"{name}.scale"] != 0) == (pot % JOINTS in options.joints) for pot, name in enumerate(POTS)):
+        return _calibrate(device, table, table, guide, options)
+    try:
+        run_set(device, readable(table, options.joints))
+        return _calibrate(device, readable(table, options.joints), table, guide, options)
+    finally:
+        _run_again(device, table)
+
+
+def readable(table: ParameterTable, joints: Joints) -> ParameterTable:
+    """The set with which the counts of these joints' potentiometers can be read: angles of scale 0 show none.
+
+    Those of the others show nothing, as their inputs are open.
+    """
+    usual = ParameterTable.defaults()
+    scales = {f"{name}.scale": table[f"{name}.scale"] or usual[f"{name}.scale"] for name in POTS}
+    scales |= {f"{name}.scale": 0 for pot, name in enumerate(POTS) if pot % JOINTS not in joints}
+    return table.with_raw(scales)
+
+
+def _calibrate(device: Device, table: ParameterTable, before: ParameterTable, guide: Guide, options: Options) -> Result:
+    """The same while `table` runs; `before` is the stored one."""
+    sweeps = [_sweep(device, table, guide, pot) for pot in range(len(POTS)) if pot % JOINTS in options.joints]
+    guide.tell(f"All {_COUNTS[len(sweeps)]} potentiometers turn with their joints.")
+    told = _told(options.first, options.joints)
+    first = _pose(device, table, guide, options.first, f"Hold both arms in this pose: {told}.")
     if options.second is not None:
-        second = _pose(device, table, guide, options.second, f"Now in this pose: {_told(options.second)}.")
+        what = f"Now in this pose: {_told(options.second, options.joints)}."
+        second = _pose(device, table, guide, options.second, what)
         found = solve(sweeps, first, second, None)
     else:
         found = solve(sweeps, first, None, options.track_rad)
         what = "Now hold both arms in one and the same other pose, every joint at least 20 degrees away."
         second = _pose(device, table, guide, np.zeros(JOINTS), what)
         found = match(found, sweeps, first, second)
-    again = _pose(device, table, guide, options.first, f"Once more the first pose: {_told(options.first)}.")
+    again = _pose(device, table, guide, options.first, f"Once more the first pose: {told}.")
     moved = slipped(first, again)
     if moved:
         raise UserError(" ".join(moved))
     apart = _compare(device, table, found, guide)
-    return Result(found, table, apart, _motors(device, table, found, guide) if options.motors else ())
+    return Result(found, before, apart, _motors(device, table, found, guide) if options.motors else ())
 
 
 def _compare(device: Device, table: ParameterTable, found: Calibration, guide: Guide) -> Floats:
@@ -146,13 +173,17 @@ def _motors(device: Device, table: ParameterTable, found: Calibration, guide: Gu
         "or lie so that every joint can move by 20 degrees to both sides, switch the motors' supply on, and keep a "
         "hand on its switch."
     )
-    _watch(device, table, guide, 0)
+    _watch(device, table, guide, found.joints[0])
     calibrated = table.with_raw(found.changes())
     try:
-        return tuple(examine_motor(device, calibrated, joint) for joint in range(JOINTS))
+        return tuple(examine_motor(device, calibrated, joint) for joint in found.joints)
     finally:
-        with hold_ctrl_c(), suppress(RestartedError):  # it runs its stored set again by itself
-            run_set(device, table)
+        _run_again(device, table)
+
+
+def _run_again(device: Device, table: ParameterTable) -> None:
+    with hold_ctrl_c(), suppress(RestartedError):  # it runs its stored set again by itself
+        run_set(device, table)
 
 
 def _sweep(device: Device, table: ParameterTable, guide: Guide, pot: int) -> Sweep:
@@ -201,7 +232,7 @@ def _pose(device: Device, table: ParameterTable, guide: Guide, angles: Floats, w
     raise UserError(f"{device.port}: the arms were not held still; lay them on a support, and begin anew.")
 
 
-def _told(angles: Floats) -> str:
-    if not angles.any():
+def _told(angles: Floats, joints: Joints) -> str:
+    if not angles[list(joints)].any():
         return "every joint at 0"
-    return ", ".join(f"joint {joint} at {np.degrees(angle):.0f} degrees" for joint, angle in enumerate(angles))
+    return ", ".join(f"joint {joint} at {np.degrees(angles[joint]):.0f} degrees" for joint in joints)

@@ -6,17 +6,23 @@ from typing import Any
 
 from greywhale.arm import ArmParameters
 from greywhale.board.pots import COUNT14, FULL_SCALE
+from greywhale.joints import require_same
 from greywhale.table import ParameterTable
 
 WHOLE = COUNT14 * FULL_SCALE
 
 
 def with_board_pots(arm: ArmParameters, table: ParameterTable) -> ArmParameters:
-    """The same arm with the tracks, middles and directions by which the board's table reads angles."""
+    """The same arm with the tracks, middles and directions by which the board's table reads angles.
+
+    Raises UserError where arm and board do not use the same joints.
+    """
+    require_same("the arm file", arm.joints_in_use, "the board", table.joints_in_use)
     data = arm.model_dump()
     for side in ("leader", "follower"):
         for joint, pot in enumerate(data[f"{side}_pots"]["joint"]):
-            pot.update(_pot(table, f"{side}{joint}"))
+            if table[f"{side}{joint}.scale"] != 0:
+                pot.update(_pot(table, f"{side}{joint}"))
     return ArmParameters.model_validate(data, strict=False)
 
 

@@ -8,7 +8,7 @@ Two arms held in the same pose must agree: what counts is that the follower does
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -18,6 +18,7 @@ from greywhale.board.refusal import pot_name, upper_first
 from greywhale.calibrate.sweep import Sweep
 from greywhale.errors import UserError
 from greywhale.firmware import JOINTS
+from greywhale.joints import ALL, Joints
 from greywhale.protocol import schema
 
 Floats = npt.NDArray[np.float64]
@@ -38,11 +39,20 @@ class Pose:
 
 @dataclass(frozen=True)
 class Calibration:
-    """`zero` (8,) counts, `scale` (8,) rad a count, `limits` (4, 2) rad; columns leader 0..3, follower 0..3."""
+    """`zero` (8,) counts, `scale` (8,) rad a count, `limits` (4, 2) rad; columns leader 0..3, follower 0..3.
+
+    What it says of joints that are not in use means nothing.
+    """
 
     zero: Floats
     scale: Floats
     limits: Floats
+    joints: Joints = ALL
+
+    @property
+    def pots(self) -> tuple[int, ...]:
+        """The potentiometers that there are."""
+        return tuple(pot for pot in range(len(POTS)) if pot % JOINTS in self.joints)
 
     def angles(self, counts: Floats) -> Floats:
         """(..., 8) rad of counts (..., 8)."""
@@ -50,31 +60,36 @@ class Calibration:
         return angles
 
     def changes(self) -> dict[str, int]:
-        """Raw values by parameter name. Raises UserError where a value does not fit."""
+        """Raw values by parameter name; a joint that is not in use gets a scale of 0 at both arms. Raises UserError
+        where a value does not fit.
+        """
         values: dict[str, float] = {}
         for pot, name in enumerate(POTS):
-            values[f"{name}.zero"] = COUNT14 * self.zero[pot]
-            values[f"{name}.scale"] = self.scale[pot] / COUNT14
-        for joint in range(JOINTS):
+            if pot in self.pots:
+                values[f"{name}.zero"] = COUNT14 * self.zero[pot]
+            values[f"{name}.scale"] = self.scale[pot] / COUNT14 if pot in self.pots else 0.0
+        for joint in self.joints:
             values[f"joint{joint}.limit_min"], values[f"joint{joint}.limit_max"] = self.limits[joint]
         return {name: _raw(name, value) for name, value in values.items()}
 
 
 def solve(sweeps: Sequence[Sweep], first: Pose, second: Pose | None, track_rad: float | None) -> Calibration:
-    """The calibration from eight sweeps, a known pose, and a second known pose or the tracks' length.
+    """The calibration from a sweep of every potentiometer, a known pose, and a second known pose or the tracks' length.
 
-    Raises UserError where they contradict each other.
+    The joints that were swept are those in use. Raises UserError where sweeps and poses contradict each other.
     """
-    signs = np.array([one.direction for one in sorted(sweeps, key=lambda one: one.pot)], dtype=float)
+    signs = np.ones(len(POTS))
+    for sweep in sweeps:
+        signs[sweep.pot] = sweep.direction
     if second is not None:
-        scale = _between(first, second, signs)
+        scale = _between(first, second, signs, sorted(sweep.pot for sweep in sweeps))
     elif track_rad is not None:
         scale = signs * track_rad / FULL_SCALE
     else:
         raise UserError("neither a second pose nor the tracks' length is known; give one of them.")
     zero: Floats = first.counts - np.tile(first.angles, 2) / scale
-    found = Calibration(zero, scale, np.zeros((JOINTS, 2)))
-    return Calibration(zero, scale, _limits(found, sweeps))
+    found = Calibration(zero, scale, np.zeros((JOINTS, 2)), tuple(sorted({sweep.pot % JOINTS for sweep in sweeps})))
+    return replace(found, limits=_limits(found, sweeps))
 
 
 def match(calibration: Calibration, sweeps: Sequence[Sweep], first: Pose, same: Pose) -> Calibration:
@@ -83,13 +98,13 @@ def match(calibration: Calibration, sweeps: Sequence[Sweep], first: Pose, same: 
     turned = leader - first.angles
     moved = same.counts[JOINTS:] - first.counts[JOINTS:]
     scale = calibration.scale.copy()
-    for joint in range(JOINTS):
+    for joint in calibration.joints:
         if abs(turned[joint]) >= LEAST_TURN:
             scale[JOINTS + joint] = turned[joint] / moved[joint]
     zero = calibration.zero.copy()
     zero[JOINTS:] = first.counts[JOINTS:] - first.angles / scale[JOINTS:]
-    found = Calibration(zero, scale, calibration.limits)
-    return Calibration(zero, scale, _limits(found, sweeps))
+    found = replace(calibration, zero=zero, scale=scale)
+    return replace(found, limits=_limits(found, sweeps))
 
 
 def slipped(before: Pose, after: Pose) -> list[str]:
@@ -103,12 +118,13 @@ def slipped(before: Pose, after: Pose) -> list[str]:
     ]
 
 
-def _between(first: Pose, second: Pose, signs: Floats) -> Floats:
-    """Scales from two poses; they must agree with the directions of the sweeps."""
+def _between(first: Pose, second: Pose, signs: Floats, pots: Sequence[int]) -> Floats:
+    """Scales of these potentiometers from two poses; they must agree with the directions of the sweeps."""
     turned = np.tile(second.angles - first.angles, 2)
     moved = second.counts - first.counts
-    scale = np.empty(len(POTS))
-    for pot, name in enumerate(map(pot_name, range(len(POTS)))):
+    scale = np.ones(len(POTS))
+    for pot in pots:
+        name = pot_name(pot)
         if abs(turned[pot]) < LEAST_TURN:
             raise UserError(
                 f"the two poses differ by {turned[pot]:.2g} rad at joint {pot % JOINTS}; choose a second pose that "
@@ -137,7 +153,7 @@ def _limits(found: Calibration, sweeps: Sequence[Sweep]) -> Floats:
         ends[sweep.pot] = np.sort(pair)
     low = np.maximum(ends[:JOINTS, 0], ends[JOINTS:, 0]) + MARGIN_RAD
     high = np.minimum(ends[:JOINTS, 1], ends[JOINTS:, 1]) - MARGIN_RAD
-    for joint in range(JOINTS):
+    for joint in found.joints:
         if low[joint] >= high[joint]:
             raise UserError(
                 f"joint {joint} has no range that both arms can reach: the leader goes from {ends[joint, 0]:.2f} to "

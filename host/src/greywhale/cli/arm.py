@@ -11,16 +11,17 @@ from greywhale.arm.from_urdf import Imported, import_urdf
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.cli.arm_match import match
 from greywhale.cli.arm_new import new
-from greywhale.cli.output import json_option, show
-from greywhale.cli.record import require_folders
+from greywhale.cli.group import Group
+from greywhale.cli.output import json_option, overwrite_option, show
 from greywhale.errors import BAD_USAGE, UserError
 from greywhale.files.model import arm_toml
-from greywhale.formats.whole import refuse_existing, refuse_inputs, write_text
+from greywhale.files.outputs import require_new
+from greywhale.formats.whole import refuse_inputs, write_text
 
 SUPPLY_V = (1.0, 60.0)
 
 
-@click.group("arm")
+@click.group("arm", cls=Group)
 def command() -> None:
     """Make an arm.toml, which describes geometry, masses, motors and stops of an arm."""
 
@@ -33,9 +34,10 @@ command.add_command(match)
 @click.argument("urdf", type=click.Path(path_type=Path))
 @click.option("--out", "-o", type=click.Path(path_type=Path), default=Path("arm.toml"), show_default=True)
 @click.option("--supply", default=15.0, show_default=True, help="The motors' supply, V.")
+@overwrite_option
 @json_option
-def import_(urdf: Path, out: Path, supply: float, as_json: bool) -> None:
-    """Read a URDF: a yaw, two parallel pitches and a roll along the last link.
+def import_(urdf: Path, out: Path, supply: float, overwrite: bool, as_json: bool) -> None:
+    """Read a URDF: a yaw, two parallel pitches and a roll along the last link; a chain may end earlier.
 
     Frames and zero pose may be any; fixed joints are welded. What this arm cannot have is refused by its name. A URDF
     says nothing about gears, and its motors only by their effort and velocity limits: `greywhale identify` finds what
@@ -43,9 +45,8 @@ def import_(urdf: Path, out: Path, supply: float, as_json: bool) -> None:
     """
     if not SUPPLY_V[0] <= supply <= SUPPLY_V[1]:
         raise UserError(f"--supply is {supply:g} V; it must be {SUPPLY_V[0]:g} to {SUPPLY_V[1]:g}.", BAD_USAGE)
-    require_folders(out)
     refuse_inputs(out, urdf)
-    refuse_existing(out, "--out")
+    require_new(overwrite, out)
     found = import_urdf(urdf, supply)
     write_text(out, arm_toml(found.arm, f"Made by greywhale arm import from {urdf.name}."))
     show(as_json, _facts(out, found), _text(out, found))
@@ -62,6 +63,11 @@ def _facts(out: Path, found: Imported) -> dict[str, object]:
 
 def _text(out: Path, found: Imported) -> str:
     lines = [f"{out}: {found.arm.name}.", "greywhale's angles, from those of the URDF (degrees):"]
-    for name, sign, offset in zip(JOINT_NAMES, found.signs, np.degrees(found.offsets), strict=True):
+    offsets = np.degrees(found.offsets)
+    for joint, name in enumerate(JOINT_NAMES):
+        if joint not in found.arm.joints_in_use:
+            lines.append(f"  {name:16} not in use")
+            continue
+        sign, offset = found.signs[joint], offsets[joint]
         lines.append(f"  {name:16}{'-' if sign < 0 else ' '}q {offset:+.1f}")
     return "\n".join([*lines, *(f"Note: {remark}." for remark in found.remarks)])

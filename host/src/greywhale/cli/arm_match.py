@@ -11,11 +11,11 @@ from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.board.device import Device
 from greywhale.board.upload import read_parameters
 from greywhale.calibrate.match import with_board_pots
-from greywhale.cli.output import json_option, port_option, show
-from greywhale.cli.record import require_folders
+from greywhale.cli.output import json_option, overwrite_option, port_option, show
 from greywhale.files.arm import load_arm
 from greywhale.files.model import arm_toml
-from greywhale.formats.whole import refuse_existing, refuse_inputs, write_text
+from greywhale.files.outputs import require_new
+from greywhale.formats.whole import refuse_inputs, write_text
 from greywhale.protocol.ports import choose_port
 
 
@@ -23,15 +23,15 @@ from greywhale.protocol.ports import choose_port
 @click.argument("arm")
 @port_option
 @click.option("--out", "-o", type=click.Path(path_type=Path), default=Path("matched.toml"), show_default=True)
+@overwrite_option
 @json_option
-def match(arm: str, port: str | None, out: Path, as_json: bool) -> None:
+def match(arm: str, port: str | None, out: Path, overwrite: bool, as_json: bool) -> None:
     """Write an arm file, or one that comes with greywhale, with the potentiometers as the board is calibrated.
 
     After `greywhale calibrate`, commission and tune refuse an arm file that says other tracks or zeros than the board.
     """
-    require_folders(out)
     refuse_inputs(out, arm)
-    refuse_existing(out, "--out")
+    require_new(overwrite, out)
     before = load_arm(arm)
     with Device(choose_port(port)) as device:
         table = read_parameters(device)

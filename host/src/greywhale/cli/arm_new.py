@@ -12,11 +12,11 @@ from greywhale.arm.make import Summary, assemble, summarise
 from greywhale.arm.make.answers import read_answers
 from greywhale.arm.make.questions import Question, collect
 from greywhale.arm.parameters import JOINT_NAMES, ArmParameters
-from greywhale.cli.output import json_option, show
-from greywhale.cli.record import require_folders
+from greywhale.cli.output import json_option, overwrite_option, show
 from greywhale.errors import UserError
 from greywhale.files.model import arm_toml
-from greywhale.formats.whole import refuse_existing, refuse_inputs, write_text
+from greywhale.files.outputs import require_new
+from greywhale.formats.whole import refuse_inputs, write_text
 from greywhale.table import ParameterTable
 
 MUCH_TO_HOLD = 0.6  # of stall_volts: the rest is for starting
@@ -25,16 +25,16 @@ MUCH_TO_HOLD = 0.6  # of stall_volts: the rest is for starting
 @click.command("new")
 @click.option("--answers", type=click.Path(path_type=Path), metavar="FILE", help="TOML with the answers, for scripts.")
 @click.option("--out", "-o", type=click.Path(path_type=Path), default=Path("arm.toml"), show_default=True)
+@overwrite_option
 @json_option
-def new(answers: Path | None, out: Path, as_json: bool) -> None:
+def new(answers: Path | None, out: Path, overwrite: bool, as_json: bool) -> None:
     """Ask for lengths, masses or materials, motors' data sheets and ranges; write an arm.toml.
 
     Enter takes what stands in brackets. A number may have another unit: 14 cm, 5 kg cm. Before it writes, it shows
     what the arm can lift and how fast it is.
     """
-    require_folders(out)
     refuse_inputs(out, answers)
-    refuse_existing(out, "--out")
+    require_new(overwrite, out)
     person = Person()
     given, left_out = read_answers(answers) if answers is not None else (collect(person), ())
     arm = assemble(given)
@@ -82,9 +82,9 @@ def _asked(question: Question) -> str:
 def _table(arm: ArmParameters, found: Summary) -> list[str]:
     lines = [f"{arm.name}: {found.mass:.3g} kg, motors at {arm.drive.supply:g} V.", ""]
     lines.append(f"{'':16}{'gravity, at most':>18}{'motor at standstill':>21}{'share':>8}{'fastest':>14}")
-    for name, one in zip(JOINT_NAMES, found.joints, strict=True):
+    for one in found.joints:
         lines.append(
-            f"{name:16}{one.gravity:>14.3g} N m{one.stall:>17.3g} N m{100 * one.share:>6.0f} %"
+            f"{JOINT_NAMES[one.joint]:16}{one.gravity:>14.3g} N m{one.stall:>17.3g} N m{100 * one.share:>6.0f} %"
             f"{np.degrees(one.no_load_speed):>8.0f} deg/s"
         )
     return lines
@@ -114,6 +114,7 @@ def _advice(found: Summary) -> str:
 def _facts(out: Path, found: Summary, left_out: tuple[str, ...]) -> dict[str, object]:
     joints = [
         {
+            "joint": one.joint,
             "gravity_nm": round(one.gravity, 6),
             "stall_nm": round(one.stall, 6),
             "no_load_speed_rad_s": round(one.no_load_speed, 6),

@@ -17,12 +17,13 @@ from greywhale.board.device import Device
 from greywhale.board.pots import FULL_SCALE, POTS
 from greywhale.board.upload import upload_set
 from greywhale.calibrate import Options, Result, calibrate
-from greywhale.cli.output import json_option, port_option, show
-from greywhale.cli.record import require_folders
+from greywhale.calibrate.solve import Calibration
+from greywhale.cli.output import json_option, overwrite_option, port_option, show
 from greywhale.errors import BAD_USAGE, UserError, cut
 from greywhale.files import parameter_file
+from greywhale.files.outputs import require_new
 from greywhale.firmware import JOINTS
-from greywhale.formats.whole import refuse_existing
+from greywhale.joints import parse, unused
 from greywhale.protocol.ports import choose_port
 
 TRACK_DEG = (180.0, 450.0)
@@ -31,6 +32,7 @@ FARTHEST_DEG = 359.0
 
 @click.command("calibrate")
 @port_option
+@click.option("--joints", "in_use", metavar="LIST", default="0,1,2,3", show_default=True, help="The joints in use.")
 @click.option("--first", metavar="A0,A1,A2,A3", default="0,0,0,0", show_default=True, help="The first pose, degrees.")
 @click.option("--second", metavar="A0,A1,A2,A3", help="A second known pose, degrees; then the tracks' length is found.")
 @click.option("--track", default=300.0, show_default=True, help="The tracks' length, degrees, without a second pose.")
@@ -43,33 +45,40 @@ FARTHEST_DEG = 359.0
 )
 @click.option("--no-motors", is_flag=True, help="Leave the motors alone; motor_sign stays as it is.")
 @click.option("--yes", "-y", is_flag=True, help="Store the result without asking.")
+@overwrite_option
 @json_option
 def command(
     port: str | None,
+    in_use: str,
     first: str,
     second: str | None,
     track: float,
     backup: Path,
     no_motors: bool,
     yes: bool,
+    overwrite: bool,
     as_json: bool,
 ) -> None:
-    """Find zero, scale and direction of all eight potentiometers, the joints' limits, and each motor's direction.
+    """Find zero, scale and direction of every potentiometer, the joints' limits, and each motor's direction.
 
     You turn every joint to both ends, then hold both arms in a pose, motors off. Then each motor gets short weak
     pulses. Enter confirms each step; a script may write the lines. What is wired or mounted wrongly is named. The end
     shows the result, stores it, and says how to undo it.
+
+    An arm with fewer joints needs neither potentiometers nor motors for the others: --joints 0,1 asks for those two
+    alone, and tells the board that the others are not in use.
     """
     if not TRACK_DEG[0] <= track <= TRACK_DEG[1]:
         raise UserError(f"--track is {track:g} degrees; it must be {TRACK_DEG[0]:g} to {TRACK_DEG[1]:g}.", BAD_USAGE)
+    joints = parse(in_use)
     poses = Options(
         _angles("--first", first),
         None if second is None else _angles("--second", second),
         float(np.radians(track)),
         motors=not no_motors,
+        joints=joints,
     )
-    require_folders(backup)
-    refuse_existing(backup, "--backup")
+    require_new(overwrite, backup)
     with Device(choose_port(port)) as device:
         person = Terminal()
         result = calibrate(device, person, poses)
@@ -152,9 +161,13 @@ def _facts(port: str, result: Result, backup: Path) -> dict[str, object]:
         "port": port,
         "backup": str(backup),
         "parameter_crc": f"0x{result.after.crc:04x}",
+        "joints": list(found.joints),
         "changed": result.changes,
-        "track_deg": [round(float(np.degrees(abs(scale) * FULL_SCALE)), 2) for scale in found.scale],
-        "limits_rad": [[round(float(end), 4) for end in pair] for pair in found.limits],
+        "track_deg": [_track_deg(found, pot) if pot in found.pots else 0.0 for pot in range(len(POTS))],
+        "limits_rad": [
+            [round(float(end), 4) for end in found.limits[joint]] if joint in found.joints else [0.0, 0.0]
+            for joint in range(JOINTS)
+        ],
         "motors": [
             {"joint": one.joint, "sign": one.sign, "volts": round(one.volts, 3), "way_rad": round(one.way, 4)}
             for one in result.motors
@@ -165,17 +178,22 @@ def _facts(port: str, result: Result, backup: Path) -> dict[str, object]:
     }
 
 
+def _track_deg(found: Calibration, pot: int) -> float:
+    return round(float(np.degrees(abs(found.scale[pot]) * FULL_SCALE)), 2)
+
+
 def _text(result: Result) -> str:
     found = result.calibration
     lines = [f"{'':12}{'zero, counts':>14}{'track, degrees':>16}  direction"]
-    for pot, name in enumerate(POTS):
-        track = np.degrees(abs(found.scale[pot]) * FULL_SCALE)
+    for pot in found.pots:
+        track, name = _track_deg(found, pot), POTS[pot]
         way = "as the joint" if found.scale[pot] > 0 else "reversed"
         lines.append(f"{name:12}{found.zero[pot]:>14.1f}{track:>16.1f}  {way}")
     lines += ["", f"{'':12}{'limits, degrees':>18}{'the arms differ by':>22}"]
-    for joint in range(JOINTS):
+    for joint in found.joints:
         low, high = np.degrees(found.limits[joint])
         lines.append(f"{f'joint {joint}':12}{f'{low:.0f} to {high:.0f}':>18}{1e3 * result.apart[joint]:>17.1f} mrad")
+    lines += [f"{f'joint {joint}':12}{'not in use':>18}" for joint in unused(found.joints)]
     if result.motors:
         lines += ["", *(f"motor {one.joint}     {_way(one.sign)} ({one.volts:.1f} V)" for one in result.motors)]
     return "\n".join([*lines, *([""] if result.remarks else []), *result.remarks])

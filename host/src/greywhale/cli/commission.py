@@ -10,7 +10,8 @@ from greywhale.board.session import Session
 from greywhale.cli import completion
 from greywhale.cli.countdown import prepare_motion, yes_option
 from greywhale.cli.output import json_option, port_option, progress, show
-from greywhale.errors import BAD_USAGE, UserError
+from greywhale.errors import BAD_USAGE, MOST_SEED, MOST_WORKERS, UserError
+from greywhale.files.outputs import require_folder
 from greywhale.protocol.ports import choose_port
 
 EXISTING = click.Path(path_type=Path)
@@ -32,15 +33,17 @@ EXISTING = click.Path(path_type=Path)
     metavar="J:MIN:MAX",
     help="Range of a joint in rad, instead of 1 rad to either side of where it is.",
 )
-@click.option("--rounds", type=click.IntRange(min=1), default=2, show_default=True, help="Models to make at most.")
+@click.option("--rounds", type=click.IntRange(1, 20), default=2, show_default=True, help="Models to make at most.")
 @click.option(
-    "--trials", type=click.IntRange(min=1), default=6, show_default=True, help="Sets to try on the arm in each round."
+    "--trials", type=click.IntRange(1, 100), default=6, show_default=True, help="Sets to try on the arm in each round."
 )
-@click.option("--budget", type=click.IntRange(min=1), help="Evaluations of `tune`; without it, as many as it tries.")
 @click.option(
-    "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Where all random numbers start."
+    "--budget", type=click.IntRange(1, 1_000_000), help="Evaluations of `tune`; without it, as many as it tries."
 )
-@click.option("--workers", type=click.IntRange(min=1), help="Threads; without it, one for every processor.")
+@click.option(
+    "--seed", type=click.IntRange(0, MOST_SEED), default=0, show_default=True, help="Where all random numbers start."
+)
+@click.option("--workers", type=click.IntRange(1, MOST_WORKERS), help="Threads; without it, one for every processor.")
 @click.option("--resume", is_flag=True, help="Go on where an interrupted commissioning in this folder ended.")
 @yes_option
 @port_option
@@ -79,6 +82,7 @@ def command(
     chosen = dict(parse_range(text) for text in ranges)
     if len(chosen) < len(ranges):
         raise UserError("--range names a joint twice; give each joint once.", BAD_USAGE)
+    require_folder(out, "logs, models and controllers", "report.html")
     options = Options(
         port=choose_port(port),
         out=out,

@@ -7,9 +7,10 @@ from typing import cast
 
 import click
 
-from greywhale.cli.output import json_option, progress, show
+from greywhale.cli.output import json_option, overwrite_option, progress, show
 from greywhale.cli.workers import executor_options, results_option
 from greywhale.errors import BAD_USAGE, UserError
+from greywhale.files.outputs import require_new
 from greywhale.optimise.comparison import Plan, compare
 from greywhale.optimise.comparison_report import as_dict, check_format, text, write_report
 from greywhale.optimise.functions import FUNCTIONS, Setting
@@ -44,6 +45,7 @@ SMALL = 300_000
     multiple=True,
     help="Write all runs (.csv) or a picture of the ranks (.png, .svg, .pdf); may be given more than once.",
 )
+@overwrite_option
 @json_option
 def command(
     functions: str | None,
@@ -58,6 +60,7 @@ def command(
     workers: int | None,
     results: Path | None,
     out: tuple[Path, ...],
+    overwrite: bool,
     as_json: bool,
 ) -> None:
     """Compare optimisers on standard functions, plain and shifted, at equal budgets.
@@ -79,6 +82,7 @@ def command(
     plan.check()
     for path in out:
         check_format(path)
+        require_new(overwrite, path)
         if results is not None and path.absolute() == results.absolute():
             raise UserError(f"{path}: this is the results file; write the report elsewhere.", BAD_USAGE)
     if executor == "local" and workers is None and plan.evaluations < SMALL:

@@ -1,4 +1,4 @@
-"""What Tab offers where no file is meant: parameters, ports, and the arms that come with greywhale."""
+"""What Tab offers where no file is meant: parameters, ports, arms and controllers that come with greywhale."""
 
 from __future__ import annotations
 
@@ -33,4 +33,12 @@ def arms(context: Context, parameter: Parameter, incomplete: str) -> Items:
     from greywhale.files.arm import arm_names
 
     named = [CompletionItem(name) for name in arm_names() if name.startswith(incomplete)]
+    return [*named, CompletionItem(incomplete, type="file")]
+
+
+def controllers(context: Context, parameter: Parameter, incomplete: str) -> Items:
+    """Controllers by their names, and files."""
+    from greywhale.files.paper_tables import controller_names
+
+    named = [CompletionItem(name) for name in controller_names() if name.startswith(incomplete)]
     return [*named, CompletionItem(incomplete, type="file")]

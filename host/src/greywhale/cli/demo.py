@@ -6,8 +6,11 @@ from pathlib import Path
 
 import click
 
+from greywhale.cli import completion
 from greywhale.cli.bench import need_bench
 from greywhale.cli.output import json_option, progress, show
+from greywhale.errors import MOST_SEED
+from greywhale.files.outputs import require_folder
 
 
 @click.command("demo")
@@ -28,10 +31,13 @@ from greywhale.cli.output import json_option, progress, show
 @click.option("--arm", type=click.Path(path_type=Path), help="TOML with the arm; without it, the built-in one.")
 @click.option("--speed", type=click.Choice(["1", "max"]), default="max", show_default=True, help="Real time or faster.")
 @click.option("--duration", type=float, default=20.0, show_default=True, help="Seconds of generated motion.")
-@click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of the generated motion.")
+@click.option(
+    "--seed", type=click.IntRange(0, MOST_SEED), default=1, show_default=True, help="Seed of the generated motion."
+)
 @click.option(
     "--controller",
     type=click.Path(path_type=Path),
+    shell_complete=completion.controllers,
     help="Show this controller.toml instead of identifying and tuning.",
 )
 @click.option(
@@ -39,7 +45,7 @@ from greywhale.cli.output import json_option, progress, show
 )
 @click.option(
     "--budget",
-    type=click.IntRange(min=1),
+    type=click.IntRange(1, 1_000_000),
     help="Controllers tried for each joint; without it, as many as `tune` tries.",
 )
 @click.option("--prove", is_flag=True, help="Also prove the tuned controllers on the arm, as `commission` does.")
@@ -65,6 +71,7 @@ def command(
     tunes on the identified model, uploads the result, and lets the arm follow the same leader again. Neither
     identification nor tuning sees that motion or the arm's data.
     """
+    require_folder(out, "logs and pictures")
     need_bench("greywhale_sim")
     from greywhale import demo
 

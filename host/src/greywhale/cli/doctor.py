@@ -27,10 +27,23 @@ INDENT = 21  # of what is said, behind verdict and check
 )
 @click.option("--seconds", default=LINK_S, show_default=True, help="How long the link is loaded.")
 @click.option("--supply", type=float, metavar="VOLTS", help="What you measured at the motors' supply.")
+@click.option(
+    "--image", is_flag=True, help="Also read the firmware back and compare it with the shipped one; the board restarts."
+)
+@click.option(
+    "--hex", "hex_file", type=click.Path(path_type=Path), metavar="FILE", help="With --image: compare with this file."
+)
 @json_option
 @click.pass_context
 def command(
-    context: click.Context, port: str | None, params: Path | None, seconds: float, supply: float | None, as_json: bool
+    context: click.Context,
+    port: str | None,
+    params: Path | None,
+    seconds: float,
+    supply: float | None,
+    image: bool,
+    hex_file: Path | None,
+    as_json: bool,
 ) -> None:
     """Look at port, firmware, parameters, potentiometers and link: what is wrong, and how to mend it.
 
@@ -40,9 +53,11 @@ def command(
         raise UserError(f"--seconds is {seconds:g}; it must be 0.5 to {LONGEST_S:g}.", BAD_USAGE)
     if supply is not None and not SUPPLY_V[0] <= supply <= SUPPLY_V[1]:
         raise UserError(f"--supply is {supply:g} V; it must be {SUPPLY_V[0]:g} to {SUPPLY_V[1]:g}.", BAD_USAGE)
+    if hex_file is not None and not image:
+        raise UserError("--hex belongs to --image; add that, or leave it out.", BAD_USAGE)
     chosen = choose_port(port)
     with progress(as_json) as report:
-        findings = examine(Options(chosen, params, seconds, supply), report or report_nothing)
+        findings = examine(Options(chosen, params, seconds, supply, image, hex_file), report or report_nothing)
     verdict = worst(findings)
     facts = {"port": chosen, "verdict": verdict.value, "findings": [one.as_dict() for one in findings]}
     show(as_json, facts, "\n".join([*map(_line, findings), "", _summary(findings)]))

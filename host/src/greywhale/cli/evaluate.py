@@ -6,17 +6,23 @@ from pathlib import Path
 
 import click
 
-from greywhale.cli.output import json_option, show
+from greywhale.cli.output import json_option, overwrite_option, show
+from greywhale.errors import counted
 from greywhale.files.log import Log, read_log
+from greywhale.files.outputs import require_new
 from greywhale.formats.whole import refuse_inputs
+from greywhale.joints import named, unused
 from greywhale.measure import Evaluation, evaluate
 
 
 @click.command("evaluate")
 @click.argument("logs", metavar="LOG...", nargs=-1, required=True, type=click.Path(path_type=Path))
-@click.option("--picture", type=click.Path(path_type=Path), help="Draw leader against follower (.png, .svg or .pdf).")
+@click.option(
+    "--picture", type=click.Path(path_type=Path), help="Draw angles, errors and voltages (.png, .svg or .pdf)."
+)
+@overwrite_option
 @json_option
-def command(logs: tuple[Path, ...], picture: Path | None, as_json: bool) -> None:
+def command(logs: tuple[Path, ...], picture: Path | None, overwrite: bool, as_json: bool) -> None:
     """Measure how well the follower followed in a log.
 
     Per joint: the mean squared error (the total is the sum over the joints), the steady-state error (mean of the
@@ -25,9 +31,10 @@ def command(logs: tuple[Path, ...], picture: Path | None, as_json: bool) -> None
     Several logs are measured one by one and drawn into one picture.
     """
     refuse_inputs(picture, *logs)
+    require_new(overwrite, picture)
     read, evaluations = [], []
     for path in logs:
-        log = read_log(path, voltages=False)
+        log = read_log(path, voltages=picture is not None)
         evaluations.append(evaluate(log))
         read.append(log if picture is not None else log.without_samples())
     results = [
@@ -51,13 +58,14 @@ def command(logs: tuple[Path, ...], picture: Path | None, as_json: bool) -> None
 
 def _draw(picture: Path, logs: list[Log]) -> None:
     # Matplotlib takes a second to import, and most evaluations draw nothing.
-    from greywhale.report import draw_following, trace
+    from greywhale.report import distinct_names, draw_following, trace
 
-    draw_following(picture, [trace(log, Path(log.name).stem) for log in logs], "Leader and follower")
+    names = distinct_names([log.name for log in logs])
+    draw_following(picture, [trace(*one) for one in zip(logs, names, strict=True)], "Leader and follower")
 
 
 def _text(log: Log, evaluation: Evaluation) -> str:
-    notes = [f"{evaluation.samples} samples, {evaluation.duration_s:.2f} s"]
+    notes = [f"{counted(evaluation.samples, 'sample')}, {evaluation.duration_s:.2f} s"]
     if log.dropped:
         notes.append(f"{log.dropped} dropped")
     if not log.complete:
@@ -68,10 +76,14 @@ def _text(log: Log, evaluation: Evaluation) -> str:
         f"{log.name}: {', '.join(notes)}",
         "          MSE [rad²]   steady-state error [rad]   delay [s]   onset delay [s]",
     ]
-    for number, joint in enumerate(evaluation.joints):
+    for number in evaluation.joints_in_use:
+        joint = evaluation.joints[number]
         steady, delay, onset = map(_number, (joint.steady_state_error, joint.delay_s, joint.onset_delay_s))
         lines.append(f"joint {number}   {joint.mse:10.6f}   {steady:>24}   {delay:>9}   {onset:>15}")
     lines.append(f"total     {evaluation.total_mse:10.6f}")
+    idle = unused(evaluation.joints_in_use)
+    if idle:
+        lines.append(f"{named(idle).capitalize()} {'is' if len(idle) == 1 else 'are'} not in use.")
     lines += [
         f"Joint {number} does not follow its leader at all: check its potentiometers, its motor and their signs."
         for number, joint in enumerate(evaluation.joints)

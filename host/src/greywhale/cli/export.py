@@ -6,56 +6,75 @@ from pathlib import Path
 
 import click
 
-from greywhale.cli.output import json_option, show
-from greywhale.cli.record import require_folders
+from greywhale.cli import completion
+from greywhale.cli.output import json_option, overwrite_option, show
+from greywhale.files.outputs import require_new
 from greywhale.formats.whole import refuse_inputs, write_text
 
 
 @click.command("export")
-@click.option("--fis", metavar="CONTROLLER.toml", type=click.Path(path_type=Path), help="A controller for MATLAB.")
+@click.option(
+    "--fis",
+    metavar="CONTROLLER.toml",
+    type=click.Path(path_type=Path),
+    shell_complete=completion.controllers,
+    help="A controller for MATLAB.",
+)
 @click.option("--urdf", metavar="ARM.toml", help="An arm for ROS, Pinocchio and others.")
 @click.option("--mjcf", metavar="ARM.toml", help="An arm for MuJoCo.")
 @click.option("--out", required=True, type=click.Path(path_type=Path), help="The file to write.")
 @click.option("--joint", type=click.IntRange(0, 3), help="With --fis: this joint only, into OUT itself.")
+@overwrite_option
 @json_option
-def command(fis: Path | None, urdf: str | None, mjcf: str | None, out: Path, joint: int | None, as_json: bool) -> None:
+def command(
+    fis: Path | None,
+    urdf: str | None,
+    mjcf: str | None,
+    out: Path,
+    joint: int | None,
+    overwrite: bool,
+    as_json: bool,
+) -> None:
     """Write a controller as MATLAB's .fis, or an arm as URDF or MuJoCo's MJCF.
 
     A .fis holds one fuzzy controller: without --joint there are four, named OUT_joint0.fis to OUT_joint3.fis. Its
-    inputs are Kp e and Kd ce within [-1, 1], its sets those that the firmware stores. An arm is a file or one of the
-    names that come with greywhale: default, white_box, grey_box.
+    inputs are Kp e and Kd ce within [-1, 1], its sets those that the firmware stores. Controllers and arms
+    are files, or names that come with greywhale: before_tuning, table_8, table_9, table_10; default, worn, white_box,
+    grey_box.
     """
     if sum(source is not None for source in (fis, urdf, mjcf)) != 1:
         raise click.UsageError("Give exactly one of --fis, --urdf and --mjcf.")
     if joint is not None and fis is None:
         raise click.UsageError("--joint goes with --fis: an arm is written whole.")
-    require_folders(out)
-    written = _export_fis(fis, out, joint) if fis is not None else [_export_arm(urdf, mjcf, out)]
+    arms = (urdf, mjcf)
+    written = _export_fis(fis, out, joint, overwrite) if fis is not None else [_export_arm(*arms, out, overwrite)]
     names = [str(path) for path in written]
     show(as_json, {"written": names}, "\n".join(names))
 
 
-def _export_fis(source: Path, out: Path, joint: int | None) -> list[Path]:
+def _export_fis(source: Path, out: Path, joint: int | None, overwrite: bool) -> list[Path]:
     from greywhale.fuzzy.export_fis import export_fis
     from greywhale.fuzzy.settings import load_joints
 
     joints = load_joints(source)
     stem = out.with_suffix("") if out.suffix == ".fis" else out
-    written = []
-    for number in range(len(joints)) if joint is None else (joint,):
-        path = out if joint is not None else stem.with_name(f"{stem.name}_joint{number}.fis")
+    names = [stem.with_name(f"{stem.name}_joint{number}.fis") for number in range(len(joints))]
+    files = dict(enumerate(names)) if joint is None else {joint: out}
+    for path in files.values():
         refuse_inputs(path, source)
+        require_new(overwrite, path)
+    for number, path in files.items():
         sets = {key: float(value) for key, value in joints[number].set_values().items()}
         export_fis(path, f"{source.stem}, joint {number}", sets)
-        written.append(path)
-    return written
+    return list(files.values())
 
 
-def _export_arm(urdf: str | None, mjcf: str | None, out: Path) -> Path:
+def _export_arm(urdf: str | None, mjcf: str | None, out: Path, overwrite: bool) -> Path:
     from greywhale.arm import export
     from greywhale.files.arm import load_arm
 
     refuse_inputs(out, urdf, mjcf)
+    require_new(overwrite, out)
     text = export.urdf(load_arm(urdf)) if urdf is not None else export.mjcf(load_arm(str(mjcf)))
     write_text(out, text)
     return out

@@ -7,11 +7,12 @@ from pathlib import Path
 import click
 
 from greywhale.cli import completion
-from greywhale.cli.output import json_option, progress, show
-from greywhale.errors import BAD_USAGE, UserError
+from greywhale.cli.output import json_option, overwrite_option, progress, show
+from greywhale.errors import MOST_SEED
 from greywhale.files.arm import load_arm
 from greywhale.files.log import Log, read_log
 from greywhale.files.log.selection import MOST_S, informative
+from greywhale.files.outputs import require_folder, require_new, require_no_files
 from greywhale.files.parameter_file import load_table
 from greywhale.formats.whole import refuse_inputs
 from greywhale.identify import METHODS, identify
@@ -40,14 +41,16 @@ from greywhale.identify import METHODS, identify
     "-c",
     "controllers",
     type=click.Path(path_type=Path),
+    shell_complete=completion.controllers,
     multiple=True,
     help="A controller.toml or `params backup` file that logs were recorded with; logs find theirs by its CRC.",
 )
 @click.option("--method", type=click.Choice(METHODS), default="default", show_default=True)
 @click.option(
-    "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Where all random numbers start."
+    "--seed", type=click.IntRange(0, MOST_SEED), default=0, show_default=True, help="Where all random numbers start."
 )
 @click.option("--pictures", type=click.Path(path_type=Path), help="Folder for pictures of responses and convergence.")
+@overwrite_option
 @json_option
 def command(
     logs: tuple[Path, ...],
@@ -58,6 +61,7 @@ def command(
     method: str,
     seed: int,
     pictures: Path | None,
+    overwrite: bool,
     as_json: bool,
 ) -> None:
     """Identify the arm that made the logs, starting from your arm file.
@@ -66,9 +70,10 @@ def command(
     sure each value is, what these logs cannot tell and which motion would. Ctrl-C writes the best model so far, marked
     as unfinished.
     """
-    if not out.parent.is_dir():
-        raise UserError(f"{out}: the folder {out.parent} does not exist; create it, or write elsewhere.", BAD_USAGE)
     refuse_inputs(out, *logs, *validate, arm_file, *controllers)
+    require_new(overwrite, out)
+    require_folder(pictures, "pictures")
+    require_no_files(overwrite, pictures, "convergence.png", "responses_*.png")
     arm = load_arm(arm_file)
     tables = [load_table(path) for path in controllers]
     notes: list[str] = []

@@ -2,30 +2,54 @@
 
 from __future__ import annotations
 
+import contextlib
+
 import click
 
 from greywhale.board.device import Device
 from greywhale.board.pots import POTS, PotReadings, read_pots
-from greywhale.board.refusal import fault_text
+from greywhale.board.refusal import fault_text, pot_name
 from greywhale.board.upload import read_parameters
 from greywhale.cli.output import json_option, port_option, show
+from greywhale.doctor.board import EEPROM_WRITES
+from greywhale.errors import BAD_USAGE, UserError, counted
 from greywhale.protocol import schema
 from greywhale.protocol.ports import choose_port
 
 
 @click.command("info")
+@click.option("--watch", is_flag=True, help="Show angles, errors, voltages and faults as they are, until Ctrl-C.")
+@click.option("--seconds", "-s", type=click.FloatRange(min=0.0), help="With --watch: end after so long.")
 @port_option
 @json_option
-def command(port: str | None, as_json: bool) -> None:
+def command(watch: bool, seconds: float | None, port: str | None, as_json: bool) -> None:
     """Tell a board's version, state, faults and counters, and which potentiometers are broken.
 
     The board is not restarted if a greywhale had its port last, so that a fault is still there to be seen. Otherwise
     opening the port restarts an Arduino: motors that were on are off afterwards, and counters start at zero.
+
+    --watch draws a small table again and again; in a pipe it prints a line of CSV each second and at each change of
+    state or fault. The motors are off meanwhile.
     """
+    if watch:
+        if as_json:
+            raise UserError("--watch goes on and on, and --json prints one object; leave one of them out.", BAD_USAGE)
+        _watch(port, seconds)
+        return
+    if seconds is not None:
+        raise UserError("--seconds belongs to --watch; add that, or leave it out.", BAD_USAGE)
     with Device(choose_port(port), restart=False) as device:
         hello, status = device.hello, device.status()
         pots = read_pots(device, read_parameters(device)) if status.state in _MOTORS_OFF else None
     show(as_json, _facts(device, hello, status, pots), _text(device, hello, status, pots))
+
+
+def _watch(port: str | None, seconds: float | None) -> None:
+    # What draws on a terminal takes a moment to import.
+    from greywhale.cli.watch import watch
+
+    with Device(choose_port(port), restart=False) as device, contextlib.suppress(KeyboardInterrupt):
+        watch(device, read_parameters(device), seconds)  # Ctrl-C is how it ends
 
 
 def _facts(
@@ -46,6 +70,7 @@ def _facts(
         "stop_reason": status.stop_reason.key,
         "uptime_s": status.tick / 1000,
         "save_state": status.save_state.key,
+        "saves": status.saves,
         **{name: getattr(status, name) for name in _COUNTERS},
         "pots": None if pots is None else [_pot_facts(pots, number) for number in range(len(POTS))],
     }
@@ -57,6 +82,7 @@ def _pot_facts(pots: PotReadings, number: int) -> dict[str, object]:
         "pot": POTS[number],
         "lowest": int(counts.min()),
         "highest": int(counts.max()),
+        "in_use": number in pots.there,
         "fault": pots.at_rail(number).key,
     }
 
@@ -77,10 +103,11 @@ def _text(device: Device, hello: schema.HelloReply, status: schema.StatusReply, 
         ("longest tick", f"{status.tick_us_max} us of 1000, {status.late_ticks} late"),
         (
             "link",
-            f"{status.frames_bad} bad frames, {status.rx_overruns} bytes lost, "
-            f"{status.telemetry_dropped} samples dropped",
+            f"{counted(status.frames_bad, 'bad frame')}, {counted(status.rx_overruns, 'byte')} lost, "
+            f"{counted(status.telemetry_dropped, 'sample')} dropped",
         ),
-        ("no rule fired", f"{status.no_rule} times"),
+        ("no rule fired", counted(status.no_rule, "time")),
+        ("saves", f"{status.saves:,} of the {EEPROM_WRITES:,} that the EEPROM is made for"),
         *(("pots", told) for told in _tell_pots(pots)),
     ]
     return "\n".join(f"{name:<14} {value}" for name, value in rows)
@@ -89,4 +116,6 @@ def _text(device: Device, hello: schema.HelloReply, status: schema.StatusReply, 
 def _tell_pots(pots: PotReadings | None) -> list[str]:
     if pots is None:
         return ["not looked at: the motors are on"]
-    return pots.complaints() or ["none is at a rail"]
+    absent = [pot_name(number) for number in range(len(POTS)) if number not in pots.there]
+    told = pots.complaints() or ["none is at a rail"]
+    return [*told, f"not in use: {', '.join(absent)}"] if absent else told

@@ -32,6 +32,11 @@ def json_option(command: Command) -> Command:
     return click.option("--json", "as_json", is_flag=True, help="Print exactly one JSON object on stdout.")(command)
 
 
+def overwrite_option(command: Command) -> Command:
+    """For every verb that writes files; `files.outputs.require_new` takes it."""
+    return click.option("--overwrite", is_flag=True, help="Write over files that are there already.")(command)
+
+
 def port_option(command: Command) -> Command:
     return click.option(
         "--port",

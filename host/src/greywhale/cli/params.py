@@ -11,15 +11,19 @@ import click
 from greywhale.board.device import Device
 from greywhale.board.upload import change_parameters, read_parameters
 from greywhale.cli import completion
-from greywhale.cli.output import json_option, port_option, progress, show
+from greywhale.cli.group import Group
+from greywhale.cli.output import json_option, overwrite_option, port_option, progress, show
 from greywhale.errors import BAD_USAGE, UserError, cut
 from greywhale.files import parameter_file
+from greywhale.files.names import did_you_mean
+from greywhale.files.outputs import require_new
 from greywhale.protocol import schema
 from greywhale.protocol.declared import Parameter
 from greywhale.protocol.ports import choose_port
+from greywhale.table import physical
 
 
-@click.group("params")
+@click.group("params", cls=Group)
 def command() -> None:
     """Read and change a board's parameter table.
 
@@ -32,11 +36,14 @@ def command() -> None:
 @port_option
 @json_option
 def get(names: tuple[str, ...], port: str | None, as_json: bool) -> None:
-    """Show parameters; without names, all of them."""
-    wanted = [_parameter(name) for name in names] or list(schema.PARAMETERS)
+    """Show parameters; without names, all of them.
+
+    The beginning of names stands for all that begin so: joint0, leader, unrest.
+    """
+    wanted = [one for name in names for one in _beginning_with(name)] or list(schema.PARAMETERS)
     with Device(choose_port(port)) as device, progress(as_json) as report:
         table = read_parameters(device, report)
-    facts = {parameter.name: parameter_file.physical(parameter, table[parameter.name]) for parameter in wanted}
+    facts = {parameter.name: physical(parameter, table[parameter.name]) for parameter in wanted}
     lines = [f"{name:<16} {value:>12g} {schema.PARAMETER_BY_NAME[name].unit}" for name, value in facts.items()]
     show(as_json, {"port": device.port, "parameters": facts}, "\n".join(line.rstrip() for line in lines))
 
@@ -54,7 +61,7 @@ def set_(settings: tuple[str, ...], port: str | None, as_json: bool) -> None:
         changes[name] = raw
     with Device(choose_port(port)) as device, progress(as_json) as report:
         done = change_parameters(device, changes, report)
-    stored = {name: parameter_file.physical(schema.PARAMETER_BY_NAME[name], raw) for name, raw in changes.items()}
+    stored = {name: physical(schema.PARAMETER_BY_NAME[name], raw) for name, raw in changes.items()}
     lines = [f"  {name} = {value:.9g} {schema.PARAMETER_BY_NAME[name].unit}".rstrip() for name, value in stored.items()]
     show(
         as_json,
@@ -66,9 +73,11 @@ def set_(settings: tuple[str, ...], port: str | None, as_json: bool) -> None:
 @command.command("backup")
 @click.argument("file", type=click.Path(path_type=Path))
 @port_option
+@overwrite_option
 @json_option
-def backup(file: Path, port: str | None, as_json: bool) -> None:
+def backup(file: Path, port: str | None, overwrite: bool, as_json: bool) -> None:
     """Write all parameters of a board into a TOML file."""
+    require_new(overwrite, file)
     with Device(choose_port(port)) as device, progress(as_json) as report:
         table = read_parameters(device, report)
     parameter_file.save(file, table)
@@ -102,8 +111,8 @@ def diff(file: Path, port: str | None, as_json: bool) -> None:
         running = read_parameters(device, report)
     differences = {
         parameter.name: {
-            "board": parameter_file.physical(parameter, running[parameter.name]),
-            "file": parameter_file.physical(parameter, wanted[parameter.name]),
+            "board": physical(parameter, running[parameter.name]),
+            "file": physical(parameter, wanted[parameter.name]),
         }
         for parameter in schema.PARAMETERS
         if running[parameter.name] != wanted[parameter.name]
@@ -116,12 +125,20 @@ def diff(file: Path, port: str | None, as_json: bool) -> None:
     )
 
 
+def _beginning_with(name: str) -> list[Parameter]:
+    """The parameter of this name, or all those whose names begin so."""
+    if name in schema.PARAMETER_BY_NAME:
+        return [schema.PARAMETER_BY_NAME[name]]
+    return [one for one in schema.PARAMETERS if name and one.name.startswith(name)] or [_parameter(name)]
+
+
 def _parameter(name: str) -> Parameter:
     try:
         return schema.PARAMETER_BY_NAME[name]
     except KeyError:
+        meant = did_you_mean(name, schema.PARAMETER_BY_NAME)
         raise UserError(
-            f"there is no parameter {cut(json.dumps(name))}; `greywhale params get` shows all names.", BAD_USAGE
+            f"there is no parameter {cut(json.dumps(name))}; `greywhale params get` shows all names.{meant}", BAD_USAGE
         ) from None
 
 

@@ -11,13 +11,15 @@ import click
 
 from greywhale.board.device import Device
 from greywhale.board.pots import FOLLOWERS, require_good_pots
+from greywhale.board.reconnect import record_through_losses
 from greywhale.board.record import Recording, check_every_led, pose_of, record, record_led
 from greywhale.board.upload import read_parameters
 from greywhale.cli import completion
 from greywhale.cli.countdown import prepare_motion, yes_option
-from greywhale.cli.output import json_option, port_option, progress, show
-from greywhale.errors import BAD_USAGE, UserError
+from greywhale.cli.output import json_option, overwrite_option, port_option, progress, show
+from greywhale.errors import BAD_USAGE, MOST_SEED, UserError, counted
 from greywhale.files.leader import save_leader
+from greywhale.files.outputs import require_new
 from greywhale.formats.whole import refuse_inputs
 from greywhale.protocol.ports import choose_port
 
@@ -43,6 +45,11 @@ _OF_EXCITE = {
 @click.option("--every", type=int, default=1, show_default=True, help="One sample every so many ticks of 1 ms.")
 @click.option("--enable", is_flag=True, help="Turn the motors on: the follower follows while the log is recorded.")
 @click.option(
+    "--reconnect",
+    is_flag=True,
+    help="Motors off: if the port goes away, wait for it until the end of --seconds, and go on after the gap.",
+)
+@click.option(
     "--excite", is_flag=True, help="Turn the motors on and lead the arm along the motion that shows most about it."
 )
 @click.option(
@@ -58,7 +65,9 @@ _OF_EXCITE = {
     metavar="J:MIN:MAX",
     help="With --excite: range of a joint in rad, instead of 1 rad to either side of where it is.",
 )
-@click.option("--seed", type=click.IntRange(min=0), help="With --excite: another seed, another motion.  [default: 0]")
+@click.option(
+    "--seed", type=click.IntRange(0, MOST_SEED), help="With --excite: another seed, another motion.  [default: 0]"
+)
 @click.option(
     "--budget", type=int, help="With --excite: motions to try; more take longer and show a little more.  [default: 300]"
 )
@@ -67,6 +76,7 @@ _OF_EXCITE = {
     type=click.Path(path_type=Path),
     help="With --excite: also write the motion, for `replay` or `sim --leader`.",
 )
+@overwrite_option
 @yes_option
 @port_option
 @json_option
@@ -75,12 +85,14 @@ def command(
     seconds: float | None,
     every: int,
     enable: bool,
+    reconnect: bool,
     excite: bool,
     arm_file: str | None,
     ranges: tuple[str, ...],
     seed: int | None,
     budget: int | None,
     save_motion: Path | None,
+    overwrite: bool,
     yes: bool,
     port: str | None,
     as_json: bool,
@@ -90,26 +102,38 @@ def command(
     Without --enable the motors stay off and the log shows what the potentiometers say. With it the log begins when the
     soft start is over. Ctrl-C stops the motors and keeps what was recorded, marked as interrupted.
     A recording that is killed leaves what it has in log.unfinished.csv beside log.csv, which all verbs read.
+    A port that goes away ends the log, which is whole and says so; with --reconnect it goes on when the port is back.
+    That never starts a motor.
 
     With --excite nobody needs to move the leader: this program leads the arm along a motion designed for `identify`,
     from where the arm is and back. It keeps the joints' limits, but knows of no table and no link in the way: clear the
     arm's surroundings, or narrow the joints' --range. A countdown on the terminal comes first, but not on the simulated
     bench.
     """
+    if reconnect and (enable or excite):
+        raise UserError(
+            "--reconnect is for logs with the motors off: after a lost port they stay off, so a log of their motion "
+            "ends there; leave it out.",
+            BAD_USAGE,
+        )
     if not excite:
-        require_folders(out)
+        require_new(overwrite, out)
         _refuse_without_excite(arm_file=arm_file, ranges=ranges, save_motion=save_motion, seed=seed, budget=budget)
-        with Device(choose_port(port)) as device, progress(as_json) as report:
-            length = RECORDED_S if seconds is None else seconds
-            recording = record(device, out, length, every, enable, report)
-        show(as_json, {"port": device.port, **recording.as_dict()}, describe(recording))
+        chosen, length = choose_port(port), RECORDED_S if seconds is None else seconds
+        if reconnect:
+            with progress(as_json) as report:
+                recording = record_through_losses(chosen, out, length, every, report)
+        else:
+            with Device(chosen) as device, progress(as_json) as report:
+                recording = record(device, out, length, every, enable, report)
+        show(as_json, {"port": chosen, **recording.as_dict()}, describe(recording))
         return
     if enable:
         raise UserError("--excite turns the motors on by itself; leave --enable out.", BAD_USAGE)
     check_every_led(every)
-    require_folders(out, save_motion)
     refuse_inputs(out, arm_file)
     refuse_inputs(save_motion, arm_file)
+    require_new(overwrite, out, save_motion)
     if save_motion is not None and save_motion.resolve() == out.resolve():
         raise UserError(f"{out}: the log and the motion cannot be one file; give --save-motion another.", BAD_USAGE)
     plan = _plan(arm_file, ranges, seconds, seed, budget)
@@ -128,15 +152,6 @@ def command(
     saved = {} if save_motion is None else {"motion": str(save_motion)}
     result = {"port": device.port, **recording.as_dict(), "design": designed.as_dict(), **saved}
     show(as_json, result, f"{describe(recording)}\n{designed.text()}")
-
-
-def require_folders(*paths: Path | None) -> None:
-    """Refuse files that could not be written, before anything moves."""
-    for path in paths:
-        if path is not None and not path.parent.is_dir():
-            raise UserError(
-                f"{path}: the folder {path.parent} does not exist; create it, or write elsewhere.", BAD_USAGE
-            )
 
 
 def _plan(
@@ -164,8 +179,10 @@ def _refuse_without_excite(**given: object) -> None:
 def describe(recording: Recording) -> str:
     """Describe a recording in a sentence."""
     lost = f", {recording.dropped} dropped by the link" if recording.dropped else ""
-    waits = f", the board waited {recording.waits} times for this host" if recording.waits else ""
+    waits = f", the board waited {counted(recording.waits, 'time')} for this host" if recording.waits else ""
     slow = ""
     if recording.slowest is not None and recording.slowest < 1.0:
         slow = f", slowed down to {100 * recording.slowest:.0f} % where a follower lagged"
-    return f"{recording.path}: {recording.rows} samples{lost}, {recording.duration_s:g} s{waits}{slow}."
+    gaps = "".join(f" The port was away for {length:g} s after {begin:g} s." for begin, length in recording.gaps)
+    samples = counted(recording.rows, "sample")
+    return f"{recording.path}: {samples}{lost}, {recording.duration_s:g} s{waits}{slow}.{gaps}"

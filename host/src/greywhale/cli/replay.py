@@ -10,9 +10,11 @@ import click
 from greywhale.board.device import Device
 from greywhale.board.record import check_every_led, record_led
 from greywhale.cli.countdown import prepare_motion, yes_option
-from greywhale.cli.output import json_option, port_option, progress, show
-from greywhale.cli.record import describe, require_folders
+from greywhale.cli.output import json_option, overwrite_option, port_option, progress, show
+from greywhale.cli.record import describe
 from greywhale.files.leader import load_leader
+from greywhale.files.names import suggesting
+from greywhale.files.outputs import require_new
 from greywhale.firmware import FASTEST_LED_RAD_S
 from greywhale.formats.whole import refuse_inputs
 from greywhale.protocol.ports import choose_port
@@ -29,10 +31,11 @@ SHARE = 0.9
     "--out", "-o", type=click.Path(path_type=Path), default=Path("log.csv"), show_default=True, help="The log."
 )
 @click.option("--every", type=int, default=1, show_default=True, help="One sample every so many ticks of 1 ms.")
+@overwrite_option
 @yes_option
 @port_option
 @json_option
-def command(motion: Path, out: Path, every: int, yes: bool, port: str | None, as_json: bool) -> None:
+def command(motion: Path, out: Path, every: int, overwrite: bool, yes: bool, port: str | None, as_json: bool) -> None:
     """Turn the motors on, lead the arm along the motion in FILE and record that.
 
     FILE has the columns time_s, leader_0 .. leader_3 (s, rad), or is a log. It may also be steps or multi-steps: the
@@ -42,10 +45,11 @@ def command(motion: Path, out: Path, every: int, yes: bool, port: str | None, as
     Ctrl-C stops the motors and keeps what was recorded, marked as interrupted.
     """
     check_every_led(every)
-    require_folders(out)
     refuse_inputs(out, motion)
+    require_new(overwrite, out)
     made = MOTIONS.get(str(motion))
-    trajectory = load_leader(motion) if made is None else made(fastest_rad_s=SHARE * FASTEST_LED_RAD_S)
+    with suggesting(motion, MOTIONS):
+        trajectory = load_leader(motion) if made is None else made(fastest_rad_s=SHARE * FASTEST_LED_RAD_S)
     chosen = choose_port(port)
     warn = prepare_motion(chosen, yes)
     with Device(chosen) as device:

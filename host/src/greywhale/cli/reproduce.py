@@ -10,6 +10,7 @@ import click
 from greywhale.cli.bench import need_bench
 from greywhale.cli.output import json_option, progress, show
 from greywhale.cli.workers import executor_options
+from greywhale.files.outputs import require_folder
 
 
 @click.command("reproduce")
@@ -36,6 +37,7 @@ def command(
     arm are named. The numbers depend on --seed, --seeds and --quick alone. What was done before Ctrl-C is kept: the
     same command goes on from there.
     """
+    require_folder(out, "report and results", "report.html", "report.pdf", "report.json")
     need_bench("greywhale_sim")
     from greywhale.formats.whole import write_text
     from greywhale.reproduce.pages.found import Found

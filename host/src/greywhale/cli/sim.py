@@ -9,6 +9,7 @@ import click
 
 from greywhale.cli.bench import need_bench
 from greywhale.cli.output import json_option, show
+from greywhale.protocol.ports import lasting_name
 
 
 @click.command("sim")
@@ -36,7 +37,10 @@ def command(
     mistake: tuple[str, ...],
     as_json: bool,
 ) -> None:
-    """Start the simulated bench and print its serial port; Ctrl-C ends it."""
+    """Start the simulated bench and print its serial port; Ctrl-C ends it.
+
+    On stderr it says the name under which `greywhale ports` lists the port.
+    """
     serve = need_bench("greywhale_sim.serve")
     mistakes = need_bench("greywhale_sim.mistakes")
     if "list" in mistake:
@@ -56,5 +60,17 @@ def command(
 
     def ready(port: str) -> None:
         click.echo(json.dumps({"port": port}) if as_json else port)
+        click.echo(f"greywhale: {_hint(port)}", err=True)  # standard output is the port alone, for scripts
 
     serve.serve(options, on_ready=ready, note=lambda text: click.echo(f"greywhale: {text}", err=True))
+
+
+def _hint(port: str) -> str:
+    """What a person does next, and the name that the other verbs use."""
+    name = lasting_name(port)
+    if name == port:  # no other program finds it by itself
+        return f"now, in a second terminal: greywhale info --port {port}. Ctrl-C here ends the bench."
+    return (
+        f"the other verbs call this port {name}, and take it by themselves if there is no other board. "
+        "Now, in a second terminal: greywhale info. Ctrl-C here ends the bench."
+    )

@@ -8,10 +8,11 @@ from pathlib import Path
 import click
 
 from greywhale.cli import completion
-from greywhale.cli.output import json_option, progress, show
-from greywhale.errors import BAD_USAGE, UserError, os_reason
+from greywhale.cli.output import json_option, overwrite_option, progress, show
+from greywhale.errors import BAD_USAGE, MOST_WORKERS, UserError, require_within
 from greywhale.files import controller as controller_file
-from greywhale.formats.whole import refuse_inputs, require_writable
+from greywhale.files.outputs import require_files, require_folder, require_new, require_no_files
+from greywhale.formats.whole import refuse_inputs
 from greywhale.loop import controller_row
 from greywhale.tune import METHODS, STRATEGIES, check_request, tune
 from greywhale.tune.model import SAMPLES, load_model
@@ -46,7 +47,10 @@ EXISTING = click.Path(path_type=Path)
 @click.option("--seed", type=int, default=0, show_default=True, help="Where all random numbers start.")
 @click.option("--workers", type=int, help="Threads; without it, one for every processor.")
 @click.option(
-    "--start", type=EXISTING, help="A controller.toml to begin with; without it, what the board of the logs ran."
+    "--start",
+    type=EXISTING,
+    shell_complete=completion.controllers,
+    help="A controller.toml to begin with, or before_tuning; without it, what the board of the logs ran.",
 )
 @click.option(
     "--bounds",
@@ -67,6 +71,7 @@ EXISTING = click.Path(path_type=Path)
 @click.option("--force", is_flag=True, help="Tune even if there are doubts about the model; the result states them.")
 @click.option("--tables", is_flag=True, help="Also print the paper's Tables 8 to 12, ours beside its.")
 @click.option("--pictures", type=EXISTING, help="Folder for pictures of sets, responses and convergence.")
+@overwrite_option
 @json_option
 def command(
     model_file: str,
@@ -85,6 +90,7 @@ def command(
     force: bool,
     tables: bool,
     pictures: Path | None,
+    overwrite: bool,
     as_json: bool,
 ) -> None:
     """Tune the four controllers for a model of greywhale identify.
@@ -94,11 +100,11 @@ def command(
     depends on model, options and --seed alone, not on the number of workers.
     """
     limits = _bounds(bounds)
-    if workers is not None and workers < 1:
-        raise UserError(f"workers is {workers}, but it must be at least 1.", BAD_USAGE)
+    if workers is not None:
+        require_within("workers", workers, 1, MOST_WORKERS)
     check_request(strategy=strategy, method=method, budget=budget, seed=seed, bounds=limits)
     journal = out.parent / f"{out.name}.journal"
-    _check_files(out, journal, resume, pictures, [model_file, arm, params])
+    _check_files(out, journal, resume, overwrite, pictures, [model_file, arm, params])
     model = load_model(model_file, samples=samples, seed=seed, force=force, params=params, arm=arm)
     first = controller_row(controller_file.load(start)) if start is not None else None
     with progress(as_json) as report:
@@ -157,28 +163,18 @@ def _bounds(given: tuple[str, ...]) -> dict[str, tuple[float, float]]:
 
 
 def _check_files(
-    out: Path, journal: Path, resume: bool, pictures: Path | None, inputs: Sequence[str | Path | None]
+    out: Path,
+    journal: Path,
+    resume: bool,
+    overwrite: bool,
+    pictures: Path | None,
+    inputs: Sequence[str | Path | None],
 ) -> None:
     """Refuse wrong files before any work, not after it."""
-    if not out.parent.is_dir():
-        raise UserError(f"{out}: the folder {out.parent} does not exist; create it, or write elsewhere.", BAD_USAGE)
     refuse_inputs(out, *inputs)
-    _refuse_unwritable(out)
-    _refuse_unwritable(journal)
+    require_new(overwrite or resume, out)
+    require_files(journal)
+    require_folder(pictures, "pictures", "sets.png")
+    require_no_files(overwrite or resume, pictures, "sets.png", "convergence.png", "responses_*.png")
     if resume and not journal.exists():
         raise UserError(f"{journal}: no interrupted tuning is there to go on with; leave --resume out.", BAD_USAGE)
-    if pictures is not None:
-        if pictures.exists() and not pictures.is_dir():
-            raise UserError(f"{pictures}: pictures go into a folder, and this is a file.", BAD_USAGE)
-        try:
-            pictures.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise UserError(f"{pictures}: cannot be made: {os_reason(error)}.", BAD_USAGE) from None
-        _refuse_unwritable(pictures / "sets.png")
-
-
-def _refuse_unwritable(path: Path) -> None:
-    try:
-        require_writable(path)
-    except OSError as error:
-        raise UserError(f"{path}: cannot be written: {os_reason(error)}.", BAD_USAGE) from None

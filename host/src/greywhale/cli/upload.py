@@ -9,32 +9,40 @@ from typing import Any
 import click
 
 from greywhale.board.device import Device
-from greywhale.board.upload import upload_controller
+from greywhale.board.upload import change_parameters, read_parameters
+from greywhale.cli import completion
 from greywhale.cli.output import json_option, port_option, progress, show
+from greywhale.errors import counted
 from greywhale.files import controller as controller_file
 from greywhale.protocol.ports import choose_port
 from greywhale.table import ParameterTable
 
 
 @click.command("upload")
-@click.argument("controller", type=click.Path(path_type=Path))
+@click.argument("controller", type=click.Path(path_type=Path), shell_complete=completion.controllers)
 @port_option
 @json_option
 def command(controller: Path, port: str | None, as_json: bool) -> None:
-    """Run and store the controllers of a controller.toml.
+    """Run and store the controllers of a controller.toml, or of one that comes with greywhale.
 
+    Those are before_tuning, and table_8, table_9 and table_10 of the paper.
     The board takes the set over only when all of it has arrived and passed its checks, with the motors off. All other
     parameters (potentiometers, limits, directions) keep their values.
     """
     checked = controller_file.load(controller)
-    with Device(choose_port(port)) as device, progress(as_json) as report:
-        uploaded = upload_controller(device, controller, report)
-    warnings = _warnings(checked.tuning or {}, uploaded.table)
+    with Device(choose_port(port)) as device:
+        with progress(as_json) as report:
+            running = read_parameters(device, report)
+        warnings = _warnings(checked.tuning or {}, running)
+        for warning in warnings:  # while Ctrl-C still leaves everything as it was
+            click.echo(f"Warning: {warning}", err=True)
+        with progress(as_json) as report:
+            uploaded = change_parameters(device, checked.raw_values(), report, running)
     count = len(uploaded.changed)
-    what = f"{count} parameters changed" if count else "nothing had to change"
+    what = f"{counted(count, 'parameter')} changed" if count else "nothing had to change"
     facts = {"port": device.port, "controller": str(controller), "source": checked.source, "warnings": warnings}
     text = f"{controller} runs and is stored on {device.port}: {what}, parameter CRC {uploaded.param_crc:#06x}."
-    show(as_json, facts | uploaded.as_dict(), "\n".join([text, *(f"Warning: {warning}" for warning in warnings)]))
+    show(as_json, facts | uploaded.as_dict(), text)
 
 
 def _warnings(tuning: Mapping[str, Any], table: ParameterTable) -> list[str]:

@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from greywhale.cli import tracing
+from greywhale.cli.group import Group
 
 # verb -> (module in this folder, what it does)
 VERBS = {
@@ -35,7 +36,7 @@ VERBS = {
 }
 
 
-class Verbs(click.Group):
+class Verbs(Group):
     """A group whose commands are imported on demand."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
@@ -65,7 +66,8 @@ class Verbs(click.Group):
 )
 @click.pass_context
 def greywhale(context: click.Context, verbose: int, log_file: Path | None) -> None:
-    """Identify, tune and run leader-follower robot arms. Every verb has --help and --json.
+    """Identify, tune and run leader-follower robot arms. Every verb has --help and --json;
+    params and arm have verbs of their own, which have them.
 
     Exit codes: 0 done, 1 failed, 2 bad usage, 130 interrupted (motors off, files whole).
     """

@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 import click
 
+from greywhale.errors import MOST_WORKERS
 from greywhale.study.choose import FORMS
 
 Command = TypeVar("Command", bound=Callable[..., Any])
@@ -21,7 +22,7 @@ def executor_options(*names: str) -> Callable[[Command], Command]:
             "--workers",
             *names,
             "workers",
-            type=click.IntRange(min=1),
+            type=click.IntRange(1, MOST_WORKERS),
             help="Processes here, or jobs of a Slurm cluster; without it, a process for every processor, or one job.",
         )
         executor = click.option(

@@ -99,6 +99,8 @@ class _Campaign:
         for number in range(1, self.options.rounds + 1):
             learnt = self._learn(number)
             first = len(trials.done)
+            if learnt.stall_volts is not None:
+                trials.stall_volts = learnt.stall_volts
             with self._arm(f"round {number}") as arm:
                 self._try(arm, learnt.controllers)
             self.rounds.append(Round(number, learnt, tuple(trials.done[first:])))
@@ -107,7 +109,7 @@ class _Campaign:
         with self._arm("confirming") as arm:
             best = confirm(trials, searches, arm)
             if self.book.get("end") is None:
-                arm().keep(trials.table_of(best.rows))
+                arm().keep(best.table)
                 self.book.note("end", {"best": best.name})
         return Outcome(trials, tuple(self.rounds), best)
 
@@ -227,7 +229,7 @@ class _Campaign:
 
     def _is_wanting(self) -> bool:
         """Whether another round may help: a joint follows little better than before."""
-        return any(search.best is None or search.best.verdict.score > WANTING for search in self.searches)
+        return any(search.best is None or search.best.verdict.value > WANTING for search in self.searches)
 
     def _report(self, stage: str) -> Report:
         def told(what: str, fraction: float, note: str = "") -> None:
@@ -251,4 +253,4 @@ class _Campaign:
 
 
 def _is_good(search: JointSearch) -> bool:
-    return search.best is not None and search.best.verdict.score <= GOOD
+    return search.best is not None and search.best.verdict.value <= GOOD

@@ -15,19 +15,22 @@ MOST_CONFIRMATIONS = 6
 
 
 def confirm(trials: Trials, searches: Sequence[JointSearch], arm: Callable[[], Rig]) -> Trial:
-    """The best set that passed as a whole. A combination that was not measured is played before it counts."""
+    """The best set that was measured as a whole. A combination that was not measured is played before it counts."""
     rows = np.array([_next(search, [], trials) for search in searches])
     failed: list[list[bytes]] = [[] for _ in searches]
     for _ in range(MOST_CONFIRMATIONS):
         known = next((one for one in trials.done if np.array_equal(one.rows, rows)), None)
         trial = known or trials.play(None if trials.known() else arm(), rows)
-        if trial.passed:
+        if trial.bearable:
             break
+        tried = rows.copy()
         for search, verdict in zip(searches, trial.verdicts, strict=True):
-            if verdict.faults:
+            if not verdict.bearable:
                 failed[search.joint].append(rows[search.joint].tobytes())
                 rows[search.joint] = _next(search, failed[search.joint], trials)
-    return trials.passing()[0]
+        if np.array_equal(rows, tried):
+            break
+    return trials.ranked()[0]
 
 
 def _next(search: JointSearch, failed: Sequence[bytes], trials: Trials) -> Row:

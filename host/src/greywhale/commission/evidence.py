@@ -48,7 +48,7 @@ def gather(excite: Log, trials: Trials) -> Evidence:
     whole.sort(key=lambda one: one.score)
     fitted, others = whole[:MOST_FITTED], whole[MOST_FITTED : MOST_FITTED + 1]
     logs = [read_log(trials.before.path), *(read_log(one.path) for one in others)]
-    tables = [trials.table, *(trials.table_of(one.rows) for one in (*fitted, *others))]
+    tables = [trials.table, *(one.table for one in (*fitted, *others))]
     return Evidence((excite, *(read_log(one.path) for one in fitted)), tuple(logs), tuple(tables))
 
 
@@ -60,7 +60,7 @@ def failing_plants(arm: ArmParameters, trials: Trials) -> Floats:
         if restless:
             # The one nearest to rest shows best where the margin is.
             calmest = min(restless, key=lambda one: int(one.rows[joint, KP]))
-            plant = _plant_that_hunts(arm, trials.table_of(calmest.rows), calmest, joint)
+            plant = _plant_that_hunts(arm, calmest.table, calmest, joint)
             if plant is not None:
                 found.append(plant)
     return np.array(found) if found else np.zeros((0, len(plant_row(arm))))

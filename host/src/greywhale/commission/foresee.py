@@ -34,6 +34,7 @@ MOST = 0.99
 # A model is believed that predicts the error before, in the check's moves, to within this share.
 BELIEVED = 0.1
 SEED = 7
+LEAST = 1e-12  # rad², the error of a joint that is not in use
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,7 @@ class Foresight:
 
     def ratios(self, rows: Controllers) -> Floats:
         """(4,): each joint's error on steps with controllers (4, 12), as a share of that before."""
-        ratios: Floats = _errors(self.experiment, self.plant, rows) / self.error
+        ratios: Floats = _errors(self.experiment, self.plant, rows) / np.maximum(self.error, LEAST)
         return ratios
 
     def clauses(self, rows: Controllers) -> tuple[str, ...]:
@@ -76,7 +77,7 @@ def foresee(
     """What a model of this arm foresees; `traces` and `measured` are those of the check before, with `table`."""
     moves = PARTS.index("moves")
     predicted = measure(predict(arm, table, traces)[0], check, table.supply_v).error[moves]
-    believed = np.abs(predicted / measured.error[moves] - 1.0) <= BELIEVED
+    believed = np.abs(predicted / np.maximum(measured.error[moves], LEAST) - 1.0) <= BELIEVED
     motion = clip_motion(multi_steps(), room.low, room.high)
     experiment = Experiment(motion, arm, table=table, seed=SEED)
     plant, before = plant_row(arm)[None], controllers_of(table)

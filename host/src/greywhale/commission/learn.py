@@ -40,6 +40,7 @@ class Learnt:
     controllers: Controllers
     doubts: tuple[str, ...]
     steady: bool  # whether all margins hold on the model
+    stall_volts: int | None = None  # raw, None where the board's stays
 
 
 def find_model(
@@ -102,8 +103,9 @@ def find_controllers(
         journal.unlink(missing_ok=True)
         known = {"steady": outcome.steady, "doubts": list(model.doubts)}
         book.note(name, known)
-    rows = controller_row(controller_file.load(path))
-    return Learnt(model.arm, rows, tuple(known["doubts"]), known["steady"])
+    found = controller_file.load(path)
+    stall = found.raw_values().get("stall_volts")
+    return Learnt(model.arm, controller_row(found), tuple(known["doubts"]), known["steady"], stall)
 
 
 def read_model(path: Path, seed: int, params: Path) -> Model:

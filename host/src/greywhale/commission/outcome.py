@@ -13,7 +13,7 @@ from greywhale.commission.measures import Measures, measure
 from greywhale.commission.motions import PARTS
 from greywhale.commission.predict import predict
 from greywhale.commission.trials import Trial, Trials
-from greywhale.firmware import JOINTS
+from greywhale.joints import ALL, named
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Outcome:
 
     def predicted(self, trial: Trial, round_: Round) -> Measures:
         """What a round's model says about a trial."""
-        shown = predict(round_.learnt.arm, self.trials.table_of(trial.rows), trial.traces)[0]
+        shown = predict(round_.learnt.arm, trial.table, trial.traces)[0]
         return measure(shown, self.trials.check, self.trials.table.supply_v)
 
     def round_of(self, trial: Trial) -> Round:
@@ -50,7 +50,7 @@ class Outcome:
         return {
             "improved": self.improved,
             "best": self.best.name,
-            "parameter_crc": f"0x{self.trials.table_of(self.best.rows).crc:04x}",
+            "parameter_crc": f"0x{self.best.table.crc:04x}",
             "rounds": [
                 {
                     "round": one.number,
@@ -75,17 +75,24 @@ class Outcome:
             return "\n".join([*lines, "None passed on every joint: the controllers from before stay on the board."])
         head = "".join(f"{part:>24}" for part in PARTS)
         lines += ["", "Mean squared error on the arm (rad²), before -> after:", f"{'':26}{head}"]
-        for joint in range(JOINTS):
+        joints = self.trials.table.joints_in_use
+        for joint in joints:
             cells = (_pair(before.error[place, joint], after.error[place, joint]) for place in range(len(PARTS)))
             lines.append(f"{f'joint {joint} ({JOINT_NAMES[joint]})':26}" + "".join(f"{cell:>24}" for cell in cells))
         rests = 1e3 * np.array([before.worst("unrest"), after.worst("unrest")])
-        unrest = [f"{was:.1f} -> {now:.1f}" for was, now in rests.T]
-        lines += ["", f"Unrest at rest (mrad rms), joints 0 to 3: {', '.join(unrest)}."]
+        unrest = [f"{was:.1f} -> {now:.1f}" for was, now in rests.T[list(joints)]]
+        whose = "joints 0 to 3" if joints == ALL else named(joints)
+        lines += ["", f"Unrest at rest (mrad rms), {whose}: {', '.join(unrest)}."]
         same = (self.best.rows == self.trials.before.rows).all(axis=1)
-        kept = [joint for joint in range(JOINTS) if same[joint]]
+        kept = [joint for joint in joints if same[joint]]
         if kept:
-            named = " and ".join(f"joint {joint} ({JOINT_NAMES[joint]})" for joint in kept)
-            lines.append(f"Nothing better was found for {named}: there the controller from before stays.")
+            whose = " and ".join(f"joint {joint} ({JOINT_NAMES[joint]})" for joint in kept)
+            lines.append(f"Nothing better was found for {whose}: there the controller from before stays.")
+        faults = [(joint, fault) for joint in joints for fault in self.best.verdicts[joint].faults]
+        lines += [
+            f"Joint {joint} ({JOINT_NAMES[joint]}): {fault}. Nothing quieter follows so well."
+            for joint, fault in faults
+        ]
         return "\n".join(lines)
 
 

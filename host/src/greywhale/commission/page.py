@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import io
 from pathlib import Path
 from typing import Any
 
@@ -47,7 +46,7 @@ def facts(outcome: Outcome) -> dict[str, Any]:
     rest = [_trial(outcome, trial) for trial in trials.done[1:] if id(trial) not in tried]
     return {
         "text": outcome.text(),
-        "joints": [f"{joint} {name}" for joint, name in enumerate(JOINT_NAMES)],
+        "joints": [f"{joint} {JOINT_NAMES[joint]}" for joint in trials.table.joints_in_use],
         "before": _trial(outcome, trials.before),
         "rounds": rounds,
         "confirmations": rest,
@@ -57,11 +56,12 @@ def facts(outcome: Outcome) -> dict[str, Any]:
 
 def _trial(outcome: Outcome, trial: Trial) -> dict[str, Any]:
     predicted = outcome.predicted(trial, outcome.round_of(trial))
+    joints = list(outcome.trials.table.joints_in_use)
     rows = []
     for place, part in enumerate(PARTS):
-        pairs = zip(predicted.error[place], trial.measured.error[place], strict=True)
+        pairs = zip(predicted.error[place, joints], trial.measured.error[place, joints], strict=True)
         rows.append({"name": f"error, {part}", "unit": "rad²", "cells": [_cell(*pair, ".2e") for pair in pairs]})
-    rows += [_row(predicted, trial.measured, measure) for measure in MEASURES]
+    rows += [_row(predicted, trial.measured, measure, joints) for measure in MEASURES]
     return {
         "name": trial.name,
         "log": trial.path.name,
@@ -69,15 +69,15 @@ def _trial(outcome: Outcome, trial: Trial) -> dict[str, Any]:
         "best": trial is outcome.best,
         "verdicts": [
             "; ".join(verdict.faults) if verdict.faults else "passed" if verdict.known else "not judged"
-            for verdict in trial.verdicts
+            for verdict in (trial.verdicts[joint] for joint in joints)
         ],
         "rows": [row for row in rows if any(cell != NOTHING for cell in row["cells"])],
     }
 
 
-def _row(predicted: Measures, measured: Measures, measure: Measure) -> dict[str, Any]:
+def _row(predicted: Measures, measured: Measures, measure: Measure, joints: list[int]) -> dict[str, Any]:
     name, means, unit, factor, form = measure
-    pairs = zip(factor * predicted.worst(name), factor * measured.worst(name), strict=True)
+    pairs = zip(factor * predicted.worst(name)[joints], factor * measured.worst(name)[joints], strict=True)
     return {"name": means, "unit": unit, "cells": [_cell(*pair, form) for pair in pairs]}
 
 
@@ -91,18 +91,15 @@ def _text(value: float, form: str) -> str:
 
 def _picture(outcome: Outcome) -> str:
     """Before and after on the check, as a data URL."""
-    import matplotlib.pyplot as plt
-
-    from greywhale.report.follow import plot_following, set_style, trace
+    # Matplotlib takes a second to import.
+    from greywhale.drawing.page import png, style
+    from greywhale.report.follow import plot_following, trace
 
     chosen = [(outcome.trials.before, "before")]
     if outcome.improved:
         chosen.append((outcome.best, "now on the board"))
-    with set_style():
-        figure = plot_following([trace(read_log(trial.path), label) for trial, label in chosen], "The check on the arm")
-        try:
-            file = io.BytesIO()
-            figure.savefig(file, format="png", dpi=110, metadata={"Software": None})
-        finally:
-            plt.close(figure)
-    return "data:image/png;base64," + base64.b64encode(file.getvalue()).decode("ascii")
+    supply_v = outcome.trials.table.supply_v
+    with style():
+        traces = [trace(read_log(trial.path), label, supply_v) for trial, label in chosen]
+        picture = png(plot_following(traces, "The check on the arm"))
+    return "data:image/png;base64," + base64.b64encode(picture).decode("ascii")

@@ -10,6 +10,7 @@ from greywhale.arm.parameters import with_usual_noise
 from greywhale.arm.plants import plant_row
 from greywhale.commission.measures import Traces
 from greywhale.firmware import JOINTS, TICK_S, pwm_steps
+from greywhale.joints import unused
 from greywhale.loop.closed_loop import ClosedLoop, known_readings, shown_angles, with_ideal_follower
 from greywhale.loop.controllers import controllers_of
 from greywhale.table import ParameterTable
@@ -26,6 +27,7 @@ def predict(arm: ArmParameters, table: ParameterTable, played: Traces, plants: F
     rows = plant_row(arm)[None] if plants is None else plants
     noisy = with_usual_noise(arm)
     zero = np.array([pot.centre for pot in noisy.follower_pots.joint])
+    zero[list(unused(arm.joints_in_use))] = 0.0
     reference = np.vstack([np.tile(played.leader[:1], (LEAD_TICKS, 1)), played.leader])
     stops = [(joint.stops.min, joint.stops.max) for joint in arm.joint]
     home = [float(np.clip(angle, *stops[joint])) for joint, angle in enumerate(played.follower[0] + zero)]

@@ -44,9 +44,9 @@ class Tried:
 
 
 def _rank(one: Tried) -> tuple[bool, float]:
-    """What passed comes first, then what follows best; a joint that another one stopped has no score."""
-    score = one.verdict.score
-    return not one.verdict.passed, score if np.isfinite(score) else np.inf
+    """What can be borne comes first, then what follows best; a joint that another one stopped has no score."""
+    score = one.verdict.value if one.verdict.bearable else one.verdict.score
+    return not one.verdict.bearable, score if np.isfinite(score) else np.inf
 
 
 @dataclass
@@ -62,12 +62,12 @@ class JointSearch:
 
     @property
     def best(self) -> Tried | None:
-        """The best that passed."""
+        """The best that passed or can be borne."""
         return next(iter(self.ranked()), None)
 
     def ranked(self) -> list[Tried]:
-        """All that passed, the best first."""
-        return sorted((one for one in self.tried if one.verdict.passed), key=_rank)
+        """All that passed or can be borne, the best first."""
+        return sorted((one for one in self.tried if one.verdict.bearable), key=_rank)
 
     def add(self, row: Row, verdict: Verdict, trial: str) -> None:
         """Note a judged controller."""

@@ -13,6 +13,7 @@ from greywhale.commission.rig import Rig
 from greywhale.errors import UserError
 from greywhale.files.log import Log
 from greywhale.firmware import JOINTS
+from greywhale.joints import require_same
 from greywhale.table import ParameterTable
 from greywhale.tune.model_checks import CONVERTER_SPAN, MATCH, doubt_other_board
 
@@ -27,12 +28,15 @@ SAME_ZERO = 0.1
 
 
 def refuse_uncalibrated(arm: ArmParameters, table: ParameterTable) -> None:
-    """Refuse a board whose table contradicts the arm file: supply, or a potentiometer's slope or zero angle."""
+    """Refuse a board whose table contradicts the arm file: joints, supply, a potentiometer's slope or zero angle."""
+    require_same("the arm file", arm.joints_in_use, "the board", table.joints_in_use)
     for doubt in doubt_other_board(arm, None, table):
         raise UserError(f"the board does not fit the arm file ({arm.name}): {doubt.reason}; {doubt.remedy}.")
     usual = ParameterTable.defaults()
     for joint, pot in enumerate(arm.follower_pots.joint):
         name = f"follower{joint}.zero"
+        if joint not in table.joints_in_use:
+            continue
         middle = (CONVERTER_SPAN / 2 - table[name]) * table.physical(f"follower{joint}.scale")
         if abs(middle - pot.centre) > SAME_ZERO:
             state = "was never calibrated" if table[name] == usual[name] else "is calibrated for another arm"
@@ -54,7 +58,7 @@ def refuse_stuck(rig: Rig, book: Book, room: Room) -> None:
             raise UserError(f"the arm cannot be commissioned: {played.stopped} in the little first motion.")
         shares = shares_moved(played.log)
         _refuse_backwards(shares)
-        stuck = [joint for joint in range(JOINTS) if shares[joint] < LEAST_SHARE]
+        stuck = [joint for joint in rig.before.joints_in_use if shares[joint] < LEAST_SHARE]
         if not stuck:
             book.note("first motion", {"size_rad": size, "shares_moved": [round(float(share), 3) for share in shares]})
             return

@@ -27,10 +27,14 @@ BEFORE, AGAIN = "before", "before-again"
 
 @dataclass(frozen=True)
 class Trial:
-    """Controllers (4, 12) that ran on the arm, their log, and what was measured. `stopped` says why it ended early."""
+    """Controllers (4, 12) that ran on the arm, their log, and what was measured. `stopped` says why it ended early.
+
+    `table` is the whole set that the board ran.
+    """
 
     name: str
     rows: Controllers
+    table: ParameterTable = field(repr=False)
     path: Path
     stopped: str
     measured: Measures
@@ -43,9 +47,19 @@ class Trial:
         return all(verdict.passed for verdict in self.verdicts)
 
     @property
+    def bearable(self) -> bool:
+        """Whether all joints passed, or have a little too much unrest and no other fault."""
+        return all(verdict.bearable for verdict in self.verdicts)
+
+    @property
     def score(self) -> float:
-        """The geometric mean of the joints' scores."""
-        return float(np.exp(np.mean([np.log(verdict.score) for verdict in self.verdicts])))
+        """The geometric mean of the scores of the joints in use."""
+        return _mean([verdict.score for verdict in self.verdicts])
+
+    @property
+    def value(self) -> float:
+        """The geometric mean of the values of the joints in use; less is better."""
+        return _mean([verdict.value for verdict in self.verdicts])
 
     def as_dict(self) -> dict[str, Any]:
         return {
@@ -69,6 +83,7 @@ class Trials:
         self.table = before
         self.done: list[Trial] = []
         self.foresight: Foresight | None = None  # of the model of this round
+        self.stall_volts = before["stall_volts"]  # raw, of the trials to come
         self._befores: list[Measures] = []
 
     @property
@@ -76,8 +91,8 @@ class Trials:
         return self.done[0]
 
     def table_of(self, rows: Controllers) -> ParameterTable:
-        """The board's table with these controllers."""
-        return self.table.with_controllers(rows)
+        """The board's table with these controllers, for a trial to come."""
+        return self.table.with_controllers(rows).with_raw({"stall_volts": self.stall_volts})
 
     def known(self) -> bool:
         """Whether the next trial was played before an interrupt, so that no arm is needed for it."""
@@ -123,10 +138,10 @@ class Trials:
         self.book.note(name, {"controllers": rows.tolist(), "stopped": played.stopped, "joint": played.joint})
         return path, played
 
-    def passing(self) -> list[Trial]:
-        """Sets of controllers that passed as a whole, the best first; those from before always do."""
-        whole = [one for one in self.done[1:] if one.passed]
-        return [*sorted(whole, key=lambda one: one.score), self.before]
+    def ranked(self) -> list[Trial]:
+        """Sets of controllers that can be borne as a whole, the best first; those from before always can."""
+        whole = [one for one in self.done[1:] if one.bearable]
+        return sorted([*whole, self.before], key=lambda one: one.value)
 
     def _next_name(self) -> str:
         return f"trial-{len(self.done):02d}" if self.done else AGAIN
@@ -138,4 +153,9 @@ class Trials:
         kept = (rows == controllers_of(self.table)).all(axis=1)
         foreseen = ("",) * JOINTS if self.foresight is None else self.foresight.clauses(rows)
         verdicts = judge(measured, self._befores[0], Limits.of(self._befores, kept), guilty, foreseen)
-        return Trial(name, rows.copy(), path, played.stopped, measured, verdicts, traces)
+        return Trial(name, rows.copy(), self.table_of(rows), path, played.stopped, measured, verdicts, traces)
+
+
+def _mean(values: list[float]) -> float:
+    """The geometric mean; a joint that is not in use has 0 and does not count."""
+    return float(np.exp(np.mean([np.log(value) for value in values if value != 0.0])))

@@ -74,13 +74,13 @@ def learn(
 def draw(learnt: Learnt, folder: Path) -> tuple[Path, ...]:
     """Draw the fuzzy sets before and after tuning, and how the costs fell; the paths."""
     # Matplotlib takes a second to import.
-    from greywhale.tune.report.pictures import draw_convergence, draw_sets
+    from greywhale.tune.report.pictures import cost_words, draw_convergence, draw_sets
 
     tuning = learnt.tuning
     curves = [(np.array(one.evaluations), np.array(one.cost)) for one in tuning.curves]
     return (
         draw_sets(folder / "sets.png", tuning.before, tuning.after),
-        draw_convergence(folder / "convergence.png", curves, "Convergence of the tuning"),
+        draw_convergence(folder / "convergence.png", curves, "Convergence of the tuning", cost_words(tuning.method)),
     )
 
 

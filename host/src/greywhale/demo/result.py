@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.demo.learn import Learnt
 from greywhale.demo.recorder import Recorded
 from greywhale.measure import Evaluation, JointMeasures
-from greywhale.report.follow import JOINT_NAMES
 
 Measure = tuple[str, str, int]  # heading, attribute of JointMeasures, decimals
 MEASURES: tuple[Measure, ...] = (

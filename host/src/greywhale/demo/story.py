@@ -89,7 +89,10 @@ def run(options: DemoOptions, progress: Report | None = None) -> DemoResult:
         firmware=f"{hello.fw_major}.{hello.fw_minor}.{hello.fw_patch}",
         runs=tuple(runs),
         learnt=learnt,
-        pictures=(_draw(options, runs), *(() if learnt is None else learn.draw(learnt, options.out))),
+        pictures=(
+            _draw(options, [runs[0], runs[-1]], arm.drive.supply),
+            *(() if learnt is None else learn.draw(learnt, options.out)),
+        ),
         wall_s=0.0,
     )
     result = replace(result, wall_s=time.monotonic() - started)
@@ -171,10 +174,11 @@ def _check(what: str, seconds: float, shortest_s: float, longest_s: float) -> No
         raise UserError(f"the {what} is {seconds:g} s; it must be {shortest_s:g} to {longest_s:g} s.", BAD_USAGE)
 
 
-def _draw(options: DemoOptions, runs: list[Run]) -> Path:
+def _draw(options: DemoOptions, runs: list[Run], supply_v: float) -> Path:
+    """The first run and the last: what lies between is too close to the last to be seen."""
     title = f"Follower on the bench: {options.leader.name if options.leader else 'generated reaches'}"
     picture = options.out / "following.png"
-    draw_following(picture, [trace(one.recorded.log(), one.name) for one in runs], title)
+    draw_following(picture, [trace(one.recorded.log(), one.name, supply_v) for one in runs], title)
     return picture
 
 

@@ -6,14 +6,18 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from greywhale import __version__
-from greywhale.board.pots import POTS
+from greywhale.board.pots import POTS, pots_there
 from greywhale.board.refusal import fault_text, upper_first
 from greywhale.doctor.finding import Finding, Verdict
-from greywhale.files.parameter_file import load_table, physical
+from greywhale.errors import counted
+from greywhale.files.parameter_file import load
+from greywhale.joints import ALL, named, unused
 from greywhale.protocol import schema
-from greywhale.table import ParameterTable
+from greywhale.table import ParameterTable, physical
 
 SUPPLY_SHARE = 0.1  # a battery's voltage differs by so much between full and flat
+EEPROM_WRITES = 100_000  # of one cell, by the chip's data sheet
+MANY_SAVES = 50_000
 _SHOWN = 3  # differences that are told one by one
 _FLASH = "Flash this host's firmware with `greywhale flash`."
 _STARTS = {
@@ -66,7 +70,28 @@ def examine_status(hello: schema.HelloReply, status: schema.StatusReply) -> list
         f"{status.late_ticks} late; the longest took {status.tick_us_max} of 1000 us.",
         "Flash the firmware again, and report it if ticks are still late." if status.late_ticks else "",
     )
-    return [start, fault, late]
+    return [start, fault, late, _wear(status.saves)]
+
+
+def _wear(saves: int) -> Finding:
+    """How much of the EEPROM's life is used. Banks take turns, and a save writes one cell of its bank twice: the first.
+
+    So no cell is written more often than there were saves.
+    """
+    if saves == 0:
+        return Finding("EEPROM", Verdict.GOOD, "No set is stored: nothing is worn.")
+    share = 100.0 * saves / EEPROM_WRITES
+    much = f"{share:.1f} %" if share >= 0.1 else "less than 0.1 %"
+    told = f"{saves:,} save{'' if saves == 1 else 's'}: {much} of the {EEPROM_WRITES:,} writes that a cell is made for."
+    if saves < MANY_SAVES:
+        return Finding("EEPROM", Verdict.GOOD, told)
+    return Finding(
+        "EEPROM",
+        Verdict.NOTE,
+        f"{told} The count begins anew after 65,535.",
+        "Save more seldom (a set that only runs is not stored: `greywhale commission` tries them so), or plan another "
+        "board.",
+    )
 
 
 def examine_supply(table: ParameterTable, measured_v: float | None) -> Finding:
@@ -87,8 +112,20 @@ def examine_supply(table: ParameterTable, measured_v: float | None) -> Finding:
 
 def examine_table(table: ParameterTable, path: Path | None) -> list[Finding]:
     """The running set against its file, and whether potentiometers were ever calibrated."""
-    findings = [] if path is None else [_against(table, load_table(path), path)]
-    return [*findings, _calibration(table)]
+    findings = [] if path is None else [_against(table, load(path), path)]
+    return [*findings, *_joints(table), _calibration(table)]
+
+
+def _joints(table: ParameterTable) -> list[Finding]:
+    """Nothing about a whole arm."""
+    if table.joints_in_use == ALL:
+        return []
+    if not table.joints_in_use:
+        remedy = "Tell the board which joints there are: `greywhale calibrate --joints 0,1`."
+        return [Finding("joints", Verdict.BAD, "No joint is in use: every follower's scale is 0.", remedy)]
+    idle = unused(table.joints_in_use)
+    told = f"{upper_first(named(idle))} {'is' if len(idle) == 1 else 'are'} not in use (follower's scale 0)."
+    return [Finding("joints", Verdict.GOOD, told)]
 
 
 def _against(table: ParameterTable, wanted: ParameterTable, path: Path) -> Finding:
@@ -114,15 +151,12 @@ def _calibration(table: ParameterTable) -> Finding:
     shipped: Mapping[str, int] = ParameterTable.defaults().by_name()
     plain = [pot for pot in POTS if all(table[f"{pot}.{key}"] == shipped[f"{pot}.{key}"] for key in ("zero", "scale"))]
     if not plain:
-        return Finding("calibration", Verdict.GOOD, "All eight potentiometers have a zero or scale of their own.")
+        there = "All eight potentiometers" if len(pots_there(table)) == len(POTS) else "All potentiometers in use"
+        return Finding("calibration", Verdict.GOOD, f"{there} have a zero or scale of their own.")
     return Finding(
         "calibration",
         Verdict.NOTE,
-        f"{_count(len(plain), 'potentiometer')} {'has' if len(plain) == 1 else 'have'} the shipped zero and scale "
+        f"{counted(len(plain), 'potentiometer')} {'has' if len(plain) == 1 else 'have'} the shipped zero and scale "
         f"({', '.join(plain)}): right for a 300 degree track mounted in its middle only.",
         "If they are mounted otherwise, run `greywhale calibrate`.",
     )
-
-
-def _count(number: int, what: str) -> str:
-    return f"{number} {what}" + ("" if number == 1 else "s")

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from greywhale.board.device import REPLY_WAIT_S, Device
+from greywhale.board.flash.readback import compare_image
 from greywhale.board.pots import read_counts, read_pots
 from greywhale.board.refusal import upper_first
 from greywhale.board.upload import read_parameters
-from greywhale.doctor import board, link, pots
+from greywhale.doctor import board, image, link, pots
 from greywhale.doctor.finding import Finding, Verdict
 from greywhale.doctor.port import examine_port
 from greywhale.errors import UserError
@@ -18,17 +19,21 @@ from greywhale.protocol import schema
 from greywhale.tune.progress import Report, report_nothing
 
 LINK_S, REST_S = 10.0, 2.0
+AT_REST = (schema.State.DISABLED, schema.State.FAULT)
 
 
 @dataclass(frozen=True)
 class Options:
     """`params` is a file of parameters that the board should run; `link_s` is how long the link is loaded;
-    `supply_v` is what a person measured at the motors' supply."""
+    `supply_v` is what a person measured at the motors' supply; with `image` the firmware is read back and compared
+    with `hex_file`, or with the shipped one."""
 
     port: str
     params: Path | None = None
     link_s: float = LINK_S
     supply_v: float | None = None
+    image: bool = False
+    hex_file: Path | None = None
 
 
 def examine(options: Options, report: Report = report_nothing) -> list[Finding]:
@@ -39,6 +44,9 @@ def examine(options: Options, report: Report = report_nothing) -> list[Finding]:
     try:
         with Device(options.port, restart=False) as device:
             found += _examine_board(device, options, report)
+            motors_on = device.status().state not in AT_REST
+        if options.image:
+            found.append(_examine_image(options, motors_on, report))
     except UserError as error:
         found.append(Finding("board", Verdict.BAD, upper_first(error.message)))
     return found
@@ -51,7 +59,7 @@ def _examine_board(device: Device, options: Options, report: Report) -> Iterator
     table = read_parameters(device)
     yield from board.examine_table(table, options.params)
     yield board.examine_supply(table, options.supply_v)
-    if status.state not in (schema.State.DISABLED, schema.State.FAULT):
+    if status.state not in AT_REST:
         yield Finding("potentiometers", Verdict.NOTE, "Not looked at: the motors are on.", "Run `greywhale stop`.")
         return
     report("potentiometers", 0.0)
@@ -60,3 +68,15 @@ def _examine_board(device: Device, options: Options, report: Report) -> Iterator
     yield link.examine_traffic(
         link.exchange(device, table, options.link_s, lambda fraction: report("link", fraction)), REPLY_WAIT_S
     )
+
+
+def _examine_image(options: Options, motors_on: bool, report: Report) -> Finding:
+    """The firmware on the board against the image. The board restarts, so this comes last."""
+    if motors_on:
+        return image.refused()
+    try:
+        found = compare_image(options.port, options.hex_file, report)
+        with Device(options.port):  # its firmware runs again
+            return image.examine_comparison(found)
+    except UserError as error:
+        return image.unread(upper_first(error.message))

@@ -17,12 +17,11 @@ import numpy as np
 import numpy.typing as npt
 
 from greywhale.arm import ArmParameters
-from greywhale.errors import BAD_USAGE, UserError
+from greywhale.errors import BAD_USAGE, UserError, require_within
 from greywhale.excite.information import information, natural_sizes, prior
 from greywhale.excite.limits import MARGIN_RAD, Limits, family, limits_of
 from greywhale.excite.multisine import LONGEST_S, SHORTEST_S, Shape
 from greywhale.excite.trial import ROW_S, Trial, try_motion
-from greywhale.firmware import JOINTS
 from greywhale.identify.samples import read_search
 from greywhale.identify.space import KINDS, MOTOR, Parameter, Space
 from greywhale.identify.uncertainty import OPEN, OPEN_FACTOR, OPEN_LOG
@@ -35,6 +34,7 @@ Floats = npt.NDArray[np.float64]
 Report = Callable[[str, float], None]
 
 BUDGET = 300
+MOST_BUDGET = 100_000  # takes a day
 SECONDS = 20.0
 # The quantities that count where an arm file does not say what is known: as in a usual identification.
 USUAL = (*MOTOR, "coulomb", "breakaway", "gap", "teeth")
@@ -71,7 +71,7 @@ class Problem:
             covariance: Floats | None = known_covariance
             nominal = plant_row(arm)
         else:
-            space = Space.of(arm, USUAL, range(JOINTS))
+            space = Space.of(arm, USUAL, arm.joints_in_use)
             nominal = space.plants(space.start()[None])[0]
             covariance = None
         known = prior(space.parameters, covariance, space.doubts())
@@ -165,7 +165,8 @@ def design(
     """
     check_effort(seconds, budget)
     at = np.asarray(pose, dtype=np.float64)
-    problem = Problem.of(arm, table or ParameterTable.defaults(), at, ranges or {}, seed)
+    running = table or ParameterTable.defaults().with_joints(arm.joints_in_use)
+    problem = Problem.of(arm, running, at, ranges or {}, seed)
     shape = Shape(problem.limits, seconds)
     best = _search(problem, shape, seed, budget, report or (lambda what, fraction: None))
     angles = shape.angles(best)
@@ -185,8 +186,7 @@ def check_effort(seconds: float, budget: int) -> None:
     """Refuse lengths and budgets that make no sense, before anything is done."""
     if not SHORTEST_S <= seconds <= LONGEST_S:
         raise UserError(f"the motion is {seconds:g} s long; it must be {SHORTEST_S:g} to {LONGEST_S:g} s.", BAD_USAGE)
-    if budget < 1:
-        raise UserError(f"the budget is {budget} motions to try, but it must be at least 1.", BAD_USAGE)
+    require_within("budget", budget, 1, MOST_BUDGET)
 
 
 def _search(problem: Problem, shape: Shape, seed: int, budget: int, report: Report) -> Floats:

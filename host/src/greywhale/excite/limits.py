@@ -14,6 +14,7 @@ from greywhale.errors import BAD_USAGE, UserError
 from greywhale.firmware import FASTEST_LED_RAD_S, JOINTS
 from greywhale.identify import sampled_plants
 from greywhale.identify.space import MOTOR, Space
+from greywhale.joints import require_same
 from greywhale.loop import plant_row
 from greywhale.table import ParameterTable
 
@@ -51,9 +52,16 @@ class Limits:
 def limits_of(
     arm: ArmParameters, table: ParameterTable, pose: Floats, ranges: Mapping[int, tuple[float, float]]
 ) -> Limits:
-    """The limits of a motion from `pose` (rad) with the board's parameter table and the user's ranges (rad)."""
+    """The limits of a motion from `pose` (rad) with the board's parameter table and the user's ranges (rad).
+
+    A joint that is not in use has no range: it stays at 0. Raises UserError where arm and board use other joints.
+    """
+    require_same("the arm file", arm.joints_in_use, "the board", table.joints_in_use)
+    for joint in ranges:
+        if joint not in arm.joints_in_use:
+            raise UserError(f"--range names joint {joint}, which is not in use; leave it out.", BAD_USAGE)
     low, high = np.zeros(JOINTS), np.zeros(JOINTS)
-    for joint in range(JOINTS):
+    for joint in arm.joints_in_use:
         stops = arm.joint[joint].stops
         least = max(table.physical(f"joint{joint}.limit_min"), stops.min) + MARGIN_RAD
         most = min(table.physical(f"joint{joint}.limit_max"), stops.max) - MARGIN_RAD
@@ -89,8 +97,8 @@ def _strength(arm: ArmParameters, table: ParameterTable, low: Floats, high: Floa
     still = np.zeros_like(poses)
     gravity = np.abs(body.bias(poses, still)).max(axis=0)
     inertia = np.diagonal(body.mass_matrix(poses), axis1=1, axis2=2).max(axis=0)
-    speed, acceleration = np.zeros(JOINTS), np.zeros(JOINTS)
-    for joint in range(JOINTS):
+    speed, acceleration = np.ones(JOINTS), np.ones(JOINTS)  # those not in use do not move anyway
+    for joint in arm.joints_in_use:
         motor = arm.actuator(joint)
         alpha = 1.0 / motor.torque_per_volt
         volts = min(table["supply_mv"], table[f"joint{joint}.ku_mv"]) / 1000.0
@@ -114,7 +122,7 @@ def family(arm: ArmParameters, seed: int = 0) -> Floats:
     """
     if arm.identification is not None and "covariance" in arm.identification:
         return sampled_plants(arm, 1 + FAMILY, seed)
-    space = Space.of(arm, (*MOTOR, "coulomb"), range(JOINTS))
+    space = Space.of(arm, (*MOTOR, "coulomb"), arm.joints_in_use)
     x = space.start()
     random = np.random.default_rng(seed)
     points = x + random.uniform(-DOUBT, DOUBT, (FAMILY, len(x)))

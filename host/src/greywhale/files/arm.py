@@ -7,26 +7,28 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 
 from greywhale.arm.parameters import ArmParameters
+from greywhale.files.names import suggesting
 from greywhale.formats import toml_file
 
 
 def arm_names() -> list[str]:
-    """The arms that come with greywhale: default, worn, and the paper's white_box and grey_box."""
+    """The arms that come with greywhale: default, worn, two_joints, and the paper's white_box and grey_box."""
     folder = _shipped()
     return sorted(entry.name.removesuffix(".toml") for entry in folder.iterdir() if entry.name.endswith(".toml"))
 
 
 def load_arm(source: str | Path) -> ArmParameters:
     """Read an arm.toml, or one of `arm_names()` by its name; raises UserError naming file, key, value and reason."""
-    if source in arm_names():
+    if str(source) in arm_names():
         text = _shipped().joinpath(f"{source}.toml").read_text(encoding="utf-8")
         return toml_file.loads(text, ArmParameters, f"{source}.toml")
-    return toml_file.load(source, ArmParameters)
+    with suggesting(source, arm_names()):
+        return toml_file.load(source, ArmParameters)
 
 
 def content_of(source: str | Path) -> bytes:
     """The bytes of the file that `load_arm` reads."""
-    if source in arm_names():
+    if str(source) in arm_names():
         return _shipped().joinpath(f"{source}.toml").read_bytes()
     return Path(source).read_bytes()
 

@@ -1,4 +1,4 @@
-"""controller.toml: the fuzzy sets and gains of four joints.
+"""controller.toml: the fuzzy sets and gains of four joints, and on request the board's `stall_volts`.
 
 They are checked before any of them reaches a board. Reading a written file back gives the board's own numbers. The sets
 are named as in the paper: NE [-1,-1,Ne_c,0], ZE [Ze_a,0,Ze_c], PE [0,Pe_b,1,1], and the same for the change of error
@@ -10,13 +10,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from operator import index
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from greywhale.errors import UserError
+from greywhale.files.names import suggesting
+from greywhale.files.paper_tables import controller_names, controller_path
 from greywhale.firmware import JOINTS
 from greywhale.formats import toml_file, toml_text
+from greywhale.formats.kinds import Kind
 from greywhale.formats.whole import write_text
 from greywhale.protocol import schema
 from greywhale.protocol.declared import Parameter
@@ -25,6 +28,7 @@ from greywhale.table import CONTROLLER_COLUMNS, ParameterTable
 # No flank of a fuzzy set may be narrower than this.
 NARROWEST = 0.01
 GAINS = ("kp", "kd", "ki", "ku")
+_STALL = schema.PARAMETER_BY_NAME["stall_volts"]
 
 
 def _left() -> float:
@@ -82,13 +86,26 @@ class JointController(toml_file.Table):
 class Controller(toml_file.Table):
     """Controllers of joint 0..3, and where their numbers come from."""
 
+    kinds: ClassVar[tuple[Kind, ...]] = (Kind.CONTROLLER,)
+
     source: str = ""
+    stall_volts: float | None = None  # V: the board's own stays where the file says nothing
     joint: tuple[JointController, ...] = Field(min_length=JOINTS, max_length=JOINTS)
     tuning: dict[str, Any] | None = None  # how `greywhale tune` found it and what it expects; no board gets it
 
+    @field_validator("stall_volts")
+    @classmethod
+    def _fits_the_parameter(cls, volts: float | None) -> float | None:
+        if volts is not None:
+            least, most = (_STALL.to_physical(raw) for raw in (_STALL.minimum, _STALL.maximum))
+            if not least <= volts <= most:
+                raise ValueError(f"it must lie within {least:g}..{most:g} V")
+        return volts
+
     def raw_values(self) -> dict[str, int]:
         """Parameter name -> raw value, for everything that a controller file says."""
-        return {
+        others = {} if self.stall_volts is None else {_STALL.name: _STALL.to_raw(self.stall_volts)}
+        return others | {
             parameter.name: parameter.to_raw(value)
             for number, joint in enumerate(self.joint)
             for _, parameter, value in joint.parameters(number)
@@ -100,8 +117,9 @@ class Controller(toml_file.Table):
 
 
 def load(path: str | Path) -> Controller:
-    """Read and check a controller file."""
-    controller = toml_file.load(path, Controller)
+    """Read and check a controller file, or one that comes with greywhale by its name (`before_tuning`)."""
+    with suggesting(path, controller_names()):
+        controller = toml_file.load(controller_path(path), Controller)
     try:
         controller.raw_values()
     except UserError as error:
@@ -124,6 +142,7 @@ def save(
     *,
     header: Sequence[str] = (),
     notes: Sequence[str] = ("",) * JOINTS,
+    stall_volts: float | None = None,
     tuning: Mapping[str, Any] | None = None,
 ) -> None:
     """Write a controller file, or nothing at all where a board would refuse it.
@@ -132,7 +151,7 @@ def save(
     1/65536, mV); an int32 array is one. `load` gives the same raw values back. `header` are lines of comment on top,
     `notes` one for each joint.
     """
-    text = to_text(rows, source, header=header, notes=notes, tuning=tuning)
+    text = to_text(rows, source, header=header, notes=notes, stall_volts=stall_volts, tuning=tuning)
     toml_file.loads(text, Controller, str(path))
     write_text(path, text)
 
@@ -143,10 +162,13 @@ def to_text(
     *,
     header: Sequence[str] = (),
     notes: Sequence[str] = ("",) * JOINTS,
+    stall_volts: float | None = None,
     tuning: Mapping[str, Any] | None = None,
 ) -> str:
     """The text of a controller file; see `save`."""
     lines = [*(f"# {line}".rstrip() for line in header), f"source = {toml_text.value(source)}"]
+    if stall_volts is not None:
+        lines.append(f"stall_volts = {toml_text.value(stall_volts)}")
     for joint, (row, note) in enumerate(zip(rows, notes, strict=True)):
         values = _in_file(joint, row)
         lines += ["", f"[[joint]]  # {joint}" + (f": {note}" if note else "")]

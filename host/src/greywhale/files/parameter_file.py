@@ -2,28 +2,21 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
 from greywhale.errors import UserError, cut
 from greywhale.files import controller
+from greywhale.files.paper_tables import controller_path
 from greywhale.formats import toml_file
+from greywhale.formats.kinds import Kind, refuse_other_kind
 from greywhale.formats.whole import write_text
 from greywhale.protocol import schema
-from greywhale.protocol.declared import Parameter
-from greywhale.table import ParameterTable
+from greywhale.table import ParameterTable, physical
 
 SINCE_LAYOUT_2 = (
     *("unrest_amplitude", "unrest_rate", "unrest_time", "unrest_action"),
     *("speed_limit", "runaway_limit", "stall_volts", "stall_ms", "estop_input", "driver"),
 )
-
-
-def physical(parameter: Parameter, raw: int) -> float:
-    """The value in the parameter's unit, rounded to the digits that still tell neighbouring raw values apart."""
-    digits = max(0, 1 - math.floor(math.log10(parameter.lsb)))
-    value = round(parameter.to_physical(raw), digits)
-    return int(value) if parameter.lsb == 1.0 else value
 
 
 def save(path: str | Path, table: ParameterTable) -> None:
@@ -45,10 +38,14 @@ def load(path: str | Path) -> ParameterTable:
 
     A file of layout 1 gets the defaults of the parameters that this layout lacks, as a board does with its banks.
     """
-    found = _flat(toml_file.read(path), path)
+    data = toml_file.read(path)
+    refuse_other_kind(data, str(path), Kind.PARAMETERS)
+    found = _flat(data, path)
     unknown = [name for name in found if name not in schema.PARAMETER_BY_NAME]
     if unknown:
-        raise UserError(f"{path}: unknown key {toml_file.key_path(unknown[:1])}; remove it or check its spelling.")
+        advice = toml_file.advice(unknown[0], schema.PARAMETER_BY_NAME)
+        key = toml_file.key_path(unknown[:1])
+        raise UserError(f"{path}: unknown key {key}; {advice}.")
     values = []
     older = not any(name in found for name in SINCE_LAYOUT_2)
     for parameter in schema.PARAMETERS:
@@ -71,8 +68,10 @@ def load(path: str | Path) -> ParameterTable:
 
 
 def load_table(path: str | Path) -> ParameterTable:
-    """A file of `greywhale params backup`, or a controller.toml on top of the firmware's defaults."""
-    if isinstance(toml_file.read(path).get("joint"), list):
+    """A file of `greywhale params backup`, or a controller.toml (or its name) on top of the firmware's defaults."""
+    data = toml_file.read(controller_path(path))
+    refuse_other_kind(data, str(path), Kind.PARAMETERS, Kind.CONTROLLER)
+    if isinstance(data.get("joint"), list):
         return controller.load(path).table().with_name(str(path))
     return load(path)
 

@@ -16,7 +16,7 @@ from typing import IO
 import numpy as np
 from numpy.typing import NDArray
 
-from greywhale.errors import UserError, cut, os_reason
+from greywhale.errors import UserError, counted, cut, os_reason
 from greywhale.formats.whole import refuse_devices
 
 # Bytes that are read at once; no line is longer.
@@ -134,7 +134,7 @@ class CsvFile:
 
     def require_rows(self, found: int, least: int) -> None:
         if found < least:
-            raise UserError(f"{self.name}: {found} rows of data, but at least {least} are needed.")
+            raise UserError(f"{self.name}: {counted(found, 'row')} of data, but at least {least} are needed.")
 
     def _read_head(self) -> None:
         """Read the comments and the column names."""

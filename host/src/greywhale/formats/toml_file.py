@@ -11,13 +11,15 @@ import json
 import math
 import re
 import tomllib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from difflib import get_close_matches
 from pathlib import Path
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, ClassVar, NamedTuple, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from greywhale.errors import UserError, cut, os_reason
+from greywhale.formats.kinds import Kind, refuse_other_kind
 from greywhale.formats.whole import refuse_devices
 
 Model = TypeVar("Model", bound=BaseModel)
@@ -37,8 +39,10 @@ _TOKEN = re.compile(
 
 class Table(BaseModel):
     """Base for a table of a TOML file: no unknown key, no silent conversion (text to number), no inf or nan,
-    immutable.
+    immutable. `kinds` are the kinds of file that a whole file of this table may be.
     """
+
+    kinds: ClassVar[tuple[Kind, ...]] = ()
 
     model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
 
@@ -72,7 +76,15 @@ def check(data: dict[str, Any], model: type[Model], name: str) -> Model:
         # Through JSON, so that in strict mode arrays may still become tuples, and words may become enumerations.
         return model.model_validate_json(json.dumps(data, default=str), extra="forbid")
     except ValidationError as error:
+        if issubclass(model, Table) and model.kinds:
+            refuse_other_kind(data, name, *model.kinds)
         raise UserError(_sentence(name, model, error)) from None
+
+
+def advice(key: str, known: Iterable[str]) -> str:
+    """What to do about an unknown key: the one that was probably meant, if there is one."""
+    meant = get_close_matches(key, list(known), 1)
+    return f"perhaps {meant[0]} is meant" if meant else "remove it or check its spelling"
 
 
 def key_path(location: Sequence[str | int]) -> str:
@@ -89,6 +101,8 @@ def _parse(text: str, name: str) -> dict[str, Any]:
     try:
         data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
+        if _is_csv(text):
+            raise UserError(f"{name}: not valid TOML: this is a log or a motion (CSV).") from None
         raise UserError(f"{name}: not valid TOML: {_lower_first(cut(str(error), 200))}.") from None
     except RecursionError:
         raise UserError(f"{name}: not valid TOML: it is nested too deeply.") from None
@@ -96,6 +110,11 @@ def _parse(text: str, name: str) -> dict[str, Any]:
         raise UserError(f"{name}: not valid TOML: a number in it has too many digits.") from None
     _refuse_odd_numbers(data, name)
     return data
+
+
+def _is_csv(text: str) -> bool:
+    first = next((line for line in text.splitlines() if line.strip() and not line.startswith("#")), "")
+    return first.startswith("time_s,")
 
 
 def _refuse_depth(text: str, name: str) -> None:
@@ -142,6 +161,8 @@ def _numbers(value: object, location: tuple[str | int, ...]) -> Iterator[tuple[t
 
 def _sentence(name: str, model: type[BaseModel], error: ValidationError) -> str:
     problems = [Problem(found["loc"], found["type"], found["msg"], found["input"]) for found in error.errors()]
+    # A misspelt key is also a missing one, and says more.
+    problems.sort(key=lambda one: one.kind != "extra_forbidden")
     # An array with a bad item is also reported as too short; that is no problem of its own.
     whole = [one for one in problems if one.kind != "too_short" or not any(one.contains(other) for other in problems)]
     text = f"{name}: {_problem(whole[0], model)}"
@@ -166,7 +187,8 @@ class Problem(NamedTuple):
 def _problem(problem: Problem, model: type[BaseModel]) -> str:
     key = key_path(problem.location)
     if problem.kind == "extra_forbidden":
-        return f"unknown key {key}; remove it or check its spelling"
+        known = _at(model.model_json_schema(), problem.location[:-1]).get("properties", ())
+        return f"unknown key {key}; {advice(str(problem.location[-1]), known)}"
     if problem.kind == "missing":
         return f"{key} is missing"
     if problem.kind in _BOUNDS:

@@ -23,12 +23,6 @@ def refuse_devices(path: str | Path) -> None:
         raise OSError(errno.EINVAL, "not an ordinary file", str(path))
 
 
-def refuse_existing(path: Path, option: str) -> None:
-    """Refuse to write over a file that somebody may need."""
-    if path.exists():
-        raise UserError(f"{path}: exists already; move it away, or name another file with {option}.", BAD_USAGE)
-
-
 def refuse_inputs(out: Path | None, *inputs: str | Path | None) -> None:
     """Refuse to write over a file that is read from. (A name of an arm that comes with greywhale is no file.)"""
     for source in inputs:

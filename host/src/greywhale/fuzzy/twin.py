@@ -24,12 +24,18 @@ _RECIPROCALS = np.array([131072 // (257 + i) for i in range(256)], dtype=np.int6
 
 @dataclass(frozen=True)
 class Side:
-    """Slopes on one side of one input; a short ramp's is 2^8 times finer."""
+    """Slopes on one side of one input, and how many bits finer each is: 0, 8 for a short ramp, 1 for a medium one."""
 
     zero: int
     outer: int
-    zero_short: bool
-    outer_short: bool
+    zero_shift: int
+    outer_shift: int
+
+    @property
+    def short_ramps(self) -> int:
+        """The same as the bits of `ShortRamp` in fuzzy_pdi.h."""
+        bits = {0: 0, 8: 0x81, 1: 0x84}[self.zero_shift]
+        return bits | (0x82 if self.outer_shift else 0)
 
 
 @dataclass(frozen=True)
@@ -42,11 +48,14 @@ class Coefficients:
     ku_mv: int
 
 
-def _slope(width: int, gain: int) -> tuple[int, bool]:
-    part = ONE * 4 * gain
-    is_short = (part >> 32) >= width
-    divisor = width << 8 if is_short else width
-    return min((2 * part + divisor) // (2 * divisor), LARGEST_SLOPE), is_short
+def _slope(width: int, gain: int, shift: int) -> int:
+    part, divisor = ONE * 4 * gain, width << shift
+    return min((2 * part + divisor) // (2 * divisor), LARGEST_SLOPE)
+
+
+def _is_full_within(sizes: int, width: int, gain: int) -> bool:
+    """For 128 and 256 sizes: whether a slope of 32 bits is too short for a ramp that is full so early."""
+    return (ONE * 4 * gain) >> 32 >= width * (256 // sizes)
 
 
 def _without_low_byte(slope: int) -> int:
@@ -56,9 +65,10 @@ def _without_low_byte(slope: int) -> int:
 
 
 def _side(zero_width: int, outer_width: int, gain: int) -> Side:
-    zero, zero_short = _slope(zero_width, gain)
-    outer, outer_short = _slope(outer_width, gain)
-    return Side(zero, _without_low_byte(outer), zero_short, outer_short)
+    zero = 8 if _is_full_within(128, zero_width, gain) else 1 if _is_full_within(256, zero_width, gain) else 0
+    outer = 8 if _is_full_within(256, outer_width, gain) else 0
+    slopes = _slope(zero_width, gain, zero), _without_low_byte(_slope(outer_width, gain, outer))
+    return Side(*slopes, zero, outer)
 
 
 def compile_settings(s: JointSettings, period_ms: int) -> Coefficients:
@@ -75,17 +85,15 @@ def compile_settings(s: JointSettings, period_ms: int) -> Coefficients:
     )
 
 
-def _climb(slope: int, is_short: bool, size: Ints) -> Ints:
-    if is_short:
-        return np.where(size > 255, ONE, _climb(slope, False, np.minimum(size, 255) * 256))
-    height: Ints = np.minimum((size * slope + 32768) >> 16, ONE)
-    return height
+def _climb(slope: int, shift: int, size: Ints) -> Ints:
+    height: Ints = np.minimum(((size << shift) * slope + 32768) >> 16, ONE)
+    return np.where(size > 255, ONE, height) if shift == 8 else height
 
 
 def _fuzzify(sides: tuple[Side, Side], value: Ints) -> tuple[Ints, Ints]:
     size = np.abs(value)
-    zero = [_climb(side.zero, side.zero_short, size) for side in sides]
-    outer = [_climb(side.outer, side.outer_short, size) for side in sides]
+    zero = [_climb(side.zero, side.zero_shift, size) for side in sides]
+    outer = [_climb(side.outer, side.outer_shift, size) for side in sides]
     return ONE - np.where(value < 0, zero[1], zero[0]), np.where(value < 0, outer[1], outer[0])
 
 

@@ -1,4 +1,6 @@
-"""Finds the controller with which a log was recorded, by the CRC in the log's header. It never assumes one."""
+"""Finds the controller with which a log was recorded: by the CRC in the log's header, or in that header itself. It
+never assumes one.
+"""
 
 from __future__ import annotations
 
@@ -20,10 +22,12 @@ def table_of(log: Log, given: Sequence[ParameterTable]) -> ParameterTable | None
 def _found(log: Log, given: Sequence[ParameterTable]) -> ParameterTable | None:
     crc = log.origin.param_crc
     if crc is None:
-        return _only_one(log, given)
+        return log.origin.table or _only_one(log, given)
     for table in (*given, ParameterTable.defaults()):
         if table.crc == crc:
             return table
+    if log.origin.table is not None:
+        return log.origin.table
     if not given:
         return None
     known = ", ".join(f"{table.name} 0x{table.crc:04x}" for table in given)

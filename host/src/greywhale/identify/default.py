@@ -10,13 +10,14 @@ from greywhale.identify.candidate import Candidate
 from greywhale.identify.combinations import combinations
 from greywhale.identify.data import FINE_STEP_S
 from greywhale.identify.found import Found, ParameterEstimate, Rival, Task
-from greywhale.identify.samples import read_search
+from greywhale.identify.samples import draw_plants, read_search
 from greywhale.identify.search import Search
 from greywhale.identify.space import KINDS, Space
 from greywhale.identify.uncertainty import uncertainty
 from greywhale.identify.windows import WindowResidual
 
 Floats = NDArray[np.float64]
+DRAWS = 60  # plants that tell how much better or worse a model may do by chance
 
 
 def find_default(task: Task) -> Found:
@@ -57,6 +58,7 @@ def find_default(task: Task) -> Found:
         rivals=tuple(Rival(one.order, float(one.held_out or 0.0), one.plant) for one in search.rivals()),
         estimates=_estimates(best.space, best.x, sure.deviations),
         covariance=sure.covariance,
+        draws=draw_plants(best.space, best.x, sure.covariance, DRAWS, task.seed),
         condition=sure.condition,
         open=sure.open,
         simulations=search.simulations,

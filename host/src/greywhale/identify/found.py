@@ -93,6 +93,7 @@ class Rival:
 class Found:
     """A plant (columns,), zero angles (4,) rad, and how certain the method is of them.
 
+    `draws` (n, columns) are plants drawn from the covariance: the fit allows them as well.
     `joints` are those that were identified. `orders` are the structures tried, with their held-out errors. `covariance`
     is of the searched numbers, in the order of the estimates. `open` are sentences about what the logs cannot show.
     """
@@ -110,5 +111,6 @@ class Found:
     rivals: tuple[Rival, ...] = ()
     combinations: tuple[Combination, ...] = ()
     covariance: Floats | None = field(default=None, repr=False)
+    draws: Floats | None = field(default=None, repr=False)
     condition: float | None = None
     curve: tuple[float, ...] = ()

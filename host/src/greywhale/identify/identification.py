@@ -5,15 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from greywhale.arm import ArmParameters
-from greywhale.errors import BAD_USAGE, UserError
+from greywhale.errors import BAD_USAGE, MOST_SEED, UserError, require_within
 from greywhale.files.log import Log
 from greywhale.identify import checks, controllers, judge
 from greywhale.identify.data import prepare
 from greywhale.identify.default import find_default
 from greywhale.identify.found import Report, Task
 from greywhale.identify.outcome import Outcome
+from greywhale.identify.overlap import refuse_shared
 from greywhale.identify.paper import METHODS as PAPER_METHODS
 from greywhale.identify.paper import find_as_paper
+from greywhale.joints import ALL, require_same
 from greywhale.table import ParameterTable
 
 METHODS = ("default", *PAPER_METHODS)
@@ -34,6 +36,7 @@ def identify(
 
     `begin` is a model of the same arm that the default method found from other logs: its quantities are fitted to these
     logs, and only orders that it lacks are tried. That takes a fraction of the time.
+    A log that holds the samples of another one is refused: each is fitted once, and validates only if it was not.
     `tables` are controllers with which the logs may have been recorded; the CRC in each log shows which one it is. An
     interrupt (Ctrl-C) after the first model ends the search early, with `complete` False in the outcome.
     """
@@ -41,10 +44,16 @@ def identify(
         raise UserError(f"method is {method!r}, but it must be one of {', '.join(METHODS)}.", BAD_USAGE)
     if not logs:
         raise UserError("identification needs at least one log.", BAD_USAGE)
+    if method != "default" and arm.joints_in_use != ALL:
+        raise UserError("the paper's methods are for arms with all four joints; use --method default.", BAD_USAGE)
+    require_within("seed", seed, 0, MOST_SEED)
+    refuse_shared(logs, validate)
     subjects, doubts = _subjects(logs, validate, arm, tables)
     task = Task(arm, tuple(subjects), seed, report or (lambda what, fraction: None), begin)
     found = find_default(task) if method == "default" else find_as_paper(task, method)
-    verdicts = tuple(judge.judge(subject, arm, found.plant, found.zero, found.joints) for subject in subjects)
+    verdicts = tuple(
+        judge.judge(subject, arm, found.plant, found.zero, found.joints, found.draws) for subject in subjects
+    )
     return Outcome(
         white_box=arm,
         method=method,
@@ -64,7 +73,10 @@ def _subjects(
     subjects, doubts = [], []
     crcs = {log.origin.param_crc for log in logs}
     for log in (*logs, *validate):
+        require_same("the arm file", arm.joints_in_use, log.name, log.joints_in_use)
         table = controllers.table_of(log, tables)
+        if table is not None:
+            require_same(log.name, log.joints_in_use, table.name, table.joints_in_use)
         shift = None  # nobody knows how old the readings of another tool are
         if log.origin.firmware is not None:
             shift = (table or ParameterTable.defaults())["filter_shift"]

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from greywhale.arm import ArmParameters
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.firmware import JOINTS, TICK_S
+from greywhale.identify.bootstrap import COUNTS
 from greywhale.identify.closed_loop import COMPARED_TICKS, Loop
 from greywhale.identify.data import Prepared
 from greywhale.identify.hunting import Swings, describe_difference, smooth_motion, swings_of
@@ -29,6 +30,7 @@ TINY = 1e-12  # rad², beside every error of a joint that moved
 UNEXPLAINED = 0.5
 WORSE = 4.0
 SMALL_RAD = 5e-3
+SURE = 0.95  # a model that is further from the log than this share of those that the fit allows is not so by chance
 FIT, SECOND, CHANGED = "fit", "validation", "validation, changed controller"
 
 
@@ -81,7 +83,11 @@ class Following:
 
 @dataclass(frozen=True)
 class Verdict:
-    """Mean squared differences between log and model, rad², per joint."""
+    """Mean squared differences between log and model, rad², per joint.
+
+    `chance` (rad², of all joints together) is what a model that was fitted to a log of the white box itself may be
+    further from another log than the white box: noise has moved its numbers, and readings come in steps.
+    """
 
     name: str
     role: str
@@ -89,12 +95,28 @@ class Verdict:
     white_box: tuple[float, ...]
     model: tuple[float, ...]
     following: Following | None = None
+    chance: float = 0.0
 
     @property
     def improvement(self) -> float:
         """1 is perfect, 0 no better than the white box."""
         before = sum(self.white_box)
         return 1.0 - sum(self.model) / before if before > 0.0 else 0.0
+
+    @property
+    def is_worse(self) -> bool:
+        """Whether the model is further from the log than the white box is, by more than chance explains."""
+        return self.excess > self.chance
+
+    @property
+    def is_as_good(self) -> bool:
+        """Whether chance explains which of both is nearer to the log."""
+        return abs(self.excess) <= self.chance
+
+    @property
+    def excess(self) -> float:
+        """By how much the model is further from the log than the white box is, all joints together, rad²."""
+        return sum(self.model) - sum(self.white_box)
 
     def as_dict(self) -> dict[str, object]:
         return {
@@ -104,11 +126,23 @@ class Verdict:
             "white_box_mse_rad2": list(self.white_box),
             "model_mse_rad2": list(self.model),
             "improvement": self.improvement,
+            "chance_rad2": self.chance,
         } | (self.following.as_dict() if self.following else {})
 
 
-def judge(subject: Subject, arm: ArmParameters, plant: Floats, zero: Floats, joints: Sequence[int]) -> Verdict:
-    """Judge both arms on one log; joints that were not identified do not count."""
+def judge(
+    subject: Subject,
+    arm: ArmParameters,
+    plant: Floats,
+    zero: Floats,
+    joints: Sequence[int],
+    draws: Floats | None = None,
+) -> Verdict:
+    """Judge both arms on one log; joints that were not identified do not count.
+
+    `draws` (n, columns) are plants that the fit allows as well; without them only a converter's steps are chance.
+    """
+    draws = np.zeros((0, len(plant))) if draws is None else draws
     white = Space.of(arm, (), ())
     kept = np.isin(np.arange(JOINTS), list(joints))
     following = None
@@ -116,16 +150,33 @@ def judge(subject: Subject, arm: ArmParameters, plant: Floats, zero: Floats, joi
         loop = Loop(subject.log, subject.table, arm)
         own = loop.with_zero(zero) if zero.any() else loop
         shown = [one.angles(row[None])[0] for one, row in ((loop, white.base), (own, plant))]
-        before, after = (_squares(angles, loop.follower[::COMPARED_TICKS]) for angles in shown)
+        log = loop.follower[::COMPARED_TICKS]
+        before, after = (_squares(angles, log) for angles in shown)
+        others = [_squares(angles, log) for angles in (own.angles(draws) if len(draws) else ())]
         following = _following(loop, shown[0], shown[1], kept)
         measure = "closed loop"
     else:
         windows = WindowResidual([subject.log], arm, range(JOINTS))
         before = windows.mse(white.base, np.zeros(JOINTS))
         after = windows.mse(plant, zero)
+        others = [windows.mse(draw, zero) for draw in draws]
         measure = "logged voltages, windows"
     one, other = (tuple(float(value) for value in np.where(kept, errors, 0.0)) for errors in (before, after))
-    return Verdict(subject.log.log.name, subject.role, measure, one, other, following)
+    chance = _worse_by_chance(float(after[kept].sum()), np.array([errors[kept].sum() for errors in others]))
+    chance += float(_unresolved(arm)[kept].sum())
+    return Verdict(subject.log.log.name, subject.role, measure, one, other, following, chance)
+
+
+def _worse_by_chance(estimate: float, draws: Floats) -> float:
+    """By how much a plant that the fit allows is further from the log than the estimate, in all but few cases."""
+    return max(0.0, float(np.quantile(draws, SURE)) - estimate) if len(draws) else 0.0
+
+
+def _unresolved(arm: ArmParameters) -> Floats:
+    """What a converter's steps hide, rad² (4,): even the true arm is off its own log by so much."""
+    steps = np.array([pot.track for pot in arm.follower_pots.joint]) / COUNTS
+    found: Floats = steps**2 / 12.0
+    return found
 
 
 def _squares(one: Floats, other: Floats) -> Floats:
@@ -147,20 +198,16 @@ def warnings_of(verdicts: Sequence[Verdict]) -> list[str]:
     """Sentences for numbers that speak against the model."""
     sentences = []
     for verdict in verdicts:
-        if verdict.improvement <= 0.0:
+        if verdict.is_worse:
             sentences.append(
-                f"{verdict.name} ({verdict.role}): the model is no better than the arm file "
-                f"({sum(verdict.model):.3g} against {sum(verdict.white_box):.3g} rad²)."
+                f"{verdict.name} ({verdict.role}): the model is worse than the arm file that it began with, by more "
+                f"than chance explains ({sum(verdict.model):.3g} against {sum(verdict.white_box):.3g} rad²)."
             )
     usual = [verdict for verdict in verdicts if verdict.role != CHANGED]
     changed = [verdict for verdict in verdicts if verdict.role == CHANGED]
-    if (
-        len(usual) > 1
-        and all(one.improvement > 0.0 for one in usual)
-        and any(one.improvement <= 0.0 for one in changed)
-    ):
+    if len(usual) > 1 and not any(one.is_worse for one in usual) and any(one.is_worse for one in changed):
         sentences.append(
-            "The model improves on the logs of its own controller but not with a changed one: it has learnt that "
+            "The model does well on the logs of its own controller but not with a changed one: it has learnt that "
             "controller, not the arm. Do not tune with it; check supply, controller file and directions, record again."
         )
     return sentences

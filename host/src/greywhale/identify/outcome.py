@@ -16,6 +16,7 @@ from greywhale.formats.whole import write_text
 from greywhale.identify.found import Found, ParameterEstimate
 from greywhale.identify.judge import FIT, Subject, Verdict
 from greywhale.identify.noise import pot_noise
+from greywhale.joints import Joints
 
 Floats = NDArray[np.float64]
 
@@ -56,7 +57,8 @@ class Outcome:
     @property
     def arm(self) -> ArmParameters:
         """The model as an arm that can be simulated."""
-        name = f"{self.white_box.name}, identified" + ("" if self.complete else " (unfinished)")
+        begun = self.white_box.name.removesuffix(" (unfinished)").removesuffix(", identified")
+        name = f"{begun}, identified" + ("" if self.complete else " (unfinished)")
         source = f"greywhale identify, method {self.method}"
         return arm_of(self.white_box, self.plant, self.zero, name, source, self._noise())
 
@@ -121,21 +123,26 @@ class Outcome:
     def as_dict(self) -> dict[str, Any]:
         return self.identification() | {"convergence": list(self.found.curve)}
 
+    @property
+    def begun(self) -> str:
+        """What to call the arm that the search began with: only one that nobody identified is a white box."""
+        return "white box" if self.white_box.identification is None else "model before"
+
     def text(self) -> str:
         """The text for people: the layout of the paper's Table 5, then what is known and what is not."""
         lines = [] if self.complete else ["UNFINISHED: interrupted; this is the best model so far.", ""]
         for verdict in self.verdicts:
-            lines += _table(verdict)
+            lines += _table(verdict, self.begun, self.white_box.joints_in_use)
         if self.found.condition is not None:
             for rival in self.found.rivals:
                 lines.append(f"Nearly as good: {rival.order}.")
             lines.append(f"Model order: {self.found.order} (by held-out data).")
             lines.append(f"Condition number of the Fisher information: {self.found.condition:.2g}.")
-            lines += ["", f"{'parameter':18} {'white box':>11} {'model':>11} {'std':>9}  unit"]
+            lines += ["", f"{'parameter':18} {self.begun:>12} {'model':>11} {'std':>9}  unit"]
             for one in self.estimates:
                 deviation = "" if one.deviation is None else f"{one.deviation:.2g}"
                 lines.append(
-                    f"{one.name:18} {one.white_box:>11.4g} {one.value:>11.4g} {deviation:>9}  {one.unit}".rstrip()
+                    f"{one.name:18} {one.white_box:>12.4g} {one.value:>11.4g} {deviation:>9}  {one.unit}".rstrip()
                 )
         if self.found.combinations:
             lines += ["", "Better known together than one by one:"]
@@ -150,13 +157,19 @@ class Outcome:
         return "\n".join(lines)
 
 
-def _table(verdict: Verdict) -> list[str]:
+def _table(verdict: Verdict, begun: str, joints: Joints) -> list[str]:
     lines = [
         f"{verdict.name} ({verdict.role}; {verdict.measure})",
-        f"{'MSE [rad²]':12} {'white box':>12} {'model':>12}",
+        f"{'MSE [rad²]':12} {begun:>12} {'model':>12}",
     ]
-    for joint, (before, after) in enumerate(zip(verdict.white_box, verdict.model, strict=True)):
-        lines.append(f"{f'joint {joint}':12} {before:>12.3g} {after:>12.3g}")
+    for joint in joints:
+        lines.append(f"{f'joint {joint}':12} {verdict.white_box[joint]:>12.3g} {verdict.model[joint]:>12.3g}")
     before, after = sum(verdict.white_box), sum(verdict.model)
-    lines.append(f"{'all joints':12} {before:>12.3g} {after:>12.3g}   {100 * verdict.improvement:.1f} % better")
+    lines.append(f"{'all joints':12} {before:>12.3g} {after:>12.3g}   {_comparison(verdict, begun)}")
     return [*lines, ""]
+
+
+def _comparison(verdict: Verdict, begun: str) -> str:
+    if verdict.is_as_good:
+        return f"as good as the {begun}, as far as noise lets tell"
+    return f"{100 * abs(verdict.improvement):.1f} % {'worse' if verdict.improvement < 0.0 else 'better'}"

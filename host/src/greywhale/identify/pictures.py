@@ -4,76 +4,117 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+import numpy.typing as npt
 from matplotlib.figure import Figure
 
-from greywhale.errors import UserError, os_reason
-from greywhale.formats.whole import write_whole
+from greywhale.drawing import looks
+from greywhale.drawing.page import (
+    COLUMN,
+    JOINTS,
+    WIDE,
+    headline,
+    leave,
+    legend_below,
+    make_logarithmic,
+    save_into,
+    style,
+)
 from greywhale.identify.closed_loop import COMPARED_TICKS, Loop
 from greywhale.identify.judge import Subject, Verdict
 from greywhale.identify.outcome import Outcome
+from greywhale.joints import ALL, Joints
 from greywhale.loop import plant_row
-from greywhale.report.follow import JOINT_NAMES
+from greywhale.report.names import distinct_names
 
-_RECORDED, _WHITE, _MODEL = "#222222", "#D55E00", "#0072B2"
+Floats = npt.NDArray[np.float64]
 
 
 def draw(outcome: Outcome, folder: Path) -> list[Path]:
     """Write the pictures into `folder`; their paths."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise UserError(f"{folder}: cannot be made: {os_reason(error)}.") from None
     written = []
-    if outcome.found.curve:
-        written.append(_save(_convergence(outcome), folder / "convergence.png"))
-    for number, (subject, verdict) in enumerate(zip(outcome.subjects, outcome.verdicts, strict=True), 1):
-        if subject.table is not None:
-            written.append(_save(_responses(outcome, subject, verdict), folder / f"responses_{number}.png"))
+    with style():
+        if outcome.found.curve:
+            figure = plot_convergence(outcome.found.curve, outcome.method)
+            written.append(save_into(figure, folder, "convergence.png"))
+        names = distinct_names([one.name for one in outcome.verdicts])
+        for number, (subject, verdict) in enumerate(zip(outcome.subjects, outcome.verdicts, strict=True), 1):
+            if subject.table is not None:
+                figure = _responses(outcome, subject, verdict, names[number - 1])
+                written.append(save_into(figure, folder, f"responses_{number}.png"))
     return written
 
 
-def _convergence(outcome: Outcome) -> Figure:
-    figure, axes = plt.subplots(figsize=(7.0, 4.0))
-    axes.semilogy(np.arange(1, len(outcome.found.curve) + 1), outcome.found.curve, color=_MODEL)
+def plot_convergence(costs: tuple[float, ...], method: str) -> Figure:
+    """The best cost so far, rad², over iterations; one column wide."""
+    figure, axes = plt.subplots(figsize=(COLUMN, 2.5))
+    figure.subplots_adjust(**leave(figure, 0.7, 0.12, 0.42, 0.3))
+    axes.step(np.arange(1, len(costs) + 1), costs, where="post", **looks.MODEL.line)
+    make_logarithmic(axes)
     axes.set_xlabel("iteration")
-    axes.set_ylabel("best mean squared error [rad²]")
-    axes.set_title(f"Convergence of the identification, method {outcome.method}")
-    axes.grid(alpha=0.3)
+    axes.set_ylabel("best summed MSE [rad²]")
+    axes.set_title(f"Identification, method {method}")
     return figure
 
 
-def _responses(outcome: Outcome, subject: Subject, verdict: Verdict) -> Figure:
+def _responses(outcome: Outcome, subject: Subject, verdict: Verdict, name: str) -> Figure:
     assert subject.table is not None
     loop = Loop(subject.log, subject.table, outcome.white_box)
     white = loop.angles(plant_row(outcome.white_box)[None])[0]
     shifted = loop.with_zero(outcome.zero) if outcome.zero.any() else loop
     model = shifted.angles(outcome.plant[None])[0]
-    time = loop.time[::COMPARED_TICKS][: len(model)]
-    figure, grid = plt.subplots(2, 2, figsize=(11.0, 7.0), sharex=True)
-    for joint, axes in enumerate(grid.flat):
-        axes.plot(time, loop.follower[::COMPARED_TICKS, joint], color=_RECORDED, linewidth=1.8, label="recorded")
-        axes.plot(time, white[:, joint], color=_WHITE, linewidth=1.0, label="white box")
-        axes.plot(time, model[:, joint], color=_MODEL, linewidth=1.0, label="model")
-        errors = f"{verdict.white_box[joint]:.2g} -> {verdict.model[joint]:.2g} rad²"
-        axes.set_title(f"Joint {joint}, {JOINT_NAMES[joint]}   (MSE {errors})", fontsize=9)
-        axes.set_ylabel("angle [rad]")
-        axes.grid(alpha=0.3)
-    for axes in grid[1]:
-        axes.set_xlabel("time [s]")
-    handles, labels = grid[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="lower center", ncols=3, frameon=False)
-    figure.suptitle(f"{Path(verdict.name).name} ({verdict.role})", fontsize=11)
+    rows = slice(0, COMPARED_TICKS * len(model), COMPARED_TICKS)
+    said = [
+        f"MSE [rad²]: {outcome.begun} {before:.2g},\nmodel {after:.2g}"
+        for before, after in zip(verdict.white_box, verdict.model, strict=True)
+    ]
+    curves = {outcome.begun: white, "model": model}
+    title = f"{name} ({verdict.role}); error: recorded less simulated"
+    joints = outcome.white_box.joints_in_use
+    return plot_responses(loop.time[rows], loop.leader[rows], loop.follower[rows], curves, said, title, joints)
+
+
+def plot_responses(
+    time: Floats,
+    leader: Floats,
+    follower: Floats,
+    simulated: dict[str, Floats],
+    said: list[str],
+    title: str,
+    joints: Joints = ALL,
+) -> Figure:
+    """Angles (rows, 4) in rad at `time` (s): leader, follower and what was simulated, and below how far that is off.
+
+    `simulated` are two arms by their names: what the search began with, and the model.
+    """
+    rows = (len(joints) + 1) // 2
+    figure = plt.figure(figsize=(WIDE, 6.7 if rows == 2 else 4.0))
+    headline(figure, title)
+    drawn = {
+        "leader": (leader, looks.LEADER.thin(0.9)),
+        "recorded follower": (follower, looks.FOLLOWER),
+    }
+    for (label, angles), look in zip(simulated.items(), (looks.WHITE_BOX, looks.MODEL), strict=True):
+        drawn[label] = angles, look
+    room = leave(figure, 0.67, 0.1, 0.62, 0.75)
+    grid = figure.add_gridspec(rows, 2, **room, wspace=0.29, hspace=0.38)
+    for place, joint in enumerate(joints):
+        cells = grid[divmod(place, 2)].subgridspec(2, 1, height_ratios=(2.2, 1), hspace=0.07)
+        angle = figure.add_subplot(cells[0])
+        error = figure.add_subplot(cells[1], sharex=angle)
+        for label, (angles, look) in drawn.items():
+            angle.plot(time, angles[:, joint], label=label, **look.line)
+        for label, angles in simulated.items():
+            error.plot(time, follower[:, joint] - angles[:, joint], **drawn[label][1].thin().line)
+        error.axhline(0.0, color=looks.DARK, linewidth=0.5)
+        angle.set_title(f"{JOINTS[joint]}\n{said[joint]}")
+        angle.tick_params(labelbottom=False)
+        angle.set_ylabel("angle [rad]")
+        angle.set_xlim(time[0], time[-1])
+        error.set_ylabel("error [rad]")
+        error.set_xlabel("time [s]")
+        figure.align_ylabels([angle, error])
+    handles, labels = angle.get_legend_handles_labels()
+    legend_below(figure, handles, labels)
     return figure
-
-
-def _save(figure: Figure, path: Path) -> Path:
-    try:
-        write_whole(path, lambda file: figure.savefig(file, format="png", dpi=120, metadata={"Software": None}))
-    finally:
-        plt.close(figure)
-    return path

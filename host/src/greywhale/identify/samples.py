@@ -36,19 +36,22 @@ def sampled_plants(arm: ArmParameters, count: int, seed: int = 0) -> Floats:
     estimate = plant_row(arm)[None]
     if count == 1:
         return estimate
-    space, x, covariance = read_search(arm)
-    scale = np.sqrt(np.diag(covariance))
-    # A root that is the same on every computer: eigenvectors have free signs, a Cholesky factor does not.
-    root = np.linalg.cholesky(covariance / np.outer(scale, scale) + 1e-9 * np.eye(len(x))) * scale[:, None]
-    draws = np.einsum("nk,jk->nj", np.random.default_rng(seed).standard_normal((count - 1, len(x))), root)
-    low, high = _ranges(space)
-    # The estimate may itself lie at the end of its range.
-    points = np.clip(x + draws, np.minimum(low, x), np.maximum(high, x))
-    plants: Floats = np.concatenate([estimate, space.plants(points)])
+    plants: Floats = np.concatenate([estimate, draw_plants(*read_search(arm), count - 1, seed)])
     rivals = _read_rivals(arm)
     for number, row in enumerate(range(EVERY, count, EVERY) if len(rivals) else ()):
         plants[row] = rivals[number % len(rivals)]
     return plants
+
+
+def draw_plants(space: Space, x: Floats, covariance: Floats, count: int, seed: int = 0) -> Floats:
+    """Plants (count, columns) drawn around the point `x` of a search, with its covariance."""
+    scale = np.sqrt(np.diag(covariance))
+    # A root that is the same on every computer: eigenvectors have free signs, a Cholesky factor does not.
+    root = np.linalg.cholesky(covariance / np.outer(scale, scale) + 1e-9 * np.eye(len(x))) * scale[:, None]
+    draws = np.einsum("nk,jk->nj", np.random.default_rng(seed).standard_normal((count, len(x))), root)
+    low, high = _ranges(space)
+    # The estimate may itself lie at the end of its range.
+    return space.plants(np.clip(x + draws, np.minimum(low, x), np.maximum(high, x)))
 
 
 def _read_rivals(arm: ArmParameters) -> Floats:

@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greywhale.arm.parameters import JOINT_NAMES
-from greywhale.firmware import JOINTS
 from greywhale.identify.space import KINDS, WHOLE_ARM, Parameter, Space
 from greywhale.identify.windows import WindowResidual
 
@@ -123,7 +122,7 @@ def _describe_open(space: Space, x: Floats, deviations: Floats, joints: Sequence
     sentences = [
         f"joint {joint} ({JOINT_NAMES[joint]}): it did not move, so nothing of it was identified and the values of the "
         "arm file stay; move it by half a radian or more"
-        for joint in range(JOINTS)
+        for joint in space.arm.joints_in_use
         if joint not in joints
     ]
     for index, parameter in enumerate(space.parameters):

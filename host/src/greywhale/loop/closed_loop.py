@@ -178,14 +178,15 @@ class ClosedLoop:
 
 
 def settings_of(table: ParameterTable, soft_start: bool = False) -> _native.LoopSettings:
-    """The settings of the firmware around the law, from the table."""
+    """The settings of the firmware around the law, from the table. Joints that are not in use have limits of 0."""
+    lower, upper = table.limits_raw()
     return _native.LoopSettings(
         period_ms=table.period_ms,
         supply_mv=table["supply_mv"],
         soft_start_ms=table["soft_start_ms"] if soft_start else 0,
         filter_shift=table["filter_shift"],
-        limit_min=table.each("joint", "limit_min"),
-        limit_max=table.each("joint", "limit_max"),
+        limit_min=lower,
+        limit_max=upper,
         motor_sign=table.each("joint", "motor_sign"),
         pwm_top=pwm_steps(table.board),
         leader_zero=table.each("leader", "zero"),
@@ -201,7 +202,7 @@ def with_ideal_follower(table: ParameterTable) -> ParameterTable:
     """
     usual = ParameterTable.defaults()
     keys = ("follower", "zero"), ("follower", "scale"), ("joint", "motor_sign")
-    names = [f"{group}{joint}.{key}" for group, key in keys for joint in range(JOINTS)]
+    names = [f"{group}{joint}.{key}" for group, key in keys for joint in table.joints_in_use]
     return table.with_raw({name: usual[name] for name in names})
 
 

@@ -11,6 +11,7 @@ from greywhale.arm import ArmParameters
 from greywhale.arm.plants import check_plants, column, plant_row
 from greywhale.errors import UserError
 from greywhale.firmware import JOINTS, TICK_S
+from greywhale.joints import unused
 from greywhale.loop.closed_loop import DEFAULT_TIMING, ClosedLoop, Result, Timing, read_leader, with_right_motors
 from greywhale.loop.controllers import check_controllers, controllers_of
 from greywhale.loop.leader import SLICES_PER_TICK, leader_slices
@@ -24,10 +25,11 @@ STEPS_PER_TICK = (1, 2, 4)
 class Experiment:
     """Leader, sensors and board settings, shared by all candidates; `run` simulates any number of them.
 
-    `leader` is a motion, or angles (rad) in every slice of 250 us as float64 (slices, 4). `table` is the parameter
-    table of the board; its controllers are the candidate unless others are given, and its motors turn as the arm's,
-    whatever their wires. With `noise` False the potentiometers are quiet. `weight_s` (ticks,) weighs the sizes of e and
-    u in ITAE and ITAU; by default it is the time since the leader may move.
+    `leader` is a motion, or angles (rad) in every slice of 250 us as float64 (slices, 4); joints that the arm does not
+    use stay at 0. `table` is the parameter table of the board; its controllers are the candidate unless others are
+    given, and its motors turn as the arm's, whatever their wires. With `noise` False the potentiometers are quiet.
+    `weight_s` (ticks,) weighs the sizes of e and u in ITAE and ITAU; by default it is the time since the leader may
+    move.
     """
 
     def __init__(
@@ -51,7 +53,8 @@ class Experiment:
         if isinstance(leader, Trajectory):
             slices = leader_slices(leader, wait_s, after_s, resample)
         else:
-            slices = _check_slices(leader)
+            slices = _check_slices(leader).copy()
+        slices[:, unused(arm.joints_in_use)] = 0.0
         self.home = slices[0].copy()
         readings = read_leader(self.table, arm.leader_pots, slices, seed=seed, noise=noise, timing=timing)
         self.reference, self.leader = readings.reference, readings.leader

@@ -24,6 +24,7 @@ from threadpoolctl import threadpool_limits
 
 from greywhale.errors import UserError
 from greywhale.files.log import Log
+from greywhale.joints import ALL, Joints
 from greywhale.measure.delay import correlation_delay, onset_delays
 from greywhale.measure.runs import Run, gap_free_runs, resting
 
@@ -68,12 +69,14 @@ class Evaluation:
     duration_s: float
     following: bool
     rests_s: tuple[float, ...]
+    joints_in_use: Joints = ALL  # the others have measures too, of a motion that is 0
 
     def as_dict(self) -> dict[str, object]:
         """For JSON: plain numbers with their units in the keys."""
         return {
             "joints": [
                 {
+                    "in_use": number in self.joints_in_use,
                     "mse_rad2": joint.mse,
                     "steady_state_error_rad": joint.steady_state_error,
                     "time_delay_s": joint.delay_s,
@@ -82,7 +85,7 @@ class Evaluation:
                     "follows": joint.follows,
                     "leader_rested_s": rested,
                 }
-                for joint, rested in zip(self.joints, self.rests_s, strict=True)
+                for number, (joint, rested) in enumerate(zip(self.joints, self.rests_s, strict=True))
             ],
             "total_mse_rad2": self.total_mse,
             "samples": self.samples,
@@ -110,11 +113,12 @@ def evaluate(log: Log, settings: Settings | None = None) -> Evaluation:
             rests.append(rested)
     return Evaluation(
         joints=tuple(joints),
-        total_mse=sum(joint.mse for joint in joints),
+        total_mse=sum(joints[number].mse for number in log.joints_in_use),
         samples=int(measured.sum()),
         duration_s=sum(run.period * (run.stop - run.start - 1) for run in runs),
         following=bool(following.any()),
         rests_s=tuple(rests),
+        joints_in_use=log.joints_in_use,
     )
 
 

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from greywhale.errors import BAD_USAGE, UserError
+from greywhale.errors import BAD_USAGE, MOST_SEED, UserError, require_within
 from greywhale.optimise.box import Floats
 from greywhale.optimise.functions import FUNCTIONS, SETTINGS, Setting, place
 from greywhale.optimise.methods import METHODS, create, minimise
@@ -50,14 +50,12 @@ class Plan:
             ("method", self.methods, METHODS),
         ):
             _check_names(what, chosen, tuple(known))
-        for what, value, least in (
-            ("dimensions", self.dimensions, 2),
-            ("budget", self.budget, 1),
-            ("seeds", self.runs, 1),
-            ("seed", self.seed, 0),
-        ):
-            if value < least:
-                raise UserError(f"{what} is {value}, but must be at least {least}.", BAD_USAGE)
+        require_within("dimensions", self.dimensions, 2, 1000)
+        require_within("budget", self.budget, 1, 10_000_000)
+        require_within("seeds", self.runs, 1, 100_000)
+        require_within("seed", self.seed, 0, MOST_SEED)
+        if self.pack is not None:
+            require_within("pack", self.pack, 1, 10_000)
         for method in self.methods:
             try:
                 create(method, np.zeros(self.dimensions), np.ones(self.dimensions), budget=1, pack=self.pack).close()

@@ -4,19 +4,26 @@ from __future__ import annotations
 
 import csv
 import io
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from greywhale.drawing import looks
+from greywhale.drawing.kinds import KINDS
 from greywhale.errors import BAD_USAGE, UserError
-from greywhale.formats.whole import write_text, write_whole
+from greywhale.formats.whole import write_text
 from greywhale.optimise.comparison import Comparison
 from greywhale.optimise.functions import Setting
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
-PICTURES = {".png": "Software", ".svg": "Date", ".pdf": "CreationDate"}
-FORMATS = (".csv", *PICTURES)
+FORMATS = (".csv", *KINDS)
+# Methods in a picture: dark and saturated colours first, then the same dashed.
+_COLOURS = (looks.BLUE, looks.ORANGE, looks.GREEN, looks.DARK, looks.PURPLE, looks.AMBER, looks.SKY, looks.GREY)
+_STYLES = ("-", "--", ":")
+_NAMES_IN, _NAME_HIGH_IN = 1.35, 0.15  # room for the methods' names, inches
 RIVAL = "de"
 # A method that changes its place by at least this many is named in the statement.
 WORTH_SAYING = 2
@@ -159,47 +166,64 @@ def _csv(comparison: Comparison) -> str:
 
 def _draw(path: Path, comparison: Comparison) -> None:
     # Matplotlib takes a second to import, and most comparisons draw nothing.
-    import matplotlib
+    from greywhale.drawing.page import save, style
 
-    matplotlib.use("Agg")
+    with style():
+        save(plot_ranks(comparison), path)
+
+
+def plot_ranks(comparison: Comparison) -> Figure:
+    """A line a method from setting to setting, its name at the end, as a figure of pyplot's that the caller closes."""
     import matplotlib.pyplot as plt
 
-    kind = path.suffix.lower()
-    with matplotlib.rc_context({"svg.hashsalt": "greywhale", "font.size": 9}):
-        figure, axes = plt.subplots(figsize=(7.0, 5.0), layout="constrained")
-        try:
-            _draw_ranks(axes, comparison)
-            metadata = {PICTURES[kind]: None}
-            write_whole(path, lambda file: figure.savefig(file, format=kind[1:], dpi=150, metadata=metadata))
-        finally:
-            plt.close(figure)
+    from greywhale.drawing.page import WIDE, leave
 
-
-def _draw_ranks(axes: Axes, comparison: Comparison) -> None:
-    """A line a method from setting to setting, its name at the end."""
     plan = comparison.plan
     across = range(len(plan.settings))
     ranks = [comparison.mean_ranks(setting) for setting in plan.settings]
-    labels = _spread(ranks[-1])
+    figure, axes = plt.subplots(figsize=(WIDE, 0.9 + 0.36 * max(len(plan.methods), 6)))
+    figure.subplots_adjust(**leave(figure, 0.5, _NAMES_IN, 0.3, 0.32))
     for index, method in enumerate(plan.methods):
-        colour = f"C{index}"
-        axes.plot(across, [rank[method] for rank in ranks], "o-", color=colour, linewidth=1.8)
-        axes.text(across[-1] + 0.06, labels[method], method, va="center", color=colour)
-    axes.set_xticks(list(across), list(plan.settings))
-    axes.set_xlim(-0.2, len(plan.settings) - 0.4)
+        colour = _COLOURS[index % len(_COLOURS)]
+        style = _STYLES[index // len(_COLOURS) % len(_STYLES)]
+        drawn = [rank[method] for rank in ranks]
+        axes.plot(across, drawn, "o", linestyle=style, color=colour, linewidth=1.3, markersize=4)
+    axes.margins(x=0.06)
     axes.invert_yaxis()
+    _name_lines(axes, ranks[-1], across[-1])
+    axes.set_xticks(list(across), list(plan.settings))
     axes.set_ylabel("mean rank (1 is best)")
-    axes.grid(alpha=0.3)
-    axes.set_title(
-        f"{len(plan.functions)} functions, {plan.dimensions} dimensions, {plan.budget} evaluations, {plan.runs} runs"
-    )
+    counts = {"functions": len(plan.functions), "dimensions": plan.dimensions, "evaluations": plan.budget}
+    axes.set_title(", ".join(f"{name}: {count}" for name, count in (counts | {"runs": plan.runs}).items()))
+    return figure
 
 
-def _spread(ranks: dict[str, float]) -> dict[str, float]:
-    """Where the names go: beside their lines, but never over each other."""
-    gap = 0.035 * len(ranks)
-    places: dict[str, float] = {}
-    last = -gap
-    for method in sorted(ranks, key=lambda method: ranks[method]):
-        last = places[method] = max(ranks[method], last + gap)
+def _name_lines(axes: Axes, ranks: dict[str, float], at: float) -> None:
+    """Each method's name right of the panel, joined to the end of its line."""
+    low, high = sorted(axes.get_ylim())
+    height = axes.get_figure().get_size_inches()[1] * axes.get_position().height  # type: ignore[union-attr]
+    places = _spread(ranks, (high - low) * _NAME_HIGH_IN / height, high)
+    for line, method in zip(axes.get_lines(), ranks, strict=True):
+        colour = line.get_color()
+        axes.annotate(
+            method,
+            (at, ranks[method]),
+            (1.03, places[method]),
+            textcoords=axes.get_yaxis_transform(),
+            va="center",
+            color=colour,
+            arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.5, "shrinkA": 1.0, "shrinkB": 3.0},
+        )
+
+
+def _spread(ranks: dict[str, float], gap: float, most: float) -> dict[str, float]:
+    """Where the names go: beside their lines, but `gap` apart, and none beyond `most`."""
+    order = sorted(ranks, key=lambda method: ranks[method])
+    places = dict(ranks)
+    for above, below in pairwise(order):
+        places[below] = max(places[below], places[above] + gap)
+    limit = most
+    for method in reversed(order):
+        places[method] = min(places[method], limit)
+        limit = places[method] - gap
     return places

@@ -23,6 +23,8 @@ _KNOWN = {
 }
 # Their names mislead: the chip is another one.
 _OTHERS = {(0x2341, 0x0058): "Arduino Nano Every, which greywhale does not run on"}
+# Linux names ports in these folders by their device's own number, or by the socket that it is plugged into.
+LASTING = (Path("/dev/serial/by-id"), Path("/dev/serial/by-path"))
 _BRIDGES = {0x1A86, 0x0403, 0x10C4, 0x067B}
 
 
@@ -71,6 +73,24 @@ def is_bench(device: str) -> bool:
     """Whether the port named `device` is a simulated board's."""
     real = os.path.realpath(device)
     return any(port.bench and os.path.realpath(port.device) == real for port in find_ports())
+
+
+def lasting_name(device: str) -> str:
+    """The name under which a port comes back: a bench's as listed, else one that stays when a cable is unplugged.
+
+    Its own where the system has no better.
+    """
+    if os.path.islink(device):
+        return device  # somebody named it so, and a bench that is started anew has another name in the list
+    real = os.path.realpath(device)
+    bench = next((port.device for port in _benches() if os.path.realpath(port.device) == real), None)
+    if bench is not None:
+        return bench
+    for folder in LASTING:
+        for link in sorted(folder.iterdir()) if folder.is_dir() else ():
+            if os.path.realpath(link) == real:
+                return str(link)
+    return device
 
 
 def board_of(device: str) -> str | None:

@@ -18,7 +18,7 @@ from typing import ClassVar
 from .declared import Described, Field, Group, Message, Parameter, Table, check_length
 
 PROTOCOL = 1
-SCHEMA_HASH = 0x5D75516A
+SCHEMA_HASH = 0xB6660B07
 MAX_PAYLOAD = 48
 REPLY_BIT = 0x80
 LAYOUT = 2
@@ -79,7 +79,7 @@ class NackCode(Described):
     CRC_MISMATCH = 10, "the staged set is not the one that the host means", "Upload the whole set again.", "the CRC of the staged set"
     POT_BAD = 11, "a potentiometer reads at a rail", "Check that potentiometer's three wires and try again.", "pot (0..3 leader, 4..7 follower) << 8 | Fault"
     BOOTING = 12, "the board is still starting", "Try again in a moment.", "0"
-    INCONSISTENT = 13, "parameters contradict each other", "Give limit_max above limit_min, a motor_sign of 1 or -1 and a pot scale other than 0, and upload again.", "the flat index of the first parameter that does not fit"
+    INCONSISTENT = 13, "parameters contradict each other", "Give limit_max above limit_min and a motor_sign of 1 or -1, and upload again.", "the flat index of the first parameter that does not fit"
     LEAD_REFUSED = 14, "the host cannot lead like this", "Correct the motion and start it again.", "joint << 8 | LeadRefusal"
     SET_LOST = 15, "parameters were lost, and nobody has confirmed those that run now", "Bring your parameters back with `greywhale params restore`, or upload a controller file with `greywhale upload`, then clear the fault.", "0"
     ESTOP_PRESSED = 16, "the emergency stop is pressed", "Release the emergency stop once it is safe; without such a button set estop_input to 0, or check its wire.", "0"
@@ -225,7 +225,7 @@ class StatusRequest(Message):
         return StatusReply.unpack(payload)
 
 
-_STATUSREPLY = Struct("<BBBBIHHHHHHB")
+_STATUSREPLY = Struct("<BBBBIHHHHHHBH")
 
 
 @dataclass(frozen=True, slots=True)
@@ -234,7 +234,7 @@ class StatusReply(Message):
 
     NAME: ClassVar[str] = "status"
     TYPE: ClassVar[int] = 0x82
-    SIZE: ClassVar[int] = 21
+    SIZE: ClassVar[int] = 23
     LSB: ClassVar[dict[str, float]] = {}
 
     state: State  # state of the supervisor
@@ -249,16 +249,17 @@ class StatusReply(Message):
     no_rule: int  # control periods in which no fuzzy rule fired
     tick_us_max: int  # longest tick since boot [us]
     save_state: SaveState  # progress of the last param_save
+    saves: int  # sequence of the newest bank in EEPROM, which counts the saves of a new set (0 follows 65535); 0 when no set is stored
 
     def pack(self) -> bytes:
-        return self._checked(_STATUSREPLY, self.state, self.stop_reason, self.fault, self.fault_where, self.tick, self.late_ticks, self.frames_bad, self.rx_overruns, self.telemetry_dropped, self.no_rule, self.tick_us_max, self.save_state)
+        return self._checked(_STATUSREPLY, self.state, self.stop_reason, self.fault, self.fault_where, self.tick, self.late_ticks, self.frames_bad, self.rx_overruns, self.telemetry_dropped, self.no_rule, self.tick_us_max, self.save_state, self.saves)
 
     @classmethod
     def unpack(cls, payload: bytes) -> StatusReply:
         if len(payload) != cls.SIZE:
             check_length(cls, payload)
-        state, stop_reason, fault, fault_where, tick, late_ticks, frames_bad, rx_overruns, telemetry_dropped, no_rule, tick_us_max, save_state = _STATUSREPLY.unpack(payload)
-        return cls(State.of(state), StopReason.of(stop_reason), Fault.of(fault), fault_where, tick, late_ticks, frames_bad, rx_overruns, telemetry_dropped, no_rule, tick_us_max, SaveState.of(save_state))
+        state, stop_reason, fault, fault_where, tick, late_ticks, frames_bad, rx_overruns, telemetry_dropped, no_rule, tick_us_max, save_state, saves = _STATUSREPLY.unpack(payload)
+        return cls(State.of(state), StopReason.of(stop_reason), Fault.of(fault), fault_where, tick, late_ticks, frames_bad, rx_overruns, telemetry_dropped, no_rule, tick_us_max, SaveState.of(save_state), saves)
 
 
 _PARAMGETREQUEST = Struct("<H")
@@ -1010,11 +1011,11 @@ TABLE = Table((
     )),
     Group("leader", 4, "One leader potentiometer. angle = (count14 - zero) x scale, count14 = 16 x the 10-bit count.", (
         Field("zero", "u16", "count14", 1.0, 0, 16368, (8184, 8184, 8184, 8184), False, None, "reading at 0 rad"),
-        Field("scale", "i16", "rad/count14", 2.9802322387695312e-08, -16384, 16384, (10734, 10734, 10734, 10734), True, None, "angle of one count, negative when the potentiometer turns the other way"),
+        Field("scale", "i16", "rad/count14", 2.9802322387695312e-08, -16384, 16384, (10734, 10734, 10734, 10734), False, None, "angle of one count, negative when the potentiometer turns the other way; 0 when there is none"),
     )),
     Group("follower", 4, "One follower potentiometer, as the leader's.", (
         Field("zero", "u16", "count14", 1.0, 0, 16368, (8184, 8184, 8184, 8184), False, None, "reading at 0 rad"),
-        Field("scale", "i16", "rad/count14", 2.9802322387695312e-08, -16384, 16384, (10734, 10734, 10734, 10734), True, None, "angle of one count, negative when the potentiometer turns the other way"),
+        Field("scale", "i16", "rad/count14", 2.9802322387695312e-08, -16384, 16384, (10734, 10734, 10734, 10734), False, None, "angle of one count, negative when the potentiometer turns the other way; 0 when there is none"),
     )),
     Group("", 1, "When a joint counts as restless: its error swings to and fro while the leader is still.", (
         Field("unrest_amplitude", "u8", "rad", 0.0009765625, 0, 205, (10,), False, None, "a joint is restless when its error swings with more than this amplitude (from turn to turn twice this) while no joint of the leader moves by more than this within 1/unrest_rate; 0 turns the check off"),

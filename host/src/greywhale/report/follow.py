@@ -1,42 +1,43 @@
-"""One picture of leader against follower: a panel a joint with a strip of the error below it, for one log or several.
+"""One picture of leader against follower: a panel a joint with strips of error and voltage below it, for some logs.
 
 Where several logs (before and after tuning) have the same motion, the leader is drawn once. The same logs give the same
-file, byte for byte: no display, no date and no random identifier goes into it.
+file, byte for byte.
 """
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
-from contextlib import AbstractContextManager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
+from greywhale.drawing import looks
+from greywhale.drawing.kinds import kind_of
+from greywhale.drawing.page import JOINTS, WIDE, headline, leave, legend_below, save, style
 from greywhale.errors import BAD_USAGE, UserError
 from greywhale.files.log import Log
-from greywhale.formats.whole import write_whole
+from greywhale.joints import ALL, Joints
 from greywhale.measure import evaluate
+from greywhale.table import ParameterTable
 
 Floats = NDArray[np.float64]
 
-JOINT_NAMES = ("base yaw", "shoulder pitch", "wrist pitch", "wrist roll")
-# The formats, and the entry of each that would make two pictures of the same logs differ.
-_CHANGING = {".png": "Software", ".svg": "Date", ".pdf": "CreationDate"}
-FORMATS = tuple(_CHANGING)
-_LEADER_COLOUR = "#222222"
-# Okabe and Ito's palette: told apart by colour-blind readers too.
-_COLOURS = ("#D55E00", "#0072B2", "#009E73", "#CC79A7")
-# Leaders closer than this everywhere (rad) are drawn as one line.
-_SAME_LEADER = 0.05
-_MOST_LOGS = len(_COLOURS)
+# Leaders closer than this everywhere (rad) are drawn as one line. A motion that is played again is so late at most (s).
+_SAME_LEADER, _SAME_MOMENT_S = 0.05, 0.04
+_MOST_LOGS = len(looks.FOLLOWERS)
+# Room below a title's first line (inches a line), and the letters that fit into a line above a panel.
+_LINE, _LETTERS = 0.13, 42
+_ANGLE, _STRIP, _TITLE, _BETWEEN, _AXIS = 1.45, 0.62, 0.2, 0.07, 0.4  # heights in inches
+_VOLTAGE_ROOM = 1.12
+_LEADERS = ("-", "--", ":", "-.")
 
 
 @dataclass(frozen=True)
@@ -48,93 +49,163 @@ class Trace:
     leader: Floats
     follower: Floats
     mse: tuple[float, ...]
+    voltage: Floats | None = None
+    supply_v: float | None = None  # the limit of the voltage, where it is known
+    joints: Joints = ALL  # in use
 
 
-def trace(log: Log, label: str) -> Trace:
-    """The part of a log in which the motors followed (all of it if they never did)."""
+def trace(log: Log, label: str, supply_v: float | None = None) -> Trace:
+    """The part of a log in which the motors followed (all of it if they never did).
+
+    `supply_v` is the motors' supply, where the log may not tell it by its parameters, or by the CRC of the defaults.
+    """
+    table = log.origin.table
+    if table is None and log.origin.param_crc == ParameterTable.defaults().crc:
+        table = ParameterTable.defaults()
+    if supply_v is None and table is not None:
+        supply_v = table.supply_v
     following = log.state == "following"
     part = following if following.any() else np.ones(len(log.time), dtype=bool)
     time = log.time[part]
-    measures = evaluate(log)
-    return Trace(
-        label, time - time[0], log.leader[part], log.follower[part], tuple(joint.mse for joint in measures.joints)
-    )
+    mse = tuple(joint.mse for joint in evaluate(log).joints)
+    voltage = log.voltage[part] if log.voltage.shape[1] else None
+    measured = log.leader[part], log.follower[part]
+    return Trace(label, time - time[0], *measured, mse, voltage, supply_v, log.joints_in_use)
 
 
 def draw_following(path: str | Path, traces: Sequence[Trace], title: str) -> None:
     """Write the picture; the ending of `path` chooses PNG, SVG or PDF."""
     target = Path(path)
-    if target.suffix.lower() not in FORMATS:
-        raise UserError(f"{path}: pictures end in {', '.join(FORMATS)}.", exit_code=BAD_USAGE)
+    kind_of(target)
     if not 1 <= len(traces) <= _MOST_LOGS:
         raise UserError(f"a picture shows 1 to {_MOST_LOGS} logs, not {len(traces)}.", exit_code=BAD_USAGE)
-    with set_style():
-        figure = plot_following(traces, title)
-        kind = target.suffix.lower()
-        try:
-            write_whole(
-                target,
-                lambda file: figure.savefig(file, format=kind[1:], dpi=150, metadata={_CHANGING[kind]: None}),
-            )
-        finally:
-            plt.close(figure)
-
-
-def set_style() -> AbstractContextManager[None]:
-    """Matplotlib's settings for this picture, for as long as the context lasts."""
-    return matplotlib.rc_context({"svg.hashsalt": "greywhale", "font.size": 9, "axes.grid": True, "grid.alpha": 0.3})
+    with style():
+        save(plot_following(traces, title), target)
 
 
 def plot_following(traces: Sequence[Trace], title: str) -> Figure:
     """What `draw_following` writes, as a figure of pyplot's that the caller closes."""
-    # Fixed margins: a layout solver's result differs in the last digits from run to run.
-    figure = plt.figure(figsize=(11.0, 8.6))
-    figure.suptitle(title, fontsize=12, fontweight="bold", y=0.98)
-    grid = figure.add_gridspec(2, 2, left=0.082, right=0.985, bottom=0.1, top=0.915, wspace=0.2, hspace=0.3)
-    shared_leader = _same_leader(traces)
-    for joint in range(len(JOINT_NAMES)):
-        rows = grid[divmod(joint, 2)].subgridspec(2, 1, height_ratios=(3, 1), hspace=0.08)
-        angle = figure.add_subplot(rows[0])
-        error = figure.add_subplot(rows[1], sharex=angle)
-        angle.tick_params(labelbottom=False)
-        _draw_angle(angle, traces, joint, shared_leader)
-        _draw_error(error, traces, joint)
-        figure.align_ylabels([angle, error])
-    # Drawn once below all panels: four equal legends would only cover the curves.
-    handles, labels = angle.get_legend_handles_labels()
-    figure.legend(handles, labels, loc="lower center", bbox_to_anchor=(0.5, 0.005), ncols=len(labels), frameon=False)
+    strips = 2 if any(one.voltage is not None for one in traces) else 1
+    joints = sorted({joint for one in traces for joint in one.joints})
+    count = (len(joints) + 1) // 2  # of rows
+    figures = {joint: _figures(traces, joint) for joint in joints}
+    above = _TITLE + _LINE * max(len(one) for one in figures.values())
+    panel = _ANGLE + strips * (_STRIP + _BETWEEN)
+    height = 0.3 + count * (above + panel + _AXIS) + 0.12 + _LINE * (len(traces) + 2)
+    figure = plt.figure(figsize=(WIDE, height))
+    headline(figure, title)
+    handles = _handles(traces)
+    below = legend_below(figure, list(handles.values()), list(handles))
+    room = leave(figure, 0.73, 0.1, 0.08 + below + _AXIS, 0.24 + above)
+    between = above + _AXIS
+    hspace = between / ((height * (room["top"] - room["bottom"]) - (count - 1) * between) / count)
+    grid = figure.add_gridspec(count, 2, **room, wspace=0.33, hspace=hspace)
+    for place, joint in enumerate(joints):
+        rows = grid[divmod(place, 2)].subgridspec(
+            1 + strips, 1, height_ratios=(_ANGLE, *[_STRIP] * strips), hspace=_BETWEEN / (panel / (1 + strips))
+        )
+        axes = [figure.add_subplot(rows[0])]
+        axes += [figure.add_subplot(rows[row], sharex=axes[0]) for row in range(1, 1 + strips)]
+        _draw_angle(axes[0], traces, joint)
+        axes[0].set_title("\n".join((JOINTS[joint], *figures[joint])))
+        _draw_error(axes[1], traces, joint)
+        if strips == 2:
+            _draw_voltage(axes[2], traces, joint)
+        for one in axes[:-1]:
+            one.tick_params(labelbottom=False)
+        axes[-1].set_xlabel("time [s]")
+        axes[0].set_xlim(0.0, max(one.time[-1] for one in traces))
+        figure.align_ylabels(axes)
     return figure
 
 
-def _draw_angle(axes: Axes, traces: Sequence[Trace], joint: int, shared_leader: bool) -> None:
-    leaders = traces[:1] if shared_leader else traces
-    for index, one in enumerate(leaders):
-        label = "leader" if shared_leader else f"leader, {one.label}"
-        style = "-" if index == 0 else "--"
-        axes.plot(one.time, one.leader[:, joint], style, color=_LEADER_COLOUR, linewidth=1.6, label=label)
-    for one, colour in zip(traces, _COLOURS, strict=False):
-        axes.plot(one.time, one.follower[:, joint], color=colour, linewidth=1.1, label=f"follower, {one.label}")
-    figures = ", ".join(f"{one.label} {one.mse[joint]:.2g}" for one in traces)
-    axes.set_title(f"Joint {joint}, {JOINT_NAMES[joint]}\nMSE in rad²: {figures}", fontsize=9)
+def _figures(traces: Sequence[Trace], joint: int) -> list[str]:
+    """The joint's mean squared errors, in lines that fit above its panel."""
+    said = ", ".join(f"{one.label} {one.mse[joint]:.2g}".replace(" ", "\xa0") for one in traces)
+    words = f"MSE\xa0[rad²]: {said}" if len(traces) > 1 else f"MSE\xa0{traces[0].mse[joint]:.2g}\xa0rad²"
+    return textwrap.wrap(words, _LETTERS, break_long_words=False, break_on_hyphens=False)
+
+
+def _looks(traces: Sequence[Trace]) -> Sequence[looks.Look]:
+    return looks.FOLLOWERS[: len(traces)] if len(traces) > 1 else (looks.FOLLOWER,)
+
+
+def _handles(traces: Sequence[Trace]) -> dict[str, Artist]:
+    """The legend's lines by their words; it stands once below all panels, where it covers no curve."""
+    handles: dict[str, Artist] = {}
+    for words, look, _ in _leaders(traces):
+        handles[words] = Line2D([], [], **look.line)
+    for one, look in zip(traces, _looks(traces), strict=True):
+        handles[f"follower, {one.label}"] = Line2D([], [], **look.line)
+    if len(traces) == 1 and traces[0].voltage is not None:
+        handles["voltage"] = Line2D([], [], **looks.VOLTAGE.line)
+    for words in _limits(traces):
+        handles[words] = Line2D([], [], **looks.VOLTAGE_LIMIT.line)
+    return handles
+
+
+def _leaders(traces: Sequence[Trace]) -> list[tuple[str, looks.Look, Trace]]:
+    """The leaders to be drawn: one where all logs have the same motion, else each in a style of its own."""
+    if _same_leader(traces):
+        return [("leader", looks.LEADER, traces[0])]
+    return [
+        (f"leader, {one.label}", replace(looks.LEADER, style=dashes), one)
+        for one, dashes in zip(traces, _LEADERS, strict=False)
+    ]
+
+
+def _limits(traces: Sequence[Trace]) -> dict[str, float]:
+    """The limits of the voltage by their words; where logs do not tell them, the largest voltage in these."""
+    limits, largest = {}, 0.0
+    for one in traces:
+        if one.supply_v is not None and one.voltage is not None:
+            limits[f"voltage limit, {one.supply_v:g} V"] = one.supply_v
+        elif one.voltage is not None:
+            largest = max(largest, float(np.max(np.abs(one.voltage), initial=0.0)))
+    return limits | (
+        {f"largest voltage, {largest:.1f} V": largest} if largest > max(limits.values(), default=0.0) else {}
+    )
+
+
+def _draw_angle(axes: Axes, traces: Sequence[Trace], joint: int) -> None:
+    for _, look, one in _leaders(traces):
+        axes.plot(one.time, one.leader[:, joint], **look.line)
+    for one, look in zip(traces, _looks(traces), strict=True):
+        axes.plot(one.time, one.follower[:, joint], **look.line)
     axes.set_ylabel("angle [rad]")
 
 
 def _draw_error(axes: Axes, traces: Sequence[Trace], joint: int) -> None:
-    for one, colour in zip(traces, _COLOURS, strict=False):
-        axes.plot(one.time, one.leader[:, joint] - one.follower[:, joint], color=colour, linewidth=0.9)
-    axes.axhline(0.0, color=_LEADER_COLOUR, linewidth=0.6)
+    axes.axhline(0.0, color=looks.DARK, linewidth=0.5)
+    for one, look in zip(traces, _looks(traces), strict=True):
+        axes.plot(one.time, one.leader[:, joint] - one.follower[:, joint], **look.thin().line)
     axes.set_ylabel("error [rad]")
-    axes.set_xlabel("time [s]")
+
+
+def _draw_voltage(axes: Axes, traces: Sequence[Trace], joint: int) -> None:
+    limits = _limits(traces)
+    for limit in limits.values():
+        for side in (-limit, limit):
+            axes.axhline(side, **looks.VOLTAGE_LIMIT.line)
+    voltages = _looks(traces) if len(traces) > 1 else (looks.VOLTAGE,)
+    for one, look in zip(traces, voltages, strict=True):
+        if one.voltage is not None:
+            axes.plot(one.time, one.voltage[:, joint], **look.thin(looks.VOLTAGE.width).line)
+    most = _VOLTAGE_ROOM * max(limits.values(), default=1.0)
+    axes.set_ylim(-most, most)
+    axes.set_ylabel("voltage [V]")
 
 
 def _same_leader(traces: Sequence[Trace]) -> bool:
+    """Whether all leaders make the same motion: never far from where the first is then, or is within a moment."""
     first = traces[0]
     for other in traces[1:]:
-        end = min(first.time[-1], other.time[-1])
-        grid = np.linspace(0.0, end, 500)
+        time = np.arange(0.0, min(first.time[-1], other.time[-1]), _SAME_MOMENT_S / 8)
         for joint in range(first.leader.shape[1]):
-            a = np.interp(grid, first.time, first.leader[:, joint])
-            b = np.interp(grid, other.time, other.leader[:, joint])
-            if np.max(np.abs(a - b)) > _SAME_LEADER:
+            a = np.interp(time, first.time, first.leader[:, joint])
+            b = np.interp(time, other.time, other.leader[:, joint])
+            moments = np.lib.stride_tricks.sliding_window_view(np.pad(a, 8, mode="edge"), 17)
+            beyond = np.maximum(b - moments.max(axis=1), moments.min(axis=1) - b)
+            if np.max(beyond, initial=0.0) > _SAME_LEADER:
                 return False
     return True

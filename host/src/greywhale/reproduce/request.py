@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from greywhale.errors import BAD_USAGE, UserError
+from greywhale.errors import MOST_SEED, require_within
 
 SEEDS, QUICK_SEEDS = 10, 3
 MOST_SEEDS = 1000
@@ -22,9 +22,8 @@ class Request:
     quick: bool = False
 
     def __post_init__(self) -> None:
-        for name, value, least, most in (("seed", self.seed, 0, 1 << 31), ("seeds", self.seeds, 1, MOST_SEEDS)):
-            if not least <= value <= most:
-                raise UserError(f"{name} is {value}, but it must be {least} to {most}.", BAD_USAGE)
+        require_within("seed", self.seed, 0, MOST_SEED - MOST_SEEDS)
+        require_within("seeds", self.seeds, 1, MOST_SEEDS)
 
     @classmethod
     def of(cls, seed: int, seeds: int | None, quick: bool) -> Request:

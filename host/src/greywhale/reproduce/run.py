@@ -18,7 +18,7 @@ Results = dict[str, dict[str, Any]]
 Report = Callable[[str, float], None]
 SOURCE = Path(__file__).resolve().parents[1]
 # What only shows: a change of it makes no result old.
-SHOWING = {"cli", "pages", "pictures", "render"}
+SHOWING = {"cli", "drawing", "pages", "pictures", "render"}
 
 
 def run(request: Request, folder: Path, workers: Workers, report: Report | None = None) -> Results:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from greywhale.errors import BAD_USAGE, UserError
+from greywhale.errors import BAD_USAGE, MOST_WORKERS, UserError, require_within
 from greywhale.study.cluster import DaskWorkers, SlurmWorkers
 from greywhale.study.local import LocalWorkers, SerialWorkers
 from greywhale.study.workers import Workers
@@ -16,8 +16,8 @@ def choose_workers(executor: str = "local", count: int | None = None) -> Workers
     """`local`: so many processes here (1: this one; None: one for every processor); `dask://HOST:PORT`; or
     `slurm://[PARTITION]` with so many jobs. UserError where the text is none of these.
     """
-    if count is not None and count < 1:
-        raise UserError(f"workers is {count}, but it must be at least 1.", BAD_USAGE)
+    if count is not None:
+        require_within("workers", count, 1, MOST_WORKERS)
     if executor == "local":
         return SerialWorkers() if count == 1 else LocalWorkers(count)
     if match := re.fullmatch(r"dask://([^/\s:]+|\[[0-9a-fA-F:]+\]):(\d{1,5})/?", executor):

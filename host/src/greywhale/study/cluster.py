@@ -51,7 +51,10 @@ class DaskWorkers:
         try:
             return self._distributed.Client(f"tcp://{self.address}", timeout=self._wait_s, set_as_default=False)
         except (OSError, ValueError):
-            raise UserError(f"{self.address}: no Dask scheduler answers there.") from None
+            raise UserError(
+                f"{self.address}: no Dask scheduler answers there; start one with `dask scheduler` and workers with "
+                "`dask worker HOST:PORT`, or give the address that a running one prints."
+            ) from None
 
     def _require_same_versions(self, client: Any) -> None:
         """Every task asks for them too, but a worker without greywhale ends when it gets one, and says nothing."""

@@ -22,6 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from greywhale.arm.parameters import with_usual_noise
+from greywhale.joints import unused
 from greywhale.optimise.relative import RelativeWolfWhale
 from greywhale.table import CONTROLLER_COLUMNS
 from greywhale.tune.judge.choose import choose, is_fair
@@ -183,6 +184,8 @@ class DefaultMethod:
         task, model = self.task, self.model
         task.report("judging", 0.0)
         after, cost_before, cost_after = self._choose()
+        idle = list(unused(model.arm.joints_in_use))
+        after[idle] = task.before[idle]  # whatever was tried there made no difference
         task.report("judging", 0.5)
         everywhere = self._margins(np.vstack([model.plants, loosest_plant(model.plants)]), rest_s=REST_LONG_S, noise=2)
         margins_before, margins = everywhere.check(task.before), everywhere.check(after)

@@ -13,20 +13,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
-from greywhale.errors import BAD_USAGE, UserError
+from greywhale.errors import UserError, require_within
+from greywhale.files import parameter_file
 from greywhale.files.arm import content_of, load_arm
-from greywhale.files.parameter_file import load_table
 from greywhale.identify import sampled_plants
+from greywhale.joints import require_same
 from greywhale.loop import plant_row
 from greywhale.loop.controllers import controllers_of
 from greywhale.protocol.schema import Board
 from greywhale.table import ParameterTable
 from greywhale.tune import model_checks as checks
 from greywhale.tune.model_checks import Doubt, Identification
+from greywhale.tune.stall import StallLimit, stall_limit
 
 Floats = NDArray[np.float64]
 
 SAMPLES = 8
+MOST_SAMPLES = 1000  # every one is simulated for every controller that is tried
 
 
 @dataclass(frozen=True)
@@ -40,6 +43,7 @@ class Model:
     doubts: tuple[str, ...]
     file: str
     digest: str  # SHA-256 of the file, hexadecimal
+    stall: StallLimit | None = None  # None: the board's stays, because nothing says how uncertain the arm is
 
     @property
     def controllers(self) -> NDArray[np.int32]:
@@ -68,16 +72,18 @@ def load_model(
     recorded. `arm` is the arm file to which the model must belong. Raises UserError with the gravest doubt; with
     `force`, the model keeps all doubts instead.
     """
-    if samples < 1:
-        raise UserError(f"samples is {samples}, but it must be at least 1.", BAD_USAGE)
+    require_within("samples", samples, 1, MOST_SAMPLES)
     identified = load_arm(path)
     facts = checks.identification_of(identified, str(path))
     table, table_doubts = _table(identified, facts, params)
+    require_same(str(path), identified.joints_in_use, table.name, table.joints_in_use)
     doubts = _doubts(identified, facts, table, arm)
     plants = plant_row(identified)[None]
+    stall = None
     if facts is not None and facts.covariance is not None:
         plants = sampled_plants(identified, samples, seed)
         doubts += checks.doubt_precision(identified, table)
+        stall = stall_limit(identified, table)
     doubts += table_doubts
     if doubts and not force:
         raise UserError(_refusal(str(path), doubts))
@@ -90,6 +96,7 @@ def load_model(
         doubts=(*(doubt.reason + "." for doubt in doubts), *remarks),
         file=str(path),
         digest=hashlib.sha256(content_of(path)).hexdigest(),
+        stall=stall,
     )
 
 
@@ -102,7 +109,7 @@ def _doubts(
         doubts += checks.doubt_edits(arm, facts)
         doubts += checks.doubt_validation(facts)
         doubts += checks.doubt_behaviour(facts)
-        doubts += checks.doubt_missing_covariance(facts)
+        doubts += checks.doubt_missing_covariance(arm, facts)
     if wanted is not None:
         doubts += checks.doubt_other_arm(arm, load_arm(wanted), str(wanted))
     return doubts + checks.doubt_other_board(arm, facts, table)
@@ -115,7 +122,7 @@ def _table(
     board = facts.made_on if facts is not None else Board.MEGA2560
     logged = facts.table() if facts is not None else None
     if params is not None:
-        given = load_table(params).for_board(board)
+        given = parameter_file.load(params).for_board(board)
         return given, checks.doubt_other_table(given, logged, str(params))
     if logged is not None:
         return logged, []
@@ -123,7 +130,7 @@ def _table(
     known = {"supply_mv": round(1000.0 * arm.drive.supply)}
     if facts is not None and facts.log and facts.log[0].period_ms is not None:
         known["period_ms"] = facts.log[0].period_ms
-    guess = ParameterTable.defaults(board).with_raw(known)
+    guess = ParameterTable.defaults(board).with_joints(arm.joints_in_use).with_raw(known)
     if facts is None:
         return guess, []
     doubt = Doubt(

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from greywhale.arm import ArmParameters
+from greywhale.arm.from_plant import known_before
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.errors import UserError
-from greywhale.firmware import JOINTS, TICK_S
+from greywhale.firmware import TICK_S
 from greywhale.identify import sampled_plants
 from greywhale.identify.judge import FIT, Verdict, warnings_of
 from greywhale.identify.uncertainty import EXCITATION
@@ -60,10 +61,17 @@ class LogFacts(_Facts):
     role: str
     measure: str = ""
     improvement: float
+    chance_rad2: float = 0.0
     white_box_mse_rad2: tuple[float, ...]
     model_mse_rad2: tuple[float, ...]
     period_ms: int | None = None
     parameter_crc: str | None = None
+
+    @property
+    def verdict(self) -> Verdict:
+        """What the identification said about this log."""
+        pairs = self.white_box_mse_rad2, self.model_mse_rad2
+        return Verdict(self.name, self.role, self.measure, *pairs, chance=self.chance_rad2)
 
 
 class ParameterFacts(_Facts):
@@ -103,10 +111,7 @@ class Identification(_Facts):
 
     def remarks(self) -> tuple[str, ...]:
         """The identification's warnings, without those that follow from the logs' numbers, which are judged here."""
-        verdicts = [
-            Verdict(log.name, log.role, log.measure, log.white_box_mse_rad2, log.model_mse_rad2) for log in self.log
-        ]
-        known = warnings_of(verdicts)
+        known = warnings_of([log.verdict for log in self.log])
         return tuple(warning for warning in self.warnings if warning not in known)
 
 
@@ -152,17 +157,19 @@ def doubt_validation(facts: Identification) -> list[Doubt]:
                 "record another one and identify again with --validate SECOND.csv",
             )
         ]
-    poor = [log for log in others if log.improvement <= 0.0]
+    poor = [log.verdict for log in others if log.verdict.is_worse]
     if not poor:
         return []
-    worst = min(poor, key=lambda log: log.improvement)
+    worst = min(poor, key=lambda verdict: verdict.improvement)
     learnt = (
-        "" if len(poor) == len(others) else ", though on others it is: it may have learnt its controller, not the arm"
+        ""
+        if len(poor) == len(others)
+        else ", though on others it is not: it may have learnt its controller, not the arm"
     )
     return [
         Doubt(
-            f"on {worst.name} ({worst.role}) it is no better than the arm file it began with "
-            f"({sum(worst.model_mse_rad2):.3g} against {sum(worst.white_box_mse_rad2):.3g} rad²){learnt}",
+            f"on {worst.name} ({worst.role}) it is worse than the arm file it began with, by more than chance explains "
+            f"({sum(worst.model):.3g} against {sum(worst.white_box):.3g} rad²){learnt}",
             "check supply, directions and controller files, record livelier motion and identify again",
         )
     ]
@@ -177,8 +184,8 @@ def doubt_behaviour(facts: Identification) -> list[Doubt]:
     return [Doubt(f"{reason}{more}", f"to mend it, {remedy}")]
 
 
-def doubt_missing_covariance(facts: Identification) -> list[Doubt]:
-    """Doubt a model that does not say, for every joint, how uncertain it is."""
+def doubt_missing_covariance(arm: ArmParameters, facts: Identification) -> list[Doubt]:
+    """Doubt a model that does not say, for every joint in use, how uncertain it is."""
     if facts.covariance is None:
         return [
             Doubt(
@@ -186,7 +193,7 @@ def doubt_missing_covariance(facts: Identification) -> list[Doubt]:
                 "identify with --method default",
             )
         ]
-    still = [joint for joint in range(JOINTS) if not _parameters_of(facts, joint)]
+    still = [joint for joint in arm.joints_in_use if not _parameters_of(facts, joint)]
     if not still:
         return []
     named = " and ".join(f"joint {joint} ({JOINT_NAMES[joint]})" for joint in still)
@@ -290,7 +297,7 @@ def _parameters_of(facts: Identification, joint: int) -> list[ParameterFacts]:
 
 def doubt_other_arm(model: ArmParameters, arm: ArmParameters, name: str) -> list[Doubt]:
     """Doubt a model of another arm file: geometry, gears, stops and supply must be the user's in both."""
-    ours, theirs = (dict(_leaves(_fixed(one))) for one in (model, arm))
+    ours, theirs = (dict(_leaves(known_before(one))) for one in (model, arm))
     for key, value in ours.items():
         other = theirs.get(key)
         if isinstance(value, float) and isinstance(other, float):
@@ -305,19 +312,6 @@ def doubt_other_arm(model: ArmParameters, arm: ArmParameters, name: str) -> list
                 )
             ]
     return []
-
-
-def _fixed(arm: ArmParameters) -> dict[str, Any]:
-    """The values that an identification does not change."""
-    data = arm.model_dump(exclude={"name", "source", "identification"})
-    for joint in data["joint"]:
-        joint["motor"] = {"gear_ratio": joint["motor"]["gear_ratio"]}
-        del joint["friction"], joint["gear"], joint["name"]
-    for pot in data["follower_pots"]["joint"]:
-        del pot["centre"]
-    for pot in (*data["follower_pots"]["joint"], *data["leader_pots"]["joint"]):
-        del pot["noise"]
-    return data
 
 
 def _leaves(data: object, name: str = "") -> Iterator[tuple[str, Any]]:
@@ -387,6 +381,8 @@ def _doubt_slopes(arm: ArmParameters, table: ParameterTable) -> list[Doubt]:
     for side, bank in (("leader", arm.leader_pots), ("follower", arm.follower_pots)):
         for joint, pot in enumerate(bank.joint):
             scale = f"{side}{joint}.scale"
+            if table[scale] == 0:  # it is not there
+                continue
             track = table.physical(scale) * CONVERTER_SPAN
             wanted = pot.direction * pot.track
             if abs(track - wanted) > SAME_SLOPE * abs(wanted):

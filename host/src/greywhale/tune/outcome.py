@@ -68,6 +68,12 @@ class Outcome:
         return self.table.supply_v
 
     @property
+    def board_table(self) -> ParameterTable:
+        """The table with what the controller file says: the controllers, and `stall_volts` where the model knows it."""
+        stall = self.model.stall
+        return self.table.with_controllers(self.after).with_raw({} if stall is None else {"stall_volts": stall.raw})
+
+    @property
     def steady(self) -> bool:
         """Whether every joint comes to rest in every scenario."""
         return all(margin.holds for margin in self.margins)
@@ -92,5 +98,6 @@ class Outcome:
             "margins": [margin.as_dict() for margin in self.margins],
             "held_out": [one.as_dict() for one in self.held_out],
             "curves": [{"evaluations": list(one.evaluations), "cost": list(one.cost)} for one in self.curves],
+            "stall": None if self.model.stall is None else self.model.stall.as_dict(),
             "notes": list(self.notes),
         }

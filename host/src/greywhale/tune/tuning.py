@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from greywhale.errors import BAD_USAGE, UserError
+from greywhale.errors import BAD_USAGE, MOST_SEED, MOST_WORKERS, UserError, require_within
+from greywhale.joints import ALL
 from greywhale.loop.controllers import check_controllers
 from greywhale.optimise import METHODS as OPTIMISERS
 from greywhale.tune import default, paper
@@ -24,6 +25,7 @@ Controllers = npt.NDArray[np.int32]
 
 DEFAULT_STRATEGY = "both"
 DEFAULT_BUDGET = default.BUDGET
+MOST_BUDGET = 1_000_000  # takes days
 METHODS = ("default", "paper", *OPTIMISERS)
 _UNFINISHED = "interrupted: the best so far by the search's own cost; margins and other motions were not looked at"
 
@@ -41,9 +43,10 @@ def check_request(
     check_strategy(strategy)
     if method not in METHODS:
         raise UserError(f"there is no method {method!r}; there are {', '.join(METHODS)}.", BAD_USAGE)
-    for name, value, least in (("budget", budget, 1), ("seed", seed, 0), ("threads", threads, 0)):
-        if value is not None and value < least:
-            raise UserError(f"{name} is {value}, but it must be at least {least}.", BAD_USAGE)
+    if budget is not None:
+        require_within("budget", budget, 1, MOST_BUDGET)
+    require_within("seed", seed, 0, MOST_SEED)
+    require_within("threads", threads, 0, MOST_WORKERS)
     if bounds and method == "paper":
         raise UserError("the paper's method has bounds of its own; leave out others.", BAD_USAGE)
     check_bounds(strategy, bounds or {})
@@ -73,6 +76,8 @@ def tune(
     `complete` False and not judged; if nothing was evaluated yet, the interrupt is raised again. Raises UserError.
     """
     check_request(strategy=strategy, method=method, budget=budget, seed=seed, threads=threads, bounds=bounds)
+    if method == "paper" and model.arm.joints_in_use != ALL:
+        raise UserError("the paper's method is for arms with all four joints; use --method default.", BAD_USAGE)
     usual = paper.BUDGET if method == "paper" else DEFAULT_BUDGET
     task = Task(
         model=model,

@@ -36,7 +36,9 @@ void set_two_pwm(uint8_t joint, bool positive, uint16_t size);
 
 template <uint8_t joint>
 inline void set_duty(bool positive, uint16_t size) {
-  if (pins::has_two_pwm(internal::driver)) return internal::set_two_pwm(joint, positive, size);
+  if (__builtin_expect(pins::has_two_pwm(internal::driver), false)) {
+    return internal::set_two_pwm(joint, positive, size);
+  }
   pins::direction(joint, positive);
   pins::compare(joint, size);
 }

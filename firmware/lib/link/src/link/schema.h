@@ -9,7 +9,7 @@
 namespace wire {
 
 constexpr uint8_t protocol = 1;
-constexpr uint32_t schema_hash = 0x5D75516A;
+constexpr uint32_t schema_hash = 0xB6660B07;
 constexpr uint8_t max_payload = 48;
 constexpr uint8_t reply_bit = 0x80;
 
@@ -204,7 +204,7 @@ struct StatusRequest {
 // Asks for the state, the fault and the counters.
 struct StatusReply {
   static constexpr uint8_t type = 0x82;
-  static constexpr uint8_t size = 21;
+  static constexpr uint8_t size = 23;
 
   State state;  // state of the supervisor
   StopReason stop_reason;  // why the motors last went off
@@ -218,6 +218,7 @@ struct StatusReply {
   uint16_t no_rule;  // control periods in which no fuzzy rule fired
   uint16_t tick_us_max;  // longest tick since boot [us]
   SaveState save_state;  // progress of the last param_save
+  uint16_t saves;  // sequence of the newest bank in EEPROM, which counts the saves of a new set (0 follows 65535); 0 when no set is stored
 
   void encode(uint8_t *out) const {
     put_u8(out + 0, static_cast<uint8_t>(state));
@@ -232,6 +233,7 @@ struct StatusReply {
     put_u16(out + 16, no_rule);
     put_u16(out + 18, tick_us_max);
     put_u8(out + 20, static_cast<uint8_t>(save_state));
+    put_u16(out + 21, saves);
   }
 
   static bool decode(const uint8_t *in, uint8_t length, StatusReply &out) {
@@ -248,6 +250,7 @@ struct StatusReply {
     out.no_rule = get_u16(in + 16);
     out.tick_us_max = get_u16(in + 18);
     out.save_state = static_cast<SaveState>(get_u8(in + 20));
+    out.saves = get_u16(in + 21);
     return true;
   }
 };

@@ -66,6 +66,9 @@ class Store {
 
   wire::SaveState state() const { return state_; }
 
+  // Of the newest bank, or of the one that is being written: it counts the saves.
+  uint16_t sequence() const { return sequence_; }
+
  private:
   enum class Phase : uint8_t { idle, compare, spoil, spoiled, write, verify, seal, sealed };
 

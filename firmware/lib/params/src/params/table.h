@@ -34,7 +34,7 @@ struct __attribute__((packed)) JointParameters {
 
 struct __attribute__((packed)) PotParameters {
   uint16_t zero;  // reading at 0 rad [count14]
-  int16_t scale;  // angle of one count, negative when the potentiometer turns the other way [1/33554432 rad/count14]
+  int16_t scale;  // angle of one count, negative when the potentiometer turns the other way; 0 when there is none [1/33554432 rad/count14]
 };
 
 struct __attribute__((packed)) Table {

@@ -14,10 +14,17 @@ constexpr LowPass low_pass(uint8_t shift) {
   return {static_cast<uint8_t>(256 - (256 >> shift)), static_cast<uint8_t>(16 >> shift)};
 }
 
-// One tick of the low-pass. `sum` is of four 10-bit conversions, `filtered` the 10-bit count x 64.
-inline uint16_t filter(uint16_t filtered, uint16_t sum, LowPass weights) {
-  const uint32_t kept = (static_cast<uint32_t>(filtered) * weights.keep + 128) >> 8;
+// One tick of the low-pass. `sum` is of four 10-bit conversions, `filtered` the 10-bit count x 64. What is kept of it
+// is known before the sum is.
+inline uint16_t kept(uint16_t filtered, LowPass weights) {
+  if (weights.keep == 128) return static_cast<uint16_t>(filtered - (filtered >> 1));  // the default, and no product
+  return static_cast<uint16_t>((static_cast<uint32_t>(filtered) * weights.keep + 128) >> 8);
+}
+inline uint16_t add_to_kept(uint16_t kept, uint16_t sum, LowPass weights) {
   return static_cast<uint16_t>(kept + static_cast<uint32_t>(sum) * weights.gain);
+}
+inline uint16_t filter(uint16_t filtered, uint16_t sum, LowPass weights) {
+  return add_to_kept(kept(filtered, weights), sum, weights);
 }
 
 // angle = (filtered * scale + offset) / 2^15 in q12 rad. The sum has 31 bits at most, the angle 16.

@@ -12,13 +12,14 @@ class SoftStart {
     left_ = ticks;
     share_ = 0;
   }
-  // One tick; true with the last one.
+  // To the share of the next tick; true with the last one.
   bool advance() {
     share_ += step_;
     if (--left_ != 0) return false;
     share_ = full;
     return true;
   }
+  bool ended() const { return left_ == 0; }  // all of the supply
   void stop() { share_ = 0; }
   // 32768 is all of the supply.
   uint16_t share_q15() const { return static_cast<uint16_t>(share_ >> 16); }

@@ -5,10 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from greywhale.arm.make.questions import MOTOR_KEYS, SAME_MOTOR, Answers, Question, collect
+from greywhale.arm.make.questions import JOINTS_IN_USE, MOTOR_KEYS, SAME_MOTOR, Answers, Question, collect
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.errors import BAD_USAGE, UserError, cut
 from greywhale.formats import toml_file
+from greywhale.formats.kinds import Kind, refuse_other_kind
 
 TABLES = ("link", "joint")
 
@@ -28,6 +29,7 @@ class AnswersFile:
         self.left_out: list[str] = []
         self._path = path
         self._rest = toml_file.read(path)
+        refuse_other_kind(self._rest, str(path), Kind.ANSWERS)
         self._tables = {(name, number): one for name in TABLES for number, one in enumerate(self._take(name))}
 
     def heading(self, text: str) -> None:
@@ -38,7 +40,8 @@ class AnswersFile:
         if question.key not in table:
             if question.key == SAME_MOTOR:
                 return "no" if any(key in table for key in MOTOR_KEYS) else "yes"
-            self.left_out.append(question.where)
+            if question.key != JOINTS_IN_USE:  # an arm has all four joints unless a file says otherwise
+                self.left_out.append(question.where)
             return question.usual
         given = table.pop(question.key)
         try:

@@ -71,13 +71,17 @@ def _turret(body: Body, length: float, parts: float, beside: float) -> dict[str,
     return {"mass": body.mass + parts, "length": length, "centre": length / 2.0, "inertia": inertia}
 
 
-def _joint(number: int, one: Answers) -> dict[str, Any]:
+def _joint(number: int, one: Answers | None) -> dict[str, Any]:
+    if one is None:
+        return {"name": JOINT_NAMES[number], "fixed": True}
     stops = {"min": math.radians(one["min_deg"]), "max": math.radians(one["max_deg"])}
     return {"name": JOINT_NAMES[number], **tables(data_sheet(one)), "stops": stops}
 
 
-def _pot(one: Answers, track: float) -> dict[str, float]:
+def _pot(one: Answers | None, track: float) -> dict[str, float]:
     """In the middle of its track at 0 where the range allows it, else in the middle of the range."""
+    if one is None:
+        return {"track": track, "centre": 0.0, "noise": USUAL_NOISE_V}
     low, high = math.radians(one["min_deg"]), math.radians(one["max_deg"])
     fits = max(-low, high) + SPARE_RAD <= track / 2.0
     return {"track": track, "centre": 0.0 if fits else (low + high) / 2.0, "noise": USUAL_NOISE_V}

@@ -11,9 +11,12 @@ from greywhale.arm.make.body import MATERIALS
 from greywhale.arm.make.motor import RAD_S_PER_RPM, USUAL_NO_LOAD_SHARE, USUAL_TIME_S, contradiction
 from greywhale.arm.make.units import Unit
 from greywhale.arm.parameters import JOINT_NAMES
+from greywhale.errors import UserError
+from greywhale.joints import ALL, Joints, listed, parse
 
 G_CM2_PER_KG_M2 = 1e7
 SAME_MOTOR = "same_motor"
+JOINTS_IN_USE = "joints"
 MOTOR_KEYS = (
     *("rated_v", "gear_ratio", "stall_torque_nm", "stall_current_a", "no_load_rpm", "no_load_current_a"),
     "rotor_inertia_gcm2",
@@ -38,7 +41,7 @@ class Question:
     high: float = 0.0
     choices: Sequence[str] = ()
     free: bool = False  # any text will do
-    check: Callable[[Any], str] = _fine  # why a value cannot be, "" if it can
+    check: Callable[[Any], str] = _fine  # why a value cannot be, "" if it can; of a free text too
 
     @property
     def where(self) -> str:
@@ -47,8 +50,12 @@ class Question:
 
     def read(self, given: object) -> float | str:
         """The answer in the question's unit. Raises ValueError with the reason."""
-        if self.free or (isinstance(given, str) and given.strip().lower() in self.choices):
-            return str(given).strip() if self.free else str(given).strip().lower()
+        if self.free:
+            if reason := self.check(str(given)):
+                raise ValueError(reason)
+            return str(given).strip()
+        if isinstance(given, str) and given.strip().lower() in self.choices:
+            return given.strip().lower()
         if isinstance(given, bool) or not isinstance(given, int | float | str):
             raise ValueError("that is no number")
         if self.choices and not self.high:
@@ -97,17 +104,35 @@ def collect(source: Source) -> Answers:
         answers["link"].append(_link(source, number))
     load = Question(None, "tip_g", "A load that it carries at the hand's tip", 0.0, units.GRAM, 0.0, 20_000.0)
     answers["tip_g"] = source.ask(load)
-    answers["joint"] = []
-    for number in range(len(JOINT_NAMES)):
+    text = "Which joints have a motor and potentiometers (0 to 3; the others are rigid)"
+    answers["joints"] = source.ask(Question(None, JOINTS_IN_USE, text, listed(ALL), free=True, check=_check_joints))
+    used = read_joints(answers["joints"])
+    answers["joint"] = [None] * len(JOINT_NAMES)  # of those that have one
+    before = None
+    for number in used:
         source.heading(f"Joint {number}, {JOINT_NAMES[number]}: motor and range.")
-        before = answers["joint"][-1] if answers["joint"] else None
-        answers["joint"].append(_joint(source, number, before, answers["supply_v"]))
+        known = None if before is None else answers["joint"][before]
+        answers["joint"][number] = _joint(source, number, before, known, answers["supply_v"])
+        before = number
     source.heading("The potentiometers")
     track = Question(
         None, "track_deg", "How far the track goes, electrically, from end to end", 300.0, units.DEGREE, 180.0, 450.0
     )
     answers["track_deg"] = source.ask(track)
     return answers
+
+
+def read_joints(given: str) -> Joints:
+    """The joints of a list such as 0,1, or [0, 1] as TOML has it. Raises UserError."""
+    return parse(given.strip("[] "), "joints")
+
+
+def _check_joints(given: str) -> str:
+    try:
+        read_joints(given)
+    except UserError:
+        return "give one or more of 0 to 3, each once, such as 0,1"
+    return ""
 
 
 def _link(source: Source, number: int) -> Answers:
@@ -144,11 +169,11 @@ def _link(source: Source, number: int) -> Answers:
     return found
 
 
-def _joint(source: Source, number: int, before: Answers | None, supply_v: float) -> Answers:
+def _joint(source: Source, number: int, last: int | None, before: Answers | None, supply_v: float) -> Answers:
     at = ("joint", number)
     same: float | str = "no"
     if before is not None:
-        text = f"The same motor and gear as joint {number - 1}"
+        text = f"The same motor and gear as joint {last}"
         same = source.ask(Question(at, SAME_MOTOR, text, "yes", choices=("yes", "no")))
     known = {} if before is None else {key: before[key] for key in MOTOR_KEYS}
     found = known if same == "yes" else _motor(source, at, {"rated_v": supply_v, **_USUAL_MOTOR, **known})

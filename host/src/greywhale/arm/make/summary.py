@@ -19,6 +19,7 @@ MUCH = 0.5  # of the stall torque: what is left moves a joint slowly
 class JointSummary:
     """At the joint: the largest gravity torque and the motor's at standstill (N m), and its speed without load."""
 
+    joint: int
     gravity: float
     stall: float
     no_load_speed: float  # rad/s
@@ -32,7 +33,7 @@ class JointSummary:
 
 @dataclass(frozen=True)
 class Summary:
-    """The four joints, the mass that moves (kg), and a sentence for each thing that will not do."""
+    """The joints in use, the mass that moves (kg), and a sentence for each thing that will not do."""
 
     joints: tuple[JointSummary, ...]
     mass: float
@@ -42,8 +43,8 @@ class Summary:
 def summarise(arm: ArmParameters) -> Summary:
     """Look at an arm stretched out level, where gravity pulls most."""
     gravity = Body.of(plant_row(arm)).bias(np.zeros((1, 4)), np.zeros((1, 4)))[0]
-    joints = tuple(_joint(arm, joint, abs(float(gravity[joint]))) for joint in range(len(JOINT_NAMES)))
-    warnings = [warning for joint, one in enumerate(joints) for warning in _warnings(arm, joint, one)]
+    joints = tuple(_joint(arm, joint, abs(float(gravity[joint]))) for joint in arm.joints_in_use)
+    warnings = [warning for one in joints for warning in _warnings(arm, one.joint, one)]
     return Summary(joints, sum(link.mass for link in arm.link) + arm.tip.mass, tuple(warnings))
 
 
@@ -51,7 +52,7 @@ def _joint(arm: ArmParameters, joint: int, gravity: float) -> JointSummary:
     actuator, friction = arm.actuator(joint), arm.joint[joint].friction
     stall = actuator.torque_per_volt * arm.drive.supply - friction.coulomb
     hold = gravity / actuator.torque_per_volt
-    return JointSummary(gravity, stall, stall / actuator.damping, hold, friction.breakaway >= gravity)
+    return JointSummary(joint, gravity, stall, stall / actuator.damping, hold, friction.breakaway >= gravity)
 
 
 def _warnings(arm: ArmParameters, joint: int, one: JointSummary) -> list[str]:

@@ -6,7 +6,8 @@ Nothing is written. Asked directly it takes a second; avrdude itself needs a min
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import reduce
 from operator import xor
@@ -54,15 +55,29 @@ def find_bootloader(port: str, likely: Sequence[Dialect], others: Sequence[Diale
     )
 
 
+@contextmanager
+def enter_bootloader(port: str, dialect: Dialect) -> Iterator[serial.Serial]:
+    """The line to a bootloader that was found before; opening it restarts the board."""
+    with open_serial(port, dialect.baud, _ASK_EVERY_S) as line:
+        if not _enter(line, dialect):
+            raise UserError(f"{port}: the bootloader answered once, but not again; try again.")
+        yield line
+
+
+def _enter(line: serial.Serial, dialect: Dialect) -> bool:
+    ask, _ = _DIALECTS[dialect.programmer]
+    if not ask(line):
+        return False
+    while line.read(64):  # answers to questions that were asked twice
+        pass
+    return True
+
+
 def _try(port: str, dialect: Dialect) -> Bootloader | None:
-    ask, read_signature = _DIALECTS[dialect.programmer]
+    _, read_signature = _DIALECTS[dialect.programmer]
     with open_serial(port, dialect.baud, _ASK_EVERY_S) as line:
         try:
-            if not ask(line):
-                return None
-            while line.read(64):  # answers to questions that were asked twice
-                pass
-            return Bootloader(dialect, read_signature(line))
+            return Bootloader(dialect, read_signature(line)) if _enter(line, dialect) else None
         except (OSError, serial.SerialException):
             raise UserError(f"{port}: the port went away in the middle; check the cable and try again.") from None
 
@@ -89,8 +104,13 @@ def _ask_version_1(line: serial.Serial) -> bool:
 
 def _read_signature_1(line: serial.Serial) -> bytes | None:
     line.write(b"u ")
-    answer = _read_exactly(line, 5)
-    return answer[1:4] if answer[:1] == _IN_SYNC and answer[4:] == _OK else None
+    return version_1_answer(line, 3)
+
+
+def version_1_answer(line: serial.Serial, count: int) -> bytes | None:
+    """The bytes of an answer of the Nano's bootloader; None where it is wrong."""
+    answer = _read_exactly(line, count + 2)
+    return answer[1:-1] if answer[:1] == _IN_SYNC and answer[count + 1 :] == _OK else None
 
 
 # STK500 version 2, the Mega's: messages with start, sequence number, length, token, body and checksum.
@@ -110,12 +130,21 @@ def _read_signature_2(line: serial.Serial) -> bytes | None:
     """Byte by byte, as SPI commands that the bootloader answers itself."""
     signature = b""
     for index in range(3):
-        line.write(_message(2 + index, bytes([0x1D, 4, 4, 0, 0x30, 0, index, 0])))
-        answer = _read_exactly(line, 13)
-        if answer[:7] != bytes([0x1B, 2 + index, 0, 7, 0x0E, 0x1D, 0]) or reduce(xor, answer) != 0:
+        answer = version_2_answer(line, bytes([0x1D, 4, 4, 0, 0x30, 0, index, 0]), 2 + index)
+        if answer is None or len(answer) != 7 or answer[:2] != b"\x1d\x00":
             return None
-        signature += answer[10:11]
+        signature += answer[5:6]
     return signature
+
+
+def version_2_answer(line: serial.Serial, body: bytes, sequence: int = 1) -> bytes | None:
+    """Send a message to the Mega's bootloader; the body of its answer, None where that is wrong."""
+    line.write(_message(sequence, body))
+    head = _read_exactly(line, 5)
+    if len(head) < 5 or head[:2] != bytes([0x1B, sequence]) or head[4:] != b"\x0e":
+        return None
+    rest = _read_exactly(line, int.from_bytes(head[2:4], "big") + 1)
+    return rest[:-1] if len(rest) > 1 and reduce(xor, head + rest) == 0 else None
 
 
 def _read_exactly(line: serial.Serial, count: int) -> bytes:

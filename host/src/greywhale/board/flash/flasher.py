@@ -21,7 +21,7 @@ from greywhale.protocol.transport import BAUD, open_serial
 
 
 @dataclass(frozen=True)
-class _Target:
+class Target:
     """The board on a port, and the speed of its bootloader."""
 
     name: str
@@ -50,7 +50,7 @@ def flash(
     # avrdude waits for ever for a port that is not there, and breaks into one that is in use.
     open_serial(port, BAUD, read_wait_s=0.0).close()
     report("looking for the bootloader", 0.0)
-    target = _find_target(port, expected)
+    target, _ = find_target(port, expected)
     if sources is not None:
         _build_and_upload(port, target, sources, report)
     else:
@@ -73,8 +73,8 @@ def _expected_board(port: str, named: str | None) -> str | None:
     return named or told
 
 
-def _find_target(port: str, expected: str | None) -> _Target:
-    """The board whose bootloader answers; it must be the expected one."""
+def find_target(port: str, expected: str | None) -> tuple[Target, Bootloader]:
+    """The board whose bootloader answers, and that; it must be the expected one."""
     names = [expected] if expected is not None else list(BOARDS)
     likely = [dialect for name in names for dialect in _dialects(BOARDS[name])]
     others = [dialect for board in BOARDS.values() for dialect in _dialects(board) if dialect not in likely]
@@ -86,7 +86,7 @@ def _find_target(port: str, expected: str | None) -> _Target:
             f"choose --board {name}, or another port.",
             BAD_USAGE,
         )
-    return _Target(name, BOARDS[name], found.dialect.baud)
+    return Target(name, BOARDS[name], found.dialect.baud), found
 
 
 def _dialects(board: FlashBoard) -> list[Dialect]:
@@ -105,7 +105,7 @@ def _name_of(port: str, found: Bootloader) -> str:
     raise UserError(f"{port}: the chip has signature {found.signature.hex()}; greywhale runs on {known} only.")
 
 
-def _build_and_upload(port: str, target: _Target, sources: Path, report: Progress) -> None:
+def _build_and_upload(port: str, target: Target, sources: Path, report: Progress) -> None:
     # Built first and on its own: nothing is erased before there is something to write.
     built = platformio.build(sources, target.board, report)
     if len(target.board.bauds) == 1:
@@ -114,7 +114,7 @@ def _build_and_upload(port: str, target: _Target, sources: Path, report: Progres
         upload_image(port, target.board, target.baud, built, report)
 
 
-def _upload(port: str, target: _Target, image: Image, report: Progress) -> None:
+def _upload(port: str, target: Target, image: Image, report: Progress) -> None:
     check_image(image, target.board, port)
     upload_image(port, target.board, target.baud, image.path, report)
 
@@ -130,7 +130,7 @@ def _packaged(name: str) -> Image:
     return read_image(path)
 
 
-def _greet(port: str, target: _Target) -> schema.HelloReply:
+def _greet(port: str, target: Target) -> schema.HelloReply:
     with Device(port) as device:
         hello = device.hello
     if hello.board is not target.board.identity:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from greywhale.board.flash.targets import BOARDS, FlashBoard
@@ -41,6 +41,7 @@ class Image:
     path: Path
     end: int
     record: Record | None
+    memory: bytes = field(repr=False)  # from address 0 to `end`; what the file leaves out is erased memory, 0xff
 
 
 def packaged_image(board: str) -> Path | None:
@@ -66,7 +67,7 @@ def read_image(path: Path) -> Image:
         memory[address:end] = data
     if not memory:
         raise UserError(f"{path}: the file holds no data; give the .hex that PlatformIO built.", BAD_USAGE)
-    return Image(path, len(memory), _find_record(memory))
+    return Image(path, len(memory), _find_record(memory), bytes(memory))
 
 
 def check_image(image: Image, board: FlashBoard, port: str) -> None:

@@ -38,6 +38,12 @@ def build(firmware: Path, board: FlashBoard, report: Progress) -> Path:
     return _build_folder(firmware, environment) / board.environment / "firmware.hex"
 
 
+def last_build(firmware: Path, board: FlashBoard) -> Path | None:
+    """The HEX file that was built last for the board; None where there is none."""
+    built = _build_folder(firmware, platformio_environment(firmware)) / board.environment / "firmware.hex"
+    return built if built.is_file() else None
+
+
 def upload(firmware: Path, board: FlashBoard, port: str, report: Progress) -> None:
     """Upload what was built, at the speed that PlatformIO knows for the board."""
     command = [*_run_command(firmware, board), "--target", "upload", "--upload-port", port]

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from greywhale.firmware import JOINTS
+from greywhale.joints import ALL, Joints
+from greywhale.table import ParameterTable
 
 TITLE = "greywhale log 1"
 STATES = ("boot", "disabled", "soft_start", "following", "fault")
@@ -35,3 +37,5 @@ class Origin:
     param_crc: int | None = None
     period_ms: int | None = None
     every_ticks: int | None = None
+    table: ParameterTable | None = None  # that ran
+    joints: Joints = ALL  # in use; the columns of the others are 0

@@ -12,13 +12,19 @@ from numpy.typing import NDArray
 
 from greywhale.errors import UserError, cut
 from greywhale.files.log.layout import COLUMNS, COMPLETE, ENDINGS, STATES, TITLE, UNFINISHED, Origin
+from greywhale.files.log.parameters import table_in
 from greywhale.files.log.rows import parse_rows
 from greywhale.firmware import JOINTS
 from greywhale.formats import csv_file
+from greywhale.joints import ALL, Joints, parse
+from greywhale.table import ParameterTable
 
 _MOST_WHOLE = (1 << 63) - 1
 # No board sends larger values: 16 bits of 1/4096 rad and of mV. Such values are another tool's degrees or millivolts.
 _MOST = {"leader": (8.0, "rad"), "follower": (8.0, "rad"), "voltage": (33.0, "V")}
+_FOLLOWING = STATES.index("following")
+# More changes of a voltage than these, and in all so many, are no chance.
+_MOST_CHANGES, _ENOUGH = 1.2, 100
 # Where each quantity stands in a row of numbers, behind the time.
 _PLACES = {name: slice(1 + place * JOINTS, 1 + (place + 1) * JOINTS) for place, name in enumerate(_MOST)}
 
@@ -37,6 +43,11 @@ class Log:
     dropped: int
     complete: bool
     ended_by: str = ""
+
+    @property
+    def joints_in_use(self) -> Joints:
+        """The joints that the board used; every column of the others is 0."""
+        return self.origin.joints
 
     def without_samples(self) -> Log:
         """What is known of the log apart from its samples, which take most of the memory."""
@@ -63,6 +74,7 @@ def read_log(path: str | Path, voltages: bool = True) -> Log:
         for block in file.blocks(torn=ending == UNFINISHED):
             columns.take(file, block)
         file.require_rows(columns.rows, 2)
+    _refuse_other_period(str(path), origin, columns)
     return Log(
         name=str(path),
         origin=origin,
@@ -86,6 +98,8 @@ class _Columns:
         self.leader, self.follower = np.empty((room, JOINTS)), np.empty((room, JOINTS))
         self.voltage = np.empty((room, JOINTS if voltages else 0))
         self.state = np.empty(room, dtype=np.int8)
+        self.changes = 0  # rows with another voltage than the row before, while the motors follow
+        self._last = np.full((1, JOINTS), np.nan)
 
     def take(self, file: csv_file.CsvFile, block: csv_file.Block) -> None:
         """Add the rows of a block; what is wrong in them is a UserError that names the cell."""
@@ -101,7 +115,22 @@ class _Columns:
         if self.voltage.shape[1]:
             self.voltage[here] = numbers[:, _PLACES["voltage"]]
         self.state[here] = states
+        before_each = np.vstack([self._last, numbers[:, _PLACES["voltage"]]])
+        self.changes += int(((np.diff(before_each, axis=0) != 0.0).any(axis=1) & (states == _FOLLOWING)).sum())
+        self._last = before_each[-1:]
         self.rows = here.stop
+
+
+def _refuse_other_period(name: str, origin: Origin, columns: _Columns) -> None:
+    """Refuse a control period that the rows contradict: between its ends no voltage changes."""
+    if origin.period_ms is None or columns.changes < _ENOUGH:
+        return
+    length_ms = 1e3 * float(columns.time[columns.rows - 1] - columns.time[0])
+    if columns.changes > _MOST_CHANGES * length_ms / origin.period_ms:
+        raise UserError(
+            f"{name}: period_ms is {origin.period_ms} in the header, but by the time column voltages change every "
+            f"{length_ms / columns.changes:.3g} ms: it is the header of another log, or was edited."
+        )
 
 
 def _is_good(numbers: NDArray[np.float64], before: float) -> bool:
@@ -169,13 +198,24 @@ def _facts(comments: tuple[str, ...]) -> dict[str, str]:
 
 
 def _origin(facts: dict[str, str], name: str) -> Origin:
+    board, crc = facts.get("board"), _whole(facts, "parameter_crc", name, 0, 0xFFFF)
+    table = table_in(facts, name, crc, board)
     return Origin(
         firmware=facts.get("firmware"),
-        board=facts.get("board"),
-        param_crc=_whole(facts, "parameter_crc", name, 0, 0xFFFF),
+        board=board,
+        param_crc=crc,
         period_ms=_whole(facts, "period_ms", name, 1, 50),
         every_ticks=_whole(facts, "every_ticks", name, 1, 0xFFFF),
+        table=table,
+        joints=_joints_in_use(facts, name, table),
     )
+
+
+def _joints_in_use(facts: dict[str, str], name: str, table: ParameterTable | None) -> Joints:
+    """What the header says, or its parameters do; a log that says neither is of a whole arm."""
+    if "joints_in_use" in facts:
+        return parse(facts["joints_in_use"], f"{name}: joints_in_use")
+    return ALL if table is None else table.joints_in_use
 
 
 def _whole(facts: dict[str, str], key: str, name: str, least: int, most: int) -> int | None:

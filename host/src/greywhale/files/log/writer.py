@@ -17,7 +17,9 @@ from typing import Self
 
 from greywhale.errors import UserError, cut, os_reason
 from greywhale.files.log.layout import COMPLETE, HEADING, INTERRUPTED, STATES, TITLE, UNFINISHED, Origin
+from greywhale.files.log.parameters import lines_of
 from greywhale.formats.draft import Draft, sync
+from greywhale.joints import ALL, listed
 
 _ROWS_PER_WRITE = 256
 # What is known only at the end: the header keeps so many characters free for each number or word, and for the reason.
@@ -26,13 +28,18 @@ _REASON = 320
 
 
 class LogWriter:
-    """Use as a context manager; `rows` and `dropped` count the rows written and the samples that the link lost."""
+    """Use as a context manager; `rows` and `dropped` count the rows written and the samples that the link lost.
 
-    def __init__(self, path: str | Path, origin: Origin) -> None:
+    Where the port may go away in between, `gaps` keeps room for them in the header.
+    """
+
+    def __init__(self, path: str | Path, origin: Origin, *, gaps: bool = False) -> None:
         self.path = Path(path)
         self.origin = origin
         self.rows = 0
         self.dropped = 0
+        self.gaps: list[tuple[float, float]] = []  # s: when each began, and its length
+        self._states_gaps = gaps
         self._last_us: int | None = None
         self._shown = False
 
@@ -98,6 +105,16 @@ class LogWriter:
             except OSError as error:
                 raise self._cannot_be_written(error) from None
 
+    @property
+    def last_s(self) -> float:
+        """The time of the last row, 0 before the first."""
+        return (self._last_us or 0) / 1e6
+
+    def gap(self, length_s: float) -> None:
+        """State that nothing could be received for so long, after the last row."""
+        self.gaps.append((round(self.last_s, 3), round(length_s, 3)))
+        self.drop(round(1000 * length_s / (self.origin.every_ticks or 1)))
+
     def drop(self, samples: int) -> None:
         """Count samples that the board sent, or should have sent, and that never arrived."""
         self.dropped += samples
@@ -143,11 +160,22 @@ class LogWriter:
             "parameter_crc": None if origin.param_crc is None else f"0x{origin.param_crc:04x}",
             "period_ms": origin.period_ms,
             "every_ticks": origin.every_ticks,
+            "joints_in_use": None if origin.joints == ALL else listed(origin.joints),
         }
         lines = [f"# {TITLE}", *(f"# {key}: {value}" for key, value in facts.items() if value is not None)]
+        if origin.table is not None:
+            lines += [f"# {line}" for line in lines_of(origin.table)]
         lines += [f"# dropped_samples: {self.dropped:<{_ROOM}d}", f"# recording: {ending:<{_ROOM}}"]
+        if self._states_gaps:
+            lines.append(f"# gaps: {cut(_gaps(self.gaps), _REASON):<{_REASON}}")
         lines.append(f"# ended_by: {cut(reason, _REASON):<{_REASON}}")
         return "\n".join(lines).encode("ascii", "replace") + b"\n"
+
+
+def _gaps(gaps: Sequence[tuple[float, float]]) -> str:
+    """The gaps in words, the first ones one by one."""
+    each = ", ".join(f"{length:g} s after {begin:g} s" for begin, length in gaps)
+    return f"{len(gaps)}: {each}" if gaps else "none"
 
 
 def _reason(raised: BaseException | None) -> str:

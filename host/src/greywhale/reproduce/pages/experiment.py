@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from greywhale.drawing import looks
 from greywhale.firmware import JOINTS
 from greywhale.reproduce.pages.document import Chapter, Entry, Picture, Row, Sheet, Status, sheet, words
 from greywhale.reproduce.pages.found import Found
@@ -19,6 +20,8 @@ from greywhale.tune.report.tables import PAPER_DELAY, PAPER_MULTI_STEP_MSE, PAPE
 
 # A joint that swings by more than this after a step does not rest, rad.
 RESTLESS_RAD = 0.03
+ERROR = "leader less follower"
+LOOKS = (looks.BEFORE, looks.PAPERS_METHOD, looks.AFTER)
 COLUMNS = (
     "before, printed",
     "after, printed",
@@ -55,15 +58,16 @@ def _figure(found: Found, motion: str) -> tuple[Any, ...]:
             name,
             [t - run[motion]["trace"]["time"][0] for t in run[motion]["trace"]["time"]],
             run[motion]["trace"]["after"],
+            look,
         )
-        for name, run in runs.items()
+        for (name, run), look in zip(runs.items(), LOOKS, strict=True)
     ]
     first = runs["before tuning"][motion]["trace"]
-    leader = Trace("leader", traces[0].time, first["leader"])
+    leader = Trace("leader", traces[0].time, first["leader"], looks.LEADER)
     title = f"{motion.capitalize()} on the bench, first seed"
     shown = [
         Picture(
-            curves.responses(leader, traces, title),
+            curves.responses([leader, *traces], leader, title, ERROR),
             f"From the board's own samples. Before tuning and the paper's method at {PERIOD_MS} ms, greywhale at "
             f"{OWN_PERIOD_MS} ms.",
         )
@@ -71,7 +75,7 @@ def _figure(found: Found, motion: str) -> tuple[Any, ...]:
     if motion == "steps":
         shown.append(
             Picture(
-                curves.responses(leader, traces, "The same steps close up", window=(1.3, 2.7)),
+                curves.responses([leader, *traces], leader, "The same steps close up", ERROR, window=(1.3, 2.7)),
                 "What happens around the leader's move.",
             )
         )

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from greywhale.arm.parameters import JOINT_NAMES
+from greywhale.drawing import looks
 from greywhale.files.arm import load_arm
 from greywhale.identify.paper import AGENTS, ITERATIONS, LOWER, UPPER, VALUES
 from greywhale.reproduce.pages.document import Chapter, Code, Entry, Picture, Row, Sheet, Status, sheet, words
@@ -165,14 +166,15 @@ def _flat(curve: Sequence[float]) -> int:
 def _responses(found: Found, place: int) -> Entry:
     paper, default = (runs[0]["identified"]["responses"][place] for runs in (found.paper(), found.default()))
     time = paper["time"]
-    recorded = Trace("recorded", time, paper["recorded"])
-    leader = Trace("leader", time, paper["leader"])
+    recorded = Trace("recorded", time, paper["recorded"], looks.FOLLOWER)
+    leader = Trace("leader", time, paper["leader"], looks.LEADER.thin(0.9))
     traces = [
-        Trace("white box", time, paper["white box"]),
-        Trace("paper's method", time, paper["model"]),
-        Trace("greywhale", default["time"], default["model"]),
+        Trace("white box", time, paper["white box"], looks.WHITE_BOX),
+        Trace("paper's method", time, paper["model"], looks.PAPERS_METHOD),
+        Trace("greywhale", default["time"], default["model"], looks.MODEL),
     ]
-    picture = curves.responses(recorded, traces, f"Responses to {DATA_SETS[place][0]}, first seed", faint=leader)
+    title = f"Responses to {DATA_SETS[place][0]}, first seed"
+    picture = curves.responses([leader, recorded, *traces], recorded, title, "recorded less simulated")
     return Entry(
         f"Fig. {7 + place}",
         f"Time domain responses, {DATA_SETS[place][0]}",

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from greywhale.drawing import looks
 from greywhale.firmware import JOINTS
 from greywhale.loop import CONTROLLER_COLUMNS
 from greywhale.reproduce.pages.document import Chapter, Entry, Picture, Row, Sheet, Status, sheet, words
@@ -142,12 +143,12 @@ def _spread(
 def _figure(found: Found, strategy: str) -> Entry:
     ours = found.grey_box(strategy)[0]["motions"]["multi-steps"]["trace"]
     theirs = found["grey box printed"][strategy]["multi-steps"]["trace"]
-    leader = Trace("leader", ours["time"], ours["leader"])
+    leader = Trace("leader", ours["time"], ours["leader"], looks.LEADER)
     table = STRATEGIES[strategy].replace("_", " ").capitalize()
     traces = [
-        Trace("before tuning", ours["time"], ours["before"]),
-        Trace("paper's method, first seed", ours["time"], ours["after"]),
-        Trace(f"{table} as printed", theirs["time"], theirs["after"]),
+        Trace("before tuning", ours["time"], ours["before"], looks.BEFORE),
+        Trace("paper's method, first seed", ours["time"], ours["after"], looks.PAPERS_METHOD),
+        Trace(f"{table} as printed", theirs["time"], theirs["after"], looks.PRINTED),
     ]
     return Entry(
         FIGURES[strategy],
@@ -155,7 +156,9 @@ def _figure(found: Found, strategy: str) -> Entry:
         Status.COMPUTED,
         (
             Picture(
-                curves.responses(leader, traces, f"Multi-steps, tuned {NAMES[strategy]}"),
+                curves.responses(
+                    [leader, *traces], leader, f"Multi-steps, tuned {NAMES[strategy]}", "leader less follower"
+                ),
                 f"The paper's grey-box arm at {PERIOD_MS} ms and {supply_of(strategy):g} V. The leader's levels are "
                 "ours: the paper's are in its figures alone.",
             ),

@@ -10,102 +10,144 @@ import matplotlib.pyplot as plt
 import numpy as np
 import numpy.typing as npt
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from greywhale.drawing import looks
+from greywhale.drawing.looks import BLUE, DARK, GREEN, GREY, ORANGE, PURPLE, SIGNS, Look
+from greywhale.drawing.page import JOINTS as JOINT_TITLES
+from greywhale.drawing.page import (
+    SMALL,
+    WIDE,
+    headline,
+    leave,
+    legend_below,
+    make_logarithmic,
+    mark_beyond,
+    mark_of_beyond,
+    png,
+    style,
+)
 from greywhale.firmware import JOINTS
 from greywhale.fuzzy.settings import SET_UNIT
 from greywhale.loop import CONTROLLER_COLUMNS
-from greywhale.reproduce.pictures.drawing import BLUE, DARK, GREEN, ORANGE, PURPLE, TITLES, png, styled
 from greywhale.reproduce.work.errata import Law
 
 Floats = npt.NDArray[np.float64]
 Controllers = npt.NDArray[np.int32]
 
-COLOURS = (ORANGE, BLUE, GREEN, PURPLE)
+# Jumps would hide the error that is left after them (rad).
+LARGEST_ERROR = 0.2
+J_WORDS = "J = ITAE [rad s²] + ITAU [V s²]"
+PAPER = looks.PAPERS_METHOD.colour
+_BAR = (0.9, 0.42 / 3.1, 0.02, 1.0 - (0.26 + 0.42) / 3.1)  # left, bottom, width, height
+BARS = (DARK, ORANGE, BLUE, GREEN, PURPLE)
 _E, _CE = ("ne_c", "ze_a", "ze_c", "pe_b"), ("nce_c", "zce_a", "zce_c", "pce_b")
 _SETS = {"e": ("NE", "ZE", "PE"), "ce": ("NCE", "ZCE", "PCE"), "u": ("NU", "ZU", "PU")}
 
 
 @dataclass(frozen=True)
 class Trace:
-    """Angles (rows, 4), rad, at times (rows,), s."""
+    """Angles (rows, 4), rad, at times (rows,), s, and how they look."""
 
     name: str
     time: Any
     angles: Any
+    look: Look
 
 
 def responses(
-    first: Trace,
-    traces: Sequence[Trace],
-    title: str,
-    *,
-    window: tuple[float, float] | None = None,
-    faint: Trace | None = None,
+    traces: Sequence[Trace], against: Trace, title: str, error: str, *, window: tuple[float, float] | None = None
 ) -> bytes:
-    """Two by two panels: what all others are compared with, then these; `faint` is shown behind all."""
-    with styled():
-        figure, grid = plt.subplots(2, 2, figsize=(9.0, 6.4), sharex=True)
-        figure.subplots_adjust(left=0.08, right=0.985, bottom=0.14, top=0.9, wspace=0.18, hspace=0.2)
-        figure.suptitle(title, fontsize=11, fontweight="bold", y=0.975)
-        for joint, axes in enumerate(grid.flat):
-            if faint is not None:
-                axes.plot(
-                    faint.time, np.array(faint.angles)[:, joint], ":", color=DARK, linewidth=0.9, label=faint.name
-                )
-            axes.plot(first.time, np.array(first.angles)[:, joint], color=DARK, linewidth=1.4, label=first.name)
-            for one, colour in zip(traces, COLOURS, strict=False):
-                axes.plot(one.time, np.array(one.angles)[:, joint], color=colour, linewidth=1.1, label=one.name)
-            axes.set_title(TITLES[joint], fontsize=9)
-            axes.margins(x=0.01, y=0.08)
-            if window is not None:
-                axes.set_xlim(*window)
-        _label(grid, "time [s]", "angle [rad]")
-        handles, labels = grid[0, 0].get_legend_handles_labels()
-        figure.legend(
-            handles, labels, loc="lower center", bbox_to_anchor=(0.5, 0.005), ncols=len(labels), frameon=False
-        )
-        return png(figure)
+    """Two by two panels: these traces, and below how far those behind `against` are from it, which `error` says."""
+    with style():
+        return png(plot_responses(traces, against, title, error, window=window))
 
 
-def _label(grid: Any, x: str, y: str) -> None:
-    for axes in grid[-1]:
-        axes.set_xlabel(x)
-    for axes in grid[:, 0]:
-        axes.set_ylabel(y)
+def plot_responses(
+    traces: Sequence[Trace], against: Trace, title: str, error: str, *, window: tuple[float, float] | None = None
+) -> Figure:
+    """What `responses` shows, as a figure of pyplot's that the caller closes."""
+    figure = plt.figure(figsize=(WIDE, 6.2))
+    headline(figure, title)
+    behind = list(traces)[list(traces).index(against) + 1 :]
+    first, last = window or (min(np.min(one.time) for one in traces), max(np.max(one.time) for one in traces))
+    off = [[_off(one, against, joint, first, last) for one in behind] for joint in range(JOINTS)]
+    largest = max(float(np.abs(one[1]).max(initial=0.0)) for joint in off for one in joint)
+    below = _label_responses(figure, traces, error, largest)
+    grid = figure.add_gridspec(2, 2, **leave(figure, 0.67, 0.12, 0.46 + below, 0.48), wspace=0.29, hspace=0.28)
+    for joint, name in enumerate(JOINT_TITLES):
+        cells = grid[divmod(joint, 2)].subgridspec(2, 1, height_ratios=(2.2, 1), hspace=0.07)
+        angle = figure.add_subplot(cells[0])
+        strip = figure.add_subplot(cells[1], sharex=angle)
+        for one in traces:
+            angle.plot(one.time, np.array(one.angles)[:, joint], **one.look.line)
+        angle.set_xlim(first, last)
+        for time, difference, look in off[joint]:
+            strip.plot(time, difference, **look.thin().line)
+        strip.axhline(0.0, color=DARK, linewidth=0.5)
+        mark_beyond(strip, LARGEST_ERROR, off[joint])
+        angle.set_title(name)
+        angle.tick_params(labelbottom=False)
+        angle.set_ylabel("angle [rad]")
+        strip.set_ylabel("error [rad]")
+        strip.set_xlabel("time [s]")
+        figure.align_ylabels([angle, strip])
+    return figure
+
+
+def _label_responses(figure: Figure, traces: Sequence[Trace], error: str, largest: float) -> float:
+    """The legend; its height in inches."""
+    handles = [Line2D([], [], **one.look.line) for one in traces]
+    labels = [one.name for one in traces]
+    handles.append(Line2D([], [], linestyle="none"))
+    labels.append(f"error: {error}")
+    if largest > LARGEST_ERROR:
+        handles.append(mark_of_beyond())
+        labels.append(f"beyond ±{LARGEST_ERROR:g} rad (up to {largest:.2g})")
+    return legend_below(figure, handles, labels)
+
+
+def _off(one: Trace, against: Trace, joint: int, first: float, last: float) -> tuple[Floats, Floats, Look]:
+    """How far a trace is from another at its own times, from the first to the last."""
+    time = np.asarray(one.time, dtype=np.float64)
+    seen = (time >= first) & (time <= last)
+    reference = np.interp(time[seen], np.asarray(against.time), np.array(against.angles)[:, joint])
+    return time[seen], reference - np.array(one.angles)[seen, joint], one.look
 
 
 def convergence(curves: Mapping[str, Sequence[float]], title: str, y: str, first: str = "") -> bytes:
     """Best costs so far over iterations in one panel; the curve `first` is drawn strong, the others pale."""
-    with styled():
-        figure, axes = plt.subplots(figsize=(7.0, 3.8))
-        figure.subplots_adjust(left=0.12, right=0.98, bottom=0.13, top=0.9)
+    with style():
+        figure, axes = plt.subplots(figsize=(WIDE, 3.0))
+        figure.subplots_adjust(**leave(figure, 0.6, 0.12, 0.42, 0.3))
         for name, curve in curves.items():
             strong = name == first
             axes.step(
                 np.arange(1, len(curve) + 1),
                 curve,
                 where="post",
-                color=BLUE if strong else "#999999",
-                linewidth=1.8 if strong else 0.7,
+                color=PAPER if strong else GREY,
+                linewidth=1.5 if strong else 0.6,
                 label=name if strong else None,
                 zorder=3 if strong else 2,
             )
-        axes.set_yscale("log")
+        make_logarithmic(axes)
         axes.set_xlabel("iteration")
         axes.set_ylabel(y)
-        axes.set_title(title, fontsize=10)
-        axes.plot([], [], color="#999999", linewidth=0.7, label="other seeds")
+        axes.set_title(title)
+        if len(curves) > 1:
+            axes.plot([], [], color=GREY, linewidth=0.6, label="other seeds")
         axes.legend(frameon=False)
         return png(figure)
 
 
 def convergence_of_joints(runs: Sequence[Sequence[Mapping[str, Sequence[float]]]], title: str, agents: int) -> bytes:
     """Two by two panels: J over the iterations of a pack of `agents`, the first run strong."""
-    with styled():
-        figure, grid = plt.subplots(2, 2, figsize=(8.0, 5.4), sharex=True)
-        figure.subplots_adjust(left=0.1, right=0.985, bottom=0.1, top=0.89, wspace=0.2, hspace=0.24)
-        figure.suptitle(title, fontsize=11, fontweight="bold", y=0.975)
+    with style():
+        figure, grid = plt.subplots(2, 2, figsize=(WIDE, 4.4), sharex=True)
+        figure.subplots_adjust(**leave(figure, 0.62, 0.12, 0.42, 0.5, wspace=0.2, hspace=0.26))
+        headline(figure, title)
         for joint, axes in enumerate(grid.flat):
             for number, run in reversed(list(enumerate(runs))):
                 curve = run[joint]
@@ -115,14 +157,16 @@ def convergence_of_joints(runs: Sequence[Sequence[Mapping[str, Sequence[float]]]
                     iteration,
                     curve["cost"],
                     where="post",
-                    color=BLUE if strong else "#aaaaaa",
-                    linewidth=1.7 if strong else 0.7,
+                    color=PAPER if strong else GREY,
+                    linewidth=1.5 if strong else 0.6,
                     label="first seed" if strong else "other seeds" if number == 1 else None,
                 )
-            axes.set_title(TITLES[joint], fontsize=9)
+            axes.set_title(JOINT_TITLES[joint])
             axes.margins(y=0.08)
-        grid[0, 0].legend(frameon=False, fontsize=8)
-        _label(grid, "iteration", "J = ITAE + ITAU")
+        grid[0, 0].legend(frameon=False, fontsize=SMALL)
+        for axes in grid[-1]:
+            axes.set_xlabel("iteration")
+        figure.supylabel(J_WORDS, x=0.06 / WIDE, ha="left", fontsize="medium")
         return png(figure)
 
 
@@ -133,36 +177,38 @@ def sets_of(controllers: Controllers, joint: int, change: bool) -> tuple[float, 
     return left, a, c, right
 
 
-def _draw_sets(axes: Axes, corners: tuple[float, float, float, float], names: Sequence[str], style: str = "-") -> None:
+def _draw_sets(
+    axes: Axes, corners: tuple[float, float, float, float], names: Sequence[str], look: Look = looks.SETS_AFTER
+) -> None:
     left, a, c, right = corners
     shapes = (
         ([-1.0, left, 0.0], [1.0, 1.0, 0.0]),
         ([a, 0.0, c], [0.0, 1.0, 0.0]),
         ([0.0, right, 1.0], [0.0, 1.0, 1.0]),
     )
-    for (x, y), colour, name in zip(shapes, (ORANGE, DARK, BLUE), names, strict=True):
-        axes.plot(x, y, style, color=colour, linewidth=1.6, label=name)
+    for (x, y), colour, name in zip(shapes, SIGNS, names, strict=True):
+        axes.plot(x, y, label=name, **Look(colour, look.style, look.width).line)
     axes.set_xlim(-1.03, 1.03)
     axes.set_ylim(-0.03, 1.08)
 
 
 def sets_before(controllers: Controllers) -> bytes:
     """Fig. 11: both inputs and the output."""
-    with styled():
-        figure, row = plt.subplots(1, 3, figsize=(9.4, 2.8), sharey=True)
-        figure.subplots_adjust(left=0.07, right=0.985, bottom=0.2, top=0.88, wspace=0.1)
+    with style():
+        figure, row = plt.subplots(1, 3, figsize=(WIDE, 2.1), sharey=True)
+        figure.subplots_adjust(**leave(figure, 0.5, 0.12, 0.42, 0.26, wspace=0.1))
         _draw_sets(row[0], sets_of(controllers, 0, False), _SETS["e"])
         _draw_sets(row[1], sets_of(controllers, 0, True), _SETS["ce"])
         width = 0.02
-        for centre, colour, name in zip((-1.0, 0.0, 1.0), (ORANGE, DARK, BLUE), _SETS["u"], strict=True):
+        for centre, colour, name in zip((-1.0, 0.0, 1.0), SIGNS, _SETS["u"], strict=True):
             row[2].plot(
-                [centre - width, centre, centre + width], [0.0, 1.0, 0.0], color=colour, linewidth=1.6, label=name
+                [centre - width, centre, centre + width], [0.0, 1.0, 0.0], color=colour, linewidth=1.3, label=name
             )
         row[2].set_xlim(-1.08, 1.08)
         for axes, title in zip(row, ("error $K_p\\,e$", "change of error $K_d\\,ce$", "output"), strict=True):
-            axes.set_title(title, fontsize=9)
+            axes.set_title(title)
             axes.set_xlabel("normalised")
-            axes.legend(frameon=False, fontsize=8, loc="center", bbox_to_anchor=(0.77, 0.5))
+            axes.legend(frameon=False, fontsize=SMALL, loc="center", bbox_to_anchor=(0.77, 0.5))
         row[0].set_ylabel("membership")
         return png(figure)
 
@@ -173,9 +219,9 @@ def tuneable() -> bytes:
         ("Ne_trapmf_c", "Ze_trimf_a", "Ze_trimf_c", "Pe_trapmf_b"),
         ("Nce_trapmf_c", "Zce_trimf_a", "Zce_trimf_c", "Pce_trapmf_b"),
     )
-    with styled():
-        figure, row = plt.subplots(1, 2, figsize=(9.4, 3.2), sharey=True)
-        figure.subplots_adjust(left=0.07, right=0.985, bottom=0.16, top=0.9, wspace=0.08)
+    with style():
+        figure, row = plt.subplots(1, 2, figsize=(WIDE, 2.5), sharey=True)
+        figure.subplots_adjust(**leave(figure, 0.5, 0.12, 0.42, 0.26, wspace=0.08))
         for axes, own, words in zip(row, names, (_SETS["e"], _SETS["ce"]), strict=True):
             corners = (-0.6, -0.5, 0.5, 0.6)
             _draw_sets(axes, corners, words)
@@ -183,43 +229,43 @@ def tuneable() -> bytes:
                 side = 1.0 if x > 0.0 else -1.0
                 axes.plot([x], [y], "o", color=GREEN, zorder=4)
                 axes.annotate(
-                    name, (x, y), (0.97 * side, place), ha="right" if x > 0.0 else "left", fontsize=8, color=GREEN,
+                    name, (x, y), (0.97 * side, place), ha="right" if x > 0.0 else "left", fontsize=SMALL, color=GREEN,
                     arrowprops={"arrowstyle": "-", "color": GREEN, "linewidth": 0.7},
                 )  # fmt: skip
-            axes.annotate("", (-1.0, 1.05), (0.0, 1.05), arrowprops={"arrowstyle": "<->", "color": "#777777"})
-            axes.annotate("", (0.0, 1.05), (1.0, 1.05), arrowprops={"arrowstyle": "<->", "color": "#777777"})
-            axes.set_title("error" if words is _SETS["e"] else "change of error", fontsize=9)
+            axes.annotate("", (-1.0, 1.05), (0.0, 1.05), arrowprops={"arrowstyle": "<->", "color": GREY})
+            axes.annotate("", (0.0, 1.05), (1.0, 1.05), arrowprops={"arrowstyle": "<->", "color": GREY})
+            axes.set_title("error" if words is _SETS["e"] else "change of error")
             axes.set_xlabel("normalised")
-            axes.legend(frameon=False, fontsize=8, loc="center left", bbox_to_anchor=(0.0, 0.38))
+            axes.legend(frameon=False, fontsize=SMALL, loc="center left", bbox_to_anchor=(0.0, 0.38))
         row[0].set_ylabel("membership")
         return png(figure)
 
 
 def sets_after(before: Controllers, after: Mapping[str, Controllers]) -> bytes:
-    """Fig. 16: the sets of each joint before (dotted) and after, a column for each source and input."""
+    """Fig. 16: the sets of each joint before (dashed) and after, a column for each source and input."""
     sources = list(after.items())
-    with styled():
-        figure, grid = plt.subplots(JOINTS, 2 * len(sources), figsize=(10.0, 7.6), sharex=True, sharey=True)
-        figure.subplots_adjust(left=0.06, right=0.985, bottom=0.1, top=0.91, wspace=0.08, hspace=0.16)
+    with style():
+        figure, grid = plt.subplots(JOINTS, 2 * len(sources), figsize=(WIDE, 5.6), sharex=True, sharey=True)
+        figure.subplots_adjust(**leave(figure, 0.72, 0.12, 0.66, 0.6, wspace=0.1, hspace=0.16))
         for column, (name, controllers) in enumerate(sources):
             for change in (False, True):
                 words = _SETS["ce" if change else "e"]
                 for joint in range(JOINTS):
                     axes = grid[joint, 2 * column + change]
-                    _draw_sets(axes, sets_of(before, joint, change), words, ":")
+                    _draw_sets(axes, sets_of(before, joint, change), words, looks.SETS_BEFORE)
                     _draw_sets(axes, sets_of(controllers, joint, change), words)
                     axes.set_xticks((-1.0, 0.0, 1.0))
                 grid[0, 2 * column + change].set_title(
-                    f"{name}:\n{'change of error' if change else 'error'}", fontsize=9
+                    f"{name}:\n{'change of error' if change else 'error'}".replace(", ", ",\n"), fontsize=9
                 )
         for joint in range(JOINTS):
-            grid[joint, 0].set_ylabel(f"Joint {joint}")
+            grid[joint, 0].set_ylabel(f"Joint {joint}\nmembership")
         for axes in grid[-1]:
-            axes.set_xlabel("normalised", fontsize=8)
-        lines = [Line2D([], [], color=colour) for colour in (ORANGE, DARK, BLUE)]
-        lines += [Line2D([], [], color="#777777", linestyle=style) for style in (":", "-")]
+            axes.set_xlabel("normalised", fontsize=SMALL)
+        lines = [Line2D([], [], color=colour) for colour in SIGNS]
+        lines += [Line2D([], [], **look.line) for look in (looks.SETS_BEFORE, looks.SETS_AFTER)]
         labels = ["NE / NCE", "ZE / ZCE", "PE / PCE", "before", "after"]
-        figure.legend(lines, labels, loc="lower center", ncols=5, frameon=False)
+        legend_below(figure, lines, labels)
         return png(figure)
 
 
@@ -227,9 +273,9 @@ def surfaces(controllers: Mapping[str, Controllers], joint: int) -> bytes:
     """The control surface: the fuzzy output over both inputs."""
     axis = np.linspace(-1.0, 1.0, 201)
     x, y = np.meshgrid(axis, axis)
-    with styled():
-        figure, row = plt.subplots(1, len(controllers), figsize=(9.4, 4.1), sharey=True)
-        figure.subplots_adjust(left=0.07, right=0.9, bottom=0.13, top=0.89, wspace=0.08)
+    with style():
+        figure, row = plt.subplots(1, len(controllers), figsize=(WIDE, 3.1), sharey=True)
+        figure.subplots_adjust(**leave(figure, 0.7, 0.75, 0.42, 0.26, wspace=0.08))
         for axes, (name, rows) in zip(np.atleast_1d(row), controllers.items(), strict=True):
             law = Law.of(np.repeat(rows[joint][None], JOINTS, axis=0))
             law = Law(law.sets, np.ones_like(law.gains))
@@ -237,33 +283,33 @@ def surfaces(controllers: Mapping[str, Controllers], joint: int) -> bytes:
             u = law.fuzzy(*points)[0][:, 0].reshape(x.shape)
             shade = axes.contourf(x, y, u, levels=np.linspace(-1.0, 1.0, 21), cmap="RdBu_r")
             axes.contour(x, y, u, levels=(-0.5, 0.0, 0.5), colors=DARK, linewidths=0.7)
-            axes.set_title(name, fontsize=9)
+            axes.set_title(name)
             axes.set_xlabel("error $K_p\\,e$")
             axes.set_xticks((-1.0, -0.5, 0.0, 0.5, 1.0), ("−1", "−0.5", "0", "0.5", "1"))
             axes.grid(False)
         np.atleast_1d(row)[0].set_ylabel("change of error $K_d\\,ce$")
-        bar = figure.colorbar(shade, cax=figure.add_axes((0.915, 0.13, 0.02, 0.76)), ticks=(-1.0, -0.5, 0.0, 0.5, 1.0))
+        bar = figure.colorbar(shade, cax=figure.add_axes(_BAR), ticks=(-1.0, -0.5, 0.0, 0.5, 1.0))
         bar.set_label("fuzzy output")
         return png(figure)
 
 
 def ranks(places: Mapping[str, Mapping[str, float]], title: str) -> bytes:
-    """Mean ranks of methods, a group of bars for each problem; the lowest is best."""
+    """Mean ranks of methods, a group of bars for each method; the shortest is best."""
     problems = list(places)
     methods = list(next(iter(places.values())))
-    with styled():
-        figure, axes = plt.subplots(figsize=(9.4, 3.6))
-        figure.subplots_adjust(left=0.07, right=0.985, bottom=0.19, top=0.9)
+    with style():
+        figure, axes = plt.subplots(figsize=(WIDE, 4.4))
         width = 0.8 / len(problems)
-        for number, (problem, colour) in enumerate(zip(problems, (DARK, *COLOURS), strict=False)):
+        for number, (problem, colour) in enumerate(zip(problems, BARS, strict=False)):
             at = np.arange(len(methods)) + (number - 0.5 * (len(problems) - 1)) * width
-            axes.bar(at, [places[problem][method] for method in methods], width, color=colour, label=problem)
-        axes.set_xticks(
-            range(len(methods)), [method.replace(", ", ",\n").replace(" (", "\n(") for method in methods], fontsize=8
-        )
-        axes.set_ylabel("mean rank (1 is best)")
-        axes.grid(axis="x", visible=False)
-        axes.set_title(title, fontsize=10)
-        axes.legend(frameon=False, ncols=len(problems), fontsize=8, loc="upper left")
-        axes.set_ylim(0, len(methods) + 1.2)
+            axes.barh(at, [places[problem][method] for method in methods], width, color=colour, label=problem)
+        axes.set_yticks(range(len(methods)), methods)
+        axes.invert_yaxis()
+        axes.margins(y=0.01)
+        axes.set_xlim(left=0.0)
+        axes.set_xlabel("mean rank (1 is best)")
+        axes.grid(axis="y", visible=False)
+        axes.set_title(title)
+        below = legend_below(figure, *axes.get_legend_handles_labels())
+        figure.subplots_adjust(**leave(figure, 1.9, 0.12, 0.42 + below, 0.28))
         return png(figure)

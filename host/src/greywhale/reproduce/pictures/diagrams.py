@@ -10,10 +10,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import FancyBboxPatch
 
+from greywhale.drawing.looks import BLUE, DARK, ORANGE
+from greywhale.drawing.page import LETTERS, SMALL, WIDE, leave, png, style
 from greywhale.files.arm import load_arm
-from greywhale.reproduce.pictures.drawing import BLUE, DARK, ORANGE, png, styled
 
 Point = tuple[float, float]
+
+_ARROW = {"arrowstyle": "-|>", "color": DARK, "linewidth": 1.1, "shrinkA": 0.0, "shrinkB": 0.0}
 
 
 @dataclass(frozen=True)
@@ -28,11 +31,11 @@ class Box:
 
 
 def diagram(
-    boxes: Sequence[Box], arrows: Sequence[tuple[Sequence[Point], str]], size: Point, extent: tuple[float, float]
+    boxes: Sequence[Box], arrows: Sequence[tuple[Sequence[Point], str]], height: float, extent: tuple[float, float]
 ) -> bytes:
     """Boxes, and arrows along points with their words near the first stretch's middle."""
-    with styled():
-        figure, axes = plt.subplots(figsize=size)
+    with style():
+        figure, axes = plt.subplots(figsize=(WIDE, height))
         figure.subplots_adjust(left=0.01, right=0.99, bottom=0.02, top=0.98)
         axes.set_xlim(0.0, extent[0])
         axes.set_ylim(0.0, extent[1])
@@ -50,19 +53,24 @@ def _box(axes: Axes, box: Box) -> None:
     axes.add_patch(
         FancyBboxPatch(corner, box.width, box.height, boxstyle=round_corners, facecolor="#eef3f8", edgecolor=BLUE)
     )
-    axes.text(box.x, box.y, box.text, ha="center", va="center", fontsize=8.5, color=DARK)
+    axes.text(box.x, box.y, box.text, ha="center", va="center", fontsize=LETTERS, color=DARK)
 
 
 def _arrow(axes: Axes, points: Sequence[Point], words: str) -> None:
     path = np.array(points)
     axes.plot(path[:-1, 0], path[:-1, 1], color=DARK, linewidth=1.1)
-    axes.annotate("", path[-1], path[-2], arrowprops={"arrowstyle": "-|>", "color": DARK, "linewidth": 1.1})
+    axes.annotate("", path[-1], path[-2], arrowprops=_ARROW)
     if words:
         middle = 0.5 * (path[0] + path[1])
         level = abs(path[0, 1] - path[1, 1]) < 1e-9
         place = middle + ((0.0, 0.1) if level else (0.08, 0.0))
         axes.text(
-            place[0], place[1], words, fontsize=8, ha="center" if level else "left", va="bottom" if level else "center"
+            place[0],
+            place[1],
+            words,
+            fontsize=SMALL,
+            ha="center" if level else "left",
+            va="bottom" if level else "center",
         )
 
 
@@ -82,7 +90,7 @@ def system() -> bytes:
         (((9.7, 2.1), (9.7, 2.6), (4.2, 2.6), (4.2, 2.1)), "angles"),
         (((4.2, 1.1), (4.2, 0.65)), "serial link"),
     )
-    return diagram(boxes, arrows, (9.0, 2.5), (10.9, 2.9))
+    return diagram(boxes, arrows, 1.86, (10.9, 2.9))
 
 
 def identification() -> bytes:
@@ -102,7 +110,7 @@ def identification() -> bytes:
         (((7.35, 1.8), (8.2, 1.8)), "errors"),
         (((9.0, 1.44), (9.0, 0.25), (4.0, 0.25), (4.0, 0.54)), "20 motor values"),
     )
-    return diagram(boxes, arrows, (9.0, 2.9), (10.2, 3.3))
+    return diagram(boxes, arrows, 2.16, (10.8, 3.3))
 
 
 def law() -> bytes:
@@ -126,7 +134,7 @@ def law() -> bytes:
         (((2.85, 0.4), (8.8, 0.4), (8.8, 1.65)), ""),
         (((9.05, 1.9), (10.0, 1.9)), "u(k)"),
     )
-    return diagram(boxes, arrows, (9.0, 2.6), (10.3, 2.9))
+    return diagram(boxes, arrows, 1.93, (10.3, 2.9))
 
 
 def scheme() -> bytes:
@@ -146,7 +154,7 @@ def scheme() -> bytes:
             (((8.3, y - 0.18), (7.9, y - 0.18), (7.9, y - 0.42), (4.3, y - 0.42), (4.3, y - 0.28)), ""),
         ]
     boxes.append(Box("follower\narm", 8.95, 2.1, 1.3, 3.6))
-    return diagram(boxes, arrows, (9.0, 3.9), (10.0, 4.1))
+    return diagram(boxes, arrows, 2.90, (10.0, 4.1))
 
 
 def closed_loop() -> bytes:
@@ -167,7 +175,7 @@ def closed_loop() -> bytes:
         (((5.2, 1.6), (5.2, 2.54)), "u(k)"),
         (((3.75, 2.75), (3.2, 2.75), (3.2, 1.96)), "sets"),
     )
-    return diagram(boxes, arrows, (9.0, 3.0), (9.6, 3.5))
+    return diagram(boxes, arrows, 2.23, (9.6, 3.5))
 
 
 def arm() -> bytes:
@@ -178,9 +186,9 @@ def arm() -> bytes:
     for link, angle in zip(links, angles, strict=True):
         points.append(points[-1] + link.length * np.array([np.cos(angle), np.sin(angle)]))
     path = np.array(points)
-    with styled():
-        figure, axes = plt.subplots(figsize=(6.4, 3.7))
-        figure.subplots_adjust(left=0.11, right=0.98, bottom=0.14, top=0.97)
+    with style():
+        figure, axes = plt.subplots(figsize=(WIDE, 3.6))
+        figure.subplots_adjust(**leave(figure, 0.6, 0.12, 0.42, 0.1))
         axes.plot(path[:, 0], path[:, 1], "-", color=BLUE, linewidth=5, alpha=0.35, solid_capstyle="round")
         for number, (link, angle) in enumerate(zip(links, angles, strict=True)):
             along = np.array([np.cos(angle), np.sin(angle)])
@@ -188,12 +196,12 @@ def arm() -> bytes:
             axes.plot(*centre, "o", color=ORANGE, markersize=6)
             aside = centre + 0.016 * np.array([-along[1], along[0]])
             words = f"$L_{number}$ = {1000 * link.length:g} mm, {1000 * link.mass:g} g"
-            axes.text(aside[0], aside[1], words, fontsize=8, va="bottom", ha="left" if number == 3 else "right")
+            axes.text(aside[0], aside[1], words, fontsize=SMALL, va="bottom", ha="left" if number == 3 else "right")
         for place, word in ((0, "base yaw $\\theta_0$"), (1, "shoulder $\\theta_1$"), (2, "wrist pitch $\\theta_2$")):
             axes.plot(*path[place], "o", color=DARK, markersize=8, fillstyle="none", markeredgewidth=1.6)
-            aside = (0.0, -0.05) if place == 2 else (0.012, -0.012)
-            axes.annotate(word, path[place] + aside, fontsize=8, va="top", ha="center" if place == 2 else "left")
-        axes.annotate("wrist roll $\\theta_3$", path[3] + (0.004, -0.012), fontsize=8, va="top")
+            aside = (0.0, -0.032) if place == 2 else (0.012, -0.012)
+            axes.annotate(word, path[place] + aside, fontsize=SMALL, va="top", ha="center" if place == 2 else "left")
+        axes.annotate("wrist roll $\\theta_3$", path[3] + (0.0, -0.018), fontsize=SMALL, va="top")
         axes.plot(*path[3], "s", color=DARK, markersize=7, fillstyle="none", markeredgewidth=1.6)
         axes.set_xlim(-0.13, 0.4)
         axes.set_ylim(-0.03, 0.24)

@@ -10,6 +10,7 @@ import jinja2
 
 from greywhale.formats.whole import write_text
 from greywhale.reproduce.pages.document import Block, Code, Document, Picture, Sheet
+from greywhale.reproduce.render.ranges import keep_ranges
 
 
 def write_html(document: Document, path: Path) -> Path:
@@ -21,7 +22,8 @@ def write_html(document: Document, path: Path) -> Path:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    write_text(path, environment.get_template("report.html").render(document=document, kind=_kind, url=_url))
+    page = environment.get_template("report.html")
+    write_text(path, page.render(document=document, kind=_kind, url=_url, keep=keep_ranges))
     return path
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Sequence
 from pathlib import Path
 from typing import IO, Any
 from xml.sax.saxutils import escape
@@ -29,6 +30,7 @@ from reportlab.platypus import (
 
 from greywhale.formats.whole import write_whole
 from greywhale.reproduce.pages.document import Block, Chapter, Code, Document, Entry, Picture, Sheet
+from greywhale.reproduce.render.ranges import keep_ranges
 
 MARGIN = 16 * mm
 WIDTH = A4[0] - 2 * MARGIN
@@ -37,13 +39,13 @@ TALLEST = A4[1] - 2 * MARGIN - 40
 # Matplotlib brings these, with every sign that the report needs.
 FONTS = {"Body": "DejaVuSans", "Strong": "DejaVuSans-Bold", "Fixed": "DejaVuSansMono"}
 PRINTED = colors.HexColor("#f6f3e8")
-MOST_POINTS, LEAST_POINTS = 8.0, 4.8
+MOST_POINTS, GOOD_POINTS, LEAST_POINTS = 8.0, 6.8, 4.8
+PADDING = 6.5
 
 
 def write_pdf(document: Document, path: Path) -> Path:
     """Write the PDF, whole or not at all."""
-    for name, file in FONTS.items():
-        pdfmetrics.registerFont(TTFont(name, str(Path(matplotlib.get_data_path()) / "fonts" / "ttf" / f"{file}.ttf")))
+    register_fonts()
     made = io.BytesIO()
     pages = SimpleDocTemplate(
         made,
@@ -63,6 +65,12 @@ def write_pdf(document: Document, path: Path) -> Path:
     pages.build(story, onFirstPage=_number, onLaterPages=_number)
     write_whole(path, lambda file: _fill(file, made.getvalue()))
     return path
+
+
+def register_fonts() -> None:
+    """Make the fonts known by the names that this module gives them."""
+    for name, file in FONTS.items():
+        pdfmetrics.registerFont(TTFont(name, str(Path(matplotlib.get_data_path()) / "fonts" / "ttf" / f"{file}.ttf")))
 
 
 def _fill(file: IO[bytes], data: bytes) -> None:
@@ -125,7 +133,7 @@ def _image(picture: Picture) -> Image:
 
 
 def _table(sheet: Sheet) -> LongTable:
-    points, widths = _fit(sheet)
+    points, widths = fit_columns(sheet)
     style: list[Any] = [
         ("FONT", (0, 0), (-1, -1), "Body", points, points * 1.25),
         ("FONT", (0, 0), (-1, 0), "Strong", points, points * 1.25),
@@ -158,32 +166,45 @@ def _table(sheet: Sheet) -> LongTable:
 
 def _cell(text: str, font: str, points: float, left: bool) -> Paragraph:
     style = ParagraphStyle("cell", fontName=font, fontSize=points, leading=points * 1.25, alignment=0 if left else 2)
-    return Paragraph(escape(text), style)
+    return Paragraph(escape(keep_ranges(text)), style)
 
 
-def _fit(sheet: Sheet) -> tuple[float, list[float]]:
-    """Type size and column widths: as wide as the words at the largest size that fits, at the least size broken."""
-    rows = [sheet.columns, *((row.label, *row.cells) for row in sheet.rows if not row.heading)]
+def fit_columns(sheet: Sheet) -> tuple[float, list[float]]:
+    """Type size and column widths: one line a row at a good size, else several lines, and only then small letters."""
+    rows = [(row.label, *row.cells) for row in sheet.rows if not row.heading]
+    columns = [(name, [row[place] for row in rows]) for place, name in enumerate(sheet.columns)]
     points = MOST_POINTS
     while True:
-        wide = [
-            max(pdfmetrics.stringWidth(row[place], "Strong" if row is rows[0] else "Body", points) for row in rows)
-            + 6.5
-            for place in range(len(sheet.columns))
-        ]
+        wide = [_width([name], texts, points) for name, texts in columns]
         if sum(wide) <= WIDTH:
             return points, wide
-        if points <= LEAST_POINTS:
-            return points, _squeeze(wide)
+        if points <= GOOD_POINTS:
+            least = [_width(_parts([name]), _parts(texts), points) for name, texts in columns]
+            if sum(least) <= WIDTH or points <= LEAST_POINTS:
+                return points, _squeeze(wide, least)
         points = max(LEAST_POINTS, points - 0.4)
 
 
-def _squeeze(wide: list[float]) -> list[float]:
-    """The widest columns give way until all fit; their words break."""
+def _parts(texts: Sequence[str]) -> list[str]:
+    """What must stand in one line: words, and ranges."""
+    return [part for text in texts for part in keep_ranges(text).split(" ")]
+
+
+def _width(heads: Sequence[str], texts: Sequence[str], points: float) -> float:
+    """Of the widest text, with the cell's padding."""
+    wide = [pdfmetrics.stringWidth(text, "Strong", points) for text in heads]
+    wide += [pdfmetrics.stringWidth(text, "Body", points) for text in texts]
+    return float(max(wide)) + PADDING
+
+
+def _squeeze(wide: list[float], least: list[float]) -> list[float]:
+    """The widest columns give way until all fit, down to the least of each if that is possible."""
     most = max(wide)
-    while sum(min(one, most) for one in wide) > WIDTH:
+    while most > 1.0 and sum(max(min(one, most), floor) for one, floor in zip(wide, least, strict=True)) > WIDTH:
         most *= 0.98
-    return [min(one, most) for one in wide]
+    widths = [max(min(one, most), floor) for one, floor in zip(wide, least, strict=True)]
+    share = min(1.0, WIDTH / sum(widths))
+    return [share * one for one in widths]
 
 
 def _style(font: str, points: float, colour: str = "#222222") -> ParagraphStyle:

@@ -30,7 +30,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
-from greywhale.arm.plants import check_plants, column
+from greywhale.arm.plants import check_plants, column, rigid_joints
 from greywhale.errors import BAD_USAGE, UserError
 from greywhale.firmware import JOINTS
 from greywhale.loop import leader_slices, plant_row
@@ -113,6 +113,7 @@ def saturation_floor(
     if len(plant) != 1:
         raise UserError(f"the floor is of one plant, not of {len(plant)}; call it for each.", BAD_USAGE)
     slices = leader_slices(motion, wait_s, after_s, resample) if isinstance(motion, Trajectory) else _checked(motion)
+    slices = np.where(rigid_joints(plant[0]), 0.0, slices)  # what is not in use is not led
     loop = _Loop(slices, plant[0], _supply(plant[0], supply_v), _delay_slices(delay_s), threads)
     _require_reach(loop)
     tunings = _best(loop)

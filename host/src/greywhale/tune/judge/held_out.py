@@ -14,6 +14,7 @@ import numpy.typing as npt
 from greywhale.arm import ArmParameters
 from greywhale.files.log import Log
 from greywhale.files.log.layout import Origin
+from greywhale.joints import Joints
 from greywhale.loop import Experiment
 from greywhale.measure import Evaluation, evaluate
 from greywhale.table import ParameterTable
@@ -99,8 +100,8 @@ def judge_held_out(
             HeldOut(
                 name=name,
                 motion=motion,
-                before=_evaluate(name, result.time_s, leader, angles[0]),
-                after=_evaluate(name, result.time_s, leader, angles[1]),
+                before=_evaluate(name, result.time_s, leader, angles[0], arm.joints_in_use),
+                after=_evaluate(name, result.time_s, leader, angles[1], arm.joints_in_use),
                 floor=saturation_floor(motion, plant, wait_s=WAIT_S, threads=threads) if floors else None,
                 time_s=result.time_s,
                 leader=leader,
@@ -111,6 +112,6 @@ def judge_held_out(
     return tuple(judged)
 
 
-def _evaluate(name: str, time_s: Floats, leader: Floats, follower: Floats) -> Evaluation:
+def _evaluate(name: str, time_s: Floats, leader: Floats, follower: Floats, joints: Joints) -> Evaluation:
     state = np.full(len(time_s), "following")
-    return evaluate(Log(name, Origin(), time_s, leader, follower, np.zeros_like(leader), state, 0, True))
+    return evaluate(Log(name, Origin(joints=joints), time_s, leader, follower, np.zeros_like(leader), state, 0, True))

@@ -23,7 +23,13 @@ def save(outcome: Outcome, path: str | Path) -> None:
     """Write controller.toml, whole or not at all."""
     notes = [_note(outcome, joint) for joint in range(len(JOINT_NAMES))]
     controller.save(
-        path, outcome.after, _source(outcome), header=_header(outcome), notes=notes, tuning=provenance(outcome)
+        path,
+        outcome.after,
+        _source(outcome),
+        header=_header(outcome),
+        notes=notes,
+        stall_volts=None if outcome.model.stall is None else outcome.model.stall.volts,
+        tuning=provenance(outcome),
     )
 
 
@@ -43,12 +49,14 @@ def provenance(outcome: Outcome) -> dict[str, Any]:
         "board": outcome.table.board.key,
         "period_ms": outcome.period_ms,
         "supply_v": outcome.supply_v,
-        "parameter_crc": f"0x{outcome.table.with_controllers(outcome.after).crc:04x}",
+        "parameter_crc": f"0x{outcome.board_table.crc:04x}",
         "doubts": list(model.doubts),
         "notes": list(outcome.notes),
         "cost_before": _rounded(outcome.cost_before),
         "cost_after": _rounded(outcome.cost_after),
     }
+    if outcome.model.stall is not None:
+        facts["stall"] = outcome.model.stall.as_dict()
     # An unfinished tuning was not judged.
     if outcome.margins:
         facts |= {"margins_hold": outcome.steady, "margin": _margins(outcome.margins)}
@@ -69,11 +77,15 @@ def _header(outcome: Outcome) -> list[str]:
     ]
     if not outcome.complete:
         lines.append("UNFINISHED: interrupted; these are the best so far. The same command with --resume goes on.")
+    if outcome.model.stall is not None:
+        lines.append(f"For the board's {outcome.model.stall.sentence}")
     lines += [f"Expected on {one.name}, all joints: {_change(one)}." for one in outcome.held_out]
     return [*lines, *failing_margins(outcome), *(f"Doubt: {doubt}" for doubt in outcome.model.doubts)]
 
 
 def _note(outcome: Outcome, joint: int) -> str:
+    if joint not in outcome.model.arm.joints_in_use:
+        return f"{JOINT_NAMES[joint]}; not in use, as before"
     if not outcome.held_out:
         return JOINT_NAMES[joint]
     first = outcome.held_out[0]

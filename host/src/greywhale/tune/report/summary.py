@@ -25,7 +25,11 @@ def summary(outcome: Outcome) -> str:
         lines += ["", *_motion(one)]
     if outcome.margins:
         lines += ["", *_margins(outcome)]
-    for title, sentences in (("Notes", outcome.notes), ("Doubts about the model", outcome.model.doubts)):
+    notes = list(outcome.notes)
+    if (stall := outcome.model.stall) is not None:
+        lines += ["", f"For the board's {stall.sentence}"]
+        notes += [stall.note] if stall.note else []
+    for title, sentences in (("Notes", notes), ("Doubts about the model", outcome.model.doubts)):
         if sentences:
             lines += ["", f"{title}:", *(f"- {sentence}" for sentence in sentences)]
     return "\n".join(lines)
@@ -34,7 +38,8 @@ def summary(outcome: Outcome) -> str:
 def _motion(one: HeldOut) -> list[str]:
     """A line for each joint: the paper's three measures, and the error as a multiple of the least possible."""
     lines = [f"{one.name:24} {'MSE [rad²]':>22} {'x floor':>8} {'steady state [rad]':>20} {'delay [s]':>16}"]
-    for joint, (before, after) in enumerate(zip(one.before.joints, one.after.joints, strict=True)):
+    for joint in one.before.joints_in_use:
+        before, after = one.before.joints[joint], one.after.joints[joint]
         worse = "  WORSE" if after.mse > WORSE * before.mse else ""
         lines.append(
             f"{f'joint {joint} ({JOINT_NAMES[joint]})':24} {_pair(before.mse, after.mse, '.2e'):>22} "

@@ -6,6 +6,7 @@ for bit.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Self
@@ -249,7 +250,9 @@ def check_bounds(strategy: str, bounds: Bounds) -> None:
             raise UserError(f"there is no bound for {name!r}; there are {', '.join((*SETS, *GAINS))}.", BAD_USAGE)
         if name in (GAINS if strategy == "mf" else SETS if strategy == "sf" else ()):
             raise UserError(f"{name} is not searched by strategy {strategy}; leave out its bounds.", BAD_USAGE)
-        if not low < high:
+        if not (math.isfinite(low) and math.isfinite(high)):
+            raise UserError(f"the bounds of {name} are {low:g} and {high:g}; give two finite numbers.", BAD_USAGE)
+        if low >= high:
             raise UserError(f"the bounds of {name} are {low:g} and {high:g}; give the lower one first.", BAD_USAGE)
         least, most = storable_range(name)
         if not (least <= low and high <= most):

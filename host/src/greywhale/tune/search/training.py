@@ -81,9 +81,16 @@ def drills(arm: ArmParameters, table: ParameterTable, plants: Floats, seed: int 
 
 
 def reach(arm: ArmParameters, table: ParameterTable, plants: Floats) -> tuple[Floats, Floats]:
-    """The lowest and highest angle (4,) that the table's limits and all plants' stops allow, some distance kept."""
+    """The lowest and highest angle (4,) that the table's limits and all plants' stops allow, some distance kept.
+
+    Both are 0 for a joint that is not in use.
+    """
     low, high = [], []
     for joint in range(JOINTS):
+        if joint not in arm.joints_in_use:
+            low.append(0.0)
+            high.append(0.0)
+            continue
         limits = [table.physical(f"joint{joint}.limit_{side}") for side in ("min", "max")]
         stops = [plants[:, column(f"stop_{side}", joint)] for side in ("min", "max")]
         low.append(max(limits[0], float(stops[0].max())) + CLEAR_RAD)

@@ -1,0 +1,135 @@
+"""Reads a board's program memory through its bootloader, and compares it byte by byte with an image.
+
+Nothing is written. The board restarts into its bootloader first, and into its firmware at the end.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import serial
+
+from greywhale.board.flash.avrdude import Progress
+from greywhale.board.flash.bootloader import Bootloader, enter_bootloader, version_1_answer, version_2_answer
+from greywhale.board.flash.flasher import find_target
+from greywhale.board.flash.images import Image, check_image, packaged_image, read_image
+from greywhale.board.flash.platformio import find_sources, last_build
+from greywhale.board.flash.targets import BOARDS
+from greywhale.errors import BAD_USAGE, UserError
+
+# Reads so many bytes from a word address on; None where the answer was wrong.
+_Reader = Callable[[serial.Serial, int, int], bytes | None]
+
+BLOCK = 128  # bytes; all bootloaders give so many at once
+_ATTEMPTS = 3
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """An image against a board's memory: bytes compared, how many differ, where first, and both bytes there."""
+
+    path: Path
+    compared: int
+    differing: int = 0
+    first: int | None = None
+    wanted: int | None = None
+    found: int | None = None
+
+    @property
+    def same(self) -> bool:
+        return self.differing == 0
+
+
+def shipped_image(board: str) -> Image:
+    """The image that this greywhale flashes: the one that came with it, or the last build of a checkout."""
+    path = packaged_image(board)
+    if path is None:
+        sources = find_sources(None)
+        path = None if sources is None else last_build(sources, BOARDS[board])
+    if path is None:
+        raise UserError(
+            f"this greywhale has no image for an {BOARDS[board].title} to compare with; name one with --hex, or build "
+            "it with `greywhale flash`.",
+            BAD_USAGE,
+        )
+    return read_image(path)
+
+
+def compare_image(port: str, hex_file: Path | None = None, report: Progress | None = None) -> Comparison:
+    """Read back what the board holds and compare it with `hex_file`, or with the shipped image of that board."""
+    told = report or (lambda what, fraction: None)
+    named = None if hex_file is None else read_image(hex_file)
+    target, found = find_target(port, None)
+    image = named or shipped_image(target.name)
+    check_image(image, target.board, port)
+    memory = read_flash(port, found, image.end, told)
+    return compare(image, memory)
+
+
+def compare(image: Image, memory: bytes) -> Comparison:
+    """An image against as many bytes of memory, which both begin at address 0."""
+    places = [at for at, (wanted, found) in enumerate(zip(image.memory, memory, strict=True)) if wanted != found]
+    if not places:
+        return Comparison(image.path, image.end)
+    first = places[0]
+    return Comparison(image.path, image.end, len(places), first, image.memory[first], memory[first])
+
+
+def read_flash(port: str, bootloader: Bootloader, count: int, report: Progress) -> bytes:
+    """The first `count` bytes of the program memory. The board's firmware is started again afterwards."""
+    memory = b""
+    try:
+        with enter_bootloader(port, bootloader.dialect) as line:
+            read, leave = _READERS[bootloader.dialect.programmer]
+            while len(memory) < count:
+                memory += _read_block(port, line, read, len(memory), min(BLOCK, count - len(memory)))
+                report("reading the program memory", len(memory) / count)
+            leave(line)
+    except (OSError, serial.SerialException):
+        raise UserError(f"{port}: the port went away in the middle; check the cable and try again.") from None
+    return memory
+
+
+def _read_block(port: str, line: serial.Serial, read: _Reader, address: int, count: int) -> bytes:
+    for _ in range(_ATTEMPTS):
+        # Bootloaders read whole words.
+        block = read(line, address // 2, count + count % 2)
+        if block is not None:
+            return block[:count]
+        time.sleep(0.05)
+        line.reset_input_buffer()
+    raise UserError(f"{port}: the bootloader stopped answering at address {address:#x}; check the cable and try again.")
+
+
+def _read_1(line: serial.Serial, word: int, count: int) -> bytes | None:
+    line.write(b"U" + word.to_bytes(2, "little") + b" ")
+    if version_1_answer(line, 0) is None:
+        return None
+    line.write(b"t" + count.to_bytes(2, "big") + b"F ")
+    return version_1_answer(line, count)
+
+
+def _leave_1(line: serial.Serial) -> None:
+    line.write(b"Q ")
+    version_1_answer(line, 0)
+
+
+def _read_2(line: serial.Serial, word: int, count: int) -> bytes | None:
+    if version_2_answer(line, b"\x06" + word.to_bytes(4, "big")) != b"\x06\x00":
+        return None
+    answer = version_2_answer(line, b"\x14" + count.to_bytes(2, "big") + b"\x20")
+    whole = answer is not None and len(answer) == count + 3 and answer[:2] == b"\x14\x00" and answer[-1] == 0
+    return answer[2:-1] if answer is not None and whole else None
+
+
+def _leave_2(line: serial.Serial) -> None:
+    version_2_answer(line, b"\x11\x01\x01")
+
+
+_READERS: dict[str, tuple[_Reader, Callable[[serial.Serial], None]]] = {
+    "arduino": (_read_1, _leave_1),
+    "wiring": (_read_2, _leave_2),
+}

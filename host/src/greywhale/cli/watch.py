@@ -1,0 +1,162 @@
+"""`greywhale info --watch`: angles, errors, voltages and faults as they are, a table on a terminal and lines in a pipe.
+
+The table fits 80 columns and 24 lines. It shows what the potentiometers' converter reads too: while a joint is turned
+by hand, its two counts tell how it is wired.
+"""
+
+from __future__ import annotations
+
+import textwrap
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import click
+import numpy as np
+import numpy.typing as npt
+from rich.console import Console
+from rich.live import Live
+from rich.text import Text
+
+from greywhale.board.device import Device
+from greywhale.board.pots import FULL_SCALE, PotReadings, counts_of, pots_there
+from greywhale.board.refusal import fault_text
+from greywhale.board.stream import stream
+from greywhale.firmware import ANGLE_LSB, JOINTS
+from greywhale.joints import ALL, Joints
+from greywhale.protocol import schema
+from greywhale.table import ParameterTable
+
+EVERY = 50  # ticks between two samples
+WIDTH = 80
+MOST_COMPLAINTS = 2
+_REFRESH_S = 0.1  # of the table, by this machine's clock
+_LINE_TICKS = 1000  # between two lines, by the board's
+_GROUPS = ("leader", "follower", "error", "voltage")
+HEADING = ",".join(["time_s", "state", "fault", *(f"{group}_{joint}" for group in _GROUPS for joint in range(JOINTS))])
+
+
+@dataclass(frozen=True)
+class Look:
+    """What is seen at one moment: angles in rad, voltages in V, converter counts of leader 0..3 and follower 0..3."""
+
+    port: str
+    ticks: int  # since the first look, ms
+    sample: schema.Sample
+    counts: npt.NDArray[np.int64]
+    complaints: tuple[str, ...]  # potentiometers at a rail
+    fault: str  # in words with its remedy, "" for none
+    lost: int  # samples so far
+    joints: Joints = ALL  # in use
+
+    @property
+    def leader(self) -> npt.NDArray[np.float64]:
+        return np.array(self.sample.leader) * ANGLE_LSB
+
+    @property
+    def follower(self) -> npt.NDArray[np.float64]:
+        return np.array(self.sample.follower) * ANGLE_LSB
+
+    @property
+    def voltage(self) -> npt.NDArray[np.float64]:
+        return np.array(self.sample.voltage) * schema.Sample.LSB["voltage"]
+
+
+def watch(device: Device, table: ParameterTable, seconds: float | None = None) -> None:
+    """Show the board until Ctrl-C, or for `seconds` of its clock; `table` runs on it. Telemetry is off afterwards."""
+    console = Console()
+    try:
+        if console.is_terminal:
+            with Live(console=console, auto_refresh=False, transient=True) as live:
+                _each(
+                    looks(device, table), seconds, _Paced(lambda look: live.update(Text(as_table(look)), refresh=True))
+                )
+        else:
+            click.echo(HEADING)
+            _each(looks(device, table), seconds, _Spaced(lambda look: click.echo(as_line(look))))
+    finally:
+        device.telemetry(0)
+
+
+def looks(device: Device, table: ParameterTable) -> Iterator[Look]:
+    """What the board sends, without end."""
+    fault, told, lost = schema.Fault.NONE, "", 0
+    for one in stream(device, EVERY):
+        lost += one.lost
+        if one.sample.fault is not fault:
+            fault = one.sample.fault
+            status = device.status()
+            told = "" if status.fault is schema.Fault.NONE else fault_text(status)
+        counts = np.clip(np.rint(counts_of([one.sample], table)), 0, FULL_SCALE).astype(np.int64)
+        complaints = tuple(PotReadings(counts, table["rail_counts"], pots_there(table)).complaints())
+        yield Look(device.port, one.elapsed, one.sample, counts[0], complaints, told, lost, table.joints_in_use)
+
+
+def as_table(look: Look) -> str:
+    """A screen of text."""
+    lost = f", {look.lost} samples lost" if look.lost else ""
+    board = f"{look.port}, state {look.sample.state.key}, {look.sample.tick / 1000:.1f} s since its start{lost}"
+    lines = [
+        *textwrap.wrap(board, WIDTH),
+        "",
+        f"{'':8}{'leader':>17}{'follower':>17}{'error':>10}{'voltage':>10}",
+        f"{'':8}{'rad':>9}{'counts':>8}{'rad':>9}{'counts':>8}{'rad':>10}{'V':>10}",
+    ]
+    for joint in range(JOINTS):
+        if joint not in look.joints:
+            lines.append(f"joint {joint}{'not in use':>18}")
+            continue
+        leader, follower = look.leader[joint], look.follower[joint]
+        lines.append(
+            f"joint {joint} {leader:>+9.3f}{look.counts[joint]:>8}{follower:>+9.3f}{look.counts[JOINTS + joint]:>8}"
+            f"{leader - follower:>+10.3f}{look.voltage[joint]:>+10.2f}"
+        )
+    told = [f"Fault: {look.fault}" if look.fault else "No fault.", *look.complaints[:MOST_COMPLAINTS]]
+    if len(look.complaints) > MOST_COMPLAINTS:
+        told.append(f"{len(look.complaints) - MOST_COMPLAINTS} more potentiometers are at a rail.")
+    told.append("Ctrl-C ends this.")
+    return "\n".join([*lines, "", *(line for sentence in told for line in textwrap.wrap(sentence, WIDTH))])
+
+
+def as_line(look: Look) -> str:
+    """The same as values of HEADING."""
+    angles = [*look.leader, *look.follower, *(look.leader - look.follower)]
+    numbers = [*(f"{angle:.6f}" for angle in angles), *(f"{volts:.3f}" for volts in look.voltage)]
+    return ",".join([f"{look.ticks / 1000:.3f}", look.sample.state.key, look.sample.fault.key, *numbers])
+
+
+def _each(found: Iterator[Look], seconds: float | None, show: Callable[[Look], None]) -> None:
+    for look in found:
+        if seconds is not None and look.ticks > 1000 * seconds:
+            return
+        show(look)
+
+
+class _Paced:
+    """Shows at most every so often by this machine's clock: a terminal takes its time."""
+
+    def __init__(self, show: Callable[[Look], None]) -> None:
+        self._show = show
+        self._next_s = 0.0
+
+    def __call__(self, look: Look) -> None:
+        now = time.monotonic()
+        if now >= self._next_s:
+            self._next_s = now + _REFRESH_S
+            self._show(look)
+
+
+class _Spaced:
+    """Shows every so often by the board's clock, and whenever its state or its fault changes."""
+
+    def __init__(self, show: Callable[[Look], None]) -> None:
+        self._show = show
+        self._next = 0
+        self._last: tuple[schema.State, schema.Fault] | None = None
+
+    def __call__(self, look: Look) -> None:
+        now = (look.sample.state, look.sample.fault)
+        if look.ticks >= self._next or now != self._last:
+            self._last = now
+            self._next = look.ticks - look.ticks % _LINE_TICKS + _LINE_TICKS
+            self._show(look)

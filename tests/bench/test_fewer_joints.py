@@ -1,0 +1,64 @@
+"""Joints that are not in use: no motor, no potentiometers, and hands that leave them alone."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from greywhale.board.device import Device
+from greywhale.board.record import record
+from greywhale.board.upload import run_set
+from greywhale.files.log import read_log
+from greywhale.table import ParameterTable
+from greywhale.trajectory import Trajectory
+from greywhale_sim import mistakes
+from greywhale_sim.assemble import BenchOptions, build_bench
+from greywhale_sim.bench import SLICE_S, Bench
+from greywhale_sim.leader import LeaderPlayer
+from greywhale_sim.lockstep import LockStepLine
+from greywhale_sim.wiring import MEGA
+from tests.bench.conftest import FakeBoard, FakePlant, FakePots
+
+UNUSED = {f"{side}{joint}.scale": 0 for side in ("leader", "follower") for joint in (2, 3)}
+
+
+@pytest.fixture
+def two(board: FakeBoard, plant: FakePlant, motion: Trajectory) -> Bench:
+    leader = LeaderPlayer(motion, SLICE_S, joints=(0, 1))
+    return Bench(board, MEGA, plant, leader, FakePots(), FakePots(), 15.0, joints=(0, 1))
+
+
+def test_their_inputs_float_and_their_motors_are_off_whatever_is_staged_and_taken_back(two: Bench) -> None:
+    assert two.floating == 0b1100_1100
+    mistakes.stage(two, "motor-reversed:2")
+    mistakes.stage(two, "motor-swapped:1")
+    two.let_float(3, False)
+    assert two.floating == 0b1100_1100
+    assert two.motor_gains[2:] == [0.0, 0.0]
+    mistakes.take_back(two)
+    assert two.motor_gains == [1.0, 1.0, 0.0, 0.0]
+    assert two.floating == 0b1100_1100
+
+
+def test_hands_and_motions_leave_them_at_0(two: Bench) -> None:
+    two.leader.bring(np.full(4, 0.5), np.full(4, 0.4), 0.01)
+    for _ in range(100):
+        two.leader.step(False, np.zeros(4))
+    np.testing.assert_array_equal(two.leader.angles, [0.5, 0.5, 0.0, 0.0])
+    np.testing.assert_array_equal(two.leader.hold, [0.4, 0.4, 0.0, 0.0])
+
+
+def test_an_arm_of_two_joints_follows_with_the_firmware(tmp_path: Path) -> None:
+    bench = build_bench(BenchOptions(arm=Path("two_joints")))
+    assert bench.floating == 0b1100_1100
+    with Device("two joints", 4.0, 8.0, line=LockStepLine(bench)) as device:
+        run_set(device, ParameterTable.defaults().with_raw(UNUSED))
+        record(device, tmp_path / "log.csv", 4.0, enable=True)
+    log = read_log(tmp_path / "log.csv")
+    for columns in (log.leader, log.follower, log.voltage):
+        np.testing.assert_array_equal(columns[:, 2:], 0.0)
+    assert np.ptp(log.leader, axis=0)[:2].min() > 0.2
+    assert np.sqrt(np.mean((log.leader - log.follower) ** 2, axis=0)).max() < 0.15
+    np.testing.assert_array_equal(bench.angles[2:], 0.0)

@@ -1,0 +1,67 @@
+"""Program memory read back through each kind of bootloader, and the first byte that differs from the image."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from greywhale.board.flash.bootloader import Bootloader, Dialect
+from greywhale.board.flash.images import read_image
+from greywhale.board.flash.readback import compare_image, read_flash
+from greywhale.errors import UserError
+from tests.board.flash.fake_bootloader import ATMEGA328P, MEGA2560, FakeBootloader, Version1, Version2
+from tests.board.flash.hex_files import write_image
+
+KINDS = [(Version2, 115200, MEGA2560), (Version1, 57600, ATMEGA328P)]
+IDS = ["mega", "nano"]
+MEMORY = bytes((7 * at + at // 256) % 256 for at in range(1001))
+
+
+def dialect(kind: type[FakeBootloader], baud: int) -> Dialect:
+    return Dialect("wiring" if kind is Version2 else "arduino", baud)
+
+
+def told(what: str, fraction: float) -> None:
+    assert 0.0 <= fraction <= 1.0
+
+
+@pytest.mark.parametrize(("kind", "baud", "signature"), KINDS, ids=IDS)
+def test_every_byte_is_read_and_the_firmware_started_again(
+    kind: type[FakeBootloader], baud: int, signature: bytes
+) -> None:
+    with kind(baud, signature, MEMORY, garble=2) as board:
+        found = Bootloader(dialect(kind, baud), signature)
+        assert read_flash(board.port, found, len(MEMORY), told) == MEMORY
+        assert board.left
+
+
+@pytest.mark.parametrize(("kind", "baud", "signature"), KINDS, ids=IDS)
+def test_the_first_byte_that_differs_is_told(
+    kind: type[FakeBootloader], baud: int, signature: bytes, tmp_path: Path
+) -> None:
+    path = write_image(tmp_path / "image.hex", signature)
+    memory = bytearray(read_image(path).memory)
+    with kind(baud, signature, bytes(memory)) as board:
+        assert compare_image(board.port, path).same
+    memory[0x123] ^= 0x40
+    memory[0x200] ^= 0x01
+    with kind(baud, signature, bytes(memory)) as board:
+        found = compare_image(board.port, path)
+    assert (found.same, found.differing, found.first, found.compared) == (False, 2, 0x123, len(memory))
+    assert found.wanted is not None
+    assert found.found == found.wanted ^ 0x40
+
+
+def test_an_image_for_another_board_is_refused(tmp_path: Path) -> None:
+    path = write_image(tmp_path / "image.hex", ATMEGA328P)
+    with Version2(115200, MEGA2560) as board, pytest.raises(UserError, match="this image is for an Arduino Nano"):
+        compare_image(board.port, path)
+
+
+def test_a_bootloader_that_answers_wrongly_again_and_again_is_named() -> None:
+    with (
+        Version2(115200, MEGA2560, MEMORY, garble=99) as board,
+        pytest.raises(UserError, match="the bootloader stopped answering at address 0x0"),
+    ):
+        read_flash(board.port, Bootloader(dialect(Version2, 115200), MEGA2560), 1000, told)

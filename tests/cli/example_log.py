@@ -1,0 +1,14 @@
+"""A short log of an arm that follows, for verbs that read one."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from greywhale.files.log import LogWriter
+from greywhale.files.log.layout import Origin
+
+
+def write_log(path: Path, seconds: float = 1.0) -> None:
+    with LogWriter(path, Origin("0.1.0", "mega2560", 1, 1, 1)) as log:
+        for row in range(int(seconds * 1000)):
+            log.append(row / 1000, [0.1] * 4, [0.0] * 4, [0.0] * 4, "following")

@@ -1,0 +1,121 @@
+"""`greywhale info --watch`: a table that fits a small terminal, lines in a pipe, and nothing left running."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import pty
+import struct
+import subprocess
+import sys
+import termios
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from greywhale.board import device
+from greywhale.board.device import Device
+from greywhale.board.upload import read_parameters
+from greywhale.cli import entry
+from greywhale.cli.watch import EVERY, HEADING, Look, as_line, as_table, looks
+from greywhale.protocol import schema
+from greywhale.protocol.schema import Fault, State
+from tests.board.fake_board import FakeBoard, Faults
+from tests.cli.test_signals_and_pipes import RUN
+
+Captured = pytest.CaptureFixture[str]
+SAMPLE = schema.Sample(
+    12_300, State.FOLLOWING, Fault.NONE, (4096, -4096, 0, 2048), (4055, -4096, 0, 0), (1500, 0, -3, 0)
+)
+LOOK = Look("/dev/ttyACM0", 12_300, SAMPLE, np.arange(8), (), "", 0)
+
+
+@pytest.fixture(autouse=True)
+def _quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(device.Device.__init__, "__defaults__", (0.0, 0.5))
+
+
+def test_a_table_says_what_there_is() -> None:
+    lines = as_table(LOOK).splitlines()
+    assert lines[0] == "/dev/ttyACM0, state following, 12.3 s since its start"
+    assert lines[4].split() == ["joint", "0", "+1.000", "0", "+0.990", "4", "+0.010", "+1.50"]
+    assert lines[7].split() == ["joint", "3", "+0.500", "3", "+0.000", "7", "+0.500", "+0.00"]
+    assert "No fault." in lines
+
+
+def test_a_line_has_a_value_for_each_name() -> None:
+    values = dict(zip(HEADING.split(","), as_line(LOOK).split(","), strict=True))
+    assert (values["time_s"], values["state"], values["fault"]) == ("12.300", "following", "none")
+    assert (values["leader_1"], values["error_0"], values["voltage_2"]) == ("-1.000000", "0.010010", "-0.003")
+
+
+def test_a_table_with_the_worst_of_all_fits_a_small_terminal() -> None:
+    sentences = [f"{fault.description}, {fault.remedy}" for fault in Fault]
+    worst = replace(
+        LOOK, port="/run/user/1000/greywhale/mega-123456", fault=max(sentences, key=len),
+        complaints=tuple(max(sentences, key=len) for _ in range(8)), lost=12_345,
+        counts=np.full(8, 1023),
+        sample=replace(SAMPLE, state=State.SOFT_START, tick=4_000_000_000, leader=(-32768,) * 4, voltage=(-32768,) * 4),
+    )  # fmt: skip
+    lines = as_table(worst).splitlines()
+    assert max(map(len, lines)) <= 80
+    assert len(lines) < 24
+    assert "6 more potentiometers are at a rail." in lines
+
+
+def test_in_a_pipe_a_line_each_second_and_at_a_fault(capsys: Captured) -> None:
+    board = FakeBoard(Faults(followers=(0, 0, -10725, 0)))
+    board.state, board.fault, board.fault_where = State.FAULT, Fault.POT_LOW, 6
+    with board:
+        assert entry.run(["info", "--watch", "--seconds", "2.5", "--port", board.port]) == 0
+        assert board.asked(schema.EnableRequest) == 0
+        with Device(board.port, restart=False) as host:
+            assert host.status().state is State.FAULT
+            look = next(looks(host, read_parameters(host)))
+            host.telemetry(0)
+    heading, *lines = capsys.readouterr().out.splitlines()
+    assert heading == HEADING
+    rows = [dict(zip(HEADING.split(","), line.split(","), strict=True)) for line in lines]
+    assert [float(row["time_s"]) for row in rows] == pytest.approx([0.0, 1.0, 2.0], abs=EVERY / 1000)
+    assert {(row["state"], row["fault"]) for row in rows} == {("fault", "pot_low")}
+    assert look.fault.startswith("a potentiometer reads") or "rail" in look.fault
+    assert [complaint[:24] for complaint in look.complaints] == ["follower potentiometer 2"]
+    assert look.counts[6] == 0
+
+
+def test_on_a_terminal_of_80_by_24_it_is_drawn_again_and_again() -> None:
+    """In a process of its own, whose standard output is a terminal. Ctrl-C is its normal end."""
+    outer, inner = pty.openpty()
+    fcntl.ioctl(inner, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
+    with FakeBoard() as board:
+        command = [sys.executable, "-c", RUN, "info", "--watch", "--port", board.port]
+        process = subprocess.Popen(
+            command, stdout=inner, stderr=subprocess.PIPE, env=os.environ | {"TERM": "xterm", "NO_COLOR": "1"}
+        )
+        os.close(inner)
+        shown = b""
+        while shown.count(b"joint 3") < 3:
+            shown += os.read(outer, 4096)
+        process.send_signal(2)
+        with pytest.raises(OSError, match="Input/output error"):  # its end of the terminal is closed
+            while True:
+                shown += os.read(outer, 4096)
+        _, errors = process.communicate(timeout=60)
+    os.close(outer)
+    assert (process.returncode, errors) == (0, b"")
+    assert b"state disabled" in shown
+    assert b"\x1b[1A" in shown, "it goes back to the first line"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--watch", "--json"], "--watch goes on and on, and --json prints one object"),
+        (["--seconds", "1"], "--seconds belongs to --watch"),
+        (["--watch", "--seconds", "-1"], "-1.0 is not in the range"),
+    ],
+)
+def test_what_does_not_go_together(arguments: list[str], words: str, capsys: Captured) -> None:
+    assert entry.run(["info", *arguments, "--port", "/dev/none"]) == 2
+    assert words in capsys.readouterr().err

@@ -1,0 +1,77 @@
+"""The firmware on the simulated boards, read back through their real bootloaders by doctor."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from greywhale.board.device import Device
+from greywhale.board.flash.readback import shipped_image
+from greywhale.cli.entry import run
+from greywhale.demo import BenchProcess
+from greywhale.errors import UserError
+from greywhale.protocol.schema import State
+from greywhale.protocol.transport import Transport
+from tests.board.flash.hex_files import hex_text
+
+
+class Dying(Transport):
+    """The line of a host that says nothing more from some moment on, not even a stop."""
+
+    mute = False
+
+    def write(self, data: bytes) -> None:
+        if not self.mute:
+            super().write(data)
+
+
+def doctor(port: str, capsys: pytest.CaptureFixture[str], *more: str) -> tuple[int, dict[str, str]]:
+    """The exit code, and the finding about the image."""
+    code = run(["doctor", "--port", port, "--seconds", "0.5", "--json", "--image", *more])
+    findings: list[dict[str, Any]] = json.loads(capsys.readouterr().out)["findings"]
+    (found,) = (one for one in findings if one["check"] == "image")
+    return code, found
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("board", ["mega", "nano"])
+def test_the_image_is_read_back_and_a_wrong_byte_is_named(
+    board: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    memory = bytearray(shipped_image(board).memory)
+    with BenchProcess("--speed", "max", "--board", board) as bench:
+        code, found = doctor(bench.port, capsys)
+        assert (code, found["verdict"]) == (0, "good"), found
+        assert f"All {len(memory):,} bytes" in found["says"]
+        memory[0x1234] ^= 0xFF
+        (tmp_path / "other.hex").write_text(hex_text(bytes(memory)))
+        code, found = doctor(bench.port, capsys, "--hex", str(tmp_path / "other.hex"))
+        assert (code, found["verdict"]) == (1, "bad")
+        assert "1 of" in found["says"]
+        assert "the first at address 0x1234" in found["says"]
+        with Device(bench.port, restart=False) as device:
+            assert device.status().state is State.DISABLED, "its firmware runs again"
+
+
+@pytest.mark.slow
+def test_a_board_whose_motors_are_on_is_not_restarted(capsys: pytest.CaptureFixture[str]) -> None:
+    with BenchProcess("--speed", "max") as bench:
+        line = Dying(bench.port)
+        with contextlib.suppress(UserError), Device(bench.port, line=line) as device:
+            device.enable(0)
+            line.mute = True
+        resets = bench.command("status")["resets"]
+        code, found = doctor(bench.port, capsys)
+        assert (code, found["verdict"]) == (1, "bad")
+        assert "the motors are on" in found["says"]
+        after = bench.command("status")
+        assert (after["motors_enabled"], after["resets"]) == (True, resets)
+
+
+def test_a_file_without_image_is_bad_usage(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["doctor", "--hex", "some.hex"]) == 2
+    assert "--hex belongs to --image" in capsys.readouterr().err

@@ -1,0 +1,40 @@
+"""A slip of the finger gets the right name shown, and only where there is no such file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from greywhale.errors import UserError
+from greywhale.files import controller
+from greywhale.files.arm import load_arm
+from greywhale.files.names import did_you_mean
+
+NAMES = ("steps", "multi-steps", "joint0.kp", "joint0.kd")
+
+
+@pytest.mark.parametrize(
+    ("name", "question"),
+    [
+        ("stepss", " Did you mean steps?"),
+        ("joint0.kq", " Did you mean joint0.kp or joint0.kd?"),
+        ("x.csv", ""),
+        ("steps" * 1000, ""),
+        ("", ""),
+    ],
+)
+def test_names_that_are_alike(name: str, question: str) -> None:
+    assert did_you_mean(name, NAMES) == question
+
+
+def test_arms_and_controllers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(UserError, match=r"gray_box: cannot be read: .*\. Did you mean grey_box\?$"):
+        load_arm("gray_box")
+    with pytest.raises(UserError, match=r"table_7: cannot be read: .*\. Did you mean table_\d or table_\d+ or"):
+        controller.load("table_7")
+    Path("gray_box").write_text("wrong")
+    with pytest.raises(UserError) as error:
+        load_arm("gray_box")
+    assert "Did you mean" not in error.value.message
