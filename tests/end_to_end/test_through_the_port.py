@@ -48,7 +48,7 @@ def test_every_open_resets_the_board(start_bench: Start) -> None:
 def test_upload_record_evaluate(start_bench: Start, tmp_path: Path) -> None:
     bench = start_bench()
     with Device(bench.port) as device:
-        uploaded = upload_controller(device, TABLES / "table_10.toml")
+        uploaded = upload_controller(device, TABLES / "table_8.toml")
         assert uploaded.changed
         recording = record(device, tmp_path / "log.csv", 4.0, enable=True)
         assert device.status().state is State.DISABLED

@@ -223,7 +223,7 @@ def test_a_board_is_flashed_tuned_and_recorded(alone: Installation, board: str, 
         flashed = alone.ask("flash", "--port", bench.port)
         assert flashed["firmware"] == version
         assert alone.ask("info", "--port", bench.port)["board"] == BOARDS[board].identity.key
-        table = alone.package / "data" / "fuzzy_tables" / "table_10.toml"
+        table = alone.package / "data" / "fuzzy_tables" / "table_8.toml"
         alone.ask("upload", "--port", bench.port, str(table))
         log = tmp_path / "log.csv"
         alone.ask("record", "--port", bench.port, "--enable", "--seconds", "2", "--out", str(log))
@@ -262,7 +262,7 @@ def test_the_demo_runs_in_an_empty_environment(with_bench: Installation, tools: 
     """With avrdude the board is flashed; without it, it starts with its firmware."""
     bench = with_bench if tools == "avrdude" else Installation(with_bench.folder, tmp_path)
     (bench.tools / "used").unlink(missing_ok=True)
-    table = bench.package / "data" / "fuzzy_tables" / "table_10.toml"
+    table = bench.package / "data" / "fuzzy_tables" / "table_8.toml"
     out = tmp_path / "out"
     facts = bench.ask("demo", "--duration", "4", "--controller", str(table), "--out", str(out))
     assert facts["board"] == "mega2560"

@@ -60,7 +60,7 @@ VERBS = (
     ),
     Verb("record --reconnect", "record -s 0.4 --reconnect -o log.csv --port {port}", {"log.csv": 400}, board="fake"),
     Verb("replay", f"replay {{in}}/motion.csv {_LED}", {"log.csv": 0}, board="fake"),
-    Verb("upload", f"upload {TABLES}/table_10.toml --port {{port}}", board="fake"),
+    Verb("upload", f"upload {TABLES}/table_8.toml --port {{port}}", board="fake"),
     Verb("params set", "params set joint0.kp=0.5 supply_mv=12000 --port {port}", board="fake"),
     Verb("params restore", "params restore {in}/table.toml --port {port}", board="fake"),
     Verb("params backup", "params backup backup.toml --port {port}", files=("backup.toml",), board="fake"),
@@ -95,7 +95,7 @@ VERBS = (
     Verb("arm import", "arm import {in}/arm.urdf -o arm.toml", files=("arm.toml",), refuses=True),
     Verb(
         "export --fis",
-        f"export --fis {TABLES}/table_10.toml --out c.fis",
+        f"export --fis {TABLES}/table_8.toml --out c.fis",
         files=tuple(f"c_joint{joint}.fis" for joint in range(4)),
         needs=("greywhale.fuzzy.export_fis", "greywhale.fuzzy.settings"),
     ),
@@ -151,7 +151,7 @@ VERBS = (
         size=20,
     ),
     Verb(
-        "upload, simulated board", f"upload {TABLES}/table_10.toml --port {{port}}", board="bench", trials=40, size=20
+        "upload, simulated board", f"upload {TABLES}/table_8.toml --port {{port}}", board="bench", trials=40, size=20
     ),
     Verb(
         "doctor, simulated board",
@@ -171,7 +171,7 @@ VERBS = (
     ),
     Verb(
         "demo, simulated board",
-        f"demo -o demo --duration 5 --controller {TABLES}/table_10.toml",
+        f"demo -o demo --duration 5 --controller {TABLES}/table_8.toml",
         vary=True,
         trials=10,
         size=2,
