@@ -10,7 +10,7 @@ uint16_t add_saturated(uint16_t count, uint8_t more) {
   return count > UINT16_MAX - more ? uint16_t{UINT16_MAX} : static_cast<uint16_t>(count + more);
 }
 
-constexpr uint8_t watched_parts = hal::joint_count + 2;
+constexpr uint8_t watched_parts = hal::joint_count + 4;
 
 }  // namespace
 
@@ -37,7 +37,9 @@ void App::take_running_set() {
 Part App::watched(uint8_t part) const {
   if (part < hal::joint_count) return controllers_.coefficients(part);
   if (part == hal::joint_count) return {reinterpret_cast<const uint8_t*>(&sets_.running()), sizeof(params::Table)};
-  return drive_.settings();
+  if (part == hal::joint_count + 1) return drive_.settings();
+  if (part == hal::joint_count + 2) return sampling_.rails();
+  return {reinterpret_cast<const uint8_t*>(&supervisor_.limits()), sizeof(supervisor::Limits)};
 }
 
 // Some bytes; false at the end of a round.
@@ -56,7 +58,8 @@ void App::learn_memory() {
 // Some bytes after each tick, but not while a set is being applied.
 __attribute__((noinline)) void App::watch_memory() {
   if (sets_.applying()) return memory_.restart();
-  if (look_on() || memory_.ends_well()) return;
+  const uint8_t joint = static_cast<uint8_t>(tick_) % hal::joint_count;
+  if (!sampling_.configure(sets_.running(), joint, lead_.on()) && (look_on() || memory_.ends_well())) return;
   supervisor_.lose_params();
   follow_supervisor();
 }

@@ -6,9 +6,12 @@ namespace {
 
 constexpr uint16_t full_count = 1023;
 
-void calibrate(signal_chain::Pot& pot, const params::PotParameters& parameters) {
+// Whether that changed anything.
+__attribute__((noinline)) bool calibrate(signal_chain::Pot& pot, const params::PotParameters& parameters) {
+  const signal_chain::Pot was = pot;
   pot.scale = parameters.scale;
   pot.offset = signal_chain::offset(parameters.zero, parameters.scale);
+  return pot.scale != was.scale || pot.offset != was.offset;
 }
 
 }  // namespace
@@ -21,22 +24,34 @@ void Sampling::configure(const params::Table& table) {
   signals_.lowest = lowest;
   signals_.span = rail ? static_cast<uint16_t>(highest - lowest) : static_cast<uint16_t>(hal::rail_mark - 1);
   signals_.rails = rail ? tell_rails : 0;  // the motors are off, so nothing is held
-  uint8_t in_use = 0;
   for (uint8_t i = 0; i < hal::joint_count; ++i) {
+    configure(table, i, false);
     JointSignals& joint = signals_.joint[i];
-    in_use = static_cast<uint8_t>(in_use >> 1);
-    if (table.leader[i].scale != 0) in_use |= 1u << 3;
-    if (table.follower[i].scale != 0) in_use |= 1u << 7;
-    calibrate(joint.leader, table.leader[i]);
-    calibrate(joint.follower, table.follower[i]);
-    joint.limit_min = table.joint[i].limit_min;
-    joint.limit_max = table.joint[i].limit_max;
     joint.follower_angle = signal_chain::angle(joint.follower);
-    // A joint that is not in use has no error, so no voltage.
-    if (joint.follower.scale == 0) joint.limit_min = joint.limit_max = 0;
   }
-  pots_in_use_ = in_use;
   prepare();
+}
+
+bool Sampling::configure(const params::Table& table, uint8_t joint, bool led) {
+  JointSignals& kept = signals_.joint[joint];
+  const params::PotParameters &leader = table.leader[joint], &follower = table.follower[joint];
+  // A joint that is not in use has no error, so no voltage.
+  int16_t least = 0, most = 0;
+  uint8_t in_use = leader.scale != 0;
+  if (follower.scale != 0) {
+    in_use |= 1u << 4;
+    least = table.joint[joint].limit_min;
+    most = table.joint[joint].limit_max;
+  }
+  const uint8_t others = static_cast<uint8_t>(~(0x11u << joint));
+  const uint8_t pots = static_cast<uint8_t>((pots_in_use_ & others) | (in_use << joint));
+  bool changed = kept.limit_min != least || kept.limit_max != most || pots_in_use_ != pots;
+  kept.limit_min = least;
+  kept.limit_max = most;
+  pots_in_use_ = pots;
+  changed |= calibrate(kept.follower, follower);
+  if (!led) changed |= calibrate(kept.leader, leader);
+  return changed;
 }
 
 void Sampling::tick(const uint16_t* sums, supervisor::Observation& seen) {

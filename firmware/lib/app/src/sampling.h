@@ -4,6 +4,7 @@
 #include <params/table.h>
 #include <stdint.h>
 
+#include "memory_watch.h"
 #include "signals.h"
 
 namespace app {
@@ -20,6 +21,14 @@ class Sampling {
   uint8_t pots_in_use() const { return pots_in_use_; }
   // Once between two ticks: what the next one's low-pass can have beforehand.
   void prepare();
+  // Takes what is kept of the table for one joint anew. Whether that changed anything: then a bit had flipped. `led`:
+  // the host leads, so the leader's line is a reference.
+  bool configure(const params::Table& table, uint8_t joint, bool led);
+
+  // What is a rail.
+  Part rails() const {
+    return {reinterpret_cast<const uint8_t*>(&signals_.lowest), sizeof signals_.lowest + sizeof signals_.span};
+  }
 
   // The leader's angle, or the host's reference while the host leads.
   int16_t leader(uint8_t joint) const { return signal_chain::angle(signals_.joint[joint].leader); }  // q12 rad
