@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+import pytest
 
 from greywhale.commission.judge import Verdict
-from greywhale.commission.search import KD, KI, KP, JointSearch
+from greywhale.commission.search import KD, KI, KP, MOST_SOFTER, JointSearch
 from greywhale.loop import CONTROLLER_COLUMNS, default_controller
 from greywhale.loop.controllers import check_controllers
 
@@ -63,6 +64,21 @@ def test_a_joint_that_hunts_hardly_more_than_it_may_is_softened_a_little() -> No
     assert 0.7 * TUNED[KP] < row[KP] < 0.9 * TUNED[KP]
 
 
+def test_what_can_be_borne_is_softened_a_little_and_then_varied_like_what_passed() -> None:
+    borne = Verdict(0, ("restless",), True, False, 1.05, 0.2, True, True)
+    search = begun()
+    search.add(TUNED, borne, "trial-1")
+    for number in range(MOST_SOFTER):
+        row = search.propose()
+        assert row is not None
+        assert row[KP] > 0.7 * search.tried[-1].row[KP]
+        search.add(row, verdict(0.8, worse=True) if number else borne, f"trial-{number + 2}")
+    row = search.propose()
+    assert row is not None
+    better = min(search.tried[1:], key=lambda one: one.verdict.value).row
+    assert np.count_nonzero(row != better) <= 2, "one step from the best that can be borne"
+
+
 def test_a_joint_that_only_chatters_gets_less_damping_and_keeps_its_stiffness() -> None:
     search = begun()
     search.add(TUNED, verdict(0.1, chatters=True), "trial-1")
@@ -86,6 +102,36 @@ def test_what_helped_is_tried_again() -> None:
         row = proposed
     assert search.best is not None
     assert search.best.row[KI] > 100 * 65536
+
+
+def test_a_step_that_follows_better_but_is_hardly_too_much_is_made_half_as_far() -> None:
+    stiff = TUNED.copy()
+    stiff[KI] = 300 * 65536  # no more integral part: the first step makes it stiffer
+    search = begun()
+    search.add(stiff, verdict(0.5), "trial-1")
+    wider = search.propose()
+    assert wider is not None
+    search.add(wider, verdict(0.3, restless=True, excess=1.1), "trial-2")
+    half = search.propose()
+    assert half is not None
+    assert float(half[KP] / stiff[KP]) ** 2 == pytest.approx(wider[KP] / stiff[KP], rel=1e-3)
+    assert float(half[KD] / stiff[KD]) ** 2 == pytest.approx(wider[KD] / stiff[KD], rel=1e-3)
+    search.add(half, verdict(0.4), "trial-3")
+    following = search.propose()
+    assert following is not None
+    assert following[KP] == half[KP], "the same step is not made again"
+
+
+@pytest.mark.parametrize(("score", "excess"), [(0.6, 1.1), (0.3, 3.0)])
+def test_a_step_that_follows_worse_or_is_far_too_much_is_not_halved(score: float, excess: float) -> None:
+    search = begun()
+    search.add(TUNED, verdict(0.5), "trial-1")
+    wider = search.propose()
+    assert wider is not None
+    search.add(wider, verdict(score, restless=True, excess=excess), "trial-2")
+    following = search.propose()
+    assert following is not None
+    assert np.flatnonzero(following != TUNED).tolist() != np.flatnonzero(wider != TUNED).tolist()
 
 
 def test_nothing_is_tried_twice_and_it_ends() -> None:

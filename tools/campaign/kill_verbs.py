@@ -150,9 +150,7 @@ VERBS = (
         trials=40,
         size=20,
     ),
-    Verb(
-        "upload, simulated board", f"upload {TABLES}/table_8.toml --port {{port}}", board="bench", trials=40, size=20
-    ),
+    Verb("upload, simulated board", f"upload {TABLES}/table_8.toml --port {{port}}", board="bench", trials=40, size=20),
     Verb(
         "doctor, simulated board",
         "doctor --seconds 0.5 --port {port}",

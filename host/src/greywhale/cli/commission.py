@@ -35,7 +35,7 @@ EXISTING = click.Path(path_type=Path)
 )
 @click.option("--rounds", type=click.IntRange(1, 20), default=2, show_default=True, help="Models to make at most.")
 @click.option(
-    "--trials", type=click.IntRange(1, 100), default=6, show_default=True, help="Sets to try on the arm in each round."
+    "--trials", type=click.IntRange(1, 100), default=8, show_default=True, help="Sets to try on the arm in each round."
 )
 @click.option(
     "--budget", type=click.IntRange(1, 1_000_000), help="Evaluations of `tune`; without it, as many as it tries."

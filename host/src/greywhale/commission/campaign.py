@@ -39,9 +39,10 @@ from greywhale.table import ParameterTable, find_board
 from greywhale.tune.model_checks import doubt_other_arm
 from greywhale.tune.progress import Report, report_nothing
 
-ROUNDS, TRIALS = 2, 6
+ROUNDS, TRIALS = 2, 8
 DESIGN_BUDGET = 150  # the last evaluations of a search for a motion would gain little
-# A joint whose error is this share of before (mean over the check) is good: no more trials for its sake.
+# A joint whose error is this share of before (mean over the check) is good: no more trials for its sake. In trials for
+# the sake of others it is varied as well, at no cost.
 GOOD = 0.1
 # Another round follows while a joint's best is above this share of before.
 WANTING = 0.3
@@ -205,8 +206,8 @@ class _Campaign:
                 joint = search.joint
                 if wanted[joint] is not None and verdict.known:
                     search.add(rows[joint], verdict, trial.name)
-                    wanted[joint] = None if _is_good(search) else search.propose(self._promises(joint))
-            if all(row is None for row in wanted):
+                    wanted[joint] = search.propose(self._promises(joint))
+            if all(row is None or _is_good(search) for row, search in zip(wanted, searches, strict=True)):
                 break
 
     def _promises(self, joint: int) -> Callable[[Row], bool]:

@@ -96,6 +96,7 @@ def find_controllers(
             resume=journal.exists(),
             report=report,
             floors=False,
+            on_trial=True,
         )
         if not outcome.complete:
             raise KeyboardInterrupt

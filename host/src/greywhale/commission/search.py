@@ -27,11 +27,13 @@ SOFTER = {KP: 0.5, KD: 0.8, KI: 0.1}
 FIRST_SOFTER = {KP: 0.5, KD: 1.2, KI: 0.1}
 QUIETER = {KD: 0.6}
 MOST_SOFTER = 3
-# Where it is hardly too much (up to so many times), the first step is a part of these, as a power.
+# Where it is hardly too much (up to so many times), the step is a part of these, as a power.
 HARDLY, GENTLY = 1.5, 0.35
-# The steps of the search: more integral part against friction, more damping, stiffer, softer, less integral part.
-STEPS: tuple[dict[int, float], ...] = ({KI: 6.0}, {KP: 1.5, KD: 1.3}, {KD: 1.4}, {KP: 0.7}, {KI: 0.15})
-LEAST_KI, MOST_KI = 20.0, 300.0  # V/(rad s), where a step enlarges it
+# The steps of the search: stiffer, more integral part against friction, more damping, softer, less integral part.
+STEPS: tuple[dict[int, float], ...] = ({KP: 1.5, KD: 1.3}, {KI: 6.0}, {KD: 1.4}, {KP: 0.7}, {KI: 0.15})
+# A step that follows better, but is hardly too much (as above), is made again half as far.
+HALF = 0.5
+LEAST_KI, MOST_KI = 30.0, 300.0  # V/(rad s), where a step enlarges it; less does next to nothing in a move
 
 
 @dataclass(frozen=True)
@@ -59,6 +61,7 @@ class JointSearch:
     _softened: int = 0
     _step: int = 0
     _from: Row | None = None
+    _factors: dict[int, float] | None = None  # of the step that is on trial, None where it is not to be halved
 
     @property
     def best(self) -> Tried | None:
@@ -83,18 +86,24 @@ class JointSearch:
             if softer is not None:
                 return softer
         self._softened = MOST_SOFTER
-        calm = [one for one in self.tried if not one.verdict.restless]
+        calm = [one for one in self.tried if one.verdict.bearable or not one.verdict.restless]
         if not calm:
             return None
         centre = min(calm, key=_rank)
+        halved = self._halve(centre)
+        if halved is not None and self._is_new(halved) and promises(halved):
+            return halved
         if self._from is None or not np.array_equal(self._from, centre.row):
-            # The step that led here is tried again first: what helped once may help twice.
-            self._step = max(0, self._step - 1) if self._from is not None else 0
+            # The step that led here is tried again first: what helped once may help twice. But not one that helped only
+            # half as far.
+            again = self._from is not None and self._factors is not None
+            self._step = max(0, self._step - 1) if again else self._step if self._from is not None else 0
             self._from = centre.row
         while self._step < len(STEPS):
-            row = self._scaled(centre.row, STEPS[self._step])
+            self._factors = STEPS[self._step]
+            row = self._scaled(centre.row, self._factors)
             self._step += 1
-            if row is not None and not any(np.array_equal(row, one.row) for one in self.tried) and promises(row):
+            if row is not None and self._is_new(row) and promises(row):
                 return row
         return None
 
@@ -102,13 +111,25 @@ class JointSearch:
         """A new controller of a model comes next: if it is restless, it is softened first."""
         self._softened = 0
         self._from = None
+        self._factors = None
         self._step = 0
+
+    def _is_new(self, row: Row) -> bool:
+        return not any(np.array_equal(row, one.row) for one in self.tried)
+
+    def _halve(self, centre: Tried) -> Row | None:
+        """The last step from `centre`, half as far: where it follows better, but is hardly too much."""
+        last, factors = self.tried[-1].verdict, self._factors
+        if factors is None or not last.restless or last.excess > HARDLY or not last.score < centre.verdict.score:
+            return None
+        self._factors = None
+        return self._scaled(centre.row, {column: factor**HALF for column, factor in factors.items()})
 
     def _soften(self, last: Tried) -> Row | None:
         factors = FIRST_SOFTER if self._softened == 0 else SOFTER
         if last.verdict.chatters_only:
             factors = QUIETER
-        if self._softened == 0 and last.verdict.excess <= HARDLY:
+        if last.verdict.excess <= HARDLY:
             factors = {column: factor**GENTLY for column, factor in factors.items()}
         self._softened += 1
         return self._scaled(last.row, factors)

@@ -66,6 +66,8 @@ SEARCH_PLANTS = 4
 JUDGING_SEED = 1000  # of sensor noise that the search does not know by heart
 # The last judgement makes unrest so much dearer that it takes a joint which does not rest only if there is no other.
 DEARER = 3.0
+# But if the arm itself will judge, a joint that only the model calls restless gets its chance there.
+ON_TRIAL = 0.5
 # Shares of the best's Ku that compete in the last judgement: full voltage may shake gears that were quiet in the
 # search.
 WEAKER = (0.7, 0.5, 0.35)
@@ -156,7 +158,8 @@ class DefaultMethod:
     def judge_costs(self, controllers: Controllers, single: bool = False) -> Floats:
         """The same cost on all plants, with other noise; `single`: in the bench's own arithmetic."""
         unrest = self.judging_margins.unrest(controllers, single=single)
-        costs: Floats = self.judging.costs(controllers, single=single) + DEARER * penalty(unrest)
+        weight = ON_TRIAL if self.task.on_trial else DEARER
+        costs: Floats = self.judging.costs(controllers, single=single) + weight * penalty(unrest)
         return costs
 
     def _choose(self) -> tuple[Controllers, Floats, Floats]:

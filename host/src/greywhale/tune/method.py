@@ -34,6 +34,7 @@ class Task:
     bounds: dict[str, tuple[float, float]]
     report: Report
     floors: bool  # whether to work out the least possible error
+    on_trial: bool = False  # whether the arm itself will judge what is found
 
     def request(self) -> dict[str, Any]:
         """The facts that every journal must agree with."""

@@ -66,14 +66,16 @@ def tune(
     resume: bool = False,
     report: Report | None = None,
     floors: bool = True,
+    on_trial: bool = False,
 ) -> Outcome:
     """Tune the four controllers of a model.
 
     `budget` counts sets of four candidates, each tried on all plants and motions. The first set is `start`, the
     controller from before: int32 (4, 12), by default that of the model's table. `journal` is a file that keeps every
     cost; with `resume` the tuning goes on from it. `threads` (0: all cores) changes no bit. `floors` False leaves out
-    the held-out motions' floors. After an interrupt (KeyboardInterrupt) the best so far comes back at once, with
-    `complete` False and not judged; if nothing was evaluated yet, the interrupt is raised again. Raises UserError.
+    the held-out motions' floors. `on_trial`: the arm itself will judge, so unrest on the model counts less. After an
+    interrupt (KeyboardInterrupt) the best so far comes back at once, with `complete` False and not judged; if nothing
+    was evaluated yet, the interrupt is raised again. Raises UserError.
     """
     check_request(strategy=strategy, method=method, budget=budget, seed=seed, threads=threads, bounds=bounds)
     if method == "paper" and model.arm.joints_in_use != ALL:
@@ -90,6 +92,7 @@ def tune(
         bounds=dict(bounds or {}),
         report=report or report_nothing,
         floors=floors,
+        on_trial=on_trial,
     )
     return _run(task, PaperMethod(task) if method == "paper" else DefaultMethod(task), journal, resume)
 
