@@ -39,7 +39,7 @@ Part App::watched(uint8_t part) const {
   if (part == hal::joint_count) return {reinterpret_cast<const uint8_t*>(&sets_.running()), sizeof(params::Table)};
   if (part == hal::joint_count + 1) return drive_.settings();
   if (part == hal::joint_count + 2) return sampling_.rails();
-  return {reinterpret_cast<const uint8_t*>(&supervisor_.limits()), sizeof(supervisor::Limits)};
+  return {reinterpret_cast<const uint8_t*>(&supervisor_.running_limits()), sizeof(supervisor::Limits)};
 }
 
 // Some bytes; false at the end of a round.

@@ -75,7 +75,7 @@ class Supervisor {
   // before.
   void begin(bool after_watchdog, bool params_ok);
   void set_limits(const Limits& limits);  // only while the motors are off
-  const Limits& limits() const { return limits_; }
+  const Limits& running_limits() const { return limits_; }
   void set_unrest_limits(const UnrestLimits& limits) { unrest_.configure(limits); }
   // What the controllers work by has changed in memory. The fault stands until a set is applied: params_mended().
   void lose_params();
