@@ -13,11 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import Bounds, LinearConstraint, milp
-from scipy.sparse import lil_matrix
+from scipy.sparse import csr_matrix
 
 from tools.timing import loops
 from tools.timing.cycles import Chip
-from tools.timing.facts import Facts
+from tools.timing.facts import Facts, Part
 from tools.timing.graph import Graph, build
 from tools.timing.listing import ImageError, Program
 
@@ -80,18 +80,21 @@ class Flow:
                 self.rows.append((self.runs(node) | {switch: -OFTEN}, -math.inf, 0))
         self.rows.append((dict.fromkeys(switches, 1.0), -math.inf, 1))
 
+    def limit(self, terms: dict[int, float], times: int) -> None:
+        """What these unknowns add up to, at most."""
+        self.rows.append((terms, -math.inf, times))
+
     def dearest(self, prices: Counts) -> Counts:
         """The counts of all columns that make the flow the dearest."""
-        matrix = lil_matrix((len(self.rows), self.columns))
-        for i, (terms, _, _) in enumerate(self.rows):
-            for column, factor in terms.items():
-                matrix[i, column] = factor
+        cells = [(i, *term) for i, (terms, _, _) in enumerate(self.rows) for term in terms.items()]
+        lines, columns, factors = zip(*cells, strict=True)
+        matrix = csr_matrix((factors, (lines, columns)), shape=(len(self.rows), self.columns))
         low, high = [row[1] for row in self.rows], [row[2] for row in self.rows]
         wanted = np.zeros(self.columns)
         wanted[: len(prices)] = -prices
         found = milp(
             wanted,
-            constraints=LinearConstraint(matrix.tocsr(), low, high),
+            constraints=LinearConstraint(matrix, low, high),
             integrality=np.ones(self.columns),
             bounds=Bounds(0, OFTEN),
         )
@@ -107,7 +110,9 @@ class Timing:
     def __init__(self, program: Program, chip: Chip, facts: Facts) -> None:
         self.program, self.chip, self.facts = program, chip, facts
         self.graphs: dict[int, Graph] = {}
-        self._known: dict[int, Bound] = {}
+        self._loops: dict[int, list[loops.Loop]] = {}
+        self._known: dict[tuple[str, int, tuple[Part, ...]], Bound] = {}
+        self._reached: dict[int, frozenset[str]] = {}
         self._open: list[int] = []
 
     def graph(self, entry: int) -> Graph:
@@ -115,27 +120,47 @@ class Timing:
             self.graphs[entry] = build(self.program, entry, self.chip)
         return self.graphs[entry]
 
-    def of(self, entry: int) -> Bound:
-        """The bound of the function at `entry`, from its first instruction to the end of its return."""
-        if entry in self._known:
-            return self._known[entry]
+    def of(self, entry: int, caller: str = "", site: int = 1, never: tuple[Part, ...] = ()) -> Bound:
+        """The bound of the function at `entry`, from its first instruction to the end of its return.
+
+        As this one calls it at its nth call, and for the runs in which nothing of `never` happens.
+        """
+        name = self.program.name(entry)
         if entry in self._open:
             names = " -> ".join(self.program.name(address) for address in [*self._open, entry])
             raise ImageError(f"{names}: recursion, so the time has no bound.")
         self._open.append(entry)
-        self._known[entry] = self._solve(self.graph(entry))
+        never = tuple((function or name, what) for function, what in never)
+        never = tuple(part for part in never if part[0] in self._below(entry))
+        known = (self.facts.key(caller, site, name, self.program.signature(entry)), entry, never)
+        if known not in self._known:
+            self._known[known] = self._solve(self.graph(entry), known[0], never)
         self._open.pop()
-        return self._known[entry]
+        return self._known[known]
 
-    def _solve(self, graph: Graph) -> Bound:
+    def _below(self, entry: int) -> frozenset[str]:
+        """The names of the function and of all that it calls."""
+        if entry not in self._reached:
+            self._reached[entry] = frozenset({self.program.name(entry)})  # should it call itself: of() refuses that
+            below = (self._below(callee) for callee in set(self.graph(entry).calls.values()))
+            self._reached[entry] = self._reached[entry].union(*below)
+        return self._reached[entry]
+
+    def _solve(self, graph: Graph, key: str, never: tuple[Part, ...]) -> Bound:
         flow = Flow(graph)
         name = self.program.name(graph.entry)
-        found = loops.find(graph)
-        for loop, times in zip(found, self.facts.times(name, self._described(found)), strict=True):
+        if graph.entry not in self._loops:
+            self._loops[graph.entry] = loops.find(graph)
+        found = self._loops[graph.entry]
+        for loop, times in zip(found, self.facts.times(key, self._described(found)), strict=True):
             flow.bound_loop(loop, times)
-        for groups in self.facts.apart(name):
+        for groups in self.facts.apart(key):
             flow.keep_apart([list(self._meant(what, graph, found)) for what in groups])
-        called = {at: self.of(callee).cycles for at, callee in graph.calls.items()}
+        nothing = [(what, 0) for function, what in never if function == name]
+        for what, times in [*self.facts.limits.get(key, []), *nothing]:
+            flow.limit(self._counts(what, flow, found), times)
+        sites = graph.sites()
+        called = {at: self.of(callee, name, sites[at], never).cycles for at, callee in graph.calls.items()}
         prices = [edge.cycles + called.get(edge.start, 0) for edge in graph.edges]
         prices += [graph.exits[end] for end in flow.ends]
         counts = flow.dearest(np.array(prices, dtype=float))
@@ -163,3 +188,16 @@ class Timing:
             yield from (at for at, callee in graph.calls.items() if self.program.name(callee) == rest)
         else:
             raise ImageError(f'{what}: a fact speaks of "call NAME" or "loop N".')
+
+    def _counts(self, what: str, flow: Flow, found: list[loops.Loop]) -> dict[int, float]:
+        """How often something of a function happens: "call NAME", "loop N" for its head, "entry N" for its entries."""
+        kind, _, rest = what.partition(" ")
+        if kind == "entry":
+            return {flow.graph.edges.index(edge): 1.0 for edge in found[int(rest)].entries}
+        nodes = found[int(rest)].heads if kind == "loop" else self._meant(what, flow.graph, found)
+        terms: dict[int, float] = {}
+        for node in nodes:
+            terms |= flow.runs(node)
+        if not terms:
+            raise ImageError(f"{what}: there is no such thing in {self.program.name(flow.graph.entry)}.")
+        return terms
