@@ -83,6 +83,18 @@ def test_interrupted_anywhere_the_board_keeps_what_it_had_and_resuming_ends_the_
 
 
 @pytest.mark.slow
+def test_a_good_joint_is_varied_along_with_the_others_but_gets_no_trial_of_its_own(
+    rig: SimulatedRig, options: Make, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(campaign, "_is_good", lambda search: search.joint == 0)
+    trials = commission(options()).rounds[0].trials
+    assert len(trials) == 4
+    assert len({trial.rows[0].tobytes() for trial in trials}) > 1
+    monkeypatch.setattr(campaign, "_is_good", lambda search: True)
+    assert len(commission(options(out=tmp_path / "all good")).rounds[0].trials) == 1
+
+
+@pytest.mark.slow
 def test_an_interrupted_tuning_goes_on(rig: SimulatedRig, options: Make, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(learn, "find_controllers", find_controllers)
     whole = commission(options(out=options().out.parent / "whole"))

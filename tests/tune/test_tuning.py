@@ -17,9 +17,11 @@ from greywhale.fuzzy.settings import JointSettings
 from greywhale.loop import plant_row
 from greywhale.optimise import METHODS as OPTIMISERS
 from greywhale.protocol.schema import Refusal
-from greywhale.tune import METHODS, Outcome, check_request, tune
+from greywhale.tune import METHODS, Outcome, check_request, default, tune
 from greywhale.tune.default import KU, WEAKER, DefaultMethod
+from greywhale.tune.method import Task
 from greywhale.tune.model import Model, load_model
+from greywhale.tune.progress import report_nothing
 from greywhale.tune.search import lockstep as search
 from greywhale.tune.search.lockstep import KEPT
 from greywhale.tune.search.objective import Objective
@@ -231,6 +233,18 @@ def test_the_benchs_own_arithmetic_has_the_last_word(model: Model, monkeypatch: 
     outcome = run(model, budget=30)
     np.testing.assert_array_equal(outcome.after[1], outcome.before[1])
     assert (outcome.after[[0, 2, 3]] != outcome.before[[0, 2, 3]]).any(axis=1).all()
+
+
+def test_where_the_arm_itself_will_judge_unrest_on_the_model_counts_less(
+    model: Model, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(default, "penalty", lambda unrest: np.ones((1, 4)))
+    task = Task(model, "both", "default", 1, 0, 1, model.controllers, {}, report_nothing, floors=False)
+    rows = model.controllers[None]
+    usual = DefaultMethod(task).judge_costs(rows)
+    on_trial = DefaultMethod(replace(task, on_trial=True)).judge_costs(rows)
+    assert usual - on_trial == pytest.approx(default.DEARER - default.ON_TRIAL)
+    assert 0.0 < default.ON_TRIAL < 1.0 < default.DEARER, "less than in the search"
 
 
 def test_silent_potentiometers_get_the_noise_of_ordinary_ones(model: Model) -> None:

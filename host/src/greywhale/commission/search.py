@@ -94,10 +94,9 @@ class JointSearch:
         if halved is not None and self._is_new(halved) and promises(halved):
             return halved
         if self._from is None or not np.array_equal(self._from, centre.row):
-            # The step that led here is tried again first: what helped once may help twice. But not one that helped only
-            # half as far.
-            again = self._from is not None and self._factors is not None
-            self._step = max(0, self._step - 1) if again else self._step if self._from is not None else 0
+            if self._from is not None and self._factors is not None:
+                # What helped once may help twice, but not what helped only half as far.
+                self._step = max(0, self._step - 1)
             self._from = centre.row
         while self._step < len(STEPS):
             self._factors = STEPS[self._step]
