@@ -13,7 +13,7 @@ from greywhale.commission import Options, campaign, commission, learn
 from greywhale.commission.book import Book
 from greywhale.commission.learn import Learnt
 from greywhale.commission.page import facts, save_page
-from greywhale.commission.search import KD, KI, KP
+from greywhale.commission.search import KD, KI, KP, JointSearch
 from greywhale.errors import UserError
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.files.leader import load_leader
@@ -86,11 +86,11 @@ def test_interrupted_anywhere_the_board_keeps_what_it_had_and_resuming_ends_the_
 def test_a_good_joint_is_varied_along_with_the_others_but_gets_no_trial_of_its_own(
     rig: SimulatedRig, options: Make, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr(campaign, "_is_good", lambda search: search.joint == 0)
+    monkeypatch.setattr(JointSearch, "good", property(lambda search: search.joint == 0))
     trials = commission(options()).rounds[0].trials
     assert len(trials) == 4
     assert len({trial.rows[0].tobytes() for trial in trials}) > 1
-    monkeypatch.setattr(campaign, "_is_good", lambda search: True)
+    monkeypatch.setattr(JointSearch, "good", property(lambda search: True))
     assert len(commission(options(out=tmp_path / "all good")).rounds[0].trials) == 1
 
 

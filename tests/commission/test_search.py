@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from greywhale.commission.judge import Verdict
-from greywhale.commission.search import KD, KI, KP, MOST_SOFTER, JointSearch
+from greywhale.commission.search import GOOD, KD, KI, KP, MOST_SOFTER, JointSearch
 from greywhale.loop import CONTROLLER_COLUMNS, default_controller
 from greywhale.loop.controllers import check_controllers
 
@@ -197,3 +197,13 @@ def test_a_restless_joint_gets_softer_whatever_it_promises() -> None:
     search = begun()
     search.add(TUNED, verdict(0.5, restless=True), "trial-1")
     assert search.propose(lambda row: False) is not None
+
+
+def test_a_joint_is_good_once_its_best_follows_well_enough() -> None:
+    search = begun()
+    search.add(TUNED, verdict(0.5 * GOOD, worse=True), "trial-1")
+    assert not search.good, "what cannot be borne does not count"
+    search.add(TUNED, verdict(1.01 * GOOD), "trial-2")
+    assert not search.good
+    search.add(TUNED, verdict(GOOD), "trial-3")
+    assert search.good

@@ -41,9 +41,6 @@ from greywhale.tune.progress import Report, report_nothing
 
 ROUNDS, TRIALS = 2, 8
 DESIGN_BUDGET = 150  # the last evaluations of a search for a motion would gain little
-# A joint whose error is this share of before (mean over the check) is good: no more trials for its sake. In trials for
-# the sake of others it is varied as well, at no cost.
-GOOD = 0.1
 # Another round follows while a joint's best is above this share of before.
 WANTING = 0.3
 
@@ -207,7 +204,7 @@ class _Campaign:
                 if wanted[joint] is not None and verdict.known:
                     search.add(rows[joint], verdict, trial.name)
                     wanted[joint] = search.propose(self._promises(joint))
-            if all(row is None or _is_good(search) for row, search in zip(wanted, searches, strict=True)):
+            if all(row is None or search.good for row, search in zip(wanted, searches, strict=True)):
                 break
 
     def _promises(self, joint: int) -> Callable[[Row], bool]:
@@ -251,7 +248,3 @@ class _Campaign:
                 return rigs[0]
 
             yield arm
-
-
-def _is_good(search: JointSearch) -> bool:
-    return search.best is not None and search.best.verdict.value <= GOOD
