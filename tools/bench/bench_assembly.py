@@ -1,13 +1,14 @@
 """From a blank board to a commissioned arm: flash, calibrate, commission, against the same on the calibrated bench.
 
 Each assembly has another zero, direction and track at all eight potentiometers, and one motor the wrong way round.
-GREYWHALE_ASSEMBLIES names the seeds. A commissioning's result differs from run to run, also on one bench: so the
-calibrated bench is commissioned several times, too.
+GREYWHALE_ASSEMBLIES names the seeds, GREYWHALE_KEEP a folder that gets all files of each run. A commissioning's result
+differs from run to run, also on one bench: so the calibrated bench is commissioned several times, too.
 """
 
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -26,6 +27,7 @@ from tools.bench.study import repeat
 
 SEEDS = tuple(map(int, os.environ.get("GREYWHALE_ASSEMBLIES", " ".join(map(str, range(1, 21)))).split()))
 USUAL_SEEDS = (1, 2, 3, 4)  # on the calibrated bench
+KEEP = os.environ.get("GREYWHALE_KEEP")
 NOMINAL = "white_box"  # what the person knows of the arm
 
 
@@ -50,7 +52,11 @@ def commissioned(arm: ArmParameters, calibrate: bool, reversed_motor: int | None
                 raise RuntimeError(done.said)
         verb(bench, folder, "arm", "match", NOMINAL, "--out", "matched.toml")
         verb(bench, folder, "commission", "--arm", "matched.toml", "--yes", "--seed", str(seed))
-        return error_of(bench, folder)
+        error = error_of(bench, folder)
+        if KEEP:
+            which = "assembly" if calibrate else "calibrated"
+            shutil.copytree(folder, Path(KEEP) / f"{which}-{seed}", dirs_exist_ok=True)
+        return error
 
 
 def on_the_calibrated_bench(seed: int) -> float:

@@ -11,7 +11,7 @@ from greywhale.commission.search import JointSearch, Row
 from greywhale.commission.trials import Trial, Trials
 from greywhale.loop.controllers import controllers_of
 
-MOST_CONFIRMATIONS = 6
+MOST_CONFIRMATIONS = 12
 
 
 def confirm(trials: Trials, searches: Sequence[JointSearch], arm: Callable[[], Rig]) -> Trial:

@@ -20,8 +20,8 @@ Floats = npt.NDArray[np.float64]
 MOST_UNREST, LEAST_UNREST = 0.005, 0.0015
 MOST_RATTLE, LEAST_RATTLE = 0.005, 0.002
 UNREST_GROWTH, RATTLE_GROWTH = 1.5, 2.0
-# Unrest differs from trial to trial, also with the same controllers. Up to so many times its limit it can be borne, at
-# a price: a joint that rests so must follow with half the error of one that passes.
+# Unrest, rattling and chatter differ from trial to trial, also with the same controllers. Up to so many times its limit
+# one of them can be borne, at a price: such a joint must follow with half the error of one that passes.
 BEARABLE, PRICE = 1.15, 2.0
 # Two recordings with the same controllers may differ by so much more than two others did: as a share, and in rad² (1
 # mrad rms). Friction holds a joint now here, now there.
@@ -70,7 +70,7 @@ class Verdict:
     excess: float  # how many times its unrest, rattling or chatter are what they may be; inf where it ended the trial
     score: float  # geometric mean over the parts; NaN where the check was not played to its end, 0 for one not in use
     known: bool  # whether the joint can be judged: the check was whole, or this joint ended it
-    bearable: bool  # whether it passed, or has no other fault than a little too much unrest
+    bearable: bool  # whether it passed, or has no other fault than a little too much unrest, rattling or chatter
 
     @property
     def hunts(self) -> bool:
@@ -109,8 +109,7 @@ def _judge(measured: Measures, before: Measures, limits: Limits, joint: int, gui
     unrest, rattle, chatter = (float(measured.worst(name)[joint]) for name in ("unrest", "rattle", "chatter"))
     for value, limit in ((unrest, limits.unrest), (rattle, limits.rattle), (chatter, limits.chatter)):
         excess = max(excess, value / float(limit[joint]))
-    hunts = not guilty and unrest > limits.unrest[joint]
-    if hunts:
+    if not guilty and unrest > limits.unrest[joint]:
         faults.append(f"it hunts at rest ({1e3 * unrest:.1f} mrad rms, at most {1e3 * limits.unrest[joint]:.1f})")
     if rattle > limits.rattle[joint]:
         faults.append(f"it rattles in motion ({1e3 * rattle:.1f} mrad rms, at most {1e3 * limits.rattle[joint]:.1f})")
@@ -127,7 +126,7 @@ def _judge(measured: Measures, before: Measures, limits: Limits, joint: int, gui
     ratios = measured.error[:, joint] / np.maximum(before.error[:, joint], 1e-9)
     score = float(np.exp(np.mean(np.log(np.maximum(ratios, 1e-9))))) if before.error[:, joint].any() else 0.0
     known = measured.whole or bool(faults)
-    hardly = hunts and len(faults) == 1 and unrest <= BEARABLE * limits.unrest[joint]
+    hardly = restless and len(faults) == 1 and excess <= BEARABLE
     bearable = measured.whole and (hardly or not faults)
     return Verdict(joint, tuple(faults), restless, restless and quiet, excess, score, known, bearable)
 

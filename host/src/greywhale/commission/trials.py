@@ -48,7 +48,7 @@ class Trial:
 
     @property
     def bearable(self) -> bool:
-        """Whether all joints passed, or have a little too much unrest and no other fault."""
+        """Whether all joints passed, or have a little too much unrest, rattling or chatter and no other fault."""
         return all(verdict.bearable for verdict in self.verdicts)
 
     @property
