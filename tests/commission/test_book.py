@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from greywhale.commission.book import NAME, Book
+from greywhale.commission.book import NAME, Book, open_book
 from greywhale.errors import BAD_USAGE, UserError
 
 REQUEST = {"arm": "white_box", "ranges": {"0": [-0.5, 0.5]}, "seed": 0}
@@ -34,6 +34,25 @@ def test_one_that_did_nothing_is_begun_anew(tmp_path: Path) -> None:
     Book(tmp_path, {**REQUEST, "seed": 3}, resume=False)
     Book(tmp_path, REQUEST, resume=False).note("before", {})
     assert json.loads((tmp_path / NAME).read_text())["request"] == REQUEST
+
+
+@pytest.mark.parametrize("resume", [False, True])
+def test_two_commissionings_cannot_be_in_one_folder_at_once(tmp_path: Path, resume: bool) -> None:
+    folder = tmp_path / "out"
+    with open_book(folder, REQUEST, resume=False) as book:
+        book.note("before", {})
+        with pytest.raises(UserError, match="another greywhale is commissioning"), open_book(folder, REQUEST, resume):
+            pass
+        assert Book(folder, REQUEST, resume=True).get("before") == {}
+    with open_book(folder, REQUEST, resume=True) as book:
+        assert book.get("before") == {}
+    assert [path.name for path in folder.iterdir()] == [NAME], "no lock is left behind"
+
+
+def test_nothing_is_made_where_there_is_nothing_to_go_on_with(tmp_path: Path) -> None:
+    with pytest.raises(UserError, match="no interrupted"), open_book(tmp_path / "no", REQUEST, resume=True):
+        pass
+    assert not (tmp_path / "no").exists()
 
 
 def test_other_options_are_refused_with_their_name(tmp_path: Path) -> None:

@@ -34,7 +34,7 @@ class ParameterSets {
   params::Access stage(uint16_t index, int32_t value) { return sets_.stage(index, value); }
   void stage_defaults() { sets_.stage_defaults(); }
 
-  // Checks the staged set and hands it to the controllers, one step in each call. A step takes up to a millisecond.
+  // Checks the staged set and hands it to the controllers, one step in each call. A step takes about 2 ms at most.
   // When a joint refuses its settings, the joints before it get their running settings back.
   enum class Progress : uint8_t { going_on, applied, crc_differs, inconsistent, no_pins, refused };
   void begin_apply(uint16_t crc);

@@ -6,8 +6,12 @@ journal is not done again; everything between the steps follows from their resul
 
 from __future__ import annotations
 
+import fcntl
 import json
+import os
 import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -37,10 +41,7 @@ class Book:
                 "--out.",
                 BAD_USAGE,
             )
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise UserError(f"{folder}: cannot be made: {os_reason(error)}.", BAD_USAGE) from None
+        _make(folder)
         self._write()
 
     def get(self, step: str) -> dict[str, Any] | None:
@@ -86,6 +87,45 @@ class Book:
                     "or begin anew in another folder.",
                     BAD_USAGE,
                 )
+
+
+@contextmanager
+def open_book(folder: Path, request: dict[str, Any], resume: bool) -> Iterator[Book]:
+    """A commissioning's journal, which no other commissioning can open meanwhile."""
+    if not resume:
+        _make(folder)
+    with _held(folder):
+        yield Book(folder, request, resume)
+
+
+def _make(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UserError(f"{folder}: cannot be made: {os_reason(error)}.", BAD_USAGE) from None
+
+
+@contextmanager
+def _held(folder: Path) -> Iterator[None]:
+    """A lock on the folder, which the system takes away when this process ends, however it ends."""
+    try:
+        descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+    except OSError:  # Book says why
+        yield
+        return
+    try:
+        with suppress(OSError):  # a file system without locks
+            try:
+                fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                raise UserError(
+                    f"{folder}: another greywhale is commissioning in this folder now; wait for its end, or give "
+                    "another --out.",
+                    BAD_USAGE,
+                ) from None
+        yield
+    finally:
+        os.close(descriptor)
 
 
 def _check(request: dict[str, Any], steps: dict[str, dict[str, Any]]) -> str:

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from greywhale.commission import learn, start
-from greywhale.commission.book import Book
+from greywhale.commission.book import open_book
 from greywhale.commission.choose import confirm
 from greywhale.commission.evidence import failing_plants, gather
 from greywhale.commission.foresee import foresee
@@ -87,11 +87,15 @@ class _Campaign:
         if options.arm_file is not None and options.model is not None:
             for doubt in doubt_other_arm(load_arm(options.model), self.nominal, options.arm_file):
                 raise UserError(f"{options.model}: {doubt.reason}; {doubt.remedy}.")
-        self.book = Book(options.out, options.request(), options.resume)
         self.rounds: list[Round] = []
         self.before: ParameterTable | None = None
 
     def run(self) -> Outcome:
+        options = self.options
+        with open_book(options.out, options.request(), options.resume) as self.book:
+            return self._run()
+
+    def _run(self) -> Outcome:
         self._begin()
         trials, searches = self.trials, self.searches
         for number in range(1, self.options.rounds + 1):
