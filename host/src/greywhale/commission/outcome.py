@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
-
-import numpy as np
 
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.commission.learn import Learnt
@@ -13,7 +12,6 @@ from greywhale.commission.measures import Measures, measure
 from greywhale.commission.motions import PARTS
 from greywhale.commission.predict import predict
 from greywhale.commission.trials import Trial, Trials
-from greywhale.joints import ALL, named
 
 
 @dataclass(frozen=True)
@@ -73,31 +71,29 @@ class Outcome:
         lines = [f"{_count(played, 'set')} of controllers tried on the arm in {_count(len(self.rounds), 'round')}."]
         if not self.improved:
             return "\n".join([*lines, "None passed on every joint: the controllers from before stay on the board."])
-        head = "".join(f"{part:>24}" for part in PARTS)
-        lines += ["", "Mean squared error on the arm (rad²), before -> after:", f"{'':26}{head}"]
         joints = self.trials.table.joints_in_use
-        for joint in joints:
-            cells = (_pair(before.error[place, joint], after.error[place, joint]) for place in range(len(PARTS)))
-            lines.append(f"{f'joint {joint} ({JOINT_NAMES[joint]})':26}" + "".join(f"{cell:>24}" for cell in cells))
-        rests = 1e3 * np.array([before.worst("unrest"), after.worst("unrest")])
-        unrest = [f"{was:.1f} -> {now:.1f}" for was, now in rests.T[list(joints)]]
-        whose = "joints 0 to 3" if joints == ALL else named(joints)
-        lines += ["", f"Unrest at rest (mrad rms), {whose}: {', '.join(unrest)}."]
+        pairs = [(part, before.error[place] ** 0.5, after.error[place] ** 0.5) for place, part in enumerate(PARTS)]
+        pairs.append(("unrest at rest", before.worst("unrest"), after.worst("unrest")))
+        lines += ["", "On the arm (mrad rms), before -> after: the error in each part, and the unrest.", ""]
+        lines += [_row("", [f"joint {joint}" for joint in joints]), _row("", [JOINT_NAMES[joint] for joint in joints])]
+        for name, was, now in pairs:
+            lines.append(_row(name, [f"{1e3 * was[joint]:.1f} -> {1e3 * now[joint]:.1f}" for joint in joints]))
         same = (self.best.rows == self.trials.before.rows).all(axis=1)
         kept = [joint for joint in joints if same[joint]]
+        notes = [
+            f"Joint {joint} ({JOINT_NAMES[joint]}): {fault}. Nothing quieter follows so well."
+            for joint in joints
+            for fault in self.best.verdicts[joint].faults
+        ]
         if kept:
             whose = " and ".join(f"joint {joint} ({JOINT_NAMES[joint]})" for joint in kept)
-            lines.append(f"Nothing better was found for {whose}: there the controller from before stays.")
-        faults = [(joint, fault) for joint in joints for fault in self.best.verdicts[joint].faults]
-        lines += [
-            f"Joint {joint} ({JOINT_NAMES[joint]}): {fault}. Nothing quieter follows so well."
-            for joint, fault in faults
-        ]
-        return "\n".join(lines)
+            notes.insert(0, f"Nothing better was found for {whose}: there the controller from before stays.")
+        return "\n".join([*lines, "", *notes] if notes else lines)
 
 
-def _pair(before: float, after: float) -> str:
-    return f"{before:.2e} -> {after:.2e}"
+def _row(name: str, cells: Sequence[str]) -> str:
+    """A line of the table, within 80 columns."""
+    return f"{name:14}" + "".join(f"{cell:>16}" for cell in cells)
 
 
 def _count(number: int, what: str) -> str:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import jinja2
+import numpy as np
 
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.commission.measures import Measures
@@ -59,8 +60,9 @@ def _trial(outcome: Outcome, trial: Trial) -> dict[str, Any]:
     joints = list(outcome.trials.table.joints_in_use)
     rows = []
     for place, part in enumerate(PARTS):
-        pairs = zip(predicted.error[place, joints], trial.measured.error[place, joints], strict=True)
-        rows.append({"name": f"error, {part}", "unit": "rad²", "cells": [_cell(*pair, ".2e") for pair in pairs]})
+        shown, seen = (1e3 * np.sqrt(one.error[place, joints]) for one in (predicted, trial.measured))
+        cells = [_cell(*pair, ".1f") for pair in zip(shown, seen, strict=True)]
+        rows.append({"name": f"error, {part}", "unit": "mrad rms", "cells": cells})
     rows += [_row(predicted, trial.measured, measure, joints) for measure in MEASURES]
     return {
         "name": trial.name,
