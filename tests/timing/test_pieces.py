@@ -139,9 +139,10 @@ def test_every_piece_keeps_to_its_graph_its_facts_and_its_bound(target: Target) 
 
 
 @BOARDS
-def test_on_a_quiet_line_few_pieces_may_make_a_tick_late(target: Target) -> None:
+def test_on_a_quiet_line_with_the_motors_on_no_tick_is_late(target: Target) -> None:
     found, known = times(target), facts.load()
     works = delay.works(found, known.pieces, delay.QUIET)
     late = {name for name, work in works.items() if (delay.end_of_tick(found, work, delay.QUIET) or 0) > PERIOD}
-    known_late = {"restart, request", "apply: rules", "apply: end", "request, look, request"}
-    assert late - {"flood, request"} == known_late  # bytes are lost on a line that is not quiet
+    assert "late look, request" in works, "whatever has delayed a tick, it ends"
+    motors_off = {"apply: rules", "apply: end"}
+    assert late - {"flood, request"} == motors_off  # bytes are lost on a line that is not quiet

@@ -73,13 +73,31 @@ def test_a_piece_may_outlast_a_period_or_never_end() -> None:
     assert delay.end_of_tick(flooded, delay.Work(12_000, 5000), delay.QUIET) is None
 
 
+WORK = {"look": 500, "request": 700, "lead": 200, "answer": 300, "restart": 400}
+PIECES = {
+    "look": Piece((), None, 0, sends=False),
+    "request": Piece((), 1000, 20, sends=False),
+    "lead": Piece((), 1000, 0, sends=False),
+    "answer": Piece((), 800, 0, sends=False),
+    "restart": Piece((), 1000, 0, sends=False),
+}
+
+
 def test_a_look_begins_where_the_tick_has_ended_and_a_request_may_follow() -> None:
-    bounds = Times(tick=1000, interrupts=KINDS, waking=0, pieces={"look": 500, "request": 700})
-    pieces = {"look": Piece((), None, 0, sends=False), "request": Piece((), 1000, 20, sends=False)}
-    works = delay.works(bounds, pieces, delay.QUIET)
-    assert works == {
-        "look": delay.Work(1080, 500),
-        "request": delay.Work(PERIOD, 700, 20),
-        "look, request": delay.Work(1080, 1200, 20),
-        "request, look, request": delay.Work(1 + 700 + 1000 + 10 - 2, 1200, 20),
-    }
+    works = delay.works(Times(tick=1000, interrupts=KINDS, waking=0, pieces=WORK), PIECES, delay.QUIET)
+    assert works["look"] == delay.Work(1080, 500)
+    assert works["request"] == delay.Work(PERIOD, 700, 20)
+    assert works["look, request"] == delay.Work(1080, 1200, 20)
+    # The restart delays a tick by more than the rest; and from the last cycle of a period it begins with it.
+    assert works["late look, request"] == delay.Work(1000 + 400 + 10 - 1, 1200, 20)
+
+
+def test_where_a_tick_may_be_late_there_is_no_bound_behind_it() -> None:
+    times = Times(tick=1000, interrupts=KINDS, waking=0, pieces=WORK | {"request": 15_100})
+    assert "late look, request" not in delay.works(times, PIECES, delay.QUIET)
+
+
+def test_the_hosts_lead_comes_between_a_tick_and_its_look() -> None:
+    times = Times(tick=1000, interrupts=KINDS, waking=0, pieces=WORK | {"lead": 2000})
+    late = delay.works(times, PIECES, delay.QUIET)["late look, request"]
+    assert 1080 + 2000 <= late.begins < 1080 + 2000 + 200  # and some interrupts

@@ -18,9 +18,10 @@ from tools.timing.image import PERIOD, SERVICE, Target
 from tools.timing.listing import Program, read_program
 from tools.timing.measure import RAIL_MV, STACK_POINTER, Session
 
-LOOK, AFTER = "app::App::look_at_joint", "app::App::after_tick"
+LOOK, WATCH, AFTER = "app::App::look_at_joint", "app::App::watch_memory", "app::App::after_tick"
 QUIET_CHECKS = {"tracking_limit": 0, "speed_limit": 0, "runaway_limit": 0, "stall_volts": 0}
 STILL_FINE = 3  # swings of 40 ms: unrest takes 0.2 s at least
+FAST = {"speed_limit": 1}
 HUNTS = {"unrest_amplitude": 10, "unrest_rate": 10, "unrest_time": 2, "unrest_action": 1}
 
 # While a set is being applied nothing is read. Of what has come meanwhile three pieces take all but the last zero of
@@ -37,9 +38,10 @@ class Watch:
         self.entry = program.entry(SERVICE)
         graph = build(program, self.entry, chip)
         self.looked = next(program.at(at).next for at, to in graph.calls.items() if program.name(to) == AFTER)
-        look = build(program, program.entry(LOOK), chip)
+        looks = {name: build(program, program.entry(name), chip) for name in (LOOK, WATCH)}
         parts = facts.load().parts
-        self._safe = _addresses(program, look, parts["safe set"], LOOK)
+        self._safe = _addresses(program, looks[LOOK], parts["safe set"], LOOK)
+        self._off = set().union(*(_addresses(program, looks[name], parts["off"], name) for name in looks))
         self._marks = {
             address: name
             for name in ("request", "flood", "restart", "answer", "lead", "crc", "rules", "joint", "end")
@@ -47,13 +49,15 @@ class Watch:
         }
 
     def looks(self, passed: list[int]) -> str:
-        return "safe set" if self._safe.intersection(passed) else "look"
+        if self._safe.intersection(passed):
+            return "safe set"
+        return "look, off" if self._off.intersection(passed) else "look"
 
     def works(self, passed: list[int]) -> str:
         """By the first part that the call has come to; what comes to none is over sooner than any other."""
         first = next((self._marks[address] for address in passed if address in self._marks), "answer")
-        if first in ("flood", "restart"):
-            return f"{first}, request"
+        if first == "flood":
+            return "flood, request"
         return f"apply: {first}" if first in ("crc", "rules", "joint", "end") else first
 
 
@@ -139,6 +143,9 @@ class Busy:
         for request in requests:
             board.uart_send(request)
             yield from self.pieces(12)
+        session.run_set(QUIET_CHECKS | FAST)
+        board.set_millivolts(np.full(8, RAIL_MV / 2) + 500 * (np.arange(8) == 6))
+        yield from self.pieces(30)
         session.run_set(QUIET_CHECKS | HUNTS)
         for swing in range(12):
             readings = np.full(8, RAIL_MV / 2)

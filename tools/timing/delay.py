@@ -7,7 +7,7 @@ Times are cycles after the timer's interrupt of the tick in which the piece begi
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from tools.timing.facts import Piece
@@ -18,6 +18,7 @@ FRAME = 54  # bytes: wire::max_wire, what a piece may add to those that wait to 
 LEAVE = 120  # cycles from tx_write() through the ends of the functions to tick_begin(): about 100
 MICROSECOND = 16
 NO_BOUND = 20 * PERIOD
+CALM_TICKS = 4  # requests.cpp
 
 
 @dataclass(frozen=True)
@@ -43,9 +44,10 @@ class Work:
 
 
 def works(times: Times, pieces: Mapping[str, Piece], line: Line) -> dict[str, Work]:
-    """The pieces of an image. The look begins where a tick has ended that nothing delayed, and a request may follow it.
+    """The pieces of an image, and looks with a request behind them in the same call.
 
-    The last one is the worst of two in a row: a request delays a tick, and behind that come the look and a request.
+    A look begins where a tick has ended that nothing has delayed, or later: behind the host's lead, or behind a tick
+    that other work has delayed. While a request may delay ticks no other begins late (calm_ticks in requests.cpp).
     """
     after = times.response(line.receiving) or PERIOD
     found = {
@@ -54,12 +56,44 @@ def works(times: Times, pieces: Mapping[str, Piece], line: Line) -> dict[str, Wo
         )
         for name, piece in pieces.items()
     }
-    request = found["request"]
-    found["look, request"] = replace(request, begins=after, cycles=times.pieces["look"] + request.cycles)
-    later = end_of_tick(times, request, line)
-    if later is not None and later <= PERIOD:
-        found["request, look, request"] = replace(found["look, request"], begins=later)
+    both = replace(found["request"], begins=after, cycles=times.pieces["look"] + times.pieces["request"])
+    found["look, request"] = both
+    latest = _latest_look(times, found, line)
+    if latest is not None:
+        found["late look, request"] = replace(both, begins=latest)
     return found
+
+
+def _latest_look(times: Times, found: Mapping[str, Work], line: Line) -> int | None:
+    """When a look begins at the latest that a request may follow late. None where a tick may be late.
+
+    With the motors on: nothing is applied, and no bytes are lost. The safe set's restart and the host's lead exclude
+    each other.
+    """
+    look, lead, request = (found[name] for name in ("look", "lead", "request"))
+    without = _latest(times, [look, found["answer"], found["restart"]], line)
+    begins, before = without, -1
+    while begins != before:
+        before = begins
+        both = replace(request, begins=begins, cycles=look.cycles + request.cycles)
+        delayed = _latest(times, [request, both], line)
+        if max(delayed, begins) > PERIOD:
+            return None
+        for _ in range(CALM_TICKS):
+            behind = _ready(times, replace(lead, begins=min(delayed, PERIOD - 1)), line) or NO_BOUND
+            moved = [replace(lead, begins=delayed), replace(look, begins=behind), found["answer"]]
+            delayed = _latest(times, moved, line)
+        begins = max(without, _ready(times, replace(lead, begins=delayed), line) or NO_BOUND)
+    return begins
+
+
+def _latest(times: Times, works: Sequence[Work], line: Line) -> int:
+    return max(end_of_tick(times, work, line) or NO_BOUND for work in works)
+
+
+def _ready(times: Times, piece: Work, line: Line) -> int | None:
+    """The end of a piece itself, before any tick."""
+    return _settle(piece.begins, lambda now: piece.begins + piece.cycles + _interrupts(times, piece, line, now, now))
 
 
 def end_of_tick(times: Times, piece: Work, line: Line) -> int | None:
@@ -69,7 +103,7 @@ def end_of_tick(times: Times, piece: Work, line: Line) -> int | None:
     """
     begin = min(piece.begins, PERIOD - 1)
     piece = replace(piece, begins=begin)
-    ready = _settle(begin, lambda now: begin + piece.cycles + _interrupts(times, piece, line, now, now))
+    ready = _ready(times, piece, line)
     if ready is None:
         return None
     if ready <= PERIOD:  # the piece has ended before

@@ -76,7 +76,7 @@ void App::tick() {
   if (drivers_on_) control();
   const uint16_t age_us = hal::tick_age_us();
   if (age_us > tick_us_max_ && !excused_) tick_us_max_ = age_us;
-  excused_ = heard_this_tick_ = looked_ = false;
+  excused_ = looked_ = false;
   hal::watchdog_kick();
   hal::tick_end();
 }

@@ -12,6 +12,7 @@ namespace {
 constexpr uint16_t latest_start_us = 800;
 constexpr uint16_t latest_apply_us = 300;  // a joint's compilation takes most of a tick
 constexpr uint8_t bytes_per_piece = 20;
+constexpr uint8_t calm_ticks = 4;  // a request delays so many at most: until they are over, none begins late
 
 // A distance in 1/32 rad, as error_too_large carries it.
 uint8_t coarse(uint16_t distance_q12) {
@@ -27,13 +28,16 @@ bool App::service() {
   if (lead_.on() && work_on_lead()) return true;
   if (!looked_) {
     looked_ = true;
+    if (heard_this_tick_) ticks_unheard_ = 0;
+    else if (ticks_unheard_ < calm_ticks) ++ticks_unheard_;
+    heard_this_tick_ = false;
     look_at_joint();
     watch_memory();
     after_tick();
   }
   const uint16_t age_us = hal::tick_age_us();
   const bool late_in_tick = age_us > latest_start_us;
-  if (late_in_tick && heard_this_tick_) return false;
+  if (late_in_tick && (heard_this_tick_ || ticks_unheard_ < calm_ticks)) return false;
   if (const uint8_t lost = hal::rx_lost()) note_lost_bytes(lost);
   if (hal::tx_free() < wire::max_wire) return false;  // requests wait until there is room for the answer
   if (sets_.applying()) {
@@ -42,9 +46,12 @@ bool App::service() {
     return true;
   }
   if (excused_) return false;  // a set was applied: the next request must be judged by what a tick has seen with it
-  if (sets_.safe() == ParameterSets::Safe::applied) restart_safe();
+  if (sets_.safe() == ParameterSets::Safe::applied) {
+    restart_safe();
+    return true;
+  }
   if (!heard_this_tick_ && hal::rx_available()) {
-    receive();  // once in every tick, whatever else there is to do: a stop must get through
+    receive();  // once in a few ticks, whatever else there is to do: a stop must get through
     return true;
   }
   if (late_in_tick) return false;

@@ -137,6 +137,24 @@ TEST_CASE("stop is answered in every other state too, and gets through while sam
   CHECK(busy.stop() == wire::State::disabled);
 }
 
+TEST_CASE("behind a request none begins late until the ticks that it may delay are over; then a stop gets through") {
+  for (const std::uint16_t age_us : {std::uint16_t{800}, std::uint16_t{804}}) {
+    Bench arm;
+    arm.follow();
+    board.age_us = age_us;
+    arm.run(10);
+    unsigned before = arm.ticks;
+    CHECK(arm.state() == wire::State::following);
+    CHECK(arm.ticks == before);  // at once
+    CHECK(arm.stop() == wire::State::disabled);
+    CHECK(arm.ticks - before == (age_us > 800 ? 5u : 0u));
+    arm.run(5);
+    before = arm.ticks;
+    CHECK(arm.state() == wire::State::disabled);
+    CHECK(arm.ticks == before);
+  }
+}
+
 TEST_CASE("a pot that goes to a rail stops the arm within three ticks and is named") {
   for (std::uint8_t pot = 0; pot < 8; ++pot) {
     Bench arm;
