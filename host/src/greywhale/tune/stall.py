@@ -66,16 +66,17 @@ class StallLimit:
         }
 
 
-def stall_limit(arm: ArmParameters, table: ParameterTable) -> StallLimit | None:
+def stall_limit(arm: ArmParameters, table: ParameterTable, samples: int = SAMPLES) -> StallLimit | None:
     """The limit for an identified arm on the board of `table`.
 
-    None where the board's check is off, which stays so. The arm needs a covariance.
+    None where the board's check is off, which stays so. The arm needs a covariance; with one sample its numbers are
+    taken as exact, and it needs none.
     """
     if table["stall_volts"] == 0:
         return None
     low, high = _range(arm, table)
-    volts = np.array([starting_volts(plant, low, high) for plant in sampled_plants(arm, SAMPLES, SEED)])
-    needs, deviations = volts[0], np.sqrt(np.mean((volts[1:] - volts[0]) ** 2, axis=0))
+    volts = np.array([starting_volts(plant, low, high) for plant in sampled_plants(arm, samples, SEED)])
+    needs, deviations = volts[0], np.sqrt(np.sum((volts - volts[0]) ** 2, axis=0) / max(samples - 1, 1))
     wanted = float(np.max(_limits(needs, deviations)))
     most = min(MOST_OF_SUPPLY * table.supply_v, STALL_VOLTS.to_physical(STALL_VOLTS.maximum))
     raw = math.ceil(min(max(wanted, LEAST_V), most) / STALL_VOLTS.lsb - 1e-9)
