@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from dataclasses import dataclass, field
 
 import pytest
 
+from tools.setup.console import ROOT
 from tools.timing import busy, delay, facts, loops
 from tools.timing.bound import Timing
 from tools.timing.graph import Graph
@@ -136,6 +138,17 @@ def test_every_piece_keeps_to_its_graph_its_facts_and_its_bound(target: Target) 
     assert dearest.keys() == bounds.keys()
     assert all(bounds[name] < 3 * cycles for name, cycles in dearest.items())
     assert {"params::first_bad", "params::Sets::apply", "fuzzy_pdi::make_side", "__udivmodsi4"} <= entered
+
+
+def test_the_bounds_know_when_the_firmware_begins_a_piece() -> None:
+    source = (ROOT / "firmware/lib/app/src/requests.cpp").read_text(encoding="utf-8")
+    constants = dict(re.findall(r"constexpr uint\d+_t (\w+) = (\d+);", source))
+    known, count_us = facts.load().pieces, 4
+    assert int(constants["calm_ticks"]) == delay.CALM_TICKS
+    assert known["answer"].begins == int(constants["latest_start_us"]) + count_us
+    applying = {piece.begins for name, piece in known.items() if name.startswith("apply")}
+    assert applying == {int(constants["latest_apply_us"]) + count_us}
+    assert known["request"].reads == int(constants["bytes_per_piece"])
 
 
 @BOARDS
