@@ -48,7 +48,7 @@ def test_a_failed_tool_is_quoted_where_it_names_the_problem(output: str, words: 
 
 
 def test_a_tool_that_is_not_there_is_named() -> None:
-    with pytest.raises(UserError, match="the tool cannot be started: No such file"):
+    with pytest.raises(UserError, match=r"the tool cannot be started: /nowhere/tool: No such file or directory\.$"):
         run_tool(tool("/nowhere/tool"), lambda text: None)
 
 

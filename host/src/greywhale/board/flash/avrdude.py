@@ -50,7 +50,7 @@ def need_avrdude() -> list[str]:
 def upload_image(port: str, board: FlashBoard, baud: int, image: Path, report: Progress) -> None:
     """Write the image and read it back."""
     command = [*need_avrdude(), "-c", board.programmer, "-p", board.part, "-P", port, "-D", "-U", f"flash:w:{image}:i"]
-    tool = Tool("avrdude", [*command, "-b", str(baud)], dict(os.environ), UPLOAD_LIMIT_S)
+    tool = Tool("avrdude", [*command, "-b", str(baud)], dict(os.environ), UPLOAD_LIMIT_S, port)
     run_tool(tool, watch_upload(port, report))
 
 

@@ -47,7 +47,7 @@ def last_build(firmware: Path, board: FlashBoard) -> Path | None:
 def upload(firmware: Path, board: FlashBoard, port: str, report: Progress) -> None:
     """Upload what was built, at the speed that PlatformIO knows for the board."""
     command = [*_run_command(firmware, board), "--target", "upload", "--upload-port", port]
-    tool = Tool("the upload", command, platformio_environment(firmware), UPLOAD_LIMIT_S)
+    tool = Tool("the upload", command, platformio_environment(firmware), UPLOAD_LIMIT_S, port)
     run_tool(tool, watch_upload(port, report))
 
 

@@ -7,14 +7,18 @@ import os
 import re
 import signal
 import subprocess
+import sys
 import tempfile
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import IO
 
+from greywhale.board.flash import guard
 from greywhale.errors import UserError
 
+_GUARD = Path(guard.__file__)
 _LOOK_EVERY_S = 0.1
 _GRACE_S = 5.0
 _PROBLEM = re.compile(r"error|not in sync|failed|denied|timeout|cannot|can't|mismatch|doesn't match", re.IGNORECASE)
@@ -28,35 +32,38 @@ _ESCAPE = re.compile(r"\x1b\[[0-9;]*[A-Za-z]")
 
 @dataclass(frozen=True)
 class Tool:
-    """A command with the name people know it by, and how long it may take."""
+    """A command with the name people know it by, how long it may take, and the port that it works on, if any."""
 
     name: str
     command: list[str]
     environment: dict[str, str]
     limit_s: float
+    port: str = ""
 
 
 def run_tool(tool: Tool, look: Callable[[str], None]) -> str:
     """Run to the end; all output. `look` sees the output so far, again and again, and may raise to end the tool. The
-    output goes through a file, because a pipe that nobody empties in time would stop the tool."""
+    output goes through a file, because a pipe that nobody empties in time would stop the tool. When this process is
+    killed, the guard looks after the tool.
+    """
+    guarded = [sys.executable, "-I", "-S", str(_GUARD), str(tool.limit_s), tool.port, *tool.command]
     with tempfile.TemporaryFile() as output:  # without a name, so that a kill leaves none
-        try:
-            process = subprocess.Popen(
-                tool.command,
-                env=tool.environment,
-                stdin=subprocess.DEVNULL,
-                stdout=output,
-                stderr=subprocess.STDOUT,
-                start_new_session=True,  # so that what the tool starts can be ended with it
-            )
-        except OSError as error:
-            raise UserError(f"{tool.name} cannot be started: {error.strerror}.") from None
-        try:
-            code = _wait(process, tool, output, look)
-        except BaseException:
-            _end(process)
-            raise
+        with subprocess.Popen(
+            guarded,
+            env=tool.environment,
+            stdin=subprocess.PIPE,
+            stdout=output,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,  # so that what the tool starts can be ended with it
+        ) as process:
+            try:
+                code = _wait(process, tool, output, look)
+            except BaseException:
+                _end(process)
+                raise
         text = _read(output)
+    if code == guard.CANNOT_START:
+        raise UserError(f"{tool.name} cannot be started: {text.strip()}.")
     if code != 0:
         raise UserError(f"{tool.name} failed with exit code {code}: {_problem(text)}{_remedy(text)}")
     return text
