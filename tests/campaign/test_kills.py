@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -92,6 +93,16 @@ def test_motors_without_a_lease_are_found(stand: Stand, monkeypatch: pytest.Monk
     monkeypatch.setattr(Device, "enable", lambda device, lease_ms: enable(device, 0))
     wrong, _ = try_all(stand, old=False)
     assert any("the motors are on after" in one and "(lease 0 ms)" in one for one in wrong)
+
+
+def test_a_result_that_another_run_may_leave_out_is_not_promised() -> None:
+    verb = replace(VERB["export --urdf"], more=r"arm\.u.*")
+    with Stand(verb) as stand:
+        assert (list(stand.whole), stand.promised) == (["arm.urdf"], [])
+        wrong, _ = try_once(stand, Moment(change=0), old=False)
+    assert not wrong
+    with Stand(replace(verb, more="")) as stand:
+        assert stand.promised == ["arm.urdf"]
 
 
 @pytest.mark.parametrize("stand", ["upload"], indirect=True)

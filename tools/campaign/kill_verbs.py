@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -41,6 +42,10 @@ class Verb:
     needs: tuple[str, ...] = ()
     trials: int = 1000
     size: int = 250  # trials in a piece
+
+    def may_write(self, name: str) -> bool:
+        """Whether a run may leave this result out."""
+        return bool(self.more and re.fullmatch(self.more, name))
 
 
 _DRAWING = ("greywhale.report", "matplotlib.backends.backend_svg", "matplotlib.backends.backend_agg")

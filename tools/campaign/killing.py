@@ -9,6 +9,7 @@ there: the children begin at that point, so that it computes once for all of the
 from __future__ import annotations
 
 import builtins
+import contextlib
 import io
 import json
 import os
@@ -26,6 +27,8 @@ from greywhale.cli import entry
 _CHANGES = ("link", "replace", "rename", "unlink", "remove", "rmdir", "mkdir", "truncate", "ftruncate", "fsync")
 _CREATES = os.O_CREAT | os.O_TMPFILE & ~os.O_DIRECTORY
 _BROKEN = 70
+_MARK = "GREYWHALE_KILLED_IN"  # in the environment of every program that a child starts
+_ENDS_WITHIN_S = 60.0  # a build goes on to its end
 # What the harness itself opens is no change.
 _OPEN = builtins.open
 
@@ -60,6 +63,7 @@ def run(arguments: Sequence[str], folder: Path, moment: Moment = NEVER, quick: b
 
         def be(tell: IO[bytes]) -> int:
             os.chdir(folder)
+            os.environ[_MARK] = str(folder)
             _speak_into(said)
             changes = Changes(moment)
             code = _do(arguments, quick, changes)
@@ -68,6 +72,24 @@ def run(arguments: Sequence[str], folder: Path, moment: Moment = NEVER, quick: b
 
         ending: Ending = _end(be, moment, said)
         return ending
+
+
+def wait_for_programs(folder: Path) -> list[str]:
+    """The programs that a child in this folder has started and that do not end within a minute of its death."""
+    deadline = time.monotonic() + _ENDS_WITHIN_S
+    while (left := _programs(folder)) and time.monotonic() < deadline:
+        time.sleep(0.1)
+    return left
+
+
+def _programs(folder: Path) -> list[str]:
+    """Their command lines."""
+    found = []
+    for process in Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):  # it has ended meanwhile, or is another user's
+            if f"{_MARK}={folder}".encode() in (process / "environ").read_bytes().split(b"\0"):
+                found.append((process / "cmdline").read_bytes().replace(b"\0", b" ").decode("utf-8", "replace").strip())
+    return found
 
 
 class Held:

@@ -6,6 +6,7 @@ order, and at a random moment a fault. A leader that a person moves makes the er
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -179,13 +180,16 @@ def faults() -> dict[str, Inject]:
 
 
 def person(seed: int) -> Leader:
-    """A leader that a person moves, without a rest at the beginning."""
+    """A leader that a person moves, without a rest at the beginning; worked out once for every slice."""
     motion = human_reaches(seed)
     times, angles = np.asarray(motion.time_s), np.asarray(motion.angles)
     moves = int(np.argmax(np.abs(angles - angles[0]).max(axis=1) > 0.02))
+    slices = times[moves] + SLICE_S * np.arange(math.ceil((times[-1] - times[moves]) / SLICE_S) + 1)
+    path = np.column_stack([np.interp(slices, times, angles[:, joint]) for joint in range(4)])
 
     def at(seconds: float) -> Array:
-        return np.array([np.interp(seconds + times[moves], times, angles[:, joint]) for joint in range(4)])
+        place: Array = path[min(round(seconds / SLICE_S), len(path) - 1)]
+        return place
 
     return at
 

@@ -7,7 +7,6 @@ import importlib
 import json
 import os
 import random
-import re
 import shutil
 import tempfile
 import tomllib
@@ -32,7 +31,7 @@ from greywhale.files.leader import load_leader
 from greywhale.files.log import read_log
 from tools.campaign.kill_boards import Bench, Board, Fake, NoBoard
 from tools.campaign.kill_verbs import VERBS, Verb, make_inputs
-from tools.campaign.killing import NEVER, Ending, Held, Moment, run
+from tools.campaign.killing import NEVER, Ending, Held, Moment, run, wait_for_programs
 from tools.campaign.part import Part, Piece, Row, split
 
 OLD = b"what stood here before\n"
@@ -104,6 +103,11 @@ class Stand:
         new = state not in self._met
         self._met.add(state)
         return new
+
+    @property
+    def promised(self) -> list[str]:
+        """The files that every run must leave."""
+        return [name for name in (*self.verb.logs, *self.whole) if not self.verb.may_write(name)]
 
     def problem_of(self, name: str, path: Path) -> str:
         """What is wrong with a file that bears the name of a result, "" for nothing."""
@@ -206,13 +210,13 @@ def _files(folder: Path) -> dict[str, Path]:
 def try_once(stand: Stand, moment: Moment, old: bool) -> tuple[list[str], list[str]]:
     """Kill the verb at a moment, look at what is left, and run it again: what is wrong, and what was seen."""
     folder, verb = stand.folder(), stand.verb
-    promised = [*verb.logs, *stand.whole]
+    promised = stand.promised
     for name in promised if old and not (verb.journal or verb.refuses) else []:
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_bytes(OLD)
     with stand.board() as board:
         ending = stand.run(folder, board, moment)
-        wrong = board.settle()
+        wrong = board.settle() + [f"{one} goes on for ever" for one in wait_for_programs(folder)]
         if ending.code not in (None, 0):
             wrong.append(f"ended with {ending.code}: {ending.said}")
         seen = ["had ended before"] if ending.code == 0 else []
@@ -247,7 +251,7 @@ def look(stand: Stand, folder: Path) -> tuple[list[str], list[str], list[str]]:
             hidden.append(name)
         elif name == verb.journal:
             seen.append("journal kept")
-        elif name in verb.logs or name in stand.whole or (verb.more and re.fullmatch(verb.more, name)):
+        elif name in verb.logs or name in stand.whole or verb.may_write(name):
             if _is_old(path):
                 continue
             problem = stand.problem_of(name, path)
@@ -316,10 +320,11 @@ PART = Part(
     "part), so that every state between two changes is met. Half begin with older files in the place of the results. "
     "Every result must be absent, as before, or what a run without a kill writes; a log may also lie beside it, "
     "readable and marked as unfinished, and a journal to go on from. The board must have its motors off within its "
-    "lease, and run and keep a whole set that it had or was sent. From every state that was met the next run must "
-    "work, and leave nothing hidden. `tune` takes seconds and `record --excite` moves for four, so they have fewer "
-    "trials; `identify` and the picture are computed once, and killed from their first change on, before which they "
-    "write nothing. `calibrate` is killed without the sweeps that a person makes. The boards are in Python except "
+    "lease, and run and keep a whole set that it had or was sent. No program that the verb has started may go on for "
+    "ever. From every state that was met the next run must work, and leave nothing hidden. `tune` takes seconds and "
+    "`record --excite` moves for four, so they have fewer trials; `identify` and the picture are computed once, and "
+    "killed from their first change on, before which they write nothing. `calibrate` is killed without the sweeps that "
+    "a person makes. The boards are in Python except "
     "where it says simulated board: that is the real image.",
     (
         *("host/src/greywhale", "host/native", "sim", "firmware/lib", "firmware/src", "shared/fuzzy_tables"),

@@ -18,6 +18,10 @@ ANSWER_MS = 25  # a set that is applied takes 12
 EXCUSED = 4  # samples after the answer: what was lost shows at the next one
 WRAP_AFTER = 60_000  # ticks, until the counter of 32 bits begins anew
 MASK = (1 << 32) - 1
+MOTION_MS = 2094  # a turn of some 3 rad/s
+MOTION_MV = 2500.0 + 900.0 * np.sin(
+    2 * np.pi / MOTION_MS * np.arange(1, MOTION_MS + 1)[:, None] + np.tile(np.arange(4.0), 2)
+)  # the eight potentiometers in each millisecond
 
 
 @dataclass
@@ -52,7 +56,7 @@ class Soak:
         self._seq = 0
         self._last: tuple[int, int] | None = None  # sequence number and tick of the last sample
         self._excused = 0  # samples from now on of which some may be missing
-        self._phase = 0.0
+        self._step_of_motion = 0
         self.bench.board.uart_receive()
 
     def set_counter(self, tick: int) -> None:
@@ -123,8 +127,8 @@ class Soak:
 
     def _step(self) -> list[frames.Frame]:
         """One millisecond: the arms move together, and what has come is looked at."""
-        self._phase += 0.003
-        self.bench.board.set_millivolts(2500.0 + 900.0 * np.sin(self._phase + np.tile(np.arange(4.0), 2)))
+        self._step_of_motion = (self._step_of_motion + 1) % len(MOTION_MV)
+        self.bench.board.set_millivolts(MOTION_MV[self._step_of_motion])
         self.bench.wait(1)
         answers = []
         for frame in self._decoder.feed(self.bench.board.uart_receive()):
