@@ -62,9 +62,9 @@ def test_each_fault_has_its_limit_and_its_sentence(name: str, passes: float, fai
 def test_an_arm_that_was_restless_before_may_stay_as_it_was_but_no_more() -> None:
     restless = replace(BEFORE, unrest=np.full(SHAPE, 0.008))
     limits = Limits.of([restless], KEPT)
-    assert limits.unrest == pytest.approx(np.full(4, 0.008), rel=0.03)
+    assert limits.unrest == pytest.approx(np.full(SHAPE, 0.008), rel=0.03)
     quiet = replace(BEFORE, unrest=np.full(SHAPE, 0.0002))
-    assert Limits.of([quiet], KEPT).unrest == pytest.approx(np.full(4, 0.0015)), "nobody sees so little"
+    assert Limits.of([quiet], KEPT).unrest == pytest.approx(np.full(SHAPE, 0.0015)), "nobody sees so little"
 
 
 def test_a_joint_that_keeps_its_controller_may_feel_its_neighbours() -> None:
@@ -80,8 +80,20 @@ def test_a_joint_that_keeps_its_controller_may_rest_less_quietly() -> None:
     restless = replace(BEFORE, unrest=np.tile([0.001, 0.002, 0.002, 0.002], (len(PARTS), 1)))
     limits = Limits.of([restless], kept)
     noise, beyond = 0.001**2, 0.002**2 - 0.001**2
-    assert limits.unrest[2] == pytest.approx(np.sqrt(noise + 1.5**2 * beyond))
-    assert limits.unrest[3] == pytest.approx(np.sqrt(noise + 2.0**2 * beyond))
+    assert limits.unrest[:, 2] == pytest.approx(np.sqrt(noise + 1.5**2 * beyond))
+    assert limits.unrest[:, 3] == pytest.approx(np.sqrt(noise + 2.0**2 * beyond))
+
+
+def test_a_joint_that_neighbours_push_while_it_holds_still_must_rest_after_its_own_moves() -> None:
+    holding, moves = PARTS.index("holding still"), PARTS.index("moves")
+    before = with_joint("unrest", 2, 0.0065, holding)
+    limits = Limits.of([before], KEPT)
+    assert judge(before, before, limits, QUIET)[2].passed
+    restless = before.unrest.copy()
+    restless[moves, 2] = 0.0023
+    hunts = judge(replace(before, unrest=restless), before, limits, QUIET)[2]
+    assert hunts.faults == ("it hunts at rest (2.3 mrad rms, at most 1.5)",)
+    assert hunts.excess == pytest.approx(2.3 / 1.5)
 
 
 @pytest.mark.parametrize(

@@ -32,7 +32,11 @@ KEPT_SHARE, KEPT_GROWTH = 0.1, 2.0
 
 @dataclass(frozen=True)
 class Limits:
-    """What a joint may do at most, (4,) each; `error` is (parts, 4)."""
+    """What a joint may do at most in each part of the check, (parts, 4) each.
+
+    Each part has limits of its own: a joint that its neighbours push while it holds still may show several mrad there,
+    and must rest after its own moves all the same.
+    """
 
     unrest: Floats
     rattle: Floats
@@ -48,13 +52,13 @@ class Limits:
         share = np.where(kept, KEPT_SHARE, SAME_SHARE)
         return cls(
             unrest=_allowed(
-                before.worst("unrest"),
+                before.unrest,
                 lambda known: _grow_beyond_noise(known, np.where(kept, KEPT_GROWTH, UNREST_GROWTH)),
                 LEAST_UNREST,
                 MOST_UNREST,
             ),
-            rattle=_allowed(before.worst("rattle"), lambda known: RATTLE_GROWTH * known, LEAST_RATTLE, MOST_RATTLE),
-            chatter=np.maximum(CHATTER_HZ, 1.1 * np.nan_to_num(before.worst("chatter"))),
+            rattle=_allowed(before.rattle, lambda known: RATTLE_GROWTH * known, LEAST_RATTLE, MOST_RATTLE),
+            chatter=np.maximum(CHATTER_HZ, 1.1 * np.nan_to_num(before.chatter)),
             error=(1.0 + share) * before.error + SAME_RAD2,
         )
 
@@ -105,17 +109,15 @@ def judge(
 
 def _judge(measured: Measures, before: Measures, limits: Limits, joint: int, guilty: str, foreseen: str) -> Verdict:
     faults = [guilty] if guilty else []
-    excess = np.inf if guilty else 0.0
-    unrest, rattle, chatter = (float(measured.worst(name)[joint]) for name in ("unrest", "rattle", "chatter"))
-    for value, limit in ((unrest, limits.unrest), (rattle, limits.rattle), (chatter, limits.chatter)):
-        excess = max(excess, value / float(limit[joint]))
-    if not guilty and unrest > limits.unrest[joint]:
-        faults.append(f"it hunts at rest ({1e3 * unrest:.1f} mrad rms, at most {1e3 * limits.unrest[joint]:.1f})")
-    if rattle > limits.rattle[joint]:
-        faults.append(f"it rattles in motion ({1e3 * rattle:.1f} mrad rms, at most {1e3 * limits.rattle[joint]:.1f})")
+    unrest, rattle, chatter = (_closest(measured, limits, name, joint) for name in ("unrest", "rattle", "chatter"))
+    excess = np.inf if guilty else max(0.0, unrest.share, rattle.share, chatter.share)
+    if not guilty and unrest.share > 1.0:
+        faults.append(f"it hunts at rest ({1e3 * unrest.value:.1f} mrad rms, at most {1e3 * unrest.limit:.1f})")
+    if rattle.share > 1.0:
+        faults.append(f"it rattles in motion ({1e3 * rattle.value:.1f} mrad rms, at most {1e3 * rattle.limit:.1f})")
     quiet = not faults
-    if chatter > limits.chatter[joint]:
-        faults.append(f"its voltage chatters ({chatter:.0f} times a second)")
+    if chatter.share > 1.0:
+        faults.append(f"its voltage chatters ({chatter.value:.0f} times a second)")
     restless = bool(faults)
     for place, part in enumerate(PARTS):
         if measured.error[place, joint] > limits.error[place, joint]:
@@ -131,6 +133,27 @@ def _judge(measured: Measures, before: Measures, limits: Limits, joint: int, gui
     return Verdict(joint, tuple(faults), restless, restless and quiet, excess, score, known, bearable)
 
 
+@dataclass(frozen=True)
+class _Closest:
+    """A measure in the part in which it comes closest to its limit, or is farthest above; NaN where it has none."""
+
+    value: float = np.nan
+    limit: float = np.nan
+
+    @property
+    def share(self) -> float:
+        return self.value / self.limit if np.isfinite(self.value) else 0.0
+
+
+def _closest(measured: Measures, limits: Limits, name: str, joint: int) -> _Closest:
+    values, most = getattr(measured, name)[:, joint], getattr(limits, name)[:, joint]
+    known = np.isfinite(values)
+    if not known.any():
+        return _Closest()
+    part = int(np.argmax(np.where(known, values / most, -np.inf)))
+    return _Closest(float(values[part]), float(most[part]))
+
+
 def _allowed(before: Floats, grow: Callable[[Floats], Floats], least: float, most: float) -> Floats:
     known = np.nan_to_num(before)
     allowed: Floats = np.maximum(np.clip(grow(known), least, most), known * (1.0 + SAME_SHARE))
@@ -138,8 +161,8 @@ def _allowed(before: Floats, grow: Callable[[Floats], Floats], least: float, mos
 
 
 def _grow_beyond_noise(unrest: Floats, growth: Floats) -> Floats:
-    """The potentiometers' noise, which does not grow, is at most what the quietest joint shows."""
-    known = unrest[unrest > 0.0]  # a joint that is not in use has none
-    noise = float(known.min()) if known.size else 0.0
+    """The potentiometers' noise, which does not grow, is at most what the quietest joint shows in the same part."""
+    seen = np.where(unrest > 0.0, unrest, np.inf).min(axis=1, keepdims=True)  # a joint that is not in use has none
+    noise = np.where(np.isfinite(seen), seen, 0.0)
     grown: Floats = np.sqrt(noise**2 + growth**2 * np.maximum(unrest**2 - noise**2, 0.0))
     return grown
