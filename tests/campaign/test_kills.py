@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import mmap
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
@@ -11,6 +12,7 @@ import pytest
 
 from greywhale.board.device import Device
 from greywhale.cli import verbs as cli
+from greywhale.files.log import Log, read_log
 from greywhale.formats import draft
 from tools.campaign.kill_verbs import LEFT_OUT, VERBS
 from tools.campaign.killing import Moment, run
@@ -85,6 +87,20 @@ def test_hidden_files_that_nobody_sweeps_are_found(stand: Stand, monkeypatch: py
     monkeypatch.setattr(draft, "sweep", lambda folder: None)
     wrong, _ = try_all(stand)
     assert [one for one in wrong if one.startswith(".greywhale-") and one.endswith(" stays")]
+
+
+def test_what_a_held_verb_works_out_is_worked_out_once_for_all_trials(monkeypatch: pytest.MonkeyPatch) -> None:
+    times = mmap.mmap(-1, 1)  # shared with the processes that are forked
+
+    def counted(path: Path, voltages: bool) -> Log:
+        times[0] += 1
+        return read_log(path, voltages=voltages)
+
+    monkeypatch.setattr("greywhale.cli.evaluate.read_log", counted)
+    with Stand(VERB["evaluate --picture"]) as stand, stand.board() as board:
+        endings = [stand.run(stand.folder(), board, Moment(change=change)) for change in (0, 1, stand.ending.changes)]
+    assert [ending.code for ending in endings] == [None, None, 0]
+    assert times[0] == 1
 
 
 @pytest.mark.parametrize("stand", ["record --enable"], indirect=True)

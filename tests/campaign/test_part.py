@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 from greywhale.protocol.schema import Fault
-from tools.campaign.journal import Journal, identity
+from tools.campaign.journal import Done, Journal, identity
 from tools.campaign.page import STAGED_AS, write_page
 from tools.campaign.part import Part, Piece, Row, add_up, split
 from tools.campaign.runner import Result, Work, do_all, in_turn
@@ -33,14 +33,15 @@ def test_pieces_cover_the_share_and_differ_in_their_seeds() -> None:
 def test_a_journal_goes_on_after_a_kill_in_the_middle_of_a_line(tmp_path: Path) -> None:
     part, pieces = make_part(), split(10, 1.0, 4)
     journal = Journal(tmp_path, part)
-    journal.add(pieces[0], [Row("a", 4, 0)])
-    journal.add(pieces[1], [Row("a", 4, 1)])
+    journal.add(Done(pieces[0], [Row("a", 4, 0)], 1.5))
+    journal.add(Done(pieces[1], [Row("a", 4, 1)], 2.0))
     text = journal.path.read_text()
     journal.path.write_text(text[:-5])
     again = Journal(tmp_path, part)
     assert again.missing(pieces) == pieces[1:]
-    again.add(pieces[2], [Row("a", 2, 0)])
+    again.add(Done(pieces[2], [Row("a", 2, 0)], 0.5))
     assert add_up(Journal(tmp_path, part).rows(pieces)) == [Row("a", 6, 0)]
+    assert Journal(tmp_path, part).seconds(pieces) == 2.0
 
 
 def test_the_identity_follows_what_a_part_depends_on() -> None:
@@ -51,9 +52,9 @@ def test_the_identity_follows_what_a_part_depends_on() -> None:
 
 def test_the_page_shows_every_violation() -> None:
     rows = [Row("a", 1000, 2, {"fault": 3}, {"ms": 1.5})]
-    page = write_page([Result(make_part(), rows, 3, 3)])
-    assert "| [Nothing at all](#nothing-at-all) | 1,000 | 2 | all |" in page
-    assert "| 1,000 | 2 | 2 of 3 pieces |" in write_page([Result(make_part(), rows, 2, 3)])
+    page = write_page([Result(make_part(), rows, 3, 3, seconds=130.0)])
+    assert "| [Nothing at all](#nothing-at-all) | 1,000 | 2 | all | 2 |" in page
+    assert "| 1,000 | 2 | 2 of 3 pieces |  |" in write_page([Result(make_part(), rows, 2, 3, seconds=130.0)])
     assert "**2** | 1.5 ms | fault 3 |" in page
 
 
@@ -109,16 +110,16 @@ def test_a_long_run_is_done_in_pieces_here_and_elsewhere_and_adds_up(tmp_path: P
     result = make_long_work(here, 1.0).result()
     assert (result.whole, result.longer, result.most_longer) == (True, 0, 4)
     asked = make_long_work(here, 3.0)
-    asked.journal.add(asked.pieces[3], double(asked.pieces[3]))  # a piece of the long run, then the time was over
+    asked.journal.add(Done(asked.pieces[3], double(asked.pieces[3])))  # a piece of the long run, then the time was over
     elsewhere = make_long_work(there, 3.0)
     for piece in elsewhere.pieces[2:5]:
-        elsewhere.journal.add(piece, double(piece))
+        elsewhere.journal.add(Done(piece, double(piece)))
     full = make_long_work(here, 1.0)
     assert full.journal.take_over(there) == 2, "the third of them is known"
     assert full.journal.take_over(there) == full.journal.take_over(tmp_path) == 0
     result = make_long_work(here, 1.0).result()
     assert (result.whole, result.longer, result.rows[0].trials) == (True, 3, 10)
-    assert "| [Long](#long) | 10 | 0 | all, and 3 of 4 beyond |" in write_page([result])
+    assert "| [Long](#long) | 10 | 0 | all, and 3 of 4 beyond | " in write_page([result])
     assert make_long_work(here, 3.0).result().done == 5
     assert make_long_work(here, 0.5).result().rows[0].trials == 2, "a smaller share is only itself"
 

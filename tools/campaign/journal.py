@@ -4,13 +4,22 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Iterator
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from tools.campaign.part import Part, Piece, Row
 from tools.sources import digest_of
 
 ROOT = Path(__file__).parents[2]
+
+
+@dataclass(frozen=True)
+class Done:
+    """A finished piece: its rows, and how long a worker took over it."""
+
+    piece: Piece
+    rows: list[Row]
+    seconds: float = 0.0
 
 
 def identity(part: Part) -> str:
@@ -24,39 +33,46 @@ class Journal:
     def __init__(self, folder: Path, part: Part) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         self.path = folder / f"{part.name}-{identity(part)}.jsonl"
-        self._done: dict[str, list[Row]] = {}
+        self._done: dict[str, Done] = {}
         if self.path.exists():
             whole, _, torn = self.path.read_text(encoding="utf-8").rpartition("\n")
             if torn:  # it was being written when the campaign was killed
                 self.path.write_text(whole + "\n", encoding="utf-8")
-            self._done = {_key(piece): rows for piece, rows in _read(whole)}
+            self._done = {_key(done.piece): done for done in _read(whole)}
 
     def take_over(self, folder: Path) -> int:
         """Add what was done elsewhere for the same state of the code, another machine's folder; how many pieces."""
         other = folder / self.path.name
         text = other.read_text(encoding="utf-8") if other.exists() else ""
-        new = [(piece, rows) for piece, rows in _read(text.rpartition("\n")[0]) if self.missing([piece])]
-        for piece, rows in new:
-            self.add(piece, rows)
+        new = [done for done in _read(text.rpartition("\n")[0]) if self.missing([done.piece])]
+        for done in new:
+            self.add(done)
         return len(new)
 
-    def add(self, piece: Piece, rows: Iterable[Row]) -> None:
-        self._done[_key(piece)] = list(rows)
+    def add(self, done: Done) -> None:
+        self._done[_key(done.piece)] = done
         with self.path.open("a", encoding="utf-8") as file:
-            file.write(json.dumps({"piece": piece, "rows": [asdict(row) for row in rows]}) + "\n")
+            file.write(json.dumps(asdict(done)) + "\n")
 
     def missing(self, pieces: Iterable[Piece]) -> list[Piece]:
         return [piece for piece in pieces if _key(piece) not in self._done]
 
     def rows(self, pieces: Iterable[Piece]) -> list[Row]:
         """The rows of these pieces that are done, in their order."""
-        return [row for piece in pieces for row in self._done.get(_key(piece), [])]
+        return [row for done in self._of(pieces) for row in done.rows]
+
+    def seconds(self, pieces: Iterable[Piece]) -> float:
+        """How long these pieces took, those that are done."""
+        return sum(done.seconds for done in self._of(pieces))
+
+    def _of(self, pieces: Iterable[Piece]) -> Iterator[Done]:
+        return (self._done[key] for key in map(_key, pieces) if key in self._done)
 
 
-def _read(text: str) -> Iterator[tuple[Piece, list[Row]]]:
-    """Each piece of whole lines, and its rows."""
+def _read(text: str) -> Iterator[Done]:
+    """The pieces of whole lines."""
     for entry in map(json.loads, text.splitlines()):
-        yield entry["piece"], [Row(**row) for row in entry["rows"]]
+        yield Done(entry["piece"], [Row(**row) for row in entry["rows"]], entry.get("seconds", 0.0))
 
 
 def _key(piece: Piece) -> str:

@@ -24,9 +24,9 @@ class Verb:
     """A verb with small inputs. `logs` and `files` are what it promises, beside a `journal` to go on from.
 
     {in} in its arguments is the folder of the inputs, {port} the board's port, `needs` what it imports when it runs.
-    Where it is `held`, what it computes before its first change is done once for all trials. Where its results `vary`
-    from run to run, `files` are those of a run, and each is judged by what it is. One that `refuses` never writes over
-    a file, so none is put in the place of a result, and a result is taken away before the next run.
+    What it computes before change number `held` (from 0) is done once for all trials, and they begin there. Where its
+    results `vary` from run to run, `files` are those of a run, and each is judged by what it is. One that `refuses`
+    never writes over a file, so none is put in the place of a result, and a result is taken away before the next run.
     """
 
     name: str
@@ -35,7 +35,7 @@ class Verb:
     files: tuple[str, ...] = ()
     journal: str = ""
     board: str = ""  # fake or bench
-    held: bool = False
+    held: int | None = None
     vary: bool = False
     refuses: bool = False
     more: str = ""  # pattern of results of which another run may have others
@@ -49,6 +49,7 @@ class Verb:
 
 
 _DRAWING = ("greywhale.report", "matplotlib.backends.backend_svg", "matplotlib.backends.backend_agg")
+_LOOKED = 1  # the first change only looks whether a file can be written there
 _LED = "-o log.csv --yes --port {port}"
 VERBS = (
     Verb("record", "record -s 0.4 -o log.csv --port {port}", {"log.csv": 400}, board="fake"),
@@ -121,7 +122,7 @@ VERBS = (
         "evaluate --picture",
         "evaluate {in}/log.csv --picture log.svg",
         files=("log.svg",),
-        held=True,
+        held=_LOOKED,
         needs=_DRAWING,
     ),
     Verb(
@@ -143,7 +144,7 @@ VERBS = (
         "identify",
         f"identify {{in}}/fit.csv -v {{in}}/second.csv -c {TABLES}/before_tuning.toml -o model.toml",
         files=("model.toml",),
-        held=True,
+        held=_LOOKED,
         needs=("greywhale.identify", "greywhale.files.arm"),
         size=1000,
     ),

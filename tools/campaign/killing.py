@@ -2,8 +2,8 @@
 
 The parent has imported everything, so a child costs a fork. A moment is a time since the start, or the k-th change that
 the verb makes: a file created, written, brought to the disk, named, renamed or removed, a folder made, bytes sent to a
-board. A killed write has written a share of its bytes. A verb that computes for long before its first change is `Held`
-there: the children begin at that point, so that it computes once for all of them.
+board. A killed write has written a share of its bytes. A verb that computes for long before it changes anything of
+worth is `Held` there: the children begin at that point, so that it computes once for all of them.
 """
 
 from __future__ import annotations
@@ -93,13 +93,13 @@ def _programs(folder: Path) -> list[str]:
 
 
 class Held:
-    """A verb that runs up to its first change in a process of its own, and goes on from there in children. A context.
+    """A verb that runs in a process of its own until `done` changes are made, and goes on in children. A context.
 
-    What it writes must lie in the folder in which it runs.
+    What it writes must lie in the folder in which it runs. The children count their changes from there.
     """
 
-    def __init__(self, arguments: Sequence[str], folder: Path) -> None:
-        self._arguments, self._folder = arguments, folder
+    def __init__(self, arguments: Sequence[str], folder: Path, done: int) -> None:
+        self._arguments, self._folder, self._done = arguments, folder, done
 
     def __enter__(self) -> Self:
         (asked, asks), (told, tells) = os.pipe(), os.pipe()
@@ -124,17 +124,17 @@ class Held:
         os.waitpid(self._holder, 0)
 
     def run(self, folder: Path, moment: Moment = NEVER) -> Ending:
-        """As `run` does, in this folder and from the first change on."""
+        """As `run` does, in this folder and from where the verb is held."""
         self._asks.write(json.dumps([str(folder), moment.after_s, moment.change, moment.share]).encode() + b"\n")
         answer = self._told.readline()
         if not answer:
-            raise RuntimeError(f"{self._arguments[0]} ended before its first change")
+            raise RuntimeError(f"{self._arguments[0]} ended within its first {self._done} changes")
         return Ending(*json.loads(answer))
 
     def _hold(self, asked: IO[bytes], tell: IO[bytes]) -> None:
         child_tells: list[IO[bytes]] = []
 
-        def first() -> Moment:
+        def choose() -> Moment:
             """Serve in the holder; return in each child."""
             for line in asked:
                 folder, *moment = json.loads(line)
@@ -153,7 +153,7 @@ class Held:
             os._exit(0)
 
         os.chdir(self._folder)
-        changes = Changes(NEVER, first)
+        changes = Changes(NEVER, choose, self._done)
         code = _do(self._arguments, True, changes)
         if child_tells:
             child_tells[0].write(str(changes.count).encode())
@@ -202,18 +202,18 @@ def _do(arguments: Sequence[str], quick: bool, changes: Changes) -> int:
 class Changes:
     """Counts the changes that this process makes, and kills it at one of them.
 
-    Just before the first change `first` may choose the moment.
+    When `done` changes are made, `choose` may choose the moment just before the next, from which on it counts anew.
     """
 
-    def __init__(self, moment: Moment, first: Callable[[], Moment] | None = None) -> None:
+    def __init__(self, moment: Moment, choose: Callable[[], Moment] | None = None, done: int = 0) -> None:
         self.count = 0
-        self._moment, self._first = moment, first
+        self._moment, self._choose, self._done = moment, choose, done
 
     def happens(self) -> bool:
         """Count a change; whether it is the last."""
-        if self._first is not None:
-            first, self._first = self._first, None
-            self._moment = first()
+        if self._choose is not None and self.count == self._done:
+            choose, self._choose = self._choose, None
+            self._moment, self.count = choose(), 0
         self.count += 1
         return self._moment.change == self.count - 1
 

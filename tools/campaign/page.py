@@ -19,7 +19,7 @@ whose digest stands below its table. A small share of the same campaign runs in 
 A violation is a trial that broke what the section says must hold. A part that is not yet at its full size says so;
 `make campaign` goes on with it. A part with pieces beyond its full size can be run longer, some at any time
 (`python -m tools.campaign PART --share N --minutes M`); what is done of that is counted. Numbers in a section's text
-are those of the full size; the table has what was done.
+are those of the full size; the table has what was done. `min` are the minutes of one core that the full size took.
 """
 
 FAULTS_HEAD = """## The faults and how soon the motors are off
@@ -60,15 +60,19 @@ def write_table(rows: Iterable[Row]) -> str:
 
 def write_summary(results: Iterable[Result]) -> str:
     """One line for each part."""
-    lines = ["| | trials | violations | done |", "|---|--:|--:|--:|"]
+    lines = ["| | trials | violations | done | min |", "|---|--:|--:|--:|--:|"]
     for one in results:
         trials, violations = sum(row.trials for row in one.rows), sum(row.violations for row in one.rows)
         anchor = one.part.title.lower().replace(" ", "-").replace(",", "")
         share = "all" if one.whole else f"{one.done} of {one.pieces} pieces"
         if one.most_longer:
             share += f", and {one.longer} of {one.most_longer} beyond"
-        lines.append(f"| [{one.part.title}](#{anchor}) | {trials:,} | {violations:,} | {share} |")
+        lines.append(f"| [{one.part.title}](#{anchor}) | {trials:,} | {violations:,} | {share} | {_minutes(one)} |")
     return "\n".join(lines) + "\n"
+
+
+def _minutes(result: Result) -> str:
+    return f"{result.seconds / 60:.0f}" if result.whole and result.seconds else ""
 
 
 def write_faults(rows: Iterable[Row]) -> str:

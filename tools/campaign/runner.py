@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from dataclasses import dataclass
 
-from tools.campaign.journal import Journal
+from tools.campaign.journal import Done, Journal
 from tools.campaign.part import Part, Piece, Row, add_up
 
 Report = Callable[[int, int, float], None]  # pieces done, pieces in all, seconds so far
@@ -19,7 +19,8 @@ Report = Callable[[int, int, float], None]  # pieces done, pieces in all, second
 class Result:
     """What a part has come to: the rows of its finished pieces.
 
-    `longer` of the `most_longer` pieces beyond its full size are done as well.
+    `longer` of the `most_longer` pieces beyond its full size are done as well. `seconds` is what a worker took over
+    those of the full size.
     """
 
     part: Part
@@ -28,6 +29,7 @@ class Result:
     pieces: int
     longer: int = 0
     most_longer: int = 0
+    seconds: float = 0.0
 
     @property
     def whole(self) -> bool:
@@ -48,7 +50,7 @@ class Work:
         beyond = [piece for piece in longest if piece not in full]
         rows = add_up(self.journal.rows([*asked, *beyond]))
         done, longer = (len(some) - len(self.journal.missing(some)) for some in (asked, beyond))
-        return Result(self.part, rows, done, len(asked), longer, len(beyond))
+        return Result(self.part, rows, done, len(asked), longer, len(beyond), self.journal.seconds(asked))
 
 
 def in_turn(works: Iterable[Work]) -> list[tuple[Work, Piece]]:
@@ -74,17 +76,17 @@ def do_all(works: Sequence[Work], workers: int, seconds: float, report: Report) 
     """
     queue, began = in_turn(works), time.monotonic()
     total, done = len(queue), 0
-    running: dict[Future[list[Row]], tuple[Work, Piece]] = {}
+    running: dict[Future[list[Row]], tuple[Work, Piece, float]] = {}
     with ProcessPoolExecutor(workers, initializer=_ignore_interrupts, max_tasks_per_child=1) as pool:
         while queue or running:
             if time.monotonic() - began > seconds:
                 queue.clear()
             while queue and len(running) < workers:
                 work, piece = queue.pop(0)
-                running[pool.submit(work.part.run, piece)] = (work, piece)
+                running[pool.submit(work.part.run, piece)] = (work, piece, time.monotonic())
             for future in wait(running, return_when=FIRST_COMPLETED).done:
-                work, piece = running.pop(future)
-                work.journal.add(piece, add_up(future.result()))
+                work, piece, since = running.pop(future)
+                work.journal.add(Done(piece, add_up(future.result()), round(time.monotonic() - since, 1)))
                 done += 1
                 report(done, total, time.monotonic() - began)
 

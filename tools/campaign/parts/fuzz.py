@@ -34,7 +34,7 @@ TITLES = {
     "frames": "the frame codec",
     "table": "the parameter table and its EEPROM",
 }
-RUNS = {"app": (300_000, 10_000), "frames": (2_000_000, 1_000_000), "table": (300_000, 150_000)}  # in all, in a piece
+RUNS = {"app": (180_000, 10_000), "frames": (2_000_000, 1_000_000), "table": (300_000, 150_000)}  # in all, in a piece
 LIMITS = ("-max_len=512", "-timeout=60", "-rss_limit_mb=2048")
 
 

@@ -67,7 +67,7 @@ class Stand:
             (self.place / "in").mkdir()
             make_inputs(self.verb, self.place / "in")
             self._bench = stack.enter_context(BenchProcess("--speed", "max")) if self.verb.board == "bench" else None
-            self._held = self._hold(stack) if self.verb.held else None
+            self._held = None if self.verb.held is None else self._hold(stack, self.verb.held)
             self._learn()
             self._stack = stack.pop_all()
         return self
@@ -122,8 +122,8 @@ class Stand:
         arguments = self.verb.arguments.format(port=port, **{"in": self.place / "in"}).split()
         return [*arguments, "--overwrite"] if self.verb.logs or self.verb.files else arguments
 
-    def _hold(self, stack: ExitStack) -> Held:
-        return stack.enter_context(Held(self._arguments(""), self.folder()))
+    def _hold(self, stack: ExitStack, done: int) -> Held:
+        return stack.enter_context(Held(self._arguments(""), self.folder(), done))
 
     def _learn(self) -> None:
         """Run without a kill: the files that the verb writes, how long it takes, how many changes it makes."""
@@ -322,10 +322,10 @@ PART = Part(
     "readable and marked as unfinished, and a journal to go on from. The board must have its motors off within its "
     "lease, and run and keep a whole set that it had or was sent. No program that the verb has started may go on for "
     "ever. From every state that was met the next run must work, and leave nothing hidden. `tune` takes seconds and "
-    "`record --excite` moves for four, so they have fewer trials; `identify` and the picture are computed once, and "
-    "killed from their first change on, before which they write nothing. `calibrate` is killed without the sweeps that "
-    "a person makes. The boards are in Python except "
-    "where it says simulated board: that is the real image.",
+    "`record --excite` moves for four, so they have fewer trials; `identify` and the log of the picture are worked "
+    "out once, and the trials begin where the result is written: before, these verbs only look whether they can write "
+    "it, as all others do. `calibrate` is killed without the sweeps that a person makes. The boards are in Python "
+    "except where it says simulated board: that is the real image.",
     (
         *("host/src/greywhale", "host/native", "sim", "firmware/lib", "firmware/src", "shared/fuzzy_tables"),
         *("tests/board/fake_board.py", "tests/tune/models.py", "tools/bench/recordings.py"),
