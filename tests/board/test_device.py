@@ -133,8 +133,8 @@ def test_malformed_hello_is_one_sentence() -> None:
         (NackCode.ERROR_TOO_LARGE, 1 << 8 | 64, "joint 1, 2.00 rad"),
         (NackCode.ERROR_TOO_LARGE, 1 << 8 | 255, "7.97 rad or more"),
         (NackCode.IN_FAULT, Fault.TRACKING, Fault.TRACKING.description),
-        (NackCode.POT_BAD, 5 << 8 | Fault.POT_LOW, "follower potentiometer 1, a potentiometer reads at the lower rail"),
-        (NackCode.POT_BAD, 2 << 8 | Fault.POT_HIGH, "leader potentiometer 2"),
+        (NackCode.POT_BAD, 5 << 8 | Fault.POT_LOW, "(follower potentiometer 1, at the lower rail)"),
+        (NackCode.POT_BAD, 2 << 8 | Fault.POT_HIGH, "(leader potentiometer 2, at the upper rail)"),
     ],
 )
 def test_refusals_say_what_where_and_the_remedy(code: NackCode, detail: int, words: str) -> None:
@@ -143,7 +143,7 @@ def test_refusals_say_what_where_and_the_remedy(code: NackCode, detail: int, wor
         with pytest.raises(RefusedError) as caught:
             device.enable(500)
     remedy = Refusal.WIDTH.remedy if code is NackCode.SET_REFUSED else code.remedy
-    assert caught.value.message.startswith(f"{board.port}: the board refused enable: {code.description}")
+    assert caught.value.message.startswith(f"{board.port}: the board refused the request 'enable': {code.description}")
     assert words in caught.value.message
     assert remedy[1:] in caught.value.message
 

@@ -232,7 +232,14 @@ def test_pictures_are_drawn_on_request(no_floors: None, model: Path, capsys: Cap
         ),
         (
             {"margins_hold": False},
-            ["not all margins hold: a joint may swing if the arm is not quite as its model (the file says which)."],
+            ["a joint may swing if the arm is not quite as its model; a margin does not hold."],
+        ),
+        (
+            {"margins_hold": False, "notes": [f"joint {joint}, at rest: it turns round" for joint in range(4)]},
+            [
+                "a joint may swing if the arm is not quite as its model; these margins do not hold: joint 0, at rest; "
+                "joint 1, at rest; joint 2, at rest and 1 more."
+            ],
         ),
     ],
 )
@@ -249,6 +256,19 @@ def test_an_upload_warns_where_board_and_tuning_differ(
     said = capsys.readouterr()
     assert said.err == "".join(f"Warning: {warning}\n" for warning in warnings)
     assert "Warning" not in said.out
+
+
+@pytest.mark.parametrize(("answer", "code"), [(False, 1), (True, 0)])
+def test_a_terminal_is_asked_before_controllers_are_stored_whose_margins_fail(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, answer: bool, code: int
+) -> None:
+    monkeypatch.setattr(device.Device.__init__, "__defaults__", (0.0, 0.5))
+    monkeypatch.setattr("greywhale.cli.upload.sys.stdin.isatty", lambda: True)
+    monkeypatch.setattr("greywhale.cli.upload.click.confirm", lambda question, err: answer)
+    controller.save(tmp_path / "c.toml", default_controller(), tuning={"margins_hold": False})
+    with FakeBoard() as board:
+        assert entry.run(["upload", str(tmp_path / "c.toml"), "--port", board.port]) == code
+        assert (board.asked(schema.ParamSaveRequest) > 0) is answer
 
 
 def test_an_upload_warns_before_it_stores(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:

@@ -101,6 +101,21 @@ def test_nothing_is_cut_off_overlaps_or_lacks_a_unit(size: float, names: tuple[s
             plt.close(figure)
 
 
+def test_a_noisy_voltage_shows_its_mean_and_the_leader_lies_on_top() -> None:
+    time = np.arange(0, 2, 0.001)
+    still = np.zeros((len(time), 4))
+    buzz = np.where(np.arange(len(time)) % 2, 3.0, 1.0)[:, None] * np.ones(4)
+    figure = follow.plot_following([Trace("log", time, still, still, (0.0,) * 4, buzz, 15.0)], "Title")
+    try:
+        angle, voltage = figure.axes[0].get_lines(), figure.axes[2].get_lines()
+        assert max(angle, key=lambda line: line.get_zorder()).get_color() == looks.LEADER.colour
+        raw, mean = voltage[-2:]
+        assert raw.get_alpha() == 0.3
+        np.testing.assert_allclose(np.asarray(mean.get_ydata())[50:-50], 2.0, atol=0.05)
+    finally:
+        plt.close(figure)
+
+
 def test_voltages_are_drawn_within_their_limit() -> None:
     """The limit is the supply where that is known, else the largest voltage in the logs."""
     one = trace(replace(log(0.8), voltage=6.0 * log(0.8).leader), "before")

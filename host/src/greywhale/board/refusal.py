@@ -21,7 +21,9 @@ class RefusedError(UserError):
         if nack.code is schema.NackCode.LEAD_REFUSED:
             remedy = schema.LeadRefusal.of(nack.detail & 0xFF).remedy or remedy
         where = f" ({detail})" if detail else ""
-        super().__init__(f"{port}: the board refused {request}: {nack.code.description}{where}: {lower_first(remedy)}")
+        super().__init__(
+            f"{port}: the board refused the request '{request}': {nack.code.description}{where}: {lower_first(remedy)}"
+        )
 
 
 def _detail(nack: schema.Nack) -> str:
@@ -43,7 +45,8 @@ def _detail(nack: schema.Nack) -> str:
         case schema.NackCode.IN_FAULT:
             return schema.Fault.of(detail).description
         case schema.NackCode.POT_BAD:
-            return f"{pot_name(high)}, {schema.Fault.of(low).description}"
+            rail = {schema.Fault.POT_LOW: ", at the lower rail", schema.Fault.POT_HIGH: ", at the upper rail"}
+            return pot_name(high) + rail.get(schema.Fault.of(low), "")
         case schema.NackCode.UNKNOWN_TYPE | schema.NackCode.BAD_LENGTH:
             return f"{code.detail} is {detail}"
         case _:

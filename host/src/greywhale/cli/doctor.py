@@ -11,7 +11,7 @@ import click
 from greywhale.cli.output import json_option, port_option, progress, show
 from greywhale.doctor import Finding, Options, Verdict, examine, worst
 from greywhale.doctor.examine import LINK_S
-from greywhale.errors import BAD_USAGE, UserError
+from greywhale.errors import BAD_USAGE, UserError, counted
 from greywhale.protocol.ports import choose_port
 from greywhale.tune.progress import report_nothing
 
@@ -77,5 +77,6 @@ def _summary(findings: list[Finding]) -> str:
     bad = sum(one.verdict is Verdict.BAD for one in findings)
     notes = sum(one.verdict is Verdict.NOTE for one in findings)
     if bad:
-        return f"{bad} of {len(findings)} findings must be mended before the arm moves."
+        good = sum(one.verdict is Verdict.GOOD for one in findings)
+        return f"Mend {counted(bad, 'finding')} before the arm moves; {good} of {len(findings)} are good."
     return f"Nothing must be mended{f'; {notes} note' + 's' * (notes > 1) if notes else ''}."

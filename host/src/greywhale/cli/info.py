@@ -106,8 +106,8 @@ def _text(device: Device, hello: schema.HelloReply, status: schema.StatusReply, 
             f"{counted(status.frames_bad, 'bad frame')}, {counted(status.rx_overruns, 'byte')} lost, "
             f"{counted(status.telemetry_dropped, 'sample')} dropped",
         ),
-        ("no rule fired", counted(status.no_rule, "time")),
-        ("saves", f"{status.saves:,} of the {EEPROM_WRITES:,} that the EEPROM is made for"),
+        ("rules", f"none fired {counted(status.no_rule, 'time')}" if status.no_rule else "one always fired"),
+        ("saves", f"{status.saves:,}; the EEPROM is made for {EEPROM_WRITES:,}"),
         *(("pots", told) for told in _tell_pots(pots)),
     ]
     return "\n".join(f"{name:<14} {value}" for name, value in rows)

@@ -69,7 +69,7 @@ EXISTING = click.Path(path_type=Path)
 )
 @click.option("--resume", is_flag=True, help="Go on where an interrupted tuning with the same options ended.")
 @click.option("--force", is_flag=True, help="Tune even if there are doubts about the model; the result states them.")
-@click.option("--tables", is_flag=True, help="Also print the paper's Tables 8 to 12, ours beside its.")
+@click.option("--tables", is_flag=True, help="Also print the paper's Tables 8 to 12: ours beside the printed.")
 @click.option("--pictures", type=EXISTING, help="Folder for pictures of sets, responses and convergence.")
 @overwrite_option
 @json_option

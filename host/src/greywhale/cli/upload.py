@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -12,22 +13,26 @@ from greywhale.board.device import Device
 from greywhale.board.upload import change_parameters, read_parameters
 from greywhale.cli import completion
 from greywhale.cli.output import json_option, port_option, progress, show
-from greywhale.errors import counted
+from greywhale.errors import UserError, counted
 from greywhale.files import controller as controller_file
 from greywhale.protocol.ports import choose_port
 from greywhale.table import ParameterTable
 
+MOST_NAMED = 3  # margins in the warning
+
 
 @click.command("upload")
 @click.argument("controller", type=click.Path(path_type=Path), shell_complete=completion.controllers)
+@click.option("--yes", "-y", is_flag=True, help="Store it without a question, also where a joint may swing.")
 @port_option
 @json_option
-def command(controller: Path, port: str | None, as_json: bool) -> None:
+def command(controller: Path, yes: bool, port: str | None, as_json: bool) -> None:
     """Run and store the controllers of a controller.toml, or of one that comes with greywhale.
 
     Those are before_tuning, and table_8, table_9 and table_10 of the paper.
     The board takes the set over only when all of it has arrived and passed its checks, with the motors off. All other
-    parameters (potentiometers, limits, directions) keep their values.
+    parameters (potentiometers, limits, directions) keep their values. Where a margin of the tuning does not hold, a
+    terminal is asked first.
     """
     checked = controller_file.load(controller)
     with Device(choose_port(port)) as device:
@@ -36,6 +41,9 @@ def command(controller: Path, port: str | None, as_json: bool) -> None:
         warnings = _warnings(checked.tuning or {}, running)
         for warning in warnings:  # while Ctrl-C still leaves everything as it was
             click.echo(f"Warning: {warning}", err=True)
+        asked = _margins_fail(checked.tuning or {}) and not (yes or as_json) and sys.stdin.isatty()
+        if asked and not click.confirm("Store these controllers all the same?", err=True):
+            raise UserError(f"{device.port}: nothing was uploaded; the board keeps its controllers.")
         with progress(as_json) as report:
             uploaded = change_parameters(device, checked.raw_values(), report, running)
     count = len(uploaded.changed)
@@ -50,10 +58,8 @@ def _warnings(tuning: Mapping[str, Any], table: ParameterTable) -> list[str]:
     warnings = []
     if str(tuning.get("status", "complete")) != "complete":
         warnings.append("the tuning of this controller is not finished.")
-    if tuning.get("margins_hold") is False:
-        warnings.append(
-            "not all margins hold: a joint may swing if the arm is not quite as its model (the file says which)."
-        )
+    if _margins_fail(tuning):
+        warnings.append(f"a joint may swing if the arm is not quite as its model; {_failing(tuning)}.")
     made_for = tuning.get("board")
     if isinstance(made_for, str) and made_for != table.board.key:
         warnings.append(f"it was tuned for the board {made_for}, but this board is a {table.board.key}.")
@@ -65,3 +71,17 @@ def _warnings(tuning: Mapping[str, Any], table: ParameterTable) -> list[str]:
         if abs(board - tuned) > 0.02 * board:
             warnings.append(f"it was tuned for {name} = {tuned / scale:g}, but this board has {board / scale:g}.")
     return warnings
+
+
+def _margins_fail(tuning: Mapping[str, Any]) -> bool:
+    return tuning.get("margins_hold") is False
+
+
+def _failing(tuning: Mapping[str, Any]) -> str:
+    """Which margins do not hold: the first few, each as joint and case."""
+    notes = tuning.get("notes")
+    failing = [str(note).partition(":")[0] for note in notes] if isinstance(notes, list) else []
+    more = f" and {len(failing) - MOST_NAMED} more" if len(failing) > MOST_NAMED else ""
+    if not failing:
+        return "a margin does not hold"
+    return f"these margins do not hold: {'; '.join(failing[:MOST_NAMED])}{more}"

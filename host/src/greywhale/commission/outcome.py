@@ -64,13 +64,31 @@ class Outcome:
             ],
         }
 
+    @property
+    def headline(self) -> str:
+        """Which set the board runs now, and which joints kept their controllers."""
+        if not self.improved:
+            return "No set passed on every joint: the controllers from before stay on the board."
+        kept = [f"joint {joint} ({JOINT_NAMES[joint]})" for joint in self._kept]
+        rest = f"; {' and '.join(kept)} kept the controller from before, since nothing better was found" if kept else ""
+        return f"The board now runs and stores {self.best.name}{rest}."
+
+    @property
+    def _kept(self) -> list[int]:
+        """Joints in use whose controller is the one from before."""
+        same = (self.best.rows == self.trials.before.rows).all(axis=1)
+        return [joint for joint in self.trials.table.joints_in_use if same[joint]]
+
     def text(self) -> str:
         """What changed on the arm, joint by joint, for people."""
         before, after = self.trials.before.measured, self.best.measured
         played = len(self.trials.done) - 1
-        lines = [f"{_count(played, 'set')} of controllers tried on the arm in {_count(len(self.rounds), 'round')}."]
+        lines = [
+            self.headline,
+            f"{_count(played, 'set')} of controllers tried on the arm in {_count(len(self.rounds), 'round')}.",
+        ]
         if not self.improved:
-            return "\n".join([*lines, "None passed on every joint: the controllers from before stay on the board."])
+            return "\n".join(lines)
         joints = self.trials.table.joints_in_use
         pairs = [(part, before.error[place] ** 0.5, after.error[place] ** 0.5) for place, part in enumerate(PARTS)]
         pairs.append(("unrest at rest", before.worst("unrest"), after.worst("unrest")))
@@ -78,16 +96,11 @@ class Outcome:
         lines += [_row("", [f"joint {joint}" for joint in joints]), _row("", [JOINT_NAMES[joint] for joint in joints])]
         for name, was, now in pairs:
             lines.append(_row(name, [f"{1e3 * was[joint]:.1f} -> {1e3 * now[joint]:.1f}" for joint in joints]))
-        same = (self.best.rows == self.trials.before.rows).all(axis=1)
-        kept = [joint for joint in joints if same[joint]]
         notes = [
-            f"Joint {joint} ({JOINT_NAMES[joint]}): {fault}. Nothing quieter follows so well."
+            f"Joint {joint} ({JOINT_NAMES[joint]}): {fault}. No quieter controller follows as well."
             for joint in joints
             for fault in self.best.verdicts[joint].faults
         ]
-        if kept:
-            whose = " and ".join(f"joint {joint} ({JOINT_NAMES[joint]})" for joint in kept)
-            notes.insert(0, f"Nothing better was found for {whose}: there the controller from before stays.")
         return "\n".join([*lines, "", *notes] if notes else lines)
 
 

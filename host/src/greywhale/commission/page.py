@@ -46,7 +46,8 @@ def facts(outcome: Outcome) -> dict[str, Any]:
     tried = {id(trial) for one in outcome.rounds for trial in one.trials}
     rest = [_trial(outcome, trial) for trial in trials.done[1:] if id(trial) not in tried]
     return {
-        "text": outcome.text(),
+        "headline": outcome.headline,
+        "text": outcome.text().removeprefix(outcome.headline).strip(),
         "joints": [f"{joint} {JOINT_NAMES[joint]}" for joint in trials.table.joints_in_use],
         "before": _trial(outcome, trials.before),
         "rounds": rounds,

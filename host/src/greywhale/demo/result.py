@@ -85,8 +85,8 @@ class DemoResult:
         fit, *others = learnt.identification.verdicts
         checked = " and ".join(f"{100 * verdict.improvement:.0f} %" for verdict in others)
         lines = [
-            f"Identified from {Path(fit.name).name} in {learnt.identify_s:.0f} s: {learnt.model} follows the arm "
-            f"{checked} more closely than its drawings, on two recordings it had not seen.",
+            f"Identified from {Path(fit.name).name} in {learnt.identify_s:.0f} s: the error of {learnt.model} is "
+            f"{checked} lower than that of the arm's drawings, on two recordings that it had not seen.",
             f"Tuned on that model in {learnt.tune_s:.0f} s: {learnt.controller}, uploaded in "
             f"{self.runs[1].recorded.upload_s:.1f} s. The motion below was used for neither.",
             *(f"Doubt: {doubt}" for doubt in learnt.tuning.model.doubts),

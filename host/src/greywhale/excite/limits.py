@@ -25,6 +25,7 @@ REACH_RAD = 1.0
 MARGIN_RAD = 0.1
 # A narrower range shows nothing.
 NARROWEST_RAD = 0.2
+FARTHEST_RAD = 7.0  # beyond any potentiometer's track
 # The shares of the voltage that speed and acceleration may take.
 SPEED_SHARE, ACCELERATION_SHARE = 0.5, 0.5
 FASTEST = min(4.0, FASTEST_LED_RAD_S / 1.5)
@@ -136,13 +137,19 @@ def parse_range(text: str) -> tuple[int, tuple[float, float]]:
     parts = text.split(":")
     try:
         joint, low, high = int(parts[0]), float(parts[1]), float(parts[2])
-        good = len(parts) == 3 and 0 <= joint < JOINTS and -7.0 < low < high < 7.0
+        good = len(parts) == 3 and 0 <= joint < JOINTS
     except (ValueError, IndexError):
         good = False
     if not good:
         raise UserError(
             f'--range is "{text}", but it must be JOINT:MIN:MAX with a joint 0..{JOINTS - 1} and two angles in rad, '
             "such as 1:-0.5:0.8.",
+            BAD_USAGE,
+        )
+    if not -FARTHEST_RAD < low < high < FARTHEST_RAD:
+        raise UserError(
+            f'--range is "{text}", but MIN must be less than MAX, and both within ±{FARTHEST_RAD:g} rad, such as '
+            f"{joint}:-0.5:0.8.",
             BAD_USAGE,
         )
     return joint, (low, high)

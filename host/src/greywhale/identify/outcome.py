@@ -137,7 +137,9 @@ class Outcome:
             for rival in self.found.rivals:
                 lines.append(f"Nearly as good: {rival.order}.")
             lines.append(f"Model order: {self.found.order} (by held-out data).")
-            lines.append(f"Condition number of the Fisher information: {self.found.condition:.2g}.")
+            times = f"{self.found.condition**0.5:,.0f}"
+            lines.append(f"Condition number of the Fisher information: {self.found.condition:.2g}. So the best known")
+            lines.append(f"combination of parameters is {times} times as well known as the least known.")
             lines += ["", f"{'parameter':18} {self.begun:>12} {'model':>11} {'std':>9}  unit"]
             for one in self.estimates:
                 deviation = "" if one.deviation is None else f"{one.deviation:.2g}"
@@ -150,7 +152,7 @@ class Outcome:
                 f"- {one.name} = {one.value:.4g} +- {100.0 * one.deviation:.2g} %" for one in self.found.combinations
             ]
         if self.found.open:
-            lines += ["", "Not identified by these logs:", *(f"- {sentence}" for sentence in self.found.open)]
+            lines += ["", "What these logs leave uncertain:", *(f"- {sentence}" for sentence in self.found.open)]
         for title, sentences in (("Warnings", self.warnings), ("Doubts", self.doubts)):
             if sentences:
                 lines += ["", f"{title}:", *(f"- {sentence}" for sentence in sentences)]

@@ -37,7 +37,11 @@ _MOST_LOGS = len(looks.FOLLOWERS)
 _LINE, _LETTERS = 0.13, 42
 _ANGLE, _STRIP, _TITLE, _BETWEEN, _AXIS = 1.45, 0.62, 0.2, 0.07, 0.4  # heights in inches
 _VOLTAGE_ROOM = 1.12
-_LEADERS = ("-", "--", ":", "-.")
+# The leader is dashed and lies on top: an arm that follows closely would hide it.
+_LEADERS = ("--", ":", "-.", "-")
+_OVER = 3.0  # of the orders in which lines are drawn
+# A voltage's course is its mean over this time; what potentiometers' noise adds is drawn faintly behind it.
+_MEAN_S, _FAINT = 0.025, 0.3
 
 
 @dataclass(frozen=True)
@@ -147,7 +151,7 @@ def _handles(traces: Sequence[Trace]) -> dict[str, Artist]:
 def _leaders(traces: Sequence[Trace]) -> list[tuple[str, looks.Look, Trace]]:
     """The leaders to be drawn: one where all logs have the same motion, else each in a style of its own."""
     if _same_leader(traces):
-        return [("leader", looks.LEADER, traces[0])]
+        return [("leader", replace(looks.LEADER, style=_LEADERS[0]), traces[0])]
     return [
         (f"leader, {one.label}", replace(looks.LEADER, style=dashes), one)
         for one, dashes in zip(traces, _LEADERS, strict=False)
@@ -169,7 +173,7 @@ def _limits(traces: Sequence[Trace]) -> dict[str, float]:
 
 def _draw_angle(axes: Axes, traces: Sequence[Trace], joint: int) -> None:
     for _, look, one in _leaders(traces):
-        axes.plot(one.time, one.leader[:, joint], **look.line)
+        axes.plot(one.time, one.leader[:, joint], zorder=_OVER, **look.line)
     for one, look in zip(traces, _looks(traces), strict=True):
         axes.plot(one.time, one.follower[:, joint], **look.line)
     axes.set_ylabel("angle [rad]")
@@ -190,10 +194,22 @@ def _draw_voltage(axes: Axes, traces: Sequence[Trace], joint: int) -> None:
     voltages = _looks(traces) if len(traces) > 1 else (looks.VOLTAGE,)
     for one, look in zip(traces, voltages, strict=True):
         if one.voltage is not None:
-            axes.plot(one.time, one.voltage[:, joint], **look.thin(looks.VOLTAGE.width).line)
+            line = look.thin(looks.VOLTAGE.width).line
+            axes.plot(one.time, one.voltage[:, joint], alpha=_FAINT, **line)
+            axes.plot(one.time, _average(one.time, one.voltage[:, joint]), **line)
     most = _VOLTAGE_ROOM * max(limits.values(), default=1.0)
     axes.set_ylim(-most, most)
     axes.set_ylabel("voltage [V]")
+
+
+def _average(time: Floats, voltage: Floats) -> Floats:
+    """The running mean; of fewer samples at both ends."""
+    half = int(_MEAN_S / 2.0 * (len(time) - 1) / (time[-1] - time[0])) if len(time) > 1 else 0
+    sums = np.concatenate([[0.0], np.cumsum(voltage)])
+    first = np.maximum(np.arange(len(voltage)) - half, 0)
+    last = np.minimum(np.arange(len(voltage)) + half + 1, len(voltage))
+    mean: Floats = (sums[last] - sums[first]) / (last - first)
+    return mean
 
 
 def _same_leader(traces: Sequence[Trace]) -> bool:

@@ -22,6 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from greywhale.arm.parameters import with_usual_noise
+from greywhale.errors import counted
 from greywhale.joints import unused
 from greywhale.optimise.relative import RelativeWolfWhale
 from greywhale.table import CONTROLLER_COLUMNS
@@ -212,12 +213,12 @@ def _notes(margins: tuple[Margin, ...]) -> tuple[str, ...]:
 
 
 def _note(margin: Margin) -> str:
-    what = f"{1e3 * margin.rattle_rad:.1f} mrad of rattling"
+    what = f"the joint rattles by {1e3 * margin.rattle_rad:.1f} mrad"
     if margin.scenario != MOVING:
-        what = f"{margin.reversals} reversals in a rest"
+        what = f"the joint turns round {counted(margin.reversals, 'time')} in a rest"
     return (
-        f"joint {margin.joint}, {margin.scenario}: {what} and {margin.chatter_hz:.0f} duty swings a second on "
-        f"{margin.plants_failing} of {margin.plants} plants"
+        f"joint {margin.joint}, {margin.scenario}: {what}, and the duty swings {margin.chatter_hz:.0f} times a second "
+        f"(the worst of the {margin.plants_failing} that fail of {margin.plants} simulated arms)"
     )
 
 

@@ -15,7 +15,7 @@ class Status(Enum):
     MEASURED = "measured anew on the bench"
     DRAWN = "drawn from the text"
     OPEN = "cannot be reproduced"
-    OURS = "not in the paper"
+    OURS = "our own check"
 
 
 @dataclass(frozen=True)

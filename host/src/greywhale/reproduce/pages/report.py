@@ -33,10 +33,14 @@ def document(found: Found) -> Document:
             f"{TITLE}.",
             f"Of its 12 tables and 20 figures: {told}. Shaded columns are printed in the paper; every other number is "
             "computed by this run.",
-            f"{size}Seeds {request.seed} to {request.every_seed[-1]} for the paper's methods and the optimisers, "
-            f"{request.few_seeds[0]} to {request.few_seeds[-1]} for greywhale's own. The experiment is the compiled "
+            f"{size}The paper's methods and the optimisers ran with {_name(request.every_seed)}, "
+            f"greywhale's own tuning with {_name(request.few_seeds)}. The experiment is the compiled "
             "firmware on the simulated board with the default arm, seen through its logs only; it runs in lock step, "
             "so the same seeds give the same numbers.",
         ),
         chapters,
     )
+
+
+def _name(seeds: tuple[int, ...]) -> str:
+    return f"seeds {seeds[0]} to {seeds[-1]}" if len(seeds) > 1 else f"seed {seeds[0]}"

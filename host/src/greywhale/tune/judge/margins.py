@@ -51,7 +51,7 @@ WAIT_S = 0.2
 # Loop gains as factors of every joint's torque per volt.
 GAINS = {"at rest": 1.0, "half the loop gain": 0.5, "twice the loop gain": 2.0}
 DELAY = "one period more delay"
-TEETH = "softer teeth"
+TEETH = "softer gear teeth"
 MOVING = "while moving"
 SCENARIOS = (*GAINS, TEETH, DELAY, MOVING)
 SOFTER, LESS_DAMPED = 4.0, 8.0

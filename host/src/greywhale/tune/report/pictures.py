@@ -288,12 +288,14 @@ def plot_convergence(
         if cost.min() > 0.0 and cost.max() > _WIDE_COSTS * cost.min():
             make_logarithmic(axes)
         axes.set_xlim(left=0)
+    rises = any((np.diff(cost) > 0.0).any() for _, cost in (curves[joint] for joint in joints))
+    along = "evaluations; each stage judges the best anew" if rises else "evaluations"
     for axes in grid[-1]:
-        axes.set_xlabel("evaluations")
+        axes.set_xlabel(along)
     for axes in grid.flat[len(joints) :]:
         axes.remove()
         # Now the panel above is the lowest of its column.
         for above in grid[:-1, 1]:
             above.tick_params(labelbottom=True)
-            above.set_xlabel("evaluations")
+            above.set_xlabel(along)
     return figure
