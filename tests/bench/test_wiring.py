@@ -1,8 +1,7 @@
-"""The wiring tables: no pin twice, the same in README.md."""
+"""The wiring tables: no pin twice, the same in docs/your-arm.md."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -53,8 +52,8 @@ def test_pwm_pins_are_those_of_the_timers(wiring: Wiring) -> None:
     assert {pwm.arduino: (pwm.timer, pwm.channel) for pwm in used} == PWM_PINS[wiring.name]
 
 
-def test_readme_shows_this_table() -> None:
-    assert markdown_table() in (ROOT / "README.md").read_text(encoding="utf-8")
+def test_the_guide_shows_this_table() -> None:
+    assert markdown_table() in (ROOT / "docs" / "your-arm.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("name", PICTURES)
@@ -84,19 +83,10 @@ def box_of(text: ElementTree.Element) -> tuple[float, float, float, float]:
     return start, y - ink.y1, start + ink.width, y - ink.y0
 
 
-def test_the_page_for_a_new_arm_shows_these_pins() -> None:
+def test_the_guide_shows_the_other_drivers_pins() -> None:
     page = (ROOT / "docs" / "your-arm.md").read_text(encoding="utf-8")
-    boards = (BOARDS["mega"], BOARDS["nano"])
-    rows: tuple[tuple[str, Callable[[Motor], str]], ...] = (
-        ("PWM, motors 0 to 3", lambda motor: motor.pwm.arduino),
-        ("direction, motors 0 to 3", lambda motor: motor.direction.arduino),
-    )
-    for name, pin in rows:
-        cells = [", ".join(map(pin, board.motors)) for board in boards]
-        assert f"| {name} | {cells[0]} | {cells[1]} |" in page
-    for number, motor in enumerate(boards[0].motors):
+    for number, motor in enumerate(BOARDS["mega"].motors):
         assert motor.second_pwm is not None
         assert motor.second_direction is not None
         both = f"{motor.pwm.arduino}, {motor.direction.arduino}, {motor.second_direction.arduino}"
         assert f"| {number} | {both} | {motor.pwm.arduino}, {motor.second_pwm.arduino} |" in page
-    assert f"| enable of all drivers | {boards[0].enable.arduino} | {boards[1].enable.arduino} |" in page

@@ -104,7 +104,7 @@ BOARDS: Mapping[str, Wiring] = {wiring.name: wiring for wiring in (MEGA, NANO)}
 
 
 def markdown_table() -> str:
-    """The wiring of every board, as README.md shows it."""
+    """The wiring of every board, as docs/your-arm.md shows it."""
     boards = tuple(BOARDS.values())
     joints = ("base yaw", "shoulder pitch", "wrist pitch", "wrist roll")
     rows = [["wire", *(board.title for board in boards)], ["---"] * (len(boards) + 1)]
