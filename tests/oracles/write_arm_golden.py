@@ -31,10 +31,10 @@ def main() -> None:
         "engine": f"Pinocchio {pinocchio.__version__}, confirmed by MuJoCo to 1e-12",
         "arm": "default",
         "tip_mass": parameters.tip.mass,
-        "states": states,
     }
-    lines = json.dumps(document, indent=1)
-    TARGET.write_text(lines + "\n", encoding="utf-8")
+    head = json.dumps(document, indent=1).removesuffix("\n}")
+    rows = ",\n".join(f"  {json.dumps(state)}" for state in states)
+    TARGET.write_text(f'{head},\n "states": [\n{rows}\n ]\n}}\n', encoding="utf-8")
     print(f"{TARGET}: {len(states)} states, {TARGET.stat().st_size} bytes")
 
 

@@ -13,7 +13,6 @@ from . import NOTICE
 from .declaration import WIDTHS, Declaration, Field, Message, limits
 
 _SEED = 20220
-_RANDOM_VECTORS = 3
 
 
 @dataclass(frozen=True)
@@ -46,11 +45,11 @@ def frame(number: int, seq: int, payload: bytes) -> bytes:
 
 
 def vectors(declaration: Declaration) -> list[Vector]:
-    """Smallest, largest and a few random values of every message."""
+    """Smallest, largest and random values of every message."""
     chance = random.Random(_SEED)
     made = []
     for message in declaration.messages:
-        for kind in ["low", "high"] + ["random"] * _RANDOM_VECTORS if message.fields else ["low"]:
+        for kind in ("low", "high", "random") if message.fields else ("low",):
             values = {field.name: _values(field, kind, chance, declaration) for field in message.fields}
             payload = b"".join(
                 value.to_bytes(WIDTHS[field.kind], "little", signed=field.kind[0] == "i")
@@ -103,12 +102,17 @@ def toml(declaration: Declaration) -> str:
             f"seq = {vector.seq}",
             f'payload = "{vector.payload.hex()}"',
             f'wire = "{vector.wire.hex()}"',
-            "[vector.values]",
+            f"values = {{ {', '.join(_pairs(vector))} }}",
         ]
-        for field in vector.message.fields:
-            values = vector.values[field.name]
-            lines.append(f"{field.name} = {values if field.count else values[0]}")
     return "\n".join(lines) + "\n"
+
+
+def _pairs(vector: Vector) -> list[str]:
+    values = vector.values
+    return [
+        f"{field.name} = {values[field.name] if field.count else values[field.name][0]}"
+        for field in vector.message.fields
+    ]
 
 
 def header(declaration: Declaration) -> str:
@@ -122,6 +126,7 @@ def header(declaration: Declaration) -> str:
         f"constexpr uint16_t default_crc = 0x{crc16(table):04X};\n",
         "struct Range {\n  int32_t minimum;\n  int32_t maximum;\n  int32_t initial;\n  bool nonzero;\n};\n",
         f"constexpr Range ranges[] = {{  // in index order\n{_ranges(declaration)}\n}};\n",
+        f"constexpr int vector_count = {len(vectors(declaration))};\n",
         "// Calls visit(name, seq, message, payload, payload_size, wire, wire_size) for every vector.",
         "template <class Visit>\nvoid for_each(Visit visit) {",
     ]

@@ -116,6 +116,8 @@ constexpr Range ranges[] = {  // in index order
     {0, 3, 0, false},
 };
 
+constexpr int vector_count = 76;
+
 // Calls visit(name, seq, message, payload, payload_size, wire, wire_size) for every vector.
 template <class Visit>
 void for_each(Visit visit) {
@@ -171,36 +173,6 @@ void for_each(Visit visit) {
     visit("HelloReply", 96, message, payload, size_t{13}, wire_bytes, size_t{19});
   }
   {
-    wire::HelloReply message{};
-    message.protocol = 228;
-    message.fw_major = 43;
-    message.fw_minor = 74;
-    message.fw_patch = 4;
-    message.schema_hash = 154183957u;
-    message.board = static_cast<wire::Board>(0);
-    message.param_crc = 64302;
-    message.param_source = static_cast<wire::ParamSource>(2);
-    message.reset_cause = static_cast<wire::ResetCause>(3);
-    const uint8_t payload[] = {0xE4, 0x2B, 0x4A, 0x04, 0x15, 0xA9, 0x30, 0x09, 0x00, 0x2E, 0xFB, 0x02, 0x03};
-    const uint8_t wire_bytes[] = {0x0B, 0x81, 0x21, 0xE4, 0x2B, 0x4A, 0x04, 0x15, 0xA9, 0x30, 0x09, 0x07, 0x2E, 0xFB, 0x02, 0x03, 0x77, 0x34, 0x00};
-    visit("HelloReply", 33, message, payload, size_t{13}, wire_bytes, size_t{19});
-  }
-  {
-    wire::HelloReply message{};
-    message.protocol = 154;
-    message.fw_major = 1;
-    message.fw_minor = 4;
-    message.fw_patch = 43;
-    message.schema_hash = 861477198u;
-    message.board = static_cast<wire::Board>(0);
-    message.param_crc = 50545;
-    message.param_source = static_cast<wire::ParamSource>(1);
-    message.reset_cause = static_cast<wire::ResetCause>(0);
-    const uint8_t payload[] = {0x9A, 0x01, 0x04, 0x2B, 0x4E, 0x19, 0x59, 0x33, 0x00, 0x71, 0xC5, 0x01, 0x00};
-    const uint8_t wire_bytes[] = {0x0B, 0x81, 0xB5, 0x9A, 0x01, 0x04, 0x2B, 0x4E, 0x19, 0x59, 0x33, 0x04, 0x71, 0xC5, 0x01, 0x03, 0x4F, 0x2E, 0x00};
-    visit("HelloReply", 181, message, payload, size_t{13}, wire_bytes, size_t{19});
-  }
-  {
     wire::StatusRequest message{};
     const uint8_t payload[] = {0x00};
     const uint8_t wire_bytes[] = {0x02, 0x02, 0x03, 0x6D, 0x7B, 0x00};
@@ -246,60 +218,22 @@ void for_each(Visit visit) {
   }
   {
     wire::StatusReply message{};
-    message.state = static_cast<wire::State>(1);
-    message.stop_reason = static_cast<wire::StopReason>(3);
-    message.fault = static_cast<wire::Fault>(2);
-    message.fault_where = 143;
-    message.tick = 2561454484u;
-    message.late_ticks = 21492;
-    message.frames_bad = 22542;
-    message.rx_overruns = 56637;
-    message.telemetry_dropped = 6129;
-    message.no_rule = 61146;
-    message.tick_us_max = 27197;
+    message.state = static_cast<wire::State>(0);
+    message.stop_reason = static_cast<wire::StopReason>(1);
+    message.fault = static_cast<wire::Fault>(0);
+    message.fault_where = 92;
+    message.tick = 2785972755u;
+    message.late_ticks = 8510;
+    message.frames_bad = 39561;
+    message.rx_overruns = 344;
+    message.telemetry_dropped = 1090;
+    message.no_rule = 11248;
+    message.tick_us_max = 26290;
     message.save_state = static_cast<wire::SaveState>(1);
-    message.saves = 50492;
-    const uint8_t payload[] = {0x01, 0x03, 0x02, 0x8F, 0x94, 0xB1, 0xAC, 0x98, 0xF4, 0x53, 0x0E, 0x58, 0x3D, 0xDD, 0xF1, 0x17, 0xDA, 0xEE, 0x3D, 0x6A, 0x01, 0x3C, 0xC5};
-    const uint8_t wire_bytes[] = {0x1C, 0x82, 0xDA, 0x01, 0x03, 0x02, 0x8F, 0x94, 0xB1, 0xAC, 0x98, 0xF4, 0x53, 0x0E, 0x58, 0x3D, 0xDD, 0xF1, 0x17, 0xDA, 0xEE, 0x3D, 0x6A, 0x01, 0x3C, 0xC5, 0xCE, 0xBA, 0x00};
-    visit("StatusReply", 218, message, payload, size_t{23}, wire_bytes, size_t{29});
-  }
-  {
-    wire::StatusReply message{};
-    message.state = static_cast<wire::State>(4);
-    message.stop_reason = static_cast<wire::StopReason>(4);
-    message.fault = static_cast<wire::Fault>(4);
-    message.fault_where = 154;
-    message.tick = 91747024u;
-    message.late_ticks = 1216;
-    message.frames_bad = 22687;
-    message.rx_overruns = 27618;
-    message.telemetry_dropped = 4694;
-    message.no_rule = 46838;
-    message.tick_us_max = 42634;
-    message.save_state = static_cast<wire::SaveState>(3);
-    message.saves = 56757;
-    const uint8_t payload[] = {0x04, 0x04, 0x04, 0x9A, 0xD0, 0xF2, 0x77, 0x05, 0xC0, 0x04, 0x9F, 0x58, 0xE2, 0x6B, 0x56, 0x12, 0xF6, 0xB6, 0x8A, 0xA6, 0x03, 0xB5, 0xDD};
-    const uint8_t wire_bytes[] = {0x1C, 0x82, 0xC2, 0x04, 0x04, 0x04, 0x9A, 0xD0, 0xF2, 0x77, 0x05, 0xC0, 0x04, 0x9F, 0x58, 0xE2, 0x6B, 0x56, 0x12, 0xF6, 0xB6, 0x8A, 0xA6, 0x03, 0xB5, 0xDD, 0x25, 0xE5, 0x00};
-    visit("StatusReply", 194, message, payload, size_t{23}, wire_bytes, size_t{29});
-  }
-  {
-    wire::StatusReply message{};
-    message.state = static_cast<wire::State>(1);
-    message.stop_reason = static_cast<wire::StopReason>(3);
-    message.fault = static_cast<wire::Fault>(2);
-    message.fault_where = 2;
-    message.tick = 1423740730u;
-    message.late_ticks = 15460;
-    message.frames_bad = 60590;
-    message.rx_overruns = 19849;
-    message.telemetry_dropped = 41467;
-    message.no_rule = 15518;
-    message.tick_us_max = 53449;
-    message.save_state = static_cast<wire::SaveState>(2);
-    message.saves = 11133;
-    const uint8_t payload[] = {0x01, 0x03, 0x02, 0x02, 0x3A, 0x8F, 0xDC, 0x54, 0x64, 0x3C, 0xAE, 0xEC, 0x89, 0x4D, 0xFB, 0xA1, 0x9E, 0x3C, 0xC9, 0xD0, 0x02, 0x7D, 0x2B};
-    const uint8_t wire_bytes[] = {0x1C, 0x82, 0xE8, 0x01, 0x03, 0x02, 0x02, 0x3A, 0x8F, 0xDC, 0x54, 0x64, 0x3C, 0xAE, 0xEC, 0x89, 0x4D, 0xFB, 0xA1, 0x9E, 0x3C, 0xC9, 0xD0, 0x02, 0x7D, 0x2B, 0x98, 0xAA, 0x00};
-    visit("StatusReply", 232, message, payload, size_t{23}, wire_bytes, size_t{29});
+    message.saves = 8816;
+    const uint8_t payload[] = {0x00, 0x01, 0x00, 0x5C, 0x13, 0x92, 0x0E, 0xA6, 0x3E, 0x21, 0x89, 0x9A, 0x58, 0x01, 0x42, 0x04, 0xF0, 0x2B, 0xB2, 0x66, 0x01, 0x70, 0x22};
+    const uint8_t wire_bytes[] = {0x03, 0x82, 0xC5, 0x02, 0x01, 0x17, 0x5C, 0x13, 0x92, 0x0E, 0xA6, 0x3E, 0x21, 0x89, 0x9A, 0x58, 0x01, 0x42, 0x04, 0xF0, 0x2B, 0xB2, 0x66, 0x01, 0x70, 0x22, 0x97, 0x14, 0x00};
+    visit("StatusReply", 197, message, payload, size_t{23}, wire_bytes, size_t{29});
   }
   {
     wire::ParamGetRequest message{};
@@ -317,24 +251,10 @@ void for_each(Visit visit) {
   }
   {
     wire::ParamGetRequest message{};
-    message.index = 60010;
-    const uint8_t payload[] = {0x6A, 0xEA};
-    const uint8_t wire_bytes[] = {0x07, 0x03, 0x8F, 0x6A, 0xEA, 0xF2, 0xB0, 0x00};
-    visit("ParamGetRequest", 143, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::ParamGetRequest message{};
-    message.index = 3284;
-    const uint8_t payload[] = {0xD4, 0x0C};
-    const uint8_t wire_bytes[] = {0x07, 0x03, 0xFB, 0xD4, 0x0C, 0xD0, 0x14, 0x00};
-    visit("ParamGetRequest", 251, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::ParamGetRequest message{};
-    message.index = 12077;
-    const uint8_t payload[] = {0x2D, 0x2F};
-    const uint8_t wire_bytes[] = {0x07, 0x03, 0x46, 0x2D, 0x2F, 0x26, 0x15, 0x00};
-    visit("ParamGetRequest", 70, message, payload, size_t{2}, wire_bytes, size_t{8});
+    message.index = 46418;
+    const uint8_t payload[] = {0x52, 0xB5};
+    const uint8_t wire_bytes[] = {0x07, 0x03, 0x52, 0x52, 0xB5, 0x11, 0xB0, 0x00};
+    visit("ParamGetRequest", 82, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::ParamGetReply message{};
@@ -354,27 +274,11 @@ void for_each(Visit visit) {
   }
   {
     wire::ParamGetReply message{};
-    message.index = 24488;
-    message.value = -79801475;
-    const uint8_t payload[] = {0xA8, 0x5F, 0x7D, 0x53, 0x3E, 0xFB};
-    const uint8_t wire_bytes[] = {0x0B, 0x83, 0xE6, 0xA8, 0x5F, 0x7D, 0x53, 0x3E, 0xFB, 0x2E, 0x25, 0x00};
-    visit("ParamGetReply", 230, message, payload, size_t{6}, wire_bytes, size_t{12});
-  }
-  {
-    wire::ParamGetReply message{};
-    message.index = 36377;
-    message.value = -1812201464;
-    const uint8_t payload[] = {0x19, 0x8E, 0x08, 0x00, 0xFC, 0x93};
-    const uint8_t wire_bytes[] = {0x06, 0x83, 0x51, 0x19, 0x8E, 0x08, 0x05, 0xFC, 0x93, 0x97, 0x89, 0x00};
-    visit("ParamGetReply", 81, message, payload, size_t{6}, wire_bytes, size_t{12});
-  }
-  {
-    wire::ParamGetReply message{};
-    message.index = 10807;
-    message.value = 653879893;
-    const uint8_t payload[] = {0x37, 0x2A, 0x55, 0x6A, 0xF9, 0x26};
-    const uint8_t wire_bytes[] = {0x0B, 0x83, 0x8A, 0x37, 0x2A, 0x55, 0x6A, 0xF9, 0x26, 0x83, 0x8D, 0x00};
-    visit("ParamGetReply", 138, message, payload, size_t{6}, wire_bytes, size_t{12});
+    message.index = 17134;
+    message.value = 1421461110;
+    const uint8_t payload[] = {0xEE, 0x42, 0x76, 0xC6, 0xB9, 0x54};
+    const uint8_t wire_bytes[] = {0x0B, 0x83, 0x41, 0xEE, 0x42, 0x76, 0xC6, 0xB9, 0x54, 0x68, 0x70, 0x00};
+    visit("ParamGetReply", 65, message, payload, size_t{6}, wire_bytes, size_t{12});
   }
   {
     wire::ParamSetRequest message{};
@@ -394,27 +298,11 @@ void for_each(Visit visit) {
   }
   {
     wire::ParamSetRequest message{};
-    message.index = 13777;
-    message.value = -1224434842;
-    const uint8_t payload[] = {0xD1, 0x35, 0x66, 0x9B, 0x04, 0xB7};
-    const uint8_t wire_bytes[] = {0x0B, 0x04, 0x78, 0xD1, 0x35, 0x66, 0x9B, 0x04, 0xB7, 0x49, 0x0A, 0x00};
-    visit("ParamSetRequest", 120, message, payload, size_t{6}, wire_bytes, size_t{12});
-  }
-  {
-    wire::ParamSetRequest message{};
-    message.index = 64981;
-    message.value = 484532669;
-    const uint8_t payload[] = {0xD5, 0xFD, 0xBD, 0x61, 0xE1, 0x1C};
-    const uint8_t wire_bytes[] = {0x0B, 0x04, 0x9F, 0xD5, 0xFD, 0xBD, 0x61, 0xE1, 0x1C, 0x93, 0x45, 0x00};
-    visit("ParamSetRequest", 159, message, payload, size_t{6}, wire_bytes, size_t{12});
-  }
-  {
-    wire::ParamSetRequest message{};
-    message.index = 24887;
-    message.value = 1028561145;
-    const uint8_t payload[] = {0x37, 0x61, 0xF9, 0x98, 0x4E, 0x3D};
-    const uint8_t wire_bytes[] = {0x0B, 0x04, 0x07, 0x37, 0x61, 0xF9, 0x98, 0x4E, 0x3D, 0xC8, 0x07, 0x00};
-    visit("ParamSetRequest", 7, message, payload, size_t{6}, wire_bytes, size_t{12});
+    message.index = 60987;
+    message.value = 1292110597;
+    const uint8_t payload[] = {0x3B, 0xEE, 0x05, 0x0B, 0x04, 0x4D};
+    const uint8_t wire_bytes[] = {0x0B, 0x04, 0xE7, 0x3B, 0xEE, 0x05, 0x0B, 0x04, 0x4D, 0x67, 0x3E, 0x00};
+    visit("ParamSetRequest", 231, message, payload, size_t{6}, wire_bytes, size_t{12});
   }
   {
     wire::ParamSetReply message{};
@@ -434,27 +322,11 @@ void for_each(Visit visit) {
   }
   {
     wire::ParamSetReply message{};
-    message.index = 43715;
-    message.value = 1337245163;
-    const uint8_t payload[] = {0xC3, 0xAA, 0xEB, 0xBD, 0xB4, 0x4F};
-    const uint8_t wire_bytes[] = {0x0B, 0x84, 0xD8, 0xC3, 0xAA, 0xEB, 0xBD, 0xB4, 0x4F, 0xB2, 0x40, 0x00};
-    visit("ParamSetReply", 216, message, payload, size_t{6}, wire_bytes, size_t{12});
-  }
-  {
-    wire::ParamSetReply message{};
-    message.index = 26816;
-    message.value = -642553966;
-    const uint8_t payload[] = {0xC0, 0x68, 0x92, 0x67, 0xB3, 0xD9};
-    const uint8_t wire_bytes[] = {0x0B, 0x84, 0xA5, 0xC0, 0x68, 0x92, 0x67, 0xB3, 0xD9, 0xBD, 0xFE, 0x00};
-    visit("ParamSetReply", 165, message, payload, size_t{6}, wire_bytes, size_t{12});
-  }
-  {
-    wire::ParamSetReply message{};
-    message.index = 5994;
-    message.value = 1013004264;
-    const uint8_t payload[] = {0x6A, 0x17, 0xE8, 0x37, 0x61, 0x3C};
-    const uint8_t wire_bytes[] = {0x0B, 0x84, 0x8A, 0x6A, 0x17, 0xE8, 0x37, 0x61, 0x3C, 0x29, 0xAF, 0x00};
-    visit("ParamSetReply", 138, message, payload, size_t{6}, wire_bytes, size_t{12});
+    message.index = 21492;
+    message.value = 1103466399;
+    const uint8_t payload[] = {0xF4, 0x53, 0x9F, 0x8F, 0xC5, 0x41};
+    const uint8_t wire_bytes[] = {0x0B, 0x84, 0xDD, 0xF4, 0x53, 0x9F, 0x8F, 0xC5, 0x41, 0x15, 0xB0, 0x00};
+    visit("ParamSetReply", 221, message, payload, size_t{6}, wire_bytes, size_t{12});
   }
   {
     wire::ParamApplyRequest message{};
@@ -472,24 +344,10 @@ void for_each(Visit visit) {
   }
   {
     wire::ParamApplyRequest message{};
-    message.crc = 29550;
-    const uint8_t payload[] = {0x6E, 0x73};
-    const uint8_t wire_bytes[] = {0x07, 0x05, 0x7A, 0x6E, 0x73, 0x9D, 0x41, 0x00};
-    visit("ParamApplyRequest", 122, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::ParamApplyRequest message{};
-    message.crc = 48045;
-    const uint8_t payload[] = {0xAD, 0xBB};
-    const uint8_t wire_bytes[] = {0x07, 0x05, 0x07, 0xAD, 0xBB, 0x87, 0xC0, 0x00};
-    visit("ParamApplyRequest", 7, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::ParamApplyRequest message{};
-    message.crc = 15384;
-    const uint8_t payload[] = {0x18, 0x3C};
-    const uint8_t wire_bytes[] = {0x07, 0x05, 0x66, 0x18, 0x3C, 0x4B, 0x6C, 0x00};
-    visit("ParamApplyRequest", 102, message, payload, size_t{2}, wire_bytes, size_t{8});
+    message.crc = 27197;
+    const uint8_t payload[] = {0x3D, 0x6A};
+    const uint8_t wire_bytes[] = {0x07, 0x05, 0x59, 0x3D, 0x6A, 0xFF, 0x46, 0x00};
+    visit("ParamApplyRequest", 89, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::ParamApplyReply message{};
@@ -507,24 +365,10 @@ void for_each(Visit visit) {
   }
   {
     wire::ParamApplyReply message{};
-    message.param_crc = 21689;
-    const uint8_t payload[] = {0xB9, 0x54};
-    const uint8_t wire_bytes[] = {0x07, 0x85, 0x67, 0xB9, 0x54, 0xA2, 0x45, 0x00};
-    visit("ParamApplyReply", 103, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::ParamApplyReply message{};
-    message.param_crc = 42513;
-    const uint8_t payload[] = {0x11, 0xA6};
-    const uint8_t wire_bytes[] = {0x07, 0x85, 0x6D, 0x11, 0xA6, 0xE9, 0xD9, 0x00};
-    visit("ParamApplyReply", 109, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::ParamApplyReply message{};
-    message.param_crc = 52720;
-    const uint8_t payload[] = {0xF0, 0xCD};
-    const uint8_t wire_bytes[] = {0x07, 0x85, 0x75, 0xF0, 0xCD, 0x65, 0xCD, 0x00};
-    visit("ParamApplyReply", 117, message, payload, size_t{2}, wire_bytes, size_t{8});
+    message.param_crc = 39470;
+    const uint8_t payload[] = {0x2E, 0x9A};
+    const uint8_t wire_bytes[] = {0x07, 0x85, 0x9A, 0x2E, 0x9A, 0x5F, 0x5D, 0x00};
+    visit("ParamApplyReply", 154, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::ParamSaveRequest message{};
@@ -548,24 +392,10 @@ void for_each(Visit visit) {
   }
   {
     wire::ParamSaveReply message{};
-    message.param_crc = 64663;
-    const uint8_t payload[] = {0x97, 0xFC};
-    const uint8_t wire_bytes[] = {0x07, 0x86, 0x7C, 0x97, 0xFC, 0xE7, 0x7C, 0x00};
-    visit("ParamSaveReply", 124, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::ParamSaveReply message{};
-    message.param_crc = 44495;
-    const uint8_t payload[] = {0xCF, 0xAD};
-    const uint8_t wire_bytes[] = {0x07, 0x86, 0xB6, 0xCF, 0xAD, 0x13, 0x50, 0x00};
-    visit("ParamSaveReply", 182, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::ParamSaveReply message{};
-    message.param_crc = 12881;
-    const uint8_t payload[] = {0x51, 0x32};
-    const uint8_t wire_bytes[] = {0x07, 0x86, 0x85, 0x51, 0x32, 0x54, 0x85, 0x00};
-    visit("ParamSaveReply", 133, message, payload, size_t{2}, wire_bytes, size_t{8});
+    message.param_crc = 22687;
+    const uint8_t payload[] = {0x9F, 0x58};
+    const uint8_t wire_bytes[] = {0x07, 0x86, 0x6B, 0x9F, 0x58, 0xD3, 0xC6, 0x00};
+    visit("ParamSaveReply", 107, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::ParamDefaultsRequest message{};
@@ -595,24 +425,10 @@ void for_each(Visit visit) {
   }
   {
     wire::EnableRequest message{};
-    message.lease_ms = 42684;
-    const uint8_t payload[] = {0xBC, 0xA6};
-    const uint8_t wire_bytes[] = {0x07, 0x08, 0x66, 0xBC, 0xA6, 0x84, 0xA6, 0x00};
-    visit("EnableRequest", 102, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::EnableRequest message{};
-    message.lease_ms = 57566;
-    const uint8_t payload[] = {0xDE, 0xE0};
-    const uint8_t wire_bytes[] = {0x07, 0x08, 0x24, 0xDE, 0xE0, 0x03, 0x90, 0x00};
-    visit("EnableRequest", 36, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::EnableRequest message{};
-    message.lease_ms = 40651;
-    const uint8_t payload[] = {0xCB, 0x9E};
-    const uint8_t wire_bytes[] = {0x07, 0x08, 0xB9, 0xCB, 0x9E, 0xB4, 0xC9, 0x00};
-    visit("EnableRequest", 185, message, payload, size_t{2}, wire_bytes, size_t{8});
+    message.lease_ms = 56757;
+    const uint8_t payload[] = {0xB5, 0xDD};
+    const uint8_t wire_bytes[] = {0x07, 0x08, 0xC2, 0xB5, 0xDD, 0xBC, 0xB2, 0x00};
+    visit("EnableRequest", 194, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::EnableReply message{};
@@ -630,24 +446,10 @@ void for_each(Visit visit) {
   }
   {
     wire::EnableReply message{};
-    message.state = static_cast<wire::State>(4);
-    const uint8_t payload[] = {0x04};
-    const uint8_t wire_bytes[] = {0x06, 0x88, 0x58, 0x04, 0xF5, 0x99, 0x00};
-    visit("EnableReply", 88, message, payload, size_t{1}, wire_bytes, size_t{7});
-  }
-  {
-    wire::EnableReply message{};
-    message.state = static_cast<wire::State>(2);
-    const uint8_t payload[] = {0x02};
-    const uint8_t wire_bytes[] = {0x06, 0x88, 0x44, 0x02, 0x2D, 0xBF, 0x00};
-    visit("EnableReply", 68, message, payload, size_t{1}, wire_bytes, size_t{7});
-  }
-  {
-    wire::EnableReply message{};
-    message.state = static_cast<wire::State>(2);
-    const uint8_t payload[] = {0x02};
-    const uint8_t wire_bytes[] = {0x06, 0x88, 0x13, 0x02, 0x05, 0x28, 0x00};
-    visit("EnableReply", 19, message, payload, size_t{1}, wire_bytes, size_t{7});
+    message.state = static_cast<wire::State>(1);
+    const uint8_t payload[] = {0x01};
+    const uint8_t wire_bytes[] = {0x06, 0x88, 0x02, 0x01, 0x24, 0x28, 0x00};
+    visit("EnableReply", 2, message, payload, size_t{1}, wire_bytes, size_t{7});
   }
   {
     wire::StopRequest message{};
@@ -671,24 +473,10 @@ void for_each(Visit visit) {
   }
   {
     wire::StopReply message{};
-    message.state = static_cast<wire::State>(4);
-    const uint8_t payload[] = {0x04};
-    const uint8_t wire_bytes[] = {0x06, 0x89, 0x26, 0x04, 0x93, 0x85, 0x00};
-    visit("StopReply", 38, message, payload, size_t{1}, wire_bytes, size_t{7});
-  }
-  {
-    wire::StopReply message{};
-    message.state = static_cast<wire::State>(0);
-    const uint8_t payload[] = {0x00};
-    const uint8_t wire_bytes[] = {0x03, 0x89, 0x5C, 0x03, 0x85, 0x22, 0x00};
-    visit("StopReply", 92, message, payload, size_t{1}, wire_bytes, size_t{7});
-  }
-  {
-    wire::StopReply message{};
-    message.state = static_cast<wire::State>(0);
-    const uint8_t payload[] = {0x00};
-    const uint8_t wire_bytes[] = {0x03, 0x89, 0x7D, 0x03, 0x52, 0x17, 0x00};
-    visit("StopReply", 125, message, payload, size_t{1}, wire_bytes, size_t{7});
+    message.state = static_cast<wire::State>(3);
+    const uint8_t payload[] = {0x03};
+    const uint8_t wire_bytes[] = {0x06, 0x89, 0x4D, 0x03, 0xA4, 0x22, 0x00};
+    visit("StopReply", 77, message, payload, size_t{1}, wire_bytes, size_t{7});
   }
   {
     wire::RenewRequest message{};
@@ -706,24 +494,10 @@ void for_each(Visit visit) {
   }
   {
     wire::RenewRequest message{};
-    message.lease_ms = 41324;
-    const uint8_t payload[] = {0x6C, 0xA1};
-    const uint8_t wire_bytes[] = {0x07, 0x0A, 0x35, 0x6C, 0xA1, 0xB2, 0x29, 0x00};
-    visit("RenewRequest", 53, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::RenewRequest message{};
-    message.lease_ms = 8287;
-    const uint8_t payload[] = {0x5F, 0x20};
-    const uint8_t wire_bytes[] = {0x07, 0x0A, 0x15, 0x5F, 0x20, 0x1B, 0x7E, 0x00};
-    visit("RenewRequest", 21, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::RenewRequest message{};
-    message.lease_ms = 41901;
-    const uint8_t payload[] = {0xAD, 0xA3};
-    const uint8_t wire_bytes[] = {0x07, 0x0A, 0xF7, 0xAD, 0xA3, 0x02, 0x64, 0x00};
-    visit("RenewRequest", 247, message, payload, size_t{2}, wire_bytes, size_t{8});
+    message.lease_ms = 53449;
+    const uint8_t payload[] = {0xC9, 0xD0};
+    const uint8_t wire_bytes[] = {0x07, 0x0A, 0x8D, 0xC9, 0xD0, 0xD1, 0xF2, 0x00};
+    visit("RenewRequest", 141, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::RenewReply message{};
@@ -741,24 +515,10 @@ void for_each(Visit visit) {
   }
   {
     wire::RenewReply message{};
-    message.state = static_cast<wire::State>(3);
-    const uint8_t payload[] = {0x03};
-    const uint8_t wire_bytes[] = {0x06, 0x8A, 0xA5, 0x03, 0xEF, 0xE2, 0x00};
-    visit("RenewReply", 165, message, payload, size_t{1}, wire_bytes, size_t{7});
-  }
-  {
-    wire::RenewReply message{};
-    message.state = static_cast<wire::State>(0);
-    const uint8_t payload[] = {0x00};
-    const uint8_t wire_bytes[] = {0x03, 0x8A, 0x01, 0x03, 0x36, 0x03, 0x00};
-    visit("RenewReply", 1, message, payload, size_t{1}, wire_bytes, size_t{7});
-  }
-  {
-    wire::RenewReply message{};
-    message.state = static_cast<wire::State>(3);
-    const uint8_t payload[] = {0x03};
-    const uint8_t wire_bytes[] = {0x06, 0x8A, 0x4E, 0x03, 0xA7, 0x2E, 0x00};
-    visit("RenewReply", 78, message, payload, size_t{1}, wire_bytes, size_t{7});
+    message.state = static_cast<wire::State>(1);
+    const uint8_t payload[] = {0x01};
+    const uint8_t wire_bytes[] = {0x06, 0x8A, 0x66, 0x01, 0xAA, 0x81, 0x00};
+    visit("RenewReply", 102, message, payload, size_t{1}, wire_bytes, size_t{7});
   }
   {
     wire::ClearFaultRequest message{};
@@ -782,24 +542,10 @@ void for_each(Visit visit) {
   }
   {
     wire::ClearFaultReply message{};
-    message.state = static_cast<wire::State>(1);
-    const uint8_t payload[] = {0x01};
-    const uint8_t wire_bytes[] = {0x06, 0x8B, 0x1B, 0x01, 0x9F, 0xC8, 0x00};
-    visit("ClearFaultReply", 27, message, payload, size_t{1}, wire_bytes, size_t{7});
-  }
-  {
-    wire::ClearFaultReply message{};
     message.state = static_cast<wire::State>(3);
     const uint8_t payload[] = {0x03};
-    const uint8_t wire_bytes[] = {0x06, 0x8B, 0x50, 0x03, 0xEB, 0x39, 0x00};
-    visit("ClearFaultReply", 80, message, payload, size_t{1}, wire_bytes, size_t{7});
-  }
-  {
-    wire::ClearFaultReply message{};
-    message.state = static_cast<wire::State>(4);
-    const uint8_t payload[] = {0x04};
-    const uint8_t wire_bytes[] = {0x06, 0x8B, 0xCF, 0x04, 0xD9, 0x41, 0x00};
-    visit("ClearFaultReply", 207, message, payload, size_t{1}, wire_bytes, size_t{7});
+    const uint8_t wire_bytes[] = {0x06, 0x8B, 0x2F, 0x03, 0x8C, 0x21, 0x00};
+    visit("ClearFaultReply", 47, message, payload, size_t{1}, wire_bytes, size_t{7});
   }
   {
     wire::TelemetryRequest message{};
@@ -817,24 +563,10 @@ void for_each(Visit visit) {
   }
   {
     wire::TelemetryRequest message{};
-    message.every = 52277;
-    const uint8_t payload[] = {0x35, 0xCC};
-    const uint8_t wire_bytes[] = {0x07, 0x0C, 0x84, 0x35, 0xCC, 0xC8, 0xCE, 0x00};
-    visit("TelemetryRequest", 132, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::TelemetryRequest message{};
-    message.every = 27134;
-    const uint8_t payload[] = {0xFE, 0x69};
-    const uint8_t wire_bytes[] = {0x07, 0x0C, 0x99, 0xFE, 0x69, 0x1B, 0xE0, 0x00};
-    visit("TelemetryRequest", 153, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::TelemetryRequest message{};
-    message.every = 52578;
-    const uint8_t payload[] = {0x62, 0xCD};
-    const uint8_t wire_bytes[] = {0x07, 0x0C, 0x28, 0x62, 0xCD, 0x3C, 0x81, 0x00};
-    visit("TelemetryRequest", 40, message, payload, size_t{2}, wire_bytes, size_t{8});
+    message.every = 55288;
+    const uint8_t payload[] = {0xF8, 0xD7};
+    const uint8_t wire_bytes[] = {0x07, 0x0C, 0x5F, 0xF8, 0xD7, 0xFF, 0x98, 0x00};
+    visit("TelemetryRequest", 95, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::TelemetryReply message{};
@@ -852,24 +584,10 @@ void for_each(Visit visit) {
   }
   {
     wire::TelemetryReply message{};
-    message.every = 37092;
-    const uint8_t payload[] = {0xE4, 0x90};
-    const uint8_t wire_bytes[] = {0x07, 0x8C, 0x1C, 0xE4, 0x90, 0x07, 0x7F, 0x00};
-    visit("TelemetryReply", 28, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::TelemetryReply message{};
-    message.every = 54528;
-    const uint8_t payload[] = {0x00, 0xD5};
-    const uint8_t wire_bytes[] = {0x03, 0x8C, 0x23, 0x04, 0xD5, 0x84, 0x52, 0x00};
-    visit("TelemetryReply", 35, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::TelemetryReply message{};
-    message.every = 32947;
-    const uint8_t payload[] = {0xB3, 0x80};
-    const uint8_t wire_bytes[] = {0x07, 0x8C, 0x28, 0xB3, 0x80, 0x7B, 0xE3, 0x00};
-    visit("TelemetryReply", 40, message, payload, size_t{2}, wire_bytes, size_t{8});
+    message.every = 7032;
+    const uint8_t payload[] = {0x78, 0x1B};
+    const uint8_t wire_bytes[] = {0x07, 0x8C, 0xE6, 0x78, 0x1B, 0xF1, 0x26, 0x00};
+    visit("TelemetryReply", 230, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::LeadRequest message{};
@@ -887,24 +605,10 @@ void for_each(Visit visit) {
   }
   {
     wire::LeadRequest message{};
-    message.lease_ms = 38532;
-    const uint8_t payload[] = {0x84, 0x96};
-    const uint8_t wire_bytes[] = {0x07, 0x0D, 0x49, 0x84, 0x96, 0x59, 0x0A, 0x00};
-    visit("LeadRequest", 73, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::LeadRequest message{};
-    message.lease_ms = 29883;
-    const uint8_t payload[] = {0xBB, 0x74};
-    const uint8_t wire_bytes[] = {0x07, 0x0D, 0xDC, 0xBB, 0x74, 0x57, 0x51, 0x00};
-    visit("LeadRequest", 220, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::LeadRequest message{};
-    message.lease_ms = 52425;
-    const uint8_t payload[] = {0xC9, 0xCC};
-    const uint8_t wire_bytes[] = {0x07, 0x0D, 0x11, 0xC9, 0xCC, 0x19, 0x7D, 0x00};
-    visit("LeadRequest", 17, message, payload, size_t{2}, wire_bytes, size_t{8});
+    message.lease_ms = 10232;
+    const uint8_t payload[] = {0xF8, 0x27};
+    const uint8_t wire_bytes[] = {0x07, 0x0D, 0x31, 0xF8, 0x27, 0x3E, 0x81, 0x00};
+    visit("LeadRequest", 49, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::LeadReply message{};
@@ -932,39 +636,15 @@ void for_each(Visit visit) {
   }
   {
     wire::LeadReply message{};
-    message.state = static_cast<wire::State>(2);
-    message.next = 220;
-    message.reference[0] = 3203;
-    message.reference[1] = 16007;
-    message.reference[2] = 14971;
-    message.reference[3] = 17405;
-    const uint8_t payload[] = {0x02, 0xDC, 0x83, 0x0C, 0x87, 0x3E, 0x7B, 0x3A, 0xFD, 0x43};
-    const uint8_t wire_bytes[] = {0x0F, 0x8D, 0x1A, 0x02, 0xDC, 0x83, 0x0C, 0x87, 0x3E, 0x7B, 0x3A, 0xFD, 0x43, 0xD2, 0x4F, 0x00};
-    visit("LeadReply", 26, message, payload, size_t{10}, wire_bytes, size_t{16});
-  }
-  {
-    wire::LeadReply message{};
-    message.state = static_cast<wire::State>(0);
-    message.next = 33;
-    message.reference[0] = 14639;
-    message.reference[1] = -29595;
-    message.reference[2] = -8969;
-    message.reference[3] = 26435;
-    const uint8_t payload[] = {0x00, 0x21, 0x2F, 0x39, 0x65, 0x8C, 0xF7, 0xDC, 0x43, 0x67};
-    const uint8_t wire_bytes[] = {0x03, 0x8D, 0x53, 0x0C, 0x21, 0x2F, 0x39, 0x65, 0x8C, 0xF7, 0xDC, 0x43, 0x67, 0xDE, 0xE1, 0x00};
-    visit("LeadReply", 83, message, payload, size_t{10}, wire_bytes, size_t{16});
-  }
-  {
-    wire::LeadReply message{};
-    message.state = static_cast<wire::State>(3);
-    message.next = 76;
-    message.reference[0] = 10;
-    message.reference[1] = 17422;
-    message.reference[2] = -15775;
-    message.reference[3] = 7427;
-    const uint8_t payload[] = {0x03, 0x4C, 0x0A, 0x00, 0x0E, 0x44, 0x61, 0xC2, 0x03, 0x1D};
-    const uint8_t wire_bytes[] = {0x06, 0x8D, 0xC8, 0x03, 0x4C, 0x0A, 0x09, 0x0E, 0x44, 0x61, 0xC2, 0x03, 0x1D, 0x29, 0x77, 0x00};
-    visit("LeadReply", 200, message, payload, size_t{10}, wire_bytes, size_t{16});
+    message.state = static_cast<wire::State>(1);
+    message.next = 138;
+    message.reference[0] = 17368;
+    message.reference[1] = 9361;
+    message.reference[2] = -18991;
+    message.reference[3] = -4599;
+    const uint8_t payload[] = {0x01, 0x8A, 0xD8, 0x43, 0x91, 0x24, 0xD1, 0xB5, 0x09, 0xEE};
+    const uint8_t wire_bytes[] = {0x0F, 0x8D, 0x14, 0x01, 0x8A, 0xD8, 0x43, 0x91, 0x24, 0xD1, 0xB5, 0x09, 0xEE, 0x63, 0x4A, 0x00};
+    visit("LeadReply", 20, message, payload, size_t{10}, wire_bytes, size_t{16});
   }
   {
     wire::LeadPointRequest message{};
@@ -990,36 +670,14 @@ void for_each(Visit visit) {
   }
   {
     wire::LeadPointRequest message{};
-    message.number = 146;
-    message.step[0] = 45;
-    message.step[1] = -78;
-    message.step[2] = -30;
-    message.step[3] = 86;
-    const uint8_t payload[] = {0x92, 0x2D, 0xB2, 0xE2, 0x56};
-    const uint8_t wire_bytes[] = {0x0A, 0x0E, 0x9F, 0x92, 0x2D, 0xB2, 0xE2, 0x56, 0x5C, 0x78, 0x00};
-    visit("LeadPointRequest", 159, message, payload, size_t{5}, wire_bytes, size_t{11});
-  }
-  {
-    wire::LeadPointRequest message{};
-    message.number = 170;
-    message.step[0] = -72;
-    message.step[1] = 88;
-    message.step[2] = 106;
-    message.step[3] = 80;
-    const uint8_t payload[] = {0xAA, 0xB8, 0x58, 0x6A, 0x50};
-    const uint8_t wire_bytes[] = {0x0A, 0x0E, 0x1C, 0xAA, 0xB8, 0x58, 0x6A, 0x50, 0x82, 0x83, 0x00};
-    visit("LeadPointRequest", 28, message, payload, size_t{5}, wire_bytes, size_t{11});
-  }
-  {
-    wire::LeadPointRequest message{};
-    message.number = 178;
-    message.step[0] = -89;
-    message.step[1] = 70;
-    message.step[2] = 113;
-    message.step[3] = -125;
-    const uint8_t payload[] = {0xB2, 0xA7, 0x46, 0x71, 0x83};
-    const uint8_t wire_bytes[] = {0x0A, 0x0E, 0x7C, 0xB2, 0xA7, 0x46, 0x71, 0x83, 0x51, 0x69, 0x00};
-    visit("LeadPointRequest", 124, message, payload, size_t{5}, wire_bytes, size_t{11});
+    message.number = 47;
+    message.step[0] = 31;
+    message.step[1] = -31;
+    message.step[2] = 2;
+    message.step[3] = 24;
+    const uint8_t payload[] = {0x2F, 0x1F, 0xE1, 0x02, 0x18};
+    const uint8_t wire_bytes[] = {0x0A, 0x0E, 0x07, 0x2F, 0x1F, 0xE1, 0x02, 0x18, 0x59, 0xCB, 0x00};
+    visit("LeadPointRequest", 7, message, payload, size_t{5}, wire_bytes, size_t{11});
   }
   {
     wire::LeadPointReply message{};
@@ -1039,27 +697,11 @@ void for_each(Visit visit) {
   }
   {
     wire::LeadPointReply message{};
-    message.next = 102;
-    message.waiting = 41;
-    const uint8_t payload[] = {0x66, 0x29};
-    const uint8_t wire_bytes[] = {0x07, 0x8E, 0xE2, 0x66, 0x29, 0x34, 0x21, 0x00};
-    visit("LeadPointReply", 226, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::LeadPointReply message{};
-    message.next = 202;
-    message.waiting = 179;
-    const uint8_t payload[] = {0xCA, 0xB3};
-    const uint8_t wire_bytes[] = {0x07, 0x8E, 0xEF, 0xCA, 0xB3, 0x85, 0x19, 0x00};
-    visit("LeadPointReply", 239, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::LeadPointReply message{};
-    message.next = 130;
-    message.waiting = 104;
-    const uint8_t payload[] = {0x82, 0x68};
-    const uint8_t wire_bytes[] = {0x07, 0x8E, 0xDE, 0x82, 0x68, 0x63, 0x15, 0x00};
-    visit("LeadPointReply", 222, message, payload, size_t{2}, wire_bytes, size_t{8});
+    message.next = 170;
+    message.waiting = 17;
+    const uint8_t payload[] = {0xAA, 0x11};
+    const uint8_t wire_bytes[] = {0x07, 0x8E, 0xD8, 0xAA, 0x11, 0x32, 0xC7, 0x00};
+    visit("LeadPointReply", 216, message, payload, size_t{2}, wire_bytes, size_t{8});
   }
   {
     wire::Sample message{};
@@ -1105,66 +747,24 @@ void for_each(Visit visit) {
   }
   {
     wire::Sample message{};
-    message.tick = 707322993u;
-    message.state = static_cast<wire::State>(0);
-    message.fault = static_cast<wire::Fault>(13);
-    message.leader[0] = -26732;
-    message.leader[1] = -2191;
-    message.leader[2] = -29237;
-    message.leader[3] = 11510;
-    message.follower[0] = -22596;
-    message.follower[1] = 21432;
-    message.follower[2] = 31307;
-    message.follower[3] = 10890;
-    message.voltage[0] = 9977;
-    message.voltage[1] = 19550;
-    message.voltage[2] = 23677;
-    message.voltage[3] = 21061;
-    const uint8_t payload[] = {0x71, 0xE4, 0x28, 0x2A, 0x00, 0x0D, 0x94, 0x97, 0x71, 0xF7, 0xCB, 0x8D, 0xF6, 0x2C, 0xBC, 0xA7, 0xB8, 0x53, 0x4B, 0x7A, 0x8A, 0x2A, 0xF9, 0x26, 0x5E, 0x4C, 0x7D, 0x5C, 0x45, 0x52};
-    const uint8_t wire_bytes[] = {0x07, 0x40, 0x34, 0x71, 0xE4, 0x28, 0x2A, 0x1C, 0x0D, 0x94, 0x97, 0x71, 0xF7, 0xCB, 0x8D, 0xF6, 0x2C, 0xBC, 0xA7, 0xB8, 0x53, 0x4B, 0x7A, 0x8A, 0x2A, 0xF9, 0x26, 0x5E, 0x4C, 0x7D, 0x5C, 0x45, 0x52, 0xD8, 0xE6, 0x00};
-    visit("Sample", 52, message, payload, size_t{30}, wire_bytes, size_t{36});
-  }
-  {
-    wire::Sample message{};
-    message.tick = 12820477u;
+    message.tick = 2036536042u;
     message.state = static_cast<wire::State>(4);
-    message.fault = static_cast<wire::Fault>(1);
-    message.leader[0] = -2030;
-    message.leader[1] = -23845;
-    message.leader[2] = -9034;
-    message.leader[3] = 8978;
-    message.follower[0] = 2884;
-    message.follower[1] = 3978;
-    message.follower[2] = 1950;
-    message.follower[3] = 25058;
-    message.voltage[0] = 27425;
-    message.voltage[1] = 21288;
-    message.voltage[2] = 9116;
-    message.voltage[3] = 82;
-    const uint8_t payload[] = {0xFD, 0x9F, 0xC3, 0x00, 0x04, 0x01, 0x12, 0xF8, 0xDB, 0xA2, 0xB6, 0xDC, 0x12, 0x23, 0x44, 0x0B, 0x8A, 0x0F, 0x9E, 0x07, 0xE2, 0x61, 0x21, 0x6B, 0x28, 0x53, 0x9C, 0x23, 0x52, 0x00};
-    const uint8_t wire_bytes[] = {0x06, 0x40, 0xBD, 0xFD, 0x9F, 0xC3, 0x1A, 0x04, 0x01, 0x12, 0xF8, 0xDB, 0xA2, 0xB6, 0xDC, 0x12, 0x23, 0x44, 0x0B, 0x8A, 0x0F, 0x9E, 0x07, 0xE2, 0x61, 0x21, 0x6B, 0x28, 0x53, 0x9C, 0x23, 0x52, 0x03, 0x8C, 0x7D, 0x00};
-    visit("Sample", 189, message, payload, size_t{30}, wire_bytes, size_t{36});
-  }
-  {
-    wire::Sample message{};
-    message.tick = 2909498430u;
-    message.state = static_cast<wire::State>(1);
-    message.fault = static_cast<wire::Fault>(0);
-    message.leader[0] = 1181;
-    message.leader[1] = 6873;
-    message.leader[2] = -22256;
-    message.leader[3] = 21651;
-    message.follower[0] = -14157;
-    message.follower[1] = 18377;
-    message.follower[2] = -1690;
-    message.follower[3] = 21705;
-    message.voltage[0] = 4265;
-    message.voltage[1] = 20279;
-    message.voltage[2] = 16507;
-    message.voltage[3] = -13553;
-    const uint8_t payload[] = {0x3E, 0x6C, 0x6B, 0xAD, 0x01, 0x00, 0x9D, 0x04, 0xD9, 0x1A, 0x10, 0xA9, 0x93, 0x54, 0xB3, 0xC8, 0xC9, 0x47, 0x66, 0xF9, 0xC9, 0x54, 0xA9, 0x10, 0x37, 0x4F, 0x7B, 0x40, 0x0F, 0xCB};
-    const uint8_t wire_bytes[] = {0x08, 0x40, 0x1F, 0x3E, 0x6C, 0x6B, 0xAD, 0x01, 0x1B, 0x9D, 0x04, 0xD9, 0x1A, 0x10, 0xA9, 0x93, 0x54, 0xB3, 0xC8, 0xC9, 0x47, 0x66, 0xF9, 0xC9, 0x54, 0xA9, 0x10, 0x37, 0x4F, 0x7B, 0x40, 0x0F, 0xCB, 0xF4, 0x6D, 0x00};
-    visit("Sample", 31, message, payload, size_t{30}, wire_bytes, size_t{36});
+    message.fault = static_cast<wire::Fault>(8);
+    message.leader[0] = -26774;
+    message.leader[1] = 8351;
+    message.leader[2] = 2784;
+    message.leader[3] = 20387;
+    message.follower[0] = -14288;
+    message.follower[1] = -3218;
+    message.follower[2] = -1393;
+    message.follower[3] = 15277;
+    message.voltage[0] = -30919;
+    message.voltage[1] = -17384;
+    message.voltage[2] = -6522;
+    message.voltage[3] = -11529;
+    const uint8_t payload[] = {0xEA, 0x12, 0x63, 0x79, 0x04, 0x08, 0x6A, 0x97, 0x9F, 0x20, 0xE0, 0x0A, 0xA3, 0x4F, 0x30, 0xC8, 0x6E, 0xF3, 0x8F, 0xFA, 0xAD, 0x3B, 0x39, 0x87, 0x18, 0xBC, 0x86, 0xE6, 0xF7, 0xD2};
+    const uint8_t wire_bytes[] = {0x23, 0x40, 0x33, 0xEA, 0x12, 0x63, 0x79, 0x04, 0x08, 0x6A, 0x97, 0x9F, 0x20, 0xE0, 0x0A, 0xA3, 0x4F, 0x30, 0xC8, 0x6E, 0xF3, 0x8F, 0xFA, 0xAD, 0x3B, 0x39, 0x87, 0x18, 0xBC, 0x86, 0xE6, 0xF7, 0xD2, 0xFC, 0x22, 0x00};
+    visit("Sample", 51, message, payload, size_t{30}, wire_bytes, size_t{36});
   }
   {
     wire::Nack message{};
@@ -1186,30 +786,12 @@ void for_each(Visit visit) {
   }
   {
     wire::Nack message{};
-    message.request = 72;
-    message.code = static_cast<wire::NackCode>(11);
-    message.detail = 63422;
-    const uint8_t payload[] = {0x48, 0x0B, 0xBE, 0xF7};
-    const uint8_t wire_bytes[] = {0x09, 0xFF, 0xCC, 0x48, 0x0B, 0xBE, 0xF7, 0x68, 0x5B, 0x00};
-    visit("Nack", 204, message, payload, size_t{4}, wire_bytes, size_t{10});
-  }
-  {
-    wire::Nack message{};
-    message.request = 98;
-    message.code = static_cast<wire::NackCode>(15);
-    message.detail = 64833;
-    const uint8_t payload[] = {0x62, 0x0F, 0x41, 0xFD};
-    const uint8_t wire_bytes[] = {0x09, 0xFF, 0x45, 0x62, 0x0F, 0x41, 0xFD, 0x54, 0xF0, 0x00};
-    visit("Nack", 69, message, payload, size_t{4}, wire_bytes, size_t{10});
-  }
-  {
-    wire::Nack message{};
-    message.request = 157;
-    message.code = static_cast<wire::NackCode>(14);
-    message.detail = 34313;
-    const uint8_t payload[] = {0x9D, 0x0E, 0x09, 0x86};
-    const uint8_t wire_bytes[] = {0x09, 0xFF, 0x02, 0x9D, 0x0E, 0x09, 0x86, 0xE2, 0xB1, 0x00};
-    visit("Nack", 2, message, payload, size_t{4}, wire_bytes, size_t{10});
+    message.request = 166;
+    message.code = static_cast<wire::NackCode>(6);
+    message.detail = 52720;
+    const uint8_t payload[] = {0xA6, 0x06, 0xF0, 0xCD};
+    const uint8_t wire_bytes[] = {0x08, 0xFF, 0x75, 0xA6, 0x06, 0xF0, 0xCD, 0x11, 0x01, 0x00};
+    visit("Nack", 117, message, payload, size_t{4}, wire_bytes, size_t{10});
   }
 }
 
