@@ -140,8 +140,8 @@ def test_each_thing_has_its_owner(word: str, owner: str) -> None:
 
 
 def is_private(name: str) -> bool:
-    """Whether a dotted name goes through a private one, dunders and the extension modules apart."""
-    parts = set(name.split(".")) - EXTENSIONS
+    """Whether a dotted name goes through a private one; dunders, the extension modules and os._exit are none."""
+    parts = set(name.split(".")) - EXTENSIONS - {"_exit"}
     return any(part.startswith("_") and not part.startswith("__") for part in parts)
 
 

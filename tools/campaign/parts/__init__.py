@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tools.campaign.part import Part
-from tools.campaign.parts import cuts, eeprom, faults, fuzz, kills, line, link, soak
+from tools.campaign.parts import cuts, eeprom, faults, fuzz, line, link, soak
 
 PARTS: tuple[Part, ...] = (
     faults.PART,
@@ -12,6 +12,5 @@ PARTS: tuple[Part, ...] = (
     fuzz.PART,
     cuts.PART,
     eeprom.PART,
-    kills.PART,
     soak.PART,
 )
