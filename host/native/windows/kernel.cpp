@@ -6,7 +6,7 @@
 #include "arm/step.h"
 #include "arm/supply.h"
 #include "closed_loop/experiment.h"
-#include "lanes.h"
+#include "double_lanes.h"
 #include "windows.h"
 
 namespace greywhale::windows::GREYWHALE_INSTRUCTIONS {
