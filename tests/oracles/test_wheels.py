@@ -26,7 +26,7 @@ from tools.oracles.wheelhouse import WHEELHOUSE
 from tools.setup import platformio
 
 ROOT = Path(__file__).resolve().parents[2]
-CONTROLLERS = {"before_tuning", "rules", "table_8", "table_9", "table_10"}
+CONTROLLERS = {"before_tuning", "table_8", "table_9", "table_10"}
 pytestmark = pytest.mark.timeout(1200)  # of which building the extensions takes the most
 
 

@@ -1,4 +1,7 @@
-"""Table 6, the rule base, as shared/fuzzy_tables/rules.toml has it (a test compares the two)."""
+"""Table 6, the rule base: RULES[e][ce] is the output set, OUTPUTS where each stands as a singleton.
+
+AND is min, aggregation is max.
+"""
 
 from __future__ import annotations
 
