@@ -15,6 +15,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from greywhale.cli import completion
+from greywhale.cli.wrapping import fit
 from greywhale.errors import printable
 
 WHOLE = 10_000  # parts of a progress bar
@@ -48,12 +49,17 @@ def port_option(command: Command) -> Command:
     )(command)
 
 
-def show(as_json: bool, result: Mapping[str, Any], text: str) -> None:
-    """Print the result of a verb: for programs or for people."""
+def show(as_json: bool, result: Mapping[str, Any], text: str, hang: int = 0) -> None:
+    """Print the result of a verb: for programs or for people. `hang` indents what is broken off a long line."""
     if as_json:
         click.echo(json_of(result))
     else:
-        click.echo(printable(text))
+        click.echo(fit(printable(text), sys.stdout, hang))
+
+
+def tell(text: str) -> None:
+    """A note for the person: on stderr, where a terminal gets it between its borders."""
+    click.echo(fit(printable(text), sys.stderr), err=True)
 
 
 def json_of(result: Mapping[str, Any]) -> str:

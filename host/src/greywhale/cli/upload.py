@@ -11,7 +11,7 @@ import click
 from greywhale.board.device import Device
 from greywhale.board.upload import change_parameters, read_parameters
 from greywhale.cli import completion
-from greywhale.cli.output import json_option, port_option, progress, show
+from greywhale.cli.output import json_option, port_option, progress, show, tell
 from greywhale.errors import counted
 from greywhale.files import controller as controller_file
 from greywhale.protocol.ports import choose_port
@@ -35,7 +35,7 @@ def command(controller: Path, port: str | None, as_json: bool) -> None:
             running = read_parameters(device, report)
         warnings = _warnings(checked.tuning or {}, running)
         for warning in warnings:  # while Ctrl-C still leaves everything as it was
-            click.echo(f"Warning: {warning}", err=True)
+            tell(f"Warning: {warning}")
         with progress(as_json) as report:
             uploaded = change_parameters(device, checked.raw_values(), report, running)
     count = len(uploaded.changed)
