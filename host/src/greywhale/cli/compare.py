@@ -87,7 +87,7 @@ def command(
     plan.check()
     if executor == "local" and workers is None and plan.evaluations < SMALL:
         workers = 1
-    with progress(as_json) as report:
+    with progress() as report:
         comparison = compare(plan, choose_workers(executor, workers), report, results)
     for path in out:
         write_report(path, comparison)

@@ -92,7 +92,7 @@ def command(
         budget=budget,
         prove=prove,
     )
-    with progress(as_json) as report:
+    with progress() as report:
         result = demo.run(options, report)
     show(as_json, result.as_dict(), result.text())
 

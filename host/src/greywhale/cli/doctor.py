@@ -54,7 +54,7 @@ def command(
     if hex_file is not None and not image:
         raise UserError("--hex belongs to --image; add that, or leave it out.", BAD_USAGE)
     chosen = choose_port(port)
-    with progress(as_json) as report:
+    with progress(brief=True) as report:
         findings = examine(Options(chosen, params, seconds, supply, image, hex_file), report or report_nothing)
     verdict = worst(findings)
     facts = {"port": chosen, "verdict": verdict.value, "findings": [one.as_dict() for one in findings]}

@@ -31,12 +31,12 @@ def command(controller: Path, port: str | None, as_json: bool) -> None:
     """
     checked = controller_file.load(controller)
     with Device(choose_port(port)) as device:
-        with progress(as_json) as report:
+        with progress(brief=True) as report:
             running = read_parameters(device, report)
         warnings = _warnings(checked.tuning or {}, running)
         for warning in warnings:  # while Ctrl-C still leaves everything as it was
             tell(f"Warning: {warning}")
-        with progress(as_json) as report:
+        with progress(brief=True) as report:
             uploaded = change_parameters(device, checked.raw_values(), report, running)
     count = len(uploaded.changed)
     what = f"{counted(count, 'parameter')} changed" if count else "nothing had to change"
