@@ -304,7 +304,7 @@ def test_a_port_that_goes_away_ends_the_log_whole_and_says_so_once(verb: str, tm
     save_leader(motion, Trajectory(np.array([0.0, 600.0]), np.zeros((2, 4))))
     options = {"record": ["-s", "600"], "record --enable": ["-s", "600"], "replay": [str(motion), "--yes"]}[verb]
     with FakeBoard(Faults(unplug_at=300)) as board:
-        code = entry.run([*verb.split(), *options, "-o", str(out), "--port", board.port])
+        code = entry.run(["-q", *verb.split(), *options, "-o", str(out), "--port", board.port])
     lost = f"{board.port}: the port went away in the middle; check the cable and try again."
     stops = "" if verb == "record" else " The stop is not confirmed; the board stops by itself within 500 ms."
     said = capsys.readouterr().err.strip()

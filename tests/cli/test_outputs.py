@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -10,6 +12,7 @@ import pytest
 
 from greywhale.cli.entry import run
 from greywhale.cli.verbs import greywhale
+from tests.cli.example_log import write_log
 
 Captured = pytest.CaptureFixture[str]
 
@@ -197,3 +200,27 @@ WRITES = {
     or (verb not in _FOLDERS and bool(_OUTPUTS & {str(one.name) for one in command_of(verb).params}))
     for verb in leaves(greywhale)
 }
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["evaluate", "log.csv", "--picture", "x.bmp"], "x.bmp: pictures end in .png, .svg, .pdf."),
+        (["compare", "--out", "x.txt"], "x.txt: reports end in .csv, .png, .svg, .pdf."),
+        (["demo", "--controller", "none.toml"], "none.toml: cannot be read: no such file or directory."),
+        (["demo", "--arm", "none.toml"], "none.toml: cannot be read: no such file or directory."),
+        (["demo", "--leader", "none.csv"], "none.csv: cannot be read: no such file or directory."),
+    ],
+)
+def test_a_wrong_name_is_refused_before_anything_slow_is_imported(
+    arguments: list[str], words: str, tmp_path: Path
+) -> None:
+    write_log(tmp_path / "log.csv")
+    code = (
+        "import sys; from greywhale.cli import entry; entry.run(sys.argv[1:]); "
+        "print(*{'cma', 'matplotlib', 'scipy.signal', 'greywhale.demo'} & set(sys.modules))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code, *arguments], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert (done.stdout, done.stderr) == ("\n", f"greywhale: {words}\n")

@@ -1,15 +1,24 @@
-"""The progress bar: on a terminal it shows how far, how long still and how good; elsewhere nothing."""
+"""Progress goes to stderr, also with --json: a bar on a terminal, lines elsewhere, nothing with --quiet."""
 
 from __future__ import annotations
 
 import contextlib
+import io
+import json
 import os
 import pty
 import sys
+from pathlib import Path
 
+import click
 import pytest
 
-from greywhale.cli.output import progress
+from greywhale.board import device
+from greywhale.cli import entry
+from greywhale.cli.output import QUIET, progress
+from tests.board.fake_board import FakeBoard
+
+Captured = pytest.CaptureFixture[str]
 
 
 def everything(seen: int) -> str:
@@ -22,25 +31,82 @@ def everything(seen: int) -> str:
     return text.decode()
 
 
-def test_a_terminal_sees_the_share_done_the_time_left_and_the_note(monkeypatch: pytest.MonkeyPatch) -> None:
+def on_a_terminal(monkeypatch: pytest.MonkeyPatch, kind: str) -> str:
     seen, inner = pty.openpty()
     monkeypatch.setenv("COLUMNS", "100")
-    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setenv("TERM", kind)
     with os.fdopen(inner, "w", encoding="utf-8") as terminal:
         monkeypatch.setattr(sys, "stderr", terminal)
-        with progress(as_json=False) as report:
+        with progress() as report:
             assert report is not None
             report("tuning", 0.25, "cost 0.125")
             report("tuning", 0.5, "cost 0.0625")
-        with progress(as_json=True) as report:
-            assert report is None
-    text = everything(seen)
+    return everything(seen)
+
+
+def test_a_terminal_sees_the_share_done_the_time_left_and_the_note(monkeypatch: pytest.MonkeyPatch) -> None:
+    text = on_a_terminal(monkeypatch, "xterm")
     for words in ("tuning", "50 %", " left", "cost 0.0625"):
         assert words in text
 
 
-def test_a_pipe_sees_none(monkeypatch: pytest.MonkeyPatch) -> None:
-    with open(os.devnull, "w", encoding="utf-8") as nowhere:
-        monkeypatch.setattr(sys, "stderr", nowhere)
-        with progress(as_json=False) as report:
+def test_a_terminal_that_cannot_move_its_cursor_gets_lines(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert on_a_terminal(monkeypatch, "dumb") == " 0:00  tuning\r\n"
+
+
+def told(monkeypatch: pytest.MonkeyPatch, **options: bool) -> str:
+    """What a pipe gets of two steps."""
+    pipe = io.StringIO()
+    monkeypatch.setattr(sys, "stderr", pipe)
+    with progress(**options) as report:
+        assert report is not None
+        report("reading", 0.0)
+        report("writing", 0.0)
+    return pipe.getvalue()
+
+
+def test_a_pipe_is_told_each_step_but_not_those_of_a_verb_of_seconds(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert told(monkeypatch) == " 0:00  reading\n 0:00  writing\n"
+    assert told(monkeypatch, brief=True) == ""
+
+
+def test_quiet_shows_nothing() -> None:
+    with click.Context(click.Command("tune")) as context:
+        context.meta[QUIET] = True
+        with progress() as report:
             assert report is None
+
+
+def test_a_reader_that_has_gone_ends_no_work(monkeypatch: pytest.MonkeyPatch) -> None:
+    with open("/dev/full", "w", encoding="utf-8", buffering=1) as full:
+        monkeypatch.setattr(sys, "stderr", full)
+        with progress() as report:
+            assert report is not None
+            report("tuning", 0.0)
+        monkeypatch.undo()
+        with contextlib.suppress(OSError):
+            full.close()
+
+
+@pytest.mark.parametrize(
+    ("before", "lines"),
+    [
+        ([], [" 0:00  starting the motors"]),
+        (["-q"], []),
+        (["-v"], ["greywhale.cli.output: starting the motors"]),
+        (["-q", "-v"], ["greywhale.cli.output: starting the motors"]),
+    ],
+)
+def test_stdout_is_one_object_and_the_steps_are_on_stderr_once(
+    before: list[str], lines: list[str], tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(device.Device.__init__, "__defaults__", (0.0, 0.5))
+    with FakeBoard() as board:
+        out = tmp_path / "log.csv"
+        arguments = ["record", "--enable", "-s", "0.1", "-o", str(out), "--port", board.port, "--json"]
+        assert entry.run([*before, *arguments]) == 0
+    said = capsys.readouterr()
+    assert json.loads(said.out)["log"] == str(out)
+    assert [line for line in said.err.splitlines() if line.endswith("starting the motors")] == lines
+    if before == ["-q"]:
+        assert said.err == ""

@@ -153,10 +153,10 @@ def test_a_blocked_arm_and_an_uncalibrated_one_are_refused_in_a_sentence(
     for name, arm in arms.items():
         (tmp_path / f"{name}.toml").write_text(to_toml(arm, {}).replace("[identification]\n", ""), encoding="utf-8")
     with BenchProcess("--speed", "max", "--arm", str(tmp_path / "blocked.toml")) as bench:
-        assert run(["commission", "-p", bench.port, "-o", str(tmp_path / "one")]) == 1
+        assert run(["-q", "commission", "-p", bench.port, "-o", str(tmp_path / "one")]) == 1
         first = capsys.readouterr().err
         arguments = ["-p", bench.port, "-o", str(tmp_path / "two"), "--arm", str(tmp_path / "other.toml")]
-        assert run(["commission", *arguments]) == 1
+        assert run(["-q", "commission", *arguments]) == 1
         second = capsys.readouterr().err
         assert running(bench) == (BEFORE, State.DISABLED)
     assert "its follower did not move (joint 1)" in first, "the board told it"

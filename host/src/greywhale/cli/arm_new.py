@@ -12,7 +12,7 @@ from greywhale.arm.make import Summary, assemble, summarise
 from greywhale.arm.make.answers import read_answers
 from greywhale.arm.make.questions import Question, collect
 from greywhale.arm.parameters import JOINT_NAMES, ArmParameters
-from greywhale.cli.output import json_option, overwrite_option, show
+from greywhale.cli.output import json_option, overwrite_option, show, tell
 from greywhale.errors import UserError
 from greywhale.files.model import arm_toml
 from greywhale.files.outputs import require_new
@@ -41,7 +41,7 @@ def new(answers: Path | None, out: Path, overwrite: bool, as_json: bool) -> None
     found = summarise(arm)
     text = "\n".join([*_table(arm, found), *_notes(found, left_out)])
     if answers is None:
-        click.echo(f"\n{text}\n", err=True)
+        tell(f"\n{text}\n")
         person.confirm(f"Write {out}?")
     write_text(out, arm_toml(arm, "Made by greywhale arm new."))
     show(as_json, _facts(out, found, left_out), f"{text}\n\n{out} is written." if answers else f"{out} is written.")
@@ -59,7 +59,7 @@ class Person:
             try:
                 return question.read(answer) if answer else question.usual
             except ValueError as error:
-                click.echo(f"    Not {answer[:40]!r}: {error}.", err=True)
+                tell(f"    Not {answer[:40]!r}: {error}.")
 
     def confirm(self, what: str) -> None:
         """Until Enter; anything else leaves everything as it is."""

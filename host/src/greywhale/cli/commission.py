@@ -101,7 +101,7 @@ def command(
         # Also while it computes: whoever stops it does not expect the arm to move again.
         with Session.of(options.port):
             warn()
-            with progress(as_json) as report:
+            with progress() as report:
                 outcome = commission(options, report)
     except KeyboardInterrupt as interrupt:
         interrupt.add_note(

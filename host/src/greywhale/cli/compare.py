@@ -69,6 +69,11 @@ def command(
     minimum. The same functions shifted show what they are worth elsewhere. The result depends on --seed alone, not on
     where and in how many processes it is computed.
     """
+    for path in out:
+        check_format(path)
+        require_new(overwrite, path)
+        if results is not None and path.absolute() == results.absolute():
+            raise UserError(f"{path}: this is the results file; write the report elsewhere.", BAD_USAGE)
     plan = Plan(
         functions=_names(functions, tuple(FUNCTIONS)),
         settings=cast(tuple[Setting, ...], _names(settings, ())),
@@ -80,14 +85,9 @@ def command(
         pack=pack,
     )
     plan.check()
-    for path in out:
-        check_format(path)
-        require_new(overwrite, path)
-        if results is not None and path.absolute() == results.absolute():
-            raise UserError(f"{path}: this is the results file; write the report elsewhere.", BAD_USAGE)
     if executor == "local" and workers is None and plan.evaluations < SMALL:
         workers = 1
-    with progress(as_json) as report:
+    with progress() as report:
         comparison = compare(plan, choose_workers(executor, workers), report, results)
     for path in out:
         write_report(path, comparison)

@@ -10,6 +10,9 @@ from greywhale.cli import completion
 from greywhale.cli.bench import need_bench
 from greywhale.cli.output import json_option, progress, show
 from greywhale.errors import MOST_SEED
+from greywhale.files import controller as controller_file
+from greywhale.files.arm import load_arm
+from greywhale.files.leader import load_leader
 from greywhale.files.outputs import require_folder
 
 
@@ -72,6 +75,7 @@ def command(
     identification nor tuning sees that motion or the arm's data.
     """
     require_folder(out, "logs and pictures")
+    _check_inputs(leader, arm, controller)
     need_bench("greywhale_sim")
     from greywhale import demo
 
@@ -88,6 +92,16 @@ def command(
         budget=budget,
         prove=prove,
     )
-    with progress(as_json) as report:
+    with progress() as report:
         result = demo.run(options, report)
     show(as_json, result.as_dict(), result.text())
+
+
+def _check_inputs(leader: Path | None, arm: Path | None, controller: Path | None) -> None:
+    """Refuse wrong files before all that a demo needs is imported, which takes seconds."""
+    if leader is not None:
+        load_leader(leader)
+    if arm is not None:
+        load_arm(arm)
+    if controller is not None:
+        controller_file.load(controller)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
-import textwrap
 from pathlib import Path
 
 import click
@@ -56,21 +54,19 @@ def command(
     if hex_file is not None and not image:
         raise UserError("--hex belongs to --image; add that, or leave it out.", BAD_USAGE)
     chosen = choose_port(port)
-    with progress(as_json) as report:
+    with progress(brief=True) as report:
         findings = examine(Options(chosen, params, seconds, supply, image, hex_file), report or report_nothing)
     verdict = worst(findings)
     facts = {"port": chosen, "verdict": verdict.value, "findings": [one.as_dict() for one in findings]}
-    show(as_json, facts, "\n".join([*map(_line, findings), "", _summary(findings)]))
+    show(as_json, facts, "\n".join([*map(_line, findings), "", _summary(findings)]), hang=INDENT)
     context.exit(int(verdict is Verdict.BAD))
 
 
 def _line(one: Finding) -> str:
-    """Wrapped to the terminal, the remedy below."""
-    width = max(60, min(120, shutil.get_terminal_size().columns))
-    lines = textwrap.wrap(one.says, width - INDENT) or [""]
-    lines += textwrap.wrap(one.remedy, width - INDENT, initial_indent="-> ", subsequent_indent="   ")
+    """What was found, the remedy below."""
     head = f"{one.verdict.value:<5} {one.check:<14} "
-    return "\n".join(f"{head if number == 0 else '':<{INDENT}}{line}" for number, line in enumerate(lines))
+    remedy = f"\n{'':<{INDENT}}-> {one.remedy}" if one.remedy else ""
+    return f"{head}{one.says}{remedy}"
 
 
 def _summary(findings: list[Finding]) -> str:

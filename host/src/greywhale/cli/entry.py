@@ -20,6 +20,7 @@ import click
 from greywhale.cli import tracing
 from greywhale.cli.output import json_of
 from greywhale.cli.verbs import greywhale
+from greywhale.cli.wrapping import fit
 from greywhale.errors import BAD_USAGE, FAILED, LONGEST, UserError, cut, os_reason, printable
 
 INTERRUPTED = 130
@@ -102,7 +103,7 @@ def _failed(message: str, code: int, as_json: bool) -> int:
     if as_json:
         print(json_of({"error": message, "exit_code": code}))
     with contextlib.suppress(OSError):  # the terminal may be gone
-        print(f"greywhale: {printable(message)}", file=sys.stderr)
+        print(fit(f"greywhale: {printable(message)}", sys.stderr), file=sys.stderr)
     return code
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from greywhale.cli.output import json_option, overwrite_option, show
+from greywhale.drawing.kinds import kind_of
 from greywhale.errors import counted
 from greywhale.files.log import Log, read_log
 from greywhale.files.outputs import require_new
@@ -32,6 +33,8 @@ def command(logs: tuple[Path, ...], picture: Path | None, overwrite: bool, as_js
     """
     refuse_inputs(picture, *logs)
     require_new(overwrite, picture)
+    if picture is not None:
+        kind_of(picture)
     read, evaluations = [], []
     for path in logs:
         log = read_log(path, voltages=picture is not None)

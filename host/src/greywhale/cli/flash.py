@@ -32,7 +32,7 @@ def command(board: str | None, firmware: Path | None, hex_file: Path | None, por
     if firmware is not None and hex_file is not None:
         raise click.UsageError("--firmware and --hex exclude each other.")
     chosen = choose_port(port)
-    with progress(as_json) as report:
+    with progress() as report:
         hello = flash(chosen, board, firmware, hex_file, report)
     facts = {
         "port": chosen,

@@ -78,7 +78,7 @@ def command(
     tables = [load_table(path) for path in controllers]
     notes: list[str] = []
     fit, second = [_read(path, notes) for path in logs], [_read(path, notes) for path in validate]
-    with progress(as_json) as report:
+    with progress() as report:
         outcome = identify(fit, arm, validate=second, tables=tables, method=method, seed=seed, report=report)
     outcome.save(out)
     if not outcome.complete:

@@ -16,6 +16,8 @@ from greywhale.errors import BAD_USAGE, UserError, counted
 from greywhale.protocol import schema
 from greywhale.protocol.ports import choose_port
 
+BESIDE = 15  # columns: where a row's value begins
+
 
 @click.command("info")
 @click.option("--watch", is_flag=True, help="Show angles, errors, voltages and faults as they are, until Ctrl-C.")
@@ -41,7 +43,7 @@ def command(watch: bool, seconds: float | None, port: str | None, as_json: bool)
     with Device(choose_port(port), restart=False) as device:
         hello, status = device.hello, device.status()
         pots = read_pots(device, read_parameters(device)) if status.state in _MOTORS_OFF else None
-    show(as_json, _facts(device, hello, status, pots), _text(device, hello, status, pots))
+    show(as_json, _facts(device, hello, status, pots), _text(device, hello, status, pots), hang=BESIDE)
 
 
 def _watch(port: str | None, seconds: float | None) -> None:
@@ -110,7 +112,7 @@ def _text(device: Device, hello: schema.HelloReply, status: schema.StatusReply, 
         ("saves", f"{status.saves:,}; the EEPROM is made for {EEPROM_WRITES:,}"),
         *(("pots", told) for told in _tell_pots(pots)),
     ]
-    return "\n".join(f"{name:<14} {value}" for name, value in rows)
+    return "\n".join(f"{name:<{BESIDE}}{value}" for name, value in rows)
 
 
 def _tell_pots(pots: PotReadings | None) -> list[str]:

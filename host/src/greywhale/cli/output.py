@@ -1,4 +1,4 @@
-"""What all verbs share: --json, --port, and progress bars."""
+"""What all verbs share: --json, --port, results and progress."""
 
 from __future__ import annotations
 
@@ -11,13 +11,12 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Protocol, TypeVar
 
 import click
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-from greywhale.cli import completion
+from greywhale.cli import completion, tracing
+from greywhale.cli.wrapping import fit
 from greywhale.errors import printable
 
-WHOLE = 10_000  # parts of a progress bar
+QUIET = "greywhale.quiet"  # in the context's `meta`: whether --quiet was said
 logger = logging.getLogger(__name__)
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -48,12 +47,17 @@ def port_option(command: Command) -> Command:
     )(command)
 
 
-def show(as_json: bool, result: Mapping[str, Any], text: str) -> None:
-    """Print the result of a verb: for programs or for people."""
+def show(as_json: bool, result: Mapping[str, Any], text: str, hang: int = 0) -> None:
+    """Print the result of a verb: for programs or for people. `hang` indents what is broken off a long line."""
     if as_json:
         click.echo(json_of(result))
     else:
-        click.echo(printable(text))
+        click.echo(fit(printable(text), sys.stdout, hang))
+
+
+def tell(text: str) -> None:
+    """A note for the person: on stderr, where a terminal gets it between its borders."""
+    click.echo(fit(printable(text), sys.stderr), err=True)
 
 
 def json_of(result: Mapping[str, Any]) -> str:
@@ -63,34 +67,26 @@ def json_of(result: Mapping[str, Any]) -> str:
 
 
 @contextlib.contextmanager
-def progress(as_json: bool) -> Iterator[Report | None]:
-    """A bar on stderr with the time left; None with --json or without a terminal, unless the steps are logged."""
-    console = Console(stderr=True)
+def progress(brief: bool = False) -> Iterator[Report | None]:
+    """Show the running step on stderr; with --quiet nobody looks, unless the steps are logged.
+
+    Without a terminal the steps of a `brief` verb, which takes seconds, are not told one by one. With --json all is
+    the same: that is about stdout.
+    """
     steps = Steps() if logger.isEnabledFor(logging.INFO) else None
-    if as_json or not sys.stderr.isatty() or not console.is_terminal:
+    context = click.get_current_context(silent=True)
+    if context is not None and context.meta.get(QUIET):
         yield steps
         return
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn("{task.percentage:>3.0f} %"),
-        TimeElapsedColumn(),
-        TimeRemainingColumn(),
-        TextColumn("left"),
-        TextColumn("{task.fields[note]}"),
-    )
-    with Progress(*columns, console=console, transient=True) as bars:
-        tasks: dict[str, TaskID] = {}
+    # What draws on a terminal takes a moment to import.
+    from greywhale.cli.display import shown
+
+    with shown(begins=not brief and not tracing.is_on_stderr()) as show_step:
 
         def report(what: str, fraction: float, note: str = "") -> None:
-            if what not in tasks:
-                for done in tasks.values():
-                    bars.update(done, completed=WHOLE)
-                # What was done at the beginning shows nothing about the speed.
-                tasks[what] = bars.add_task(what, total=WHOLE, completed=round(WHOLE * fraction), note=note)
-            bars.update(tasks[what], completed=WHOLE * fraction, note=note)
             if steps is not None:
                 steps(what, fraction, note)
+            show_step(what, fraction, note)
 
         yield report
 

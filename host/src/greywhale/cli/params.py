@@ -41,7 +41,7 @@ def get(names: tuple[str, ...], port: str | None, as_json: bool) -> None:
     The beginning of names stands for all that begin so: joint0, leader, unrest.
     """
     wanted = [one for name in names for one in _beginning_with(name)] or list(schema.PARAMETERS)
-    with Device(choose_port(port)) as device, progress(as_json) as report:
+    with Device(choose_port(port)) as device, progress(brief=True) as report:
         table = read_parameters(device, report)
     facts = {parameter.name: physical(parameter, table[parameter.name]) for parameter in wanted}
     lines = [f"{name:<16} {value:>12g} {schema.PARAMETER_BY_NAME[name].unit}" for name, value in facts.items()]
@@ -59,7 +59,7 @@ def set_(settings: tuple[str, ...], port: str | None, as_json: bool) -> None:
         if name in changes:
             raise UserError(f"{name} is given twice; give it once.", BAD_USAGE)
         changes[name] = raw
-    with Device(choose_port(port)) as device, progress(as_json) as report:
+    with Device(choose_port(port)) as device, progress(brief=True) as report:
         done = change_parameters(device, changes, report)
     stored = {name: physical(schema.PARAMETER_BY_NAME[name], raw) for name, raw in changes.items()}
     lines = [f"  {name} = {value:.9g} {schema.PARAMETER_BY_NAME[name].unit}".rstrip() for name, value in stored.items()]
@@ -78,7 +78,7 @@ def set_(settings: tuple[str, ...], port: str | None, as_json: bool) -> None:
 def backup(file: Path, port: str | None, overwrite: bool, as_json: bool) -> None:
     """Write all parameters of a board into a TOML file."""
     require_new(overwrite, file)
-    with Device(choose_port(port)) as device, progress(as_json) as report:
+    with Device(choose_port(port)) as device, progress(brief=True) as report:
         table = read_parameters(device, report)
     parameter_file.save(file, table)
     show(
@@ -95,7 +95,7 @@ def backup(file: Path, port: str | None, overwrite: bool, as_json: bool) -> None
 def restore(file: Path, port: str | None, as_json: bool) -> None:
     """Run and store the parameters of a backup."""
     wanted = parameter_file.load(file)
-    with Device(choose_port(port)) as device, progress(as_json) as report:
+    with Device(choose_port(port)) as device, progress(brief=True) as report:
         done = change_parameters(device, wanted.by_name(), report)
     show(as_json, {"port": device.port, **done.as_dict()}, _changed(device.port, done.changed))
 
@@ -107,7 +107,7 @@ def restore(file: Path, port: str | None, as_json: bool) -> None:
 def diff(file: Path, port: str | None, as_json: bool) -> None:
     """Show where a board differs from a backup."""
     wanted = parameter_file.load(file)
-    with Device(choose_port(port)) as device, progress(as_json) as report:
+    with Device(choose_port(port)) as device, progress(brief=True) as report:
         running = read_parameters(device, report)
     differences = {
         parameter.name: {

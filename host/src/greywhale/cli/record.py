@@ -121,10 +121,10 @@ def command(
         _refuse_without_excite(arm_file=arm_file, ranges=ranges, save_motion=save_motion, seed=seed, budget=budget)
         chosen, length = choose_port(port), RECORDED_S if seconds is None else seconds
         if reconnect:
-            with progress(as_json) as report:
+            with progress() as report:
                 recording = record_through_losses(chosen, out, length, every, report)
         else:
-            with Device(chosen) as device, progress(as_json) as report:
+            with Device(chosen) as device, progress() as report:
                 recording = record(device, out, length, every, enable, report)
         show(as_json, {"port": chosen, **recording.as_dict()}, describe(recording))
         return
@@ -140,14 +140,14 @@ def command(
     chosen = choose_port(port)
     warn = prepare_motion(chosen, yes)
     with Device(chosen) as device:
-        with progress(as_json) as report:
+        with progress() as report:
             running = read_parameters(device, report)
             require_good_pots(device, running, FOLLOWERS)
             designed = plan(pose_of(device), table=running, report=report)
         if save_motion is not None:
             save_leader(save_motion, designed.motion)
         warn()
-        with progress(as_json) as report:
+        with progress() as report:
             recording = record_led(device, out, designed.motion, every, report, running)
     saved = {} if save_motion is None else {"motion": str(save_motion)}
     result = {"port": device.port, **recording.as_dict(), "design": designed.as_dict(), **saved}

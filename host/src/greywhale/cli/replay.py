@@ -54,6 +54,6 @@ def command(motion: Path, out: Path, every: int, overwrite: bool, yes: bool, por
     warn = prepare_motion(chosen, yes)
     with Device(chosen) as device:
         warn()
-        with progress(as_json) as report:
+        with progress() as report:
             recording = record_led(device, out, trajectory, every, report)
     show(as_json, {"port": device.port, "motion": str(motion), **recording.as_dict()}, describe(recording))

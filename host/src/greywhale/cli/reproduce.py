@@ -46,7 +46,7 @@ def command(
     from greywhale.study import choose_workers
 
     request = Request.of(seed, seeds, quick)
-    with progress(as_json) as report:
+    with progress() as report:
         results = run(request, out, choose_workers(executor, workers), report)
         # Slow to import, and of no use before all is done.
         from greywhale.reproduce.pages.report import document

@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from greywhale.cli.bench import need_bench
-from greywhale.cli.output import json_option, show
+from greywhale.cli.output import json_option, show, tell
 from greywhale.protocol.ports import lasting_name
 
 
@@ -60,9 +60,9 @@ def command(
 
     def ready(port: str) -> None:
         click.echo(json.dumps({"port": port}) if as_json else port)
-        click.echo(f"greywhale: {_hint(port)}", err=True)  # standard output is the port alone, for scripts
+        tell(f"greywhale: {_hint(port)}")  # standard output is the port alone, for scripts
 
-    serve.serve(options, on_ready=ready, note=lambda text: click.echo(f"greywhale: {text}", err=True))
+    serve.serve(options, on_ready=ready, note=lambda text: tell(f"greywhale: {text}"))
 
 
 def _hint(port: str) -> str:

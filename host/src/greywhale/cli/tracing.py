@@ -78,6 +78,11 @@ def tell_command(arguments: Sequence[str]) -> None:
         ROOT.debug("packages: %s", ", ".join(f"{name} {version(name)}" for name in PACKAGES))
 
 
+def is_on_stderr() -> bool:
+    """Whether -v tells the steps there."""
+    return any(isinstance(handler, _Terminal) for handler in ROOT.handlers)
+
+
 def end() -> None:
     """Stop listening, and close the file."""
     for handler in list(ROOT.handlers):

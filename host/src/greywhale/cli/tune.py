@@ -107,7 +107,7 @@ def command(
     _check_files(out, journal, resume, overwrite, pictures, [model_file, arm, params])
     model = load_model(model_file, samples=samples, seed=seed, force=force, params=params, arm=arm)
     first = controller_row(controller_file.load(start)) if start is not None else None
-    with progress(as_json) as report:
+    with progress() as report:
         outcome = tune(
             model,
             strategy=strategy,

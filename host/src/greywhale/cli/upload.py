@@ -12,7 +12,7 @@ import click
 from greywhale.board.device import Device
 from greywhale.board.upload import change_parameters, read_parameters
 from greywhale.cli import completion
-from greywhale.cli.output import json_option, port_option, progress, show
+from greywhale.cli.output import json_option, port_option, progress, show, tell
 from greywhale.errors import UserError, counted
 from greywhale.files import controller as controller_file
 from greywhale.protocol.ports import choose_port
@@ -36,15 +36,15 @@ def command(controller: Path, yes: bool, port: str | None, as_json: bool) -> Non
     """
     checked = controller_file.load(controller)
     with Device(choose_port(port)) as device:
-        with progress(as_json) as report:
+        with progress(brief=True) as report:
             running = read_parameters(device, report)
         warnings = _warnings(checked.tuning or {}, running)
         for warning in warnings:  # while Ctrl-C still leaves everything as it was
-            click.echo(f"Warning: {warning}", err=True)
+            tell(f"Warning: {warning}")
         asked = _margins_fail(checked.tuning or {}) and not (yes or as_json) and sys.stdin.isatty()
         if asked and not click.confirm("Store these controllers all the same?", err=True):
             raise UserError(f"{device.port}: nothing was uploaded; the board keeps its controllers.")
-        with progress(as_json) as report:
+        with progress(brief=True) as report:
             uploaded = change_parameters(device, checked.raw_values(), report, running)
     count = len(uploaded.changed)
     what = f"{counted(count, 'parameter')} changed" if count else "nothing had to change"

@@ -9,6 +9,7 @@ import click
 
 from greywhale.cli import tracing
 from greywhale.cli.group import Group
+from greywhale.cli.output import QUIET
 
 # verb -> (module in this folder, what it does)
 VERBS = {
@@ -58,6 +59,7 @@ class Verbs(Group):
 @click.group(cls=Verbs, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
 @click.version_option(package_name="greywhale", prog_name="greywhale")
 @click.option("--verbose", "-v", count=True, help="Tell on stderr what is being done; -vv: every request too.")
+@click.option("--quiet", "-q", is_flag=True, help="Show no progress; errors, warnings and results stay.")
 @click.option(
     "--log-file",
     type=click.Path(path_type=Path),
@@ -65,11 +67,12 @@ class Verbs(Group):
     help="Append all of that to a file, for a bug report.",
 )
 @click.pass_context
-def greywhale(context: click.Context, verbose: int, log_file: Path | None) -> None:
+def greywhale(context: click.Context, verbose: int, quiet: bool, log_file: Path | None) -> None:
     """Identify, tune and run leader-follower robot arms. Every verb has --help and --json;
     params and arm have verbs of their own, which have them.
 
     Exit codes: 0 done, 1 failed, 2 bad usage, 130 interrupted (motors off, files whole).
     """
+    context.meta[QUIET] = quiet
     tracing.begin(verbose, log_file)
     tracing.tell_command(context.obj or ())

@@ -114,7 +114,7 @@ class Search:
         self._held = WindowResidual(self.logs, self.arm, self.joints, True)
 
     def run(self) -> None:
-        self.report("fitting the motors", 0.0)
+        self._begin_part("fitting the motors", 0.0, 1.0)
         self._consider(self._fit_motors())
         self._consider(self._fit_friction())
         if self.begin is not None:
@@ -144,7 +144,9 @@ class Search:
         """Try each of some orders on top of the best model, take the one that helps most, and try the others again."""
         left = [order for order in turn if self._may_follow(order)]
         while left:
-            self.report("choosing the model's order", (number + 1 - len(left) / len(turn)) / len(TURNS))
+            what, share = "choosing the model's order", 1.0 / len(TURNS)
+            done = share * (number + 1 - len(left) / len(turn))
+            self._begin_part(what, done, done)
             before = self.best
             assert before is not None
             extended = [(self._extend(before, order), order) for order in left]
@@ -153,7 +155,11 @@ class Search:
             hopeful = [(one, order) for one, order in extended if sure or self._is_hopeful(one, before)]
             if not hopeful:
                 return
-            found = [self._measure(self._fit_order(one, order)) for one, order in hopeful]
+            share /= len(turn) * len(hopeful)
+            found = []
+            for place, (one, order) in enumerate(hopeful):
+                self._begin_part(what, done + share * place, done + share * place)
+                found.append(self._measure(self._fit_order(one, order)))
             errors = [float(one.held_out or 0.0) for one in found]
             winner = int(np.argmin(errors))
             self._take(found[winner])
@@ -170,6 +176,7 @@ class Search:
     def _fit_begun(self, begin: Candidate) -> Candidate:
         """Fit the quantities of the model to begin with, from its values and from this search's own."""
         assert self.best is not None
+        self._begin_part("fitting the model from before", 0.0, 0.0)
         own = replace(begin, x=begin.space.translate(self.best.x, self.best.space))
         gears = [_with_values(own, gear) for gear in GEARS] if "gap" in begin.kinds else []
         return self._fit_best([begin, own, *gears])
@@ -235,10 +242,13 @@ class Search:
         motors = self.tried[0]
         starts = [space.start(), space.translate(motors.x, motors.space), *self._search_globally(space)]
         residual = self._some_windows()
+        # The last fit sees so many times the windows of the others.
+        what, parts = "least squares from several starts", len(starts) + max(1, self._fitted.windows // SOME_WINDOWS)
         fits = []
         for number, point in enumerate(starts):
-            self.report("least squares from several starts", number / len(starts))
+            self._begin_part(what, number / parts, (number + 1) / parts)
             fits.append(self._fit_windows(residual, space, point, WINDOW_STEPS))
+        self._begin_part(what, len(starts) / parts, 1.0)
         return self._refine(
             self._fitted, Candidate(space, self._mix_blocks(self._fitted, space, fits), "Coulomb friction")
         )
@@ -306,7 +316,7 @@ class Search:
         better.
         """
         assert self.best is not None
-        self.report("comparing with the closed loop", 0.0)
+        self._begin_part("comparing with the closed loop", 0.0, 0.0)
         closed = self._fit_closed(self._fitted, self.best, whole=False)
         if self._closed_error(closed) < (1.0 - WORTH_CLOSED) * self._closed_error(self.best):
             self.best = closed
@@ -331,7 +341,7 @@ class Search:
     def _fit_whole(self) -> None:
         """Fit the chosen order once more, on all data."""
         assert self.best is not None
-        self.report("fitting the chosen model to the whole log", 0.0)
+        self._begin_part("fitting the chosen model to the whole log", 0.0, 0.0)
         if self.begin is None:
             self.best = self._retry_optima(self.best)
         windows = WindowResidual(self.logs, self.arm, self.joints, longest_step=FINE_STEP_S)
@@ -355,10 +365,16 @@ class Search:
         tried = [self._settle(windows, replace(candidate, x=x)).x for x in (candidate.x, other)]
         return replace(candidate, x=self._mix_blocks(windows, candidate.space, tried))
 
+    def _begin_part(self, what: str, done: float, until: float) -> None:
+        """Report a part of the search; the next fit's steps take its share from `done` to `until`."""
+        self._part = what, done, until
+        self.report(what, done)
+
     def _fit_windows(self, windows: WindowResidual, space: Space, start: Floats, steps: int) -> Floats:
         """Run least squares on windows, and count what was simulated."""
         fit = WindowFit(windows, space, start)
-        found = fit.run(steps)
+        what, done, until = self._part
+        found = fit.run(steps, lambda share: self.report(what, done + (until - done) * share))
         self.simulations += fit.simulations
         self.simulated += fit.simulations * windows.seconds
         return found

@@ -8,6 +8,7 @@ model may miss some windows far more than its mean window. Such windows count wi
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -67,13 +68,14 @@ class WindowFit:
         self._usual: Floats = USUAL * np.maximum(np.mean(misfit, axis=1), 1e-9)
         self._costs = self._costs_of(self.x, self._numbers)
 
-    def run(self, most_steps: int) -> Floats:
-        """The best point found."""
+    def run(self, most_steps: int, report: Callable[[float], None] = lambda share: None) -> Floats:
+        """The best point found; `report` gets the share of the steps that are done."""
         with threadpool_limits(limits=1, user_api="blas"):
-            for _ in range(most_steps):
+            for number in range(most_steps):
                 if all(block.done for block in self._blocks):
                     break
                 self._step()
+                report((number + 1) / most_steps)
         return self.x
 
     def _step(self) -> None:
