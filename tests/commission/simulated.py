@@ -40,6 +40,7 @@ class SimulatedRig:
         self.stored = self.before
         self.played: list[ParameterTable] = []
         self.at_play: Callable[[int], None] = lambda number: None
+        self.report: Callable[[str, float], None] = lambda what, fraction: None
 
     def pose(self) -> np.ndarray:
         return POSE
@@ -48,6 +49,7 @@ class SimulatedRig:
         self, motion: Trajectory, path: Path, table: ParameterTable, *, patient: bool = False, watched: bool = True
     ) -> Played:
         self.at_play(len(self.played))
+        self.report("recording", 0.0)
         self.played.append(table)
         leader = motion.at(np.arange(round(motion.duration_s / TICK_S), dtype=np.float64) * TICK_S)
         reference = np.vstack([np.tile(leader[:1], (WAIT, 1)), leader])
@@ -70,8 +72,11 @@ class SimulatedRig:
         self.stored = self.before = table
 
     @contextmanager
-    def connected(self, port: str, before: ParameterTable | None, progress: object) -> Iterator[SimulatedRig]:
+    def connected(
+        self, port: str, before: ParameterTable | None, progress: Callable[[str, float], None]
+    ) -> Iterator[SimulatedRig]:
         """In the place of greywhale.commission.rig.connected."""
+        self.report = progress
         if before is not None and before.crc != self.stored.crc:
             raise UserError(f"{port}: the board runs another set.")
         yield self

@@ -87,8 +87,12 @@ def test_a_good_joint_is_varied_along_with_the_others_but_gets_no_trial_of_its_o
     rig: SimulatedRig, options: Make, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setattr(JointSearch, "good", property(lambda search: search.joint == 0))
-    trials = commission(options()).rounds[0].trials
+    steps: list[str] = []
+    trials = commission(options(), lambda what, fraction, note="": steps.append(what)).rounds[0].trials
     assert len(trials) == 4
+    assert [step for step in steps if "trial" in step] == [
+        f"round 1, trial {number} of 4 at most: recording" for number in range(1, 5)
+    ]
     assert len({trial.rows[0].tobytes() for trial in trials}) > 1
     monkeypatch.setattr(JointSearch, "good", property(lambda search: True))
     assert len(commission(options(out=tmp_path / "all good")).rounds[0].trials) == 1

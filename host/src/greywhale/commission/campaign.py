@@ -89,6 +89,7 @@ class _Campaign:
                 raise UserError(f"{options.model}: {doubt.reason}; {doubt.remedy}.")
         self.rounds: list[Round] = []
         self.before: ParameterTable | None = None
+        self.trying = ""  # which trial of a round runs, for the reports
 
     def run(self) -> Outcome:
         options = self.options
@@ -197,7 +198,8 @@ class _Campaign:
         wanted: list[npt.NDArray[np.int32] | None] = [tuned[search.joint] for search in searches]
         for search in searches:
             search.begin()
-        for _ in range(self.options.trials):
+        for number in range(1, self.options.trials + 1):
+            self.trying = f", trial {number} of {self.options.trials} at most"
             rows = self._best_rows()
             for joint, row in enumerate(wanted):
                 if row is not None:
@@ -210,6 +212,7 @@ class _Campaign:
                     wanted[joint] = search.propose(self._promises(joint))
             if all(row is None or search.good for row, search in zip(wanted, searches, strict=True)):
                 break
+        self.trying = ""
 
     def _promises(self, joint: int) -> Callable[[Row], bool]:
         """Whether the model has nothing against a joint's controller, beside the best of the others."""
@@ -235,7 +238,7 @@ class _Campaign:
 
     def _report(self, stage: str) -> Report:
         def told(what: str, fraction: float, note: str = "") -> None:
-            self.report(f"{stage}: {what}", fraction, note)
+            self.report(f"{stage}{self.trying}: {what}", fraction, note)
 
         return told
 

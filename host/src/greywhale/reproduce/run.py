@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -13,9 +12,9 @@ from greywhale.errors import UserError, os_reason
 from greywhale.reproduce.request import Request
 from greywhale.reproduce.tasks import tasks_of
 from greywhale.study import Workers, run_study
+from greywhale.tune.progress import Report
 
 Results = dict[str, dict[str, Any]]
-Report = Callable[[str, float], None]
 SOURCE = Path(__file__).resolve().parents[1]
 # What only shows: a change of it makes no result old.
 SHOWING = {"cli", "drawing", "pages", "pictures", "render"}
@@ -28,7 +27,13 @@ def run(request: Request, folder: Path, workers: Workers, report: Report | None 
     except OSError as error:
         raise UserError(f"{folder}: cannot be made: {os_reason(error)}.") from None
     about = {"request": request.as_dict(), "program": program_digest()}
-    return run_study(tasks_of(request), workers, results_file(request, folder), report, about=about)
+    tasks = tasks_of(request)
+
+    def tell(what: str, share: float) -> None:
+        if report is not None:
+            report(what, share, f"{round(share * len(tasks))} of {len(tasks)} parts")
+
+    return run_study(tasks, workers, results_file(request, folder), tell, about=about, what="reproducing the paper")
 
 
 def results_file(request: Request, folder: Path) -> Path:

@@ -61,10 +61,11 @@ def watch_upload(port: str, report: Progress) -> Callable[[str], None]:
     def look(text: str) -> None:
         if has_path and not os.path.exists(port):
             raise UserError(f"{port} went away while it was being flashed; connect the board and flash it again.")
-        for verb, stage in (("Writing", "writing"), ("Reading", "verifying")):
+        for verb, stage in (("Reading", "verifying"), ("Writing", "writing")):  # the later one first
             rows = re.findall(rf"{verb} \| (#*)", text)
             if rows:
                 report(stage, min(1.0, len(rows[-1]) / 50))
+                return
 
     return look
 
