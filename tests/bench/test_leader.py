@@ -138,6 +138,21 @@ def test_brings_one_held_arm_elsewhere_while_the_other_stays(motion: Trajectory)
     np.testing.assert_allclose(player.angles, place)
 
 
+def test_brings_an_arm_along_places_and_forgets_those_to_come_when_the_motors_go_on(motion: Trajectory) -> None:
+    player = LeaderPlayer(motion, SLICE, START)
+    places = [(np.full(4, angle), None, seconds) for angle, seconds in ((1.0, 1.0), (-1.0, 2.0), (0.5, 1.0))]
+    player.bring_along(places)
+    for seconds, angle in ((1.0, 1.0), (2.0, -1.0), (1.0, 0.5), (9.0, 0.5)):
+        advance(player, seconds, enabled=False)
+        np.testing.assert_allclose(player.angles, angle, atol=0.05)
+        np.testing.assert_array_equal(player.hold, motion.angles[0])
+    player.bring_along(places)
+    advance(player, 0.5, enabled=False)
+    advance(player, START, enabled=True)
+    advance(player, LET_GO_S + BRING_BACK_S + 5.0, enabled=False)
+    np.testing.assert_array_equal(player.angles, motion.angles[0])
+
+
 def test_after_a_run_both_arms_are_brought_to_the_motion_and_not_where_hands_had_them(motion: Trajectory) -> None:
     player = LeaderPlayer(motion, SLICE, START)
     player.bring(np.ones(4), None, 1.0)

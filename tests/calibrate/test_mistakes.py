@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from greywhale.board.device import Device
 from greywhale.calibrate.motors import LEASE_MS, SHARES
 from greywhale.cli.entry import run
 from greywhale.demo import BenchProcess
@@ -16,6 +17,7 @@ from tools.bench.hands import SECOND_DEG, Hands, run_calibrate
 
 SECOND = ("--second", ",".join(f"{angle:g}" for angle in SECOND_DEG))
 PWM_STEP = 1 / 400
+TRIED = {"pot": "1,2", "motor": "1,2", "arm": "0,1"}  # where it is, and what it may be mixed up with
 ENDS = {"refused": 1, "mended": 0, "noted": 0}
 
 
@@ -36,11 +38,18 @@ def test_calibrate_names_it_and_no_motor_gets_more_than_a_pulse(
     place = USUAL[mistake.on]
     hands = Hands(bench)
     hands.bring("both", SECOND_DEG * 0.0)
+    with Device(bench.port, restart=False) as device:
+        before = device.hello.param_crc
+    writes = bench.command("status")["eeprom_writes"]
     bench.command("pins")
     bench.command(f"mistake {mistake.name}")
     try:
-        done = run_calibrate(hands, tmp_path, *SECOND)
+        done = run_calibrate(hands, tmp_path, *SECOND, "--joints", TRIED[mistake.on])
         seen = bench.command("pins")
+        if done.code != 0:
+            assert bench.command("status")["eeprom_writes"] == writes, "what is refused is not stored"
+            with Device(bench.port, restart=False) as device:
+                assert device.hello.param_crc == before, "and what ran before runs again, also without a restart"
     finally:
         bench.command("mistake none")
         backup = tmp_path / "before-calibration.toml"
@@ -48,6 +57,6 @@ def test_calibrate_names_it_and_no_motor_gets_more_than_a_pulse(
             assert run(["params", "restore", str(backup), "--port", bench.port]) == 0
     assert re.search(mistake.tells(WHERE[mistake.on].index(place)), done.said + done.printed), done.said + done.printed
     assert done.code == ENDS[mistake.ends]
-    assert backup.exists() == (done.code == 0), "what is refused is not stored"
+    assert backup.exists() == (done.code == 0)
     assert max(seen["duties"]) <= SHARES[-1] + PWM_STEP
     assert seen["longest_on_s"] <= LEASE_MS / 1000 + 0.002

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 import subprocess
 import sys
 import threading
@@ -85,7 +84,7 @@ def test_the_third_pose_shows_how_far_the_arms_are_really_apart(
     benches: ExitStack, tmp_path: Path, degrees: float, passes: bool
 ) -> None:
     bench = benches.enter_context(bench_of(mounted_anyhow(5), tmp_path))
-    done = run_calibrate(Hands(bench, apart=degrees), tmp_path, *SECOND, "--no-motors")
+    done = run_calibrate(Hands(bench, apart=degrees), tmp_path, *SECOND, "--no-motors", "--joints", "1")
     assert (done.code == 0) == passes, done.said
     if passes:
         apart = json.loads(done.printed)["apart_rad"]
@@ -103,9 +102,9 @@ def test_an_arm_of_two_joints_is_asked_for_two_joints_and_the_others_are_not_in_
     bench = benches.enter_context(bench_of(arm, tmp_path))
     with Device(bench.port) as device:
         before = read_parameters(device)
-    done = run_calibrate(Hands(bench), tmp_path, *SECOND, "--joints", "0,1")
+    done = run_calibrate(Hands(bench), tmp_path, *SECOND, "--joints", "0,1", "--backup", "mine.toml")
     assert done.code == 0, done.said
-    assert done.said.count("Turn ") == 4
+    assert done.said.count("Sweep ") == 4
     assert "joint 2" not in done.said
     facts = json.loads(done.printed)
     assert facts["joints"] == [0, 1]
@@ -117,7 +116,7 @@ def test_an_arm_of_two_joints_is_asked_for_two_joints_and_the_others_are_not_in_
     assert table.joints_in_use == (0, 1)
     assert table.each("leader", "scale")[2:] == (0, 0)
     verb = [sys.executable, "-m", "greywhale"]
-    restore = [*verb, "params", "restore", "before-calibration.toml", "--port", bench.port]
+    restore = [*verb, "params", "restore", "mine.toml", "--port", bench.port]
     subprocess.run(restore, cwd=tmp_path, check=True, capture_output=True)
     with Device(bench.port) as device:
         assert replace(read_parameters(device), name=before.name) == before
@@ -134,56 +133,9 @@ def test_a_joint_that_was_not_in_use_can_be_again(benches: ExitStack, tmp_path: 
     assert shown(bench, POSE) == pytest.approx(np.tile(np.radians(POSE), 2), abs=0.004)
 
 
-def test_what_is_undone_is_as_before(benches: ExitStack, tmp_path: Path) -> None:
-    bench = benches.enter_context(bench_of(mounted_anyhow(4), tmp_path))
-    with Device(bench.port) as device:
-        before = read_parameters(device)
-    done = run_calibrate(Hands(bench), tmp_path, "--backup", "mine.toml")
-    assert done.code == 0, done.said
-    with Device(bench.port) as device:
-        assert read_parameters(device) != before
-    command = [sys.executable, "-m", "greywhale", "params", "restore", "mine.toml", "--port", bench.port]
-    subprocess.run(command, cwd=tmp_path, check=True, capture_output=True)
-    with Device(bench.port) as device:
-        assert replace(read_parameters(device), name=before.name) == before
-
-
-@pytest.mark.parametrize(
-    ("commands", "says"),
-    [
-        (["swap leader0 leader2"], "Leader potentiometer 0 reads .* but leader potentiometer 2 did: their wires"),
-        (["swap leader0 follower0"], "but follower potentiometer 0 did: the two arms are swapped"),
-        (["pot follower 1 frozen"], "Follower potentiometer 1 reads .* did not move: check that its shaft"),
-        (["pot leader 3 open"], "Leader potentiometer 3 reads 0 to 0 of 1023, at a rail"),
-        (["pot follower 0 shorted"], "Follower potentiometer 0 reads 1023 to 1023 of 1023, at a rail"),
-        (["pot leader 2 loose"], r"Leader potentiometer 2 jumped \d+ times"),
-        (["pot follower 2 slipping"], "[Ff]ollower potentiometer 2 read"),
-        (["motor 2 3", "motor 3 2"], "the motor of joint 2 moved joint 3: their motors, or .* are swapped"),
-        (["motor 1 dead"], "the motor of joint 1 did not move it with 5.2 V: check that the motors' supply is on"),
-    ],
-    ids=["pots swapped", "arms swapped", "frozen", "open", "shorted", "loose", "slipping", "motors swapped", "dead"],
-)
-def test_a_mistake_is_named_and_nothing_is_stored(
-    benches: ExitStack, tmp_path: Path, commands: list[str], says: str
-) -> None:
-    bench = benches.enter_context(bench_of(default_arm(), tmp_path))
-    with Device(bench.port) as device:
-        before = device.hello.param_crc
-    for command in commands:
-        bench.command(command)
-    writes = bench.command("status")["eeprom_writes"]
-    done = run_calibrate(Hands(bench), tmp_path, *SECOND)
-    assert done.code == 1
-    assert re.search(says, done.said), done.said
-    assert bench.command("status")["eeprom_writes"] == writes
-    assert list(tmp_path.glob("*before*")) == []
-    with Device(bench.port, restart=False) as device:
-        assert device.hello.param_crc == before, "what ran before runs again, also without a restart"
-
-
 def test_an_input_that_ends_changes_nothing(benches: ExitStack, tmp_path: Path) -> None:
     bench = benches.enter_context(bench_of(default_arm(), tmp_path))
     command = [sys.executable, "-m", "greywhale", "calibrate", "--port", bench.port]
     done = subprocess.run(command, cwd=tmp_path, stdin=subprocess.DEVNULL, capture_output=True, text=True)
     assert done.returncode == 1
-    assert "the input ended in the middle of the calibration; nothing was changed" in done.stderr
+    assert "the input ended in the middle of the calibration. Nothing was stored." in done.stderr

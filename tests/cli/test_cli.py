@@ -133,6 +133,7 @@ def test_help_needs_no_heavy_imports() -> None:
         (["record", "-o", "none/log.csv"], "none/log.csv: the folder none does not exist; create it"),
         (["export", "--urdf", "default", "--out", "none/a"], "none/a: the folder none does not exist; create it"),
         (["sim", "--eeprom", "none/e.bin"], "none/e.bin: the folder none does not exist; create it"),
+        (["sim", "--blank", "--firmware", "a.hex"], "a blank board has no firmware: leave out --blank or --firmware."),
         (["calibrate", "--backup", "none/b.toml"], "none/b.toml: the folder none does not exist; create it"),
         (["record", "--out", ""], "the value of --out is empty; give one, or leave it out."),
         (["info", "--port="], "the value of --port is empty"),
@@ -373,7 +374,7 @@ def test_sim_says_on_stderr_the_name_that_other_verbs_use(
     captured = capsys.readouterr()
     port, name = found
     assert captured.out == f"{port}\n"
-    assert captured.err.startswith(f"greywhale: the other verbs call this port {name}, and take it by themselves")
+    assert captured.err.startswith(f"greywhale: this bench is {name}; greywhale finds it by itself")
     assert "greywhale info" in captured.err
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
 import subprocess
 import sys
 import threading
@@ -22,10 +23,9 @@ from greywhale.firmware import JOINTS
 
 Floats = npt.NDArray[np.float64]
 
-SWEEP_DEG, SWEEP_S = (75.0, -70.0), 0.5  # a way; a person is slower
+SWEEP_S = 0.5  # a way; a person is slower
 SECOND_DEG = np.array([60.0, 50.0, -45.0, 40.0])
 THIRD_DEG = np.array([-35.0, -20.0, 30.0, -40.0])
-HANGING_DEG = np.array([0.0, -80.0, 0.0, 0.0])
 TRACK_RAD, CENTRE_RAD = (4.7, 5.8), (-0.6, 0.6)
 
 
@@ -65,21 +65,16 @@ class Hands:
     second: Floats = field(default_factory=SECOND_DEG.copy)
     apart: float = 0.0  # degrees by which the follower's joint 1 is held elsewhere in the third pose
     poses: int = 0
-    at: dict[str, Floats] = field(default_factory=lambda: {"leader": np.zeros(JOINTS), "follower": np.zeros(JOINTS)})
 
     def follow(self, asked: str) -> None:
         """Do what a line of `greywhale calibrate` asks."""
-        if asked.startswith("Turn "):
-            side, _, number = asked.removeprefix("Turn ").partition(" joint ")
-            for angle in (*SWEEP_DEG, 0.0):
-                self.at[side][int(number[0])] = angle
-                self.bring(side, self.at[side], SWEEP_S)
+        if sweep := re.match(r"Sweep .*: (leader|follower) joint (\d)", asked):
+            self.do(f"turn {sweep[1]} {sweep[2]} {SWEEP_S}")
         elif asked.startswith("Each motor"):
-            self.bring("follower", HANGING_DEG)
+            self.do("hang")
         elif " pose" in asked:
             self.poses += 1
             pose = {2: self.second, 4: THIRD_DEG}.get(self.poses, np.zeros(JOINTS))
-            self.at = {side: pose.copy() for side in self.at}
             self.bring("both", pose)
             if self.poses == 4 and self.apart:
                 self.bring("follower", pose + self.apart * np.eye(JOINTS)[1])
@@ -87,7 +82,11 @@ class Hands:
     def bring(self, side: str, degrees: Floats, seconds: float = 1.0) -> None:
         """Bring one arm or both there, and wait until they are."""
         angles = " ".join(f"{angle:.6f}" for angle in np.radians(degrees))
-        arrives = self.bench.command(f"hand {side} {angles} {seconds}")["arrives_s"]
+        self.do(f"hand {side} {angles} {seconds}")
+
+    def do(self, command: str) -> None:
+        """Give the hands a command, and wait until they are where it sends them."""
+        arrives = self.bench.command(command)["arrives_s"]
         while self.bench.command("status")["time_s"] < arrives:
             pass
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from greywhale.arm import Arm, Potentiometers
 from greywhale.board.flash import packaged_image
-from greywhale.errors import UserError
+from greywhale.errors import BAD_USAGE, UserError
 from greywhale.files.arm import load_arm
 from greywhale.files.leader import load_leader
 from greywhale.trajectory import human_reaches
@@ -57,6 +57,8 @@ def build_board(options: BenchOptions) -> Any:
         from greywhale_sim._board import Board, BoardError
     except ImportError as error:
         raise UserError(f"the simulated board is not built ({error}); run: make setup") from None
+    if options.blank and options.firmware is not None:
+        raise UserError("a blank board has no firmware: leave out --blank or --firmware.", BAD_USAGE)
     wiring = wiring_of(options.board)
     if not wiring.bootloader.is_file():
         raise UserError(f"{wiring.bootloader}: the bootloader is missing; install the Debian package arduino-core-avr.")

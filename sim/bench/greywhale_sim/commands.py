@@ -3,6 +3,9 @@
 status                             time, motors, voltages, angles, resets, EEPROM, serial line
 leader FILE                        the person takes up another motion, while the motors are off
 hand leader|follower|both A0 A1 A2 A3 [S]  bring a held arm to a pose (rad) within S seconds, while the motors are off
+turn leader|follower 0..3 [S]      turn a joint by hand to both ends and back, as calibrate asks; S seconds each way
+hold DEG [DEG DEG DEG]             hold both arms in a pose, in degrees: one angle for all joints, or four
+hang                               let the follower hang, for the motors' pulses
 pot leader|follower 0..3 STATE     a potentiometer: connected, open (its wire is off, a pull-down wins), floating
                                    (the same without a pull-down) or shorted (to the supply), frozen (its shaft
                                    does not turn), slipping (3 in 10 of every way up are lost), loose (off 2 ms in
@@ -15,6 +18,7 @@ estop press|release                the emergency stop's button, which closes its
 motor 0..3 STATE                   a motor's wires: connected, reversed, dead (one is off), weak, or
                                    on another's driver, 0..3
 power off|on                       cut or restore the board's supply
+help                               the commands that a person needs
 speed 1|max                        real time, or as fast as possible
 quit                               end the bench; there is no answer
 """
@@ -30,7 +34,7 @@ import numpy as np
 from greywhale import arm
 from greywhale.errors import UserError
 from greywhale.files.leader import load_leader
-from greywhale_sim import lies, mistakes
+from greywhale_sim import hands, lies, mistakes
 from greywhale_sim.bench import CLOCK_HZ
 from greywhale_sim.mistakes import POTS
 from greywhale_sim.pins_seen import PinsSeen
@@ -172,6 +176,9 @@ COMMANDS: dict[str, tuple[Callable[..., Answer], str]] = {
     "status": (status, ""),
     "leader": (leader, "FILE.csv"),
     "hand": (hand, "leader|follower|both A0 A1 A2 A3 [SECONDS]"),
+    "turn": (hands.turn, "leader|follower 0..3 [SECONDS]"),
+    "hold": (hands.hold, "DEGREES, once or four times"),
+    "hang": (hands.hang, ""),
     "pot": (pot, f"leader|follower 0..3 {'|'.join((*_WIRINGS, *lies.KINDS))}"),
     "swap": (swap, "POT POT"),
     "mistake": (mistake, "NAME[:PLACE]|none|list"),
@@ -180,5 +187,6 @@ COMMANDS: dict[str, tuple[Callable[..., Answer], str]] = {
     "estop": (estop, "press|release"),
     "line": (line, "flip|lose PROBABILITY"),
     "power": (power, "on|off [WRITES]"),
+    "help": (hands.explain, ""),
     "speed": (speed, "1|max"),
 }

@@ -8,6 +8,8 @@ coasting after a stop shows.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import numpy.typing as npt
 
@@ -16,6 +18,7 @@ from greywhale.joints import ALL, Joints
 from greywhale.trajectory import Trajectory
 
 Array = npt.NDArray[np.float64]
+Place = tuple[Array | None, Array | None, float]  # of leader and follower, None: where it is; seconds on the way
 
 START_S = 1.5  # from enable to the first movement: the soft start takes 1 s
 LET_GO_S = 0.5  # from motors off to the hand on the follower
@@ -38,7 +41,8 @@ class LeaderPlayer:
         self._on = 0  # slices since the motors went on
         self._off = self._let_go + self._bring_back  # slices since they went off, or since the hands set out
         self._left_at = (self._row(0), self._row(0))  # both arms when the hand takes them
-        self._rest = (self.home, self.home)  # where the hands bring leader and follower
+        self.rest = (self.home, self.home)  # where the hands bring leader and follower
+        self._further: list[Place] = []  # and then, one after the other
         self._way = self._bring_back  # slices until they are there
         self.angles: Array = self.home
         self._taken_at: Array = self.home  # the leader arm when the motors went on
@@ -48,19 +52,20 @@ class LeaderPlayer:
     def take_up(self, motion: Trajectory) -> None:
         """Play another motion from the next enable on; held arms are brought to its first pose within a second."""
         self._learn(motion)
-        self._rest = (self.home, self.home)
+        self.rest, self._further = (self.home, self.home), []
         if self.hold is not None:
             self._set_out(self._bring_back)
 
     def bring(self, leader: Array | None, follower: Array | None, seconds: float) -> None:
         """Bring a held arm, or both, to angles (4,) rad within so many seconds; both are held until the next enable."""
+        self.bring_along([(leader, follower, seconds)])
+
+    def bring_along(self, places: Sequence[Place]) -> None:
+        """The same to one place after another."""
         if self.hold is None:
             raise UserError("the hands are on the arms only while the motors are off; stop them first.")
-        self._rest = (
-            self._rest[0] if leader is None else leader * self._in_use,
-            self._rest[1] if follower is None else follower * self._in_use,
-        )
-        self._set_out(max(1, round(seconds / self._slice_s)))
+        self._further = list(places)
+        self._bring_next()
 
     def step(self, enabled: bool, follower: Array) -> None:
         """Advance one slice; `follower` is where the follower is now."""
@@ -73,16 +78,31 @@ class LeaderPlayer:
         elif self._off < self._let_go + self._way:
             self._off += 1
             share = (self._off - self._let_go) / self._way
-            self.angles = self._left_at[0] + share * (self._rest[0] - self._left_at[0])
-            self.hold = self._left_at[1] + share * (self._rest[1] - self._left_at[1])
+            self.angles = self._left_at[0] + share * (self.rest[0] - self._left_at[0])
+            self.hold = self._left_at[1] + share * (self.rest[1] - self._left_at[1])
         else:
-            self.angles, self.hold = self._rest
+            self.angles, self.hold = self.rest
             self._on = 0
+            if self._further:
+                self._bring_next()
 
     @property
     def finished(self) -> bool:
         """The motion was played to its end since the motors went on."""
         return self._on >= self._start + self._rows
+
+    @property
+    def on_the_way(self) -> bool:
+        """Whether the hands have places to go to."""
+        return bool(self._further) or self._off < self._let_go + self._way
+
+    def _bring_next(self) -> None:
+        leader, follower, seconds = self._further.pop(0)
+        self.rest = (
+            self.rest[0] if leader is None else leader * self._in_use,
+            self.rest[1] if follower is None else follower * self._in_use,
+        )
+        self._set_out(max(1, round(seconds / self._slice_s)))
 
     def _set_out(self, way: int) -> None:
         """Begin to bring both arms to their places, from where they are held."""
@@ -101,7 +121,7 @@ class LeaderPlayer:
         if self._on == 0:
             self._off = 0
             self.hold = None
-            self._rest, self._way = (self.home, self.home), self._bring_back
+            self.rest, self._further, self._way = (self.home, self.home), [], self._bring_back
             self._taken_at = self.angles
         self._on += 1
         row = self._on - self._start

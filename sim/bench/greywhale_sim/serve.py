@@ -5,6 +5,7 @@ greywhale_sim`.
 from __future__ import annotations
 
 import json
+import math
 import os
 import select
 import signal
@@ -36,6 +37,7 @@ class ServeOptions(BenchOptions):
     speed: str = "1"  # "1" real time, "max" as fast as possible
     link: Path | None = None  # a lasting name for the port
     control: bool = field(default=False)  # take commands from standard input; its end ends the bench
+    by_hand: bool = False  # the same for a person, who is answered in words
 
 
 @contextmanager
@@ -71,8 +73,8 @@ def serve(
     """
     with running(options, plant, note) as server, _ending_on_signals(server):
         on_ready(server.port.path if options.link is None else str(options.link))
-        if options.control:
-            server.while_waiting = Control(server).look
+        if options.control or options.by_hand:
+            server.while_waiting = (ByHand if options.by_hand else Control)(server).look
         while not server.ending:
             for _ in range(TURNS_PER_COMMAND):
                 server.turn()
@@ -138,4 +140,24 @@ class Control:
             answer = commands.run(self._server, text)
         except UserError as error:
             answer = {"error": error.message}
+        self._say(answer)
+
+    def _say(self, answer: commands.Answer) -> None:
         print(json.dumps(answer), flush=True)
+
+
+class ByHand(Control):
+    """The same for a person: answers in words, and a word when the hands are where they were sent."""
+
+    _arrives_s = math.inf
+
+    def look(self) -> None:
+        if self._server.bench.time_s >= self._arrives_s:
+            self._arrives_s = math.inf
+            print("There.", flush=True)
+        super().look()
+
+    def _say(self, answer: commands.Answer) -> None:
+        self._arrives_s = answer.get("arrives_s", self._arrives_s)
+        sentence = answer.get("error") or answer.get("says")
+        print(sentence or "\n".join(f"{name}: {value}" for name, value in answer.items()), flush=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
-from greywhale.calibrate.guide import Guide, Options, Result, calibrate
+from greywhale.calibrate.guide import Options, Result, calibrate
+from greywhale.calibrate.person import Answer, Guide
 
-__all__ = ["Guide", "Options", "Result", "calibrate"]
+__all__ = ["Answer", "Guide", "Options", "Result", "calibrate"]

@@ -8,7 +8,7 @@ at most (`ku_mv`, with neither integral part nor damping) and the others none; t
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -63,12 +63,16 @@ class Motor:
         return self.way / self.volts
 
 
-def examine_motor(device: Device, table: ParameterTable, joint: int) -> Motor:
-    """Try a motor with ever more voltage. `table` is what the board shall run otherwise, with the potentiometers
-    calibrated; the pulses' own set runs afterwards. Raises UserError where no joint moves, or another one.
+def examine_motor(
+    device: Device, table: ParameterTable, joint: int, report: Callable[[float], None] = lambda volts: None
+) -> Motor:
+    """Try a motor with ever more voltage; `report` is told each. `table` is what the board shall run otherwise, with
+    the potentiometers calibrated; the pulses' own set runs afterwards. Raises UserError where no joint moves, or
+    another one.
     """
     for share in SHARES:
         volts = share * table.supply_v
+        report(volts)
         weak = pulse_table(table, joint, volts)
         try:
             way = _answer(device, weak, joint)

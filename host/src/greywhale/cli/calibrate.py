@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import queue
-import shutil
-import sys
-import textwrap
-import threading
+import contextlib
+from collections.abc import Iterator
 from pathlib import Path
 
 import click
@@ -19,6 +16,7 @@ from greywhale.board.upload import upload_set
 from greywhale.calibrate import Options, Result, calibrate
 from greywhale.calibrate.solve import Calibration
 from greywhale.cli.output import json_option, overwrite_option, port_option, show
+from greywhale.cli.person import Terminal
 from greywhale.errors import BAD_USAGE, UserError, cut
 from greywhale.files import parameter_file
 from greywhale.files.outputs import require_new
@@ -62,8 +60,8 @@ def command(
     """Find zero, scale and direction of every potentiometer, the joints' limits, and each motor's direction.
 
     You turn every joint to both ends, then hold both arms in a pose, motors off. Then each motor gets short weak
-    pulses. Enter confirms each step; a script may write the lines. What is wired or mounted wrongly is named. The end
-    shows the result, stores it, and says how to undo it.
+    pulses. Enter confirms each step, b goes back, a repeats, q ends; a script may write the lines. What is wired or
+    mounted wrongly is named. The end shows the result, stores it if you say yes, and says how to undo it.
 
     An arm with fewer joints needs neither potentiometers nor motors for the others: --joints 0,1 asks for those two
     alone, and tells the board that the others are not in use.
@@ -80,15 +78,16 @@ def command(
     )
     require_new(overwrite, backup)
     with Device(choose_port(port)) as device:
-        person = Terminal()
-        result = calibrate(device, person, poses)
-        text = _text(result)
-        if not yes:
-            person.tell(text)
-            person.ask("Store this?")
-            person.wait()
-        parameter_file.save(backup, result.before)
-        upload_set(device, result.after)
+        with _saying("Nothing was stored."), contextlib.closing(Terminal()) as person:
+            result = calibrate(device, person, poses)
+            text = _text(result)
+            if not yes:
+                person.tell(text)
+            if not (yes or person.agrees("Store this?")):
+                raise UserError("you said no.")
+            parameter_file.save(backup, result.before)
+        with _saying(f"The board may have the new parameters; to undo: greywhale params restore {backup}"):
+            upload_set(device, result.after)
     undo = (
         f"Stored. To undo: greywhale params restore {backup}\n"
         "An arm file needs these potentiometers too: greywhale arm match arm.toml"
@@ -96,49 +95,14 @@ def command(
     show(as_json, _facts(device.port, result, backup), f"{text}\n\n{undo}" if yes else undo)
 
 
-class Terminal:
-    """The person at this terminal, or a script that writes a line for each step."""
-
-    def __init__(self) -> None:
-        self._lines: queue.SimpleQueue[bool] = queue.SimpleQueue()
-        self._live = sys.stderr.isatty()
-        threading.Thread(target=self._read, daemon=True).start()
-
-    def ask(self, what: str) -> None:
-        self.tell(f"{what} [Enter]")
-
-    def show(self, live: str) -> None:
-        if self._live:
-            click.echo(f"\r  {live:<20}", nl=False, err=True)
-
-    def is_done(self) -> bool:
-        try:
-            confirmed = self._lines.get_nowait()
-        except queue.Empty:
-            return False
-        return self._check(confirmed)
-
-    def wait(self) -> None:
-        """Until the person confirms."""
-        self._check(self._lines.get())
-
-    def tell(self, what: str) -> None:
-        if self._live:
-            width = min(120, shutil.get_terminal_size().columns)
-            what = "\n".join(textwrap.fill(line, width) if len(line) > width else line for line in what.splitlines())
-        click.echo(what, err=True)
-
-    def _check(self, confirmed: bool) -> bool:
-        if not confirmed:
-            raise UserError("the input ended in the middle of the calibration; nothing was changed.")
-        if self._live:
-            click.echo("\r" + " " * 24 + "\r", nl=False, err=True)
-        return True
-
-    def _read(self) -> None:
-        for _ in sys.stdin:
-            self._lines.put(True)
-        self._lines.put(False)
+@contextlib.contextmanager
+def _saying(note: str) -> Iterator[None]:
+    """Whatever ends this early, say what the board has."""
+    try:
+        yield
+    except (UserError, KeyboardInterrupt) as error:
+        error.add_note(note)
+        raise
 
 
 def _angles(option: str, text: str) -> npt.NDArray[np.float64]:

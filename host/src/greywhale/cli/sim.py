@@ -24,6 +24,7 @@ from greywhale.protocol.ports import lasting_name
 @click.option(
     "--mistake", multiple=True, metavar="NAME", help="Wire it wrongly, NAME or NAME:PLACE; `--mistake list` names all."
 )
+@click.option("--by-hand", is_flag=True, help="Be the person: type `turn leader 0`, `hold 30`; `help` lists all.")
 @json_option
 def command(
     board: str,
@@ -35,6 +36,7 @@ def command(
     firmware: Path | None,
     blank: bool,
     mistake: tuple[str, ...],
+    by_hand: bool,
     as_json: bool,
 ) -> None:
     """Start the simulated bench and print its serial port; Ctrl-C ends it.
@@ -56,21 +58,24 @@ def command(
         blank=blank,
         firmware=firmware,
         mistakes=mistake,
+        by_hand=by_hand,
     )
 
     def ready(port: str) -> None:
         click.echo(json.dumps({"port": port}) if as_json else port)
         tell(f"greywhale: {_hint(port)}")  # standard output is the port alone, for scripts
+        if by_hand:
+            tell("Your hands are words here, such as: turn leader 0, hold 30, hang. help lists all.")
 
     serve.serve(options, on_ready=ready, note=lambda text: tell(f"greywhale: {text}"))
 
 
 def _hint(port: str) -> str:
-    """What a person does next, and the name that the other verbs use."""
+    """What a person does next, and the name of the port for all other commands."""
     name = lasting_name(port)
     if name == port:  # no other program finds it by itself
         return f"now, in a second terminal: greywhale info --port {port}. Ctrl-C here ends the bench."
     return (
-        f"the other verbs call this port {name}, and take it by themselves if there is no other board. "
+        f"this bench is {name}; greywhale finds it by itself if there is no other board. "
         "Now, in a second terminal: greywhale info. Ctrl-C here ends the bench."
     )

@@ -1,0 +1,96 @@
+"""The person at this terminal, or a script that writes a line for each step."""
+
+from __future__ import annotations
+
+import os
+import select
+import shutil
+import sys
+import termios
+import textwrap
+
+import click
+
+from greywhale.calibrate import Answer
+from greywhale.errors import UserError, cut
+
+WORDS = {"back": Answer.BACK, "again": Answer.AGAIN, "skip": Answer.SKIP, "yes": Answer.DONE, "": Answer.DONE}
+WORDS |= {word[:1]: answer for word, answer in WORDS.items()}
+NO = ("n", "no", "q", "quit")
+
+
+class Terminal:
+    """Asks on stderr, reads from stdin. What was typed before a question is no answer to it; in a pipe each line is."""
+
+    def __init__(self) -> None:
+        self.patient = sys.stdin.isatty()
+        self._live = sys.stderr.isatty()
+        self._typed = b""
+        self._shown = 0  # columns of the live reading
+
+    def ask(self, what: str) -> None:
+        self._forget_typed()
+        self.tell(f"{what} [Enter]")
+
+    def show(self, live: str) -> None:
+        if self._live:
+            text = live[: self._columns() - 3]
+            click.echo(f"\r  {text:<{self._shown}}", nl=False, err=True)
+            self._shown = len(text)
+
+    def answer(self) -> Answer | None:
+        """None before there is one."""
+        line = self._line(wait=False)
+        if line is None:
+            return None
+        word = line.strip().lower()
+        if word in ("q", "quit"):
+            raise UserError("the calibration was ended.")
+        if word in WORDS or not self.patient:
+            return WORDS.get(word, Answer.DONE)
+        self.tell(f"{cut(line.strip(), 20)!r} is no answer; press Enter when it is done, or type b, a, s or q.")
+        return None
+
+    def agrees(self, what: str) -> bool:
+        """Whether the person says yes. A script's line does, if it does not say no."""
+        word = ""
+        while word not in ("y", "yes", *NO):
+            self._forget_typed()
+            self.tell(f"{what} [yes or no]" if self.patient else f"{what} [Enter]")
+            word = (self._line(wait=True) or "").strip().lower()
+            if not self.patient:
+                break
+        return word not in NO
+
+    def tell(self, what: str) -> None:
+        if self._live:
+            width = min(120, self._columns())
+            what = "\n".join(textwrap.fill(line, width) if len(line) > width else line for line in what.splitlines())
+            self.close()
+        click.echo(what, err=True)
+
+    def close(self) -> None:
+        """Take the live reading away: something else is printed next."""
+        if self._shown:
+            click.echo("\r" + " " * (self._shown + 2) + "\r", nl=False, err=True)
+            self._shown = 0
+
+    def _columns(self) -> int:
+        return shutil.get_terminal_size().columns
+
+    def _forget_typed(self) -> None:
+        if self.patient:
+            self._typed = b""
+            termios.tcflush(sys.stdin, termios.TCIFLUSH)
+
+    def _line(self, wait: bool) -> str | None:
+        """The next line without its end, None where it has not come yet. Nothing is read ahead of the need."""
+        while b"\n" not in self._typed:
+            if not select.select([sys.stdin], [], [], None if wait else 0.0)[0]:
+                return None
+            data = os.read(sys.stdin.fileno(), 4096)
+            if not (data or self._typed):
+                raise UserError("the input ended in the middle of the calibration.")
+            self._typed += data or b"\n"  # the last line needs no end
+        line, _, self._typed = self._typed.partition(b"\n")
+        return line.decode("utf-8", "replace")

@@ -1,0 +1,68 @@
+"""The person's hands as commands of a running bench, in degrees, as `greywhale calibrate` asks for them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from greywhale.arm.parameters import JOINT_NAMES
+from greywhale.errors import UserError
+from greywhale_sim.server import Server
+
+ENDS_DEG = (75.0, -70.0)  # of a sweep, the positive one first; no track ends in between
+HANGING_DEG = (0.0, -80.0, 0.0, 0.0)
+EACH_WAY_S, PAUSE_S, BRING_S = 1.5, 0.1, 1.0
+FARTHEST_DEG, LONGEST_S = 359.0, 60.0
+
+HELP = """\
+turn leader 0      leader joint 0 to its positive end, its negative end, back
+turn leader 0 3    the same with 3 seconds each way; follower as well
+hold 30            both arms with every joint at 30 degrees
+hold 60 50 -45 40  both arms with each joint at an angle of its own
+hang               the follower hangs down, for the motors' pulses
+mistake NAME       wire it wrongly, a name of sim --mistake list; none mends all
+estop press        the emergency stop's button; release
+quit               end the bench; docs/bench.md has more commands"""
+
+
+def turn(server: Server, side: str, joint: str, seconds: str = f"{EACH_WAY_S}") -> dict[str, Any]:
+    """Turn one joint to its positive end, to its negative end, and back; each way takes so many seconds."""
+    number, each_way = int(joint), float(seconds)
+    if side not in ("leader", "follower") or not 0 <= number < len(JOINT_NAMES) or not 0.0 < each_way <= LONGEST_S:
+        raise ValueError
+    if server.bench.leader.on_the_way:
+        raise UserError("the hands are still on their way; wait until they are there.")
+    rest = server.bench.leader.rest[side == "follower"]
+    positive, negative = (np.where(np.arange(len(rest)) == number, np.radians(end), rest) for end in ENDS_DEG)
+    steps = [(positive, each_way), (positive, PAUSE_S), (negative, each_way), (negative, PAUSE_S), (rest, each_way)]
+    follower = side == "follower"
+    server.bench.leader.bring_along([(None if follower else to, to if follower else None, s) for to, s in steps])
+    ends = " and then to ".join(f"{end:g}" for end in ENDS_DEG)
+    said = f"{side} joint {number}, {JOINT_NAMES[number]}, turns to {ends} degrees, and back"
+    return _arriving(server, sum(seconds for _, seconds in steps), said)
+
+
+def hold(server: Server, *degrees: str) -> dict[str, Any]:
+    """Hold both arms in one pose: an angle for each joint, or one for all."""
+    angles = np.array([float(word) for word in degrees])
+    if len(angles) not in (1, len(JOINT_NAMES)) or not np.all(np.abs(angles) <= FARTHEST_DEG):
+        raise ValueError
+    pose = np.radians(np.broadcast_to(angles, len(JOINT_NAMES)))
+    server.bench.leader.bring(pose, pose, BRING_S)
+    return _arriving(server, BRING_S, f"both arms go to {' '.join(degrees)} degrees")
+
+
+def hang(server: Server) -> dict[str, Any]:
+    """Let the follower hang, as it should when its motors get pulses."""
+    server.bench.leader.bring(None, np.radians(HANGING_DEG), BRING_S)
+    return _arriving(server, BRING_S, "the follower hangs down")
+
+
+def explain(server: Server) -> dict[str, Any]:
+    """What the hands can do."""
+    return {"says": HELP}
+
+
+def _arriving(server: Server, seconds: float, says: str) -> dict[str, Any]:
+    return {"says": f"{says}; {seconds:g} s.", "arrives_s": round(server.bench.time_s + seconds, 6)}
