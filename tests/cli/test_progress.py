@@ -44,9 +44,9 @@ def on_a_terminal(monkeypatch: pytest.MonkeyPatch, kind: str) -> str:
     return everything(seen)
 
 
-def test_a_terminal_sees_the_share_done_the_time_left_and_the_note(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_terminal_sees_the_step_the_share_done_and_the_note(monkeypatch: pytest.MonkeyPatch) -> None:
     text = on_a_terminal(monkeypatch, "xterm")
-    for words in ("tuning", "50 %", " left", "cost 0.0625"):
+    for words in ("tuning", "50 %", " so far", "cost 0.0625"):
         assert words in text
 
 

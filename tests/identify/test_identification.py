@@ -152,6 +152,22 @@ def test_interrupt_before_any_model_is_an_interrupt(recorded: Recorded, white_bo
         identify([recorded.fit], white_box, report=interrupt_at("fitting the motors"))
 
 
+def test_the_share_moves_on_with_every_step_of_a_fit(recorded: Recorded, white_box: ArmParameters) -> None:
+    """The last and longest fit of a stage as well, which sees all windows."""
+    shares: dict[str, list[float]] = {}
+
+    def report(what: str, fraction: float) -> None:
+        shares.setdefault(what, []).append(fraction)
+        interrupt_at("choosing the model's order")(what, fraction)
+
+    identify([_first(recorded.fit, 5.0)], white_box, report=report)
+    told = shares["least squares from several starts"]
+    assert told == sorted(told)
+    starts = 4
+    assert len(set(told)) > 2 * starts
+    assert starts / (starts + 1) < told[-1] <= 1.0
+
+
 def test_model_that_learnt_its_controller_is_warned_about() -> None:
     def verdict(name: str, role: str, model: float) -> Verdict:
         return Verdict(name, role, "closed loop", (1.0, 0.0, 0.0, 0.0), (model, 0.0, 0.0, 0.0))

@@ -85,6 +85,7 @@ LOOP_STEPS = 10
 # The side of its gap from which each motor starts is chosen anew at most so often, each time for some steps of the fit.
 SETTLINGS = 4
 SETTLED_STEPS = 8
+FITS = 3  # so many it often takes until a candidate is settled; only the share that is reported hangs on it
 # Searched numbers that differ by so much are another optimum and get a fit of their own.
 ELSEWHERE = 0.3
 # Readings come in steps, so finite differences in the closed loop are wider than in the windows.
@@ -158,7 +159,8 @@ class Search:
             share /= len(turn) * len(hopeful)
             found = []
             for place, (one, order) in enumerate(hopeful):
-                self._begin_part(what, done + share * place, done + share * place)
+                starts = len(GEARS) + 2 if order == "backlash" else 1
+                self._begin_part(what, done + share * place, done + share * (place + 1), FITS * starts)
                 found.append(self._measure(self._fit_order(one, order)))
             errors = [float(one.held_out or 0.0) for one in found]
             winner = int(np.argmin(errors))
@@ -176,7 +178,7 @@ class Search:
     def _fit_begun(self, begin: Candidate) -> Candidate:
         """Fit the quantities of the model to begin with, from its values and from this search's own."""
         assert self.best is not None
-        self._begin_part("fitting the model from before", 0.0, 0.0)
+        self._begin_part("fitting the model from before", 0.0, 1.0, FITS * (len(GEARS) + 3))
         own = replace(begin, x=begin.space.translate(self.best.x, self.best.space))
         gears = [_with_values(own, gear) for gear in GEARS] if "gap" in begin.kinds else []
         return self._fit_best([begin, own, *gears])
@@ -341,7 +343,7 @@ class Search:
     def _fit_whole(self) -> None:
         """Fit the chosen order once more, on all data."""
         assert self.best is not None
-        self._begin_part("fitting the chosen model to the whole log", 0.0, 0.0)
+        self._begin_part("fitting the chosen model to the whole log", 0.0, 1.0, FITS * 3)
         if self.begin is None:
             self.best = self._retry_optima(self.best)
         windows = WindowResidual(self.logs, self.arm, self.joints, longest_step=FINE_STEP_S)
@@ -365,16 +367,17 @@ class Search:
         tried = [self._settle(windows, replace(candidate, x=x)).x for x in (candidate.x, other)]
         return replace(candidate, x=self._mix_blocks(windows, candidate.space, tried))
 
-    def _begin_part(self, what: str, done: float, until: float) -> None:
-        """Report a part of the search; the next fit's steps take its share from `done` to `until`."""
-        self._part = what, done, until
+    def _begin_part(self, what: str, done: float, until: float, fits: int = 1) -> None:
+        """Report a part of the search; about so many fits take its share from `done` to `until`."""
+        self._part = what, done, until, (until - done) / fits
         self.report(what, done)
 
     def _fit_windows(self, windows: WindowResidual, space: Space, start: Floats, steps: int) -> Floats:
         """Run least squares on windows, and count what was simulated."""
         fit = WindowFit(windows, space, start)
-        what, done, until = self._part
-        found = fit.run(steps, lambda share: self.report(what, done + (until - done) * share))
+        what, done, until, each = self._part
+        found = fit.run(steps, lambda share: self.report(what, min(until, done + each * share)))
+        self._part = what, min(until, done + each), until, each
         self.simulations += fit.simulations
         self.simulated += fit.simulations * windows.seconds
         return found
