@@ -233,6 +233,8 @@ def changed(folder: Path, old: str, new: str) -> Log:
         ("0.005000,", "0.000000,", "line 12, column time_s: time must increase"),
         ("-0.300000,", "nan,", "line 11, column follower_2: nan is not a finite number"),
         ("0.400000,-", "-", "line 11: 13 values where 14 columns are named"),
+        ("0.300000,", "\u0660.\u0663,", "line 11, column leader_2: '\u0660.\u0663' is not a number"),
+        ("period_ms: 20", "period_ms: \u0662\u0660", "period_ms is '\u0662\u0660' in the header"),
         ("-0.300000,", "-57.3,", "line 11, column follower_2: -57.3 rad is beyond 8 rad; logs are in rad"),
         ("0.200000,", "8.001,", "line 11, column leader_1: 8.001 rad is beyond 8 rad"),
         (",15.000,", ",15000,", "line 11, column voltage_2: 15000 V is beyond 33 V; logs are in V"),

@@ -57,6 +57,7 @@ def test_a_log_from_before_a_parameter_was_added_has_its_default() -> None:
     ("old", "new", "words"),
     [
         ("kp=", "kq=", "the header has the parameter joint0.kq, which this greywhale does not know; read the log with"),
+        ("supply_mv=15000", "supply_mv=\u0661", "a parameter in the header is no number: \u0661"),
         ("joint0: ", "joint7: ", "the header has the parameter joint7.ne_c, which"),
         (
             "period_ms=1",

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from greywhale.errors import UserError, cut
+from greywhale.formats.csv_file import number
 from greywhale.protocol import schema
 from greywhale.table import ParameterTable, find_board, physical
 
@@ -42,7 +43,7 @@ def table_in(facts: Mapping[str, str], name: str, crc: int | None, board: str | 
         )
     try:
         raw = [
-            parameter.to_raw_as_given(float(found[parameter.name])) if parameter.name in found else parameter.default
+            parameter.to_raw_as_given(number(found[parameter.name])) if parameter.name in found else parameter.default
             for parameter in schema.PARAMETERS
         ]
         table = ParameterTable(tuple(raw), find_board(board), name)

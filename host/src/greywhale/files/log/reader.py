@@ -223,7 +223,7 @@ def _whole(facts: dict[str, str], key: str, name: str, least: int, most: int) ->
     if text is None:
         return None
     try:
-        value = int(text, 0)
+        value = int(text, 0) if csv_file.is_plain(text) else least - 1
     except ValueError:
         value = least - 1
     if not least <= value <= most:
