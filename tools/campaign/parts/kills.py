@@ -29,6 +29,7 @@ from greywhale.demo import BenchProcess
 from greywhale.errors import UserError
 from greywhale.files.leader import load_leader
 from greywhale.files.log import read_log
+from greywhale.files.log.check import Check
 from tools.campaign.kill_boards import Bench, Board, Fake, NoBoard
 from tools.campaign.kill_verbs import VERBS, Verb, make_inputs
 from tools.campaign.killing import NEVER, Ending, Held, Moment, run, wait_for_programs
@@ -175,6 +176,8 @@ def _problem_of_log(path: Path, rows: int, finished: bool) -> str:
         log = read_log(path)
     except UserError as error:
         return f"cannot be read: {error.message}"
+    if log.condition.check not in ((Check.WHOLE,) if finished else (Check.WHOLE, Check.UNCHECKED)):
+        return f"has a check that says {log.condition.check.value}"
     if finished and not (log.complete and rows in (0, len(log.time))):
         return f"has {len(log.time)} rows, complete: {log.complete}"
     steps = np.diff(log.time)

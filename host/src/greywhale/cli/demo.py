@@ -8,8 +8,9 @@ import click
 
 from greywhale.cli import completion
 from greywhale.cli.bench import need_bench
-from greywhale.cli.output import json_option, progress, show
+from greywhale.cli.output import json_option, progress, show, warn
 from greywhale.errors import MOST_SEED
+from greywhale.files.leader import load_leader
 from greywhale.files.outputs import require_folder
 
 
@@ -88,6 +89,8 @@ def command(
         budget=budget,
         prove=prove,
     )
+    if leader is not None:
+        warn(load_leader(leader).remarks)
     with progress(as_json) as report:
         result = demo.run(options, report)
     show(as_json, result.as_dict(), result.text())

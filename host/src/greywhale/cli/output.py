@@ -7,7 +7,7 @@ import json
 import logging
 import sys
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any, Protocol, TypeVar
 
 import click
@@ -54,6 +54,12 @@ def show(as_json: bool, result: Mapping[str, Any], text: str) -> None:
         click.echo(json_of(result))
     else:
         click.echo(printable(text))
+
+
+def warn(sentences: Iterable[str]) -> None:
+    """Tell people at once what they should know before they go on."""
+    for sentence in sentences:
+        click.echo(printable(f"Warning: {sentence}"), err=True)
 
 
 def json_of(result: Mapping[str, Any]) -> str:

@@ -54,7 +54,8 @@ def table_in(facts: Mapping[str, str], name: str, crc: int | None, board: str | 
     if crc is not None and len(found) == len(schema.PARAMETERS) and table.crc != crc:
         raise UserError(
             f"{name}: the parameters in the header have CRC 0x{table.crc:04x}, but its parameter_crc is 0x{crc:04x}; "
-            "the header was changed. Take the log as it was recorded, or delete the lines with the parameters."
+            "the header was changed. Take the log as it was recorded, or delete the lines with the parameters and with "
+            "the check."
         )
     return table
 
