@@ -54,6 +54,7 @@ class Faults:
     repeat_ticks: frozenset[int] = frozenset()  # samples that come twice
     restart_at: int | None = None  # tick at which the board restarts
     restart_says_hello: bool = True
+    jump_at: tuple[int, int] | None = None  # tick at which the clock jumps, and by how many ticks
     unplug_at: int | None = None
     stop_sampling_at: int | None = None
     fault_at: tuple[int, Fault, int] | None = None  # tick, fault, where
@@ -215,6 +216,8 @@ class FakeBoard:
     def _live_a_tick(self) -> None:
         faults, before = self.faults, self.state
         self.tick += 1
+        if faults.jump_at is not None and self.tick >= faults.jump_at[0]:
+            self.tick, faults.jump_at = self.tick + faults.jump_at[1], None
         if faults.unplug_at is not None and self.tick >= faults.unplug_at:
             self._unplug()
             return

@@ -104,6 +104,41 @@ def test_lost_samples_are_counted_and_not_invented(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("ticks", "enable", "words"),
+    [
+        ((1 << 31) - 1, False, r"the board's clock jumped by 2147483\.648 s between two samples, so the times"),
+        ((1 << 31) - 1, True, r"the board's clock jumped by 2147483\.648 s between two samples, so the times"),
+        (
+            5_000,
+            False,
+            r"end of the recording was lost: after \d\.\d+ of 3 s no sample came for 5\.001 s by the board's",
+        ),
+    ],
+)
+def test_a_recording_whose_end_never_came_is_not_what_was_asked_for(
+    tmp_path: Path, ticks: int, enable: bool, words: str
+) -> None:
+    out = tmp_path / "log.csv"
+    with FakeBoard(Faults(jump_at=(400, ticks))) as board:
+        with pytest.raises(UserError, match=words) as caught, open_device(board) as device:
+            record(device, out, 3.0, enable=enable)
+        assert board.state is State.DISABLED
+    assert caught.value.exit_code == 1
+    assert caught.value.__notes__ == [f"What was recorded is in {out}, marked as interrupted."]
+    log = read_log(out)
+    assert 300 < len(log.time) < 400
+    assert (log.complete, log.dropped < 3000) == (False, True)
+
+
+def test_a_few_samples_that_are_lost_at_the_end_are_counted(tmp_path: Path) -> None:
+    out = tmp_path / "log.csv"
+    with FakeBoard(Faults(lose_ticks=frozenset(range(500, 510)))) as board, open_device(board) as device:
+        recording = record(device, out, 0.504, every=1)
+    assert 500 < recording.rows + recording.dropped <= 504
+    assert (recording.duration_s, read_log(out).complete) == (0.504, True)
+
+
+@pytest.mark.parametrize(
     ("faults", "words"),
     [
         (Faults(restart_at=200), "restarted in the middle"),

@@ -336,13 +336,45 @@ def test_evaluate_prints_a_table_for_people(tmp_path: Path, capsys: Captured) ->
     assert lines[6].split() == ["total", "0.040000"]
 
 
+def test_evaluate_warns_of_a_log_that_is_not_as_it_was_recorded(tmp_path: Path, capsys: Captured) -> None:
+    path = tmp_path / "log.csv"
+    write_log(path)
+    lines = path.read_text().splitlines(keepends=True)
+    path.write_text("".join([*lines[:300], *lines[700:]]))
+    told = [
+        f"{path}: only 600 of its 1000 rows are there, so nothing shows whether these are as they were recorded.",
+        f"{path}: samples are missing for 0.401 s (400 samples) after 0.288 s; nothing is known of the arm there.",
+    ]
+    assert entry.run(["evaluate", str(path)]) == 0
+    said = capsys.readouterr().out.splitlines()
+    assert said[0].endswith("600 samples, 0.60 s of the log's 1.00 s")
+    assert said[-2:] == [f"Warning: {remark}" for remark in told]
+    code, answer = ask(capsys, "evaluate", str(path))
+    (facts,) = answer["logs"]
+    assert (code, facts["check"], facts["remarks"]) == (0, "shortened", told)
+    assert facts["gaps"] == [{"after_s": 0.288, "length_s": 0.401, "samples": 400}]
+    assert (facts["duration_s"], facts["span_s"]) == pytest.approx((0.598, 0.999))
+
+
+def test_a_log_is_replayed_with_a_warning_where_it_is_not_as_it_was_recorded(tmp_path: Path, capsys: Captured) -> None:
+    path, out = tmp_path / "log.csv", tmp_path / "again.csv"
+    write_log(path, 0.2)
+    path.write_text(path.read_text().replace(",0.100000", ",0.110000", 1))
+    with FakeBoard() as board:
+        assert entry.run(["replay", str(path), "-o", str(out), "--yes", "--port", board.port, "--json"]) == 0
+    answer, said = capsys.readouterr()
+    remark = f"{path}: its check fails: rows or header are not as they were recorded."
+    assert json.loads(answer)["warnings"] == [remark]
+    assert said.startswith(f"Warning: {remark}\n")
+
+
 def test_a_bad_log_leaves_no_picture(tmp_path: Path, capsys: Captured) -> None:
     write_log(tmp_path / "log.csv")
     text = (tmp_path / "log.csv").read_text()
     (tmp_path / "log.csv").write_text(text.replace("0.100000", "inf", 1))
     code, answer = ask(capsys, "evaluate", str(tmp_path / "log.csv"), "--picture", str(tmp_path / "p.png"))
     assert code == 1
-    assert "line 11, column leader_0: inf is not a finite number" in answer["error"]
+    assert "line 12, column leader_0: inf is not a finite number" in answer["error"]
     assert not (tmp_path / "p.png").exists()
 
 

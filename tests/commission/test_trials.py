@@ -95,6 +95,7 @@ def test_a_joint_that_hunts_is_stopped_and_named(trials: Trials, rig: SimulatedR
 
 
 def test_what_is_in_the_journal_needs_no_arm(trials: Trials, rig: SimulatedRig) -> None:
+    """But the logs as they were recorded."""
     sets = [stiffer(trials, [0], BETTER), stiffer(trials, [3], WILD)]
     before = play_before(trials, rig)
     first = [play(trials, rig, rows) for rows in sets]
@@ -105,6 +106,9 @@ def test_what_is_in_the_journal_needs_no_arm(trials: Trials, rig: SimulatedRig) 
         assert again.known()
         assert again.play(None, rows).as_dict() == known.as_dict()
     assert not again.known()
+    before.path.write_text("".join(before.path.read_text().splitlines(keepends=True)[:-100]))
+    with pytest.raises(UserError, match=r"before\.csv: only \d+ of its \d+ rows are there"):
+        Trials(trials.book, trials.check, trials.table).play_before(None)
 
 
 def test_a_journal_that_another_version_made_is_refused_in_a_sentence(trials: Trials, rig: SimulatedRig) -> None:

@@ -19,6 +19,7 @@ from hypothesis import strategies as st
 
 from greywhale.errors import UserError
 from greywhale.files.log import Log, LogWriter, read_log
+from greywhale.files.log.check import Check
 from greywhale.files.log.layout import HEADING, STATES, Origin
 from greywhale.files.log.rows import parse_rows
 from greywhale.formats import csv_file
@@ -79,6 +80,7 @@ def test_what_was_recorded_before_an_interruption_is_kept_and_marked(
     assert caught.type is (error if isinstance(error, type) else type(error))
     log = read_log(path)
     assert (len(log.time), log.dropped, log.complete) == (7, 2, False)
+    assert log.condition.check is Check.WHOLE
     assert os.listdir(tmp_path) == ["log.csv"]
 
 
@@ -101,6 +103,7 @@ def test_on_a_full_disk_the_lines_that_are_whole_stay(tmp_path: Path, rows: int)
     log = read_log(path)
     assert 100 < len(log.time) < 300
     assert not log.complete
+    assert log.condition.check is Check.WHOLE
     assert 19_800 < path.stat().st_size <= 20_000
     assert os.listdir(tmp_path) == ["log.csv"]
 
@@ -147,7 +150,7 @@ def test_a_killed_recording_is_there_to_see_and_to_read(tmp_path: Path) -> None:
         assert not (tmp_path / name).exists()
         log.flush()  # the process dies here
         found = read_log(tmp_path / name)
-        assert (len(found.time), found.complete) == (3, False)
+        assert (len(found.time), found.complete, found.condition.check) == (3, False, Check.UNCHECKED)
     write(tmp_path / "log.csv", 5)
     assert sorted(os.listdir(tmp_path)) == ["log.csv", "log.unfinished-2.csv", "log.unfinished.csv"]
 
@@ -229,15 +232,17 @@ def changed(folder: Path, old: str, new: str) -> Log:
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ("following\n", "dancing\n", "line 11, column state: 'dancing' is not one of boot, disabled"),
-        ("0.005000,", "0.000000,", "line 12, column time_s: time must increase"),
-        ("-0.300000,", "nan,", "line 11, column follower_2: nan is not a finite number"),
-        ("0.400000,-", "-", "line 11: 13 values where 14 columns are named"),
-        ("-0.300000,", "-57.3,", "line 11, column follower_2: -57.3 rad is beyond 8 rad; logs are in rad"),
-        ("0.200000,", "8.001,", "line 11, column leader_1: 8.001 rad is beyond 8 rad"),
-        (",15.000,", ",15000,", "line 11, column voltage_2: 15000 V is beyond 33 V; logs are in V"),
+        ("following\n", "dancing\n", "line 12, column state: 'dancing' is not one of boot, disabled"),
+        ("0.005000,", "0.000000,", "line 13, column time_s: time must increase"),
+        ("-0.300000,", "nan,", "line 12, column follower_2: nan is not a finite number"),
+        ("0.400000,-", "-", "line 12: 13 values where 14 columns are named"),
+        ("0.300000,", "\u0660.\u0663,", "line 12, column leader_2: '\u0660.\u0663' is not a number"),
+        ("period_ms: 20", "period_ms: \u0662\u0660", "period_ms is '\u0662\u0660' in the header"),
+        ("-0.300000,", "-57.3,", "line 12, column follower_2: -57.3 rad is beyond 8 rad; logs are in rad"),
+        ("0.200000,", "8.001,", "line 12, column leader_1: 8.001 rad is beyond 8 rad"),
+        (",15.000,", ",15000,", "line 12, column voltage_2: 15000 V is beyond 33 V; logs are in V"),
         ("greywhale log 1", "greywhale log 2", 'is a "greywhale log 2", but this greywhale reads "greywhale log 1"'),
-        ("voltage_3", "volts_3", "line 10: column voltage_3 is missing"),
+        ("voltage_3", "volts_3", "line 11: column voltage_3 is missing"),
         ("parameter_crc: 0xbeef", "parameter_crc: beef", "parameter_crc is 'beef' in the header"),
         ("dropped_samples: 0", "dropped_samples: -1", "dropped_samples is '-1' in the header"),
         ("recording: complete", "recording: perhaps", "recording is 'perhaps' in the header"),
@@ -255,7 +260,7 @@ def test_a_log_of_another_tool_needs_no_header(tmp_path: Path) -> None:
     row = ",".join(["0"] * 12) + ",disabled"
     path.write_text(f"{HEADING}\n0,{row}\n1,{row}\n")
     log = read_log(path)
-    assert (log.origin, log.dropped, log.complete) == (Origin(), 0, True)
+    assert (log.origin, log.dropped, log.complete, log.condition.check) == (Origin(), 0, True, Check.UNCHECKED)
 
 
 # --- long logs, a block at a time -----------------------------------------------------------------------------------
@@ -326,6 +331,7 @@ def test_a_log_in_many_blocks_is_the_same(tmp_path: Path) -> None:
     assert np.array_equal(log.time, np.arange(50) / 200)
     assert np.array_equal(log.leader, np.tile(ROW[0], (50, 1)))
     assert np.array_equal(log.voltage, np.tile(ROW[2], (50, 1)))
+    assert log.condition.check is Check.WHOLE
     other = read_log(path, voltages=False)
     assert other.voltage.shape == (50, 0)
     assert np.array_equal(other.follower, log.follower)
@@ -340,7 +346,7 @@ def test_a_bad_cell_in_a_later_block_is_named_by_its_line(tmp_path: Path) -> Non
     path.write_text("".join(lines))
     with pytest.raises(UserError, match="line 41, column leader_2: 'x' is not a number"):
         read_log(path)
-    lines[40] = lines[10]
+    lines[40] = lines[11]
     path.write_text("".join(lines))
     with pytest.raises(UserError, match="line 41, column time_s: time must increase, but"):
         read_log(path)
@@ -351,7 +357,7 @@ def test_only_an_unfinished_log_may_end_in_the_middle_of_a_line(tmp_path: Path) 
     write(path, 5)
     text = path.read_text()[:-30]
     path.write_text(text)
-    with pytest.raises(UserError, match="line 15: the file ends in the middle of this line"):
+    with pytest.raises(UserError, match="line 16: the file ends in the middle of this line"):
         read_log(path)
     path.write_text(text.replace("recording: complete", "recording: unfinished"))
     assert len(read_log(path).time) == 4

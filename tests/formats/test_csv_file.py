@@ -49,6 +49,8 @@ def test_comments_blank_lines_and_windows_line_ends_are_taken(tmp_path: Path) ->
         ("time_s,a\n0,'x\n", 'line 2, column a: "\'x" is not a number'),
         ("time_s,a\n0,\n", "line 2, column a: '' is not a number"),
         ("time_s,a\n0,nan\n", "line 2, column a: nan is not a finite number"),
+        ("time_s,a\n0,\u0661\n", "line 2, column a: '\u0661' is not a number"),
+        ("time_s,a\n0,1_0\n", "line 2, column a: '1_0' is not a number"),
         ("time_s,a\n0,1e999\n", "line 2, column a: 1e999 is not a finite number"),
         ("time_s,a\n0,1\n\n0,1\n", "line 4, column time_s: time must increase, but 0 follows 0"),
         ("time_s,a\n1,1\n0.5,1\n", "line 3, column time_s: time must increase, but 0.5 follows 1"),

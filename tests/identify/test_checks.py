@@ -12,6 +12,8 @@ from greywhale.arm import ArmParameters
 from greywhale.errors import UserError
 from greywhale.files.arm import load_arm
 from greywhale.files.log import Log
+from greywhale.files.log.check import Check
+from greywhale.files.log.condition import Condition
 from greywhale.files.log.layout import Origin
 from greywhale.files.parameter_file import load_table
 from greywhale.identify import identify
@@ -102,6 +104,18 @@ def test_controllers_are_found_by_their_crc(recorded: Recorded, tables: list[Par
         assert table_of(replace(recorded.changed, origin=itself), given) == tables[1]
     alone = replace(itself, param_crc=None)
     assert table_of(replace(recorded.changed, origin=alone), [tables[0]]) == tables[1]
+
+
+@pytest.mark.parametrize("validates", [False, True])
+def test_a_log_whose_rows_were_changed_is_refused(
+    recorded: Recorded, white_box: ArmParameters, validates: bool
+) -> None:
+    """Also one that only judges the model."""
+    log = replace(recorded.fit, condition=Condition(Check.CHANGED, remarks=("its check fails.",)))
+    fit, validate = ([recorded.second], [log]) if validates else ([log], [])
+    with pytest.raises(UserError) as refused:
+        identify(fit, white_box, validate=validate)
+    assert refused.value.message.startswith(f"{log.name}: its check fails; take the log as it was recorded")
 
 
 def test_another_controller_than_the_logs_is_refused(recorded: Recorded, white_box: ArmParameters) -> None:

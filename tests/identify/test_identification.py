@@ -14,6 +14,7 @@ from greywhale.arm.plants import column
 from greywhale.errors import UserError
 from greywhale.files.arm import load_arm
 from greywhale.files.log import Log
+from greywhale.files.log.condition import Condition
 from greywhale.identify import Outcome, identify
 from greywhale.identify.judge import CHANGED, FIT, SECOND, Verdict, judge, warnings_of
 from greywhale.loop import plant_row
@@ -120,9 +121,12 @@ def test_joints_that_did_not_move_keep_the_users_values(recorded: Recorded, whit
 def test_without_its_controller_a_log_is_still_worth_something(recorded: Recorded, white_box: ArmParameters) -> None:
     """Only the logged voltages remain; at a tenth of the rows, as another tool may log."""
     origin = replace(recorded.fit.origin, param_crc=None, firmware=None, every_ticks=10)
-    outcome = identify([_every(replace(_first(recorded.fit, 6.0), origin=origin), 10)], white_box)
+    old = Condition(remarks=("it has no check.",))
+    log = _every(replace(_first(recorded.fit, 6.0), origin=origin, condition=old), 10)
+    outcome = identify([log], white_box)
     assert outcome.verdicts[0].measure.startswith("logged voltages")
     assert outcome.verdicts[0].improvement > 0.8
+    assert outcome.warnings[0] == f"{log.name}: it has no check."
     assert any("controller is not known" in warning for warning in outcome.warnings)
 
 

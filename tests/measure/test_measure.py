@@ -160,6 +160,7 @@ def test_a_gap_breaks_rests_and_delays_but_not_the_mean() -> None:
     assert gapped.joints[0].delay_s == pytest.approx(0.1, abs=0.002)
     assert gapped.rests_s[0] == pytest.approx(evaluate(whole).rests_s[0] - 0.4 - 0.5, abs=0.01)
     assert gapped.samples == keep.sum()
+    assert (gapped.duration_s, gapped.span_s) == pytest.approx((9.597, 9.999))
 
 
 def test_nothing_to_measure_is_said() -> None:

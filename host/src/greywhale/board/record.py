@@ -46,6 +46,8 @@ REST_S = 0.3
 _ENABLE_TICKS = 1000
 _ROWS_PER_REPORT = 50
 _POSE_SAMPLES = 21
+# A recording whose end was lost is not what was asked for: more than this share of it, and than so many samples.
+_MOST_LOST_SHARE, _MOST_LOST = 0.1, 10
 _MOVING = (schema.State.SOFT_START, schema.State.FOLLOWING)
 _VOLT = schema.Sample.LSB["voltage"]
 
@@ -218,17 +220,31 @@ def write_samples(
     for one in received:
         if enabled and one.sample.state is not schema.State.FOLLOWING:
             raise why_stopped(device)
+        ticks = begin if start is None else begin + one.elapsed - start
+        if ticks >= length:
+            _end(device, log, one, length)
+            return length / 1000
         if start is None:
             start = one.elapsed
         else:
             log.drop(one.lost)
-        ticks = begin + one.elapsed - start
-        if ticks >= length:
-            return ticks / 1000
         _append(log, ticks / 1000, one.sample)
         if log.rows % _ROWS_PER_REPORT == 0:
             report("recording", ticks / length)
     raise AssertionError("a stream of samples has no end")
+
+
+def _end(device: Device, log: LogWriter, one: Received, length: int) -> None:
+    """Count the samples that were lost before the end; a log that lacks much of it is not what was asked for."""
+    every = log.origin.every_ticks or 1
+    lost = min(one.lost, max(0, length - 1 - round(1000 * log.last_s)) // every)
+    log.drop(lost)
+    if lost > _MOST_LOST and lost * every > _MOST_LOST_SHARE * length:
+        raise UserError(
+            f"{device.port}: the end of the recording was lost: after {log.last_s:g} of {length / 1000:g} s no sample "
+            f"came for {(one.lost + 1) * every / 1000:g} s by the board's clock; check the cable and whether this "
+            "computer slept, and record again."
+        )
 
 
 def _write_led(

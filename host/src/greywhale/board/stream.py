@@ -16,6 +16,8 @@ from greywhale.errors import UserError
 from greywhale.protocol import schema
 
 _TICKS = 1 << 32
+# As long as the longest recording: no board that was heard all the time is silent for so many ticks.
+_LONGEST_STEP = 86_400_000
 # No sample for this long, and at least five sample periods, means that something is wrong.
 _SILENCE_S = 2.0
 _RENEWALS_PER_LEASE = 4
@@ -59,6 +61,11 @@ def _samples(device: Device, every: int) -> Iterator[Received]:
             if step > _TICKS // 2:
                 raise UserError(
                     f"{device.port}: the board's clock went backwards: it restarted in the middle; try again."
+                )
+            if step > _LONGEST_STEP:
+                raise UserError(
+                    f"{device.port}: the board's clock jumped by {step / 1000:.3f} s between two samples, so the times "
+                    "of what follows are not known; reset the board and try again."
                 )
             lost = max(0, round(step / every) - 1) if last is not None else 0
             elapsed += step if last is not None else 0

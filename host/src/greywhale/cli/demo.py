@@ -8,7 +8,7 @@ import click
 
 from greywhale.cli import completion
 from greywhale.cli.bench import need_bench
-from greywhale.cli.output import json_option, progress, show
+from greywhale.cli.output import json_option, progress, show, warn
 from greywhale.errors import MOST_SEED
 from greywhale.files import controller as controller_file
 from greywhale.files.arm import load_arm
@@ -100,7 +100,7 @@ def command(
 def _check_inputs(leader: Path | None, arm: Path | None, controller: Path | None) -> None:
     """Refuse wrong files before all that a demo needs is imported, which takes seconds."""
     if leader is not None:
-        load_leader(leader)
+        warn(load_leader(leader).remarks)
     if arm is not None:
         load_arm(arm)
     if controller is not None:

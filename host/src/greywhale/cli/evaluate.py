@@ -29,7 +29,8 @@ def command(logs: tuple[Path, ...], picture: Path | None, overwrite: bool, as_js
     Per joint: the mean squared error (the total is the sum over the joints), the steady-state error (mean of the
     absolute error while the leader has rested for half a second), and the time delay (the lag at which the follower
     resembles the leader most; for steps out of a rest also the time between both onsets, as the paper measures it).
-    Several logs are measured one by one and drawn into one picture.
+    Several logs are measured one by one and drawn into one picture. A log that is not as it was recorded, or has gaps,
+    is measured too, with a warning.
     """
     refuse_inputs(picture, *logs)
     require_new(overwrite, picture)
@@ -46,6 +47,8 @@ def command(logs: tuple[Path, ...], picture: Path | None, overwrite: bool, as_js
             "dropped": log.dropped,
             "complete": log.complete,
             "ended_by": log.ended_by,
+            **log.condition.as_dict(),
+            "remarks": list(log.remarks),
             **evaluation.as_dict(),
         }
         for log, evaluation in zip(read, evaluations, strict=True)
@@ -68,7 +71,7 @@ def _draw(picture: Path, logs: list[Log]) -> None:
 
 
 def _text(log: Log, evaluation: Evaluation) -> str:
-    notes = [f"{counted(evaluation.samples, 'sample')}, {evaluation.duration_s:.2f} s"]
+    notes = [f"{counted(evaluation.samples, 'sample')}, {_covered(evaluation)}"]
     if log.dropped:
         notes.append(f"{log.dropped} dropped")
     if not log.complete:
@@ -92,7 +95,13 @@ def _text(log: Log, evaluation: Evaluation) -> str:
         for number, joint in enumerate(evaluation.joints)
         if evaluation.following and not joint.follows
     ]
-    return "\n".join(lines)
+    return "\n".join([*lines, *(f"Warning: {remark}" for remark in log.remarks)])
+
+
+def _covered(evaluation: Evaluation) -> str:
+    """How much was measured, and of how much, where that is more than rounding."""
+    measured, span = f"{evaluation.duration_s:.2f} s", f"{evaluation.span_s or 0.0:.2f} s"
+    return measured if measured == span else f"{measured} of the log's {span}"
 
 
 def _number(value: float | None) -> str:

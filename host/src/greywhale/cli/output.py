@@ -7,7 +7,7 @@ import json
 import logging
 import sys
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any, Protocol, TypeVar
 
 import click
@@ -58,6 +58,12 @@ def show(as_json: bool, result: Mapping[str, Any], text: str, hang: int = 0) -> 
 def tell(text: str) -> None:
     """A note for the person: on stderr, where a terminal gets it between its borders."""
     click.echo(fit(printable(text), sys.stderr), err=True)
+
+
+def warn(sentences: Iterable[str]) -> None:
+    """Tell people at once what they should know before they go on."""
+    for sentence in sentences:
+        tell(f"Warning: {sentence}")
 
 
 def json_of(result: Mapping[str, Any]) -> str:

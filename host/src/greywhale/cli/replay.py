@@ -10,7 +10,7 @@ import click
 from greywhale.board.device import Device
 from greywhale.board.record import check_every_led, record_led
 from greywhale.cli.countdown import prepare_motion, yes_option
-from greywhale.cli.output import json_option, overwrite_option, port_option, progress, show
+from greywhale.cli.output import json_option, overwrite_option, port_option, progress, show, warn
 from greywhale.cli.record import describe
 from greywhale.files.leader import load_leader
 from greywhale.files.names import suggesting
@@ -50,10 +50,12 @@ def command(motion: Path, out: Path, every: int, overwrite: bool, yes: bool, por
     made = MOTIONS.get(str(motion))
     with suggesting(motion, MOTIONS):
         trajectory = load_leader(motion) if made is None else made(fastest_rad_s=SHARE * FASTEST_LED_RAD_S)
+    warn(trajectory.remarks)  # while Ctrl-C still leaves the motors off
     chosen = choose_port(port)
-    warn = prepare_motion(chosen, yes)
+    count_down = prepare_motion(chosen, yes)
     with Device(chosen) as device:
-        warn()
+        count_down()
         with progress() as report:
             recording = record_led(device, out, trajectory, every, report)
-    show(as_json, {"port": device.port, "motion": str(motion), **recording.as_dict()}, describe(recording))
+    facts = {"port": device.port, "motion": str(motion), "warnings": list(trajectory.remarks), **recording.as_dict()}
+    show(as_json, facts, describe(recording))

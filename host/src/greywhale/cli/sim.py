@@ -8,7 +8,8 @@ from pathlib import Path
 import click
 
 from greywhale.cli.bench import need_bench
-from greywhale.cli.output import json_option, show, tell
+from greywhale.cli.output import json_option, show, tell, warn
+from greywhale.files.leader import load_leader
 from greywhale.protocol.ports import lasting_name
 
 
@@ -48,6 +49,8 @@ def command(
     if "list" in mistake:
         show(as_json, {"mistakes": {one.name: one.says for one in mistakes.MISTAKES}}, mistakes.listed())
         return
+    if leader is not None:
+        warn(load_leader(leader).remarks)
     options = serve.ServeOptions(
         board=board,
         leader=leader,

@@ -30,7 +30,7 @@ from greywhale.excite import design
 from greywhale.excite.limits import limits_of
 from greywhale.files.arm import load_arm
 from greywhale.files.leader import load_leader, save_leader
-from greywhale.files.log import Log, read_log
+from greywhale.files.log import Log, read_evidence
 from greywhale.files.parameter_file import load as load_parameters
 from greywhale.files.parameter_file import save as save_parameters
 from greywhale.firmware import JOINTS
@@ -190,7 +190,7 @@ class _Campaign:
             if played.stopped:
                 raise UserError(f"the arm cannot be excited: {played.stopped}; narrow the --range.")
             self.book.note("excite", {"log": path.name})
-        return read_log(path)
+        return read_evidence(path)
 
     def _try(self, arm: Callable[[], Rig], tuned: Controllers) -> None:
         """Try a round's controllers on the arm, then vary what failed or follows poorly."""

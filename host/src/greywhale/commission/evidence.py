@@ -12,7 +12,7 @@ from greywhale.arm.plants import column, plant_row
 from greywhale.commission.measures import Traces, unrest
 from greywhale.commission.predict import predict
 from greywhale.commission.trials import Trial, Trials
-from greywhale.files.log import Log, read_log
+from greywhale.files.log import Log, read_evidence
 from greywhale.firmware import JOINTS, TICK_S
 from greywhale.loop.closed_loop import count_swings
 from greywhale.table import CONTROLLER_COLUMNS, ParameterTable
@@ -47,9 +47,9 @@ def gather(excite: Log, trials: Trials) -> Evidence:
     whole = [one for one in trials.done[1:] if not one.stopped]
     whole.sort(key=lambda one: one.score)
     fitted, others = whole[:MOST_FITTED], whole[MOST_FITTED : MOST_FITTED + 1]
-    logs = [read_log(trials.before.path), *(read_log(one.path) for one in others)]
+    logs = [read_evidence(trials.before.path), *(read_evidence(one.path) for one in others)]
     tables = [trials.table, *(one.table for one in (*fitted, *others))]
-    return Evidence((excite, *(read_log(one.path) for one in fitted)), tuple(logs), tuple(tables))
+    return Evidence((excite, *(read_evidence(one.path) for one in fitted)), tuple(logs), tuple(tables))
 
 
 def failing_plants(arm: ArmParameters, trials: Trials) -> Floats:

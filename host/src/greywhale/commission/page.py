@@ -14,7 +14,7 @@ from greywhale.commission.measures import Measures
 from greywhale.commission.motions import PARTS
 from greywhale.commission.outcome import Outcome
 from greywhale.commission.trials import Trial
-from greywhale.files.log import read_log
+from greywhale.files.log import read_evidence
 from greywhale.formats.whole import write_text
 
 Measure = tuple[str, str, str, float, str]  # name in Measures, words, unit, factor, form
@@ -103,6 +103,6 @@ def _picture(outcome: Outcome) -> str:
         chosen.append((outcome.best, "now on the board"))
     supply_v = outcome.trials.table.supply_v
     with style():
-        traces = [trace(read_log(trial.path), label, supply_v) for trial, label in chosen]
+        traces = [trace(read_evidence(trial.path), label, supply_v) for trial, label in chosen]
         picture = png(plot_following(traces, "The check on the arm"))
     return "data:image/png;base64," + base64.b64encode(picture).decode("ascii")

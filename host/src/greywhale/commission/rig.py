@@ -19,7 +19,7 @@ from greywhale.board.record import pose_of, record_led
 from greywhale.board.upload import read_parameters, run_set, upload_set
 from greywhale.commission.watch import Hunting, Watch
 from greywhale.errors import UserError
-from greywhale.files.log import Log, read_log
+from greywhale.files.log import Log, read_evidence
 from greywhale.protocol import schema
 from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory
@@ -98,7 +98,7 @@ class Rig:
             record_led(self.device, path, motion, progress=self._progress, table=table, patient=patient, watch=watch)
         except Hunting as hunting:
             self.device.telemetry(0)
-            return Played(read_log(path), f"joint {hunting.joint} hunted", hunting.joint)
+            return Played(read_evidence(path), f"joint {hunting.joint} hunted", hunting.joint)
         except UserError:
             status = self._status()
             if status is None or status.fault.key not in OF_A_CONTROLLER or not path.exists():
@@ -107,8 +107,8 @@ class Rig:
             self.device.ask(schema.ClearFaultRequest())
             where = status.fault_where if status.fault_where < len(table.controllers) else None
             whose = "" if where is None else f" (joint {where})"
-            return Played(read_log(path), f"the board stopped: {status.fault.description}{whose}", where)
-        return Played(read_log(path))
+            return Played(read_evidence(path), f"the board stopped: {status.fault.description}{whose}", where)
+        return Played(read_evidence(path))
 
     def _status(self) -> schema.StatusReply | None:
         """The board's state after an error; None where it does not answer any more."""

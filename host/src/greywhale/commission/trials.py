@@ -16,7 +16,7 @@ from greywhale.commission.measures import Measures, Traces, measure, traces_of
 from greywhale.commission.motions import Check
 from greywhale.commission.rig import Played, Rig
 from greywhale.errors import UserError
-from greywhale.files.log import read_log
+from greywhale.files.log import read_evidence
 from greywhale.firmware import JOINTS
 from greywhale.loop.controllers import controllers_of
 from greywhale.table import ParameterTable
@@ -132,7 +132,7 @@ class Trials:
                     f"{self.book.folder}: {name} of this commissioning was made by another version of greywhale, which "
                     "would go on differently; begin anew in another folder."
                 )
-            return path, Played(read_log(path), facts["stopped"], facts["joint"])
+            return path, Played(read_evidence(path), facts["stopped"], facts["joint"])
         assert rig is not None
         played = rig.play(self.check.motion, path, self.table_of(rows), watched=watched)
         self.book.note(name, {"controllers": rows.tolist(), "stopped": played.stopped, "joint": played.joint})

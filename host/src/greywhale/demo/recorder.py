@@ -17,7 +17,7 @@ from greywhale.board.upload import upload_controller
 from greywhale.demo.bench import BenchProcess
 from greywhale.errors import UserError
 from greywhale.files.leader import load_leader
-from greywhale.files.log import Log, read_log
+from greywhale.files.log import Log, read_evidence
 from greywhale.protocol import schema
 from greywhale.trajectory import Trajectory
 
@@ -40,7 +40,7 @@ class Recorded:
     upload_s: float
 
     def log(self) -> Log:
-        return read_log(self.path)
+        return read_evidence(self.path)
 
 
 def record_motion(

@@ -12,6 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from greywhale.errors import UserError
+from greywhale.files.log.check import add_rows, facts_of
+from greywhale.files.log.condition import judge_condition
 from greywhale.files.log.layout import COLUMNS as LOG_COLUMNS
 from greywhale.firmware import JOINTS
 from greywhale.formats import csv_file
@@ -33,6 +35,7 @@ class _Rows:
     time_s: Array
     angles: Array
     lines: npt.NDArray[np.int64]
+    remarks: tuple[str, ...]
 
     def error(self, row: int, column: str, problem: str) -> UserError:
         return UserError(f"{self.name}, line {self.lines[row]}, column {column}: {problem}.")
@@ -50,23 +53,26 @@ def load_leader(path: str | Path) -> Trajectory:
         )
         raise rows.error(row, COLUMNS[1 + joint], problem)
     _check_pace(rows)
-    return Trajectory(rows.time_s - rows.time_s[0], rows.angles)
+    return Trajectory(rows.time_s - rows.time_s[0], rows.angles, rows.remarks)
 
 
 def _read(path: str | Path) -> _Rows:
     """The columns of the leader, a block of the file after another."""
     time_s, angles, lines = [np.empty(0)], [np.empty((0, JOINTS))], [np.empty(0, dtype=np.int64)]
-    before = -np.inf
-    with csv_file.CsvFile(path, LOG_COLUMNS if _is_log(path) else COLUMNS) as file:
+    before, crc, is_log = -np.inf, 0, _is_log(path)
+    with csv_file.CsvFile(path, LOG_COLUMNS if is_log else COLUMNS) as file:
         for block in file.blocks():
             table = file.table(block)
             time_s.append(table.increasing("time_s", before))
             angles.append(np.column_stack([table.numbers(column) for column in COLUMNS[1:]]))
             lines.append(np.array(table.lines, dtype=np.int64))
             before = float(time_s[-1][-1]) if table.lines else before
-        rows = _Rows(file.name, np.concatenate(time_s), np.concatenate(angles), np.concatenate(lines))
-        file.require_rows(len(rows.lines), 2)
-    return rows
+            crc = add_rows(crc, block.data)
+        times = np.concatenate(time_s)
+        file.require_rows(len(times), 2)
+        told = judge_condition(file.name, facts_of(file.comments), crc, times).remarks if is_log else ()
+    remarks = tuple(f"{file.name}: {remark}" for remark in told)
+    return _Rows(file.name, times, np.concatenate(angles), np.concatenate(lines), remarks)
 
 
 def _check_pace(rows: _Rows) -> None:

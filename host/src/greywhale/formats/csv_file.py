@@ -39,7 +39,7 @@ class CsvTable:
         values = np.empty(len(cells))
         for row, cell in enumerate(cells):
             try:
-                values[row] = float(cell)
+                values[row] = number(cell)
             except ValueError:
                 raise self.error(row, column, f"{cut(repr(cell))} is not a number") from None
             if not math.isfinite(values[row]):
@@ -166,6 +166,18 @@ class CsvFile:
 
     def _cannot_be_read(self, error: OSError) -> UserError:
         return UserError(f"{self.name}: cannot be read: {os_reason(error)}.")
+
+
+def is_plain(text: str) -> bool:
+    """Whether a number is in digits that everyone reads alike: Python takes those of all alphabets, and 1_000."""
+    return text.isascii() and "_" not in text
+
+
+def number(text: str) -> float:
+    """The decimal number that a text is; else ValueError."""
+    if not is_plain(text):
+        raise ValueError(text)
+    return float(text)
 
 
 def read(path: str | Path, columns: Sequence[str], minimum_rows: int = 1) -> CsvTable:

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from greywhale.arm import ArmParameters
 from greywhale.errors import BAD_USAGE, MOST_SEED, UserError, require_within
 from greywhale.files.log import Log
+from greywhale.files.log.check import Check
+from greywhale.files.log.reader import refuse_altered
 from greywhale.identify import checks, controllers, judge
 from greywhale.identify.data import prepare
 from greywhale.identify.default import find_default
@@ -47,6 +49,8 @@ def identify(
     if method != "default" and arm.joints_in_use != ALL:
         raise UserError("the paper's methods are for arms with all four joints; use --method default.", BAD_USAGE)
     require_within("seed", seed, 0, MOST_SEED)
+    for log in (*logs, *validate):
+        refuse_altered(log, Check.CHANGED)
     refuse_shared(logs, validate)
     subjects, doubts = _subjects(logs, validate, arm, tables)
     task = Task(arm, tuple(subjects), seed, report or (lambda what, fraction: None), begin)
@@ -60,10 +64,15 @@ def identify(
         seed=seed,
         found=found,
         verdicts=verdicts,
-        warnings=(*doubts, *judge.warnings_of(verdicts)),
+        warnings=(*_remarks(logs, validate), *doubts, *judge.warnings_of(verdicts)),
         doubts=judge.doubts_of(verdicts, found.joints),
         subjects=tuple(subjects),
     )
+
+
+def _remarks(*logs: Sequence[Log]) -> list[str]:
+    """What the model should say about the condition of its logs."""
+    return [remark for some in logs for log in some for remark in log.remarks]
 
 
 def _subjects(

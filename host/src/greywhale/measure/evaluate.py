@@ -61,7 +61,10 @@ class JointMeasures:
 
 @dataclass(frozen=True)
 class Evaluation:
-    """The measures of one log; `rests_s` tells per joint how long the leader rested."""
+    """The measures of one log; `rests_s` tells per joint how long the leader rested.
+
+    They cover `duration_s` of the `span_s` between its first row and its last: no gaps, and only where motors followed.
+    """
 
     joints: tuple[JointMeasures, ...]
     total_mse: float
@@ -70,6 +73,7 @@ class Evaluation:
     following: bool
     rests_s: tuple[float, ...]
     joints_in_use: Joints = ALL  # the others have measures too, of a motion that is 0
+    span_s: float | None = None  # None: all of it was measured
 
     def as_dict(self) -> dict[str, object]:
         """For JSON: plain numbers with their units in the keys."""
@@ -90,6 +94,7 @@ class Evaluation:
             "total_mse_rad2": self.total_mse,
             "samples": self.samples,
             "duration_s": self.duration_s,
+            "span_s": self.duration_s if self.span_s is None else self.span_s,
             "measured": "following" if self.following else "whole log, motors never followed",
         }
 
@@ -119,6 +124,7 @@ def evaluate(log: Log, settings: Settings | None = None) -> Evaluation:
         following=bool(following.any()),
         rests_s=tuple(rests),
         joints_in_use=log.joints_in_use,
+        span_s=float(log.time[-1] - log.time[0]),
     )
 
 

@@ -25,10 +25,14 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Trajectory:
-    """Leader angles `angles[row, joint]` in rad at `time_s[row]`, which starts at 0 and strictly increases."""
+    """Leader angles `angles[row, joint]` in rad at `time_s[row]`, which starts at 0 and strictly increases.
+
+    `remarks` are sentences about the file that it is from, for whoever plays it.
+    """
 
     time_s: Array
     angles: Array
+    remarks: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         rows = len(self.time_s)

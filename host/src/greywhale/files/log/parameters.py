@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from greywhale.errors import UserError, cut
+from greywhale.formats.csv_file import number
 from greywhale.protocol import schema
 from greywhale.table import ParameterTable, find_board, physical
 
@@ -42,7 +43,7 @@ def table_in(facts: Mapping[str, str], name: str, crc: int | None, board: str | 
         )
     try:
         raw = [
-            parameter.to_raw_as_given(float(found[parameter.name])) if parameter.name in found else parameter.default
+            parameter.to_raw_as_given(number(found[parameter.name])) if parameter.name in found else parameter.default
             for parameter in schema.PARAMETERS
         ]
         table = ParameterTable(tuple(raw), find_board(board), name)
@@ -53,7 +54,8 @@ def table_in(facts: Mapping[str, str], name: str, crc: int | None, board: str | 
     if crc is not None and len(found) == len(schema.PARAMETERS) and table.crc != crc:
         raise UserError(
             f"{name}: the parameters in the header have CRC 0x{table.crc:04x}, but its parameter_crc is 0x{crc:04x}; "
-            "the header was changed. Take the log as it was recorded, or delete the lines with the parameters."
+            "the header was changed. Take the log as it was recorded, or delete the lines with the parameters and with "
+            "the check."
         )
     return table
 

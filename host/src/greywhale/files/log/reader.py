@@ -4,13 +4,15 @@ column.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from greywhale.errors import UserError, cut
+from greywhale.files.log.check import Check, add_rows, facts_of
+from greywhale.files.log.condition import Condition, judge_condition
 from greywhale.files.log.layout import COLUMNS, COMPLETE, ENDINGS, STATES, TITLE, UNFINISHED, Origin
 from greywhale.files.log.parameters import table_in
 from greywhale.files.log.rows import parse_rows
@@ -43,11 +45,17 @@ class Log:
     dropped: int
     complete: bool
     ended_by: str = ""
+    condition: Condition = field(default_factory=Condition)  # of the whole file, whatever was selected from it
 
     @property
     def joints_in_use(self) -> Joints:
         """The joints that the board used; every column of the others is 0."""
         return self.origin.joints
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What whoever uses the log should know, a sentence each."""
+        return tuple(f"{self.name}: {remark}" for remark in self.condition.remarks)
 
     def without_samples(self) -> Log:
         """What is known of the log apart from its samples, which take most of the memory."""
@@ -62,7 +70,7 @@ def read_log(path: str | Path, voltages: bool = True) -> Log:
     """
     with csv_file.CsvFile(path, COLUMNS) as file:
         _check_version(file)
-        facts = _facts(file.comments)
+        facts = facts_of(file.comments)
         ending = facts.get("recording", COMPLETE)
         if ending not in ENDINGS:
             raise UserError(
@@ -70,9 +78,10 @@ def read_log(path: str | Path, voltages: bool = True) -> Log:
             )
         origin = _origin(facts, str(path))
         dropped = _whole(facts, "dropped_samples", str(path), 0, _MOST_WHOLE) or 0
-        columns = _Columns(_count_lines(path), voltages)
+        columns, crc = _Columns(_count_lines(path), voltages), 0
         for block in file.blocks(torn=ending == UNFINISHED):
             columns.take(file, block)
+            crc = add_rows(crc, block.data)
         file.require_rows(columns.rows, 2)
     _refuse_other_period(str(path), origin, columns)
     return Log(
@@ -86,7 +95,26 @@ def read_log(path: str | Path, voltages: bool = True) -> Log:
         dropped=dropped,
         complete=ending == COMPLETE,
         ended_by=facts.get("ended_by", ""),
+        condition=judge_condition(str(path), facts, crc, columns.time[: columns.rows]),
     )
+
+
+def read_evidence(path: str | Path) -> Log:
+    """Read a log that this program recorded, and on which its result will rest: one that is no longer as it was
+    recorded is refused.
+    """
+    log = read_log(path)
+    refuse_altered(log, Check.SHORTENED, Check.CHANGED)
+    return log
+
+
+def refuse_altered(log: Log, *refused: Check) -> None:
+    """Refuse a log on which a result would rest, if its check says one of these."""
+    if log.condition.check in refused:
+        raise UserError(
+            f"{log.remarks[0].removesuffix('.')}; take the log as it was recorded, or, if it is meant to be so, delete "
+            "the line `# check` in its header: it is then a log without a check."
+        )
 
 
 class _Columns:
@@ -192,11 +220,6 @@ def _joints(table: csv_file.CsvTable, quantity: str) -> NDArray[np.float64]:
     return np.column_stack(columns)
 
 
-def _facts(comments: tuple[str, ...]) -> dict[str, str]:
-    pairs = (comment.partition(":") for comment in comments)
-    return {key.strip(): value.strip() for key, colon, value in pairs if colon}
-
-
 def _origin(facts: dict[str, str], name: str) -> Origin:
     board, crc = facts.get("board"), _whole(facts, "parameter_crc", name, 0, 0xFFFF)
     table = table_in(facts, name, crc, board)
@@ -223,7 +246,7 @@ def _whole(facts: dict[str, str], key: str, name: str, least: int, most: int) ->
     if text is None:
         return None
     try:
-        value = int(text, 0)
+        value = int(text, 0) if csv_file.is_plain(text) else least - 1
     except ValueError:
         value = least - 1
     if not least <= value <= most:

@@ -3,7 +3,8 @@
 Whatever ends the recording, also an error or Ctrl-C, the samples received so far are kept and the header says
 `interrupted`. Of a recording that is killed what was received stays in log.unfinished.csv beside log.csv, or in
 log.unfinished-2.csv where that is taken; its header says `unfinished`. Only when nothing was recorded is no file left.
-Dropped samples are counted, never filled in.
+Dropped samples are counted, never filled in. The check over all rows grows with them, and stands in the header of a
+finished log.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from types import TracebackType
 from typing import Self
 
 from greywhale.errors import UserError, cut, os_reason
+from greywhale.files.log.check import KEY, add_rows, check_text, facts_of
 from greywhale.files.log.layout import COMPLETE, HEADING, INTERRUPTED, STATES, TITLE, UNFINISHED, Origin
 from greywhale.files.log.parameters import lines_of
 from greywhale.formats.draft import Draft, sync
@@ -25,6 +27,7 @@ _ROWS_PER_WRITE = 256
 # What is known only at the end: the header keeps so many characters free for each number or word, and for the reason.
 _ROOM = 12
 _REASON = 320
+_CHECK_ROOM = 40
 
 
 class LogWriter:
@@ -42,6 +45,9 @@ class LogWriter:
         self._states_gaps = gaps
         self._last_us: int | None = None
         self._shown = False
+        self._unwritten = b""
+        self._size = 0  # of the file, in whole lines
+        self._kept, self._crc = 0, 0  # rows in the file, and their CRC
 
     def __enter__(self) -> Self:
         try:
@@ -55,6 +61,7 @@ class LogWriter:
         except UserError:
             self._draft.discard()
             raise
+        self._kept, self._crc = 0, 0
         return self
 
     def append(
@@ -88,22 +95,33 @@ class LogWriter:
         """Write what waits. If the disk takes only a part of it, the whole lines stay. From the first rows on a kill
         leaves what was written.
         """
-        data = "".join(self._waiting).encode("ascii")
-        self._waiting.clear()
-        end = self._file.seek(0, os.SEEK_END)
+        self._settle()  # Ctrl-C may have come between a write and this
+        lines = "".join(self._waiting).encode("ascii")
+        self._unwritten, self._waiting = self._unwritten + lines, []
         done = 0
         try:
-            while done < len(data):
-                done += self._file.write(data[done:])
+            while done < len(self._unwritten):
+                done += self._file.write(self._unwritten[done:])
         except OSError as error:
-            self._file.truncate(end + data.rfind(b"\n", 0, done) + 1)
             raise self._cannot_be_written(error) from None
+        finally:
+            self._settle()
         if self.rows and not self._shown:
             self._shown = True
             try:
                 self._draft.show_as(self.path.with_name(f"{self.path.stem}.{UNFINISHED}{self.path.suffix}"))
             except OSError as error:
                 raise self._cannot_be_written(error) from None
+
+    def _settle(self) -> None:
+        """Keep what the file took of a write, in whole lines, and add it to the check."""
+        taken = self._unwritten[: self._file.seek(0, os.SEEK_END) - self._size]
+        lines = taken[: taken.rfind(b"\n") + 1]
+        if len(lines) < len(taken):
+            self._file.truncate(self._size + len(lines))
+        size, kept, crc = self._size + len(lines), self._kept + lines.count(b"\n"), add_rows(self._crc, lines)
+        # Without a call in between, so that Ctrl-C finds all of them or none.
+        self._size, self._kept, self._crc, self._unwritten = size, kept, crc, self._unwritten[len(lines) :]
 
     @property
     def last_s(self) -> float:
@@ -135,7 +153,7 @@ class LogWriter:
             self._file.seek(0)
             complete = kind is None and problem is None
             reason = "" if complete else _reason(raised or problem)
-            self._file.write(self._header(COMPLETE if complete else INTERRUPTED, reason))
+            self._file.write(self._header(COMPLETE if complete else INTERRUPTED, reason, checked=True))
             self._draft.keep()
             if isinstance(raised, KeyboardInterrupt | UserError):
                 raised.add_note(f"What was recorded is in {self.path}, marked as interrupted.")
@@ -151,7 +169,7 @@ class LogWriter:
     def _cannot_be_written(self, error: OSError) -> UserError:
         return UserError(f"{self.path}: cannot be written: {os_reason(error)}.")
 
-    def _header(self, ending: str, reason: str) -> bytes:
+    def _header(self, ending: str, reason: str, *, checked: bool = False) -> bytes:
         """The header. Its length is always the same, so that the end of a recording can rewrite it in place."""
         origin = self.origin
         facts = {
@@ -169,7 +187,9 @@ class LogWriter:
         if self._states_gaps:
             lines.append(f"# gaps: {cut(_gaps(self.gaps), _REASON):<{_REASON}}")
         lines.append(f"# ended_by: {cut(reason, _REASON):<{_REASON}}")
-        return "\n".join(lines).encode("ascii", "replace") + b"\n"
+        text = "\n".join(lines).encode("ascii", "replace").decode("ascii")
+        check = check_text(self._kept, self._crc, facts_of(line[1:] for line in text.split("\n"))) if checked else ""
+        return f"{text}\n# {KEY}: {check:<{_CHECK_ROOM}}\n".encode("ascii")
 
 
 def _gaps(gaps: Sequence[tuple[float, float]]) -> str:

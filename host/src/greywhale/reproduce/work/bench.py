@@ -16,7 +16,7 @@ import numpy as np
 
 from greywhale.errors import UserError
 from greywhale.files.leader import save_leader
-from greywhale.files.log import Log, read_log
+from greywhale.files.log import Log, read_evidence
 from greywhale.measure import evaluate
 from greywhale.reproduce.work.motions import (
     MOTIONS,
@@ -73,7 +73,7 @@ def record(folder: Path, name: str, motion: Trajectory, table: ParameterTable, s
             raise
         error.add_note("The log so far is taken.")
     # Where the file lay changes from run to run, and would go into models and reports.
-    return replace(read_log(path), name=path.name)
+    return replace(read_evidence(path), name=path.name)
 
 
 @cache

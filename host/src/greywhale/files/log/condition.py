@@ -1,0 +1,79 @@
+"""The condition of a log that was read: whether it is as it was recorded, and where samples are missing."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from greywhale.errors import counted
+from greywhale.files.log.check import Check, compare, rows_stated
+
+# Fewer missing samples in a row are no gap: a link may lose some.
+_MOST_MISSING = 10
+# Whatever times a file has: no two rows are closer, and no gap counts more samples.
+_SHORTEST_S, _MOST_SAMPLES = 1e-6, 1e15
+# A sentence names so many gaps one by one.
+_NAMED = 3
+
+
+@dataclass(frozen=True)
+class Gap:
+    """Samples that are missing in a row, `length_s` after the row at the time `after_s`."""
+
+    after_s: float
+    length_s: float
+    samples: int
+
+    def as_dict(self) -> dict[str, object]:
+        return {"after_s": self.after_s, "length_s": self.length_s, "samples": self.samples}
+
+
+@dataclass(frozen=True)
+class Condition:
+    """What the check says, the gaps, and what whoever uses the log should know, in sentences that follow its name."""
+
+    check: Check = Check.UNCHECKED
+    gaps: tuple[Gap, ...] = ()
+    remarks: tuple[str, ...] = ()
+
+    def as_dict(self) -> dict[str, object]:
+        return {"check": self.check.value, "gaps": [gap.as_dict() for gap in self.gaps]}
+
+
+def judge_condition(name: str, facts: Mapping[str, str], crc: int, time_s: NDArray[np.float64]) -> Condition:
+    """The condition of the log `name`, by its header's facts, the CRC of its rows and their times."""
+    check, gaps = compare(facts, name, len(time_s), crc), gaps_in(time_s)
+    remarks = {
+        Check.WHOLE: (),
+        Check.UNCHECKED: (
+            "it has no check (an older greywhale, another tool, or a recording that was killed), so nothing "
+            "shows whether it is as it was recorded.",
+        ),
+        Check.SHORTENED: (
+            f"only {len(time_s)} of its {rows_stated(facts, name)} rows are there, so nothing shows whether "
+            "these are as they were recorded.",
+        ),
+        Check.CHANGED: ("its check fails: rows or header are not as they were recorded.",),
+    }[check]
+    return Condition(check, gaps, remarks + ((_told(gaps),) if gaps else ()))
+
+
+def gaps_in(time_s: NDArray[np.float64]) -> tuple[Gap, ...]:
+    """Where more than ten samples in a row are missing, by the usual time between two rows."""
+    steps = np.diff(time_s)
+    period = max(float(np.median(steps)), _SHORTEST_S)
+    # Clocks and decimals round.
+    rows = np.flatnonzero(steps > (_MOST_MISSING + 1.5) * period)
+    return tuple(
+        Gap(round(after, 6), round(length, 6), round(min(length / period, _MOST_SAMPLES)) - 1)
+        for after, length in zip(time_s[rows].tolist(), steps[rows].tolist(), strict=True)
+    )
+
+
+def _told(gaps: tuple[Gap, ...]) -> str:
+    each = [f"{gap.length_s:.7g} s ({counted(gap.samples, 'sample')}) after {gap.after_s:.7g} s" for gap in gaps]
+    more = f", and {counted(len(gaps) - _NAMED, 'gap')} more" if len(gaps) > _NAMED else ""
+    return f"samples are missing for {', '.join(each[:_NAMED])}{more}; nothing is known of the arm there."
