@@ -64,7 +64,7 @@ def record(
 
     The joints drag their potentiometers along with `play` (rad) to either side.
     """
-    model = mujoco.MjModel.from_xml_string(mjcf(arm, motors=True))
+    model = mujoco.MjModel.from_xml_string(mjcf(arm))
     model.opt.timestep = STEP_S
     model.opt.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     data = mujoco.MjData(model)
