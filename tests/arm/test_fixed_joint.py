@@ -154,7 +154,7 @@ def test_exports_weld_it(make_arm: Any) -> None:
     arm = with_joints(make_arm, (0, 2))
     kinds = [joint.get("type") for joint in xml.fromstring(urdf(arm)).iter("joint")]
     assert kinds == ["revolute", "fixed", "revolute", "fixed"]
-    model = xml.fromstring(mjcf(arm, motors=True))
+    model = xml.fromstring(mjcf(arm))
     assert [body.get("name") for body in model.iter("body")] == list(LINK_NAMES)
-    assert [joint.get("name") for joint in model.iter("joint")] == [JOINT_IDS[0], JOINT_IDS[2]]
-    assert [motor.get("joint") for motor in model.iter("motor")] == [JOINT_IDS[0], JOINT_IDS[2]]
+    assert [joint.get("name") for joint in model.iterfind(".//body/joint")] == [JOINT_IDS[0], JOINT_IDS[2]]
+    assert [motor.get("joint") for motor in model.iter("general")] == [JOINT_IDS[0], JOINT_IDS[2]]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from pathlib import Path
 from xml.etree import ElementTree as xml
 
@@ -93,6 +94,11 @@ def test_links_that_are_welded_count_as_one(tmp_path: Path) -> None:
         ("<mass value=", "<mass kg=", "value of base is missing"),
         ("<robot", "<!DOCTYPE x><robot", "declares entities"),
         ("</robot>", "", "this is no XML"),
+        ('mass value="0.2148"', 'mass value="0"', "link hand has no mass; every moving link needs some"),
+        ('mass value="0.13"', 'mass value="-0.13"', "the mass of link upper_arm is -0.13 kg"),
+        ('mass value="0.13"', 'mass value="1e-12"', "link[1].mass is 1e-12, but it must be at least 1e-09 and at most"),
+        ('ixx="3.17e-05" ixy="0" ixz="0" iyy="0.000398" iyz="0" izz="0.000398"', "", "upper_arm has no inertia"),
+        ('xyz="0.07 0.0 0.0"', 'xyz="0.07 0.0 1e300"', "but it must be three numbers of at most 1e+06"),
         ("effort=", "strength=", "joint base_yaw has no effort or velocity limit above 0"),
     ],
 )
@@ -102,6 +108,22 @@ def test_what_does_not_fit_is_refused_by_name(tmp_path: Path, old: str, new: str
     with pytest.raises(UserError) as refused:
         import_urdf(written(tmp_path, text.replace(old, new, 1)), SUPPLY)
     assert says in refused.value.message
+
+
+def test_thousands_of_fixed_joints_are_welded(tmp_path: Path) -> None:
+    """More than Python's own stack would take, and each of them moves what follows."""
+    names = ["hand", *(f"spacer{number}" for number in range(1500))]
+    spacers = "".join(
+        f'<link name="{name}"/><joint name="to_{name}" type="fixed"><parent link="{before}"/><child link="{name}"/>'
+        '<origin xyz="0.00001 0 0"/></joint>'
+        for before, name in pairwise(names)
+    )
+    mass = '<inertial><mass value="0.5"/><inertia/></inertial>'
+    heavy = spacers.replace('<link name="spacer1499"/>', f'<link name="spacer1499">{mass}</link>')
+    found = import_urdf(written(tmp_path, urdf(default_arm()).replace("</robot>", heavy + "</robot>")), SUPPLY)
+    hand = found.arm.link[3]
+    assert hand.mass == pytest.approx(0.2148 + 0.5)
+    assert hand.centre == pytest.approx((0.2148 * 0.086 + 0.5 * 0.015) / 0.7148)
 
 
 def test_the_verb_writes_an_arm_that_other_verbs_read_and_no_file_twice(

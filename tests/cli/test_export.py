@@ -33,11 +33,13 @@ def test_four_joints_become_four_fis_files(tmp_path: Path) -> None:
 
 def test_one_joint_goes_into_the_named_file(tmp_path: Path) -> None:
     out = tmp_path / "one.fis"
-    assert run("--fis", str(paper_table("before_tuning")), "--joint", "2", "--out", str(out))["written"] == [str(out)]
+    assert run("--fis", str(paper_table("before_tuning")), "--joint", "2", "-o", str(out))["written"] == [str(out)]
     assert out.read_text().startswith("[System]\nName='before_tuning, joint 2'")
 
 
-@pytest.mark.parametrize(("option", "root", "joints"), [("--urdf", "robot", "joint"), ("--mjcf", "mujoco", ".//joint")])
+@pytest.mark.parametrize(
+    ("option", "root", "joints"), [("--urdf", "robot", "joint"), ("--mjcf", "mujoco", ".//body/joint")]
+)
 def test_an_arm_becomes_a_model_with_four_hinges(tmp_path: Path, option: str, root: str, joints: str) -> None:
     out = tmp_path / "arm.xml"
     run(option, "white_box", "--out", str(out))

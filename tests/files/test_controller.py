@@ -83,7 +83,7 @@ def test_values_out_of_range_name_key_value_and_range(
 @pytest.mark.parametrize("joints", [0, 1, 3, 5])
 def test_other_than_four_joints_are_refused(tmp_path: Path, joints: int) -> None:
     one = text().partition("[[joint]]\n")[2].partition("[[joint]]\n")[0]
-    words = rf"{joints} \[\[joint\]\] where there must be exactly 4" if joints else "joint is missing"
+    words = rf"{joints} \[\[joint\]\] where there must be exactly 4" if joints else "it is empty; choose another file"
     with pytest.raises(UserError, match=rf"controller\.toml: {words}\.$"):
         load(tmp_path, ("[[joint]]\n" + one) * joints)
 

@@ -102,3 +102,11 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
     latin.write_bytes(b'name = "\xe4"\n')
     with pytest.raises(UserError, match="byte 8 is not UTF-8"):
         toml_file.load(latin, Cart)
+
+
+@pytest.mark.parametrize(("text", "words"), [("", "it is empty;"), ("# nothing\n", "it is empty, but for comments;")])
+def test_an_empty_file_is_called_empty(tmp_path: Path, text: str, words: str) -> None:
+    path = tmp_path / "empty.toml"
+    path.write_text(text)
+    with pytest.raises(UserError, match=f"empty.toml: {words} choose another file"):
+        toml_file.read(path)

@@ -33,7 +33,7 @@ def test_octave_agrees_with_the_exact_law(name: str) -> None:
     axis = [Fraction(k, 20) for k in range(-20, 21)]
     ours = np.array([[float(exact.infer(x, y, sets).u) for y in axis] for x in axis])
     assert ours.shape == (POINTS, POINTS)
-    np.testing.assert_allclose(GOLDEN[name], ours, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(GOLDEN[name], ours, rtol=0, atol=1e-12)
 
 
 def test_the_file_says_what_matlab_expects(tmp_path: Path) -> None:
@@ -46,7 +46,9 @@ def test_the_file_says_what_matlab_expects(tmp_path: Path) -> None:
     assert "Name='joint0'" in lines
     assert "Range=[-1 1]" in lines
     assert "MF1='NE':'trapmf',[-1.01 -1 -0.29998779296875 0]" in lines
-    assert "MF2='ZU':'trimf',[-0.01 0 0.01]" in lines
+    assert "ImpMethod='prod'" in lines
+    assert "Range=[-1.25 1.25]" in lines
+    assert "MF1='NU':'trimf',[-1.25 -1 -0.75]" in lines
     assert lines[lines.index("[Rules]") + 1 :] == [
         "1 1, 1 (1) : 1",
         "1 2, 1 (1) : 1",

@@ -45,6 +45,7 @@ class Pinocchio:
 class MuJoCo:
     def __init__(self, parameters: ArmParameters) -> None:
         self.model = mujoco.MjModel.from_xml_string(mjcf(parameters))
+        self.model.dof_armature[:] = 0.0  # the links alone
         self.data = mujoco.MjData(self.model)
 
     def _place(self, q: np.ndarray, v: np.ndarray) -> None:

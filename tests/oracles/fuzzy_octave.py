@@ -1,8 +1,4 @@
-"""GNU Octave's fuzzy-logic-toolkit as a reference: it reads our .fis and evaluates it on a grid.
-
-MATLAB's centroid sums samples, Octave's integrates between them (trapz), which halves the two at the ends of the range:
-just where the peaks of NU and PU are. So Octave gets one sample more at each end; the 101 between stay where they are.
-"""
+"""GNU Octave's fuzzy-logic-toolkit as a reference: it reads our .fis and evaluates it on a grid."""
 
 from __future__ import annotations
 
@@ -18,14 +14,12 @@ from greywhale.fuzzy.export_fis import export_fis
 
 TABLES = Path(__file__).parents[2] / "shared" / "fuzzy_tables"
 POINTS = 41
-SAMPLES = 103
 SCRIPT = """
 pkg load fuzzy-logic-toolkit;
 axis = linspace(-1, 1, {points});
 [ce, e] = meshgrid(axis, axis);
 fis = readfis('{fis}');
-fis.output(1).range = [-1.02 1.02];
-u = evalfis([e(:) ce(:)], fis, {samples});
+u = evalfis([e(:) ce(:)], fis);
 fid = fopen('{out}', 'wb'); fwrite(fid, u, 'double'); fclose(fid);
 """
 
@@ -46,6 +40,6 @@ def octave_grid(name: str, sets: dict[str, float]) -> np.ndarray:
     with tempfile.TemporaryDirectory() as folder:
         fis, out = Path(folder) / "law.fis", Path(folder) / "u.bin"
         export_fis(fis, name, sets)
-        script = SCRIPT.format(points=POINTS, samples=SAMPLES, fis=fis, out=out)
+        script = SCRIPT.format(points=POINTS, fis=fis, out=out)
         subprocess.run([octave, "--quiet", "--no-gui", "--eval", script], check=True, capture_output=True, timeout=600)
         return np.fromfile(out, np.float64).reshape(POINTS, POINTS, order="F")

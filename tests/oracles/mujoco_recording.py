@@ -27,6 +27,7 @@ CONVERSIONS = (1, 3, 5, 7)  # steps into a tick at which a potentiometer is conv
 NEW_DUTY = 3  # steps into a tick from which its voltage drives
 TRACK = math.radians(300.0)
 SETTLING_S = 1.5
+USUAL_SOFTNESS = (0.02, 1.0), (0.9, 0.95, 0.001, 0.5, 2.0)  # of MuJoCo's friction; the exported file makes it stiffer
 
 
 class Board:
@@ -64,7 +65,8 @@ def record(
 
     The joints drag their potentiometers along with `play` (rad) to either side.
     """
-    model = mujoco.MjModel.from_xml_string(mjcf(arm, motors=True))
+    model = mujoco.MjModel.from_xml_string(mjcf(arm))
+    model.dof_solref[:], model.dof_solimp[:] = USUAL_SOFTNESS
     model.opt.timestep = STEP_S
     model.opt.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     data = mujoco.MjData(model)

@@ -14,7 +14,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 from arm_engines import MuJoCo, Pinocchio, arm_with_tip, random_states, without
 
 from greywhale.arm import Arm, ArmParameters
-from greywhale.arm.export import mjcf
+from greywhale.arm.export import mjcf, urdf
 from greywhale.arm.from_urdf import import_urdf
 from greywhale.files.arm import default_arm, load_arm
 from tests.arm.reframed import reframed
@@ -51,7 +51,7 @@ def test_joints_that_are_not_in_use_are_welded(engine: type[Pinocchio | MuJoCo],
 @pytest.mark.parametrize("used", [(0, 1), (1,), (0, 2, 3)])
 def test_an_arm_with_fewer_joints_moves_as_in_mujoco(used: tuple[int, ...]) -> None:
     parameters = without(load_arm("white_box"), used)
-    model = mujoco.MjModel.from_xml_string(mjcf(parameters, motors=True))
+    model = mujoco.MjModel.from_xml_string(mjcf(parameters))
     assert model.nv == len(used)
     model.opt.timestep = 1e-4
     model.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4
@@ -78,28 +78,96 @@ def test_averaging_link_3_changes_no_entry_much() -> None:
     assert 1e-5 < max(changes) < 3.3e-5
 
 
-@pytest.mark.parametrize("arm_name", ["white_box", "grey_box"])
-def test_motion_under_voltage_agrees_with_mujoco(arm_name: str) -> None:
-    """Rigid gears, no dry friction: 1 s of changing voltages, both engines at fine steps."""
-    parameters = load_arm(arm_name)
-    model = mujoco.MjModel.from_xml_string(mjcf(parameters, motors=True))
-    model.opt.timestep = 1e-4
-    model.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4
-    data = mujoco.MjData(model)
-    fine = Arm(parameters, longest_step=2e-6)
-    usual = Arm(parameters)
-    worst_fine = worst_usual = travel = 0.0
+def loaded(parameters: ArmParameters) -> tuple[mujoco.MjModel, mujoco.MjData]:
+    """The exported file as MuJoCo has it, with the step and the integrator that the file says."""
+    model = mujoco.MjModel.from_xml_string(mjcf(parameters))
+    return model, mujoco.MjData(model)
+
+
+def rigid(arm: ArmParameters, friction: bool) -> ArmParameters:
+    """The same arm with what MJCF has no words for left out: no gaps and play, no excess of friction at rest."""
+    data = arm.model_dump()
+    for joint in data["joint"]:
+        sliding = joint["friction"]["coulomb"] if friction else 0.0
+        joint |= {"gear": {}, "friction": {"coulomb": sliding, "breakaway": sliding}}
+    for pot in data["follower_pots"]["joint"]:
+        pot |= {"play": 0.0, "lag": 0.0, "noise": 0.0, "linearity": 0.0}
+    data["drive"]["supply_resistance"] = 0.0
+    return ArmParameters.model_validate(data, strict=False)
+
+
+def apart(parameters: ArmParameters, longest_step: float) -> float:
+    """How far the two are apart at most (rad) in 1 s of changing voltages."""
+    model, data = loaded(parameters)
+    arm = Arm(parameters, longest_step=longest_step)
+    worst = travel = 0.0
     for block in range(20):
         volts = 4.0 * np.sin(np.array([0.2, 0.25, 0.3, 0.35]) * (block + 1))
         data.ctrl[:] = volts
-        for _ in range(500):
+        for _ in range(round(0.05 / model.opt.timestep)):
             mujoco.mj_step(model, data)
+        worst = max(worst, np.abs(arm.step(volts, 0.05) - data.qpos).max())
         travel = max(travel, np.abs(data.qpos).min())
-        worst_fine = max(worst_fine, np.abs(fine.step(volts, 0.05) - data.qpos).max())
-        worst_usual = max(worst_usual, np.abs(usual.step(volts, 0.05) - data.qpos).max())
     assert travel > 0.1, "every joint must have moved"
-    assert worst_fine < 2e-5
-    assert worst_usual < 2e-3
+    return worst
+
+
+@pytest.mark.parametrize("name", ["white_box", "grey_box", "default", "worn"])
+def test_the_exported_file_moves_as_the_arm_does(name: str) -> None:
+    """Rigid gears, no dry friction; ours in steps of 0.2 us, in which its first order is fine enough."""
+    arm = rigid(load_arm(name), friction=False)
+    assert "The whole arm is in this file." in mjcf(arm)
+    assert apart(arm, 2e-7) < 1e-6
+    assert apart(arm, 2.5e-4) < 2e-3
+
+
+@pytest.mark.parametrize("name", ["default", "worn"])
+def test_dry_friction_is_nearly_the_same(name: str) -> None:
+    """MuJoCo's is soft; docs/arm.md has what it costs, and what the parts cost that the file leaves out."""
+    assert apart(rigid(load_arm(name), friction=True), 1e-6) < 3e-4
+    assert 1e-3 < apart(load_arm(name), 1e-5) < 0.3
+
+
+def test_the_exported_stops_hold() -> None:
+    parameters = load_arm("default")
+    model, data = loaded(parameters)
+    data.ctrl[:] = parameters.drive.supply
+    for _ in range(4000):
+        mujoco.mj_step(model, data)
+        assert (data.qpos < 2.55 + 5e-3).all()
+    assert data.qpos == pytest.approx([2.55] * 4, abs=1e-3)
+    data.ctrl[:] = 1e3
+    mujoco.mj_step(model, data)
+    gains = [parameters.actuator(joint).torque_per_volt for joint in range(4)]
+    assert data.actuator_force == pytest.approx(parameters.drive.supply * np.array(gains), rel=1e-2)
+
+
+@pytest.mark.parametrize("used", [(0, 1, 2, 3), (0, 1)])
+def test_two_readers_of_urdf_see_the_same_links_and_rods(used: tuple[int, ...]) -> None:
+    text = urdf(without(arm_with_tip(), used))
+    theirs = mujoco.MjModel.from_xml_string(text)  # its own compiler, which drops what is there for the eye alone
+    model = pinocchio.buildModelFromXML(text)
+    shapes = {
+        kind: pinocchio.buildGeomFromUrdfString(model, text, kind).geometryObjects
+        for kind in (pinocchio.GeometryType.VISUAL, pinocchio.GeometryType.COLLISION)
+    }
+    ours = mujoco.MjModel.from_xml_string(mjcf(without(arm_with_tip(), used)))
+    assert theirs.nv == model.nv == len(used)
+    np.testing.assert_allclose(theirs.jnt_range, ours.jnt_range)
+    for objects in shapes.values():
+        sizes = [(one.geometry.radius, one.geometry.halfLength) for one in objects]
+        np.testing.assert_allclose(sizes, ours.geom_size[:, :2], atol=1e-12)
+    centres = geom_centres(ours)
+    np.testing.assert_allclose(geom_centres(theirs), centres, atol=1e-9)
+    assert not np.allclose(centres[:, 2], centres[0, 2])
+
+
+def geom_centres(model: mujoco.MjModel) -> np.ndarray:
+    """Where the rods are in a bent pose, (4, 3)."""
+    data = mujoco.MjData(model)
+    data.qpos[:] = 0.4
+    mujoco.mj_forward(model, data)
+    return np.array(data.geom_xpos)
 
 
 @pytest.mark.parametrize("seed", range(6))

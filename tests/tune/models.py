@@ -10,7 +10,7 @@ import numpy as np
 
 from greywhale.arm import ArmParameters
 from greywhale.files.arm import default_arm
-from greywhale.files.model import to_toml
+from greywhale.files.model import sealed, to_toml
 from greywhale.firmware import JOINTS
 from greywhale.identify.space import KINDS, Space
 from greywhale.measure import Evaluation
@@ -67,7 +67,8 @@ def write_model(
 ) -> Path:
     """A model.toml of `arm` (the default one); `changes` are those of `facts_of`."""
     arm = arm or default_arm()
-    path.write_text(to_toml(arm, facts_of(arm, **changes) if facts is None else facts), encoding="utf-8")
+    facts = facts_of(arm, **changes) if facts is None else facts
+    path.write_text(to_toml(arm, sealed(arm, facts)), encoding="utf-8")
     return path
 
 

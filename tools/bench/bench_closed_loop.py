@@ -99,7 +99,7 @@ def _mujoco(ours: float) -> list[Figure]:
             str(library),
         ]
         subprocess.run([*build, f"-Wl,-rpath,{folder}", "-pthread", "-o", str(program)], check=True)
-        model.write_text(mjcf(default_arm(), motors=True), encoding="utf-8")
+        model.write_text(mjcf(default_arm()), encoding="utf-8")
         without = Path(name) / "frictionless.xml"
         without.write_text(_without_friction(model.read_text(encoding="utf-8")), encoding="utf-8")
 
@@ -134,7 +134,7 @@ def _mujoco_rollout() -> list[Figure]:
     import mujoco  # type: ignore[import-not-found,import-untyped,unused-ignore]
     from mujoco import rollout  # type: ignore[import-not-found,import-untyped,unused-ignore]
 
-    model = mujoco.MjModel.from_xml_string(_without_friction(mjcf(default_arm(), motors=True)))
+    model = mujoco.MjModel.from_xml_string(_without_friction(mjcf(default_arm())))
     model.opt.timestep = 1e-3
     model.opt.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     count, steps = 32, 2000

@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from greywhale.arm import ArmParameters
-from greywhale.arm.export import JOINT_IDS, mjcf
+from greywhale.arm.export import mjcf
 from greywhale.files.arm import load_arm
 from greywhale.files.model import arm_toml
 from greywhale.firmware import JOINTS
@@ -78,7 +78,7 @@ class MuJoCoPlant:
         import mujoco  # only `make oracles` installs it
 
         self._advance = mujoco.mj_step
-        self._model = mujoco.MjModel.from_xml_string(_with_stops(arm.parameters))
+        self._model = mujoco.MjModel.from_xml_string(_as_soft_as_usual(mjcf(arm.parameters)))
         self._model.opt.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
         self._data: Any = mujoco.MjData(self._model)
         self._half = 0.5 * arm.play
@@ -99,13 +99,11 @@ class MuJoCoPlant:
         return self._shown
 
 
-def _with_stops(parameters: ArmParameters) -> str:
-    root = xml.fromstring(mjcf(parameters, motors=True))
-    for name, joint in zip(JOINT_IDS, parameters.joint, strict=True):
-        hinge = root.find(f".//joint[@name='{name}']")
-        assert hinge is not None
-        hinge.set("limited", "true")
-        hinge.set("range", f"{joint.stops.min!r} {joint.stops.max!r}")
+def _as_soft_as_usual(text: str) -> str:
+    """The exported arm with friction and stops as MuJoCo has them by default: softer than this arm's own."""
+    root = xml.fromstring(text)
+    (default,) = root.findall("default")
+    default.remove(default.findall("joint")[0])
     return xml.tostring(root, encoding="unicode")
 
 

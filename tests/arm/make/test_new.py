@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from greywhale.arm import Arm
-from greywhale.arm.make.units import DEGREE, GRAM, MM, NEWTON_METRE, RPM, read_number
 from greywhale.cli.entry import run
 from greywhale.files.arm import load_arm
+from greywhale.formats.units import DEGREE, GRAM, MILLIVOLT, MM, NEWTON_METRE, RADIAN, RPM, SECOND, read_number, unit_of
 
 MOTOR = """gear_ratio = 131
 stall_torque_nm = "18 kg cm"
@@ -157,14 +157,83 @@ def test_a_person_is_asked_again_with_the_reason(
     assert arm["drive"]["supply"] == 6.0
 
 
-@pytest.mark.parametrize(("lines", "says"), [([""] * 10, "the input ended"), ([""] * 46 + ["no"] * 9, "nothing was")])
-def test_nothing_is_written_without_a_yes(
+def say(monkeypatch: pytest.MonkeyPatch, *lines: str) -> None:
+    monkeypatch.setattr("sys.stdin", io.StringIO("".join(f"{line}\n" for line in lines)))
+
+
+@pytest.mark.parametrize(
+    ("lines", "says"),
+    [
+        (["desk", "9", "90"], "the input ended in the middle"),
+        (["desk", "9", "90", *[""] * 43, "no"], "was not written"),
+    ],
+)
+def test_without_a_yes_only_the_answers_are_kept_and_they_can_be_used(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, lines: list[str], says: str
 ) -> None:
-    monkeypatch.setattr("sys.stdin", io.StringIO("".join(f"{line}\n" for line in lines)))
+    out, again, kept = (tmp_path / name for name in ("arm.toml", "again.toml", "arm.answers.toml"))
+    say(monkeypatch, *lines)
+    assert run(["arm", "new", "--out", str(out)]) == 1
+    said = capsys.readouterr().err
+    assert says in said.rpartition("greywhale")[0] or says in said
+    assert f"answers are in {kept}: `greywhale arm new --answers {kept}` takes them" in said
+    assert list(tmp_path.iterdir()) == [kept]
+    say(monkeypatch, "desk", "9", "90", *[""] * 100)
+    assert run(["arm", "new", "--out", str(out)]) == 0
+    assert run(["arm", "new", "--answers", str(kept), "--out", str(again)]) == 0
+    assert load_arm(again) == load_arm(out)
+
+
+def test_ctrl_c_keeps_the_answers_beside_earlier_ones(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Hand:
+        """Says some lines, then presses Ctrl-C."""
+
+        def __init__(self, *lines: str) -> None:
+            self._lines = iter(lines)
+
+        def readline(self) -> str:
+            for line in self._lines:
+                return f"{line}\n"
+            raise KeyboardInterrupt
+
+    for name in ("arm.answers.toml", "arm.answers-2.toml"):
+        monkeypatch.setattr("sys.stdin", Hand("desk", "9", "90", "bar"))
+        assert run(["arm", "new", "--out", str(tmp_path / "arm.toml")]) == 130
+        assert f"interrupted. Your 4 answers are in {tmp_path / name}" in capsys.readouterr().err
+        kept = tomllib.loads((tmp_path / name).read_text())
+        assert kept == {"name": "desk", "supply_v": 9.0, "link": [{"length_mm": 90.0, "section": "bar"}]}
+    monkeypatch.setattr("sys.stdin", Hand())
+    assert run(["arm", "new", "--out", str(tmp_path / "arm.toml")]) == 130
+    assert capsys.readouterr().err.endswith("interrupted.\n"), "who said nothing loses nothing"
+
+
+def test_back_asks_the_question_before_again(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    out = tmp_path / "arm.toml"
+    say(monkeypatch, "back", "desk", "9", "14 cm", "bar", "back", "back", "15 cm", *[""] * 44, "back", "250", "")
+    assert run(["arm", "new", "--out", str(out)]) == 0
+    said = capsys.readouterr().err
+    assert said.count("Its length, mm [80]") == 2
+    assert said.count("Link 0, the turret") == 3, "the heading tells which link it is, each time one goes back"
+    assert said.count("Write ") == 2, "from the summary too"
+    arm = load_arm(out)
+    assert arm.link[0].length == 0.15
+    assert arm.follower_pots.joint[0].track == pytest.approx(np.radians(250.0))
+
+
+def test_a_question_mark_explains_each_question(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    answers = ["desk", "9", "", "", "", "", "", "50", *[""] * 40]
+    say(monkeypatch, *(line for answer in answers for line in ("?", answer)), "no")
     assert run(["arm", "new", "--out", str(tmp_path / "arm.toml")]) == 1
-    assert says in capsys.readouterr().err
-    assert list(tmp_path.iterdir()) == []
+    said = capsys.readouterr().err
+    assert "From axis to axis, as the heading says" in said
+    assert "A number: 5 to 2000 mm, also in cm, m, in." in said.replace("\n    ", " ")
+    assert said.count("Weigh the link without motors") == 4
 
 
 @pytest.mark.parametrize(
@@ -173,7 +242,8 @@ def test_nothing_is_written_without_a_yes(
         ("140", MM, 140.0), ("14 cm", MM, 140.0), (".14m", MM, 140.0), ("1e-1 kg", GRAM, 100.0),
         ("5 kg·cm", NEWTON_METRE, 0.490333), ("5 kg-cm", NEWTON_METRE, 0.490333), ("70 oz in", NEWTON_METRE, 0.494312),
         ("1 N m", NEWTON_METRE, 1.0), ("6.2832 rad/s", RPM, 60.0), ("-1.5708 rad", DEGREE, -90.0),
-        ("90°", DEGREE, 90.0),
+        ("90°", DEGREE, 90.0), ("12V", MILLIVOLT, 12_000.0), ("12 V", MILLIVOLT, 12_000.0), ("-90deg", RADIAN, -1.5708),
+        ("500 ms", SECOND, 0.5), ("3 10-bit counts", unit_of("10-bit counts"), 3.0),
     ],
 )  # fmt: skip
 def test_units_as_people_write_them(text: str, unit: Any, value: float) -> None:

@@ -9,11 +9,20 @@ import math
 from dataclasses import dataclass
 from xml.etree import ElementTree as xml
 
-from greywhale.arm.parameters import ArmParameters
+from greywhale.arm.parameters import ArmParameters, Link
 
 LINK_NAMES = ("base", "upper_arm", "wrist", "hand")
 JOINT_IDS = ("base_yaw", "shoulder_pitch", "wrist_pitch", "wrist_roll")
 _AXES = ((0, 1, 0), (0, 0, 1), (0, 0, 1), (1, 0, 0))
+MJCF_STEP_S = 0.00025
+# MuJoCo's friction and stops are soft; this is as stiff as it takes them at that step.
+_STIFF = {
+    "solreffriction": "0.0005 1",
+    "solimpfriction": "0.9999 0.9999 0.001 0.5 2",
+    "solreflimit": "0.0005 1",
+    "solimplimit": "0.9999 0.9999 0.001 0.5 2",
+}
+_RODS = "Each link is drawn as a rod of its length, its mass and its inertia about its own line."
 
 
 @dataclass(frozen=True)
@@ -24,14 +33,17 @@ class _Body:
     centre: tuple[float, float, float]
     mass: float
     inertia: tuple[float, float, float]
+    end: tuple[float, float, float]  # where the next joint is, or the tip
+    radius: float  # of a rod of its mass with its inertia about its line
 
 
 def urdf(parameters: ArmParameters) -> str:
     """The arm as URDF; joint limits are the stops, effort and velocity what the motor gives at the full supply.
 
-    Joints that are not in use are fixed ones.
+    A comment names what is missing. Joints that are not in use are fixed ones.
     """
-    robot = xml.Element("robot", name=parameters.name)
+    robot = xml.Element("robot", name=parameters.name.removesuffix(", identified"))  # it holds too little of that
+    robot.append(xml.Comment(f" {_RODS} {_left_out(parameters, 'inertia of the motors')} "))
     xml.SubElement(robot, "link", name="world")
     parent = "world"
     for index, body in enumerate(_bodies(parameters)):
@@ -41,6 +53,7 @@ def urdf(parameters: ArmParameters) -> str:
         xml.SubElement(inertial, "mass", value=repr(body.mass))
         xx, yy, zz = map(repr, body.inertia)
         xml.SubElement(inertial, "inertia", ixx=xx, ixy="0", ixz="0", iyy=yy, iyz="0", izz=zz)
+        _add_rod(link, body)
 
         kind = "fixed" if parameters.joint[index].fixed else "revolute"
         joint = xml.SubElement(robot, "joint", name=JOINT_IDS[index], type=kind)
@@ -52,6 +65,16 @@ def urdf(parameters: ArmParameters) -> str:
             _add_turning(joint, parameters, index)
         parent = LINK_NAMES[index]
     return _document(robot)
+
+
+def _add_rod(link: xml.Element, body: _Body) -> None:
+    """The same cylinder to look at and to bump into; a URDF's lies along z."""
+    tilt = (-math.pi / 2, 0.0, 0.0) if body.end[1] else (0.0, math.pi / 2, 0.0)
+    for use in ("visual", "collision"):
+        shape = xml.SubElement(link, use)
+        xml.SubElement(shape, "origin", xyz=_text(tuple(part / 2.0 for part in body.end)), rpy=_text(tilt))
+        rod = xml.SubElement(xml.SubElement(shape, "geometry"), "cylinder")
+        rod.attrib.update(radius=repr(body.radius), length=repr(max(body.end)))
 
 
 def _add_turning(joint: xml.Element, parameters: ArmParameters, index: int) -> None:
@@ -72,40 +95,78 @@ def _add_turning(joint: xml.Element, parameters: ArmParameters, index: int) -> N
     xml.SubElement(joint, "dynamics", damping=repr(actuator.damping), friction=repr(friction))
 
 
-def mjcf(parameters: ArmParameters, motors: bool = False) -> str:
-    """The arm as MJCF: the links alone, or with motors driven in volts (rigid gears, Coulomb friction, no stops).
+def mjcf(parameters: ArmParameters) -> str:
+    """The arm as MJCF: links, stops, friction and motors, whose controls are voltages.
 
-    The link of a joint that is not in use is welded to the one before: it has no joint.
+    The link of a joint that is not in use is welded to the one before, without a joint. A comment says what is missing.
     """
     model = xml.Element("mujoco", model=parameters.name)
+    model.append(xml.Comment(f" Controls are volts. {_RODS} {_left_out(parameters)} "))
     xml.SubElement(model, "compiler", angle="radian")
-    xml.SubElement(model, "option", gravity=_text((0.0, 0.0, -parameters.gravity)))
+    gravity = _text((0.0, 0.0, -parameters.gravity))
+    xml.SubElement(model, "option", gravity=gravity, timestep=repr(MJCF_STEP_S), integrator="RK4")
+    default = xml.SubElement(model, "default")
+    xml.SubElement(default, "joint", _STIFF)
+    xml.SubElement(default, "geom", type="cylinder", contype="0", conaffinity="0", group="1", mass="0")
     parent = xml.SubElement(model, "worldbody")
+    actuators = xml.SubElement(model, "actuator")
     for index, body in enumerate(_bodies(parameters)):
         frame = {"name": LINK_NAMES[index], "pos": _text(body.origin)}
         if index == 0:
             frame["euler"] = _text((math.pi / 2, 0.0, 0.0))
         parent = xml.SubElement(parent, "body", frame)
-        joint = {"name": JOINT_IDS[index], "type": "hinge", "axis": _text(_AXES[index])}
-        if motors:
-            actuator = parameters.actuator(index)
-            joint["armature"] = repr(actuator.inertia)
-            joint["damping"] = repr(actuator.damping)
-            joint["frictionloss"] = repr(parameters.joint[index].friction.coulomb)
         if index in parameters.joints_in_use:
-            xml.SubElement(parent, "joint", joint)
+            _add_motor(parent, actuators, parameters, index)
         inertia = _text(body.inertia)
         xml.SubElement(parent, "inertial", pos=_text(body.centre), mass=repr(body.mass), diaginertia=inertia)
-    if motors:
-        actuators = xml.SubElement(model, "actuator")
-        for index in parameters.joints_in_use:
-            name = JOINT_IDS[index]
-            gear = parameters.actuator(index).torque_per_volt
-            supply = parameters.drive.supply
-            xml.SubElement(
-                actuators, "motor", joint=name, gear=repr(gear), ctrllimited="true", ctrlrange=_text((-supply, supply))
-            )
+        xml.SubElement(parent, "geom", fromto=_text((0.0, 0.0, 0.0, *body.end)), size=repr(body.radius))
+    xml.SubElement(parent, "site", name="tip", pos=_text(body.end))
     return _document(model)
+
+
+def _add_motor(body: xml.Element, actuators: xml.Element, parameters: ArmParameters, index: int) -> None:
+    """A hinge and what drives it: a voltage gives torque, less what the back-EMF of the speed takes away."""
+    joint, actuator, supply = parameters.joint[index], parameters.actuator(index), parameters.drive.supply
+    back_emf = actuator.torque_per_volt * joint.motor.torque_constant * joint.motor.gear_ratio
+    xml.SubElement(
+        body,
+        "joint",
+        name=JOINT_IDS[index],
+        type="hinge",
+        axis=_text(_AXES[index]),
+        limited="true",
+        range=_text((joint.stops.min, joint.stops.max)),
+        armature=repr(actuator.inertia),
+        damping=repr(max(actuator.damping - back_emf, 0.0)),
+        frictionloss=repr(joint.friction.coulomb),
+    )
+    xml.SubElement(
+        actuators,
+        "general",
+        name=JOINT_IDS[index],
+        joint=JOINT_IDS[index],
+        ctrllimited="true",
+        ctrlrange=_text((-supply, supply)),
+        gainprm=repr(actuator.torque_per_volt),
+        biastype="affine",
+        biasprm=_text((0.0, 0.0, -back_emf)),
+    )
+
+
+def _left_out(parameters: ArmParameters, *more: str) -> str:
+    """What the file cannot say of this arm, a phrase for each thing that the arm has."""
+    joints = [parameters.joint[index] for index in parameters.joints_in_use]
+    pots = parameters.follower_pots.joint
+    found = {
+        "friction at rest above the sliding one": any(one.friction.breakaway > one.friction.coulomb for one in joints),
+        "friction that grows with the load": any(one.friction.load for one in joints),
+        "creep": any(one.friction.creep_velocity for one in joints),
+        "the gears' gaps and teeth": any(one.gear.stiffness for one in joints),
+        "the supply's resistance": bool(parameters.drive.supply_resistance),
+        "potentiometers": any(one.noise or one.play or one.lag or one.linearity for one in pots),
+    }
+    missing = [*more, *(one for one, has in found.items() if has)]
+    return f"Not in this file: {', '.join(missing)}." if missing else "The whole arm is in this file."
 
 
 def _bodies(parameters: ArmParameters) -> list[_Body]:
@@ -120,12 +181,19 @@ def _bodies(parameters: ArmParameters) -> list[_Body]:
         inertia = parameters.link[index].inertia
         return (inertia.xx, inertia.yy, inertia.zz)
 
+    ends = [(0.0, link0.length, 0.0), *((link.length, 0.0, 0.0) for link in (link1, link2, link3))]
+    radii = [_radius(link0, link0.inertia.yy), *(_radius(link, link.inertia.xx) for link in (link1, link2, link3))]
     return [
-        _Body((0.0, 0.0, 0.0), (0.0, link0.centre, 0.0), link0.mass, principal(0)),
-        _Body((0.0, link0.length, 0.0), (link1.centre, 0.0, 0.0), link1.mass, principal(1)),
-        _Body((link1.length, 0.0, 0.0), (link2.centre, 0.0, 0.0), link2.mass, principal(2)),
-        _Body((link2.length, 0.0, 0.0), (centre3, 0.0, 0.0), mass3, (link3.inertia.xx, across, across)),
+        _Body((0.0, 0.0, 0.0), (0.0, link0.centre, 0.0), link0.mass, principal(0), ends[0], radii[0]),
+        _Body(ends[0], (link1.centre, 0.0, 0.0), link1.mass, principal(1), ends[1], radii[1]),
+        _Body(ends[1], (link2.centre, 0.0, 0.0), link2.mass, principal(2), ends[2], radii[2]),
+        _Body(ends[2], (centre3, 0.0, 0.0), mass3, (link3.inertia.xx, across, across), ends[3], radii[3]),
     ]
+
+
+def _radius(link: Link, about_line: float) -> float:
+    """No rod is drawn thicker than long."""
+    return min(math.sqrt(2.0 * about_line / link.mass), link.length / 2.0)
 
 
 def _text(values: tuple[float, ...]) -> str:

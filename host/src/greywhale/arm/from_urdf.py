@@ -6,7 +6,6 @@ greywhale's own zero pose has all links stretched out level. `Imported` says whe
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -18,6 +17,7 @@ from greywhale.arm.fewer_joints import complete
 from greywhale.arm.parameters import JOINT_NAMES, ArmParameters
 from greywhale.arm.urdf import Body, TurningJoint, read_chain
 from greywhale.errors import BAD_USAGE, UserError, cut
+from greywhale.formats import toml_file
 
 Floats = npt.NDArray[np.float64]
 
@@ -58,6 +58,9 @@ def import_urdf(path: Path, supply_v: float) -> Imported:
     """
     name, joints = read_chain(path)
     used = len(joints)
+    for joint in joints:
+        if joint.body.mass <= 0.0:
+            raise _empty(path, joint.body, "mass")
     joints = complete(path, joints)
     frames = _find_frames(path, joints)
     signs, offsets = _angles(joints, frames)
@@ -76,9 +79,9 @@ def import_urdf(path: Path, supply_v: float) -> Imported:
         "drive": {"supply": supply_v},
     }
     try:
-        arm = ArmParameters.model_validate(data, strict=False)
-    except ValueError as error:
-        raise UserError(f"{path}: {_first_line(error)}.", BAD_USAGE) from None
+        arm = toml_file.check(data, ArmParameters, str(path))
+    except UserError as error:
+        raise UserError(error.message, BAD_USAGE) from None
     return Imported(arm, signs, offsets, tuple(remarks))
 
 
@@ -153,8 +156,6 @@ def _angles(joints: list[TurningJoint], frames: _Frames) -> tuple[Floats, Floats
 def _link(path: Path, number: int, joint: TurningJoint, frames: _Frames, remarks: list[str]) -> dict[str, Any]:
     """Mass, length, centre and inertias in the link's own axes."""
     body, along = joint.body, frames.along[number]
-    if body.mass <= 0.0:
-        raise UserError(f"{path}: link {cut(body.names[0])} has no mass; every moving link needs one.", BAD_USAGE)
     axes = _axes(number, along, frames.pitch)
     inertia = axes @ body.inertia @ axes.T
     centre = axes @ (body.centre - frames.points[number])
@@ -162,6 +163,8 @@ def _link(path: Path, number: int, joint: TurningJoint, frames: _Frames, remarks
         turning = float(inertia[1, 1] + body.mass * (centre[0] ** 2 + centre[2] ** 2))
         length = max(frames.lengths[0], 2.0 * abs(float(centre[1])))
         return _table(body, length, length / 2.0, np.array([turning, turning, turning]))
+    if not np.diag(inertia).max() > 0.0:
+        raise _empty(path, body, "inertia")
     reach = float(centre[0])
     length = frames.lengths[number] if number < 3 else max(2.0 * reach, SHORTEST_M)
     aside = float(np.linalg.norm(centre[1:]))
@@ -184,6 +187,10 @@ def _link(path: Path, number: int, joint: TurningJoint, frames: _Frames, remarks
         share = f"{100 * products:.0f} % of the largest moment"
         remarks.append(f"products of inertia of {cut(body.names[0])} were left out ({share})")
     return _table(body, length, min(max(reach, 0.0), length), np.diag(inertia))
+
+
+def _empty(path: Path, body: Body, what: str) -> UserError:
+    return UserError(f"{path}: link {cut(body.names[0])} has no {what}; every moving link needs some.", BAD_USAGE)
 
 
 def _axes(number: int, along: Floats, pitch: Floats) -> Floats:
@@ -225,11 +232,3 @@ def _joint(
         "friction": {"coulomb": friction, "breakaway": friction},
         "stops": {"min": max(ends[0], -math.tau), "max": min(ends[1], math.tau)},
     }
-
-
-def _first_line(error: ValueError) -> str:
-    details: list[Mapping[str, Any]] = getattr(error, "errors", list)()
-    if not details:
-        return cut(str(error))
-    first = details[0]
-    return cut(f"{'.'.join(map(str, first['loc']))}: {first['msg']}")

@@ -174,7 +174,7 @@ class Joint(Table):
         if self.fixed:
             return {"name": self.name, "fixed": True}
         data: dict[str, Any] = whole(self)
-        del data["fixed"]
+        data.pop("fixed", None)
         return data
 
 

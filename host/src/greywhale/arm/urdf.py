@@ -15,6 +15,8 @@ from greywhale.errors import BAD_USAGE, UserError, cut, os_reason
 Floats = npt.NDArray[np.float64]
 
 LARGEST = 4 << 20  # bytes
+HEAVIEST_KG = 1e4
+FURTHEST = 1e6  # m or rad; what lies beyond would only overflow
 TURNING = ("revolute", "continuous")
 _ELSEWHERE = "choose another description of the arm, or write arm.toml by hand (docs/arm.md)"
 
@@ -110,20 +112,28 @@ class _Reader:
 
     def _weld(self, body: Body, link: str, frame: Floats) -> list[tuple[xml.Element, Floats]]:
         """Add a link and what is fixed to it; the joints that turn from there, with the frame of their parent."""
+        moving = []
+        welded = [(link, frame)]
+        for name, place in welded:
+            self._add(body, name, place)
+            for joint in self.after[name]:
+                if joint.get("type") == "fixed":
+                    welded.append((self._end(joint, "child"), place @ self._origin(joint)))
+                else:
+                    moving.append((joint, place))
+        return moving
+
+    def _add(self, body: Body, link: str, frame: Floats) -> None:
         inertial = self.links[link].find("inertial")
         if inertial is None:
             body.add(link, 0.0, np.zeros(3), np.zeros((3, 3)))
         else:
             own = frame @ self._origin(inertial)
             turned = own[:3, :3] @ self._inertia(inertial, link) @ own[:3, :3].T
-            body.add(link, self._number(inertial.find("mass"), "value", link), own[:3, 3], turned)
-        moving = []
-        for joint in self.after[link]:
-            if joint.get("type") == "fixed":
-                moving += self._weld(body, self._end(joint, "child"), frame @ self._origin(joint))
-            else:
-                moving.append((joint, frame))
-        return moving
+            mass = self._number(inertial.find("mass"), "value", link)
+            if not 0.0 <= mass <= HEAVIEST_KG:
+                raise self._bad(f"the mass of link {cut(link)} is {mass:g} kg")
+            body.add(link, mass, own[:3, 3], turned)
 
     def _turning(self, joint: xml.Element, frame: Floats, body: Body) -> TurningJoint:
         name, kind = self._name(joint, "joint"), joint.get("type", "")
@@ -171,8 +181,10 @@ class _Reader:
             values = np.array([float(part) for part in text.split()])
         except ValueError:
             values = np.empty(0)
-        if values.shape != (3,) or not np.isfinite(values).all():
-            raise self._bad(f"{key} of {cut(where)} is {cut(repr(text))}, but it must be three numbers")
+        if values.shape != (3,) or not (np.abs(values) <= FURTHEST).all():
+            raise self._bad(
+                f"{key} of {cut(where)} is {cut(repr(text))}, but it must be three numbers of at most {FURTHEST:g}"
+            )
         return values
 
     def _number(self, tag: xml.Element | None, key: str, where: str, otherwise: float | None = None) -> float:

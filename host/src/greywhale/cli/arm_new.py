@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import contextlib
+import itertools
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import click
 import numpy as np
 
 from greywhale.arm.make import Summary, assemble, summarise
-from greywhale.arm.make.answers import read_answers
-from greywhale.arm.make.questions import Question, collect
+from greywhale.arm.make.answers import Answer, answers_toml, read_answers
+from greywhale.arm.make.explain import explain
+from greywhale.arm.make.questions import Answers, Question, collect
 from greywhale.arm.parameters import JOINT_NAMES, ArmParameters
 from greywhale.cli.output import json_option, overwrite_option, show, tell
-from greywhale.errors import UserError
+from greywhale.errors import UserError, counted
 from greywhale.files.model import arm_toml
 from greywhale.files.outputs import require_new
 from greywhale.formats.whole import refuse_inputs, write_text
@@ -30,48 +34,125 @@ MUCH_TO_HOLD = 0.6  # of stall_volts: the rest is for starting
 def new(answers: Path | None, out: Path, overwrite: bool, as_json: bool) -> None:
     """Ask for lengths, masses or materials, motors' data sheets and ranges; write an arm.toml.
 
-    Enter takes what stands in brackets. A number may have another unit: 14 cm, 5 kg cm. Before it writes, it shows
-    what the arm can lift and how fast it is.
+    Enter takes what stands in brackets, ? explains the question, back asks the one before again. A number may have
+    another unit: 14 cm, 5 kg cm. Before it writes, it shows what the arm can lift and how fast it is. Ctrl-C leaves the
+    answers so far in a file for --answers.
     """
     refuse_inputs(out, answers)
     require_new(overwrite, out)
-    person = Person()
-    given, left_out = read_answers(answers) if answers is not None else (collect(person), ())
-    arm = assemble(given)
-    found = summarise(arm)
-    text = "\n".join([*_table(arm, found), *_notes(found, left_out)])
     if answers is None:
-        tell(f"\n{text}\n")
-        person.confirm(f"Write {out}?")
+        person = Person(out)
+        with person.kept():
+            arm = _agreed(person, out)
+        left_out: tuple[str, ...] = ()
+    else:
+        given, left_out = read_answers(answers)
+        arm = assemble(given)
+    found = summarise(arm)
     write_text(out, arm_toml(arm, "Made by greywhale arm new."))
-    show(as_json, _facts(out, found, left_out), f"{text}\n\n{out} is written." if answers else f"{out} is written.")
+    text = [*_table(arm, found), *_notes(found, left_out), ""] if answers is not None else []
+    show(as_json, _facts(out, found, left_out), "\n".join([*text, f"{out} is written."]))
+
+
+def _agreed(person: Person, out: Path) -> ArmParameters:
+    """The arm that somebody describes, and wants after a look at what it can lift."""
+    while True:
+        arm = assemble(person.answers())
+        found = summarise(arm)
+        tell("\n".join(["", *_table(arm, found), *_notes(found, ()), ""]))
+        try:
+            person.confirm(f"Write {out}?", f"{out} was not written.")
+        except Back:
+            person.go_back()
+        else:
+            return arm
+
+
+class Back(Exception):
+    """Somebody wants the question before again."""
 
 
 class Person:
     """Somebody at this terminal, or a script that writes a line for each question."""
 
+    def __init__(self, out: Path) -> None:
+        self._out = out
+        self._given: list[Answer] = []
+        self._place = 0  # of the next question among them
+        self._heading = self._shown = ""
+
+    def answers(self) -> Answers:
+        """Ask from the first question that has no answer yet; `back` takes the last answer away."""
+        while True:
+            self._place = 0
+            try:
+                return collect(self)
+            except Back:
+                self.go_back()
+
+    def go_back(self) -> None:
+        """Forget the last answer."""
+        del self._given[-1:]
+        self._shown = ""
+
+    @contextlib.contextmanager
+    def kept(self) -> Iterator[None]:
+        """Whatever ends the questions, their answers so far are not lost."""
+        try:
+            yield
+        except (UserError, KeyboardInterrupt) as error:
+            if self._given:
+                path = _free_name(self._out)
+                write_text(path, answers_toml(self._given))
+                error.add_note(
+                    f"Your {counted(len(self._given), 'answer')} are in {path}: `greywhale arm new --answers {path}` "
+                    "takes them, and what is usual for the rest."
+                )
+            raise
+
     def heading(self, text: str) -> None:
-        click.echo(f"\n{text}", err=True)
+        self._heading = text
 
     def ask(self, question: Question) -> float | str:
+        if self._place == len(self._given):
+            self._given.append(Answer(question, self._live(question)))
+        self._place += 1
+        return self._given[self._place - 1].value
+
+    def confirm(self, what: str, otherwise: str) -> None:
+        """Until Enter; anything else leaves everything as it is."""
+        if self._line(f"{what} [Enter; no; back]: ").lower() not in ("", "y", "yes"):
+            raise UserError(otherwise)
+
+    def _live(self, question: Question) -> float | str:
+        if self._heading != self._shown:
+            click.echo(f"\n{click.wrap_text(self._heading)}", err=True)
+            self._shown = self._heading
         while True:
             answer = self._line(f"  {_asked(question)}: ")
+            if answer == "?":
+                click.echo(click.wrap_text(explain(question), 76, "    ", "    "), err=True)
+                continue
             try:
                 return question.read(answer) if answer else question.usual
             except ValueError as error:
                 tell(f"    Not {answer[:40]!r}: {error}.")
 
-    def confirm(self, what: str) -> None:
-        """Until Enter; anything else leaves everything as it is."""
-        if self._line(f"{what} [Enter; no]: ").lower() not in ("", "y", "yes"):
-            raise UserError("nothing was written.")
-
     def _line(self, prompt: str) -> str:
         click.echo(prompt, nl=False, err=True)
         line = sys.stdin.readline()
         if not line:
-            raise UserError("the input ended in the middle of the questions; nothing was written.")
+            raise UserError(f"the input ended in the middle of the questions; {self._out} was not written.")
+        if line.strip().lower() == "back":
+            raise Back
         return line.strip()
+
+
+def _free_name(out: Path) -> Path:
+    """arm.answers.toml beside arm.toml, or the next name that is free."""
+    ends = itertools.chain([""], (f"-{number}" for number in itertools.count(2)))
+    names = (out.with_name(f"{out.stem}.answers{end}.toml") for end in ends)
+    return next(path for path in names if not path.exists())
 
 
 def _asked(question: Question) -> str:

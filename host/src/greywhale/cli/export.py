@@ -22,7 +22,7 @@ from greywhale.formats.whole import refuse_inputs, write_text
 )
 @click.option("--urdf", metavar="ARM.toml", help="An arm for ROS, Pinocchio and others.")
 @click.option("--mjcf", metavar="ARM.toml", help="An arm for MuJoCo.")
-@click.option("--out", required=True, type=click.Path(path_type=Path), help="The file to write.")
+@click.option("--out", "-o", required=True, type=click.Path(path_type=Path), help="The file to write.")
 @click.option("--joint", type=click.IntRange(0, 3), help="With --fis: this joint only, into OUT itself.")
 @overwrite_option
 @json_option

@@ -17,6 +17,7 @@ from greywhale.errors import BAD_USAGE, UserError, cut
 from greywhale.files import parameter_file
 from greywhale.files.names import did_you_mean
 from greywhale.files.outputs import require_new
+from greywhale.formats.units import read_number, unit_of
 from greywhale.protocol import schema
 from greywhale.protocol.declared import Parameter
 from greywhale.protocol.ports import choose_port
@@ -53,7 +54,10 @@ def get(names: tuple[str, ...], port: str | None, as_json: bool) -> None:
 @port_option
 @json_option
 def set_(settings: tuple[str, ...], port: str | None, as_json: bool) -> None:
-    """Change parameters, all together: run them and store them."""
+    """Change parameters, all together: run them and store them.
+
+    A value may have its unit, or another of the same kind: supply_mv=12V, joint0.limit_min=-90deg.
+    """
     changes: dict[str, int] = {}
     for name, raw in map(_setting, settings):
         if name in changes:
@@ -148,9 +152,9 @@ def _setting(text: str) -> tuple[str, int]:
         raise UserError(f"{cut(json.dumps(text))} is not NAME=VALUE, such as joint0.kp=0.5.", BAD_USAGE)
     parameter = _parameter(name.strip())
     try:
-        number = float(value)
-    except ValueError:
-        raise UserError(f"{name} is {cut(json.dumps(value))}, but it must be a number.", BAD_USAGE) from None
+        number = read_number(value, unit_of(parameter.unit))
+    except ValueError as error:
+        raise UserError(f"{name} is {cut(json.dumps(value))}: {error}.", BAD_USAGE) from None
     return parameter.name, parameter.to_raw_as_given(number)
 
 

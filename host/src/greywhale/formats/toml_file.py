@@ -108,6 +108,9 @@ def _parse(text: str, name: str) -> dict[str, Any]:
         raise UserError(f"{name}: not valid TOML: it is nested too deeply.") from None
     except ValueError:  # Python reads no integer of thousands of digits
         raise UserError(f"{name}: not valid TOML: a number in it has too many digits.") from None
+    if not data:
+        besides = ", but for comments" if text.strip() else ""
+        raise UserError(f"{name}: it is empty{besides}; choose another file.")
     _refuse_odd_numbers(data, name)
     return data
 

@@ -8,8 +8,9 @@ from pathlib import Path
 from greywhale.formats.whole import write_text
 from greywhale.fuzzy.rules import OUTPUTS, RULES
 
-# MATLAB samples the output at 101 points. Triangles as narrow as that spacing act as the peaks that they stand for.
-OUTPUT_HALF_WIDTH = 0.01
+# MATLAB and Octave sample the output at 101 points. Equal triangles apart from each other, scaled by the rules' heights
+# (product), have their centroid where the peaks that they stand for have it, exactly: each lies evenly about a sample.
+OUTPUT_HALF_WIDTH = 0.25
 # Within [-1, 1] the same as a foot at the shoulder itself, which Octave's trapmf does not take.
 OUTER_FOOT = 1.01
 E_SETS = ("NE", "ZE", "PE")
@@ -25,8 +26,8 @@ def _vector(values: Sequence[float]) -> str:
     return "[" + " ".join(_number(value) for value in values) + "]"
 
 
-def _variable(section: str, name: str, functions: Sequence[tuple[str, str, Sequence[float]]]) -> list[str]:
-    lines = [f"[{section}]", f"Name='{name}'", "Range=[-1 1]", f"NumMFs={len(functions)}"]
+def _variable(section: str, name: str, end: float, functions: Sequence[tuple[str, str, Sequence[float]]]) -> list[str]:
+    lines = [f"[{section}]", f"Name='{name}'", f"Range={_vector((-end, end))}", f"NumMFs={len(functions)}"]
     for number, (label, kind, corners) in enumerate(functions, start=1):
         lines.append(f"MF{number}='{label}':'{kind}',{_vector(corners)}")
     return [*lines, ""]
@@ -37,6 +38,7 @@ def _input(section: str, name: str, labels: Sequence[str], corners: Sequence[flo
     return _variable(
         section,
         name,
+        1.0,
         [
             (labels[0], "trapmf", (-OUTER_FOOT, -1, n_c, 0)),
             (labels[1], "trimf", (z_a, 0, z_c)),
@@ -62,7 +64,7 @@ def fis_text(name: str, sets: Mapping[str, float]) -> str:
         f"NumRules={len(rules)}",
         "AndMethod='min'",
         "OrMethod='max'",
-        "ImpMethod='min'",
+        "ImpMethod='prod'",
         "AggMethod='max'",
         "DefuzzMethod='centroid'",
         "",
@@ -72,7 +74,7 @@ def fis_text(name: str, sets: Mapping[str, float]) -> str:
         *system,
         *_input("Input1", "e", E_SETS, [sets[key] for key in ("ne_c", "ze_a", "ze_c", "pe_b")]),
         *_input("Input2", "ce", CE_SETS, [sets[key] for key in ("nce_c", "zce_a", "zce_c", "pce_b")]),
-        *_variable("Output1", "u", peaks),
+        *_variable("Output1", "u", 1.0 + OUTPUT_HALF_WIDTH, peaks),
         "[Rules]",
         *rules,
     ]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.from_plant import arm_of
-from greywhale.files.model import to_toml
+from greywhale.files.model import sealed, to_toml
 from greywhale.formats.whole import write_text
 from greywhale.identify.found import Found, ParameterEstimate
 from greywhale.identify.judge import FIT, Subject, Verdict
@@ -74,7 +74,7 @@ class Outcome:
 
     def save(self, path: str | Path) -> None:
         """Write model.toml."""
-        write_text(path, to_toml(self.arm, self.identification()))
+        write_text(path, to_toml(self.arm, sealed(self.arm, self.identification())))
 
     def identification(self) -> dict[str, Any]:
         """The table [identification] of model.toml; it is also the JSON."""

@@ -24,6 +24,7 @@ from greywhale.protocol.schema import Board
 from greywhale.table import ParameterTable
 from greywhale.tune import model_checks as checks
 from greywhale.tune.model_checks import Doubt, Identification
+from greywhale.tune.model_edits import UNSEALED, doubt_edits
 from greywhale.tune.stall import StallLimit, stall_limit
 
 Floats = NDArray[np.float64]
@@ -87,7 +88,7 @@ def load_model(
     doubts += table_doubts
     if doubts and not force:
         raise UserError(_refusal(str(path), doubts))
-    remarks = facts.remarks() if facts is not None else ()
+    remarks = (*facts.remarks(), *([UNSEALED] if facts.seal is None else [])) if facts is not None else ()
     return Model(
         name=identified.name,
         arm=identified,
@@ -106,7 +107,7 @@ def _doubts(
     """Everything that speaks against the model, the gravest first."""
     doubts = checks.doubt_completeness(facts)
     if facts is not None:
-        doubts += checks.doubt_edits(arm, facts)
+        doubts += doubt_edits(arm, facts)
         doubts += checks.doubt_validation(facts)
         doubts += checks.doubt_behaviour(facts)
         doubts += checks.doubt_missing_covariance(arm, facts)

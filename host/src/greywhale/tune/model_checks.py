@@ -18,7 +18,7 @@ from greywhale.firmware import TICK_S
 from greywhale.identify import sampled_plants
 from greywhale.identify.judge import FIT, Verdict, warnings_of
 from greywhale.identify.uncertainty import EXCITATION
-from greywhale.loop import PLANT_COLUMNS, Experiment, plant_row
+from greywhale.loop import Experiment, plant_row
 from greywhale.loop.controllers import controllers_of
 from greywhale.protocol import schema
 from greywhale.protocol.schema import Board
@@ -33,11 +33,8 @@ Floats = NDArray[np.float64]
 SPREAD = {"slow reaches": 0.5, "quick moves": 0.25}
 SPREAD_SAMPLES, ONE_BY_ONE_SAMPLES = 33, 9
 REACHES_SEED, REACHES_S, WAIT_TICKS = 2002, 6.0, 200
-# How far numbers that should agree may differ: supplies, potentiometers' slopes, an arm and its own table (relative),
-# and its gaps (rad).
-SAME_SUPPLY, SAME_SLOPE, SAME_VALUE, SAME_GAP = 0.02, 0.1, 1e-3, 1e-5
-# Quantities that the search may leave at next to nothing.
-OFTEN_NOTHING = ("half_gap", "pot_play", "pot_lag", "load_friction", "creep_velocity", "supply_resistance")
+# How far numbers that should agree may differ: supplies and potentiometers' slopes (relative).
+SAME_SUPPLY, SAME_SLOPE = 0.02, 0.1
 CERTAIN = 1e-20  # a variance of next to nothing
 MATCH = "after `greywhale calibrate`, `greywhale arm match` writes the arm file anew"
 CONVERTER_SPAN = 16368  # four conversions of 10 bits, as the board counts a potentiometer's whole track
@@ -95,6 +92,7 @@ class Identification(_Facts):
     covariance: tuple[tuple[float, ...], ...] | None = None
     parameters: dict[str, int] | None = None
     board: str | None = None
+    seal: dict[str, str] | None = None  # a digest of each table; None: of before greywhale sealed its models
 
     @property
     def made_on(self) -> Board:
@@ -205,26 +203,6 @@ def doubt_missing_covariance(arm: ArmParameters, facts: Identification) -> list[
     ]
 
 
-def doubt_edits(arm: ArmParameters, facts: Identification) -> list[Doubt]:
-    """Doubt an arm whose numbers are no longer those that were identified."""
-    if facts.covariance is None or not facts.parameter:
-        return []
-    now, then = sampled_plants(_with_one_uncertain(arm, facts, None), 2)
-    # A gap or play of next to nothing is none, whatever its digits.
-    least = np.array([SAME_GAP if name.endswith(OFTEN_NOTHING) else 1e-12 for name in PLANT_COLUMNS])
-    differs = np.abs(now - then) > SAME_VALUE * np.maximum(np.abs(now), np.abs(then)) + least
-    if not differs.any():
-        return []
-    place = int(np.argmax(differs))
-    return [
-        Doubt(
-            f"its numbers are not those that were identified ({PLANT_COLUMNS[place]} is {now[place]:.4g}, was "
-            f"{then[place]:.4g}), as if it was edited or put together from two arms",
-            "identify again",
-        )
-    ]
-
-
 def doubt_precision(arm: ArmParameters, table: ParameterTable) -> list[Doubt]:
     """Doubt a model if the arms that its logs allow follow differently under the board's present controllers.
 
@@ -242,7 +220,7 @@ def doubt_precision(arm: ArmParameters, table: ParameterTable) -> list[Doubt]:
     assert facts is not None
     harm = {
         index: _share_of_error(
-            experiments[motion], table, sampled_plants(_with_one_uncertain(arm, facts, index), ONE_BY_ONE_SAMPLES)
+            experiments[motion], table, sampled_plants(with_one_uncertain(arm, facts, index), ONE_BY_ONE_SAMPLES)
         )[joint]
         for index, one in enumerate(facts.parameter)
         if one.name.startswith(f"joint{joint}.")
@@ -280,7 +258,7 @@ def _share_of_error(experiment: Experiment, table: ParameterTable, plants: Float
     return shares
 
 
-def _with_one_uncertain(arm: ArmParameters, facts: Identification, index: int | None) -> ArmParameters:
+def with_one_uncertain(arm: ArmParameters, facts: Identification, index: int | None) -> ArmParameters:
     """The arm with one uncertain number, or none. The others keep a tiny variance, so that there is a distribution."""
     assert facts.covariance is not None
     assert arm.identification is not None

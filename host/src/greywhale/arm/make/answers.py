@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from greywhale.arm.make.questions import JOINTS_IN_USE, MOTOR_KEYS, SAME_MOTOR, Answers, Question, collect
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.errors import BAD_USAGE, UserError, cut
-from greywhale.formats import toml_file
+from greywhale.formats import toml_file, toml_text
 from greywhale.formats.kinds import Kind, refuse_other_kind
 
 TABLES = ("link", "joint")
+
+
+class Answer(NamedTuple):
+    """What somebody said."""
+
+    question: Question
+    value: float | str
 
 
 def read_answers(path: Path) -> tuple[Answers, tuple[str, ...]]:
@@ -20,6 +28,20 @@ def read_answers(path: Path) -> tuple[Answers, tuple[str, ...]]:
     answers = collect(source)
     source.refuse_rest()
     return answers, tuple(source.left_out)
+
+
+def answers_toml(given: Sequence[Answer]) -> str:
+    """The text of a file with these answers, for `read_answers`."""
+    plain = [(one.question.key, one.value) for one in given if one.question.table is None]
+    lines = [f"{key} = {toml_text.value(value)}" for key, value in plain]
+    for name in TABLES:
+        tables: dict[int, list[str]] = {}
+        for question, value in given:
+            if question.table is not None and question.table[0] == name:
+                tables.setdefault(question.table[1], []).append(f"{question.key} = {toml_text.value(value)}")
+        for number in range(max(tables, default=-1) + 1):
+            lines += ["", f"[[{name}]]", *tables.get(number, [])]
+    return "\n".join(lines) + "\n"
 
 
 class AnswersFile:

@@ -6,12 +6,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from greywhale.arm.make import units
 from greywhale.arm.make.body import MATERIALS
 from greywhale.arm.make.motor import RAD_S_PER_RPM, USUAL_NO_LOAD_SHARE, USUAL_TIME_S, contradiction
-from greywhale.arm.make.units import Unit
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.errors import UserError
+from greywhale.formats import units
+from greywhale.formats.units import Unit
 from greywhale.joints import ALL, Joints, listed, parse
 
 G_CM2_PER_KG_M2 = 1e7
