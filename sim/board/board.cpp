@@ -77,12 +77,14 @@ void Board::build_models() {
       if (stock.name == '0') uart_ = std::make_unique<Uart>(avr, stock, *interrupts_, trace_);
     } else if (!std::strcmp(io->kind, "eeprom")) {
       eeprom_ = std::make_unique<Eeprom>(avr, *reinterpret_cast<avr_eeprom_t*>(io), *interrupts_, trace_);
+    } else if (!std::strcmp(io->kind, "watchdog")) {
+      watchdog_ = reinterpret_cast<avr_watchdog_t*>(io);
     } else if (!std::strcmp(io->kind, "timer")) {
       timers_.push_back(std::make_unique<Timer>(avr, *reinterpret_cast<avr_timer_t*>(io), *interrupts_));
       timers.push_back(timers_.back().get());
     }
   }
-  if (!uart_ || !eeprom_ || timers_.empty())
+  if (!uart_ || !eeprom_ || !watchdog_ || timers_.empty())
     throw BoardError("this libsimavr lacks peripherals of the " + std::string(chip_.title) +
                      "; install Debian's libsimavr-dev 1.6");
   adc_ = std::make_unique<Adc>(avr, chip_, *interrupts_);
@@ -146,10 +148,12 @@ std::string Board::flash() const { return {reinterpret_cast<const char*>(avr_->f
 
 // ---- power and reset ----
 
-// Every reset comes through here. MCUSR collects causes until the program or a loss of power clears it.
+// Every reset comes through here. MCUSR collects causes until the program or a loss of power clears it. While it holds
+// the watchdog's, every reset starts the watchdog at its shortest time.
 void Board::restart(uint8_t cause) {
   avr_t& avr = *avr_;
   const auto flags = static_cast<uint8_t>(cause == PORF ? PORF : avr.data[reg::MCUSR] | cause);
+  watchdog_->reset_context = {static_cast<uint8_t>(flags & WDRF), normal_run_};
   avr_reset(&avr);  // also forgets all events
   avr.run_cycle_limit = longest_run;
   avr.data[reg::MCUSR] = flags;

@@ -132,6 +132,7 @@ class Board {
   std::unique_ptr<Flash> flash_;
   std::vector<std::unique_ptr<Timer>> timers_;
   std::unique_ptr<Prescaler> prescaler_;
+  avr_watchdog_t* watchdog_ = nullptr;  // simavr's own
   std::vector<Output> outputs_;
   Stats stats_;
   uint32_t boot_start_ = UINT32_MAX;

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from greywhale.board.device import Device
-from greywhale.board.flash.readback import shipped_image
+from greywhale.board.flash.readback import held_blocks, shipped_image
 from greywhale.cli.entry import run
 from greywhale.demo import BenchProcess
 from greywhale.errors import UserError
@@ -29,27 +29,34 @@ class Dying(Transport):
             super().write(data)
 
 
-def doctor(port: str, capsys: pytest.CaptureFixture[str], *more: str) -> tuple[int, dict[str, str]]:
-    """The exit code, and the finding about the image."""
+def doctor(port: str, capsys: pytest.CaptureFixture[str], *more: str) -> tuple[int, dict[str, dict[str, str]]]:
+    """The exit code, and the findings by what was looked at."""
     code = run(["doctor", "--port", port, "--seconds", "0.5", "--json", "--image", *more])
     findings: list[dict[str, Any]] = json.loads(capsys.readouterr().out)["findings"]
-    (found,) = (one for one in findings if one["check"] == "image")
-    return code, found
+    return code, {one["check"]: one for one in findings}
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("board", ["mega", "nano"])
-def test_the_image_is_read_back_and_a_wrong_byte_is_named(
-    board: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+@pytest.mark.parametrize(
+    ("board", "verdict", "says"),
+    [("mega", "good", "starts the firmware again"), ("nano", "note", "says nothing until")],
+)
+def test_the_image_is_read_back_a_wrong_byte_named_and_the_bootloader_looked_at(
+    board: str, verdict: str, says: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    memory = bytearray(shipped_image(board).memory)
+    image = shipped_image(board)
+    memory, held = bytearray(image.memory), sum(map(len, held_blocks(image)))
     with BenchProcess("--speed", "max", "--board", board) as bench:
-        code, found = doctor(bench.port, capsys)
+        code, findings = doctor(bench.port, capsys)
+        found = findings["image"]
         assert (code, found["verdict"]) == (0, "good"), found
-        assert f"All {len(memory):,} bytes" in found["says"]
+        assert f"All {held:,} bytes" in found["says"]
+        assert findings["bootloader"]["verdict"] == verdict
+        assert says in findings["bootloader"]["says"]
         memory[0x1234] ^= 0xFF
         (tmp_path / "other.hex").write_text(hex_text(bytes(memory)))
-        code, found = doctor(bench.port, capsys, "--hex", str(tmp_path / "other.hex"))
+        code, findings = doctor(bench.port, capsys, "--hex", str(tmp_path / "other.hex"))
+        found = findings["image"]
         assert (code, found["verdict"]) == (1, "bad")
         assert "1 of" in found["says"]
         assert "the first at address 0x1234" in found["says"]
@@ -65,9 +72,9 @@ def test_a_board_whose_motors_are_on_is_not_restarted(capsys: pytest.CaptureFixt
             device.enable(0)
             line.mute = True
         resets = bench.command("status")["resets"]
-        code, found = doctor(bench.port, capsys)
-        assert (code, found["verdict"]) == (1, "bad")
-        assert "the motors are on" in found["says"]
+        code, findings = doctor(bench.port, capsys)
+        assert (code, findings["image"]["verdict"]) == (1, "bad")
+        assert "the motors are on" in findings["image"]["says"]
         after = bench.command("status")
         assert (after["motors_enabled"], after["resets"]) == (True, resets)
 

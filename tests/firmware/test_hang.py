@@ -1,22 +1,94 @@
-"""A processor that hangs with its interrupts off, on the real images: the watchdog turns the motors off."""
+"""A processor that hangs, on the real images: its motors go off, and it says so after the restart.
+
+With interrupts on the tick's interrupt restarts the program. With interrupts off the watchdog restarts the board, and
+its bootloader decides what can be told. The bootloaders are the boards' own.
+"""
 
 from __future__ import annotations
 
 import struct
+from collections.abc import Callable
 
 import pytest
 
 from greywhale.protocol import schema
+from greywhale_sim.wiring import BOARDS as WIRINGS
 from tests.firmware.test_stop import motors_on, status
+from tests.simulated_board.stk500 import Version1, Version2
 from tools.bench.bench_tick import CYCLES_PER_TICK, Bench
 
 PHASES = 40
 OFF_MS = 20.0
+BOOTED_MS = 1500  # through either bootloader
+SREG, INTERRUPTS_ON = 0x5F, 0x80
+RESETS = 3
+
+
+@pytest.fixture
+def booted(bench: Bench) -> Bench:
+    """A board whose bootloader has started the firmware."""
+    wiring = next(one for one in WIRINGS.values() if one.mcu == bench.board.chip)
+    bench.board.load_hex(str(wiring.bootloader), bootloader=True)
+    cut_power(bench)
+    return bench
+
+
+def is_nano(bench: Bench) -> bool:
+    return bench.board.chip == "atmega328p"
+
+
+def reset(bench: Bench) -> None:
+    bench.board.reset()
+    bench.wait(BOOTED_MS)
+
+
+def sink(bench: Bench) -> None:
+    for millivolts in (2600, 5000):
+        bench.board.set_supply(millivolts)
+    bench.wait(BOOTED_MS)
+
+
+def cut_power(bench: Bench) -> None:
+    bench.board.power_off()
+    bench.board.power_on(2)
+    bench.wait(BOOTED_MS)
+
+
+def flash_a_page(bench: Bench) -> None:
+    """Its first page, as it is."""
+    bench.board.reset()
+    bench.wait(100)
+    programmer = Version1(bench.board) if is_nano(bench) else Version2(bench.board)
+    programmer.write_page(0, bench.board.flash()[: programmer.PAGE])
+    programmer.leave()
+    bench.wait(2 * BOOTED_MS)
+
+
+def follow(bench: Bench) -> None:
+    """Motors on, and some phase of a tick."""
+    bench.ask(schema.ClearFaultRequest)
+    bench.ask(schema.EnableRequest, struct.pack("<H", 0))
+    bench.wait(bench.random.uniform(5, 40))
 
 
 def hang(bench: Bench) -> None:
     """Send the processor into avr-libc's endless loop behind main(), which begins with turning interrupts off."""
     bench.board.pc = bench.symbols["_exit"].address
+
+
+def hang_with_interrupts_on(bench: Bench) -> None:
+    """The same loop without its first instruction."""
+    bench.board.poke(SREG, bytes([INTERRUPTS_ON]))
+    bench.board.pc = bench.symbols["_exit"].address + 2
+
+
+def go_astray(bench: Bench) -> None:
+    """What a call through a null pointer does."""
+    bench.board.pc = 0
+
+
+def reset_cause(bench: Bench) -> schema.ResetCause:
+    return schema.HelloReply.unpack(bench.ask(schema.HelloRequest)).reset_cause
 
 
 def ms_until_off(bench: Bench) -> float:
@@ -29,15 +101,59 @@ def ms_until_off(bench: Bench) -> float:
 @pytest.mark.slow
 def test_a_hang_with_interrupts_off_turns_the_motors_off_within_20_ms(bench: Bench) -> None:
     for _ in range(PHASES):
-        bench.ask(schema.ClearFaultRequest)
-        bench.ask(schema.EnableRequest, struct.pack("<H", 0))
-        bench.wait(bench.random.uniform(5, 40))
+        follow(bench)
         hang(bench)
         assert ms_until_off(bench) < OFF_MS
         bench.wait(60)
         seen = status(bench)
         assert (seen.state, seen.fault) == (schema.State.FAULT, schema.Fault.WATCHDOG)
         assert not motors_on(bench)
+
+
+def see_it_stay_silent(nano: Bench) -> None:
+    """Its bootloader leaves the watchdog on, which restarts it again and again until power is cut."""
+    follow(nano)
+    hang(nano)
+    assert ms_until_off(nano) < OFF_MS
+    for _ in range(2):
+        nano.wait(20)
+        before = nano.board.stats().watchdog_resets
+        nano.wait(160)
+        assert nano.board.stats().watchdog_resets == before + 10
+        assert not motors_on(nano)
+        nano.board.reset()
+    assert not nano.board.uart_receive()
+    cut_power(nano)
+    assert status(nano).fault is schema.Fault.NONE
+
+
+@pytest.mark.parametrize("stop_working", [hang, hang_with_interrupts_on, go_astray])
+def test_a_hang_is_told_through_the_bootloader_where_that_comes_back(
+    booted: Bench, stop_working: Callable[[Bench], None]
+) -> None:
+    if is_nano(booted) and stop_working is hang:
+        see_it_stay_silent(booted)
+        return
+    for _ in range(3):
+        follow(booted)
+        stop_working(booted)
+        assert ms_until_off(booted) < OFF_MS
+        booted.wait(60)  # so it did not wait for a host in its bootloader
+        seen = status(booted)
+        assert (seen.state, seen.fault) == (schema.State.FAULT, schema.Fault.WATCHDOG)
+        assert reset_cause(booted) is schema.ResetCause.WATCHDOG
+
+
+@pytest.mark.slow
+def test_no_other_restart_is_taken_for_a_hang(booted: Bench) -> None:
+    """The reset pin, as a host that opens the port uses it, with the motors on at any phase; a sunken supply; a power
+    cut; and a host that flashes.
+    """
+    for restart in [*[reset] * RESETS, sink, cut_power, flash_a_page]:
+        follow(booted)
+        restart(booted)
+        assert reset_cause(booted) is not schema.ResetCause.WATCHDOG
+        assert (status(booted).state, status(booted).fault) == (schema.State.DISABLED, schema.Fault.NONE)
 
 
 @pytest.mark.slow

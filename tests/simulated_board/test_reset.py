@@ -155,6 +155,23 @@ def test_the_watchdog_stays_on_after_its_reset_until_the_program_turns_it_off(pr
     assert run.board.cycle == pytest.approx(3 * 16e-3 * 16e6, rel=0.01)
 
 
+def test_the_reset_pin_does_not_end_the_watchdogs_resets_but_a_power_cut_does(program: MakeProgram) -> None:
+    """The flag WDRF keeps the watchdog on; a bootloader that leaves it set never gets beyond 16 ms."""
+    source = "int main(void) { if (MCUSR & _BV(PORF)) { MCUSR = 0; wdt_enable(WDTO_15MS); } for (;;); }"
+    run = program(source).start()
+    run.run(300_000)
+    for _ in range(2):
+        run.board.reset()
+        before = run.board.stats().watchdog_resets
+        run.run(300_000)
+        assert run.board.stats().watchdog_resets == before + 1
+    run.board.power_off()
+    before = run.board.stats().watchdog_resets
+    run.start()
+    run.run(200_000)
+    assert run.board.stats().watchdog_resets == before
+
+
 def test_a_watchdog_reset_comes_at_the_same_cycle_however_the_run_is_cut(program: MakeProgram) -> None:
     hashes = set()
     for chunk in (977, 50_000, 6_000_000):

@@ -76,6 +76,11 @@ def enters(instruction: Instruction) -> bool:
     return instruction.mnemonic in CALLS and instruction.target not in (0, instruction.next)
 
 
+def ends(instruction: Instruction) -> bool:
+    """Whether nothing of its function comes after it: it returns, or jumps to the reset at 0."""
+    return instruction.mnemonic in RETURNS or (instruction.mnemonic in JUMPS and instruction.target == 0)
+
+
 def is_table_jump(program: Program, instruction: Instruction) -> bool:
     return instruction.mnemonic in JUMPS and instruction.target == program.symbols.get(tables.DISPATCH)
 
@@ -93,7 +98,7 @@ def build(program: Program, entry: int, chip: Chip) -> Graph:
         graph.nodes.add(address)
         if instruction.mnemonic in THROUGH_POINTER:
             raise ImageError(f"{program.name(address)} goes through a pointer at {address:#x}; nobody knows where to.")
-        if instruction.mnemonic in RETURNS:
+        if ends(instruction):
             graph.exits[address] = cost(instruction, chip)
             continue
         if enters(instruction):

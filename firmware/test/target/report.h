@@ -8,6 +8,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+// A whole tick's duties towards the hardware; whether it had to be told that the one before was late.
+inline bool finish_tick() {
+  const bool late = hal::tick_begin().late;
+  hal::release_pots();
+  hal::tick_end();
+  return late;
+}
+
 namespace report {
 
 static uint16_t cases = 0, failed = 0;
@@ -16,6 +24,7 @@ inline void print(const char* text) {
   while (*text) {
     while (hal::tx_free() == 0) {
     }
+    if (hal::tick_pending()) finish_tick();  // else it would be taken for a hang
     hal::tx_write(reinterpret_cast<const uint8_t*>(text++), 1);
   }
 }
@@ -69,14 +78,6 @@ inline void end() {
 }
 
 }  // namespace report
-
-// A whole tick's duties towards the hardware; whether it had to be told that the one before was late.
-inline bool finish_tick() {
-  const bool late = hal::tick_begin().late;
-  hal::release_pots();
-  hal::tick_end();
-  return late;
-}
 
 inline void wait_for_tick() {
   while (!hal::tick_pending()) {

@@ -8,10 +8,10 @@ import pytest
 
 from greywhale.board.flash.bootloader import Bootloader, Dialect
 from greywhale.board.flash.images import read_image
-from greywhale.board.flash.readback import compare_image, read_flash
+from greywhale.board.flash.readback import BLOCK, compare_image, read_flash
 from greywhale.errors import UserError
 from tests.board.flash.fake_bootloader import ATMEGA328P, MEGA2560, FakeBootloader, Version1, Version2
-from tests.board.flash.hex_files import write_image
+from tests.board.flash.hex_files import hex_text, write_image
 
 KINDS = [(Version2, 115200, MEGA2560), (Version1, 57600, ATMEGA328P)]
 IDS = ["mega", "nano"]
@@ -20,6 +20,9 @@ MEMORY = bytes((7 * at + at // 256) % 256 for at in range(1001))
 
 def dialect(kind: type[FakeBootloader], baud: int) -> Dialect:
     return Dialect("wiring" if kind is Version2 else "arduino", baud)
+
+
+BLOCKS = [range(at, min(at + BLOCK, len(MEMORY))) for at in range(0, len(MEMORY), BLOCK)]
 
 
 def told(what: str, fraction: float) -> None:
@@ -32,7 +35,7 @@ def test_every_byte_is_read_and_the_firmware_started_again(
 ) -> None:
     with kind(baud, signature, MEMORY, garble=2) as board:
         found = Bootloader(dialect(kind, baud), signature)
-        assert read_flash(board.port, found, len(MEMORY), told) == MEMORY
+        assert read_flash(board.port, found, BLOCKS, told) == MEMORY
         assert board.left
 
 
@@ -43,14 +46,23 @@ def test_the_first_byte_that_differs_is_told(
     path = write_image(tmp_path / "image.hex", signature)
     memory = bytearray(read_image(path).memory)
     with kind(baud, signature, bytes(memory)) as board:
-        assert compare_image(board.port, path).same
+        assert compare_image(board.port, path)[0].same
     memory[0x123] ^= 0x40
     memory[0x200] ^= 0x01
     with kind(baud, signature, bytes(memory)) as board:
-        found = compare_image(board.port, path)
+        found, boot_code = compare_image(board.port, path)
     assert (found.same, found.differing, found.first, found.compared) == (False, 2, 0x123, len(memory))
     assert found.wanted is not None
     assert found.found == found.wanted ^ 0x40
+    assert boot_code.comes_back is None, "its section is blank"
+
+
+def test_what_an_image_leaves_out_is_not_read(tmp_path: Path) -> None:
+    path = tmp_path / "gap.hex"
+    path.write_text(hex_text(bytes(100)).rsplit(":", 1)[0] + hex_text(b"far", start=0x20000))
+    with Version2(115200, MEGA2560, bytes(0x20000) + b"fat") as board:
+        found, _ = compare_image(board.port, path)
+    assert (found.compared, found.differing, found.first) == (BLOCK + 3, 29, 100)
 
 
 def test_an_image_for_another_board_is_refused(tmp_path: Path) -> None:
@@ -64,4 +76,4 @@ def test_a_bootloader_that_answers_wrongly_again_and_again_is_named() -> None:
         Version2(115200, MEGA2560, MEMORY, garble=99) as board,
         pytest.raises(UserError, match="the bootloader stopped answering at address 0x0"),
     ):
-        read_flash(board.port, Bootloader(dialect(Version2, 115200), MEGA2560), 1000, told)
+        read_flash(board.port, Bootloader(dialect(Version2, 115200), MEGA2560), BLOCKS, told)

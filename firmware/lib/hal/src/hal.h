@@ -14,7 +14,7 @@ constexpr uint16_t rail_mark = 0x1000;      // above every sum
 enum class Board : uint8_t { unknown, mega2560, nano328, native };
 Board board_id();
 
-// unknown: a bootloader has cleared the chip's record.
+// unknown: a bootloader has cleared the chip's record. watchdog: a restart after a hang, by whatever means.
 enum class ResetCause : uint8_t { unknown, power_on, external, brown_out, watchdog };
 ResetCause reset_cause();
 
@@ -78,7 +78,8 @@ bool eeprom_busy();
 uint8_t eeprom_read(uint16_t address);                     // only when not busy
 void eeprom_begin_write(uint16_t address, uint8_t value);  // only when not busy
 
-// --- Watchdog of 15 ms, and idle sleep until a tick is pending or a byte has come.
+// --- Watchdog of 15 ms (the tick's interrupt forestalls it after ten ticks that nobody has begun), and idle sleep
+// until a tick is pending or a byte has come.
 void watchdog_start();
 void watchdog_kick();
 void idle();

@@ -1,5 +1,6 @@
-// The watchdog restarts a board that hangs, and the reset cause is told even through a bootloader that clears it.
-// The suite lives through four starts: power-on, two watchdog resets, and a plain jump to the reset vector.
+// A board that hangs is restarted, by the watchdog or by the tick's interrupt, and says so.
+// The suite lives through five starts: power-on, a watchdog reset, the tick's interrupt, a plain jump to the reset
+// vector, and a watchdog reset whose cause a bootloader clears.
 #include <Arduino.h>
 #include <hal.h>
 
@@ -10,7 +11,7 @@ namespace {
 struct Memory {  // kept over resets
   uint8_t start;
   bool hide_cause;
-  hal::ResetCause cause[4];
+  hal::ResetCause cause[5];
 };
 Memory memory __attribute__((section(".noinit")));
 
@@ -49,6 +50,7 @@ void setup() {
   switch (memory.start++) {
     case 0:
       run_healthily();
+      cli();
       hang();
       break;
     case 1:
@@ -61,13 +63,19 @@ void setup() {
       cli();
       __asm__ volatile("jmp 0");
       break;
+    case 3:
+      run_healthily();
+      cli();
+      hang();
+      break;
     default: break;
   }
   hal::begin();
   EQUAL("power_on_is_told", number(memory.cause[0]), number(hal::ResetCause::power_on));
-  EQUAL("a_hang_restarts_the_board", number(memory.cause[1]), number(hal::ResetCause::watchdog));
-  EQUAL("also_behind_a_bootloader", number(memory.cause[2]), number(hal::ResetCause::watchdog));
-  EQUAL("a_restart_without_a_hang_is_no_watchdog", number(memory.cause[3]), number(hal::ResetCause::unknown));
+  EQUAL("a_hang_without_interrupts_is_told", number(memory.cause[1]), number(hal::ResetCause::watchdog));
+  EQUAL("one_with_interrupts_needs_no_reset", number(memory.cause[2]), number(hal::ResetCause::watchdog));
+  EQUAL("nor_does_a_program_astray", number(memory.cause[3]), number(hal::ResetCause::watchdog));
+  EQUAL("what_a_bootloader_clears_is_unknown", number(memory.cause[4]), number(hal::ResetCause::unknown));
   EQUAL("and_the_watchdog_is_off_after_it", WDTCSR & (1 << WDE), 0);
   report::end();
 }

@@ -11,7 +11,7 @@ from greywhale.board.flash.readback import compare_image
 from greywhale.board.pots import read_counts, read_pots
 from greywhale.board.refusal import upper_first
 from greywhale.board.upload import read_parameters
-from greywhale.doctor import board, image, link, pots
+from greywhale.doctor import board, bootloader, image, link, pots
 from greywhale.doctor.finding import Finding, Verdict
 from greywhale.doctor.port import examine_port
 from greywhale.errors import UserError
@@ -45,8 +45,7 @@ def examine(options: Options, report: Report = report_nothing) -> list[Finding]:
         with Device(options.port, restart=False) as device:
             found += _examine_board(device, options, report)
             motors_on = device.status().state not in AT_REST
-        if options.image:
-            found.append(_examine_image(options, motors_on, report))
+        found += _examine_image(options, motors_on, report) if options.image else [bootloader.not_examined()]
     except UserError as error:
         found.append(Finding("board", Verdict.BAD, upper_first(error.message)))
     return found
@@ -70,13 +69,13 @@ def _examine_board(device: Device, options: Options, report: Report) -> Iterator
     )
 
 
-def _examine_image(options: Options, motors_on: bool, report: Report) -> Finding:
-    """The firmware on the board against the image. The board restarts, so this comes last."""
+def _examine_image(options: Options, motors_on: bool, report: Report) -> list[Finding]:
+    """The firmware on the board against the image, and its bootloader. The board restarts, so this comes last."""
     if motors_on:
-        return image.refused()
+        return [image.refused()]
     try:
-        found = compare_image(options.port, options.hex_file, report)
+        compared, boot_code = compare_image(options.port, options.hex_file, report)
         with Device(options.port):  # its firmware runs again
-            return image.examine_comparison(found)
+            return [bootloader.examine_boot_code(boot_code), image.examine_comparison(compared)]
     except UserError as error:
-        return image.unread(upper_first(error.message))
+        return [image.unread(upper_first(error.message))]

@@ -52,7 +52,7 @@ class Fault(Described):
     POT_HIGH = 2, "a potentiometer reads at the upper rail", "Check that potentiometer's ground wire (an open one reads full scale) and for a wiper shorted to +5 V, then clear the fault."
     LATE_TICK = 3, "a control tick had not finished when the next one began", "Lower the telemetry rate, then clear the fault; if it comes back, report the firmware version with `greywhale info`."
     TRACKING = 4, "a follower stayed too far from its leader for too long", "Check that joint's motor supply, motor_sign and for something in the arm's way, or raise tracking_limit or tracking_ms, then clear the fault."
-    WATCHDOG = 5, "the firmware had stopped and the watchdog restarted the board", "Clear the fault to go on; if it comes back, check the board's supply and report the firmware version with `greywhale info`."
+    WATCHDOG = 5, "the firmware had stopped and was restarted", "Clear the fault to go on; if it comes back, check the board's supply and report the firmware version with `greywhale info`."
     PARAMS = 6, "stored parameters were lost or cannot be run, so older ones or the defaults run now", "Bring your parameters back with `greywhale params restore`, or upload a controller file with `greywhale upload`, then clear the fault."
     FLOOD = 7, "more bytes came than the board can read, so that a stop might have been lost", "Close other programs that use the port and check the cable for noise, then clear the fault."
     UNREST = 8, "a follower swung to and fro although the leader was still", "Lower that joint's gains (kp and ki first) or tune again with `greywhale tune`, then clear the fault; see unrest_amplitude for what counts as unrest."
@@ -126,11 +126,11 @@ class ParamSource(Described):
 class ResetCause(Described):
     """Why the board last started."""
 
-    UNKNOWN = 0, "the bootloader has cleared the cause"
+    UNKNOWN = 0, "power-up or reset (the board's bootloader does not keep which)"
     POWER_ON = 1, "power came on"
     EXTERNAL = 2, "the reset pin, also when a host opens the port"
     BROWN_OUT = 3, "the supply fell too low"
-    WATCHDOG = 4, "the watchdog"
+    WATCHDOG = 4, "the firmware had stopped and was restarted"
 
 
 class SaveState(Described):

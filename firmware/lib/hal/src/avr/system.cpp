@@ -9,20 +9,9 @@
 #include "internal.h"
 
 namespace hal {
-namespace internal {
-
-volatile uint8_t missed_ticks __attribute__((section(".noinit")));
-
-}  // namespace internal
-
 namespace {
 
-// These survive a reset. After power-on they are random, so a mark tells whether they hold anything.
-volatile uint16_t watchdog_mark __attribute__((section(".noinit")));
-uint8_t reset_flags __attribute__((section(".noinit")));  // MCUSR
-
-constexpr uint16_t watchdog_is_on = 0x57a7;
-constexpr uint8_t hung_ticks = 8;  // the watchdog waits for 16, give or take three: its clock is not the processor's
+uint8_t reset_flags __attribute__((section(".noinit")));  // MCUSR; set before variables are
 
 }  // namespace
 
@@ -35,11 +24,20 @@ extern "C" void hal_early_start() {
   uint8_t flags = MCUSR;
   MCUSR = 0;
   wdt_disable();
-  // A bootloader that clears MCUSR hides a watchdog reset. Many missed ticks before the reset show it all the same.
-  if (flags == 0 && watchdog_mark == watchdog_is_on && internal::missed_ticks >= hung_ticks) flags = 1 << WDRF;
-  watchdog_mark = 0;
-  internal::missed_ticks = 0;
+  // A reset turns the tick's interrupts off. Where they are on, the program has come here by itself: after a hang
+  // (tick.cpp, or the function below), or astray.
+  if (TIMSK0) flags = 1 << WDRF;
   reset_flags = flags;
+}
+
+// The Mega's bootloader clears MCUSR, so a reset by the watchdog would look like any other. But after that one alone it
+// does not wait for a host: it means to call address 0, and calls 0x20000, because its EICALL takes the upper bits from
+// EIND. The linker puts this function there (platformio.ini).
+extern "C" void hal_after_watchdog() __attribute__((naked, used, section(".after_watchdog")));
+extern "C" void hal_after_watchdog() {
+  cli();
+  TIMSK0 = 1 << OCIE0A;
+  __asm__ volatile("jmp 0");
 }
 
 Board board_id() { return pins::board; }
@@ -119,11 +117,7 @@ void eeprom_begin_write(uint16_t address, uint8_t value) {
   sei();
 }
 
-void watchdog_start() {
-  internal::missed_ticks = 0;
-  watchdog_mark = watchdog_is_on;
-  wdt_enable(WDTO_15MS);
-}
+void watchdog_start() { wdt_enable(WDTO_15MS); }
 
 void watchdog_kick() { wdt_reset(); }
 

@@ -26,6 +26,11 @@ BEHIND_RINGS volatile uint8_t full = 0;  // the main loop's set holds sums that 
 BEHIND_RINGS volatile uint8_t running = 0;  // a tick has started and tick_end() has not been called
 BEHIND_RINGS volatile uint8_t late = 0;
 
+// After so many ticks that nobody has begun, the tick's interrupt starts the program anew. It so forestalls the
+// watchdog (13 ms at least: its clock is not the processor's), because not every bootloader comes back from a
+// watchdog's reset. An EEPROM byte that was being written is done by then.
+constexpr uint8_t hung_ticks = 10;
+
 }  // namespace
 
 namespace internal {
@@ -43,12 +48,12 @@ ISR(TIMER0_COMPA_vect) {
   } else {
     late = 1;
   }
-  internal::elapsed = static_cast<uint8_t>(internal::elapsed + 1);
+  const auto elapsed = static_cast<uint8_t>(internal::elapsed + 1);
+  internal::elapsed = elapsed;
   if (running) {
     pins::drivers_off();
     late = 1;
-    const uint8_t missed = internal::missed_ticks;
-    if (missed != 255) internal::missed_ticks = static_cast<uint8_t>(missed + 1);
+    if (elapsed == hung_ticks) __asm__ volatile("jmp 0");
   }
   running = 1;
 }
@@ -102,7 +107,6 @@ TickStart tick_begin() {
 }
 
 void tick_end() {
-  internal::missed_ticks = 0;
   running = 0;
   cli();
   if (hal_tx_head != TX_TAIL) UCSR0B = static_cast<uint8_t>(UCSR0B | (1 << UDRIE0));

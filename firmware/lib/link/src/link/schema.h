@@ -56,7 +56,7 @@ enum class Fault : uint8_t {
   pot_high = 2,  // a potentiometer reads at the upper rail
   late_tick = 3,  // a control tick had not finished when the next one began
   tracking = 4,  // a follower stayed too far from its leader for too long
-  watchdog = 5,  // the firmware had stopped and the watchdog restarted the board
+  watchdog = 5,  // the firmware had stopped and was restarted
   params = 6,  // stored parameters were lost or cannot be run, so older ones or the defaults run now
   flood = 7,  // more bytes came than the board can read, so that a stop might have been lost
   unrest = 8,  // a follower swung to and fro although the leader was still
@@ -124,11 +124,11 @@ enum class ParamSource : uint8_t {
 
 // Why the board last started.
 enum class ResetCause : uint8_t {
-  unknown = 0,  // the bootloader has cleared the cause
+  unknown = 0,  // power-up or reset (the board's bootloader does not keep which)
   power_on = 1,  // power came on
   external = 2,  // the reset pin, also when a host opens the port
   brown_out = 3,  // the supply fell too low
-  watchdog = 4,  // the watchdog
+  watchdog = 4,  // the firmware had stopped and was restarted
 };
 
 // Progress of the last param_save.

@@ -6,18 +6,20 @@ Nothing is written. The board restarts into its bootloader first, and into its f
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 
 import serial
 
 from greywhale.board.flash.avrdude import Progress
+from greywhale.board.flash.boot_code import BootCode, look_at_boot_code
 from greywhale.board.flash.bootloader import Bootloader, enter_bootloader, version_1_answer, version_2_answer
 from greywhale.board.flash.flasher import find_target
 from greywhale.board.flash.images import Image, check_image, packaged_image, read_image
 from greywhale.board.flash.platformio import find_sources, last_build
-from greywhale.board.flash.targets import BOARDS
+from greywhale.board.flash.targets import BOARDS, FlashBoard
 from greywhale.errors import BAD_USAGE, UserError
 
 # Reads so many bytes from a word address on; None where the answer was wrong.
@@ -58,35 +60,51 @@ def shipped_image(board: str) -> Image:
     return read_image(path)
 
 
-def compare_image(port: str, hex_file: Path | None = None, report: Progress | None = None) -> Comparison:
-    """Read back what the board holds and compare it with `hex_file`, or with the shipped image of that board."""
+def compare_image(
+    port: str, hex_file: Path | None = None, report: Progress | None = None
+) -> tuple[Comparison, BootCode]:
+    """Read back what the board holds and compare it with `hex_file`, or with the shipped image of that board; and look
+    at its bootloader."""
     told = report or (lambda what, fraction: None)
     named = None if hex_file is None else read_image(hex_file)
     target, found = find_target(port, None)
     image = named or shipped_image(target.name)
     check_image(image, target.board, port)
-    memory = read_flash(port, found, image.end, told)
-    return compare(image, memory)
+    held = held_blocks(image)
+    memory = read_flash(port, found, [*held, *_boot_blocks(target.board)], told)
+    count = sum(map(len, held))
+    return compare(image, held, memory[:count]), look_at_boot_code(found, memory[count:])
 
 
-def compare(image: Image, memory: bytes) -> Comparison:
-    """An image against as many bytes of memory, which both begin at address 0."""
-    places = [at for at, (wanted, found) in enumerate(zip(image.memory, memory, strict=True)) if wanted != found]
-    if not places:
-        return Comparison(image.path, image.end)
-    first = places[0]
-    return Comparison(image.path, image.end, len(places), first, image.memory[first], memory[first])
+def held_blocks(image: Image) -> list[range]:
+    """The addresses that the image has something for; what it leaves out is never executed."""
+    blocks = [range(start, min(start + BLOCK, image.end)) for start in range(0, image.end, BLOCK)]
+    return [block for block in blocks if image.memory[block.start : block.stop].strip(b"\xff")]
 
 
-def read_flash(port: str, bootloader: Bootloader, count: int, report: Progress) -> bytes:
-    """The first `count` bytes of the program memory. The board's firmware is started again afterwards."""
+def _boot_blocks(board: FlashBoard) -> list[range]:
+    return [range(start, start + BLOCK) for start in range(board.space, board.flash, BLOCK)]
+
+
+def compare(image: Image, held: Sequence[range], memory: bytes) -> Comparison:
+    """An image against the memory at these addresses of it."""
+    addresses = [*chain.from_iterable(held)]
+    differing = [(at, found) for at, found in zip(addresses, memory, strict=True) if image.memory[at] != found]
+    if not differing:
+        return Comparison(image.path, len(memory))
+    first, found = differing[0]
+    return Comparison(image.path, len(memory), len(differing), first, image.memory[first], found)
+
+
+def read_flash(port: str, bootloader: Bootloader, blocks: Sequence[range], report: Progress) -> bytes:
+    """The program memory at these addresses, `BLOCK` at most each. The board's firmware is started again afterwards."""
     memory = b""
     try:
         with enter_bootloader(port, bootloader.dialect) as line:
             read, leave = _READERS[bootloader.dialect.programmer]
-            while len(memory) < count:
-                memory += _read_block(port, line, read, len(memory), min(BLOCK, count - len(memory)))
-                report("reading the program memory", len(memory) / count)
+            for done, block in enumerate(blocks, start=1):
+                memory += _read_block(port, line, read, block.start, len(block))
+                report("reading the program memory", done / len(blocks))
             leave(line)
     except (OSError, serial.SerialException):
         raise UserError(f"{port}: the port went away in the middle; check the cable and try again.") from None

@@ -10,7 +10,7 @@ from greywhale.protocol import schema
 @dataclass(frozen=True)
 class FlashBoard:
     """PlatformIO's environment, avrdude's part and programmer, the speeds of the bootloader; the chip's signature, and
-    the bytes of flash that the bootloader leaves.
+    the bytes of flash that the bootloader leaves, and where its own end.
     """
 
     environment: str
@@ -19,6 +19,7 @@ class FlashBoard:
     bauds: tuple[int, ...]
     signature: bytes
     space: int
+    flash: int
     identity: schema.Board
 
     @property
@@ -35,6 +36,7 @@ BOARDS = {
         bauds=(115200,),
         signature=b"\x1e\x98\x01",
         space=253952,
+        flash=262144,
         identity=schema.Board.MEGA2560,
     ),
     "nano": FlashBoard(
@@ -44,6 +46,7 @@ BOARDS = {
         bauds=(115200, 57600),
         signature=b"\x1e\x95\x0f",
         space=30720,
+        flash=32768,
         identity=schema.Board.NANO328,
     ),
 }

@@ -1,0 +1,30 @@
+"""What a bootloader does after a reset by the watchdog, from its own code.
+
+Such a reset leaves the watchdog on, at 16 ms. A bootloader that does not look at the cause of the reset waits for a
+host, and is reset while it waits, again and again until power is cut.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from greywhale.board.flash.bootloader import Bootloader
+
+# `in Rd, MCUSR`, for any Rd. The register that holds the cause has the same address in both chips.
+_READS_CAUSE, _ANY_REGISTER = 0xB604, 0x01F0
+
+
+@dataclass(frozen=True)
+class BootCode:
+    """Which bootloader it is, in words; whether it comes back from a hang, None where its code cannot be read."""
+
+    title: str
+    comes_back: bool | None
+
+
+def look_at_boot_code(found: Bootloader, code: bytes) -> BootCode:
+    """`code` is the section that the bootloader may fill, from an even address on."""
+    words = (int.from_bytes(code[at : at + 2], "little") for at in range(0, len(code), 2))
+    reads_cause = any(word & ~_ANY_REGISTER == _READS_CAUSE for word in words)
+    protocol = {"arduino": "STK500 version 1", "wiring": "STK500 version 2"}[found.dialect.programmer]
+    return BootCode(f"{protocol} at {found.dialect.baud} baud", reads_cause if code.strip(b"\xff") else None)
