@@ -23,7 +23,7 @@ RUN = """
 import sys
 from greywhale.board import device
 device.Device.__init__.__defaults__ = (0.0, 0.5)
-from greywhale.cli import main
+from greywhale.__main__ import main
 main()
 """
 
@@ -88,31 +88,65 @@ def test_closed_streams_are_nobodys(numbers: tuple[int, ...]) -> None:
     assert bool(done.stdout) == (1 not in numbers)
 
 
-def test_ctrl_c_at_any_moment_of_the_start_is_no_traceback() -> None:
-    """The verbs are being imported then. Before `main` runs, Python itself starts, and has no word of ours to say."""
-    program = """
-import builtins, os, signal, sys
-signal.signal(signal.SIGINT, signal.default_int_handler)
-imported = builtins.__import__
-count = 0
+# Runs the installed command. From its first statement on, at each import, and wherever the module that begins and ends
+# a verb calls or returns, a copy of the process gets Ctrl-C; the process itself goes on.
+PRESSED_EVERYWHERE = """
+import atexit, json, os, runpy, signal, sys
 
-from greywhale.cli import main
-place = int(sys.argv[1])
-sys.argv = ["greywhale", "--version"]
+begun = False
+pressed = False
+ends = []
 
-def press(name, *arguments, **options):
-    global count
-    count += 1
-    if count == place:
+def press():
+    global begun, pressed
+    begun = begun or signal.getsignal(signal.SIGINT) is signal.SIG_DFL
+    if pressed or not begun:
+        return
+    read, write = os.pipe()
+    child = os.fork()
+    if child == 0:
+        pressed = True
+        os.dup2(write, 1)
+        os.dup2(write, 2)
         os.kill(os.getpid(), signal.SIGINT)
-    return imported(name, *arguments, **options)
+        return
+    os.close(write)
+    with open(read) as said:
+        ends.append((said.read(), os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])))
 
-builtins.__import__ = press
-main()
+def at_import(event, arguments):
+    if event == "import":
+        press()
+
+def at_call(frame, event, argument):
+    if event in ("call", "return") and frame.f_code.co_filename.endswith("greywhale/cli/entry.py"):
+        press()
+
+def tell():
+    press()
+    if not pressed:
+        print(json.dumps(ends), file=sys.stderr)
+
+atexit.register(tell)
+signal.signal(signal.SIGINT, signal.default_int_handler)
+sys.addaudithook(at_import)
+sys.setprofile(at_call)
+sys.argv = sys.argv[1:]
+runpy.run_path(sys.argv[0], run_name="__main__")
 """
-    codes = set()
-    for place in (1, 5, 50, 200):
-        done = subprocess.run([sys.executable, "-c", program, str(place)], capture_output=True, text=True, check=False)
-        assert "Traceback" not in done.stderr
-        codes.add(done.returncode)
-    assert codes <= {-signal.SIGINT, entry.INTERRUPTED}
+
+
+@pytest.mark.slow
+def test_ctrl_c_at_any_moment_of_the_start_and_of_the_end_is_no_traceback() -> None:
+    """Before the first statement of ours Python itself starts, and knows no better."""
+    command = [sys.executable, "-c", PRESSED_EVERYWHERE, str(Path(sys.executable).with_name("greywhale"))]
+    done = subprocess.run([*command, "ports", "--json"], capture_output=True, text=True, check=True)
+    ends = json.loads(done.stderr)
+    assert len(ends) > 100
+    answer = json.dumps({"error": "interrupted.", "exit_code": entry.INTERRUPTED})
+    told = f"{answer}\ngreywhale: interrupted.\n"
+    assert {(said.lstrip(), code) for said, code in ends} == {
+        ("", -signal.SIGINT),  # which a shell calls 130
+        ("", entry.INTERRUPTED),
+        (told, entry.INTERRUPTED),
+    }

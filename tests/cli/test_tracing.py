@@ -108,7 +108,7 @@ def test_tab_completes(words: str, offered: list[str]) -> None:
     """As Bash asks: the words so far, and the number of the one to complete."""
     asked = {"_GREYWHALE_COMPLETE": "bash_complete", "COMP_WORDS": words, "COMP_CWORD": str(words.count(" "))}
     done = subprocess.run(
-        [sys.executable, "-c", "from greywhale.cli import main; main()"],
+        [sys.executable, "-c", "from greywhale.__main__ import main; main()"],
         env=os.environ | asked, capture_output=True, text=True, check=False,
     )  # fmt: skip
     plain = [line.removeprefix("plain,") for line in done.stdout.splitlines() if line.startswith("plain,")]
@@ -118,7 +118,7 @@ def test_tab_completes(words: str, offered: list[str]) -> None:
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
 def test_every_shell_gets_its_script(shell: str) -> None:
     done = subprocess.run(
-        [sys.executable, "-c", "from greywhale.cli import main; main()"],
+        [sys.executable, "-c", "from greywhale.__main__ import main; main()"],
         env=os.environ | {"_GREYWHALE_COMPLETE": f"{shell}_source"}, capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert "_greywhale_completion" in done.stdout

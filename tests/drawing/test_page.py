@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
@@ -35,6 +36,16 @@ def simple() -> Figure:
     axes.set_xlabel("time [s]")
     axes.set_ylabel("angle [rad]")
     return figure
+
+
+def test_the_users_own_settings_change_no_picture() -> None:
+    """Neither those of a notebook nor of a matplotlibrc; afterwards they hold again."""
+    with style():
+        plain = png(simple())
+    with matplotlib.rc_context({"lines.linewidth": 9.0, "savefig.facecolor": "red", "axes.edgecolor": "blue"}):
+        with style():
+            assert png(simple()) == plain
+        assert matplotlib.rcParams["lines.linewidth"] == 9.0
 
 
 def test_pictures_are_as_wide_as_the_columns_of_a_paper() -> None:

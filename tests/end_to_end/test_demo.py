@@ -12,6 +12,7 @@ from greywhale.demo import BenchProcess, DemoOptions, run
 from greywhale.errors import UserError
 from greywhale.files.log import Log
 from greywhale.protocol import schema
+from tests.strangers import plant, ran
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -75,12 +76,16 @@ def test_the_demo_tells_its_story_and_proves_its_controllers_on_the_arm(tmp_path
 
 
 @pytest.mark.slow
-def test_the_demo_shows_a_controller_that_it_is_given(tmp_path: Path) -> None:
+def test_the_demo_shows_a_controller_that_it_is_given(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In a stranger's folder, of which neither the bench nor the flashing imports anything."""
+    plant(tmp_path)
+    monkeypatch.chdir(tmp_path)
     table = ROOT / "shared" / "fuzzy_tables" / "table_8.toml"
     result = run(DemoOptions(tmp_path, duration_s=5.0, controller=table))
     assert result.learnt is None
     assert [one.name for one in result.runs] == ["before tuning", "table_8"]
     assert not (tmp_path / "model.toml").exists()
+    assert ran(tmp_path) == set()
     assert_same_motion(*(one.recorded.log() for one in result.runs))
     # The paper's tuned gains are larger: where no gravity acts, they follow much more closely.
     for joint in (0, 2):

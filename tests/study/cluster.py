@@ -28,8 +28,10 @@ def begin(module: str, *options: str, python: Sequence[str] = (), **settings: st
     return subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=environment)
 
 
-def begin_worker(address: str, python: Sequence[str] = (), **settings: str) -> subprocess.Popen[str]:
-    options = (f"tcp://{address}", "--nthreads", "1", "--no-nanny")
+def begin_worker(
+    address: str, python: Sequence[str] = (), scheme: str = "tcp", **settings: str
+) -> subprocess.Popen[str]:
+    options = (f"{scheme}://{address}", "--nthreads", "1", "--no-nanny")
     return begin("dask_worker", *options, python=python, **settings)
 
 
@@ -43,14 +45,14 @@ def wait_for(process: subprocess.Popen[str], words: str) -> str:
 
 
 @contextlib.contextmanager
-def cluster_of(workers: int, **settings: str) -> Iterator[Cluster]:
+def cluster_of(workers: int, scheme: str = "tcp", **settings: str) -> Iterator[Cluster]:
     with contextlib.ExitStack() as stack:
-        scheduler = begin("dask_scheduler", "--host", "127.0.0.1", "--port", "0", **settings)
+        scheduler = begin("dask_scheduler", "--host", f"{scheme}://127.0.0.1", "--port", "0", **settings)
         stack.callback(end, scheduler)
-        address = wait_for(scheduler, "Scheduler at:").rpartition("tcp://")[2].strip()
+        address = wait_for(scheduler, "Scheduler at:").rpartition("://")[2].strip()
         running = []
         for _ in range(workers):
-            running.append(begin_worker(address))
+            running.append(begin_worker(address, scheme=scheme, **settings))
             stack.callback(end, running[-1])
         for worker in running:
             wait_for(worker, "Registered to:")

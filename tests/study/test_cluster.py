@@ -1,8 +1,9 @@
-"""Studies on a real Dask scheduler with two workers, one of which is killed; and what Slurm would be given."""
+"""Studies on a real Dask scheduler with two workers, one of which is killed; and who may answer there."""
 
 from __future__ import annotations
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -21,7 +22,6 @@ from greywhale.study import (
     LocalWorkers,
     LostTasks,
     SerialWorkers,
-    SlurmWorkers,
     Task,
     TaskFailed,
     choose_workers,
@@ -148,7 +148,7 @@ def test_ctrl_c_leaves_a_dask_cluster_at_once_and_keeps_what_is_done(tmp_path: P
 
 
 def test_a_scheduler_that_is_not_there() -> None:
-    with pytest.raises(UserError, match="^127.0.0.1:1: no Dask scheduler answers there; start one with `dask sch"):
+    with pytest.raises(UserError, match="^tcp://127.0.0.1:1: no Dask scheduler answers there; start one with"):
         run_study(jobs.draws(1), DaskWorkers("127.0.0.1:1", wait_s=1.0))
 
 
@@ -178,32 +178,57 @@ def test_a_worker_that_cannot_import_a_task_says_so(dask: DaskWorkers, monkeypat
         run_study([Task("x", only_here.job, 0)], dask)
 
 
-def test_slurm_is_asked_for_only_where_it_is(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setenv("PATH", str(tmp_path))
-    with pytest.raises(UserError, match="sbatch was not found; begin the study on a machine that submits jobs"):
-        run_study(jobs.draws(1), SlurmWorkers("normal"))
+# --- who may answer -------------------------------------------------------------------------------------------------
 
 
-def test_slurm_would_be_given_jobs_of_the_partition() -> None:
-    """No Slurm is here: this is the script that `sbatch` would get for every job, of which none is submitted."""
-    workers = choose_workers("slurm://long", 7)
-    assert isinstance(workers, SlurmWorkers)
-    assert (workers.partition, workers.jobs) == ("long", 7)
-    with workers.cluster() as cluster:
-        script = cluster.job_script()
-        address = cluster.scheduler_address
-    lines = script.splitlines()
-    assert {"#SBATCH -p long", "#SBATCH -n 1", "#SBATCH --cpus-per-task=1", "#SBATCH --mem=2G"} <= set(lines)
-    assert lines[-1].startswith(f"{sys.executable} -m distributed.cli.dask_worker {address} ")
-    assert " --nthreads 1 " in lines[-1]
+def certify(folder: Path) -> dict[str, str]:
+    """A certificate that has signed itself, as the authority too, and its key: Dask's settings for all three roles."""
+    folder.mkdir()
+    cert, key = str(folder / "cert.pem"), str(folder / "key.pem")
+    kind = ["-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes", "-days", "2", "-subj", "/CN=studies"]
+    subprocess.run(["openssl", "req", "-x509", *kind, "-keyout", key, "-out", cert], check=True, capture_output=True)
+    roles = {f"{role}.{what}": path for role in ROLES for what, path in (("cert", cert), ("key", key))}
+    return {f"distributed.comm.tls.{name}": path for name, path in {"ca-file": cert, **roles}.items()}
 
 
-def test_what_a_users_jobqueue_file_says_holds() -> None:
-    with dask_config.set({"jobqueue.slurm.memory": "9GB", "jobqueue.slurm.account": "arms"}):
-        with SlurmWorkers().cluster() as cluster:
-            lines = set(cluster.job_script().splitlines())
-    assert {"#SBATCH -A arms", "#SBATCH --mem=9G"} <= lines
-    assert not [line for line in lines if line.startswith("#SBATCH -p")]
+ROLES = ("client", "scheduler", "worker")
+
+
+def as_environment(settings: dict[str, str]) -> dict[str, str]:
+    return {f"DASK_{name.replace('.', '__').replace('-', '_').upper()}": value for name, value in settings.items()}
+
+
+@pytest.mark.slow
+def test_a_scheduler_with_tls_answers_those_of_its_authority_alone(tmp_path: Path) -> None:
+    ours, others = certify(tmp_path / "ours"), certify(tmp_path / "others")
+    tasks = jobs.draws(3)
+    with cluster_of(1, scheme="tls", **as_environment(ours)) as cluster:
+        with dask_config.set(ours):
+            found = run_study(tasks, choose_workers(f"tls://{cluster.address}"))
+        np.testing.assert_equal(found, run_study(tasks, SerialWorkers()))
+        with dask_config.set(others), pytest.raises(UserError, match="no Dask scheduler answers there"):
+            run_study(tasks, DaskWorkers(cluster.address, wait_s=1.0, tls=True))
+        with pytest.raises(UserError, match="no Dask scheduler answers there; .* With TLS both sides need"):
+            run_study(tasks, DaskWorkers(cluster.address, wait_s=1.0))
+
+
+@pytest.mark.parametrize("address", ["10.0.0.5:8786", "cluster.example:8786", "[fe80::1]:8786", "0.0.0.0:8786"])
+def test_a_scheduler_elsewhere_is_refused_without_tls(address: str) -> None:
+    with pytest.raises(UserError, match=rf"is not on this machine, .* take tls://{re.escape(address)} with") as refused:
+        choose_workers(f"dask://{address}")
+    assert refused.value.exit_code == 2
+
+
+def test_tls_needs_certificates_that_can_be_read(tmp_path: Path) -> None:
+    with pytest.raises(UserError, match=r"tls:// needs certificates; name ca-file and client: cert in ~/\.config/dask"):
+        choose_workers("tls://10.0.0.5:8786")
+    settings = certify(tmp_path / "ours")
+    (tmp_path / "ours" / "key.pem").unlink()
+    with dask_config.set(settings), pytest.raises(UserError, match=r"key\.pem\) cannot be used: no such file"):
+        choose_workers("tls://10.0.0.5:8786")
+    (tmp_path / "ours" / "key.pem").write_text("no key")
+    with dask_config.set(settings), pytest.raises(UserError, match=r"key\.pem\) cannot be used: they are no PEM"):
+        choose_workers("tls://10.0.0.5:8786")
 
 
 @pytest.mark.parametrize(
@@ -212,9 +237,9 @@ def test_what_a_users_jobqueue_file_says_holds() -> None:
         ("local", 1, SerialWorkers),
         ("local", 2, LocalWorkers),
         ("local", None, LocalWorkers),
-        ("dask://10.0.0.5:8786", None, DaskWorkers),
+        ("dask://127.0.0.1:8786", None, DaskWorkers),
+        ("dask://localhost:8786/", None, DaskWorkers),
         ("dask://[::1]:8786", None, DaskWorkers),
-        ("slurm://", None, SlurmWorkers),
     ],
 )
 def test_the_options_of_a_verb_choose_the_workers(executor: str, count: int | None, kind: type) -> None:
@@ -225,9 +250,10 @@ def test_the_options_of_a_verb_choose_the_workers(executor: str, count: int | No
     ("executor", "count", "sentence"),
     [
         ("local", 0, "workers is 0, but it must be at least 1."),
-        ("dask://host", None, "there is no executor 'dask://host'; it is local, dask://HOST:PORT or slurm://"),
+        ("dask://host", None, "there is no executor 'dask://host'; it is local, dask://HOST:PORT (of this "),
         ("mpi", None, "there is no executor 'mpi'"),
-        ("dask://host:1", 3, "--workers is for local and slurm://; a Dask scheduler has its own."),
+        ("slurm://", None, "there is no executor 'slurm://'"),
+        ("dask://localhost:1", 3, "--workers is for local; a Dask scheduler has its own."),
     ],
 )
 def test_other_options_are_refused(executor: str, count: int | None, sentence: str) -> None:
@@ -240,6 +266,4 @@ def test_other_options_are_refused(executor: str, count: int | None, sentence: s
 def test_a_missing_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(UserError, match=r"^distributed is not installed; pip install 'greywhale\[dask\]'\.$"):
-        choose_workers("dask://host:1")
-    with pytest.raises(UserError, match=r"^distributed is not installed; pip install 'greywhale\[slurm\]'\.$"):
-        choose_workers("slurm://")
+        choose_workers("dask://localhost:1")

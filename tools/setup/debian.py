@@ -25,6 +25,7 @@ PACKAGES = (
     "clang-tidy",
     "clang",  # libFuzzer and the sanitizers, over the firmware
     "libclang-rt-dev",
+    "openssl",  # certificates of a test
 )
 
 

@@ -1,9 +1,7 @@
 """greywhale: open firmware and tuner for leader-follower robot arms read by potentiometers and moved by DC motors."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
+# Nothing is imported here: `python -m greywhale` still has the current folder on its path, see __main__.py.
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     __version__: str
 else:

@@ -1,10 +1,12 @@
 """`python -m greywhale_sim`: a bench behind a serial port; the first line printed is the port."""
 
-from __future__ import annotations
+import sys
+
+if __name__ == "__main__" and not sys.flags.safe_path:
+    del sys.path[0]  # `python -m` looks in the current folder first, and would run a `json.py` that lies there
 
 import argparse
 import json
-import sys
 from pathlib import Path
 
 from greywhale.errors import UserError

@@ -35,6 +35,22 @@ def test_the_projects_own_core_folder_is_used(tools: list[Tool], tmp_path: Path)
     assert tools[0].command == [*command, "--environment", "nanoatmega328"]
 
 
+def test_the_settings_of_the_current_folder_are_not_platformios(
+    tools: list[Tool], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It obeys a platformio.ini of the folder that it runs in, so it runs in the firmware's."""
+    monkeypatch.chdir(tmp_path)
+    Path("port").touch()
+    firmware = Path("firmware")
+    platformio.build(firmware, BOARDS["mega"], lambda what, fraction: None)
+    platformio.upload(firmware, BOARDS["mega"], "port", lambda what, fraction: None)
+    for tool in tools:
+        assert tool.folder == firmware
+        assert tool.command[tool.command.index("--project-dir") + 1] == str(tmp_path / "firmware")
+    assert tools[1].port == str(tmp_path / "port")
+    assert tools[1].port in tools[1].command
+
+
 def test_a_build_folder_that_was_moved_is_found(
     tools: list[Tool], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

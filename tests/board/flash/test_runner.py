@@ -7,12 +7,14 @@ import select
 import signal
 import subprocess
 import sys
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from greywhale.board.flash.runner import Tool, run_tool
 from greywhale.errors import UserError
+from tests.strangers import plant, ran
 
 
 def tool(*command: str, limit_s: float = 60.0) -> Tool:
@@ -66,6 +68,14 @@ def test_a_tool_that_hangs_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
             tool(sys.executable, "-c", "import threading; threading.Event().wait()", limit_s=0.3), lambda text: None
         )
     assert started[0].returncode == -signal.SIGTERM
+
+
+def test_a_tool_imports_nothing_from_the_current_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """PlatformIO, as it is called where a firmware is built."""
+    plant(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    assert "PlatformIO" in run_tool(tool(sys.executable, "-m", "platformio", "--version"), lambda text: None)
+    assert ran(tmp_path) == set()
 
 
 @pytest.mark.slow

@@ -29,7 +29,14 @@ logger = logging.getLogger(__name__)
 
 def main() -> NoReturn:
     """Run the command line and exit."""
-    sys.exit(run(sys.argv[1:]))
+    try:
+        code = run(sys.argv[1:])
+    except KeyboardInterrupt:  # before the verb, or after it
+        code = INTERRUPTED
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        if signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, signal.SIG_DFL)  # a handler's traceback while Python ends would be nobody's
+    sys.exit(code)
 
 
 def run(arguments: Sequence[str]) -> int:

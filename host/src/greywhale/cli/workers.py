@@ -23,7 +23,7 @@ def executor_options(*names: str) -> Callable[[Command], Command]:
             *names,
             "workers",
             type=click.IntRange(1, MOST_WORKERS),
-            help="Processes here, or jobs of a Slurm cluster; without it, a process for every processor, or one job.",
+            help="Processes here; without it, one for every processor.",
         )
         executor = click.option(
             "--executor",

@@ -16,16 +16,20 @@ from types import TracebackType
 from typing import Any, Self
 
 from greywhale.errors import UserError
+from greywhale.processes import start
 
 ANSWER_WAIT_S = 60.0  # the machine may be busy; a healthy bench answers in milliseconds
 
 
 class BenchProcess:
-    """Starts `python -m greywhale_sim`, or another module that serves a bench; `port` is its serial port."""
+    """Starts `python -m greywhale_sim`, or another module that serves a bench; `port` is its serial port.
+
+    The module must be installed, or its folder be on PYTHONPATH.
+    """
 
     def __init__(self, *options: str, module: str = "greywhale_sim") -> None:
         self._errors = tempfile.TemporaryFile()  # noqa: SIM115 (close() closes it)
-        self._process = subprocess.Popen(
+        self._process = start(
             [sys.executable, "-m", module, "--control", "--json", *options],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,

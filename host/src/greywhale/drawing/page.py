@@ -7,28 +7,30 @@ a layout solver differ in the last digits from run to run.
 
 from __future__ import annotations
 
+import contextlib
 import io
-from collections.abc import Sequence
-from contextlib import AbstractContextManager
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 import numpy.typing as npt
-from matplotlib.artist import Artist
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
-from matplotlib.transforms import offset_copy
 
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.drawing.kinds import CHANGING, kind_of
 from greywhale.drawing.looks import GREY, Look
+from greywhale.drawing.plotting import (
+    Artist,
+    Axes,
+    Figure,
+    FuncFormatter,
+    Line2D,
+    LogLocator,
+    NullFormatter,
+    matplotlib,
+    offset_copy,
+    plt,
+)
 from greywhale.errors import UserError, os_reason
 from greywhale.formats.whole import write_whole
 
@@ -60,9 +62,13 @@ _MARK = 3.5  # points
 _DECADES = 3.0  # from here on a logarithmic axis has powers of ten alone
 
 
-def style() -> AbstractContextManager[None]:
-    """Matplotlib's settings for every picture, for as long as the context lasts."""
-    return matplotlib.rc_context(_SETTINGS)
+@contextlib.contextmanager
+def style() -> Iterator[None]:
+    """Matplotlib's settings for every picture, for as long as the context lasts; those of the user's files rest."""
+    with matplotlib.rc_context():
+        matplotlib.rcdefaults()
+        matplotlib.rcParams.update(_SETTINGS)
+        yield
 
 
 def leave(figure: Figure, left: float, right: float, bottom: float, top: float, **between: float) -> dict[str, float]:

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import matplotlib.pyplot as plt
 import numpy as np
 import numpy.typing as npt
-from matplotlib.figure import Figure
 
 from greywhale.drawing import looks
 from greywhale.drawing.page import (
@@ -21,6 +19,7 @@ from greywhale.drawing.page import (
     save_into,
     style,
 )
+from greywhale.drawing.plotting import Figure, plt
 from greywhale.identify.closed_loop import COMPARED_TICKS, Loop
 from greywhale.identify.judge import Subject, Verdict
 from greywhale.identify.outcome import Outcome

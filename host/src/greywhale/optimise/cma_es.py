@@ -47,7 +47,8 @@ class CmaEs(Optimiser):
         self._strategy = self._begin(self.pack_size, self._start)
 
     def _begin(self, pack: int, start: Floats) -> Any:
-        # Imported here: it takes two seconds, and most runs need no CMA-ES.
+        # Imported here: it takes two seconds, and most runs need no CMA-ES. It imports Matplotlib, which is ours to do.
+        importlib.import_module("greywhale.drawing.plotting")
         cma: Any = importlib.import_module("cma")
         unit = self.box.to_unit(start)
         mean = unit[0] if len(unit) else self._generator.random(self.box.dimensions)

@@ -16,8 +16,7 @@ from greywhale.optimise.comparison import Comparison
 from greywhale.optimise.functions import Setting
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+    from greywhale.drawing.plotting import Axes, Figure
 
 FORMATS = (".csv", *KINDS)
 # Methods in a picture: dark and saturated colours first, then the same dashed.
@@ -174,9 +173,8 @@ def _draw(path: Path, comparison: Comparison) -> None:
 
 def plot_ranks(comparison: Comparison) -> Figure:
     """A line a method from setting to setting, its name at the end, as a figure of pyplot's that the caller closes."""
-    import matplotlib.pyplot as plt
-
     from greywhale.drawing.page import WIDE, leave
+    from greywhale.drawing.plotting import plt
 
     plan = comparison.plan
     across = range(len(plan.settings))

@@ -11,17 +11,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.artist import Artist
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from greywhale.drawing import looks
 from greywhale.drawing.kinds import kind_of
 from greywhale.drawing.page import JOINTS, WIDE, headline, leave, legend_below, save, style
+from greywhale.drawing.plotting import Artist, Axes, Figure, Line2D, plt
 from greywhale.errors import BAD_USAGE, UserError
 from greywhale.files.log import Log
 from greywhale.joints import ALL, Joints

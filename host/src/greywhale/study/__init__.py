@@ -1,7 +1,7 @@
 """Repeated studies (seeds, arms, methods) on any `concurrent.futures.Executor`: here, on a cluster, and after a kill.
 
     tasks = [Task(f"arm {n}", judge_arm, seed=n, arguments={"budget": 500}) for n in range(10)]
-    found = run_study(tasks, choose_workers("dask://10.0.0.5:8786"), results=Path("arms.study"), what="judging arms")
+    found = run_study(tasks, choose_workers("tls://10.0.0.5:8786"), results=Path("arms.study"), what="judging arms")
     found["arm 3"]          # what judge_arm(seed=3, budget=500) returned
 
 - A `Task` is a function of a module, called as `function(seed=seed, **arguments)`. Arguments and what it returns are
@@ -13,8 +13,7 @@
 
       SerialWorkers()               this process, one task after another
       LocalWorkers(4)               four processes here
-      DaskWorkers("HOST:PORT")      a Dask scheduler            (greywhale[dask])
-      SlurmWorkers("normal", 40)    jobs of a Slurm partition   (greywhale[slurm])
+      DaskWorkers("HOST:PORT")      a Dask scheduler here; with tls=True anywhere (greywhale[dask])
       choose_workers(text, count)   what --executor and --workers of a verb say
 
 - `results` is a file with a checked line for every task that is done. A study that finds its file does only what is
@@ -30,7 +29,7 @@
 """
 
 from greywhale.study.choose import choose_workers
-from greywhale.study.cluster import DaskWorkers, SlurmWorkers
+from greywhale.study.cluster import DaskWorkers
 from greywhale.study.local import LocalWorkers, SerialWorkers
 from greywhale.study.run import LostTasks, run_study
 from greywhale.study.task import Task, TaskFailed
@@ -41,7 +40,6 @@ __all__ = [
     "LocalWorkers",
     "LostTasks",
     "SerialWorkers",
-    "SlurmWorkers",
     "Task",
     "TaskFailed",
     "Workers",

@@ -1,40 +1,44 @@
-"""Workers on other machines: a Dask scheduler's, or jobs of a Slurm partition. Both need an extra of the package."""
+"""Workers of a Dask scheduler, here or on other machines. They need an extra of the package."""
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
 import importlib
+import ipaddress
 import logging
-import shutil
+import ssl
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
 from importlib.metadata import PackageNotFoundError, version
 from types import ModuleType
 from typing import Any, ParamSpec, TypeVar
 
-from greywhale.errors import BAD_USAGE, UserError
+from greywhale.errors import BAD_USAGE, UserError, os_reason
 from greywhale.study.task import versions
 
 P = ParamSpec("P")
 T = TypeVar("T")
-# What a job gets where the user's own jobqueue.yaml does not say.
-JOB: dict[str, Any] = {"cores": 1, "processes": 1, "memory": "2GB"}
 
 
 class DaskWorkers:
     """Those of the Dask scheduler at HOST:PORT, who have the same versions of greywhale, numpy and scipy.
 
+    A scheduler beyond this machine is reached by TLS alone, with the certificates that Dask's configuration names.
     Dask itself gives a lost worker's tasks to the others. It gives up a task after several workers
     (`distributed.scheduler.allowed-failures`), and then it may have had bad neighbours: the study tries it alone.
     """
 
     at_once = None
 
-    def __init__(self, address: str, wait_s: float = 10.0) -> None:
+    def __init__(self, address: str, wait_s: float = 10.0, tls: bool = False) -> None:
+        if not tls:
+            _require_loopback(address)
         self.address = address
+        self._url = f"{'tls' if tls else 'tcp'}://{address}"
         self._wait_s = wait_s  # for the scheduler's answer
-        self._distributed = _package("distributed", "dask")
+        self._distributed = _package("distributed")
+        self._security = _security(self._distributed) if tls else None
 
     @contextlib.contextmanager
     def executor(self) -> Iterator[Executor]:
@@ -49,11 +53,14 @@ class DaskWorkers:
 
     def _client(self) -> Any:
         try:
-            return self._distributed.Client(f"tcp://{self.address}", timeout=self._wait_s, set_as_default=False)
+            return self._distributed.Client(
+                self._url, timeout=self._wait_s, set_as_default=False, security=self._security
+            )
         except (OSError, ValueError):
             raise UserError(
-                f"{self.address}: no Dask scheduler answers there; start one with `dask scheduler` and workers with "
-                "`dask worker HOST:PORT`, or give the address that a running one prints."
+                f"{self._url}: no Dask scheduler answers there; start one with `dask scheduler` and workers with "
+                "`dask worker`, or give the address that a running one prints. With TLS both sides need certificates "
+                "of the same authority."
             ) from None
 
     def _require_same_versions(self, client: Any) -> None:
@@ -100,51 +107,43 @@ class _Executor(Executor):
         return future
 
 
-class SlurmWorkers:
-    """Jobs that greywhale submits to a Slurm partition (None: the cluster's own choice) and ends with the study.
-
-    The user's ~/.config/dask/jobqueue.yaml says what else a job needs (account, walltime, memory).
-    """
-
-    at_once = None
-
-    def __init__(self, partition: str | None = None, jobs: int = 1) -> None:
-        self.partition = partition
-        self.jobs = jobs
-        self._distributed = _package("distributed", "slurm")
-        self._jobqueue = _package("dask_jobqueue", "slurm")
-
-    @contextlib.contextmanager
-    def executor(self) -> Iterator[Executor]:
-        if shutil.which("sbatch") is None:
-            raise UserError("sbatch was not found; begin the study on a machine that submits jobs to Slurm.")
-        with _quiet(), self.cluster() as cluster:
-            cluster.scale(jobs=self.jobs)
-            with self._distributed.Client(cluster, set_as_default=False) as client:
-                yield _Executor(client, self._distributed.comm.CommClosedError)
-
-    def deaths(self, error: BaseException) -> int:
-        if isinstance(error, self._distributed.KilledWorker):
-            return 2
-        return 1 if isinstance(error, BrokenExecutor) else 0
-
-    def cluster(self) -> Any:
-        """A `dask_jobqueue.SLURMCluster` without jobs yet; its `job_script()` is what Slurm will get."""
-        import dask
-
-        chosen = {key: dask.config.get(f"jobqueue.slurm.{key}", None) or value for key, value in JOB.items()}
-        if self.partition is not None:
-            chosen["queue"] = self.partition
-        # Several studies may run here, so any free port will do for the dashboard.
-        return self._jobqueue.SLURMCluster(**chosen, scheduler_options={"dashboard_address": ":0"})
+def _require_loopback(address: str) -> None:
+    """Without TLS whoever answers, or sits between, could run programs as this user: only this machine may answer."""
+    host = address.rpartition(":")[0].strip("[]")
+    with contextlib.suppress(ValueError):
+        if host == "localhost" or ipaddress.ip_address(host).is_loopback:
+            return
+    raise UserError(
+        f"dask://{address} is not on this machine, and nothing would tell who answers there; take tls://{address} with "
+        "certificates, or an SSH tunnel and dask://127.0.0.1:PORT (docs/study.md shows both).",
+        BAD_USAGE,
+    )
 
 
-def _package(name: str, extra: str) -> ModuleType:
-    """A package that not everybody has; it takes a second to import."""
+def _security(distributed: ModuleType) -> Any:
+    """The certificates that Dask's own configuration names, which can be read."""
+    security = distributed.Security(require_encryption=True)
+    if not (security.tls_ca_file and security.tls_client_cert):
+        raise UserError(
+            "tls:// needs certificates; name ca-file and client: cert in ~/.config/dask, under distributed: comm: tls.",
+            BAD_USAGE,
+        )
+    try:
+        security.get_connection_args("client")
+    except OSError as error:
+        files = [one for one in (security.tls_ca_file, security.tls_client_cert, security.tls_client_key) if one]
+        named = ", ".join(dict.fromkeys(files))
+        reason = "they are no PEM certificate and its key" if isinstance(error, ssl.SSLError) else os_reason(error)
+        raise UserError(f"the certificates of Dask's configuration ({named}) cannot be used: {reason}.") from None
+    return security
+
+
+def _package(name: str) -> ModuleType:
+    """Dask's package, which not everybody has; it takes a second to import."""
     try:
         return importlib.import_module(name)
     except ModuleNotFoundError:
-        raise UserError(f"{name} is not installed; pip install 'greywhale[{extra}]'.", BAD_USAGE) from None
+        raise UserError(f"{name} is not installed; pip install 'greywhale[dask]'.", BAD_USAGE) from None
 
 
 @contextlib.contextmanager

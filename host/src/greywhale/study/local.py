@@ -17,6 +17,8 @@ from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
 from typing import Any, ParamSpec, TypeVar
 
+from greywhale.processes import safe_path
+
 P = ParamSpec("P")
 T = TypeVar("T")
 
@@ -55,7 +57,8 @@ class LocalWorkers:
     def executor(self) -> Iterator[Executor]:
         context = multiprocessing.get_context("spawn")
         theirs, ours = context.Pipe(duplex=False)
-        pool = _Pool(self.at_once, mp_context=context, initializer=_prepare, initargs=(theirs,))
+        with safe_path():  # the pool's semaphores start multiprocessing's resource tracker
+            pool = _Pool(self.at_once, mp_context=context, initializer=_prepare, initargs=(theirs,))
         try:
             yield pool
         except BaseException:
@@ -72,7 +75,7 @@ class LocalWorkers:
 
 class _Pool(ProcessPoolExecutor):
     def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
-        with _hold_interrupts():  # it may start a process
+        with safe_path(), _hold_interrupts():  # it may start a process
             return super().submit(fn, *args, **kwargs)
 
 

@@ -33,7 +33,7 @@ def find_sources(named: str | Path | None) -> Path | None:
 def build(firmware: Path, board: FlashBoard, report: Progress) -> Path:
     """Build for the board; the HEX file."""
     environment = platformio_environment(firmware)
-    tool = Tool("PlatformIO's build", _run_command(firmware, board), environment, _BUILD_LIMIT_S)
+    tool = Tool("PlatformIO's build", _run_command(firmware, board), environment, _BUILD_LIMIT_S, folder=firmware)
     run_tool(tool, lambda text: report("building", 0.0))
     return _build_folder(firmware, environment) / board.environment / "firmware.hex"
 
@@ -46,8 +46,9 @@ def last_build(firmware: Path, board: FlashBoard) -> Path | None:
 
 def upload(firmware: Path, board: FlashBoard, port: str, report: Progress) -> None:
     """Upload what was built, at the speed that PlatformIO knows for the board."""
+    port = os.path.abspath(port) if os.path.exists(port) else port  # a port of Windows has no path
     command = [*_run_command(firmware, board), "--target", "upload", "--upload-port", port]
-    tool = Tool("the upload", command, platformio_environment(firmware), UPLOAD_LIMIT_S, port)
+    tool = Tool("the upload", command, platformio_environment(firmware), UPLOAD_LIMIT_S, port, folder=firmware)
     run_tool(tool, watch_upload(port, report))
 
 
@@ -64,7 +65,8 @@ def platformio_environment(firmware: Path) -> dict[str, str]:
 
 
 def _run_command(firmware: Path, board: FlashBoard) -> list[str]:
-    return [*_platformio(), "run", "--project-dir", str(firmware), "--environment", board.environment]
+    """For a run in the firmware's folder: PlatformIO also obeys a platformio.ini of the folder that it runs in."""
+    return [*_platformio(), "run", "--project-dir", str(firmware.resolve()), "--environment", board.environment]
 
 
 def _platformio() -> list[str]:

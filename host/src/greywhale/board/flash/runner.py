@@ -17,6 +17,7 @@ from typing import IO
 
 from greywhale.board.flash import guard
 from greywhale.errors import UserError
+from greywhale.processes import start
 
 _GUARD = Path(guard.__file__)
 _LOOK_EVERY_S = 0.1
@@ -32,13 +33,17 @@ _ESCAPE = re.compile(r"\x1b\[[0-9;]*[A-Za-z]")
 
 @dataclass(frozen=True)
 class Tool:
-    """A command with the name people know it by, how long it may take, and the port that it works on, if any."""
+    """A command with the name people know it by, how long it may take, and the port that it works on, if any.
+
+    `folder` is where it runs, without one the current folder.
+    """
 
     name: str
     command: list[str]
     environment: dict[str, str]
     limit_s: float
     port: str = ""
+    folder: Path | None = None
 
 
 def run_tool(tool: Tool, look: Callable[[str], None]) -> str:
@@ -48,9 +53,10 @@ def run_tool(tool: Tool, look: Callable[[str], None]) -> str:
     """
     guarded = [sys.executable, "-I", "-S", str(_GUARD), str(tool.limit_s), tool.port, *tool.command]
     with tempfile.TemporaryFile() as output:  # without a name, so that a kill leaves none
-        with subprocess.Popen(
+        with start(
             guarded,
-            env=tool.environment,
+            tool.environment,
+            cwd=tool.folder,
             stdin=subprocess.PIPE,
             stdout=output,
             stderr=subprocess.STDOUT,

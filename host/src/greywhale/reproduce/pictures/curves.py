@@ -6,12 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import matplotlib.pyplot as plt
 import numpy as np
 import numpy.typing as npt
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from greywhale.drawing import looks
 from greywhale.drawing.looks import BLUE, DARK, GREEN, GREY, ORANGE, PURPLE, SIGNS, Look
@@ -28,6 +24,7 @@ from greywhale.drawing.page import (
     png,
     style,
 )
+from greywhale.drawing.plotting import Axes, Figure, Line2D, plt
 from greywhale.firmware import JOINTS
 from greywhale.fuzzy.settings import SET_UNIT
 from greywhale.loop import CONTROLLER_COLUMNS

@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.patches import FancyBboxPatch
 
 from greywhale.drawing.looks import BLUE, DARK, ORANGE
 from greywhale.drawing.page import LETTERS, SMALL, WIDE, leave, png, style
+from greywhale.drawing.plotting import Axes, FancyBboxPatch, plt
 from greywhale.files.arm import load_arm
 
 Point = tuple[float, float]

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import IO, Any
 from xml.sax.saxutils import escape
 
-import matplotlib
 from reportlab.lib import colors
 from reportlab.lib.pagesizes import A4
 from reportlab.lib.styles import ParagraphStyle
@@ -28,6 +27,7 @@ from reportlab.platypus import (
     Spacer,
 )
 
+from greywhale.drawing.plotting import matplotlib
 from greywhale.formats.whole import write_whole
 from greywhale.reproduce.pages.document import Block, Chapter, Code, Document, Entry, Picture, Sheet
 from greywhale.reproduce.render.ranges import keep_ranges

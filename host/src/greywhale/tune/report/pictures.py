@@ -11,12 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import matplotlib.pyplot as plt
 import numpy as np
 import numpy.typing as npt
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from greywhale.drawing import looks
 from greywhale.drawing.page import (
@@ -31,6 +27,7 @@ from greywhale.drawing.page import (
     save_into,
     style,
 )
+from greywhale.drawing.plotting import Axes, Figure, Line2D, plt
 from greywhale.fuzzy.settings import SET_UNIT
 from greywhale.joints import ALL, Joints
 from greywhale.loop import CONTROLLER_COLUMNS

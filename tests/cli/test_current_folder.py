@@ -1,0 +1,53 @@
+"""The command in a folder full of a stranger's files: none of them is imported or obeyed, and the work is done."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import matplotlib.image
+import pytest
+
+from tests.cli.example_log import write_log
+from tests.strangers import plant, ran
+
+INSTALLED = [str(Path(sys.executable).with_name("greywhale"))]
+AS_MODULE = [sys.executable, "-m", "greywhale"]
+COMPARE = "compare --functions sphere --methods cma-es --budget 20 --seeds 2 --workers 2 --out picture.png"
+
+
+def run(folder: Path, command: list[str], arguments: str) -> None:
+    done = subprocess.run(
+        [*command, *arguments.split(), "--json"], cwd=folder, capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    json.loads(done.stdout)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("arguments", ["evaluate log.csv --picture picture.png", COMPARE], ids=lambda line: line[:8])
+def test_verbs_that_draw_and_start_processes_run_nothing_of_the_current_folder(arguments: str, tmp_path: Path) -> None:
+    """With CMA-ES, whose package imports Matplotlib too. The other verbs that start a process or draw do it the same
+    way, which tests/test_structure.py watches; tests/end_to_end has the demo in such a folder.
+    """
+    write_log(tmp_path / "log.csv")
+    plant(tmp_path)
+    run(tmp_path, INSTALLED, arguments)
+    assert ran(tmp_path) == set()
+    corner = matplotlib.image.imread(tmp_path / "picture.png")[0, 0]
+    assert corner.tolist() == [1.0, 1.0, 1.0, 1.0], "the paper is white"
+
+
+def test_as_a_module_it_imports_nothing_of_the_current_folder_once_it_is_found(tmp_path: Path) -> None:
+    """What Python itself imports until it has found a module of `-m` is spared."""
+    empty = tmp_path / "elsewhere" / "empty.py"
+    empty.parent.mkdir()
+    empty.write_text("import sys\nprint(*sys.modules)\n")
+    command = [sys.executable, "-m", "empty"]
+    own = subprocess.run(command, cwd=empty.parent, capture_output=True, text=True, check=True).stdout.split()
+    write_log(tmp_path / "log.csv")
+    plant(tmp_path, spare=own)
+    run(tmp_path, AS_MODULE, "evaluate log.csv")
+    assert ran(tmp_path) == set()
