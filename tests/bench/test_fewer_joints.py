@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any, cast
 
 import numpy as np
 import pytest
 
 from greywhale.board.device import Device
 from greywhale.board.record import record
-from greywhale.board.upload import run_set
+from greywhale.board.upload import read_parameters
 from greywhale.files.log import read_log
 from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory
-from greywhale_sim import mistakes
+from greywhale_sim import mistakes, serve
 from greywhale_sim.assemble import BenchOptions, build_bench
 from greywhale_sim.bench import SLICE_S, Bench
 from greywhale_sim.leader import LeaderPlayer
-from greywhale_sim.lockstep import LockStepLine
+from greywhale_sim.lockstep import LockStepLine, tell_joints
 from greywhale_sim.wiring import MEGA
 from tests.bench.conftest import FakeBoard, FakePlant, FakePots
 
@@ -50,15 +51,33 @@ def test_hands_and_motions_leave_them_at_0(two: Bench) -> None:
     np.testing.assert_array_equal(two.leader.hold, [0.4, 0.4, 0.0, 0.0])
 
 
-def test_an_arm_of_two_joints_follows_with_the_firmware(tmp_path: Path) -> None:
+def test_the_board_knows_the_joints_of_its_arm_and_follows_with_them(tmp_path: Path) -> None:
     bench = build_bench(BenchOptions(arm=Path("two_joints")))
     assert bench.floating == 0b1100_1100
+    tell_joints(bench)
+    cast(Any, bench.board).reset()
     with Device("two joints", 4.0, 8.0, line=LockStepLine(bench)) as device:
-        run_set(device, ParameterTable.defaults().with_raw(UNUSED))
+        assert read_parameters(device) == ParameterTable.defaults().with_raw(UNUSED)
         record(device, tmp_path / "log.csv", 4.0, enable=True)
     log = read_log(tmp_path / "log.csv")
+    assert log.joints_in_use == (0, 1)
     for columns in (log.leader, log.follower, log.voltage):
         np.testing.assert_array_equal(columns[:, 2:], 0.0)
     assert np.ptp(log.leader, axis=0)[:2].min() > 0.2
     assert np.sqrt(np.mean((log.leader - log.follower) ** 2, axis=0)).max() < 0.15
     np.testing.assert_array_equal(bench.angles[2:], 0.0)
+
+
+@pytest.mark.parametrize(("options", "told"), [({}, True), ({"blank": True}, False), ({"eeprom": "kept"}, False)])
+def test_only_a_new_board_is_told_its_joints(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, options: dict[str, object], told: bool
+) -> None:
+    """A board that somebody set up, or whose firmware is not there yet, is left as it is."""
+    eeprom = tmp_path / "eeprom.bin"
+    if "eeprom" in options:
+        eeprom.write_bytes(b"\xff" * 4096)
+    asked: list[Bench] = []
+    monkeypatch.setattr(serve, "tell_joints", asked.append)
+    given = {**options, "eeprom": eeprom} if "eeprom" in options else options
+    with serve.running(serve.ServeOptions(arm=Path("two_joints"), **given)) as server:  # type: ignore[arg-type]
+        assert asked == [server.bench] * told

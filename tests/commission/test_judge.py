@@ -19,6 +19,8 @@ BEFORE = Measures(
     rattle=np.full(SHAPE, 0.0012),
     chatter=np.full(SHAPE, 3.0),
     voltage=np.full(SHAPE, 1.0),
+    overshoot=np.full(SHAPE, 5.0),
+    settling=np.full(SHAPE, 0.3),
 )
 QUIET = ("", "", "", "")
 

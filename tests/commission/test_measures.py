@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from greywhale.commission.measures import Traces, chatter, measure, rattle, traces_of, unrest
+from greywhale.commission.measures import STEPS, Traces, chatter, measure, rattle, traces_of, unrest
 from greywhale.commission.motions import PARTS, check_motion
 from greywhale.files.log import Log
 from greywhale.files.log.layout import Origin
@@ -124,3 +124,19 @@ def test_holding_still_is_judged_while_the_joints_own_leader_rests() -> None:
     assert (measured.error[place] < 0.03 * measured.error[PARTS.index("reaches")]).all()
     off = leader - 0.01
     assert measure(traces_of(log_of(leader, off), check), check, 15.0).error[place] == pytest.approx(np.full(4, 1e-4))
+
+
+def test_steps_of_the_moves_have_overshoot_and_settling_time() -> None:
+    check = check_motion(ROOM)
+    leader = check.motion.at(np.arange(0.0, check.motion.duration_s, TICK_S))
+    begin, end = (round(moment / TICK_S) for moment in check.parts[STEPS])
+    follower = leader.copy()
+    follower[begin:end, 2] += 0.2 * (leader[begin:end, 2] - leader[begin, 2])
+    measured = measure(Traces(leader, follower, np.zeros_like(leader), 0.0), check, 15.0)
+    place = PARTS.index(STEPS)
+    assert measured.overshoot[place, 0] == pytest.approx(0.0, abs=1.0)
+    assert measured.settling[place, 0] == pytest.approx(0.0, abs=0.02)
+    assert measured.overshoot[place, 2] > 15.0
+    assert np.isnan(measured.settling[place, 2]), "it never settles"
+    others = [number for number in range(len(PARTS)) if number != place]
+    assert np.isnan(measured.overshoot[others]).all()

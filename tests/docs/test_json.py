@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import click
 import pytest
@@ -75,6 +76,22 @@ def test_a_schema_is_one_and_leaves_no_key_open(path: Path) -> None:
     assert schema["additionalProperties"] is False
     with pytest.raises(ValidationError):
         Draft202012Validator(schema).validate({"unheard_of": 1})
+
+
+def undescribed(schema: Any, where: str = "") -> list[str]:
+    """Keys, at any depth, of which the schema does not say what they are."""
+    found: list[str] = []
+    for kind in ("properties", "patternProperties"):
+        for key, value in schema.get(kind, {}).items():
+            found += [f"{where}.{key}"] if "description" not in value else []
+            found += undescribed(value, f"{where}.{key}")
+    below = [schema[kind] for kind in ("items", "additionalProperties") if isinstance(schema.get(kind), dict)]
+    return found + [key for one in below for key in undescribed(one, f"{where}[]")]
+
+
+@pytest.mark.parametrize("name", ["commission", "demo", "evaluate", "identify", "tune"])
+def test_every_key_is_described(name: str) -> None:
+    assert undescribed(json.loads((SCHEMAS / f"{name}.json").read_text(encoding="utf-8"))) == []
 
 
 @pytest.mark.parametrize("text", ['{"a": NaN}\n', '{"a": 1}\n{}\n', '{"a": 1}'])

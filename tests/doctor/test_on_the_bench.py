@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import pytest
 
 from greywhale.cli.entry import run
 from greywhale.demo import BenchProcess
+from greywhale.table import ParameterTable
 
 SECONDS = "1"
 
@@ -92,13 +93,19 @@ def test_a_board_without_power_is_named_and_the_port_is_still_good(
 
 
 def test_open_inputs_of_joints_that_are_not_in_use_are_no_trouble(capsys: pytest.CaptureFixture[str]) -> None:
+    idle = [f"{side}{joint}.scale" for side in ("leader", "follower") for joint in (2, 3)]
     with BenchProcess("--speed", "max", "--arm", "two_joints") as two:
+
+        def set_scales(values: Iterable[float]) -> None:
+            settings = [f"{name}={value:g}" for name, value in zip(idle, values, strict=True)]
+            assert run(["params", "set", *settings, "--port", two.port]) == 0
+            capsys.readouterr()
+
+        set_scales(ParameterTable.defaults().physical(name) for name in idle)
         code, found = doctor(two, capsys)
         assert code == 1
         assert "These read alike" in found["inputs"]
-        idle = [f"{side}{joint}.scale=0" for side in ("leader", "follower") for joint in (2, 3)]
-        assert run(["params", "set", *idle, "--port", two.port]) == 0
-        capsys.readouterr()
+        set_scales([0.0] * len(idle))
         code, found = doctor(two, capsys)
         assert code == 0
         assert found["joints"].startswith("good: Joints 2 and 3 are not in use")

@@ -8,10 +8,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from greywhale.arm.parameters import JOINT_NAMES, Stops
 from greywhale.demo import BenchProcess, DemoOptions, run
+from greywhale.demo.recorder import record_motion
 from greywhale.errors import UserError
+from greywhale.files.arm import default_arm
+from greywhale.files.leader import save_leader
 from greywhale.files.log import Log
+from greywhale.files.model import arm_toml
 from greywhale.protocol import schema
+from greywhale.trajectory import Trajectory
 from tests.strangers import plant, ran
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -90,6 +96,52 @@ def test_the_demo_shows_a_controller_that_it_is_given(tmp_path: Path, monkeypatc
     # The paper's tuned gains are larger: where no gravity acts, they follow much more closely.
     for joint in (0, 2):
         assert result.runs[1].measures.joints[joint].mse < 0.5 * result.runs[0].measures.joints[joint].mse
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("count", "learns"), [(1, True), (2, False), (3, False)])
+def test_the_demo_of_an_arm_with_fewer_joints_shows_those(tmp_path: Path, count: int, learns: bool) -> None:
+    arm = default_arm()
+    joints = tuple(one.model_copy(update={"fixed": number >= count}) for number, one in enumerate(arm.joint))
+    (tmp_path / "arm.toml").write_text(arm_toml(arm.model_copy(update={"joint": joints}), "Fewer joints."))
+    controller = None if learns else ROOT / "shared" / "fuzzy_tables" / "table_8.toml"
+    options = DemoOptions(
+        tmp_path / "demo", arm=tmp_path / "arm.toml", duration_s=4.0, practice_s=10.0, budget=20, controller=controller
+    )
+    result = run(options)
+    for one in result.runs:
+        assert one.recorded.log().joints_in_use == tuple(range(count))
+        assert one.measures.total_mse == pytest.approx(sum(joint.mse for joint in one.measures.joints[:count]))
+    tables = result.text().partition("MSE [rad²]")[2]
+    for joint, name in enumerate(JOINT_NAMES):
+        assert (f"{joint} {name}" in tables) == (joint < count)
+    if result.learnt is not None:
+        assert result.learnt.identification.white_box.joints_in_use == tuple(range(count))
+        assert (tmp_path / "demo" / "sets.png").exists()
+
+
+@pytest.mark.slow
+def test_why_the_arms_are_not_at_the_start_of_a_motion_is_told(tmp_path: Path) -> None:
+    """A motion beyond the follower's stops, and potentiometers that the board does not know, are no faults."""
+    arm = default_arm()
+    joints = tuple(one.model_copy(update={"stops": Stops(min=-1.0, max=1.0)}) for one in arm.joint)
+    pots = tuple(one.model_copy(update={"centre": 0.3}) for one in arm.follower_pots.joint)
+    bank = arm.follower_pots.model_copy(update={"joint": pots})
+    arm = arm.model_copy(update={"joint": joints, "follower_pots": bank})
+    (tmp_path / "arm.toml").write_text(arm_toml(arm, "Other potentiometers."))
+    motions = {
+        "far.csv": (
+            1.5,
+            "far.csv: the motion begins with joint 2 at 1.50 rad, but the follower's stops let it .* 1.00",
+        ),
+        "home.csv": (0.0, "stands at 0.00 rad, but the board reads .* does not know these potentiometers"),
+    }
+    with BenchProcess("--speed", "max", "--arm", str(tmp_path / "arm.toml")) as bench:
+        for name, (angle, sentence) in motions.items():
+            pose = np.array([0.0, 0.0, angle, 0.0])
+            save_leader(tmp_path / name, Trajectory(np.array([0.0, 1.0]), np.array([pose, pose])))
+            with pytest.raises(UserError, match=sentence):
+                record_motion(bench, tmp_path / name, tmp_path / "log.csv")
 
 
 def assert_same_motion(before: Log, after: Log) -> None:

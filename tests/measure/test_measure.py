@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -26,6 +24,12 @@ def log(time: Floats, leader: Floats, follower: Floats, state: NDArray[np.str_] 
     states = np.full(len(time), "following") if state is None else state
     stack = [np.column_stack([one] * 4) for one in (leader, follower, 0 * leader)]
     return Log("test.csv", Origin(), time, stack[0], stack[1], stack[2], states, 0, True)
+
+
+def log_of(time: Floats, leader: Floats, follower: Floats) -> Log:
+    """Of four joints, (rows, 4) each."""
+    state = np.full(len(time), "following")
+    return Log("test.csv", Origin(), time, leader, follower, np.zeros_like(leader), state, 0, True)
 
 
 def reach(time: Floats, start: float, size: float = STEP, length: float = 0.4) -> Floats:
@@ -189,27 +193,6 @@ def test_runs_hold_every_wanted_neighbour_pair_once(steps: list[tuple[int, bool]
     }
     assert pairs == expected
     assert sum(run.stop - run.start - 1 for run in runs) == len(pairs)
-
-
-@pytest.mark.parametrize(
-    ("follower", "follows"),
-    [
-        (lambda leader: leader - 0.2, True),
-        (lambda leader: 0.5 * leader, True),
-        (lambda leader: np.full_like(leader, leader.mean() + 0.1), False),  # its motor has no wires
-        (lambda leader: np.full_like(leader, -2.4), False),  # its potentiometer has none
-        (lambda leader: -leader, False),  # it runs the wrong way
-    ],
-)
-def test_a_joint_that_does_not_follow_at_all_is_told(follower: Callable[[Floats], Floats], follows: bool) -> None:
-    time = np.arange(0, 10, 0.01)
-    leader = np.sin(2 * time)
-    assert [joint.follows for joint in evaluate(log(time, leader, follower(leader))).joints] == [follows] * 4
-
-
-def test_a_joint_whose_leader_rests_need_not_follow() -> None:
-    time = np.arange(0, 10, 0.01)
-    assert evaluate(log(time, 0.001 * np.sin(time), np.full_like(time, 0.5))).joints[0].follows
 
 
 def test_the_delay_of_a_long_log_is_that_of_its_parts() -> None:

@@ -16,7 +16,8 @@ from greywhale.errors import UserError
 from greywhale.fuzzy.settings import JointSettings
 from greywhale.loop import plant_row
 from greywhale.optimise import METHODS as OPTIMISERS
-from greywhale.protocol.schema import Refusal
+from greywhale.protocol.schema import PARAMETER_BY_NAME, Refusal
+from greywhale.table import CONTROLLER_COLUMNS, ParameterTable, physical
 from greywhale.tune import METHODS, Outcome, check_request, default, tune
 from greywhale.tune.default import KU, WEAKER, DefaultMethod
 from greywhale.tune.method import Task
@@ -90,7 +91,11 @@ def test_the_board_takes_what_comes_out(tuned: tuple[Outcome, Path]) -> None:
 @pytest.mark.slow
 def test_the_outcome_is_plain_json(tuned: tuple[Outcome, Path]) -> None:
     facts = json.loads(json.dumps(tuned[0].as_dict(), allow_nan=False))
-    assert facts["after"] == tuned[0].after.tolist()
+    table = ParameterTable.defaults().with_controllers(tuned[0].after)
+    assert facts["after"] == {
+        name: physical(PARAMETER_BY_NAME[name], table[name])
+        for name in (f"joint{joint}.{key}" for joint in range(4) for key in CONTROLLER_COLUMNS)
+    }
     assert len(facts["curves"]) == 4
     assert facts["curves"][0]["evaluations"][-1] == facts["evaluations"]
 

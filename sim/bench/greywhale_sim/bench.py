@@ -101,6 +101,7 @@ class Bench:
         self.motor_wires = [0, 1, 2, 3]  # which driver each motor is on
         self.floating = 0  # bit i: the wire of potentiometer i is off and nothing pulls its input
         self.plant = plant
+        self._stops = stops_of(plant)
         self.leader = leader
         self.leader_pots = leader_pots
         self.follower_pots = follower_pots
@@ -168,11 +169,13 @@ class Bench:
         self.board.set_floating(self.floating)
 
     def place(self, angles: Array) -> None:
-        """Hold the follower in a pose by hand, if the plant allows that (it has `reset`)."""
+        """Hold the follower in a pose by hand, if the plant allows that (it has `reset`); no hand moves it beyond its
+        stops.
+        """
         reset = getattr(self.plant, "reset", None)
         if reset is not None:
-            reset(angles)
-            self.angles[:] = angles
+            self.angles[:] = np.maximum(self._stops[0], np.minimum(self._stops[1], angles))
+            reset(self.angles)
 
     def run(self, seconds: float) -> None:
         """Advance by `seconds` of simulated time, rounded to whole slices."""
@@ -248,6 +251,14 @@ class Bench:
                 self.voltages[joint] = math.copysign(1.0, gain) * mean_volts(
                     bridge, abs(gain) * self.supply_v, math.copysign(1.0, gain) * float(emf[joint])
                 )
+
+
+def stops_of(plant: Plant) -> tuple[Array, Array]:
+    """The lowest and highest angles of a follower, where its plant says them."""
+    if not isinstance(plant, arm.Arm):
+        return np.full(4, -np.inf), np.full(4, np.inf)
+    stops = [joint.stops for joint in plant.parameters.joint]
+    return np.array([stop.min for stop in stops]), np.array([stop.max for stop in stops])
 
 
 def add_second_outputs(board: Board, wiring: Wiring) -> bool:

@@ -14,6 +14,8 @@ from typing import Any
 from greywhale.board.device import Device
 from greywhale.board.record import Recording, record
 from greywhale.board.upload import run_set
+from greywhale.errors import UserError
+from greywhale.protocol import schema
 from greywhale.table import ParameterTable
 from greywhale_sim.assemble import BenchOptions, build_bench
 from greywhale_sim.bench import Bench
@@ -23,6 +25,7 @@ LOOK_SLICES = 8
 # The bootloader of either board has ended by then.
 QUIET_S = 4.0
 PATIENCE_S = 8.0
+SAVE_S = 1.0  # what a board takes at most to store a set
 _numbers = itertools.count()
 
 
@@ -51,6 +54,16 @@ class LockStepLine:
         return self._bench.time_s
 
 
+def tell_joints(bench: Bench) -> None:
+    """Store in the board which joints its arm has, as `greywhale calibrate --joints` does."""
+    with _device(bench) as device:
+        run_set(device, ParameterTable.defaults(device.hello.board).with_joints(bench.joints))
+        device.ask(schema.ParamSaveRequest())
+        bench.run(SAVE_S)
+        if device.status().save_state is not schema.SaveState.SAVED:
+            raise UserError("the board does not store which joints its arm has.")
+
+
 def record_in_lock_step(
     path: Path, options: BenchOptions, table: ParameterTable, seconds: float, every: int = 1
 ) -> Recording:
@@ -58,8 +71,11 @@ def record_in_lock_step(
 
     Raises UserError where the board stops the motors; what was recorded until then is kept.
     """
-    bench = build_bench(options)
-    name = f"bench in lock step {os.getpid()}.{next(_numbers)}"
-    with Device(name, QUIET_S, PATIENCE_S, line=LockStepLine(bench)) as device:
+    with _device(build_bench(options)) as device:
         run_set(device, table)
         return record(device, path, seconds, every, enable=True)
+
+
+def _device(bench: Bench) -> Device:
+    name = f"bench in lock step {os.getpid()}.{next(_numbers)}"
+    return Device(name, QUIET_S, PATIENCE_S, line=LockStepLine(bench))

@@ -19,11 +19,13 @@ from types import FrameType
 
 from greywhale.errors import UserError
 from greywhale.files.outputs import require_files
+from greywhale.joints import ALL
 from greywhale.protocol.ports import forget_dead_benches
 from greywhale.runtime import make_runtime_directory
 from greywhale_sim import commands
 from greywhale_sim.assemble import BenchOptions, build_bench, wiring_of
 from greywhale_sim.bench import Plant
+from greywhale_sim.lockstep import tell_joints
 from greywhale_sim.serial_port import SerialPort
 from greywhale_sim.server import Server
 
@@ -52,6 +54,8 @@ def running(
         raise UserError(f'speed "{options.speed}" is not known; say 1 (real time) or max.', 2)
     require_files(options.eeprom)  # else the first save fails, when the board already runs
     bench = build_bench(options, plant)
+    if bench.joints != ALL and _is_new(options):
+        tell_joints(bench)
     port = SerialPort(_links(options, note))
     server = Server(
         bench, bench.board, wiring_of(options.board), port, fast=options.speed == "max", eeprom=options.eeprom
@@ -60,6 +64,12 @@ def running(
         yield server
     finally:
         server.close()
+
+
+def _is_new(options: ServeOptions) -> bool:
+    """Whether the board comes with the project's firmware and parameters that nobody has set."""
+    kept = options.eeprom is not None and options.eeprom.exists()
+    return not options.blank and options.firmware is None and not kept
 
 
 def serve(

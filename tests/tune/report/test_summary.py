@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 from greywhale.tune.outcome import Outcome
+from greywhale.tune.report.controller_file import save
 from greywhale.tune.report.summary import summary
 from tests.tune.models import evaluation
 
@@ -12,11 +14,11 @@ from tests.tune.models import evaluation
 def test_it_shows_before_and_after_and_the_multiple_of_the_floor(outcome: Outcome) -> None:
     lines = summary(outcome).splitlines()
     assert lines[0].endswith("at 1 ms and 15 V: default, strategy both, seed 3, 10 evaluations.")
-    row = next(line for line in lines if line.startswith("joint 1 (shoulder pitch)"))
-    assert row.split()[4:] == ["1.00e-02", "->", "2.47e-03", "1.23", "0.012", "->", "0.012", "0.050", "->", "0.050"]
+    row = next(line for line in lines if line.startswith("1 shoulder pitch"))
+    assert row.split()[3:] == ["1.0e-02", "->", "2.5e-03", "1.23", "0.012", "->", "0.012", "0.050", "->", "0.050"]
     assert [line.split()[-3:] for line in lines if line.startswith("all joints")] == [["75.3", "%", "lower"]] * 2
     # Where nothing saturates there is no multiple, and joint 3 never rests.
-    assert [line.split()[7] for line in lines if line.startswith("joint 3")] == ["1.23", "-"]
+    assert [line.split()[6] for line in lines if line.startswith("3 wrist roll")] == ["1.23", "-"]
     assert "none -> none" in lines[8]
     assert "WORSE" not in summary(outcome)
     assert "Margins hold on all 2 plants, no joint swings, rattles or chatters: at rest." in lines
@@ -32,9 +34,33 @@ def test_it_shows_before_and_after_and_the_multiple_of_the_floor(outcome: Outcom
 def test_what_is_worse_than_before_says_so(outcome: Outcome) -> None:
     motion = replace(outcome.held_out[0], after=evaluation(0.0103))
     lines = summary(replace(outcome, held_out=(motion,))).splitlines()
-    assert [line.endswith("  WORSE") for line in lines if line.startswith("joint")] == [True] * 4
+    assert [line.endswith(" WORSE") for line in lines if line[:1].isdigit()] == [True] * 4
     assert "all joints" in lines[9]
     assert lines[9].endswith("3.0 % HIGHER")
+
+
+def test_steps_have_overshoot_and_settling_time_and_more_overshoot_than_before_says_so(
+    outcome: Outcome, tmp_path: Path
+) -> None:
+    calm, brisk = (
+        replace(whole, joints=tuple(replace(joint, overshoot_percent=over, settling_s=0.5) for joint in whole.joints))
+        for whole, over in ((evaluation(0.02), 4.0), (evaluation(0.01), 31.4))
+    )
+    never = replace(brisk.joints[2], overshoot_percent=2.0, settling_s=None, unsettled_steps=1)
+    motion = replace(outcome.held_out[0], before=calm, after=replace(brisk, joints=(*brisk.joints[:2], never, never)))
+    worse = replace(outcome, held_out=(motion,))
+    lines = summary(worse).splitlines()
+    table = [line.split() for line in lines if line.startswith(("0 base yaw", "2 wrist pitch"))][2:]
+    assert table == [
+        ["0", "base", "yaw", "4.0", "->", "31.4", "0.50", "->", "0.50"],
+        ["2", "wrist", "pitch", "4.0", "->", "2.0", "0.50", "->", "never"],
+    ]
+    assert max(len(line) for line in lines if line[:1].isdigit()) <= 80
+    said = "MORE OVERSHOOT than before: on steps joint 0 from 4 to 31 %, joint 1 from 4 to 31 %."
+    assert said in lines
+    save(worse, tmp_path / "controller.toml")
+    assert f"# {said}" in (tmp_path / "controller.toml").read_text(encoding="utf-8").splitlines()
+    assert "OVERSHOOT" not in summary(outcome)
 
 
 def test_what_does_not_come_to_rest_is_named(outcome: Outcome) -> None:

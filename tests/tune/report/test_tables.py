@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any, cast
 
-import numpy as np
 import pytest
 
 from greywhale.files.controller import load
@@ -81,6 +81,26 @@ def test_table_11_has_the_three_measures_with_improvement_and_floor() -> None:
     json.dumps(table.as_dict(), allow_nan=False)
 
 
+def test_overshoot_and_settling_time_stand_in_every_table_of_a_motion() -> None:
+    calm, brisk = (
+        replace(whole, joints=tuple(replace(one, overshoot_percent=over, settling_s=0.5) for one in whole.joints))
+        for whole, over in ((evaluation(BEFORE), 4.0), (evaluation(AFTER), 31.4))
+    )
+    for table in (tables.step_performance(calm, brisk), tables.motion_performance("multi-steps", calm, brisk)):
+        assert row(table, "Joint 2", "Overshoot")["After tuning"] == 31.4
+        assert row(table, "Joint 2", "Settling")["Before tuning"] == 0.5
+        assert "MORE OVERSHOOT than before: joint 0 from 4 to 31 %" in table.text()
+    assert "OVERSHOOT" not in tables.step_performance(brisk, calm).text()
+
+
+def test_joints_that_are_not_in_use_have_no_row_and_no_column() -> None:
+    before, after = (replace(evaluation(errors), joints_in_use=(0, 2)) for errors in (BEFORE, AFTER))
+    labels = {one["row"] for one in tables.step_performance(before, after).as_dict()["rows"]}
+    assert labels == {"Joint 0", "Joint 2", "All joints"}
+    sets = tables.fuzzy_sets(controllers("before_tuning"), controllers("table_10"), joints=(0, 2))
+    assert sets.as_dict()["columns"] == ["before", "Joint 0", "Joint 2"]
+
+
 def test_the_papers_tables_11_and_12_add_up_as_printed() -> None:
     for theirs in (tables.PAPER_STEP_MSE, tables.PAPER_MULTI_STEP_MSE):
         for errors in theirs:
@@ -92,13 +112,13 @@ def test_the_papers_tables_11_and_12_add_up_as_printed() -> None:
 
 
 def test_table_12_shows_a_joint_that_got_worse_and_no_floor_where_none_is_known() -> None:
-    table = tables.motion_errors("multi-steps", np.array(BEFORE), np.array(AFTER), paper=True)
-    assert row(table, "All joints")["After tuning"] == pytest.approx(0.026)
-    assert row(table, "Joint 2")["paper after"] == 0.2364
+    table = tables.motion_performance("multi-steps", evaluation(BEFORE), evaluation(AFTER), paper=True)
+    assert row(table, "All joints", "Mean")["After tuning"] == pytest.approx(0.026)
+    assert row(table, "Joint 2", "Mean")["paper after"] == 0.2364
     assert "floor: " not in table.text()
     assert "multi-steps" in table.title
-    perfect = tables.motion_errors("rest", np.zeros(4), np.array(AFTER))
-    assert row(perfect, "Joint 0")["lower by %"] is None
+    perfect = tables.motion_performance("rest", evaluation((0.0,) * 4), evaluation(AFTER))
+    assert row(perfect, "Joint 0", "Mean")["lower by %"] is None
 
 
 def test_columns_are_aligned() -> None:
@@ -111,10 +131,10 @@ def test_columns_are_aligned() -> None:
 @pytest.mark.parametrize(("strategy", "rows"), [("sf", 4), ("both", 12), ("mf", 8)])
 def test_a_tuning_fills_the_table_of_its_strategy_and_one_for_every_motion(strategy: str, rows: int) -> None:
     def held_out(name: str) -> SimpleNamespace:
-        errors = {"mse_before": np.array(BEFORE), "mse_after": np.array(AFTER), "multiples": (1.5,) * 5}
-        return SimpleNamespace(name=name, before=evaluation(BEFORE), after=evaluation(AFTER), **errors)
+        return SimpleNamespace(name=name, before=evaluation(BEFORE), after=evaluation(AFTER), multiples=(1.5,) * 5)
 
     outcome = SimpleNamespace(
+        model=SimpleNamespace(arm=SimpleNamespace(joints_in_use=(0, 1, 2, 3))),
         strategy=strategy,
         before=controllers("before_tuning"),
         after=controllers("table_9"),
@@ -123,6 +143,6 @@ def test_a_tuning_fills_the_table_of_its_strategy_and_one_for_every_motion(strat
     parameters, steps, multi_steps, human = tables.tables_of(cast(Outcome, outcome), paper=True)
     assert len(parameters.as_dict()["rows"]) == rows
     assert row(steps, "All joints", "Mean")["paper after"] == 0.0405
-    assert row(multi_steps, "All joints")["paper after"] == 0.4360
+    assert row(multi_steps, "All joints", "Mean")["paper after"] == 0.4360
     assert "paper after" not in human.as_dict()["columns"]
-    assert row(human, "All joints")["x floor"] == 1.5
+    assert row(human, "All joints", "Mean")["x floor"] == 1.5

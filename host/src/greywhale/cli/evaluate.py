@@ -1,4 +1,4 @@
-"""`greywhale evaluate`: the paper's three measures of a log, and its picture."""
+"""`greywhale evaluate`: the measures of a log, and its picture."""
 
 from __future__ import annotations
 
@@ -15,6 +15,8 @@ from greywhale.formats.whole import refuse_inputs
 from greywhale.joints import named, unused
 from greywhale.measure import Evaluation, evaluate
 
+_WIDTHS = (11, 14, 10, 11, 11, 10)  # of the table's columns behind the first
+
 
 @click.command("evaluate")
 @click.argument("logs", metavar="LOG...", nargs=-1, required=True, type=click.Path(path_type=Path))
@@ -28,7 +30,9 @@ def command(logs: tuple[Path, ...], picture: Path | None, overwrite: bool, as_js
 
     Per joint: the mean squared error (the total is the sum over the joints), the steady-state error (mean of the
     absolute error while the leader has rested for half a second), and the time delay (the lag at which the follower
-    resembles the leader most; for steps out of a rest also the time between both onsets, as the paper measures it).
+    resembles the leader most). For steps out of a rest also the time between both onsets, as the paper measures it, the
+    overshoot (how far the follower gets beyond the leader's new place, in % of the step), and the settling time (until
+    it stays within 5 % of the step, or 0.02 rad, of that place); of several steps, the worst.
     Several logs are measured one by one and drawn into one picture. A log that is not as it was recorded, or has gaps,
     is measured too, with a warning.
     """
@@ -80,13 +84,16 @@ def _text(log: Log, evaluation: Evaluation) -> str:
         notes.append("the motors never followed; the whole log is measured")
     lines = [
         f"{log.name}: {', '.join(notes)}",
-        "          MSE [rad²]   steady-state error [rad]   delay [s]   onset delay [s]",
+        _row("", "MSE", "steady-state", "delay", "onset", "overshoot", "settling"),
+        _row("", "[rad²]", "error [rad]", "[s]", "delay [s]", "[%]", "[s]"),
     ]
     for number in evaluation.joints_in_use:
         joint = evaluation.joints[number]
-        steady, delay, onset = map(_number, (joint.steady_state_error, joint.delay_s, joint.onset_delay_s))
-        lines.append(f"joint {number}   {joint.mse:10.6f}   {steady:>24}   {delay:>9}   {onset:>15}")
-    lines.append(f"total     {evaluation.total_mse:10.6f}")
+        errors = f"{joint.mse:.6f}", _number(joint.steady_state_error)
+        delays = _number(joint.delay_s), _number(joint.onset_delay_s)
+        steps = _number(joint.overshoot_percent, ".1f"), joint.settling(".3f") or "n/a"
+        lines.append(_row(f"joint {number}", *errors, *delays, *steps))
+    lines.append(_row("total", f"{evaluation.total_mse:.6f}"))
     idle = unused(evaluation.joints_in_use)
     if idle:
         lines.append(f"{named(idle).capitalize()} {'is' if len(idle) == 1 else 'are'} not in use.")
@@ -104,5 +111,10 @@ def _covered(evaluation: Evaluation) -> str:
     return measured if measured == span else f"{measured} of the log's {span}"
 
 
-def _number(value: float | None) -> str:
-    return "n/a" if value is None else f"{value:.4f}"
+def _row(name: str, *cells: str) -> str:
+    """A line of the table, within 80 columns."""
+    return f"{name:7}" + "".join(f"{cell:>{width}}" for cell, width in zip(cells, _WIDTHS, strict=False))
+
+
+def _number(value: float | None, form: str = ".4f") -> str:
+    return "n/a" if value is None else f"{value:{form}}"

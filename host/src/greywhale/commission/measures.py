@@ -5,6 +5,8 @@
 - rattle: rms of the follower between 6 and 40 Hz beyond the leader's own, rad, while a hand leads.
 - chatter: swings of the voltage by more than a third of the supply, 1/s.
 - voltage: mean of |u|, V.
+- overshoot and settling: of the part "moves", by `greywhale.measure.steps`, % and s; no settling where a step never
+  settled.
 """
 
 from __future__ import annotations
@@ -21,7 +23,9 @@ from greywhale.commission.motions import PARTS, Check
 from greywhale.files.log import Log
 from greywhale.firmware import JOINTS, TICK_S
 from greywhale.loop.closed_loop import count_swings
+from greywhale.measure import Settings
 from greywhale.measure.runs import resting
+from greywhale.measure.steps import answer, departures, worst
 from greywhale.tune.search.rattle import CHATTER_SHARE
 
 Floats = npt.NDArray[np.float64]
@@ -33,8 +37,9 @@ SHORTEST_REST_S = 0.3
 RATTLE_HZ = (6.0, 40.0)
 LATEST_BEGIN_S = 8.0  # from the first row of a log to the check: the way to its first pose
 HOLDING = "holding still"
+STEPS = "moves"
 HAND_LED = ("reaches", "slow motion")  # parts in which rattling is measured; the others have edges that no hand makes
-NAMES = ("error", "unrest", "rattle", "chatter", "voltage")
+NAMES = ("error", "unrest", "rattle", "chatter", "voltage", "overshoot", "settling")
 
 
 @dataclass(frozen=True)
@@ -60,6 +65,8 @@ class Measures:
     rattle: Floats
     chatter: Floats
     voltage: Floats
+    overshoot: Floats
+    settling: Floats
 
     @property
     def whole(self) -> bool:
@@ -101,6 +108,8 @@ def measure(traces: Traces, check: Check, supply_v: float) -> Measures:
             found["error"][place] = still_error(leader, follower)
         found["voltage"][place] = np.mean(np.abs(voltage), axis=0)
         found["chatter"][place] = chatter(voltage, supply_v)
+        if name == STEPS:
+            found["overshoot"][place], found["settling"][place] = step_answers(leader, follower)
         if name in HAND_LED:
             found["rattle"][place] = rattle(leader, follower)
         else:
@@ -140,6 +149,17 @@ def rattle(leader: Floats, follower: Floats) -> Floats:
     powers = [np.mean(sosfiltfilt(band, angles, axis=0) ** 2, axis=0) for angles in (follower, leader)]
     beyond: Floats = np.sqrt(np.maximum(powers[0] - powers[1], 0.0))
     return beyond
+
+
+def step_answers(leader: Floats, follower: Floats) -> tuple[Floats, Floats]:
+    """The largest overshoot (%) and the longest settling time (s) of each joint's steps, (4,) each."""
+    settings, found = Settings(), np.full((2, JOINTS), np.nan)
+    for joint, (led, followed) in enumerate(zip(leader.T, follower.T, strict=True)):
+        rest = resting(led, round(settings.rest_s / TICK_S), settings.rest_band)
+        steps = departures(led, rest, TICK_S, settings)
+        answers = [answer(led, followed, rest, step, TICK_S, settings) for step in steps]
+        found[:, joint] = [np.nan if one is None else one for one in worst([one for one in answers if one is not None])]
+    return found[0], found[1]
 
 
 def chatter(voltage: Floats, supply_v: float) -> Floats:

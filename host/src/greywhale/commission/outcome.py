@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.commission.learn import Learnt
 from greywhale.commission.measures import Measures, measure
@@ -96,6 +98,10 @@ class Outcome:
         lines += [_row("", [f"joint {joint}" for joint in joints]), _row("", [JOINT_NAMES[joint] for joint in joints])]
         for name, was, now in pairs:
             lines.append(_row(name, [f"{1e3 * was[joint]:.1f} -> {1e3 * now[joint]:.1f}" for joint in joints]))
+        lines += ["", "In the moves: overshoot (% of the step), and settling time to within 5 % (s).", ""]
+        for name, form in (("overshoot", ".0f"), ("settling", ".2f")):
+            was, now = before.worst(name), after.worst(name)
+            lines.append(_row(name, [f"{_cell(was[joint], form)} -> {_cell(now[joint], form)}" for joint in joints]))
         notes = [
             f"Joint {joint} ({JOINT_NAMES[joint]}): {fault}. No quieter controller follows as well."
             for joint in joints
@@ -107,6 +113,10 @@ class Outcome:
 def _row(name: str, cells: Sequence[str]) -> str:
     """A line of the table, within 80 columns."""
     return f"{name:14}" + "".join(f"{cell:>16}" for cell in cells)
+
+
+def _cell(value: float, form: str) -> str:
+    return "-" if np.isnan(value) else f"{value:{form}}"
 
 
 def _count(number: int, what: str) -> str:

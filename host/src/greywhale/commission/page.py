@@ -23,6 +23,8 @@ MEASURES: tuple[Measure, ...] = (
     ("rattle", "rattle in motion", "mrad rms", 1e3, ".1f"),
     ("chatter", "chatter", "1/s", 1.0, ".0f"),
     ("voltage", "voltage, most", "V", 1.0, ".2f"),
+    ("overshoot", "overshoot of moves", "%", 1.0, ".0f"),
+    ("settling", "settling time of moves", "s", 1.0, ".2f"),
 )
 NOTHING = {"predicted": "-", "measured": "-"}
 

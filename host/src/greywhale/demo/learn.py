@@ -77,10 +77,13 @@ def draw(learnt: Learnt, folder: Path) -> tuple[Path, ...]:
     from greywhale.tune.report.pictures import cost_words, draw_convergence, draw_sets
 
     tuning = learnt.tuning
+    joints = tuning.model.arm.joints_in_use
     curves = [(np.array(one.evaluations), np.array(one.cost)) for one in tuning.curves]
     return (
-        draw_sets(folder / "sets.png", tuning.before, tuning.after),
-        draw_convergence(folder / "convergence.png", curves, "Convergence of the tuning", cost_words(tuning.method)),
+        draw_sets(folder / "sets.png", tuning.before, tuning.after, joints),
+        draw_convergence(
+            folder / "convergence.png", curves, "Convergence of the tuning", cost_words(tuning.method), joints
+        ),
     )
 
 

@@ -54,9 +54,10 @@ def practise(
         return lambda what, fraction: report(f"{name}: {what}", fraction)
 
     rest, motion = folder / REST_FILE, folder / "practice_leader.csv"
-    save_leader(rest, Trajectory(np.array([0.0, 1.0]), np.array([POSE, POSE])))
+    pose = np.array([angle if joint in nominal.joints_in_use else 0.0 for joint, angle in enumerate(POSE)])
+    save_leader(rest, Trajectory(np.array([0.0, 1.0]), np.array([pose, pose])))
     untuned = tables(base)[0]
-    designed = design(nominal, POSE, table=untuned, seconds=seconds, budget=DESIGN_BUDGET, report=named("practice"))
+    designed = design(nominal, pose, table=untuned, seconds=seconds, budget=DESIGN_BUDGET, report=named("practice"))
     save_leader(motion, designed.motion)
     path = folder / "practice.csv"
     logs = [record_excitation(bench, rest, designed.motion, path, paper_table(UNTUNED), named("practice")).log()]

@@ -9,18 +9,21 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
 from greywhale.board.device import Device
 from greywhale.board.record import Recording, record, record_led
 from greywhale.board.stream import stream
-from greywhale.board.upload import upload_controller
+from greywhale.board.upload import read_parameters, upload_controller
 from greywhale.demo.bench import BenchProcess
 from greywhale.errors import UserError
 from greywhale.files.leader import load_leader
 from greywhale.files.log import Log, read_evidence
+from greywhale.joints import Joints
 from greywhale.protocol import schema
 from greywhale.trajectory import Trajectory
 
+Floats = npt.NDArray[np.float64]
 Progress = Callable[[str, float], None]
 
 SETTLE_S = 1.0  # recorded after the leader's last movement
@@ -92,23 +95,38 @@ def _recorded(
         if controller is not None:
             upload_controller(device, controller, progress)
         uploaded = time.monotonic()
-        _wait_for_the_arms(device, load_leader(leader))
-        crc = device.greet().param_crc
+        running = read_parameters(device)
+        _wait_for_the_arms(bench, device, leader, running.joints_in_use)
         recording = play(device)
-    return Recorded(recording.path, crc, recording.rows, recording.dropped, uploaded - started)
+    return Recorded(recording.path, running.crc, recording.rows, recording.dropped, uploaded - started)
 
 
-def _wait_for_the_arms(device: Device, motion: Trajectory) -> None:
-    """Wait until the person at the bench has brought both arms to the start of the motion."""
-    scale = schema.Sample.LSB["leader"]
-    home = motion.angles[0]
+def _wait_for_the_arms(bench: BenchProcess, device: Device, leader: Path, joints: Joints) -> None:
+    """Wait until the person at the bench has brought both arms to the start of the motion, in the joints in use."""
+    scale, used = schema.Sample.LSB["leader"], list(joints)
+    home = load_leader(leader).angles[0]
     for one in stream(device, 10):
         arms = np.array([one.sample.leader, one.sample.follower]) * scale
-        if np.abs(arms - home).max() < READY_RAD:
+        if np.abs(arms - home)[:, used].max() < READY_RAD:
             device.telemetry(0)
             return
         if one.elapsed > READY_WAIT_S * 1000:
-            raise UserError(
-                f"the arms are up to {np.abs(arms - home).max():.2f} rad away from the start of the motion "
-                f"{READY_WAIT_S:g} s after the motors went off; this is a fault of the bench, please report it."
+            raise _not_there(bench, leader, joints, arms)
+
+
+def _not_there(bench: BenchProcess, leader: Path, joints: Joints, seen: Floats) -> UserError:
+    """What keeps the arms from the start of the motion, or the board from seeing them there; `seen` is (2, 4) rad."""
+    home, truth = load_leader(leader).angles[0], bench.command("status")
+    for joint in joints:
+        if abs(truth["follower"][joint] - home[joint]) > READY_RAD:
+            return UserError(
+                f"{leader}: the motion begins with joint {joint} at {home[joint]:.2f} rad, but the follower's stops "
+                f"let it get only to {truth['follower'][joint]:.2f} rad; begin between its stops."
             )
+    worst = max(joints, key=lambda joint: float(np.abs(seen[:, joint] - home[joint]).max()))
+    leads, follows = seen[:, worst]
+    return UserError(
+        f"joint {worst} of both arms stands at {home[worst]:.2f} rad, but the board reads {leads:.2f} rad at the "
+        f"leader and {follows:.2f} rad at the follower: it does not know these potentiometers. Leave [leader_pots] and "
+        "[follower_pots] out of the arm file; without --arm it is a fault of the bench, please report it."
+    )

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.demo.learn import Learnt
 from greywhale.demo.recorder import Recorded
-from greywhale.measure import Evaluation, JointMeasures
+from greywhale.measure import Evaluation, JointMeasures, more_overshoot
 
-Measure = tuple[str, str, int]  # heading, attribute of JointMeasures, decimals
+Measure = tuple[str, Callable[[JointMeasures], str]]  # heading, and a joint's cell
 MEASURES: tuple[Measure, ...] = (
-    ("MSE [rad²]", "mse", 6),
-    ("steady-state error [rad]", "steady_state_error", 4),
-    ("time delay [s]", "delay_s", 3),
+    ("MSE [rad²]", lambda joint: f"{joint.mse:.6f}"),
+    ("steady-state error [rad]", lambda joint: _cell(joint.steady_state_error, ".4f")),
+    ("time delay [s]", lambda joint: _cell(joint.delay_s, ".3f")),
+    ("overshoot [%]", lambda joint: _cell(joint.overshoot_percent, ".1f")),
+    ("settling time [s]", lambda joint: joint.settling(".2f") or "-"),
 )
 
 
@@ -76,6 +79,8 @@ class DemoResult:
         if self.learnt is not None:
             parts.append(self._story(self.learnt))
         parts += [self._table(*measure) for measure in MEASURES]
+        if more := more_overshoot(self.runs[0].measures, self.runs[-1].measures):
+            parts.append(f"MORE OVERSHOOT than before: {more}.")
         files = ", ".join(str(run.recorded.path) for run in self.runs)
         parts.append(f"Pictures: {', '.join(map(str, self.pictures))}\nLogs: {files}")
         return "\n\n".join(parts)
@@ -93,18 +98,17 @@ class DemoResult:
         ]
         return "\n".join(lines)
 
-    def _table(self, heading: str, attribute: str, decimals: int) -> str:
+    def _table(self, heading: str, cell_of: Callable[[JointMeasures], str]) -> str:
         width = max(14, *(len(run.name) + 2 for run in self.runs))
         lines = [f"{heading:<26}" + "".join(f"{run.name:>{width}}" for run in self.runs)]
-        for joint, name in enumerate(JOINT_NAMES):
-            cells = (_cell(run.measures.joints[joint], attribute, decimals) for run in self.runs)
-            lines.append(f"  {joint} {name:<22}" + "".join(f"{cell:>{width}}" for cell in cells))
-        if attribute == "mse":
-            totals = (f"{run.measures.total_mse:.{decimals}f}" for run in self.runs)
+        for joint in self.runs[0].measures.joints_in_use:
+            cells = (cell_of(run.measures.joints[joint]) for run in self.runs)
+            lines.append(f"  {joint} {JOINT_NAMES[joint]:<22}" + "".join(f"{cell:>{width}}" for cell in cells))
+        if heading == MEASURES[0][0]:
+            totals = (f"{run.measures.total_mse:.6f}" for run in self.runs)
             lines.append(f"  {'all joints':<24}" + "".join(f"{cell:>{width}}" for cell in totals))
         return "\n".join(lines)
 
 
-def _cell(measures: JointMeasures, attribute: str, decimals: int) -> str:
-    value: float | None = getattr(measures, attribute)
-    return "-" if value is None else f"{value:.{decimals}f}"
+def _cell(value: float | None, form: str) -> str:
+    return "-" if value is None else f"{value:{form}}"

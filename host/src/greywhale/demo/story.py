@@ -108,7 +108,7 @@ class _Stage:
         self._options = options
         self._arm = arm
         self._report = report
-        self._base = self._set_supply()
+        self._base = self._tell_board()
 
     def follow(self, leader: Path, file: str, name: str, controller: Path | None = None) -> Run:
         """Record the motion that is shown once; without a controller, with those that the board has."""
@@ -150,13 +150,14 @@ class _Stage:
 
         return record_motion(self._bench, leader, self._options.out / f"{file}.csv", controller, told)
 
-    def _set_supply(self) -> ParameterTable:
-        """Tell the board the arm's supply, as a person would; return the parameters that it then has."""
+    def _tell_board(self) -> ParameterTable:
+        """Tell the board the arm's supply and joints, as a person would; return the parameters that it then has."""
         defaults = ParameterTable.defaults(Board.NANO328 if self._options.board == "nano" else Board.MEGA2560)
         table = defaults.with_raw({"supply_mv": round(1000 * self._arm.drive.supply)})
+        table = table.with_joints(self._arm.joints_in_use)
         if table != defaults:
             with Device(self._bench.port) as device:
-                change_parameters(device, {"supply_mv": table["supply_mv"]})
+                change_parameters(device, table.changes())
         return table
 
 

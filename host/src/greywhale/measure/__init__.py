@@ -1,5 +1,7 @@
-"""How well the follower followed: the paper's three measures, per joint and in total."""
+"""How well the follower followed: the paper's measures, overshoot and settling time, per joint and in total."""
 
-from greywhale.measure.evaluate import Evaluation, JointMeasures, Settings, evaluate
+from greywhale.measure.compare import more_overshoot
+from greywhale.measure.evaluate import Evaluation, JointMeasures, evaluate
+from greywhale.measure.settings import Settings
 
-__all__ = ["Evaluation", "JointMeasures", "Settings", "evaluate"]
+__all__ = ["Evaluation", "JointMeasures", "Settings", "evaluate", "more_overshoot"]

@@ -2,7 +2,7 @@
 
 `correlation_delay` slides the follower over the leader and takes the lag of highest correlation, refined between
 samples by a parabola through the peak. At every lag the mean and scale of exactly the overlapping samples are removed.
-So a constant error, a gain, or a window that cuts a motion in half does not move the peak. `onset_delays` is the
+So a constant error, a gain, or a window that cuts a motion in half does not move the peak. `onset_delay` is the
 paper's definition.
 """
 
@@ -11,6 +11,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
+
+from greywhale.measure.steps import Departure
 
 Floats = NDArray[np.float64]
 
@@ -87,41 +89,18 @@ def _products(a: Floats, b: Floats, first: int, last: int) -> Floats:
     return sums
 
 
-def onset_delays(
-    leader: Floats,
-    follower: Floats,
-    period: float,
-    rest: NDArray[np.bool_],
-    rest_samples: int,
-    band: float,
-    step: float,
-    step_samples: int,
-) -> list[float]:
-    """The paper's time delay for every step the leader makes out of a rest, in s.
+def onset_delay(leader: Floats, follower: Floats, step: Departure, rest_samples: int, band: float) -> float | None:
+    """The paper's time delay of a step that the leader makes out of a rest, in samples; None where nothing answers.
 
     An onset is the first time an angle is further than `band` from where it rested, in the direction of the step; it
-    lies between two samples, and is interpolated. A departure counts as a step when the leader gets further than
-    `step` within `step_samples`. The follower's onset is looked for until the leader's next rest has ended.
+    lies between two samples, and is interpolated. The follower's onset is looked for until the leader's next rest has
+    ended.
     """
-    delays = []
-    ends = np.flatnonzero(rest[:-1] & ~rest[1:])
-    for index, end in enumerate(ends):
-        limit = int(ends[index + 1]) + 1 if index + 1 < len(ends) else len(leader)
-        # The follower may still be settling when the leader leaves, so its place of rest is its last place.
-        moved = leader[end:limit] - np.median(leader[end - rest_samples : end + 1])
-        answered = follower[end:limit] - np.median(follower[end - rest_samples // 10 : end + 1])
-        away = np.flatnonzero(np.abs(moved) > band)
-        if not away.size:
-            continue
-        sign = np.sign(moved[away[0]])
-        reached = sign * moved[away[0] : away[0] + step_samples]
-        if reached.max() < step:
-            continue
-        command = _crossing(sign * moved, band)
-        answer = _crossing(sign * answered, band)
-        if command is not None and answer is not None:
-            delays.append((answer - command) * period)
-    return delays
+    # The follower may still be settling when the leader leaves, so its place of rest is its last place.
+    moved = leader[step.end : step.limit] - step.begin
+    answered = follower[step.end : step.limit] - np.median(follower[step.end - rest_samples // 10 : step.end + 1])
+    command, answer = (_crossing(step.side * angles, band) for angles in (moved, answered))
+    return None if command is None or answer is None else answer - command
 
 
 def _crossing(value: Floats, level: float) -> float | None:

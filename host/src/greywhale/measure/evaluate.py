@@ -1,4 +1,4 @@
-"""The paper's three measures of a log (section 5.1), made exact.
+"""The paper's three measures of a log (section 5.1), made exact, and overshoot and settling time of steps.
 
 - Input tracking: mean of (leader - follower)^2 over the measured samples; the total is the sum over the joints, as in
   equation 5 and table 11.
@@ -8,6 +8,7 @@
 - Time delay: two definitions, see `delay.py`. `delay_s` is the lag at which the follower resembles the leader most,
   defined for any motion; `onset_delay_s` is the paper's, "the difference between the times that the leader gives a
   position command and the follower begins to respond", and exists only where the leader steps out of a rest.
+- Overshoot and settling time of such steps: see `steps.py`. Of several steps, the worst counts.
 
 Measured samples are those in state `following`; a log without any (motors off) is measured whole, and says so.
 Samples that the link dropped are absent, not filled in: the means run over what was received. Steady state and delays
@@ -25,30 +26,21 @@ from threadpoolctl import threadpool_limits
 from greywhale.errors import UserError
 from greywhale.files.log import Log
 from greywhale.joints import ALL, Joints
-from greywhale.measure.delay import correlation_delay, onset_delays
+from greywhale.measure.delay import correlation_delay, onset_delay
+from greywhale.measure.following import follows
 from greywhale.measure.runs import Run, gap_free_runs, resting
+from greywhale.measure.settings import Settings
+from greywhale.measure.steps import Answer, answer, departures, worst
 
 Floats = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Settings:
-    """Thresholds of the measures; angles in rad, times in s."""
-
-    rest_s: float = 0.5
-    rest_band: float = 0.02
-    onset_band: float = 0.05
-    step_size: float = 0.15
-    step_s: float = 0.5
-    longest_delay_s: float = 1.0
 
 
 @dataclass(frozen=True)
 class JointMeasures:
     """rad^2, rad, s, s; None where the motion does not define the measure.
 
-    A joint does not follow at all (`follows` False) where its leader moved, and the follower was further from it than a
-    follower that had stood still in the middle.
+    `follows` is False where the follower does not follow at all: see `following.py`. Overshoot and settling time are
+    the largest of all steps; the latter is None also where one of them, counted in `unsettled_steps`, never settled.
     """
 
     mse: float
@@ -57,6 +49,15 @@ class JointMeasures:
     onset_delay_s: float | None
     steps: int
     follows: bool = True
+    overshoot_percent: float | None = None
+    settling_s: float | None = None
+    unsettled_steps: int = 0
+
+    def settling(self, form: str) -> str | None:
+        """The settling time as a person reads it; "never" where a step did not settle, None without steps."""
+        if self.unsettled_steps:
+            return "never"
+        return None if self.settling_s is None else f"{self.settling_s:{form}}"
 
 
 @dataclass(frozen=True)
@@ -85,7 +86,10 @@ class Evaluation:
                     "steady_state_error_rad": joint.steady_state_error,
                     "time_delay_s": joint.delay_s,
                     "onset_delay_s": joint.onset_delay_s,
+                    "overshoot_percent": joint.overshoot_percent,
+                    "settling_s": joint.settling_s,
                     "steps": joint.steps,
+                    "unsettled_steps": joint.unsettled_steps,
                     "follows": joint.follows,
                     "leader_rested_s": rested,
                 }
@@ -134,31 +138,29 @@ def _joint(
     error = leader - follower
     at_rest = np.zeros(len(leader), dtype=bool)
     onsets: list[float] = []
+    answers: list[Answer] = []
     for run in runs:
-        rest = resting(leader[run.slice], run.samples(settings.rest_s), settings.rest_band)
+        led, followed, window = leader[run.slice], follower[run.slice], run.samples(settings.rest_s)
+        rest = resting(led, window, settings.rest_band)
         at_rest[run.slice] = rest
-        onsets += onset_delays(
-            leader[run.slice],
-            follower[run.slice],
-            run.period,
-            rest,
-            run.samples(settings.rest_s),
-            settings.onset_band,
-            settings.step_size,
-            run.samples(settings.step_s),
-        )
-    mse = float(np.mean(error[measured] ** 2))
-    led = leader[measured]
+        for step in departures(led, rest, run.period, settings):
+            onset = onset_delay(led, followed, step, window, settings.onset_band)
+            onsets += [] if onset is None else [onset * run.period]
+            found = answer(led, followed, rest, step, run.period, settings)
+            answers += [] if found is None else [found]
     longest = max(runs, key=lambda run: run.stop - run.start)
+    overshoot, settling = worst(answers)
     measures = JointMeasures(
-        mse=mse,
+        mse=float(np.mean(error[measured] ** 2)),
         steady_state_error=float(np.mean(np.abs(error[at_rest]))) if at_rest.any() else None,
         delay_s=correlation_delay(
             leader[longest.slice], follower[longest.slice], longest.period, settings.longest_delay_s
         ),
         onset_delay_s=float(np.mean(onsets)) if onsets else None,
         steps=len(onsets),
-        follows=bool(np.ptp(led) < settings.onset_band or mse < np.var(led)),
+        follows=follows(leader[measured], follower[measured], longest.period),
+        overshoot_percent=overshoot,
+        settling_s=settling,
+        unsettled_steps=sum(one.settling_s is None for one in answers),
     )
-    period = longest.period
-    return measures, float(np.count_nonzero(at_rest) * period)
+    return measures, float(np.count_nonzero(at_rest) * longest.period)

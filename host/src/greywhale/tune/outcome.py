@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from greywhale.table import ParameterTable
+from greywhale.protocol.schema import PARAMETER_BY_NAME
+from greywhale.table import CONTROLLER_COLUMNS, ParameterTable, physical
 from greywhale.tune.judge.held_out import HeldOut
 from greywhale.tune.judge.margins import Margin
 from greywhale.tune.model import Model
@@ -79,7 +80,7 @@ class Outcome:
         return all(margin.holds for margin in self.margins)
 
     def as_dict(self) -> dict[str, Any]:
-        """A dictionary for JSON; the controllers' numbers are raw, as in the parameter table."""
+        """A dictionary for JSON; the controllers' numbers are as `greywhale params get` shows them."""
         return {
             "model": self.model.name,
             "strategy": self.strategy,
@@ -90,8 +91,8 @@ class Outcome:
             "complete": self.complete,
             "period_ms": self.period_ms,
             "supply_v": self.supply_v,
-            "before": self.before.tolist(),
-            "after": self.after.tolist(),
+            "before": self._named(self.before),
+            "after": self._named(self.after),
             "cost_before": list(self.cost_before),
             "cost_after": list(self.cost_after),
             "margins_before": [margin.as_dict() for margin in self.margins_before],
@@ -101,3 +102,9 @@ class Outcome:
             "stall": None if self.model.stall is None else self.model.stall.as_dict(),
             "notes": list(self.notes),
         }
+
+    def _named(self, controllers: Controllers) -> dict[str, float]:
+        """The controllers of the joints in use by their parameters' names, in their units."""
+        table = self.table.with_controllers(controllers)
+        names = [f"joint{joint}.{key}" for joint in self.model.arm.joints_in_use for key in CONTROLLER_COLUMNS]
+        return {name: physical(PARAMETER_BY_NAME[name], table[name]) for name in names}

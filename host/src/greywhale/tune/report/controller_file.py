@@ -14,7 +14,7 @@ from greywhale.files import controller
 from greywhale.tune.judge.held_out import HeldOut
 from greywhale.tune.judge.margins import Margin
 from greywhale.tune.outcome import Outcome
-from greywhale.tune.report.summary import failing_margins
+from greywhale.tune.report.summary import failing_margins, overshooting
 
 DIGITS = 4  # significant digits of expected values
 
@@ -80,7 +80,8 @@ def _header(outcome: Outcome) -> list[str]:
     if outcome.model.stall is not None:
         lines.append(f"For the board's {outcome.model.stall.sentence}")
     lines += [f"Expected on {one.name}, all joints: {_change(one)}." for one in outcome.held_out]
-    return [*lines, *failing_margins(outcome), *(f"Doubt: {doubt}" for doubt in outcome.model.doubts)]
+    lines += [*overshooting(outcome), *failing_margins(outcome)]
+    return [*lines, *(f"Doubt: {doubt}" for doubt in outcome.model.doubts)]
 
 
 def _note(outcome: Outcome, joint: int) -> str:
@@ -110,6 +111,8 @@ def _expected(one: HeldOut) -> dict[str, Any]:
             f"steady_state_error_{when}_rad": [joint.steady_state_error for joint in evaluation.joints],
             f"time_delay_{when}_s": [joint.delay_s for joint in evaluation.joints],
             f"onset_delay_{when}_s": [joint.onset_delay_s for joint in evaluation.joints],
+            f"overshoot_{when}_percent": [joint.overshoot_percent for joint in evaluation.joints],
+            f"settling_{when}_s": [joint.settling_s for joint in evaluation.joints],
         }
         for key, values in columns.items():
             known = [value for value in values if value is not None]

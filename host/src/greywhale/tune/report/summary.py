@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from greywhale.arm.parameters import JOINT_NAMES
+from greywhale.measure import more_overshoot
 from greywhale.tune.judge.held_out import HeldOut
 from greywhale.tune.judge.margins import GAINS, Margin
 from greywhale.tune.outcome import Outcome
@@ -23,6 +24,8 @@ def summary(outcome: Outcome) -> str:
         lines += ["", "Expected on motions that were not trained on, before -> after:"]
     for one in outcome.held_out:
         lines += ["", *_motion(one)]
+    if more := overshooting(outcome):
+        lines += ["", *more]
     if outcome.margins:
         lines += ["", *_margins(outcome)]
     notes = list(outcome.notes)
@@ -37,22 +40,38 @@ def summary(outcome: Outcome) -> str:
 
 def _motion(one: HeldOut) -> list[str]:
     """A line for each joint: the paper's three measures, and the error as a multiple of the least possible."""
-    lines = [f"{one.name:24} {'MSE [rad²]':>22} {'x floor':>8} {'steady state [rad]':>20} {'delay [s]':>16}"]
+    lines = [f"{one.name:18} {'MSE [rad²]':>17} {'x floor':>7} {'at rest [rad]':>14} {'delay [s]':>14}"]
     for joint in one.before.joints_in_use:
         before, after = one.before.joints[joint], one.after.joints[joint]
-        worse = "  WORSE" if after.mse > WORSE * before.mse else ""
+        worse = " WORSE" if after.mse > WORSE * before.mse else ""
         lines.append(
-            f"{f'joint {joint} ({JOINT_NAMES[joint]})':24} {_pair(before.mse, after.mse, '.2e'):>22} "
-            f"{_multiple(one, joint):>8} {_pair(before.steady_state_error, after.steady_state_error, '.3f'):>20} "
-            f"{_pair(before.delay_s, after.delay_s, '.3f'):>16}{worse}"
+            f"{_joint(joint):17} {_pair(before.mse, after.mse, '.1e'):>18} {_multiple(one, joint):>7} "
+            f"{_pair(before.steady_state_error, after.steady_state_error, '.3f'):>14} "
+            f"{_pair(before.delay_s, after.delay_s, '.3f'):>14}{worse}"
         )
     before_sum, after_sum = float(one.mse_before.sum()), float(one.mse_after.sum())
     change = 100.0 * (after_sum / before_sum - 1.0)
     lines.append(
-        f"{'all joints':24} {_pair(before_sum, after_sum, '.2e'):>22} {_multiple(one, -1):>8} "
+        f"{'all joints':17} {_pair(before_sum, after_sum, '.1e'):>18} {_multiple(one, -1):>7} "
         f"  {abs(change):.1f} % {'lower' if change <= 0.0 else 'HIGHER'}"
     )
-    return lines
+    return [*lines, *_steps(one)]
+
+
+def _steps(one: HeldOut) -> list[str]:
+    """A line for each joint that steps: overshoot and settling time."""
+    pairs = [(joint, one.before.joints[joint], one.after.joints[joint]) for joint in one.before.joints_in_use]
+    lines = [
+        f"{_joint(joint):17} {_pair(before.overshoot_percent, after.overshoot_percent, '.1f'):>18} "
+        f"{before.settling('.2f') or 'none':>14} -> {after.settling('.2f') or 'none'}"
+        for joint, before, after in pairs
+        if before.overshoot_percent is not None
+    ]
+    return [f"{'':17} {'overshoot [%]':>18} {'settling time [s]':>22}", *lines] if lines else []
+
+
+def _joint(joint: int) -> str:
+    return f"{joint} {JOINT_NAMES[joint]}"
 
 
 def _pair(before: float | None, after: float | None, form: str) -> str:
@@ -73,6 +92,13 @@ def _margins(outcome: Outcome) -> list[str]:
     arms = f"on all {plants} plants" if plants > 1 else "on the model itself"
     scenarios = ", ".join(dict.fromkeys(margin.scenario for margin in outcome.margins))
     return [f"Margins hold {arms}, no joint swings, rattles or chatters: {scenarios}."]
+
+
+def overshooting(outcome: Outcome) -> list[str]:
+    """A sentence for the joints that overshoot more than before the tuning, if there are any."""
+    found = [(one.name, more_overshoot(one.before, one.after)) for one in outcome.held_out]
+    said = "; ".join(f"on {name} {more}" for name, more in found if more)
+    return [f"MORE OVERSHOOT than before: {said}."] if said else []
 
 
 def failing_margins(outcome: Outcome) -> list[str]:

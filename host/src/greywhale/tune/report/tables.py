@@ -17,18 +17,18 @@ from greywhale.files.controller import load
 from greywhale.files.paper_tables import paper_table
 from greywhale.firmware import JOINTS
 from greywhale.fuzzy.settings import GAIN_UNIT, SET_UNIT
+from greywhale.joints import ALL, Joints
 from greywhale.loop import CONTROLLER_COLUMNS, controller_row
-from greywhale.measure import Evaluation
+from greywhale.measure import Evaluation, more_overshoot
 
 if TYPE_CHECKING:
     from greywhale.tune.outcome import Outcome
 
-Floats = npt.NDArray[np.float64]
 Controllers = npt.NDArray[np.int32]
 Numbers = Sequence[float | None]
 
-_JOINT_COLUMNS = tuple(f"Joint {joint}" for joint in range(JOINTS))
-_ALL = (*_JOINT_COLUMNS, "All joints")
+_LABELS = (*(f"Joint {joint}" for joint in ALL), "All joints")
+_SUM = JOINTS  # the place of all joints' sum behind theirs
 
 # The paper's names in its order, with our columns and how many raw steps make up 1.
 FACTORS = {"K_p": ("kp", GAIN_UNIT), "K_d": ("kd", GAIN_UNIT), "K_i": ("ki", GAIN_UNIT), "K_u": ("ku_mv", 1000)}
@@ -46,12 +46,19 @@ PAPER_STEP_MSE = ((0.0324, 0.0808, 0.0235, 0.0492, 0.1858), (0.0034, 0.0106, 0.0
 PAPER_STEADY_STATE = ((0.14, 0.31, 0.15, 0.12), (0.02, 0.01, 0.03, 0.01))
 PAPER_DELAY = ((0.20, 0.25, 0.25, 0.30), (0.10, 0.10, 0.15, 0.10))
 PAPER_MULTI_STEP_MSE = ((0.1021, 0.1040, 0.0384, 0.2974, 0.5420), (0.0250, 0.0974, 0.2364, 0.0772, 0.4360))
-# Heading, name in JointMeasures, and the paper's figures.
-_MEASURES: tuple[tuple[str, str, tuple[Numbers, Numbers] | None], ...] = (
-    ("Steady-state error (rad)", "steady_state_error", PAPER_STEADY_STATE),
-    ("Time delay, onset (s)", "onset_delay_s", PAPER_DELAY),
-    ("Time delay, correlation (s)", "delay_s", None),
+# Heading, name in JointMeasures, form, and the paper's figures.
+_Measure = tuple[str, str, str, tuple[Numbers, Numbers] | None]
+_STEPS: tuple[_Measure, ...] = (
+    ("Overshoot of steps (%)", "overshoot_percent", ".1f", None),
+    ("Settling time of steps (s)", "settling_s", ".3f", None),
 )
+_MEASURES: tuple[_Measure, ...] = (
+    ("Steady-state error (rad)", "steady_state_error", ".3f", PAPER_STEADY_STATE),
+    ("Time delay, onset (s)", "onset_delay_s", ".3f", PAPER_DELAY),
+    ("Time delay, correlation (s)", "delay_s", ".3f", None),
+    *_STEPS,
+)
+_SETTLING = "settling time: into 5 % of the step, at least 0.02 rad; - where a step never settled."
 
 
 @dataclass(frozen=True)
@@ -105,54 +112,72 @@ def _line(first: int, label: str, widths: Sequence[int], cells: Sequence[str]) -
     return f"{label:{first}}" + "".join(f"  {cell:>{width}}" for cell, width in zip(cells, widths, strict=True))
 
 
-def scaling_factors(after: Controllers, *, paper: bool = False) -> Table:
+def scaling_factors(after: Controllers, *, joints: Joints = ALL, paper: bool = False) -> Table:
     """Table 8: the tuned scaling factors."""
     theirs = _paper("table_8") if paper else None
-    return _parameters("Tuned scaling factors (layout of Table 8)", FACTORS, (), after, theirs)
+    return _parameters("Tuned scaling factors (layout of Table 8)", FACTORS, (), after, joints, theirs)
 
 
-def factors_and_sets(after: Controllers, *, paper: bool = False) -> Table:
+def factors_and_sets(after: Controllers, *, joints: Joints = ALL, paper: bool = False) -> Table:
     """Table 9: the tuned scaling factors and sets."""
     theirs = _paper("table_9") if paper else None
-    table = _parameters("Tuned scaling factors and sets (layout of Table 9)", FACTORS | SETS, (), after, theirs)
+    title = "Tuned scaling factors and sets (layout of Table 9)"
+    table = _parameters(title, FACTORS | SETS, (), after, joints, theirs)
     return replace(table, remarks=(*table.remarks, _NO_WIDTH)) if paper else table
 
 
-def fuzzy_sets(before: Controllers, after: Controllers, *, paper: bool = False) -> Table:
+def fuzzy_sets(before: Controllers, after: Controllers, *, joints: Joints = ALL, paper: bool = False) -> Table:
     """Table 10: the sets before (once, where all joints begin with the same) and after."""
     columns = [CONTROLLER_COLUMNS.index(column) for column, _ in SETS.values()]
-    same = bool((before[:, columns] == before[0, columns]).all())
-    starts = [("before", before[0])] if same else [(f"before {joint}", row) for joint, row in enumerate(before)]
+    begun = before[list(joints)]
+    same = bool((begun[:, columns] == begun[0, columns]).all())
+    starts = [("before", begun[0])] if same else [(f"before {joint}", before[joint]) for joint in joints]
     theirs = _paper("table_10") if paper else None
-    return _parameters("Tuned sets (layout of Table 10)", SETS, starts, after, theirs)
+    return _parameters("Tuned sets (layout of Table 10)", SETS, starts, after, joints, theirs)
 
 
 def step_performance(
     before: Evaluation, after: Evaluation, multiples: Numbers | None = None, *, paper: bool = False
 ) -> Table:
-    """Table 11: the three measures of a step response. `multiples` of the floor (4 joints, then all): Floor.multiple.
+    """Table 11: the three measures of a step response, with overshoot and settling time. `multiples` of the floor
+    (4 joints, then all): Floor.multiple.
 
     The paper's time delay runs from the leader's to the follower's onset. Below it stands the lag of best correlation,
     which also shows slow rises.
     """
-    floors = (None,) * len(_ALL) if multiples is None else multiples
-    theirs = PAPER_STEP_MSE if paper else None
-    groups = [_compared(_ALL, "Mean squared error (rad²)", "#.3g", _errors(before), _errors(after), floors, theirs)]
-    for heading, name, printed in _MEASURES:
-        was, now = _each(before, name), _each(after, name)
-        groups.append(_compared(_JOINT_COLUMNS, heading, ".3f", was, now, (None,) * JOINTS, printed if paper else None))
-    return _comparison("Step response before and after tuning (layout of Table 11)", groups, paper)
+    title = "Step response before and after tuning (layout of Table 11)"
+    return _performance(title, before, after, multiples, _MEASURES, PAPER_STEP_MSE if paper else None)
 
 
-def motion_errors(
-    name: str, before: Floats, after: Floats, multiples: Numbers | None = None, *, paper: bool = False
+def motion_performance(
+    name: str, before: Evaluation, after: Evaluation, multiples: Numbers | None = None, *, paper: bool = False
 ) -> Table:
-    """Table 12: the errors (4,) of a motion; the paper's are of multi-steps."""
-    was, now = ([*errors.tolist(), float(errors.sum())] for errors in (before, after))
-    floors = (None,) * len(_ALL) if multiples is None else multiples
-    theirs = PAPER_MULTI_STEP_MSE if paper else None
-    group = _compared(_ALL, "Mean squared error (rad²)", "#.3g", was, now, floors, theirs)
-    return _comparison(f"Response to {name} before and after tuning (layout of Table 12)", [group], paper)
+    """Table 12: the errors of a motion, with overshoot and settling time; the paper's are of multi-steps."""
+    title = f"Response to {name} before and after tuning (layout of Table 12)"
+    return _performance(title, before, after, multiples, _STEPS, PAPER_MULTI_STEP_MSE if paper else None)
+
+
+def _performance(
+    title: str,
+    before: Evaluation,
+    after: Evaluation,
+    multiples: Numbers | None,
+    measures: Sequence[_Measure],
+    errors: tuple[Numbers, Numbers] | None,
+) -> Table:
+    """The errors, `errors` being the paper's, then the measures; of the joints in use."""
+    joints = before.joints_in_use
+    floors = (None,) * (JOINTS + 1) if multiples is None else multiples
+    was, now = _errors(before), _errors(after)
+    groups = [_compared((*joints, _SUM), "Mean squared error (rad²)", "#.3g", was, now, floors, errors)]
+    for heading, name, form, printed in measures:
+        theirs = printed if errors is not None else None
+        groups.append(
+            _compared(joints, heading, form, _each(before, name), _each(after, name), (None,) * JOINTS, theirs)
+        )
+    more = more_overshoot(before, after)
+    remarks = (_SETTLING, *((f"MORE OVERSHOOT than before: {more}.",) if more else ()))
+    return _comparison(title, groups, remarks, errors is not None)
 
 
 def _parameters(
@@ -160,10 +185,11 @@ def _parameters(
     wanted: dict[str, tuple[str, int]],
     starts: Sequence[tuple[str, npt.NDArray[np.int32]]],
     after: Controllers,
+    joints: Joints,
     theirs: Controllers | None,
 ) -> Table:
-    """A row a parameter; a column for every start, every joint and, if asked, every joint of the paper."""
-    columns = [*starts, *zip(_JOINT_COLUMNS, after, strict=True)]
+    """A row a parameter; a column for every start, every joint in use and, if asked, every joint of the paper."""
+    columns = [*starts, *((_LABELS[joint], after[joint]) for joint in joints)]
     if theirs is not None:
         columns += [(f"paper {joint}", row) for joint, row in enumerate(theirs)]
     rows = []
@@ -187,7 +213,7 @@ def _each(evaluation: Evaluation, name: str) -> list[float | None]:
 
 
 def _compared(
-    labels: Sequence[str],
+    places: Sequence[int],
     heading: str,
     form: str,
     before: Numbers,
@@ -196,18 +222,20 @@ def _compared(
     theirs: tuple[Numbers, Numbers] | None,
 ) -> Group:
     rows = []
-    for place, label in enumerate(labels):
+    for place in places:
         was, now = before[place], after[place]
         values: tuple[float | None, ...] = (was, now, _improvement(was, now), multiples[place])
-        rows.append((label, values + ((None, None) if theirs is None else (theirs[0][place], theirs[1][place]))))
+        papers = (None, None) if theirs is None else (theirs[0][place], theirs[1][place])
+        rows.append((_LABELS[place], values + papers))
     return Group(heading, tuple(rows), form)
 
 
-def _comparison(title: str, groups: Sequence[Group], paper: bool) -> Table:
+def _comparison(title: str, groups: Sequence[Group], notes: tuple[str, ...], paper: bool) -> Table:
     columns = (("Before tuning", ""), ("After tuning", ""), ("lower by %", ".1f"), ("x floor", ".2f"))
     theirs = (("paper before", ""), ("paper after", ""))
     floors = any(values[3] is not None for group in groups for _, values in group.rows)
-    remarks = ("x floor: after tuning as a multiple of the least that any controller could reach.",) if floors else ()
+    floor = ("x floor: after tuning as a multiple of the least that any controller could reach.",) if floors else ()
+    remarks = (*floor, *notes)
     if paper:
         return Table(title, columns + theirs, tuple(groups), (*remarks, _OTHER_ARM))
     plain = (Group(one.heading, tuple((label, values[:4]) for label, values in one.rows), one.form) for one in groups)
@@ -223,10 +251,11 @@ def _improvement(before: float | None, after: float | None) -> float | None:
 
 def tables_of(outcome: Outcome, *, paper: bool = False) -> tuple[Table, ...]:
     """The tables that a tuning fills: 8, 9 or 10 by its strategy, 11 for steps, 12 for every other held-out motion."""
+    joints = outcome.model.arm.joints_in_use
     parameters = {
-        "sf": lambda: scaling_factors(outcome.after, paper=paper),
-        "both": lambda: factors_and_sets(outcome.after, paper=paper),
-        "mf": lambda: fuzzy_sets(outcome.before, outcome.after, paper=paper),
+        "sf": lambda: scaling_factors(outcome.after, joints=joints, paper=paper),
+        "both": lambda: factors_and_sets(outcome.after, joints=joints, paper=paper),
+        "mf": lambda: fuzzy_sets(outcome.before, outcome.after, joints=joints, paper=paper),
     }
     tables = [parameters[outcome.strategy]()]
     for one in outcome.held_out:
@@ -234,5 +263,5 @@ def tables_of(outcome: Outcome, *, paper: bool = False) -> tuple[Table, ...]:
             tables.append(step_performance(one.before, one.after, one.multiples, paper=paper))
         else:
             known = paper and one.name == "multi-steps"
-            tables.append(motion_errors(one.name, one.mse_before, one.mse_after, one.multiples, paper=known))
+            tables.append(motion_performance(one.name, one.before, one.after, one.multiples, paper=known))
     return tuple(tables)
