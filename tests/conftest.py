@@ -11,6 +11,8 @@ from collections.abc import Iterator
 import pytest
 from xdist.scheduler import LoadScopeScheduling
 
+from greywhale.runtime import VARIABLE
+
 
 def pytest_configure() -> None:
     """A suite in the background of a script, or under nohup, was started with these signals ignored, and every child
@@ -32,12 +34,12 @@ def _signal_handlers_as_they_were() -> Iterator[None]:
 
 @pytest.fixture(scope="session", autouse=True)
 def _temporary_folder_of_our_own(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """Running benches are found in the temporary folder: nobody shall see ours, and we shall see nobody else's."""
+    """Nobody shall see what lies or runs in ours, such as benches, and we shall see nobody else's."""
     folder = str(tmp_path_factory.mktemp("tmp"))
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("TMPDIR", folder)  # for children
         patch.setattr(tempfile, "tempdir", folder)
-        patch.delenv("XDG_RUNTIME_DIR", raising=False)  # the temporary folder then also holds what runs
+        patch.setenv(VARIABLE, f"{folder}/run")
         yield
 
 

@@ -10,41 +10,45 @@ from pathlib import Path
 
 import pytest
 
+from greywhale import runtime
 from greywhale.errors import UserError
 from greywhale.protocol import ports
-from greywhale.runtime import make_runtime_directory, private_runtime_directory, runtime_directory
+from greywhale.runtime import VARIABLE, make_runtime_directory, private_runtime_directories, runtime_directories
 
 
 @pytest.fixture
-def temporary(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The temporary folder, which other users can write."""
+def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The folder's, in one that other users can write."""
     tmp_path.chmod(0o1777)
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    monkeypatch.setenv("TMPDIR", str(tmp_path))
-    return tmp_path
+    monkeypatch.setenv(VARIABLE, str(tmp_path / "run"))
+    return tmp_path / "run"
 
 
-def test_the_users_runtime_directory_comes_first(temporary: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    own = temporary / "run"
-    own.mkdir(mode=0o700)
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(own))
-    assert make_runtime_directory() == own / "greywhale"
-    assert (own / "greywhale").stat().st_mode & 0o777 == 0o700
+def test_the_folder_follows_from_the_user_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A cron job, a notebook and `su -` have other variables than the terminal next to them."""
+    monkeypatch.delenv(VARIABLE)
+    before = runtime_directories()
+    for name in ("XDG_RUNTIME_DIR", "TMPDIR", "HOME"):
+        monkeypatch.setenv(name, "/nowhere")
+    monkeypatch.setattr(tempfile, "tempdir", "/nowhere")
+    assert runtime_directories() == before
+    assert all(str(os.getuid()) in str(folder) for folder in before)
 
 
-@pytest.mark.parametrize("mode", [0o755, 0o777, 0o710])
-def test_a_runtime_directory_that_is_open_is_passed_over(
-    temporary: Path, monkeypatch: pytest.MonkeyPatch, mode: int
-) -> None:
-    (temporary / "run").mkdir()
-    (temporary / "run").chmod(mode)
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(temporary / "run"))
-    assert runtime_directory() == temporary / f"greywhale-{os.getuid()}"
+def test_benches_are_found_in_the_second_folder_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One may have begun before its user logged in, and so before the first was there."""
+    folders = [tmp_path / "user" / "greywhale", tmp_path / "greywhale-user"]
+    monkeypatch.setattr(runtime, "runtime_directories", lambda: folders)
+    assert make_runtime_directory() == folders[1]
+    (tmp_path / "user").mkdir()
+    assert make_runtime_directory() == folders[0]
+    (folders[1] / f"mega-{os.getpid()}").symlink_to("/dev/null")
+    assert ports.is_bench("/dev/null")
 
 
 def take_the_name(kind: str) -> Path:
     """What another user, or a careless one, may put in the folder's place."""
-    folder = runtime_directory()
+    (folder,) = runtime_directories()
     match kind:
         case "open":
             folder.mkdir()
@@ -60,7 +64,7 @@ def take_the_name(kind: str) -> Path:
     return folder
 
 
-@pytest.mark.usefixtures("temporary")
+@pytest.mark.usefixtures("place")
 @pytest.mark.parametrize(
     ("kind", "words"),
     [
@@ -74,7 +78,7 @@ def test_what_cannot_be_trusted_is_not_used(kind: str, words: str) -> None:
     folder = take_the_name(kind)
     if kind in ("open", "readable"):
         (folder / f"mega-{os.getpid()}").symlink_to("/dev/null")
-    assert private_runtime_directory() is None
+    assert private_runtime_directories() == []
     assert ports.find_ports() == [] or not any(port.bench for port in ports.find_ports())
     with pytest.raises(UserError) as caught:
         make_runtime_directory()
@@ -82,12 +86,9 @@ def test_what_cannot_be_trusted_is_not_used(kind: str, words: str) -> None:
     assert words in caught.value.message
 
 
-@pytest.mark.usefixtures("temporary")
-def test_a_folder_of_another_user_is_not_used(monkeypatch: pytest.MonkeyPatch) -> None:
-    folder = runtime_directory()
-    folder.mkdir(mode=0o700)
+def test_a_folder_of_another_user_is_not_used(place: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    place.mkdir(mode=0o700)
     monkeypatch.setattr(os, "getuid", lambda: os.geteuid() + 1)
-    folder.rename(runtime_directory())
     with pytest.raises(UserError, match="belongs to another user"):
         make_runtime_directory()
 
@@ -97,7 +98,7 @@ def bench(*options: str) -> subprocess.Popen[str]:
     return subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
-@pytest.mark.usefixtures("temporary")
+@pytest.mark.usefixtures("place")
 def test_a_bench_runs_unannounced_where_its_folder_is_taken() -> None:
     """The first of several users of a machine must not keep the others from their benches."""
     take_the_name("open")
@@ -112,17 +113,16 @@ def test_a_bench_runs_unannounced_where_its_folder_is_taken() -> None:
     assert "name its port with --port" in said
 
 
-@pytest.mark.usefixtures("temporary")
-def test_a_bench_clears_away_what_killed_ones_left() -> None:
+def test_a_bench_clears_away_what_killed_ones_left(place: Path) -> None:
     with bench() as killed:
         assert killed.stdout is not None
         killed.stdout.readline()
         killed.kill()
-    left = runtime_directory() / f"mega-{killed.pid}"
+    left = place / f"mega-{killed.pid}"
     assert left.is_symlink()
     with bench() as process:
         assert process.stdout is not None
         process.stdout.readline()
         assert not left.is_symlink()
         process.communicate()
-    assert list(runtime_directory().iterdir()) == []
+    assert list(place.iterdir()) == []

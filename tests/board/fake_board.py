@@ -6,16 +6,19 @@ cable. Its time runs with the samples it sends, and waits while its host has not
 
 from __future__ import annotations
 
+import contextlib
 import fcntl
 import os
 import select
 import struct
 import subprocess
+import sys
 import termios
 import threading
 import time
 import tty
 from collections import Counter
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from types import TracebackType
 from typing import Self
@@ -354,3 +357,17 @@ class FakeBoard:
             self.state, self.stop_reason, self.fault, self.fault_where, self.tick, 0, 0, 0, 0, 0, 300, self._save_state,
             self.saves,
         ).pack()  # fmt: skip
+
+
+@contextlib.contextmanager
+def locked(port: str) -> Iterator[int]:
+    """A process that has the port open for itself alone, and is no greywhale: its number."""
+    take = (
+        "import fcntl, sys; f = open(sys.argv[1], 'rb', 0); fcntl.flock(f, fcntl.LOCK_EX); print(flush=True); input()"
+    )
+    command = [sys.executable, "-c", take, port]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+        assert process.stdout is not None
+        process.stdout.readline()
+        yield process.pid
+        process.communicate(b"\n")

@@ -239,15 +239,27 @@ def test_ports_that_cannot_be_opened(tmp_path: Path) -> None:
         Device(str(plain))
     with pytest.raises(UserError, match="not a serial port"):
         Device(str(tmp_path))
-    with FakeBoard() as board, open_device(board), pytest.raises(UserError, match="in use by another program"):
+    with FakeBoard() as board, open_device(board), pytest.raises(UserError, match="in use by this program itself"):
         Device(board.port)
+
+
+def test_the_terminal_is_not_taken_for_a_port(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Neither as /dev/tty nor by its number: it would be set to another speed under a person's hands."""
+    with pytest.raises(UserError, match="^/dev/tty: this is a terminal, not a board's port; `greywhale ports`"):
+        Device("/dev/tty")
+    with FakeBoard() as board, monkeypatch.context() as patch:
+        terminal = os.stat(board.port)
+        patch.setattr(os, "isatty", lambda stream: stream == 2)
+        patch.setattr(os, "fstat", lambda stream: terminal)
+        with pytest.raises(UserError, match="this is a terminal"):
+            Device(board.port)
 
 
 @pytest.mark.parametrize(
     ("number", "words"),
     [
         (errno.EACCES, "usermod -aG dialout"),
-        (errno.EBUSY, "in use by another program"),
+        (errno.EBUSY, r"in use by another program; close that \(a serial monitor\?\)"),
         (errno.ENODEV, "no such port any more"),
         (errno.EIO, "cannot be opened: input/output error"),
     ],

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-import tempfile
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -15,12 +14,12 @@ from serial.tools import list_ports
 from greywhale.errors import UserError
 from greywhale.protocol import ports
 from greywhale.protocol.ports import Port
-from greywhale.runtime import make_runtime_directory
+from greywhale.runtime import VARIABLE, make_runtime_directory
 
 
 @pytest.fixture(autouse=True)
 def _no_real_ports(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(tempfile, "gettempdir", lambda: str(tmp_path))
+    monkeypatch.setenv(VARIABLE, str(tmp_path / "run"))
     monkeypatch.setattr(list_ports, "comports", list)
 
 

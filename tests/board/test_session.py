@@ -2,30 +2,50 @@
 
 from __future__ import annotations
 
+import contextlib
+import logging
 import os
+import pty
 import signal
 import socket
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from greywhale.board import meeting, session
 from greywhale.board.device import Device
+from greywhale.board.meeting import Peer
 from greywhale.board.record import record
-from greywhale.board.session import NOTE, Session, StopAsked, ask_to_stop, socket_name
+from greywhale.board.session import NOTE, Session, StopAsked, ask_to_stop
 from greywhale.errors import UserError
 from greywhale.files.log import read_log
 from greywhale.protocol import schema
 from greywhale.protocol.schema import State, StopReason
-from greywhale.runtime import make_runtime_directory, runtime_directory
-from tests.board.fake_board import FakeBoard, Faults
+from greywhale.runtime import VARIABLE
+from tests.board.fake_board import FakeBoard
 
 
 def open_device(board: FakeBoard) -> Device:
     return Device(board.port, quiet_s=0.0, patience_s=0.5)
+
+
+def names(board: FakeBoard) -> list[str]:
+    """Where a session on the board may listen."""
+    device = meeting.device_of(board.port)
+    assert device is not None
+    return meeting.names_of(device)
+
+
+def connected(board: FakeBoard) -> socket.socket:
+    """A client of the board's session."""
+    client = socket.socket(socket.AF_UNIX)
+    client.connect(names(board)[0])
+    return client
 
 
 class Asker(threading.Thread):
@@ -206,43 +226,140 @@ def test_an_interrupt_that_comes_just_before_a_long_wait_is_noticed(monkeypatch:
     assert signal.getsignal(signal.SIGURG) is before
 
 
-def test_nobody_takes_the_port_of_another_session() -> None:
-    with FakeBoard() as board:
-        reader, writer = os.pipe()
-        child = os.fork()
-        if child == 0:
-            with Session.of(board.port):
+@contextlib.contextmanager
+def another(hold: Callable[[], AbstractContextManager[object]]) -> Iterator[int]:
+    """A process that holds something, in an environment and a folder of its own; killed in the end."""
+    reader, writer = os.pipe()
+    child = os.fork()
+    if child == 0:
+        try:
+            os.environ.update(dict.fromkeys(("XDG_RUNTIME_DIR", "TMPDIR", "HOME", VARIABLE), "/elsewhere"))
+            os.chdir("/")
+            with hold():
                 os.write(writer, b"x")
                 signal.pause()
-        os.read(reader, 1)
-        with pytest.raises(UserError, match=rf"^{board.port}: the port is in use by another greywhale.*greywhale stop"):
-            open_device(board)
+        finally:
+            os.kill(os.getpid(), signal.SIGKILL)
+    os.close(writer)
+    try:
+        assert os.read(reader, 1) == b"x"
+        yield child
+    finally:
         os.kill(child, signal.SIGKILL)
         os.waitpid(child, 0)
         os.close(reader)
-        os.close(writer)
-        assert ask_to_stop(board.port) is None, "a killed session leaves its socket, but nobody listens"
+
+
+def test_nobody_takes_the_port_of_another_session() -> None:
+    """Also while that has it closed, as a commissioning that computes."""
+    with FakeBoard() as board:
+        with (
+            another(lambda: Session.of(board.port)) as child,
+            pytest.raises(
+                UserError,
+                match=rf"^{board.port}: the port is in use by another greywhale, process {child} \(.*greywhale stop",
+            ),
+        ):
+            open_device(board)
+        assert ask_to_stop(board.port) is None, "killed"
         with open_device(board) as device:
             assert device.status().state is State.DISABLED
 
 
-def test_only_this_user_reaches_the_socket() -> None:
-    with FakeBoard() as board, open_device(board):
-        path = runtime_directory() / socket_name(board.port)
-        assert path.is_socket()
-        assert path.parent.stat().st_mode & 0o077 == 0
-    assert not path.exists()
+def test_a_session_that_does_not_hear_is_told_with_the_switch_first() -> None:
+    """After Ctrl-Z."""
+    with FakeBoard() as board, another(lambda: Session.of(board.port)) as child:
+        os.kill(child, signal.SIGSTOP)
+        os.waitpid(child, os.WUNTRACED)  # until it stands still
+        with pytest.raises(UserError) as caught:
+            ask_to_stop(board.port, heard_s=0.05)
+    assert caught.value.message.startswith(f"Switch the motors' supply off: {board.port} is held by process {child} (")
+    assert caught.value.message.endswith(
+        f"which does not answer. Then bring it back (`fg`, after Ctrl-Z) or end it with `kill -9 {child}`."
+    )
 
 
-def test_a_session_runs_without_a_folder_that_can_be_trusted() -> None:
-    folder = make_runtime_directory()
-    folder.chmod(0o777)
-    try:
-        with FakeBoard() as board, open_device(board) as device:
-            assert device.status().state is State.DISABLED
-            assert ask_to_stop(board.port) is None
-    finally:
-        folder.chmod(0o700)
+def test_only_this_user_reaches_the_session(monkeypatch: pytest.MonkeyPatch) -> None:
+    with FakeBoard() as board, open_device(board) as device:
+        monkeypatch.setattr(meeting, "peer_of", lambda connection: Peer(1, os.geteuid() + 1))
+        with connected(board) as client:
+            assert client.recv(64) == b"", "sent away unheard"
+        assert device.status().state is State.DISABLED
+        assert ask_to_stop(board.port) is None, "and a stranger is not asked"
+
+
+def squat(monkeypatch: pytest.MonkeyPatch, names: list[str]) -> AbstractContextManager[int]:
+    """Another user who took these names first."""
+
+    @contextlib.contextmanager
+    def take() -> Iterator[None]:
+        with contextlib.ExitStack() as stack:
+            for name in names:
+                listener = stack.enter_context(socket.socket(socket.AF_UNIX))
+                listener.bind(name)
+                listener.listen()
+            yield
+
+    real, own = meeting.peer_of, os.getpid()
+
+    def peer_of(connection: socket.socket) -> Peer:
+        pid, uid = real(connection)
+        return Peer(pid, uid if pid == own else 4711)
+
+    monkeypatch.setattr(meeting, "peer_of", peer_of)
+    return another(take)
+
+
+def test_another_user_who_takes_a_name_first_hinders_nobody(monkeypatch: pytest.MonkeyPatch) -> None:
+    with FakeBoard() as board, squat(monkeypatch, names(board)[:-1]), Asker(board.port) as other:
+        with pytest.raises(KeyboardInterrupt), open_device(board) as device:
+            device.enable(0)
+            other.ask()
+            while True:
+                device.samples()
+        other.join()
+    assert other.answer == {"pid": os.getpid(), "state": "disabled"}
+
+
+def test_no_motor_starts_where_nothing_could_stop_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(session, "in_foreground", lambda: False)
+    with FakeBoard() as board, squat(monkeypatch, names(board)) as child, open_device(board) as device:
+        assert device.status().state is State.DISABLED, "to look is safe"
+        for start in (device.enable, device.lead):
+            with pytest.raises(UserError) as caught:
+                start(500)
+            assert caught.value.message == (
+                f"{board.port}: `greywhale stop` cannot reach this session, because process {child} of user 4711 has "
+                "taken all names for it; nor can the Ctrl-C of a terminal, so the motors stay off: run it in the "
+                "foreground of a terminal, or end what is in the way."
+            )
+        assert board.asked(schema.EnableRequest) == board.asked(schema.LeadRequest) == 0
+
+
+def test_where_only_ctrl_c_stops_it_that_is_said_before_the_motors_start(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr(session, "in_foreground", lambda: True)
+    with FakeBoard() as board, squat(monkeypatch, names(board)), open_device(board) as device:
+        device.enable(500)
+        device.enable(500)
+    (warning,) = [record for record in caplog.records if record.levelno == logging.WARNING]
+    assert "only Ctrl-C in this terminal stops the arm" in warning.getMessage()
+
+
+@pytest.mark.parametrize("terminal", [True, False])
+def test_a_terminals_ctrl_c_is_known_to_reach_a_process(terminal: bool) -> None:
+    reader, writer = os.pipe()
+    child, master = pty.fork() if terminal else (os.fork(), reader)
+    if child == 0:
+        if not terminal:
+            os.setsid()
+        os.write(writer, str(session.in_foreground()).encode())
+        os.kill(os.getpid(), signal.SIGKILL)
+    os.waitpid(child, 0)
+    assert os.read(reader, 8) == str(terminal).encode()
+    for descriptor in {reader, writer, master}:
+        os.close(descriptor)
 
 
 def test_a_port_is_found_by_whatever_name(tmp_path: Path) -> None:
@@ -256,8 +373,29 @@ def test_a_port_is_found_by_whatever_name(tmp_path: Path) -> None:
     assert other.answer is not None
 
 
-def test_a_client_that_says_nothing_stops_nothing() -> None:
-    with FakeBoard(Faults()) as board, open_device(board) as device:
-        with socket.socket(socket.AF_UNIX) as client:
-            client.connect(str(runtime_directory() / socket_name(board.port)))
+def test_clients_that_say_nothing_hinder_nobody(monkeypatch: pytest.MonkeyPatch) -> None:
+    with FakeBoard() as board, contextlib.ExitStack() as stack, Asker(board.port) as other:
+        with pytest.raises(KeyboardInterrupt), open_device(board) as device:
+            for _ in range(meeting.MOST_CLIENTS + 3):
+                stack.enter_context(connected(board))
+                device.status()
+            other.ask()
+            while True:
+                device.samples()
+        other.join()
+    assert other.answer == {"pid": os.getpid(), "state": "disabled"}
+
+
+def test_a_client_that_says_something_else_stops_nothing() -> None:
+    with FakeBoard() as board, open_device(board) as device, connected(board) as client:
+        client.sendall(b"hello\n")
+        assert client.recv(64) == b""
         assert device.status().state is State.DISABLED
+
+
+def test_a_client_that_does_not_wait_for_the_answer_is_heard() -> None:
+    with FakeBoard() as board, pytest.raises(KeyboardInterrupt), open_device(board) as device:
+        with connected(board) as client:
+            client.sendall(b"stop\n")
+        while True:
+            device.samples()

@@ -21,10 +21,11 @@ from greywhale.files.log import read_log
 from greywhale.protocol import schema
 from greywhale.protocol.ports import find_ports
 from greywhale.protocol.schema import State
+from greywhale.runtime import VARIABLE
 from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory
 from greywhale_sim.serve import ServeOptions, running
-from tests.board.fake_board import FakeBoard, Faults
+from tests.board.fake_board import FakeBoard, Faults, locked
 from tests.cli.example_log import write_log
 
 ROOT = Path(__file__).parents[2]
@@ -218,6 +219,19 @@ def test_the_port_may_come_from_the_environment(capsys: Captured, monkeypatch: p
         assert ask(capsys, "stop")[1] == {"port": board.port, "state": "disabled", "restarted": True}
 
 
+def test_stop_begins_with_what_helps_where_it_cannot(capsys: Captured) -> None:
+    """Here a program that is not ours has the port."""
+    with FakeBoard() as board, locked(board.port) as holder:
+        assert entry.run(["stop", "--port", board.port]) == 1
+    words = (
+        "greywhale: Switch the motors' supply off: `greywhale stop` cannot reach the arm. "
+        f"{board.port}: the port is in use by process {holder} ("
+    )
+    said = capsys.readouterr().err
+    assert said.startswith(words)
+    assert said.endswith("); close that and try again.\n")
+
+
 def test_stop_clears_a_fault_when_asked(capsys: Captured) -> None:
     board = FakeBoard()
     board.fault = schema.Fault.PARAMS
@@ -393,8 +407,7 @@ def test_sim_says_on_stderr_the_name_that_other_verbs_use(
     tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """And what to do next; standard output is the port alone."""
-    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
-    monkeypatch.delenv("XDG_RUNTIME_DIR", raising=False)
+    monkeypatch.setenv(VARIABLE, str(tmp_path))
     found: list[str] = []
 
     def serve_once(options: ServeOptions, on_ready: Callable[[str], None], note: Callable[[str], None]) -> None:

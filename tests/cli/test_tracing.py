@@ -48,6 +48,20 @@ def test_without_them_nothing_is_told(capsys: Captured) -> None:
     assert ROOT.handlers == []
 
 
+@pytest.mark.parametrize("options", [[], ["--log-file", "bug.log"]], ids=["plain", "file"])
+def test_a_warning_always_reaches_the_terminal(
+    options: list[str], capsys: Captured, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def warn() -> list[object]:
+        ROOT.getChild("any").warning("mind this.")
+        return []
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("greywhale.cli.ports.find_ports", warn)
+    assert entry.run([*options, "ports"]) == 0
+    assert capsys.readouterr().err == "greywhale: mind this.\n"
+
+
 def test_the_log_file_holds_versions_requests_and_where_it_failed(capsys: Captured, tmp_path: Path) -> None:
     log = tmp_path / "bug.log"
     with FakeBoard() as board:

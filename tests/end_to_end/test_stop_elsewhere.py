@@ -21,24 +21,33 @@ from greywhale.protocol.schema import State
 Start = Callable[..., BenchProcess]
 
 
-def greywhale(*arguments: str) -> subprocess.Popen[str]:
+# What a verb is started in, beside its terminal.
+CRON = {"PATH": "/usr/bin:/bin", "HOME": "/"}
+NOTEBOOK = {**CRON, "XDG_RUNTIME_DIR": "/nowhere", "TMPDIR": "/var/tmp"}
+
+
+def greywhale(*arguments: str, env: dict[str, str] | None = None) -> subprocess.Popen[str]:
     command = [sys.executable, "-m", "greywhale", *arguments]
-    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=env)
 
 
 @pytest.mark.timeout(120)
-@pytest.mark.parametrize("verb", [("record", "--enable", "--seconds", "600"), ("replay",)], ids=["record", "replay"])
-def test_what_runs_ends_with_a_whole_log(
-    start_bench: Start, tmp_path: Path, leader_file: Path, verb: tuple[str, ...]
+@pytest.mark.parametrize(
+    ("board", "verb", "env"),
+    [("mega", ("record", "--enable", "--seconds", "600"), CRON), ("nano", ("replay",), NOTEBOOK)],
+    ids=["record", "replay"],
+)
+def test_what_runs_ends_with_a_whole_log_whatever_the_environment_of_the_stop(
+    start_bench: Start, tmp_path: Path, leader_file: Path, board: str, verb: tuple[str, ...], env: dict[str, str]
 ) -> None:
-    bench = start_bench("--speed", "1")
+    bench = start_bench("--speed", "1", board=board)
     log = tmp_path / "log.csv"
     motion = [str(leader_file)] if verb == ("replay",) else []
     with greywhale(*verb, *motion, "--out", str(log), "--port", bench.port) as host:
         while not bench.command("status")["motors_enabled"]:
             assert host.poll() is None, host.communicate()
         resets = bench.command("status")["resets"]
-        with greywhale("stop", "--port", bench.port, "--json") as stop:
+        with greywhale("stop", "--port", bench.port, "--json", env=env) as stop:
             answer, _ = stop.communicate()
         after = bench.command("status")
         _, said = host.communicate()

@@ -1,27 +1,37 @@
-"""The folder for what runs now: sockets of sessions, links to benches. It belongs to this user alone."""
+"""The folder for what runs now: links to benches. It belongs to this user alone."""
 
 from __future__ import annotations
 
 import os
 import stat
-import tempfile
 from pathlib import Path
 
 from greywhale.errors import UserError, os_reason
 
+# Names another folder, for tests: what runs in it is found only by those who name it too.
+VARIABLE = "GREYWHALE_RUNTIME_DIR"
 
-def runtime_directory() -> Path:
-    """Where the folder is: in the user's runtime directory, else with a name of the user's in the temporary folder."""
-    given = os.environ.get("XDG_RUNTIME_DIR", "")
-    # After a change of user (su, sudo -E) the variable may still name the folder of another.
-    if given and _why_not_private(Path(given)) is None:
-        return Path(given) / "greywhale"
-    return Path(tempfile.gettempdir()) / f"greywhale-{os.getuid()}"
+
+def runtime_directories() -> list[Path]:
+    """Where the folder may be. It follows from the user alone: a cron job and a terminal have other environments."""
+    given = os.environ.get(VARIABLE)
+    if given:
+        return [Path(given)]
+    return [Path(f"/run/user/{os.getuid()}/greywhale"), Path(f"/tmp/greywhale-{os.getuid()}")]
 
 
 def make_runtime_directory() -> Path:
-    """The folder, made where it is missing; a UserError where another user could change what lies in it."""
-    folder = runtime_directory()
+    """The first folder that can be had, made where it is missing; a UserError where others could change all of them."""
+    *better, last = runtime_directories()
+    for folder in better:
+        try:
+            return _make(folder)
+        except UserError:
+            continue
+    return _make(last)
+
+
+def _make(folder: Path) -> Path:
     try:
         folder.mkdir(mode=0o700, exist_ok=True)
     except OSError as error:
@@ -32,10 +42,9 @@ def make_runtime_directory() -> Path:
     return folder
 
 
-def private_runtime_directory() -> Path | None:
-    """The folder where it is there and can be trusted, else None."""
-    folder = runtime_directory()
-    return folder if _why_not_private(folder) is None else None
+def private_runtime_directories() -> list[Path]:
+    """The folders that are there and can be trusted: a bench may have begun before /run/user/UID was there."""
+    return [folder for folder in runtime_directories() if _why_not_private(folder) is None]
 
 
 def _why_not_private(folder: Path) -> str | None:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from greywhale.board import meeting
 from greywhale.board.device import Device
 from greywhale.board.flash import flasher as module
 from greywhale.board.flash import images, platformio
@@ -61,9 +62,29 @@ def test_a_port_in_use_stops_before_any_tool(told: Path, tmp_path: Path) -> None
     # avrdude would break into it, and reset a board that runs its motors
     image = write_image(tmp_path / "x.hex")
     with FakeBoard() as board, Device(board.port, 0.0, 0.5):
-        with pytest.raises(UserError, match="the port is in use by another program"):
+        with pytest.raises(UserError, match="the port is in use by this program itself"):
             module.flash(board.port, "mega", hex_file=image)
     assert not told.exists()
+
+
+@pytest.mark.usefixtures("quick_device")
+def test_nobody_gets_the_port_while_avrdude_has_it(told: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """avrdude locks nothing, and this process has the port closed meanwhile."""
+    image = write_image(tmp_path / "firmware.hex", MEGA.signature)
+    answering(monkeypatch, "wiring", 115200, MEGA2560)
+    held: list[bool] = []
+
+    def upload(port: str, *_: object) -> None:
+        found = meeting.find(port, 0.0)
+        held.append(found is not None)
+        if found is not None:
+            found[0].close()
+
+    monkeypatch.setattr(module, "upload_image", upload)
+    with FakeBoard() as board:
+        module.flash(board.port, "mega", hex_file=image)
+        assert held == [True]
+        assert meeting.find(board.port, 0.0) is None
 
 
 def test_missing_sources_and_files_are_bad_usage(tmp_path: Path) -> None:

@@ -1,36 +1,40 @@
 """What holds a port listens here, so that `greywhale stop` in another terminal can end it without opening the port.
 
-The socket lies in the runtime folder of this user alone, under a name made from the port's real path. Whoever connects
-asks for a stop: the thread that listens sends it to the board at once, then ends the main thread as Ctrl-C does. From
-then on this session starts no motor. The answer goes out when the board has confirmed that its motors are off.
+Whoever connects asks for a stop: the thread that listens sends it to the board at once, then ends the main thread as
+Ctrl-C does. From then on this session starts no motor. The answer goes out when the board has confirmed that its motors
+are off. Nobody who keeps silent, or reads slowly, holds the others up: the thread waits for none of them.
 """
 
 from __future__ import annotations
 
 import contextlib
-import fcntl
-import hashlib
 import json
+import logging
 import os
 import select
 import signal
 import socket
 import threading
+import time
 from collections.abc import Callable
 from types import TracebackType
 from typing import Any, Self
 
-from greywhale.errors import UserError
-from greywhale.runtime import make_runtime_directory, private_runtime_directory
+from greywhale.board import meeting
+from greywhale.errors import UserError, os_reason
+from greywhale.protocol.holder import describe
 
 NOTE = "It was stopped with `greywhale stop` from another terminal."
-# A session that was asked to stop answers within this time, or says that the board does not confirm.
+# A session hears a stop within this time, or is itself stopped (Ctrl-Z) or hung.
+HEARD_S = 3.0
+# It then answers within this time, or says that the board does not confirm.
 _CONFIRM_S = 5.0
 # An interrupt that comes just before the main thread falls asleep in a system call is noticed only when the call ends.
 # So this signal, which nobody else uses and which does nothing, ends the call, again and again until the session does.
 _WAKE = signal.SIGURG
 _WAKE_S = 0.05
 _open: dict[str, Session] = {}
+logger = logging.getLogger(__name__)
 
 
 class StopAsked(KeyboardInterrupt):
@@ -42,20 +46,23 @@ class Session:
 
     def __init__(self, port: str) -> None:
         self.port = port
+        self._key, self._device = _key(port), meeting.device_of(port)
         self.asked = False
         self._users = 0
         self._send_stop: Callable[[], None] | None = None
         self._told = False
+        self._unreachable = ""  # why `greywhale stop` does not reach this session
         self._interrupts = threading.current_thread() is threading.main_thread()
         self._interrupted = False
         self._outcome: dict[str, Any] = {}
         self._confirmed = threading.Event()
+        self._confirm_until = 0.0
         self._thread: threading.Thread | None = None
 
     @classmethod
     def of(cls, port: str) -> Session:
         """The session of this process on a port, a new one where there is none."""
-        return _open.setdefault(os.path.realpath(port), cls(port))
+        return _open.setdefault(_key(port), cls(port))
 
     def __enter__(self) -> Self:
         self._users += 1
@@ -100,100 +107,90 @@ class Session:
             raise StopAsked
 
     def refuse_motion(self) -> None:
-        """End a session that was asked to stop before it starts a motor."""
+        """End a session before it starts a motor, if it was asked to stop, or if nothing could stop it later."""
         if self.asked:
             raise StopAsked
+        if self._unreachable:
+            self._rely_on_ctrl_c()
 
     def confirm(self, outcome: dict[str, Any]) -> None:
         """The board confirmed a stop, or did not: what those who asked are told. The first word counts."""
         if self.waiting:
             self._outcome = outcome
             self._confirmed.set()
+            self._wake(b"c")
+
+    def _rely_on_ctrl_c(self) -> None:
+        """Say once that only Ctrl-C stops this session; where that does not reach it either, refuse."""
+        problem = f"{self.port}: `greywhale stop` cannot reach this session, because {self._unreachable}"
+        if not (self._interrupts and in_foreground()):
+            raise UserError(
+                f"{problem}; nor can the Ctrl-C of a terminal, so the motors stay off: run it in the foreground of a "
+                "terminal, or end what is in the way."
+            )
+        logger.warning("%s; only Ctrl-C in this terminal stops the arm.", problem)
+        self._unreachable = ""
 
     # --- the socket -------------------------------------------------------------------------------------------------
 
     def _listen(self) -> None:
-        """Open the socket. Without a folder of this user's own a session runs without one."""
-        try:
-            self._path = make_runtime_directory() / socket_name(self.port)
-        except UserError:
+        """Begin to listen. What is no device, such as a board in this process, holds nothing that others could want."""
+        if self._device is None:
             return
-        self._lock = self._hold()
-        self._listener = socket.socket(socket.AF_UNIX)
         try:
-            self._path.unlink(missing_ok=True)  # what a killed session left
-            self._listener.bind(str(self._path))
-            self._listener.listen()
-        except OSError:  # such as a path too long for a socket
-            self._listener.close()
-            os.close(self._lock)
+            listener = meeting.listen(self.port, self._device)
+        except OSError as error:
+            self._unreachable = os_reason(error)
             return
         self._wake_out, self._wake_in = os.pipe()
         if self._interrupts:
             self._woken_before = signal.signal(_WAKE, lambda number, frame: None)
-        self._thread = threading.Thread(target=self._serve, name="greywhale-stop", daemon=True)
+        clients = meeting.Clients(listener)
+        self._thread = threading.Thread(target=self._serve, args=(clients,), name="greywhale-stop", daemon=True)
         self._thread.start()
-
-    def _hold(self) -> int:
-        """A lock that the system takes away when this process ends, however it ends."""
-        lock = os.open(f"{self._path}.lock", os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC, 0o600)
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            os.close(lock)
-            raise UserError(
-                f"{self.port}: the port is in use by another greywhale; wait for its end, or stop it with "
-                f"`greywhale stop --port {self.port}`."
-            ) from None
-        return lock
 
     def _leave(self) -> None:
         self._users -= 1
         if self._users:
             return
-        _open.pop(os.path.realpath(self.port), None)
+        _open.pop(self._key, None)
         if self._thread is None:
             return
-        os.write(self._wake_in, b"x")
+        self._wake(b"x")
         self._thread.join()
         self._thread = None
         if self._interrupts:
             signal.signal(_WAKE, self._woken_before)
-        self._path.unlink(missing_ok=True)
-        os.close(self._lock)
-
-    def _serve(self) -> None:
-        """Answer until the session ends; its end also closes the connections, so that a client can wait for it."""
-        clients: list[socket.socket] = []
-        ended = False
-        while not ended:
-            ready, _, _ = select.select([self._listener.fileno(), self._wake_out], [], [], self._wake_main_thread())
-            ended = self._wake_out in ready
-            if self._listener.fileno() in ready:
-                client, _ = self._listener.accept()
-                clients.append(client)
-                self._stop(client)
-        for client in clients:
-            client.close()
-        self._listener.close()
         os.close(self._wake_out)
         os.close(self._wake_in)
 
-    def _stop(self, client: socket.socket) -> None:
-        with contextlib.suppress(OSError):
-            client.settimeout(1.0)
-            if not client.recv(16).startswith(b"stop"):
-                return
-            self.asked = True
-            self._end_motion()
-            if not self._confirmed.wait(_CONFIRM_S):
-                self.confirm(
-                    {
-                        "problem": f"{self.port}: the stop is sent, but not confirmed within {_CONFIRM_S:g} s; "
-                        "switch the motors' supply off."
-                    }
-                )
-            client.sendall(json.dumps({"pid": os.getpid(), **self._outcome}).encode() + b"\n")
+    def _wake(self, why: bytes) -> None:
+        """Let the thread look: at its end (x), or at the outcome of a stop (c)."""
+        if self._thread is not None:
+            os.write(self._wake_in, why)
+
+    def _serve(self, clients: meeting.Clients) -> None:
+        """Answer until the session ends; its end also closes the connections, so that a client can wait for it."""
+        ended = False
+        while not ended:
+            pause_s = self._wake_main_thread() or (_WAKE_S if clients.asking else None)
+            ready = _readable([self._wake_out, *clients.descriptors()], pause_s)
+            ended = self._wake_out in ready and b"x" in os.read(self._wake_out, 64)
+            if clients.hear(ready):
+                self.asked = True
+                self._confirm_until = time.monotonic() + _CONFIRM_S
+                self._end_motion()
+            if clients.asking:
+                self._answer(clients)
+        clients.close()
+
+    def _answer(self, clients: meeting.Clients) -> None:
+        """Tell those who asked what came of it, as soon as it is known."""
+        if self.waiting and time.monotonic() > self._confirm_until:
+            problem = f"Switch the motors' supply off: {self.port} does not confirm the stop within {_CONFIRM_S:g} s."
+            self.confirm({"problem": problem})
+        if self._confirmed.is_set():
+            clients.answer(json.dumps({"pid": os.getpid(), **self._outcome}).encode() + b"\n")
 
     def _end_motion(self) -> None:
         """Send the stop, and end what runs as Ctrl-C would, where the main thread may be interrupted."""
@@ -215,29 +212,28 @@ class Session:
         return _WAKE_S
 
 
-def socket_name(port: str) -> str:
-    """The name of a port's socket. Its length is fixed: a socket's path must be short."""
-    return "stop-" + hashlib.sha256(os.path.realpath(port).encode()).hexdigest()[:16]
-
-
-def ask_to_stop(port: str, wait_for_end: bool = False) -> dict[str, Any] | None:
+def ask_to_stop(port: str, wait_for_end: bool = False, heard_s: float = HEARD_S) -> dict[str, Any] | None:
     """Stop the session that holds a port: its answer with "pid" and "state", None where no session holds the port.
 
     The answer comes when the motors are off. With `wait_for_end` this returns when the port is free too.
     """
-    client = _connect(port)
-    if client is None:
+    found = meeting.find(port, heard_s)
+    if found is None:
         return None
+    client, peer = found
     with client:
-        client.settimeout(2 * _CONFIRM_S)
         try:
+            client.settimeout(heard_s)
             client.sendall(b"stop\n")
-            answer = _read_line(client)
+            answer = client.recv(1)  # it has heard
+            client.settimeout(_CONFIRM_S + heard_s)
+            answer = answer and _read_line(client)
             while wait_for_end and client.recv(64):
                 pass
         except TimeoutError:
             raise UserError(
-                f"{port}: the session that holds the port does not answer; switch the motors' supply off."
+                f"Switch the motors' supply off: {port} is held by {describe(peer.pid)}, which does not answer. Then "
+                f"bring it back (`fg`, after Ctrl-Z) or end it with `kill -9 {peer.pid}`."
             ) from None
         except OSError:  # it was killed
             answer = b""
@@ -249,17 +245,26 @@ def ask_to_stop(port: str, wait_for_end: bool = False) -> dict[str, Any] | None:
     return told
 
 
-def _connect(port: str) -> socket.socket | None:
-    folder = private_runtime_directory()
-    if folder is None:
-        return None
-    client = socket.socket(socket.AF_UNIX)
+def _key(port: str) -> str:
+    """What is the same for all names of a port."""
+    return meeting.device_of(port) or os.path.realpath(port)
+
+
+def _readable(descriptors: list[int], pause_s: float | None) -> set[int]:
+    """Those that have something to read, or have ended, after at most the pause."""
+    poll = select.poll()
+    for descriptor in descriptors:
+        poll.register(descriptor, select.POLLIN)
+    return {descriptor for descriptor, _ in poll.poll(None if pause_s is None else pause_s * 1000)}
+
+
+def in_foreground() -> bool:
+    """Whether a terminal's Ctrl-C reaches this process."""
     try:
-        client.connect(str(folder / socket_name(port)))
-    except OSError:  # nobody listens
-        client.close()
-        return None
-    return client
+        with open("/dev/tty", "rb", buffering=0) as terminal:
+            return os.tcgetpgrp(terminal.fileno()) == os.getpgrp()
+    except OSError:
+        return False
 
 
 def _read_line(client: socket.socket) -> bytes:

@@ -7,8 +7,10 @@ import click
 from greywhale.board.device import Device
 from greywhale.board.session import ask_to_stop
 from greywhale.cli.output import json_option, port_option, show
+from greywhale.errors import UserError
 from greywhale.protocol import schema
 from greywhale.protocol.ports import choose_port
+from greywhale.protocol.transport import PortBusyError
 
 
 @click.command("stop")
@@ -31,7 +33,7 @@ def command(clear_fault: bool, port: str | None, as_json: bool) -> None:
         state = f", state {session['state']}" if session["state"] else ""
         show(as_json, facts, f"{chosen}: motors off{state}; what held the port (process {session['pid']}) ends.")
         return
-    with Device(chosen, restart=False) as device:
+    with _open(chosen) as device:
         device.stop()
         if clear_fault:
             device.ask(schema.ClearFaultRequest())
@@ -43,3 +45,13 @@ def command(clear_fault: bool, port: str | None, as_json: bool) -> None:
         {"port": device.port, "state": state, "restarted": device.restarted, **ended},
         f"{device.port}: motors off, state {state}.{restart}",
     )
+
+
+def _open(port: str) -> Device:
+    """The board on a port that no session of this user holds."""
+    try:
+        return Device(port, restart=False)
+    except PortBusyError as busy:
+        raise UserError(
+            f"Switch the motors' supply off: `greywhale stop` cannot reach the arm. {busy.message}"
+        ) from None

@@ -1,7 +1,7 @@
 """Tells what a command does: on stderr with -v and -vv, and in a file with --log-file, for a report of a bug.
 
-Modules tell their steps to `logging`, as info or debug; without these options nobody listens. The file is opened for
-appending and takes a line at a time, so that it also says what a killed command was doing.
+Modules tell their steps to `logging`, as info or debug; without these options only warnings are told. The file is
+opened for appending and takes a line at a time, so that it also says what a killed command was doing.
 """
 
 from __future__ import annotations
@@ -60,19 +60,18 @@ class _Lines(logging.Formatter):
 def begin(verbose: int, file: Path | None) -> None:
     """Listen, at `verbose` 1 to the steps, at 2 to every request; a file gets all."""
     end()
-    if verbose:
-        terminal = _Terminal(logging.INFO if verbose == 1 else logging.DEBUG)
-        terminal.setFormatter(logging.Formatter("%(name)s: %(message)s"))
-        ROOT.addHandler(terminal)
+    terminal = _Terminal((logging.WARNING, logging.INFO, logging.DEBUG)[min(verbose, 2)])
+    terminal.setFormatter(logging.Formatter("%(name)s: %(message)s" if verbose else "greywhale: %(message)s"))
+    ROOT.addHandler(terminal)
     if file is not None:
         ROOT.addHandler(_open(file))
-    if ROOT.handlers:
+    if verbose or file is not None:
         ROOT.setLevel(logging.DEBUG)
 
 
 def tell_command(arguments: Sequence[str]) -> None:
     """Say what runs, and with what."""
-    if ROOT.handlers:
+    if ROOT.isEnabledFor(logging.INFO):
         ROOT.info("command: greywhale %s", printable(" ".join(arguments)))
         ROOT.info("greywhale %s, Python %s, %s", version("greywhale"), platform.python_version(), platform.platform())
         ROOT.debug("packages: %s", ", ".join(f"{name} {version(name)}" for name in PACKAGES))

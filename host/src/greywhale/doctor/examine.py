@@ -10,6 +10,7 @@ from greywhale.board.device import REPLY_WAIT_S, Device
 from greywhale.board.flash.readback import compare_image
 from greywhale.board.pots import read_counts, read_pots
 from greywhale.board.refusal import upper_first
+from greywhale.board.session import Session
 from greywhale.board.upload import read_parameters
 from greywhale.doctor import board, bootloader, image, link, pots
 from greywhale.doctor.finding import Finding, Verdict
@@ -42,10 +43,11 @@ def examine(options: Options, report: Report = report_nothing) -> list[Finding]:
     if found[-1].verdict is Verdict.BAD:
         return found
     try:
-        with Device(options.port, restart=False) as device:
-            found += _examine_board(device, options, report)
-            motors_on = device.status().state not in AT_REST
-        found += _examine_image(options, motors_on, report) if options.image else [bootloader.not_examined()]
+        with Session.of(options.port):  # also while avrdude reads the image
+            with Device(options.port, restart=False) as device:
+                found += _examine_board(device, options, report)
+                motors_on = device.status().state not in AT_REST
+            found += _examine_image(options, motors_on, report) if options.image else [bootloader.not_examined()]
     except UserError as error:
         found.append(Finding("board", Verdict.BAD, upper_first(error.message)))
     return found

@@ -9,7 +9,7 @@ from pathlib import Path
 from serial.tools import list_ports
 
 from greywhale.errors import BAD_USAGE, UserError
-from greywhale.runtime import private_runtime_directory
+from greywhale.runtime import private_runtime_directories
 
 BOARDS = {"mega": "Arduino Mega 2560", "nano": "Arduino Nano (ATmega328P)"}
 
@@ -120,9 +120,8 @@ def _benches() -> list[Port]:
 
 
 def _links() -> list[Path]:
-    """What benches left in the runtime folder: each a link to its port, named board-process, mega-4711."""
-    directory = private_runtime_directory()
-    found = [] if directory is None else sorted(directory.iterdir())
+    """What benches left in the runtime folders: each a link to its port, named board-process, mega-4711."""
+    found = [link for folder in private_runtime_directories() for link in sorted(folder.iterdir())]
     return [link for link in found if link.is_symlink() and link.name.partition("-")[0] in BOARDS]
 
 

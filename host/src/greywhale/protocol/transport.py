@@ -18,6 +18,7 @@ from typing import Protocol
 import serial
 
 from greywhale.errors import UserError, os_reason
+from greywhale.protocol.holder import holder_of
 
 BAUD = 1_000_000
 
@@ -26,6 +27,8 @@ _READ_WAIT_S = 0.02
 _WRITE_WAIT_S = 1.0
 # So long is DTR down before it rises again: a board's reset line needs some 2 ms.
 _DTR_DOWN_S = 0.05
+_BUSY = (errno.EBUSY, errno.EAGAIN, errno.EWOULDBLOCK)
+_TERMINAL = os.makedev(5, 0)  # /dev/tty, whichever terminal that is
 _CFLAG = 2  # place of the control flags in what termios returns
 
 
@@ -34,6 +37,15 @@ class PortLostError(UserError):
 
     def __init__(self, port: str) -> None:
         super().__init__(f"{port}: the port went away in the middle; check the cable and try again.")
+
+
+class PortBusyError(UserError):
+    """Another program has the port."""
+
+    def __init__(self, port: str) -> None:
+        holder = holder_of(port)
+        by, what = ("another program", " (a serial monitor?)") if holder is None else (holder, "")
+        super().__init__(f"{port}: the port is in use by {by}; close that{what} and try again.")
 
 
 class Line(Protocol):
@@ -101,11 +113,21 @@ def _open(port: str, baud: int, read_wait_s: float) -> serial.Serial:
     if not os.path.exists(port):
         raise UserError(f"{port}: there is no such port; `greywhale ports` lists those there are.")
     try:
+        if _is_own_terminal(port):
+            raise UserError(f"{port}: this is a terminal, not a board's port; `greywhale ports` lists those there are.")
         return serial.Serial(port, baud, timeout=read_wait_s, write_timeout=_WRITE_WAIT_S, exclusive=True)
     except ValueError as error:
         raise UserError(f"{port}: cannot be opened: {error}.") from None
     except OSError as error:
+        if error.errno in _BUSY:
+            raise PortBusyError(port) from None
         raise UserError(_why_not_open(port, error)) from None
+
+
+def _is_own_terminal(port: str) -> bool:
+    """Whether a person types there: to open it as a port would spoil it."""
+    device = os.stat(port).st_rdev
+    return device == _TERMINAL or any(os.isatty(stream) and os.fstat(stream).st_rdev == device for stream in range(3))
 
 
 def _stays_up(line: serial.Serial) -> bool:
@@ -125,8 +147,6 @@ def _keep_up(line: serial.Serial, up: bool) -> None:
 
 
 def _why_not_open(port: str, error: OSError) -> str:
-    if error.errno in (errno.EBUSY, errno.EAGAIN, errno.EWOULDBLOCK):
-        return f"{port}: the port is in use by another program; close that (a serial monitor?) and try again."
     if error.errno in (errno.EACCES, errno.EPERM):
         return (
             f"{port}: no permission to open the port; add yourself to its group "

@@ -14,6 +14,7 @@ from greywhale.board.flash.avrdude import Progress, need_avrdude, upload_image
 from greywhale.board.flash.bootloader import Bootloader, Dialect, find_bootloader
 from greywhale.board.flash.images import Image, check_image, packaged_image, read_image
 from greywhale.board.flash.targets import BOARDS, FlashBoard
+from greywhale.board.session import Session
 from greywhale.errors import BAD_USAGE, UserError
 from greywhale.protocol import schema
 from greywhale.protocol.ports import board_of
@@ -47,16 +48,17 @@ def flash(
     sources = platformio.find_sources(firmware_dir) if image is None else None
     if sources is None:
         need_avrdude()
-    # avrdude waits for ever for a port that is not there, and breaks into one that is in use.
-    open_serial(port, BAUD, read_wait_s=0.0).close()
-    report("looking for the bootloader", 0.0)
-    target, _ = find_target(port, expected)
-    if sources is not None:
-        _build_and_upload(port, target, sources, report)
-    else:
-        _upload(port, target, image or _packaged(target.name), report)
-    report("greeting the firmware", 0.0)
-    return _greet(port, target)
+    with Session.of(port):  # also while this process has the port closed
+        # avrdude waits for ever for a port that is not there, and breaks into one that is in use.
+        open_serial(port, BAUD, read_wait_s=0.0).close()
+        report("looking for the bootloader", 0.0)
+        target, _ = find_target(port, expected)
+        if sources is not None:
+            _build_and_upload(port, target, sources, report)
+        else:
+            _upload(port, target, image or _packaged(target.name), report)
+        report("greeting the firmware", 0.0)
+        return _greet(port, target)
 
 
 def _expected_board(port: str, named: str | None) -> str | None:

@@ -1,0 +1,220 @@
+"""Where a session and those who want to stop it meet: at a name that follows from the user and the port alone.
+
+Neither the environment nor a folder counts, so a notebook, a cron job and `su -` all lead to the same place. The name
+is one of Linux's abstract sockets: it is no file, which somebody could remove, and it ends with its process. It also
+keeps this user's other sessions out while a session holds a port that it has not open (an open one would keep DTR up,
+so that nothing could restart the board). Any user may take a name first. So both ends look whose the other is, and
+there are some names.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import os
+import socket
+import stat
+import struct
+import time
+from collections.abc import Container, Iterator
+from typing import NamedTuple
+
+from greywhale.errors import UserError
+from greywhale.protocol.holder import describe
+
+NAMES = 8
+# So many clients wait to be let in, and so many have said nothing yet.
+MOST_CLIENTS = 64
+_PEER = struct.Struct("3i")  # struct ucred: process, user, group
+_PSEUDO_TERMINALS = range(136, 144)  # major numbers of devices
+_RETRY_S = 0.01
+
+
+class Peer(NamedTuple):
+    """The process at the other end, and its user."""
+
+    pid: int
+    uid: int
+
+    @property
+    def ours(self) -> bool:
+        return self.uid == os.geteuid()
+
+
+def peer_of(connection: socket.socket) -> Peer:
+    """Who is at the other end, by the system's word."""
+    pid, uid, _ = _PEER.unpack(connection.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, _PEER.size))
+    return Peer(pid, uid)
+
+
+def device_of(port: str) -> str | None:
+    """The device behind a port by its number, whatever it is called; None where no device is.
+
+    A pseudo-terminal's number is soon another one's, so the time at which it was made counts too.
+    """
+    try:
+        found = os.stat(port)
+    except (OSError, ValueError):
+        return None
+    if not stat.S_ISCHR(found.st_mode):
+        return None
+    made = f":{found.st_ctime_ns}" if os.major(found.st_rdev) in _PSEUDO_TERMINALS else ""
+    return f"{os.major(found.st_rdev)}:{os.minor(found.st_rdev)}{made}"
+
+
+def names_of(device: str) -> list[str]:
+    """Where this user's session on a device may listen. A system without abstract sockets needs other names."""
+    return [f"\0greywhale/{os.geteuid()}/{device}/{number}" for number in range(NAMES)]
+
+
+def listen(port: str, device: str) -> socket.socket:
+    """Listen for this user. A UserError where another session of this user has the port, an OSError without a name."""
+    for name in names_of(device):
+        listener = socket.socket(socket.AF_UNIX)
+        try:
+            taken = not _take(listener, name)
+            _refuse_second(port, device)
+        except BaseException:
+            listener.close()
+            raise
+        if not taken:
+            return listener
+        listener.close()
+    raise OSError(errno.EADDRINUSE, f"{_takers(device)} has taken all names for it")
+
+
+def _take(listener: socket.socket, name: str) -> bool:
+    try:
+        listener.bind(name)
+    except OSError as error:
+        if error.errno == errno.EADDRINUSE:
+            return False
+        raise
+    listener.listen(MOST_CLIENTS)
+    listener.setblocking(False)
+    return True
+
+
+def _takers(device: str) -> str:
+    """Who listens at a device's names."""
+    takers = set()
+    with contextlib.suppress(BlockingIOError):
+        for client, peer in _connections(device):
+            client.close()
+            takers.add(f"process {peer.pid} of user {peer.uid}")
+    return ", ".join(sorted(takers)) or "another user"
+
+
+def _refuse_second(port: str, device: str) -> None:
+    with contextlib.suppress(BlockingIOError):
+        for client, peer in _connections(device):
+            client.close()
+            if peer.ours and peer.pid != os.getpid():
+                raise UserError(
+                    f"{port}: the port is in use by another greywhale, {describe(peer.pid)}; wait for its end, or stop "
+                    f"it with `greywhale stop --port {port}`."
+                )
+
+
+def find(port: str, patience_s: float) -> tuple[socket.socket, Peer] | None:
+    """A connection to this user's session on a port, None where there is none.
+
+    Where others crowd a name, it is tried again until the patience ends.
+    """
+    device = device_of(port)
+    end = time.monotonic() + patience_s
+    while device is not None:
+        try:
+            for client, peer in _connections(device):
+                if peer.ours:
+                    return client, peer
+                client.close()
+            return None
+        except BlockingIOError:
+            if time.monotonic() > end:
+                return None
+        time.sleep(_RETRY_S)
+    return None
+
+
+def _connections(device: str) -> Iterator[tuple[socket.socket, Peer]]:
+    """Every one who listens at a device's names, of whatever user; at last BlockingIOError where a door was crowded."""
+    crowded = None
+    for name in names_of(device):
+        client = socket.socket(socket.AF_UNIX)
+        client.setblocking(False)
+        try:
+            client.connect(name)
+            peer = peer_of(client)
+        except OSError as error:  # mostly because nobody listens
+            client.close()
+            crowded = error if isinstance(error, BlockingIOError) else crowded
+        else:
+            yield client, peer
+    if crowded is not None:
+        raise crowded
+
+
+class Clients:
+    """Who connected to a listener. None of them is waited for."""
+
+    def __init__(self, listener: socket.socket) -> None:
+        self._listener = listener
+        self._silent: list[socket.socket] = []
+        self.asking: list[socket.socket] = []
+        self._answered: list[socket.socket] = []
+
+    def descriptors(self) -> list[int]:
+        """What to watch for something to hear."""
+        return [one.fileno() for one in (self._listener, *self._silent)]
+
+    def hear(self, ready: Container[int]) -> bool:
+        """Whether one of those who are `ready` asks for a stop; also let a newcomer in."""
+        speaking = [client for client in self._silent if client.fileno() in ready]
+        asking = [client for client in speaking if _says_stop(client)]
+        for client in speaking:
+            self._silent.remove(client)
+            if client not in asking:
+                client.close()
+        self.asking += asking
+        if self._listener.fileno() in ready:
+            self._silent += _accept(self._listener)
+        if len(self._silent) > MOST_CLIENTS:
+            self._silent.pop(0).close()
+        return bool(asking)
+
+    def answer(self, line: bytes) -> None:
+        for client in self.asking:
+            with contextlib.suppress(OSError):  # it has gone, or has not read for long
+                client.send(line)
+        self._answered += self.asking
+        self.asking = []
+
+    def close(self) -> None:
+        for one in (self._listener, *self._silent, *self.asking, *self._answered):
+            one.close()
+
+
+def _says_stop(client: socket.socket) -> bool:
+    """Whether a client asks for a stop; it is told at once that it was heard."""
+    try:
+        if not client.recv(16).startswith(b"stop"):
+            return False
+    except OSError:
+        return False
+    with contextlib.suppress(OSError):  # whether it still listens or not
+        client.send(b"\n")
+    return True
+
+
+def _accept(listener: socket.socket) -> list[socket.socket]:
+    """A client of this user; none where it is another's, or has gone again."""
+    try:
+        client, _ = listener.accept()
+    except OSError:
+        return []
+    if not peer_of(client).ours:
+        client.close()
+        return []
+    client.setblocking(False)
+    return [client]
