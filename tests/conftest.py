@@ -9,9 +9,14 @@ import tempfile
 from collections.abc import Iterator
 
 import pytest
+from hypothesis import settings
 from xdist.scheduler import LoadScopeScheduling
 
 from greywhale.runtime import VARIABLE
+
+# What a test finds depends on the code alone: neither on chance nor on the load of the machine.
+settings.register_profile("suite", deadline=None, derandomize=True)
+settings.load_profile("suite")
 
 
 def pytest_configure() -> None:

@@ -155,7 +155,7 @@ def test_a_bad_end_keeps_what_was_recorded_and_says_why(tmp_path: Path, faults: 
         assert board.state in (State.DISABLED, State.FAULT) or faults.unplug_at
     log = read_log(out)
     assert not log.complete
-    assert 100 < len(log.time) < 200
+    assert 0 < len(log.time) < 200
     assert parts(tmp_path) == []
 
 

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -16,8 +15,6 @@ from greywhale.fuzzy.settings import GAIN_UNIT, LARGEST_KI_PERIOD, LEAST_WIDTH, 
 TABLES = Path(__file__).parents[2] / "shared" / "fuzzy_tables"
 LARGEST = 32767
 
-hypothesis_settings.register_profile("fuzzy", deadline=None, derandomize=True)
-hypothesis_settings.load_profile("fuzzy")
 
 Case = tuple[JointSettings, int]
 Points = Callable[[JointSettings, int, int], tuple[NDArray[np.int64], NDArray[np.int64]]]
