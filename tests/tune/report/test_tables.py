@@ -69,14 +69,14 @@ def test_table_10_prints_a_common_start_once_and_different_starts_each() -> None
 def test_table_11_has_the_three_measures_with_improvement_and_floor() -> None:
     table = tables.step_performance(evaluation(BEFORE), evaluation(AFTER), (1.1, 1.2, 1.3, None, 1.25))
     error = row(table, "All joints", "Mean")
-    assert error["Before tuning"] == pytest.approx(0.04)
+    assert error["before"] == pytest.approx(0.04)
     assert error["lower by %"] == pytest.approx(35.0)
     assert error["x floor"] == 1.25
     assert row(table, "Joint 1", "Mean")["lower by %"] == pytest.approx(-20.0), "worse is negative"
     assert row(table, "Joint 3", "Mean")["x floor"] is None
-    assert row(table, "Joint 0", "Steady")["After tuning"] == 0.01
-    assert row(table, "Joint 3", "Time delay, onset")["After tuning"] is None
-    assert row(table, "Joint 2", "Time delay, correlation")["After tuning"] == pytest.approx(0.101)
+    assert row(table, "Joint 0", "Steady")["after"] == 0.01
+    assert row(table, "Joint 3", "Time delay, onset")["after"] is None
+    assert row(table, "Joint 2", "Time delay, correlation")["after"] == pytest.approx(0.101)
     assert "x floor: after tuning as a multiple" in table.text()
     json.dumps(table.as_dict(), allow_nan=False)
 
@@ -87,8 +87,8 @@ def test_overshoot_and_settling_time_stand_in_every_table_of_a_motion() -> None:
         for whole, over in ((evaluation(BEFORE), 4.0), (evaluation(AFTER), 31.4))
     )
     for table in (tables.step_performance(calm, brisk), tables.motion_performance("multi-steps", calm, brisk)):
-        assert row(table, "Joint 2", "Overshoot")["After tuning"] == 31.4
-        assert row(table, "Joint 2", "Settling")["Before tuning"] == 0.5
+        assert row(table, "Joint 2", "Overshoot")["after"] == 31.4
+        assert row(table, "Joint 2", "Settling")["before"] == 0.5
         assert "MORE OVERSHOOT than before: joint 0 from 4 to 31 %" in table.text()
     assert "OVERSHOOT" not in tables.step_performance(brisk, calm).text()
 
@@ -109,11 +109,12 @@ def test_the_papers_tables_11_and_12_add_up_as_printed() -> None:
     assert row(table, "Joint 1", "Steady")["paper before"] == 0.31
     assert row(table, "Joint 2", "Time delay, onset")["paper after"] == 0.15
     assert row(table, "Joint 2", "Time delay, correlation")["paper after"] is None
+    assert max(len(line) for line in table.text().splitlines() if line.startswith("Joint")) <= 80
 
 
 def test_table_12_shows_a_joint_that_got_worse_and_no_floor_where_none_is_known() -> None:
     table = tables.motion_performance("multi-steps", evaluation(BEFORE), evaluation(AFTER), paper=True)
-    assert row(table, "All joints", "Mean")["After tuning"] == pytest.approx(0.026)
+    assert row(table, "All joints", "Mean")["after"] == pytest.approx(0.026)
     assert row(table, "Joint 2", "Mean")["paper after"] == 0.2364
     assert "floor: " not in table.text()
     assert "multi-steps" in table.title

@@ -58,7 +58,7 @@ _MEASURES: tuple[_Measure, ...] = (
     ("Time delay, correlation (s)", "delay_s", ".3f", None),
     *_STEPS,
 )
-_SETTLING = "settling time: into 5 % of the step, at least 0.02 rad; - where a step never settled."
+_SETTLING = "settling time: to within 5 % of the step (at least 0.02 rad); -: one never settled."
 
 
 @dataclass(frozen=True)
@@ -231,7 +231,7 @@ def _compared(
 
 
 def _comparison(title: str, groups: Sequence[Group], notes: tuple[str, ...], paper: bool) -> Table:
-    columns = (("Before tuning", ""), ("After tuning", ""), ("lower by %", ".1f"), ("x floor", ".2f"))
+    columns = (("before", ""), ("after", ""), ("lower by %", ".1f"), ("x floor", ".2f"))
     theirs = (("paper before", ""), ("paper after", ""))
     floors = any(values[3] is not None for group in groups for _, values in group.rows)
     floor = ("x floor: after tuning as a multiple of the least that any controller could reach.",) if floors else ()
