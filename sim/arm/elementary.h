@@ -1,6 +1,6 @@
 // Sine, cosine and logarithm of our own, so that an arm's bits hang on no library: IEEE 754 sums and products alone.
-// Polynomials and split of pi/2 are those of fdlibm (Sun Microsystems, 1993; freely distributable); within 1.5 ulp where
-// an arm moves.
+// Polynomials and split of pi/2 are those of fdlibm (Sun Microsystems, 1993; freely distributable); within 1.5 ulp
+// where an arm moves.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,7 @@
-"""The two kinds of bootloader on pseudo-terminals: each answers in its own way, at its own speed only."""
+"""The two kinds of bootloader on pseudo-terminals: each answers in its own way, at its own speed only.
+
+The host's patience is counted by the fake's own turns, so that a busy machine cannot make it run out.
+"""
 
 from __future__ import annotations
 
@@ -9,10 +12,13 @@ import threading
 import tty
 from functools import reduce
 from operator import xor
+from types import SimpleNamespace
 from typing import Self
+from unittest import mock
 
 MEGA2560 = b"\x1e\x98\x01"
 ATMEGA328P = b"\x1e\x95\x0f"
+TURN_S = 0.02
 
 
 class FakeBootloader(threading.Thread):
@@ -32,6 +38,9 @@ class FakeBootloader(threading.Thread):
         self._speed: int = getattr(termios, f"B{baud}")
         self._buffer = b""
         self._ending = threading.Event()
+        self._turns = 0
+        clock = SimpleNamespace(monotonic=lambda: self._turns * TURN_S)
+        self._clock = mock.patch("greywhale.board.flash.bootloader.time", clock)
         self.start()
 
     def read(self, count: int) -> bytes:
@@ -53,7 +62,9 @@ class FakeBootloader(threading.Thread):
 
     def run(self) -> None:
         while not self._ending.is_set():
-            if not select.select([self.master], [], [], 0.02)[0]:
+            self._turns += 1
+            if not select.select([self.master], [], [], TURN_S)[0]:
+                self._buffer = b""  # half a question, or what another bootloader was asked: a reset ends it
                 continue
             speed: int = termios.tcgetattr(self.slave)[5]
             self.heard.add(speed)
@@ -64,9 +75,11 @@ class FakeBootloader(threading.Thread):
             os.write(self.master, said)
 
     def __enter__(self) -> Self:
+        self._clock.start()
         return self
 
     def __exit__(self, *_: object) -> None:
+        self._clock.stop()
         self._ending.set()
         self.join(10)
         os.close(self.master)
