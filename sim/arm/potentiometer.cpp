@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "elementary.h"
-
 namespace greywhale::arm {
 
 Potentiometers::Potentiometers(const std::array<Potentiometer, kJoints>& pots, double supply, std::uint64_t seed,
@@ -20,9 +18,7 @@ double Potentiometers::wiper(std::size_t joint, double angle) const {
   const Potentiometer& pot = pots_[joint];
   const double along = std::clamp(pot.direction * (angle - pot.centre) / pot.track + 0.5, 0.0, 1.0);
   // One sine period over the track: exact at both ends and at the centre, as a pot that was calibrated there.
-  double sine, cosine;
-  sine_cosine(kTurn * along, sine, cosine);
-  return supply_ * (along + pot.linearity * sine);
+  return supply_ * (along + pot.linearity * std::sin(kTurn * along));
 }
 
 void Potentiometers::millivolts(const double (&angles)[kJoints], double (&out)[kJoints]) {

@@ -6,8 +6,8 @@
 // equations from here.
 #pragma once
 
-#include "elementary.h"
 #include "parameters.h"
+#include "scalar.h"
 
 namespace greywhale::arm {
 

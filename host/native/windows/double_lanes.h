@@ -1,6 +1,7 @@
 // The arm's number type in lanes of double precision: as many as a vector of the instruction set has.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 
 #include "arm/scalar.h"
@@ -48,6 +49,13 @@ GREYWHALE_INLINE bool any(Condition mask) {
   bool found = false;
   for (std::size_t n = 0; n < kLanes; ++n) found = found || mask.v[n] != 0;
   return found;
+}
+
+GREYWHALE_INLINE void sine_cosine(Lanes angle, Lanes& sine, Lanes& cosine) {
+  for (std::size_t n = 0; n < kLanes; ++n) {
+    sine.v[n] = std::sin(angle.v[n]);
+    cosine.v[n] = std::cos(angle.v[n]);
+  }
 }
 
 }  // namespace greywhale::windows::GREYWHALE_INSTRUCTIONS
