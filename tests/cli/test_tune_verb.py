@@ -347,7 +347,7 @@ def interrupt_after(monkeypatch: pytest.MonkeyPatch, batches: int) -> None:
     """Ctrl-C as the progress bar is told of that batch."""
 
     @contextlib.contextmanager
-    def impatient(as_json: bool) -> Iterator[Any]:
+    def impatient(brief: bool = False) -> Iterator[Any]:
         told = itertools.count(1)
 
         def report(what: str, fraction: float, note: str = "") -> None:

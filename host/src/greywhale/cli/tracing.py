@@ -79,7 +79,7 @@ def tell_command(arguments: Sequence[str]) -> None:
 
 def is_on_stderr() -> bool:
     """Whether -v tells the steps there."""
-    return any(isinstance(handler, _Terminal) for handler in ROOT.handlers)
+    return any(isinstance(one, _Terminal) and one.level <= logging.INFO for one in ROOT.handlers)
 
 
 def end() -> None:
