@@ -20,7 +20,7 @@ COMPARE = "compare --functions sphere --methods cma-es --budget 20 --seeds 2 --w
 
 def run(folder: Path, command: list[str], arguments: str) -> None:
     done = subprocess.run(
-        [*command, *arguments.split(), "--json"], cwd=folder, capture_output=True, text=True, check=False
+        [*command, "-q", *arguments.split(), "--json"], cwd=folder, capture_output=True, text=True, check=False
     )
     assert (done.returncode, done.stderr) == (0, "")
     json.loads(done.stdout)

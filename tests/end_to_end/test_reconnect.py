@@ -31,7 +31,7 @@ def test_a_log_goes_on_when_its_port_is_given_back(start_bench: Callable[..., Be
     name, out = tmp_path / "board", tmp_path / "log.csv"
     options = ("--speed", "1", "--link", str(name))
     first = start_bench(*options)
-    command = [sys.executable, "-m", "greywhale", "record", "--reconnect", "-s", "20", "--every", "10", "--json"]
+    command = [sys.executable, "-m", "greywhale", "-q", "record", "--reconnect", "-s", "20", "--every", "10", "--json"]
     with subprocess.Popen(
         [*command, "-o", str(out), "--port", str(name)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     ) as host:
