@@ -16,7 +16,8 @@ from fuzzy_octave import paper_sets
 from greywhale.fuzzy import exact
 from greywhale.fuzzy.export_fis import OUTPUT_HALF_WIDTH
 
-UNIVERSE = np.linspace(-1, 1, 101)
+END = 1.0 + OUTPUT_HALF_WIDTH
+UNIVERSE = np.linspace(-END, END, 101)
 
 
 def degrees(x: float, n_c: float, z_a: float, z_c: float, p_b: float) -> tuple[float, float, float]:
@@ -39,7 +40,7 @@ def scikit_u(x: float, y: float, s: dict[str, float]) -> float:
     total = np.zeros_like(UNIVERSE)
     for strength, peak in rules:
         output = skfuzzy.trimf(UNIVERSE, [peak - OUTPUT_HALF_WIDTH, peak, peak + OUTPUT_HALF_WIDTH])
-        total = np.fmax(total, np.fmin(strength, output))
+        total = np.fmax(total, strength * output)
     # The centroid of samples, as evalfis takes it; skfuzzy.defuzz would integrate the polygon between them.
     return float((total * UNIVERSE).sum() / total.sum())
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import importlib
 import json
-import os
 import platform
 import sys
 from dataclasses import asdict
@@ -37,8 +36,6 @@ def main(chosen: list[str]) -> int:
     if unknown:
         print(f"No benchmark is called {', '.join(unknown)}; there are {', '.join(names())}.", file=sys.stderr)
         return 2
-    # A bench with an arm of ours is a process of its own, which looks for modules in no current folder.
-    os.environ["PYTHONPATH"] = os.pathsep.join([str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])])
     results: dict[str, list[dict[str, object]]] = {}
     for name in chosen or names():
         figures: list[Figure] = importlib.import_module(f"tools.bench.{PREFIX}{name}").run()

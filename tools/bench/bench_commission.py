@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 import numpy.typing as npt
@@ -31,6 +32,8 @@ from tools.bench.study import repeat
 from tools.bench.tuning import motions
 
 Floats = npt.NDArray[np.float64]
+
+ROOT = Path(__file__).parents[2]
 
 SEEDS = tuple(map(int, os.environ.get("GREYWHALE_FOREIGN", "1 2 3 4 5").split()))
 WALL_S = 240.0
@@ -63,7 +66,12 @@ class Commissioned:
 
 def commissioned(seed: int, folder: Path, unseen: Mapping[str, Trajectory], **options: Any) -> Commissioned:
     """Commission the arm of that seed through its serial port."""
-    with BenchProcess(str(seed), "1", str(folder), module="tools.bench.foreign_arm") as bench:
+    # The bench is a process of its own, which looks for modules in no current folder.
+    paths = os.pathsep.join([str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])])
+    with (
+        patch.dict(os.environ, PYTHONPATH=paths),
+        BenchProcess(str(seed), "1", str(folder), module="tools.bench.foreign_arm") as bench,
+    ):
         before = recorded(bench, folder, "before", unseen)
         started = time.monotonic()
         outcome = commission(Options(port=bench.port, out=folder / "commission", **options))
