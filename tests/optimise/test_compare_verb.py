@@ -100,7 +100,7 @@ def test_folder_that_is_not_there(capsys: Captured, tmp_path: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("started", [1, 3])
 def test_interrupt_ends_all_processes_and_writes_nothing(tmp_path: Path, started: int) -> None:
-    command = [sys.executable, "-m", "greywhale", "compare", "--budget", "2000", "--seeds", "500", "--jobs", "2"]
+    command = [sys.executable, "-m", "greywhale", "-q", "compare", "--budget", "2000", "--seeds", "500", "--jobs", "2"]
     running = subprocess.Popen(
         [*command, "--methods", "pso", "--out", "r.csv"],
         cwd=tmp_path,
@@ -137,6 +137,7 @@ def test_an_interrupted_comparison_goes_on_from_its_results_file(tmp_path: Path,
         sys.executable,
         "-m",
         "greywhale",
+        "-q",
         "compare",
         "--methods",
         "pso",
