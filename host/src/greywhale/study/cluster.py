@@ -11,6 +11,8 @@ import ssl
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
 from importlib.metadata import PackageNotFoundError, version
+from queue import SimpleQueue
+from threading import Thread
 from types import ModuleType
 from typing import Any, ParamSpec, TypeVar
 
@@ -44,7 +46,11 @@ class DaskWorkers:
     def executor(self) -> Iterator[Executor]:
         with _quiet(), self._client() as client:
             self._require_same_versions(client)
-            yield _Executor(client, self._distributed.comm.CommClosedError)
+            executor = _Executor(client, self._distributed.comm.CommClosedError)
+            try:
+                yield executor
+            finally:
+                executor.shutdown()
 
     def deaths(self, error: BaseException) -> int:
         if isinstance(error, self._distributed.KilledWorker):
@@ -84,12 +90,25 @@ class _Executor(Executor):
     def __init__(self, client: Any, closed: type[Exception]) -> None:
         self._client = client
         self._closed = closed
+        self._ended: SimpleQueue[tuple[Any, Future[Any]] | None] = SimpleQueue()
+        # A client that closes may never answer who asks it for a result. Python would wait for Dask's own thread of
+        # callbacks when it ends; it does not wait for this one.
+        Thread(target=self._pass_on, name="results of Dask", daemon=True).start()
 
     def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
         future: Future[T] = Future()
+        # Not pure: a task that is tried again must not be answered with its last error.
+        task = self._client.submit(fn, *args, **kwargs, pure=False)
+        task.add_done_callback(lambda task: self._ended.put((task, future)))
+        return future
 
-        def pass_on(task: Any) -> None:
-            """In a thread of the client's."""
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """Take no more results."""
+        self._ended.put(None)
+
+    def _pass_on(self) -> None:
+        while (ended := self._ended.get()) is not None:
+            task, future = ended
             try:
                 result = task.result()
             except (CancelledError, asyncio.CancelledError, self._closed):  # the scheduler is lost
@@ -101,10 +120,6 @@ class _Executor(Executor):
             else:
                 if future.set_running_or_notify_cancel():
                     future.set_result(result)
-
-        # Not pure: a task that is tried again must not be answered with its last error.
-        self._client.submit(fn, *args, **kwargs, pure=False).add_done_callback(pass_on)
-        return future
 
 
 def _require_loopback(address: str) -> None:
