@@ -18,7 +18,7 @@ from greywhale_sim import mistakes, serve
 from greywhale_sim.assemble import BenchOptions, build_bench
 from greywhale_sim.bench import SLICE_S, Bench
 from greywhale_sim.leader import LeaderPlayer
-from greywhale_sim.lockstep import LockStepLine, tell_joints
+from greywhale_sim.lockstep import LockStepBench, tell_joints
 from greywhale_sim.wiring import MEGA
 from tests.bench.conftest import FakeBoard, FakePlant, FakePots
 
@@ -54,9 +54,10 @@ def test_hands_and_motions_leave_them_at_0(two: Bench) -> None:
 def test_the_board_knows_the_joints_of_its_arm_and_follows_with_them(tmp_path: Path) -> None:
     bench = build_bench(BenchOptions(arm=Path("two_joints")))
     assert bench.floating == 0b1100_1100
-    tell_joints(bench)
+    options = BenchOptions(arm=Path("two_joints"))
+    tell_joints(bench, options)
     cast(Any, bench.board).reset()
-    with Device("two joints", 4.0, 8.0, line=LockStepLine(bench)) as device:
+    with LockStepBench(options, bench) as served, Device(served.port) as device:
         assert read_parameters(device) == ParameterTable.defaults().with_raw(UNUSED)
         record(device, tmp_path / "log.csv", 4.0, enable=True)
     log = read_log(tmp_path / "log.csv")
@@ -77,7 +78,7 @@ def test_only_a_new_board_is_told_its_joints(
     if "eeprom" in options:
         eeprom.write_bytes(b"\xff" * 4096)
     asked: list[Bench] = []
-    monkeypatch.setattr(serve, "tell_joints", asked.append)
+    monkeypatch.setattr(serve, "tell_joints", lambda bench, options: asked.append(bench))
     given = {**options, "eeprom": eeprom} if "eeprom" in options else options
     with serve.running(serve.ServeOptions(arm=Path("two_joints"), **given)) as server:  # type: ignore[arg-type]
         assert asked == [server.bench] * told

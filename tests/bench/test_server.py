@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -141,7 +141,7 @@ def test_a_host_that_dies_with_bytes_unread_does_not_stop_the_bench(board: Any, 
     wall.meanwhile = host.close
     server.turn()
     assert not server.port.connected
-    assert server.port.unread() == 0
+    assert cast(SerialPort, server.port).unread() == 0
 
 
 def test_eeprom_reaches_its_file_when_it_changes(board: Any, server: Server, eeprom: Path) -> None:

@@ -11,8 +11,9 @@ import pytest
 from greywhale.board.device import Device
 from greywhale.calibrate.motors import LEASE_MS, SHARES
 from greywhale.cli.entry import run
-from greywhale.demo import BenchProcess
+from greywhale.demo import RunningBench
 from greywhale_sim.mistakes import MISTAKES, USUAL, WHERE, Mistake
+from greywhale_sim.words import lock_step
 from tools.bench.hands import SECOND_DEG, Hands, run_calibrate
 
 SECOND = ("--second", ",".join(f"{angle:g}" for angle in SECOND_DEG))
@@ -22,8 +23,8 @@ ENDS = {"refused": 1, "mended": 0, "noted": 0}
 
 
 @pytest.fixture(scope="module")
-def bench() -> Iterator[BenchProcess]:
-    with BenchProcess("--speed", "max") as started:
+def bench() -> Iterator[RunningBench]:
+    with lock_step() as started:
         yield started
 
 
@@ -33,7 +34,7 @@ def described(mistake: Mistake) -> str:
 
 @pytest.mark.parametrize("mistake", [one for one in MISTAKES if one.verb == "calibrate"], ids=described)
 def test_calibrate_names_it_and_no_motor_gets_more_than_a_pulse(
-    bench: BenchProcess, tmp_path: Path, mistake: Mistake
+    bench: RunningBench, tmp_path: Path, mistake: Mistake
 ) -> None:
     place = USUAL[mistake.on]
     hands = Hands(bench)

@@ -14,11 +14,12 @@ from greywhale.arm import ArmParameters
 from greywhale.board.device import Device
 from greywhale.board.upload import read_parameters, run_set
 from greywhale.calibrate.motors import FARTHEST_RAD, LEASE_MS, SHARES, Pulse, examine_motor, pulse, pulse_table
-from greywhale.demo import BenchProcess
+from greywhale.demo import RunningBench
 from greywhale.errors import UserError
 from greywhale.files.arm import default_arm
 from greywhale.protocol import schema
 from greywhale.table import ParameterTable
+from greywhale_sim.words import lock_step
 from tools.bench.hands import bench_of
 
 # At the strongest pulse a motor that runs away is at 5 rad/s when it is stopped, and coasts.
@@ -27,13 +28,13 @@ MOVING = (schema.State.SOFT_START, schema.State.FOLLOWING)
 
 
 @pytest.fixture(scope="module")
-def bench() -> Iterator[BenchProcess]:
-    with BenchProcess("--speed", "max") as started:
+def bench() -> Iterator[RunningBench]:
+    with lock_step() as started:
         yield started
 
 
 @pytest.fixture
-def device(bench: BenchProcess) -> Iterator[Device]:
+def device(bench: RunningBench) -> Iterator[Device]:
     with Device(bench.port) as opened:
         yield opened
     for joint in range(4):
@@ -42,7 +43,7 @@ def device(bench: BenchProcess) -> Iterator[Device]:
 
 @pytest.mark.parametrize("wiring", ["connected", "reversed"])
 @pytest.mark.parametrize("joint", range(4))
-def test_no_pulse_exceeds_its_voltage_or_its_way(bench: BenchProcess, device: Device, joint: int, wiring: str) -> None:
+def test_no_pulse_exceeds_its_voltage_or_its_way(bench: RunningBench, device: Device, joint: int, wiring: str) -> None:
     table = read_parameters(device)
     bench.command(f"motor {joint} {wiring}")
     for share in SHARES:
@@ -77,7 +78,7 @@ def test_the_set_of_a_pulse_gives_one_motor_few_volts_and_the_others_none() -> N
 
 
 @pytest.mark.parametrize("joint", range(4))
-def test_each_motor_is_told_by_its_sign(bench: BenchProcess, device: Device, joint: int) -> None:
+def test_each_motor_is_told_by_its_sign(bench: RunningBench, device: Device, joint: int) -> None:
     table = read_parameters(device)
     assert examine_motor(device, table, joint).sign == 1
     bench.command(f"motor {joint} reversed")
@@ -85,7 +86,7 @@ def test_each_motor_is_told_by_its_sign(bench: BenchProcess, device: Device, joi
     assert examine_motor(device, table.with_raw({f"joint{joint}.motor_sign": -1}), joint).sign == 1
 
 
-def test_an_arm_that_gravity_moves_more_than_the_pulse_is_told_right(bench: BenchProcess, device: Device) -> None:
+def test_an_arm_that_gravity_moves_more_than_the_pulse_is_told_right(bench: RunningBench, device: Device) -> None:
     """A pulse up and a pulse down both end below: their difference counts."""
     table = read_parameters(device)
     weak = pulse_table(table, 1, SHARES[0] * table.supply_v)
@@ -95,7 +96,7 @@ def test_an_arm_that_gravity_moves_more_than_the_pulse_is_told_right(bench: Benc
 
 
 @pytest.mark.parametrize(("one", "other"), [(0, 1), (1, 2), (2, 3)])
-def test_swapped_motors_are_named(bench: BenchProcess, device: Device, one: int, other: int) -> None:
+def test_swapped_motors_are_named(bench: RunningBench, device: Device, one: int, other: int) -> None:
     bench.command(f"motor {one} {other}")
     bench.command(f"motor {other} {one}")
     with pytest.raises(UserError, match=f"the motor of joint {one} moved joint {other}"):
@@ -103,7 +104,7 @@ def test_swapped_motors_are_named(bench: BenchProcess, device: Device, one: int,
 
 
 @pytest.mark.parametrize("joint", range(4))
-def test_a_dead_motor_is_named(bench: BenchProcess, device: Device, joint: int) -> None:
+def test_a_dead_motor_is_named(bench: RunningBench, device: Device, joint: int) -> None:
     bench.command(f"motor {joint} dead")
     with pytest.raises(UserError, match=f"the motor of joint {joint} did not move it with 5.2 V"):
         examine_motor(device, read_parameters(device), joint)

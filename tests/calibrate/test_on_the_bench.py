@@ -1,11 +1,9 @@
-"""A whole calibration on the bench: potentiometers mounted anyhow, hands that do what is asked, a real port."""
+"""A whole calibration on the bench: potentiometers mounted anyhow, hands that do what is asked."""
 
 from __future__ import annotations
 
 import json
-import subprocess
 import sys
-import threading
 from collections.abc import Iterator
 from contextlib import ExitStack
 from dataclasses import replace
@@ -17,7 +15,8 @@ import pytest
 from greywhale.board.device import Device
 from greywhale.board.stream import stream
 from greywhale.board.upload import read_parameters, upload_set
-from greywhale.demo import BenchProcess
+from greywhale.cli.entry import run
+from greywhale.demo import RunningBench
 from greywhale.files.arm import default_arm
 from greywhale.firmware import ANGLE_LSB
 from tools.bench.hands import SECOND_DEG, Hands, bench_of, mounted_anyhow, run_calibrate
@@ -32,21 +31,11 @@ def benches() -> Iterator[ExitStack]:
         yield started
 
 
-def shown(bench: BenchProcess, degrees: np.ndarray) -> np.ndarray:
+def shown(bench: RunningBench, degrees: np.ndarray) -> np.ndarray:
     """The eight angles (rad) that the board reads while both arms are held there."""
-    arrived = threading.Event()
-
-    def bring() -> None:
-        Hands(bench).bring("both", degrees, 0.2)
-        arrived.set()
-
-    with Device(bench.port) as device:
+    Hands(bench).bring("both", degrees, 0.2)
+    with Device(bench.port, restart=False) as device:
         received = stream(device, 1)
-        worker = threading.Thread(target=bring)
-        worker.start()
-        while not arrived.is_set():
-            next(received)
-        worker.join()
         samples = [next(received).sample for _ in range(600)][-300:]
         device.telemetry(0)
     angles: np.ndarray = np.mean([(*one.leader, *one.follower) for one in samples], axis=0) * ANGLE_LSB
@@ -102,7 +91,7 @@ def test_an_arm_of_two_joints_is_asked_for_two_joints_and_the_others_are_not_in_
     bench = benches.enter_context(bench_of(arm, tmp_path))
     with Device(bench.port) as device:
         before = read_parameters(device)
-    done = run_calibrate(Hands(bench), tmp_path, *SECOND, "--joints", "0,1", "--backup", "mine.toml")
+    done = run_calibrate(Hands(bench), tmp_path, *SECOND, "--joints", "0,1", "--backup", f"{tmp_path}/mine.toml")
     assert done.code == 0, done.said
     assert done.said.count("Sweep ") == 4
     assert "joint 2" not in done.said
@@ -115,9 +104,7 @@ def test_an_arm_of_two_joints_is_asked_for_two_joints_and_the_others_are_not_in_
         table = read_parameters(device)
     assert table.joints_in_use == (0, 1)
     assert table.each("leader", "scale")[2:] == (0, 0)
-    verb = [sys.executable, "-m", "greywhale"]
-    restore = [*verb, "params", "restore", "mine.toml", "--port", bench.port]
-    subprocess.run(restore, cwd=tmp_path, check=True, capture_output=True)
+    assert run(["params", "restore", f"{tmp_path}/mine.toml", "--port", bench.port]) == 0
     with Device(bench.port) as device:
         assert replace(read_parameters(device), name=before.name) == before
 
@@ -133,9 +120,11 @@ def test_a_joint_that_was_not_in_use_can_be_again(benches: ExitStack, tmp_path: 
     assert shown(bench, POSE) == pytest.approx(np.tile(np.radians(POSE), 2), abs=0.004)
 
 
-def test_an_input_that_ends_changes_nothing(benches: ExitStack, tmp_path: Path) -> None:
+def test_an_input_that_ends_changes_nothing(
+    benches: ExitStack, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     bench = benches.enter_context(bench_of(default_arm(), tmp_path))
-    command = [sys.executable, "-m", "greywhale", "calibrate", "--port", bench.port]
-    done = subprocess.run(command, cwd=tmp_path, stdin=subprocess.DEVNULL, capture_output=True, text=True)
-    assert done.returncode == 1
-    assert "the input ended in the middle of the calibration. Nothing was stored." in done.stderr
+    with Path("/dev/null").open() as nothing:
+        monkeypatch.setattr(sys, "stdin", nothing)
+        assert run(["calibrate", "--port", bench.port]) == 1
+    assert "the input ended in the middle of the calibration. Nothing was stored." in capsys.readouterr().err

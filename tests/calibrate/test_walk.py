@@ -39,6 +39,9 @@ class Arms:
     def telemetry(self, every: int) -> None:
         pass
 
+    def clock(self) -> float:
+        return self._tick / 1000
+
     def turn(self, *pots: int) -> None:
         for row in SWEEP:
             self.coming.append(self.at + row * np.isin(np.arange(8), pots))

@@ -13,29 +13,35 @@ import pytest
 import greywhale.commission
 import greywhale.demo
 from greywhale.arm.export import urdf
+from greywhale.board.device import Device
+from greywhale.cli import flash as flash_verb
 from greywhale.cli import identify as identify_verb
 from greywhale.cli import tune as tune_verb
 from greywhale.commission import Options, campaign, learn
 from greywhale.commission.book import Book
 from greywhale.commission.learn import Learnt
 from greywhale.commission.search import KI, KP
-from greywhale.demo import BenchProcess, DemoOptions
+from greywhale.demo import DemoOptions
 from greywhale.files import parameter_file
 from greywhale.files.arm import content_of, default_arm, load_arm
 from greywhale.files.leader import save_leader
 from greywhale.files.log import read_log
 from greywhale.identify import identify
+from greywhale.protocol.schema import HelloReply
 from greywhale.reproduce import run as reproduce_run
 from greywhale.reproduce.pages import report as reproduce_report
+from greywhale.reproduce.pages.document import Document
 from greywhale.reproduce.request import Request
 from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory
 from greywhale.tune import tune
 from greywhale.tune.model import Model, load_model
 from greywhale_sim import serve as bench_serve
+from greywhale_sim.lockstep import LockStepBench
+from greywhale_sim.words import lock_step
 from tests.commission.simulated import SimulatedRig
 from tests.docs.running import Once, run
-from tests.reproduce.small import small_document
+from tests.support.demo import in_this_process
 from tests.tune.models import write_model
 from tools.bench.recordings import TABLES, random_arm, record_three, table_of
 from tools.docs.site import ROOT
@@ -45,9 +51,9 @@ LOGS = ("fit", "log1", "log2", "log3", "log", "before", "after", "second")
 
 
 @pytest.fixture(scope="module")
-def bench() -> Iterator[BenchProcess]:
-    """One bench for all tests of a file; `ports` finds it, so that no command has to name it."""
-    with BenchProcess("--speed", "max") as running:
+def bench() -> Iterator[LockStepBench]:
+    """One bench for all tests of a file; the environment names its port, so that no command has to."""
+    with lock_step() as running:
         yield running
 
 
@@ -76,19 +82,19 @@ def yours(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def scratch(yours: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def scratch(yours: Path, bench: LockStepBench, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A copy of it to work in."""
     for path in yours.iterdir():
         if path.is_file():
             shutil.copy(path, tmp_path)
     (tmp_path / "shared").symlink_to(ROOT / "shared")
     monkeypatch.chdir(tmp_path)
-    monkeypatch.delenv("GREYWHALE_PORT", raising=False)
+    monkeypatch.setenv("GREYWHALE_PORT", bench.port)
     return tmp_path
 
 
 @pytest.fixture
-def fresh_board(bench: BenchProcess, yours: Path) -> None:
+def fresh_board(bench: LockStepBench, yours: Path) -> None:
     """The bench's board with the parameters that it came with."""
     done = run(["params", "restore", str(yours / "board.toml"), "--port", bench.port])
     assert done.code == 0, done.err
@@ -135,14 +141,14 @@ def commissioned(yours: Path, tmp_path_factory: pytest.TempPathFactory) -> Once:
 def demonstrated(yours: Path, tmp_path_factory: pytest.TempPathFactory) -> Once:
     """Four seconds with controllers that are there."""
     real = greywhale.demo.run
-    out = tmp_path_factory.mktemp("demo")
-    return Once(lambda: real(DemoOptions(out=out, duration_s=4.0, controller=yours / "controller.toml"), None))
+    options = DemoOptions(out=tmp_path_factory.mktemp("demo"), duration_s=4.0, controller=yours / "controller.toml")
 
+    def compute() -> Any:
+        with pytest.MonkeyPatch.context() as patch:
+            in_this_process(patch)
+            return real(options, None)
 
-@pytest.fixture(scope="session")
-def reproduced() -> Once:
-    """The report at its smallest."""
-    return Once(small_document)
+    return Once(compute)
 
 
 @pytest.fixture
@@ -152,9 +158,10 @@ def once(
     tuned: Once,
     commissioned: Once,
     demonstrated: Once,
-    reproduced: Once,
 ) -> None:
-    """The verbs around what was computed for all of them; `sim` ends when its port is there."""
+    """The verbs around what was computed for all of them; `sim` ends when its port is there. `flash` greets the board
+    that has its firmware.
+    """
 
     def commission(options: Options, report: Any) -> Any:
         options.out.mkdir(exist_ok=True)
@@ -164,14 +171,19 @@ def once(
         with bench_serve.running(options, note=note) as server:
             on_ready(server.port.path)
 
+    def greet(port: str, *options: object) -> HelloReply:
+        with Device(port) as device:
+            return device.hello
+
     def reproduce(request: Request, folder: Path, workers: object, report: object) -> dict[str, object]:
         folder.mkdir(exist_ok=True)
         return {}
 
     monkeypatch.setattr(reproduce_run, "run", reproduce)
-    monkeypatch.setattr(reproduce_report, "document", lambda found: reproduced())
+    monkeypatch.setattr(reproduce_report, "document", lambda found: Document("The paper", ("Nothing is in it.",), ()))
     monkeypatch.setattr(identify_verb, "identify", lambda *logs, **options: identified())
     monkeypatch.setattr(tune_verb, "tune", lambda model, **options: tuned())
     monkeypatch.setattr(greywhale.commission, "commission", commission)
     monkeypatch.setattr(greywhale.demo, "run", lambda options, report: demonstrated())
     monkeypatch.setattr(bench_serve, "serve", serve)
+    monkeypatch.setattr(flash_verb, "flash", greet)

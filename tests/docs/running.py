@@ -8,7 +8,8 @@ The rule, in order:
 3. Every other verb is run as printed, with files of the scratch folder where a page speaks of yours. What would only
    take long is shortened by options behind the printed ones (SHORTER).
 4. `identify`, `tune`, `commission`, `demo` and `reproduce` compute once for all pages (`Once`); reading, checking and
-   writing is done for each. `sim` puts its bench and port together and ends.
+   writing is done for each. `sim` puts its bench and port together and ends; `flash` greets a board that has the
+   firmware.
 """
 
 from __future__ import annotations
@@ -34,7 +35,6 @@ SHORTER = {
     "info --watch": "--seconds 0.5",
     "doctor": "--seconds 0.5",
     "compare": "--functions sphere --budget 60 --seeds 2 --jobs 1",
-    "flash": "--hex firmware.hex",  # PlatformIO would build it anew
     "tune": "--force",  # the model is one of six seconds of log
 }
 PACKAGES = {"greywhale", "greywhale-sim"}

@@ -12,6 +12,7 @@ import pytest
 from jsonschema import Draft202012Validator, ValidationError
 
 from greywhale.cli.verbs import VERBS, greywhale
+from greywhale.demo import BenchProcess
 from greywhale.demo.learn import Learnt
 from tests.docs.running import Once, run, writes_over
 from tools.bench.hands import SECOND_DEG, Hands, bench_of, mounted_anyhow, run_calibrate
@@ -112,8 +113,9 @@ def test_what_a_verb_prints_is_what_its_schema_says(verb: str, scratch: Path, fr
 
 
 @pytest.mark.slow
-def test_flash(scratch: Path, fresh_board: None) -> None:
-    done = run(["flash", "--hex", "firmware.hex", "--json"])
+def test_flash(scratch: Path) -> None:
+    with BenchProcess("--speed", "max", "--blank") as bench:
+        done = run(["flash", "--hex", "firmware.hex", "--port", bench.port, "--json"])
     assert done.code == 0, done.err
     validate("flash", read_answer(done.out))
 

@@ -15,7 +15,7 @@ from greywhale.cli.entry import run
 from greywhale.demo import BenchProcess
 from greywhale.errors import UserError
 from greywhale.protocol.schema import State
-from greywhale.protocol.transport import Transport
+from greywhale.protocol.transport import LINES, Transport
 from tests.board.flash.hex_files import hex_text
 
 
@@ -65,12 +65,16 @@ def test_the_image_is_read_back_a_wrong_byte_named_and_the_bootloader_looked_at(
 
 
 @pytest.mark.slow
-def test_a_board_whose_motors_are_on_is_not_restarted(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_board_whose_motors_are_on_is_not_restarted(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
     with BenchProcess("--speed", "max") as bench:
         line = Dying(bench.port)
-        with contextlib.suppress(UserError), Device(bench.port, line=line) as device:
+        monkeypatch.setitem(LINES, bench.port, lambda restart: line)
+        with contextlib.suppress(UserError), Device(bench.port) as device:
             device.enable(0)
             line.mute = True
+        monkeypatch.undo()
         resets = bench.command("status")["resets"]
         code, findings = doctor(bench.port, capsys)
         assert (code, findings["image"]["verdict"]) == (1, "bad")

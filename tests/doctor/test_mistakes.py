@@ -9,21 +9,22 @@ from collections.abc import Iterator
 import pytest
 
 from greywhale.cli.entry import run
-from greywhale.demo import BenchProcess
+from greywhale.demo import RunningBench
 from greywhale_sim.mistakes import MISTAKES, USUAL, WHERE, Mistake
+from greywhale_sim.words import lock_step
 
 EXIT_CODES = {"refused": 1, "noted": 0}
 
 
 @pytest.fixture(scope="module")
-def bench() -> Iterator[BenchProcess]:
-    with BenchProcess("--speed", "max") as started:
+def bench() -> Iterator[RunningBench]:
+    with lock_step() as started:
         yield started
 
 
 @pytest.mark.parametrize("mistake", [one for one in MISTAKES if one.verb == "doctor"], ids=lambda one: one.name)
 def test_doctor_names_it_and_no_motor_is_driven(
-    bench: BenchProcess, capsys: pytest.CaptureFixture[str], mistake: Mistake
+    bench: RunningBench, capsys: pytest.CaptureFixture[str], mistake: Mistake
 ) -> None:
     bench.command("hand both 0.1 -0.6 0.7 0.4")  # apart from each other, so that only what touches reads alike
     bench.command("pins")

@@ -9,19 +9,20 @@ from pathlib import Path
 import pytest
 
 from greywhale.cli.entry import run
-from greywhale.demo import BenchProcess
+from greywhale.demo import RunningBench
 from greywhale.table import ParameterTable
+from greywhale_sim.words import lock_step
 
 SECONDS = "1"
 
 
 @pytest.fixture(scope="module")
-def bench() -> Iterator[BenchProcess]:
-    with BenchProcess("--speed", "max") as started:
+def bench() -> Iterator[RunningBench]:
+    with lock_step() as started:
         yield started
 
 
-def doctor(bench: BenchProcess, capsys: pytest.CaptureFixture[str], *more: str) -> tuple[int, dict[str, str]]:
+def doctor(bench: RunningBench, capsys: pytest.CaptureFixture[str], *more: str) -> tuple[int, dict[str, str]]:
     """The exit code, and check -> verdict: what it says."""
     code = run(["doctor", "--port", bench.port, "--seconds", SECONDS, "--json", *more])
     told = json.loads(capsys.readouterr().out)
@@ -29,7 +30,7 @@ def doctor(bench: BenchProcess, capsys: pytest.CaptureFixture[str], *more: str) 
     return code, {one["check"]: f"{one['verdict']}: {one['says']}" for one in told["findings"]}
 
 
-def test_a_sound_bench_is_good(bench: BenchProcess, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_sound_bench_is_good(bench: RunningBench, capsys: pytest.CaptureFixture[str]) -> None:
     code, found = doctor(bench, capsys)
     assert code == 0
     noted = {check for check, told in found.items() if not told.startswith("good")}
@@ -54,7 +55,7 @@ def test_a_sound_bench_is_good(bench: BenchProcess, capsys: pytest.CaptureFixtur
     ],
 )
 def test_a_staged_trouble_is_named(
-    bench: BenchProcess, capsys: pytest.CaptureFixture[str], command: str, undo: str, check: str, says: str
+    bench: RunningBench, capsys: pytest.CaptureFixture[str], command: str, undo: str, check: str, says: str
 ) -> None:
     bench.command(command)
     try:
@@ -67,7 +68,7 @@ def test_a_staged_trouble_is_named(
 
 
 def test_a_set_that_is_not_the_files_is_named(
-    bench: BenchProcess, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    bench: RunningBench, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = tmp_path / "mine.toml"
     assert run(["params", "backup", str(path), "--port", bench.port]) == 0
@@ -80,7 +81,7 @@ def test_a_set_that_is_not_the_files_is_named(
 
 
 def test_a_board_without_power_is_named_and_the_port_is_still_good(
-    bench: BenchProcess, capsys: pytest.CaptureFixture[str]
+    bench: RunningBench, capsys: pytest.CaptureFixture[str]
 ) -> None:
     bench.command("power off")
     try:
@@ -94,7 +95,7 @@ def test_a_board_without_power_is_named_and_the_port_is_still_good(
 
 def test_open_inputs_of_joints_that_are_not_in_use_are_no_trouble(capsys: pytest.CaptureFixture[str]) -> None:
     idle = [f"{side}{joint}.scale" for side in ("leader", "follower") for joint in (2, 3)]
-    with BenchProcess("--speed", "max", "--arm", "two_joints") as two:
+    with lock_step("--arm", "two_joints") as two:
 
         def set_scales(values: Iterable[float]) -> None:
             settings = [f"{name}={value:g}" for name, value in zip(idle, values, strict=True)]

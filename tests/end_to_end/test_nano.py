@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 
 from greywhale.cli.entry import run
-from greywhale.demo import BenchProcess
 from greywhale.files.arm import load_arm
 from greywhale.files.log import read_log
 from greywhale.identify import controllers
@@ -24,6 +23,7 @@ from greywhale.loop.closed_loop import ClosedLoop, Result
 from greywhale.protocol.schema import Board
 from greywhale.table import ParameterTable
 from greywhale.tune.model import load_model
+from greywhale_sim.words import lock_step
 
 FULL = [400, 400, 255, 255]
 
@@ -42,7 +42,7 @@ def test_a_nano_is_excited_identified_and_tuned_as_a_nano(
         tmp_path / name for name in ("fit.csv", "second.csv", "model.toml", "controller.toml", "after.csv")
     )
     largest = full_duties_of_every_loop(monkeypatch)
-    with BenchProcess("--board", "nano", "--speed", "max") as bench:
+    with lock_step("--board", "nano") as bench:
         port = ("-p", bench.port)
         told(capsys, "record", "--excite", *port, "-o", fit, "--seconds", "10", "--budget", "10")
         told(capsys, "record", "--enable", *port, "-o", second, "--seconds", "10")
@@ -82,7 +82,7 @@ def full_duties_of_every_loop(monkeypatch: pytest.MonkeyPatch) -> list[int]:
 def test_the_very_voltages_of_a_nanos_log_come_in_its_steps(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Told by the log alone: 15 V in 255 steps on the last two joints, in 400 on the first two."""
     path = tmp_path / "log.csv"
-    with BenchProcess("--board", "nano", "--speed", "max") as bench:
+    with lock_step("--board", "nano") as bench:
         told(capsys, "record", "--enable", "-p", bench.port, "-o", path, "--seconds", "4")
     log = read_log(path)
     table = controllers.table_of(log, [])
@@ -96,6 +96,6 @@ def test_a_controller_for_a_nano_is_doubted_on_a_mega(tmp_path: Path, capsys: py
     table = Path(__file__).parents[2] / "shared" / "fuzzy_tables" / "table_10.toml"
     controller = tmp_path / "controller.toml"
     controller.write_text(table.read_text() + '\n[tuning]\nboard = "nano328"\n')
-    with BenchProcess("--speed", "max") as bench:
+    with lock_step() as bench:
         warnings = told(capsys, "upload", controller, "-p", bench.port)["warnings"]
     assert warnings == ["it was tuned for the board nano328, but this board is a mega2560."]

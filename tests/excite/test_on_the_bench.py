@@ -14,7 +14,7 @@ from greywhale.board.device import Device
 from greywhale.board.lead import Plan
 from greywhale.board.record import record, record_led
 from greywhale.cli.entry import run
-from greywhale.demo import BenchProcess
+from greywhale.demo import RunningBench
 from greywhale.errors import UserError
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.files.leader import load_leader, save_leader
@@ -24,11 +24,12 @@ from greywhale.firmware import JOINTS, STEP_LSB
 from greywhale.identify import identify
 from greywhale.protocol.schema import Fault, State, StopReason
 from greywhale.trajectory import Trajectory, human_reaches
+from greywhale_sim.words import lock_step
 
 
 @pytest.fixture
-def bench() -> Iterator[BenchProcess]:
-    with BenchProcess("--speed", "max") as started:
+def bench() -> Iterator[RunningBench]:
+    with lock_step() as started:
         yield started
 
 
@@ -40,7 +41,7 @@ def told(capsys: pytest.CaptureFixture[str], *arguments: str) -> dict[str, Any]:
 
 @pytest.mark.slow
 def test_an_excited_log_identifies_the_arm(
-    bench: BenchProcess, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    bench: RunningBench, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     out, motion = str(tmp_path / "log.csv"), str(tmp_path / "motion.csv")
     arguments = ("--seconds", "10", "--budget", "30", "--range", "0:-0.8:0.9", "--save-motion", motion)
@@ -73,7 +74,7 @@ def test_an_excited_log_identifies_the_arm(
 
 @pytest.mark.slow
 def test_a_replayed_motion_is_the_motion_wherever_the_arm_starts(
-    bench: BenchProcess, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    bench: RunningBench, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     motion = human_reaches(5, 4.0)
     save_leader(tmp_path / "motion.csv", motion)
@@ -91,7 +92,7 @@ def test_a_replayed_motion_is_the_motion_wherever_the_arm_starts(
 
 
 @pytest.mark.slow
-def test_a_line_that_loses_bytes_changes_nothing_of_the_motion(bench: BenchProcess, tmp_path: Path) -> None:
+def test_a_line_that_loses_bytes_changes_nothing_of_the_motion(bench: RunningBench, tmp_path: Path) -> None:
     bench.command("line lose 0.001")
     motion = human_reaches(5, 4.0)
     with Device(bench.port) as device:
@@ -116,7 +117,7 @@ def test_an_arm_far_weaker_than_its_file_is_led_more_slowly_and_without_a_fault(
     arm = default_arm()
     weak = arm.model_copy(update={"drive": arm.drive.model_copy(update={"supply": 3.0})})
     (tmp_path / "weak.toml").write_text(to_toml(weak, {}).replace("[identification]\n", ""), encoding="utf-8")
-    with BenchProcess("--speed", "max", "--arm", str(tmp_path / "weak.toml")) as bench:
+    with lock_step("--arm", str(tmp_path / "weak.toml")) as bench:
         told(capsys, "params", "set", "stall_volts=12", "-p", bench.port)
         arguments = ("-o", str(tmp_path / "log.csv"), "--seconds", "10", "--budget", "10")
         answer = told(capsys, "record", "--excite", "-p", bench.port, *arguments)
@@ -129,7 +130,7 @@ def test_an_arm_far_weaker_than_its_file_is_led_more_slowly_and_without_a_fault(
 
 
 @pytest.mark.slow
-def test_ctrl_c_stops_the_motors_and_keeps_the_log(bench: BenchProcess, tmp_path: Path) -> None:
+def test_ctrl_c_stops_the_motors_and_keeps_the_log(bench: RunningBench, tmp_path: Path) -> None:
     def press(what: str, fraction: float) -> None:
         if what == "recording" and fraction > 0.3:
             raise KeyboardInterrupt
@@ -145,7 +146,7 @@ def test_ctrl_c_stops_the_motors_and_keeps_the_log(bench: BenchProcess, tmp_path
 
 
 @pytest.mark.slow
-def test_a_fault_ends_the_motion_and_is_named_and_the_pots_lead_again(bench: BenchProcess, tmp_path: Path) -> None:
+def test_a_fault_ends_the_motion_and_is_named_and_the_pots_lead_again(bench: RunningBench, tmp_path: Path) -> None:
     broken: list[str] = []
 
     def break_it(what: str, fraction: float) -> None:
@@ -164,7 +165,7 @@ def test_a_fault_ends_the_motion_and_is_named_and_the_pots_lead_again(bench: Ben
     assert not read_log(tmp_path / "log.csv").complete
 
 
-def test_a_motion_that_is_too_fast_is_refused_with_the_motors_off(bench: BenchProcess, tmp_path: Path) -> None:
+def test_a_motion_that_is_too_fast_is_refused_with_the_motors_off(bench: RunningBench, tmp_path: Path) -> None:
     quick = Trajectory(np.array([0.0, 0.1, 1.0]), np.array([[0.0] * 4, [0, 0, 1.0, 0], [0, 0, 1.0, 0]]))
     with Device(bench.port) as device:
         with pytest.raises(UserError, match="moves joint 2 at"):

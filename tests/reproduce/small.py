@@ -6,14 +6,8 @@ from typing import Any
 
 import pytest
 
-from greywhale.reproduce.pages.document import Document
-from greywhale.reproduce.pages.found import Found
-from greywhale.reproduce.pages.report import document
-from greywhale.reproduce.request import Request
-from greywhale.reproduce.tasks import tasks_of
 from greywhale.reproduce.work import errata, findings, on_the_bench, optimisers
 from greywhale.reproduce.work.motions import MOTIONS
-from greywhale.study import SerialWorkers, run_study
 from greywhale.trajectory import multi_steps, steps
 
 METHODS = ("gwo-woa", "gwo", "woa", "pso")
@@ -40,11 +34,3 @@ def shrink(patch: pytest.MonkeyPatch) -> None:
     patch.setitem(MOTIONS, "multi-steps", lambda: multi_steps([0.0, 1.0, -0.5], [0.8, 1.2, 1.8]))
     patch.setattr("greywhale.reproduce.request.Request.logged_s", 5.0)
     patch.setattr("greywhale.reproduce.request.Request.function_runs", 4)
-
-
-def small_document() -> Document:
-    """A report of one seed."""
-    with pytest.MonkeyPatch.context() as patch:
-        shrink(patch)
-        request = Request.of(0, 1, True)
-        return document(Found(request, run_study(tasks_of(request), SerialWorkers())))

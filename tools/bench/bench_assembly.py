@@ -7,6 +7,7 @@ differs from run to run, also on one bench: so the calibrated bench is commissio
 
 from __future__ import annotations
 
+import contextlib
 import os
 import shutil
 import subprocess
@@ -22,7 +23,7 @@ from greywhale.files.arm import default_arm
 from greywhale.study import Task
 from tools.bench.bench_calibrate import LIKE, SECOND, error_of
 from tools.bench.figure import Figure
-from tools.bench.hands import Hands, bench_of, mounted_anyhow, run_calibrate
+from tools.bench.hands import Hands, mounted_anyhow, run_calibrate, save_arm
 from tools.bench.study import repeat
 
 SEEDS = tuple(map(int, os.environ.get("GREYWHALE_ASSEMBLIES", " ".join(map(str, range(1, 21)))).split()))
@@ -41,8 +42,9 @@ def verb(bench: BenchProcess, folder: Path, *words: str) -> None:
 
 def commissioned(arm: ArmParameters, calibrate: bool, reversed_motor: int | None, seed: int) -> float:
     """The mean squared error (rad²) under a person's motion after all steps, from a blank board on."""
-    with tempfile.TemporaryDirectory() as name, bench_of(arm, Path(name), "--blank") as bench:
-        folder = Path(name)
+    with contextlib.ExitStack() as held:
+        folder = Path(held.enter_context(tempfile.TemporaryDirectory()))
+        bench = held.enter_context(BenchProcess("--speed", "max", "--blank", "--arm", save_arm(arm, folder)))
         if reversed_motor is not None:
             bench.command(f"motor {reversed_motor} reversed")
         verb(bench, folder, "flash")

@@ -5,9 +5,9 @@ Each assembly has another zero, direction and track at all eight potentiometers,
 
 from __future__ import annotations
 
+import contextlib
+import io
 import re
-import subprocess
-import sys
 import tempfile
 from itertools import chain
 from pathlib import Path
@@ -15,7 +15,8 @@ from pathlib import Path
 import numpy as np
 
 from greywhale.calibrate.motors import SHARES
-from greywhale.demo import BenchProcess, record_motion
+from greywhale.cli.entry import run as verb
+from greywhale.demo import RunningBench, record_motion
 from greywhale.files.arm import default_arm
 from greywhale.files.leader import save_leader
 from greywhale.measure import evaluate
@@ -32,7 +33,7 @@ LIKE = 0.1
 SECOND = ("--second", ",".join(f"{angle:g}" for angle in SECOND_DEG))
 
 
-def error_of(bench: BenchProcess, folder: Path) -> float:
+def error_of(bench: RunningBench, folder: Path) -> float:
     """The mean squared error, rad², of all joints with the controllers that the board has, under a person's motion."""
     leader = folder / "leader.csv"
     save_leader(leader, human_reaches(1, 12.0))
@@ -64,9 +65,10 @@ def is_named(seed: int, name: str) -> bool:
             code, told = done.code, done.said + done.printed
         else:
             bench.command("hand both 0.1 -0.6 0.7 0.4")
-            command = [sys.executable, "-m", "greywhale", "doctor", "--port", bench.port, "--seconds", "0.5", "--json"]
-            looked = subprocess.run([*command, *mistake.options], capture_output=True, text=True, check=False)
-            code, told = looked.returncode, looked.stdout
+            out = io.StringIO()
+            with contextlib.redirect_stdout(out):
+                code = verb(["doctor", "--port", bench.port, "--seconds", "0.5", "--json", *mistake.options])
+            told = out.getvalue()
         named = re.search(mistake.tells(number), told) is not None
         within = max(bench.command("pins")["duties"]) <= SHARES[-1] + 1 / 400
         stored = bool(bench.command("status")["eeprom_writes"])

@@ -3,26 +3,30 @@
 from __future__ import annotations
 
 import contextlib
-import os
+import io
 import re
-import subprocess
-import sys
-import threading
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
+from unittest import mock
 
 import numpy as np
 import numpy.typing as npt
 
 from greywhale.arm import ArmParameters
-from greywhale.demo import BenchProcess
+from greywhale.calibrate import Answer
+from greywhale.cli import calibrate as verb
+from greywhale.cli.entry import run
+from greywhale.demo import RunningBench
 from greywhale.files.arm import default_arm
 from greywhale.files.model import arm_toml
 from greywhale.firmware import JOINTS
+from greywhale_sim.lockstep import LockStepBench
+from greywhale_sim.words import lock_step
 
 Floats = npt.NDArray[np.float64]
 
+BACKUP = "before-calibration.toml"
 SWEEP_S = 0.5  # a way; a person is slower
 SECOND_DEG = np.array([60.0, 50.0, -45.0, 40.0])
 THIRD_DEG = np.array([-35.0, -20.0, 30.0, -40.0])
@@ -50,45 +54,81 @@ def mounted_anyhow(seed: int) -> ArmParameters:
     return arm.model_copy(update={"leader_pots": bank(), "follower_pots": bank()})
 
 
-def bench_of(arm: ArmParameters, folder: Path, *options: str) -> BenchProcess:
+def bench_of(arm: ArmParameters, folder: Path, *options: str) -> LockStepBench:
     """A running bench with this arm."""
+    return lock_step("--arm", save_arm(arm, folder), *options)
+
+
+def save_arm(arm: ArmParameters, folder: Path) -> str:
+    """The arm's file in that folder."""
     path = folder / "arm.toml"
     path.write_text(arm_toml(arm, "Mounted anyhow."), encoding="utf-8")
-    return BenchProcess("--speed", "max", "--arm", str(path), *options)
+    return str(path)
 
 
 @dataclass
 class Hands:
-    """Turns joints, holds poses; `second` is what it holds where the second pose is asked for, in degrees."""
+    """Turns joints, holds poses; `second` is what it holds where the second pose is asked for, in degrees.
 
-    bench: BenchProcess
+    It stands for the person at the terminal, as `greywhale.cli.person` does for a real one.
+    """
+
+    bench: RunningBench
     second: Floats = field(default_factory=SECOND_DEG.copy)
     apart: float = 0.0  # degrees by which the follower's joint 1 is held elsewhere in the third pose
     poses: int = 0
+    patient: bool = False
+    said: list[str] = field(default_factory=list)  # all that it was asked and told
+    _arrives_s: float = 0.0
+
+    def ask(self, what: str) -> None:
+        self.said.append(what)
+        self.follow(what)
+
+    def show(self, live: str) -> None:
+        """It feels what it does."""
+
+    def answer(self) -> Answer | None:
+        return Answer.DONE if self._time_s() >= self._arrives_s else None
+
+    def tell(self, what: str) -> None:
+        self.said.append(what)
+
+    def close(self) -> None:
+        """It stays."""
 
     def follow(self, asked: str) -> None:
         """Do what a line of `greywhale calibrate` asks."""
         if sweep := re.match(r"Sweep .*: (leader|follower) joint (\d)", asked):
-            self.do(f"turn {sweep[1]} {sweep[2]} {SWEEP_S}")
+            self.begin(f"turn {sweep[1]} {sweep[2]} {SWEEP_S}")
         elif asked.startswith("Each motor"):
-            self.do("hang")
+            self.begin("hang")
         elif " pose" in asked:
             self.poses += 1
             pose = {2: self.second, 4: THIRD_DEG}.get(self.poses, np.zeros(JOINTS))
-            self.bring("both", pose)
+            self.begin(_hand("both", pose))
             if self.poses == 4 and self.apart:
-                self.bring("follower", pose + self.apart * np.eye(JOINTS)[1])
+                self.begin(_hand("follower", pose + self.apart * np.eye(JOINTS)[1]))
 
     def bring(self, side: str, degrees: Floats, seconds: float = 1.0) -> None:
         """Bring one arm or both there, and wait until they are."""
-        angles = " ".join(f"{angle:.6f}" for angle in np.radians(degrees))
-        self.do(f"hand {side} {angles} {seconds}")
+        self.do(_hand(side, degrees, seconds))
 
     def do(self, command: str) -> None:
         """Give the hands a command, and wait until they are where it sends them."""
-        arrives = self.bench.command(command)["arrives_s"]
-        while self.bench.command("status")["time_s"] < arrives:
+        self.begin(command)
+        while self.answer() is None:
             pass
+
+    def begin(self, command: str) -> None:
+        self._arrives_s = self.bench.command(command)["arrives_s"]
+
+    def _time_s(self) -> float:
+        return float(self.bench.command("status")["time_s"])
+
+
+def _hand(side: str, degrees: Floats, seconds: float = 1.0) -> str:
+    return f"hand {side} {' '.join(f'{angle:.6f}' for angle in np.radians(degrees))} {seconds}"
 
 
 @dataclass(frozen=True)
@@ -101,26 +141,10 @@ class Calibrated:
 
 
 def run_calibrate(hands: Hands, folder: Path, *more: str) -> Calibrated:
-    """`greywhale calibrate` in a process of its own, in that folder."""
-    command = [sys.executable, "-m", "greywhale", "calibrate", "--port", hands.bench.port, "--yes", "--json", *more]
-    with subprocess.Popen(
-        command, cwd=folder, text=True, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE
-    ) as process:
-        assert process.stdin is not None
-        assert process.stdout is not None
-        assert process.stderr is not None
-        out, said, printed = process.stdout, [], [""]
-
-        def read() -> None:
-            printed[0] = out.read()
-
-        reader = threading.Thread(target=read)
-        reader.start()
-        for line in process.stderr:
-            said.append(line)
-            if line.rstrip().endswith("[Enter]"):
-                hands.follow(line)
-                with contextlib.suppress(BrokenPipeError):  # it has ended, and says why
-                    os.write(process.stdin.fileno(), b"\n")
-        reader.join()
-    return Calibrated(process.returncode, printed[0], "".join(said))
+    """`greywhale calibrate` in that folder, with these hands in the place of a person at the terminal."""
+    out, said = io.StringIO(), io.StringIO()
+    words = ["calibrate", "--port", hands.bench.port, "--yes", "--json", "--backup", f"{folder}/{BACKUP}", *more]
+    with mock.patch.object(verb, "Terminal", return_value=hands):
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(said):
+            code = run(words)
+    return Calibrated(code, out.getvalue(), "\n".join([*hands.said, said.getvalue()]))

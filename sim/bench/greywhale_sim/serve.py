@@ -55,7 +55,7 @@ def running(
     require_files(options.eeprom)  # else the first save fails, when the board already runs
     bench = build_bench(options, plant)
     if bench.joints != ALL and _is_new(options):
-        tell_joints(bench)
+        tell_joints(bench, options)
     port = SerialPort(_links(options, note))
     server = Server(
         bench, bench.board, wiring_of(options.board), port, fast=options.speed == "max", eeprom=options.eeprom

@@ -4,18 +4,33 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from greywhale_sim import eeprom_file, line
 from greywhale_sim.bench import Bench
 from greywhale_sim.pacing import Pacer, wants_real_time
-from greywhale_sim.serial_port import SerialPort
 from greywhale_sim.wiring import Wiring
 
 REAL_TIME_SLICES = 4  # 1 ms: as often as a USB port is served
 FAST_SLICES = 16  # a fifth of the time goes into the port otherwise
 IDLE_SLICES = 32
 EEPROM_CHECK_S = 0.05
+
+
+class Port(Protocol):
+    """The host's end of the serial line (greywhale_sim.serial_port.SerialPort)."""
+
+    path: str
+
+    @property
+    def connected(self) -> bool: ...
+    def poll(self) -> bool: ...
+    def baud(self) -> float: ...
+    def read(self) -> bytes: ...
+    def write(self, data: bytes) -> int: ...
+    def backlog(self, limit: int) -> int: ...
+    def discard_unread(self) -> None: ...
+    def close(self) -> None: ...
 
 
 class Server:
@@ -26,11 +41,12 @@ class Server:
         bench: Bench,
         board: Any,
         wiring: Wiring,
-        port: SerialPort,
+        port: Port,
         fast: bool = False,
         eeprom: Path | None = None,
         pacer: Pacer | None = None,
         seed: int = 1,
+        fast_slices: int = FAST_SLICES,
     ) -> None:
         self.bench = bench
         self.board = board
@@ -42,6 +58,7 @@ class Server:
         self.ending = False
         self.while_waiting: Callable[[], None] = lambda: None  # called again and again while a host does not read
         self._seed = seed
+        self._fast_slices = fast_slices
         self._cut_at: int | None = None  # EEPROM writes at which the power goes
         self._pacer = pacer or Pacer()
         self._eeprom = eeprom
@@ -54,7 +71,7 @@ class Server:
         self._receive()
         real_time = self._keeps_real_time()
         self.bench.run_slices(
-            IDLE_SLICES if not self.port.connected else REAL_TIME_SLICES if real_time else FAST_SLICES
+            IDLE_SLICES if not self.port.connected else REAL_TIME_SLICES if real_time else self._fast_slices
         )
         self._send()
         if self._cut_at is not None and self.board.stats().eeprom_writes >= self._cut_at:

@@ -22,7 +22,7 @@ from greywhale.errors import UserError
 from greywhale.protocol import schema
 from greywhale.protocol.declared import Reply_co, Request
 from greywhale.protocol.frames import Frame, FrameDecoder, encode_frame
-from greywhale.protocol.transport import Line, PortLostError, Transport
+from greywhale.protocol.transport import Line, PortLostError, open_line
 
 # After this long without an answer a request is repeated, unchanged. Every request may be repeated safely.
 REPLY_WAIT_S = 0.3
@@ -66,12 +66,8 @@ class Device:
         patience_s: float = PATIENCE_S,
         *,
         restart: bool = True,
-        line: Line | None = None,
     ) -> None:
-        """Open the port and greet the board, which restarts; without `restart` only where the system cannot help it.
-
-        A `line` that is open already takes the port's place, and `port` is then only its name.
-        """
+        """Open the port and greet the board, which restarts; without `restart` only where the system cannot help it."""
         self.port = port
         self.lease_ms = 0
         self._decoder = FrameDecoder()
@@ -87,7 +83,7 @@ class Device:
         with contextlib.ExitStack() as held:
             self._session = held.enter_context(Session.of(port))
             held.callback(self._session.detach)
-            self._transport: Line = Transport(port, restart) if line is None else line
+            self._transport: Line = open_line(port, restart)
             held.callback(self._transport.close)
             self._session.attach(self._send_stop)
             self.hello: schema.HelloReply = self._greet(quiet_s if self.restarted else 0.0, patience_s)
@@ -128,6 +124,13 @@ class Device:
     @property
     def firmware_version(self) -> str:
         return version(self.hello)
+
+    def clock(self) -> float:
+        """The time (s) that waiting for the board is measured in."""
+        return self._transport.clock()
+
+    def wait(self, seconds: float) -> None:
+        self._transport.wait(seconds)
 
     def ask(self, request: Request[Reply_co]) -> Reply_co:
         """Send a request until it is answered, and return the answer; a refusal is a UserError with its remedy."""

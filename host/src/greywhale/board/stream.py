@@ -6,7 +6,6 @@ faster than real time, but never runs ahead of samples that nobody has read.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -44,10 +43,10 @@ def _samples(device: Device, every: int) -> Iterator[Received]:
     silence_s = max(_SILENCE_S, 5 * every / 1000)
     last: int | None = None
     elapsed = renewed = 0
-    heard = looked = time.monotonic()
+    heard = looked = device.clock()
     while True:
         samples = device.samples()
-        now = time.monotonic()
+        now = device.clock()
         if now > looked + _PAUSE_S:
             heard += now - looked  # this host stood still, not the board
         looked = now

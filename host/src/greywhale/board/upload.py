@@ -6,7 +6,6 @@ all of it changes between two ticks. So a broken upload leaves the running and t
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -92,7 +91,7 @@ def upload_set(
     """Stage, apply and save a whole set, then check that the board runs it. A save may take `save_wait_s`."""
     report = progress or _report_nothing
     _apply(device, table, report, save_wait_s)
-    _when_not_saving(save_wait_s, lambda: device.ask(schema.ParamSaveRequest()))
+    _when_not_saving(device, save_wait_s, lambda: device.ask(schema.ParamSaveRequest()))
     report("saving parameters", 0.0)
     _wait_until_saved(device, save_wait_s)
     _prove(device, table)
@@ -113,7 +112,7 @@ def _apply(device: Device, table: ParameterTable, report: Progress, save_wait_s:
                 f"{device.port}: sent {schema.PARAMETERS[index].name} = {value}, the board understood parameter "
                 f"{echo.index} = {echo.value}; nothing was changed, try again."
             )
-    _when_not_saving(save_wait_s, lambda: device.ask(schema.ParamApplyRequest(table.crc)))
+    _when_not_saving(device, save_wait_s, lambda: device.ask(schema.ParamApplyRequest(table.crc)))
 
 
 def _prove(device: Device, table: ParameterTable) -> None:
@@ -125,21 +124,21 @@ def _prove(device: Device, table: ParameterTable) -> None:
         )
 
 
-def _when_not_saving(wait_s: float, request: Callable[[], object]) -> None:
+def _when_not_saving(device: Device, wait_s: float, request: Callable[[], object]) -> None:
     """Repeat a request that the board refuses while it still writes an earlier set."""
-    deadline = time.monotonic() + wait_s
+    deadline = device.clock() + wait_s
     while True:
         try:
             request()
             return
         except RefusedError as error:
-            if error.code is not schema.NackCode.BUSY_SAVING or time.monotonic() > deadline:
+            if error.code is not schema.NackCode.BUSY_SAVING or device.clock() > deadline:
                 raise
-        time.sleep(_POLL_S)
+        device.wait(_POLL_S)
 
 
 def _wait_until_saved(device: Device, wait_s: float) -> None:
-    deadline = time.monotonic() + wait_s
+    deadline = device.clock() + wait_s
     while True:
         state = device.status().save_state
         if state is schema.SaveState.SAVED:
@@ -149,12 +148,12 @@ def _wait_until_saved(device: Device, wait_s: float) -> None:
                 f"{device.port}: the new parameters run, but could not be stored: {state.description}; "
                 "try again, and replace the board if it happens again."
             )
-        if time.monotonic() > deadline:
+        if device.clock() > deadline:
             raise UserError(
                 f"{device.port}: the new parameters run, but storing them has not ended after {wait_s:g} s; "
                 "reset the board and upload again."
             )
-        time.sleep(_POLL_S)
+        device.wait(_POLL_S)
 
 
 def _report_nothing(what: str, fraction: float) -> None:

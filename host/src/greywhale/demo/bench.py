@@ -13,12 +13,20 @@ import subprocess
 import sys
 import tempfile
 from types import TracebackType
-from typing import Any, Self
+from typing import Any, Protocol, Self
 
 from greywhale.errors import UserError
 from greywhale.processes import start
 
 ANSWER_WAIT_S = 60.0  # the machine may be busy; a healthy bench answers in milliseconds
+
+
+class RunningBench(Protocol):
+    """What a demo needs of a bench, in a process of its own or in this one (greywhale_sim.lockstep)."""
+
+    @property
+    def port(self) -> str: ...
+    def command(self, text: str) -> dict[str, Any]: ...
 
 
 class BenchProcess:

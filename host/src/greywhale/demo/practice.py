@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from greywhale.arm import ArmParameters
-from greywhale.demo.bench import BenchProcess
+from greywhale.demo.bench import RunningBench
 from greywhale.demo.recorder import record_excitation, record_motion
 from greywhale.excite import design
 from greywhale.files import controller as controller_file
@@ -37,7 +37,7 @@ FIRST_SEED = 1000  # of the checks; far from the seeds that people give
 
 
 def practise(
-    bench: BenchProcess,
+    bench: RunningBench,
     nominal: ArmParameters,
     base: ParameterTable,
     folder: Path,

@@ -15,7 +15,7 @@ from greywhale.board.device import Device
 from greywhale.board.record import Recording, record, record_led
 from greywhale.board.stream import stream
 from greywhale.board.upload import read_parameters, upload_controller
-from greywhale.demo.bench import BenchProcess
+from greywhale.demo.bench import RunningBench
 from greywhale.errors import UserError
 from greywhale.files.leader import load_leader
 from greywhale.files.log import Log, read_evidence
@@ -47,7 +47,7 @@ class Recorded:
 
 
 def record_motion(
-    bench: BenchProcess,
+    bench: RunningBench,
     leader: Path,
     log: Path,
     controller: Path | None = None,
@@ -66,7 +66,7 @@ def record_motion(
 
 
 def record_excitation(
-    bench: BenchProcess,
+    bench: RunningBench,
     rest: Path,
     motion: Trajectory,
     log: Path,
@@ -82,7 +82,7 @@ def record_excitation(
 
 
 def _recorded(
-    bench: BenchProcess,
+    bench: RunningBench,
     leader: Path,
     controller: Path | None,
     progress: Progress | None,
@@ -101,7 +101,7 @@ def _recorded(
     return Recorded(recording.path, running.crc, recording.rows, recording.dropped, uploaded - started)
 
 
-def _wait_for_the_arms(bench: BenchProcess, device: Device, leader: Path, joints: Joints) -> None:
+def _wait_for_the_arms(bench: RunningBench, device: Device, leader: Path, joints: Joints) -> None:
     """Wait until the person at the bench has brought both arms to the start of the motion, in the joints in use."""
     scale, used = schema.Sample.LSB["leader"], list(joints)
     home = load_leader(leader).angles[0]
@@ -114,7 +114,7 @@ def _wait_for_the_arms(bench: BenchProcess, device: Device, leader: Path, joints
             raise _not_there(bench, leader, joints, arms)
 
 
-def _not_there(bench: BenchProcess, leader: Path, joints: Joints, seen: Floats) -> UserError:
+def _not_there(bench: RunningBench, leader: Path, joints: Joints, seen: Floats) -> UserError:
     """What keeps the arms from the start of the motion, or the board from seeing them there; `seen` is (2, 4) rad."""
     home, truth = load_leader(leader).angles[0], bench.command("status")
     for joint in joints:

@@ -16,7 +16,7 @@ from greywhale.board import flash
 from greywhale.board.device import Device
 from greywhale.board.upload import change_parameters
 from greywhale.demo import learn
-from greywhale.demo.bench import BenchProcess
+from greywhale.demo.bench import BenchProcess, RunningBench
 from greywhale.demo.learn import Learnt
 from greywhale.demo.practice import PRACTICE_S, REST_FILE, UNTUNED, practise, tables
 from greywhale.demo.recorder import Recorded, record_motion
@@ -103,7 +103,7 @@ def run(options: DemoOptions, progress: Report | None = None) -> DemoResult:
 class _Stage:
     """The bench and the steps on it, each reported as it happens."""
 
-    def __init__(self, bench: BenchProcess, options: DemoOptions, arm: ArmParameters, report: Report) -> None:
+    def __init__(self, bench: RunningBench, options: DemoOptions, arm: ArmParameters, report: Report) -> None:
         self._bench = bench
         self._options = options
         self._arm = arm
@@ -183,7 +183,7 @@ def _draw(options: DemoOptions, runs: list[Run], supply_v: float) -> Path:
     return picture
 
 
-def _put_firmware_on(bench: BenchProcess, options: DemoOptions, report: Report) -> HelloReply:
+def _put_firmware_on(bench: RunningBench, options: DemoOptions, report: Report) -> HelloReply:
     """Flash the board, as with a real one; its greeting."""
     if flash.find_avrdude() is not None:
         return flash.flash(bench.port, options.board, progress=report)

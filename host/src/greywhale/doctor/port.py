@@ -8,6 +8,7 @@ import stat
 from greywhale.board.refusal import upper_first
 from greywhale.doctor.finding import Finding, Verdict
 from greywhale.protocol.ports import find_ports, is_bench
+from greywhale.protocol.transport import LINES
 
 RULES_FILE = "/etc/udev/rules.d/60-greywhale.rules"
 # Boards that name themselves (vendors), and the bridges on clones, by vendor and product.
@@ -17,6 +18,8 @@ _BRIDGES = (("1a86", "7523"), ("1a86", "55d4"), ("0403", "6001"), ("10c4", "ea60
 
 def examine_port(port: str) -> list[Finding]:
     """Findings about a port, before it is opened; a bad one is the last."""
+    if port in LINES:
+        return [Finding("port", Verdict.GOOD, f"{port} is in this program.")]
     if not os.path.exists(port):
         others = ", ".join(one.device for one in find_ports()) or "none"
         return [Finding("port", Verdict.BAD, f"There is no port {port}; there are: {others}.", "Plug the board in.")]

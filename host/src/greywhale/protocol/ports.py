@@ -9,6 +9,7 @@ from pathlib import Path
 from serial.tools import list_ports
 
 from greywhale.errors import BAD_USAGE, UserError
+from greywhale.protocol.transport import LINES
 from greywhale.runtime import private_runtime_directories
 
 BOARDS = {"mega": "Arduino Mega 2560", "nano": "Arduino Nano (ATmega328P)"}
@@ -72,7 +73,7 @@ def choose_port(named: str | None) -> str:
 def is_bench(device: str) -> bool:
     """Whether the port named `device` is a simulated board's."""
     real = os.path.realpath(device)
-    return any(port.bench and os.path.realpath(port.device) == real for port in find_ports())
+    return device in LINES or any(port.bench and os.path.realpath(port.device) == real for port in find_ports())
 
 
 def lasting_name(device: str) -> str:

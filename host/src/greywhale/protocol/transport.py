@@ -13,6 +13,7 @@ import os
 import termios
 import threading
 import time
+from collections.abc import Callable
 from typing import Protocol
 
 import serial
@@ -49,7 +50,7 @@ class PortBusyError(UserError):
 
 
 class Line(Protocol):
-    """What a device needs of a line to a board. Its `clock` (s) times what the host waits for."""
+    """What a device needs of a line to a board. Its `clock` (s) times what the host waits for, and `wait` (s) waits."""
 
     restarted: bool
 
@@ -57,6 +58,18 @@ class Line(Protocol):
     def write(self, data: bytes) -> None: ...
     def close(self) -> None: ...
     def clock(self) -> float: ...
+    def wait(self, seconds: float) -> None: ...
+
+
+# Lines that are no ports of the system, such as to a bench in this process, by the name that stands for the port. Each
+# is opened with or without a restart of the board.
+LINES: dict[str, Callable[[bool], Line]] = {}
+
+
+def open_line(port: str, restart: bool = True) -> Line:
+    """Open the port, with a `restart` of the board or, if that can be, without: the line tells whether it restarted."""
+    opened = LINES.get(port)
+    return Transport(port, restart) if opened is None else opened(restart)
 
 
 class Transport:
@@ -90,6 +103,9 @@ class Transport:
     def clock(self) -> float:
         """This machine's own."""
         return time.monotonic()
+
+    def wait(self, seconds: float) -> None:
+        time.sleep(seconds)
 
     def close(self) -> None:
         with self._writing:
