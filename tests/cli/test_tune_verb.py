@@ -5,11 +5,6 @@ from __future__ import annotations
 import contextlib
 import itertools
 import json
-import os
-import signal
-import subprocess
-import sys
-import time
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
@@ -26,6 +21,7 @@ from greywhale.loop import default_controller
 from greywhale.protocol import schema
 from greywhale.tune import tune
 from tests.board.fake_board import FakeBoard
+from tests.support.tuning import shorten
 from tests.tune.models import log_facts, write_model
 
 Captured = pytest.CaptureFixture[str]
@@ -54,6 +50,7 @@ def no_work(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture
 def no_floors(monkeypatch: pytest.MonkeyPatch) -> None:
     """The least possible errors take seconds and are tested with the floor."""
+    shorten(monkeypatch)
     monkeypatch.setattr(verb, "tune", partial(tune, floors=False))
 
 
@@ -151,14 +148,19 @@ def test_files_that_will_not_do_are_named_before_any_work(
 
 
 @pytest.mark.slow
-def test_json_file_and_upload_speak_of_the_same_controllers(model: Path, capsys: Captured) -> None:
-    out = model.parent / "controller.toml"
-    assert entry.run(["tune", str(model), "--out", str(out), *QUICK, "--json"]) == 0
+def test_json_file_and_upload_speak_of_the_same_controllers_and_pictures_are_drawn(
+    model: Path, capsys: Captured
+) -> None:
+    out, folder = model.parent / "controller.toml", model.parent / "pictures"
+    assert entry.run(["tune", str(model), "--out", str(out), *QUICK, "--pictures", str(folder), "--json"]) == 0
     said = capsys.readouterr()
     assert said.out.count("\n") == 1
     answer = json.loads(said.out)
-    assert answer["files"] == [str(out)]
-    assert sorted(path.name for path in model.parent.iterdir()) == ["controller.toml", "model.toml"]
+    assert answer["files"][0] == str(out)
+    pictures = [Path(name) for name in answer["files"][1:]]
+    assert pictures
+    assert all(path.parent == folder and path.read_bytes().startswith(b"\x89PNG") for path in pictures)
+    assert sorted(path.name for path in model.parent.iterdir()) == ["controller.toml", "model.toml", "pictures"]
     written = controller.load(out)
     told = {name: schema.PARAMETER_BY_NAME[name].to_raw_as_given(value) for name, value in answer["after"].items()}
     assert len(told) == 48
@@ -166,18 +168,6 @@ def test_json_file_and_upload_speak_of_the_same_controllers(model: Path, capsys:
     assert written.table().crc == int(str((written.tuning or {})["parameter_crc"]), 16)
     assert written.tuning is not None
     assert (written.tuning["status"], written.tuning["method"]) == ("complete", "random")
-
-
-@pytest.mark.slow
-def test_any_number_of_workers_writes_the_same_file(no_floors: None, model: Path) -> None:
-    many = ("--method", "random", "--budget", "20", "--samples", "2")  # more than one thread would do at a time
-    texts = []
-    for options in (("--workers", "1"), ("--workers", "3"), ("--seed", "1")):
-        out = model.parent / "controller.toml"
-        assert entry.run(["tune", str(model), "-o", str(out), "--overwrite", *many, *options, "--json"]) == 0
-        texts.append(out.read_bytes())
-    assert texts[0] == texts[1]
-    assert texts[2] != texts[0]
 
 
 @pytest.mark.slow
@@ -208,18 +198,6 @@ def test_doubts_go_along_into_text_and_file(no_floors: None, tmp_path: Path, cap
     assert tuning is not None
     assert tuning["doubts"] == [doubt]
     assert f"# Doubt: {doubt}" in out.read_text(encoding="utf-8")
-
-
-@pytest.mark.slow
-def test_pictures_are_drawn_on_request(no_floors: None, model: Path, capsys: Captured) -> None:
-    folder = model.parent / "pictures"
-    assert (
-        entry.run(["tune", str(model), "-o", str(model.parent / "c.toml"), *QUICK, "--pictures", str(folder), "--json"])
-        == 0
-    )
-    files = [Path(name) for name in json.loads(capsys.readouterr().out)["files"][1:]]
-    assert files
-    assert all(path.parent == folder and path.read_bytes().startswith(b"\x89PNG") for path in files)
 
 
 @pytest.mark.parametrize(
@@ -294,53 +272,7 @@ def test_an_upload_warns_before_it_stores(tmp_path: Path, monkeypatch: pytest.Mo
 
 # --- Ctrl-C ---------------------------------------------------------------------------------------------------------
 
-LONG = ("--method", "gwo-woa", "--budget", "61", "--samples", "1")
-
-
-def start(model: Path, *arguments: str) -> subprocess.Popen[str]:
-    """The command as a terminal starts it."""
-    return subprocess.Popen(
-        [sys.executable, "-m", "greywhale", "tune", model.name, *arguments],
-        cwd=model.parent,
-        env=os.environ | {"PYTHONUNBUFFERED": "1"},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-
-
-def wait_for_batches(process: subprocess.Popen[str], journal: Path, count: int) -> None:
-    """Until the journal holds so many batches; a run that ended before fails the test."""
-    deadline = time.monotonic() + DEADLINE_S
-    while not journal.exists() or journal.read_bytes().count(b"\n") < 1 + count:
-        assert process.poll() is None, process.communicate()
-        assert time.monotonic() < deadline
-        time.sleep(0.002)
-
-
-@pytest.mark.slow
-def test_interrupted_and_resumed_is_the_same_file_as_uninterrupted(no_floors: None, model: Path) -> None:
-    folder = model.parent
-    out, journal = folder / "controller.toml", folder / "controller.toml.journal"
-    for batches, options in ((2, ("--workers", "1")), (4, ("--workers", "2", "--resume"))):
-        process = start(model, *LONG, *options)
-        wait_for_batches(process, journal, batches)
-        process.send_signal(signal.SIGINT)
-        said = process.communicate(timeout=DEADLINE_S)
-        assert process.returncode == 130, said
-        assert said[0] == ""
-        assert "interrupted. The best controllers so far are in controller.toml, marked as unfinished" in said[1]
-        unfinished = controller.load(out)
-        assert unfinished.tuning is not None
-        assert unfinished.tuning["status"].startswith("unfinished")
-        assert unfinished.source.endswith("(unfinished)")
-        assert journal.exists()
-        assert not list(folder.glob(".*"))
-    assert entry.run(["tune", str(model), "--out", str(out), *LONG, "--resume", "--json"]) == 0
-    assert not journal.exists()
-    whole = folder / "whole.toml"
-    assert entry.run(["tune", str(model), "--out", str(whole), *LONG, "--json"]) == 0
-    assert out.read_bytes() == whole.read_bytes()
+LONG = ("--method", "gwo-woa", "--budget", "31", "--samples", "1")
 
 
 def interrupt_after(monkeypatch: pytest.MonkeyPatch, batches: int) -> None:
@@ -360,24 +292,46 @@ def interrupt_after(monkeypatch: pytest.MonkeyPatch, batches: int) -> None:
 
 
 @pytest.mark.slow
-def test_a_resumed_tuning_must_be_the_same_one(
+def test_interrupted_and_resumed_is_the_same_file_as_uninterrupted(
     no_floors: None, model: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
 ) -> None:
-    out, journal = model.parent / "controller.toml", model.parent / "controller.toml.journal"
-    with monkeypatch.context() as patch:
-        interrupt_after(patch, 2)
-        assert entry.run(["tune", str(model), "--out", str(out), *LONG]) == 130
-    before = journal.read_bytes(), out.read_bytes()
-    for option, words in (
-        (("--method", "gwo"), 'its method is "gwo-woa", now it is "gwo";'),
-        (("--budget", "70"), "its budget is 61, now it is 70;"),
-        (("--bounds", "Ku=3..9"), 'its bounds is {}, now it is {"Ku": [3.0, 9.0]};'),
+    folder = model.parent
+    monkeypatch.chdir(folder)
+    out, journal = folder / "controller.toml", folder / "controller.toml.journal"
+    tune_long = ("tune", "model.toml", *LONG)
+    for batches, options in ((2, ("--workers", "1")), (4, ("--workers", "2", "--resume"))):
+        with monkeypatch.context() as patch:
+            interrupt_after(patch, batches)
+            assert entry.run([*tune_long, *options]) == 130
+        said = capsys.readouterr()
+        assert said.out == ""
+        assert "interrupted. The best controllers so far are in controller.toml, marked as unfinished" in said.err
+        unfinished = controller.load(out)
+        assert unfinished.tuning is not None
+        assert unfinished.tuning["status"].startswith("unfinished")
+        assert unfinished.source.endswith("(unfinished)")
+        assert journal.exists()
+        assert not list(folder.glob(".*"))
+    assert_only_the_same_goes_on(tune_long, (journal, out), capsys)
+    assert entry.run([*tune_long, "--resume", "--json"]) == 0
+    assert not journal.exists()
+    assert entry.run([*tune_long, "--out", "whole.toml", "--json"]) == 0
+    assert out.read_bytes() == Path("whole.toml").read_bytes()
+
+
+def assert_only_the_same_goes_on(tune_long: tuple[str, ...], kept: tuple[Path, Path], capsys: Captured) -> None:
+    """Any other tuning is refused, and nothing is changed."""
+    before = [path.read_bytes() for path in kept]
+    model = Path("model.toml").read_bytes()
+    other_model = write_model(Path("other.toml"), deviation=0.031).read_bytes()
+    for option, content, words in (
+        (("--method", "gwo"), model, 'its method is "gwo-woa", now it is "gwo";'),
+        (("--budget", "70"), model, "its budget is 31, now it is 70;"),
+        (("--bounds", "Ku=3..9"), model, 'its bounds is {}, now it is {"Ku": [3.0, 9.0]};'),
+        ((), other_model, "its model_digest is"),
     ):
-        capsys.readouterr()
-        assert entry.run(["tune", str(model), "--out", str(out), *LONG, *option, "--resume"]) != 0
+        Path("model.toml").write_bytes(content)
+        assert entry.run([*tune_long, *option, "--resume"]) != 0
         assert f"the journal is of another tuning: {words}" in capsys.readouterr().err
-        assert (journal.read_bytes(), out.read_bytes()) == before
-    write_model(model, deviation=0.031)
-    assert entry.run(["tune", str(model), "--out", str(out), *LONG, "--resume"]) != 0
-    assert "the journal is of another tuning: its model_digest is" in capsys.readouterr().err
-    assert (journal.read_bytes(), out.read_bytes()) == before
+        assert [path.read_bytes() for path in kept] == before
+    Path("model.toml").write_bytes(model)

@@ -122,6 +122,7 @@ def _is_parsed_only(command: Command) -> bool:
     return (
         needs_a_person
         or "sudo" in everything
+        or "--image" in everything
         or any(word.startswith(("/dev/tty", "~")) or "://" in word for word in everything)
     )
 

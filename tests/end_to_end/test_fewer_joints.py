@@ -55,7 +55,7 @@ def test_two_joints_from_the_box_to_a_following_arm(
         ask(capsys, "arm", "match", "white.toml", *port, "--out", "mine.toml")
         ask(capsys, "params", "backup", "board.toml", *port)
         for seed, name in enumerate(("fit.csv", "second.csv")):
-            options = ("--arm", "mine.toml", "--seconds", "10", "--budget", "20", "--seed", str(seed), "-o", name)
+            options = ("--arm", "mine.toml", "--seconds", "6", "--budget", "4", "--seed", str(seed), "-o", name)
             ask(capsys, "record", "--excite", *options, *port)
         capsys.readouterr()
         assert run(["record", "--excite", "--arm", "default", "-o", "no.csv", *port]) == 1
@@ -70,7 +70,7 @@ def test_two_joints_from_the_box_to_a_following_arm(
         assert told["log"][1]["improvement"] > 0.9
         assert not any("joint 2" in sentence or "joint 3" in sentence for sentence in told["not_identified"])
         told = ask(
-            capsys, "tune", "model.toml", "--budget", "400", "--arm", "mine.toml", "-o", "controller.toml",
+            capsys, "tune", "model.toml", "--budget", "200", "--arm", "mine.toml", "-o", "controller.toml",
             "--pictures", "tuned",
         )  # fmt: skip
         ask(capsys, "upload", "controller.toml", *port)

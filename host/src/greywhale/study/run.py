@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import BrokenExecutor, Executor, Future, wait
 from contextlib import suppress
 from pathlib import Path
-from queue import SimpleQueue
+from queue import Empty, SimpleQueue
 from typing import Any
 
 from threadpoolctl import threadpool_limits
@@ -94,7 +94,7 @@ class _Run:
                         lost |= self._take(ended.get(), running)
                 if not lost and not running:
                     return
-                lost = lost or self._take(ended.get(), running)
+                lost = lost or self._take(_wait_for_one(ended), running)
             # What else it had is lost as well, or was done just before.
             wait(running)
             for future in list(running):
@@ -156,3 +156,10 @@ class _Run:
 
     def _tell(self) -> None:
         self._report(len(self._book) / len(self._tasks) if self._tasks else 1.0)
+
+
+def _wait_for_one(ended: SimpleQueue[Future[str]]) -> Future[str]:
+    """The next task that ends. A Ctrl-C just before a wait does not end that wait, so each wait is short."""
+    while True:
+        with suppress(Empty):
+            return ended.get(timeout=0.5)

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from greywhale.firmware import TICK_S
 from greywhale.table import ParameterTable
-from greywhale.tune.judge.floor import saturation_floor
+from greywhale.tune.judge.floor import follow_ideally
 from greywhale.tune.search.objective import Scale, error_of, follow
 from greywhale.tune.search.training import WAIT_S, Drill
 
@@ -45,7 +45,7 @@ def lateness_s(table: ParameterTable) -> float:
 
 def _least_error(drill: Drill, plant: Floats, late_s: float, threads: int) -> Floats:
     """The ideal controller's error (4,) in rad, measured like a candidate's."""
-    floor = saturation_floor(drill.motion, plant, delay_s=late_s, wait_s=WAIT_S, threads=threads)
-    distance = np.abs(floor.leader - floor.angles)
+    leader, angles = follow_ideally(drill.motion, plant, delay_s=late_s, wait_s=WAIT_S, threads=threads)
+    distance = np.abs(leader - angles)
     weight = drill.experiment.weight_s[:, None]
     return error_of((weight * distance).sum(axis=0) / weight.sum(), np.square(distance).mean(axis=0))

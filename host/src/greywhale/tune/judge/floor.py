@@ -109,6 +109,32 @@ def saturation_floor(
     `supply_v` sets a lower voltage, for instance a controller's Ku. `delay_s` says how late the controller learns where
     the leader is; it separates the cost of sensing from the cost of the supply. The rest is as in Experiment.
     """
+    loop = _loop_of(motion, arm, supply_v, delay_s, wait_s, after_s, resample, threads)
+    tunings = _best(loop)
+    mse, angles = loop.run(tunings[None], keep=True)
+    bound = np.array([_bound(loop, joint, tunings) for joint in range(JOINTS)])
+    time_s: Floats = np.arange(len(loop.leader), dtype=np.float64) * SLICE_S * SLICES_PER_TICK
+    return Floor(mse[0], bound, loop.supply, delay_s, time_s, loop.leader, angles[0])
+
+
+def follow_ideally(
+    motion: Trajectory, plant: Floats, *, delay_s: float, wait_s: float, threads: int = 0
+) -> tuple[Floats, Floats]:
+    """The leader's and the ideal controller's angles (ticks, 4) in rad, as of `saturation_floor`, without its bound."""
+    loop = _loop_of(motion, plant, None, delay_s, wait_s, 0.0, False, threads)
+    return loop.leader, loop.run(_best(loop)[None], keep=True)[1][0]
+
+
+def _loop_of(
+    motion: Trajectory | Floats,
+    arm: ArmParameters | Floats,
+    supply_v: float | None,
+    delay_s: float,
+    wait_s: float,
+    after_s: float,
+    resample: bool,
+    threads: int,
+) -> _Loop:
     plant = check_plants(arm if isinstance(arm, np.ndarray) else plant_row(arm))
     if len(plant) != 1:
         raise UserError(f"the floor is of one plant, not of {len(plant)}; call it for each.", BAD_USAGE)
@@ -116,11 +142,7 @@ def saturation_floor(
     slices = np.where(rigid_joints(plant[0]), 0.0, slices)  # what is not in use is not led
     loop = _Loop(slices, plant[0], _supply(plant[0], supply_v), _delay_slices(delay_s), threads)
     _require_reach(loop)
-    tunings = _best(loop)
-    mse, angles = loop.run(tunings[None], keep=True)
-    bound = np.array([_bound(loop, joint, tunings) for joint in range(JOINTS)])
-    time_s: Floats = np.arange(len(loop.leader), dtype=np.float64) * SLICE_S * SLICES_PER_TICK
-    return Floor(mse[0], bound, loop.supply, delay_s, time_s, loop.leader, angles[0])
+    return loop
 
 
 @dataclass(frozen=True)
@@ -173,8 +195,11 @@ def _best(loop: _Loop) -> Floats:
     totals = loop.run(tried)[0].sum(axis=1)
     best: Floats = tried[totals.argmin()]
     least = totals.min()
+    rigid = rigid_joints(loop.plant)
     # The pitch joints pull at each other most, so they go first.
     for joint in (1, 2, 0, 3) if least > _NOTHING_TO_GAIN else ():
+        if rigid[joint]:
+            continue
         tried = np.repeat(best[None], len(_BRAKES), axis=0)
         tried[:, joint, 0] = _BRAKES
         totals = loop.run(tried)[0].sum(axis=1)

@@ -1,0 +1,35 @@
+"""Tunings in little time: what is possible is worked out once for all tests, and the last judgement is short."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+
+from greywhale.trajectory import human_reaches
+from greywhale.tune import default
+from greywhale.tune.judge import held_out
+from greywhale.tune.judge.margins import REST_S
+from greywhale.tune.possible import scale_of
+from greywhale.tune.search.objective import Scale
+from greywhale.tune.search.training import Drill
+
+_known: dict[bytes, Scale] = {}
+
+
+def shorten(patch: pytest.MonkeyPatch) -> None:
+    def shared(drills: Sequence[Drill], plants: np.ndarray, before: np.ndarray, threads: int = 0) -> Scale:
+        arrays = [
+            plants,
+            before,
+            *(array for drill in drills for array in (drill.motion.angles, drill.experiment.weight_s)),
+        ]
+        key = b"".join(array.tobytes() for array in arrays)
+        if key not in _known:
+            _known[key] = scale_of(drills, plants, before, threads)
+        return _known[key]
+
+    patch.setattr(default, "scale_of", shared)
+    patch.setattr(default, "REST_LONG_S", REST_S)
+    patch.setattr(held_out, "human_reaches", lambda seed, seconds: human_reaches(seed, 5.0))
