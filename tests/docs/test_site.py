@@ -17,10 +17,14 @@ from tools.docs.site import ROOT
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """As `make docs` builds it. Nothing is fetched: nothing in it names a page of the web to load from."""
+    """As `make docs` builds it, in a plain theme. Nothing in it names a page of the web to load from."""
     out = tmp_path_factory.mktemp("docs") / "site"
     done = subprocess.run(
-        [sys.executable, "-m", "tools.docs", "--out", str(out)], cwd=ROOT, capture_output=True, text=True, check=False
+        [sys.executable, "-m", "tools.docs", "--out", str(out), "--theme", "basic"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert done.returncode == 0, done.stderr
     assert done.stderr == ""

@@ -7,6 +7,7 @@ wall clock: the same bytes into the serial port at the same cycles give the same
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable
 from typing import Protocol
@@ -18,7 +19,7 @@ from greywhale import arm
 from greywhale.errors import UserError
 from greywhale.joints import ALL, Joints
 from greywhale_sim.board_supply import SharedSupply
-from greywhale_sim.drivers import CHIPS, OPEN, Chip, Pins, mean_volts
+from greywhale_sim.drivers import CHIPS, OPEN, Bridge, Chip, Pins, mean_volts
 from greywhale_sim.leader import LeaderPlayer
 from greywhale_sim.lies import Lies
 from greywhale_sim.pins_seen import PinsSeen
@@ -232,8 +233,7 @@ class Bench:
         self._enabled = bool(enable)
         for driver in range(4):  # quicker than array arithmetic on so few numbers
             second = values[driver + 8 :: 4] if self._second else (0.0, 0.0)
-            levels = Pins(self._enabled, values[driver], bool(values[driver + 4]), second[0], bool(second[1]))
-            self.bridges[driver] = self.chip.bridge(levels)
+            self.bridges[driver] = _bridge(self.chip.bridge, self._enabled, values[driver], values[driver + 4], *second)
         duties = [max(bridge.forwards, bridge.backwards) for bridge in self.bridges]
         self.seen.look(self.board.cycle, self._enabled or any(duties), duties)
         self._coasts = any(bridge.open > 0.0 for bridge in self.bridges)
@@ -251,6 +251,13 @@ class Bench:
                 self.voltages[joint] = math.copysign(1.0, gain) * mean_volts(
                     bridge, abs(gain) * self.supply_v, math.copysign(1.0, gain) * float(emf[joint])
                 )
+
+
+@functools.lru_cache(4096)  # the duties are few, and they change at every tick
+def _bridge(
+    of: Callable[[Pins], Bridge], enabled: bool, pwm: float, direction: float, second_pwm: float, second: float
+) -> Bridge:
+    return of(Pins(enabled, pwm, bool(direction), second_pwm, bool(second)))
 
 
 def stops_of(plant: Plant) -> tuple[Array, Array]:
