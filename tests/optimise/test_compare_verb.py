@@ -9,10 +9,13 @@ import select
 import signal
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from greywhale.cli import compare as verb
 from greywhale.cli import entry
 from tests.study.cluster import cluster_of
 
@@ -129,40 +132,38 @@ def test_interrupt_ends_all_processes_and_writes_nothing(tmp_path: Path, started
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("jobs", ["1", "2"])
-def test_an_interrupted_comparison_goes_on_from_its_results_file(tmp_path: Path, jobs: str) -> None:
+def interrupt_after(patch: pytest.MonkeyPatch, share: float) -> None:
+    """Ctrl-C as the progress bar is told that so much is done."""
+
+    @contextlib.contextmanager
+    def impatient() -> Iterator[Any]:
+        def report(what: str, fraction: float, note: str = "") -> None:
+            if fraction >= share:
+                raise KeyboardInterrupt
+
+        yield report
+
+    patch.setattr(verb, "progress", impatient)
+
+
+def test_an_interrupted_comparison_goes_on_from_its_results_file(
+    tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """To the same answer as without a break; with other options the file is refused."""
-    verb = [
-        sys.executable,
-        "-m",
-        "greywhale",
-        "-q",
-        "compare",
-        "--methods",
-        "pso",
-        "--functions",
-        "sphere",
-        "--budget",
-        "1000",
-    ]
-    verb += ["--seeds", "40", "--workers", jobs, "--json"]
-    whole = subprocess.run(verb, capture_output=True, check=True).stdout
-    results = tmp_path / "pso.study"
-    with subprocess.Popen(
-        [*verb, "--results", str(results)], stdout=subprocess.PIPE, stderr=subprocess.PIPE
-    ) as running:
-        while not (results.exists() and results.read_bytes().count(b"\n") > 2):
-            assert running.poll() is None, "it ended before it could be interrupted"
-        running.send_signal(signal.SIGINT)
-        out, err = running.communicate(timeout=120)
-    assert running.returncode == 130
-    told = json.loads(out)["error"]
-    assert err.decode().strip() == f"greywhale: {told}"
-    kept = results.read_bytes().count(b"\n") - 1
-    assert told == f"interrupted. {kept} of 16 tasks are done and kept in {results}; with it the same study goes on."
-    assert subprocess.run([*verb, "--results", str(results)], capture_output=True, check=True).stdout == whole
-    assert results.read_bytes().count(b"\n") == 17
-    other = subprocess.run([*verb, "--results", str(results), "--seed", "1"], capture_output=True, check=False)
-    assert other.returncode == 1
-    assert f"{results}: the results file is of another study: its seed is 0, now it is 1; " in other.stderr.decode()
+    results = tmp_path / "gwo.study"
+    kept = (*QUICK, *BUDGET, "--workers", "1", "--json", "--results", str(results))
+    with monkeypatch.context() as patch:
+        interrupt_after(patch, 0.5)
+        assert entry.run([*kept]) == 130
+    said = capsys.readouterr()
+    told = json.loads(said.out)["error"]
+    assert said.err.strip() == f"greywhale: {told}"
+    assert told == f"interrupted. 4 of 8 tasks are done and kept in {results}; with it the same study goes on."
+    assert results.read_bytes().count(b"\n") == 1 + 4
+    assert entry.run([*kept]) == 0
+    resumed = capsys.readouterr().out
+    assert results.read_bytes().count(b"\n") == 1 + 8
+    assert entry.run([*kept, "--seed", "1"]) == 1
+    assert f"{results}: the results file is of another study: its seed is 0, now it is 1; " in capsys.readouterr().err
+    assert entry.run([*QUICK, *BUDGET, "--json"]) == 0
+    assert capsys.readouterr().out == resumed
