@@ -15,7 +15,6 @@ import pytest
 
 from greywhale.drawing.page import style
 from greywhale.errors import UserError
-from greywhale.optimise import DEFAULT
 from greywhale.optimise.comparison import Comparison, Duel, Plan, compare, run_once
 from greywhale.optimise.comparison_report import as_dict, plot_ranks, statement, text, write_report
 from greywhale.optimise.functions import SETTINGS
@@ -172,17 +171,6 @@ def test_every_method_is_named_beside_its_line_and_no_name_is_over_another(noise
             assert len(looks) == len(methods)
         finally:
             plt.close(figure)
-
-
-@pytest.mark.slow
-def test_default_is_ahead_of_differential_evolution_on_shifted_functions() -> None:
-    names = ("sphere", "elliptic", "schwefel221", "rosenbrock", "ackley", "griewank", "levy")
-    ahead = compare(Plan(names, ("shifted",), (DEFAULT, "gwo-woa", "de"), runs=15, seed=1234))
-    ranks = ahead.mean_ranks("shifted")
-    assert ranks[DEFAULT] < ranks["de"] < ranks["gwo-woa"]
-    duel = ahead.duel("shifted", DEFAULT, "de")
-    assert duel.better >= 4
-    assert duel.worse == 0
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""`python -m tools.docs [--out DIR] [--theme NAME]`: builds the site from docs/. A warning is an error; nothing is fetched.
+"""`python -m tools.docs [--out DIR] [--theme NAME]`: builds the site; a warning is an error, and nothing is fetched.
 
 With --external the links to the web are listed instead, for whoever has a network to try them.
 """
