@@ -21,7 +21,7 @@ SIDE_BY_SIDE := $(MAKE) READY= --no-print-directory --jobs=$(shell nproc) --outp
 PYTEST := $(PYTHON) -m pytest -n auto
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build firmware demo report check test lint oracles bench campaign docs dist format lock hooks clean $(LINT) $(UNIT_TESTS) $(IMAGES)
+.PHONY: help setup ready build firmware demo report check test lint oracles bench campaign docs dist format lock hooks clean $(LINT) $(UNIT_TESTS) $(IMAGES)
 
 help: ## list the targets
 	@sed -n 's/^\([a-z]*\):[^#]*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12
@@ -33,10 +33,13 @@ build: setup ## the same, under the name people look for
 
 firmware: gates ## build the firmware for both boards, show its size, check its tick and its stack
 
-demo: setup ## the whole story on the simulated bench; options in ARGS, e.g. ARGS="--leader motion.csv"
+ready: # what it takes to build and run, without checks and tests
+	@python3 -m tools.setup run
+
+demo: ready ## the whole story on the simulated bench; options in ARGS, e.g. ARGS="--leader motion.csv"
 	@$(PYTHON) -m greywhale demo --out build/demo --prove $(ARGS)
 
-report: setup ## the paper from end to end, in build/report/report.html and .pdf; options in ARGS, e.g. ARGS=--quick
+report: ready ## the paper from end to end, in build/report/report.html and .pdf; options in ARGS, e.g. ARGS=--quick
 	@$(PYTHON) -m greywhale reproduce --out build/report $(ARGS)
 
 lint: $(READY) ## ruff, mypy --strict, cppcheck, clang-tidy, generated files

@@ -1,5 +1,6 @@
-"""Pins every Python package that the two pyproject.toml files lead to: `make lock` writes requirements.txt, and
-tools/oracles/requirements.txt with what the outside references need beside it.
+"""Pins every Python package that the two pyproject.toml files lead to: `make lock` writes requirements.txt with what
+it takes to build and run, tools/requirements.txt with what checks and tests need beside it, and
+tools/oracles/requirements.txt with what the outside references need beside both.
 
 Every version comes with the digests of its files, for all platforms, so that the set-up installs these files or none.
 """
@@ -16,14 +17,19 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 OWN = {"greywhale", "greywhale-sim"}
-HEADER = """\
-# Every Python package of the project, pinned with the digests of its files. Written by `make lock` from the two
-# pyproject.toml files.
+RUN = ROOT / "requirements.txt"
+RUN_HEADER = """\
+# Every Python package that greywhale is built and runs with, pinned with the digests of its files. Written by
+# `make lock` from the two pyproject.toml files.
+"""
+CHECKS = ROOT / "tools/requirements.txt"
+CHECKS_HEADER = """\
+# What checks and tests need besides, pinned with the digests of their files. Written by `make lock`.
 """
 ORACLES = ROOT / "tools/oracles/requirements.txt"
 ORACLES_HEADER = """\
-# The outside references of tests/oracles, pinned with the digests of their files. What the project's own
-# requirements.txt holds is not repeated. Written by `make lock`.
+# The outside references of tests/oracles, pinned with the digests of their files. What the project itself needs is
+# not repeated. Written by `make lock`.
 """
 # scikit-fuzzy imports networkx, but does not ask for it.
 REFERENCES = ("mujoco", "networkx", "numba", "pin", "scikit-fuzzy", "sympy")
@@ -40,16 +46,24 @@ def runtime() -> list[str]:
     return _foreign([name for names in asked for name in names])
 
 
+def build() -> list[str]:
+    """What a checkout asks for to be built and run, its firmware included."""
+    host = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    return _foreign(
+        [*runtime(), *host["project"]["optional-dependencies"]["build"], *host["dependency-groups"]["build"]]
+    )
+
+
 def wanted() -> list[str]:
     """What the packages ask for to be built, run, checked and tested."""
     host = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     extras = [name for names in host["project"]["optional-dependencies"].values() for name in names]
-    return _foreign([*runtime(), *extras, *host["dependency-groups"]["dev"]])
+    return _foreign([*build(), *extras, *host["dependency-groups"]["dev"]])
 
 
 def versions() -> list[str]:
-    """The pinned packages as name==version, without the digests of their files."""
-    lines = (ROOT / "requirements.txt").read_text(encoding="utf-8").splitlines()
+    """The project's own pinned packages as name==version, without the digests of their files."""
+    lines = [line for file in (RUN, CHECKS) for line in file.read_text(encoding="utf-8").splitlines()]
     return [line.rstrip(" \\") for line in lines if re.match(r"[\w.-]+==", line)]
 
 
@@ -95,10 +109,20 @@ def main() -> None:
         subprocess.run([sys.executable, "-m", "venv", name], check=True)
         python = str(folder / "bin/python")
         subprocess.run([python, "-m", "pip", "install", "--quiet", "pip-tools"], check=True)
-        own = _compile(python, folder, wanted())
-        (ROOT / "requirements.txt").write_text(HEADER + "\n".join(own) + "\n", encoding="utf-8")
-        others = without(_compile(python, folder, REFERENCES, versions()), {name_of(line) for line in versions()})
-        ORACLES.write_text(ORACLES_HEADER + "\n".join(others) + "\n", encoding="utf-8")
+        everything = _compile(python, folder, wanted())
+        run = _compile(python, folder, build(), [line.rstrip(" \\") for line in everything if not line.startswith(" ")])
+        _write(RUN, RUN_HEADER, run)
+        _write(CHECKS, CHECKS_HEADER, without(everything, _names(run)))
+        references = _compile(python, folder, REFERENCES, versions())
+        _write(ORACLES, ORACLES_HEADER, without(references, _names(versions())))
+
+
+def _names(lines: Sequence[str]) -> set[str]:
+    return {name_of(line) for line in lines if not line.startswith(" ")}
+
+
+def _write(file: Path, header: str, lines: Sequence[str]) -> None:
+    file.write_text(header + "\n".join(lines) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

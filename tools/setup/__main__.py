@@ -1,4 +1,5 @@
-"""Everything `make demo` and `make test` need, from a bare Debian on: `python3 -m tools.setup`.
+"""Everything that make needs, from a bare Debian on: `python3 -m tools.setup`; `python3 -m tools.setup run` leaves out
+what only checks and tests need.
 
 Needs only the system's Python. Each step checks whether it has anything to do, so that repeating it takes no time.
 """
@@ -18,7 +19,8 @@ from tools.setup.console import ROOT, SetupError, say
 STEPS = (debian.step, venv.step, platformio.step, extensions.step, firmware.step)
 
 
-def main() -> int:
+def main(arguments: list[str]) -> int:
+    checks = arguments != ["run"]
     start = time.monotonic()
     build = ROOT / "build"
     build.mkdir(exist_ok=True)
@@ -30,7 +32,7 @@ def main() -> int:
             fcntl.flock(lock, fcntl.LOCK_EX)
         try:
             for step in STEPS:
-                step()
+                step(checks)
         except SetupError as error:
             print(f"set-up: {error}", file=sys.stderr)
             return 1
@@ -42,4 +44,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(sys.argv[1:]))

@@ -19,8 +19,10 @@ PACKAGES = (
     "avrdude",
     "libsimavr-dev",  # the simulated board
     "libelf-dev",
-    "g++",  # native extensions and unit tests
-    "doctest-dev",
+    "g++",  # native extensions
+)
+FOR_CHECKS = (
+    "doctest-dev",  # unit tests of the firmware
     "cppcheck",
     "clang-tidy",
     "clang",  # libFuzzer and the sanitizers, over the firmware
@@ -78,7 +80,7 @@ def ensure(packages: Sequence[str]) -> None:
     run(as_root(install, missing), what=f"Installing {' '.join(missing)} with apt-get", env=quiet)
 
 
-def step() -> None:
+def step(checks: bool) -> None:
     if os.environ.get("GREYWHALE_SKIP_APT"):
         return
-    ensure((*python_packages(), *PACKAGES))
+    ensure((*python_packages(), *PACKAGES, *(FOR_CHECKS if checks else ())))

@@ -22,8 +22,9 @@ def install(name: str, place: str, stub: str, sources: tuple[str, ...], modules:
     stamps.set_current(name, wanted)
 
 
-def step() -> None:
+def step(checks: bool) -> None:
     install("greywhale", ".", "host/src/greywhale/_native.pyi", NATIVE, "host/src/greywhale")
     install("greywhale-sim", "sim", "sim/bench/greywhale_sim/_board.pyi", BOARD, "sim/bench/greywhale_sim")
-    native = "tools/studies/one_joint/native"
-    install("one_joint_native", native, f"{native}/one_joint_native.pyi", STUDY)
+    if checks:
+        native = "tools/studies/one_joint/native"
+        install("one_joint_native", native, f"{native}/one_joint_native.pyi", STUDY)

@@ -13,7 +13,7 @@ SCRIPTS = ("firmware/image_record.py", "firmware/source_digest.py", "firmware/st
 SOURCES = ("firmware/src", "firmware/lib", "firmware/platformio.ini", *SCRIPTS)
 
 
-def step() -> None:
+def step(checks: bool) -> None:
     tools = stamps.files_below(*SOURCES, "tools/setup", "requirements.txt")
     wanted = stamps.digest(tools, str(platformio.FINISHED.exists()))
     if stamps.is_current("firmware", wanted) and all((BUILD / board / "firmware.hex").exists() for board in BOARDS):

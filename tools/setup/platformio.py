@@ -36,7 +36,7 @@ def full_environment() -> dict[str, str]:
     return {**os.environ, **environment()}
 
 
-def step() -> None:
+def step(checks: bool) -> None:
     """Assemble the project's own core folder if the registry does not answer; the decision is kept in build/stamps."""
     wanted = stamps.digest(stamps.files_below("tools/setup", "requirements.txt"), *debian.PACKAGES)
     chosen = os.environ.get("GREYWHALE_PLATFORMIO", "")  # "registry" or "debian" decides by hand

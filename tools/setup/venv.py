@@ -1,4 +1,4 @@
-"""The project's own Python environment, .venv: the packages of requirements.txt, down to the bytes of their files."""
+"""The project's own Python environment, .venv: the packages that are pinned, down to the bytes of their files."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from tools.setup.console import ROOT, run, say
 
 VENV = ROOT / ".venv"
 PYTHON = VENV / "bin" / "python"
-REQUIREMENTS = ROOT / "requirements.txt"
+REQUIREMENTS = ROOT / "requirements.txt"  # what it takes to build and run
+FOR_CHECKS = ROOT / "tools" / "requirements.txt"
 
 
 def environment() -> dict[str, str]:
@@ -34,14 +35,22 @@ def works() -> bool:
     return answer.returncode == 0 and Path(answer.stdout.strip()) == VENV
 
 
-def step() -> None:
-    wanted = stamps.digest([REQUIREMENTS], sys.version)
+def step(checks: bool) -> None:
     if not works():
         say("making the Python environment .venv")
+        stamps.forget()  # nothing is installed in it
         run([sys.executable, "-m", "venv", "--clear", VENV], what="Making .venv")
-    elif stamps.is_current("venv", wanted):
+    files = [REQUIREMENTS, FOR_CHECKS] if checks else [REQUIREMENTS]
+    missing = [file for file in files if not stamps.is_current(_stamp(file), stamps.digest([file], sys.version))]
+    if not missing:
         return
-    say("installing the pinned Python packages (about a minute the first time)")
-    pinned = ("--require-hashes", "--no-deps", "--requirement", REQUIREMENTS)
-    pip_install(*pinned, what="Installing the Python packages of requirements.txt")
-    stamps.set_current("venv", wanted)
+    names = " and ".join(str(file.relative_to(ROOT)) for file in missing)
+    say(f"installing the Python packages of {names} (about a minute the first time)")
+    given = [word for file in missing for word in ("--requirement", file)]
+    pip_install("--require-hashes", "--no-deps", *given, what=f"Installing the Python packages of {names}")
+    for file in missing:
+        stamps.set_current(_stamp(file), stamps.digest([file], sys.version))
+
+
+def _stamp(requirements: Path) -> str:
+    return f"venv-{requirements.parent.name}"
