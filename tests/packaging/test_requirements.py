@@ -10,13 +10,15 @@ from pathlib import Path
 import pytest
 
 from tools import lock
-from tools.setup.venv import REQUIREMENTS
 
 
-def pinned(file: Path = REQUIREMENTS) -> dict[str, list[str]]:
-    """Digests by package."""
+def pinned(*files: Path) -> dict[str, list[str]]:
+    """Digests by package; without files, of what the project needs itself."""
     found: dict[str, list[str]] = {}
-    for line in file.read_text(encoding="utf-8").splitlines():
+    lines = [
+        line for file in files or (lock.RUN, lock.CHECKS) for line in file.read_text(encoding="utf-8").splitlines()
+    ]
+    for line in lines:
         if re.match(r"([\w.-]+)==\S+", line):
             name = lock.name_of(line)
             assert name not in found
@@ -28,7 +30,7 @@ def pinned(file: Path = REQUIREMENTS) -> dict[str, list[str]]:
     return found
 
 
-@pytest.mark.parametrize("file", [REQUIREMENTS, lock.ORACLES], ids=["own", "oracles"])
+@pytest.mark.parametrize("file", [lock.RUN, lock.CHECKS, lock.ORACLES], ids=["run", "checks", "oracles"])
 def test_every_package_has_digests(file: Path) -> None:
     assert len(pinned(file)) > 10
     assert all(pinned(file).values())
@@ -53,8 +55,8 @@ def test_versions_alone_can_be_had_too() -> None:
 
 
 def test_all_that_is_asked_for_is_pinned() -> None:
-    asked = {lock.name_of(name) for name in lock.wanted()}
-    assert asked - set(pinned()) == set()
+    for asked, files in ((lock.build(), [lock.RUN]), (lock.wanted(), [])):
+        assert {lock.name_of(name) for name in asked} - set(pinned(*files)) == set()
 
 
 def test_another_file_is_refused(tmp_path: Path) -> None:
