@@ -92,7 +92,7 @@ def traces_of(log: Log, check: Check) -> Traces:
     """A log on an even grid, and where the check begins in it: the leader's columns are the check, some time later."""
     time_s: Floats = np.arange(0.0, float(log.time[-1]), TICK_S)
     leader, follower, voltage = (_at(time_s, log.time, values) for values in (log.leader, log.follower, log.voltage))
-    return Traces(leader, follower, voltage, _begin(time_s, leader, check))
+    return Traces(leader, follower, voltage, _begin(leader, check))
 
 
 def measure(traces: Traces, check: Check, supply_v: float) -> Measures:
@@ -178,14 +178,14 @@ def _at(times: Floats, known: Floats, values: Floats) -> Floats:
     return np.column_stack([np.interp(times, known, values[:, joint]) for joint in range(JOINTS)])
 
 
-def _begin(time_s: Floats, leader: Floats, check: Check) -> float:
+def _begin(leader: Floats, check: Check) -> float:
     """The delay (s) at which the check resembles the leader's columns most; coarsely, then to the millisecond."""
-    every = 8
+    coarse, fine, near, every = 20, 2, 30, 8  # ticks
+    latest = min(round(LATEST_BEGIN_S / TICK_S), len(leader)) + coarse
+    path = check.motion.at(TICK_S * np.arange(-latest - near, len(leader), dtype=np.float64))
 
-    def apart(delay: float) -> float:
-        return float(np.mean((check.motion.at(time_s[::every] - delay) - leader[::every]) ** 2))
+    def apart(delay: int) -> float:
+        return float(np.mean((path[latest + near - delay : len(path) - delay : every] - leader[::every]) ** 2))
 
-    coarse = np.arange(0.0, min(LATEST_BEGIN_S, float(time_s[-1])) + 0.02, 0.02)
-    near = min(coarse, key=apart)
-    fine = np.maximum(near + np.arange(-0.03, 0.031, 0.002), 0.0)
-    return float(min(fine, key=apart))
+    best = min(range(0, latest, coarse), key=apart)
+    return TICK_S * min(range(max(best - near, 0), best + near + 1, fine), key=apart)

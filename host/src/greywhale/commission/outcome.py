@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -32,15 +32,19 @@ class Outcome:
     trials: Trials
     rounds: tuple[Round, ...]
     best: Trial
+    _predicted: dict[tuple[str, int], Measures] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @property
     def improved(self) -> bool:
         return self.best is not self.trials.before
 
     def predicted(self, trial: Trial, round_: Round) -> Measures:
-        """What a round's model says about a trial."""
-        shown = predict(round_.learnt.arm, trial.table, trial.traces)[0]
-        return measure(shown, self.trials.check, self.trials.table.supply_v)
+        """What a round's model says about a trial; asked once, and told to all."""
+        key = trial.name, round_.number
+        if key not in self._predicted:
+            shown = predict(round_.learnt.arm, trial.table, trial.traces)[0]
+            self._predicted[key] = measure(shown, self.trials.check, self.trials.table.supply_v)
+        return self._predicted[key]
 
     def round_of(self, trial: Trial) -> Round:
         """The round that a trial belongs to; the last one's model is asked about what belongs to none."""

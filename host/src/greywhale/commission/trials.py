@@ -101,6 +101,7 @@ class Trials:
     def play_before(self, rig: Rig | None) -> Trial:
         """Play the check with the controllers from before; twice, to see how much two recordings differ."""
         rows = controllers_of(self.table)
+        seen: list[tuple[Path, Played, Traces, Measures]] = []
         for name in (BEFORE, AGAIN):
             path, played = self._played(name, rig, rows, watched=False)
             if played.stopped:
@@ -108,17 +109,16 @@ class Trials:
                     f"with the controllers from before, the check ended early: {played.stopped}; narrow the --range, "
                     "or upload calmer controllers first."
                 )
-            traces = traces_of(played.log, self.check)
-            self._befores.append(measure(traces, self.check, self.table.supply_v))
-            if name == BEFORE:
-                first = path, played
-        self.done.append(self._judged(BEFORE, rows, *first))
+            seen.append((path, played, *self._measured(played)))
+        self._befores = [measured for *_, measured in seen]
+        self.done.append(self._judged(BEFORE, rows, *seen[0]))
         return self.before
 
     def play(self, rig: Rig | None, rows: Controllers) -> Trial:
         """Play the check with these controllers, or take the result from the journal."""
         name = self._next_name()
-        trial = self._judged(name, rows, *self._played(name, rig, rows, watched=True))
+        path, played = self._played(name, rig, rows, watched=True)
+        trial = self._judged(name, rows, path, played, *self._measured(played))
         self.done.append(trial)
         return trial
 
@@ -146,9 +146,13 @@ class Trials:
     def _next_name(self) -> str:
         return f"trial-{len(self.done):02d}" if self.done else AGAIN
 
-    def _judged(self, name: str, rows: Controllers, path: Path, played: Played) -> Trial:
+    def _measured(self, played: Played) -> tuple[Traces, Measures]:
         traces = traces_of(played.log, self.check)
-        measured = measure(traces, self.check, self.table.supply_v)
+        return traces, measure(traces, self.check, self.table.supply_v)
+
+    def _judged(
+        self, name: str, rows: Controllers, path: Path, played: Played, traces: Traces, measured: Measures
+    ) -> Trial:
         guilty = [played.stopped if joint == played.joint else "" for joint in range(JOINTS)]
         kept = (rows == controllers_of(self.table)).all(axis=1)
         foreseen = ("",) * JOINTS if self.foresight is None else self.foresight.clauses(rows)
