@@ -4,20 +4,23 @@ from __future__ import annotations
 
 import json
 import signal
-import subprocess
-import sys
 from collections.abc import Iterator
+from multiprocessing import get_context
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
+from greywhale.board import record
 from greywhale.board.device import Device
+from greywhale.board.record import Recording
 from greywhale.board.upload import read_parameters
 from greywhale.cli.entry import run
+from greywhale.commission import rig
 from greywhale.commission.motions import Room, check_motion, first_motion
-from greywhale.commission.rig import connected
-from greywhale.demo import BenchProcess
+from greywhale.commission.rig import Progress, connected
+from greywhale.demo import BenchProcess, RunningBench
 from greywhale.errors import UserError
 from greywhale.files.arm import default_arm
 from greywhale.files.log import read_log
@@ -25,6 +28,9 @@ from greywhale.files.model import to_toml
 from greywhale.loop.controllers import controllers_of
 from greywhale.protocol.schema import State
 from greywhale.table import ParameterTable
+from greywhale.trajectory import Trajectory
+from greywhale_sim.lockstep import LockStepBench
+from greywhale_sim.words import lock_step
 from tests.commission.test_start import with_joint, with_pot
 
 pytestmark = pytest.mark.slow
@@ -32,8 +38,8 @@ BEFORE = ParameterTable.defaults()
 
 
 @pytest.fixture
-def bench() -> Iterator[BenchProcess]:
-    with BenchProcess("--speed", "max") as started:
+def bench() -> Iterator[LockStepBench]:
+    with lock_step() as started:
         yield started
 
 
@@ -48,101 +54,111 @@ def wild() -> ParameterTable:
     return BEFORE.with_controllers(rows)
 
 
-def small_check(rig_pose: np.ndarray) -> Room:
-    return Room(rig_pose, rig_pose - 0.5, rig_pose + 0.5)
+def small_check(pose: np.ndarray) -> Room:
+    return Room(pose, pose - 0.5, pose + 0.5)
 
 
-def running(bench: BenchProcess) -> tuple[ParameterTable, State]:
+def running(bench: RunningBench) -> tuple[ParameterTable, State]:
     """What the board runs after a restart, which opening its port is; nothing of it is lost by that."""
     with Device(bench.port) as device:
         return read_parameters(device), device.status().state
 
 
 def test_a_joint_that_hunts_is_stopped_at_once_and_the_controllers_from_before_run(
-    bench: BenchProcess, tmp_path: Path
+    bench: LockStepBench, tmp_path: Path
 ) -> None:
-    with connected(bench.port, BEFORE, told) as rig:
-        check = check_motion(small_check(rig.pose()))
-        played = rig.play(check.motion, tmp_path / "log.csv", wild())
+    with connected(bench.port, BEFORE, told) as arm:
+        check = check_motion(small_check(arm.pose()))
+        played = arm.play(check.motion, tmp_path / "log.csv", wild())
         assert played.joint == 2
         assert "joint 2 hunted" in played.stopped
         assert not bench.command("status")["motors_enabled"]
-        assert read_parameters(rig.device) == BEFORE
-        assert rig.device.status().state is State.DISABLED
+        assert read_parameters(arm.device) == BEFORE
+        assert arm.device.status().state is State.DISABLED
         log = read_log(tmp_path / "log.csv")
         assert not log.complete
         assert log.time[-1] < 5.0
         assert log.origin.param_crc == wild().crc
-        calm = rig.play(first_motion(small_check(rig.pose()), 0.1), tmp_path / "calm.csv", BEFORE)
+        calm = arm.play(first_motion(small_check(arm.pose()), 0.1), tmp_path / "calm.csv", BEFORE)
         assert not calm.stopped, "the rig goes on after a joint has hunted"
 
 
-def test_a_fault_of_the_board_ends_the_trial_and_not_the_commissioning(bench: BenchProcess, tmp_path: Path) -> None:
+def test_a_fault_of_the_board_ends_the_trial_and_not_the_commissioning(bench: LockStepBench, tmp_path: Path) -> None:
     """Nearly no voltage: the follower stays behind its leader until the board stops it."""
     rows = controllers_of(BEFORE).copy()
     rows[:, 11] = 50
-    with connected(bench.port, BEFORE, told) as rig:
-        pose = rig.pose()
+    with connected(bench.port, BEFORE, told) as arm:
+        pose = arm.pose()
         room = Room(pose, pose - 1.2, pose + 1.2)
-        played = rig.play(check_motion(room).motion, tmp_path / "log.csv", BEFORE.with_controllers(rows), watched=False)
+        played = arm.play(check_motion(room).motion, tmp_path / "log.csv", BEFORE.with_controllers(rows), watched=False)
         assert "the board stopped" in played.stopped
-        assert rig.device.status().state is State.DISABLED
-        assert read_parameters(rig.device) == BEFORE
+        assert arm.device.status().state is State.DISABLED
+        assert read_parameters(arm.device) == BEFORE
 
 
-def test_another_board_than_the_one_it_began_with_is_refused(bench: BenchProcess) -> None:
+def test_another_board_than_the_one_it_began_with_is_refused(bench: LockStepBench) -> None:
     with pytest.raises(UserError, match="but this commissioning began with"):
         with connected(bench.port, wild(), told):
             pass
 
 
 def test_a_line_lost_in_the_middle_leaves_motors_off_and_the_controllers_from_before(
-    bench: BenchProcess, tmp_path: Path
+    bench: LockStepBench, tmp_path: Path
 ) -> None:
     def cut(what: str, fraction: float) -> None:
         if what == "recording" and fraction > 0.2:
             bench.command("line lose 1")
 
     trial = BEFORE.with_raw({"joint0.kp": 50000})
-    with pytest.raises(UserError), connected(bench.port, BEFORE, cut) as rig:
-        rig.play(check_motion(small_check(rig.pose())).motion, tmp_path / "log.csv", trial)
+    with pytest.raises(UserError), connected(bench.port, BEFORE, cut) as arm:
+        arm.play(check_motion(small_check(arm.pose())).motion, tmp_path / "log.csv", trial)
     assert read_log(tmp_path / "log.csv").origin.param_crc == trial.crc, "it ran when the line was lost"
     assert not bench.command("status")["motors_enabled"]
     bench.command("line lose 0")
     assert running(bench) == (BEFORE, State.DISABLED)
 
 
-def test_a_killed_program_leaves_motors_off_and_the_controllers_from_before(
-    bench: BenchProcess, tmp_path: Path
-) -> None:
+def send_in_the_check(number: int, patch: pytest.MonkeyPatch) -> None:
+    """This program gets the signal while it leads the arm along its first check."""
+
+    def record_led(device: Device, path: Path, motion: Trajectory, *, progress: Progress, **options: Any) -> Recording:
+        def told(what: str, fraction: float) -> None:
+            progress(what, fraction)
+            if path.name == "before.csv" and what == "recording" and fraction > 0.1:
+                signal.raise_signal(number)
+
+        return record.record_led(device, path, motion, progress=told, **options)
+
+    patch.setattr(rig, "record_led", record_led)
+
+
+def commission_killed(port: str, folder: Path) -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        send_in_the_check(signal.SIGKILL, patch)
+        run(["-q", "commission", "-p", port, "-o", str(folder)])
+
+
+def test_a_killed_program_leaves_motors_off_and_the_controllers_from_before(tmp_path: Path) -> None:
     """Not even Ctrl-C: the lease ends, and the next start brings the stored set back."""
-    _end_during_the_check(bench, tmp_path, signal.SIGKILL)
-    assert running(bench) == (BEFORE, State.DISABLED)
+    with BenchProcess("--speed", "max") as bench:
+        program = get_context("fork").Process(target=commission_killed, args=(bench.port, tmp_path))
+        program.start()
+        program.join()
+        assert program.exitcode == -signal.SIGKILL
+        assert running(bench) == (BEFORE, State.DISABLED)
 
 
-def test_ctrl_c_stops_the_motors_and_says_how_to_go_on(bench: BenchProcess, tmp_path: Path) -> None:
-    code, errors = _end_during_the_check(bench, tmp_path, signal.SIGINT)
-    assert code == 130
-    assert "--resume goes on" in errors
-    assert "Traceback" not in errors
+def test_ctrl_c_stops_the_motors_and_says_how_to_go_on(
+    bench: LockStepBench, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    send_in_the_check(signal.SIGINT, monkeypatch)
+    assert run(["-q", "commission", "-p", bench.port, "-o", str(tmp_path)]) == 130
+    assert "--resume goes on" in capsys.readouterr().err
     assert not bench.command("status")["motors_enabled"]
     assert running(bench) == (BEFORE, State.DISABLED)
-    steps = json.loads((tmp_path / "out" / "commission.json").read_text())["steps"]
+    steps = json.loads((tmp_path / "commission.json").read_text())["steps"]
     assert "first motion" in steps
     assert "before" not in steps
-
-
-def _end_during_the_check(bench: BenchProcess, folder: Path, number: int) -> tuple[int, str]:
-    """Send a commissioning the signal while it leads the arm along the check."""
-    command = [sys.executable, "-m", "greywhale", "commission", "-p", bench.port, "-o", str(folder / "out")]
-    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
-        while not list((folder / "out").glob("before.unfinished*.csv")):
-            assert process.poll() is None, process.communicate()[1]
-        while not bench.command("status")["motors_enabled"]:
-            assert process.poll() is None, process.communicate()[1]
-        process.send_signal(number)
-        errors = process.communicate(timeout=60)[1]
-    return process.returncode, errors
 
 
 def test_a_blocked_arm_and_an_uncalibrated_one_are_refused_in_a_sentence(
@@ -152,7 +168,7 @@ def test_a_blocked_arm_and_an_uncalibrated_one_are_refused_in_a_sentence(
     arms = {"blocked": blocked, "other": with_pot(default_arm(), 3, centre=0.5)}
     for name, arm in arms.items():
         (tmp_path / f"{name}.toml").write_text(to_toml(arm, {}).replace("[identification]\n", ""), encoding="utf-8")
-    with BenchProcess("--speed", "max", "--arm", str(tmp_path / "blocked.toml")) as bench:
+    with lock_step("--arm", str(tmp_path / "blocked.toml")) as bench:
         assert run(["-q", "commission", "-p", bench.port, "-o", str(tmp_path / "one")]) == 1
         first = capsys.readouterr().err
         arguments = ["-p", bench.port, "-o", str(tmp_path / "two"), "--arm", str(tmp_path / "other.toml")]
