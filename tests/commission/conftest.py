@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -13,8 +12,7 @@ from greywhale.commission.book import Book
 from greywhale.commission.motions import check_motion
 from greywhale.commission.trials import Trials
 from greywhale.files.arm import default_arm
-from tests.commission.simulated import ROOM, SimulatedRig
-from tests.tune.models import write_model
+from tests.commission.simulated import ROOM, SimulatedRig, options_in
 
 
 @pytest.fixture
@@ -32,17 +30,4 @@ def trials(tmp_path: Path, rig: SimulatedRig) -> Trials:
 @pytest.fixture
 def options(tmp_path: Path) -> Callable[..., Options]:
     """A short commissioning that begins with a model of the default arm."""
-    model = write_model(tmp_path / "model.toml")
-
-    def make(**changes: Any) -> Options:
-        given: dict[str, Any] = {
-            "port": "port",
-            "out": tmp_path / "out",
-            "model": model,
-            "rounds": 1,
-            "trials": 4,
-            "budget": 12,
-        }
-        return Options(**given | changes)
-
-    return make
+    return options_in(tmp_path)

@@ -1,10 +1,15 @@
-"""An arm on its board for trials, simulated in a moment by the native loop: it offers what a Rig offers."""
+"""An arm on its board for trials, simulated in a moment by the native loop: it offers what a Rig offers.
+
+The same arm with the same controllers does the same on the same motion: each is simulated once.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
 
 import numpy as np
 
@@ -12,6 +17,7 @@ from greywhale.arm import ArmParameters
 from greywhale.arm.parameters import with_usual_noise
 from greywhale.arm.plants import plant_row
 from greywhale.board.stream import Received
+from greywhale.commission import Options
 from greywhale.commission.motions import Room
 from greywhale.commission.rig import Played
 from greywhale.commission.watch import Hunting, Watch
@@ -24,6 +30,7 @@ from greywhale.loop.controllers import controllers_of
 from greywhale.protocol import schema
 from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory
+from tests.tune.models import write_model
 
 POSE = np.array([0.0, 0.4, 0.0, 0.0])
 ROOM = Room(POSE, POSE - 0.9, POSE + 0.9)
@@ -51,21 +58,8 @@ class SimulatedRig:
         self.at_play(len(self.played))
         self.report("recording", 0.0)
         self.played.append(table)
-        leader = motion.at(np.arange(round(motion.duration_s / TICK_S), dtype=np.float64) * TICK_S)
-        reference = np.vstack([np.tile(leader[:1], (WAIT, 1)), leader])
-        loop = ClosedLoop(
-            table,
-            known_readings(reference),
-            self.arm.follower_pots,
-            seed=3,
-            home=reference[0].tolist(),
-            gap=[0.0] * JOINTS,
-            weight_s=np.zeros(len(reference)),
-        )
-        result = loop.run(controllers_of(table)[None], plant_row(self.arm)[None], substeps=2, every=EVERY)
-        volts = result.duties[0] / np.array(pwm_steps(table.board)) * table.supply_v
-        follower = result.angles[0].astype(np.float64)
-        stopped = _write(path, table, reference[::EVERY], follower, volts, Watch() if watched else None)
+        log, stopped = _recorded(self.arm, motion, table, watched)
+        path.write_bytes(log)
         return Played(read_log(path), "" if stopped is None else f"joint {stopped} hunted", stopped)
 
     def keep(self, table: ParameterTable) -> None:
@@ -82,20 +76,71 @@ class SimulatedRig:
         yield self
 
 
+def options_in(folder: Path) -> Callable[..., Options]:
+    """Makes the options of a short commissioning in a folder; it begins with a model of the default arm."""
+    model = write_model(folder / "model.toml")
+
+    def make(**changes: Any) -> Options:
+        given: dict[str, Any] = {
+            "port": "port",
+            "out": folder / "out",
+            "model": model,
+            "rounds": 1,
+            "trials": 4,
+            "budget": 12,
+        }
+        return Options(**given | changes)
+
+    return make
+
+
+_known: dict[tuple[object, ...], tuple[bytes, int | None]] = {}
+
+
+def _recorded(arm: ArmParameters, motion: Trajectory, table: ParameterTable, watched: bool) -> tuple[bytes, int | None]:
+    """The log, and the joint for which the watch stopped it."""
+    key = arm.model_dump_json(), motion.time_s.tobytes(), motion.angles.tobytes(), table, watched
+    if key not in _known:
+        with TemporaryDirectory() as folder:
+            path = Path(folder) / "log.csv"
+            stopped = _record(arm, motion, table, path, Watch() if watched else None)
+            _known[key] = path.read_bytes(), stopped
+    return _known[key]
+
+
+def _record(
+    arm: ArmParameters, motion: Trajectory, table: ParameterTable, path: Path, watch: Watch | None
+) -> int | None:
+    leader = motion.at(np.arange(round(motion.duration_s / TICK_S), dtype=np.float64) * TICK_S)
+    reference = np.vstack([np.tile(leader[:1], (WAIT, 1)), leader])
+    loop = ClosedLoop(
+        table,
+        known_readings(reference),
+        arm.follower_pots,
+        seed=3,
+        home=reference[0].tolist(),
+        gap=[0.0] * JOINTS,
+        weight_s=np.zeros(len(reference)),
+    )
+    result = loop.run(controllers_of(table)[None], plant_row(arm)[None], substeps=2, every=EVERY)
+    volts = result.duties[0] / np.array(pwm_steps(table.board)) * table.supply_v
+    return _write(path, table, reference[::EVERY], result.angles[0].astype(np.float64), volts, watch)
+
+
 def _write(
     path: Path, table: ParameterTable, leader: np.ndarray, follower: np.ndarray, volts: np.ndarray, watch: Watch | None
 ) -> int | None:
     """The log of the traces; the joint for which the watch stopped it."""
-    counts = np.round(np.stack([leader, follower]) / ANGLE_LSB).astype(int)
+    counts = np.round(np.stack([leader, follower]) / ANGLE_LSB).astype(int).tolist()
     origin = Origin("0.1.0", table.board.key, table.crc, table.period_ms, EVERY, joints=table.joints_in_use)
     with LogWriter(path, origin) as log:
-        for row in range(len(leader)):
+        for row, columns in enumerate(zip(leader.tolist(), follower.tolist(), volts.tolist(), strict=True)):
             tick = EVERY * row
-            log.append(tick / 1000, leader[row], follower[row], volts[row], "following")
+            log.append(tick / 1000, *columns, "following")
             if watch is None:
                 continue
-            one, other = (tuple(map(int, values[row])) for values in counts)
-            sample = schema.Sample(tick, schema.State.FOLLOWING, schema.Fault.NONE, one, other, (0, 0, 0, 0))  # type: ignore[arg-type]
+            one, other = (tuple(angles[row]) for angles in counts)
+            sample = schema.Sample(tick, schema.State.FOLLOWING, schema.Fault.NONE, one, other, (0, 0, 0, 0))
             try:
                 watch(Received(sample, tick, 0))
             except Hunting as hunting:

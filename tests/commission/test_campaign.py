@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from greywhale.arm import ArmParameters
-from greywhale.commission import Options, campaign, commission, learn
+from greywhale.commission import Options, campaign, commission, foresee, learn
 from greywhale.commission.book import Book
 from greywhale.commission.learn import Learnt
+from greywhale.commission.outcome import Outcome
 from greywhale.commission.page import facts, save_page
 from greywhale.commission.search import KD, KI, KP, JointSearch
 from greywhale.errors import UserError
@@ -20,8 +22,9 @@ from greywhale.files.leader import load_leader
 from greywhale.files.model import arm_toml
 from greywhale.loop.controllers import controllers_of
 from greywhale.table import ParameterTable
-from greywhale.tune.model import Model
-from tests.commission.simulated import SimulatedRig
+from greywhale.trajectory import Trajectory, multi_steps
+from greywhale.tune.model import Model, load_model
+from tests.commission.simulated import SimulatedRig, options_in
 from tests.tune.models import write_model
 
 Make = Callable[..., Options]
@@ -30,9 +33,8 @@ Make = Callable[..., Options]
 find_controllers = learn.find_controllers
 
 
-@pytest.fixture(autouse=True)
-def _in_no_time(rig: SimulatedRig, monkeypatch: pytest.MonkeyPatch) -> None:
-    """No board, and the controllers are found at once: twice as stiff, and too stiff for joint 2."""
+def in_no_time(rig: SimulatedRig, patch: pytest.MonkeyPatch) -> None:
+    """No board; controllers are found at once, twice as stiff, and too stiff for joint 2; few steps are foreseen."""
 
     def find(book: Book, name: str, model: Model, start: np.ndarray, **options: object) -> Learnt:
         rows = start.copy()
@@ -42,12 +44,37 @@ def _in_no_time(rig: SimulatedRig, monkeypatch: pytest.MonkeyPatch) -> None:
         book.note(name, {})
         return Learnt(model.arm, rows, (), True)
 
-    monkeypatch.setattr(campaign, "connected", rig.connected)
-    monkeypatch.setattr(learn, "find_controllers", find)
+    patch.setattr(campaign, "connected", rig.connected)
+    patch.setattr(learn, "find_controllers", find)
+    steps = multi_steps()
+    few = Trajectory(steps.time_s[steps.time_s < 4.0], steps.angles[steps.time_s < 4.0])
+    patch.setattr(foresee, "multi_steps", lambda: few)
 
 
-def test_the_board_ends_with_what_passed_on_the_arm(rig: SimulatedRig, options: Make) -> None:
-    outcome = commission(options())
+@pytest.fixture(autouse=True)
+def _in_no_time(rig: SimulatedRig, monkeypatch: pytest.MonkeyPatch) -> None:
+    in_no_time(rig, monkeypatch)
+
+
+@dataclass(frozen=True)
+class Whole:
+    """A commissioning that came to its end, to read."""
+
+    rig: SimulatedRig
+    options: Make
+    outcome: Outcome
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Whole:
+    rig, options = SimulatedRig(default_arm()), options_in(tmp_path_factory.mktemp("whole"))
+    with pytest.MonkeyPatch.context() as patch:
+        in_no_time(rig, patch)
+        return Whole(rig, options, commission(options()))
+
+
+def test_the_board_ends_with_what_passed_on_the_arm(whole: Whole) -> None:
+    rig, outcome = whole.rig, whole.outcome
     assert outcome.best.passed
     assert np.array_equal(controllers_of(rig.stored), outcome.best.rows)
     assert (outcome.best.measured.error <= 1.11 * outcome.trials.before.measured.error).all()
@@ -59,10 +86,12 @@ def test_the_board_ends_with_what_passed_on_the_arm(rig: SimulatedRig, options: 
 
 @pytest.mark.slow
 def test_interrupted_anywhere_the_board_keeps_what_it_had_and_resuming_ends_the_same(
-    rig: SimulatedRig, options: Make
+    rig: SimulatedRig, options: Make, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    whole = commission(options())
-    plays, before = len(rig.played), whole.trials.table
+    """At the first motion, at either recording before, at either trial of the round, and at the confirmation."""
+    monkeypatch.setattr(Outcome, "predicted", lambda outcome, trial, round_: trial.measured)  # what follows from trials
+    whole = commission(options(trials=2))
+    told, plays, before = whole.as_dict(), len(rig.played), whole.trials.table
     for stop in range(plays):
         rig.stored = rig.before = before
         rig.played.clear()
@@ -74,11 +103,11 @@ def test_interrupted_anywhere_the_board_keeps_what_it_had_and_resuming_ends_the_
         rig.at_play = interrupt
         out = options().out.parent / f"stopped-{stop}"
         with pytest.raises(KeyboardInterrupt):
-            commission(options(out=out))
+            commission(options(out=out, trials=2))
         assert rig.stored == before
         rig.at_play = lambda number: None
-        again = commission(options(out=out, resume=(out / "commission.json").exists() and stop > 0))
-        assert again.as_dict() == whole.as_dict()
+        again = commission(options(out=out, trials=2, resume=stop > 0))
+        assert again.as_dict() == told
         assert len(rig.played) == plays, "no motion is made twice"
 
 
@@ -88,10 +117,10 @@ def test_a_good_joint_is_varied_along_with_the_others_but_gets_no_trial_of_its_o
 ) -> None:
     monkeypatch.setattr(JointSearch, "good", property(lambda search: search.joint == 0))
     steps: list[str] = []
-    trials = commission(options(), lambda what, fraction, note="": steps.append(what)).rounds[0].trials
-    assert len(trials) == 4
+    trials = commission(options(trials=3), lambda what, fraction, note="": steps.append(what)).rounds[0].trials
+    assert len(trials) == 3
     assert [step for step in steps if "trial" in step] == [
-        f"round 1, trial {number} of 4 at most: recording" for number in range(1, 5)
+        f"round 1, trial {number} of 3 at most: recording" for number in (1, 2, 3)
     ]
     assert len({trial.rows[0].tobytes() for trial in trials}) > 1
     monkeypatch.setattr(JointSearch, "good", property(lambda search: True))
@@ -100,8 +129,14 @@ def test_a_good_joint_is_varied_along_with_the_others_but_gets_no_trial_of_its_o
 
 @pytest.mark.slow
 def test_an_interrupted_tuning_goes_on(rig: SimulatedRig, options: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With the real search, over the model's own plant alone."""
+
+    def read(path: Path, seed: int, params: Path) -> Model:
+        return load_model(path, samples=1, seed=seed, force=True, params=params)
+
     monkeypatch.setattr(learn, "find_controllers", find_controllers)
-    whole = commission(options(out=options().out.parent / "whole"))
+    monkeypatch.setattr(learn, "read_model", read)
+    whole = commission(options(out=options().out.parent / "whole", trials=1))
 
     def report(what: str, fraction: float, note: str = "") -> None:
         if "tuning" in what and fraction > 0.4:
@@ -109,12 +144,12 @@ def test_an_interrupted_tuning_goes_on(rig: SimulatedRig, options: Make, monkeyp
 
     with pytest.raises(KeyboardInterrupt):
         rig.before = rig.stored = whole.trials.table
-        commission(options(), report)
+        commission(options(trials=1), report)
     assert rig.stored == whole.trials.table
     journal = options().out / "controller-1.toml.journal"
     assert journal.exists()
     rig.before = rig.stored = whole.trials.table
-    outcome = commission(options(resume=True))
+    outcome = commission(options(trials=1, resume=True))
     assert not journal.exists()
     assert outcome.as_dict() == whole.as_dict()
 
@@ -130,10 +165,8 @@ def test_a_model_of_another_arm_is_refused_before_it_moves_the_board(rig: Simula
     assert all(table == rig.before for table in rig.played), "nothing but the controllers from before has run"
 
 
-def test_a_finished_commissioning_needs_no_arm_to_tell_its_story_again(rig: SimulatedRig, options: Make) -> None:
-    outcome = commission(options())
-    rig.played.clear()
-    assert commission(options(resume=True)).as_dict() == outcome.as_dict()
+def test_a_finished_commissioning_needs_no_arm_to_tell_its_story_again(rig: SimulatedRig, whole: Whole) -> None:
+    assert commission(whole.options(resume=True)).as_dict() == whole.outcome.as_dict()
     assert rig.played == []
 
 
@@ -181,8 +214,8 @@ def test_without_a_model_the_arm_is_excited_and_identified(
     assert {log.origin.param_crc for log in (*second.fit, *second.validate)} <= crcs
 
 
-def test_the_report_shows_predicted_beside_measured(rig: SimulatedRig, options: Make) -> None:
-    outcome = commission(options())
+def test_the_report_shows_predicted_beside_measured(whole: Whole, tmp_path: Path) -> None:
+    outcome = whole.outcome
     shown = facts(outcome)
     trial = shown["rounds"][0]["trials"][-1]
     error = next(row for row in trial["rows"] if row["name"] == "error, reaches")
@@ -190,7 +223,7 @@ def test_the_report_shows_predicted_beside_measured(rig: SimulatedRig, options: 
         assert float(cell["predicted"]) == pytest.approx(float(cell["measured"]), rel=0.5), (
             "the model is that of the arm"
         )
-    page = save_page(outcome, outcome.trials.book.path("report.html")).read_text(encoding="utf-8")
+    page = save_page(outcome, tmp_path / "report.html").read_text(encoding="utf-8")
     assert error["cells"][0]["measured"] in page
     assert "data:image/png;base64," in page
     assert page.count("now on the board") == 1
@@ -204,7 +237,7 @@ def test_of_an_arm_with_two_joints_those_are_tried_and_the_others_keep_what_they
     monkeypatch.setattr(campaign, "connected", rig.connected)
     (tmp_path / "arm.toml").write_text(arm_toml(arm, "Two joints."), encoding="utf-8")
     model = write_model(tmp_path / "two.toml", arm, joints=(0, 1), parameters=before.changes())
-    outcome = commission(options(model=model, arm_file=str(tmp_path / "arm.toml")))
+    outcome = commission(options(model=model, arm_file=str(tmp_path / "arm.toml"), trials=2))
     assert outcome.improved
     assert outcome.best.passed
     assert [verdict.score < 0.5 for verdict in outcome.best.verdicts] == [True] * 4
