@@ -136,7 +136,7 @@ def test_an_interrupted_tuning_goes_on(rig: SimulatedRig, options: Make, monkeyp
 
     monkeypatch.setattr(learn, "find_controllers", find_controllers)
     monkeypatch.setattr(learn, "read_model", read)
-    whole = commission(options(out=options().out.parent / "whole", trials=1))
+    whole = commission(options(out=options().out.parent / "whole", trials=1, budget=5))
 
     def report(what: str, fraction: float, note: str = "") -> None:
         if "tuning" in what and fraction > 0.4:
@@ -144,12 +144,12 @@ def test_an_interrupted_tuning_goes_on(rig: SimulatedRig, options: Make, monkeyp
 
     with pytest.raises(KeyboardInterrupt):
         rig.before = rig.stored = whole.trials.table
-        commission(options(trials=1), report)
+        commission(options(trials=1, budget=5), report)
     assert rig.stored == whole.trials.table
     journal = options().out / "controller-1.toml.journal"
     assert journal.exists()
     rig.before = rig.stored = whole.trials.table
-    outcome = commission(options(trials=1, resume=True))
+    outcome = commission(options(trials=1, budget=5, resume=True))
     assert not journal.exists()
     assert outcome.as_dict() == whole.as_dict()
 
@@ -229,6 +229,7 @@ def test_the_report_shows_predicted_beside_measured(whole: Whole, tmp_path: Path
     assert page.count("now on the board") == 1
 
 
+@pytest.mark.slow
 def test_of_an_arm_with_two_joints_those_are_tried_and_the_others_keep_what_they_had(
     tmp_path: Path, options: Make, monkeypatch: pytest.MonkeyPatch
 ) -> None:
