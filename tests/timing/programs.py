@@ -31,7 +31,7 @@ class Assembled:
     def bound(self, *times: int) -> int:
         """With these bounds for the loops of `work`."""
         program = self.program
-        return Timing(program, self.chip, Facts({"work": list(times)})).of(program.entry("work")).cycles
+        return Timing(program, self.chip, Facts({"work": list(times)})).of(program.entry("work"))
 
     def measured(self, argument: int) -> int:
         board = Board(self.chip.name.lower())

@@ -186,57 +186,12 @@ def test_what_excludes_each_other_is_not_added(tmp_path: Path) -> None:
     function = Assembled(tmp_path, body, NANO, also=HELPER + "other: nop\n  ret")
     apart = Facts({}, {"work": [["call helper", "call other"]]})
     program = function.program
-    bound = Timing(program, NANO, apart).of(program.entry("work")).cycles
+    bound = Timing(program, NANO, apart).of(program.entry("work"))
     assert bound == max(function.measured(argument) for argument in (0, 1)) < function.bound()
-
-
-def test_a_limit_holds_for_the_whole_run_of_a_function(tmp_path: Path) -> None:
-    function = Assembled(tmp_path, COUNTED, NANO)
-    program = function.program
-    entry = program.entry("work")
-
-    def bound(**limits: int) -> int:
-        known = Facts({"work": [8, 4]}, limits={"work": [(what.replace("_", " "), n) for what, n in limits.items()]})
-        return Timing(program, NANO, known).of(entry).cycles
-
-    outer, inner = 3, 3  # cycles of a turn, but for the branches that the last one does not take
-    assert bound() == function.measured(7)
-    assert bound(loop_1=32) == bound() == bound(loop_0=8)
-    assert bound() - bound(loop_1=30) == 2 * inner
-    assert bound() - bound(loop_0=7) == 4 * inner + outer
-    assert bound(entry_1=2) == bound(loop_0=2) == function.measured(1)
-
-
-def test_a_function_has_other_facts_for_some_of_its_callers(tmp_path: Path) -> None:
-    body = "ldi r24, 3\n  rcall mid\n  ldi r24, 2\n  rcall leaf\n  ret"
-    leaf = "leaf: dec r24\n  brne leaf\n  ret"
-    typed = "\n".join(f".type {name}, @function" for name in ("leaf", "mid"))
-    function = Assembled(tmp_path, body, NANO, also=f"{typed}\n{leaf}\nmid: rcall leaf\n  ret")
-    program = function.program
-    known = Facts({"leaf": [3], "leaf, twice": [2]}, for_callers={("work", "leaf"): "leaf, twice"})
-    assert Timing(program, NANO, known).of(program.entry("work")).cycles == function.measured(0)
-    worse = Timing(program, NANO, Facts({"leaf": [3]})).of(program.entry("work")).cycles
-    assert worse == function.measured(0) + 3
-
-
-def test_what_a_piece_never_does_costs_nothing_also_deep_down(tmp_path: Path) -> None:
-    body = "sbrc r24, 0\n  rcall mid\n  sbrc r24, 1\n  rcall helper\n  ret"
-    function = Assembled(tmp_path, body, NANO, also=f"{HELPER}\nmid: sbrc r24, 2\n  rcall helper\n  ret")
-    program = function.program
-    timing, entry = Timing(program, NANO, Facts()), program.entry("work")
-    assert timing.of(entry).cycles == function.measured(7)
-    assert timing.of(entry, never=(("", "call helper"),)).cycles == function.measured(5)
-    assert timing.of(entry, never=(("mid", "call helper"),)).cycles == function.measured(3)
-    assert timing.of(entry, never=(("", "call mid"), ("mid", "call helper"))).cycles == function.measured(2)
-    with pytest.raises(ImageError, match="no such thing"):
-        timing.of(entry, never=(("", "call nobody"),))
 
 
 def test_a_fact_needs_its_reason(tmp_path: Path) -> None:
     path = tmp_path / "facts.toml"
     path.write_text('[[function]]\nname = "work"\nloop = [{ times = 3 }]\n')
-    with pytest.raises(ImageError, match="no reason"):
-        facts.load(path)
-    path.write_text('[[piece]]\nname = "look"\nparts = []\n')
     with pytest.raises(ImageError, match="no reason"):
         facts.load(path)

@@ -15,7 +15,7 @@ from tools.timing.bound import Timing
 from tools.timing.graph import Graph
 from tools.timing.image import PERIOD, TARGETS, TICK, Target, is_described, times
 from tools.timing.listing import Program, read_program
-from tools.timing.measure import Session, worst
+from tools.timing.measure import Session, busiest, worst
 
 pytestmark = pytest.mark.slow
 # Of another compiler's image facts.toml says nothing; the set-up may have taken PlatformIO's.
@@ -117,6 +117,11 @@ def test_the_dearest_tick_and_interrupts_stay_below_their_bounds(target: Target)
     assert found["tick"] <= bounds.tick < 1.5 * found["tick"]
     for role, bound in bounds.interrupts.items():
         assert found[role] <= bound < found[role] + 16, role
+
+
+@BOARDS
+def test_no_tick_of_a_search_is_late_with_both_directions_of_the_line_full(target: Target) -> None:
+    assert busiest(target, sets=4) < PERIOD
 
 
 @BOARDS

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import sys
 
-from tools.timing import budget, busy, delay, facts, measure
+from tools.timing import budget, measure
 from tools.timing.image import TARGETS, Target, Times, times
 
 
@@ -22,27 +22,13 @@ def _response(found: Times, receiving: bool) -> str:
 
 
 def _print(target: Target, found: Times) -> None:
-    worst = measure.worst(target) | budget.pieces(busy.worst(target))
+    worst = measure.worst(target)
     print(f"{target.chip.name:26} {'bound':>7} {'measured':>9}   cycles")
     for what, bound in budget.flat(found).items():
         print(_row(what, bound, worst[what]))
     print(f"  tick with its interrupts: {_response(found, False)} when nothing is received,")
     print(f"    {_response(found, True)} when bytes come without a gap; the longest that was found with both")
     print(f"    directions full is {measure.busiest(target)} cycles")
-    print("  end of the tick after a piece, in us after the tick's interrupt; above 1000 it is late:")
-    print(f"  {'line:':24}", *(f"{line:>9}" for line in ("quiet", "sending", "receiving", "both")))
-    for what, ends in _delays(found).items():
-        print(f"  {what:24}", *(f"{end:>9}" for end in ends))
-
-
-def _delays(found: Times) -> dict[str, list[str]]:
-    """For each piece how late the next tick may end, on each kind of line."""
-    ends: dict[str, list[str]] = {}
-    for line in (delay.QUIET, delay.SENDING, delay.RECEIVING, delay.FULL):
-        for name, work in delay.works(found, facts.load().pieces, line).items():
-            cycles = delay.end_of_tick(found, work, line)
-            ends.setdefault(name, []).append("-" if cycles is None else f"{cycles / 16:.0f}")
-    return ends
 
 
 def main(arguments: list[str]) -> int:

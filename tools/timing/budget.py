@@ -20,12 +20,7 @@ def load(path: Path = BUDGET) -> dict[str, dict[str, int]]:
 
 
 def flat(times: Times) -> dict[str, int]:
-    return {"tick": times.tick, **times.interrupts, **pieces(times.pieces)}
-
-
-def pieces(cycles: dict[str, int]) -> dict[str, int]:
-    """Pieces of the main loop's work under the names that they have beside the tick and the interrupts."""
-    return {f"piece: {name}": each for name, each in cycles.items()}
+    return {"tick": times.tick, **times.interrupts}
 
 
 def text(bounds: dict[str, Times]) -> str:

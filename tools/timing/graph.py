@@ -42,14 +42,6 @@ class Graph:
     exits: dict[int, int] = field(default_factory=dict)
     nodes: set[int] = field(default_factory=set)
 
-    def sites(self) -> dict[int, int]:
-        """For each calling instruction the how manyth it is that calls the same function, from 1, by address."""
-        before: dict[int, int] = {}
-        numbers: dict[int, int] = {}
-        for at, callee in sorted(self.calls.items()):
-            before[callee] = numbers[at] = before.get(callee, 0) + 1
-        return numbers
-
     def followers(self) -> Mapping[int, list[int]]:
         after: dict[int, list[int]] = {node: [] for node in self.nodes}
         for edge in self.edges:

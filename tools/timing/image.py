@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 from elftools.elf.elffile import ELFFile
@@ -17,7 +17,6 @@ from tools.timing.listing import ImageError, Program, read_program
 
 BUILD = Path(__file__).parents[2] / "firmware/.pio/build"
 TICK = "firmware_tick"
-SERVICE = "app::App::service"
 PERIOD = 16_000  # cycles from one tick to the next
 BYTE = 160  # cycles that a byte takes on the line at 1 Mbaud
 CONVERSION = 416
@@ -64,7 +63,6 @@ class Times:
     tick: int
     interrupts: dict[str, int]
     waking: int
-    pieces: dict[str, int] = field(default_factory=dict)  # of the main loop, without interrupts
 
     def response(self, receiving: bool) -> int | None:
         """The tick with all interrupts that may come until its end; None if that is not before the next tick.
@@ -112,11 +110,8 @@ def is_described(elf: Path) -> bool:
 def times(target: Target, elf: Path | None = None) -> Times:
     """The bounds of an image; raises ImageError for what has none."""
     program = read_program(elf or target.elf)
-    known = facts.load()
-    timing = Timing(program, target.chip, known)
+    timing = Timing(program, target.chip, facts.load())
     waking, vector_table_jump = target.chip.interrupt_entry, 3
     entry = waking + target.chip.interrupt_entry + vector_table_jump
-    interrupts = {role: entry + timing.of(address).cycles for role, address in _handlers(program, target).items()}
-    tick, service = program.entry(TICK), program.entry(SERVICE)
-    pieces = {name: timing.of(service, never=piece.never).cycles for name, piece in known.pieces.items()}
-    return Times(timing.of(tick).cycles, interrupts, waking, pieces)
+    interrupts = {role: entry + timing.of(address) for role, address in _handlers(program, target).items()}
+    return Times(timing.of(program.entry(TICK)), interrupts, waking)

@@ -73,12 +73,6 @@ class Program:
         """The symbol that an address belongs to, as a reader knows it: see plain_name()."""
         return plain_name(self.symbol(address))
 
-    def signature(self, address: int) -> str:
-        """The same with its arguments, which tells overloaded functions apart."""
-        symbol = self.symbol(address)
-        plain_name(symbol)
-        return _SIGNATURES[symbol]
-
     def symbol(self, address: int) -> str:
         starts, names = self._places
         place = bisect_right(starts, address)
@@ -93,7 +87,6 @@ class Program:
 
 
 _PLAIN: dict[str, str] = {}
-_SIGNATURES: dict[str, str] = {}
 
 
 def plain_name(symbol: str) -> str:
@@ -107,8 +100,7 @@ def _demangle(symbols: list[str]) -> None:
     stems = [re.sub(r"\.(constprop|isra|part|lto_priv|cold)\b.*", "", symbol) for symbol in symbols]
     output = subprocess.run(["avr-c++filt"], input="\n".join(stems), check=True, capture_output=True, text=True).stdout
     for symbol, name in zip(symbols, output.splitlines(), strict=True):
-        _SIGNATURES[symbol] = name.replace("(anonymous namespace)::", "")
-        plain = _SIGNATURES[symbol].split("(")[0]
+        plain = name.replace("(anonymous namespace)::", "").split("(")[0]
         _PLAIN[symbol] = plain.split(" ")[-1] if "<" not in plain else plain
 
 
