@@ -102,7 +102,7 @@ class App {
   uint16_t every_ = 0, until_sample_ = 0;
   uint8_t until_control_ = 1;  // ticks
   uint8_t sample_seq_ = 0;
-  uint8_t ticks_unheard_ = 0;  // since the last that took a request; stops where no late one delays a tick any more
+  uint8_t ticks_unheard_ = 0;  // since the last that took a request; stops where one may begin late again
   MemoryWatch memory_;
   bool sample_due_ : 1;
   bool heard_this_tick_ : 1;

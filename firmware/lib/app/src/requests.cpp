@@ -8,11 +8,11 @@
 namespace app {
 namespace {
 
-// After this time of a tick no piece of work is begun, so that the next tick starts in time even while bytes pour in.
+// After this time of a tick no sample, hello or byte for the EEPROM is begun, so that little delays the next tick.
 constexpr uint16_t latest_start_us = 800;
 constexpr uint16_t latest_apply_us = 300;  // a joint's compilation takes most of a tick
 constexpr uint8_t bytes_per_piece = 20;
-constexpr uint8_t calm_ticks = 4;  // a request delays so many at most: until they are over, none begins late
+constexpr uint8_t calm_ticks = 4;  // behind a request none begins late for so many: by then its delay should be over
 
 // A distance in 1/32 rad, as error_too_large carries it.
 uint8_t coarse(uint16_t distance_q12) {
