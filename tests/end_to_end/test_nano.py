@@ -15,6 +15,7 @@ import pytest
 from greywhale.cli.entry import run
 from greywhale.files.arm import load_arm
 from greywhale.files.log import read_log
+from greywhale.files.model import arm_toml
 from greywhale.identify import controllers
 from greywhale.identify.closed_loop import Loop
 from greywhale.identify.data import prepare
@@ -23,9 +24,11 @@ from greywhale.loop.closed_loop import ClosedLoop, Result
 from greywhale.protocol.schema import Board
 from greywhale.table import ParameterTable
 from greywhale.tune.model import load_model
+from greywhale_sim.assemble import BenchOptions, build_bench
+from greywhale_sim.lockstep import LockStepBench, tell_joints
 from greywhale_sim.words import lock_step
 
-FULL = [400, 400, 255, 255]
+JOINT, FULL = 2, 255
 
 
 def told(capsys: pytest.CaptureFixture[str], *arguments: str | Path) -> dict[str, Any]:
@@ -42,24 +45,41 @@ def test_a_nano_is_excited_identified_and_tuned_as_a_nano(
         tmp_path / name for name in ("fit.csv", "second.csv", "model.toml", "controller.toml", "after.csv")
     )
     largest = full_duties_of_every_loop(monkeypatch)
-    with lock_step("--board", "nano") as bench:
+    white_box = ("--arm", with_one_joint("white_box", tmp_path))
+    with bench_with_one_joint(tmp_path) as bench:
         port = ("-p", bench.port)
-        told(capsys, "record", "--excite", *port, "-o", fit, "--seconds", "10", "--budget", "10")
-        told(capsys, "record", "--enable", *port, "-o", second, "--seconds", "10")
+        told(capsys, "record", "--excite", *white_box, *port, "-o", fit, "--seconds", "5", "--budget", "2")
+        told(capsys, "record", "--enable", *port, "-o", second, "--seconds", "5")
         assert read_log(fit).origin.board == read_log(second).origin.board == "nano328"
-        found = told(capsys, "identify", fit, "-v", second, "-o", model)
+        found = told(capsys, "identify", fit, "-v", second, *white_box, "-o", model)
         assert found["board"] == "nano328"
         assert found["log"][1]["improvement"] > 0.9
         assert load_model(model, force=True).table.board is Board.NANO328
-        told(capsys, "tune", model, "-o", controller, "--budget", "60", "--samples", "2", "--force")
+        told(capsys, "tune", model, "-o", controller, "--budget", "30", "--samples", "1", "--force")
         assert 'board = "nano328"' in controller.read_text()
         doubts = told(capsys, "upload", controller, *port)["warnings"]
         # So short a search may leave a margin open; nothing else may be wrong, such as the board or its period.
         assert [one for one in doubts if not one.startswith("a joint may swing")] == []
-        told(capsys, "record", "--enable", *port, "-o", after, "--seconds", "10")
+        told(capsys, "record", "--enable", *port, "-o", after, "--seconds", "5")
     before, now = (log["total_mse_rad2"] for log in told(capsys, "evaluate", second, after)["logs"])
     assert now < 0.7 * before
-    assert largest == FULL, "excitation, identification and tuning simulated other timers than the board's"
+    assert largest[JOINT] == FULL, "excitation, identification and tuning simulated other timers than the board's"
+
+
+def with_one_joint(name: str, folder: Path) -> Path:
+    """The file of an arm of which one joint is in use, with a motor whose PWM is coarser than a Mega's."""
+    arm, path = load_arm(name), folder / f"{name}.toml"
+    joints = tuple(one.model_copy(update={"fixed": joint != JOINT}) for joint, one in enumerate(arm.joint))
+    path.write_text(arm_toml(arm.model_copy(update={"joint": joints}), "One joint."), encoding="utf-8")
+    return path
+
+
+def bench_with_one_joint(folder: Path) -> LockStepBench:
+    """A Nano that knows that its arm has this joint only."""
+    options = BenchOptions(board="nano", arm=with_one_joint("default", folder))
+    bench = build_bench(options)
+    tell_joints(bench, options)
+    return LockStepBench(options, bench)
 
 
 def full_duties_of_every_loop(monkeypatch: pytest.MonkeyPatch) -> list[int]:
