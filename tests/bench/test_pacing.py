@@ -87,17 +87,18 @@ def test_a_host_that_goes_away_ends_the_wait(clock: Clock, pacer: Pacer) -> None
 
 
 @pytest.mark.parametrize(
-    ("fast", "connected", "in_bootloader", "host_baud", "expected"),
+    ("fast", "connected", "in_bootloader", "host_baud", "silent_s", "expected"),
     [
-        (False, True, False, 1e6, True),  # speed 1 is real time, whatever happens
-        (True, True, False, 1e6, False),
-        (True, False, False, 1e6, True),  # nobody there: idle without burning the processor
-        (True, True, True, 115200.0, True),  # avrdude's time-outs run on the wall clock
-        (True, True, True, 1e6, False),  # the bootloader times out unheard while our host waits
-        (True, True, False, 115200.0, False),  # a firmware at the bootloader's speed
+        (False, True, False, 1e6, 0.0, True),  # speed 1 is real time, whatever happens
+        (True, True, False, 1e6, 9.0, False),
+        (True, False, False, 1e6, 0.0, True),  # nobody there: idle without burning the processor
+        (True, True, True, 115200.0, 9.0, True),  # each waits for the other by the clock
+        (True, True, True, 115200.0, 0.04, False),  # a page is on its way, or is being written
+        (True, True, True, 1e6, 9.0, False),  # the bootloader times out unheard while our host waits
+        (True, True, False, 115200.0, 9.0, False),  # a firmware at the bootloader's speed
     ],
 )
 def test_when_real_time_is_kept(
-    fast: bool, connected: bool, in_bootloader: bool, host_baud: float, expected: bool
+    fast: bool, connected: bool, in_bootloader: bool, host_baud: float, silent_s: float, expected: bool
 ) -> None:
-    assert wants_real_time(fast, connected, in_bootloader, host_baud, 115200.0) is expected
+    assert wants_real_time(fast, connected, in_bootloader, host_baud, 115200.0, silent_s) is expected

@@ -1,8 +1,8 @@
 """How fast simulated time may run: in real time, or as fast as the machine and the host on the serial port can go.
 
-As fast as possible has three exceptions. The host's flashing tool has time-outs on the wall clock, so the bootloader
-runs in real time while a host speaks to it. A bench to which nobody is connected idles in real time. Time stands still
-while the host has not yet read what the board sent, so that it is never seconds behind the board.
+As fast as possible has three exceptions. A bootloader and the host's flashing tool wait for each other by the clock, so
+a bootloader whose host is silent waits in real time. A bench to which nobody is connected idles in real time. Time
+stands still while the host has not yet read what the board sent, so that it is never seconds behind the board.
 """
 
 from __future__ import annotations
@@ -12,11 +12,15 @@ from collections.abc import Callable
 
 UNREAD_LIMIT = 1024  # bytes: about 30 samples of telemetry
 GIVE_UP_S = 0.05  # a longer lag (the machine was busy) is not made up for
+SILENCE_S = 0.05  # a bootloader takes 30 ms to take in a page and to write it
 
 
-def wants_real_time(fast: bool, connected: bool, in_bootloader: bool, host_baud: float, bootloader_baud: float) -> bool:
-    """Whether simulated time must keep to the wall clock now."""
-    return not fast or not connected or (in_bootloader and host_baud == bootloader_baud)
+def wants_real_time(
+    fast: bool, connected: bool, in_bootloader: bool, host_baud: float, bootloader_baud: float, silent_s: float
+) -> bool:
+    """Whether simulated time must keep to the wall clock now; the line has been `silent_s` without a byte."""
+    at_bootloader = in_bootloader and host_baud == bootloader_baud
+    return not fast or not connected or (at_bootloader and silent_s > SILENCE_S)
 
 
 class Pacer:

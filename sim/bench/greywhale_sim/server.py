@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Protocol
@@ -65,6 +66,7 @@ class Server:
         self._eeprom_kept = board.eeprom()
         self._eeprom_check_at = 0.0
         self._was_connected = False
+        self._spoken_s = -math.inf  # when a byte last went over the line
 
     def turn(self) -> None:
         """One round: host to board, simulate, board to host, then let the wall clock catch up."""
@@ -106,11 +108,13 @@ class Server:
         data = self.port.read()
         self._notice_host()  # after the read: bytes that follow an open at once must meet a board that was reset
         if data and self.board.powered:
+            self._spoken_s = self.bench.time_s
             self.board.uart_send(self.noise(line.resample(data, self.port.baud(), self.board.baud)))
 
     def _send(self) -> None:
         data = self.board.uart_receive()
         if data and self.port.connected:
+            self._spoken_s = self.bench.time_s
             self.port.write(self.noise(line.resample(data, self.board.baud, self.port.baud())))
 
     def _notice_host(self) -> None:
@@ -130,6 +134,7 @@ class Server:
             self.board.in_bootloader,
             self.port.baud() if self.fast else 0.0,
             self.wiring.bootloader_baud,
+            self.bench.time_s - self._spoken_s,
         )
 
     def _host_stays(self) -> bool:
