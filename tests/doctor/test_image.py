@@ -12,21 +12,11 @@ import pytest
 from greywhale.board.device import Device
 from greywhale.board.flash.readback import held_blocks, shipped_image
 from greywhale.cli.entry import run
-from greywhale.demo import BenchProcess
 from greywhale.errors import UserError
 from greywhale.protocol.schema import State
-from greywhale.protocol.transport import LINES, Transport
+from greywhale.protocol.transport import LINES, open_line
+from greywhale_sim.words import lock_step
 from tests.board.flash.hex_files import hex_text
-
-
-class Dying(Transport):
-    """The line of a host that says nothing more from some moment on, not even a stop."""
-
-    mute = False
-
-    def write(self, data: bytes) -> None:
-        if not self.mute:
-            super().write(data)
 
 
 def doctor(port: str, capsys: pytest.CaptureFixture[str], *more: str) -> tuple[int, dict[str, dict[str, str]]]:
@@ -46,7 +36,7 @@ def test_the_image_is_read_back_a_wrong_byte_named_and_the_bootloader_looked_at(
 ) -> None:
     image = shipped_image(board)
     memory, held = bytearray(image.memory), sum(map(len, held_blocks(image)))
-    with BenchProcess("--speed", "max", "--board", board) as bench:
+    with lock_step("--board", board) as bench:
         code, findings = doctor(bench.port, capsys)
         found = findings["image"]
         assert (code, found["verdict"]) == (0, "good"), found
@@ -66,15 +56,15 @@ def test_the_image_is_read_back_a_wrong_byte_named_and_the_bootloader_looked_at(
 
 @pytest.mark.slow
 def test_a_board_whose_motors_are_on_is_not_restarted(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
-    with BenchProcess("--speed", "max") as bench:
-        line = Dying(bench.port)
-        monkeypatch.setitem(LINES, bench.port, lambda restart: line)
-        with contextlib.suppress(UserError), Device(bench.port) as device:
-            device.enable(0)
-            line.mute = True
-        monkeypatch.undo()
+    with lock_step() as bench:
+        line = open_line(bench.port)
+        with pytest.MonkeyPatch.context() as dying:
+            dying.setitem(LINES, bench.port, lambda restart, baud: line)
+            with contextlib.suppress(UserError), Device(bench.port) as device:
+                device.enable(0)
+                dying.setattr(line, "write", lambda data: None)  # from now on nothing is said, not even a stop
         resets = bench.command("status")["resets"]
         code, findings = doctor(bench.port, capsys)
         assert (code, findings["image"]["verdict"]) == (1, "bad")

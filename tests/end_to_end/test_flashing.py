@@ -15,19 +15,22 @@ from greywhale.demo import BenchProcess
 from greywhale.errors import UserError
 from greywhale.protocol import schema
 from greywhale.protocol.frames import encode_frame
+from greywhale_sim.assemble import BUILDS
+from greywhale_sim.words import lock_step
 
-ROOT = Path(__file__).resolve().parents[2]
+NANO_IMAGE = BUILDS / "nanoatmega328" / "firmware.hex"
 Start = Callable[..., BenchProcess]
 
 
 @pytest.mark.slow
-def test_flash_a_blank_board(start_bench: Start, board_name: str) -> None:
-    bench = start_bench("--blank", board=board_name)
+@pytest.mark.parametrize(("board", "hex_file"), [("mega", None), ("nano", NANO_IMAGE)], ids=["mega", "nano"])
+def test_flash_a_blank_board(start_bench: Start, board: str, hex_file: Path | None) -> None:
+    """A Mega gets what PlatformIO builds and uploads, a Nano the HEX file that avrdude writes; both are verified."""
+    bench = start_bench("--blank", board=board)
     assert bench.command("status")["in_bootloader"]
-    hello = flash.flash(bench.port, board_name)
+    hello = flash.flash(bench.port, board, hex_file=hex_file)
     assert hello.schema_hash == schema.SCHEMA_HASH
-    with Device(bench.port) as device:
-        assert device.hello.board.key == {"mega": "mega2560", "nano": "nano328"}[board_name]
+    assert hello.board.key == {"mega": "mega2560", "nano": "nano328"}[board]
     assert not bench.command("status")["in_bootloader"]
 
 
@@ -39,28 +42,26 @@ def test_flash_a_blank_board(start_bench: Start, board_name: str) -> None:
         ("nano", Bootloader(Dialect("arduino", 57600), b"\x1e\x95\x0f")),
     ],
 )
-def test_the_real_bootloaders_tell_their_board(start_bench: Start, board: str, expected: Bootloader) -> None:
-    bench = start_bench("--blank", board=board)
+def test_the_real_bootloaders_tell_their_board(board: str, expected: Bootloader) -> None:
     dialects = [Dialect("wiring", 115200), Dialect("arduino", 115200), Dialect("arduino", 57600)]
-    assert find_bootloader(bench.port, dialects, []) == expected
+    with lock_step("--blank", "--board", board) as bench:
+        assert find_bootloader(bench.port, dialects, []) == expected
 
 
 @pytest.mark.slow
-def test_neither_a_wrong_name_nor_the_other_boards_image_reaches_a_board(
-    start_bench: Start, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    nano = ROOT / "firmware" / ".pio" / "build" / "nanoatmega328" / "firmware.hex"
-    bench = start_bench("--blank")
-    with pytest.raises(UserError, match="this port belongs to an Arduino Mega 2560"):
-        flash.flash(bench.port, "nano")
-    with pytest.raises(UserError, match="this image is for an Arduino Nano"):
-        flash.flash(bench.port, hex_file=nano)
-    monkeypatch.setattr(flash.flasher, "board_of", lambda port: None)  # as a clone that does not say what it is
-    with pytest.raises(UserError, match="the bootloader of an Arduino Mega 2560 answers"):
-        flash.flash(bench.port, "nano", hex_file=nano)
-    with pytest.raises(UserError, match="this image is for an Arduino Nano"):
-        flash.flash(bench.port, hex_file=nano)
-    assert bench.command("status")["in_bootloader"]
+def test_neither_a_wrong_name_nor_the_other_boards_image_reaches_a_board(monkeypatch: pytest.MonkeyPatch) -> None:
+    with lock_step("--blank") as bench:
+        monkeypatch.setattr(flash.flasher, "board_of", lambda port: "mega")
+        with pytest.raises(UserError, match="this port belongs to an Arduino Mega 2560"):
+            flash.flash(bench.port, "nano")
+        with pytest.raises(UserError, match="this image is for an Arduino Nano"):
+            flash.flash(bench.port, hex_file=NANO_IMAGE)
+        monkeypatch.setattr(flash.flasher, "board_of", lambda port: None)  # as a clone that does not say what it is
+        with pytest.raises(UserError, match="the bootloader of an Arduino Mega 2560 answers"):
+            flash.flash(bench.port, "nano", hex_file=NANO_IMAGE)
+        with pytest.raises(UserError, match="this image is for an Arduino Nano"):
+            flash.flash(bench.port, hex_file=NANO_IMAGE)
+        assert bench.command("status")["in_bootloader"]
 
 
 OTHER_PROTOCOL = """
@@ -92,7 +93,7 @@ int main(void) {
 
 
 @pytest.mark.slow
-def test_a_firmware_of_another_protocol_version_is_named(start_bench: Start, tmp_path: Path) -> None:
+def test_a_firmware_of_another_protocol_version_is_named(tmp_path: Path) -> None:
     payload = bytes([schema.PROTOCOL + 1]) + b"a later hello"
     rows = []
     for sequence in range(256):
@@ -102,8 +103,7 @@ def test_a_firmware_of_another_protocol_version_is_named(start_bench: Start, tmp
     source.write_text(OTHER_PROTOCOL.replace("@FRAMES@", ",\n".join(rows)))
     subprocess.run(["avr-gcc", "-mmcu=atmega2560", "-Os", "-Wall", "-Werror", "-o", elf, source], check=True)
     subprocess.run(["avr-objcopy", "-O", "ihex", elf, hex_file], check=True)
-    bench = start_bench("--firmware", str(hex_file))
-    with pytest.raises(UserError) as caught:
+    with lock_step("--firmware", str(hex_file)) as bench, pytest.raises(UserError) as caught:
         Device(bench.port)
     message = caught.value.message
     assert f"protocol version {schema.PROTOCOL + 1}" in message

@@ -1,16 +1,10 @@
-"""The Arduino bootloaders that Debian ships program the simulated flash, over STK500 and with the real avrdude."""
+"""The Arduino bootloaders that Debian ships program the simulated flash, over STK500. The real avrdude does so in the
+end-to-end tests.
+"""
 
 from __future__ import annotations
 
-import os
 import random
-import select
-import shutil
-import subprocess
-import time
-import tty
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -104,57 +98,3 @@ def test_a_program_outside_the_boot_section_cannot_write_flash(program: MakeProg
     run.finish()
     assert run.board.flash() == before
     assert run.board.stats().flash_pages == 0
-
-
-@contextmanager
-def pseudo_terminal() -> Iterator[tuple[int, str]]:
-    master, slave = os.openpty()
-    tty.setraw(slave)
-    try:
-        yield master, os.ttyname(slave)
-    finally:
-        os.close(master)
-        os.close(slave)
-
-
-def pump(board: Board, master: int, process: subprocess.Popen[str]) -> None:
-    """Joins the board to the terminal in real time while the process runs."""
-    begin, start = time.monotonic(), board.cycle
-    while process.poll() is None:
-        ready, _, _ = select.select([master], [], [], 0.001)
-        if ready:
-            board.uart_send(os.read(master, 4096))
-        board.run_until(max(board.cycle, start + int((time.monotonic() - begin) * 16e6)))
-        answer = board.uart_receive()
-        if answer:
-            os.write(master, answer)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("chip", "bootloader", "options"),
-    [
-        ("atmega2560", MEGA_HEX, ["-cwiring", "-pm2560", "-b115200"]),
-        ("atmega328p", NANO_HEX, ["-carduino", "-pm328p", "-b57600"]),
-    ],
-    ids=["mega", "nano"],
-)
-def test_the_real_avrdude_flashes_and_verifies(tmp_path: Path, chip: str, bootloader: Path, options: list[str]) -> None:
-    avrdude = shutil.which("avrdude")
-    assert avrdude, "avrdude is missing; install Debian's avrdude"
-    image = random.Random(7).randbytes(3000)
-    binary = tmp_path / "firmware.bin"
-    binary.write_bytes(image)
-    board = board_with(chip, bootloader)
-    board.run_until(board.cycle + 20 * CYCLES_PER_MS)
-    with pseudo_terminal() as (master, port):
-        command = [avrdude, *options, "-P", port, "-D", "-q", f"-Uflash:w:{binary}:r"]
-        with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
-            try:
-                pump(board, master, process)
-            finally:
-                process.kill()
-            output = process.stdout.read() if process.stdout else ""
-    assert process.returncode == 0, output
-    assert "3000 bytes of flash verified" in output
-    assert board.flash()[: len(image)] == image

@@ -17,7 +17,7 @@ from greywhale.board.record import Recording, record
 from greywhale.board.upload import run_set
 from greywhale.errors import UserError
 from greywhale.protocol import schema
-from greywhale.protocol.transport import BAUD, LINES, PortBusyError
+from greywhale.protocol.transport import BAUD, LINES, Line, PortBusyError
 from greywhale.table import ParameterTable
 from greywhale_sim import commands
 from greywhale_sim.assemble import BenchOptions, build_bench, wiring_of
@@ -50,7 +50,10 @@ class LockStepBench:
             pacer=Pacer(lambda: bench.time_s, lambda seconds: None),
             fast_slices=LOOK_SLICES,
         )
-        LINES[self.port] = lambda restart: _LockStepLine(self.server, self._line, restart)
+        LINES[self.port] = self._open
+
+    def _open(self, restart: bool, baud: int) -> Line:
+        return _LockStepLine(self.server, self._line, self._line.open(restart, baud))
 
     @property
     def bench(self) -> Bench:
@@ -85,14 +88,15 @@ class _Port:
         self.connected = False
         self._to_board = bytearray()
         self._to_host = bytearray()
+        self._baud = BAUD
         self._new = True
         self._rises = False
 
-    def open(self, restart: bool) -> bool:
+    def open(self, restart: bool, baud: int) -> bool:
         """Whether the board starts with it."""
         if self.connected:
             raise PortBusyError(self.path)
-        self.connected = True
+        self.connected, self._baud = True, baud
         new, self._new = self._new, False
         self._rises = restart and not new
         return new or restart
@@ -111,7 +115,8 @@ class _Port:
         return rises
 
     def baud(self) -> float:
-        return BAUD
+        """The speed the host has set."""
+        return self._baud
 
     def read(self) -> bytes:
         return _empty(self._to_board)
@@ -134,10 +139,10 @@ class _Port:
 class _LockStepLine:
     """The serial line of a bench as `greywhale.board.device.Device` needs it."""
 
-    def __init__(self, server: Server, port: _Port, restart: bool) -> None:
+    def __init__(self, server: Server, port: _Port, restarted: bool) -> None:
         self._server = server
         self._port = port
-        self.restarted = port.open(restart)
+        self.restarted = restarted
 
     def read(self) -> bytes:
         """Let the bench live for a moment, and return what the board said."""

@@ -1,49 +1,42 @@
-"""The two kinds of bootloader on pseudo-terminals: each answers in its own way, at its own speed only.
+"""The two kinds of bootloader on lines in this process: each answers in its own way, at its own speed only.
 
-The host's patience is counted by the fake's own turns, so that a busy machine cannot make it run out.
+The host's patience is counted by the line's own clock, which only reading moves.
 """
 
 from __future__ import annotations
 
-import os
-import select
-import termios
-import threading
-import tty
+import itertools
 from functools import reduce
 from operator import xor
-from types import SimpleNamespace
 from typing import Self
-from unittest import mock
+
+from greywhale.protocol.transport import LINES
 
 MEGA2560 = b"\x1e\x98\x01"
 ATMEGA328P = b"\x1e\x95\x0f"
 TURN_S = 0.02
+_numbers = itertools.count()
 
 
-class FakeBootloader(threading.Thread):
+class FakeBootloader:
     """The other end of a line; `port` is what a host opens, `heard` is the speeds at which it was spoken to."""
+
+    restarted = True
 
     def __init__(self, baud: int, signature: bytes, memory: bytes = b"", garble: int = 0) -> None:
         """`memory` is the program memory; of its first `garble` answers to a read the last byte is wrong."""
-        super().__init__(daemon=True)
         self.memory, self.garble = memory, garble
         self.left = False  # whether the host has sent it back to the firmware
         self.word = 0  # the address that was loaded last
         self.signature = signature
-        self.master, self.slave = os.openpty()
-        tty.setraw(self.slave)
-        self.port = os.ttyname(self.slave)
+        self.port = f"bootloader {next(_numbers)}"
         self.heard: set[int] = set()
-        self._speed: int = getattr(termios, f"B{baud}")
-        self._buffer = b""
-        self._ending = threading.Event()
-        self._turns = 0
-        clock = SimpleNamespace(monotonic=lambda: self._turns * TURN_S)
-        self._clock = mock.patch("greywhale.board.flash.bootloader.time", clock)
-        self.start()
+        self._speed = baud
+        self._speed_of_host = 0
+        self._buffer = self._said = b""
+        self._now = 0.0
 
-    def read(self, count: int) -> bytes:
+    def content(self, count: int) -> bytes:
         """So many bytes from the address on that was loaded last."""
         start = 2 * self.word
         self.word += count // 2
@@ -60,30 +53,40 @@ class FakeBootloader(threading.Thread):
         """What to say to `data`, and what of it is kept until more comes."""
         raise NotImplementedError
 
-    def run(self) -> None:
-        while not self._ending.is_set():
-            self._turns += 1
-            if not select.select([self.master], [], [], TURN_S)[0]:
-                self._buffer = b""  # half a question, or what another bootloader was asked: a reset ends it
-                continue
-            speed: int = termios.tcgetattr(self.slave)[5]
-            self.heard.add(speed)
-            data = os.read(self.master, 64)
-            if speed != self._speed:
-                continue  # at another speed it hears noise
+    def open(self, restart: bool, baud: int) -> Self:
+        assert restart, "that is what starts a bootloader"
+        self._speed_of_host = baud
+        self._buffer = self._said = b""
+        return self
+
+    def write(self, data: bytes) -> None:
+        self.heard.add(self._speed_of_host)
+        if self._speed_of_host == self._speed:  # at another speed it hears noise
             said, self._buffer = self.answer(self._buffer + data)
-            os.write(self.master, said)
+            self._said += said
+
+    def read(self) -> bytes:
+        if not self._said:
+            self.wait(TURN_S)
+            self._buffer = b""  # half a question, or what another bootloader was asked
+        taken, self._said = self._said, b""
+        return taken
+
+    def clock(self) -> float:
+        return self._now
+
+    def wait(self, seconds: float) -> None:
+        self._now += seconds
+
+    def close(self) -> None:
+        """Nothing is open."""
 
     def __enter__(self) -> Self:
-        self._clock.start()
+        LINES[self.port] = self.open
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._clock.stop()
-        self._ending.set()
-        self.join(10)
-        os.close(self.master)
-        os.close(self.slave)
+        del LINES[self.port]
 
 
 class Version1(FakeBootloader):
@@ -104,7 +107,7 @@ class Version1(FakeBootloader):
             self.word = int.from_bytes(command[1:3], "little")
             return b"\x14\x10"
         if command[:1] == b"t":
-            return self.garbled(b"\x14" + self.read(int.from_bytes(command[1:3], "big")) + b"\x10")
+            return self.garbled(b"\x14" + self.content(int.from_bytes(command[1:3], "big")) + b"\x10")
         self.left = self.left or command == b"Q "
         known = {b"0 ": b"\x14\x10", b"u ": b"\x14" + self.signature + b"\x10", b"Q ": b"\x14\x10"}
         return known.get(command, b"")
@@ -132,7 +135,7 @@ class Version2(FakeBootloader):
             self.word = int.from_bytes(body[1:5], "big")
             answer = b"\x06\x00"
         elif body[:1] == b"\x14":
-            answer = b"\x14\x00" + self.read(int.from_bytes(body[1:3], "big")) + b"\x00"
+            answer = b"\x14\x00" + self.content(int.from_bytes(body[1:3], "big")) + b"\x00"
         elif body[:1] == b"\x11":
             self.left, answer = True, b"\x11\x00"
         else:

@@ -121,7 +121,6 @@ def test_avrdude_gets_the_speed_of_a_nanos_bootloader(
     assert told.read_text().endswith(f"-c arduino -p atmega328p -P {line.port} -D -U flash:w:{image}:i -b {baud}")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("bootloader", "named", "words"),
     [
@@ -204,12 +203,30 @@ def test_an_installed_package_writes_the_image_that_came_with_it(
 
 @pytest.mark.usefixtures("quick_device")
 def test_platformio_builds_first_and_then_uploads(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (tmp_path / "platformio.ini").write_text("")
-    commands: list[list[str]] = []
-    monkeypatch.setattr(platformio, "run_tool", lambda tool, look: commands.append(tool.command[3:]))
+    commands = commands_of(tmp_path, monkeypatch)
     answering(monkeypatch, "wiring", 115200, MEGA2560)
     with FakeBoard() as board:
         module.flash(board.port, "mega", firmware_dir=tmp_path)
         port = board.port
     build = ["run", "--project-dir", str(tmp_path), "--environment", "megaatmega2560"]
     assert commands == [build, [*build, "--target", "upload", "--upload-port", port]]
+
+
+def test_what_platformio_builds_for_a_nano_goes_through_avrdude_at_the_speed_that_was_found(
+    told: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module, "Device", lambda port: pytest.fail("greeted"))
+    commands = commands_of(tmp_path, monkeypatch)
+    with Version1(57600, ATMEGA328P) as line, pytest.raises(pytest.fail.Exception, match="greeted"):
+        module.flash(line.port, "nano", firmware_dir=tmp_path)
+    assert commands == [["run", "--project-dir", str(tmp_path), "--environment", "nanoatmega328"]]
+    built = tmp_path / ".pio" / "build" / "nanoatmega328" / "firmware.hex"
+    assert told.read_text() == f"-c arduino -p atmega328p -P {line.port} -D -U flash:w:{built}:i -b 57600"
+
+
+def commands_of(folder: Path, monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
+    """What a PlatformIO that does nothing is told where a firmware's sources are."""
+    (folder / "platformio.ini").write_text("")
+    commands: list[list[str]] = []
+    monkeypatch.setattr(platformio, "run_tool", lambda tool, look: commands.append(tool.command[3:]))
+    return commands

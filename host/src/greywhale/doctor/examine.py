@@ -43,7 +43,7 @@ def examine(options: Options, report: Report = report_nothing) -> list[Finding]:
     if found[-1].verdict is Verdict.BAD:
         return found
     try:
-        with Session.of(options.port):  # also while avrdude reads the image
+        with Session.of(options.port):  # also between two openings
             with Device(options.port, restart=False) as device:
                 found += _examine_board(device, options, report)
                 motors_on = device.status().state not in AT_REST

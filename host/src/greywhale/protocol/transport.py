@@ -1,4 +1,4 @@
-"""The serial port as bytes: opened exclusively at 1 Mbaud; every failure of it becomes one sentence.
+"""The serial port as bytes: opened exclusively, mostly at 1 Mbaud; every failure of it becomes one sentence.
 
 An Arduino restarts when its DTR line rises. The system raises DTR when a port is opened, and lets it fall when the port
 is closed, unless the terminal's flag HUPCL is off. A session switches that flag off at its end. So the next one can
@@ -62,23 +62,24 @@ class Line(Protocol):
 
 
 # Lines that are no ports of the system, such as to a bench in this process, by the name that stands for the port. Each
-# is opened with or without a restart of the board.
-LINES: dict[str, Callable[[bool], Line]] = {}
+# is opened with or without a restart of the board, at a speed.
+LINES: dict[str, Callable[[bool, int], Line]] = {}
 
 
-def open_line(port: str, restart: bool = True) -> Line:
+def open_line(port: str, restart: bool = True, baud: int = BAUD) -> Line:
     """Open the port, with a `restart` of the board or, if that can be, without: the line tells whether it restarted."""
     opened = LINES.get(port)
-    return Transport(port, restart) if opened is None else opened(restart)
+    return Transport(port, restart, baud) if opened is None else opened(restart, baud)
 
 
 class Transport:
     """An open port; every failure of it is a UserError that names it."""
 
-    def __init__(self, port: str, restart: bool = True) -> None:
+    def __init__(self, port: str, restart: bool = True, baud: int = BAUD) -> None:
         """Open the port, with a `restart` of the board or, if that can be, without: `restarted` tells."""
         self.port = port
-        self._serial = open_serial(port, BAUD, _READ_WAIT_S, restart)
+        self._to_firmware = baud == BAUD
+        self._serial = _open_serial(port, baud, restart)
         self.restarted = restart or not _stays_up(self._serial)
         self._writing = threading.Lock()  # two threads never mix their frames
 
@@ -109,29 +110,29 @@ class Transport:
 
     def close(self) -> None:
         with self._writing:
-            if self._serial.is_open:
+            if self._serial.is_open and self._to_firmware:
                 _keep_up(self._serial, True)
             self._serial.close()
 
 
-def open_serial(port: str, baud: int, read_wait_s: float, restart: bool = True) -> serial.Serial:
+def _open_serial(port: str, baud: int, restart: bool) -> serial.Serial:
     """Open the port for this process alone; with `restart`, the board behind it restarts for sure."""
-    line = _open(port, baud, read_wait_s)
+    line = _open(port, baud)
     if restart and _stays_up(line):
         _keep_up(line, False)
         line.close()
         time.sleep(_DTR_DOWN_S)
-        line = _open(port, baud, read_wait_s)
+        line = _open(port, baud)
     return line
 
 
-def _open(port: str, baud: int, read_wait_s: float) -> serial.Serial:
+def _open(port: str, baud: int) -> serial.Serial:
     if not os.path.exists(port):
         raise UserError(f"{port}: there is no such port; `greywhale ports` lists those there are.")
     try:
         if _is_own_terminal(port):
             raise UserError(f"{port}: this is a terminal, not a board's port; `greywhale ports` lists those there are.")
-        return serial.Serial(port, baud, timeout=read_wait_s, write_timeout=_WRITE_WAIT_S, exclusive=True)
+        return serial.Serial(port, baud, timeout=_READ_WAIT_S, write_timeout=_WRITE_WAIT_S, exclusive=True)
     except ValueError as error:
         raise UserError(f"{port}: cannot be opened: {error}.") from None
     except OSError as error:

@@ -5,17 +5,14 @@ Nothing is written. Asked directly it takes a second; avrdude itself needs a min
 
 from __future__ import annotations
 
-import time
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from functools import reduce
 from operator import xor
 
-import serial
-
 from greywhale.errors import UserError
-from greywhale.protocol.transport import open_serial
+from greywhale.protocol.transport import Line, open_line
 
 _ASK_EVERY_S = 0.05
 # A bootloader that listens answers the first question; all kinds listen for at least half a second after the reset.
@@ -39,6 +36,39 @@ class Bootloader:
     signature: bytes | None
 
 
+class Talk:
+    """A line to a bootloader, an answer at a time."""
+
+    def __init__(self, line: Line) -> None:
+        self.write = line.write
+        self._line = line
+        self._heard = b""
+
+    def read(self, count: int, wait_s: float = _TRY_S) -> bytes:
+        """So many bytes, or fewer where no more came in time."""
+        self._wait(lambda: len(self._heard) >= count, wait_s)
+        taken, self._heard = self._heard[:count], self._heard[count:]
+        return taken
+
+    def hear(self, question: bytes, answer: bytes) -> bool:
+        """Ask again and again until the answer comes, or no more."""
+        end = self._line.clock() + _TRY_S
+        while answer not in self._heard and self._line.clock() < end:
+            self.write(question)
+            self._wait(lambda: answer in self._heard, _ASK_EVERY_S)
+        return answer in self._heard
+
+    def forget(self) -> None:
+        """Let pass what still comes, such as answers to questions that were asked twice."""
+        while self.read(64, _ASK_EVERY_S):
+            pass
+
+    def _wait(self, done: Callable[[], bool], wait_s: float) -> None:
+        end = self._line.clock() + wait_s
+        while not done() and self._line.clock() < end:
+            self._heard += self._line.read()
+
+
 def find_bootloader(port: str, likely: Sequence[Dialect], others: Sequence[Dialect]) -> Bootloader:
     """The bootloader that answers; the likely ones are tried again and again, the others once after them.
 
@@ -56,60 +86,50 @@ def find_bootloader(port: str, likely: Sequence[Dialect], others: Sequence[Diale
 
 
 @contextmanager
-def enter_bootloader(port: str, dialect: Dialect) -> Iterator[serial.Serial]:
+def enter_bootloader(port: str, dialect: Dialect) -> Iterator[Talk]:
     """The line to a bootloader that was found before; opening it restarts the board."""
-    with open_serial(port, dialect.baud, _ASK_EVERY_S) as line:
+    with _open(port, dialect) as line:
         if not _enter(line, dialect):
             raise UserError(f"{port}: the bootloader answered once, but not again; try again.")
         yield line
 
 
-def _enter(line: serial.Serial, dialect: Dialect) -> bool:
+@contextmanager
+def _open(port: str, dialect: Dialect) -> Iterator[Talk]:
+    with closing(open_line(port, baud=dialect.baud)) as line:
+        yield Talk(line)
+
+
+def _enter(line: Talk, dialect: Dialect) -> bool:
     ask, _ = _DIALECTS[dialect.programmer]
     if not ask(line):
         return False
-    while line.read(64):  # answers to questions that were asked twice
-        pass
+    line.forget()
     return True
 
 
 def _try(port: str, dialect: Dialect) -> Bootloader | None:
     _, read_signature = _DIALECTS[dialect.programmer]
-    with open_serial(port, dialect.baud, _ASK_EVERY_S) as line:
-        try:
-            return Bootloader(dialect, read_signature(line)) if _enter(line, dialect) else None
-        except (OSError, serial.SerialException):
-            raise UserError(f"{port}: the port went away in the middle; check the cable and try again.") from None
-
-
-def _hear(line: serial.Serial, question: bytes, answer: bytes) -> bool:
-    """Ask again and again until the answer comes, or no more."""
-    heard = b""
-    end = time.monotonic() + _TRY_S
-    while time.monotonic() < end:
-        line.write(question)
-        heard += line.read(64)
-        if answer in heard:
-            return True
-    return False
+    with _open(port, dialect) as line:
+        return Bootloader(dialect, read_signature(line)) if _enter(line, dialect) else None
 
 
 # STK500 version 1, the Nano's: a command and a space; "in sync", the answer, "ok".
 _IN_SYNC, _OK = b"\x14", b"\x10"
 
 
-def _ask_version_1(line: serial.Serial) -> bool:
-    return _hear(line, b"0 ", _IN_SYNC + _OK)
+def _ask_version_1(line: Talk) -> bool:
+    return line.hear(b"0 ", _IN_SYNC + _OK)
 
 
-def _read_signature_1(line: serial.Serial) -> bytes | None:
+def _read_signature_1(line: Talk) -> bytes | None:
     line.write(b"u ")
     return version_1_answer(line, 3)
 
 
-def version_1_answer(line: serial.Serial, count: int) -> bytes | None:
+def version_1_answer(line: Talk, count: int) -> bytes | None:
     """The bytes of an answer of the Nano's bootloader; None where it is wrong."""
-    answer = _read_exactly(line, count + 2)
+    answer = line.read(count + 2)
     return answer[1:-1] if answer[:1] == _IN_SYNC and answer[count + 1 :] == _OK else None
 
 
@@ -122,11 +142,11 @@ def _message(sequence: int, body: bytes) -> bytes:
     return message + bytes([reduce(xor, message)])
 
 
-def _ask_version_2(line: serial.Serial) -> bool:
-    return _hear(line, _message(1, _SIGN_ON), b"\x0e\x01\x00\x08AVRISP_2")
+def _ask_version_2(line: Talk) -> bool:
+    return line.hear(_message(1, _SIGN_ON), b"\x0e\x01\x00\x08AVRISP_2")
 
 
-def _read_signature_2(line: serial.Serial) -> bytes | None:
+def _read_signature_2(line: Talk) -> bytes | None:
     """Byte by byte, as SPI commands that the bootloader answers itself."""
     signature = b""
     for index in range(3):
@@ -137,22 +157,14 @@ def _read_signature_2(line: serial.Serial) -> bytes | None:
     return signature
 
 
-def version_2_answer(line: serial.Serial, body: bytes, sequence: int = 1) -> bytes | None:
+def version_2_answer(line: Talk, body: bytes, sequence: int = 1) -> bytes | None:
     """Send a message to the Mega's bootloader; the body of its answer, None where that is wrong."""
     line.write(_message(sequence, body))
-    head = _read_exactly(line, 5)
+    head = line.read(5)
     if len(head) < 5 or head[:2] != bytes([0x1B, sequence]) or head[4:] != b"\x0e":
         return None
-    rest = _read_exactly(line, int.from_bytes(head[2:4], "big") + 1)
+    rest = line.read(int.from_bytes(head[2:4], "big") + 1)
     return rest[:-1] if len(rest) > 1 and reduce(xor, head + rest) == 0 else None
-
-
-def _read_exactly(line: serial.Serial, count: int) -> bytes:
-    heard = b""
-    end = time.monotonic() + _TRY_S
-    while len(heard) < count and time.monotonic() < end:
-        heard += line.read(count - len(heard))
-    return heard
 
 
 _DIALECTS = {"arduino": (_ask_version_1, _read_signature_1), "wiring": (_ask_version_2, _read_signature_2)}

@@ -18,7 +18,7 @@ from greywhale.board.session import Session
 from greywhale.errors import BAD_USAGE, UserError
 from greywhale.protocol import schema
 from greywhale.protocol.ports import board_of
-from greywhale.protocol.transport import BAUD, open_serial
+from greywhale.protocol.transport import open_line
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ def flash(
         need_avrdude()
     with Session.of(port):  # also while this process has the port closed
         # avrdude waits for ever for a port that is not there, and breaks into one that is in use.
-        open_serial(port, BAUD, read_wait_s=0.0).close()
+        open_line(port).close()
         report("looking for the bootloader", 0.0)
         target, _ = find_target(port, expected)
         if sources is not None:

@@ -23,12 +23,13 @@ CANNOT_START = 127
 
 def main(limit_s: float, port: str, command: list[str]) -> int:
     signal.signal(signal.SIGTERM, lambda *_: None)  # it is the tool's, which may need a moment to end
+    first = _identity(port)
     try:
         tool = subprocess.Popen(command, stdin=subprocess.DEVNULL)
     except OSError as error:
         print(f"{command[0]}: {error.strerror}")
         return CANNOT_START
-    threading.Thread(target=_watch, args=(tool, limit_s, port, _identity(port)), daemon=True).start()
+    threading.Thread(target=_watch, args=(tool, limit_s, port, first), daemon=True).start()
     code = tool.wait()
     if code < 0:  # end as the tool did
         signal.signal(signal.SIGTERM, signal.SIG_DFL)

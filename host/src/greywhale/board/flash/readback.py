@@ -5,17 +5,14 @@ Nothing is written. The board restarts into its bootloader first, and into its f
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import chain
 from pathlib import Path
 
-import serial
-
 from greywhale.board.flash.avrdude import Progress
 from greywhale.board.flash.boot_code import BootCode, look_at_boot_code
-from greywhale.board.flash.bootloader import Bootloader, enter_bootloader, version_1_answer, version_2_answer
+from greywhale.board.flash.bootloader import Bootloader, Talk, enter_bootloader, version_1_answer, version_2_answer
 from greywhale.board.flash.flasher import find_target
 from greywhale.board.flash.images import Image, check_image, packaged_image, read_image
 from greywhale.board.flash.platformio import find_sources, last_build
@@ -23,7 +20,7 @@ from greywhale.board.flash.targets import BOARDS, FlashBoard
 from greywhale.errors import BAD_USAGE, UserError
 
 # Reads so many bytes from a word address on; None where the answer was wrong.
-_Reader = Callable[[serial.Serial, int, int], bytes | None]
+_Reader = Callable[[Talk, int, int], bytes | None]
 
 BLOCK = 128  # bytes; all bootloaders give so many at once
 _ATTEMPTS = 3
@@ -99,30 +96,26 @@ def compare(image: Image, held: Sequence[range], memory: bytes) -> Comparison:
 def read_flash(port: str, bootloader: Bootloader, blocks: Sequence[range], report: Progress) -> bytes:
     """The program memory at these addresses, `BLOCK` at most each. The board's firmware is started again afterwards."""
     memory = b""
-    try:
-        with enter_bootloader(port, bootloader.dialect) as line:
-            read, leave = _READERS[bootloader.dialect.programmer]
-            for done, block in enumerate(blocks, start=1):
-                memory += _read_block(port, line, read, block.start, len(block))
-                report("reading the program memory", done / len(blocks))
-            leave(line)
-    except (OSError, serial.SerialException):
-        raise UserError(f"{port}: the port went away in the middle; check the cable and try again.") from None
+    with enter_bootloader(port, bootloader.dialect) as line:
+        read, leave = _READERS[bootloader.dialect.programmer]
+        for done, block in enumerate(blocks, start=1):
+            memory += _read_block(port, line, read, block.start, len(block))
+            report("reading the program memory", done / len(blocks))
+        leave(line)
     return memory
 
 
-def _read_block(port: str, line: serial.Serial, read: _Reader, address: int, count: int) -> bytes:
+def _read_block(port: str, line: Talk, read: _Reader, address: int, count: int) -> bytes:
     for _ in range(_ATTEMPTS):
         # Bootloaders read whole words.
         block = read(line, address // 2, count + count % 2)
         if block is not None:
             return block[:count]
-        time.sleep(0.05)
-        line.reset_input_buffer()
+        line.forget()
     raise UserError(f"{port}: the bootloader stopped answering at address {address:#x}; check the cable and try again.")
 
 
-def _read_1(line: serial.Serial, word: int, count: int) -> bytes | None:
+def _read_1(line: Talk, word: int, count: int) -> bytes | None:
     line.write(b"U" + word.to_bytes(2, "little") + b" ")
     if version_1_answer(line, 0) is None:
         return None
@@ -130,12 +123,12 @@ def _read_1(line: serial.Serial, word: int, count: int) -> bytes | None:
     return version_1_answer(line, count)
 
 
-def _leave_1(line: serial.Serial) -> None:
+def _leave_1(line: Talk) -> None:
     line.write(b"Q ")
     version_1_answer(line, 0)
 
 
-def _read_2(line: serial.Serial, word: int, count: int) -> bytes | None:
+def _read_2(line: Talk, word: int, count: int) -> bytes | None:
     if version_2_answer(line, b"\x06" + word.to_bytes(4, "big")) != b"\x06\x00":
         return None
     answer = version_2_answer(line, b"\x14" + count.to_bytes(2, "big") + b"\x20")
@@ -143,11 +136,11 @@ def _read_2(line: serial.Serial, word: int, count: int) -> bytes | None:
     return answer[2:-1] if answer is not None and whole else None
 
 
-def _leave_2(line: serial.Serial) -> None:
+def _leave_2(line: Talk) -> None:
     version_2_answer(line, b"\x11\x01\x01")
 
 
-_READERS: dict[str, tuple[_Reader, Callable[[serial.Serial], None]]] = {
+_READERS: dict[str, tuple[_Reader, Callable[[Talk], None]]] = {
     "arduino": (_read_1, _leave_1),
     "wiring": (_read_2, _leave_2),
 }

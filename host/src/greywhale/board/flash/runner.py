@@ -21,7 +21,7 @@ from greywhale.processes import start
 
 _GUARD = Path(guard.__file__)
 _LOOK_EVERY_S = 0.1
-_GRACE_S = 5.0
+GRACE_S = 5.0  # for a tool to end by itself
 _PROBLEM = re.compile(r"error|not in sync|failed|denied|timeout|cannot|can't|mismatch|doesn't match", re.IGNORECASE)
 # avrdude says this of every port that is no real UART, whatever happens next.
 _HARMLESS = re.compile(r"\bioctl\b", re.IGNORECASE)
@@ -92,7 +92,7 @@ def _end(process: subprocess.Popen[bytes]) -> None:
     """End the tool and everything it has started: an avrdude left behind would hold the port and a processor."""
     _signal_all(process, signal.SIGTERM)
     with contextlib.suppress(subprocess.TimeoutExpired):
-        process.wait(_GRACE_S)
+        process.wait(GRACE_S)
     _signal_all(process, signal.SIGKILL)
     process.wait()
 
