@@ -143,6 +143,7 @@ class Control:
                 self._answer(text.decode("utf-8", "replace"))
 
     def _answer(self, text: str) -> None:
+        self._server.notice_host()  # who closed the port before the command was sent
         if text.strip() == commands.QUIT:
             self._server.ending = True
             return

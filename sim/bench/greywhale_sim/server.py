@@ -106,7 +106,7 @@ class Server:
 
     def _receive(self) -> None:
         data = self.port.read()
-        self._notice_host()  # after the read: bytes that follow an open at once must meet a board that was reset
+        self.notice_host()  # after the read: bytes that follow an open at once must meet a board that was reset
         if data and self.board.powered:
             self._spoken_s = self.bench.time_s
             self.board.uart_send(self.noise(line.resample(data, self.port.baud(), self.board.baud)))
@@ -117,7 +117,8 @@ class Server:
             self._spoken_s = self.bench.time_s
             self.port.write(self.noise(line.resample(data, self.board.baud, self.port.baud())))
 
-    def _notice_host(self) -> None:
+    def notice_host(self) -> None:
+        """Take note of a host that has come or gone."""
         opened = self.port.poll()
         connected = self.port.connected
         if opened:
@@ -138,7 +139,7 @@ class Server:
         )
 
     def _host_stays(self) -> bool:
-        self._notice_host()
+        self.notice_host()
         self.while_waiting()
         return self.port.connected and not self.ending
 

@@ -1,0 +1,132 @@
+"""The host's own Device on the real firmware of a bench in this process: what is uploaded, recorded, lost and said."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+
+from greywhale.board.device import Device
+from greywhale.board.record import record
+from greywhale.board.upload import upload_controller
+from greywhale.cli import entry
+from greywhale.errors import UserError
+from greywhale.files.log import read_log
+from greywhale.protocol import schema
+from greywhale.protocol.schema import Fault, State, StopReason
+from greywhale_sim.lockstep import LockStepBench
+from greywhale_sim.words import lock_step
+
+TABLES = Path(__file__).resolve().parents[2] / "shared" / "fuzzy_tables"
+
+Start = Callable[..., LockStepBench]
+
+
+@pytest.fixture
+def start(leader_file: Path) -> Iterator[Start]:
+    """Starts benches with a short motion of the leader."""
+    with ExitStack() as running:
+        yield lambda *words: running.enter_context(lock_step("--leader", str(leader_file), *words))
+
+
+@pytest.mark.slow
+def test_uploaded_controllers_survive_a_restart(start: Start, tmp_path: Path) -> None:
+    eeprom = ("--eeprom", str(tmp_path / "eeprom.bin"))
+    bench = start(*eeprom)
+    with Device(bench.port) as device:
+        built_in = device.hello.param_crc
+        crc = upload_controller(device, TABLES / "table_10.toml").param_crc
+        assert crc != built_in
+    bench.close()
+    with Device(start(*eeprom).port) as device:
+        assert device.hello.param_crc == crc
+        assert device.hello.param_source is not schema.ParamSource.DEFAULTS
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("writes", [1, 60, 150])
+def test_a_power_cut_during_a_save_keeps_the_old_set(start: Start, tmp_path: Path, writes: int) -> None:
+    bench = start("--eeprom", str(tmp_path / "eeprom.bin"))
+    with Device(bench.port) as device:
+        old = upload_controller(device, TABLES / "before_tuning.toml").param_crc
+        bench.command(f"power off {writes}")
+        with pytest.raises(UserError):
+            upload_controller(device, TABLES / "table_10.toml")
+    assert bench.command("status")["powered"] is False
+    bench.command("power on")
+    with Device(bench.port) as device:
+        assert device.hello.param_crc == old
+        new = upload_controller(device, TABLES / "table_10.toml").param_crc
+    with Device(bench.port) as device:
+        assert device.hello.param_crc == new != old
+
+
+@pytest.mark.slow
+def test_a_broken_potentiometer_ends_the_recording(start: Start, tmp_path: Path) -> None:
+    bench = start()
+    reported: list[str] = []
+
+    def break_it(what: str, fraction: float) -> None:
+        if what == "recording" and not reported:
+            reported.append(what)
+            bench.command("pot follower 2 open")
+
+    with Device(bench.port) as device, pytest.raises(UserError, match="potentiometer 2"):
+        record(device, tmp_path / "log.csv", 60.0, enable=True, progress=break_it)
+    assert reported
+    assert not bench.command("status")["motors_enabled"]
+    assert not read_log(tmp_path / "log.csv").complete
+
+
+@pytest.mark.slow
+def test_info_names_broken_potentiometers_before_anyone_enables(
+    start: Start, capsys: pytest.CaptureFixture[str]
+) -> None:
+    bench = start()
+    bench.command("pot leader 1 shorted")
+    bench.command("pot follower 3 open")
+    assert entry.run(["info", "--port", bench.port]) == 0
+    told = capsys.readouterr().out
+    broken = re.findall(r"(leader|follower) potentiometer (\d) reads (\d+)\.\.(\d+) of 1023, at a rail", told)
+    assert broken == [("leader", "1", "1023", "1023"), ("follower", "3", "0", "0")]
+
+
+@pytest.mark.slow
+def test_ctrl_c_stops_the_motors(start: Start, tmp_path: Path) -> None:
+    bench = start()
+
+    def press(what: str, fraction: float) -> None:
+        if what == "recording":
+            raise KeyboardInterrupt
+
+    with Device(bench.port) as device:
+        with pytest.raises(KeyboardInterrupt):
+            record(device, tmp_path / "log.csv", 60.0, enable=True, progress=press)
+        assert device.status().stop_reason is StopReason.HOST
+        assert not bench.command("status")["motors_enabled"]
+
+
+@pytest.mark.slow
+def test_noise_on_the_line_delays_but_corrupts_nothing(start: Start) -> None:
+    bench = start()
+    with Device(bench.port) as device:
+        bench.command("line flip 0.002")
+        bench.command("line lose 0.002")
+        crc = upload_controller(device, TABLES / "table_10.toml").param_crc
+        bench.command("line flip 0")
+        bench.command("line lose 0")
+        status = device.status()
+        assert status.frames_bad > 0, "the noise was there"
+        assert (status.state, status.fault) == (State.DISABLED, Fault.NONE)
+    with Device(bench.port) as device:
+        assert device.hello.param_crc == crc
+
+
+@pytest.mark.slow
+def test_a_board_without_firmware_is_silent_and_that_is_said(start: Start) -> None:
+    bench = start("--blank")
+    with pytest.raises(UserError, match="flash"):
+        Device(bench.port, quiet_s=0.5, patience_s=1.0)
