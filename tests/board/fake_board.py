@@ -1,41 +1,31 @@
-"""A board in Python on a pseudo terminal: only for what a host does when things go wrong.
+"""A board in Python on a line in this process: only for what a host does when things go wrong.
 
 It answers as the firmware should, and `faults` spoils that: lost answers, refusals, garbage, a restart, an unplugged
-cable. Its time runs with the samples it sends, and waits while its host has not read them.
+cable. Its time runs only while its host reads or waits.
 """
 
 from __future__ import annotations
 
-import contextlib
-import fcntl
-import os
-import select
-import struct
-import subprocess
-import sys
-import termios
-import threading
-import time
-import tty
+import itertools
 from collections import Counter
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from types import TracebackType
 from typing import Self
 
+from greywhale.errors import UserError
 from greywhale.protocol import schema
 from greywhale.protocol.declared import Message
 from greywhale.protocol.frames import FrameDecoder, encode_frame
 from greywhale.protocol.schema import Fault, NackCode, SaveState, State, StopReason
+from greywhale.protocol.transport import LINES, PortLostError
 
 SOFT_START_TICKS = 20
 FOLLOWERS = (1, 2, 3, 4)
 # A host that leads: room for so many points, one played every so many ticks.
 _ROOM, _POINT_TICKS = 12, 16
 SAVE_POLLS = 3
-# More unread bytes than this stop the board's time, as they stop the bench's.
-_UNREAD = 256
-_TICK_S = 0.0002
+_TICK_S = 0.001
+_numbers = itertools.count()
 
 
 @dataclass
@@ -64,7 +54,6 @@ class Faults:
     save_result: SaveState = SaveState.SAVED
     wrong_crc_after_apply: bool = False
     followers: tuple[int, int, int, int] = FOLLOWERS  # where the arm is
-    patience_s: float = 5.0  # so long it waits for a busy host before a lease runs out
 
 
 class FakeBoard:
@@ -81,9 +70,11 @@ class FakeBoard:
         self.stored = list(schema.DEFAULTS)
         self.staged = list(schema.DEFAULTS)
         self.requests: list[tuple[int, int]] = []  # type, seq
-        self.problem: BaseException | None = None
-        self._alone = self._busy = False
-        self._heard_s = 0.0
+        self.port = f"board {next(_numbers)}"
+        self.restarted = True  # by the last opening
+        self._opened = self._gone = False
+        self._to_host = b""
+        self._now = 0.0
         self.leading = False
         self._points: list[tuple[int, int, int, int]] = []  # that wait to be played
         self._next_point = 0
@@ -97,35 +88,15 @@ class FakeBoard:
         self._samples = 0
         self._enabled_at = 0
         self._decoder = FrameDecoder()
-        self._end = threading.Event()
-        self._changed = threading.Condition()
-        self._ticks_in_state = 0
 
     def __enter__(self) -> Self:
-        self._master, self._slave = os.openpty()
-        tty.setraw(self._slave)
-        flags = termios.tcgetattr(self._slave)
-        flags[2] |= termios.HUPCL  # as serial ports have it, unlike pseudo-terminals
-        termios.tcsetattr(self._slave, termios.TCSANOW, flags)
-        os.set_blocking(self._master, False)
-        self.port = os.ttyname(self._slave)
-        self._wake_out, self._wake_in = os.pipe()
-        self._thread = threading.Thread(target=self._run, daemon=True)
-        self._thread.start()
+        LINES[self.port] = self.open
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._end.set()
-        os.write(self._wake_in, b"x")
-        self._thread.join(10)
-        assert not self._thread.is_alive()
-        for descriptor in (self._master, self._slave, self._wake_in, self._wake_out):
-            if descriptor >= 0:
-                os.close(descriptor)
-        if self.problem is not None and error is None:
-            raise self.problem
+        del LINES[self.port]
 
     def asked(self, request: type[Message]) -> int:
         """How many frames of this request arrived, repeats included."""
@@ -135,17 +106,6 @@ class FakeBoard:
     def lease_ms(self) -> int:
         """The lease of the motors, 0 for none."""
         return self._lease_ms
-
-    def wait_for(self, state: State, ticks: int, host: subprocess.Popen[str]) -> None:
-        """Return when the board has been in this state for so many ticks, or fail when its host ends before."""
-
-        def reached() -> bool:
-            return self.problem is not None or (self.state is state and self._ticks_in_state >= ticks)
-
-        with self._changed:
-            while not self._changed.wait_for(reached, timeout=0.5):
-                assert host.poll() is None, f"the host ended with {host.returncode}: {host.communicate()}"
-        assert self.problem is None
 
     def own_hello(self) -> bytes:
         """The frame that a board sends by itself when it has started."""
@@ -161,68 +121,72 @@ class FakeBoard:
             schema.ResetCause.EXTERNAL,
         ).pack()  # fmt: skip
 
-    def hurry(self) -> None:
-        """Nobody listens any more: what the board says is lost, and its time goes on as quickly as it can. Returns when
-        it has done what it was asked to.
-        """
-        self._alone = True
-        while self.problem is None and (select.select([self._master], [], [], 0)[0] or self._busy):
-            time.sleep(0.0002)
-
     def say(self, data: bytes) -> None:
         """Bytes to the host, whatever they mean."""
-        while data and not self._alone and not self._end.is_set():
-            try:
-                data = data[os.write(self._master, data) :]
-            except BlockingIOError:
-                select.select([self._wake_out], [self._master], [])
+        self._to_host += data
+
+    # --- the line, as a host has it ---------------------------------------------------------------------------------
+
+    def open(self, restart: bool, baud: int) -> Self:
+        if self._gone:
+            raise UserError(f"{self.port}: there is no such port.")
+        self.restarted, self._opened = restart or not self._opened, True
+        self._to_host = b""
+        return self
+
+    def read(self) -> bytes:
+        """Live until there is something to read, a tick at most."""
+        if not self._to_host:
+            self.wait(_TICK_S)
+        if self._gone:
+            raise PortLostError(self.port)
+        taken, self._to_host = self._to_host, b""
+        return taken
+
+    def write(self, data: bytes) -> None:
+        if self._gone:
+            raise PortLostError(self.port)
+        self.hear(data)
+
+    def clock(self) -> float:
+        return self._now
+
+    def wait(self, seconds: float) -> None:
+        end = self._now + seconds
+        while self._now < end:
+            self._now += _TICK_S
+            self.live()
+
+    def close(self) -> None:
+        """Nothing is open."""
 
     # --- the board's life -------------------------------------------------------------------------------------------
 
-    def _run(self) -> None:
-        try:
-            while not self._end.is_set() and self._master >= 0:
-                room = self._alone or (self._unread() < _UNREAD and not self._waits_for_host())
-                sampling = self._every > 0 and room
-                chattering = bool(self.faults.chatter) and (self.faults.silent or not self.requests)
-                # A tick takes a moment, in which the kernel moves what was written to where it counts as unread.
-                timeout = 0.0 if self._alone else _TICK_S if self._every or chattering else None
-                ready, _, _ = select.select([self._master, self._wake_out], [], [], timeout)
-                if self._master in ready:
-                    self._busy, self._heard_s = True, time.monotonic()
-                    for frame in self._decoder.feed(os.read(self._master, 4096)):
-                        self.requests.append((frame.type, frame.seq))
-                        if not self.faults.silent:
-                            self._request(frame.type, frame.seq, frame.payload)
-                    self._busy = False
-                elif sampling:
-                    self._live_a_tick()
-                elif chattering and room:
-                    self.say(self.faults.chatter)
-        except BaseException as error:
-            with self._changed:
-                self.problem = error
-                self._changed.notify_all()
+    @property
+    def chatters(self) -> bool:
+        return bool(self.faults.chatter) and (self.faults.silent or not self.requests)
 
-    def _waits_for_host(self) -> bool:
-        """What this side wrote is some time on its way, on a busy machine for longer than many ticks take."""
-        late = self._lease_ms and self.state in (State.SOFT_START, State.FOLLOWING)
-        if not late or self.tick < self._lease_end - self._lease_ms // 2:
-            return False
-        return time.monotonic() < self._heard_s + self.faults.patience_s
+    def hear(self, data: bytes) -> None:
+        """Bytes from the host."""
+        for frame in self._decoder.feed(data):
+            self.requests.append((frame.type, frame.seq))
+            if not self.faults.silent:
+                self._request(frame.type, frame.seq, frame.payload)
 
-    def _unread(self) -> int:
-        # What this side wrote and the host has not read waits in the other end's input queue.
-        waiting = fcntl.ioctl(self._slave, termios.FIONREAD, b"\0\0\0\0")
-        return int(struct.unpack("i", waiting)[0])
+    def live(self) -> None:
+        """A tick, if the board has anything to tell."""
+        if self._every:
+            self._live_a_tick()
+        elif self.chatters:
+            self.say(self.faults.chatter)
 
     def _live_a_tick(self) -> None:
-        faults, before = self.faults, self.state
+        faults = self.faults
         self.tick += 1
         if faults.jump_at is not None and self.tick >= faults.jump_at[0]:
             self.tick, faults.jump_at = self.tick + faults.jump_at[1], None
         if faults.unplug_at is not None and self.tick >= faults.unplug_at:
-            self._unplug()
+            self.unplug()
             return
         if faults.restart_at is not None and self.tick >= faults.restart_at:
             self._restart()
@@ -238,9 +202,6 @@ class FakeBoard:
             if self._points and self.tick % _POINT_TICKS == 0:
                 (a, b, c, d), (to_a, to_b, to_c, to_d) = self._reference, self._points.pop(0)
                 self._reference = (a + 4 * to_a, b + 4 * to_b, c + 4 * to_c, d + 4 * to_d)
-        with self._changed:
-            self._ticks_in_state = self._ticks_in_state + 1 if self.state is before else 0
-            self._changed.notify_all()
         if self.tick % self._every == 0:
             self._sample()
 
@@ -257,12 +218,8 @@ class FakeBoard:
         times = 2 if self.tick in self.faults.repeat_ticks else 1
         self.say(times * encode_frame(schema.Sample.TYPE, self._samples % 256, sample.pack()))
 
-    def _unplug(self) -> None:
-        # The host holds the other end of the pair; hanging up means closing both of ours.
-        self._every = 0
-        os.close(self._master)
-        os.close(self._slave)
-        self._master = self._slave = -1
+    def unplug(self) -> None:
+        self._every, self._gone = 0, True
 
     def _restart(self) -> None:
         self.faults.restart_at = None
@@ -357,17 +314,3 @@ class FakeBoard:
             self.state, self.stop_reason, self.fault, self.fault_where, self.tick, 0, 0, 0, 0, 0, 300, self._save_state,
             self.saves,
         ).pack()  # fmt: skip
-
-
-@contextlib.contextmanager
-def locked(port: str) -> Iterator[int]:
-    """A process that has the port open for itself alone, and is no greywhale: its number."""
-    take = (
-        "import fcntl, sys; f = open(sys.argv[1], 'rb', 0); fcntl.flock(f, fcntl.LOCK_EX); print(flush=True); input()"
-    )
-    command = [sys.executable, "-c", take, port]
-    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
-        assert process.stdout is not None
-        process.stdout.readline()
-        yield process.pid
-        process.communicate(b"\n")

@@ -17,6 +17,7 @@ from greywhale.protocol import schema
 from greywhale.protocol.frames import encode_frame
 from greywhale.protocol.schema import Fault, NackCode, Refusal, State
 from tests.board.fake_board import FakeBoard, Faults
+from tests.board.port_board import PortBoard
 
 
 def open_device(board: FakeBoard) -> Device:
@@ -239,7 +240,7 @@ def test_ports_that_cannot_be_opened(tmp_path: Path) -> None:
         Device(str(plain))
     with pytest.raises(UserError, match="not a serial port"):
         Device(str(tmp_path))
-    with FakeBoard() as board, open_device(board), pytest.raises(UserError, match="in use by this program itself"):
+    with PortBoard() as board, open_device(board), pytest.raises(UserError, match="in use by this program itself"):
         Device(board.port)
 
 
@@ -247,7 +248,7 @@ def test_the_terminal_is_not_taken_for_a_port(monkeypatch: pytest.MonkeyPatch) -
     """Neither as /dev/tty nor by its number: it would be set to another speed under a person's hands."""
     with pytest.raises(UserError, match="^/dev/tty: this is a terminal, not a board's port; `greywhale ports`"):
         Device("/dev/tty")
-    with FakeBoard() as board, monkeypatch.context() as patch:
+    with PortBoard() as board, monkeypatch.context() as patch:
         terminal = os.stat(board.port)
         patch.setattr(os, "isatty", lambda stream: stream == 2)
         patch.setattr(os, "fstat", lambda stream: terminal)

@@ -5,22 +5,35 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from greywhale.board import reconnect
 from greywhale.board.device import Device
 from greywhale.board.reconnect import record_through_losses
 from greywhale.errors import UserError
 from greywhale.files.log import read_log
 from greywhale.protocol import ports, schema
+from greywhale.protocol.transport import LINES
 from tests.board.fake_board import FakeBoard, Faults
 
+Point = Callable[[FakeBoard], None]
+NAME = "the board's lasting name"
 
-def point(name: Path, board: FakeBoard) -> None:
-    """Give a board's port its lasting name, as udev does."""
-    name.unlink(missing_ok=True)
-    name.symlink_to(board.port)
+
+@pytest.fixture
+def point(monkeypatch: pytest.MonkeyPatch) -> Point:
+    """Gives a board's port its lasting name, as udev does."""
+    return lambda board: monkeypatch.setitem(LINES, NAME, board.open)
+
+
+def lives(patch: pytest.MonkeyPatch, *boards: FakeBoard) -> None:
+    """Let this machine's clock go with the boards', one after another, and with what is waited for in between."""
+    waits: list[float] = []
+    clock = SimpleNamespace(monotonic=lambda: sum(waits) + sum(board.clock() for board in boards), sleep=waits.append)
+    patch.setattr(reconnect, "time", clock)
 
 
 def opens(*before: Callable[[], None]) -> Callable[[str], Device]:
@@ -39,12 +52,13 @@ def nothing() -> None:
     """As it is."""
 
 
-def test_it_goes_on_after_a_stated_gap(tmp_path: Path) -> None:
-    name, out = tmp_path / "board", tmp_path / "log.csv"
+def test_it_goes_on_after_a_stated_gap(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, point: Point) -> None:
+    out = tmp_path / "log.csv"
     with FakeBoard(Faults(unplug_at=300)) as first, FakeBoard() as second:
-        point(name, first)
-        steps = opens(nothing, nothing, nothing, lambda: point(name, second))  # it takes three attempts
-        recording = record_through_losses(str(name), out, 3.0, open_device=steps)
+        lives(monkeypatch, first, second)
+        point(first)
+        steps = opens(nothing, nothing, nothing, lambda: point(second))  # it takes three attempts
+        recording = record_through_losses(NAME, out, 3.0, open_device=steps)
         assert first.asked(schema.EnableRequest) == second.asked(schema.EnableRequest) == 0
         assert second.asked(schema.LeadRequest) == 0
     log = read_log(out)
@@ -60,22 +74,24 @@ def test_it_goes_on_after_a_stated_gap(tmp_path: Path) -> None:
     assert f"# gaps: 1: {length:g} s after {begin:g} s" in out.read_text(encoding="ascii")
 
 
-def test_it_goes_away_twice(tmp_path: Path) -> None:
-    name, out = tmp_path / "board", tmp_path / "log.csv"
+def test_it_goes_away_twice(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, point: Point) -> None:
+    out = tmp_path / "log.csv"
     with FakeBoard(Faults(unplug_at=300)) as one, FakeBoard(Faults(unplug_at=200)) as two, FakeBoard() as three:
-        point(name, one)
-        steps = opens(nothing, lambda: point(name, two), lambda: point(name, three))
-        recording = record_through_losses(str(name), out, 3.0, open_device=steps)
+        lives(monkeypatch, one, two, three)
+        point(one)
+        steps = opens(nothing, lambda: point(two), lambda: point(three))
+        recording = record_through_losses(NAME, out, 3.0, open_device=steps)
     assert len(recording.gaps) == 2
     assert read_log(out).complete
 
 
-def test_a_port_that_stays_away_ends_the_log_whole(tmp_path: Path) -> None:
+def test_a_port_that_stays_away_ends_the_log_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     out = tmp_path / "log.csv"
     with (
         FakeBoard(Faults(unplug_at=300)) as board,
         pytest.raises(UserError, match=r"went away in the middle.* It did not come back before the recording's end"),
     ):
+        lives(monkeypatch, board)
         record_through_losses(board.port, out, 1.0, open_device=opens())
     log = read_log(out)
     assert not log.complete
@@ -84,19 +100,23 @@ def test_a_port_that_stays_away_ends_the_log_whole(tmp_path: Path) -> None:
     assert os.listdir(tmp_path) == ["log.csv"]
 
 
-def test_another_board_in_its_place_is_refused(tmp_path: Path) -> None:
-    name, out = tmp_path / "board", tmp_path / "log.csv"
+def test_another_board_in_its_place_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, point: Point) -> None:
+    out = tmp_path / "log.csv"
     with FakeBoard(Faults(unplug_at=300)) as first, FakeBoard() as other:
+        lives(monkeypatch, first, other)
         other.running[schema.PARAMETER_BY_NAME["joint1.kp"].index] += 1
-        point(name, first)
-        steps = opens(nothing, lambda: point(name, other))
+        point(first)
+        steps = opens(nothing, lambda: point(other))
         with pytest.raises(UserError, match="is another one, or runs other parameters; record anew"):
-            record_through_losses(str(name), out, 5.0, open_device=steps)
+            record_through_losses(NAME, out, 5.0, open_device=steps)
     assert not read_log(out).complete
 
 
-def test_a_port_without_a_loss_gives_the_log_of_an_ordinary_recording(tmp_path: Path) -> None:
+def test_a_port_without_a_loss_gives_the_log_of_an_ordinary_recording(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     with FakeBoard() as board:
+        lives(monkeypatch, board)
         recording = record_through_losses(board.port, tmp_path / "log.csv", 0.5, open_device=opens())
     assert (recording.rows, recording.dropped, recording.gaps) == (500, 0, ())
     assert "# gaps: none" in (tmp_path / "log.csv").read_text(encoding="ascii")

@@ -159,7 +159,6 @@ def test_a_bad_end_keeps_what_was_recorded_and_says_why(tmp_path: Path, faults: 
     assert parts(tmp_path) == []
 
 
-@pytest.mark.slow
 def test_a_restart_without_a_word_is_found(tmp_path: Path) -> None:
     faults = Faults(restart_at=200, restart_says_hello=False)
     with (
@@ -170,7 +169,6 @@ def test_a_restart_without_a_word_is_found(tmp_path: Path) -> None:
         record(device, tmp_path / "log.csv", 10.0)
 
 
-@pytest.mark.slow
 def test_samples_that_stop_coming_are_named(tmp_path: Path) -> None:
     with (
         FakeBoard(Faults(stop_sampling_at=100)) as board,
@@ -222,7 +220,7 @@ def test_bad_settings_are_bad_usage(tmp_path: Path, seconds: float, every: int, 
 
 
 def test_the_lease_running_out_is_named(tmp_path: Path) -> None:
-    with FakeBoard(Faults(patience_s=0.0)) as board, open_device(board) as device:
+    with FakeBoard() as board, open_device(board) as device:
         device.renew = lambda: None  # type: ignore[method-assign]
         with pytest.raises(UserError, match="did not renew the lease of 500 ms"):
             record(device, tmp_path / "log.csv", 10.0, enable=True)

@@ -27,21 +27,21 @@ from greywhale.files.log import read_log
 from greywhale.protocol import schema
 from greywhale.protocol.schema import State, StopReason
 from greywhale.runtime import VARIABLE
-from tests.board.fake_board import FakeBoard
+from tests.board.port_board import PortBoard
 
 
-def open_device(board: FakeBoard) -> Device:
+def open_device(board: PortBoard) -> Device:
     return Device(board.port, quiet_s=0.0, patience_s=0.5)
 
 
-def names(board: FakeBoard) -> list[str]:
+def names(board: PortBoard) -> list[str]:
     """Where a session on the board may listen."""
     device = meeting.device_of(board.port)
     assert device is not None
     return meeting.names_of(device)
 
 
-def connected(board: FakeBoard) -> socket.socket:
+def connected(board: PortBoard) -> socket.socket:
     """A client of the board's session."""
     client = socket.socket(socket.AF_UNIX)
     client.connect(names(board)[0])
@@ -82,14 +82,14 @@ class Asker(threading.Thread):
             self._now.set()
 
 
-def recorded(board: FakeBoard, path: Path, report: Callable[[str, float], None]) -> None:
+def recorded(board: PortBoard, path: Path, report: Callable[[str, float], None]) -> None:
     with open_device(board) as device:
         record(device, path, 60.0, enable=True, progress=report)
 
 
 def test_a_recording_ends_as_on_ctrl_c(tmp_path: Path) -> None:
     log = tmp_path / "log.csv"
-    with FakeBoard() as board, Asker(board.port) as other:
+    with PortBoard() as board, Asker(board.port) as other:
         with pytest.raises(KeyboardInterrupt) as caught:
             recorded(board, log, lambda what, fraction: other.ask(what, 1.0))
         other.join()
@@ -105,7 +105,7 @@ def test_it_ends_too_where_ctrl_c_is_ignored(tmp_path: Path) -> None:
     """As a script's background job runs."""
     before = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
-        with FakeBoard() as board, Asker(board.port) as other, pytest.raises(StopAsked):
+        with PortBoard() as board, Asker(board.port) as other, pytest.raises(StopAsked):
             recorded(board, tmp_path / "log.csv", lambda what, fraction: other.ask(what, 1.0))
     finally:
         signal.signal(signal.SIGINT, before)
@@ -116,7 +116,7 @@ def test_a_session_in_a_thread_ends_without_its_main_thread(tmp_path: Path) -> N
     """As a server that serves more than one board."""
     ended: list[BaseException] = []
 
-    def work(board: FakeBoard) -> None:
+    def work(board: PortBoard) -> None:
         try:
             recorded(board, tmp_path / "log.csv", started)
         except KeyboardInterrupt as stop:
@@ -128,7 +128,7 @@ def test_a_session_in_a_thread_ends_without_its_main_thread(tmp_path: Path) -> N
         if what == "recording":
             recording.set()
 
-    with FakeBoard() as board:
+    with PortBoard() as board:
         worker = threading.Thread(target=work, args=(board,))
         worker.start()
         assert recording.wait(30.0)
@@ -138,7 +138,7 @@ def test_a_session_in_a_thread_ends_without_its_main_thread(tmp_path: Path) -> N
 
 
 def test_no_motor_starts_after_a_stop() -> None:
-    with FakeBoard() as board, Asker(board.port) as other:
+    with PortBoard() as board, Asker(board.port) as other:
         with pytest.raises(KeyboardInterrupt), open_device(board) as device:
             other.ask()
             with pytest.raises(KeyboardInterrupt):
@@ -156,7 +156,7 @@ def test_no_motor_starts_after_a_stop() -> None:
 @pytest.mark.timeout(60)
 def test_the_board_hears_the_stop_before_the_main_thread_does() -> None:
     """The main thread may be writing a file or computing."""
-    with FakeBoard() as board, Asker(board.port) as other:
+    with PortBoard() as board, Asker(board.port) as other:
         before = signal.signal(signal.SIGINT, signal.SIG_IGN)
         try:
             with pytest.raises(StopAsked), open_device(board) as device:
@@ -171,7 +171,7 @@ def test_the_board_hears_the_stop_before_the_main_thread_does() -> None:
 
 
 def test_a_stop_that_is_not_confirmed_is_told(tmp_path: Path) -> None:
-    with FakeBoard() as board, Asker(board.port) as other:
+    with PortBoard() as board, Asker(board.port) as other:
 
         def fall_silent(what: str, fraction: float) -> None:
             if what == "recording":
@@ -185,7 +185,7 @@ def test_a_stop_that_is_not_confirmed_is_told(tmp_path: Path) -> None:
 
 
 def test_a_session_without_motors_is_stopped_as_well() -> None:
-    with FakeBoard() as board, Asker(board.port) as other:
+    with PortBoard() as board, Asker(board.port) as other:
         with pytest.raises(KeyboardInterrupt), open_device(board) as device:
             other.ask()
             while True:
@@ -197,7 +197,7 @@ def test_a_session_without_motors_is_stopped_as_well() -> None:
 
 def test_what_holds_a_port_now_and_then_is_stopped_in_between() -> None:
     """As a commissioning that tunes: it must not move the arm any more."""
-    with FakeBoard() as board, Asker(board.port) as other:
+    with PortBoard() as board, Asker(board.port) as other:
         with pytest.raises(KeyboardInterrupt) as caught, Session.of(board.port):
             with open_device(board):
                 pass
@@ -217,7 +217,7 @@ def test_an_interrupt_that_comes_just_before_a_long_wait_is_noticed(monkeypatch:
 
     monkeypatch.setattr(signal, "pthread_kill", kill_without_waking)
     before = signal.getsignal(signal.SIGURG)
-    with FakeBoard() as board, Asker(board.port) as other:
+    with PortBoard() as board, Asker(board.port) as other:
         with pytest.raises(KeyboardInterrupt), Session.of(board.port):
             other.ask()
             threading.Event().wait()
@@ -252,7 +252,7 @@ def another(hold: Callable[[], AbstractContextManager[object]]) -> Iterator[int]
 
 def test_nobody_takes_the_port_of_another_session() -> None:
     """Also while that has it closed, as a commissioning that computes."""
-    with FakeBoard() as board:
+    with PortBoard() as board:
         with (
             another(lambda: Session.of(board.port)) as child,
             pytest.raises(
@@ -268,7 +268,7 @@ def test_nobody_takes_the_port_of_another_session() -> None:
 
 def test_a_session_that_does_not_hear_is_told_with_the_switch_first() -> None:
     """After Ctrl-Z."""
-    with FakeBoard() as board, another(lambda: Session.of(board.port)) as child:
+    with PortBoard() as board, another(lambda: Session.of(board.port)) as child:
         os.kill(child, signal.SIGSTOP)
         os.waitpid(child, os.WUNTRACED)  # until it stands still
         with pytest.raises(UserError) as caught:
@@ -280,7 +280,7 @@ def test_a_session_that_does_not_hear_is_told_with_the_switch_first() -> None:
 
 
 def test_only_this_user_reaches_the_session(monkeypatch: pytest.MonkeyPatch) -> None:
-    with FakeBoard() as board, open_device(board) as device:
+    with PortBoard() as board, open_device(board) as device:
         monkeypatch.setattr(meeting, "peer_of", lambda connection: Peer(1, os.geteuid() + 1))
         with connected(board) as client:
             assert client.recv(64) == b"", "sent away unheard"
@@ -311,7 +311,7 @@ def squat(monkeypatch: pytest.MonkeyPatch, names: list[str]) -> AbstractContextM
 
 
 def test_another_user_who_takes_a_name_first_hinders_nobody(monkeypatch: pytest.MonkeyPatch) -> None:
-    with FakeBoard() as board, squat(monkeypatch, names(board)[:-1]), Asker(board.port) as other:
+    with PortBoard() as board, squat(monkeypatch, names(board)[:-1]), Asker(board.port) as other:
         with pytest.raises(KeyboardInterrupt), open_device(board) as device:
             device.enable(0)
             other.ask()
@@ -323,7 +323,7 @@ def test_another_user_who_takes_a_name_first_hinders_nobody(monkeypatch: pytest.
 
 def test_no_motor_starts_where_nothing_could_stop_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(session, "in_foreground", lambda: False)
-    with FakeBoard() as board, squat(monkeypatch, names(board)) as child, open_device(board) as device:
+    with PortBoard() as board, squat(monkeypatch, names(board)) as child, open_device(board) as device:
         assert device.status().state is State.DISABLED, "to look is safe"
         for start in (device.enable, device.lead):
             with pytest.raises(UserError) as caught:
@@ -340,7 +340,7 @@ def test_where_only_ctrl_c_stops_it_that_is_said_before_the_motors_start(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     monkeypatch.setattr(session, "in_foreground", lambda: True)
-    with FakeBoard() as board, squat(monkeypatch, names(board)), open_device(board) as device:
+    with PortBoard() as board, squat(monkeypatch, names(board)), open_device(board) as device:
         device.enable(500)
         device.enable(500)
     (warning,) = [record for record in caplog.records if record.levelno == logging.WARNING]
@@ -363,7 +363,7 @@ def test_a_terminals_ctrl_c_is_known_to_reach_a_process(terminal: bool) -> None:
 
 
 def test_a_port_is_found_by_whatever_name(tmp_path: Path) -> None:
-    with FakeBoard() as board, Asker(str(tmp_path / "arm")) as other:
+    with PortBoard() as board, Asker(str(tmp_path / "arm")) as other:
         (tmp_path / "arm").symlink_to(board.port)
         with pytest.raises(KeyboardInterrupt), open_device(board) as device:
             other.ask()
@@ -374,7 +374,7 @@ def test_a_port_is_found_by_whatever_name(tmp_path: Path) -> None:
 
 
 def test_clients_that_say_nothing_hinder_nobody(monkeypatch: pytest.MonkeyPatch) -> None:
-    with FakeBoard() as board, contextlib.ExitStack() as stack, Asker(board.port) as other:
+    with PortBoard() as board, contextlib.ExitStack() as stack, Asker(board.port) as other:
         with pytest.raises(KeyboardInterrupt), open_device(board) as device:
             for _ in range(meeting.MOST_CLIENTS + 3):
                 stack.enter_context(connected(board))
@@ -387,14 +387,14 @@ def test_clients_that_say_nothing_hinder_nobody(monkeypatch: pytest.MonkeyPatch)
 
 
 def test_a_client_that_says_something_else_stops_nothing() -> None:
-    with FakeBoard() as board, open_device(board) as device, connected(board) as client:
+    with PortBoard() as board, open_device(board) as device, connected(board) as client:
         client.sendall(b"hello\n")
         assert client.recv(64) == b""
         assert device.status().state is State.DISABLED
 
 
 def test_a_client_that_does_not_wait_for_the_answer_is_heard() -> None:
-    with FakeBoard() as board, pytest.raises(KeyboardInterrupt), open_device(board) as device:
+    with PortBoard() as board, pytest.raises(KeyboardInterrupt), open_device(board) as device:
         with connected(board) as client:
             client.sendall(b"stop\n")
         while True:

@@ -25,7 +25,8 @@ from greywhale.runtime import VARIABLE
 from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory
 from greywhale_sim.serve import ServeOptions, running
-from tests.board.fake_board import FakeBoard, Faults, locked
+from tests.board.fake_board import FakeBoard, Faults
+from tests.board.port_board import PortBoard, locked
 from tests.cli.example_log import write_log
 
 ROOT = Path(__file__).parents[2]
@@ -221,7 +222,7 @@ def test_the_port_may_come_from_the_environment(capsys: Captured, monkeypatch: p
 
 def test_stop_begins_with_what_helps_where_it_cannot(capsys: Captured) -> None:
     """Here a program that is not ours has the port."""
-    with FakeBoard() as board, locked(board.port) as holder:
+    with PortBoard() as board, locked(board.port) as holder:
         assert entry.run(["stop", "--port", board.port]) == 1
     words = (
         "greywhale: Switch the motors' supply off: `greywhale stop` cannot reach the arm. "

@@ -14,7 +14,7 @@ from greywhale.cli import countdown, entry
 from greywhale.errors import UserError
 from greywhale.protocol import schema
 from greywhale.protocol.ports import Port
-from tests.board.fake_board import FakeBoard
+from tests.board.port_board import PortBoard
 
 
 @pytest.fixture(autouse=True)
@@ -59,7 +59,7 @@ def test_every_verb_that_moves_the_arm_asks(
     """Refused before the port is opened, which would restart a board."""
     monkeypatch.chdir(tmp_path)
     Path("motion.csv").write_text("time_s,leader_0,leader_1,leader_2,leader_3\n0,0,0,0,0\n1,0,0,0,0\n")
-    with FakeBoard() as board:
+    with PortBoard() as board:
         assert entry.run([*verb, "--port", board.port]) == 2
         assert board.requests == []
     assert "say --yes" in capsys.readouterr().err
@@ -79,7 +79,7 @@ def test_ctrl_c_in_the_countdown_keeps_the_arm_still(tmp_path: Path) -> None:
     motion, log = tmp_path / "motion.csv", tmp_path / "log.csv"
     motion.write_text("time_s,leader_0,leader_1,leader_2,leader_3\n0,0,0,0,0\n1,0,0,0,0\n")
     terminal, theirs = os.openpty()
-    with FakeBoard() as board:
+    with PortBoard() as board:
         command = [sys.executable, "-c", REPLAY, "replay", str(motion), "-o", str(log), "--port", board.port]
         with subprocess.Popen(command, stderr=theirs) as host:
             os.close(theirs)

@@ -16,7 +16,7 @@ from greywhale.cli import entry
 from greywhale.files.log import read_log
 from greywhale.protocol import schema
 from greywhale.protocol.schema import State
-from tests.board.fake_board import FakeBoard
+from tests.board.port_board import PortBoard
 from tests.cli.example_log import write_log
 
 RUN = """
@@ -31,7 +31,7 @@ main()
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_ctrl_c_leaves_motors_off_and_the_log_whole(tmp_path: Path, number: signal.Signals) -> None:
     out = tmp_path / "log.csv"
-    with FakeBoard() as board:
+    with PortBoard() as board:
         arguments = ["record", "--port", board.port, "-o", str(out), "-s", "600", "--enable", "--json"]
         process = subprocess.Popen(
             [sys.executable, "-c", RUN, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
@@ -78,7 +78,7 @@ def closed(*numbers: int) -> Callable[[], None]:
 @pytest.mark.parametrize("numbers", [(1,), (2,), (0, 1, 2)])
 def test_closed_streams_are_nobodys(numbers: tuple[int, ...]) -> None:
     """`greywhale info >&-`: what is printed must not end up in the port, which would get the free number."""
-    with FakeBoard() as board:
+    with PortBoard() as board:
         command = [sys.executable, "-c", RUN, "info", "--port", board.port]
         done = subprocess.run(command, preexec_fn=closed(*numbers), capture_output=True, text=True, check=False)
         assert board.problem is None

@@ -22,6 +22,7 @@ from greywhale.cli.watch import EVERY, HEADING, Look, as_line, as_table, looks
 from greywhale.protocol import schema
 from greywhale.protocol.schema import Fault, State
 from tests.board.fake_board import FakeBoard, Faults
+from tests.board.port_board import PortBoard
 from tests.cli.test_signals_and_pipes import RUN
 
 Captured = pytest.CaptureFixture[str]
@@ -88,7 +89,7 @@ def test_on_a_terminal_of_80_by_24_it_is_drawn_again_and_again() -> None:
     """In a process of its own, whose standard output is a terminal. Ctrl-C is its normal end."""
     outer, inner = pty.openpty()
     fcntl.ioctl(inner, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
-    with FakeBoard() as board:
+    with PortBoard() as board:
         command = [sys.executable, "-c", RUN, "info", "--watch", "--port", board.port]
         process = subprocess.Popen(
             command, stdout=inner, stderr=subprocess.PIPE, env=os.environ | {"TERM": "xterm", "NO_COLOR": "1"}

@@ -20,6 +20,7 @@ from greywhale.protocol import schema
 from tests.board.fake_board import FakeBoard
 from tests.board.flash.fake_bootloader import ATMEGA328P, MEGA2560, FakeBootloader, Version1, Version2
 from tests.board.flash.hex_files import write_image
+from tests.board.port_board import PortBoard
 
 MEGA, NANO = BOARDS["mega"], BOARDS["nano"]
 
@@ -61,7 +62,7 @@ def test_a_port_that_is_not_there_stops_before_any_tool(told: Path, tmp_path: Pa
 def test_a_port_in_use_stops_before_any_tool(told: Path, tmp_path: Path) -> None:
     # avrdude would break into it, and reset a board that runs its motors
     image = write_image(tmp_path / "x.hex")
-    with FakeBoard() as board, Device(board.port, 0.0, 0.5):
+    with PortBoard() as board, Device(board.port, 0.0, 0.5):
         with pytest.raises(UserError, match="the port is in use by this program itself"):
             module.flash(board.port, "mega", hex_file=image)
     assert not told.exists()
@@ -81,7 +82,7 @@ def test_nobody_gets_the_port_while_avrdude_has_it(told: Path, tmp_path: Path, m
             found[0].close()
 
     monkeypatch.setattr(module, "upload_image", upload)
-    with FakeBoard() as board:
+    with PortBoard() as board:
         module.flash(board.port, "mega", hex_file=image)
         assert held == [True]
         assert meeting.find(board.port, 0.0) is None
