@@ -38,7 +38,7 @@ def test_ctrl_c_leaves_motors_off_and_the_log_whole(tmp_path: Path, number: sign
         )
         board.wait_for(State.FOLLOWING, 300, process)
         process.send_signal(number)
-        output, errors = process.communicate(timeout=60)
+        output, errors = process.communicate()
         assert board.state is State.DISABLED
         assert board.asked(schema.StopRequest) >= 1
     assert process.returncode == 130

@@ -24,7 +24,7 @@ int main(void) {
 
 def run_elf(*arguments: str) -> subprocess.CompletedProcess[str]:
     command = [sys.executable, "-m", "greywhale_sim.run_elf", *arguments]
-    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
+    return subprocess.run(command, capture_output=True, text=True, check=False)
 
 
 @pytest.mark.parametrize("chip", ["atmega2560", "atmega328p"])

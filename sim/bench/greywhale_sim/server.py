@@ -141,7 +141,7 @@ class Server:
     def _host_stays(self) -> bool:
         self.notice_host()
         self.while_waiting()
-        return self.port.connected and not self.ending
+        return self.fast and self.port.connected and not self.ending
 
     def _keep_eeprom(self, now: bool = False) -> None:
         if self._eeprom is None or not (now or self.bench.time_s >= self._eeprom_check_at):
