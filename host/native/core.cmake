@@ -48,7 +48,7 @@ add_kernels(baseline SOURCES ${LOOP_KERNEL} ${WINDOWS_KERNEL})
 if(PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
   add_kernels(avx2 SOURCES ${LOOP_KERNEL} ${WINDOWS_KERNEL} OPTIONS -mavx2)
   # GCC warns about its own intrinsics' deliberately undefined values.
-  add_kernels(avx512 SOURCES ${LOOP_KERNEL} OPTIONS -mavx512f -mavx512bw -mavx512cd -mavx512dq -mavx512vl
+  add_kernels(avx512 SOURCES ${LOOP_KERNEL} ${WINDOWS_KERNEL} OPTIONS -mavx512f -mavx512bw -mavx512cd -mavx512dq -mavx512vl
     $<$<CXX_COMPILER_ID:GNU>:-Wno-uninitialized> $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   target_compile_definitions(greywhale_core PRIVATE GREYWHALE_X86)
 endif()

@@ -69,8 +69,8 @@ constexpr double kRigid = 1e15;
 // turns.
 constexpr double kNoPull = 1e-14;
 
-template <bool kWorn, class T>
-Terms<T> terms_of(const Joint<T>& joint, const State<T>& s, std::size_t i, T volts, double dt) {
+template <bool kWorn, class T, class Time>
+Terms<T> terms_of(const Joint<T>& joint, const State<T>& s, std::size_t i, T volts, Time dt) {
   const Gear<T>& gear = joint.gear;
   const T compliant = dt * (dt * gear.stiffness + gear.damping);
   Terms<T> t;
@@ -94,8 +94,8 @@ Terms<T> terms_of(const Joint<T>& joint, const State<T>& s, std::size_t i, T vol
 }
 
 // Where a joint stands before the step, taken on by its present velocities.
-template <class T>
-Sides<T> first_guess(const Joint<T>& joint, const State<T>& s, std::size_t i, double dt) {
+template <class T, class Time>
+Sides<T> first_guess(const Joint<T>& joint, const State<T>& s, std::size_t i, Time dt) {
   const T zero = constant<T>(0.0);
   const T one = constant<T>(1.0);
   const T ahead = s.motor_q[i] - s.q[i] + dt * (s.motor_v[i] - s.v[i]);
@@ -170,8 +170,8 @@ T passed_impulse(const Terms<T>& t, const Sides<T>& side, T motor_v, T link_v) {
 }
 
 // Teeth push and never pull. Apart, they meet on the side where the gap would close and the mesh would push.
-template <class T>
-T corrected_mesh(const Gear<T>& gear, const Terms<T>& t, T side, T closing, double dt) {
+template <class T, class Time>
+T corrected_mesh(const Gear<T>& gear, const Terms<T>& t, T side, T closing, Time dt) {
   const T zero = constant<T>(0.0);
   const T one = constant<T>(1.0);
   const T push = t.push + t.mesh * closing;

@@ -23,8 +23,8 @@ struct Lag {
 // With r = time constant / step, exp(-1/r) by its series in 1/r, which is right to 1e-4 for r above 1 and to 0.003
 // below; without a lag both are exactly 0.
 template <class T>
-GREYWHALE_INLINE Lag<T> lag_of(T time_constant, double dt) {
-  const T r = time_constant / constant<T>(dt);
+GREYWHALE_INLINE Lag<T> lag_of(T time_constant, T dt) {
+  const T r = time_constant / dt;
   const T one = constant<T>(1.0);
   const T terms = (((((r + one) * r + 0.5) * r + 1.0 / 6.0) * r + 1.0 / 24.0) * r + 1.0 / 120.0) * r + 1.0 / 720.0;
   const T power = r * r * r;

@@ -30,9 +30,9 @@ constexpr int kPasses = 8;
 namespace detail {
 
 // Corrects all sides by the velocities found with them; true when nothing changed.
-template <bool kWorn, class T>
+template <bool kWorn, class T, class Time>
 bool settle(const Plant<T>& plant, const State<T>& s, const Terms<T> (&terms)[kJoints], const LinearSystem<T>& system,
-            const T (&v)[kJoints], double dt, Sides<T> (&sides)[kJoints]) {
+            const T (&v)[kJoints], Time dt, Sides<T> (&sides)[kJoints]) {
   T impulses[kJoints];
   stop_impulses(system, v, impulses);
   bool settled = true;
@@ -68,8 +68,8 @@ void rest_at_stops(const LinearSystem<T>& system, const Sides<T> (&sides)[kJoint
   }
 }
 
-template <bool kWorn, class T>
-bool advance(const Plant<T>& plant, State<T>& s, const T (&volts)[kJoints], const T (&load)[kJoints], double dt) {
+template <bool kWorn, class T, class Time>
+bool advance(const Plant<T>& plant, State<T>& s, const T (&volts)[kJoints], const T (&load)[kJoints], Time dt) {
   const Geometry<T> geometry = geometry_of(plant.body, pose_of<T>(s.q[1], s.q[2]));
   T bias[kJoints];
   bias_torque(geometry, s.v, bias);
@@ -128,10 +128,10 @@ bool is_worn(const Plant<T>& plant) {
 }
 
 // Advances the state by dt under motor voltages and torques applied to the links from outside. `worn` may be false only
-// where `is_worn` is; this is then faster.
+// where `is_worn` is; this is then faster. dt may differ from lane to lane.
 // Returns whether the conditions were settled; the links are within their stops either way.
-template <class T>
-bool advance(const Plant<T>& plant, State<T>& s, const T (&volts)[kJoints], const T (&load)[kJoints], double dt,
+template <class T, class Time>
+bool advance(const Plant<T>& plant, State<T>& s, const T (&volts)[kJoints], const T (&load)[kJoints], Time dt,
              bool worn) {
   return worn ? detail::advance<true>(plant, s, volts, load, dt) : detail::advance<false>(plant, s, volts, load, dt);
 }

@@ -23,7 +23,7 @@ ROWS, SUBSTEPS = 50, 4
 
 
 def arguments(parameters: ArmParameters, count: int = 3) -> dict[str, Any]:
-    """Three windows from rest, driven by the same noise."""
+    """Three windows from rest, driven by the same noise; rows come at uneven times."""
     random = np.random.default_rng(5)
     plants = np.tile(plant_row(parameters), (count, 1))
     return {
@@ -37,7 +37,7 @@ def arguments(parameters: ArmParameters, count: int = 3) -> dict[str, Any]:
         "places": np.zeros((3, 4)),
         "rows": ROWS,
         "volts": random.uniform(-15, 15, (150 * SUBSTEPS, 4)),
-        "spacing": np.full(150, H * SUBSTEPS),
+        "spacing": H * SUBSTEPS * random.uniform(0.5, 1.0, 150),
         "substeps": SUBSTEPS,
         "every": 1,
     }
@@ -53,7 +53,7 @@ def test_windows_are_the_arm_bit_by_bit(white_box: ArmParameters) -> None:
         for row in range(ROWS):
             np.testing.assert_array_equal(angles[0, window, row], arm.angles)
             for n in range(SUBSTEPS):
-                arm.step(given["volts"][(first + row) * SUBSTEPS + n], H)
+                arm.step(given["volts"][(first + row) * SUBSTEPS + n], given["spacing"][first + row] / SUBSTEPS)
 
 
 def test_result_does_not_depend_on_the_number_of_threads() -> None:

@@ -1,6 +1,10 @@
 // The arm's number type in lanes of double precision: as many as a vector of the instruction set has.
 #pragma once
 
+#ifdef __AVX2__
+#include <immintrin.h>
+#endif
+
 #include <cmath>
 #include <cstddef>
 
@@ -8,7 +12,9 @@
 
 namespace greywhale::windows::GREYWHALE_INSTRUCTIONS {
 
-#ifdef __AVX2__
+#if defined(__AVX512F__)
+constexpr std::size_t kLanes = 8;
+#elif defined(__AVX2__)
 constexpr std::size_t kLanes = 4;
 #else
 constexpr std::size_t kLanes = 2;
@@ -46,9 +52,13 @@ struct Lanes {
 GREYWHALE_INLINE Lanes choose(Condition mask, Lanes yes, Lanes no) { return mask.v ? yes.v : no.v; }
 
 GREYWHALE_INLINE bool any(Condition mask) {
-  bool found = false;
-  for (std::size_t n = 0; n < kLanes; ++n) found = found || mask.v[n] != 0;
-  return found;
+#if defined(__AVX512F__)
+  return _mm512_movepi64_mask(reinterpret_cast<__m512i>(mask.v)) != 0;
+#elif defined(__AVX2__)
+  return _mm256_movemask_pd(reinterpret_cast<__m256d>(mask.v)) != 0;
+#else
+  return (mask.v[0] | mask.v[1]) != 0;
+#endif
 }
 
 GREYWHALE_INLINE void sine_cosine(Lanes angle, Lanes& sine, Lanes& cosine) {

@@ -42,7 +42,7 @@ class Run {
         keep(kept);
         kept += kJoints;
       }
-      const double dt = w_.spacing[first_[0] + row] / static_cast<double>(w_.substeps);
+      const Lanes dt = step_of(row);
       for (std::size_t step = 0; step < w_.substeps; ++step) {
         Lanes volts[kJoints];
         read_volts(row * w_.substeps + step, volts);
@@ -76,6 +76,12 @@ class Run {
     }
   }
 
+  Lanes step_of(std::size_t row) const {
+    Lanes dt;
+    for (std::size_t n = 0; n < kLanes; ++n) dt.set(n, w_.spacing[first_[n] + row]);
+    return dt / static_cast<double>(w_.substeps);
+  }
+
   void read_volts(std::size_t step, Lanes (&volts)[kJoints]) const {
     for (std::size_t n = 0; n < kLanes; ++n) {
       const double* now = w_.volts + (first_[n] * w_.substeps + step) * kJoints;
@@ -83,7 +89,7 @@ class Run {
     }
   }
 
-  void look(double dt) {
+  void look(Lanes dt) {
     for (std::size_t i = 0; i < kJoints; ++i) {
       const arm::Sensor<Lanes>& sensor = row_.plant.joints[i].sensor;
       arm::follow(sensor, arm::lag_of(sensor.lag, dt), s_.q[i], shown_[i]);

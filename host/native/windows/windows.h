@@ -28,14 +28,17 @@ struct Task {
 };
 
 // All of them, from `threads` threads (0: one per core), in as many lanes as the processor has; neither changes a bit
-// of the result. Neighbours that share a window go well together.
+// of the result.
 void simulate(const Windows& windows, const std::vector<Task>& tasks, int threads);
 
-// One instruction set's code: it takes up to so many lanes whose windows have the same spacing.
+// One instruction set's code: it takes up to so many lanes.
 struct Kernel {
   void (*simulate)(const Windows& windows, const Task* tasks, std::size_t count);
   std::size_t lanes;
 };
+namespace avx512 {
+extern const Kernel kKernel;
+}
 namespace baseline {
 extern const Kernel kKernel;
 }
