@@ -85,17 +85,22 @@ class WindowFit:
         trials = np.tile(self.x, (len(DAMPINGS), 1))
         for block in self._blocks:
             if not block.done:
-                for row, share in enumerate(DAMPINGS):
-                    trials[row, block.numbers] += self._proposed(block, jacobian, weights, share * block.damping)
+                trials[:, block.numbers] += self._proposed(block, jacobian, weights)
         trials = np.clip(trials, self._low, self._high)
         numbers = self._simulate(trials)
         costs = np.array([self._costs_of(x, one) for x, one in zip(trials, numbers, strict=True)])
+        known = np.vstack([self.x, trials]), np.vstack([self._numbers, numbers])
         for number, block in enumerate(self._blocks):
             if not block.done:
                 self._accept(number, block, trials, costs[:, number])
-        # The blocks' steps together. Steps from different trials have not been simulated together yet.
-        self._numbers = self._simulate(self.x[None])[0]
+        self._numbers = self._together(*known)
         self._costs = self._costs_of(self.x, self._numbers)
+
+    def _together(self, points: Floats, numbers: Floats) -> Floats:
+        """The residual where the fit now stands. Steps from different trials have not been simulated together."""
+        same = np.flatnonzero(np.all(points == self.x, axis=1))
+        found: Floats = numbers[same[0]] if len(same) else self._simulate(self.x[None])[0]
+        return found
 
     def _accept(self, number: int, block: _Block, trials: Floats, costs: Floats) -> None:
         best = int(np.argmin(costs))
@@ -107,8 +112,8 @@ class WindowFit:
             block.damping *= 1e3
         block.done = gained < ENOUGH * self._costs[number] if gained > 0.0 else block.damping > MOST_DAMPING
 
-    def _proposed(self, block: _Block, jacobian: Floats, weights: Floats, damping: float) -> Floats:
-        """The Levenberg-Marquardt step of one block; a number at its bound that would leave the box stays."""
+    def _proposed(self, block: _Block, jacobian: Floats, weights: Floats) -> Floats:
+        """Levenberg-Marquardt steps of one block (dampings, numbers); a number at its bound does not leave the box."""
         rows = np.isin(self._joint_of, block.joints)
         part = jacobian[np.ix_(rows, block.numbers)]
         doubts = self._doubts[block.numbers]
@@ -118,19 +123,23 @@ class WindowFit:
         slope = weighted.T @ self._numbers[rows] + (x - self._nominal[block.numbers]) / doubts**2
         low, high = self._low[block.numbers], self._high[block.numbers]
         free = ~(((x <= low) & (slope > 0.0)) | ((x >= high) & (slope < 0.0)))
-        step = np.zeros(len(x))
-        if free.any():
-            inner = matrix[np.ix_(free, free)]
-            step[free] = -np.linalg.solve(inner + damping * np.diag(np.diag(inner)), slope[free])
-        longest = float(np.max(np.abs(step) / doubts))
-        return step * min(1.0, LARGEST_STEP / longest) if longest > 0.0 else step
+        inner = matrix[np.ix_(free, free)]
+        found = np.zeros((len(DAMPINGS), len(x)))
+        for step, share in zip(found, DAMPINGS, strict=True):
+            step[free] = -np.linalg.solve(inner + share * block.damping * np.diag(np.diag(inner)), slope[free])
+            longest = float(np.max(np.abs(step) / doubts))
+            step *= min(1.0, LARGEST_STEP / longest) if longest > 0.0 else 1.0
+        return found
 
     def derivatives(self) -> Floats:
         """Of the residual where the fit stands, (numbers of the residual, searched numbers), by finite differences.
 
-        Joints that do not feel each other are varied together.
+        Joints that do not feel each other are varied together. Numbers of blocks that are done are left out, save where
+        they are varied with others.
         """
-        groups, steps = self._space.groups(), self._space.steps
+        open_numbers = np.concatenate([block.numbers for block in self._blocks if not block.done])
+        groups = [group for group in self._space.groups() if np.isin(group, open_numbers).any()]
+        steps = self._space.steps
         ahead = np.where(self.x + steps > self._high, -steps, steps)
         points = np.tile(self.x, (len(groups), 1))
         for row, group in enumerate(groups):
