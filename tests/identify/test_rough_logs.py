@@ -18,6 +18,7 @@ from greywhale.identify.checks import check
 from greywhale.identify.data import LONGEST_GAP_S, prepare, windows_of
 from greywhale.table import ParameterTable
 from greywhale.trajectory import human_reaches, multi_steps
+from tests.identify.conftest import alone
 from tools.bench.recordings import Recorded, record
 
 WEAK_V = 5.0
@@ -32,20 +33,14 @@ def without(log: Log, share: float) -> Log:
     return rows(log, np.random.default_rng(1).random(len(log.time)) >= share)
 
 
-def only(log: Log, joint: int) -> Log:
-    """As from a one-joint rig: nothing of the others."""
-    mask = np.arange(4) == joint
-    return replace(log, leader=log.leader * mask, follower=log.follower * mask, voltage=log.voltage * mask)
-
-
 @pytest.mark.slow
 def test_rows_that_are_few_uneven_and_partly_missing_will_do(
-    recorded: Recorded, white_box: ArmParameters, tables: list[ParameterTable]
+    shoulder: Recorded, white_box: ArmParameters, tables: list[ParameterTable]
 ) -> None:
     """Every third row or so, one to five ticks apart, a twentieth of them lost."""
-    chosen = np.cumsum(np.random.default_rng(3).integers(1, 6, len(recorded.fit.time)))
-    log = without(rows(recorded.fit, chosen[chosen < len(recorded.fit.time)]), 0.05)
-    outcome = identify([log], white_box, validate=[recorded.second], tables=tables)
+    chosen = np.cumsum(np.random.default_rng(3).integers(1, 6, len(shoulder.fit.time)))
+    log = without(rows(shoulder.fit, chosen[chosen < len(shoulder.fit.time)]), 0.05)
+    outcome = identify([log], white_box, validate=[shoulder.second], tables=tables)
     assert outcome.verdicts[1].improvement > 0.9
 
 
@@ -55,11 +50,11 @@ def test_a_log_of_steps_on_a_weak_supply_full_voltage_or_rest_will_do(
 ) -> None:
     table = tables[0].with_raw({"supply_mv": round(1000 * WEAK_V)})
     arm, user = (one.model_copy(update={"drive": Drive(supply=WEAK_V)}) for one in (hidden, white_box))
-    log = record(arm, multi_steps(), tmp_path / "steps.csv", table)
-    second = record(arm, human_reaches(7, 8.0), tmp_path / "second.csv", table, 3)
-    moving = np.abs(prepare(log, 1).velocity) > 0.2
-    assert np.mean(np.abs(log.voltage[moving]) > 0.99 * WEAK_V) > 0.4
-    assert np.mean(moving.any(axis=1)) < 0.5
+    log = record(arm, alone(multi_steps()), tmp_path / "steps.csv", table)
+    second = record(arm, alone(human_reaches(7, 8.0)), tmp_path / "second.csv", table, 3)
+    moving = np.abs(prepare(log, 1).velocity[:, 1]) > 0.2
+    assert np.mean(np.abs(log.voltage[moving, 1]) > 0.99 * WEAK_V) > 0.4
+    assert np.mean(moving) < 0.5
     outcome = identify([log], user, validate=[second], tables=[table])
     assert outcome.verdicts[1].improvement > 0.9
 
@@ -99,13 +94,13 @@ def test_a_long_gap_ends_a_stretch_and_no_window_crosses_it(recorded: Recorded) 
     "moment", ["global search", "choosing the model's order", "comparing with", "fitting the chosen"]
 )
 def test_ctrl_c_at_any_moment_keeps_the_best_model_so_far(
-    recorded: Recorded, white_box: ArmParameters, tables: list[ParameterTable], tmp_path: Path, moment: str
+    shoulder: Recorded, white_box: ArmParameters, tables: list[ParameterTable], tmp_path: Path, moment: str
 ) -> None:
     def interrupt(what: str, fraction: float) -> None:
         if what.startswith(moment):
             raise KeyboardInterrupt
 
-    outcome: Outcome = identify([only(rows(recorded.fit, slice(5000)), 1)], white_box, tables=tables, report=interrupt)
+    outcome: Outcome = identify([rows(shoulder.fit, slice(5000))], white_box, tables=tables, report=interrupt)
     assert not outcome.complete
     outcome.save(tmp_path / "model.toml")
     facts = load_arm(tmp_path / "model.toml").identification

@@ -26,13 +26,13 @@ PROGRAM = (".py", ".pyc", ".so", ".pyi", ".pth", ".json", ".dist-info")
 
 
 @pytest.mark.slow
-def test_only_the_logs_and_the_users_files_are_opened(recorded: Recorded, log_folder: Path, tmp_path: Path) -> None:
+def test_only_the_logs_and_the_users_files_are_opened(shoulder: Recorded, log_folder: Path, tmp_path: Path) -> None:
     arm, controller = tmp_path / "arm.toml", tmp_path / "controller.toml"
     source = Path(__file__).parents[2] / "host" / "src" / "greywhale" / "arm" / "data" / "white_box.toml"
     arm.write_text(source.read_text(encoding="utf-8"), encoding="utf-8")
     controller.write_text((TABLES / "before_tuning.toml").read_text(encoding="utf-8"), encoding="utf-8")
     model = tmp_path / "model.toml"
-    logs = [recorded.fit.name, "--validate", recorded.second.name]
+    logs = [shoulder.fit.name, "--validate", shoulder.second.name]
     options = ["--arm", str(arm), "--controller", str(controller), "--out", str(model), "--json"]
     done = subprocess.run(
         [sys.executable, "-c", WATCHED, "identify", *logs, *options], capture_output=True, text=True, check=True
@@ -41,7 +41,7 @@ def test_only_the_logs_and_the_users_files_are_opened(recorded: Recorded, log_fo
     assert watched["code"] == 0
     assert watched["bench"] == []
     assert result["log"][1]["improvement"] > 0.97
-    allowed = {recorded.fit.name, recorded.second.name, str(arm), str(controller)}
+    allowed = {shoulder.fit.name, shoulder.second.name, str(arm), str(controller)}
     read = {name for name in watched["opened"] if name.endswith((".toml", ".csv"))}
     assert read == allowed, "an arm or a log was read that the user did not name"
     here = str(tmp_path)
