@@ -50,7 +50,7 @@ def test_a_log_of_steps_on_a_weak_supply_full_voltage_or_rest_will_do(
 ) -> None:
     table = tables[0].with_raw({"supply_mv": round(1000 * WEAK_V)})
     arm, user = (one.model_copy(update={"drive": Drive(supply=WEAK_V)}) for one in (hidden, white_box))
-    log = record(arm, alone(multi_steps()), tmp_path / "steps.csv", table)
+    log = record(arm, alone(multi_steps([0.0, 1.0, -0.6], [1.0, 2.5, 2.5])), tmp_path / "steps.csv", table)
     second = record(arm, alone(human_reaches(7, 8.0)), tmp_path / "second.csv", table, 3)
     moving = np.abs(prepare(log, 1).velocity[:, 1]) > 0.2
     assert np.mean(np.abs(log.voltage[moving, 1]) > 0.99 * WEAK_V) > 0.4
