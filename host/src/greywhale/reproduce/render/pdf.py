@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import IO, Any
 from xml.sax.saxutils import escape
 
+from reportlab import rl_config
 from reportlab.lib import colors
 from reportlab.lib.pagesizes import A4
 from reportlab.lib.styles import ParagraphStyle
@@ -31,6 +32,8 @@ from greywhale.drawing.plotting import matplotlib
 from greywhale.formats.whole import write_whole
 from greywhale.reproduce.pages.document import Block, Chapter, Code, Document, Entry, Picture, Sheet
 from greywhale.reproduce.render.ranges import keep_ranges
+
+rl_config.useA85 = 0  # pictures as bytes: as text they are a quarter larger, and Python is slow to write it
 
 MARGIN = 16 * mm
 WIDTH = A4[0] - 2 * MARGIN
