@@ -109,10 +109,8 @@ def test_what_is_not_known_is_said_with_a_remedy(outcome: Outcome) -> None:
 
 
 @pytest.mark.slow
-def test_joints_that_did_not_move_keep_the_users_values(
-    shoulder: Recorded, white_box: ArmParameters, tables: list[ParameterTable]
-) -> None:
-    outcome = identify([shoulder.fit], white_box, tables=tables)
+def test_joints_that_did_not_move_keep_the_users_values(shoulder: Recorded, white_box: ArmParameters) -> None:
+    outcome = identify([shoulder.fit], white_box)
     for joint in (0, 2, 3):
         start = column("torque_per_volt", joint)
         np.testing.assert_array_equal(outcome.plant[start : start + 12], plant_row(white_box)[start : start + 12])

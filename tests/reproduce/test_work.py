@@ -17,7 +17,8 @@ def test_corrected_equations_neither_gain_energy_nor_move_otherwise() -> None:
 
 
 @pytest.mark.slow
-def test_four_times_the_inertia_changes_the_white_box_and_not_the_grey_one() -> None:
+def test_four_times_the_inertia_changes_the_white_box_and_not_the_grey_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(errata, "HOLD_S", 0.5)
     effect = errata.effect(0, ["E1"])
     assert effect["energy"] > 0.1
     assert effect["white_box"]["angle"] > 0.1
