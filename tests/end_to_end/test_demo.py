@@ -21,6 +21,7 @@ from greywhale.trajectory import Trajectory
 from greywhale_sim.words import lock_step
 from tests.strangers import plant, ran
 from tests.support.demo import in_this_process
+from tests.support.tuning import shorten
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -31,6 +32,7 @@ def test_the_demo_tells_its_story_and_proves_its_controllers_on_the_arm(
 ) -> None:
     """Of an arm with one joint, with a short check; the last recording is with what commissioning left on the board."""
     in_this_process(monkeypatch)
+    shorten(monkeypatch)
     monkeypatch.setattr(story, "PROVING_TRIALS", 1)
     monkeypatch.setattr(motions, "REACHES_S", 2.0)
     monkeypatch.setattr(motions, "HOLD_S", 0.6)

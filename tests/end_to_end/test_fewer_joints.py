@@ -18,6 +18,7 @@ from greywhale.files.leader import save_leader
 from greywhale.files.log import read_log
 from greywhale.files.model import arm_toml
 from greywhale.trajectory import human_reaches
+from tests.support.tuning import shorten
 from tools.bench.hands import SECOND_DEG, Hands, bench_of, mounted_anyhow, run_calibrate
 
 IDLE = slice(2, 4)
@@ -45,6 +46,7 @@ def test_two_joints_from_the_box_to_a_following_arm(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
+    shorten(monkeypatch)
     true = mounted_anyhow(11).model_copy(update={"joint": load_arm("two_joints").joint})
     with_two_joints("white_box", tmp_path / "white.toml")
     save_leader(tmp_path / "motion.csv", human_reaches(1, 6.0))
@@ -64,7 +66,7 @@ def test_two_joints_from_the_box_to_a_following_arm(
         ask(capsys, "replay", "motion.csv", "-o", "replayed.csv", *port)
         told = ask(
             capsys, "identify", "fit.csv", "--validate", "second.csv", "--arm", "mine.toml", "--controller",
-            "board.toml", "-o", "model.toml", "--pictures", "identified",
+            "board.toml", "-o", "model.toml",
         )  # fmt: skip
         assert {one["name"].partition(".")[0] for one in told["parameter"]} <= {"joint0", "joint1", "arm"}
         assert told["log"][1]["improvement"] > 0.9
