@@ -53,4 +53,4 @@ def step(checks: bool) -> None:
 
 
 def _stamp(requirements: Path) -> str:
-    return f"venv-{requirements.parent.name}"
+    return "venv-checks" if requirements == FOR_CHECKS else "venv-run"
