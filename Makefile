@@ -92,7 +92,7 @@ gates: $(READY)
 
 oracles: setup ## tests against heavy outside references (installs them first)
 	@python3 -m tools.oracles
-	$(PYTHON) -m pytest tests/oracles $(ARGS)
+	$(PYTEST) tests/oracles $(ARGS)
 
 bench: setup ## measure the figures of the design beside others; a table here, JSON in build/bench.json
 	@python3 -m tools.oracles

@@ -1,4 +1,5 @@
-"""Commissioning arms that the model does not know (MuJoCo's, with play at the potentiometers), through the serial port.
+"""Commissioning arms that the model does not know (MuJoCo's, with play at the potentiometers), on a bench in lock
+step.
 
 Judged on motions that a person leads and that the commissioning never sees. GREYWHALE_FOREIGN names other seeds.
 """
@@ -12,7 +13,6 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
-from unittest.mock import patch
 
 import numpy as np
 import numpy.typing as npt
@@ -21,13 +21,14 @@ from greywhale.commission import Options, commission
 from greywhale.commission.judge import MOST_UNREST
 from greywhale.commission.measures import unrest
 from greywhale.commission.outcome import Outcome
-from greywhale.demo import BenchProcess, record_motion
+from greywhale.demo import RunningBench, record_motion
 from greywhale.files.leader import save_leader
 from greywhale.firmware import TICK_S
 from greywhale.measure import evaluate
 from greywhale.study import Task
 from greywhale.trajectory import Trajectory
 from tools.bench.figure import Figure
+from tools.bench.foreign_arm import bench_of
 from tools.bench.study import repeat
 from tools.bench.tuning import motions
 
@@ -65,13 +66,8 @@ class Commissioned:
 
 
 def commissioned(seed: int, folder: Path, unseen: Mapping[str, Trajectory], **options: Any) -> Commissioned:
-    """Commission the arm of that seed through its serial port."""
-    # The bench is a process of its own, which looks for modules in no current folder.
-    paths = os.pathsep.join([str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])])
-    with (
-        patch.dict(os.environ, PYTHONPATH=paths),
-        BenchProcess(str(seed), "1", str(folder), module="tools.bench.foreign_arm") as bench,
-    ):
+    """Commission the arm of that seed on a bench in lock step."""
+    with bench_of(seed, folder) as bench:
         before = recorded(bench, folder, "before", unseen)
         started = time.monotonic()
         outcome = commission(Options(port=bench.port, out=folder / "commission", **options))
@@ -79,7 +75,7 @@ def commissioned(seed: int, folder: Path, unseen: Mapping[str, Trajectory], **op
         return Commissioned(before, recorded(bench, folder, "after", unseen), outcome, wall)
 
 
-def recorded(bench: BenchProcess, folder: Path, when: str, unseen: Mapping[str, Trajectory]) -> Run:
+def recorded(bench: RunningBench, folder: Path, when: str, unseen: Mapping[str, Trajectory]) -> Run:
     """Every motion with the controllers that the board has."""
     errors, rests = {}, {}
     for name, motion in unseen.items():

@@ -1,13 +1,7 @@
-"""Arms that greywhale's model does not know: MuJoCo moves them, and their potentiometers have play behind the joint.
-
-`python -m tools.bench.foreign_arm SEED ...` serves the simulated bench with such an arm, as `python -m greywhale_sim`
-serves it with the built-in one.
-"""
+"""Arms that greywhale's model does not know: MuJoCo moves them, and their potentiometers have play behind the joint."""
 
 from __future__ import annotations
 
-import json
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -21,6 +15,8 @@ from greywhale.arm.export import mjcf
 from greywhale.files.arm import load_arm
 from greywhale.files.model import arm_toml
 from greywhale.firmware import JOINTS
+from greywhale_sim.assemble import BenchOptions, build_bench
+from greywhale_sim.lockstep import LockStepBench
 
 Floats = npt.NDArray[np.float64]
 
@@ -113,16 +109,8 @@ def save(arm: ForeignArm, path: Path) -> Path:
     return path
 
 
-def main(arguments: list[str]) -> int:
-    """Serve a bench: SEED, PLAY (1 or 0) and the arm file, after the options of a bench process."""
-    from greywhale_sim.serve import ServeOptions, serve
-
-    seed, play, folder = int(arguments[-3]), arguments[-2] == "1", Path(arguments[-1])
-    arm = foreign_arm(seed, play)
-    options = ServeOptions(arm=save(arm, folder / "foreign.toml"), speed="max", control=True)
-    serve(options, lambda port: print(json.dumps({"port": port}), flush=True), MuJoCoPlant(arm))
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+def bench_of(seed: int, folder: Path) -> LockStepBench:
+    """A bench in lock step with that arm on it."""
+    arm = foreign_arm(seed)
+    options = BenchOptions(arm=save(arm, folder / "foreign.toml"))
+    return LockStepBench(options, build_bench(options, MuJoCoPlant(arm)))
