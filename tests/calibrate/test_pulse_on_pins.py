@@ -38,7 +38,7 @@ class Seen:
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0], ids=["right", "reversed"])
-@pytest.mark.parametrize("joint", range(4))
+@pytest.mark.parametrize("joint", [1, 3])  # the heaviest and the lightest
 def test_the_strongest_pulse_keeps_its_limits_on_the_pins(joint: int, sign: float) -> None:
     """The host asks for nothing after the point, as one that was killed."""
     host = LockStep(build_bench(BenchOptions()))
