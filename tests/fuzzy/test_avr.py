@@ -1,4 +1,4 @@
-"""The AVR firmware image on the simulated boards gives the bits of the native build: over 100,000 random vectors."""
+"""The AVR firmware image on the simulated boards gives the bits of the native build: 75,000 random vectors."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ def board(request: pytest.FixtureRequest) -> FuzzyOnBoard:
     return FuzzyOnBoard(request.param)
 
 
-# 300 controllers x 200 points on each of two boards, and 150 x 100 periods.
+# 150 controllers x 200 points on each of two boards, and 75 x 100 periods.
 @pytest.mark.slow
-@settings(max_examples=300, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
 def test_inference(cases: st.SearchStrategy[Case], points: Points, board: FuzzyOnBoard, data: st.DataObject) -> None:
     joint, period = data.draw(cases)
@@ -52,7 +52,7 @@ def test_inference(cases: st.SearchStrategy[Case], points: Points, board: FuzzyO
 
 
 @pytest.mark.slow
-@settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=75, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
 def test_whole_periods(
     cases: st.SearchStrategy[Case], points: Points, board: FuzzyOnBoard, data: st.DataObject

@@ -31,7 +31,7 @@ COLUMNS = {
 
 
 @pytest.mark.slow
-@settings(max_examples=400)
+@settings(max_examples=200)
 @given(data=st.data())
 def test_coefficients(cases: st.SearchStrategy[Case], data: st.DataObject) -> None:
     joint, period = data.draw(cases)
@@ -42,7 +42,7 @@ def test_coefficients(cases: st.SearchStrategy[Case], data: st.DataObject) -> No
 
 
 @pytest.mark.slow
-@settings(max_examples=400)
+@settings(max_examples=200)
 @given(data=st.data())
 def test_every_intermediate(cases: st.SearchStrategy[Case], points: Points, data: st.DataObject) -> None:
     joint, period = data.draw(cases)
@@ -63,7 +63,7 @@ def _walk(random: np.random.Generator, length: int) -> NDArray[np.int64]:
 
 
 @pytest.mark.slow
-@settings(max_examples=200)
+@settings(max_examples=100)
 @given(data=st.data())
 def test_whole_trajectories(cases: st.SearchStrategy[Case], data: st.DataObject) -> None:
     """Integral, saturation, anti-windup, the supply's limit, a change of settings and period on the way, a reset."""

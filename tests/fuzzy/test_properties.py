@@ -39,7 +39,7 @@ def _mirrored(joint: JointSettings) -> JointSettings:
 
 
 @pytest.mark.slow
-@settings(max_examples=200)
+@settings(max_examples=100)
 @given(data=st.data())
 def test_mirrored_sets_mirror_the_output(cases: st.SearchStrategy[Case], points: Points, data: st.DataObject) -> None:
     """Odd symmetry, also for symmetric sets, which are their own mirror image."""
@@ -51,7 +51,7 @@ def test_mirrored_sets_mirror_the_output(cases: st.SearchStrategy[Case], points:
 
 
 @pytest.mark.slow
-@settings(max_examples=200)
+@settings(max_examples=100)
 @given(data=st.data())
 def test_output_is_within_one_and_some_rule_fires(
     cases: st.SearchStrategy[Case], points: Points, data: st.DataObject
@@ -66,7 +66,7 @@ def test_output_is_within_one_and_some_rule_fires(
 
 
 @pytest.mark.slow
-@settings(max_examples=200)
+@settings(max_examples=100)
 @given(data=st.data())
 def test_no_error_no_output_and_no_change_of_sides(cases: st.SearchStrategy[Case], data: st.DataObject) -> None:
     joint, period = data.draw(cases)
@@ -146,7 +146,7 @@ def test_crisp_feet_leave_points_without_a_rule() -> None:
 
 
 @pytest.mark.slow
-@settings(max_examples=500)
+@settings(max_examples=250)
 @given(data=st.data())
 def test_host_and_firmware_refuse_the_same(data: st.DataObject) -> None:
     corner = st.one_of(

@@ -11,7 +11,7 @@ FIRMWARE = Path(__file__).parents[2] / "firmware"
 SOURCES = FIRMWARE / "lib/fuzzy_pdi/src"
 TESTS = FIRMWARE / "test/native"
 WARNINGS = ["-Wall", "-Wextra", "-Wconversion", "-Werror"]
-SANITIZERS = ["-fsanitize=address,undefined,float-cast-overflow", "-fno-sanitize-recover=all", "-O1", "-g"]
+SANITIZERS = ["-fsanitize=address,undefined,float-cast-overflow", "-fno-sanitize-recover=all", "-O0", "-g"]
 
 
 @pytest.mark.slow
