@@ -13,7 +13,7 @@ from tests.firmware.test_stop import enable, motors_on, status
 from tests.firmware.test_unrest import apply
 from tools.bench.bench_tick import CYCLES_PER_TICK, Bench
 
-PHASES = 200
+PHASES = 60
 TICK_AND_ITS_WORK_MS = 1.06  # the pin is read once in each tick, after the potentiometers
 PIN = {wiring.mcu: wiring.estop for wiring in BOARDS.values()}
 OPENING = 2

@@ -17,11 +17,11 @@ from tests.firmware.test_stop import motors_on, status
 from tests.simulated_board.stk500 import Version1, Version2
 from tools.bench.bench_tick import CYCLES_PER_TICK, Bench
 
-PHASES = 40
+PHASES = 20
 OFF_MS = 20.0
 BOOTED_MS = 1500  # through either bootloader
 SREG, INTERRUPTS_ON = 0x5F, 0x80
-RESETS = 3
+RESETS = 2
 
 
 @pytest.fixture
