@@ -93,19 +93,6 @@ def test_an_arm_that_gravity_moves_more_than_the_pulse_is_told_right(bench: Runn
     assert examine_motor(device, table, 1).sign == 1
 
 
-def test_swapped_motors_are_named(bench: RunningBench, device: Device) -> None:
-    bench.command("motor 2 3")
-    bench.command("motor 3 2")
-    with pytest.raises(UserError, match="the motor of joint 2 moved joint 3"):
-        examine_motor(device, read_parameters(device), 2)
-
-
-def test_a_dead_motor_is_named(bench: RunningBench, device: Device) -> None:
-    bench.command("motor 2 dead")
-    with pytest.raises(UserError, match="the motor of joint 2 did not move it with 5.2 V"):
-        examine_motor(device, read_parameters(device), 2)
-
-
 def sinking(seed: int) -> ArmParameters:
     """An arm whose gears do not hold it, with motors of uneven strength."""
     random = np.random.default_rng(seed)
