@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -33,7 +34,7 @@ from greywhale.reproduce.pages import report as reproduce_report
 from greywhale.reproduce.pages.document import Document
 from greywhale.reproduce.request import Request
 from greywhale.table import ParameterTable
-from greywhale.trajectory import Trajectory
+from greywhale.trajectory import Trajectory, human_reaches
 from greywhale.tune import tune
 from greywhale.tune.model import Model, load_model
 from greywhale_sim import serve as bench_serve
@@ -43,11 +44,11 @@ from tests.commission.simulated import SimulatedRig
 from tests.docs.running import Once, run
 from tests.support.demo import in_this_process
 from tests.tune.models import write_model
-from tools.bench.recordings import TABLES, random_arm, record_three, table_of
+from tools.bench.recordings import TABLES, random_arm, record, table_of
 from tools.docs.site import ROOT
 
 IMAGE = ROOT / "firmware" / ".pio" / "build" / "megaatmega2560"
-LOGS = ("fit", "log1", "log2", "log3", "log", "before", "after", "second")
+LOGS = ("log1", "log2", "log3", "log", "before", "after")
 
 
 @pytest.fixture(scope="module")
@@ -61,10 +62,12 @@ def bench() -> Iterator[LockStepBench]:
 def yours(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with what the pages call yours: arms, logs, a motion, tables, an image."""
     folder = tmp_path_factory.mktemp("yours")
-    recorded = record_three(random_arm(2), folder, seed=1, seconds=6.0)
+    for seed, name in enumerate(("fit", "second")):
+        reaches = human_reaches(seed, 6.0)
+        shoulder_alone = replace(reaches, angles=reaches.angles * (np.arange(4) == 1))
+        record(random_arm(2), shoulder_alone, folder / f"{name}.csv", table_of("before_tuning"), seed)
     for name in LOGS:
-        if not (folder / f"{name}.csv").exists():
-            shutil.copy(recorded.fit.name, folder / f"{name}.csv")
+        shutil.copy(folder / "fit.csv", folder / f"{name}.csv")
     (folder / "arm.toml").write_bytes(content_of("default"))
     (folder / "arm.urdf").write_text(urdf(load_arm("default")), encoding="utf-8")
     write_model(folder / "model.toml")
@@ -102,7 +105,7 @@ def fresh_board(bench: LockStepBench, yours: Path) -> None:
 
 @pytest.fixture(scope="session")
 def identified(yours: Path) -> Once:
-    """A model of six seconds of log."""
+    """A model of six seconds of log in which the shoulder alone moves."""
     fit, second = (read_log(yours / f"{name}.csv") for name in ("fit", "second"))
     return Once(lambda: identify([fit], load_arm("white_box"), validate=[second], tables=[table_of("before_tuning")]))
 
@@ -160,7 +163,7 @@ def once(
     demonstrated: Once,
 ) -> None:
     """The verbs around what was computed for all of them; `sim` ends when its port is there. `flash` greets the board
-    that has its firmware.
+    that has its firmware. A page's own bench is in this process.
     """
 
     def commission(options: Options, report: Any) -> Any:
@@ -184,6 +187,7 @@ def once(
     monkeypatch.setattr(identify_verb, "identify", lambda *logs, **options: identified())
     monkeypatch.setattr(tune_verb, "tune", lambda model, **options: tuned())
     monkeypatch.setattr(greywhale.commission, "commission", commission)
+    monkeypatch.setattr(greywhale.demo, "BenchProcess", lock_step)
     monkeypatch.setattr(greywhale.demo, "run", lambda options, report: demonstrated())
     monkeypatch.setattr(bench_serve, "serve", serve)
     monkeypatch.setattr(flash_verb, "flash", greet)

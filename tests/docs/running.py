@@ -30,7 +30,7 @@ from tools.docs.examples import Block, Command, split
 from tools.docs.site import ROOT
 
 SHORTER = {
-    "record": "--seconds 2",
+    "record": "--seconds 0.5",
     "record --excite": "--seconds 4 --budget 2",
     "info --watch": "--seconds 0.5",
     "doctor": "--seconds 0.5",

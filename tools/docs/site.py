@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import sys
 from pathlib import Path
 
@@ -13,6 +14,7 @@ SITE = ROOT / "build" / "site"
 
 def build(out: Path, builder: str = "html", theme: str = "") -> int:
     """Build the pages of docs/ into a folder; Sphinx's exit code. Another theme than the site's builds faster."""
+    gc.disable()  # trees of nodes live to the end; to look for dead ones takes a third of the build
     sys.path.insert(0, str(ROOT))  # settings and extension are modules of tools
     doctrees = ["-d", str(out.parent / f"{out.name}-doctrees")]
     other = ["-D", f"html_theme={theme}"] if theme else []
