@@ -13,6 +13,7 @@ from greywhale.reproduce.work.motions import MOTIONS
 from greywhale.trajectory import multi_steps, steps
 
 METHODS = ("gwo-woa", "gwo", "woa", "pso")
+BUDGET = 40
 
 
 _follow = on_the_bench.follow_as_paper
@@ -38,6 +39,9 @@ def shrink(patch: pytest.MonkeyPatch) -> None:
     patch.setattr(optimisers, "METHODS", METHODS)
     for name in ("pages.optimisers", "pages.findings"):
         patch.setattr(f"greywhale.reproduce.{name}.METHODS", METHODS)
+    for name in ("grey_box.BUDGET", "optimisers.BUDGET", "optimisers.IDENTIFYING"):
+        patch.setattr(f"greywhale.reproduce.work.{name}", BUDGET)
+    patch.setattr("greywhale.identify.paper.ITERATIONS", 5)
     patch.setattr(optimisers, "functions", lambda: ("sphere",))
     patch.setattr(errata, "cases", lambda: {"E14": ("E14",), "E1 to E8": ("E2",)})
     patch.setattr(errata, "HOLD_S", 0.2)
