@@ -85,9 +85,11 @@ def test_axes_have_units_and_titles_their_figures() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("size", [0.0008, 0.02, 0.4])
-@pytest.mark.parametrize("names", [("log",), ("before", "after tuning"), ("a/…/log", "bb/…/log", "c" * 30, "d")])
-def test_nothing_is_cut_off_overlaps_or_lacks_a_unit(size: float, names: tuple[str, ...]) -> None:
+@pytest.mark.parametrize(
+    ("names", "size"),
+    [(("log",), 0.4), (("before", "after tuning"), 0.02), (("a/…/log", "bb/…/log", "c" * 30, "d"), 0.0008)],
+)
+def test_nothing_is_cut_off_overlaps_or_lacks_a_unit(names: tuple[str, ...], size: float) -> None:
     # Reaches of a real log, and errors from those of a follower at rest to those of a step: the finer, the wider.
     time = np.arange(0, 20, 0.01)
     leader = np.column_stack([reach * np.sin(time + reach) - 0.1 for reach in (1.0, 0.65, 0.8, 1.2)])
