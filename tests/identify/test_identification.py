@@ -38,10 +38,11 @@ def test_model_predicts_other_logs_far_better_than_the_white_box(outcome: Outcom
 def test_search_can_go_on_from_a_model_of_the_same_arm(
     outcome: Outcome, shoulder: Recorded, white_box: ArmParameters, tables: list[ParameterTable], tmp_path: Path
 ) -> None:
-    """With another log of one joint; a third, which it has not seen, is predicted well."""
+    """With two short logs of one joint; a third, which it has not seen, is predicted well."""
     outcome.save(tmp_path / "model.toml")
     begin = load_arm(tmp_path / "model.toml")
-    more = identify([_first(shoulder.fit, 6.0)], white_box, validate=[shoulder.second], tables=tables, begin=begin)
+    logs = [_first(shoulder.fit, 5.0), _first(shoulder.changed, 5.0)]
+    more = identify(logs, white_box, validate=[shoulder.second], tables=tables, begin=begin)
     orders = [order for order, _ in more.found.orders]
     assert orders[:3] == ["motors", "Coulomb friction", outcome.found.order], "nothing in between is tried again"
     role_of_second = {verdict.role: verdict for verdict in more.verdicts}[SECOND]
