@@ -21,14 +21,13 @@ from greywhale.loop import default_controller
 from greywhale.protocol import schema
 from greywhale.tune import tune
 from tests.board.fake_board import FakeBoard
-from tests.support.tuning import shorten
+from tests.support.tuning import judge_nothing, shorten
 from tests.tune.models import log_facts, write_model
 
 Captured = pytest.CaptureFixture[str]
 CHANGING = (schema.ParamSetRequest, schema.ParamApplyRequest, schema.ParamSaveRequest)
 # Small, but the whole way: a search, its margins, its held-out motions.
 QUICK = ("--method", "random", "--budget", "4", "--samples", "1")
-DEADLINE_S = 120.0
 ROOT = Path(__file__).parents[2]
 
 
@@ -148,11 +147,13 @@ def test_files_that_will_not_do_are_named_before_any_work(
 
 
 @pytest.mark.slow
-def test_json_file_and_upload_speak_of_the_same_controllers_and_pictures_are_drawn(
-    model: Path, capsys: Captured
+def test_json_file_and_upload_speak_of_the_same_controllers_within_their_bounds_and_pictures_are_drawn(
+    no_floors: None, model: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
 ) -> None:
+    judge_nothing(monkeypatch)
     out, folder = model.parent / "controller.toml", model.parent / "pictures"
-    assert entry.run(["tune", str(model), "--out", str(out), *QUICK, "--pictures", str(folder), "--json"]) == 0
+    more = ("--bounds", "Ku=3..5", "--bounds", "ze_c=0.02..0.03", "--pictures", str(folder), "--json")
+    assert entry.run(["tune", str(model), "--out", str(out), *QUICK, *more]) == 0
     said = capsys.readouterr()
     assert said.out.count("\n") == 1
     answer = json.loads(said.out)
@@ -161,20 +162,21 @@ def test_json_file_and_upload_speak_of_the_same_controllers_and_pictures_are_dra
     assert pictures
     assert all(path.parent == folder and path.read_bytes().startswith(b"\x89PNG") for path in pictures)
     assert sorted(path.name for path in model.parent.iterdir()) == ["controller.toml", "model.toml", "pictures"]
+    assert_bounds_hold_even_for_what_the_board_ran_before(answer)
+    assert_the_file_tells_the_same(answer, out)
+
+
+def assert_the_file_tells_the_same(answer: dict[str, Any], out: Path) -> None:
     written = controller.load(out)
     told = {name: schema.PARAMETER_BY_NAME[name].to_raw_as_given(value) for name, value in answer["after"].items()}
     assert len(told) == 48
     assert told.items() <= written.raw_values().items()
-    assert written.table().crc == int(str((written.tuning or {})["parameter_crc"]), 16)
     assert written.tuning is not None
+    assert written.table().crc == int(str(written.tuning["parameter_crc"]), 16)
     assert (written.tuning["status"], written.tuning["method"]) == ("complete", "random")
 
 
-@pytest.mark.slow
-def test_bounds_hold_even_for_what_the_board_ran_before(no_floors: None, model: Path, capsys: Captured) -> None:
-    limits = ("--bounds", "Ku=3..5", "--bounds", "ze_c=0.02..0.03")
-    assert entry.run(["tune", str(model), "-o", str(model.parent / "c.toml"), *QUICK, *limits, "--json"]) == 0
-    answer = json.loads(capsys.readouterr().out)
+def assert_bounds_hold_even_for_what_the_board_ran_before(answer: dict[str, Any]) -> None:
     before, after = (
         {key: [answer[when][f"joint{joint}.{key}"] for joint in range(4)] for key in ("ku_mv", "ze_c")}
         for when in ("before", "after")
@@ -295,6 +297,7 @@ def interrupt_after(monkeypatch: pytest.MonkeyPatch, batches: int) -> None:
 def test_interrupted_and_resumed_is_the_same_file_as_uninterrupted(
     no_floors: None, model: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
 ) -> None:
+    judge_nothing(monkeypatch)
     folder = model.parent
     monkeypatch.chdir(folder)
     out, journal = folder / "controller.toml", folder / "controller.toml.journal"

@@ -1,8 +1,9 @@
-"""Tunings in little time: what is possible is worked out once for all tests, and the last judgement is short."""
+"""Tunings in little time: short motions, what is possible is worked out once for all tests, a short last judgement."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from greywhale.tune import default
 from greywhale.tune.judge import held_out
 from greywhale.tune.judge.margins import REST_S
 from greywhale.tune.possible import scale_of
+from greywhale.tune.search import training
 from greywhale.tune.search.objective import Scale
 from greywhale.tune.search.training import Drill
 
@@ -30,6 +32,15 @@ def shorten(patch: pytest.MonkeyPatch) -> None:
             _known[key] = scale_of(drills, plants, before, threads)
         return _known[key]
 
+    patch.setattr(training, "moves", partial(training.moves, hold_s=0.6))
+    patch.setattr(training, "HUMAN_S", 5.0)
+    patch.setattr(training, "SLOW_S", 4.0)
     patch.setattr(default, "scale_of", shared)
     patch.setattr(default, "REST_LONG_S", REST_S)
     patch.setattr(held_out, "human_reaches", lambda seed, seconds: human_reaches(seed, 5.0))
+
+
+def judge_nothing(patch: pytest.MonkeyPatch) -> None:
+    """For tests of what is chosen: nothing is said of its margins and of motions on which nothing was tuned."""
+    patch.setattr(default.Margins, "check", lambda margins, controllers: ())
+    patch.setattr(default, "judge_held_out", lambda *arguments: ())
