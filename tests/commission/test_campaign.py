@@ -25,6 +25,7 @@ from greywhale.table import ParameterTable
 from greywhale.trajectory import Trajectory, multi_steps
 from greywhale.tune.model import Model, load_model
 from tests.commission.simulated import SimulatedRig, options_in
+from tests.support.tuning import judge_nothing, shorten
 from tests.tune.models import write_model
 
 Make = Callable[..., Options]
@@ -88,11 +89,12 @@ def test_the_board_ends_with_what_passed_on_the_arm(whole: Whole) -> None:
 def test_interrupted_anywhere_the_board_keeps_what_it_had_and_resuming_ends_the_same(
     rig: SimulatedRig, options: Make, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """At the first motion, at either recording before, at either trial of the round, and at the confirmation."""
+    """At the first motion, at a recording before, at a trial of the round, and at the confirmation."""
     monkeypatch.setattr(Outcome, "predicted", lambda outcome, trial, round_: trial.measured)  # what follows from trials
     whole = commission(options(trials=2))
     told, plays, before = whole.as_dict(), len(rig.played), whole.trials.table
-    for stop in range(plays):
+    assert plays == 6, "the first motion, two recordings before, two trials, and the confirmation"
+    for stop in (0, 1, 3, 5):
         rig.stored = rig.before = before
         rig.played.clear()
 
@@ -130,6 +132,8 @@ def test_a_good_joint_is_varied_along_with_the_others_but_gets_no_trial_of_its_o
 @pytest.mark.slow
 def test_an_interrupted_tuning_goes_on(rig: SimulatedRig, options: Make, monkeypatch: pytest.MonkeyPatch) -> None:
     """With the real search, over the model's own plant alone."""
+    shorten(monkeypatch)
+    judge_nothing(monkeypatch)
 
     def read(path: Path, seed: int, params: Path) -> Model:
         return load_model(path, samples=1, seed=seed, force=True, params=params)
@@ -249,7 +253,6 @@ def test_of_an_arm_with_two_joints_those_are_tried_and_the_others_keep_what_they
     told = facts(outcome)
     assert told["joints"] == ["0 base yaw", "1 shoulder pitch"]
     assert len(told["before"]["rows"][0]["cells"]) == 2
-    save_page(outcome, tmp_path / "report.html")
 
 
 def test_an_arm_file_of_other_joints_is_refused(tmp_path: Path, rig: SimulatedRig, options: Make) -> None:

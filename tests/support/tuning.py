@@ -11,7 +11,7 @@ import pytest
 from greywhale.trajectory import human_reaches
 from greywhale.tune import default
 from greywhale.tune.judge import held_out
-from greywhale.tune.judge.margins import REST_S
+from greywhale.tune.judge.margins import REST_S, Margins
 from greywhale.tune.possible import scale_of
 from greywhale.tune.search import training
 from greywhale.tune.search.objective import Scale
@@ -42,5 +42,5 @@ def shorten(patch: pytest.MonkeyPatch) -> None:
 
 def judge_nothing(patch: pytest.MonkeyPatch) -> None:
     """For tests of what is chosen: nothing is said of its margins and of motions on which nothing was tuned."""
-    patch.setattr(default.Margins, "check", lambda margins, controllers: ())
+    patch.setattr(Margins, "check", lambda margins, controllers: ())
     patch.setattr(default, "judge_held_out", lambda *arguments: ())
