@@ -77,7 +77,6 @@ def test_steps_of_a_slice_follow_the_single_run_tick_by_tick() -> None:
 # Largest error of the total mean squared error against steps of 25 us: median, nine of ten candidates.
 BOUNDS = {
     ("grey_box", 2.0): {4: (0.002, 0.01), 2: (0.002, 0.01), 1: (0.004, 0.02)},
-    ("white_box", 0.4): {4: (0.01, 0.05), 2: (0.01, 0.07), 1: (0.015, 0.1)},
     ("default", 0.4): {4: (0.01, 0.06), 2: (0.015, 0.1), 1: (0.02, 0.16)},
 }
 

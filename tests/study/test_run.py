@@ -223,8 +223,7 @@ def begin(folder: Path, count: int) -> subprocess.Popen[bytes]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
-@pytest.mark.parametrize("count", [1, 2])
+@pytest.mark.parametrize(("number", "count"), [(signal.SIGINT, 1), (signal.SIGINT, 2), (signal.SIGKILL, 2)])
 def test_an_interrupted_study_keeps_what_is_done_and_goes_on(
     tmp_path: Path, number: signal.Signals, count: int
 ) -> None:
