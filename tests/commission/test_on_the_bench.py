@@ -106,7 +106,7 @@ def test_a_line_lost_in_the_middle_leaves_motors_off_and_the_controllers_from_be
     bench: LockStepBench, tmp_path: Path
 ) -> None:
     def cut(what: str, fraction: float) -> None:
-        if what == "recording" and fraction > 0.2:
+        if what == "recording" and fraction > 0.02:
             bench.command("line lose 1")
 
     trial = BEFORE.with_raw({"joint0.kp": 50000})
@@ -124,7 +124,7 @@ def send_in_the_check(number: int, patch: pytest.MonkeyPatch) -> None:
     def record_led(device: Device, path: Path, motion: Trajectory, *, progress: Progress, **options: Any) -> Recording:
         def told(what: str, fraction: float) -> None:
             progress(what, fraction)
-            if path.name == "before.csv" and what == "recording" and fraction > 0.1:
+            if path.name == "before.csv" and what == "recording" and fraction > 0.02:
                 signal.raise_signal(number)
 
         return record.record_led(device, path, motion, progress=told, **options)

@@ -221,7 +221,7 @@ def test_a_tuning_gets_all_its_pictures_and_an_unfinished_one_those_there_are(tm
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("joints", [(0, 1), (2,), (0, 1, 3)])
+@pytest.mark.parametrize("joints", [(2,), (0, 1, 3)])
 def test_only_joints_in_use_have_a_panel(joints: tuple[int, ...]) -> None:
     costs = [(np.arange(10, 310, 10), 1.0 / np.arange(10, 310, 10))] * 4
     with style():

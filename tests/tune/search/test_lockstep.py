@@ -69,7 +69,7 @@ def test_turns_leave_the_others_at_their_best() -> None:
 @pytest.mark.slow
 def test_restarts_with_other_packs_keep_the_joints_apart() -> None:
     """CMA-ES doubles its pack when it has converged, at another time on every joint."""
-    found, hills = run("cma-es", budget=3000)
+    found, hills = run("cma-es", budget=2000)
     sizes = {len(rows) for rows in hills.rows}
     assert len(sizes) > 2, "no joint restarted"
     assert (found.cost < 1e-3).all()
