@@ -142,7 +142,7 @@ def arms(draw: st.DrawFn) -> ArmParameters:
     return toml_file.check(data, ArmParameters, "drawn")
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(
     parameters=arms(),
     seed=st.integers(0, 2**32),

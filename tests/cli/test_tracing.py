@@ -113,7 +113,7 @@ def test_control_characters_reach_no_terminal(capsys: Captured) -> None:
         ("greywhale com", ["commission", "compare"]),
         ("greywhale params set joint0.k", ["joint0.kp=", "joint0.kd=", "joint0.ki=", "joint0.ku_mv="]),
         ("greywhale params get supply", ["supply_mv"]),
-        ("greywhale identify --arm gre", ["grey_box"]),
+        ("greywhale commission --arm gre", ["grey_box"]),
         ("greywhale upload bef", ["before_tuning"]),
         ("greywhale record --ena", ["--enable"]),
     ],
