@@ -183,9 +183,13 @@ def _begin(leader: Floats, check: Check) -> float:
     coarse, fine, near, every = 20, 2, 30, 8  # ticks
     latest = min(round(LATEST_BEGIN_S / TICK_S), len(leader)) + coarse
     path = check.motion.at(TICK_S * np.arange(-latest - near, len(leader), dtype=np.float64))
+    paths = [np.ascontiguousarray(path[first::every]) for first in range(every)]
+    led = np.ascontiguousarray(leader[::every])
 
     def apart(delay: int) -> float:
-        return float(np.mean((path[latest + near - delay : len(path) - delay : every] - leader[::every]) ** 2))
+        turn, first = divmod(latest + near - delay, every)
+        gap = paths[first][turn : turn + len(led)] - led
+        return float(np.mean(np.square(gap, out=gap)))
 
     best = min(range(0, latest, coarse), key=apart)
     return TICK_S * min(range(max(best - near, 0), best + near + 1, fine), key=apart)
