@@ -23,10 +23,15 @@ def test_who_has_locked_the_port_is_named_and_not_the_bench_that_made_it() -> No
 def test_who_has_it_open_without_a_lock_is_named() -> None:
     master, slave = os.openpty()
     port = os.ttyname(slave)
-    with subprocess.Popen(["cat"], stdin=slave) as process:
-        os.close(slave)
-        assert holder_of(port) == f"process {process.pid} (cat)"
-        os.close(master)
+    with subprocess.Popen(["cat"], stdin=slave, stdout=subprocess.PIPE) as process:
+        try:
+            os.close(slave)
+            os.write(master, b"there\n")
+            assert process.stdout is not None
+            assert process.stdout.readline() == b"there\n"  # it runs: the system knows its command by now
+            assert holder_of(port) == f"process {process.pid} (cat)"
+        finally:
+            os.close(master)
 
 
 def test_where_the_system_tells_nothing_nobody_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
