@@ -11,7 +11,7 @@ TIDY := $(PORTABLE:%=build/tidy/%.ok)
 FIRMWARE_SOURCES := $(shell find firmware/lib -name '*.h' -o -name '*.inc')
 FIRMWARE_ROOMS := $(patsubst %,-Ifirmware/lib/%/src,$(notdir $(wildcard firmware/lib/*)))
 
-CXX_FILES := $(shell find firmware/lib firmware/src firmware/test host/native sim tests tools -name '*.cpp' -o -name '*.h')
+CXX_FILES := $(shell find firmware/lib firmware/src firmware/test host/native sim studies tests tools -name '*.cpp' -o -name '*.h')
 
 # Parts of the targets below, the longest first. They run side by side on all cores, and what one says stays together.
 LINT := mypy clang-tidy cppcheck-host cppcheck-firmware ruff ruff-format clang-format generated
@@ -21,7 +21,7 @@ SIDE_BY_SIDE := $(MAKE) READY= --no-print-directory --jobs=$(shell nproc) --outp
 PYTEST := $(PYTHON) -m pytest -n auto
 
 .DEFAULT_GOAL := help
-.PHONY: help setup ready build firmware demo report check test lint oracles bench campaign docs dist format lock hooks clean $(LINT) $(UNIT_TESTS) $(IMAGES)
+.PHONY: help setup ready build firmware demo report check test lint oracles benchmarks attack docs dist format lock hooks clean $(LINT) $(UNIT_TESTS) $(IMAGES)
 
 help: ## list the targets
 	@sed -n 's/^\([a-z]*\):[^#]*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12
@@ -70,7 +70,7 @@ cppcheck-firmware: $(READY)
 	$(CPPCHECK) --std=c++14 '-DISR(vector,...)=void vector()' firmware/lib firmware/src
 
 cppcheck-host: $(READY)
-	$(CPPCHECK) --std=c++17 --suppress=assignBoolToPointer:sim/board/binding.cpp sim host/native tools/studies
+	$(CPPCHECK) --std=c++17 --suppress=assignBoolToPointer:sim/board/binding.cpp sim host/native studies
 
 clang-tidy: $(TIDY)
 
@@ -81,29 +81,29 @@ build/tidy/%.ok: % $(FIRMWARE_SOURCES) .clang-tidy Makefile | $(READY)
 	@touch $@
 
 generated: $(READY)
-	$(PYTHON) -m tools.generate_link --check
+	$(PYTHON) -m tools.generate.link --check
 
 firmware-tests-native firmware-tests-sim: firmware-tests-%: $(READY)
 	$(PYTHON) -m tools.firmware_tests $*
 
 gates: $(READY)
-	@$(PYTHON) -m tools.firmware_gate
+	@$(PYTHON) -m tools.gates.size_limits
 	@$(PYTHON) -m tools.gates
 
 oracles: setup ## tests against heavy outside references (installs them first)
 	@python3 -m tools.oracles
 	$(PYTEST) tests/oracles $(ARGS)
 
-bench: setup ## measure the figures of the design beside others; a table here, JSON in build/bench.json
+benchmarks: setup ## measure the figures of the design beside others; a table here, JSON in build/benchmarks.json
 	@python3 -m tools.oracles
-	@$(PYTHON) -m tools.bench $(ARGS)
+	@$(PYTHON) -m tools.benchmarks $(ARGS)
 
-campaign: setup firmware ## attack everything at full size and write docs/reliability.md; goes on where it stopped
-	@$(PYTHON) -m tools.campaign --publish $(ARGS)
+attack: setup firmware ## attack everything at full size and write docs/reliability.md; goes on where it stopped
+	@$(PYTHON) -m tools.attack --publish $(ARGS)
 
 docs: setup ## write the generated files again (link schema, reference page, version, schemas), and build the site in build/site
-	$(PYTHON) -m tools.generate_link
-	$(PYTHON) -m tools.version
+	$(PYTHON) -m tools.generate.link
+	$(PYTHON) -m tools.generate.version
 	$(PYTHON) -m tools.docs
 
 dist: setup ## build source distributions and wheels of both packages for this machine, in build/dist
@@ -120,4 +120,4 @@ hooks: setup ## let git run `make lint` before each commit (pre-commit uninstall
 	pre-commit install
 
 clean: ## remove everything that was built; .venv stays
-	rm -rf build firmware/.pio host/src/greywhale/_native.pyi sim/bench/greywhale_sim/_board.pyi tools/studies/one_joint/native/one_joint_native.pyi
+	rm -rf build firmware/.pio host/src/greywhale/_native.pyi sim/bench/greywhale_sim/_board.pyi studies/one_joint/native/one_joint_native.pyi

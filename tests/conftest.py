@@ -12,7 +12,7 @@ import pytest
 from hypothesis import settings
 from xdist.scheduler import LoadScopeScheduling
 
-from greywhale.runtime import VARIABLE
+from greywhale.base.runtime import VARIABLE
 
 # What a test finds depends on the code alone: neither on chance nor on the load of the machine.
 settings.register_profile("suite", deadline=None, derandomize=True)
@@ -50,8 +50,8 @@ def _temporary_folder_of_our_own(tmp_path_factory: pytest.TempPathFactory) -> It
 
 # Workers begin with these rooms, in this order, so that they end at about the same time.
 LONGEST = (
-    *("end_to_end", "docs", "identify", "calibrate", "tune", "commission"),
-    *("campaign", "cli", "reproduce", "fuzzy", "study"),
+    *("end_to_end", "docs", "identify", "board", "tune", "commission"),
+    *("attack", "cli", "reproduce", "fuzzy", "base"),
 )
 
 

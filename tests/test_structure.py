@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator, Mapping
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
@@ -10,38 +11,13 @@ from textwrap import dedent
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[1]
+from tools import ROOT
+
 SOURCE = ROOT / "host" / "src"
-# What each room may import of ours, beside itself. A room that is not named here may import any.
-ALLOWED = {
-    "errors": set(),
-    "processes": set(),
-    "formats": {"errors"},
-    "runtime": {"errors"},
-    "protocol": {"errors", "runtime"},
-    "firmware": {"protocol"},
-    "joints": {"errors", "firmware"},
-    "table": {"errors", "firmware", "joints", "protocol"},
-    "trajectory": {"firmware"},
-    "arm": {"errors", "firmware", "formats", "joints"},
-    "files": {"arm", "errors", "firmware", "formats", "joints", "protocol", "table", "trajectory"},
-    "board": {
-        "errors",
-        "files",
-        "firmware",
-        "formats",
-        "joints",
-        "processes",
-        "protocol",
-        "runtime",
-        "table",
-        "trajectory",
-    },
-    "loop": {"arm", "errors", "files", "firmware", "joints", "protocol", "table", "trajectory"},
-    "study": {"errors", "formats", "processes"},
-    "drawing": {"arm", "errors", "firmware", "formats"},
-    "optimise": {"drawing", "errors", "formats", "study"},
-}
+# The rooms of the package in the order in which they stand on each other: each imports only rooms before it.
+ROOMS = (
+    "base protocol arm files fuzzy motion simulate board pictures optimise identify tune commission reproduce cli"
+).split()
 # Extension modules whose names begin with an underscore. Both are rooms of their own with public classes and functions.
 EXTENSIONS = {"_native", "_board"}
 
@@ -109,15 +85,25 @@ def test_no_folder_imports_in_a_circle(source: str) -> None:
     assert circle(rooms) == []
 
 
-def test_lower_rooms_import_only_what_lies_below() -> None:
-    edges = graph(SOURCE)
-    for name, targets in edges.items():
+def test_a_room_imports_only_rooms_below_it() -> None:
+    """Beside these rooms there are only the package itself, its entry and the extension."""
+    for name, targets in graph(SOURCE).items():
         room, *_ = (*name.split(".")[1:], "")
-        allowed = ALLOWED.get(room)
-        if allowed is not None:
-            beyond = {target for target in targets if target.split(".")[1] not in {*allowed, room}}
+        if room not in {"", "__main__"}:
+            below = {"_native", *ROOMS[: ROOMS.index(room) + 1]}
+            beyond = {target for target in targets if target.split(".")[1] not in below}
             assert not beyond, f"{name} imports {', '.join(sorted(beyond))}"
-    assert set(ALLOWED) <= {name.split(".")[1] for name in edges if "." in name}
+
+
+@pytest.mark.parametrize(
+    ("folder", "forbidden"), [("tools", "tests"), ("studies", "tests"), ("tests", "tools.benchmarks")]
+)
+def test_what_is_not_installed_points_one_way(folder: str, forbidden: str) -> None:
+    """Tests stand on tools, and nothing stands on tests or on benchmarks."""
+    sources = {path: path.read_text(encoding="utf-8") for path in (ROOT / folder).rglob("*.py")}
+    assert [
+        str(path) for path, text in sources.items() if re.search(rf"^ *(from|import) {forbidden}\b", text, re.M)
+    ] == []
 
 
 def test_a_circle_would_be_found(tmp_path: Path) -> None:
@@ -134,18 +120,18 @@ def test_a_circle_would_be_found(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("word", "owner"),
     [
-        ("_native.ClosedLoop", "greywhale/loop/closed_loop.py"),
-        ("_native.leader_readings", "greywhale/loop/closed_loop.py"),
-        ("_native.simulate_ideal", "greywhale/loop/ideal.py"),
+        ("_native.ClosedLoop", "greywhale/simulate/closed_loop.py"),
+        ("_native.leader_readings", "greywhale/simulate/closed_loop.py"),
+        ("_native.simulate_ideal", "greywhale/simulate/ideal.py"),
         ("_native.simulate_windows", "greywhale/identify/windows.py"),
         ("_native.plant_row", "greywhale/arm/plants.py"),
         ("PARAMETERS[", "greywhale/board/upload.py greywhale/board/refusal.py"),
-        ("os.replace(", "greywhale/formats/draft.py"),
-        ("os.fsync(", "greywhale/formats/draft.py"),
+        ("os.replace(", "greywhale/base/formats/draft.py"),
+        ("os.fsync(", "greywhale/base/formats/draft.py"),
         ("serial.Serial(", "greywhale/protocol/transport.py"),
-        ("subprocess.Popen(", "greywhale/processes.py greywhale/board/flash/guard.py"),
-        ("get_context(", "greywhale/study/local.py"),
-        ("matplotlib.", "greywhale/drawing/plotting.py greywhale/drawing/page.py greywhale/reproduce/render/pdf.py"),
+        ("subprocess.Popen(", "greywhale/base/processes.py greywhale/board/flash/guard.py"),
+        ("get_context(", "greywhale/base/study/local.py"),
+        ("matplotlib.", "greywhale/pictures/plotting.py greywhale/pictures/page.py greywhale/reproduce/render/pdf.py"),
     ],
 )
 def test_each_thing_has_its_owner(word: str, owner: str) -> None:

@@ -13,8 +13,9 @@ import sys
 import tempfile
 from pathlib import Path
 
+from tools import ROOT
 from tools.setup import venv
-from tools.setup.console import ROOT, SetupError, run, say
+from tools.setup.console import SetupError, run, say
 
 PACKAGES = {"greywhale": ROOT, "greywhale_sim": ROOT / "sim"}
 OUT = ROOT / "build" / "dist"

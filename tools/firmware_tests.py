@@ -7,8 +7,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+from tools import ROOT
 from tools.setup import platformio, venv
-from tools.setup.console import ROOT
 
 FOLDERS = {"native": "native", "sim": "target"}  # of firmware/test
 

@@ -15,7 +15,8 @@ import tomllib
 from collections.abc import Sequence
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
+from tools import ROOT
+
 OWN = {"greywhale", "greywhale-sim"}
 RUN = ROOT / "requirements.txt"
 RUN_HEADER = """\

@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 import sys
 
+from tools import ROOT
 from tools.setup import platformio, venv
-from tools.setup.console import ROOT
 
 
 def main() -> None:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable
-from pathlib import Path
 
-ROOT = Path(__file__).parents[1]
+from tools import ROOT
 
 
 def digest_of(names: Iterable[str]) -> str:

@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 from greywhale.arm import ArmParameters
+from greywhale.base.formats import toml_file
 from greywhale.files.arm import load_arm
-from greywhale.formats import toml_file
 
 Change = Callable[..., ArmParameters]
 

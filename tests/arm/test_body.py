@@ -8,7 +8,7 @@ import pytest
 from greywhale import _native
 from greywhale.arm.body import Body
 from greywhale.files.arm import arm_names, load_arm
-from greywhale.loop import plant_row
+from greywhale.simulate import plant_row
 
 
 @pytest.mark.parametrize("name", sorted(arm_names()))

@@ -15,12 +15,12 @@ from greywhale import _native
 from greywhale.arm import Arm, ArmParameters
 from greywhale.arm.export import JOINT_IDS, LINK_NAMES, mjcf, urdf
 from greywhale.arm.plants import check_plants, columns, plant_row, rigid_joints
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 from greywhale.files.arm import load_arm
 from greywhale.files.model import arm_toml
-from greywhale.joints import ALL, unused
-from greywhale.loop import Experiment
-from greywhale.trajectory import human_reaches
+from greywhale.motion import human_reaches
+from greywhale.protocol.joints import ALL, unused
+from greywhale.simulate import Experiment
 from greywhale.tune.judge.floor import saturation_floor
 
 SETS = [used for size in (1, 2, 3) for used in combinations(ALL, size)]

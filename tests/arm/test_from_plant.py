@@ -10,8 +10,8 @@ import pytest
 from greywhale.arm import ArmParameters
 from greywhale.arm.from_plant import arm_of, known_before
 from greywhale.files.arm import load_arm
-from greywhale.firmware import JOINTS
-from greywhale.loop import plant_row
+from greywhale.protocol.firmware import JOINTS
+from greywhale.simulate import plant_row
 
 
 def identified(arm: ArmParameters) -> ArmParameters:

@@ -12,8 +12,8 @@ import pytest
 from greywhale.arm import Arm
 from greywhale.arm.export import urdf
 from greywhale.arm.from_urdf import import_urdf
+from greywhale.base.errors import UserError
 from greywhale.cli.entry import run
-from greywhale.errors import UserError
 from greywhale.files.arm import default_arm, load_arm
 from tests.arm.reframed import reframed
 

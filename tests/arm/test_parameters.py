@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from greywhale.arm import Arm
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 from greywhale.files.arm import arm_names, default_arm, load_arm
 
 DEFAULT = resources.files("greywhale.arm").joinpath("data", "default.toml").read_text(encoding="utf-8")

@@ -7,7 +7,7 @@ import pytest
 
 from greywhale.arm import Arm, ArmParameters
 from greywhale.arm.printed import BODY_ERRATA, ERRATA, PrintedBody, motor_equation
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 from greywhale.files.arm import load_arm
 
 

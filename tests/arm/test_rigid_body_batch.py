@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from greywhale import _native
 from greywhale.arm import Arm
 from greywhale.arm.plants import plant_row
+from greywhale.base.types import Floats
 from greywhale.files.arm import load_arm
 
-Floats = NDArray[np.float64]
 BODY = 11
 ARMS = ["default", "white_box", "grey_box"]
 

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from greywhale.arm import Arm, ArmParameters
+from greywhale.base.formats import toml_file
 from greywhale.files.arm import default_arm, load_arm
-from greywhale.formats import toml_file
 
 Vector = NDArray[np.float64]
 

@@ -8,14 +8,13 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from scipy.integrate import solve_ivp
 
 from greywhale.arm import Arm, PotentiometerBank, Potentiometers
 from greywhale.arm.parameters import Potentiometer
+from greywhale.base.types import Floats
 
-Floats = npt.NDArray[np.float64]
 SLICE_S = 0.25e-3
 ROLL = 3  # with the arm level, roll moves by itself: no gravity, no other joint
 MOTOR = {"inertia": 0.01, "resistance": 2.0, "torque_constant": 0.5, "viscous": 0.02, "gear_ratio": 1.0}

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
-from greywhale.trajectory import Trajectory
+from greywhale.files.trajectory import Trajectory
 from greywhale_sim.bench import SLICE_S, Bench
 from greywhale_sim.leader import LeaderPlayer
 from greywhale_sim.wiring import MEGA

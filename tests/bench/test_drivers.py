@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from greywhale.firmware import TICK_S
 from greywhale.protocol import schema
+from greywhale.protocol.firmware import TICK_S
 from greywhale_sim.assemble import BUILDS, BenchOptions, build_bench
 from greywhale_sim.drivers import CHIPS, ELECTRICAL_S, OPEN, PWM_S, SHORTED, Bridge, Pins, mean_volts
 from greywhale_sim.symbols import read_symbols

@@ -12,8 +12,8 @@ from greywhale.board.device import Device
 from greywhale.board.record import record
 from greywhale.board.upload import read_parameters
 from greywhale.files.log import read_log
-from greywhale.table import ParameterTable
-from greywhale.trajectory import Trajectory
+from greywhale.files.trajectory import Trajectory
+from greywhale.protocol.table import ParameterTable
 from greywhale_sim import mistakes, serve
 from greywhale_sim.assemble import BenchOptions, build_bench
 from greywhale_sim.bench import SLICE_S, Bench

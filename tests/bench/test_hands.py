@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 from greywhale_sim import commands
 from greywhale_sim.bench import Bench
 from greywhale_sim.hands import ENDS_DEG, HANGING_DEG, HELP

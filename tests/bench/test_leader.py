@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from greywhale.errors import UserError
-from greywhale.trajectory import Trajectory
+from greywhale.base.errors import UserError
+from greywhale.files.trajectory import Trajectory
 from greywhale_sim.leader import BRING_BACK_S, LET_GO_S, LeaderPlayer
 
 SLICE = 0.01

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 from greywhale_sim.line import Noise, resample
 
 TEXT = bytes(range(256)) * 2

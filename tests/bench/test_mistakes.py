@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
 
+from greywhale.base.errors import UserError
 from greywhale.cli.entry import run
-from greywhale.errors import UserError
 from greywhale_sim import mistakes
 from greywhale_sim.bench import Bench
 from greywhale_sim.board_supply import FULL_MV, SUNK_MV, SUNK_SLICES, SharedSupply
 from greywhale_sim.mistakes import BY_NAME, MISTAKES, WHERE, Mistake
 from greywhale_sim.pins_seen import PinsSeen
 from tests.bench.conftest import FakeBoard
+from tools import ROOT
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "bench.md"
+PAGE = ROOT / "docs" / "bench.md"
 
 
 def wired(bench: Bench) -> tuple[object, ...]:

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 import serial
 
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 from greywhale_sim.serial_port import SerialPort
 
 

@@ -11,9 +11,9 @@ import pytest
 import serial
 
 from greywhale.arm import Wiring
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 from greywhale.files.leader import save_leader
-from greywhale.trajectory import Trajectory
+from greywhale.files.trajectory import Trajectory
 from greywhale_sim import commands
 from greywhale_sim.bench import Bench
 from greywhale_sim.pacing import Pacer

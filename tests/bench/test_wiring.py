@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
@@ -10,9 +9,9 @@ from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import TextPath
 
 from greywhale_sim.wiring import BOARDS, Motor, Pin, Pwm, Wiring, markdown_table
-from tools.wiring_pictures import IMAGES, PICTURES
+from tools import ROOT
+from tools.generate.wiring_pictures import IMAGES, PICTURES
 
-ROOT = Path(__file__).resolve().parents[2]
 # Which compare output is on which Arduino pin, from the boards' own pin tables.
 PWM_PINS = {
     "mega": {
@@ -58,7 +57,7 @@ def test_the_guide_shows_this_table() -> None:
 
 @pytest.mark.parametrize("name", PICTURES)
 def test_the_pictures_show_these_pins(name: str) -> None:
-    """If not: `python -m tools.wiring_pictures`."""
+    """If not: `python -m tools.generate.wiring_pictures`."""
     assert (IMAGES / name).read_text(encoding="utf-8") == PICTURES[name]().svg()
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from types import TracebackType
 from typing import Self
 
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 from greywhale.protocol import schema
 from greywhale.protocol.declared import Message
 from greywhale.protocol.frames import FrameDecoder, encode_frame

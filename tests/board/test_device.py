@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 import serial
 
+from greywhale.base.errors import UserError
 from greywhale.board.device import Device, NoAnswerError
 from greywhale.board.refusal import RefusedError
-from greywhale.errors import UserError
 from greywhale.protocol import schema
 from greywhale.protocol.frames import encode_frame
 from greywhale.protocol.schema import Fault, NackCode, Refusal, State

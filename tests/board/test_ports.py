@@ -11,10 +11,10 @@ from types import SimpleNamespace
 import pytest
 from serial.tools import list_ports
 
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
+from greywhale.base.runtime import VARIABLE, make_runtime_directory
 from greywhale.protocol import ports
 from greywhale.protocol.ports import Port
-from greywhale.runtime import VARIABLE, make_runtime_directory
 
 
 @pytest.fixture(autouse=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from greywhale.base.errors import UserError
 from greywhale.board.device import Device
 from greywhale.board.pots import (
     FOLLOWERS,
@@ -17,10 +18,9 @@ from greywhale.board.pots import (
     read_pots,
     require_good_pots,
 )
-from greywhale.errors import UserError
 from greywhale.protocol import schema
 from greywhale.protocol.schema import Fault
-from greywhale.table import ParameterTable
+from greywhale.protocol.table import ParameterTable
 from tests.board.fake_board import FakeBoard
 
 TABLE = ParameterTable.defaults()

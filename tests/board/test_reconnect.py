@@ -10,10 +10,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from greywhale.base.errors import UserError
 from greywhale.board import reconnect
 from greywhale.board.device import Device
 from greywhale.board.reconnect import record_through_losses
-from greywhale.errors import UserError
 from greywhale.files.log import read_log
 from greywhale.protocol import ports, schema
 from greywhale.protocol.transport import LINES

@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from greywhale.base.errors import UserError
 from greywhale.board.device import Device
 from greywhale.board.record import LEASE_MS, record, record_led
-from greywhale.errors import UserError
 from greywhale.files.log import read_log
+from greywhale.files.trajectory import Trajectory
 from greywhale.protocol import schema
 from greywhale.protocol.schema import Fault, State
-from greywhale.trajectory import Trajectory
 from tests.board.fake_board import FakeBoard, Faults
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from greywhale.base.errors import UserError
 from greywhale.board.device import Device
 from greywhale.board.upload import read_parameters, run_set
-from greywhale.errors import UserError
 from greywhale.protocol import schema
 from tests.board.fake_board import FakeBoard
 

@@ -16,16 +16,16 @@ from typing import Any
 
 import pytest
 
+from greywhale.base.errors import UserError
+from greywhale.base.runtime import VARIABLE
 from greywhale.board import meeting, session
 from greywhale.board.device import Device
 from greywhale.board.meeting import Peer
 from greywhale.board.record import record
 from greywhale.board.session import NOTE, Session, StopAsked, ask_to_stop
-from greywhale.errors import UserError
 from greywhale.files.log import read_log
 from greywhale.protocol import schema
 from greywhale.protocol.schema import State, StopReason
-from greywhale.runtime import VARIABLE
 from tests.board.port_board import PortBoard
 
 

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
+from greywhale.base.errors import UserError
 from greywhale.board import upload
 from greywhale.board.device import Device
-from greywhale.errors import UserError
 from greywhale.protocol import schema
 from greywhale.protocol.schema import NackCode, Refusal, SaveState
-from greywhale.table import ParameterTable
+from greywhale.protocol.table import ParameterTable
 from tests.board.fake_board import FakeBoard, Faults
+from tools import ROOT
 
-ROOT = Path(__file__).parents[2]
 TABLE_10 = ROOT / "shared" / "fuzzy_tables" / "table_10.toml"
 
 

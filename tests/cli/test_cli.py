@@ -13,23 +13,23 @@ from typing import Any
 import numpy as np
 import pytest
 
+from greywhale.base.runtime import VARIABLE
 from greywhale.board import device
 from greywhale.cli import entry
 from greywhale.cli.verbs import VERBS
 from greywhale.files.leader import save_leader
 from greywhale.files.log import read_log
+from greywhale.files.trajectory import Trajectory
 from greywhale.protocol import schema
 from greywhale.protocol.ports import find_ports
 from greywhale.protocol.schema import State
-from greywhale.runtime import VARIABLE
-from greywhale.table import ParameterTable
-from greywhale.trajectory import Trajectory
+from greywhale.protocol.table import ParameterTable
 from greywhale_sim.serve import ServeOptions, running
 from tests.board.fake_board import FakeBoard, Faults
 from tests.board.port_board import PortBoard, locked
 from tests.cli.example_log import write_log
+from tools import ROOT
 
-ROOT = Path(__file__).parents[2]
 TABLE_10 = str(ROOT / "shared" / "fuzzy_tables" / "table_10.toml")
 Captured = pytest.CaptureFixture[str]
 

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from greywhale.base.errors import UserError
 from greywhale.cli import countdown, entry
-from greywhale.errors import UserError
 from greywhale.protocol import schema
 from greywhale.protocol.ports import Port
 from tests.board.port_board import PortBoard

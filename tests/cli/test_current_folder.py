@@ -11,7 +11,7 @@ import matplotlib.image
 import pytest
 
 from tests.cli.example_log import write_log
-from tests.strangers import plant, ran
+from tests.support.strangers import plant, ran
 
 INSTALLED = [str(Path(sys.executable).with_name("greywhale"))]
 AS_MODULE = [sys.executable, "-m", "greywhale"]

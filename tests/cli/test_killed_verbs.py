@@ -15,9 +15,9 @@ from greywhale.files import parameter_file
 from greywhale.files.arm import load_arm
 from greywhale.files.leader import save_leader
 from greywhale.files.log import read_log
+from greywhale.files.trajectory import Trajectory
 from greywhale.protocol.schema import State
-from greywhale.table import ParameterTable
-from greywhale.trajectory import Trajectory
+from greywhale.protocol.table import ParameterTable
 from tests.board.port_board import PortBoard
 from tests.support.killing import count_changes, kill
 

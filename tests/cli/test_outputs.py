@@ -218,7 +218,7 @@ def test_a_wrong_name_is_refused_before_anything_slow_is_imported(
     write_log(tmp_path / "log.csv")
     code = (
         "import sys; from greywhale.cli import entry; entry.run(sys.argv[1:]); "
-        "print(*{'cma', 'matplotlib', 'scipy.signal', 'greywhale.demo'} & set(sys.modules))"
+        "print(*{'cma', 'matplotlib', 'scipy.signal', 'greywhale.cli.story'} & set(sys.modules))"
     )
     done = subprocess.run(
         [sys.executable, "-c", code, *arguments], cwd=tmp_path, capture_output=True, text=True, check=False

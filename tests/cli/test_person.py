@@ -9,9 +9,9 @@ from collections.abc import Callable, Iterator, Sequence
 
 import pytest
 
-from greywhale.calibrate import Answer
+from greywhale.base.errors import UserError
+from greywhale.board.calibrate import Answer
 from greywhale.cli.person import Terminal
-from greywhale.errors import UserError
 
 Typing = Callable[[bytes], None]
 

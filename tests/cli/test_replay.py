@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from greywhale.base.errors import UserError
 from greywhale.board.lead import Plan
 from greywhale.cli import entry
 from greywhale.cli.replay import MOTIONS, SHARE
-from greywhale.errors import UserError
-from greywhale.firmware import FASTEST_LED_RAD_S, JOINTS, POINT_S
+from greywhale.protocol.firmware import FASTEST_LED_RAD_S, JOINTS, POINT_S
 
 LIMITS = np.array([[-2.5] * JOINTS, [2.5] * JOINTS])
 

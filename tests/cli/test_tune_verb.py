@@ -17,18 +17,18 @@ from greywhale.board import device
 from greywhale.cli import entry
 from greywhale.cli import tune as verb
 from greywhale.files import controller
-from greywhale.loop import default_controller
 from greywhale.protocol import schema
+from greywhale.simulate import default_controller
 from greywhale.tune import tune
 from tests.board.fake_board import FakeBoard
 from tests.support.tuning import judge_nothing, shorten
 from tests.tune.models import log_facts, write_model
+from tools import ROOT
 
 Captured = pytest.CaptureFixture[str]
 CHANGING = (schema.ParamSetRequest, schema.ParamApplyRequest, schema.ParamSaveRequest)
 # Small, but the whole way: a search, its margins, its held-out motions.
 QUICK = ("--method", "random", "--budget", "4", "--samples", "1")
-ROOT = Path(__file__).parents[2]
 
 
 @pytest.fixture

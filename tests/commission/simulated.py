@@ -16,20 +16,21 @@ import numpy as np
 from greywhale.arm import ArmParameters
 from greywhale.arm.parameters import with_usual_noise
 from greywhale.arm.plants import plant_row
+from greywhale.base.errors import UserError
+from greywhale.base.types import show_no_progress
 from greywhale.board.stream import Received
 from greywhale.commission import Options
 from greywhale.commission.motions import Room
 from greywhale.commission.rig import Played
 from greywhale.commission.watch import Hunting, Watch
-from greywhale.errors import UserError
 from greywhale.files.log import LogWriter, read_log
 from greywhale.files.log.layout import Origin
-from greywhale.firmware import ANGLE_LSB, JOINTS, TICK_S, pwm_steps
-from greywhale.loop.closed_loop import ClosedLoop, known_readings
-from greywhale.loop.controllers import controllers_of
+from greywhale.files.trajectory import Trajectory
 from greywhale.protocol import schema
-from greywhale.table import ParameterTable
-from greywhale.trajectory import Trajectory
+from greywhale.protocol.firmware import ANGLE_LSB, JOINTS, TICK_S, pwm_steps
+from greywhale.protocol.table import ParameterTable
+from greywhale.simulate.closed_loop import ClosedLoop, known_readings
+from greywhale.simulate.controllers import controllers_of
 from tests.tune.models import write_model
 
 POSE = np.array([0.0, 0.4, 0.0, 0.0])
@@ -47,7 +48,7 @@ class SimulatedRig:
         self.stored = self.before
         self.played: list[ParameterTable] = []
         self.at_play: Callable[[int], None] = lambda number: None
-        self.report: Callable[[str, float], None] = lambda what, fraction: None
+        self.report: Callable[[str, float], None] = show_no_progress
 
     def pose(self) -> np.ndarray:
         return POSE

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from greywhale.base.errors import BAD_USAGE, UserError
 from greywhale.commission.book import NAME, Book, open_book
-from greywhale.errors import BAD_USAGE, UserError
 
 REQUEST = {"arm": "white_box", "ranges": {"0": [-0.5, 0.5]}, "seed": 0}
 

@@ -10,19 +10,20 @@ import numpy as np
 import pytest
 
 from greywhale.arm import ArmParameters
+from greywhale.base.errors import UserError
 from greywhale.commission import Options, campaign, commission, foresee, learn
 from greywhale.commission.book import Book
 from greywhale.commission.learn import Learnt
 from greywhale.commission.outcome import Outcome
 from greywhale.commission.page import facts, save_page
 from greywhale.commission.search import KD, KI, KP, JointSearch
-from greywhale.errors import UserError
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.files.leader import load_leader
 from greywhale.files.model import arm_toml
-from greywhale.loop.controllers import controllers_of
-from greywhale.table import ParameterTable
-from greywhale.trajectory import Trajectory, multi_steps
+from greywhale.files.trajectory import Trajectory
+from greywhale.motion import multi_steps
+from greywhale.protocol.table import ParameterTable
+from greywhale.simulate.controllers import controllers_of
 from greywhale.tune.model import Model, load_model
 from tests.commission.simulated import SimulatedRig, options_in
 from tests.support.tuning import judge_nothing, shorten

@@ -16,7 +16,7 @@ from greywhale.commission.predict import predict
 from greywhale.commission.trials import Trials
 from greywhale.files.arm import default_arm
 from greywhale.files.log import read_log
-from greywhale.loop.controllers import controllers_of
+from greywhale.simulate.controllers import controllers_of
 from tests.commission.simulated import ROOM, SimulatedRig
 from tests.commission.test_trials import BETTER, play, play_before, stiffer
 

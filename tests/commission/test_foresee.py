@@ -11,8 +11,8 @@ from greywhale.commission.foresee import MOST, Foresight, foresee
 from greywhale.commission.search import KI, KP
 from greywhale.commission.trials import Trials
 from greywhale.files.arm import default_arm
-from greywhale.loop.controllers import controllers_of
-from greywhale.trajectory import multi_steps
+from greywhale.motion import multi_steps
+from greywhale.simulate.controllers import controllers_of
 from greywhale.tune.search.training import clip_motion
 from tests.commission.simulated import ROOM, SimulatedRig
 

@@ -9,7 +9,7 @@ from greywhale.commission.measures import STEPS, Traces, chatter, measure, rattl
 from greywhale.commission.motions import PARTS, check_motion
 from greywhale.files.log import Log
 from greywhale.files.log.layout import Origin
-from greywhale.firmware import TICK_S
+from greywhale.protocol.firmware import TICK_S
 from tests.commission.simulated import ROOM
 
 TIME = np.arange(0.0, 6.0, TICK_S)

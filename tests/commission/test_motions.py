@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from greywhale.commission.motions import PARTS, Room, check_motion, first_motion
-from greywhale.firmware import FASTEST_LED_RAD_S, POINT_S
+from greywhale.protocol.firmware import FASTEST_LED_RAD_S, POINT_S
 from tests.commission.simulated import ROOM
 
 POSE = np.array([0.0, 0.4, -0.3, 0.1])

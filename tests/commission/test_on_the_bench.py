@@ -12,23 +12,24 @@ from typing import Any
 import numpy as np
 import pytest
 
+from greywhale.base.errors import UserError
+from greywhale.base.types import Progress
 from greywhale.board import record
 from greywhale.board.device import Device
 from greywhale.board.record import Recording
 from greywhale.board.upload import read_parameters
 from greywhale.cli.entry import run
+from greywhale.cli.story import BenchProcess, RunningBench
 from greywhale.commission import rig
 from greywhale.commission.motions import Room, check_motion, first_motion
-from greywhale.commission.rig import Progress, connected
-from greywhale.demo import BenchProcess, RunningBench
-from greywhale.errors import UserError
+from greywhale.commission.rig import connected
 from greywhale.files.arm import default_arm
 from greywhale.files.log import read_log
 from greywhale.files.model import to_toml
-from greywhale.loop.controllers import controllers_of
+from greywhale.files.trajectory import Trajectory
 from greywhale.protocol.schema import State
-from greywhale.table import ParameterTable
-from greywhale.trajectory import Trajectory
+from greywhale.protocol.table import ParameterTable
+from greywhale.simulate.controllers import controllers_of
 from greywhale_sim.lockstep import LockStepBench
 from greywhale_sim.words import lock_step
 from tests.commission.test_start import with_joint, with_pot

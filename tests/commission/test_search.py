@@ -9,8 +9,8 @@ import pytest
 
 from greywhale.commission.judge import Verdict
 from greywhale.commission.search import GOOD, KD, KI, KP, MOST_SOFTER, JointSearch
-from greywhale.loop import CONTROLLER_COLUMNS, default_controller
-from greywhale.loop.controllers import check_controllers
+from greywhale.simulate import CONTROLLER_COLUMNS, default_controller
+from greywhale.simulate.controllers import check_controllers
 
 BEFORE = default_controller()[0]
 TUNED = BEFORE.copy()

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from greywhale.arm import ArmParameters
+from greywhale.base.errors import UserError
 from greywhale.commission.book import Book
 from greywhale.commission.start import refuse_stuck, refuse_uncalibrated, shares_moved
-from greywhale.errors import UserError
 from greywhale.files.arm import default_arm
 from greywhale.files.log import Log
 from greywhale.files.log.layout import Origin
-from greywhale.table import ParameterTable
+from greywhale.protocol.table import ParameterTable
 from tests.commission.simulated import ROOM, SimulatedRig
 
 

@@ -8,14 +8,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from greywhale.base.errors import UserError
 from greywhale.commission.choose import confirm
 from greywhale.commission.judge import BEARABLE
 from greywhale.commission.outcome import Outcome
 from greywhale.commission.rig import Rig
 from greywhale.commission.search import KD, KI, KP, JointSearch
 from greywhale.commission.trials import Trial, Trials
-from greywhale.errors import UserError
-from greywhale.loop.controllers import controllers_of
+from greywhale.simulate.controllers import controllers_of
 from tests.commission.simulated import SimulatedRig
 
 BETTER, WILD = 2.0, 40.0  # times the stiffness of before

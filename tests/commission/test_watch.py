@@ -7,8 +7,8 @@ import pytest
 
 from greywhale.board.stream import Received
 from greywhale.commission.watch import Hunting, Watch
-from greywhale.firmware import ANGLE_LSB
 from greywhale.protocol import schema
+from greywhale.protocol.firmware import ANGLE_LSB
 
 TICKS = np.arange(4000)
 

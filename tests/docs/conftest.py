@@ -11,30 +11,31 @@ from typing import Any
 import numpy as np
 import pytest
 
+import greywhale.cli.story
 import greywhale.commission
-import greywhale.demo
 from greywhale.arm.export import urdf
 from greywhale.board.device import Device
 from greywhale.cli import flash as flash_verb
 from greywhale.cli import identify as identify_verb
 from greywhale.cli import tune as tune_verb
+from greywhale.cli.story import DemoOptions
 from greywhale.commission import Options, campaign, learn
 from greywhale.commission.book import Book
 from greywhale.commission.learn import Learnt
 from greywhale.commission.search import KI, KP
-from greywhale.demo import DemoOptions
 from greywhale.files import parameter_file
 from greywhale.files.arm import content_of, default_arm, load_arm
 from greywhale.files.leader import save_leader
 from greywhale.files.log import read_log
+from greywhale.files.trajectory import Trajectory
 from greywhale.identify import identify
+from greywhale.motion import human_reaches
 from greywhale.protocol.schema import HelloReply
+from greywhale.protocol.table import ParameterTable
 from greywhale.reproduce import run as reproduce_run
 from greywhale.reproduce.pages import report as reproduce_report
 from greywhale.reproduce.pages.document import Document
 from greywhale.reproduce.request import Request
-from greywhale.table import ParameterTable
-from greywhale.trajectory import Trajectory, human_reaches
 from greywhale.tune import tune
 from greywhale.tune.model import Model, load_model
 from greywhale_sim import serve as bench_serve
@@ -44,8 +45,8 @@ from tests.commission.simulated import SimulatedRig
 from tests.docs.running import Once, run
 from tests.support.demo import in_this_process
 from tests.tune.models import write_model
-from tools.bench.recordings import TABLES, random_arm, record, table_of
-from tools.docs.site import ROOT
+from tools import ROOT
+from tools.support.recordings import TABLES, random_arm, record, table_of
 
 IMAGE = ROOT / "firmware" / ".pio" / "build" / "megaatmega2560"
 LOGS = ("log1", "log2", "log3", "log", "before", "after")
@@ -143,7 +144,7 @@ def commissioned(yours: Path, tmp_path_factory: pytest.TempPathFactory) -> Once:
 @pytest.fixture(scope="session")
 def demonstrated(yours: Path, tmp_path_factory: pytest.TempPathFactory) -> Once:
     """Four seconds with controllers that are there."""
-    real = greywhale.demo.run
+    real = greywhale.cli.story.run
     options = DemoOptions(out=tmp_path_factory.mktemp("demo"), duration_s=4.0, controller=yours / "controller.toml")
 
     def compute() -> Any:
@@ -187,7 +188,7 @@ def once(
     monkeypatch.setattr(identify_verb, "identify", lambda *logs, **options: identified())
     monkeypatch.setattr(tune_verb, "tune", lambda model, **options: tuned())
     monkeypatch.setattr(greywhale.commission, "commission", commission)
-    monkeypatch.setattr(greywhale.demo, "BenchProcess", lock_step)
-    monkeypatch.setattr(greywhale.demo, "run", lambda options, report: demonstrated())
+    monkeypatch.setattr(greywhale.cli.story, "BenchProcess", lock_step)
+    monkeypatch.setattr(greywhale.cli.story, "run", lambda options, report: demonstrated())
     monkeypatch.setattr(bench_serve, "serve", serve)
     monkeypatch.setattr(flash_verb, "flash", greet)

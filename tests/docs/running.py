@@ -26,8 +26,8 @@ import click
 
 from greywhale.cli import entry
 from greywhale.cli.verbs import VERBS, greywhale
+from tools import ROOT
 from tools.docs.examples import Block, Command, split
-from tools.docs.site import ROOT
 
 SHORTER = {
     "record": "--seconds 0.5",

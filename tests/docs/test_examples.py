@@ -8,9 +8,9 @@ from typing import Any
 import pytest
 
 from tests.docs.running import parse, run_block, run_line
+from tools import ROOT
 from tools.docs.examples import Block, blocks, split
 from tools.docs.links import pages
-from tools.docs.site import ROOT
 
 SHOWN = {page: list(blocks(page)) for page in pages()}
 # So many blocks are only parsed because their page says so.

@@ -11,12 +11,12 @@ import click
 import pytest
 from jsonschema import Draft202012Validator, ValidationError
 
+from greywhale.cli.story.learn import Learnt
 from greywhale.cli.verbs import VERBS, greywhale
-from greywhale.demo.learn import Learnt
 from tests.docs.running import Once, run, writes_over
-from tools.bench.hands import SECOND_DEG, Hands, bench_of, mounted_anyhow, run_calibrate
+from tools import ROOT
 from tools.docs.schemas import SCHEMAS, read_answer, schema_name, validate
-from tools.docs.site import ROOT
+from tools.support.hands import SECOND_DEG, Hands, bench_of, mounted_anyhow, run_calibrate
 
 # Verb -> ways to call it that print different keys.
 CALLS = {

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from tools import ROOT
 from tools.docs.links import Link, anchors, broken, links, pages
-from tools.docs.site import ROOT
 
 TOP = ("docs", "firmware", "host", "shared", "sim", "tests", "tools", ".ci")
 NAMED = re.compile(rf"`((?:{'|'.join(map(re.escape, TOP))})/[\w./-]+)`")

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from greywhale.cli.verbs import VERBS
-from tools.docs.site import ROOT
+from tools import ROOT
 
 
 @pytest.fixture(scope="module")

@@ -9,16 +9,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from greywhale.demo import BenchProcess
+from greywhale.cli.story import BenchProcess
 from greywhale.files.leader import save_leader
+from greywhale.files.trajectory import Trajectory
 from greywhale.protocol import schema
 from greywhale.protocol.declared import Reply_co, Request
 from greywhale.protocol.frames import FrameDecoder, encode_frame
-from greywhale.trajectory import Trajectory
 from greywhale_sim.assemble import BenchOptions, build_bench
 from greywhale_sim.bench import Bench
-
-ROOT = Path(__file__).resolve().parents[2]
 
 
 class Refused(AssertionError):

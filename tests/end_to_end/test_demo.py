@@ -9,21 +9,20 @@ import numpy as np
 import pytest
 
 from greywhale.arm.parameters import JOINT_NAMES, Stops
+from greywhale.base.errors import UserError
+from greywhale.cli.story import BenchProcess, DemoOptions, DemoResult, run, story
+from greywhale.cli.story.recorder import record_motion
 from greywhale.commission import motions
-from greywhale.demo import BenchProcess, DemoOptions, DemoResult, run, story
-from greywhale.demo.recorder import record_motion
-from greywhale.errors import UserError
 from greywhale.files.arm import default_arm
 from greywhale.files.leader import save_leader
 from greywhale.files.log import Log
 from greywhale.files.model import arm_toml
-from greywhale.trajectory import Trajectory
+from greywhale.files.trajectory import Trajectory
 from greywhale_sim.words import lock_step
-from tests.strangers import plant, ran
 from tests.support.demo import in_this_process
+from tests.support.strangers import plant, ran
 from tests.support.tuning import shorten
-
-ROOT = Path(__file__).resolve().parents[2]
+from tools import ROOT
 
 
 @pytest.mark.slow

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 
+from greywhale.base.errors import UserError
 from greywhale.board.device import Device
 from greywhale.board.record import record
 from greywhale.board.upload import upload_controller
 from greywhale.cli import entry
-from greywhale.errors import UserError
 from greywhale.files.log import read_log
 from greywhale.protocol import schema
 from greywhale.protocol.schema import Fault, State, StopReason

@@ -9,17 +9,17 @@ from typing import Any
 import numpy as np
 import pytest
 
+from greywhale.base.errors import BAD_USAGE
 from greywhale.board.device import Device
 from greywhale.board.upload import read_parameters
 from greywhale.cli.entry import run
-from greywhale.errors import BAD_USAGE
 from greywhale.files.arm import load_arm
 from greywhale.files.leader import save_leader
 from greywhale.files.log import read_log
 from greywhale.files.model import arm_toml
-from greywhale.trajectory import human_reaches
+from greywhale.motion import human_reaches
 from tests.support.tuning import shorten
-from tools.bench.hands import SECOND_DEG, Hands, bench_of, mounted_anyhow, run_calibrate
+from tools.support.hands import SECOND_DEG, Hands, bench_of, mounted_anyhow, run_calibrate
 
 IDLE = slice(2, 4)
 SECOND = ",".join(f"{angle:g}" for angle in SECOND_DEG)

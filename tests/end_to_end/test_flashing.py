@@ -8,11 +8,11 @@ from pathlib import Path
 
 import pytest
 
+from greywhale.base.errors import UserError
 from greywhale.board import flash
 from greywhale.board.device import Device
 from greywhale.board.flash.bootloader import Bootloader, Dialect, find_bootloader
-from greywhale.demo import BenchProcess
-from greywhale.errors import UserError
+from greywhale.cli.story import BenchProcess
 from greywhale.protocol import schema
 from greywhale.protocol.frames import encode_frame
 from greywhale_sim.assemble import BUILDS

@@ -13,9 +13,9 @@ from greywhale.arm import Wiring
 from greywhale.files import controller
 from greywhale.files.leader import save_leader
 from greywhale.files.paper_tables import paper_table
+from greywhale.motion import multi_steps
 from greywhale.protocol import schema
 from greywhale.protocol.schema import Fault, NackCode, State, StopReason
-from greywhale.trajectory import multi_steps
 
 RAD = schema.Sample.LSB["leader"]
 

@@ -19,10 +19,10 @@ from greywhale.files.model import arm_toml
 from greywhale.identify import controllers
 from greywhale.identify.closed_loop import Loop
 from greywhale.identify.data import prepare
-from greywhale.loop import plant_row
-from greywhale.loop.closed_loop import ClosedLoop, Result
 from greywhale.protocol.schema import Board
-from greywhale.table import ParameterTable
+from greywhale.protocol.table import ParameterTable
+from greywhale.simulate import plant_row
+from greywhale.simulate.closed_loop import ClosedLoop, Result
 from greywhale.tune.model import load_model
 from greywhale_sim.assemble import BenchOptions, build_bench
 from greywhale_sim.lockstep import LockStepBench, tell_joints

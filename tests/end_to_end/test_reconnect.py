@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from greywhale.board.device import Device
-from greywhale.demo import BenchProcess
+from greywhale.cli.story import BenchProcess
 from greywhale.files.log import read_log
 from greywhale.protocol.schema import State, StopReason
 

@@ -11,9 +11,9 @@ import pytest
 from greywhale.files.arm import load_arm
 from greywhale.files.leader import save_leader
 from greywhale.files.model import to_toml
+from greywhale.files.trajectory import Trajectory
 from greywhale.protocol.schema import Fault, State
-from greywhale.table import ParameterTable
-from greywhale.trajectory import Trajectory
+from greywhale.protocol.table import ParameterTable
 from greywhale.tune.stall import stall_limit
 from tests.end_to_end.test_lock_step import set_parameters
 from tests.tune.models import facts_of

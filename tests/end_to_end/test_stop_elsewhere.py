@@ -12,14 +12,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from greywhale.base.errors import UserError
 from greywhale.board.device import Device
 from greywhale.board.record import record
-from greywhale.demo import BenchProcess
-from greywhale.errors import UserError
+from greywhale.cli.story import BenchProcess
 from greywhale.files.leader import save_leader
 from greywhale.files.log import read_log
+from greywhale.files.trajectory import Trajectory
 from greywhale.protocol.schema import State
-from greywhale.trajectory import Trajectory
 
 Start = Callable[..., BenchProcess]
 

@@ -13,18 +13,18 @@ from typing import Any
 
 import pytest
 
+from greywhale.base.errors import UserError
 from greywhale.board.device import Device
 from greywhale.board.record import record
 from greywhale.board.upload import upload_controller
-from greywhale.demo import BenchProcess
-from greywhale.errors import UserError
+from greywhale.cli.story import BenchProcess
 from greywhale.files.log import read_log
-from greywhale.measure import evaluate
+from greywhale.motion import evaluate
 from greywhale.protocol.schema import State, StopReason
 from greywhale_sim.__main__ import main
 from greywhale_sim.serve import ServeOptions, serve
+from tools import ROOT
 
-ROOT = Path(__file__).resolve().parents[2]
 TABLES = ROOT / "shared" / "fuzzy_tables"
 
 Start = Callable[..., BenchProcess]

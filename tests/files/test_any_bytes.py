@@ -11,17 +11,17 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from greywhale.base.errors import LONGEST, UserError
+from greywhale.base.formats import toml_file
 from greywhale.commission.book import NAME, Book
-from greywhale.errors import LONGEST, UserError
 from greywhale.files import controller, parameter_file
 from greywhale.files.arm import content_of, load_arm
 from greywhale.files.leader import load_leader, save_leader
 from greywhale.files.log import LogWriter, read_log
 from greywhale.files.log.layout import Origin
 from greywhale.files.paper_tables import paper_table
-from greywhale.formats import toml_file
-from greywhale.table import ParameterTable
-from greywhale.trajectory import Trajectory
+from greywhale.files.trajectory import Trajectory
+from greywhale.protocol.table import ParameterTable
 from greywhale.tune.search.journal import Journal
 
 REQUEST = {"seed": 1}

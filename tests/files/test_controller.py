@@ -9,14 +9,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
+from greywhale.base.formats import toml_file
 from greywhale.files import controller
-from greywhale.formats import toml_file
-from greywhale.loop import CONTROLLER_COLUMNS, controller_row, default_controller
 from greywhale.protocol import schema
-from greywhale.table import ParameterTable
+from greywhale.protocol.table import ParameterTable
+from greywhale.simulate import CONTROLLER_COLUMNS, controller_row, default_controller
+from tools import ROOT
 
-ROOT = Path(__file__).parents[2]
 TABLES = sorted((ROOT / "shared" / "fuzzy_tables").glob("table_*.toml"))
 SETS = {
     "Ne_c": -0.3, "Ze_a": -0.3, "Ze_c": 0.3, "Pe_b": 0.3, "Nce_c": -0.1, "Zce_a": -0.1, "Zce_c": 0.1, "Pce_b": 0.1,

@@ -17,12 +17,12 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
+from greywhale.base.formats import csv_file
 from greywhale.files.log import Log, LogWriter, read_log
 from greywhale.files.log.check import Check
 from greywhale.files.log.layout import HEADING, STATES, Origin
 from greywhale.files.log.rows import parse_rows
-from greywhale.formats import csv_file
 
 ORIGIN = Origin("1.2.3", "mega2560", 0xBEEF, 20, 5)
 ROW = ([0.1, 0.2, 0.3, 0.4], [-0.1, -0.2, -0.3, -0.4], [1.0, -2.0, 15.0, 0.001], "following")

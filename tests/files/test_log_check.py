@@ -10,13 +10,13 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 from greywhale.files.leader import load_leader
 from greywhale.files.log import Log, LogWriter, read_evidence, read_log
 from greywhale.files.log.check import Check, add_rows
 from greywhale.files.log.layout import Origin
 from greywhale.files.log.reader import refuse_altered
-from greywhale.table import ParameterTable
+from greywhale.protocol.table import ParameterTable
 
 Rows = list[list[str]]
 

@@ -7,13 +7,13 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, given, settings
 
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 from greywhale.files.log import LogWriter, read_log
 from greywhale.files.log.layout import Origin
 from greywhale.files.log.parameters import lines_of, table_in
 from greywhale.files.parameter_file import SINCE_LAYOUT_2
 from greywhale.protocol.schema import Board
-from greywhale.table import ParameterTable
+from greywhale.protocol.table import ParameterTable
 from tests.files.test_parameter_file import tables
 
 TABLE = ParameterTable.defaults(Board.NANO328).with_raw({"joint1.kp": 50_000, "leader2.scale": -70})

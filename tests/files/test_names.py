@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 from greywhale.files import controller
 from greywhale.files.arm import load_arm
 from greywhale.files.names import did_you_mean

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from greywhale.errors import BAD_USAGE, UserError
+from greywhale.base.errors import BAD_USAGE, UserError
 from greywhale.files.outputs import require_files, require_folder, require_new, require_no_files
 
 

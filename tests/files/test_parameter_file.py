@@ -8,11 +8,11 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 from greywhale.files import parameter_file
 from greywhale.protocol import schema
 from greywhale.protocol.declared import Parameter
-from greywhale.table import ParameterTable, physical
+from greywhale.protocol.table import ParameterTable, physical
 
 
 @st.composite

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from tools.bench.bench_tick import BOARDS, Bench
+from tools.support.board_with_image import BOARDS, BoardWithImage
 
 
 @pytest.fixture(params=BOARDS)
-def bench(request: pytest.FixtureRequest) -> Bench:
+def bench(request: pytest.FixtureRequest) -> BoardWithImage:
     """The real image on a simulated chip, booted, motors off."""
-    return Bench(request.param)
+    return BoardWithImage(request.param)

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from tools.link_generator import cpp_enum_copies, cpp_messages
-from tools.link_generator.declaration import Declaration, Enum, EnumValue, load
+from tools import ROOT
+from tools.generate.link import cpp_enum_copies, cpp_messages
+from tools.generate.link.declaration import Declaration, Enum, EnumValue, load
 
-ROOT = Path(__file__).resolve().parents[2]
 DECLARED = load(ROOT / "shared/link")
 COPIED = ["State", "StopReason", "Fault", "ResetCause", "Board", "Refusal"]  # by rooms that do not know the link
 

@@ -11,7 +11,7 @@ from greywhale.protocol import schema
 from greywhale_sim.wiring import BOARDS
 from tests.firmware.test_stop import enable, motors_on, status
 from tests.firmware.test_unrest import apply
-from tools.bench.bench_tick import CYCLES_PER_TICK, Bench
+from tools.support.board_with_image import CYCLES_PER_TICK, BoardWithImage
 
 PHASES = 60
 TICK_AND_ITS_WORK_MS = 1.06  # the pin is read once in each tick, after the potentiometers
@@ -19,17 +19,17 @@ PIN = {wiring.mcu: wiring.estop for wiring in BOARDS.values()}
 OPENING = 2
 
 
-def press(bench: Bench, low: bool = True) -> None:
+def press(bench: BoardWithImage, low: bool = True) -> None:
     pin = PIN[bench.board.chip]
     bench.board.hold_pin(pin.port, pin.bit, not low)
 
 
-def release(bench: Bench) -> None:
+def release(bench: BoardWithImage) -> None:
     pin = PIN[bench.board.chip]
     bench.board.let_pin_go(pin.port, pin.bit)
 
 
-def drive(bench: Bench) -> None:
+def drive(bench: BoardWithImage) -> None:
     """Motors on, with a duty on joint 0: its leader is 0.2 rad away."""
     bench.millivolts[0] = 2700.0
     bench.board.set_millivolts(bench.millivolts)
@@ -39,7 +39,7 @@ def drive(bench: Bench) -> None:
     assert bench.board.duty(*bench.output) > 0.0
 
 
-def ms_until_off(bench: Bench) -> float:
+def ms_until_off(bench: BoardWithImage) -> float:
     """Until the drivers are off and the duty is gone, to 4 us."""
     begun = bench.board.cycle
     while motors_on(bench) or bench.board.duty(*bench.output) > 0.0:
@@ -49,7 +49,7 @@ def ms_until_off(bench: Bench) -> float:
 
 
 @pytest.mark.slow
-def test_motors_are_off_within_a_tick_of_the_pin_going_low(bench: Bench) -> None:
+def test_motors_are_off_within_a_tick_of_the_pin_going_low(bench: BoardWithImage) -> None:
     took = []
     for _ in range(PHASES):
         drive(bench)
@@ -67,7 +67,7 @@ def test_motors_are_off_within_a_tick_of_the_pin_going_low(bench: Bench) -> None
     assert np.ptp(took) > 0.9, "the presses came in all phases of the tick"
 
 
-def test_a_pressed_stop_cannot_be_cleared_and_a_released_one_can(bench: Bench) -> None:
+def test_a_pressed_stop_cannot_be_cleared_and_a_released_one_can(bench: BoardWithImage) -> None:
     drive(bench)
     press(bench)
     bench.wait(2)
@@ -82,7 +82,7 @@ def test_a_pressed_stop_cannot_be_cleared_and_a_released_one_can(bench: Bench) -
     enable(bench)
 
 
-def test_a_tap_while_the_motors_are_off_keeps_them_off(bench: Bench) -> None:
+def test_a_tap_while_the_motors_are_off_keeps_them_off(bench: BoardWithImage) -> None:
     press(bench)
     bench.wait(5)
     release(bench)
@@ -92,14 +92,14 @@ def test_a_tap_while_the_motors_are_off_keeps_them_off(bench: Bench) -> None:
         bench.ask(schema.EnableRequest, struct.pack("<H", 0))
 
 
-def test_a_stop_that_is_pressed_through_a_reset_keeps_the_motors_off(bench: Bench) -> None:
+def test_a_stop_that_is_pressed_through_a_reset_keeps_the_motors_off(bench: BoardWithImage) -> None:
     press(bench)
     bench.board.reset()
     bench.wait(60)
     assert (status(bench).state, status(bench).fault) == (schema.State.FAULT, schema.Fault.ESTOP)
 
 
-def test_an_opening_button_stops_when_it_opens_or_its_wire_breaks(bench: Bench) -> None:
+def test_an_opening_button_stops_when_it_opens_or_its_wire_breaks(bench: BoardWithImage) -> None:
     apply(bench, "estop_input", OPENING)
     assert status(bench).fault is schema.Fault.ESTOP, "nothing is wired: the pull-up holds the pin high"
     press(bench, low=True)
@@ -109,7 +109,7 @@ def test_an_opening_button_stops_when_it_opens_or_its_wire_breaks(bench: Bench) 
     assert ms_until_off(bench) <= TICK_AND_ITS_WORK_MS
 
 
-def test_without_a_stop_the_pin_means_nothing(bench: Bench) -> None:
+def test_without_a_stop_the_pin_means_nothing(bench: BoardWithImage) -> None:
     apply(bench, "estop_input", 0)
     press(bench)
     drive(bench)

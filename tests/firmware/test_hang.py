@@ -15,7 +15,7 @@ from greywhale.protocol import schema
 from greywhale_sim.wiring import BOARDS as WIRINGS
 from tests.firmware.test_stop import motors_on, status
 from tests.simulated_board.stk500 import Version1, Version2
-from tools.bench.bench_tick import CYCLES_PER_TICK, Bench
+from tools.support.board_with_image import CYCLES_PER_TICK, BoardWithImage
 
 PHASES = 20
 OFF_MS = 20.0
@@ -25,7 +25,7 @@ RESETS = 2
 
 
 @pytest.fixture
-def booted(bench: Bench) -> Bench:
+def booted(bench: BoardWithImage) -> BoardWithImage:
     """A board whose bootloader has started the firmware."""
     wiring = next(one for one in WIRINGS.values() if one.mcu == bench.board.chip)
     bench.board.load_hex(str(wiring.bootloader), bootloader=True)
@@ -33,28 +33,28 @@ def booted(bench: Bench) -> Bench:
     return bench
 
 
-def is_nano(bench: Bench) -> bool:
+def is_nano(bench: BoardWithImage) -> bool:
     return bench.board.chip == "atmega328p"
 
 
-def reset(bench: Bench) -> None:
+def reset(bench: BoardWithImage) -> None:
     bench.board.reset()
     bench.wait(BOOTED_MS)
 
 
-def sink(bench: Bench) -> None:
+def sink(bench: BoardWithImage) -> None:
     for millivolts in (2600, 5000):
         bench.board.set_supply(millivolts)
     bench.wait(BOOTED_MS)
 
 
-def cut_power(bench: Bench) -> None:
+def cut_power(bench: BoardWithImage) -> None:
     bench.board.power_off()
     bench.board.power_on(2)
     bench.wait(BOOTED_MS)
 
 
-def flash_a_page(bench: Bench) -> None:
+def flash_a_page(bench: BoardWithImage) -> None:
     """Its first page, as it is."""
     bench.board.reset()
     bench.wait(100)
@@ -64,34 +64,34 @@ def flash_a_page(bench: Bench) -> None:
     bench.wait(2 * BOOTED_MS)
 
 
-def follow(bench: Bench) -> None:
+def follow(bench: BoardWithImage) -> None:
     """Motors on, and some phase of a tick."""
     bench.ask(schema.ClearFaultRequest)
     bench.ask(schema.EnableRequest, struct.pack("<H", 0))
     bench.wait(bench.random.uniform(5, 40))
 
 
-def hang(bench: Bench) -> None:
+def hang(bench: BoardWithImage) -> None:
     """Send the processor into avr-libc's endless loop behind main(), which begins with turning interrupts off."""
     bench.board.pc = bench.symbols["_exit"].address
 
 
-def hang_with_interrupts_on(bench: Bench) -> None:
+def hang_with_interrupts_on(bench: BoardWithImage) -> None:
     """The same loop without its first instruction."""
     bench.board.poke(SREG, bytes([INTERRUPTS_ON]))
     bench.board.pc = bench.symbols["_exit"].address + 2
 
 
-def go_astray(bench: Bench) -> None:
+def go_astray(bench: BoardWithImage) -> None:
     """What a call through a null pointer does."""
     bench.board.pc = 0
 
 
-def reset_cause(bench: Bench) -> schema.ResetCause:
+def reset_cause(bench: BoardWithImage) -> schema.ResetCause:
     return schema.HelloReply.unpack(bench.ask(schema.HelloRequest)).reset_cause
 
 
-def ms_until_off(bench: Bench) -> float:
+def ms_until_off(bench: BoardWithImage) -> float:
     begun = bench.board.cycle
     while motors_on(bench):
         bench.board.run_until(bench.board.cycle + 200)
@@ -99,7 +99,7 @@ def ms_until_off(bench: Bench) -> float:
 
 
 @pytest.mark.slow
-def test_a_hang_with_interrupts_off_turns_the_motors_off_within_20_ms(bench: Bench) -> None:
+def test_a_hang_with_interrupts_off_turns_the_motors_off_within_20_ms(bench: BoardWithImage) -> None:
     for _ in range(PHASES):
         follow(bench)
         hang(bench)
@@ -110,7 +110,7 @@ def test_a_hang_with_interrupts_off_turns_the_motors_off_within_20_ms(bench: Ben
         assert not motors_on(bench)
 
 
-def see_it_stay_silent(nano: Bench) -> None:
+def see_it_stay_silent(nano: BoardWithImage) -> None:
     """Its bootloader leaves the watchdog on, which restarts it again and again until power is cut."""
     follow(nano)
     hang(nano)
@@ -129,7 +129,7 @@ def see_it_stay_silent(nano: Bench) -> None:
 
 @pytest.mark.parametrize("stop_working", [hang, hang_with_interrupts_on, go_astray])
 def test_a_hang_is_told_through_the_bootloader_where_that_comes_back(
-    booted: Bench, stop_working: Callable[[Bench], None]
+    booted: BoardWithImage, stop_working: Callable[[BoardWithImage], None]
 ) -> None:
     if is_nano(booted) and stop_working is hang:
         see_it_stay_silent(booted)
@@ -145,7 +145,7 @@ def test_a_hang_is_told_through_the_bootloader_where_that_comes_back(
 
 
 @pytest.mark.slow
-def test_no_other_restart_is_taken_for_a_hang(booted: Bench) -> None:
+def test_no_other_restart_is_taken_for_a_hang(booted: BoardWithImage) -> None:
     """The reset pin, as a host that opens the port uses it, with the motors on at any phase; a sunken supply; a power
     cut; and a host that flashes.
     """
@@ -157,7 +157,7 @@ def test_no_other_restart_is_taken_for_a_hang(booted: Bench) -> None:
 
 
 @pytest.mark.slow
-def test_the_watchdog_leaves_boot_and_every_step_of_a_parameter_set_alone(bench: Bench) -> None:
+def test_the_watchdog_leaves_boot_and_every_step_of_a_parameter_set_alone(bench: BoardWithImage) -> None:
     """Staged, applied, saved into both banks, with telemetry on and a reset at the end: the watchdog never bites."""
     bench.ask(schema.TelemetryRequest, struct.pack("<H", 1))
     values = list(schema.DEFAULTS)

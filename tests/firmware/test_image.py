@@ -7,22 +7,22 @@ import struct
 import pytest
 
 from greywhale.protocol import frames, schema
-from tools.bench.bench_tick import BOARDS, UNWATCHED, Bench, apply, memory
+from tools.support.board_with_image import BOARDS, UNWATCHED, BoardWithImage, apply, ram_of_a_life
 
 BYTES_A_MS = 100  # what the wire carries at 1 Mbaud
 
 
-def status(bench: Bench) -> schema.StatusReply:
+def status(bench: BoardWithImage) -> schema.StatusReply:
     return schema.StatusReply.unpack(bench.ask(schema.StatusRequest))
 
 
-def babble(bench: Bench, ms: int) -> None:
+def babble(bench: BoardWithImage, ms: int) -> None:
     """Random bytes without a gap; at the end a zero, so that the next frame is not taken for part of the noise."""
     bench.board.uart_send(bench.random.bytes(ms * BYTES_A_MS) + b"\0")
     bench.wait(ms + 2)
 
 
-def test_a_babbling_host_neither_starts_the_motors_nor_delays_a_tick(bench: Bench) -> None:
+def test_a_babbling_host_neither_starts_the_motors_nor_delays_a_tick(bench: BoardWithImage) -> None:
     babble(bench, 1000)
     seen = status(bench)
     assert seen.state == schema.State.DISABLED
@@ -31,7 +31,7 @@ def test_a_babbling_host_neither_starts_the_motors_nor_delays_a_tick(bench: Benc
     assert seen.rx_overruns > 0
 
 
-def test_a_babbling_host_delays_no_tick_of_a_moving_arm_and_ends_in_a_fault(bench: Bench) -> None:
+def test_a_babbling_host_delays_no_tick_of_a_moving_arm_and_ends_in_a_fault(bench: BoardWithImage) -> None:
     bench.ask(schema.TelemetryRequest, struct.pack("<H", 1))
     bench.ask(schema.EnableRequest, struct.pack("<H", 0))
     babble(bench, 500)
@@ -41,7 +41,7 @@ def test_a_babbling_host_delays_no_tick_of_a_moving_arm_and_ends_in_a_fault(benc
     assert schema.ClearFaultReply.unpack(bench.ask(schema.ClearFaultRequest)).state == schema.State.DISABLED
 
 
-def test_no_tick_is_late_while_a_set_is_staged_applied_and_saved_with_telemetry_on(bench: Bench) -> None:
+def test_no_tick_is_late_while_a_set_is_staged_applied_and_saved_with_telemetry_on(bench: BoardWithImage) -> None:
     bench.ask(schema.TelemetryRequest, struct.pack("<H", 1))
     for i, value in enumerate(schema.DEFAULTS):
         bench.ask(schema.ParamSetRequest, struct.pack("<Hi", i, value))
@@ -54,7 +54,7 @@ def test_no_tick_is_late_while_a_set_is_staged_applied_and_saved_with_telemetry_
     assert seen.tick_us_max < 500
 
 
-def test_the_board_counts_the_sets_that_were_stored(bench: Bench) -> None:
+def test_the_board_counts_the_sets_that_were_stored(bench: BoardWithImage) -> None:
     assert status(bench).saves == 0, "its EEPROM is blank"
     values = list(schema.DEFAULTS)
     for saves, limit in enumerate((1.0, 1.1, 1.1, 1.2)):
@@ -70,14 +70,14 @@ def test_the_board_counts_the_sets_that_were_stored(bench: Bench) -> None:
     assert status(bench).saves == 3
 
 
-def test_enabling_right_after_applying_works(bench: Bench) -> None:
+def test_enabling_right_after_applying_works(bench: BoardWithImage) -> None:
     bench.ask(schema.ParamApplyRequest, struct.pack("<H", schema.param_crc(schema.DEFAULTS)))
     bench.ask(schema.EnableRequest, struct.pack("<H", 0))
     bench.wait(1200)
     assert status(bench).state == schema.State.FOLLOWING
 
 
-def test_a_reset_while_the_motors_run_leaves_them_off(bench: Bench) -> None:
+def test_a_reset_while_the_motors_run_leaves_them_off(bench: BoardWithImage) -> None:
     apply(bench, UNWATCHED)  # its follower stays where it is
     bench.millivolts[0] += 300
     bench.board.set_millivolts(bench.millivolts)
@@ -91,7 +91,7 @@ def test_a_reset_while_the_motors_run_leaves_them_off(bench: Bench) -> None:
     assert status(bench).stop_reason == schema.StopReason.RESET
 
 
-def test_a_damaged_newest_set_is_a_fault_until_the_host_has_confirmed_one(bench: Bench) -> None:
+def test_a_damaged_newest_set_is_a_fault_until_the_host_has_confirmed_one(bench: BoardWithImage) -> None:
     values = list(schema.DEFAULTS)
     index = schema.PARAMETER_BY_NAME["joint1.motor_sign"].index
     for sign in (1, -1):
@@ -113,7 +113,7 @@ def test_a_damaged_newest_set_is_a_fault_until_the_host_has_confirmed_one(bench:
     assert schema.ClearFaultReply.unpack(bench.ask(schema.ClearFaultRequest)).state == schema.State.DISABLED
 
 
-def leader(bench: Bench) -> tuple[int, ...]:
+def leader(bench: BoardWithImage) -> tuple[int, ...]:
     """The leader's angles in the last sample of a tenth of a second."""
     bench.wait(100)
     frames_heard = frames.FrameDecoder().feed(bench.board.uart_receive())
@@ -121,7 +121,7 @@ def leader(bench: Bench) -> tuple[int, ...]:
     return schema.Sample.unpack(samples[-1].payload).leader
 
 
-def test_a_host_that_leads_costs_the_tick_nothing_and_delays_none(bench: Bench) -> None:
+def test_a_host_that_leads_costs_the_tick_nothing_and_delays_none(bench: BoardWithImage) -> None:
     bench.ask(schema.TelemetryRequest, struct.pack("<H", 1))
     bench.ask(schema.EnableRequest, struct.pack("<H", 0))
     bench.wait(1100)
@@ -149,4 +149,4 @@ def test_a_host_that_leads_costs_the_tick_nothing_and_delays_none(bench: Bench) 
 
 @pytest.mark.parametrize("name", BOARDS)
 def test_variables_and_the_deepest_stack_fit_one_and_a_half_kilobytes(name: str) -> None:
-    assert memory(name).value <= 1536
+    assert ram_of_a_life(name) <= 1536

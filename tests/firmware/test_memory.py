@@ -11,7 +11,7 @@ from greywhale.fuzzy.settings import JointSettings
 from greywhale.protocol import schema
 from tests.firmware.test_stop import enable, motors_on, status
 from tests.firmware.test_unrest import apply
-from tools.bench.bench_tick import CYCLES_PER_TICK, Bench
+from tools.support.board_with_image import CYCLES_PER_TICK, BoardWithImage
 
 FLIPS = 60
 LOOK_MS = 4.0  # at one joint after each tick
@@ -34,7 +34,7 @@ def coefficients(joint: int) -> bytes:
     return sides + struct.pack("<IH", found.integral, found.ku_mv)
 
 
-def watched(bench: Bench) -> list[tuple[int, int]]:
+def watched(bench: BoardWithImage) -> list[tuple[int, int]]:
     """Address and size of the running table (the staged one lies behind), each joint's coefficients and the limits."""
     start, _ = bench.ram
     memory = bench.board.peek(start, bench.statics)
@@ -47,7 +47,7 @@ def watched(bench: Bench) -> list[tuple[int, int]]:
     return [(start + memory.index(part), len(part)) for part in parts]
 
 
-def kept(bench: Bench) -> list[tuple[int, int]]:
+def kept(bench: BoardWithImage) -> list[tuple[int, int]]:
     """Address and size of what the pots' pass keeps of the running set: joint by joint its lines and limits; at last
     which pots there are (firmware/lib/app/src/signals_layout.h).
     """
@@ -64,11 +64,11 @@ def kept(bench: Bench) -> list[tuple[int, int]]:
     return [*places, (pots, 1)]
 
 
-def flip(bench: Bench, address: int) -> None:
+def flip(bench: BoardWithImage, address: int) -> None:
     bench.board.poke(address, bytes([bench.board.peek(address, 1)[0] ^ 1 << int(bench.random.integers(8))]))
 
 
-def ms_until_off(bench: Bench) -> float:
+def ms_until_off(bench: BoardWithImage) -> float:
     begun = bench.board.cycle
     while motors_on(bench) and bench.board.cycle - begun < 1000 * CYCLES_PER_TICK:
         bench.wait(0.25)
@@ -76,7 +76,7 @@ def ms_until_off(bench: Bench) -> float:
 
 
 @pytest.mark.slow
-def test_motors_are_off_soon_after_any_bit_of_the_running_set_has_flipped(bench: Bench) -> None:
+def test_motors_are_off_soon_after_any_bit_of_the_running_set_has_flipped(bench: BoardWithImage) -> None:
     parts = watched(bench)
     for trial in range(FLIPS):
         address, size = parts[trial % len(parts)]
@@ -91,7 +91,7 @@ def test_motors_are_off_soon_after_any_bit_of_the_running_set_has_flipped(bench:
 
 
 @pytest.mark.slow
-def test_motors_are_off_before_much_is_done_by_a_potentiometers_line_that_has_flipped(bench: Bench) -> None:
+def test_motors_are_off_before_much_is_done_by_a_potentiometers_line_that_has_flipped(bench: BoardWithImage) -> None:
     """Also by a flip in the note which potentiometers there are: a broken wire would not be seen any more."""
     places, mended = kept(bench), 0
     for trial in range(FLIPS):
@@ -112,7 +112,7 @@ def test_motors_are_off_before_much_is_done_by_a_potentiometers_line_that_has_fl
     assert mended <= 2
 
 
-def test_damaged_parameters_are_told_with_the_motors_off_as_well_until_a_set_is_applied(bench: Bench) -> None:
+def test_damaged_parameters_are_told_with_the_motors_off_as_well_until_a_set_is_applied(bench: BoardWithImage) -> None:
     address, _ = watched(bench)[1]
     flip(bench, address)
     bench.wait(2 * ROUND_MS)
@@ -125,7 +125,7 @@ def test_damaged_parameters_are_told_with_the_motors_off_as_well_until_a_set_is_
     assert motors_on(bench)
 
 
-def test_the_staged_set_is_not_looked_over(bench: Bench) -> None:
+def test_the_staged_set_is_not_looked_over(bench: BoardWithImage) -> None:
     running, size = watched(bench)[0]
     flip(bench, running + size)
     enable(bench)
@@ -133,7 +133,7 @@ def test_the_staged_set_is_not_looked_over(bench: Bench) -> None:
     assert motors_on(bench)
 
 
-def test_a_set_that_is_refused_or_saved_is_no_damage(bench: Bench) -> None:
+def test_a_set_that_is_refused_or_saved_is_no_damage(bench: BoardWithImage) -> None:
     index = schema.PARAMETER_BY_NAME["joint2.ze_c"].index
     values = list(schema.DEFAULTS)
     values[index] = 1  # narrower than any set may be

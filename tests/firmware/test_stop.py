@@ -11,7 +11,7 @@ import pytest
 from greywhale.board.device import STOP_REPEAT_S, stop_message
 from greywhale.protocol import frames, schema
 from greywhale_sim.line import Noise
-from tools.bench.bench_tick import CYCLES_PER_TICK, Bench
+from tools.support.board_with_image import CYCLES_PER_TICK, BoardWithImage
 
 ENABLE_PINS = {"atmega2560": ("H", 6), "atmega328p": ("B", 4)}
 OFF_MS = 30.0
@@ -45,15 +45,15 @@ def zeros(_: np.random.Generator, count: int) -> bytes:
     return bytes(count)
 
 
-def motors_on(bench: Bench) -> bool:
+def motors_on(bench: BoardWithImage) -> bool:
     return bool(bench.board.pin(*ENABLE_PINS[bench.board.chip]))
 
 
-def status(bench: Bench) -> schema.StatusReply:
+def status(bench: BoardWithImage) -> schema.StatusReply:
     return schema.StatusReply.unpack(bench.ask(schema.StatusRequest))
 
 
-def enable(bench: Bench) -> None:
+def enable(bench: BoardWithImage) -> None:
     bench.ask(schema.ClearFaultRequest)
     bench.ask(schema.EnableRequest, struct.pack("<H", 0))
     assert motors_on(bench)
@@ -62,7 +62,7 @@ def enable(bench: Bench) -> None:
 class Pour:
     """A flood that goes on piece by piece, at so many bytes a millisecond, whatever else is sent in between."""
 
-    def __init__(self, bench: Bench, kind: Flood, rate: int) -> None:
+    def __init__(self, bench: BoardWithImage, kind: Flood, rate: int) -> None:
         self.bench, self.rate = bench, rate
         self._bytes = kind(bench.random, 400 * rate)
         self._at = self._due = 0.0
@@ -88,7 +88,7 @@ class Pour:
 @pytest.mark.parametrize("rate", [16, 40, 48, 96])
 @pytest.mark.parametrize("kind", [garbage, requests, unfinished, too_long, zeros])
 def test_motors_are_off_soon_after_a_stop_inside_a_flood_or_after_the_line_is_lost(
-    bench: Bench, kind: Flood, rate: int
+    bench: BoardWithImage, kind: Flood, rate: int
 ) -> None:
     bench.ask(schema.TelemetryRequest, struct.pack("<H", 1))
     for _ in range(3):
@@ -112,7 +112,7 @@ def test_motors_are_off_soon_after_a_stop_inside_a_flood_or_after_the_line_is_lo
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("count", "lossless"), [(140, True), (200, False)])
-def test_a_short_burst_is_no_flood(bench: Bench, count: int, lossless: bool) -> None:
+def test_a_short_burst_is_no_flood(bench: BoardWithImage, count: int, lossless: bool) -> None:
     """What an honest host may send without waiting (140 bytes), and nearly half as much again, in all phases."""
     enable(bench)
     for _ in range(60):
@@ -125,7 +125,7 @@ def test_a_short_burst_is_no_flood(bench: Bench, count: int, lossless: bool) -> 
 
 
 @pytest.mark.slow
-def test_a_stop_acts_although_one_byte_in_twenty_is_damaged(bench: Bench) -> None:
+def test_a_stop_acts_although_one_byte_in_twenty_is_damaged(bench: BoardWithImage) -> None:
     line = Noise(seed=3)
     line.set("flip", 0.05)
     trials, late = 300, 0

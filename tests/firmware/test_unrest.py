@@ -9,14 +9,14 @@ import pytest
 
 from greywhale.protocol import schema
 from tests.firmware.test_stop import enable, motors_on, status
-from tools.bench.bench_tick import CYCLES_PER_TICK, Bench
+from tools.support.board_with_image import CYCLES_PER_TICK, BoardWithImage
 
 MILLIVOLTS_A_RAD = 5000.0 / np.deg2rad(300.0)
 FOLLOWER = 4  # the first of its pots
 PATIENCE_MS = 2500
 
 
-def shake(bench: Bench, pot: int, amplitude: float, hertz: float, leader: float = 0.0) -> float | None:
+def shake(bench: BoardWithImage, pot: int, amplitude: float, hertz: float, leader: float = 0.0) -> float | None:
     """Swing a follower's pot, and its leader's, by so many rad; the ms until the motors are off, if they go off."""
     phase, begun = bench.random.uniform(0, 2 * np.pi), bench.board.cycle
     bench.wait(bench.random.uniform(0, 200))
@@ -35,7 +35,7 @@ def shake(bench: Bench, pot: int, amplitude: float, hertz: float, leader: float 
 
 
 @pytest.mark.slow
-def test_a_hunting_joint_is_off_within_a_second_and_a_half_whenever_it_begins(bench: Bench) -> None:
+def test_a_hunting_joint_is_off_within_a_second_and_a_half_whenever_it_begins(bench: BoardWithImage) -> None:
     took = []
     for trial in range(12):
         bench.board.set_millivolts(bench.millivolts)
@@ -51,13 +51,13 @@ def test_a_hunting_joint_is_off_within_a_second_and_a_half_whenever_it_begins(be
     assert max(took) <= 1550
 
 
-def test_a_joint_that_swings_with_its_leader_keeps_its_motors(bench: Bench) -> None:
+def test_a_joint_that_swings_with_its_leader_keeps_its_motors(bench: BoardWithImage) -> None:
     enable(bench)
     assert shake(bench, FOLLOWER + 2, 0.05, 6.0, leader=-0.05) is None
     assert status(bench).fault is schema.Fault.NONE
 
 
-def apply(bench: Bench, name: str, raw: int) -> None:
+def apply(bench: BoardWithImage, name: str, raw: int) -> None:
     """Run the defaults with another value of one parameter."""
     values = list(schema.DEFAULTS)
     index = schema.PARAMETER_BY_NAME[name].index
@@ -68,7 +68,7 @@ def apply(bench: Bench, name: str, raw: int) -> None:
 
 
 @pytest.mark.slow
-def test_the_safe_set_takes_over_within_some_ticks_and_none_is_late(bench: Bench) -> None:
+def test_the_safe_set_takes_over_within_some_ticks_and_none_is_late(bench: BoardWithImage) -> None:
     apply(bench, "unrest_action", 1)
     enable(bench)
     assert shake(bench, FOLLOWER + 1, 0.05, 8.0) is not None
@@ -83,7 +83,7 @@ def test_the_safe_set_takes_over_within_some_ticks_and_none_is_late(bench: Bench
     assert status(bench).state is schema.State.FOLLOWING
 
 
-def test_looking_for_unrest_costs_the_tick_nothing(bench: Bench) -> None:
+def test_looking_for_unrest_costs_the_tick_nothing(bench: BoardWithImage) -> None:
     worst = []
     for amplitude in (0, 10):
         apply(bench, "unrest_amplitude", amplitude)

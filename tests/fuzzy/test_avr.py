@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from greywhale.fuzzy import twin
 from greywhale.fuzzy.settings import SET_UNIT, JointSettings
 from greywhale.protocol.schema import Refusal
-from tools.bench.fuzzy_on_board import FuzzyOnBoard
+from tools.support.fuzzy_on_board import FuzzyOnBoard
 
 Case = tuple[JointSettings, int]
 Points = Callable[[JointSettings, int, int], tuple[NDArray[np.int64], NDArray[np.int64]]]

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 from greywhale.fuzzy import exact, load_joints
 from greywhale.fuzzy.export_fis import export_fis, fis_text
 

@@ -10,10 +10,10 @@ import pytest
 from greywhale_sim._board import Board
 from tools.gates import stack, tick
 from tools.gates.__main__ import check
-from tools.timing import budget
-from tools.timing.cycles import MEGA, NANO, Chip
-from tools.timing.image import TARGETS, Target, Times, compiler
-from tools.timing.listing import ImageError, read_program
+from tools.gates.timing import budget
+from tools.gates.timing.cycles import MEGA, NANO, Chip
+from tools.gates.timing.image import TARGETS, Target, Times, compiler
+from tools.gates.timing.listing import ImageError, read_program
 
 TICK = "void firmware_tick()"
 FRAME = """
@@ -147,7 +147,7 @@ def test_a_bound_above_its_number_is_named() -> None:
     times = Times(tick=3000, interrupts={"byte sent": 60}, waking=4)
     committed = {"chip": {"tick": 3000, "byte sent": 59}}
     assert budget.complaints("chip", times, committed) == [
-        "the bound of byte sent is 60 cycles, 1 more than tools/timing/budget.toml allows."
+        "the bound of byte sent is 60 cycles, 1 more than tools/gates/timing/budget.toml allows."
     ]
 
 

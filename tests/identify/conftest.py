@@ -14,10 +14,11 @@ import pytest
 from greywhale.arm import ArmParameters
 from greywhale.files.arm import load_arm
 from greywhale.files.log import Log
+from greywhale.files.trajectory import Trajectory
 from greywhale.identify import Outcome, identify
-from greywhale.table import ParameterTable
-from greywhale.trajectory import Trajectory, human_reaches
-from tools.bench.recordings import Recorded, random_arm, record, record_three, table_of
+from greywhale.motion import human_reaches
+from greywhale.protocol.table import ParameterTable
+from tools.support.recordings import Recorded, random_arm, record, record_three, table_of
 
 HIDDEN_SEED = 2
 SECONDS = 10.0

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
+from greywhale.base.types import Floats
 from greywhale.files.arm import load_arm
-from greywhale.firmware import ANGLE_LSB
 from greywhale.identify.bootstrap import SYSTEMATIC, WIDENED, read_motion, spread_covariance
 from greywhale.identify.space import MOTOR, Space
+from greywhale.protocol.firmware import ANGLE_LSB
 
-Floats = npt.NDArray[np.float64]
 # Of these kinds, fits of known arms were off no more than the scatter shows.
 SPACE = Space.of(load_arm("default"), ("load", "creep"), range(4))
 UNIT = 1e-5  # far below what the arm file leaves open

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from greywhale.arm import ArmParameters
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 from greywhale.files.arm import load_arm
 from greywhale.files.log import Log
 from greywhale.files.log.check import Check
@@ -22,9 +22,9 @@ from greywhale.identify.controllers import table_of
 from greywhale.identify.data import prepare
 from greywhale.protocol import schema
 from greywhale.protocol.schema import Board
-from greywhale.table import ParameterTable
-from tools.bench.recordings import TABLES, Recorded
-from tools.bench.recordings import table_of as values_of
+from greywhale.protocol.table import ParameterTable
+from tools.support.recordings import TABLES, Recorded
+from tools.support.recordings import table_of as values_of
 
 
 def short(log: Log) -> Log:

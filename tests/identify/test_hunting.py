@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
+from greywhale.base.types import Floats
 from greywhale.identify.hunting import Swings, describe_difference, swings_of
 from greywhale.identify.judge import CHANGED, FIT, Following, Verdict, doubts_of
 
-Floats = npt.NDArray[np.float64]
 ROW_S = 5e-3
 TIME = np.arange(0.0, 20.0, ROW_S)
 REST = Swings((1e-3,) * 4, (0.0,) * 4, (False,) * 4)

@@ -11,18 +11,18 @@ import pytest
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import column
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 from greywhale.files.arm import load_arm
 from greywhale.files.log import Log
 from greywhale.files.log.condition import Condition
 from greywhale.identify import Outcome, identify
 from greywhale.identify.judge import CHANGED, FIT, SECOND, Verdict, judge, warnings_of
-from greywhale.loop import plant_row
-from greywhale.table import ParameterTable
-from greywhale.trajectory import human_reaches
+from greywhale.motion import human_reaches
+from greywhale.protocol.table import ParameterTable
+from greywhale.simulate import plant_row
 from greywhale.tune.model import load_model
 from tests.identify.conftest import alone
-from tools.bench.recordings import Recorded, record
+from tools.support.recordings import Recorded, record
 
 
 @pytest.mark.slow

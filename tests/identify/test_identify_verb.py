@@ -11,7 +11,7 @@ from greywhale.cli import identify as verb
 from greywhale.cli.entry import run
 from greywhale.files.arm import load_arm
 from greywhale.identify import Outcome
-from tools.bench.recordings import TABLES, Recorded
+from tools.support.recordings import TABLES, Recorded
 
 
 @pytest.fixture

@@ -11,9 +11,9 @@ from greywhale.arm.from_plant import arm_of
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.identify.data import prepare
 from greywhale.identify.noise import pot_noise
-from greywhale.loop import plant_row
-from greywhale.trajectory import human_reaches
-from tools.bench.recordings import random_arm, record, table_of
+from greywhale.motion import human_reaches
+from greywhale.simulate import plant_row
+from tools.support.recordings import random_arm, record, table_of
 
 
 @pytest.mark.parametrize(("every", "low"), [(1, 0.9), (4, 0.75)])

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from greywhale.arm import ArmParameters
+from greywhale.base.errors import UserError
 from greywhale.cli.entry import run
-from greywhale.errors import UserError
 from greywhale.files.log import Log
 from greywhale.identify import identify
 from greywhale.identify.overlap import shares_samples
-from tools.bench.recordings import Recorded
+from tools.support.recordings import Recorded
 
 QUANTITIES = ("time", "leader", "follower", "voltage", "state")
 

@@ -6,19 +6,20 @@ import numpy as np
 import pytest
 
 from greywhale.arm import ArmParameters
+from greywhale.base.types import show_no_progress
 from greywhale.files.arm import load_arm
 from greywhale.identify import paper
 from greywhale.identify.closed_loop import Loop
 from greywhale.identify.data import prepare
 from greywhale.identify.identification import identify
-from greywhale.loop import plant_row
-from greywhale.table import ParameterTable
-from tools.bench.recordings import Recorded
+from greywhale.protocol.table import ParameterTable
+from greywhale.simulate import plant_row
+from tools.support.recordings import Recorded
 
 
 def test_table_4_gives_the_papers_arms(recorded: Recorded, white_box: ArmParameters) -> None:
     """The 20 values of either column of Table 4, through the search's own equations, are the shipped arms."""
-    search = paper.PaperSearch(white_box, [], 0, lambda what, share: None)
+    search = paper.PaperSearch(white_box, [], 0, show_no_progress)
     for name in ("white_box", "grey_box"):
         arm = load_arm(name)
         x = np.array([[getattr(joint.motor, value) for joint in arm.joint for value in paper.VALUES]])

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from greywhale.drawing import looks
-from greywhale.drawing.page import style
 from greywhale.identify import pictures
-from greywhale.trajectory import multi_steps
-from tests.drawing.sight import faults
+from greywhale.motion import multi_steps
+from greywhale.pictures import looks
+from greywhale.pictures.page import style
+from tests.pictures.sight import faults
 
 
 def responses(begun: str = "white box", joints: tuple[int, ...] = (0, 1, 2, 3)) -> Figure:

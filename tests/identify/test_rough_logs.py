@@ -10,16 +10,16 @@ import pytest
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.parameters import Drive
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 from greywhale.files.arm import load_arm
 from greywhale.files.log import Log
 from greywhale.identify import Outcome, identify
 from greywhale.identify.checks import check
 from greywhale.identify.data import LONGEST_GAP_S, prepare, windows_of
-from greywhale.table import ParameterTable
-from greywhale.trajectory import human_reaches, multi_steps
+from greywhale.motion import human_reaches, multi_steps
+from greywhale.protocol.table import ParameterTable
 from tests.identify.conftest import alone
-from tools.bench.recordings import Recorded, record
+from tools.support.recordings import Recorded, record
 
 WEAK_V = 5.0
 

@@ -9,12 +9,12 @@ import pytest
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import check_plants, column
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 from greywhale.files.arm import load_arm
 from greywhale.identify import Outcome, sampled_plants
 from greywhale.identify.found import Rival
 from greywhale.identify.space import KINDS, Space
-from greywhale.loop import plant_row
+from greywhale.simulate import plant_row
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tools.bench.recordings import TABLES, Recorded
+from tools.support.recordings import TABLES, Recorded
 
 WATCHED = """
 import json, sys

@@ -10,9 +10,9 @@ from greywhale.arm.from_plant import arm_of
 from greywhale.arm.plants import column, columns
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.files.model import to_toml
-from greywhale.firmware import JOINTS
 from greywhale.identify.space import KINDS, MOTOR, WHOLE_ARM, Space
-from greywhale.loop import plant_row
+from greywhale.protocol.firmware import JOINTS
+from greywhale.simulate import plant_row
 
 ALL = tuple(KINDS)
 

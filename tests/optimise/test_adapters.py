@@ -8,12 +8,11 @@ import threading
 import cma
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from scipy.optimize import differential_evolution
 
+from greywhale.base.types import Floats
 from greywhale.optimise import create, minimise
 
-Floats = NDArray[np.float64]
 LOWER, UPPER = np.array([-2.0, -1.0, 0.0, 3.0]), np.array([2.0, 4.0, 1.0, 9.0])
 
 

@@ -13,14 +13,14 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
-from greywhale.drawing.page import style
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
+from greywhale.base.study import LocalWorkers
 from greywhale.optimise.comparison import Comparison, Duel, Plan, compare, run_once
 from greywhale.optimise.comparison_report import as_dict, plot_ranks, statement, text, write_report
 from greywhale.optimise.functions import SETTINGS
 from greywhale.optimise.methods import METHODS
-from greywhale.study import LocalWorkers
-from tests.drawing.sight import faults
+from greywhale.pictures.page import style
+from tests.pictures.sight import faults
 
 SMALL = Plan(("sphere", "ackley"), SETTINGS, ("gwo-woa", "de", "cma-es"), dimensions=3, budget=60, runs=4, seed=7)
 
@@ -41,7 +41,7 @@ def test_processes_change_nothing_and_progress_ends_at_one(small: Comparison) ->
 
 ENDLESS = """
 from greywhale.optimise.comparison import Plan, compare
-from greywhale.study import LocalWorkers
+from greywhale.base.study import LocalWorkers
 if __name__ == "__main__":
     plan = Plan(("sphere",), ("shifted",), ("pso",), dimensions=2, budget=3000, runs=100_000)
     compare(plan, LocalWorkers(2), lambda what, fraction: print(fraction, flush=True))

@@ -6,11 +6,9 @@ import math
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from greywhale.optimise.functions import FUNCTIONS, SETTINGS, Setting, place
 
-Floats = NDArray[np.float64]
 EVERY = pytest.mark.parametrize("name", list(FUNCTIONS))
 
 

@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
+from greywhale.base.types import Floats
 from greywhale.optimise import METHODS, minimise
 from greywhale.optimise.functions import FUNCTIONS
 
-Floats = NDArray[np.float64]
 LOWER, UPPER = np.full(5, -4.0), np.full(5, 4.0)
 MINIMUM = np.array([0.5, -1.25, 2.0, 0.0, 3.0])
 BOUND_TO_THE_ORIGIN = ("gwo", "gwo-woa", "gwo-woa-printed", "woa")

@@ -10,11 +10,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
+from greywhale.base.types import Floats
 from greywhale.optimise import METHODS, Step, create, mapped, minimise
 
-Floats = NDArray[np.float64]
 EVERY = pytest.mark.parametrize("method", list(METHODS))
 LOWER, UPPER = np.array([-3.0, 0.5, -100.0]), np.array([2.0, 0.75, 40.0])
 AT = np.array([1.0, 0.6, -20.0])

@@ -7,12 +7,13 @@ import math
 import numpy as np
 import pytest
 
+from greywhale.base.types import Floats
 from greywhale.optimise import Box
 from greywhale.optimise.grey_wolf import Draw, GreyWolf, GreyWolfWhale, GreyWolfWhaleAsPrinted, alpha_factor, hunt
 from greywhale.optimise.relative import RelativeWolfWhale
 from greywhale.optimise.swarm import Swarm, steer
 from greywhale.optimise.whale import Whale, swim
-from tests.optimise.scripted import Floats, Scripted
+from tests.optimise.scripted import Scripted
 
 BOX = Box([-10.0], [10.0])
 

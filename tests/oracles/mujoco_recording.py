@@ -16,10 +16,10 @@ from greywhale.arm import ArmParameters
 from greywhale.arm.export import mjcf
 from greywhale.files.log import Log, LogWriter, read_log
 from greywhale.files.log.layout import Origin
-from greywhale.firmware import ANGLE_LSB, JOINTS
+from greywhale.files.trajectory import Trajectory
 from greywhale.fuzzy.settings import JointSettings
-from greywhale.table import ParameterTable
-from greywhale.trajectory import Trajectory
+from greywhale.protocol.firmware import ANGLE_LSB, JOINTS
+from greywhale.protocol.table import ParameterTable
 
 STEP_S = 1e-4
 STEPS = 10  # of MuJoCo in a tick of 1 ms

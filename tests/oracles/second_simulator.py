@@ -16,8 +16,8 @@ from greywhale.protocol import frames, schema
 from greywhale.protocol.declared import Message
 from greywhale_sim._board import Board
 from greywhale_sim.wiring import NANO
+from tools import ROOT
 
-ROOT = Path(__file__).parents[2]
 IMAGE = ROOT / "firmware/.pio/build" / NANO.environment / "firmware.hex"
 SCRIPTS = Path(__file__).parent / "avr8js"
 NODE = {**os.environ, "NODE_PATH": str(ROOT / "build/avr8js/node_modules")}

@@ -18,15 +18,15 @@ from greywhale import _native
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import column, columns
 from greywhale.files.arm import default_arm, load_arm
-from greywhale.loop import CONTROLLER_COLUMNS, PLANT_COLUMNS, Experiment, Timing, plant_row
-from greywhale.loop.leader import leader_slices
+from greywhale.motion import human_reaches
 from greywhale.protocol.schema import Board
-from greywhale.table import ParameterTable
-from greywhale.trajectory import human_reaches
+from greywhale.protocol.table import ParameterTable
+from greywhale.simulate import CONTROLLER_COLUMNS, PLANT_COLUMNS, Experiment, Timing, plant_row
+from greywhale.simulate.leader import leader_slices
 from tests.identify.test_windows import arguments as windows_of_test
-from tests.loop.test_batch import search_box
-from tests.loop.test_law_in_lanes import LANES, random_angles, random_controllers
 from tests.oracles.native_calls import Calls, array, read, wholes, written
+from tests.simulate.test_batch import search_box
+from tests.simulate.test_law_in_lanes import LANES, random_angles, random_controllers
 
 SOURCE = Path(__file__).with_name("aarch64")
 BUILD = Path(__file__).parents[2] / "build" / "oracles" / "aarch64"

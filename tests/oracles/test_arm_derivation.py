@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import runpy
-from pathlib import Path
 
 import pytest
 
-SCRIPT = Path(__file__).parents[2] / "docs" / "derivation" / "arm.py"
+from tools import ROOT
+
+SCRIPT = ROOT / "docs" / "derivation" / "arm.py"
 
 
 def test_closed_form_equals_the_derivation(capsys: pytest.CaptureFixture[str]) -> None:

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from greywhale.commission.judge import KEPT_SHARE, MOST_UNREST
-from greywhale.trajectory import human_reaches, multi_steps
-from tools.bench.bench_commission import Commissioned, commissioned
+from greywhale.motion import human_reaches, multi_steps
+from tools.support.commissioned import Commissioned, commissioned
 
 SEED = 2
 BUDGET, TRIALS = 400, 2  # a small share of the usual effort

@@ -9,10 +9,11 @@ from scipy.optimize import lsq_linear, minimize
 
 from greywhale import _native
 from greywhale.arm.plants import column
+from greywhale.base.types import Floats
 from greywhale.files.arm import default_arm, load_arm
-from greywhale.loop import PLANT_COLUMNS, leader_slices, plant_row
-from greywhale.trajectory import steps
-from greywhale.tune.judge.floor import Floats, saturation_floor
+from greywhale.motion import steps
+from greywhale.simulate import PLANT_COLUMNS, leader_slices, plant_row
+from greywhale.tune.judge.floor import saturation_floor
 
 SLICE_S = 250e-6
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tools.bench.fuzzy_search import Random
+from tools.support.fuzzy_search import Random
 
 SOURCES = Path(__file__).parents[2] / "firmware/lib/fuzzy_pdi/src"
 DRIVER = Path(__file__).with_name("fuzzy_cortex_m0.cpp")

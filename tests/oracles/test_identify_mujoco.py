@@ -14,8 +14,8 @@ from mujoco_recording import record
 from greywhale.arm import ArmParameters
 from greywhale.files.arm import load_arm
 from greywhale.identify import Outcome, identify
-from greywhale.trajectory import human_reaches
-from tools.bench.recordings import random_arm, table_of
+from greywhale.motion import human_reaches
+from tools.support.recordings import random_arm, table_of
 
 SECONDS = 15.0
 NAMES = ("before_tuning", "table_10")

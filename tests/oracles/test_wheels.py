@@ -19,13 +19,12 @@ from pathlib import Path
 import pytest
 
 from greywhale.board.flash.targets import BOARDS
+from greywhale.cli.story import BenchProcess
 from greywhale.cli.verbs import VERBS
-from greywhale.demo import BenchProcess
-from tools import dist
+from tools import ROOT, dist
 from tools.oracles.wheelhouse import WHEELHOUSE
 from tools.setup import platformio
 
-ROOT = Path(__file__).resolve().parents[2]
 CONTROLLERS = {"before_tuning", "table_8", "table_9", "table_10"}
 pytestmark = pytest.mark.timeout(1200)  # of which building the extensions takes the most
 

@@ -13,8 +13,8 @@ import greywhale
 from greywhale.board.flash.images import read_image
 from greywhale.board.flash.targets import BOARDS
 from greywhale.protocol import schema
+from tools import ROOT
 
-ROOT = Path(__file__).resolve().parents[2]
 BUILD = ROOT / "firmware" / ".pio" / "build"
 PARTS = ("src", "lib", "platformio.ini", "image_record.py", "source_digest.py", "strict_warnings.py")
 

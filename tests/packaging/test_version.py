@@ -13,9 +13,8 @@ from click.testing import CliRunner
 
 import greywhale
 from greywhale.cli.verbs import greywhale as command_line
-from tools import version
-
-ROOT = Path(__file__).resolve().parents[2]
+from tools import ROOT
+from tools.generate import version
 
 
 @pytest.fixture

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
+from tools import ROOT
+
 _SOURCES = [
     "firmware/lib/link/src/link/frame.cpp",
     "firmware/lib/params/src/params/params.cpp",

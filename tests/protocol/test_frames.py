@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 from greywhale.protocol.frames import CRC_START, MAX_WIRE, Frame, FrameDecoder, decode_frame, encode_frame
 from greywhale.protocol.schema import MAX_PAYLOAD
 

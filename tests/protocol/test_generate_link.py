@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from .conftest import ROOT
+from tools import ROOT
 
 GENERATED = [
     "firmware/lib/link/src/link/schema.h",
@@ -24,7 +24,7 @@ GENERATED = [
 
 
 def generate(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, ROOT / "tools/generate_link.py", *arguments]
+    command = [sys.executable, "-m", "tools.generate.link", *arguments]
     return subprocess.run(command, capture_output=True, text=True, check=False)
 
 
@@ -57,7 +57,7 @@ def test_each_stale_or_missing_file_is_named(copy: Path) -> None:
     (copy / missing).unlink()
     result = generate("--check", "--root", copy)
     assert result.returncode == 1
-    told = [f"{path} does not match shared/link; run `python tools/generate_link.py`." for path in GENERATED]
+    told = [f"{path} does not match shared/link; run `python -m tools.generate.link`." for path in GENERATED]
     assert sorted(result.stderr.splitlines()) == sorted(told)
     assert sorted(generate("--root", copy).stdout.splitlines()) == sorted(f"wrote {path}" for path in GENERATED)
     assert generate("--check", "--root", copy).returncode == 0

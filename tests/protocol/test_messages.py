@@ -14,8 +14,7 @@ from hypothesis import strategies as st
 from greywhale.protocol import schema
 from greywhale.protocol.declared import Described, Message, MessageError
 from greywhale.protocol.frames import encode_frame
-
-from .conftest import ROOT
+from tools import ROOT
 
 if TYPE_CHECKING:
     from .conftest import Firmware

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 from greywhale.protocol.declared import Parameter
 from greywhale.protocol.schema import (
     DEFAULTS,
@@ -22,8 +22,7 @@ from greywhale.protocol.schema import (
     param_crc,
     unpack_parameters,
 )
-
-from .conftest import ROOT
+from tools import ROOT
 
 if TYPE_CHECKING:
     from .conftest import Firmware

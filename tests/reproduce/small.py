@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
-from greywhale.drawing import page
+from greywhale.motion import multi_steps, steps
+from greywhale.pictures import page
 from greywhale.reproduce.work import errata, findings, on_the_bench, optimisers
 from greywhale.reproduce.work.motions import MOTIONS
-from greywhale.trajectory import multi_steps, steps
 
 METHODS = ("gwo-woa", "gwo", "woa", "pso")
 BUDGET = 40

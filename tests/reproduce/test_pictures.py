@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from greywhale.drawing import looks
-from greywhale.drawing.page import style
+from greywhale.motion import multi_steps
+from greywhale.pictures import looks
+from greywhale.pictures.page import style
 from greywhale.reproduce.pages.optimisers import SAID
 from greywhale.reproduce.pictures import curves, diagrams
 from greywhale.reproduce.pictures.curves import Trace
 from greywhale.reproduce.work.motions import printed
-from greywhale.trajectory import multi_steps
-from tests.drawing.sight import faults
+from tests.pictures.sight import faults
 
 Draw = Callable[[], Any]
 

@@ -9,7 +9,7 @@ import matplotlib.pyplot as plt
 import pytest
 from reportlab.pdfbase import pdfmetrics
 
-from greywhale.drawing.page import png
+from greywhale.pictures.page import png
 from greywhale.reproduce.pages import law, system
 from greywhale.reproduce.pages.document import Chapter, Code, Document, Entry, Picture, Row, Status, sheet, words
 from greywhale.reproduce.pages.numbers import one, percent, several

@@ -10,6 +10,7 @@ import matplotlib.pyplot as plt
 import pytest
 from matplotlib.figure import Figure
 
+from greywhale.base.study import choose_workers
 from greywhale.cli import entry
 from greywhale.cli.verbs import VERBS
 from greywhale.reproduce.pages.found import Found
@@ -17,7 +18,6 @@ from greywhale.reproduce.pages.report import document
 from greywhale.reproduce.pictures import curves, diagrams
 from greywhale.reproduce.request import Request
 from greywhale.reproduce.run import run
-from greywhale.study import choose_workers
 from tests.reproduce.small import shrink
 
 LABELS = {f"Table {number}" for number in range(1, 13)} | {f"Fig. {number}" for number in range(1, 21)}

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 from greywhale.reproduce.request import Request
 from greywhale.reproduce.run import results_file
 from greywhale.reproduce.tasks import tasks_of

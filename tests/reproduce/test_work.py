@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from greywhale.motion import human_reaches, steps
 from greywhale.reproduce.work import bench, errata, findings, grey_box
 from greywhale.reproduce.work.motions import PERIOD_MS, printed
-from greywhale.trajectory import human_reaches, steps
 
 
 def test_corrected_equations_neither_gain_energy_nor_move_otherwise() -> None:

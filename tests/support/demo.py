@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from greywhale.board import flash
-from greywhale.demo import story
+from greywhale.cli.story import story
 from greywhale_sim.words import lock_step
 
 

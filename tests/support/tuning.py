@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-from greywhale.trajectory import human_reaches
+from greywhale.motion import human_reaches
 from greywhale.tune import default
 from greywhale.tune.judge import held_out
 from greywhale.tune.judge.margins import REST_S, Margins

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from greywhale.loop import default_controller
-from greywhale.trajectory import Trajectory
+from greywhale.files.trajectory import Trajectory
+from greywhale.simulate import default_controller
 from greywhale.tune.judge.floor import Floor
 from greywhale.tune.judge.held_out import HeldOut
 from greywhale.tune.judge.margins import Margin

@@ -11,10 +11,10 @@ import numpy as np
 from greywhale.arm import ArmParameters
 from greywhale.files.arm import default_arm
 from greywhale.files.model import sealed, to_toml
-from greywhale.firmware import JOINTS
 from greywhale.identify.space import KINDS, Space
-from greywhale.measure import Evaluation
-from greywhale.measure.evaluate import JointMeasures
+from greywhale.motion import Evaluation
+from greywhale.motion.evaluate import JointMeasures
+from greywhale.protocol.firmware import JOINTS
 
 SEARCHED = ("alpha", "inertia", "damping", "coulomb")
 

@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 
 from greywhale.arm import ArmParameters
-from greywhale.errors import BAD_USAGE, FAILED, UserError
+from greywhale.base.errors import BAD_USAGE, FAILED, UserError
 from greywhale.files import parameter_file
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.files.model import to_toml
 from greywhale.identify import sampled_plants
-from greywhale.loop import default_controller, plant_row
-from greywhale.table import ParameterTable
+from greywhale.protocol.table import ParameterTable
+from greywhale.simulate import default_controller, plant_row
 from greywhale.tune.model import load_model
 from tests.tune.models import facts_of, log_facts, write_model
 

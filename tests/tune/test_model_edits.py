@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 from greywhale.arm import ArmParameters
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
+from greywhale.base.formats import toml_file
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.files.model import to_toml
-from greywhale.formats import toml_file
 from greywhale.tune.model import load_model
 from greywhale.tune.model_checks import identification_of
 from greywhale.tune.model_edits import UNSEALED, doubt_edits

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from greywhale.arm.plants import column
-from greywhale.loop import Experiment, default_controller
-from greywhale.trajectory import multi_steps, steps
+from greywhale.motion import multi_steps, steps
+from greywhale.simulate import Experiment, default_controller
 from greywhale.tune import Outcome, tune
 from greywhale.tune.model import Model, load_model
 from greywhale.tune.paper import AGENTS, BUDGET, ITERATIONS, Loops, move_one_joint, time_since_step

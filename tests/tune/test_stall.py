@@ -9,7 +9,7 @@ import pytest
 
 from greywhale.arm import ArmParameters
 from greywhale.files.arm import default_arm, load_arm
-from greywhale.table import ParameterTable
+from greywhale.protocol.table import ParameterTable
 from greywhale.tune.model import load_model
 from greywhale.tune.stall import LEAST_MARGIN, LEAST_V, MOST_OF_SUPPLY, StallLimit, stall_limit
 from tests.tune.models import write_model

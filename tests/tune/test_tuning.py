@@ -12,17 +12,17 @@ import numpy as np
 import pytest
 
 from greywhale.arm.parameters import USUAL_NOISE_V, with_usual_noise
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
+from greywhale.base.types import show_no_progress
 from greywhale.fuzzy.settings import JointSettings
-from greywhale.loop import plant_row
 from greywhale.optimise import METHODS as OPTIMISERS
 from greywhale.protocol.schema import PARAMETER_BY_NAME, Refusal
-from greywhale.table import CONTROLLER_COLUMNS, ParameterTable, physical
+from greywhale.protocol.table import CONTROLLER_COLUMNS, ParameterTable, physical
+from greywhale.simulate import plant_row
 from greywhale.tune import METHODS, Outcome, check_request, default, tune
 from greywhale.tune.default import KU, WEAKER, DefaultMethod
 from greywhale.tune.method import Task
 from greywhale.tune.model import Model, load_model
-from greywhale.tune.progress import report_nothing
 from greywhale.tune.search import lockstep as search
 from greywhale.tune.search.lockstep import KEPT
 from greywhale.tune.search.objective import Objective
@@ -238,7 +238,7 @@ def test_where_the_arm_itself_will_judge_unrest_on_the_model_counts_less(
     model: Model, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(default, "penalty", lambda unrest: np.ones((1, 4)))
-    task = Task(model, "both", "default", 1, 0, 1, model.controllers, {}, report_nothing, floors=False)
+    task = Task(model, "both", "default", 1, 0, 1, model.controllers, {}, show_no_progress, floors=False)
     rows = model.controllers[None]
     usual = DefaultMethod(task).judge_costs(rows)
     on_trial = DefaultMethod(replace(task, on_trial=True)).judge_costs(rows)

@@ -9,8 +9,9 @@ import argparse
 import sys
 from pathlib import Path
 
+from tools import ROOT
 from tools.docs.links import links, pages
-from tools.docs.site import ROOT, SITE, build
+from tools.docs.site import SITE, build
 
 
 def main() -> int:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 from typing import Any
 
 from jsonschema import Draft202012Validator
 
-SCHEMAS = Path(__file__).resolve().parents[2] / "docs" / "schemas"
+from tools import ROOT
+
+SCHEMAS = ROOT / "docs" / "schemas"
 
 
 def schema_name(verb: str) -> str:

@@ -8,7 +8,8 @@ from pathlib import Path
 
 from sphinx.cmd.build import build_main
 
-ROOT = Path(__file__).resolve().parents[2]
+from tools import ROOT
+
 SITE = ROOT / "build" / "site"
 
 

@@ -10,9 +10,9 @@ import sys
 from pathlib import Path
 
 from tools.gates import stack, tick
-from tools.timing import budget
-from tools.timing.image import TARGETS, Target, compiler, is_described, times
-from tools.timing.listing import ImageError, read_program
+from tools.gates.timing import budget
+from tools.gates.timing.image import TARGETS, Target, compiler, is_described, times
+from tools.gates.timing.listing import ImageError, read_program
 
 
 def check(elf: Path, target: Target) -> list[str]:

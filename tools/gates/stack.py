@@ -7,10 +7,10 @@ from pathlib import Path
 
 from elftools.elf.elffile import ELFFile
 
-from tools.timing import tables
-from tools.timing.cycles import Chip
-from tools.timing.graph import Graph, build
-from tools.timing.listing import ImageError, Instruction, Program, read_program
+from tools.gates.timing import tables
+from tools.gates.timing.cycles import Chip
+from tools.gates.timing.graph import Graph, build
+from tools.gates.timing.listing import ImageError, Instruction, Program, read_program
 
 DATA_SPACE = 0x800000
 STACK_POINTER_LOW, STACK_POINTER_HIGH = "0x3d", "0x3e"

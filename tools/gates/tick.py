@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 
-from tools.timing.cycles import NANO
-from tools.timing.graph import build
-from tools.timing.listing import ImageError, Program
+from tools.gates.timing.cycles import NANO
+from tools.gates.timing.graph import build
+from tools.gates.timing.listing import ImageError, Program
 
 TICK = "firmware_tick"
 FORBIDDEN = {

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import sys
 
+from tools import ROOT
 from tools.oracles import node, wheelhouse
 from tools.setup import debian, stamps, venv
-from tools.setup.console import ROOT, SetupError, say
+from tools.setup.console import SetupError, say
 
 DEBIAN = (
     "octave",  # the fuzzy law as others evaluate it

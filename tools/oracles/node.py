@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import shutil
 
+from tools import ROOT
 from tools.setup import debian, stamps
-from tools.setup.console import ROOT, run, say
+from tools.setup.console import run, say
 
 PINNED = [ROOT / "tests/oracles/avr8js" / name for name in ("package.json", "package-lock.json")]
 PLACE = ROOT / "build" / "avr8js"

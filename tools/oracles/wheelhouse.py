@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import shutil
 
-from tools import lock
+from tools import ROOT, lock
 from tools.setup import stamps, venv
-from tools.setup.console import ROOT, run, say
+from tools.setup.console import run, say
 
 WHEELHOUSE = ROOT / "build" / "wheelhouse"
 VERSIONS = ROOT / "build" / "versions.txt"

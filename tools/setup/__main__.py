@@ -10,11 +10,13 @@ import fcntl
 import sys
 import time
 
+from tools import ROOT
+
 if sys.version_info < (3, 11):  # noqa: UP036 (an older Python is what this is about)
     sys.exit(f"greywhale needs Python 3.11 or newer, but {sys.executable} is {sys.version.split()[0]}.")
 
 from tools.setup import debian, extensions, firmware, platformio, venv
-from tools.setup.console import ROOT, SetupError, say
+from tools.setup.console import SetupError, say
 
 STEPS = (debian.step, venv.step, platformio.step, extensions.step, firmware.step)
 

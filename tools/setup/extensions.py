@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from tools import ROOT
 from tools.setup import stamps, venv
-from tools.setup.console import ROOT, say
+from tools.setup.console import say
 
 SHARED = ("requirements.txt", "LICENSE")
 NATIVE = ("pyproject.toml", "host/native", "sim/arm", "firmware/lib/fuzzy_pdi", "firmware/lib/signal_chain")
 BOARD = ("sim/pyproject.toml", "sim/CMakeLists.txt", "sim/board")
-STUDY = ("tools/studies/one_joint/native", "sim/arm", "host/native/share_out.h")
+STUDY = ("studies/one_joint/native", "sim/arm", "host/native/share_out.h")
 
 
 def install(name: str, place: str, stub: str, sources: tuple[str, ...], modules: str | None = None) -> None:
@@ -26,5 +27,5 @@ def step(checks: bool) -> None:
     install("greywhale", ".", "host/src/greywhale/_native.pyi", NATIVE, "host/src/greywhale")
     install("greywhale-sim", "sim", "sim/bench/greywhale_sim/_board.pyi", BOARD, "sim/bench/greywhale_sim")
     if checks:
-        native = "tools/studies/one_joint/native"
+        native = "studies/one_joint/native"
         install("one_joint_native", native, f"{native}/one_joint_native.pyi", STUDY)

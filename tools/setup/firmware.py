@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from tools import ROOT
 from tools.setup import platformio, stamps, venv
-from tools.setup.console import ROOT, run, say
+from tools.setup.console import run, say
 
 BOARDS = ("megaatmega2560", "nanoatmega328")
 BUILD = ROOT / "firmware" / ".pio" / "build"

@@ -8,8 +8,9 @@ import urllib.error
 import urllib.request
 from pathlib import Path
 
+from tools import ROOT
 from tools.setup import debian, stamps, venv
-from tools.setup.console import ROOT, run, say
+from tools.setup.console import run, say
 
 CORE = ROOT / "build" / "platformio"
 FINISHED = CORE / "assembled"

@@ -7,7 +7,7 @@ import shutil
 from collections.abc import Iterable
 from pathlib import Path
 
-from tools.setup.console import ROOT
+from tools import ROOT
 
 STAMPS = ROOT / "build" / "stamps"
 SKIPPED = {"__pycache__", ".pio", ".pytest_cache"}

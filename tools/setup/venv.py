@@ -7,8 +7,9 @@ import subprocess
 import sys
 from pathlib import Path
 
+from tools import ROOT
 from tools.setup import stamps
-from tools.setup.console import ROOT, run, say
+from tools.setup.console import run, say
 
 VENV = ROOT / ".venv"
 PYTHON = VENV / "bin" / "python"

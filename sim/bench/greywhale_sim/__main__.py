@@ -7,7 +7,7 @@ if __name__ == "__main__" and not sys.flags.safe_path:
 
 import json
 
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 from greywhale_sim.mistakes import listed
 from greywhale_sim.serve import serve
 from greywhale_sim.words import read

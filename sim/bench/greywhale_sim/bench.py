@@ -13,19 +13,17 @@ from collections.abc import Callable
 from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 
 from greywhale import arm
-from greywhale.errors import UserError
-from greywhale.joints import ALL, Joints
+from greywhale.base.errors import UserError
+from greywhale.base.types import Floats
+from greywhale.protocol.joints import ALL, Joints
 from greywhale_sim.board_supply import SharedSupply
 from greywhale_sim.drivers import CHIPS, OPEN, Bridge, Chip, Pins, mean_volts
 from greywhale_sim.leader import LeaderPlayer
 from greywhale_sim.lies import Lies
 from greywhale_sim.pins_seen import PinsSeen
 from greywhale_sim.wiring import Wiring
-
-Array = npt.NDArray[np.float64]
 
 CLOCK_HZ = 16_000_000
 SLICE_CYCLES = 4000
@@ -47,8 +45,8 @@ class Board(Protocol):
     def add_pin_output(self, port: str, bit: int) -> int: ...
     def hold_pin(self, port: str, bit: int, high: bool) -> None: ...
     def let_pin_go(self, port: str, bit: int) -> None: ...
-    def outputs(self) -> Array: ...
-    def set_millivolts(self, millivolts: Array) -> None: ...
+    def outputs(self) -> Floats: ...
+    def set_millivolts(self, millivolts: Floats) -> None: ...
     def set_floating(self, inputs: int) -> None: ...
     def set_supply(self, millivolts: int, seed: int = 1) -> None: ...
     def run_until(self, cycle: int) -> int: ...
@@ -57,13 +55,13 @@ class Board(Protocol):
 class Plant(Protocol):
     """The follower arm: any object that turns four motor voltages into four joint angles after `dt` seconds."""
 
-    def step(self, voltages: Array, dt: float) -> Array: ...
+    def step(self, voltages: Floats, dt: float) -> Floats: ...
 
 
 class Potentiometers(Protocol):
     """Four angles in rad to four voltages in mV, written into `out`."""
 
-    def millivolts(self, angles: Array, out: Array) -> Array: ...
+    def millivolts(self, angles: Floats, out: Floats) -> Floats: ...
 
 
 class CrashError(UserError):
@@ -71,7 +69,7 @@ class CrashError(UserError):
 
 
 # Called after every slice: cycle reached, pins at its beginning, follower's angles. The arrays are reused.
-Trace = Callable[[int, Array, Array], None]
+Trace = Callable[[int, Floats, Floats], None]
 
 
 class Bench:
@@ -87,13 +85,13 @@ class Bench:
         follower_pots: Potentiometers,
         supply_v: float,
         chip: Chip = CHIPS["drv8838"],
-        emf: Array | None = None,  # V s of each motor at its output shaft; needed where a chip lets motors coast
+        emf: Floats | None = None,  # V s of each motor at its output shaft; needed where a chip lets motors coast
         joints: Joints = ALL,  # in use; the others have no potentiometers and no motor
     ) -> None:
         self.board = board
         self.wiring = wiring
         self.chip = chip
-        self.emf: Array = np.zeros(4) if emf is None else emf
+        self.emf: Floats = np.zeros(4) if emf is None else emf
         self.estop_pressed = False
         self.lies = Lies()
         self.joints = joints
@@ -109,8 +107,8 @@ class Bench:
         self.supply_v = self.own_supply_v = supply_v
         self.shared_supply: SharedSupply | None = None  # None: the board has a supply of its own
         self.seen = PinsSeen()
-        self.voltages: Array = np.zeros(4)
-        self.angles: Array = leader.home.copy()
+        self.voltages: Floats = np.zeros(4)
+        self.angles: Floats = leader.home.copy()
         self.trace: Trace | None = None
         board.add_pin_output(wiring.enable.port, wiring.enable.bit)
         for motor in wiring.motors:
@@ -169,7 +167,7 @@ class Bench:
         self.floating = self.floating & ~(1 << pot) | floats << pot
         self.board.set_floating(self.floating)
 
-    def place(self, angles: Array) -> None:
+    def place(self, angles: Floats) -> None:
         """Hold the follower in a pose by hand, if the plant allows that (it has `reset`); no hand moves it beyond its
         stops.
         """
@@ -215,18 +213,18 @@ class Bench:
             if self.trace is not None:
                 self.trace(target, pins, angles)
 
-    def _stepper(self) -> Callable[[Array, float, Array], object]:
+    def _stepper(self) -> Callable[[Floats, float, Floats], object]:
         """The plant's step, which writes into an array; the built-in arm can do that itself, which saves time."""
         plant = self.plant
         if isinstance(plant, arm.Arm):
             return plant.step
 
-        def step(voltages: Array, dt: float, out: Array) -> None:
+        def step(voltages: Floats, dt: float, out: Floats) -> None:
             out[:] = plant.step(voltages, dt)
 
         return step
 
-    def _drive(self, pins: Array) -> None:
+    def _drive(self, pins: Floats) -> None:
         """What the drivers' chips make of the pins: voltages, or motors that coast between pulses."""
         self._last_outputs = pins.tobytes()
         enable, *values = pins.tolist()
@@ -260,7 +258,7 @@ def _bridge(
     return of(Pins(enabled, pwm, bool(direction), second_pwm, bool(second)))
 
 
-def stops_of(plant: Plant) -> tuple[Array, Array]:
+def stops_of(plant: Plant) -> tuple[Floats, Floats]:
     """The lowest and highest angles of a follower, where its plant says them."""
     if not isinstance(plant, arm.Arm):
         return np.full(4, -np.inf), np.full(4, np.inf)

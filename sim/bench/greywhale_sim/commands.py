@@ -32,7 +32,7 @@ from typing import Any
 import numpy as np
 
 from greywhale import arm
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 from greywhale.files.leader import load_leader
 from greywhale_sim import hands, lies, mistakes
 from greywhale_sim.bench import CLOCK_HZ

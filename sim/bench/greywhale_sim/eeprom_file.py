@@ -7,8 +7,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import IO
 
-from greywhale.errors import UserError, os_reason
-from greywhale.formats.whole import write_whole
+from greywhale.base.errors import UserError, os_reason
+from greywhale.base.formats.whole import write_whole
 
 
 def load(path: Path, size: int) -> bytes | None:

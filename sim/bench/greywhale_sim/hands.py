@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from greywhale.arm.parameters import JOINT_NAMES
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 from greywhale_sim.server import Server
 
 ENDS_DEG = (75.0, -70.0)  # of a sweep, the positive one first; no track ends in between

@@ -11,14 +11,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
-from greywhale.errors import UserError
-from greywhale.joints import ALL, Joints
-from greywhale.trajectory import Trajectory
+from greywhale.base.errors import UserError
+from greywhale.base.types import Floats
+from greywhale.files.trajectory import Trajectory
+from greywhale.protocol.joints import ALL, Joints
 
-Array = npt.NDArray[np.float64]
-Place = tuple[Array | None, Array | None, float]  # of leader and follower, None: where it is; seconds on the way
+Place = tuple[Floats | None, Floats | None, float]  # of leader and follower, None: where it is; seconds on the way
 
 START_S = 1.5  # from enable to the first movement: the soft start takes 1 s
 LET_GO_S = 0.5  # from motors off to the hand on the follower
@@ -44,9 +43,9 @@ class LeaderPlayer:
         self.rest = (self.home, self.home)  # where the hands bring leader and follower
         self._further: list[Place] = []  # and then, one after the other
         self._way = self._bring_back  # slices until they are there
-        self.angles: Array = self.home
-        self._taken_at: Array = self.home  # the leader arm when the motors went on
-        self.hold: Array | None = self.home
+        self.angles: Floats = self.home
+        self._taken_at: Floats = self.home  # the leader arm when the motors went on
+        self.hold: Floats | None = self.home
         self.plays = 0
 
     def take_up(self, motion: Trajectory) -> None:
@@ -56,7 +55,7 @@ class LeaderPlayer:
         if self.hold is not None:
             self._set_out(self._bring_back)
 
-    def bring(self, leader: Array | None, follower: Array | None, seconds: float) -> None:
+    def bring(self, leader: Floats | None, follower: Floats | None, seconds: float) -> None:
         """Bring a held arm, or both, to angles (4,) rad within so many seconds; both are held until the next enable."""
         self.bring_along([(leader, follower, seconds)])
 
@@ -67,7 +66,7 @@ class LeaderPlayer:
         self._further = list(places)
         self._bring_next()
 
-    def step(self, enabled: bool, follower: Array) -> None:
+    def step(self, enabled: bool, follower: Floats) -> None:
         """Advance one slice; `follower` is where the follower is now."""
         if enabled:
             self._follow_motion()
@@ -132,7 +131,7 @@ class LeaderPlayer:
         if 0 <= row <= self._rows:
             self.angles = self._row(min(row, self._rows - 1))
 
-    def _row(self, index: int) -> Array:
+    def _row(self, index: int) -> Floats:
         """The motion at slice `index`, from a chunk of one second, so that an hour of motion needs no more memory."""
         offset = index - self._chunk_first
         if not 0 <= offset < len(self._chunk):
@@ -140,5 +139,5 @@ class LeaderPlayer:
             times = np.arange(index, index + max(1, round(1.0 / self._slice_s)), dtype=np.float64) * self._slice_s
             self._chunk = self._motion.at(times) * self._in_use
             offset = 0
-        row: Array = self._chunk[offset]
+        row: Floats = self._chunk[offset]
         return row

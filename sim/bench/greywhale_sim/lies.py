@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
+from greywhale.base.types import Floats
 
 SLICE_S = 250e-6
 SLIPS = 0.3  # of every way up is lost, so that the same angle reads lower each time
@@ -48,7 +47,7 @@ class Lies:
         self._touching = (one, other)
         self._look()
 
-    def apply(self, millivolts: Array) -> None:
+    def apply(self, millivolts: Floats) -> None:
         """Change the voltages in place, once a slice."""
         self._slice += 1
         for pot, lie in self._lies.items():

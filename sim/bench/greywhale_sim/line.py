@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import random
 
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 
 SAME = 0.02  # closer rates cannot miss a bit: skip the bit model
 

@@ -12,13 +12,13 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
+from greywhale.base.errors import UserError
 from greywhale.board.device import Device
 from greywhale.board.record import Recording, record
 from greywhale.board.upload import run_set
-from greywhale.errors import UserError
 from greywhale.protocol import schema
+from greywhale.protocol.table import ParameterTable
 from greywhale.protocol.transport import BAUD, LINES, Line, PortBusyError
-from greywhale.table import ParameterTable
 from greywhale_sim import commands
 from greywhale_sim.assemble import BenchOptions, build_bench, wiring_of
 from greywhale_sim.bench import Bench

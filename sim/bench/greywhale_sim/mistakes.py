@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from greywhale import arm
+from greywhale.base.errors import UserError
 from greywhale.board.refusal import pot_name
-from greywhale.errors import UserError
-from greywhale.firmware import JOINTS
+from greywhale.protocol.firmware import JOINTS
 from greywhale_sim.bench import Bench
 from greywhale_sim.board_supply import SharedSupply
 from greywhale_sim.lies import Lies

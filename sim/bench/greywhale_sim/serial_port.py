@@ -19,7 +19,7 @@ import tty
 from collections.abc import Sequence
 from pathlib import Path
 
-from greywhale.errors import UserError, os_reason
+from greywhale.base.errors import UserError, os_reason
 
 IN_OPEN = 0x20
 IN_CLOSE = 0x08 | 0x10

@@ -17,11 +17,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from types import FrameType
 
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
+from greywhale.base.runtime import make_runtime_directory
 from greywhale.files.outputs import require_files
-from greywhale.joints import ALL
+from greywhale.protocol.joints import ALL
 from greywhale.protocol.ports import forget_dead_benches
-from greywhale.runtime import make_runtime_directory
 from greywhale_sim import commands
 from greywhale_sim.assemble import BenchOptions, build_bench, wiring_of
 from greywhale_sim.bench import Plant

@@ -12,9 +12,20 @@ import numpy as np
 import pytest
 
 from greywhale.arm import Arm
+from greywhale.base.formats.units import (
+    DEGREE,
+    GRAM,
+    MILLIVOLT,
+    MM,
+    NEWTON_METRE,
+    RADIAN,
+    RPM,
+    SECOND,
+    read_number,
+    unit_of,
+)
 from greywhale.cli.entry import run
 from greywhale.files.arm import load_arm
-from greywhale.formats.units import DEGREE, GRAM, MILLIVOLT, MM, NEWTON_METRE, RADIAN, RPM, SECOND, read_number, unit_of
 
 MOTOR = """gear_ratio = 131
 stall_torque_nm = "18 kg cm"

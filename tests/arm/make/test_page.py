@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 
 from greywhale.cli.entry import run
+from tools import ROOT
 
-PAGE = (Path(__file__).resolve().parents[3] / "docs" / "your-arm.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs" / "your-arm.md").read_text(encoding="utf-8")
 
 
 def block(after: str, language: str = "") -> str:

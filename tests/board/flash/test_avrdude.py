@@ -6,8 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from greywhale.base.errors import UserError
+from greywhale.base.types import show_no_progress
 from greywhale.board.flash.avrdude import find_avrdude, need_avrdude, watch_upload
-from greywhale.errors import UserError
 
 
 def make(path: Path) -> Path:
@@ -68,7 +69,7 @@ def test_avrdudes_rows_become_fractions() -> None:
 def test_a_port_that_goes_away_ends_the_upload(tmp_path: Path) -> None:
     port = tmp_path / "port"
     port.touch()
-    look = watch_upload(str(port), lambda what, fraction: None)
+    look = watch_upload(str(port), show_no_progress)
     look("Writing | ####")
     port.unlink()
     with pytest.raises(UserError, match="port went away while it was being flashed; connect the board"):

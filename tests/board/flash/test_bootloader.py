@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from greywhale.base.errors import UserError
 from greywhale.board.flash.bootloader import Bootloader, Dialect, find_bootloader
-from greywhale.errors import UserError
 from tests.board.flash.fake_bootloader import ATMEGA328P, MEGA2560, FakeBootloader, Version1, Version2
 
 MEGA = Dialect("wiring", 115200)

@@ -9,13 +9,13 @@ from pathlib import Path
 
 import pytest
 
+from greywhale.base.errors import UserError
 from greywhale.board import meeting
 from greywhale.board.device import Device
 from greywhale.board.flash import flasher as module
 from greywhale.board.flash import images, platformio
 from greywhale.board.flash.bootloader import Bootloader, Dialect
 from greywhale.board.flash.targets import BOARDS
-from greywhale.errors import UserError
 from greywhale.protocol import schema
 from tests.board.fake_board import FakeBoard
 from tests.board.flash.fake_bootloader import ATMEGA328P, MEGA2560, FakeBootloader, Version1, Version2

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from greywhale.base.errors import UserError
 from greywhale.board.flash.images import Record, check_image, read_image
 from greywhale.board.flash.targets import BOARDS
-from greywhale.errors import UserError
 from greywhale.protocol import schema
 from tests.board.flash.hex_files import hex_text, image_record, record, write_image
 

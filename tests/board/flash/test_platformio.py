@@ -8,10 +8,11 @@ from pathlib import Path
 
 import pytest
 
+from greywhale.base.errors import UserError
+from greywhale.base.types import show_no_progress
 from greywhale.board.flash import platformio
 from greywhale.board.flash.runner import Tool
 from greywhale.board.flash.targets import BOARDS
-from greywhale.errors import UserError
 
 
 @pytest.fixture
@@ -27,7 +28,7 @@ def test_the_projects_own_core_folder_is_used(tools: list[Tool], tmp_path: Path)
     assembled = tmp_path / "build" / "platformio" / "assembled"
     assembled.parent.mkdir(parents=True)
     assembled.touch()
-    built = platformio.build(firmware, BOARDS["nano"], lambda what, fraction: None)
+    built = platformio.build(firmware, BOARDS["nano"], show_no_progress)
     assert built == firmware / ".pio" / "build" / "nanoatmega328" / "firmware.hex"
     assert tools[0].environment["PLATFORMIO_CORE_DIR"] == str(assembled.parent)
     assert tools[0].environment["PLATFORMIO_SETTING_ENABLE_TELEMETRY"] == "no"
@@ -42,8 +43,8 @@ def test_the_settings_of_the_current_folder_are_not_platformios(
     monkeypatch.chdir(tmp_path)
     Path("port").touch()
     firmware = Path("firmware")
-    platformio.build(firmware, BOARDS["mega"], lambda what, fraction: None)
-    platformio.upload(firmware, BOARDS["mega"], "port", lambda what, fraction: None)
+    platformio.build(firmware, BOARDS["mega"], show_no_progress)
+    platformio.upload(firmware, BOARDS["mega"], "port", show_no_progress)
     for tool in tools:
         assert tool.folder == firmware
         assert tool.command[tool.command.index("--project-dir") + 1] == str(tmp_path / "firmware")
@@ -55,7 +56,7 @@ def test_a_build_folder_that_was_moved_is_found(
     tools: list[Tool], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("PLATFORMIO_BUILD_DIR", str(tmp_path / "there"))
-    built = platformio.build(tmp_path, BOARDS["mega"], lambda what, fraction: None)
+    built = platformio.build(tmp_path, BOARDS["mega"], show_no_progress)
     assert built == tmp_path / "there" / "megaatmega2560" / "firmware.hex"
 
 
@@ -65,9 +66,9 @@ def test_without_platformio_one_sentence_says_what_to_install(
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(UserError, match=r"PlatformIO, .* is not installed; run `pip install 'greywhale\[build\]'`"):
-        platformio.build(tmp_path, BOARDS["mega"], lambda what, fraction: None)
+        platformio.build(tmp_path, BOARDS["mega"], show_no_progress)
     program = tmp_path / "platformio"
     program.write_text("#!/bin/sh\n")
     program.chmod(0o755)
-    platformio.build(tmp_path, BOARDS["mega"], lambda what, fraction: None)
+    platformio.build(tmp_path, BOARDS["mega"], show_no_progress)
     assert tools[0].command[0] == str(program)

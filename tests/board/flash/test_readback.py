@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from greywhale.base.errors import UserError
 from greywhale.board.flash.bootloader import Bootloader, Dialect
 from greywhale.board.flash.images import read_image
 from greywhale.board.flash.readback import BLOCK, compare_image, read_flash
-from greywhale.errors import UserError
 from tests.board.flash.fake_bootloader import ATMEGA328P, MEGA2560, FakeBootloader, Version1, Version2
 from tests.board.flash.hex_files import hex_text, write_image
 

@@ -12,10 +12,10 @@ from typing import Any
 
 import pytest
 
+from greywhale.base.errors import UserError
 from greywhale.board.flash import runner
 from greywhale.board.flash.runner import Tool, run_tool
-from greywhale.errors import UserError
-from tests.strangers import plant, ran
+from tests.support.strangers import plant, ran
 
 
 def tool(*command: str, limit_s: float = 60.0) -> Tool:

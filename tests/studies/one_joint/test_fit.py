@@ -7,10 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 from greywhale.identify.fit import Fit
-from tests.studies.one_joint.records import made, still
-from tools.studies.one_joint import (
+from studies.one_joint import (
     Example,
     JointSpace,
     Record,
@@ -24,7 +23,8 @@ from tools.studies.one_joint import (
     plants,
     proportional,
 )
-from tools.studies.one_joint.residual import Part, left_out
+from studies.one_joint.residual import Part, left_out
+from tests.studies.one_joint.records import made, still
 
 SERVO = Rig("servo", 7.4, alpha=9.0, inertia=0.03, damping=0.3, link_inertia=0.005, weight=0.48, zero_known=True)
 TRUE = {"alpha": 11.0, "inertia": 0.018, "damping": 0.45, "coulomb": 0.12, "load_friction": 0.35}

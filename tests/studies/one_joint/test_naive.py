@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from studies.one_joint import Lag, Record, fit_lag
 from tests.studies.one_joint.records import still
-from tools.studies.one_joint import Lag, Record, fit_lag
 
 FIRST = Lag(1, gain=0.8, offset=0.05, dead_time=0.04, shape=(0.12,))
 SECOND = Lag(2, gain=0.9, offset=-0.02, dead_time=0.025, shape=(9.0, 0.4))

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
+from studies.one_joint import Record, pieces_of
 from tests.studies.one_joint.records import still
-from tools.studies.one_joint import Record, pieces_of
 
 
 def parabola() -> Record:

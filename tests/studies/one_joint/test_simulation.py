@@ -7,17 +7,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from greywhale.arm import Arm
+from greywhale.base.types import Floats
 from greywhale.files.arm import default_arm
-from greywhale.loop import PLANT_COLUMNS, plant_row
+from greywhale.simulate import PLANT_COLUMNS, plant_row
+from studies.one_joint import COLUMNS, Law, Record, Rig, Runner, pieces_of, plants, proportional, relay
+from studies.one_joint.law import trapezoidal_pid
 from tests.studies.one_joint.records import still
-from tools.studies.one_joint import COLUMNS, Law, Record, Rig, Runner, pieces_of, plants, proportional, relay
-from tools.studies.one_joint.law import trapezoidal_pid
 
-Floats = NDArray[np.float64]
 PENDULUM = Rig("pendulum", supply=7.4, alpha=10.0, inertia=0.02, damping=0.4, link_inertia=0.005, weight=0.48)
 SLIDER = Rig("slider", supply=12.0, inertia=0.5, damping=2.0)
 

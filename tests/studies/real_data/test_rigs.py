@@ -4,22 +4,13 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from greywhale.arm import Arm, ArmParameters
-from greywhale.errors import UserError
-from greywhale.files.log import Log
-from greywhale.loop import plant_row
-from tools.bench import bench_real_data
-from tools.studies.one_joint import Runner, fit, pieces_of, plants
-from tools.studies.real_data import product, study
-from tools.studies.real_data.compare import halves
-from tools.studies.real_data.product import arm_of, joint_of, log_of
-from tools.studies.real_data.rigs import LEVER_RIG, POT_RIG, SERVO_RIG, read_lever, read_pot, read_servo
-from tools.studies.real_data.tables import comparison_table
+from greywhale.base.errors import UserError
+from studies.real_data import study
+from studies.real_data.rigs import LEVER_RIG, POT_RIG, read_lever, read_pot, read_servo
 
 DEGREE = math.pi / 180
 
@@ -113,58 +104,7 @@ def test_a_file_without_a_column_or_with_words_in_it_is_refused_in_a_sentence(tm
         read_servo(tmp_path / "nothing.csv")
 
 
-def test_a_missing_folder_is_told_with_what_to_do_and_leaves_other_benchmarks_running(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_missing_folder_is_told_with_what_to_do(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv(study.VARIABLE, str(tmp_path / "nowhere"))
     with pytest.raises(UserError, match=r"nowhere is not there.*set GREYWHALE_REAL_DATA to the folder"):
         study.data_folder()
-    assert bench_real_data.run() == []
-    assert "nowhere is not there" in capsys.readouterr().err
-
-
-def test_a_pendulum_becomes_a_shoulder_that_hangs_and_weighs_what_is_published(tmp_path: Path) -> None:
-    source = read_servo(servo_file(tmp_path))
-    log, body = log_of(source), Arm(arm_of(SERVO_RIG)).body
-    assert joint_of(SERVO_RIG) == 1
-    assert np.ptp(log.follower[:, [0, 2, 3]]) == 0.0
-    angle = source.record.follower[250]
-    weight = body.bias([0.0, log.follower[250, 1], 0.0, 0.0], [0.0] * 4)[1]
-    assert weight == pytest.approx(SERVO_RIG.weight * math.sin(angle), rel=1e-3)
-    assert body.mass_matrix([0.0] * 4)[1, 1] == pytest.approx(SERVO_RIG.link_inertia, rel=1e-3)
-    motor = arm_of(SERVO_RIG).actuator(1)
-    assert 1 / motor.torque_per_volt == pytest.approx(SERVO_RIG.alpha)
-    assert motor.damping / motor.torque_per_volt == pytest.approx(SERVO_RIG.damping)
-    assert motor.inertia / motor.torque_per_volt == pytest.approx(SERVO_RIG.inertia)
-
-
-def test_an_identified_shoulder_swings_as_the_one_joint_that_it_is(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    source = read_servo(servo_file(tmp_path))
-
-    def found(logs: list[Log], arm: ArmParameters) -> SimpleNamespace:
-        # The white box itself, but for a potentiometer that reads 0 at 0.1 rad.
-        return SimpleNamespace(plant=plant_row(arm), zero=np.array([0.0, 0.1, 0.0, 0.0]))
-
-    monkeypatch.setattr(product, "identify", found)
-    pieces = pieces_of(source.record, 0, len(source.record.time))
-    runner = Runner(source.record, None)
-    moved = runner.run(product.identified(source), pieces).angles
-    expected = runner.run(plants(SERVO_RIG, {"hanging": np.array([-0.1])}), pieces).angles
-    assert np.ptp(expected) > 0.3
-    np.testing.assert_allclose(moved, expected, atol=1e-9)
-
-
-@pytest.mark.slow
-def test_models_fitted_to_one_half_are_judged_on_the_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(fit, "EXTRAS", ())
-    source = read_lever(lever_file(tmp_path, "m2_b_free_motion_500hz.csv"))
-    comparison = halves(source)
-    (score,) = comparison.scores
-    assert comparison.title == score.record == "b_free_motion"
-    assert score.range_rad == pytest.approx(0.1, rel=0.05)
-    # The follower is the leader, turned and 5 ms late: a lag says all of it, and is judged to.
-    assert score.first_order < 0.01
-    row = comparison_table([comparison]).splitlines()[-1]
-    assert row.startswith("| first half | b_free_motion | 0.10 | ")

@@ -9,11 +9,13 @@ import pytest
 
 from greywhale import _native
 from greywhale.arm.plants import column
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
+from greywhale.base.types import Floats
 from greywhale.files.arm import default_arm, load_arm
-from greywhale.loop import PLANT_COLUMNS, Experiment, leader_slices, plant_row
-from greywhale.trajectory import Trajectory, human_reaches, multi_steps, steps
-from greywhale.tune.judge.floor import Floats, saturation_floor
+from greywhale.files.trajectory import Trajectory
+from greywhale.motion import human_reaches, multi_steps, steps
+from greywhale.simulate import PLANT_COLUMNS, Experiment, leader_slices, plant_row
+from greywhale.tune.judge.floor import saturation_floor
 
 TORQUE, INERTIA, SUPPLY = 0.5, 0.05, 10.0
 FASTEST = TORQUE * SUPPLY / INERTIA  # rad/s^2

@@ -9,8 +9,8 @@ from greywhale import _native
 from greywhale.arm.plants import columns
 from greywhale.files import controller
 from greywhale.files.arm import default_arm
-from greywhale.loop import controller_row, default_controller, plant_row
-from greywhale.table import ParameterTable
+from greywhale.protocol.table import ParameterTable
+from greywhale.simulate import controller_row, default_controller, plant_row
 from greywhale.tune.judge.margins import (
     DELAY,
     MOVING,
@@ -23,7 +23,7 @@ from greywhale.tune.judge.margins import (
     with_gain,
     with_softer_teeth,
 )
-from tools.setup.console import ROOT
+from tools import ROOT
 
 ARM = default_arm()
 PLANTS = plant_row(ARM)[None]

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from greywhale.files import controller
-from greywhale.loop import controller_row
-from greywhale.table import ParameterTable
+from greywhale.protocol.table import ParameterTable
+from greywhale.simulate import controller_row
 from greywhale.tune.outcome import Outcome
 from greywhale.tune.report.controller_file import provenance, save
 

@@ -13,17 +13,18 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from greywhale.drawing import looks
-from greywhale.drawing.page import style
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
+from greywhale.base.types import Controllers, Floats
 from greywhale.files.controller import load
 from greywhale.files.paper_tables import paper_table
-from greywhale.loop import controller_row
-from greywhale.trajectory import multi_steps
+from greywhale.motion import multi_steps
+from greywhale.pictures import looks
+from greywhale.pictures.page import style
+from greywhale.simulate import controller_row
 from greywhale.tune.outcome import Outcome
 from greywhale.tune.report import pictures
-from greywhale.tune.report.pictures import Controllers, Floats, Response
-from tests.drawing.sight import faults
+from greywhale.tune.report.pictures import Response
+from tests.pictures.sight import faults
 
 
 def controllers(name: str) -> Controllers:

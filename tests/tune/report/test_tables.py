@@ -9,13 +9,14 @@ from typing import Any, cast
 
 import pytest
 
+from greywhale.base.types import Controllers
 from greywhale.files.controller import load
 from greywhale.files.paper_tables import paper_table
-from greywhale.loop import controller_row
-from greywhale.measure import Evaluation, JointMeasures
+from greywhale.motion import Evaluation, JointMeasures
+from greywhale.simulate import controller_row
 from greywhale.tune.outcome import Outcome
 from greywhale.tune.report import tables
-from greywhale.tune.report.tables import Controllers, Table
+from greywhale.tune.report.tables import Table
 
 BEFORE = (0.02, 0.01, 0.004, 0.006)
 AFTER = (0.01, 0.012, 0.001, 0.003)

@@ -11,8 +11,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from greywhale.errors import UserError
-from greywhale.loop import default_controller
+from greywhale.base.errors import UserError
+from greywhale.simulate import default_controller
 from greywhale.tune.search.journal import Journal
 
 ROWS = np.repeat(default_controller()[None], 2, axis=0)

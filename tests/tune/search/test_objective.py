@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from greywhale.arm.plants import column
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 from greywhale.files.arm import default_arm
-from greywhale.loop import default_controller, plant_row
-from greywhale.table import ParameterTable
-from greywhale.trajectory import Trajectory
+from greywhale.files.trajectory import Trajectory
+from greywhale.protocol.table import ParameterTable
+from greywhale.simulate import default_controller, plant_row
 from greywhale.tune.possible import scale_of
 from greywhale.tune.search.objective import (
     CHATTER,

@@ -7,11 +7,11 @@ import pytest
 from scipy.signal import sosfilt
 
 from greywhale.files.arm import default_arm
-from greywhale.firmware import pwm_steps
-from greywhale.loop import Experiment, default_controller
-from greywhale.loop.closed_loop import band_power
+from greywhale.motion import human_reaches
+from greywhale.protocol.firmware import pwm_steps
 from greywhale.protocol.schema import Board
-from greywhale.trajectory import human_reaches
+from greywhale.simulate import Experiment, default_controller
+from greywhale.simulate.closed_loop import band_power
 from greywhale.tune.search.rattle import BLOCK, SECTIONS, chatter, duty_swings, rattle
 
 TIME_S = np.arange(6000) * 1e-3

@@ -7,10 +7,10 @@ from typing import Literal
 import numpy as np
 import pytest
 
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 from greywhale.fuzzy.settings import LEAST_WIDTH, SET_UNIT, JointSettings
-from greywhale.loop import CONTROLLER_COLUMNS, default_controller
 from greywhale.protocol.schema import Refusal
+from greywhale.simulate import CONTROLLER_COLUMNS, default_controller
 from greywhale.tune.search.space import GAINS, SETS, STRATEGIES, Space, check_bounds, check_strategy
 
 BEFORE = default_controller()

@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
 from greywhale import _native
 from greywhale.arm.plants import PLANT_COLUMNS
-
-Floats = npt.NDArray[np.float64]
+from greywhale.base.types import Floats
 
 # The links' constants are the columns before those of the joints.
 _COLUMNS = next(n for n, name in enumerate(PLANT_COLUMNS) if name.startswith("joint"))

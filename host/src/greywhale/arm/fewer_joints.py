@@ -9,13 +9,11 @@ import math
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.arm.urdf import Body, TurningJoint
-from greywhale.errors import BAD_USAGE, UserError, cut
-
-Floats = npt.NDArray[np.float64]
+from greywhale.base.errors import BAD_USAGE, UserError, cut
+from greywhale.base.types import Floats
 
 UP = np.array([0.0, 0.0, 1.0])
 NOTHING_KG, NOTHING_KG_M2 = 1e-8, 1e-14

@@ -6,14 +6,11 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from greywhale.arm.parameters import MOST_NOISE_V, USUAL_TRACK_RAD, ArmParameters
 from greywhale.arm.plants import column
-from greywhale.firmware import JOINTS
+from greywhale.base.types import Floats
+from greywhale.protocol.firmware import JOINTS
 
-Floats = NDArray[np.float64]
 # Back-EMF may be at most this share of a motor's damping, so that viscous friction stays positive.
 BACK_EMF_SHARE = 0.95
 

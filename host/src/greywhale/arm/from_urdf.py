@@ -11,15 +11,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from greywhale.arm.fewer_joints import complete
 from greywhale.arm.parameters import JOINT_NAMES, ArmParameters
 from greywhale.arm.urdf import Body, TurningJoint, read_chain
-from greywhale.errors import BAD_USAGE, UserError, cut
-from greywhale.formats import toml_file
-
-Floats = npt.NDArray[np.float64]
+from greywhale.base.errors import BAD_USAGE, UserError, cut
+from greywhale.base.formats import toml_file
+from greywhale.base.types import Floats
 
 UP = np.array([0.0, 0.0, 1.0])
 PARALLEL = math.cos(math.radians(1.0))

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
 from greywhale.arm.body import Body
 from greywhale.arm.plants import column, rigid_joints
-from greywhale.firmware import JOINTS
-
-Floats = npt.NDArray[np.float64]
+from greywhale.base.types import Floats
+from greywhale.protocol.firmware import JOINTS
 
 # Gravity pulls by the cosines of the pitch angles: between two of so many steps a joint's range it changes little.
 STEPS = 25

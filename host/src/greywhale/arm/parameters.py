@@ -8,9 +8,9 @@ from typing import Annotated, Any, ClassVar, Literal, TypeVar
 from pydantic import AfterValidator, Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
 from greywhale import _native
-from greywhale.formats.kinds import Kind
-from greywhale.formats.toml_file import Table
-from greywhale.joints import Joints
+from greywhale.base.formats.kinds import Kind
+from greywhale.base.formats.toml_file import Table
+from greywhale.protocol.joints import Joints
 
 # The usual potentiometer: a track of 300 degrees, and noise of half a step of the board's converter (V rms).
 USUAL_TRACK_RAD = math.radians(300.0)

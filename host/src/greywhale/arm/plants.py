@@ -12,8 +12,8 @@ import numpy.typing as npt
 
 from greywhale import _native
 from greywhale.arm.parameters import ArmParameters
-from greywhale.errors import UserError
-from greywhale.firmware import JOINTS
+from greywhale.base.errors import UserError
+from greywhale.protocol.firmware import JOINTS
 
 Plants = npt.NDArray[np.float64]
 

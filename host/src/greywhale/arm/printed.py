@@ -10,12 +10,10 @@ from collections.abc import Iterable
 from math import cos, sin
 
 import numpy as np
-import numpy.typing as npt
 
 from greywhale.arm.parameters import ArmParameters, Motor
-from greywhale.errors import UserError
-
-Array = npt.NDArray[np.float64]
+from greywhale.base.errors import UserError
+from greywhale.base.types import Floats
 
 ERRATA = {
     "E1": "A11 is four times too large",
@@ -66,7 +64,7 @@ class PrintedBody:
         self.gravity1 = arm.gravity * (link1.mass * link1.centre + carried * link1.length)
         self.gravity2 = arm.gravity * first
 
-    def mass_matrix(self, q: Array) -> Array:
+    def mass_matrix(self, q: Floats) -> Floats:
         """4x4, kg m^2."""
         q1, q2, phi = q[1], q[2], q[1] + q[2]
         four = 2.0 * (self.xx1 + self.yy1 + self.p1 + self.x + self.y)
@@ -78,7 +76,7 @@ class PrintedBody:
         m11 = self.zz1 + self.p1 + self.e + 2.0 * self.h * cos(q2)
         return np.array([[m00, 0, 0, m03], [0, m11, m12, 0], [0, m12, self.e, 0], [m03, 0, 0, self.xx3]])
 
-    def bias(self, q: Array, v: Array) -> Array:
+    def bias(self, q: Floats, v: Floats) -> Floats:
         """Velocity and gravity torques, N m."""
         q1, q2, phi = q[1], q[2], q[1] + q[2]
         v0, v1, v2, v3 = v
@@ -106,16 +104,16 @@ class PrintedBody:
         g3 = self.gravity2 * cos(phi)
         return np.array([c1, c2 + self.gravity1 * cos(q1) + g3, c3 + g3, c4])
 
-    def kinetic_energy(self, q: Array, v: Array) -> float:
+    def kinetic_energy(self, q: Floats, v: Floats) -> float:
         """J, by the mass matrix as it is here."""
         return float(0.5 * v @ self.mass_matrix(q) @ v)
 
-    def potential_energy(self, q: Array) -> float:
+    def potential_energy(self, q: Floats) -> float:
         """J, zero with the arm level."""
         return self.gravity1 * sin(q[1]) + self.gravity2 * sin(q[1] + q[2])
 
 
-def motor_equation(motors: Iterable[Motor], corrected: Iterable[str] = ()) -> tuple[Array, Array, Array, Array]:
+def motor_equation(motors: Iterable[Motor], corrected: Iterable[str] = ()) -> tuple[Floats, Floats, Floats, Floats]:
     """Eq. 1 solved for the accelerations: (A + inertia) q'' = push U - share bias - drag q'; the four vectors."""
     fixed = "E14" in _checked(corrected)
     rows = []

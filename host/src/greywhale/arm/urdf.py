@@ -8,11 +8,9 @@ from pathlib import Path
 from xml.etree import ElementTree as xml
 
 import numpy as np
-import numpy.typing as npt
 
-from greywhale.errors import BAD_USAGE, UserError, cut, os_reason
-
-Floats = npt.NDArray[np.float64]
+from greywhale.base.errors import BAD_USAGE, UserError, cut, os_reason
+from greywhale.base.types import Floats
 
 LARGEST = 4 << 20  # bytes
 HEAVIEST_KG = 1e4

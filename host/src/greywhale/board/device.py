@@ -16,9 +16,9 @@ from collections.abc import Callable, Iterator
 from types import TracebackType
 from typing import Self
 
+from greywhale.base.errors import UserError
 from greywhale.board.refusal import RefusedError
 from greywhale.board.session import Session
-from greywhale.errors import UserError
 from greywhale.protocol import schema
 from greywhale.protocol.declared import Reply_co, Request
 from greywhale.protocol.frames import Frame, FrameDecoder, encode_frame

@@ -9,18 +9,24 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from greywhale.base.errors import UserError
+from greywhale.base.types import Floats
 from greywhale.board.device import Device
 from greywhale.board.refusal import RefusedError
 from greywhale.board.stream import why_stopped
-from greywhale.errors import UserError
-from greywhale.firmware import ANGLE_LSB, FASTEST_LED_RAD_S, JOINTS, LONGEST_STEP, POINT_S, POINT_TICKS, STEP_LSB
+from greywhale.files.trajectory import Trajectory
+from greywhale.motion.generate import minimum_jerk
 from greywhale.protocol import schema
-from greywhale.trajectory.generate import minimum_jerk
-from greywhale.trajectory.motion import Trajectory
-
-Floats = npt.NDArray[np.float64]
+from greywhale.protocol.firmware import (
+    ANGLE_LSB,
+    FASTEST_LED_RAD_S,
+    JOINTS,
+    LONGEST_STEP,
+    POINT_S,
+    POINT_TICKS,
+    STEP_LSB,
+)
 
 # The board can keep so many points.
 ROOM = 12

@@ -19,7 +19,7 @@ import time
 from collections.abc import Container, Iterator
 from typing import NamedTuple
 
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 from greywhale.protocol.holder import describe
 
 NAMES = 8

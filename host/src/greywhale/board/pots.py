@@ -9,12 +9,12 @@ from itertools import islice
 import numpy as np
 from numpy.typing import NDArray
 
+from greywhale.base.errors import UserError
 from greywhale.board.device import Device
 from greywhale.board.refusal import lower_first, pot_name
 from greywhale.board.stream import stream
-from greywhale.errors import UserError
 from greywhale.protocol import schema
-from greywhale.table import ParameterTable
+from greywhale.protocol.table import ParameterTable
 
 FOLLOWERS = range(4, 8)
 POTS = tuple(f"{side}{joint}" for side in ("leader", "follower") for joint in range(4))

@@ -11,11 +11,12 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+from greywhale.base.errors import UserError
+from greywhale.base.types import Progress, show_no_progress
 from greywhale.board.device import Device
-from greywhale.board.record import Progress, Recording, check_request, origin_of, write_samples
+from greywhale.board.record import Recording, check_request, origin_of, write_samples
 from greywhale.board.stream import stream
 from greywhale.board.upload import read_parameters
-from greywhale.errors import UserError
 from greywhale.files.log.writer import LogWriter
 from greywhale.protocol.ports import lasting_name
 from greywhale.protocol.transport import PortLostError
@@ -39,7 +40,7 @@ def record_through_losses(
     Where it does not come back until then, or with another board or other parameters, the log ends there and says so.
     """
     check_request(seconds, every, enable=False)
-    report = progress or (lambda what, fraction: None)
+    report = progress or show_no_progress
     name, length = lasting_name(port), round(seconds * 1000)
     device = open_device(port)
     try:

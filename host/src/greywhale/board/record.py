@@ -13,23 +13,21 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
+from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.types import Floats, Progress, show_no_progress
 from greywhale.board.device import Device
 from greywhale.board.lead import Leading, Plan
 from greywhale.board.stream import Received, stream, why_stopped
 from greywhale.board.upload import read_parameters
-from greywhale.errors import BAD_USAGE, UserError
 from greywhale.files.log.layout import Origin
 from greywhale.files.log.writer import LogWriter
-from greywhale.firmware import ANGLE_LSB
+from greywhale.files.trajectory import Trajectory
 from greywhale.protocol import schema
-from greywhale.table import ParameterTable
-from greywhale.trajectory import Trajectory
+from greywhale.protocol.firmware import ANGLE_LSB
+from greywhale.protocol.table import ParameterTable
 
-Progress = Callable[[str, float], None]
 Watch = Callable[[Received], None]
-Floats = npt.NDArray[np.float64]
 
 # The motors go off this long after this host falls silent.
 LEASE_MS = 500
@@ -90,7 +88,7 @@ def record(
 ) -> Recording:
     """Record `seconds` of samples, one every `every` ticks of 1 ms."""
     check_request(seconds, every, enable)
-    report = progress or (lambda what, fraction: None)
+    report = progress or show_no_progress
     origin = origin_of(device, read_parameters(device), every)
     length = round(seconds * 1000)
     with LogWriter(path, origin) as log:
@@ -123,7 +121,7 @@ def record_led(
     along the same motion. `watch` sees every sample of the log, and what it raises ends the recording, motors off.
     """
     check_every_led(every)
-    report = progress or (lambda what, fraction: None)
+    report = progress or show_no_progress
     running = read_parameters(device, report) if table is None else table
     limits = np.array(running.limits_raw()) * ANGLE_LSB
     Plan.of(motion, motion.angles[0], limits)  # too fast a motion is refused with the motors off

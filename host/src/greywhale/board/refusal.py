@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 from greywhale.protocol import schema
 
 _ENABLE_ERROR_PER_COUNT = 1.0 / 32.0  # rad; see error_too_large in the declarations

@@ -20,8 +20,8 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import Any, Self
 
+from greywhale.base.errors import UserError, os_reason
 from greywhale.board import meeting
-from greywhale.errors import UserError, os_reason
 from greywhale.protocol.holder import describe
 
 NOTE = "It was stopped with `greywhale stop` from another terminal."

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from greywhale.base.errors import UserError
 from greywhale.board.device import Device
 from greywhale.board.refusal import fault_text, lower_first
-from greywhale.errors import UserError
 from greywhale.protocol import schema
 
 _TICKS = 1 << 32

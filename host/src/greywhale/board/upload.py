@@ -10,14 +10,13 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from greywhale.base.errors import UserError
+from greywhale.base.types import Progress
 from greywhale.board.device import Device
 from greywhale.board.refusal import RefusedError
-from greywhale.errors import UserError
 from greywhale.files import controller as controller_file
 from greywhale.protocol import schema
-from greywhale.table import ParameterTable
-
-Progress = Callable[[str, float], None]
+from greywhale.protocol.table import ParameterTable
 
 # A whole set takes 0.7 s to write into the EEPROM of an Arduino.
 SAVE_WAIT_S = 10.0
@@ -157,4 +156,4 @@ def _wait_until_saved(device: Device, wait_s: float) -> None:
 
 
 def _report_nothing(what: str, fraction: float) -> None:
-    """Report nothing: nobody looks."""
+    """Progress nothing: nobody looks."""

@@ -9,14 +9,14 @@ import numpy as np
 
 from greywhale.arm.from_urdf import Imported, import_urdf
 from greywhale.arm.parameters import JOINT_NAMES
+from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.formats.whole import refuse_inputs, write_text
 from greywhale.cli.arm_match import match
 from greywhale.cli.arm_new import new
 from greywhale.cli.group import Group
 from greywhale.cli.output import json_option, overwrite_option, show
-from greywhale.errors import BAD_USAGE, UserError
 from greywhale.files.model import arm_toml
 from greywhale.files.outputs import require_new
-from greywhale.formats.whole import refuse_inputs, write_text
 
 SUPPLY_V = (1.0, 60.0)
 

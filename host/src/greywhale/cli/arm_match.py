@@ -8,14 +8,14 @@ import click
 import numpy as np
 
 from greywhale.arm.parameters import JOINT_NAMES
+from greywhale.base.formats.whole import refuse_inputs, write_text
+from greywhale.board.calibrate.match import with_board_pots
 from greywhale.board.device import Device
 from greywhale.board.upload import read_parameters
-from greywhale.calibrate.match import with_board_pots
 from greywhale.cli.output import json_option, overwrite_option, port_option, show
 from greywhale.files.arm import load_arm
 from greywhale.files.model import arm_toml
 from greywhale.files.outputs import require_new
-from greywhale.formats.whole import refuse_inputs, write_text
 from greywhale.protocol.ports import choose_port
 
 

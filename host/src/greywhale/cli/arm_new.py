@@ -16,12 +16,12 @@ from greywhale.arm.make.answers import Answer, answers_toml, read_answers
 from greywhale.arm.make.explain import explain
 from greywhale.arm.make.questions import Answers, Question, collect
 from greywhale.arm.parameters import JOINT_NAMES, ArmParameters
+from greywhale.base.errors import UserError, counted
+from greywhale.base.formats.whole import refuse_inputs, write_text
 from greywhale.cli.output import json_option, overwrite_option, show, tell
-from greywhale.errors import UserError, counted
 from greywhale.files.model import arm_toml
 from greywhale.files.outputs import require_new
-from greywhale.formats.whole import refuse_inputs, write_text
-from greywhale.table import ParameterTable
+from greywhale.protocol.table import ParameterTable
 
 MUCH_TO_HOLD = 0.6  # of stall_volts: the rest is for starting
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 from typing import Any
 
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 
 
 def need_bench(module: str) -> Any:

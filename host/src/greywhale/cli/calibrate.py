@@ -10,18 +10,18 @@ import click
 import numpy as np
 import numpy.typing as npt
 
+from greywhale.base.errors import BAD_USAGE, UserError, cut
+from greywhale.board.calibrate import Options, Result, calibrate
+from greywhale.board.calibrate.solve import Calibration
 from greywhale.board.device import Device
 from greywhale.board.pots import FULL_SCALE, POTS
 from greywhale.board.upload import upload_set
-from greywhale.calibrate import Options, Result, calibrate
-from greywhale.calibrate.solve import Calibration
 from greywhale.cli.output import json_option, overwrite_option, port_option, show
 from greywhale.cli.person import Terminal
-from greywhale.errors import BAD_USAGE, UserError, cut
 from greywhale.files import parameter_file
 from greywhale.files.outputs import require_new
-from greywhale.firmware import JOINTS
-from greywhale.joints import parse, unused
+from greywhale.protocol.firmware import JOINTS
+from greywhale.protocol.joints import parse, unused
 from greywhale.protocol.ports import choose_port
 
 TRACK_DEG = (180.0, 450.0)

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import click
 
+from greywhale.base.errors import BAD_USAGE, MOST_SEED, MOST_WORKERS, UserError
 from greywhale.board.session import Session
 from greywhale.cli import completion
 from greywhale.cli.countdown import prepare_motion, yes_option
 from greywhale.cli.output import json_option, port_option, progress, show
-from greywhale.errors import BAD_USAGE, MOST_SEED, MOST_WORKERS, UserError
 from greywhale.files.outputs import require_folder
 from greywhale.protocol.ports import choose_port
 
@@ -77,7 +77,7 @@ def command(
     # Scipy and the native simulation take a moment to import.
     from greywhale.commission import Options, commission
     from greywhale.commission.page import save_page
-    from greywhale.excite import parse_range
+    from greywhale.identify.excite import parse_range
 
     chosen = dict(parse_range(text) for text in ranges)
     if len(chosen) < len(ranges):

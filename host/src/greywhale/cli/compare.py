@@ -7,15 +7,15 @@ from typing import cast
 
 import click
 
+from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.study import choose_workers
 from greywhale.cli.output import json_option, overwrite_option, progress, show
 from greywhale.cli.workers import executor_options, results_option
-from greywhale.errors import BAD_USAGE, UserError
 from greywhale.files.outputs import require_new
 from greywhale.optimise.comparison import Plan, compare
 from greywhale.optimise.comparison_report import as_dict, check_format, text, write_report
 from greywhale.optimise.functions import FUNCTIONS, Setting
 from greywhale.optimise.methods import METHODS
-from greywhale.study import choose_workers
 
 # With fewer evaluations in all, starting other processes takes longer than they save.
 SMALL = 300_000

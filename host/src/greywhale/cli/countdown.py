@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 
 import click
 
-from greywhale.errors import BAD_USAGE, UserError
+from greywhale.base.errors import BAD_USAGE, UserError
 from greywhale.protocol.ports import is_bench
 
 SECONDS = 3

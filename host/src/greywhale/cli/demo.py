@@ -6,10 +6,10 @@ from pathlib import Path
 
 import click
 
+from greywhale.base.errors import MOST_SEED
 from greywhale.cli import completion
 from greywhale.cli.bench import need_bench
 from greywhale.cli.output import json_option, progress, show, warn
-from greywhale.errors import MOST_SEED
 from greywhale.files import controller as controller_file
 from greywhale.files.arm import load_arm
 from greywhale.files.leader import load_leader
@@ -77,9 +77,9 @@ def command(
     require_folder(out, "logs and pictures")
     _check_inputs(leader, arm, controller)
     need_bench("greywhale_sim")
-    from greywhale import demo
+    from greywhale.cli import story
 
-    options = demo.DemoOptions(
+    options = story.DemoOptions(
         out=out,
         leader=leader,
         board=board,
@@ -93,7 +93,7 @@ def command(
         prove=prove,
     )
     with progress() as report:
-        result = demo.run(options, report)
+        result = story.run(options, report)
     show(as_json, result.as_dict(), result.text())
 
 

@@ -18,7 +18,7 @@ from rich.progress_bar import ProgressBar
 from rich.table import Table
 from rich.text import Text
 
-from greywhale.errors import printable
+from greywhale.base.errors import printable
 
 EVERY_S = 30.0  # between two lines about one step
 LOOK_EVERY_S = 1.0

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import click
 
+from greywhale.base.errors import BAD_USAGE, UserError, counted
+from greywhale.base.types import show_no_progress
+from greywhale.board.doctor import Finding, Options, Verdict, examine, worst
+from greywhale.board.doctor.examine import LINK_S
 from greywhale.cli.output import json_option, port_option, progress, show
-from greywhale.doctor import Finding, Options, Verdict, examine, worst
-from greywhale.doctor.examine import LINK_S
-from greywhale.errors import BAD_USAGE, UserError, counted
 from greywhale.protocol.ports import choose_port
-from greywhale.tune.progress import report_nothing
 
 LONGEST_S = 3600.0
 SUPPLY_V = (1.0, 60.0)
@@ -55,7 +55,7 @@ def command(
         raise UserError("--hex belongs to --image; add that, or leave it out.", BAD_USAGE)
     chosen = choose_port(port)
     with progress(brief=True) as report:
-        findings = examine(Options(chosen, params, seconds, supply, image, hex_file), report or report_nothing)
+        findings = examine(Options(chosen, params, seconds, supply, image, hex_file), report or show_no_progress)
     verdict = worst(findings)
     facts = {"port": chosen, "verdict": verdict.value, "findings": [one.as_dict() for one in findings]}
     show(as_json, facts, "\n".join([*map(_line, findings), "", _summary(findings)]), hang=INDENT)

@@ -17,11 +17,11 @@ from typing import NoReturn
 
 import click
 
+from greywhale.base.errors import BAD_USAGE, FAILED, LONGEST, UserError, cut, os_reason, printable
 from greywhale.cli import tracing
 from greywhale.cli.output import json_of
 from greywhale.cli.verbs import greywhale
 from greywhale.cli.wrapping import fit
-from greywhale.errors import BAD_USAGE, FAILED, LONGEST, UserError, cut, os_reason, printable
 
 INTERRUPTED = 130
 logger = logging.getLogger(__name__)

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import click
 
+from greywhale.base.errors import counted
+from greywhale.base.formats.whole import refuse_inputs
 from greywhale.cli.output import json_option, overwrite_option, show
-from greywhale.drawing.kinds import kind_of
-from greywhale.errors import counted
 from greywhale.files.log import Log, read_log
 from greywhale.files.outputs import require_new
-from greywhale.formats.whole import refuse_inputs
-from greywhale.joints import named, unused
-from greywhale.measure import Evaluation, evaluate
+from greywhale.motion import Evaluation, evaluate
+from greywhale.pictures.kinds import kind_of
+from greywhale.protocol.joints import named, unused
 
 _WIDTHS = (11, 14, 10, 11, 11, 10)  # of the table's columns behind the first
 
@@ -68,7 +68,8 @@ def command(logs: tuple[Path, ...], picture: Path | None, overwrite: bool, as_js
 
 def _draw(picture: Path, logs: list[Log]) -> None:
     # Matplotlib takes a second to import, and most evaluations draw nothing.
-    from greywhale.report import distinct_names, draw_following, trace
+    from greywhale.pictures.follow import draw_following, trace
+    from greywhale.pictures.names import distinct_names
 
     names = distinct_names([log.name for log in logs])
     draw_following(picture, [trace(*one) for one in zip(logs, names, strict=True)], "Leader and follower")

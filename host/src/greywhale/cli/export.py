@@ -6,10 +6,10 @@ from pathlib import Path
 
 import click
 
+from greywhale.base.formats.whole import refuse_inputs, write_text
 from greywhale.cli import completion
 from greywhale.cli.output import json_option, overwrite_option, show
 from greywhale.files.outputs import require_new
-from greywhale.formats.whole import refuse_inputs, write_text
 
 
 @click.command("export")

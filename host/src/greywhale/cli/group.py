@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from greywhale.errors import cut
+from greywhale.base.errors import cut
 from greywhale.files.names import did_you_mean
 
 

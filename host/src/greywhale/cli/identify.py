@@ -6,15 +6,15 @@ from pathlib import Path
 
 import click
 
+from greywhale.base.errors import MOST_SEED
+from greywhale.base.formats.whole import refuse_inputs
 from greywhale.cli import completion
 from greywhale.cli.output import json_option, overwrite_option, progress, show
-from greywhale.errors import MOST_SEED
 from greywhale.files.arm import load_arm
 from greywhale.files.log import Log, read_log
 from greywhale.files.log.selection import MOST_S, informative
 from greywhale.files.outputs import require_folder, require_new, require_no_files
 from greywhale.files.parameter_file import load_table
-from greywhale.formats.whole import refuse_inputs
 from greywhale.identify import METHODS, identify
 
 

@@ -6,13 +6,13 @@ import contextlib
 
 import click
 
+from greywhale.base.errors import BAD_USAGE, UserError, counted
 from greywhale.board.device import Device
+from greywhale.board.doctor.board import EEPROM_WRITES
 from greywhale.board.pots import POTS, PotReadings, read_pots
 from greywhale.board.refusal import fault_text, pot_name
 from greywhale.board.upload import read_parameters
 from greywhale.cli.output import json_option, port_option, show
-from greywhale.doctor.board import EEPROM_WRITES
-from greywhale.errors import BAD_USAGE, UserError, counted
 from greywhale.protocol import schema
 from greywhale.protocol.ports import choose_port
 

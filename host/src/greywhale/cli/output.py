@@ -8,23 +8,18 @@ import logging
 import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
 import click
 
+from greywhale.base.errors import printable
+from greywhale.base.types import NotedProgress
 from greywhale.cli import completion, tracing
 from greywhale.cli.wrapping import fit
-from greywhale.errors import printable
 
 QUIET = "greywhale.quiet"  # in the context's `meta`: whether --quiet was said
 logger = logging.getLogger(__name__)
 Command = TypeVar("Command", bound=Callable[..., Any])
-
-
-class Report(Protocol):
-    """Takes what is being done, the share of it that is done and, where it helps, how good the result is so far."""
-
-    def __call__(self, what: str, fraction: float, note: str = "") -> None: ...
 
 
 def json_option(command: Command) -> Command:
@@ -73,7 +68,7 @@ def json_of(result: Mapping[str, Any]) -> str:
 
 
 @contextlib.contextmanager
-def progress(brief: bool = False) -> Iterator[Report | None]:
+def progress(brief: bool = False) -> Iterator[NotedProgress | None]:
     """Show the running step on stderr; with --quiet nobody looks, unless the steps are logged.
 
     Without a terminal the steps of a `brief` verb, which takes seconds, are not told one by one. With --json all is

@@ -8,20 +8,20 @@ from pathlib import Path
 
 import click
 
+from greywhale.base.errors import BAD_USAGE, UserError, cut
+from greywhale.base.formats.units import read_number, unit_of
 from greywhale.board.device import Device
 from greywhale.board.upload import change_parameters, read_parameters
 from greywhale.cli import completion
 from greywhale.cli.group import Group
 from greywhale.cli.output import json_option, overwrite_option, port_option, progress, show
-from greywhale.errors import BAD_USAGE, UserError, cut
 from greywhale.files import parameter_file
 from greywhale.files.names import did_you_mean
 from greywhale.files.outputs import require_new
-from greywhale.formats.units import read_number, unit_of
 from greywhale.protocol import schema
 from greywhale.protocol.declared import Parameter
 from greywhale.protocol.ports import choose_port
-from greywhale.table import physical
+from greywhale.protocol.table import physical
 
 
 @click.group("params", cls=Group)

@@ -11,8 +11,8 @@ import textwrap
 
 import click
 
-from greywhale.calibrate import Answer
-from greywhale.errors import UserError, cut
+from greywhale.base.errors import UserError, cut
+from greywhale.board.calibrate import Answer
 
 WORDS = {"back": Answer.BACK, "again": Answer.AGAIN, "skip": Answer.SKIP, "yes": Answer.DONE, "": Answer.DONE}
 WORDS |= {word[:1]: answer for word, answer in WORDS.items()}

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from greywhale.base.errors import BAD_USAGE, MOST_SEED, UserError, counted
+from greywhale.base.formats.whole import refuse_inputs
 from greywhale.board.device import Device
 from greywhale.board.pots import FOLLOWERS, require_good_pots
 from greywhale.board.reconnect import record_through_losses
@@ -17,14 +19,12 @@ from greywhale.board.upload import read_parameters
 from greywhale.cli import completion
 from greywhale.cli.countdown import prepare_motion, yes_option
 from greywhale.cli.output import json_option, overwrite_option, port_option, progress, show
-from greywhale.errors import BAD_USAGE, MOST_SEED, UserError, counted
 from greywhale.files.leader import save_leader
 from greywhale.files.outputs import require_new
-from greywhale.formats.whole import refuse_inputs
 from greywhale.protocol.ports import choose_port
 
 if TYPE_CHECKING:
-    from greywhale.excite import Design
+    from greywhale.identify.excite import Design
 
 RECORDED_S = 10.0
 # Options that mean nothing without --excite.
@@ -159,8 +159,8 @@ def _plan(
 ) -> Callable[..., Design]:
     """Make the design, and refuse whatever can be refused before a board is asked."""
     # Scipy and the native simulation take a moment to import.
-    from greywhale.excite import BUDGET, SECONDS, check_effort, design, parse_range
     from greywhale.files.arm import load_arm
+    from greywhale.identify.excite import BUDGET, SECONDS, check_effort, design, parse_range
 
     length, effort = SECONDS if seconds is None else seconds, BUDGET if budget is None else budget
     check_effort(length, effort)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from greywhale.base.formats.whole import refuse_inputs
 from greywhale.board.device import Device
 from greywhale.board.record import check_every_led, record_led
 from greywhale.cli.countdown import prepare_motion, yes_option
@@ -15,10 +16,10 @@ from greywhale.cli.record import describe
 from greywhale.files.leader import load_leader
 from greywhale.files.names import suggesting
 from greywhale.files.outputs import require_new
-from greywhale.firmware import FASTEST_LED_RAD_S
-from greywhale.formats.whole import refuse_inputs
+from greywhale.files.trajectory import Trajectory
+from greywhale.motion import multi_steps, steps
+from greywhale.protocol.firmware import FASTEST_LED_RAD_S
 from greywhale.protocol.ports import choose_port
-from greywhale.trajectory import Trajectory, multi_steps, steps
 
 # The paper's motions by name, and the share of the fastest that a board can be led at which their edges use.
 MOTIONS: dict[str, Callable[..., Trajectory]] = {"steps": steps, "multi-steps": multi_steps}

@@ -39,11 +39,11 @@ def command(
     """
     require_folder(out, "report and results", "report.html", "report.pdf", "report.json")
     need_bench("greywhale_sim")
-    from greywhale.formats.whole import write_text
+    from greywhale.base.formats.whole import write_text
+    from greywhale.base.study import choose_workers
     from greywhale.reproduce.pages.found import Found
     from greywhale.reproduce.request import Request
     from greywhale.reproduce.run import run
-    from greywhale.study import choose_workers
 
     request = Request.of(seed, seeds, quick)
     with progress() as report:

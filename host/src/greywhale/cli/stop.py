@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import click
 
+from greywhale.base.errors import UserError
 from greywhale.board.device import Device
 from greywhale.board.session import ask_to_stop
 from greywhale.cli.output import json_option, port_option, show
-from greywhale.errors import UserError
 from greywhale.protocol import schema
 from greywhale.protocol.ports import choose_port
 from greywhale.protocol.transport import PortBusyError

@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
 
-from greywhale.errors import BAD_USAGE, UserError, os_reason, printable
+from greywhale.base.errors import BAD_USAGE, UserError, os_reason, printable
 
 ROOT = logging.getLogger("greywhale")
 # What a line of the file begins with: local time with its offset.

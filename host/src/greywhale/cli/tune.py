@@ -7,13 +7,13 @@ from pathlib import Path
 
 import click
 
+from greywhale.base.errors import BAD_USAGE, MOST_WORKERS, UserError, require_within
+from greywhale.base.formats.whole import refuse_inputs
 from greywhale.cli import completion
 from greywhale.cli.output import json_option, overwrite_option, progress, show
-from greywhale.errors import BAD_USAGE, MOST_WORKERS, UserError, require_within
 from greywhale.files import controller as controller_file
 from greywhale.files.outputs import require_files, require_folder, require_new, require_no_files
-from greywhale.formats.whole import refuse_inputs
-from greywhale.loop import controller_row
+from greywhale.simulate import controller_row
 from greywhale.tune import METHODS, STRATEGIES, check_request, tune
 from greywhale.tune.model import SAMPLES, load_model
 from greywhale.tune.report.controller_file import save

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import click
 
+from greywhale.board.doctor.port import RULES_FILE, udev_rules
 from greywhale.cli.output import json_option, show
-from greywhale.doctor.port import RULES_FILE, udev_rules
 
 
 @click.command("udev")

@@ -9,14 +9,14 @@ from typing import Any
 
 import click
 
+from greywhale.base.errors import UserError, counted
 from greywhale.board.device import Device
 from greywhale.board.upload import change_parameters, read_parameters
 from greywhale.cli import completion
 from greywhale.cli.output import json_option, port_option, progress, show, tell
-from greywhale.errors import UserError, counted
 from greywhale.files import controller as controller_file
 from greywhale.protocol.ports import choose_port
-from greywhale.table import ParameterTable
+from greywhale.protocol.table import ParameterTable
 
 MOST_NAMED = 3  # margins in the warning
 

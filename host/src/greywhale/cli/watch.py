@@ -22,10 +22,10 @@ from greywhale.board.device import Device
 from greywhale.board.pots import FULL_SCALE, PotReadings, counts_of, pots_there
 from greywhale.board.refusal import fault_text
 from greywhale.board.stream import stream
-from greywhale.firmware import ANGLE_LSB, JOINTS
-from greywhale.joints import ALL, Joints
 from greywhale.protocol import schema
-from greywhale.table import ParameterTable
+from greywhale.protocol.firmware import ANGLE_LSB, JOINTS
+from greywhale.protocol.joints import ALL, Joints
+from greywhale.protocol.table import ParameterTable
 
 EVERY = 50  # ticks between two samples
 WIDTH = 80

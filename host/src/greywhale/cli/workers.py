@@ -8,14 +8,14 @@ from typing import Any, TypeVar
 
 import click
 
-from greywhale.errors import MOST_WORKERS
-from greywhale.study.choose import FORMS
+from greywhale.base.errors import MOST_WORKERS
+from greywhale.base.study.choose import FORMS
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
 
 def executor_options(*names: str) -> Callable[[Command], Command]:
-    """--executor and --workers, which `greywhale.study.choose_workers` takes; `names` are other names of --workers."""
+    """--executor and --workers, which `base.study.choose_workers` takes; `names` are other names of --workers."""
 
     def add(command: Command) -> Command:
         workers = click.option(
@@ -38,7 +38,7 @@ def executor_options(*names: str) -> Callable[[Command], Command]:
 
 
 def results_option(command: Command) -> Command:
-    """--results, the file of `greywhale.study.run_study`."""
+    """--results, the file of `greywhale.base.study.run_study`."""
     return click.option(
         "--results",
         type=click.Path(path_type=Path),

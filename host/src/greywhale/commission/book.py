@@ -15,9 +15,9 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-from greywhale.errors import BAD_USAGE, UserError, os_reason
-from greywhale.formats import json_text
-from greywhale.formats.whole import write_text
+from greywhale.base.errors import BAD_USAGE, UserError, os_reason
+from greywhale.base.formats import json_text
+from greywhale.base.formats.whole import write_text
 
 NAME = "commission.json"
 VERSION = 2

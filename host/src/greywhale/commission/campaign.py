@@ -15,6 +15,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from greywhale.base.errors import UserError
+from greywhale.base.types import Controllers, NotedProgress, show_no_progress
 from greywhale.commission import learn, start
 from greywhale.commission.book import open_book
 from greywhale.commission.choose import confirm
@@ -24,20 +26,18 @@ from greywhale.commission.motions import Room, check_motion
 from greywhale.commission.outcome import Outcome, Round
 from greywhale.commission.rig import Rig, connected
 from greywhale.commission.search import JointSearch, Row
-from greywhale.commission.trials import Controllers, Trials
-from greywhale.errors import UserError
-from greywhale.excite import design
-from greywhale.excite.limits import limits_of
+from greywhale.commission.trials import Trials
 from greywhale.files.arm import load_arm
 from greywhale.files.leader import load_leader, save_leader
 from greywhale.files.log import Log, read_evidence
 from greywhale.files.parameter_file import load as load_parameters
 from greywhale.files.parameter_file import save as save_parameters
-from greywhale.firmware import JOINTS
-from greywhale.loop.controllers import controllers_of
-from greywhale.table import ParameterTable, find_board
+from greywhale.identify.excite import design
+from greywhale.identify.excite.limits import limits_of
+from greywhale.protocol.firmware import JOINTS
+from greywhale.protocol.table import ParameterTable, find_board
+from greywhale.simulate.controllers import controllers_of
 from greywhale.tune.model_checks import doubt_other_arm
-from greywhale.tune.progress import Report, report_nothing
 
 ROUNDS, TRIALS = 2, 8
 DESIGN_BUDGET = 150  # the last evaluations of a search for a motion would gain little
@@ -74,13 +74,13 @@ class Options:
         }
 
 
-def commission(options: Options, report: Report | None = None) -> Outcome:
+def commission(options: Options, report: NotedProgress | None = None) -> Outcome:
     """Find controllers on the arm; the board then runs and stores the best that was measured. Raises UserError."""
-    return _Campaign(options, report or report_nothing).run()
+    return _Campaign(options, report or show_no_progress).run()
 
 
 class _Campaign:
-    def __init__(self, options: Options, report: Report) -> None:
+    def __init__(self, options: Options, report: NotedProgress) -> None:
         self.options = options
         self.report = report
         self.nominal = load_arm(options.arm_file or options.model or "white_box")
@@ -236,7 +236,7 @@ class _Campaign:
         """Whether another round may help: a joint follows little better than before."""
         return any(search.best is None or search.best.verdict.value > WANTING for search in self.searches)
 
-    def _report(self, stage: str) -> Report:
+    def _report(self, stage: str) -> NotedProgress:
         def told(what: str, fraction: float, note: str = "") -> None:
             self.report(f"{stage}{self.trying}: {what}", fraction, note)
 

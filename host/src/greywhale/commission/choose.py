@@ -9,7 +9,7 @@ import numpy as np
 from greywhale.commission.rig import Rig
 from greywhale.commission.search import JointSearch, Row
 from greywhale.commission.trials import Trial, Trials
-from greywhale.loop.controllers import controllers_of
+from greywhale.simulate.controllers import controllers_of
 
 MOST_CONFIRMATIONS = 12
 

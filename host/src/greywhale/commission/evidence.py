@@ -5,19 +5,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import column, plant_row
+from greywhale.base.types import Floats
 from greywhale.commission.measures import Traces, unrest
 from greywhale.commission.predict import predict
 from greywhale.commission.trials import Trial, Trials
 from greywhale.files.log import Log, read_evidence
-from greywhale.firmware import JOINTS, TICK_S
-from greywhale.loop.closed_loop import count_swings
-from greywhale.table import CONTROLLER_COLUMNS, ParameterTable
+from greywhale.protocol.firmware import JOINTS, TICK_S
+from greywhale.protocol.table import CONTROLLER_COLUMNS, ParameterTable
+from greywhale.simulate.closed_loop import count_swings
 
-Floats = npt.NDArray[np.float64]
 KP = CONTROLLER_COLUMNS.index("kp")
 
 # Trials whose logs a later round fits, besides the excitation.

@@ -16,18 +16,16 @@ import numpy.typing as npt
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import plant_row
+from greywhale.base.types import Controllers, Floats
 from greywhale.commission.measures import Measures, Traces, measure
 from greywhale.commission.motions import PARTS, Check, Room
 from greywhale.commission.predict import predict
-from greywhale.firmware import JOINTS
-from greywhale.loop import Experiment
-from greywhale.loop.controllers import controllers_of
-from greywhale.table import ParameterTable
-from greywhale.trajectory import multi_steps
+from greywhale.motion import multi_steps
+from greywhale.protocol.firmware import JOINTS
+from greywhale.protocol.table import ParameterTable
+from greywhale.simulate import Experiment
+from greywhale.simulate.controllers import controllers_of
 from greywhale.tune.search.training import clip_motion
-
-Floats = npt.NDArray[np.float64]
-Controllers = npt.NDArray[np.int32]
 
 # Of the error before, at most so much: the rest of the way to 1 is the model's own error.
 MOST = 0.99

@@ -8,12 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from greywhale.base.types import Floats
 from greywhale.commission.measures import NAMES, Measures
 from greywhale.commission.motions import PARTS
-from greywhale.firmware import JOINTS
+from greywhale.protocol.firmware import JOINTS
 from greywhale.tune.judge.margins import CHATTER_HZ
-
-Floats = npt.NDArray[np.float64]
 
 # Unrest and rattling may grow by these factors, but not above this (rad rms). Below the second number nobody sees them,
 # whatever they were. Other motions show more unrest than the check: so its limit keeps clear of twice what it was.

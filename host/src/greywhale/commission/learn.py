@@ -6,25 +6,21 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from greywhale.arm import ArmParameters
+from greywhale.base.errors import UserError
+from greywhale.base.types import Controllers, Floats, NotedProgress
 from greywhale.commission.book import Book
 from greywhale.commission.evidence import Evidence
 from greywhale.commission.predict import predict
 from greywhale.commission.trials import Trial
-from greywhale.errors import UserError
 from greywhale.files import controller as controller_file
 from greywhale.identify import identify
-from greywhale.loop import controller_row
-from greywhale.table import ParameterTable
+from greywhale.protocol.table import ParameterTable
+from greywhale.simulate import controller_row
 from greywhale.tune import DEFAULT_BUDGET, tune
 from greywhale.tune.model import Model, load_model
-from greywhale.tune.progress import Report
 from greywhale.tune.report.controller_file import save
-
-Controllers = npt.NDArray[np.int32]
-Floats = npt.NDArray[np.float64]
 
 # A later round begins with the best so far, and needs a part of the search only.
 LATER_SHARE = 0.5
@@ -49,7 +45,7 @@ def find_model(
     nominal: ArmParameters,
     known: Evidence,
     seed: int,
-    report: Report,
+    report: NotedProgress,
     begin: ArmParameters | None = None,
 ) -> Path:
     """Identify the arm, or take the model of that name from the journal; its file. `begin` is the model before."""
@@ -80,7 +76,7 @@ def find_controllers(
     budget: int | None,
     seed: int,
     threads: int,
-    report: Report,
+    report: NotedProgress,
 ) -> Learnt:
     """Tune on a model, or take the controllers of that name from the journal. An interrupted search goes on."""
     path, journal = book.path(f"{name}.toml"), book.path(f"{name}.toml.journal")

@@ -5,7 +5,7 @@
 - rattle: rms of the follower between 6 and 40 Hz beyond the leader's own, rad, while a hand leads.
 - chatter: swings of the voltage by more than a third of the supply, 1/s.
 - voltage: mean of |u|, V.
-- overshoot and settling: of the part "moves", by `greywhale.measure.steps`, % and s; no settling where a step never
+- overshoot and settling: of the part "moves", by `motion/step_response.py`, % and s; no settling where a step never
   settled.
 """
 
@@ -15,20 +15,18 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from scipy.ndimage import uniform_filter1d
 from scipy.signal import butter, sosfiltfilt
 
+from greywhale.base.types import Floats
 from greywhale.commission.motions import PARTS, Check
 from greywhale.files.log import Log
-from greywhale.firmware import JOINTS, TICK_S
-from greywhale.loop.closed_loop import count_swings
-from greywhale.measure import Settings
-from greywhale.measure.runs import resting
-from greywhale.measure.steps import answer, departures, worst
+from greywhale.motion import Settings
+from greywhale.motion.runs import resting
+from greywhale.motion.step_response import answer, departures, worst
+from greywhale.protocol.firmware import JOINTS, TICK_S
+from greywhale.simulate.closed_loop import count_swings
 from greywhale.tune.search.rattle import CHATTER_SHARE
-
-Floats = npt.NDArray[np.float64]
 
 MEAN_S = 0.2
 SETTLE_S = 0.7

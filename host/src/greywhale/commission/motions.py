@@ -9,13 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-from greywhale.firmware import FASTEST_LED_RAD_S, JOINTS
-from greywhale.trajectory import Trajectory, human_reaches
-from greywhale.trajectory.generate import RANGE_RAD, minimum_jerk
-
-Floats = npt.NDArray[np.float64]
+from greywhale.base.types import Floats
+from greywhale.files.trajectory import Trajectory
+from greywhale.motion import human_reaches
+from greywhale.motion.generate import RANGE_RAD, minimum_jerk
+from greywhale.protocol.firmware import FASTEST_LED_RAD_S, JOINTS
 
 RATE_HZ = 200.0
 # No move is quicker: what a host can lead, with a tenth to spare. (A minimum-jerk move peaks at 1.875 times its mean.)

@@ -10,12 +10,12 @@ import jinja2
 import numpy as np
 
 from greywhale.arm.parameters import JOINT_NAMES
+from greywhale.base.formats.whole import write_text
 from greywhale.commission.measures import Measures
 from greywhale.commission.motions import PARTS
 from greywhale.commission.outcome import Outcome
 from greywhale.commission.trials import Trial
 from greywhale.files.log import read_evidence
-from greywhale.formats.whole import write_text
 
 Measure = tuple[str, str, str, float, str]  # name in Measures, words, unit, factor, form
 MEASURES: tuple[Measure, ...] = (
@@ -97,8 +97,8 @@ def _text(value: float, form: str) -> str:
 def _picture(outcome: Outcome) -> str:
     """Before and after on the check, as a data URL."""
     # Matplotlib takes a second to import.
-    from greywhale.drawing.page import png, style
-    from greywhale.report.follow import plot_following, trace
+    from greywhale.pictures.follow import plot_following, trace
+    from greywhale.pictures.page import png, style
 
     chosen = [(outcome.trials.before, "before")]
     if outcome.improved:

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.parameters import with_usual_noise
 from greywhale.arm.plants import plant_row
+from greywhale.base.types import Floats
 from greywhale.commission.measures import Traces
-from greywhale.firmware import JOINTS, TICK_S, pwm_steps
-from greywhale.joints import unused
-from greywhale.loop.closed_loop import ClosedLoop, known_readings, shown_angles, with_ideal_follower
-from greywhale.loop.controllers import controllers_of
-from greywhale.table import ParameterTable
-
-Floats = npt.NDArray[np.float64]
+from greywhale.protocol.firmware import JOINTS, TICK_S, pwm_steps
+from greywhale.protocol.joints import unused
+from greywhale.protocol.table import ParameterTable
+from greywhale.simulate.closed_loop import ClosedLoop, known_readings, shown_angles, with_ideal_follower
+from greywhale.simulate.controllers import controllers_of
 
 # The model stands at the log's first pose for so long before it is led, so that it starts at rest.
 LEAD_TICKS = 500

@@ -6,27 +6,21 @@ board runs those from before again after its next start; opening its port restar
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-import numpy.typing as npt
-
+from greywhale.base.errors import UserError
+from greywhale.base.types import Floats, Progress
 from greywhale.board.device import Device, hold_ctrl_c
 from greywhale.board.record import pose_of, record_led
 from greywhale.board.upload import read_parameters, run_set, upload_set
 from greywhale.commission.watch import Hunting, Watch
-from greywhale.errors import UserError
 from greywhale.files.log import Log, read_evidence
+from greywhale.files.trajectory import Trajectory
 from greywhale.protocol import schema
-from greywhale.table import ParameterTable
-from greywhale.trajectory import Trajectory
-
-Controllers = npt.NDArray[np.int32]
-Floats = npt.NDArray[np.float64]
-Progress = Callable[[str, float], None]
+from greywhale.protocol.table import ParameterTable
 
 # Faults that a bad controller causes, on an arm that has just moved well. Every other fault is one of the arm or the
 # board, and ends the commissioning.

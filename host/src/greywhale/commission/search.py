@@ -14,8 +14,8 @@ import numpy.typing as npt
 
 from greywhale.commission.judge import Verdict
 from greywhale.fuzzy.settings import GAIN_UNIT
-from greywhale.loop import CONTROLLER_COLUMNS
 from greywhale.protocol import schema
+from greywhale.simulate import CONTROLLER_COLUMNS
 from greywhale.tune.search.space import largest_ki
 
 Row = npt.NDArray[np.int32]

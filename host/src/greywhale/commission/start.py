@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.parameters import JOINT_NAMES
+from greywhale.base.errors import UserError
+from greywhale.base.types import Floats
 from greywhale.commission.book import Book
 from greywhale.commission.motions import FIRST_RAD, Room, first_motion
 from greywhale.commission.rig import Rig
-from greywhale.errors import UserError
 from greywhale.files.log import Log
-from greywhale.firmware import JOINTS
-from greywhale.joints import require_same
-from greywhale.table import ParameterTable
+from greywhale.protocol.firmware import JOINTS
+from greywhale.protocol.joints import require_same
+from greywhale.protocol.table import ParameterTable
 from greywhale.tune.model_checks import CONVERTER_SPAN, MATCH, doubt_other_board
-
-Floats = npt.NDArray[np.float64]
 
 # The little first motion, and a larger one for joints that friction held.
 FIRST_SIZES = (FIRST_RAD, 0.4)

@@ -7,21 +7,20 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from greywhale.base.errors import UserError
+from greywhale.base.types import Controllers
 from greywhale.commission.book import Book
 from greywhale.commission.foresee import Foresight
 from greywhale.commission.judge import Limits, Verdict, judge
 from greywhale.commission.measures import Measures, Traces, measure, traces_of
 from greywhale.commission.motions import Check
 from greywhale.commission.rig import Played, Rig
-from greywhale.errors import UserError
 from greywhale.files.log import read_evidence
-from greywhale.firmware import JOINTS
-from greywhale.loop.controllers import controllers_of
-from greywhale.table import ParameterTable
+from greywhale.protocol.firmware import JOINTS
+from greywhale.protocol.table import ParameterTable
+from greywhale.simulate.controllers import controllers_of
 
-Controllers = npt.NDArray[np.int32]
 BEFORE, AGAIN = "before", "before-again"
 
 

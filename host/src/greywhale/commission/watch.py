@@ -11,8 +11,8 @@ from collections import deque
 import numpy as np
 
 from greywhale.board.stream import Received
-from greywhale.firmware import ANGLE_LSB
-from greywhale.loop.closed_loop import count_swings
+from greywhale.protocol.firmware import ANGLE_LSB
+from greywhale.simulate.closed_loop import count_swings
 
 SWING_RAD = 0.03  # from one turning point to the next
 REVERSALS = 4

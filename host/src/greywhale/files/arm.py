@@ -7,8 +7,8 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 
 from greywhale.arm.parameters import ArmParameters
+from greywhale.base.formats import toml_file
 from greywhale.files.names import suggesting
-from greywhale.formats import toml_file
 
 
 def arm_names() -> list[str]:

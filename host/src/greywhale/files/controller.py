@@ -14,16 +14,16 @@ from typing import Any, ClassVar, Self
 
 from pydantic import Field, field_validator, model_validator
 
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
+from greywhale.base.formats import toml_file, toml_text
+from greywhale.base.formats.kinds import Kind
+from greywhale.base.formats.whole import write_text
 from greywhale.files.names import suggesting
 from greywhale.files.paper_tables import controller_names, controller_path
-from greywhale.firmware import JOINTS
-from greywhale.formats import toml_file, toml_text
-from greywhale.formats.kinds import Kind
-from greywhale.formats.whole import write_text
 from greywhale.protocol import schema
 from greywhale.protocol.declared import Parameter
-from greywhale.table import CONTROLLER_COLUMNS, ParameterTable
+from greywhale.protocol.firmware import JOINTS
+from greywhale.protocol.table import CONTROLLER_COLUMNS, ParameterTable
 
 # No flank of a fuzzy set may be narrower than this.
 NARROWEST = 0.01

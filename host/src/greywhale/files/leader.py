@@ -11,14 +11,15 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
+from greywhale.base.formats import csv_file
+from greywhale.base.formats.whole import refuse_devices, write_text
+from greywhale.base.types import Floats
 from greywhale.files.log.check import add_rows, facts_of
 from greywhale.files.log.condition import judge_condition
 from greywhale.files.log.layout import COLUMNS as LOG_COLUMNS
-from greywhale.firmware import JOINTS
-from greywhale.formats import csv_file
-from greywhale.formats.whole import refuse_devices, write_text
-from greywhale.trajectory.motion import POT_RANGE_RAD, Array, Trajectory
+from greywhale.files.trajectory import POT_RANGE_RAD, Trajectory
+from greywhale.protocol.firmware import JOINTS
 
 LONGEST_S = 3600.0
 # Far beyond a hand (some 30 rad/s), but a step of `multi_steps` over the whole range, 40 ms long, stays below it.
@@ -32,8 +33,8 @@ class _Rows:
     """Times (n,), angles (n, 4) and the lines that they stand on."""
 
     name: str
-    time_s: Array
-    angles: Array
+    time_s: Floats
+    angles: Floats
     lines: npt.NDArray[np.int64]
     remarks: tuple[str, ...]
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from difflib import get_close_matches
 from pathlib import Path
 
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 
 _MOST = 3
 _LONGEST = 60  # nobody's slip is longer, and the search takes a time that grows with it

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from greywhale.errors import BAD_USAGE, UserError, os_reason
-from greywhale.formats.whole import require_writable
+from greywhale.base.errors import BAD_USAGE, UserError, os_reason
+from greywhale.base.formats.whole import require_writable
 
 
 def require_new(overwrite: bool, *paths: Path | None) -> None:

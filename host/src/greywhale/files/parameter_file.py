@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from greywhale.errors import UserError, cut
+from greywhale.base.errors import UserError, cut
+from greywhale.base.formats import toml_file
+from greywhale.base.formats.kinds import Kind, refuse_other_kind
+from greywhale.base.formats.whole import write_text
 from greywhale.files import controller
 from greywhale.files.paper_tables import controller_path
-from greywhale.formats import toml_file
-from greywhale.formats.kinds import Kind, refuse_other_kind
-from greywhale.formats.whole import write_text
 from greywhale.protocol import schema
-from greywhale.table import ParameterTable, physical
+from greywhale.protocol.table import ParameterTable, physical
 
 SINCE_LAYOUT_2 = (
     *("unrest_amplitude", "unrest_rate", "unrest_time", "unrest_action"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from greywhale.formats.whole import write_text
+from greywhale.base.formats.whole import write_text
 from greywhale.fuzzy.rules import OUTPUTS, RULES
 
 # MATLAB and Octave sample the output at 101 points. Equal triangles apart from each other, scaled by the rules' heights

@@ -14,17 +14,16 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from greywhale.arm.parameters import USUAL_TRACK_RAD
-from greywhale.firmware import ANGLE_LSB, TICK_S, pwm_steps
+from greywhale.base.types import Floats
 from greywhale.identify.closed_loop import Loop
 from greywhale.identify.data import FINE_STEP_S, Prepared, prepare
 from greywhale.identify.space import COUPLED, WHOLE_ARM, Space
 from greywhale.identify.steps import WindowFit
 from greywhale.identify.windows import WindowResidual
+from greywhale.protocol.firmware import ANGLE_LSB, TICK_S, pwm_steps
 
-Floats = NDArray[np.float64]
 LOGS = 6
 STEPS = 8
 # A fit starts so many of the formula's standard deviations away.

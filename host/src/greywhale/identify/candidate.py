@@ -8,11 +8,11 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from greywhale.base.types import Floats
 from greywhale.identify.closed_loop import LoopResidual
 from greywhale.identify.space import Space
 from greywhale.identify.windows import WindowResidual
 
-Floats = NDArray[np.float64]
 # A closed-loop difference of this size counts as one standard deviation (rad): it lasts for many readings.
 LOOP_DOUBT = 1e-2
 

@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
-from greywhale.errors import UserError
-from greywhale.firmware import JOINTS
+from greywhale.base.errors import UserError
+from greywhale.base.types import Floats
 from greywhale.identify.data import Prepared
-from greywhale.table import ParameterTable
+from greywhale.protocol.firmware import JOINTS
+from greywhale.protocol.table import ParameterTable
 
-Floats = NDArray[np.float64]
 SHORTEST_S = 4.0
 SMALLEST_MOTION = 0.1
 # A reading that stays exactly at its extreme value for this share of the log, that far out (rad), is clipped.

@@ -11,11 +11,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from greywhale.base.types import Floats
 from greywhale.identify.space import Space
 
-Floats = NDArray[np.float64]
 # Numbers that are less certain than this (a share) may lie on a ridge; a combination that is stated is so many times as
 # certain as either of its numbers.
 UNCERTAIN, SHARPER = 0.05, 3.0

@@ -6,9 +6,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 from greywhale.files.log import Log
-from greywhale.table import ParameterTable, find_board
+from greywhale.protocol.table import ParameterTable, find_board
 
 
 def table_of(log: Log, given: Sequence[ParameterTable]) -> ParameterTable | None:

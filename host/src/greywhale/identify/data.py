@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import savgol_filter
 
+from greywhale.base.types import Floats
 from greywhale.files.log import Log
-from greywhale.firmware import JOINTS, TICK_S
-from greywhale.measure.runs import Run
+from greywhale.motion.runs import Run
+from greywhale.protocol.firmware import JOINTS, TICK_S
 
-Floats = NDArray[np.float64]
 WINDOW_S = 0.5
 SMOOTHING_S = 0.04  # of the angle, to find velocities
 # Longest steps of the integration in a window, s: for the search, and for the final fit (a light link moves through its

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from greywhale.base.types import Floats
 from greywhale.identify.bootstrap import scatter_of_fits, spread_covariance
 from greywhale.identify.candidate import Candidate
 from greywhale.identify.combinations import combinations
@@ -16,7 +16,6 @@ from greywhale.identify.space import KINDS, Space
 from greywhale.identify.uncertainty import uncertainty
 from greywhale.identify.windows import WindowResidual
 
-Floats = NDArray[np.float64]
 DRAWS = 60  # plants that tell how much better or worse a model may do by chance
 
 

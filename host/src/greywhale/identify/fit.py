@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 from threadpoolctl import threadpool_limits
 
+from greywhale.base.types import Floats
 from greywhale.identify.space import Kind
-
-Floats = NDArray[np.float64]
 
 
 class Searched(Protocol):

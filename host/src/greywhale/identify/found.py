@@ -2,22 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from greywhale.arm import ArmParameters
-from greywhale.errors import UserError
-from greywhale.firmware import JOINTS
+from greywhale.base.errors import UserError
+from greywhale.base.types import Floats, Progress
 from greywhale.identify.closed_loop import Loop
 from greywhale.identify.combinations import Combination
 from greywhale.identify.judge import FIT, Subject
-
-Floats = NDArray[np.float64]
-Report = Callable[[str, float], None]
+from greywhale.protocol.firmware import JOINTS
 
 
 @dataclass(frozen=True)
@@ -30,7 +24,7 @@ class Task:
     white_box: ArmParameters
     subjects: tuple[Subject, ...]
     seed: int
-    report: Report
+    report: Progress
     begin: ArmParameters | None = None
 
     @property

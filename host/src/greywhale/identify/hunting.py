@@ -9,13 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 
 from greywhale.arm.parameters import JOINT_NAMES
-from greywhale.firmware import JOINTS
+from greywhale.base.types import Floats
+from greywhale.protocol.firmware import JOINTS
 
-Floats = NDArray[np.float64]
 # A swing is what a moving average over this time (s) takes away: of the follower, less what it takes from the leader.
 AVERAGE_S = 0.2
 # Swings are looked at in pieces of this length (s) in which the leader itself makes none larger than this (rad). A

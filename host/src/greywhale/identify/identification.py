@@ -5,20 +5,21 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from greywhale.arm import ArmParameters
-from greywhale.errors import BAD_USAGE, MOST_SEED, UserError, require_within
+from greywhale.base.errors import BAD_USAGE, MOST_SEED, UserError, require_within
+from greywhale.base.types import Progress, show_no_progress
 from greywhale.files.log import Log
 from greywhale.files.log.check import Check
 from greywhale.files.log.reader import refuse_altered
 from greywhale.identify import checks, controllers, judge
 from greywhale.identify.data import prepare
 from greywhale.identify.default import find_default
-from greywhale.identify.found import Report, Task
+from greywhale.identify.found import Task
 from greywhale.identify.outcome import Outcome
 from greywhale.identify.overlap import refuse_shared
 from greywhale.identify.paper import METHODS as PAPER_METHODS
 from greywhale.identify.paper import find_as_paper
-from greywhale.joints import ALL, require_same
-from greywhale.table import ParameterTable
+from greywhale.protocol.joints import ALL, require_same
+from greywhale.protocol.table import ParameterTable
 
 METHODS = ("default", *PAPER_METHODS)
 
@@ -32,7 +33,7 @@ def identify(
     method: str = "default",
     seed: int = 0,
     begin: ArmParameters | None = None,
-    report: Report | None = None,
+    report: Progress | None = None,
 ) -> Outcome:
     """Find the arm that made the logs. `arm` is the white box to start from and supplies all geometry.
 
@@ -53,7 +54,7 @@ def identify(
         refuse_altered(log, Check.CHANGED)
     refuse_shared(logs, validate)
     subjects, doubts = _subjects(logs, validate, arm, tables)
-    task = Task(arm, tuple(subjects), seed, report or (lambda what, fraction: None), begin)
+    task = Task(arm, tuple(subjects), seed, report or show_no_progress, begin)
     found = find_default(task) if method == "default" else find_as_paper(task, method)
     verdicts = tuple(
         judge.judge(subject, arm, found.plant, found.zero, found.joints, found.draws) for subject in subjects

@@ -14,16 +14,16 @@ from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.parameters import JOINT_NAMES
-from greywhale.firmware import JOINTS, TICK_S
+from greywhale.base.types import Floats
 from greywhale.identify.bootstrap import COUNTS
 from greywhale.identify.closed_loop import COMPARED_TICKS, Loop
 from greywhale.identify.data import Prepared
 from greywhale.identify.hunting import Swings, describe_difference, smooth_motion, swings_of
 from greywhale.identify.space import Space
 from greywhale.identify.windows import WindowResidual
-from greywhale.table import ParameterTable
+from greywhale.protocol.firmware import JOINTS, TICK_S
+from greywhale.protocol.table import ParameterTable
 
-Floats = NDArray[np.float64]
 TINY = 1e-12  # rad², beside every error of a joint that moved
 # A joint is doubted whose model leaves more than this share of the tracking error with a changed controller, and so
 # many times the share that it leaves with its own; below this error (rad) nobody cares.

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from greywhale.arm.parameters import USUAL_TRACK_RAD
-from greywhale.firmware import CONVERSIONS
+from greywhale.base.types import Floats
 from greywhale.identify.data import Prepared
+from greywhale.protocol.firmware import CONVERSIONS
 
-Floats = NDArray[np.float64]
 STEPS = 1024  # of the converter
 
 

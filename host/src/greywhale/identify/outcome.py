@@ -7,18 +7,16 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.from_plant import arm_of
+from greywhale.base.formats.whole import write_text
+from greywhale.base.types import Floats
 from greywhale.files.model import sealed, to_toml
-from greywhale.formats.whole import write_text
 from greywhale.identify.found import Found, ParameterEstimate
 from greywhale.identify.judge import FIT, Subject, Verdict
 from greywhale.identify.noise import pot_noise
-from greywhale.joints import Joints
-
-Floats = NDArray[np.float64]
+from greywhale.protocol.joints import Joints
 
 
 @dataclass(frozen=True)

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from greywhale.errors import BAD_USAGE, UserError
+from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.types import Floats
 from greywhale.files.log import Log
 from greywhale.identify.data import LIVELY_RAD
 
-Floats = NDArray[np.float64]
 # So many rows one after another are not the same by chance (a power of two). At rest they may be: only stretches in
 # which the arm moves count.
 _RUN = 32

@@ -11,17 +11,15 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import column
-from greywhale.firmware import JOINTS
+from greywhale.base.types import Floats, Progress
 from greywhale.identify.closed_loop import Loop
-from greywhale.identify.found import Found, ParameterEstimate, Report, Task
-from greywhale.loop import plant_row
+from greywhale.identify.found import Found, ParameterEstimate, Task
 from greywhale.optimise import create
-
-Floats = NDArray[np.float64]
+from greywhale.protocol.firmware import JOINTS
+from greywhale.simulate import plant_row
 
 AGENTS = 10
 ITERATIONS = 50
@@ -40,7 +38,7 @@ class PaperSearch:
     arm: ArmParameters
     loops: Sequence[Loop]
     seed: int
-    report: Report
+    report: Progress
     method: str = "paper"
     x: Floats | None = None
     curve: list[float] = field(default_factory=list)  # best cost after each iteration: the paper's Fig. 6

@@ -5,10 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
-from greywhale.drawing import looks
-from greywhale.drawing.page import (
+from greywhale.base.types import Floats
+from greywhale.identify.closed_loop import COMPARED_TICKS, Loop
+from greywhale.identify.judge import Subject, Verdict
+from greywhale.identify.outcome import Outcome
+from greywhale.pictures import looks
+from greywhale.pictures.names import distinct_names
+from greywhale.pictures.page import (
     COLUMN,
     JOINTS,
     WIDE,
@@ -19,15 +23,9 @@ from greywhale.drawing.page import (
     save_into,
     style,
 )
-from greywhale.drawing.plotting import Figure, plt
-from greywhale.identify.closed_loop import COMPARED_TICKS, Loop
-from greywhale.identify.judge import Subject, Verdict
-from greywhale.identify.outcome import Outcome
-from greywhale.joints import ALL, Joints
-from greywhale.loop import plant_row
-from greywhale.report.names import distinct_names
-
-Floats = npt.NDArray[np.float64]
+from greywhale.pictures.plotting import Figure, plt
+from greywhale.protocol.joints import ALL, Joints
+from greywhale.simulate import plant_row
 
 
 def draw(outcome: Outcome, folder: Path) -> list[Path]:

@@ -8,15 +8,14 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import PLANT_COLUMNS, check_plants
-from greywhale.errors import BAD_USAGE, UserError
+from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.types import Floats
 from greywhale.identify.space import KINDS, Parameter, Space
-from greywhale.loop import plant_row
+from greywhale.simulate import plant_row
 
-Floats = NDArray[np.float64]
 EVERY = 3  # a rival takes the place of one draw in so many
 
 

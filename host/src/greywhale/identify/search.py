@@ -14,13 +14,13 @@ step 2, and only orders that it lacks are tried.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
+from greywhale.base.types import Floats, Progress
 from greywhale.identify.candidate import Candidate, Observed, WindowsAndLoop
 from greywhale.identify.closed_loop import Loop, LoopResidual
 from greywhale.identify.data import FINE_STEP_S, Prepared
@@ -29,9 +29,6 @@ from greywhale.identify.space import COUPLED, MOTOR, Space
 from greywhale.identify.steps import WindowFit
 from greywhale.identify.windows import WindowResidual
 from greywhale.optimise import DEFAULT, create
-
-Floats = NDArray[np.float64]
-Report = Callable[[str, float], None]
 
 # The quantities that each order of the model adds to the one before.
 ORDERS: dict[str, tuple[str, ...]] = {
@@ -101,7 +98,7 @@ class Search:
     loops: Sequence[Loop]  # of the same logs; empty where no controller is known
     joints: Sequence[int]
     seed: int
-    report: Report
+    report: Progress
     begin: Candidate | None = None  # a model of this arm, found from other logs
     best: Candidate | None = None
     tried: list[Candidate] = field(default_factory=list)
@@ -368,7 +365,7 @@ class Search:
         return replace(candidate, x=self._mix_blocks(windows, candidate.space, tried))
 
     def _begin_part(self, what: str, done: float, until: float, fits: int = 1) -> None:
-        """Report a part of the search; about so many fits take its share from `done` to `until`."""
+        """Progress a part of the search; about so many fits take its share from `done` to `until`."""
         self._part = what, done, until, (until - done) / fits
         self.report(what, done)
 

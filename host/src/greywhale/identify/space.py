@@ -16,9 +16,8 @@ from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import column, plant_row
-from greywhale.firmware import JOINTS
-
-Floats = NDArray[np.float64]
+from greywhale.base.types import Floats
+from greywhale.protocol.firmware import JOINTS
 
 
 @dataclass(frozen=True)

@@ -15,11 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from greywhale.firmware import JOINTS
+from greywhale.base.types import Floats
 from greywhale.identify.space import COUPLED, WHOLE_ARM, Space
 from greywhale.identify.windows import WindowResidual
+from greywhale.protocol.firmware import JOINTS
 
-Floats = NDArray[np.float64]
 DAMPINGS = (0.02, 0.3, 5.0, 100.0)  # times a block's last damping
 LARGEST_STEP = 1.0  # of a searched number, in doubts
 MOST_DAMPING = 1e8

@@ -10,13 +10,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from greywhale.arm.parameters import JOINT_NAMES
+from greywhale.base.types import Floats
 from greywhale.identify.space import KINDS, WHOLE_ARM, Parameter, Space
 from greywhale.identify.windows import WindowResidual
 
-Floats = NDArray[np.float64]
 # A positive quantity is left open if it is known no better than to this factor's logarithm; any other, to so many
 # steps.
 OPEN_LOG = 0.3

@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 from greywhale import _native
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import column
-from greywhale.firmware import JOINTS
+from greywhale.base.types import Floats
 from greywhale.identify.data import BLOCK_S, STEP_S, WINDOW_S, Prepared, Windows, part_of, some_windows, windows_of
 from greywhale.identify.space import Space
+from greywhale.protocol.firmware import JOINTS
 
-Floats = NDArray[np.float64]
 # A start speed may be off by so much beyond what noise explains (rad/s): motion within the smoothing.
 SPEED_DOUBT = 0.05
 # The places at which a motor may stand in its gap at a window's start, or a joint in its potentiometer's play.

@@ -14,7 +14,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from greywhale.optimise.box import Box, Floats
+from greywhale.base.types import Floats
+from greywhale.optimise.box import Box
 from greywhale.optimise.differential_evolution import WORST
 from greywhale.optimise.optimiser import Optimiser
 
@@ -48,7 +49,7 @@ class CmaEs(Optimiser):
 
     def _begin(self, pack: int, start: Floats) -> Any:
         # Imported here: it takes two seconds, and most runs need no CMA-ES. It imports Matplotlib, which is ours to do.
-        importlib.import_module("greywhale.drawing.plotting")
+        importlib.import_module("greywhale.pictures.plotting")
         cma: Any = importlib.import_module("cma")
         unit = self.box.to_unit(start)
         mean = unit[0] if len(unit) else self._generator.random(self.box.dimensions)

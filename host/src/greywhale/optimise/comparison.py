@@ -8,7 +8,6 @@ problems.
 from __future__ import annotations
 
 import zlib
-from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -16,13 +15,12 @@ from typing import Any
 
 import numpy as np
 
-from greywhale.errors import BAD_USAGE, MOST_SEED, UserError, require_within
-from greywhale.optimise.box import Floats
+from greywhale.base.errors import BAD_USAGE, MOST_SEED, UserError, require_within
+from greywhale.base.study import SerialWorkers, Task, Workers, run_study
+from greywhale.base.types import Floats, Progress
 from greywhale.optimise.functions import FUNCTIONS, SETTINGS, Setting, place
 from greywhale.optimise.methods import METHODS, create, minimise
-from greywhale.study import SerialWorkers, Task, Workers, run_study
 
-Progress = Callable[[str, float], None]
 # Two samples count as different when chance would separate them as far in fewer cases than this share.
 SIGNIFICANCE = 0.05
 # Evaluations that a worker does in one go: short enough for a smooth progress bar, long enough to be worth a message.
@@ -142,7 +140,7 @@ def compare(
     progress: Progress | None = None,
     results: Path | None = None,
 ) -> Comparison:
-    """Run the plan, in this process or on an executor (greywhale.study); the result does not depend on where. With a
+    """Run the plan, in this process or on an executor (base/study); the result does not depend on where. With a
     results file an interrupted comparison goes on.
     """
     plan.check()

@@ -8,15 +8,15 @@ from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from greywhale.drawing import looks
-from greywhale.drawing.kinds import KINDS
-from greywhale.errors import BAD_USAGE, UserError
-from greywhale.formats.whole import write_text
+from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.formats.whole import write_text
 from greywhale.optimise.comparison import Comparison
 from greywhale.optimise.functions import Setting
+from greywhale.pictures import looks
+from greywhale.pictures.kinds import KINDS
 
 if TYPE_CHECKING:
-    from greywhale.drawing.plotting import Axes, Figure
+    from greywhale.pictures.plotting import Axes, Figure
 
 FORMATS = (".csv", *KINDS)
 # Methods in a picture: dark and saturated colours first, then the same dashed.
@@ -165,7 +165,7 @@ def _csv(comparison: Comparison) -> str:
 
 def _draw(path: Path, comparison: Comparison) -> None:
     # Matplotlib takes a second to import, and most comparisons draw nothing.
-    from greywhale.drawing.page import save, style
+    from greywhale.pictures.page import save, style
 
     with style():
         save(plot_ranks(comparison), path)
@@ -173,8 +173,8 @@ def _draw(path: Path, comparison: Comparison) -> None:
 
 def plot_ranks(comparison: Comparison) -> Figure:
     """A line a method from setting to setting, its name at the end, as a figure of pyplot's that the caller closes."""
-    from greywhale.drawing.page import WIDE, leave
-    from greywhale.drawing.plotting import plt
+    from greywhale.pictures.page import WIDE, leave
+    from greywhale.pictures.plotting import plt
 
     plan = comparison.plan
     across = range(len(plan.settings))

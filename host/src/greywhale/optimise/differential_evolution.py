@@ -16,7 +16,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from greywhale.optimise.box import Box, Floats, Source, latin_hypercube
+from greywhale.base.types import Floats
+from greywhale.optimise.box import Box, Source, latin_hypercube
 from greywhale.optimise.optimiser import PACK, Optimiser
 
 # Finite, because scipy evaluates a first pack of infinities a second time; far enough from the limit that sums stay

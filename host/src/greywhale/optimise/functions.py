@@ -12,7 +12,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from greywhale.optimise.box import Floats
+from greywhale.base.types import Floats
 
 Setting = Literal["plain", "shifted", "rotated"]
 SETTINGS: tuple[Setting, ...] = get_args(Setting)

@@ -14,7 +14,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from greywhale.optimise.box import Box, Floats, Source
+from greywhale.base.types import Floats
+from greywhale.optimise.box import Box, Source
 from greywhale.optimise.optimiser import PACK, Optimiser
 
 LEADERS = 3

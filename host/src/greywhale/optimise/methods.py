@@ -9,7 +9,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from greywhale.optimise.box import Box, Floats
+from greywhale.base.types import Floats
+from greywhale.optimise.box import Box
 from greywhale.optimise.cma_es import CmaEs
 from greywhale.optimise.differential_evolution import DifferentialEvolution
 from greywhale.optimise.grey_wolf import GreyWolf, GreyWolfWhale, GreyWolfWhaleAsPrinted

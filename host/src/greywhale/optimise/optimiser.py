@@ -15,7 +15,8 @@ from typing import ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from greywhale.optimise.box import Box, Floats, Source, scatter
+from greywhale.base.types import Floats
+from greywhale.optimise.box import Box, Source, scatter
 
 PACK = 10
 

@@ -20,7 +20,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from greywhale.optimise.box import Box, Floats, Source, latin_hypercube
+from greywhale.base.types import Floats
+from greywhale.optimise.box import Box, Source, latin_hypercube
 from greywhale.optimise.grey_wolf import LEADERS, Draw, best_three, draw_alpha_factor, hunt
 from greywhale.optimise.optimiser import PACK, Optimiser
 

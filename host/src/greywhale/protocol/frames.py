@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from cobs import cobs
 
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 
 from .schema import MAX_PAYLOAD
 

@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 
-from greywhale.errors import cut
+from greywhale.base.errors import cut
 
 PROCESSES = Path("/proc")  # not there on every system
 

@@ -8,9 +8,9 @@ from pathlib import Path
 
 from serial.tools import list_ports
 
-from greywhale.errors import BAD_USAGE, UserError
+from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.runtime import private_runtime_directories
 from greywhale.protocol.transport import LINES
-from greywhale.runtime import private_runtime_directories
 
 BOARDS = {"mega": "Arduino Mega 2560", "nano": "Arduino Nano (ATmega328P)"}
 

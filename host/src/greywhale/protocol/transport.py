@@ -18,7 +18,7 @@ from typing import Protocol
 
 import serial
 
-from greywhale.errors import UserError, os_reason
+from greywhale.base.errors import UserError, os_reason
 from greywhale.protocol.holder import holder_of
 
 BAUD = 1_000_000

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from greywhale.errors import MOST_SEED, require_within
+from greywhale.base.errors import MOST_SEED, require_within
 
 SEEDS, QUICK_SEEDS = 10, 3
 MOST_SEEDS = 1000

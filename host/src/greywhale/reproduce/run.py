@@ -8,11 +8,11 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from greywhale.errors import UserError, os_reason
+from greywhale.base.errors import UserError, os_reason
+from greywhale.base.study import Workers, run_study
+from greywhale.base.types import NotedProgress
 from greywhale.reproduce.request import Request
 from greywhale.reproduce.tasks import tasks_of
-from greywhale.study import Workers, run_study
-from greywhale.tune.progress import Report
 
 Results = dict[str, dict[str, Any]]
 SOURCE = Path(__file__).resolve().parents[1]
@@ -20,7 +20,7 @@ SOURCE = Path(__file__).resolve().parents[1]
 SHOWING = {"cli", "drawing", "pages", "pictures", "render"}
 
 
-def run(request: Request, folder: Path, workers: Workers, report: Report | None = None) -> Results:
+def run(request: Request, folder: Path, workers: Workers, report: NotedProgress | None = None) -> Results:
     """Everything that a request asks for, by the tasks' keys. An interrupt keeps what is done in `folder`."""
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from greywhale.base.study import Task
 from greywhale.reproduce.request import Request
 from greywhale.reproduce.work import bench, errata, findings, grey_box, on_the_bench, optimisers
 from greywhale.reproduce.work.motions import PERIOD_MS, printed
-from greywhale.study import Task
 
 # The board's own control period, at which greywhale's own controllers run and the data sets are recorded.
 OWN_PERIOD_MS = 1

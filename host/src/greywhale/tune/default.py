@@ -19,13 +19,13 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from greywhale.arm.parameters import with_usual_noise
-from greywhale.errors import counted
-from greywhale.joints import unused
+from greywhale.base.errors import counted
+from greywhale.base.types import Controllers, Floats
 from greywhale.optimise.relative import RelativeWolfWhale
-from greywhale.table import CONTROLLER_COLUMNS
+from greywhale.protocol.joints import unused
+from greywhale.protocol.table import CONTROLLER_COLUMNS
 from greywhale.tune.judge.choose import choose, is_fair
 from greywhale.tune.judge.held_out import judge_held_out
 from greywhale.tune.judge.margins import MOVING, REST_LONG_S, Margin, Margins, loosest_plant, penalty
@@ -38,9 +38,6 @@ from greywhale.tune.search.lockstep import Found
 from greywhale.tune.search.objective import Objective
 from greywhale.tune.search.space import Space
 from greywhale.tune.search.training import drills
-
-Floats = npt.NDArray[np.float64]
-Controllers = npt.NDArray[np.int32]
 
 BUDGET = 3000
 METHOD = RelativeWolfWhale.name  # of the default method

@@ -5,18 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
-import numpy as np
-import numpy.typing as npt
-
-from greywhale.table import ParameterTable
+from greywhale.base.types import Controllers, NotedProgress
+from greywhale.protocol.table import ParameterTable
 from greywhale.tune.judge.held_out import HeldOut
 from greywhale.tune.judge.margins import Margin
 from greywhale.tune.model import Model
-from greywhale.tune.progress import Report
 from greywhale.tune.search.journal import Journal
 from greywhale.tune.search.lockstep import Found
 
-Controllers = npt.NDArray[np.int32]
 Costs = tuple[float, ...]
 
 
@@ -32,7 +28,7 @@ class Task:
     threads: int
     before: Controllers
     bounds: dict[str, tuple[float, float]]
-    report: Report
+    report: NotedProgress
     floors: bool  # whether to work out the least possible error
     on_trial: bool = False  # whether the arm itself will judge what is found
 

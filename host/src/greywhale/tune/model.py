@@ -13,21 +13,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
-from greywhale.errors import UserError, require_within
+from greywhale.base.errors import UserError, require_within
+from greywhale.base.types import Floats
 from greywhale.files import parameter_file
 from greywhale.files.arm import content_of, load_arm
 from greywhale.identify import sampled_plants
-from greywhale.joints import require_same
-from greywhale.loop import plant_row
-from greywhale.loop.controllers import controllers_of
+from greywhale.protocol.joints import require_same
 from greywhale.protocol.schema import Board
-from greywhale.table import ParameterTable
+from greywhale.protocol.table import ParameterTable
+from greywhale.simulate import plant_row
+from greywhale.simulate.controllers import controllers_of
 from greywhale.tune import model_checks as checks
 from greywhale.tune.model_checks import Doubt, Identification
 from greywhale.tune.model_edits import UNSEALED, doubt_edits
 from greywhale.tune.stall import StallLimit, stall_limit
-
-Floats = NDArray[np.float64]
 
 SAMPLES = 8
 MOST_SAMPLES = 1000  # every one is simulated for every controller that is tried

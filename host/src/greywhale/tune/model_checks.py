@@ -7,26 +7,24 @@ from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.from_plant import known_before
 from greywhale.arm.parameters import JOINT_NAMES
-from greywhale.errors import UserError
-from greywhale.firmware import TICK_S
+from greywhale.base.errors import UserError
+from greywhale.base.types import Floats
 from greywhale.identify import sampled_plants
 from greywhale.identify.judge import FIT, Verdict, warnings_of
 from greywhale.identify.uncertainty import EXCITATION
-from greywhale.loop import Experiment, plant_row
-from greywhale.loop.controllers import controllers_of
+from greywhale.motion import human_reaches
 from greywhale.protocol import schema
+from greywhale.protocol.firmware import TICK_S
 from greywhale.protocol.schema import Board
-from greywhale.table import ParameterTable, find_board, refuse_unknown
-from greywhale.trajectory import human_reaches
+from greywhale.protocol.table import ParameterTable, find_board, refuse_unknown
+from greywhale.simulate import Experiment, plant_row
+from greywhale.simulate.controllers import controllers_of
 from greywhale.tune.search.training import clip_motion, moves, reach
-
-Floats = NDArray[np.float64]
 
 # Half of the arms that the logs allow may follow a motion differently from the estimate by this share of its tracking
 # error. Slow reaches show friction and gravity, quick moves show inertia and damping.

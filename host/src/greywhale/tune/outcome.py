@@ -5,17 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
-import numpy.typing as npt
-
+from greywhale.base.types import Controllers
 from greywhale.protocol.schema import PARAMETER_BY_NAME
-from greywhale.table import CONTROLLER_COLUMNS, ParameterTable, physical
+from greywhale.protocol.table import CONTROLLER_COLUMNS, ParameterTable, physical
 from greywhale.tune.judge.held_out import HeldOut
 from greywhale.tune.judge.margins import Margin
 from greywhale.tune.model import Model
 from greywhale.tune.search.lockstep import Found
-
-Controllers = npt.NDArray[np.int32]
 
 
 @dataclass(frozen=True)

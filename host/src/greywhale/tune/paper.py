@@ -23,12 +23,13 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from greywhale.arm.plants import column
-from greywhale.firmware import JOINTS
-from greywhale.loop import Experiment
-from greywhale.trajectory import Trajectory, steps
+from greywhale.base.types import Controllers, Floats
+from greywhale.files.trajectory import Trajectory
+from greywhale.motion import steps
+from greywhale.protocol.firmware import JOINTS
+from greywhale.simulate import Experiment
 from greywhale.tune.judge.held_out import judge_held_out
 from greywhale.tune.judge.margins import Margins
 from greywhale.tune.method import Costs, Judgement, Task
@@ -36,9 +37,6 @@ from greywhale.tune.model import Model
 from greywhale.tune.search.journal import Journal
 from greywhale.tune.search.lockstep import Found, search_in_lockstep
 from greywhale.tune.search.space import Space
-
-Floats = npt.NDArray[np.float64]
-Controllers = npt.NDArray[np.int32]
 
 METHOD = "gwo-woa"
 AGENTS = 10

@@ -11,16 +11,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
-from greywhale.firmware import TICK_S
-from greywhale.table import ParameterTable
+from greywhale.base.types import Controllers, Floats
+from greywhale.protocol.firmware import TICK_S
+from greywhale.protocol.table import ParameterTable
 from greywhale.tune.judge.floor import follow_ideally
 from greywhale.tune.search.objective import Scale, error_of, follow
 from greywhale.tune.search.training import WAIT_S, Drill
-
-Floats = npt.NDArray[np.float64]
-Controllers = npt.NDArray[np.int32]
 
 LEAST_SHARE = 0.1
 LEAST_RAD = 0.004

@@ -11,17 +11,15 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.holding import starting_volts
 from greywhale.arm.parameters import JOINT_NAMES
-from greywhale.firmware import JOINTS
+from greywhale.base.types import Floats
 from greywhale.identify import sampled_plants
 from greywhale.protocol import schema
-from greywhale.table import ParameterTable, physical
-
-Floats = NDArray[np.float64]
+from greywhale.protocol.firmware import JOINTS
+from greywhale.protocol.table import ParameterTable, physical
 
 STALL_VOLTS = schema.PARAMETER_BY_NAME["stall_volts"]
 SAMPLES, SEED = 64, 0

@@ -4,24 +4,19 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
-import numpy.typing as npt
-
-from greywhale.errors import BAD_USAGE, MOST_SEED, MOST_WORKERS, UserError, require_within
-from greywhale.joints import ALL
-from greywhale.loop.controllers import check_controllers
+from greywhale.base.errors import BAD_USAGE, MOST_SEED, MOST_WORKERS, UserError, require_within
+from greywhale.base.types import Controllers, NotedProgress, show_no_progress
 from greywhale.optimise import METHODS as OPTIMISERS
+from greywhale.protocol.joints import ALL
+from greywhale.simulate.controllers import check_controllers
 from greywhale.tune import default, paper
 from greywhale.tune.default import DefaultMethod
 from greywhale.tune.method import Judgement, Method, Task
 from greywhale.tune.model import Model
 from greywhale.tune.outcome import Outcome, curves_of
 from greywhale.tune.paper import PaperMethod
-from greywhale.tune.progress import Report, report_nothing
 from greywhale.tune.search.journal import Journal
 from greywhale.tune.search.space import Bounds, check_bounds, check_strategy
-
-Controllers = npt.NDArray[np.int32]
 
 DEFAULT_STRATEGY = "both"
 DEFAULT_BUDGET = default.BUDGET
@@ -64,7 +59,7 @@ def tune(
     bounds: Bounds | None = None,
     journal: Path | None = None,
     resume: bool = False,
-    report: Report | None = None,
+    report: NotedProgress | None = None,
     floors: bool = True,
     on_trial: bool = False,
 ) -> Outcome:
@@ -90,7 +85,7 @@ def tune(
         threads=threads,
         before=check_controllers(model.controllers if start is None else start)[0],
         bounds=dict(bounds or {}),
-        report=report or report_nothing,
+        report=report or show_no_progress,
         floors=floors,
         on_trial=on_trial,
     )

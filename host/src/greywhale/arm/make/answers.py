@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 
 from greywhale.arm.make.questions import JOINTS_IN_USE, MOTOR_KEYS, SAME_MOTOR, Answers, Question, collect
 from greywhale.arm.parameters import JOINT_NAMES
-from greywhale.errors import BAD_USAGE, UserError, cut
-from greywhale.formats import toml_file, toml_text
-from greywhale.formats.kinds import Kind, refuse_other_kind
+from greywhale.base.errors import BAD_USAGE, UserError, cut
+from greywhale.base.formats import toml_file, toml_text
+from greywhale.base.formats.kinds import Kind, refuse_other_kind
 
 TABLES = ("link", "joint")
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from greywhale.arm.make.questions import Question
-from greywhale.formats.units import PLAIN, shown
+from greywhale.base.formats.units import PLAIN, shown
 
 MEANT = {
     "name": "Any words; they stand on reports and pictures.",

@@ -9,10 +9,10 @@ from typing import Any, Protocol
 from greywhale.arm.make.body import MATERIALS
 from greywhale.arm.make.motor import RAD_S_PER_RPM, USUAL_NO_LOAD_SHARE, USUAL_TIME_S, contradiction
 from greywhale.arm.parameters import JOINT_NAMES
-from greywhale.errors import UserError
-from greywhale.formats import units
-from greywhale.formats.units import Unit
-from greywhale.joints import ALL, Joints, listed, parse
+from greywhale.base.errors import UserError
+from greywhale.base.formats import units
+from greywhale.base.formats.units import Unit
+from greywhale.protocol.joints import ALL, Joints, listed, parse
 
 G_CM2_PER_KG_M2 = 1e7
 SAME_MOTOR = "same_motor"

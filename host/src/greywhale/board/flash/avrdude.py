@@ -8,11 +8,10 @@ import shutil
 from collections.abc import Callable
 from pathlib import Path
 
+from greywhale.base.errors import UserError
+from greywhale.base.types import Progress
 from greywhale.board.flash.runner import Tool, run_tool
 from greywhale.board.flash.targets import FlashBoard
-from greywhale.errors import UserError
-
-Progress = Callable[[str, float], None]
 
 UPLOAD_LIMIT_S = 180.0  # for a flash memory that is full
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import reduce
 from operator import xor
 
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
 from greywhale.protocol.transport import Line, open_line
 
 _ASK_EVERY_S = 0.05

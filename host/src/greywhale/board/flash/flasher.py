@@ -8,14 +8,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.types import Progress, show_no_progress
 from greywhale.board.device import Device
 from greywhale.board.flash import platformio
-from greywhale.board.flash.avrdude import Progress, need_avrdude, upload_image
+from greywhale.board.flash.avrdude import need_avrdude, upload_image
 from greywhale.board.flash.bootloader import Bootloader, Dialect, find_bootloader
 from greywhale.board.flash.images import Image, check_image, packaged_image, read_image
 from greywhale.board.flash.targets import BOARDS, FlashBoard
 from greywhale.board.session import Session
-from greywhale.errors import BAD_USAGE, UserError
 from greywhale.protocol import schema
 from greywhale.protocol.ports import board_of
 from greywhale.protocol.transport import open_line
@@ -42,7 +43,7 @@ def flash(
     `board` is mega or nano; without it the port or the bootloader tells. The image is `hex_file`, else it is built from
     `firmware_dir` or from the checkout this package runs from, else it is the one that came with the package.
     """
-    report = progress or (lambda what, fraction: None)
+    report = progress or show_no_progress
     expected = _expected_board(port, board)
     image = None if hex_file is None else read_image(Path(hex_file))
     sources = platformio.find_sources(firmware_dir) if image is None else None

@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from greywhale.base.errors import BAD_USAGE, UserError, os_reason
 from greywhale.board.flash.targets import BOARDS, FlashBoard
-from greywhale.errors import BAD_USAGE, UserError, os_reason
 
 PACKAGED = Path(__file__).resolve().parents[2] / "data" / "firmware"
 

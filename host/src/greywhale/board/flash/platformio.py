@@ -8,10 +8,11 @@ import shutil
 import sys
 from pathlib import Path
 
-from greywhale.board.flash.avrdude import UPLOAD_LIMIT_S, Progress, watch_upload
+from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.types import Progress
+from greywhale.board.flash.avrdude import UPLOAD_LIMIT_S, watch_upload
 from greywhale.board.flash.runner import Tool, run_tool
 from greywhale.board.flash.targets import FlashBoard
-from greywhale.errors import BAD_USAGE, UserError
 
 CHECKOUT = Path(__file__).resolve().parents[5] / "firmware"
 _BUILD_LIMIT_S = 600.0  # of a first build on a slow machine

@@ -10,14 +10,14 @@ from dataclasses import dataclass
 from itertools import chain
 from pathlib import Path
 
-from greywhale.board.flash.avrdude import Progress
+from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.types import Progress, show_no_progress
 from greywhale.board.flash.boot_code import BootCode, look_at_boot_code
 from greywhale.board.flash.bootloader import Bootloader, Talk, enter_bootloader, version_1_answer, version_2_answer
 from greywhale.board.flash.flasher import find_target
 from greywhale.board.flash.images import Image, check_image, packaged_image, read_image
 from greywhale.board.flash.platformio import find_sources, last_build
 from greywhale.board.flash.targets import BOARDS, FlashBoard
-from greywhale.errors import BAD_USAGE, UserError
 
 # Reads so many bytes from a word address on; None where the answer was wrong.
 _Reader = Callable[[Talk, int, int], bytes | None]
@@ -62,7 +62,7 @@ def compare_image(
 ) -> tuple[Comparison, BootCode]:
     """Read back what the board holds and compare it with `hex_file`, or with the shipped image of that board; and look
     at its bootloader."""
-    told = report or (lambda what, fraction: None)
+    told = report or show_no_progress
     named = None if hex_file is None else read_image(hex_file)
     target, found = find_target(port, None)
     image = named or shipped_image(target.name)

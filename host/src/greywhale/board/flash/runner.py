@@ -15,9 +15,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO
 
+from greywhale.base.errors import UserError
+from greywhale.base.processes import start
 from greywhale.board.flash import guard
-from greywhale.errors import UserError
-from greywhale.processes import start
 
 _GUARD = Path(guard.__file__)
 _LOOK_EVERY_S = 0.1

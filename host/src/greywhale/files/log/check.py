@@ -11,7 +11,7 @@ import zlib
 from collections.abc import Iterable, Mapping
 from enum import Enum
 
-from greywhale.errors import UserError, cut
+from greywhale.base.errors import UserError, cut
 from greywhale.files.log.parameters import KEY as PARAMETERS
 
 KEY = "check"

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from greywhale.errors import counted
+from greywhale.base.errors import counted
 from greywhale.files.log.check import Check, compare, rows_stated
 
 # Fewer missing samples in a row are no gap: a link may lose some.

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from greywhale.firmware import JOINTS
-from greywhale.joints import ALL, Joints
-from greywhale.table import ParameterTable
+from greywhale.protocol.firmware import JOINTS
+from greywhale.protocol.joints import ALL, Joints
+from greywhale.protocol.table import ParameterTable
 
 TITLE = "greywhale log 1"
 STATES = ("boot", "disabled", "soft_start", "following", "fault")

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from greywhale.errors import UserError, cut
-from greywhale.formats.csv_file import number
+from greywhale.base.errors import UserError, cut
+from greywhale.base.formats.csv_file import number
 from greywhale.protocol import schema
-from greywhale.table import ParameterTable, find_board, physical
+from greywhale.protocol.table import ParameterTable, find_board, physical
 
 KEY = "parameters"
 

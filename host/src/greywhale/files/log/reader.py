@@ -10,16 +10,16 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from greywhale.errors import UserError, cut
+from greywhale.base.errors import UserError, cut
+from greywhale.base.formats import csv_file
 from greywhale.files.log.check import Check, add_rows, facts_of
 from greywhale.files.log.condition import Condition, judge_condition
 from greywhale.files.log.layout import COLUMNS, COMPLETE, ENDINGS, STATES, TITLE, UNFINISHED, Origin
 from greywhale.files.log.parameters import table_in
 from greywhale.files.log.rows import parse_rows
-from greywhale.firmware import JOINTS
-from greywhale.formats import csv_file
-from greywhale.joints import ALL, Joints, parse
-from greywhale.table import ParameterTable
+from greywhale.protocol.firmware import JOINTS
+from greywhale.protocol.joints import ALL, Joints, parse
+from greywhale.protocol.table import ParameterTable
 
 _MOST_WHOLE = (1 << 63) - 1
 # No board sends larger values: 16 bits of 1/4096 rad and of mV. Such values are another tool's degrees or millivolts.

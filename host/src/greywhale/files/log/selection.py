@@ -11,11 +11,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from greywhale.base.types import Floats
 from greywhale.files.log.reader import Log
-
-Floats = NDArray[np.float64]
 
 # A log with more than this is cut down to it, s. Identifying takes a time that grows with the length; after this a log
 # that moves all joints tells little more.

@@ -16,12 +16,12 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from greywhale.errors import UserError, cut, os_reason
+from greywhale.base.errors import UserError, cut, os_reason
+from greywhale.base.formats.draft import Draft, sync
 from greywhale.files.log.check import KEY, add_rows, check_text, facts_of
 from greywhale.files.log.layout import COMPLETE, HEADING, INTERRUPTED, STATES, TITLE, UNFINISHED, Origin
 from greywhale.files.log.parameters import lines_of
-from greywhale.formats.draft import Draft, sync
-from greywhale.joints import ALL, listed
+from greywhale.protocol.joints import ALL, listed
 
 _ROWS_PER_WRITE = 256
 # What is known only at the end: the header keeps so many characters free for each number or word, and for the reason.

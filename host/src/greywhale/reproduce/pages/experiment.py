@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from greywhale.drawing import looks
-from greywhale.firmware import JOINTS
+from greywhale.pictures import looks
+from greywhale.protocol.firmware import JOINTS
 from greywhale.reproduce.pages.document import Chapter, Entry, Picture, Row, Sheet, Status, sheet, words
 from greywhale.reproduce.pages.found import Found
 from greywhale.reproduce.pages.numbers import lower, one, several

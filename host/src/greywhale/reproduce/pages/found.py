@@ -7,13 +7,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from greywhale.base.types import Controllers
 from greywhale.reproduce.request import Request
 from greywhale.reproduce.work import errata, optimisers
 
 Result = Mapping[str, Any]
-Controllers = npt.NDArray[np.int32]
 
 
 @dataclass(frozen=True)

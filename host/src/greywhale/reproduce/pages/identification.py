@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from greywhale.arm.parameters import JOINT_NAMES
-from greywhale.drawing import looks
 from greywhale.files.arm import load_arm
 from greywhale.identify.paper import AGENTS, ITERATIONS, LOWER, UPPER, VALUES
+from greywhale.pictures import looks
 from greywhale.reproduce.pages.document import Chapter, Code, Entry, Picture, Row, Sheet, Status, sheet, words
 from greywhale.reproduce.pages.found import Found
 from greywhale.reproduce.pages.numbers import lower, one, several

@@ -7,12 +7,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from greywhale.drawing import looks
-from greywhale.drawing.looks import BLUE, DARK, GREEN, GREY, ORANGE, PURPLE, SIGNS, Look
-from greywhale.drawing.page import JOINTS as JOINT_TITLES
-from greywhale.drawing.page import (
+from greywhale.base.types import Controllers, Floats
+from greywhale.fuzzy.settings import SET_UNIT
+from greywhale.pictures import looks
+from greywhale.pictures.looks import BLUE, DARK, GREEN, GREY, ORANGE, PURPLE, SIGNS, Look
+from greywhale.pictures.page import JOINTS as JOINT_TITLES
+from greywhale.pictures.page import (
     SMALL,
     WIDE,
     headline,
@@ -24,14 +25,10 @@ from greywhale.drawing.page import (
     png,
     style,
 )
-from greywhale.drawing.plotting import Axes, Figure, Line2D, plt
-from greywhale.firmware import JOINTS
-from greywhale.fuzzy.settings import SET_UNIT
-from greywhale.loop import CONTROLLER_COLUMNS
+from greywhale.pictures.plotting import Axes, Figure, Line2D, plt
+from greywhale.protocol.firmware import JOINTS
 from greywhale.reproduce.work.errata import Law
-
-Floats = npt.NDArray[np.float64]
-Controllers = npt.NDArray[np.int32]
+from greywhale.simulate import CONTROLLER_COLUMNS
 
 # Jumps would hide the error that is left after them (rad).
 LARGEST_ERROR = 0.2

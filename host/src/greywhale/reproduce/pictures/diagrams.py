@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from greywhale.drawing.looks import BLUE, DARK, ORANGE
-from greywhale.drawing.page import LETTERS, SMALL, WIDE, leave, png, style
-from greywhale.drawing.plotting import Axes, FancyBboxPatch, plt
 from greywhale.files.arm import load_arm
+from greywhale.pictures.looks import BLUE, DARK, ORANGE
+from greywhale.pictures.page import LETTERS, SMALL, WIDE, leave, png, style
+from greywhale.pictures.plotting import Axes, FancyBboxPatch, plt
 
 Point = tuple[float, float]
 

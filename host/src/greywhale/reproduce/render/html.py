@@ -8,7 +8,7 @@ from typing import Any
 
 import jinja2
 
-from greywhale.formats.whole import write_text
+from greywhale.base.formats.whole import write_text
 from greywhale.reproduce.pages.document import Block, Code, Document, Picture, Sheet
 from greywhale.reproduce.render.ranges import keep_ranges
 

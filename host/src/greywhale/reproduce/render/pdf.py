@@ -28,8 +28,8 @@ from reportlab.platypus import (
     Spacer,
 )
 
-from greywhale.drawing.plotting import matplotlib
-from greywhale.formats.whole import write_whole
+from greywhale.base.formats.whole import write_whole
+from greywhale.pictures.plotting import matplotlib
 from greywhale.reproduce.pages.document import Block, Chapter, Code, Document, Entry, Picture, Sheet
 from greywhale.reproduce.render.ranges import keep_ranges
 

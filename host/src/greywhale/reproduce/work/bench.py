@@ -14,22 +14,14 @@ from typing import Any
 
 import numpy as np
 
-from greywhale.errors import UserError
+from greywhale.base.errors import UserError
+from greywhale.base.types import Controllers
 from greywhale.files.leader import save_leader
 from greywhale.files.log import Log, read_evidence
-from greywhale.measure import evaluate
-from greywhale.reproduce.work.motions import (
-    MOTIONS,
-    SHOWN_S,
-    Controllers,
-    measures,
-    paper_board,
-    printed,
-    rounded,
-    shown,
-)
-from greywhale.table import ParameterTable
-from greywhale.trajectory import Trajectory, human_reaches
+from greywhale.files.trajectory import Trajectory
+from greywhale.motion import evaluate, human_reaches
+from greywhale.protocol.table import ParameterTable
+from greywhale.reproduce.work.motions import MOTIONS, SHOWN_S, measures, paper_board, printed, rounded, shown
 
 SUPPLY_V = 15.0
 BENCH_SEED = 1

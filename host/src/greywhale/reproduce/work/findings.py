@@ -11,26 +11,18 @@ from typing import Any
 import numpy as np
 
 from greywhale.arm.plants import column, plant_row
+from greywhale.base.types import Controllers, Floats, show_no_progress
 from greywhale.files.arm import load_arm
-from greywhale.firmware import JOINTS
 from greywhale.fuzzy.settings import GAIN_UNIT
 from greywhale.identify.closed_loop import Loop
 from greywhale.identify.data import prepare
 from greywhale.identify.paper import LOWER, UPPER, VALUES, PaperSearch
-from greywhale.loop import CONTROLLER_COLUMNS, Experiment
+from greywhale.protocol.firmware import JOINTS
 from greywhale.reproduce.work.bench import record_data
 from greywhale.reproduce.work.errata import Law, follow
 from greywhale.reproduce.work.grey_box import setting, supply_of
-from greywhale.reproduce.work.motions import (
-    MOTIONS,
-    WAIT_S,
-    Controllers,
-    Floats,
-    judged,
-    paper_board,
-    play,
-    printed,
-)
+from greywhale.reproduce.work.motions import MOTIONS, WAIT_S, judged, paper_board, play, printed
+from greywhale.simulate import CONTROLLER_COLUMNS, Experiment
 from greywhale.tune.model import load_model
 from greywhale.tune.paper import AGENTS, BUDGET, METHOD, Loops
 from greywhale.tune.search.journal import Journal
@@ -156,7 +148,7 @@ def identifiability(seed: int, seconds: float, period_ms: int) -> dict[str, Any]
     table = tables[0]
     arm = load_arm("white_box")
     loop = Loop(prepare(logs[0], table["filter_shift"]), table, arm)
-    search = PaperSearch(arm, [loop], 0, lambda what, fraction: None)
+    search = PaperSearch(arm, [loop], 0, show_no_progress)
     centre = np.array([getattr(joint.motor, name) for joint in arm.joint for name in VALUES])
     twin = centre * np.tile([OTHER[name] for name in VALUES], JOINTS)
     alike = loop.angles(search.plants(np.stack([centre, twin])), threads=1)

@@ -5,15 +5,15 @@ from __future__ import annotations
 from typing import Any
 
 from greywhale.arm.plants import column, plant_row
+from greywhale.base.types import Floats, show_no_progress
 from greywhale.files.arm import load_arm
-from greywhale.reproduce.work.motions import MOTIONS, Floats, judged, paper_board, printed
-from greywhale.table import ParameterTable
+from greywhale.protocol.table import ParameterTable
+from greywhale.reproduce.work.motions import MOTIONS, judged, paper_board, printed
 from greywhale.tune.judge.floor import saturation_floor
 from greywhale.tune.method import Task
 from greywhale.tune.model import Model, load_model
 from greywhale.tune.outcome import curves_of
 from greywhale.tune.paper import BUDGET, LARGEST_SUPPLY_V, PaperMethod
-from greywhale.tune.progress import report_nothing
 from greywhale.tune.search.journal import Journal
 
 # Strategy -> the table of the paper that prints its result.
@@ -34,7 +34,7 @@ def supply_of(strategy: str) -> float:
 
 def tune_as_paper(model: Model, strategy: str, seed: int) -> tuple[PaperMethod, dict[str, Any]]:
     """The paper's search; what it found, as a board stores it, and its course."""
-    task = Task(model, strategy, "paper", BUDGET, seed, 1, printed("before_tuning"), {}, report_nothing, floors=False)
+    task = Task(model, strategy, "paper", BUDGET, seed, 1, printed("before_tuning"), {}, show_no_progress, floors=False)
     method = PaperMethod(task)
     with Journal(None, {}) as book:
         method.search(book)

@@ -6,20 +6,17 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from greywhale.arm import ArmParameters
+from greywhale.base.types import Controllers, Floats
 from greywhale.files.controller import load
 from greywhale.files.log import Log
 from greywhale.files.log.layout import Origin
 from greywhale.files.paper_tables import paper_table
-from greywhale.loop import Experiment, controller_row
-from greywhale.measure import Evaluation, evaluate
-from greywhale.table import ParameterTable
-from greywhale.trajectory import Trajectory, multi_steps, steps
-
-Floats = npt.NDArray[np.float64]
-Controllers = npt.NDArray[np.int32]
+from greywhale.files.trajectory import Trajectory
+from greywhale.motion import Evaluation, evaluate, multi_steps, steps
+from greywhale.protocol.table import ParameterTable
+from greywhale.simulate import Experiment, controller_row
 
 # From the moment the motors go on to the leader's first move, as on the bench.
 WAIT_S = 1.5

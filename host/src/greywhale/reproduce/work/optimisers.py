@@ -6,6 +6,7 @@ from typing import Any, cast
 
 import numpy as np
 
+from greywhale.base.types import show_no_progress
 from greywhale.files.arm import load_arm
 from greywhale.identify.closed_loop import Loop
 from greywhale.identify.data import prepare
@@ -39,7 +40,7 @@ def identify_with(seed: int, seconds: float, period_ms: int, method: str) -> dic
     logs, tables = record_data(seconds, period_ms)
     table = tables[0]
     loop = Loop(prepare(logs[0], table["filter_shift"]), table, load_arm("white_box"))
-    search = PaperSearch(load_arm("white_box"), [loop], 0, lambda what, fraction: None)
+    search = PaperSearch(load_arm("white_box"), [loop], 0, show_no_progress)
     lower, upper = (np.array(one) for one in box())
     best = minimise(search.costs, lower, upper, method=method, budget=IDENTIFYING, seed=seed)
     return {"cost": float(best.cost), "point": best.x.tolist()}

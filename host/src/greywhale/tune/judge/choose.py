@@ -7,8 +7,8 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
-Controllers = npt.NDArray[np.int32]
+from greywhale.base.types import Controllers, Floats
+
 Judge = Callable[[Controllers], Floats]
 
 # If a joint costs this much more among the others than its best elsewhere, its other candidates are tried.

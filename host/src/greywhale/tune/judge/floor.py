@@ -31,15 +31,14 @@ from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import check_plants, column, rigid_joints
-from greywhale.errors import BAD_USAGE, UserError
-from greywhale.firmware import JOINTS
-from greywhale.loop import leader_slices, plant_row
-from greywhale.loop.ideal import simulate_ideal
-from greywhale.loop.leader import SLICE_S, SLICES_PER_TICK
-from greywhale.measure.runs import resting
-from greywhale.trajectory import Trajectory
-
-Floats = NDArray[np.float64]
+from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.types import Floats
+from greywhale.files.trajectory import Trajectory
+from greywhale.motion.runs import resting
+from greywhale.protocol.firmware import JOINTS
+from greywhale.simulate import leader_slices, plant_row
+from greywhale.simulate.ideal import simulate_ideal
+from greywhale.simulate.leader import SLICE_S, SLICES_PER_TICK
 
 # A floor below this (rad^2) may be mere backlash (some mrad), unless the bound says that it is the supply.
 _BACKLASH = 1e-4

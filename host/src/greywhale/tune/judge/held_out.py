@@ -9,21 +9,18 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from greywhale.arm import ArmParameters
+from greywhale.base.types import Controllers, Floats
 from greywhale.files.log import Log
 from greywhale.files.log.layout import Origin
-from greywhale.joints import Joints
-from greywhale.loop import Experiment
-from greywhale.measure import Evaluation, evaluate
-from greywhale.table import ParameterTable
-from greywhale.trajectory import Trajectory, human_reaches, multi_steps, steps
+from greywhale.files.trajectory import Trajectory
+from greywhale.motion import Evaluation, evaluate, human_reaches, multi_steps, steps
+from greywhale.protocol.joints import Joints
+from greywhale.protocol.table import ParameterTable
+from greywhale.simulate import Experiment
 from greywhale.tune.judge.floor import Floor, saturation_floor
 from greywhale.tune.search.training import clip_motion, reach
-
-Floats = npt.NDArray[np.float64]
-Controllers = npt.NDArray[np.int32]
 
 WAIT_S = 1.5
 SEED = 2001  # of reaches that are played nowhere else

@@ -24,21 +24,18 @@ import numpy.typing as npt
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import column, columns
-from greywhale.firmware import JOINTS
-from greywhale.loop import Experiment, Result, Timing
-from greywhale.loop.closed_loop import count_swings
+from greywhale.base.types import Controllers, Floats, Integers
+from greywhale.files.trajectory import Trajectory
+from greywhale.motion.generate import minimum_jerk
+from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.schema import Board
-from greywhale.table import ParameterTable
-from greywhale.trajectory import Trajectory
-from greywhale.trajectory.generate import minimum_jerk
+from greywhale.protocol.table import ParameterTable
+from greywhale.simulate import Experiment, Result, Timing
+from greywhale.simulate.closed_loop import count_swings
 from greywhale.tune.search.objective import CHATTER_HZ as MOVING_CHATTER_HZ
 from greywhale.tune.search.objective import follow, pair_with_plants
 from greywhale.tune.search.rattle import duty_swings
 from greywhale.tune.search.training import EDGE_S, RATE_HZ, centre, drills, reach
-
-Floats = npt.NDArray[np.float64]
-Integers = npt.NDArray[np.int32]
-Controllers = npt.NDArray[np.int32]
 
 SWING_RAD = 0.01
 REVERSALS = 3

@@ -14,8 +14,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from greywhale.drawing import looks
-from greywhale.drawing.page import (
+from greywhale.base.types import Controllers, Floats
+from greywhale.fuzzy.settings import SET_UNIT
+from greywhale.pictures import looks
+from greywhale.pictures.page import (
     JOINTS,
     WIDE,
     headline,
@@ -27,16 +29,13 @@ from greywhale.drawing.page import (
     save_into,
     style,
 )
-from greywhale.drawing.plotting import Axes, Figure, Line2D, plt
-from greywhale.fuzzy.settings import SET_UNIT
-from greywhale.joints import ALL, Joints
-from greywhale.loop import CONTROLLER_COLUMNS
+from greywhale.pictures.plotting import Axes, Figure, Line2D, plt
+from greywhale.protocol.joints import ALL, Joints
+from greywhale.simulate import CONTROLLER_COLUMNS
 
 if TYPE_CHECKING:
     from greywhale.tune.outcome import Outcome
 
-Floats = npt.NDArray[np.float64]
-Controllers = npt.NDArray[np.int32]
 
 _SET_NAMES = (("NE", "ZE", "PE"), ("NCE", "ZCE", "PCE"))
 # For the error and its change: the columns of the corners (left, the middle's two, right), and the name of the sets.

@@ -13,18 +13,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from greywhale.base.types import Controllers
 from greywhale.files.controller import load
 from greywhale.files.paper_tables import paper_table
-from greywhale.firmware import JOINTS
 from greywhale.fuzzy.settings import GAIN_UNIT, SET_UNIT
-from greywhale.joints import ALL, Joints
-from greywhale.loop import CONTROLLER_COLUMNS, controller_row
-from greywhale.measure import Evaluation, more_overshoot
+from greywhale.motion import Evaluation, more_overshoot
+from greywhale.protocol.firmware import JOINTS
+from greywhale.protocol.joints import ALL, Joints
+from greywhale.simulate import CONTROLLER_COLUMNS, controller_row
 
 if TYPE_CHECKING:
     from greywhale.tune.outcome import Outcome
 
-Controllers = npt.NDArray[np.int32]
 Numbers = Sequence[float | None]
 
 _LABELS = (*(f"Joint {joint}" for joint in ALL), "All joints")

@@ -14,13 +14,10 @@ from types import TracebackType
 from typing import Any, Self
 
 import numpy as np
-import numpy.typing as npt
 
-from greywhale.errors import UserError
-from greywhale.formats.checked_lines import CheckedLines, Kind
-
-Floats = npt.NDArray[np.float64]
-Controllers = npt.NDArray[np.int32]
+from greywhale.base.errors import UserError
+from greywhale.base.formats.checked_lines import CheckedLines, Kind
+from greywhale.base.types import Controllers, Floats
 
 
 class Journal:

@@ -12,18 +12,16 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from greywhale.firmware import JOINTS
+from greywhale.base.types import Controllers, Floats
 from greywhale.optimise import Optimiser, create
 from greywhale.optimise.box import latin_hypercube
 from greywhale.optimise.cma_es import SIGMA, CmaEs
 from greywhale.optimise.optimiser import PACK
+from greywhale.protocol.firmware import JOINTS
 from greywhale.tune.search.journal import Journal
 from greywhale.tune.search.space import Space
 
-Floats = npt.NDArray[np.float64]
-Controllers = npt.NDArray[np.int32]
 Costs = Callable[[Controllers], Floats]
 Tick = Callable[["Found"], None]
 

@@ -27,15 +27,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-from greywhale.firmware import JOINTS
-from greywhale.loop import Result
+from greywhale.base.types import Controllers, Floats
+from greywhale.protocol.firmware import JOINTS
+from greywhale.simulate import Result
 from greywhale.tune.search.rattle import chatter, rattle
 from greywhale.tune.search.training import WAIT_S, Drill
-
-Floats = npt.NDArray[np.float64]
-Controllers = npt.NDArray[np.int32]
 
 RMS = 1.5
 RATTLE = 3.0

@@ -15,13 +15,11 @@ import numpy.typing as npt
 from scipy.ndimage import maximum_filter1d
 from scipy.signal import butter
 
-from greywhale.firmware import TICK_S, pwm_steps
-from greywhale.loop import Result
-from greywhale.loop.closed_loop import band_power, count_swings
+from greywhale.base.types import Floats, Integers
+from greywhale.protocol.firmware import TICK_S, pwm_steps
 from greywhale.protocol.schema import Board
-
-Floats = npt.NDArray[np.float64]
-Integers = npt.NDArray[np.int32]
+from greywhale.simulate import Result
+from greywhale.simulate.closed_loop import band_power, count_swings
 
 BAND_HZ = (6.0, 40.0)
 ORDER = 2

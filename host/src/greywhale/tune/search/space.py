@@ -14,16 +14,15 @@ from typing import Self
 import numpy as np
 import numpy.typing as npt
 
-from greywhale.errors import BAD_USAGE, UserError
+from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.types import Controllers, Floats
 from greywhale.fuzzy.settings import GAIN_UNIT, LARGEST_KI, LARGEST_KI_PERIOD, LARGEST_KU_MV, LEAST_WIDTH, SET_UNIT
-from greywhale.loop import CONTROLLER_COLUMNS
 from greywhale.protocol import schema
+from greywhale.simulate import CONTROLLER_COLUMNS
 
 STRATEGIES = ("mf", "sf", "both")
 
 Bounds = Mapping[str, tuple[float, float]]
-Floats = npt.NDArray[np.float64]
-Controllers = npt.NDArray[np.int32]
 
 # The paper's names (Tables 8 to 10) in the order of its vector w (section 4), then the scaling factors.
 SETS = ("Ne_c", "Ze_a", "Ze_c", "Pe_b", "Nce_c", "Zce_a", "Zce_c", "Pce_b")

@@ -10,18 +10,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import column
-from greywhale.errors import BAD_USAGE, UserError
-from greywhale.firmware import JOINTS
-from greywhale.loop import Experiment
-from greywhale.table import ParameterTable
-from greywhale.trajectory import Trajectory, human_reaches
-from greywhale.trajectory.generate import minimum_jerk
-
-Floats = npt.NDArray[np.float64]
+from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.types import Floats
+from greywhale.files.trajectory import Trajectory
+from greywhale.motion import human_reaches
+from greywhale.motion.generate import minimum_jerk
+from greywhale.protocol.firmware import JOINTS
+from greywhale.protocol.table import ParameterTable
+from greywhale.simulate import Experiment
 
 RATE_HZ = 200.0
 EDGE_S = 0.04  # a hand cannot jump; as in trajectory.multi_steps

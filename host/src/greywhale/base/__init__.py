@@ -1,0 +1,1 @@
+"""What everything else stands on: errors, files on the disk, processes, repeated studies."""

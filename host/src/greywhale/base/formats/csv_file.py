@@ -1,0 +1,220 @@
+"""Reads a CSV file with a fixed set of columns; a bad cell is named by file, line and column.
+
+Lines that start with `#` before the column names are comments; logs keep their facts there. A file is read in blocks of
+whole lines, so that one of an hour needs no more memory than what is made of it.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from greywhale.base.errors import UserError, counted, cut, os_reason
+from greywhale.base.formats.whole import refuse_devices
+
+# Bytes that are read at once; no line is longer.
+BLOCK = 1 << 22
+_BOM = b"\xef\xbb\xbf"
+
+
+@dataclass(frozen=True)
+class CsvTable:
+    """Columns by name as text, the line each row stands on, and the comment lines without their `#`."""
+
+    name: str
+    comments: tuple[str, ...]
+    lines: tuple[int, ...]
+    columns: dict[str, tuple[str, ...]]
+
+    def numbers(self, column: str) -> NDArray[np.float64]:
+        """One column as finite numbers."""
+        cells = self.columns[column]
+        values = np.empty(len(cells))
+        for row, cell in enumerate(cells):
+            try:
+                values[row] = number(cell)
+            except ValueError:
+                raise self.error(row, column, f"{cut(repr(cell))} is not a number") from None
+            if not math.isfinite(values[row]):
+                raise self.error(row, column, f"{cut(cell)} is not a finite number")
+        return values
+
+    def increasing(self, column: str, before: float = -math.inf) -> NDArray[np.float64]:
+        """One column as strictly increasing numbers, all above `before`: a time axis."""
+        values = self.numbers(column)
+        steps = np.flatnonzero(np.diff(values, prepend=before) <= 0.0)
+        if steps.size:
+            row = int(steps[0])
+            last = self.columns[column][row - 1] if row else f"{before:.6f}"
+            problem = f"time must increase, but {cut(self.columns[column][row])} follows {cut(last)}"
+            raise self.error(row, column, problem)
+        return values
+
+    def error(self, row: int, column: str, problem: str) -> UserError:
+        return UserError(f"{self.name}, line {self.lines[row]}, column {column}: {problem}.")
+
+
+@dataclass(frozen=True)
+class Block:
+    """Whole lines of a file, the first of which has the number `line`; `offset` counts the bytes before them."""
+
+    data: bytes
+    line: int
+    offset: int
+
+
+class CsvFile:
+    """A file opened for reading, a context: `comments` and the checked column names are read, `blocks` are not."""
+
+    def __init__(self, path: str | Path, columns: Sequence[str]) -> None:
+        self.name = str(path)
+        self.comments: tuple[str, ...] = ()
+        self._wanted = columns
+        self._path = path
+
+    def __enter__(self) -> CsvFile:
+        try:
+            refuse_devices(self._path)
+            self._file: IO[bytes] = open(self._path, "rb")
+        except OSError as error:
+            raise self._cannot_be_read(error) from None
+        try:
+            self._read_head()
+        except BaseException:
+            self._file.close()
+            raise
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self._file.close()
+
+    def blocks(self, torn: bool = False) -> Iterator[Block]:
+        """The lines below the column names; a last line without an end is dropped if it may be `torn`, else refused."""
+        line, offset, rest = self._line, self._offset, b""
+        try:
+            while data := self._file.read(BLOCK):
+                data = rest + data
+                end = data.rfind(b"\n") + 1
+                rest = data[end:]
+                self._refuse_long(rest, line + data.count(b"\n", 0, end))
+                if end:
+                    yield Block(data[:end], line, offset)
+                    line, offset = line + data.count(b"\n", 0, end), offset + end
+        except OSError as error:
+            raise self._cannot_be_read(error) from None
+        if rest and not torn:
+            raise UserError(
+                f"{self.name}, line {line}: the file ends in the middle of this line; copy it again, or end the line "
+                "(Enter) if it is whole."
+            )
+
+    def table(self, block: Block) -> CsvTable:
+        """The rows of a block as text."""
+        lines: list[int] = []
+        rows: list[list[str]] = []
+        for number, line in enumerate(_text(block, self.name).split("\n")[:-1], block.line):
+            if not line.strip():
+                continue
+            cells = _cells(line.removesuffix("\r"), self.name, number)
+            if len(cells) != len(self._wanted):
+                raise UserError(
+                    f"{self.name}, line {number}: {len(cells)} values where {len(self._wanted)} columns are named."
+                )
+            lines.append(number)
+            rows.append(cells)
+        transposed = list(zip(*rows, strict=True)) if rows else [() for _ in self._wanted]
+        return CsvTable(self.name, self.comments, tuple(lines), dict(zip(self._wanted, transposed, strict=True)))
+
+    def require_rows(self, found: int, least: int) -> None:
+        if found < least:
+            raise UserError(f"{self.name}: {counted(found, 'row')} of data, but at least {least} are needed.")
+
+    def _read_head(self) -> None:
+        """Read the comments and the column names."""
+        comments = []
+        self._line, self._offset = 1, 0
+        while True:
+            try:
+                data = self._file.readline(BLOCK)
+            except OSError as error:
+                raise self._cannot_be_read(error) from None
+            if not data:
+                raise UserError(f"{self.name}: the file has no columns; it must start with {','.join(self._wanted)}.")
+            self._refuse_long(b"" if data.endswith(b"\n") else data, self._line)
+            text = _text(
+                Block(data.removeprefix(_BOM) if self._line == 1 else data, self._line, self._offset), self.name
+            )
+            self._line, self._offset = self._line + 1, self._offset + len(data)
+            if not text.startswith("#"):
+                break
+            comments.append(text[1:].strip())
+        self.comments = tuple(comments)
+        found = [cell.strip() for cell in _cells(text.rstrip("\r\n"), self.name, self._line - 1)]
+        if found != list(self._wanted):
+            raise UserError(f"{self.name}, line {self._line - 1}: {_column_problem(found, self._wanted)}.")
+
+    def _refuse_long(self, line: bytes, number: int) -> None:
+        if len(line) >= BLOCK:
+            raise UserError(f"{self.name}, line {number}: a line of more than {BLOCK} bytes; is this a CSV file?")
+
+    def _cannot_be_read(self, error: OSError) -> UserError:
+        return UserError(f"{self.name}: cannot be read: {os_reason(error)}.")
+
+
+def is_plain(text: str) -> bool:
+    """Whether a number is in digits that everyone reads alike: Python takes those of all alphabets, and 1_000."""
+    return text.isascii() and "_" not in text
+
+
+def number(text: str) -> float:
+    """The decimal number that a text is; else ValueError."""
+    if not is_plain(text):
+        raise ValueError(text)
+    return float(text)
+
+
+def read(path: str | Path, columns: Sequence[str], minimum_rows: int = 1) -> CsvTable:
+    """Read all of `path`, whose column names must be exactly `columns`, in that order."""
+    with CsvFile(path, columns) as file:
+        tables = [file.table(block) for block in file.blocks()]
+        lines = tuple(line for table in tables for line in table.lines)
+        file.require_rows(len(lines), minimum_rows)
+        joined = {name: tuple(cell for table in tables for cell in table.columns[name]) for name in columns}
+    return CsvTable(file.name, file.comments, lines, joined)
+
+
+def _text(block: Block, name: str) -> str:
+    try:
+        return block.data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise UserError(
+            f"{name}: byte {block.offset + error.start} is not UTF-8; a CSV file must be plain text."
+        ) from None
+
+
+def _cells(line: str, name: str, number: int) -> list[str]:
+    try:
+        return next(csv.reader([line], strict=True))
+    except csv.Error as error:
+        raise UserError(f"{name}, line {number}: not valid CSV: {error}.") from None
+    except StopIteration:
+        return []
+
+
+def _column_problem(found: Sequence[str], wanted: Sequence[str]) -> str:
+    missing = [column for column in wanted if column not in found]
+    unknown = [column for column in found if column not in wanted]
+    if missing:
+        problem = f"column {missing[0]} is missing"
+    elif unknown:
+        problem = f"column {cut(repr(unknown[0]))} is unknown"
+    else:
+        problem = "the columns are not in order"
+    return f"{problem}; the columns must be {','.join(wanted)}"

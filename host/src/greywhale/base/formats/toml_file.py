@@ -1,0 +1,265 @@
+"""Reads a TOML file into a pydantic model; whatever is wrong becomes one sentence that names file, key, value and
+range.
+
+Unknown keys and non-finite numbers are refused for every model, whatever its own configuration says. So is what only a
+broken or malicious file has: depth, length and integers that would keep the parser busy for ever or overflow numbers.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import tomllib
+from collections.abc import Iterable, Iterator, Sequence
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any, ClassVar, NamedTuple, TypeVar
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from greywhale.base.errors import UserError, cut, os_reason
+from greywhale.base.formats.kinds import Kind, refuse_other_kind
+from greywhale.base.formats.whole import refuse_devices
+
+Model = TypeVar("Model", bound=BaseModel)
+
+_LONGEST = 1 << 22
+_DEEPEST = 24
+_LARGEST = 1 << 63
+_BARE = re.compile(r"[A-Za-z0-9_-]+")
+# Strings and comments as a whole, so that nothing in them counts, and all else one by one. Spaces may stand between the
+# parts of a key.
+_TOKEN = re.compile(
+    r"""(?P<part>\"{3}(?:[^\\]|\\.)*?\"{3}|'{3}.*?'{3}|"(?:[^"\\\n]|\\.)*"|'[^'\n]*'|[^\W]+|-+|[^\S\n]+)"""
+    r"""|\#[^\n]*|.""",
+    re.DOTALL,
+)
+
+
+class Table(BaseModel):
+    """Base for a table of a TOML file: no unknown key, no silent conversion (text to number), no inf or nan,
+    immutable. `kinds` are the kinds of file that a whole file of this table may be.
+    """
+
+    kinds: ClassVar[tuple[Kind, ...]] = ()
+
+    model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
+
+
+def load(path: str | Path, model: type[Model]) -> Model:
+    """Read `path` and check it against `model`."""
+    return check(read(path), model, str(path))
+
+
+def loads(text: str, model: type[Model], name: str) -> Model:
+    """Check TOML text against `model`; `name` stands for the file in error sentences."""
+    return check(_parse(text, name), model, name)
+
+
+def read(path: str | Path) -> dict[str, Any]:
+    """The parsed but unchecked content of a TOML file."""
+    try:
+        refuse_devices(path)
+        text = Path(path).read_text(encoding="utf-8")
+    except OSError as error:
+        raise UserError(f"{path}: cannot be read: {os_reason(error)}.") from None
+    except UnicodeDecodeError as error:
+        raise UserError(f"{path}: byte {error.start} is not UTF-8; TOML files must be UTF-8 text.") from None
+    return _parse(text, str(path))
+
+
+def check(data: dict[str, Any], model: type[Model], name: str) -> Model:
+    """Check parsed TOML against `model`."""
+    _refuse_odd_numbers(data, name)
+    try:
+        # Through JSON, so that in strict mode arrays may still become tuples, and words may become enumerations.
+        return model.model_validate_json(json.dumps(data, default=str), extra="forbid")
+    except ValidationError as error:
+        if issubclass(model, Table) and model.kinds:
+            refuse_other_kind(data, name, *model.kinds)
+        raise UserError(_sentence(name, model, error)) from None
+
+
+def advice(key: str, known: Iterable[str]) -> str:
+    """What to do about an unknown key: the one that was probably meant, if there is one."""
+    meant = get_close_matches(key, list(known), 1)
+    return f"perhaps {meant[0]} is meant" if meant else "remove it or check its spelling"
+
+
+def key_path(location: Sequence[str | int]) -> str:
+    """A key as people write it: joint[2].sets.Ne_c."""
+    path = ""
+    for part in location:
+        word = part if isinstance(part, int) or _BARE.fullmatch(part) else json.dumps(part)
+        path += f"[{word}]" if isinstance(word, int) else f".{cut(word)}" if path else cut(word)
+    return cut(path, 120) or "the file"
+
+
+def _parse(text: str, name: str) -> dict[str, Any]:
+    _refuse_depth(text, name)
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        if _is_csv(text):
+            raise UserError(f"{name}: not valid TOML: this is a log or a motion (CSV).") from None
+        raise UserError(f"{name}: not valid TOML: {_lower_first(cut(str(error), 200))}.") from None
+    except RecursionError:
+        raise UserError(f"{name}: not valid TOML: it is nested too deeply.") from None
+    except ValueError:  # Python reads no integer of thousands of digits
+        raise UserError(f"{name}: not valid TOML: a number in it has too many digits.") from None
+    if not data:
+        besides = ", but for comments" if text.strip() else ""
+        raise UserError(f"{name}: it is empty{besides}; choose another file.")
+    _refuse_odd_numbers(data, name)
+    return data
+
+
+def _is_csv(text: str) -> bool:
+    first = next((line for line in text.splitlines() if line.strip() and not line.startswith("#")), "")
+    return first.startswith("time_s,")
+
+
+def _refuse_depth(text: str, name: str) -> None:
+    """Refuse what would keep the parser busy: a file, a key or brackets beyond any that greywhale writes."""
+    if len(text) > _LONGEST:
+        raise UserError(f"{name}: {len(text)} characters; a TOML file of greywhale has at most {_LONGEST}.")
+    depth = parts = 0
+    for found in _TOKEN.finditer(text):
+        token = found.group()
+        if token in ("[", "{"):
+            depth += 1
+        elif token in ("]", "}"):
+            depth -= 1
+        elif token == ".":
+            parts += 1
+            continue
+        if found.lastgroup != "part":
+            parts = 0
+        if depth > _DEEPEST or parts > _DEEPEST:
+            line = text.count("\n", 0, found.start()) + 1
+            raise UserError(f"{name}, line {line}: nested more than {_DEEPEST} deep; no file of greywhale is.")
+
+
+def _refuse_odd_numbers(data: dict[str, Any], name: str) -> None:
+    for location, value in _numbers(data, ()):
+        if isinstance(value, int) and abs(value) > _LARGEST:
+            # Python writes no integer of thousands of digits, but reads one from hexadecimal digits.
+            shown = cut(str(value), 30) if value.bit_length() < 1000 else f"a number of {value.bit_length()} bits"
+            raise UserError(f"{name}: {key_path(location)} is {shown}, which is out of any range.")
+        if not math.isfinite(value):
+            raise UserError(f"{name}: {key_path(location)} is {value}; it must be a finite number.")
+
+
+def _numbers(value: object, location: tuple[str | int, ...]) -> Iterator[tuple[tuple[str | int, ...], int | float]]:
+    if isinstance(value, dict):
+        for key, item in value.items():
+            yield from _numbers(item, (*location, key))
+    elif isinstance(value, list):
+        for index, item in enumerate(value):
+            yield from _numbers(item, (*location, index))
+    elif isinstance(value, int | float):
+        yield location, value
+
+
+def _sentence(name: str, model: type[BaseModel], error: ValidationError) -> str:
+    problems = [Problem(found["loc"], found["type"], found["msg"], found["input"]) for found in error.errors()]
+    # A misspelt key is also a missing one, and says more.
+    problems.sort(key=lambda one: one.kind != "extra_forbidden")
+    # An array with a bad item is also reported as too short; that is no problem of its own.
+    whole = [one for one in problems if one.kind != "too_short" or not any(one.contains(other) for other in problems)]
+    text = f"{name}: {_problem(whole[0], model)}"
+    if len(whole) > 1:
+        text += f" (and {len(whole) - 1} more in this file)"
+    return text + "."
+
+
+class Problem(NamedTuple):
+    """One complaint of pydantic."""
+
+    location: tuple[str | int, ...]
+    kind: str
+    message: str
+    value: object
+
+    def contains(self, other: Problem) -> bool:
+        size = len(self.location)
+        return len(other.location) > size and other.location[:size] == self.location
+
+
+def _problem(problem: Problem, model: type[BaseModel]) -> str:
+    key = key_path(problem.location)
+    if problem.kind == "extra_forbidden":
+        known = _at(model.model_json_schema(), problem.location[:-1]).get("properties", ())
+        return f"unknown key {key}; {advice(str(problem.location[-1]), known)}"
+    if problem.kind == "missing":
+        return f"{key} is missing"
+    if problem.kind in _BOUNDS:
+        bounds = _range(model.model_json_schema(), problem.location)
+        return f"{key} is {cut(json.dumps(problem.value))}, but it must be {bounds}"
+    if problem.kind in ("too_short", "too_long") and isinstance(problem.value, list):
+        count = _fixed_count(model.model_json_schema(), problem.location)
+        if count is not None:
+            what = f"[[{key}]]" if all(isinstance(one, dict) for one in problem.value) else f"values of {key}"
+            return f"{len(problem.value)} {what} where there must be exactly {count}"
+    message = _lower_first(problem.message.removeprefix("Value error, ").removeprefix("Assertion failed, "))
+    message = message.replace("input should", "it should").rstrip(".")
+    if isinstance(problem.value, dict | list):
+        # A rule over a whole table words its own sentence; printing the table itself would not help.
+        return f"{key}: {message}" if problem.location else message
+    return f"{key} is {cut(json.dumps(problem.value))}, but {message}"
+
+
+# Kinds of complaint about a number out of range; the words for each bound in a JSON schema.
+_BOUNDS = ("greater_than", "greater_than_equal", "less_than", "less_than_equal")
+_BOUND_WORDS = {
+    "minimum": "at least",
+    "exclusiveMinimum": "greater than",
+    "maximum": "at most",
+    "exclusiveMaximum": "less than",
+}
+
+
+def _range(schema: dict[str, Any], location: Sequence[str | int]) -> str:
+    """Both ends of the range of the number at `location`; pydantic names only the end that was missed."""
+    here = _at(schema, location)
+    return " and ".join(f"{words} {here[bound]:g}" for bound, words in _BOUND_WORDS.items() if bound in here)
+
+
+def _fixed_count(schema: dict[str, Any], location: Sequence[str | int]) -> int | None:
+    """How many items the array at `location` must have, if there is only one such number."""
+    here = _at(schema, location)
+    count = here.get("minItems")
+    return count if count is not None and count == here.get("maxItems") else None
+
+
+def _at(schema: dict[str, Any], location: Sequence[str | int]) -> dict[str, Any]:
+    """The schema of the value at `location`."""
+    here = schema
+    for part in location:
+        here = _resolve(schema, here)
+        if isinstance(part, int):
+            fixed = here.get("prefixItems", ())
+            here = fixed[part] if part < len(fixed) else here.get("items", {})
+        else:
+            properties = here.get("properties", {})
+            here = properties[part] if part in properties else here.get("additionalProperties", {})
+    return _resolve(schema, here)
+
+
+def _resolve(schema: dict[str, Any], here: dict[str, Any]) -> dict[str, Any]:
+    """Follow a reference; of alternatives (a number or nothing) take the one with bounds."""
+    for choice in here.get("anyOf", ()):
+        found = _resolve(schema, choice)
+        if found.get("type") != "null":
+            return found
+    if "$ref" not in here:
+        return here
+    found = schema
+    for part in here["$ref"].removeprefix("#/").split("/"):
+        found = found[part]
+    return found
+
+
+def _lower_first(text: str) -> str:
+    return text[:1].lower() + text[1:]

@@ -1,0 +1,59 @@
+"""Reads whole files only, and writes a file whole or not at all: it has no name before it is whole.
+
+What was written is on the disk before it gets its name, and its name is too before the writer says so.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import stat
+from collections.abc import Callable
+from pathlib import Path
+from typing import IO
+
+from greywhale.base.errors import BAD_USAGE, UserError, os_reason
+from greywhale.base.formats.draft import Draft
+
+
+def refuse_devices(path: str | Path) -> None:
+    """Raise where `path` is a device or a pipe, which may never end. open() deals with folders and missing files."""
+    mode = os.stat(path).st_mode
+    if not stat.S_ISREG(mode) and not stat.S_ISDIR(mode):
+        raise OSError(errno.EINVAL, "not an ordinary file", str(path))
+
+
+def refuse_inputs(out: Path | None, *inputs: str | Path | None) -> None:
+    """Refuse to write over a file that is read from. (A name of an arm that comes with greywhale is no file.)"""
+    for source in inputs:
+        if out is not None and source is not None and out.exists() and Path(source).exists() and out.samefile(source):
+            raise UserError(f"{out}: this file is read from; write elsewhere.", BAD_USAGE)
+
+
+def require_writable(path: Path) -> None:
+    """OSError where `path` could not be written: no folder, no room, no permission, or not a file."""
+    Draft(path).discard()
+
+
+def write_whole(path: str | Path, write: Callable[[IO[bytes]], None]) -> None:
+    """Let `write` fill the file; `path` appears, or is replaced, only when that went well."""
+    try:
+        draft = Draft(Path(path))
+    except OSError as error:
+        raise UserError(f"{path}: cannot be written: {os_reason(error)}.") from None
+    try:
+        write(draft.file)
+        draft.keep()
+    except OSError as error:
+        raise UserError(f"{path}: cannot be written: {os_reason(error)}.") from None
+    finally:
+        draft.discard()
+
+
+def write_text(path: str | Path, text: str) -> None:
+    """Write `text` as UTF-8."""
+    write_whole(path, lambda file: _write_all(file, text.encode("utf-8")))
+
+
+def _write_all(file: IO[bytes], data: bytes) -> None:
+    file.write(data)

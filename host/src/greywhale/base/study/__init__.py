@@ -1,0 +1,48 @@
+"""Repeated studies (seeds, arms, methods) on any `concurrent.futures.Executor`: here, on a cluster, and after a kill.
+
+    tasks = [Task(f"arm {n}", judge_arm, seed=n, arguments={"budget": 500}) for n in range(10)]
+    found = run_study(tasks, choose_workers("tls://10.0.0.5:8786"), results=Path("arms.study"), what="judging arms")
+    found["arm 3"]          # what judge_arm(seed=3, budget=500) returned
+
+- A `Task` is a function of a module, called as `function(seed=seed, **arguments)`. Arguments and what it returns are
+  plain: None, bool, int, float, str, numpy arrays, and lists, tuples or dicts (with keys of str) of these; a tuple
+  comes back as a list. All random numbers of a task follow from its seed and arguments.
+- `run_study(tasks, executor, results=None, progress=None, about=None, what="working")` returns {key: result} in the
+  order of the tasks, whatever the order in which they end, the same bit for bit on every executor and after every
+  resumption. `executor` is any `concurrent.futures.Executor`, or workers that can be made anew when they are lost:
+
+      SerialWorkers()               this process, one task after another
+      LocalWorkers(4)               four processes here
+      DaskWorkers("HOST:PORT")      a Dask scheduler here; with tls=True anywhere (greywhale[dask])
+      choose_workers(text, count)   what --executor and --workers of a verb say
+
+- `results` is a file with a checked line for every task that is done. A study that finds its file does only what is
+  missing. The file belongs to the version of greywhale, the tasks and `about` (what the study is about, for people:
+  a difference is named by its key); another study's file is refused with a UserError.
+- `progress(what, share)` is told after every task.
+- A task whose worker was lost is done again. One that ends its worker three times is given up: when all others are
+  done, `LostTasks` names it (its `results` are those of the others).
+- A function that answers Ctrl-C itself, as `identify` and `tune` do, must raise KeyboardInterrupt where what they gave
+  back is not `complete`: half a result is none.
+- A UserError of a task ends the study; so does any other error, as `TaskFailed` with the worker's traceback. Ctrl-C
+  ends it too, at once. What is done stays in the file.
+"""
+
+from greywhale.base.study.choose import choose_workers
+from greywhale.base.study.cluster import DaskWorkers
+from greywhale.base.study.local import LocalWorkers, SerialWorkers
+from greywhale.base.study.run import LostTasks, run_study
+from greywhale.base.study.task import Task, TaskFailed
+from greywhale.base.study.workers import Workers
+
+__all__ = [
+    "DaskWorkers",
+    "LocalWorkers",
+    "LostTasks",
+    "SerialWorkers",
+    "Task",
+    "TaskFailed",
+    "Workers",
+    "choose_workers",
+    "run_study",
+]

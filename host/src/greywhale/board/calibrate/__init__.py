@@ -1,0 +1,8 @@
+"""From potentiometers mounted anyhow to angles: sweeps and poses by hand, zero, scale, limits, mistakes by name."""
+
+from __future__ import annotations
+
+from greywhale.board.calibrate.guide import Options, Result, calibrate
+from greywhale.board.calibrate.person import Answer, Guide
+
+__all__ = ["Answer", "Guide", "Options", "Result", "calibrate"]

@@ -1,0 +1,200 @@
+"""Short weak pulses of one motor at a time: which joint moves, and which way, before anything follows.
+
+The firmware itself limits a pulse. A set of parameters that is never stored gives this joint's controller so many volts
+at most (`ku_mv`, with neither integral part nor damping) and the others none; the lease ends it after LEASE_MS; and
+`tracking_limit` makes it a fault when the joint is farther than FARTHEST_RAD from where it is told to be.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from greywhale.base.errors import UserError
+from greywhale.base.types import Floats
+from greywhale.board.device import Device, RestartedError
+from greywhale.board.stream import stream
+from greywhale.board.upload import run_set
+from greywhale.protocol import schema
+from greywhale.protocol.firmware import ANGLE_LSB, JOINTS, STEP_LSB
+from greywhale.protocol.table import ParameterTable
+
+SHARES = (0.1, 0.17, 0.25, 0.35)  # of the supply, tried one after the other
+LEASE_MS = 160  # motors off by the firmware, whatever this host does; soft start is 100 of it
+WAY_RAD = 0.08  # where a pulse sends its joint
+FARTHEST_RAD = 0.16
+LEAST_RAD = 0.02  # half of what lies between a pulse one way and one the other: less is no motion
+STILL_TICKS, STILL_RAD, PATIENCE_TICKS = 200, 0.008, 5000  # an arm that still falls would hide a weak pulse
+WEAK_SHARE = 0.4  # of the others' way a volt: healthy motors of unlike joints are above 0.6
+MUCH_SHARE = 0.2  # of the supply, if every motor needs it
+OTHERS_SHARE = 2.0  # another joint that moves so many times farther has this motor
+SETTLE_TICKS = 250
+_STIFF = 64.0
+
+
+@dataclass(frozen=True)
+class Pulse:
+    """What a pulse did: the way of each joint (4,) rad, and the most that the firmware put on the motor (V)."""
+
+    moved: Floats
+    most_v: float
+
+
+@dataclass(frozen=True)
+class Motor:
+    """A motor that turned: `sign` 1 as its parameter says, -1 the other way, and the voltage that did it.
+
+    `way` (rad) is half of what lies between a pulse one way and one the other, so gravity has no part in it.
+    """
+
+    joint: int
+    sign: int
+    volts: float
+    way: float
+
+    @property
+    def answer(self) -> float:
+        """rad a volt."""
+        return self.way / self.volts
+
+
+def examine_motor(
+    device: Device, table: ParameterTable, joint: int, report: Callable[[float], None] = lambda volts: None
+) -> Motor:
+    """Try a motor with ever more voltage; `report` is told each. `table` is what the board shall run otherwise, with
+    the potentiometers calibrated; the pulses' own set runs afterwards. Raises UserError where no joint moves, or
+    another one.
+    """
+    for share in SHARES:
+        volts = share * table.supply_v
+        report(volts)
+        weak = pulse_table(table, joint, volts)
+        try:
+            way = _answer(device, weak, joint)
+        except RestartedError as error:
+            raise UserError(
+                f"{device.port}: the board restarted while the motor of joint {joint} was driven with {volts:.1f} V "
+                f"({error.cause}): its supply sinks when a motor draws. Give the motors a supply of their own, with a "
+                "common ground, and 1000 uF or more at the drivers, and begin anew."
+            ) from None
+        farthest = int(np.argmax(np.abs(way)))
+        if abs(way[farthest]) < LEAST_RAD:
+            continue
+        if farthest != joint and abs(way[farthest]) > OTHERS_SHARE * abs(way[joint]):
+            raise UserError(
+                f"{device.port}: the motor of joint {joint} moved joint {farthest}: their motors, or their followers' "
+                "potentiometers, are swapped; exchange the wires at the board, and begin anew."
+            )
+        if abs(way[joint]) >= LEAST_RAD:
+            return Motor(joint, 1 if way[joint] > 0.0 else -1, volts, float(abs(way[joint])))
+    raise UserError(
+        f"{device.port}: the motor of joint {joint} did not move it with {SHARES[-1] * table.supply_v:.1f} V: check "
+        "that the motors' supply is on, the driver's enable, PWM and direction wires, the motor's own wires, and that "
+        "the joint moves freely."
+    )
+
+
+def _answer(device: Device, weak: ParameterTable, joint: int) -> Floats:
+    """Half of what lies between pulses one way and the other, (4,) rad; 0 where two tries do not agree.
+
+    An arm that falls when nobody holds it falls in one pulse and lies still in the next. So the second try has the
+    other order, and the smaller of both counts.
+    """
+    once = _between(device, weak, joint, 1)
+    if np.abs(once).max() < LEAST_RAD:
+        return once
+    again = -_between(device, weak, joint, -1)
+    return np.where(once * again > 0.0, np.sign(once) * np.minimum(np.abs(once), np.abs(again)), 0.0)
+
+
+def _between(device: Device, weak: ParameterTable, joint: int, way: int) -> Floats:
+    one, other = pulse(device, weak, joint, way), pulse(device, weak, joint, -way)
+    half: Floats = (one.moved - other.moved) / 2.0
+    return half
+
+
+def remarks(motors: Sequence[Motor], supply_v: float) -> tuple[str, ...]:
+    """Sentences about motors that moved their joints, but with more voltage than one expects."""
+    if motors and min(one.volts for one in motors) >= MUCH_SHARE * supply_v:
+        return (
+            f"Every motor needed {min(one.volts for one in motors):.1f} V or more to move its joint: check the motors' "
+            f"supply; the board counts on {supply_v:g} V (supply_mv).",
+        )
+    told = []
+    for motor in motors:
+        usual = float(np.median([other.answer for other in motors if other is not motor] or [0.0]))
+        if motor.answer < WEAK_SHARE * usual:
+            told.append(
+                f"The motor of joint {motor.joint} moved it by {1e3 * motor.answer:.0f} mrad a volt, the others theirs "
+                f"by {1e3 * usual:.0f}: it is weak, or its joint turns hard; check its wires, its driver's current "
+                "limit, and that the joint turns freely by hand."
+            )
+    return tuple(told)
+
+
+def pulse_table(table: ParameterTable, joint: int, volts: float) -> ParameterTable:
+    """The set with which a pulse runs; it is for this joint only, and never stored."""
+    parameters = schema.PARAMETER_BY_NAME
+    widest = parameters["joint0.limit_max"].maximum
+    changes = {
+        "period_ms": 1,
+        "soft_start_ms": 100,
+        "tracking_limit": parameters["tracking_limit"].to_raw(FARTHEST_RAD),
+        "tracking_ms": 1,
+        "stall_volts": 0,
+        "unrest_amplitude": 0,
+    }
+    for other in range(JOINTS):
+        changes |= {
+            f"joint{other}.kp": parameters[f"joint{other}.kp"].to_raw(_STIFF),
+            f"joint{other}.kd": 0,
+            f"joint{other}.ki": 0,
+            f"joint{other}.ku_mv": round(1000.0 * volts) if other == joint else 0,
+            f"joint{other}.limit_min": -widest,
+            f"joint{other}.limit_max": widest,
+        }
+    return table.with_raw(changes)
+
+
+def pulse(device: Device, weak: ParameterTable, joint: int, way: int) -> Pulse:
+    """One pulse, `way` 1 or -1, with the set of `pulse_table`; the motors are off afterwards."""
+    run_set(device, weak)
+    _wait_until_still(device)
+    step = [0, 0, 0, 0]
+    step[joint] = way * round(WAY_RAD / STEP_LSB)
+    device.telemetry(1)
+    samples: list[schema.Sample] = []
+    try:
+        begun = device.lead(LEASE_MS)
+        device.lead_point(begun.next, (step[0], step[1], step[2], step[3]))
+        while not samples or samples[-1].tick - samples[0].tick < LEASE_MS + SETTLE_TICKS:
+            samples += device.samples()
+    finally:
+        device.stop()
+        device.telemetry(0)
+    if device.status().state is schema.State.FAULT:
+        # Cleared where any distance from the leader will do: nobody holds the arm.
+        run_set(device, weak.with_raw({"tracking_limit": 0}))
+        device.ask(schema.ClearFaultRequest())
+    angles = np.array([one.follower for one in samples], dtype=np.float64) * ANGLE_LSB
+    away = angles - np.array(begun.reference) * ANGLE_LSB
+    most = np.argmax(np.abs(away), axis=0)
+    volts = max(abs(one.voltage[joint]) for one in samples) / 1000.0
+    return Pulse(away[most, np.arange(JOINTS)], volts)
+
+
+def _wait_until_still(device: Device) -> None:
+    """Until the follower has rested for a while; it may have been falling since the last pulse."""
+    angles: deque[tuple[int, ...]] = deque(maxlen=STILL_TICKS)
+    try:
+        for one in stream(device, 1):
+            angles.append(one.sample.follower)
+            if len(angles) == STILL_TICKS and np.ptp(np.array(angles), axis=0).max() * ANGLE_LSB <= STILL_RAD:
+                return
+            if one.elapsed > PATIENCE_TICKS:
+                raise UserError(f"{device.port}: the follower does not come to rest; lay it down, and begin anew.")
+    finally:
+        device.telemetry(0)

@@ -1,0 +1,144 @@
+"""The sweeps and poses of a calibration, one after the other, and back again where the person wants to."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+
+import numpy as np
+
+from greywhale.base.errors import UserError
+from greywhale.base.types import Floats
+from greywhale.board.calibrate.person import Answer, Watch
+from greywhale.board.calibrate.solve import Calibration, Pose, match, slipped, solve
+from greywhale.board.calibrate.sweep import Sweep, judge_sweep
+from greywhale.board.calibrate.words import MEND, joint_name, sweep_asked
+from greywhale.board.pots import POTS, read_counts
+from greywhale.board.refusal import pot_name, upper_first
+from greywhale.protocol.firmware import JOINTS
+from greywhale.protocol.joints import Joints
+
+HELD_TICKS = 500  # that a pose is looked at
+STILL_COUNTS = 3.0  # of the mean over a tenth of a second, meanwhile
+TRIES = 3  # of a script
+MOST_APART_RAD = 0.15  # between the arms in the last pose: 9 degrees, more than a hand is wrong by
+_COUNTS = {2: "two", 4: "four", 6: "six", 8: "eight"}
+
+
+class Walk:
+    """What is known so far. `poses` are the four that are asked for; the second's angles count if `track_rad` is None,
+    else the tracks have this length.
+    """
+
+    def __init__(self, watch: Watch, joints: Joints, poses: Sequence[tuple[Floats, str]], track_rad: float | None):
+        self._watch = watch
+        self._asked = poses
+        self._track_rad = track_rad
+        self._pots = [pot for pot in range(len(POTS)) if pot % JOINTS in joints]  # in the order of the sweeps
+        self._sweeps: dict[int, Sweep] = {}
+        self._poses: dict[int, Pose] = {}
+        self._tries = Counter[str]()
+
+    def go(self, at: int = 0) -> tuple[Calibration, Floats]:
+        """The calibration, and how far the arms are apart (4,) rad in the last pose, from which nothing was worked out.
+
+        Raises UserError with the mistakes found. A walk that was gone to its end may be gone again from a later step.
+        """
+        while at < self.length:
+            pose = at - len(self._pots)
+            answer = self._sweep(at) if pose < 0 else self._pose(pose)
+            at = self._next(at, answer)
+        return self._found(), self._compare()
+
+    @property
+    def length(self) -> int:
+        """The number of steps."""
+        return len(self._pots) + len(self._asked)
+
+    def _next(self, at: int, answer: Answer) -> int:
+        match answer:
+            case Answer.BACK if at == 0:
+                self._watch.guide.tell("This is the first step.")
+            case Answer.BACK:
+                return at - 1
+            case Answer.SKIP if at < len(self._pots):
+                self._pots.append(self._pots.pop(at))
+            case Answer.SKIP:
+                self._watch.guide.tell("A pose cannot wait.")
+            case Answer.DONE:
+                return at + 1
+        return at
+
+    def _sweep(self, at: int) -> Answer:
+        pot, of = self._pots[at], len(self._pots)
+        answer, counts = self._watch.ask(sweep_asked(pot, at + 1, of), [pot])
+        if answer is not Answer.DONE:
+            return answer
+        sweep = judge_sweep(counts, pot)
+        if sweep.mistakes:
+            return self._mend(pot, " ".join(sweep.mistakes))
+        self._sweeps[pot] = sweep
+        if at + 1 == of:
+            self._watch.guide.tell(f"All {_COUNTS[of]} potentiometers turn with their joints.")
+        return answer
+
+    def _mend(self, pot: int, mistakes: str) -> Answer:
+        """How to go on after a sweep with mistakes; what moves while a person mends is not judged."""
+        name = upper_first(joint_name(pot))
+        self._refuse(name, mistakes, mistakes)
+        if not self._watch.guide.patient:
+            return Answer.AGAIN
+        answer, _ = self._watch.ask(f"{name}: {MEND}", [pot])
+        return Answer.AGAIN if answer is Answer.DONE else answer
+
+    def _pose(self, number: int) -> Answer:
+        """Ask for a pose; both arms must be held still."""
+        angles, what = self._asked[number]
+        answer, _ = self._watch.ask(what, sorted(self._pots))
+        if answer is not Answer.DONE:
+            return answer
+        counts = read_counts(self._watch.device, self._watch.table, HELD_TICKS)
+        means = counts[: HELD_TICKS // 100 * 100].reshape(-1, 100, len(POTS)).mean(axis=1)
+        wandered = np.ptp(means, axis=0)
+        worst = int(np.argmax(wandered))
+        if wandered[worst] > STILL_COUNTS:
+            moved = f"{upper_first(pot_name(worst))} moved by {wandered[worst]:.0f} counts; hold both arms still."
+            self._refuse(what, moved, "the arms were not held still; lay them on a support, and begin anew.")
+            return Answer.AGAIN
+        self._poses[number] = Pose(angles, counts.mean(axis=0))
+        self._check(number)
+        return answer
+
+    def _refuse(self, step: str, mistake: str, at_last: str) -> None:
+        """Tell a mistake; a script, which mends nothing, makes it but a few times."""
+        self._tries[step] += 1
+        if not self._watch.guide.patient and self._tries[step] == TRIES:
+            raise UserError(f"{self._watch.device.port}: {at_last}")
+        self._watch.guide.tell(mistake)
+
+    def _check(self, number: int) -> None:
+        """Raise UserError where the pose that was just held contradicts what was before."""
+        if number == 1:
+            self._found()
+        if number == 2 and (moved := slipped(self._poses[0], self._poses[2])):
+            raise UserError(" ".join(moved))
+        if number == 3:
+            self._compare()
+
+    def _found(self) -> Calibration:
+        sweeps, first, second = list(self._sweeps.values()), self._poses[0], self._poses[1]
+        if self._track_rad is None:
+            return solve(sweeps, first, second, None)
+        return match(solve(sweeps, first, None, self._track_rad), sweeps, first, second)
+
+    def _compare(self) -> Floats:
+        """How far the arms are apart (4,) rad in the last pose; those before fit by themselves."""
+        angles = self._found().angles(self._poses[3].counts)
+        apart: Floats = np.abs(angles[JOINTS:] - angles[:JOINTS])
+        worst = int(np.argmax(apart))
+        if apart[worst] > MOST_APART_RAD:
+            raise UserError(
+                f"{self._watch.device.port}: held in the same pose, leader and follower differ by {apart[worst]:.2f} "
+                f"rad at joint {worst}; hold the poses more exactly, check that no shaft slips, and begin anew."
+            )
+        return apart

@@ -1,0 +1,153 @@
+"""The potentiometers of an arm that nobody moves: rails, jumps, noise, hum.
+
+Counts are those of the 10-bit converter after the firmware's low-pass, a row a millisecond, with fractions.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import median_filter, uniform_filter1d
+
+from greywhale.base.types import Floats
+from greywhale.board.doctor.finding import Finding, Verdict
+from greywhale.board.pots import POTS
+from greywhale.board.refusal import pot_name, upper_first
+from greywhale.protocol.firmware import TICK_S
+
+MEAN_TICKS = 100  # whole periods of 50 and of 60 Hz, so that hum stays out of the mean
+MOVED_COUNTS = 8.0  # a mean that wanders farther: somebody moves the arm
+# A jump leaves the median of its neighbourhood by so much, and by so many times the usual noise.
+MEDIAN_TICKS, JUMP_COUNTS, JUMP_NOISES = 9, 6.0, 8.0
+# rms. One count is the converter's own step; a joint of 300 degrees then follows to 5 mrad.
+MUCH_NOISE, MOST_NOISE = 1.5, 4.0
+# Two that wander together and stand together are one: an open input keeps the charge of the one converted before.
+ALIKE, ALIKE_COUNTS = 0.7, 3.0
+HUM_HZ, MUCH_HUM = (50.0, 60.0), 1.5  # amplitude in counts, its first harmonic included
+
+
+@dataclass(frozen=True)
+class Quiet:
+    """What one potentiometer shows at rest, in counts: `noise` is rms, `hum` an amplitude at `hum_hz`."""
+
+    noise: float
+    hum: float
+    hum_hz: float
+    jumps: int
+    wandered: float
+
+
+def look(counts: Floats) -> Quiet:
+    """Measure one potentiometer (rows,) of at least half a second."""
+    median = median_filter(counts, MEDIAN_TICKS, mode="nearest")
+    away = counts - median
+    usual = 1.4826 * float(np.median(np.abs(away - np.median(away))))
+    jumped = np.abs(away) > max(JUMP_COUNTS, JUMP_NOISES * usual)
+    settled = np.where(jumped, median, counts)
+    mean = uniform_filter1d(settled, MEAN_TICKS, mode="nearest")
+    rest = settled - mean
+    humming = [_hum(rest, hertz) for hertz in HUM_HZ]
+    loudest = int(np.argmax(humming))
+    return Quiet(
+        noise=float(np.sqrt(np.mean(rest**2))),
+        hum=humming[loudest],
+        hum_hz=HUM_HZ[loudest],
+        jumps=int(np.count_nonzero(np.diff(jumped.astype(np.int8)) == 1)),
+        wandered=float(np.ptp(mean)),
+    )
+
+
+def examine_pots(counts: Floats, rails: list[str]) -> list[Finding]:
+    """Findings about counts (rows, 8), leader 0..3, follower 0..3; `rails` are the sentences about pots at a rail."""
+    findings = [Finding("rails", Verdict.BAD, upper_first(told)) for told in rails]
+    if not rails:
+        findings.append(Finding("rails", Verdict.GOOD, "No potentiometer reads at a rail."))
+    quiet = [look(counts[:, pot]) for pot in range(len(POTS))]
+    moved = [pot for pot, one in enumerate(quiet) if one.wandered > MOVED_COUNTS and not one.jumps]
+    if moved:
+        findings.append(
+            Finding(
+                "at rest",
+                Verdict.NOTE,
+                f"{_names(moved)} moved by up to {max(quiet[pot].wandered for pot in moved):.0f} counts meanwhile.",
+                "Keep both arms still and look again; if nobody touched them, look for a slipping or loose one.",
+            )
+        )
+    return [*findings, _alike(counts), _jumps(quiet), _noise(quiet), _hums(quiet)]
+
+
+def _alike(counts: Floats) -> Finding:
+    rest = counts - uniform_filter1d(counts, MEAN_TICKS, axis=0, mode="nearest")
+    spread = np.sqrt(np.mean(rest**2, axis=0)) + 1e-9
+    together = (rest.T @ rest) / len(rest) / np.outer(spread, spread)
+    mean = counts.mean(axis=0)
+    pairs = [
+        (one, other)
+        for one in range(len(POTS))
+        for other in range(one + 1, len(POTS))
+        if together[one, other] > ALIKE and abs(mean[one] - mean[other]) < ALIKE_COUNTS
+    ]
+    if not pairs:
+        return Finding("inputs", Verdict.GOOD, "Each reads something of its own.")
+    told = "; ".join(f"{pot_name(one)} and {pot_name(other)}" for one, other in pairs)
+    return Finding(
+        "inputs",
+        Verdict.BAD,
+        f"These read alike: {told}.",
+        "One of them is not connected (its input keeps the other's charge), or both wires are on one potentiometer: "
+        "check the wipers' wires, and put 100 kOhm from each input to ground.",
+    )
+
+
+def _jumps(quiet: list[Quiet]) -> Finding:
+    jumping = [pot for pot, one in enumerate(quiet) if one.jumps]
+    if not jumping:
+        return Finding("contacts", Verdict.GOOD, "Nothing jumped.")
+    told = ", ".join(f"{pot_name(pot)} {quiet[pot].jumps} times" for pot in jumping)
+    return Finding(
+        "contacts",
+        Verdict.BAD,
+        f"Readings jumped: {told}.",
+        "A wire or wiper is loose there: check its three wires, solder instead of clamping, replace a worn track.",
+    )
+
+
+def _noise(quiet: list[Quiet]) -> Finding:
+    noise = np.array([one.noise for one in quiet])
+    loud = [pot for pot in range(len(POTS)) if noise[pot] > MUCH_NOISE]
+    if not loud:
+        return Finding("noise", Verdict.GOOD, f"At most {noise.max():.1f} counts rms.")
+    told = ", ".join(f"{pot_name(pot)} {noise[pot]:.1f}" for pot in loud)
+    return Finding(
+        "noise",
+        Verdict.BAD if noise.max() > MOST_NOISE else Verdict.NOTE,
+        f"Noisy, in counts rms: {told}.",
+        "Put 100 nF from wiper to ground at the board's pin, keep motor wires away, feed the potentiometers from 5V.",
+    )
+
+
+def _hums(quiet: list[Quiet]) -> Finding:
+    humming = [pot for pot, one in enumerate(quiet) if one.hum > MUCH_HUM]
+    if not humming:
+        return Finding("hum", Verdict.GOOD, f"At most {max(one.hum for one in quiet):.1f} counts of mains hum.")
+    told = ", ".join(f"{pot_name(pot)} {quiet[pot].hum:.1f} counts at {quiet[pot].hum_hz:g} Hz" for pot in humming)
+    return Finding(
+        "hum",
+        Verdict.NOTE,
+        f"Mains hum: {told}.",
+        "Join the grounds of supply, board and computer at one point, and twist each wiper's wire with its ground.",
+    )
+
+
+def _hum(rest: Floats, hertz: float) -> float:
+    """The amplitude at a frequency and at twice of it, together."""
+    time_s = TICK_S * np.arange(len(rest))
+    powers = [abs(2.0 * np.mean(rest * np.exp(-2j * np.pi * part * hertz * time_s))) ** 2 for part in (1, 2)]
+    return float(np.sqrt(sum(powers)))
+
+
+def _names(pots: list[int]) -> str:
+    told = [pot_name(pot) for pot in pots]
+    text = told[0] if len(told) == 1 else ", ".join(told[:-1]) + " and " + told[-1]
+    return upper_first(text)

@@ -1,8 +1,0 @@
-"""From potentiometers mounted anyhow to angles: sweeps and poses by hand, zero, scale, limits, mistakes by name."""
-
-from __future__ import annotations
-
-from greywhale.calibrate.guide import Options, Result, calibrate
-from greywhale.calibrate.person import Answer, Guide
-
-__all__ = ["Answer", "Guide", "Options", "Result", "calibrate"]

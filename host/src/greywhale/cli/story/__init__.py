@@ -1,0 +1,8 @@
+"""The demonstration: the whole of greywhale on the simulated bench in one go."""
+
+from greywhale.cli.story.bench import BenchProcess, RunningBench
+from greywhale.cli.story.recorder import Recorded, record_motion
+from greywhale.cli.story.result import DemoResult
+from greywhale.cli.story.story import DemoOptions, run
+
+__all__ = ["BenchProcess", "DemoOptions", "DemoResult", "Recorded", "RunningBench", "record_motion", "run"]

@@ -1,0 +1,209 @@
+"""Finds the motion that shows most about an arm: the safe multi-sine of greatest information (D-optimal).
+
+The information is that of the follower in the closed loop with the board's own controllers. What is known before counts
+too: the covariance of a model.toml, or the doubts of an arm file. So with a model, the search finds a motion for what
+the model's logs left open.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from functools import partial
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.arm import ArmParameters
+from greywhale.base.errors import BAD_USAGE, UserError, require_within
+from greywhale.base.types import Floats, Progress, show_no_progress
+from greywhale.files.trajectory import Trajectory
+from greywhale.identify.excite.information import information, natural_sizes, prior
+from greywhale.identify.excite.limits import MARGIN_RAD, Limits, family, limits_of
+from greywhale.identify.excite.multisine import LONGEST_S, SHORTEST_S, Shape
+from greywhale.identify.excite.trial import ROW_S, Trial, try_motion
+from greywhale.identify.samples import read_search
+from greywhale.identify.space import KINDS, MOTOR, Parameter, Space
+from greywhale.identify.uncertainty import OPEN, OPEN_FACTOR, OPEN_LOG
+from greywhale.optimise import DEFAULT, create
+from greywhale.protocol.table import ParameterTable
+from greywhale.simulate import plant_row
+
+BUDGET = 300
+MOST_BUDGET = 100_000  # takes a day
+SECONDS = 20.0
+# The quantities that count where an arm file does not say what is known: as in a usual identification.
+USUAL = (*MOTOR, "coulomb", "breakaway", "gap", "teeth")
+# Cost of a lag or an overshoot of twice the limit: more than any information is worth.
+PENALTY = 50.0
+# A motion that is not safe on some arm is shrunk towards the pose by this factor, again and again.
+SHRINK, SHRINKS = 0.9, 30
+
+
+@dataclass(frozen=True)
+class Problem:
+    """The basis on which a motion is judged: the arm, its family, the parameters and what is known of them."""
+
+    parameters: tuple[Parameter, ...]
+    plants: Floats  # (1 + family, columns), that the motion is tried on
+    nominal: Floats  # (columns,), whose parameters the information is about
+    known: Floats  # information before, (n, n)
+    table: ParameterTable
+    limits: Limits
+
+    @classmethod
+    def of(
+        cls,
+        arm: ArmParameters,
+        table: ParameterTable,
+        pose: Floats,
+        ranges: Mapping[int, tuple[float, float]],
+        seed: int,
+    ) -> Problem:
+        limits = limits_of(arm, table, pose, ranges)
+        facts = arm.identification
+        if facts is not None and "covariance" in facts:
+            space, _, known_covariance = read_search(arm)
+            covariance: Floats | None = known_covariance
+            nominal = plant_row(arm)
+        else:
+            space = Space.of(arm, USUAL, arm.joints_in_use)
+            nominal = space.plants(space.start()[None])[0]
+            covariance = None
+        known = prior(space.parameters, covariance, space.doubts())
+        return cls(space.parameters, family(arm, seed), nominal, known, table, limits)
+
+    def judge(self, angles: Floats) -> Judgement:
+        """Judge points (rows, 4) rad, 16 ms apart."""
+        tried = try_motion(angles, self.table, self.plants, threads=1)
+        told = information(self.nominal, tried.angles[0], ROW_S, self.parameters).matrix + self.known
+        size = natural_sizes(self.parameters)
+        log_det = float(np.linalg.slogdet(told * np.outer(size, size))[1])
+        return Judgement(log_det, np.sqrt(np.diag(np.linalg.inv(told))), tried, self._excess(tried))
+
+    def _excess(self, tried: Trial) -> float:
+        """The share by which the worst arm of the family exceeds its allowed lag or range; 0 where none does."""
+        beyond = np.maximum(self.limits.low - tried.angles.min(axis=1), tried.angles.max(axis=1) - self.limits.high)
+        lag, overshoot = tried.lag.max() / self.limits.lag, beyond.max() / MARGIN_RAD
+        return max(0.0, float(max(lag, overshoot)) - 1.0)
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """`log_det` of the information, parameters in natural sizes; `deviations` (n,) expected of the searched numbers."""
+
+    log_det: float
+    deviations: Floats
+    tried: Trial = field(repr=False)
+    excess: float
+
+    @property
+    def cost(self) -> float:
+        return -0.5 * self.log_det + PENALTY * self.excess
+
+
+@dataclass(frozen=True)
+class Design:
+    """A motion, and what to expect of it."""
+
+    motion: Trajectory
+    problem: Problem = field(repr=False)
+    judgement: Judgement = field(repr=False)
+    evaluations: int
+
+    def as_dict(self) -> dict[str, object]:
+        parameters = self.problem.parameters
+        return {
+            "seconds": self.motion.duration_s,
+            "log_det": round(self.judgement.log_det, 3),
+            "expected_deviation": {
+                one.name: float(f"{value:.3g}")
+                for one, value in zip(parameters, self.judgement.deviations, strict=True)
+            },
+            "left_open": self.left_open(),
+            "largest_lag_rad": round(float(self.judgement.tried.lag.max()), 3),
+            "evaluations": self.evaluations,
+        }
+
+    def left_open(self) -> list[str]:
+        """Names of parameters that this motion will not settle either, by the arm file."""
+        rows = zip(self.problem.parameters, self.judgement.deviations, strict=True)
+        return [one.name for one, deviation in rows if deviation > _enough(one)]
+
+    def text(self) -> str:
+        """One sentence."""
+        rows = zip(self.problem.parameters, self.judgement.deviations, strict=True)
+        motors = [float(deviation) for one, deviation in rows if one.kind in (*MOTOR, "coulomb")]
+        left = self.left_open()
+        return (
+            f"Sensor noise alone leaves motors and friction known to {100 * float(np.median(motors)):.2g} % after this "
+            f"motion, the worst of them to {100 * max(motors):.2g} %"
+            + (f"; it hardly tells {', '.join(left)}" if left else "")
+            + "."
+        )
+
+
+def design(
+    arm: ArmParameters,
+    pose: npt.ArrayLike,
+    *,
+    table: ParameterTable | None = None,
+    ranges: Mapping[int, tuple[float, float]] | None = None,
+    seconds: float = SECONDS,
+    seed: int = 0,
+    budget: int = BUDGET,
+    report: Progress | None = None,
+) -> Design:
+    """Search a motion from `pose` (4,) rad and back to it, for a board with this parameter table.
+
+    `ranges` (rad) of single joints narrow or widen the usual range of 1 rad to either side of the pose. The result
+    depends on the arguments only. Raises UserError where the arm cannot move like that.
+    """
+    check_effort(seconds, budget)
+    at = np.asarray(pose, dtype=np.float64)
+    running = table or ParameterTable.defaults().with_joints(arm.joints_in_use)
+    problem = Problem.of(arm, running, at, ranges or {}, seed)
+    shape = Shape(problem.limits, seconds)
+    best = _search(problem, shape, seed, budget, report or show_no_progress)
+    angles = shape.angles(best)
+    judged = problem.judge(angles)
+    for _ in range(SHRINKS):
+        if judged.excess == 0.0:
+            return Design(shape.trajectory(angles), problem, judged, budget)
+        angles = at + SHRINK * (angles - at)
+        judged = problem.judge(angles)
+    raise UserError(
+        f"no motion was found that every arm like {arm.name} can follow with the controllers on the board: a joint "
+        f"lags by {judged.tried.lag.max():.2f} rad; upload other controllers, or correct the arm file."
+    )
+
+
+def check_effort(seconds: float, budget: int) -> None:
+    """Refuse lengths and budgets that make no sense, before anything is done."""
+    if not SHORTEST_S <= seconds <= LONGEST_S:
+        raise UserError(f"the motion is {seconds:g} s long; it must be {SHORTEST_S:g} to {LONGEST_S:g} s.", BAD_USAGE)
+    require_within("budget", budget, 1, MOST_BUDGET)
+
+
+def _search(problem: Problem, shape: Shape, seed: int, budget: int, report: Progress) -> Floats:
+    """The numbers of the best multi-sine. The first one tried has even speeds; a batch is tried side by side."""
+    ones = np.ones(shape.size)
+    cost = partial(_cost, problem, shape)
+    with (
+        create(DEFAULT, -ones, ones, budget=budget, seed=seed, start=np.zeros((1, shape.size))) as optimiser,
+        ThreadPoolExecutor(os.cpu_count()) as pool,
+    ):
+        while not optimiser.done:
+            optimiser.tell(list(pool.map(cost, optimiser.ask())))
+            report("designing the motion", optimiser.evaluations / budget)
+        return optimiser.best.x
+
+
+def _cost(problem: Problem, shape: Shape, numbers: Floats) -> float:
+    return problem.judge(shape.angles(numbers)).cost
+
+
+def _enough(one: Parameter) -> float:
+    return OPEN_FACTOR.get(one.kind, OPEN_LOG) if KINDS[one.kind].logarithmic else OPEN[one.kind]

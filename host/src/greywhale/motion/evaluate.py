@@ -1,0 +1,165 @@
+"""The paper's three measures of a log (section 5.1), made exact, and overshoot and settling time of steps.
+
+- Input tracking: mean of (leader - follower)^2 over the measured samples; the total is the sum over the joints, as in
+  equation 5 and table 11.
+- Steady-state error: "the difference between the desired final position and the actual position in steady state".
+  Here the mean of |leader - follower| over all samples at which the leader has stayed within `rest_band` for
+  `rest_s`. None where the leader never rests.
+- Time delay: two definitions, see `delay.py`. `delay_s` is the lag at which the follower resembles the leader most,
+  defined for any motion; `onset_delay_s` is the paper's, "the difference between the times that the leader gives a
+  position command and the follower begins to respond", and exists only where the leader steps out of a rest.
+- Overshoot and settling time of such steps: see `step_response.py`. Of several steps, the worst counts.
+
+Measured samples are those in state `following`; a log without any (motors off) is measured whole, and says so.
+Samples that the link dropped are absent, not filled in: the means run over what was received. Steady state and delays
+look only at runs of samples without a gap.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
+
+from greywhale.base.errors import UserError
+from greywhale.base.types import Floats
+from greywhale.files.log import Log
+from greywhale.motion.delay import correlation_delay, onset_delay
+from greywhale.motion.following import follows
+from greywhale.motion.runs import Run, gap_free_runs, resting
+from greywhale.motion.settings import Settings
+from greywhale.motion.step_response import Answer, answer, departures, worst
+from greywhale.protocol.joints import ALL, Joints
+
+
+@dataclass(frozen=True)
+class JointMeasures:
+    """rad^2, rad, s, s; None where the motion does not define the measure.
+
+    `follows` is False where the follower does not follow at all: see `following.py`. Overshoot and settling time are
+    the largest of all steps; the latter is None also where one of them, counted in `unsettled_steps`, never settled.
+    """
+
+    mse: float
+    steady_state_error: float | None
+    delay_s: float | None
+    onset_delay_s: float | None
+    steps: int
+    follows: bool = True
+    overshoot_percent: float | None = None
+    settling_s: float | None = None
+    unsettled_steps: int = 0
+
+    def settling(self, form: str) -> str | None:
+        """The settling time as a person reads it; "never" where a step did not settle, None without steps."""
+        if self.unsettled_steps:
+            return "never"
+        return None if self.settling_s is None else f"{self.settling_s:{form}}"
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """The measures of one log; `rests_s` tells per joint how long the leader rested.
+
+    They cover `duration_s` of the `span_s` between its first row and its last: no gaps, and only where motors followed.
+    """
+
+    joints: tuple[JointMeasures, ...]
+    total_mse: float
+    samples: int
+    duration_s: float
+    following: bool
+    rests_s: tuple[float, ...]
+    joints_in_use: Joints = ALL  # the others have measures too, of a motion that is 0
+    span_s: float | None = None  # None: all of it was measured
+
+    def as_dict(self) -> dict[str, object]:
+        """For JSON: plain numbers with their units in the keys."""
+        return {
+            "joints": [
+                {
+                    "in_use": number in self.joints_in_use,
+                    "mse_rad2": joint.mse,
+                    "steady_state_error_rad": joint.steady_state_error,
+                    "time_delay_s": joint.delay_s,
+                    "onset_delay_s": joint.onset_delay_s,
+                    "overshoot_percent": joint.overshoot_percent,
+                    "settling_s": joint.settling_s,
+                    "steps": joint.steps,
+                    "unsettled_steps": joint.unsettled_steps,
+                    "follows": joint.follows,
+                    "leader_rested_s": rested,
+                }
+                for number, (joint, rested) in enumerate(zip(self.joints, self.rests_s, strict=True))
+            ],
+            "total_mse_rad2": self.total_mse,
+            "samples": self.samples,
+            "duration_s": self.duration_s,
+            "span_s": self.duration_s if self.span_s is None else self.span_s,
+            "measured": "following" if self.following else "whole log, motors never followed",
+        }
+
+
+def evaluate(log: Log, settings: Settings | None = None) -> Evaluation:
+    """Measure every joint of a log."""
+    chosen = settings or Settings()
+    following = log.state == "following"
+    measured = following if following.any() else np.ones(len(log.time), dtype=bool)
+    runs = gap_free_runs(log.time, measured)
+    if not runs:
+        raise UserError(
+            f"{log.name}: nothing to measure: no two neighbouring samples in state following; record longer."
+        )
+    joints, rests = [], []
+    # Each of the thousands of correlations is too short for BLAS threads, which would wait for a busy core.
+    with threadpool_limits(limits=1, user_api="blas"):
+        for joint in range(log.leader.shape[1]):
+            measures, rested = _joint(log.leader[:, joint], log.follower[:, joint], measured, runs, chosen)
+            joints.append(measures)
+            rests.append(rested)
+    return Evaluation(
+        joints=tuple(joints),
+        total_mse=sum(joints[number].mse for number in log.joints_in_use),
+        samples=int(measured.sum()),
+        duration_s=sum(run.period * (run.stop - run.start - 1) for run in runs),
+        following=bool(following.any()),
+        rests_s=tuple(rests),
+        joints_in_use=log.joints_in_use,
+        span_s=float(log.time[-1] - log.time[0]),
+    )
+
+
+def _joint(
+    leader: Floats, follower: Floats, measured: NDArray[np.bool_], runs: list[Run], settings: Settings
+) -> tuple[JointMeasures, float]:
+    error = leader - follower
+    at_rest = np.zeros(len(leader), dtype=bool)
+    onsets: list[float] = []
+    answers: list[Answer] = []
+    for run in runs:
+        led, followed, window = leader[run.slice], follower[run.slice], run.samples(settings.rest_s)
+        rest = resting(led, window, settings.rest_band)
+        at_rest[run.slice] = rest
+        for step in departures(led, rest, run.period, settings):
+            onset = onset_delay(led, followed, step, window, settings.onset_band)
+            onsets += [] if onset is None else [onset * run.period]
+            found = answer(led, followed, rest, step, run.period, settings)
+            answers += [] if found is None else [found]
+    longest = max(runs, key=lambda run: run.stop - run.start)
+    overshoot, settling = worst(answers)
+    measures = JointMeasures(
+        mse=float(np.mean(error[measured] ** 2)),
+        steady_state_error=float(np.mean(np.abs(error[at_rest]))) if at_rest.any() else None,
+        delay_s=correlation_delay(
+            leader[longest.slice], follower[longest.slice], longest.period, settings.longest_delay_s
+        ),
+        onset_delay_s=float(np.mean(onsets)) if onsets else None,
+        steps=len(onsets),
+        follows=follows(leader[measured], follower[measured], longest.period),
+        overshoot_percent=overshoot,
+        settling_s=settling,
+        unsettled_steps=sum(one.settling_s is None for one in answers),
+    )
+    return measures, float(np.count_nonzero(at_rest) * longest.period)

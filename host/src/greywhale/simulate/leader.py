@@ -1,0 +1,40 @@
+"""A leader motion on the closed loop's clock: an even recording as it is, one with gaps only on request."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from greywhale.base.errors import UserError
+from greywhale.base.types import Floats
+from greywhale.files.trajectory import Trajectory
+
+SLICE_S = 250e-6
+SLICES_PER_TICK = 4
+UNEVEN = 0.05  # a row may be early or late by this share of the usual spacing
+
+
+def leader_slices(motion: Trajectory, wait_s: float, after_s: float = 0.0, resample: bool = False) -> Floats:
+    """Leader angles (rad) in every slice of 250 us: first pose for `wait_s`, the motion, last pose for `after_s`.
+
+    Between the rows of an even recording runs its monotone cubic (greywhale.motion). A recording with gaps or
+    uneven times is refused, unless `resample` allows the same cubic to bridge them too.
+    """
+    if not resample:
+        _require_even(motion)
+    total_s = wait_s + motion.duration_s + after_s
+    ticks = int(np.ceil(total_s / (SLICES_PER_TICK * SLICE_S) - 1e-9))
+    times = np.arange(ticks * SLICES_PER_TICK, dtype=np.float64) * SLICE_S - wait_s
+    return np.ascontiguousarray(motion.at(times))
+
+
+def _require_even(motion: Trajectory) -> None:
+    spacing = np.diff(motion.time_s)
+    usual = float(np.median(spacing))
+    off = np.flatnonzero(np.abs(spacing - usual) > UNEVEN * usual)
+    if off.size:
+        row = int(off[0])
+        kind = "a gap" if spacing[row] > 1.5 * usual else "uneven time"
+        raise UserError(
+            f"the leader motion has {kind}: {motion.time_s[row + 1]:g} s follows {motion.time_s[row]:g} s, "
+            f"elsewhere rows are {usual:g} s apart; record it again, or ask for resampling (resample=True)."
+        )

@@ -1,0 +1,78 @@
+"""Sensors that lie, motors that do not obey, hangs, lost lines, on the real images with an arm: motors off in time."""
+
+from __future__ import annotations
+
+import pytest
+
+from tools.attack.part import Row, add_up
+from tools.attack.parts.faults import count, is_violation, run
+from tools.attack.staging import CHATTER, Trial, faults
+
+RAILS = {"open": "pot_low", "shorted": "pot_high"}
+# What the board may say of each; a joint that nobody moves shows nothing.
+REPORTED = {
+    "stop request": {"none"},
+    "emergency stop pressed": {"estop"},
+    "lease of 20 ms runs out": {"none"},
+    "flood of 80 bytes a ms": {"flood"},
+    "hang, interrupts on": {"watchdog"},
+    "hang, interrupts off": {"watchdog"},
+    "bit of the running set flips": {"memory", "estop"},
+    "supply sinks by 0.1 V a ms": {"none"},
+    "motor dead": {"stalled", "runaway", "motors stayed on"},
+    "motor reversed": {"runaway", "motors stayed on"},
+    "follower pot reversed": {"runaway", "speed", "motors stayed on"},
+    "joint blocked": {"stalled", "motors stayed on"},
+} | {
+    f"{side} {state}" + (f" {pattern[0]} of {pattern[1]} ms" if pattern else ""): {code}
+    for side in ("leader", "follower")
+    for state, code in RAILS.items()
+    for pattern in (None, *CHATTER)
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("board", "seed"), [("mega", 2), ("nano", 3)])
+def test_every_fault_turns_the_motors_off_in_time_and_is_named(board: str, seed: int) -> None:
+    rows = add_up(run({"board": board, "seed": seed, "trials": 2, "faults": list(REPORTED)}))
+    assert [row.tried for row in rows] == [f"{board}: {name}" for name in faults() if name in REPORTED]
+    for row in rows:
+        assert row.violations == 0, row
+        assert set(row.counts) <= REPORTED[row.tried.partition(": ")[2]], row
+
+
+@pytest.mark.slow
+def test_a_follower_that_reads_its_neighbour_is_told_at_once_where_the_two_differ() -> None:
+    """Where they do not, it is a frozen pot: docs/firmware.md says what that costs."""
+    row = run({"board": "nano", "seed": 2, "trials": 4, "faults": ["follower reads neighbour"]})
+    found = add_up(row)[0]
+    assert set(found.counts) <= {"speed", "stalled", "runaway", "tracking"}
+    assert found.counts["speed"] >= 2
+
+
+@pytest.mark.slow
+def test_each_fault_of_motion_is_found_when_the_joint_moves() -> None:
+    names = {"motor dead": "stalled", "motor reversed": "runaway", "follower pot reversed": "runaway"}
+    names |= {"joint blocked": "stalled", "follower frozen": "stalled"}
+    rows = {row.tried: row for row in add_up(run({"board": "nano", "seed": 0, "trials": 4, "faults": list(names)}))}
+    for name, code in names.items():
+        limit = ", stall_volts 3.2 V" if name == "follower frozen" else ""
+        assert rows[f"nano: {name}{limit}"].counts[code] >= 2, rows
+
+
+@pytest.mark.slow
+def test_the_stall_volts_that_tune_works_out_has_a_row_of_its_own() -> None:
+    rows = [run({"board": "mega", "seed": seed, "trials": 1, "faults": ["follower frozen"]})[0] for seed in (4, 5)]
+    assert [row.tried.partition(", ")[2] for row in rows] == ["stall_volts 3.2 V", "stall_volts 2 V"]
+
+
+def test_motors_that_stay_on_or_go_off_late_or_an_error_that_grows_are_violations() -> None:
+    assert is_violation("stop request", Trial(None, 0.0, 0.0, "none", 255))
+    assert is_violation("stop request", Trial(10.1, 0.0, 0.0, "none", 255))
+    assert not is_violation("hang, interrupts off", Trial(16.0, 0.0, 0.0, "watchdog", 255))
+    assert is_violation("follower frozen", Trial(5.0, 0.6, 0.0, "stalled", 1))
+    assert is_violation("motor reversed", Trial(None, 0.2, 0.6, "none", 255))
+    assert not is_violation("joint blocked", Trial(None, 0.9, 0.0, "none", 255)), "the leader alone has moved"
+    assert count("nano", "stop request", Trial(None, 0.0, 0.0, "none", 255)) == Row(
+        "nano: stop request", 1, 1, {"motors stayed on": 1}, {"rad": 0.0}
+    )

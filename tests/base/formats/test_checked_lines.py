@@ -1,0 +1,94 @@
+"""Files of checked lines: what was written comes back, what is somebody else's is left alone."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from greywhale.base.errors import UserError
+from greywhale.base.formats.checked_lines import CheckedLines, Kind
+
+KIND = Kind(
+    mark="a_diary",
+    version=2,
+    noun="diary",
+    subject="voyage",
+    anew="begin another one",
+    again="on page two",
+    is_line=lambda line: "day" in line,
+    choices=("ship",),
+)
+REQUEST: dict[str, Any] = {"crew": 9, "ship": "Whale", "ports": (1, 2)}
+DAYS: list[dict[str, Any]] = [{"day": 1, "wind": 0.1 + 0.2}, {"day": 2, "wind": None}, {"day": 3}]
+
+
+def written(path: Path, days: list[dict[str, Any]] | None = None, keep: bool = False) -> bytes:
+    with CheckedLines(path, KIND, REQUEST, keep) as lines:
+        for day in DAYS if days is None else days:
+            lines.append(day)
+    return path.read_bytes()
+
+
+def test_lines_come_back_and_more_can_follow(tmp_path: Path) -> None:
+    path = tmp_path / "d"
+    whole = written(path)
+    assert written(path, DAYS[:1]) != whole, "without keep it begins anew"
+    with CheckedLines(path, KIND, REQUEST, keep=True) as lines:
+        assert lines.found == DAYS[:1]
+        for day in DAYS[1:]:
+            lines.append(day)
+    assert path.read_bytes() == whole
+    assert written(path, [], keep=True) == whole
+
+
+def test_a_torn_last_line_is_forgotten_wherever_it_was_torn(tmp_path: Path) -> None:
+    path = tmp_path / "d"
+    whole = written(path)
+    for length in range(len(whole)):
+        path.write_bytes(whole[:length])
+        with CheckedLines(path, KIND, REQUEST, keep=True) as lines:
+            known = max(0, whole[:length].count(b"\n") - 1)
+            assert lines.found == DAYS[:known]
+            for day in DAYS[known:]:
+                lines.append(day)
+        assert path.read_bytes() == whole
+
+
+@pytest.mark.parametrize("content", [b"a list of things to buy", b'{"a_diary":2}', b"{}\n", b"\n", b"\xff\n"])
+def test_what_never_was_such_a_file_is_left_alone(tmp_path: Path, content: bytes) -> None:
+    path = tmp_path / "d"
+    path.write_bytes(content)
+    with pytest.raises(UserError, match="line 1 is not a line of a voyage's diary; begin another one"):
+        CheckedLines(path, KIND, REQUEST, keep=True)
+    assert path.read_bytes() == content
+
+
+def test_a_choice_is_named_before_what_follows_from_it(tmp_path: Path) -> None:
+    path = tmp_path / "d"
+    written(path)
+    sentence = 'the diary is of another voyage: its ship is "Whale", now it is "Wolf"; give the same again, or begin'
+    with pytest.raises(UserError, match=sentence):
+        CheckedLines(path, KIND, {**REQUEST, "crew": 8, "ship": "Wolf"}, keep=True)
+
+
+@pytest.mark.parametrize("keep", [True, False])
+def test_a_file_that_another_has_is_not_touched(tmp_path: Path, keep: bool) -> None:
+    path = tmp_path / "d"
+    with CheckedLines(path, KIND, REQUEST, keep=False) as lines:
+        lines.append(DAYS[0])
+        before = path.read_bytes()
+        with pytest.raises(UserError, match="another greywhale is using this diary now"):
+            CheckedLines(path, KIND, REQUEST, keep)
+        assert path.read_bytes() == before
+        lines.append(DAYS[1])
+    with CheckedLines(path, KIND, REQUEST, keep=True) as lines:
+        assert lines.found == DAYS[:2]
+
+
+def test_a_full_disk_is_said_with_the_remedy() -> None:
+    with pytest.raises(
+        UserError, match="/dev/full: cannot be written: no space left on device; make room and go on on"
+    ):
+        CheckedLines(Path("/dev/full"), KIND, REQUEST, keep=False)

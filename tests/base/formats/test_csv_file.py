@@ -1,0 +1,79 @@
+"""Bad CSV is named by file, line and column."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from greywhale.base.errors import UserError
+from greywhale.base.formats import csv_file, toml_file
+from greywhale.files.leader import load_leader
+
+COLUMNS = ("time_s", "a")
+
+
+def read(folder: Path, content: str | bytes) -> csv_file.CsvTable:
+    path = folder / "f.csv"
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    return csv_file.read(path, COLUMNS)
+
+
+def read_all(folder: Path, content: str | bytes) -> None:
+    table = read(folder, content)
+    table.increasing("time_s")
+    table.numbers("a")
+
+
+def test_comments_blank_lines_and_windows_line_ends_are_taken(tmp_path: Path) -> None:
+    table = read(tmp_path, "\ufeff# one: 1\r\n#two\r\ntime_s, a\r\n0,1.5\r\n\r\n1,-2e3\r\n")
+    assert table.comments == ("one: 1", "two")
+    assert list(table.increasing("time_s")) == [0.0, 1.0]
+    assert list(table.numbers("a")) == [1.5, -2000.0]
+    assert table.lines == (4, 6)
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        ("", "the file has no columns; it must start with time_s,a"),
+        ("# only\n", "the file has no columns"),
+        ("time_s,b\n0,1\n", "line 1: column a is missing; the columns must be time_s,a"),
+        ("time_s,a,b\n0,1,2\n", "line 1: column 'b' is unknown"),
+        ("a,time_s\n0,1\n", "line 1: the columns are not in order"),
+        ("time_s,a,a\n0,1,2\n", "line 1: the columns are not in order"),
+        ("time_s,a\n", "0 rows of data, but at least 1 are needed"),
+        ("# c\ntime_s,a\n0,1\n1\n", "line 4: 1 values where 2 columns are named"),
+        ("time_s,a\n0,1\n1,2,3\n", "line 3: 3 values where 2 columns are named"),
+        ("time_s,a\n0,'x\n", 'line 2, column a: "\'x" is not a number'),
+        ("time_s,a\n0,\n", "line 2, column a: '' is not a number"),
+        ("time_s,a\n0,nan\n", "line 2, column a: nan is not a finite number"),
+        ("time_s,a\n0,\u0661\n", "line 2, column a: '\u0661' is not a number"),
+        ("time_s,a\n0,1_0\n", "line 2, column a: '1_0' is not a number"),
+        ("time_s,a\n0,1e999\n", "line 2, column a: 1e999 is not a finite number"),
+        ("time_s,a\n0,1\n\n0,1\n", "line 4, column time_s: time must increase, but 0 follows 0"),
+        ("time_s,a\n1,1\n0.5,1\n", "line 3, column time_s: time must increase, but 0.5 follows 1"),
+        ('time_s,a\n0,"1"2\n', "line 2: not valid CSV"),
+        (b"time_s,a\n0,\xff\n", "byte 11 is not UTF-8"),
+    ],
+)
+def test_bad_files_are_named_by_line_and_column(tmp_path: Path, content: str | bytes, words: str) -> None:
+    with pytest.raises(UserError) as caught:
+        read_all(tmp_path, content)
+    assert caught.value.message.startswith(str(tmp_path / "f.csv"))
+    assert words in caught.value.message
+    assert "\n" not in caught.value.message
+
+
+def test_missing_file(tmp_path: Path) -> None:
+    with pytest.raises(UserError, match=r"none\.csv: cannot be read: no such file or directory"):
+        csv_file.read(tmp_path / "none.csv", COLUMNS)
+
+
+@pytest.mark.parametrize("name", ["pipe", "/dev/zero"])
+def test_what_might_never_end_is_refused(tmp_path: Path, name: str) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    for read_it in (lambda path: csv_file.read(path, COLUMNS), toml_file.read, load_leader):
+        with pytest.raises(UserError, match=f"{name}: cannot be read: not an ordinary file"):
+            read_it(tmp_path / name)

@@ -1,0 +1,112 @@
+"""Every wrong TOML file is one sentence with file, key, value and range."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import ClassVar
+
+import pytest
+from pydantic import BaseModel, Field
+
+from greywhale.base.errors import UserError
+from greywhale.base.formats import toml_file
+from greywhale.base.formats.kinds import Kind
+
+
+class Wheel(toml_file.Table):
+    radius: float = Field(gt=0.0, le=2.0)
+    spokes: int = 32
+
+
+class Cart(toml_file.Table):
+    name: str = ""
+    wheel: tuple[Wheel, ...] = Field(min_length=1, max_length=2)
+
+
+class Mast(toml_file.Table):
+    kinds: ClassVar = (Kind.ARM, Kind.MODEL)
+
+    height: float
+
+
+class Loose(BaseModel):
+    """A model that itself would let anything in."""
+
+    value: float = 0.0
+
+
+GOOD = "[[wheel]]\nradius = 0.5\n"
+
+
+def test_a_good_file_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "cart.toml"
+    path.write_text("name = 'x'\n" + GOOD + "[[wheel]]\nradius = 2\nspokes = 8\n")
+    cart = toml_file.load(path, Cart)
+    assert [(wheel.radius, wheel.spokes) for wheel in cart.wheel] == [(0.5, 32), (2.0, 8)]
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("[[wheel]]\nradius = 3\n", "f.toml: wheel[0].radius is 3, but it must be greater than 0 and at most 2."),
+        ("[[wheel]]\nradius = -1\n", "f.toml: wheel[0].radius is -1, but it must be greater than 0 and at most 2."),
+        ('[[wheel]]\nradius = "1"\n', 'f.toml: wheel[0].radius is "1", but it should be a valid number.'),
+        ("[[wheel]]\nradius = true\n", "f.toml: wheel[0].radius is true, but it should be a valid number."),
+        ("[[wheel]]\nradius = nan\n", "f.toml: wheel[0].radius is nan; it must be a finite number."),
+        ("[[wheel]]\nradius = -inf\n", "f.toml: wheel[0].radius is -inf; it must be a finite number."),
+        ("[[wheel]]\nspokes = 3\n", "f.toml: wheel[0].radius is missing."),
+        (GOOD + "spokes = 1.5\n", "f.toml: wheel[0].spokes is 1.5, but it should be a valid integer"),
+        (GOOD + "colour = 1\n", "f.toml: unknown key wheel[0].colour; remove it or check its spelling."),
+        ("colour = 1\n" + GOOD, "f.toml: unknown key colour; remove it or check its spelling."),
+        (GOOD * 3, "f.toml: wheel: "),
+        ("wheel = []", "f.toml: wheel: "),
+        ("radius = 3\n", "f.toml: unknown key radius; remove it or check its spelling (and 1 more in this file)."),
+        ("[[wheel]]\nraduis = 1\n", "f.toml: unknown key wheel[0].raduis; perhaps radius is meant (and 1 more in this"),
+        (GOOD.replace("whe", "hwe"), "f.toml: unknown key hweel; perhaps wheel is meant (and 1 more in this file)."),
+        ("# a log\n\ntime_s,leader_0\n0.0,1.0\n", "f.toml: not valid TOML: this is a log or a motion (CSV)."),
+        ("radius = \n", "f.toml: not valid TOML: invalid value (at line 1, column 10)."),
+    ],
+)
+def test_a_bad_file_is_one_sentence(text: str, sentence: str) -> None:
+    with pytest.raises(UserError) as caught:
+        toml_file.loads(text, Cart, "f.toml")
+    assert caught.value.message.startswith(sentence)
+    assert caught.value.message.count("\n") == 0
+    assert caught.value.exit_code == 1
+
+
+def test_a_file_of_another_kind_is_told_by_its_name() -> None:
+    with pytest.raises(UserError) as caught:
+        toml_file.loads("[[joint]]\nkp = 1.0\n", Mast, "f.toml")
+    assert caught.value.message == (
+        "f.toml: this is a controller file, but an arm file or a model is needed here "
+        "(greywhale upload takes a controller file)."
+    )
+    with pytest.raises(UserError, match=r"f\.toml: unknown key link; remove it"):
+        toml_file.loads("[[link]]\ncentre = 1.0\n", Mast, "f.toml")
+
+
+def test_strictness_does_not_depend_on_the_model() -> None:
+    with pytest.raises(UserError, match="unknown key other"):
+        toml_file.loads("other = 1", Loose, "f.toml")
+    with pytest.raises(UserError, match="value is inf"):
+        toml_file.loads("value = inf", Loose, "f.toml")
+
+
+def test_files_that_cannot_be_read(tmp_path: Path) -> None:
+    with pytest.raises(UserError, match=r"none\.toml: cannot be read: no such file or directory\.$"):
+        toml_file.load(tmp_path / "none.toml", Cart)
+    with pytest.raises(UserError, match="cannot be read: is a directory"):
+        toml_file.load(tmp_path, Cart)
+    latin = tmp_path / "latin.toml"
+    latin.write_bytes(b'name = "\xe4"\n')
+    with pytest.raises(UserError, match="byte 8 is not UTF-8"):
+        toml_file.load(latin, Cart)
+
+
+@pytest.mark.parametrize(("text", "words"), [("", "it is empty;"), ("# nothing\n", "it is empty, but for comments;")])
+def test_an_empty_file_is_called_empty(tmp_path: Path, text: str, words: str) -> None:
+    path = tmp_path / "empty.toml"
+    path.write_text(text)
+    with pytest.raises(UserError, match=f"empty.toml: {words} choose another file"):
+        toml_file.read(path)

@@ -1,0 +1,23 @@
+"""Sentences for people: numbers within their range, and things counted."""
+
+from __future__ import annotations
+
+import pytest
+
+from greywhale.base.errors import BAD_USAGE, UserError, counted, require_within
+
+
+@pytest.mark.parametrize(
+    ("number", "words"), [(0, "0 samples"), (1, "1 sample"), (2, "2 samples"), (1000, "1000 samples")]
+)
+def test_one_thing_is_no_plural(number: int, words: str) -> None:
+    assert counted(number, "sample") == words
+
+
+def test_numbers_keep_their_range() -> None:
+    require_within("seeds", 1, 1, 9)
+    require_within("seeds", 9, 1, 9)
+    for value, words in ((0, "seeds is 0, but it must be at least 1."), (10, "seeds is 10, but it must be at most 9.")):
+        with pytest.raises(UserError) as refused:
+            require_within("seeds", value, 1, 9)
+        assert (refused.value.message, refused.value.exit_code) == (words, BAD_USAGE)

@@ -1,0 +1,112 @@
+"""Zero, scale and limits from sweeps and poses: any mounting is found again, contradictions are refused."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from greywhale.base.errors import UserError
+from greywhale.board.calibrate.solve import Pose, match, slipped, solve
+from greywhale.board.calibrate.sweep import Sweep
+from greywhale.board.pots import FULL_SCALE
+from greywhale.protocol import schema
+
+ENDS = np.array([-1.0, 1.2])
+FIRST = np.zeros(4)
+SECOND = np.array([0.8, 0.9, -0.7, 0.5])
+FITS = {
+    "track": st.lists(st.floats(4.4, 6.0), min_size=8, max_size=8),
+    "sign": st.lists(st.sampled_from((-1, 1)), min_size=8, max_size=8),
+    "middle": st.lists(st.floats(-0.5, 0.5), min_size=8, max_size=8),
+}
+
+
+def mounted(track: list[float], sign: list[int], middle: list[float]) -> tuple[np.ndarray, np.ndarray]:
+    """True scale (8,) rad a count and true zero (8,) counts."""
+    scale = np.array(sign) * np.array(track) / FULL_SCALE
+    return scale, FULL_SCALE / 2 - np.array(middle) / scale
+
+
+def pose(angles: np.ndarray, scale: np.ndarray, zero: np.ndarray) -> Pose:
+    return Pose(angles, zero + np.tile(angles, 2) / scale)
+
+
+def sweeps(scale: np.ndarray, zero: np.ndarray) -> list[Sweep]:
+    ends = [np.sort(zero[pot] + ENDS / scale[pot]) for pot in range(8)]
+    return [Sweep(pot, int(np.sign(scale[pot])), float(ends[pot][0]), float(ends[pot][1]), ()) for pot in range(8)]
+
+
+@given(**FITS)
+def test_any_mounting_is_found_from_two_known_poses(track: list[float], sign: list[int], middle: list[float]) -> None:
+    scale, zero = mounted(track, sign, middle)
+    found = solve(sweeps(scale, zero), pose(FIRST, scale, zero), pose(SECOND, scale, zero), None)
+    assert found.scale == pytest.approx(scale)
+    assert found.zero == pytest.approx(zero)
+    assert found.limits == pytest.approx(np.tile(ENDS + np.array([0.03, -0.03]), (4, 1)))
+    stored = found.changes()
+    for pot, name in enumerate(f"{side}{n}" for side in ("leader", "follower") for n in range(4)):
+        angle = (16 * zero[pot] + 16 * 0.7 / scale[pot] - stored[f"{name}.zero"]) * stored[f"{name}.scale"] / 2**25
+        assert angle == pytest.approx(0.7, abs=1e-3), "as the firmware works it out"
+
+
+@given(**FITS)
+def test_unknown_tracks_agree_between_the_arms_after_one_more_pose(
+    track: list[float], sign: list[int], middle: list[float]
+) -> None:
+    """The leader's track is taken as 300 degrees; the follower then shows what the leader shows, in any pose."""
+    scale, zero = mounted(track, sign, middle)
+    first, same = pose(FIRST, scale, zero), pose(SECOND, scale, zero)
+    about = solve(sweeps(scale, zero), first, None, np.radians(300.0))
+    found = match(about, sweeps(scale, zero), first, same)
+    shown = found.angles(pose(np.array([-0.5, 0.3, 1.0, 0.4]), scale, zero).counts)
+    assert shown[4:] == pytest.approx(shown[:4])
+
+
+def test_a_second_pose_that_hardly_differs_is_refused() -> None:
+    scale, zero = mounted([5.2] * 8, [1] * 8, [0.0] * 8)
+    near = pose(np.array([0.8, 0.1, 0.8, 0.8]), scale, zero)
+    with pytest.raises(UserError, match=r"differ by 0\.1 rad at joint 1; choose a second pose"):
+        solve(sweeps(scale, zero), pose(FIRST, scale, zero), near, None)
+
+
+def test_a_potentiometer_that_slips_between_the_poses_is_named() -> None:
+    scale, zero = mounted([5.2] * 8, [1] * 8, [0.0] * 8)
+    counts = pose(SECOND, scale, zero).counts.copy()
+    counts[6] = zero[6] - 20.0
+    with pytest.raises(UserError, match=r"^follower potentiometer 2 read .* in the two poses"):
+        solve(sweeps(scale, zero), pose(FIRST, scale, zero), Pose(SECOND, counts), None)
+
+
+def test_a_sweep_begun_at_the_wrong_end_is_named() -> None:
+    scale, zero = mounted([5.2] * 8, [1] * 8, [0.0] * 8)
+    wrong = [one if one.pot != 3 else Sweep(3, -1, one.low, one.high, ()) for one in sweeps(scale, zero)]
+    with pytest.raises(UserError, match=r"^leader potentiometer 3 turned the other way .* positive end first"):
+        solve(wrong, pose(FIRST, scale, zero), pose(SECOND, scale, zero), None)
+
+
+def test_arms_without_a_common_range_are_refused() -> None:
+    scale, zero = mounted([5.2] * 8, [1] * 8, [0.0] * 8)
+    moved = zero.copy()
+    moved[4] += 2.5 / scale[4]
+    some = sweeps(scale, moved)
+    with pytest.raises(UserError, match=r"^joint 0 has no range that both arms can reach"):
+        solve(some, pose(FIRST, scale, zero), None, 5.2)
+
+
+def test_the_same_pose_twice_shows_what_slipped() -> None:
+    scale, zero = mounted([5.2] * 8, [1] * 8, [0.0] * 8)
+    first = pose(FIRST, scale, zero)
+    again = first.counts.copy()
+    again[1] += 9.0
+    (told,) = slipped(first, Pose(FIRST, again))
+    assert told.startswith("Leader potentiometer 1 reads 9 counts elsewhere")
+    assert slipped(first, Pose(FIRST, first.counts + 7.0)) == []
+
+
+def test_limits_keep_within_what_the_firmware_takes() -> None:
+    wide = [Sweep(pot, 1, 10.0, 1010.0, ()) for pot in range(8)]
+    found = solve(wide, Pose(FIRST, np.full(8, 20.0)), None, np.radians(450.0))
+    parameter = schema.PARAMETER_BY_NAME["joint0.limit_max"]
+    assert found.changes()["joint0.limit_max"] <= parameter.maximum

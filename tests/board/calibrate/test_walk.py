@@ -1,0 +1,252 @@
+"""The person's way through sweeps and poses: on, back, again, later, and as many mistakes as it takes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+import pytest
+
+from greywhale.base.errors import UserError
+from greywhale.board.calibrate.person import Answer, Watch
+from greywhale.board.calibrate.walk import HELD_TICKS, TRIES, Walk
+from greywhale.board.calibrate.words import poses_asked
+from greywhale.board.pots import FULL_SCALE
+from greywhale.protocol import schema
+from greywhale.protocol.joints import ALL, Joints
+from greywhale.protocol.table import ParameterTable
+
+TABLE = ParameterTable.defaults()
+TRACK_RAD = float(np.radians(300.0))
+COUNTS_PER_RAD = FULL_SCALE / TRACK_RAD
+SWEEP = COUNTS_PER_RAD * np.interp(np.arange(400), [0, 100, 200, 400], [0.0, 1.0, -1.0, 0.0])
+DONE, BACK, AGAIN, SKIP = Answer.DONE, Answer.BACK, Answer.AGAIN, Answer.SKIP
+Step = tuple[str, Callable[["Arms"], None], Answer]
+
+
+class Arms:
+    """Stands for a board: eight potentiometers at rest, or turned as `turn` and `hold` say."""
+
+    port, lease_ms = "port", 0
+
+    def __init__(self) -> None:
+        self.at = np.full(8, 500.0)
+        self.coming: list[np.ndarray] = []
+        self.drift = 0.0  # counts a millisecond
+        self._tick = 0
+
+    def telemetry(self, every: int) -> None:
+        pass
+
+    def clock(self) -> float:
+        return self._tick / 1000
+
+    def turn(self, *pots: int) -> None:
+        for row in SWEEP:
+            self.coming.append(self.at + row * np.isin(np.arange(8), pots))
+
+    def hold(self, rad: float) -> None:
+        self.at = np.full(8, 500.0) + COUNTS_PER_RAD * rad
+
+    def samples(self) -> list[schema.Sample]:
+        rows, self.coming = (self.coming or [self.at + self.drift * ms for ms in range(HELD_TICKS)]), []
+        return [self._sample(row) for row in rows]
+
+    def _sample(self, counts: np.ndarray) -> schema.Sample:
+        self._tick += 1
+        names = [f"{side}{joint}" for side in ("leader", "follower") for joint in range(4)]
+        raw = [
+            round((16.0 * count - TABLE[f"{name}.zero"]) * TABLE[f"{name}.scale"] / 2**13)
+            for name, count in zip(names, counts, strict=True)
+        ]
+        return schema.Sample(
+            tick=self._tick,
+            leader=(raw[0], raw[1], raw[2], raw[3]),
+            follower=(raw[4], raw[5], raw[6], raw[7]),
+            voltage=(0, 0, 0, 0),
+            state=schema.State.DISABLED,
+            fault=schema.Fault.NONE,
+        )
+
+
+class Script:
+    """A person who does one step after another; each says how the prompt must begin."""
+
+    def __init__(self, arms: Arms, steps: Sequence[Step], patient: bool = True) -> None:
+        self.patient = patient
+        self.asked: list[str] = []
+        self.told: list[str] = []
+        self.shown: list[str] = []
+        self.left = list(steps)
+        self._arms = arms
+        self._answer = DONE
+
+    def ask(self, what: str) -> None:
+        self.asked.append(what)
+        begins, do, self._answer = self.left.pop(0)
+        assert what.startswith(begins), what
+        do(self._arms)
+
+    def show(self, live: str) -> None:
+        self.shown.append(live)
+
+    def answer(self) -> Answer | None:
+        return None if self._arms.coming else self._answer
+
+    def tell(self, what: str) -> None:
+        self.told.append(what)
+
+
+def rest(arms: Arms) -> None:
+    """Do nothing."""
+
+
+def turns(*pots: int) -> Callable[[Arms], None]:
+    return lambda arms: arms.turn(*pots)
+
+
+def holds(rad: float) -> Callable[[Arms], None]:
+    return lambda arms: arms.hold(rad)
+
+
+def drifts(counts: float) -> Callable[[Arms], None]:
+    def drift(arms: Arms) -> None:
+        arms.drift = counts
+
+    return drift
+
+
+def sweeps(pots: Sequence[int], first: int = 1) -> list[Step]:
+    return [(f"Sweep {number} of", turns(pot), DONE) for number, pot in enumerate(pots, first)]
+
+
+POSES: list[Step] = [(f"Pose {number} of 4", holds(rad), DONE) for number, rad in enumerate((0.0, 0.7, 0.0, -0.4), 1)]
+
+
+def walk(steps: Sequence[Step], joints: Joints = ALL, patient: bool = True) -> tuple[Script, Walk]:
+    arms = Arms()
+    script = Script(arms, steps, patient)
+    device: Any = arms
+    return script, Walk(Watch(device, TABLE, script), joints, poses_asked(np.zeros(4), None, joints), TRACK_RAD)
+
+
+def test_each_sweep_says_which_joint_of_which_arm_which_way_first_and_how_many() -> None:
+    script, way = walk([*sweeps(range(8)), *POSES])
+    found, apart = way.go()
+    assert script.left == []
+    assert found.zero == pytest.approx(500.0, abs=0.1)
+    assert apart == pytest.approx(0.0, abs=1e-3)
+    for number, (name, positive) in enumerate(
+        [
+            ("leader joint 0, base yaw", "counter-clockwise, seen from above"),
+            ("leader joint 1, shoulder pitch", "up: the hand rises"),
+            ("leader joint 2, wrist pitch", "up: the hand rises, while the upper arm is level"),
+            ("leader joint 3, wrist roll", "clockwise, seen from the elbow along the hand"),
+            ("follower joint 0, base yaw", "counter-clockwise, seen from above"),
+        ],
+        1,
+    ):
+        told = script.asked[number - 1]
+        assert told.startswith(f"Sweep {number} of 8: {name}. Turn it, and no other, slowly to its positive end")
+        assert f"({positive}), then to its negative end" in told
+    assert script.asked[8] == "Pose 1 of 4: hold both arms in this pose: every joint at 0 (stretched out, level)."
+    assert script.shown[0].startswith("leader potentiometer 0 reads ")
+    assert script.shown[-1] == "leader 422 422 422 422, follower 422 422 422 422 of 1023"
+
+
+def test_back_goes_to_the_step_before_also_from_a_pose() -> None:
+    script, way = walk(
+        [
+            ("Sweep 1 of 2: leader joint 0", rest, BACK),
+            ("Sweep 1 of 2: leader joint 0", turns(0), DONE),
+            ("Sweep 2 of 2: follower joint 0", turns(0), BACK),  # what moved until then does not count
+            *sweeps([0, 4]),
+            ("Pose 1 of 4", rest, BACK),
+            ("Sweep 2 of 2: follower joint 0", turns(4), DONE),
+            *POSES,
+            ("Pose 4 of 4", holds(-0.5), DONE),
+        ],
+        joints=(0,),
+    )
+    way.go()
+    assert script.told[0] == "This is the first step."
+    way.go(way.length - 1)
+    assert script.left == []
+
+
+def test_again_forgets_what_moved_in_this_sweep() -> None:
+    script, way = walk([("Sweep 1", turns(2), AGAIN), *sweeps([0, 4]), *POSES], joints=(0,))
+    way.go()
+    assert not any("did not move" in told for told in script.told)
+
+
+def test_a_sweep_is_put_off_until_the_others_are_done_and_a_pose_cannot_be() -> None:
+    script, way = walk(
+        [
+            ("Sweep 1 of 2: leader joint 0", rest, SKIP),
+            ("Sweep 1 of 2: follower joint 0", turns(4), DONE),
+            ("Sweep 2 of 2: leader joint 0", rest, SKIP),
+            ("Sweep 2 of 2: leader joint 0", turns(0), DONE),
+            ("Pose 1 of 4", rest, SKIP),
+            *POSES,
+        ],
+        joints=(0,),
+    )
+    way.go()
+    assert script.told == ["All two potentiometers turn with their joints.", "A pose cannot wait."]
+    assert script.left == []
+
+
+def test_many_mistakes_in_one_sweep_lose_no_other() -> None:
+    wrong: list[Step] = [("Sweep 2 of 2", rest, DONE), ("Follower joint 0, base yaw: mend it", rest, DONE)]
+    script, way = walk(
+        [
+            *sweeps([0]),
+            *(wrong * (TRIES + 2)),
+            wrong[0],
+            ("Follower joint 0, base yaw: mend it", rest, BACK),
+            *sweeps([0, 4]),
+            *POSES,
+        ],
+        joints=(0,),
+    )
+    way.go()
+    assert script.left == []
+    assert sum("did not move: check that its shaft" in told for told in script.told) == TRIES + 3
+
+
+def test_a_script_makes_a_mistake_but_a_few_times() -> None:
+    script, way = walk([*sweeps([0]), *([("Sweep 2 of 2", rest, DONE)] * TRIES)], joints=(0,), patient=False)
+    with pytest.raises(UserError, match="port: Follower potentiometer 0 reads 500 to 500 of 1023 and did not move"):
+        way.go()
+    assert script.left == []
+
+
+def test_wires_that_are_exchanged_while_one_mends_accuse_nobody() -> None:
+    """Else both move at once, and the next sentence accuses the one before."""
+    script, way = walk(
+        [
+            ("Sweep 1 of 4", turns(1), DONE),
+            ("Leader joint 0, base yaw: mend it", turns(0, 1), DONE),
+            *sweeps([0, 1, 4, 5]),
+            *POSES,
+        ],
+        joints=(0, 1),
+    )
+    way.go()
+    assert len(script.told) == 2
+    assert "leader potentiometer 1 did: their wires are swapped" in script.told[0]
+
+
+@pytest.mark.parametrize("patient", [True, False])
+def test_arms_that_drift_are_asked_to_hold_still_a_person_as_often_as_it_takes(patient: bool) -> None:
+    drifting: list[Step] = [("Pose 1 of 4", drifts(0.02), DONE)] * TRIES
+    script, way = walk([*sweeps([0, 4]), *drifting, ("Pose 1 of 4", drifts(0.0), DONE), *POSES[1:]], (0,), patient)
+    if patient:
+        way.go()
+        assert script.left == []
+    else:
+        with pytest.raises(UserError, match="port: the arms were not held still"):
+            way.go()
+    assert "Leader potentiometer 0 moved by 8 counts; hold both arms still." in script.told

@@ -1,0 +1,116 @@
+"""Doctor on a real port: a sound bench is good, each staged trouble is named, and the motors never move."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+import pytest
+
+from greywhale.cli.entry import run
+from greywhale.cli.story import RunningBench
+from greywhale.protocol.table import ParameterTable
+from greywhale_sim.words import lock_step
+
+SECONDS = "1"
+
+
+@pytest.fixture(scope="module")
+def bench() -> Iterator[RunningBench]:
+    with lock_step() as started:
+        yield started
+
+
+def doctor(bench: RunningBench, capsys: pytest.CaptureFixture[str], *more: str) -> tuple[int, dict[str, str]]:
+    """The exit code, and check -> verdict: what it says."""
+    code = run(["doctor", "--port", bench.port, "--seconds", SECONDS, "--json", *more])
+    told = json.loads(capsys.readouterr().out)
+    assert not bench.command("status")["motors_enabled"]
+    return code, {one["check"]: f"{one['verdict']}: {one['says']}" for one in told["findings"]}
+
+
+def test_a_sound_bench_is_good(bench: RunningBench, capsys: pytest.CaptureFixture[str]) -> None:
+    code, found = doctor(bench, capsys)
+    assert code == 0
+    noted = {check for check, told in found.items() if not told.startswith("good")}
+    known = {"stored set", "calibration", "link"}
+    assert noted <= known, "nothing is stored yet, the calibration is as shipped, and this machine may be slow"
+    assert "none lost" in found["link"]
+
+
+@pytest.mark.parametrize(
+    ("command", "undo", "check", "says"),
+    [
+        ("pot follower 2 open", "pot follower 2 connected", "rails", "Follower potentiometer 2 reads 0..0"),
+        ("pot leader 0 shorted", "pot leader 0 connected", "rails", "Leader potentiometer 0 reads 1023..1023"),
+        (
+            "pot leader 1 floating",
+            "pot leader 1 connected",
+            "inputs",
+            "leader potentiometer 0 and leader potentiometer 1",
+        ),
+        ("line lose 0.0005", "line lose 0", "link", "lost"),
+        ("estop press", "estop release", "fault", "mergency"),
+    ],
+)
+def test_a_staged_trouble_is_named(
+    bench: RunningBench, capsys: pytest.CaptureFixture[str], command: str, undo: str, check: str, says: str
+) -> None:
+    bench.command(command)
+    try:
+        code, found = doctor(bench, capsys)
+    finally:
+        bench.command(undo)
+    assert code == 1
+    assert found[check].startswith("bad")
+    assert says in found[check]
+
+
+def test_a_set_that_is_not_the_files_is_named(
+    bench: RunningBench, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "mine.toml"
+    assert run(["params", "backup", str(path), "--port", bench.port]) == 0
+    capsys.readouterr()
+    assert doctor(bench, capsys, "--params", str(path))[1]["parameters"].startswith("good")
+    path.write_text(path.read_text().replace("supply_mv = 15000", "supply_mv = 12000"))
+    code, found = doctor(bench, capsys, "--params", str(path))
+    assert code == 1
+    assert "supply_mv is 15000, not 12000" in found["parameters"]
+
+
+def test_a_board_without_power_is_named_and_the_port_is_still_good(
+    bench: RunningBench, capsys: pytest.CaptureFixture[str]
+) -> None:
+    bench.command("power off")
+    try:
+        code, found = doctor(bench, capsys)
+    finally:
+        bench.command("power on")
+    assert code == 1
+    assert found["port"].startswith("good")
+    assert "nothing answers" in found["board"]
+
+
+def test_open_inputs_of_joints_that_are_not_in_use_are_no_trouble(capsys: pytest.CaptureFixture[str]) -> None:
+    idle = [f"{side}{joint}.scale" for side in ("leader", "follower") for joint in (2, 3)]
+    with lock_step("--arm", "two_joints") as two:
+
+        def set_scales(values: Iterable[float]) -> None:
+            settings = [f"{name}={value:g}" for name, value in zip(idle, values, strict=True)]
+            assert run(["params", "set", *settings, "--port", two.port]) == 0
+            capsys.readouterr()
+
+        set_scales(ParameterTable.defaults().physical(name) for name in idle)
+        code, found = doctor(two, capsys)
+        assert code == 1
+        assert "These read alike" in found["inputs"]
+        set_scales([0.0] * len(idle))
+        code, found = doctor(two, capsys)
+        assert code == 0
+        assert found["joints"].startswith("good: Joints 2 and 3 are not in use")
+        assert run(["info", "--port", two.port]) == 0
+        assert "not in use: leader potentiometer 2, leader potentiometer 3, follower potentiometer 2" in (
+            capsys.readouterr().out
+        )

@@ -1,0 +1,67 @@
+"""The port's findings, and the rules that mend a permission."""
+
+from __future__ import annotations
+
+import os
+import pty
+import re
+from pathlib import Path
+
+import pytest
+
+from greywhale.board.doctor import port as doctor_port
+from greywhale.board.doctor.finding import Verdict
+from greywhale.board.doctor.port import examine_port, udev_rules
+
+
+@pytest.fixture
+def terminal() -> str:
+    _, slave = pty.openpty()
+    return os.ttyname(slave)
+
+
+def test_a_port_that_is_not_there_is_bad_and_nothing_else_is_asked(tmp_path: Path) -> None:
+    (found,) = examine_port(str(tmp_path / "none"))
+    assert found.verdict is Verdict.BAD
+    assert "There is no port" in found.says
+
+
+def test_a_file_is_no_port(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    (found,) = examine_port(str(tmp_path / "file"))
+    assert found.verdict is Verdict.BAD
+    assert "not a serial port" in found.says
+
+
+def test_a_port_that_may_be_opened_is_good(terminal: str) -> None:
+    assert [one.verdict for one in examine_port(terminal)] == [Verdict.GOOD, Verdict.GOOD]
+
+
+@pytest.mark.parametrize(
+    ("group", "says"), [("dialout", "`sudo usermod -aG dialout $USER`"), ("root", "`greywhale udev | sudo tee")]
+)
+def test_without_permission_the_remedy_names_the_ports_own_group(
+    terminal: str, group: str, says: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(os, "access", lambda path, mode: False)
+    monkeypatch.setattr(doctor_port, "group_of", lambda port: group)
+    found = examine_port(terminal)[-1]
+    assert found.verdict is Verdict.BAD
+    assert found.remedy.startswith(says)
+
+
+def test_every_rule_is_one_that_udev_understands() -> None:
+    """Matches with ==, assignments with =, one rule a line, as udev(7) has it."""
+    match = r'(SUBSYSTEM|ATTRS\{id(Vendor|Product)\})=="[0-9a-z]+"'
+    set_ = r'(MODE="0660"|TAG\+="uaccess"|ENV\{ID_MM_DEVICE_IGNORE\}="1")'
+    rules = [line for line in udev_rules().splitlines() if not line.startswith("#")]
+    assert len(rules) >= 5
+    for rule in rules:
+        assert re.fullmatch(rf"{match}(, {match})+(, {set_})+", rule), rule
+
+
+def test_uaccess_works_only_before_the_rules_of_the_seats() -> None:
+    """systemd's 73-seat-late.rules acts on the tag, so the file's number must be lower."""
+    number = re.match(r"\d+", Path(doctor_port.RULES_FILE).name)
+    assert number is not None
+    assert int(number.group()) < 73

@@ -1,0 +1,197 @@
+"""Bounds of hand-written functions against their exact cycles on the simulated board."""
+
+from __future__ import annotations
+
+import random
+from pathlib import Path
+
+import pytest
+
+from tests.gates.timing.programs import Assembled, Compiled
+from tools.gates.timing import facts, loops
+from tools.gates.timing.bound import Timing
+from tools.gates.timing.cycles import MEGA, NANO, Chip
+from tools.gates.timing.facts import Facts
+from tools.gates.timing.graph import Edge, build
+from tools.gates.timing.listing import ImageError
+
+CHIPS = pytest.mark.parametrize("chip", [MEGA, NANO], ids=lambda chip: chip.name)
+
+STRAIGHT = """
+  push r28
+  lds r25, 0x200
+  adiw r24, 3
+  mul r24, r25
+  lpm r0, Z
+  cbi 5, 1
+  jmp 1f
+1:clr r1
+  pop r28
+  ret
+"""
+# Which way is taken depends on r24, and 5 is on the dearest one.
+DIAMOND = """
+  cpi r24, 5
+  brne 1f
+  mul r24, r24
+  mul r24, r24
+  rjmp 2f
+1:nop
+2:sbrc r24, 0
+  sts 0x200, r24
+  sbrs r24, 0
+  rjmp 3f
+  nop
+3:clr r1
+  ret
+"""
+COUNTED = """
+  andi r24, 7
+  inc r24
+1:ldi r25, 4
+2:dec r25
+  brne 2b
+  dec r24
+  brne 1b
+  ret
+"""
+# Entered at its middle when r24 is odd: a loop with two heads.
+TWO_HEADS = """
+  ldi r25, 3
+  sbrc r24, 0
+  rjmp 2f
+1:nop
+  nop
+2:dec r25
+  brne 1b
+  ret
+"""
+CALLS = """
+  rcall helper
+  rcall helper
+  ret
+"""
+HELPER = """
+helper:
+  tst r24
+  breq 1f
+  nop
+  nop
+1:ret
+"""
+SWITCH = """
+#include <stdint.h>
+volatile uint8_t sink;
+volatile uint16_t wide = 3;
+extern "C" __attribute__((noinline, used)) void work(uint8_t what) {
+  switch (what) {
+    case 0: sink = 7; break;
+    case 1: wide = wide + 9; break;
+    case 2: sink = sink ^ 0x55; sink = 3; break;
+    case 3: wide = wide * wide; break;
+    case 4: wide = wide << 3; break;
+    case 5: sink = 1; sink = 2; break;
+    case 6: wide = 0; break;
+    case 7: wide = wide * 77; sink = 5; break;
+    default: sink = 0;
+  }
+}
+int main() { work(sink); }
+"""
+
+
+@CHIPS
+@pytest.mark.parametrize(
+    ("body", "times", "dearest"),
+    [
+        (STRAIGHT, (), 0),
+        (DIAMOND, (), 5),
+        (COUNTED, (8, 4), 7),
+        (CALLS, (), 1),
+    ],
+    ids=["straight", "diamond", "nested loops", "calls"],
+)
+def test_the_bound_is_what_the_dearest_input_takes(
+    tmp_path: Path, chip: Chip, body: str, times: tuple[int, ...], dearest: int
+) -> None:
+    function = Assembled(tmp_path, body, chip, also=HELPER)
+    bound = function.bound(*times)
+    assert max(function.measured(argument) for argument in range(8)) == bound
+    assert function.measured(dearest) == bound
+
+
+@CHIPS
+def test_a_loop_that_is_entered_in_its_middle_is_bounded_too(tmp_path: Path, chip: Chip) -> None:
+    function = Assembled(tmp_path, TWO_HEADS, chip)
+    (loop,) = loops.find(build(function.program, function.program.entry("work"), chip))
+    assert len(loop.heads) == 2
+    assert function.bound(3) == max(function.measured(argument) for argument in (0, 1))
+
+
+@CHIPS
+def test_a_switch_goes_to_all_its_cases(tmp_path: Path, chip: Chip) -> None:
+    function = Compiled(tmp_path, SWITCH, chip)
+    assert "__tablejump2__" in function.program.symbols
+    assert function.bound() == max(function.measured(argument) for argument in range(9))
+
+
+@CHIPS
+def test_no_random_function_is_slower_than_its_bound(tmp_path: Path, chip: Chip) -> None:
+    draw = random.Random(11)
+    simple = ("nop", "inc r25", "mul r24, r25", "lds r23, 0x200", "adiw r26, 1", "lpm r23, Z")
+    for _ in range(6):
+        lines = []
+        for label in range(10, 40):
+            test = draw.choice((f"sbrc r24, {draw.randrange(3)}", f"cpi r24, {draw.randrange(8)}\n  brlo {label}f"))
+            lines += [test, draw.choice((*simple, "sts 0x200, r24", "rcall helper")), f"{label}: {draw.choice(simple)}"]
+        function = Assembled(tmp_path, "\n  ".join([*lines, "clr r1", "ret"]), chip, also=HELPER)
+        bound = function.bound()
+        measured = [function.measured(argument) for argument in range(8)]
+        assert max(measured) <= bound < 1.5 * max(measured)
+
+
+def test_a_graph_holds_every_way(tmp_path: Path) -> None:
+    program = Assembled(tmp_path, "sbrc r24, 0\n  call helper\n  brcs 1f\n  nop\n1:ret", NANO, also=HELPER).program
+    start = program.entry("work")
+    graph = build(program, start, NANO)
+    call, branch, nop, end = start + 2, start + 6, start + 8, start + 10
+    assert sorted(graph.edges, key=lambda edge: (edge.start, edge.end)) == [
+        Edge(start, call, 1),
+        Edge(start, branch, 3),  # over two words
+        Edge(call, branch, 4),
+        Edge(branch, nop, 1),
+        Edge(branch, end, 2),
+        Edge(nop, end, 1),
+    ]
+    assert graph.calls == {call: program.entry("helper")}
+    assert graph.exits == {end: 4}
+
+
+@pytest.mark.parametrize(
+    ("body", "reason"),
+    [
+        (COUNTED, "has 2 loops"),
+        ("rcall work\n  ret", "recursion"),
+        ("ijmp", "through a pointer"),
+        ("jmp __tablejump2__\n .global __tablejump2__\n__tablejump2__: ijmp", "whose size cannot be read"),
+    ],
+)
+def test_what_has_no_bound_is_refused(tmp_path: Path, body: str, reason: str) -> None:
+    with pytest.raises(ImageError, match=reason):
+        Assembled(tmp_path, body, NANO).bound()
+
+
+def test_what_excludes_each_other_is_not_added(tmp_path: Path) -> None:
+    body = "sbrc r24, 0\n  rcall helper\n  sbrs r24, 0\n  rcall other\n  ret"
+    function = Assembled(tmp_path, body, NANO, also=HELPER + "other: nop\n  ret")
+    apart = Facts({}, {"work": [["call helper", "call other"]]})
+    program = function.program
+    bound = Timing(program, NANO, apart).of(program.entry("work"))
+    assert bound == max(function.measured(argument) for argument in (0, 1)) < function.bound()
+
+
+def test_a_fact_needs_its_reason(tmp_path: Path) -> None:
+    path = tmp_path / "facts.toml"
+    path.write_text('[[function]]\nname = "work"\nloop = [{ times = 3 }]\n')
+    with pytest.raises(ImageError, match="no reason"):
+        facts.load(path)

@@ -1,0 +1,131 @@
+"""The information that the search maximises is, to first order, what the identification sees in a log."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from greywhale.arm.parameters import usual_pots
+from greywhale.files.arm import load_arm
+from greywhale.files.log import Log
+from greywhale.files.log.layout import Origin
+from greywhale.identify.data import prepare
+from greywhale.identify.excite.information import information, natural_sizes, prior
+from greywhale.identify.excite.limits import limits_of
+from greywhale.identify.excite.multisine import Shape, board_reference
+from greywhale.identify.excite.trial import ROW_S, try_motion
+from greywhale.identify.space import MOTOR, Space
+from greywhale.identify.windows import WindowResidual
+from greywhale.motion import human_reaches
+from greywhale.protocol.table import ParameterTable
+from greywhale.simulate.closed_loop import ClosedLoop, known_readings
+from greywhale.simulate.controllers import controllers_of
+
+SECONDS = 12.0
+POSE = np.array([0.0, 0.45, -0.1, 0.0])
+ARM = load_arm("white_box")
+TABLE = ParameterTable.defaults()
+SPACE = Space.of(ARM, (*MOTOR, "coulomb"), range(4))
+X = SPACE.start()
+
+
+def simulated_log(points: np.ndarray) -> Log:
+    """What a board would log of the arm led through the points, with a reading's noise."""
+    reference = np.vstack([np.tile(points[:1], (304, 1)), board_reference(points)])
+    loop = ClosedLoop(
+        TABLE,
+        known_readings(reference),
+        usual_pots(),
+        seed=1,
+        home=points[0].tolist(),
+        gap=[0.0] * 4,
+        weight_s=np.zeros(len(reference)),
+    )
+    result = loop.run(controllers_of(TABLE)[None], SPACE.plants(X[None]), substeps=2, threads=1, every=1)
+    angles, volts = result.angles[0, 304:].astype(np.float64), result.duties[0, 304:] / 400 * 15.0
+    readings = angles + np.random.default_rng(1).normal(0.0, 1.2e-3, angles.shape)
+    times, state = np.arange(len(angles)) / 1000, np.array(["following"] * len(angles))
+    return Log("log", Origin(), times, reference[304:], readings, volts, state, 0, True)
+
+
+def seen_by_the_identification(points: np.ndarray) -> np.ndarray:
+    """Fisher information of the window residual by finite differences."""
+    residual = WindowResidual([prepare(simulated_log(points), 1)], ARM, range(4))
+    steps = SPACE.steps
+    numbers = residual(SPACE, np.vstack([X[None], X + np.diag(steps), X - np.diag(steps)]))
+    count = len(X)
+    jacobian = ((numbers[1 : count + 1] - numbers[count + 1 :]) / (2.0 * steps[:, None])).T
+    return np.asarray(jacobian.T @ jacobian)
+
+
+def expected(points: np.ndarray) -> np.ndarray:
+    plant = SPACE.plants(X[None])
+    tried = try_motion(points, TABLE, plant, threads=1)
+    return information(plant[0], tried.angles[0], ROW_S, SPACE.parameters).matrix
+
+
+def motions() -> dict[str, np.ndarray]:
+    shape = Shape(limits_of(ARM, TABLE, POSE, {}), SECONDS)
+    random = np.random.default_rng(4)
+    return {
+        "human": human_reaches(2, SECONDS).at(np.arange(0.0, SECONDS, 0.016)),
+        "slow": shape.angles(np.concatenate([np.tile(np.linspace(1, -1, 6), 4), random.uniform(-1, 1, 24)])),
+        "quick": shape.angles(np.concatenate([np.tile(np.linspace(0, 1, 6), 4), random.uniform(-1, 1, 24)])),
+    }
+
+
+def half_log_det(matrix: np.ndarray) -> float:
+    return 0.5 * float(np.linalg.slogdet(matrix + np.diag(SPACE.doubts() ** -2.0))[1])
+
+
+def test_expected_deviations_are_those_of_the_identification_within_a_factor() -> None:
+    for name, points in motions().items():
+        found = np.linalg.inv(seen_by_the_identification(points) + np.diag(SPACE.doubts() ** -2.0))
+        ours = np.linalg.inv(expected(points) + np.diag(SPACE.doubts() ** -2.0))
+        ratio = np.sqrt(np.diag(ours) / np.diag(found))
+        assert 0.5 < np.exp(np.median(np.log(ratio))) < 2.0, name
+        assert ratio.min() > 1 / 8, (name, SPACE.names[int(ratio.argmin())])
+        assert ratio.max() < 8, (name, SPACE.names[int(ratio.argmax())])
+
+
+def test_motions_are_ranked_as_the_identification_would() -> None:
+    found = {name: half_log_det(seen_by_the_identification(points)) for name, points in motions().items()}
+    ours = {name: half_log_det(expected(points)) for name, points in motions().items()}
+    assert found["quick"] > max(found["human"], found["slow"]) + 5.0
+    for other in ("human", "slow"):
+        assert ours["quick"] - ours[other] == pytest.approx(found["quick"] - found[other], rel=0.5)
+
+
+def test_a_joint_at_rest_tells_nothing_of_its_motor() -> None:
+    points = np.tile(POSE, (400, 1))
+    points[:, 2] += 0.5 * np.sin(np.arange(400) * 0.05)
+    plant = SPACE.plants(X[None])[0]
+    matrix = information(plant, points, 0.016, SPACE.parameters).matrix
+    size = dict(zip(SPACE.names, np.diag(matrix), strict=True))
+    for kind in ("inertia", "damping", "coulomb"):
+        assert size[f"joint0.{kind}"] == pytest.approx(0.0, abs=1e-9)
+        assert size[f"joint2.{kind}"] > 100.0
+
+
+def test_zero_angles_show_by_gravity_and_backlash_by_reversals() -> None:
+    space = Space.of(ARM, ("offset", "gap"), (1, 3))
+    plant = space.plants(space.start()[None])[0]
+    points = np.tile(POSE, (800, 1)) + 0.8 * np.sin(np.arange(800) * 0.03)[:, None]
+    deviations = np.diag(information(plant, points, 0.016, space.parameters).matrix) ** -0.5
+    assert dict(zip(space.names, deviations < 0.01, strict=True)) == {
+        "joint1.offset": True,
+        "joint1.gap": True,
+        "joint3.gap": True,
+    }
+
+
+def test_what_is_known_before_is_a_models_covariance_joint_by_joint() -> None:
+    parameters = Space.of(ARM, MOTOR, (0, 1)).parameters
+    random = np.random.default_rng(2)
+    root = random.normal(size=(6, 6))
+    covariance = root @ root.T * 1e-4
+    known = prior(parameters, covariance, np.ones(6))
+    assert np.allclose(known[:3, :3], np.linalg.inv(covariance[:3, :3]) + np.eye(3), rtol=1e-5)
+    assert not known[:3, 3:].any()
+    assert np.array_equal(prior(parameters, None, np.full(6, 0.5)), 4.0 * np.eye(6))
+    assert np.array_equal(natural_sizes(parameters), np.ones(6))

@@ -1,0 +1,185 @@
+"""The picture: the same logs give the same bytes, and what is drawn is what was measured."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+
+from greywhale.base.errors import UserError
+from greywhale.files.log import Log
+from greywhale.files.log.layout import Origin
+from greywhale.pictures import follow, looks
+from greywhale.pictures.follow import Trace, draw_following, trace
+from greywhale.pictures.page import style
+from greywhale.protocol.table import ParameterTable
+from tests.pictures.sight import faults
+
+
+def log(gain: float, seed: int = 1) -> Log:
+    time = np.arange(0, 4, 0.01)
+    leader = np.column_stack([np.sin(time + joint) for joint in range(4)])
+    state = np.where(time < 1, "soft_start", "following")
+    noise = np.random.default_rng(seed).normal(0, 0.001, leader.shape)
+    return Log("x.csv", Origin(), time, leader + noise, gain * leader, 0 * leader, state, 0, True)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("ending", [".png", ".svg", ".pdf"])
+def test_the_same_logs_give_the_same_bytes(tmp_path: Path, ending: str) -> None:
+    for name in ("a", "b"):
+        draw_following(tmp_path / (name + ending), [trace(log(0.8), "before"), trace(log(0.95), "after")], "Title")
+    first, second = ((tmp_path / (name + ending)).read_bytes() for name in ("a", "b"))
+    assert first == second
+    assert len(first) > 10_000
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a" + ending, "b" + ending]
+
+
+def test_only_the_measured_part_is_drawn_and_starts_at_zero() -> None:
+    one = trace(log(0.8), "before")
+    assert one.time[0] == 0.0
+    assert len(one.time) == 300
+    assert one.mse[0] == pytest.approx(np.mean((one.leader[:, 0] - one.follower[:, 0]) ** 2))
+
+
+def labels(traces: list[Trace]) -> list[str]:
+    figure = follow.plot_following(traces, "Title")
+    try:
+        return [text.get_text() for text in figure.legends[0].get_texts()]
+    finally:
+        plt.close(figure)
+
+
+def test_leaders_of_the_same_motion_are_one_line_and_others_two() -> None:
+    before, after = trace(log(0.8), "before"), trace(log(0.95, seed=2), "after")
+    assert labels([before, after]) == ["leader", "follower, before", "follower, after"]
+    other = Trace("other", before.time, before.leader + 0.2, before.follower, before.mse)
+    assert labels([before, other]) == ["leader, before", "leader, other", "follower, before", "follower, other"]
+
+
+@pytest.mark.parametrize(("late_s", "lines"), [(0.02, ["leader"]), (0.2, ["leader, first", "leader, again"])])
+def test_steps_that_are_played_again_are_one_leader_if_they_come_at_the_same_moment(
+    late_s: float, lines: list[str]
+) -> None:
+    time = np.arange(0.0, 4.0, 0.005)
+    first, again = (np.repeat((time > start)[:, None], 4, axis=1).astype(float) for start in (1.0, 1.0 + late_s))
+    drawn = [Trace(name, time, rad, rad, (0.0,) * 4) for name, rad in (("first", first), ("again", again))]
+    assert labels(drawn)[: len(lines)] == lines
+    assert labels(drawn)[len(lines)] == "follower, first"
+
+
+def test_axes_have_units_and_titles_their_figures() -> None:
+    figure = follow.plot_following([trace(log(0.8), "before")], "A title")
+    try:
+        axes = figure.get_axes()
+        assert len(axes) == 12
+        assert [one.get_ylabel() for one in axes[:3]] == ["angle [rad]", "error [rad]", "voltage [V]"]
+        assert {one.get_xlabel() for one in axes[2::3]} == {"time [s]"}
+        assert "Joint 3, wrist roll" in axes[9].get_title()
+        assert figure.get_suptitle() == "A title"
+    finally:
+        plt.close(figure)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("names", "size"),
+    [(("log",), 0.4), (("before", "after tuning"), 0.02), (("a/…/log", "bb/…/log", "c" * 30, "d"), 0.0008)],
+)
+def test_nothing_is_cut_off_overlaps_or_lacks_a_unit(names: tuple[str, ...], size: float) -> None:
+    # Reaches of a real log, and errors from those of a follower at rest to those of a step: the finer, the wider.
+    time = np.arange(0, 20, 0.01)
+    leader = np.column_stack([reach * np.sin(time + reach) - 0.1 for reach in (1.0, 0.65, 0.8, 1.2)])
+    error = size * np.column_stack([np.sin(3 * time + joint) for joint in range(4)])
+    one = Trace("", time, leader, leader - error, (0.000123, 0.1, 1.23e-5, 0.1), 9.0 * np.sin(leader), 12.0)
+    with style():
+        figure = follow.plot_following([replace(one, label=name) for name in names], "A title")
+        try:
+            assert faults(figure) == []
+        finally:
+            plt.close(figure)
+
+
+def test_a_noisy_voltage_shows_its_mean_and_the_leader_lies_on_top() -> None:
+    time = np.arange(0, 2, 0.001)
+    still = np.zeros((len(time), 4))
+    buzz = np.where(np.arange(len(time)) % 2, 3.0, 1.0)[:, None] * np.ones(4)
+    figure = follow.plot_following([Trace("log", time, still, still, (0.0,) * 4, buzz, 15.0)], "Title")
+    try:
+        angle, voltage = figure.axes[0].get_lines(), figure.axes[2].get_lines()
+        assert max(angle, key=lambda line: line.get_zorder()).get_color() == looks.LEADER.colour
+        raw, mean = voltage[-2:]
+        assert raw.get_alpha() == 0.3
+        np.testing.assert_allclose(np.asarray(mean.get_ydata())[50:-50], 2.0, atol=0.05)
+    finally:
+        plt.close(figure)
+
+
+def test_voltages_are_drawn_within_their_limit() -> None:
+    """The limit is the supply where that is known, else the largest voltage in the logs."""
+    one = trace(replace(log(0.8), voltage=6.0 * log(0.8).leader), "before")
+    assert one.voltage is not None
+    largest = f"largest voltage, {abs(one.voltage).max():.1f} V"
+    assert labels([one]) == ["leader", "follower, before", "voltage", largest]
+    known = replace(one, supply_v=12.0)
+    assert labels([known])[-1] == "voltage limit, 12 V"
+    assert labels([known, one])[-1] == "voltage limit, 12 V"
+    figure = follow.plot_following([known], "Title")
+    try:
+        voltage = figure.axes[2]
+        assert voltage.get_ylabel() == "voltage [V]"
+        limits = voltage.get_lines()[:2]
+        assert sorted(float(np.asarray(line.get_ydata())[0]) for line in limits) == [-12.0, 12.0]
+        assert {line.get_linestyle() for line in limits} == {looks.VOLTAGE_LIMIT.style}
+        np.testing.assert_array_equal(np.asarray(voltage.get_lines()[2].get_ydata()), one.voltage[:, 0])
+        assert voltage.get_ylim()[0] < -12.0 < 12.0 < voltage.get_ylim()[1]
+    finally:
+        plt.close(figure)
+
+
+def test_the_supply_is_known_of_a_log_with_its_parameters_or_with_the_defaults() -> None:
+    default = ParameterTable.defaults()
+    with_table = Origin(param_crc=default.crc ^ 1, table=default.with_raw({"supply_mv": 7400}))
+    assert trace(replace(log(0.8), origin=with_table), "x").supply_v == 7.4
+    assert trace(replace(log(0.8), origin=Origin(param_crc=default.crc)), "x").supply_v == default.supply_v
+    assert trace(replace(log(0.8), origin=Origin(param_crc=default.crc ^ 1)), "x").supply_v is None
+    assert trace(log(0.8), "x", 9.0).supply_v == 9.0
+
+
+def test_one_log_has_the_followers_colour_and_two_those_of_before_and_after() -> None:
+    for names, colours in ((["x"], [looks.FOLLOWER]), (["x", "y"], [looks.BEFORE, looks.AFTER])):
+        figure = follow.plot_following([replace(trace(log(0.8), ""), label=name) for name in names], "Title")
+        try:
+            lines = figure.axes[0].get_lines()
+            assert lines[0].get_color() == looks.LEADER.colour
+            assert [line.get_color() for line in lines[1:]] == [look.colour for look in colours]
+        finally:
+            plt.close(figure)
+
+
+def test_bad_requests_leave_no_file(tmp_path: Path) -> None:
+    one = trace(log(0.8), "x")
+    with pytest.raises(UserError, match=r"pictures end in \.png, \.svg, \.pdf"):
+        draw_following(tmp_path / "picture.gif", [one], "")
+    with pytest.raises(UserError, match="1 to 4 logs, not 5"):
+        draw_following(tmp_path / "picture.png", [one] * 5, "")
+    with pytest.raises(UserError, match=r"none/picture\.png: cannot be written: no such file"):
+        draw_following(tmp_path / "none" / "picture.png", [one], "")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("joints", [(0, 1), (2,), (0, 1, 3)])
+def test_only_joints_in_use_have_a_panel(joints: tuple[int, ...]) -> None:
+    one = replace(trace(log(0.8), "before"), joints=joints)
+    with style():
+        figure = follow.plot_following([one], "A title")
+        try:
+            assert faults(figure) == []
+            titles = [axes.get_title() for axes in figure.get_axes() if axes.get_title()]
+            assert [title[:7] for title in titles] == [f"Joint {joint}" for joint in joints]
+        finally:
+            plt.close(figure)

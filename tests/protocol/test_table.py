@@ -1,0 +1,84 @@
+"""The parameter table by name: what it refuses, how it changes, and what it tells of its board."""
+
+from __future__ import annotations
+
+import pytest
+
+from greywhale.base.errors import UserError
+from greywhale.protocol import schema
+from greywhale.protocol.schema import Board
+from greywhale.protocol.table import CONTROLLER_COLUMNS, ParameterTable, find_board, refuse_unknown
+
+DEFAULTS = ParameterTable.defaults()
+
+
+def test_values_go_by_name_raw_or_in_their_unit() -> None:
+    for parameter in schema.PARAMETERS:
+        assert DEFAULTS[parameter.name] == parameter.default
+        assert DEFAULTS.physical(parameter.name) == parameter.to_physical(parameter.default)
+    assert DEFAULTS.each("joint", "ku_mv") == (15000, 11550, 13150, 14500)
+    assert (DEFAULTS.period_ms, DEFAULTS.supply_v) == (1, 15.0)
+    assert DEFAULTS.crc == schema.param_crc(schema.DEFAULTS)
+
+
+def test_a_change_leaves_the_rest_the_board_and_the_name() -> None:
+    nano = DEFAULTS.for_board(Board.NANO328).with_name("mine")
+    changed = nano.with_raw({"joint2.kp": 77, "supply_mv": 9000})
+    assert changed.changes() == {"supply_mv": 9000, "joint2.kp": 77}
+    assert (changed.board, changed.name) == (Board.NANO328, "mine")
+    assert nano.changes() == {}
+    assert changed.with_raw(DEFAULTS.by_name()) == nano
+
+
+def test_controllers_are_rows_of_the_table_and_back() -> None:
+    rows = [list(row) for row in DEFAULTS.controllers]
+    rows[3][CONTROLLER_COLUMNS.index("ki")] = 5
+    assert DEFAULTS.with_controllers(rows).changes() == {"joint3.ki": 5}
+    assert DEFAULTS.with_controllers(DEFAULTS.controllers) == DEFAULTS
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"period_ms": 51}, "period_ms is 51 ms, which is out of range"),
+        ({"joint1.limit_min": 10240}, r"joint1.limit_min is 2.5 and joint1.limit_max is 2.5 rad"),
+        ({"joint0.motor_sign": 0}, "joint0.motor_sign is 0"),
+    ],
+)
+def test_what_no_board_would_run_is_no_table(changes: dict[str, int], words: str) -> None:
+    with pytest.raises(UserError, match=words):
+        DEFAULTS.with_raw(changes)
+
+
+def test_a_follower_without_a_potentiometer_is_a_joint_that_is_not_in_use() -> None:
+    assert DEFAULTS.joints_in_use == (0, 1, 2, 3)
+    assert DEFAULTS.with_raw({"follower1.scale": 0, "follower2.scale": -5}).joints_in_use == (0, 2, 3)
+    assert DEFAULTS.with_raw({"leader1.scale": 0}).joints_in_use == (0, 1, 2, 3)  # a host leads it
+
+
+def test_equal_values_on_another_board_are_another_table() -> None:
+    assert DEFAULTS.with_name("elsewhere") == DEFAULTS
+    assert DEFAULTS.for_board(Board.NANO328) != DEFAULTS
+
+
+@pytest.mark.parametrize(
+    ("key", "board"), [("nano328", Board.NANO328), ("esp32", Board.UNKNOWN), (None, Board.UNKNOWN)]
+)
+def test_boards_go_by_the_key_of_a_log(key: str | None, board: Board) -> None:
+    assert find_board(key) is board
+
+
+def test_an_unknown_name_is_told_with_its_place() -> None:
+    refuse_unknown(("joint0.kp",), "model.toml", "identify again")
+    with pytest.raises(UserError, match=r"model.toml: joint0.kq is no parameter of a board; identify again\."):
+        refuse_unknown(("joint0.kp", "joint0.kq"), "model.toml", "identify again")
+
+
+def test_a_table_for_fewer_joints_leaves_the_others_no_range() -> None:
+    table = DEFAULTS.with_joints((1,))
+    assert table.joints_in_use == (1,)
+    assert table.each("leader", "scale")[2] == 0
+    lower, upper = table.limits_raw()
+    assert (lower[1], upper[1]) == (DEFAULTS["joint1.limit_min"], DEFAULTS["joint1.limit_max"])
+    assert (lower[0], upper[0], lower[3], upper[3]) == (0, 0, 0, 0)
+    assert table.each("joint", "limit_min") == DEFAULTS.each("joint", "limit_min"), "the stored ones stay"

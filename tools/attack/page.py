@@ -1,0 +1,107 @@
+"""The page that publishes the attacks: docs/reliability.md."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from tools import ROOT
+from tools.attack.journal import identity
+from tools.attack.part import Row
+from tools.attack.runner import Result
+from tools.generate.link.declaration import load
+
+HEAD = """<!-- Written by `make attack`; change the attacks, not this page. -->
+
+# Reliability
+
+What was attacked, how often, and what came of it. Every figure on this page was counted by `make attack` on the code
+whose digest stands below its table. A small share of the same attacks runs in every `make test`.
+
+A violation is a trial that broke what the section says must hold. A part that is not yet at its full size says so;
+`make attack` goes on with it. A part with pieces beyond its full size can be run longer, some at any time
+(`python -m tools.attack PART --share N --minutes M`); what is done of that is counted. Numbers in a section's text
+are those of the full size; the table has what was done. `min` are the minutes of one core that the full size took.
+"""
+
+FAULTS_HEAD = """## The faults and how soon the motors are off
+
+From the moment at which the cause began to the drivers' enable pin, the longest of all moments so far on each board,
+to 0.25 ms. The [link reference](link.md#fault) has the remedies. Without a time: a trial that other faults may end as
+well, see its row below. Not in the table: `params` is found at start, with the motors off; the times of `tracking` and
+`unrest` are parameters; a hang turns the motors off as `late_tick` before the watchdog restarts the board, if
+interrupts are on.
+"""
+
+MOSTLY = 0.95  # a flipped bit may also be that of another fault's parameter
+
+# The staged trial that shows a fault best. A person must move the joint first before `runaway` and `stalled` can show.
+STAGED_AS = {
+    "pot_low": "follower open",
+    "pot_high": "follower shorted",
+    "watchdog": "hang, interrupts off",
+    "flood": "flood of 80 bytes a ms",
+    "estop": "emergency stop pressed",
+    "speed": "follower reads neighbour",
+    "runaway": "motor reversed",
+    "stalled": "joint blocked",
+    "memory": "bit of the running set flips",
+}
+
+
+def write_table(rows: Iterable[Row]) -> str:
+    """A Markdown table; the last column holds the worst figures and the counts."""
+    lines = ["| tried | trials | violations | worst | seen |", "|---|--:|--:|---|---|"]
+    for row in rows:
+        worst = ", ".join(f"{value:.4g} {name}" for name, value in row.worst.items())
+        seen = ", ".join(f"{name} {count:,}" for name, count in row.counts.items())
+        violations = f"**{row.violations:,}**" if row.violations else "0"
+        lines.append(f"| {row.tried} | {row.trials:,} | {violations} | {worst} | {seen} |")
+    return "\n".join(lines) + "\n"
+
+
+def write_summary(results: Iterable[Result]) -> str:
+    """One line for each part."""
+    lines = ["| | trials | violations | done | min |", "|---|--:|--:|--:|--:|"]
+    for one in results:
+        trials, violations = sum(row.trials for row in one.rows), sum(row.violations for row in one.rows)
+        anchor = one.part.title.lower().replace(" ", "-").replace(",", "")
+        share = "all" if one.whole else f"{one.done} of {one.pieces} pieces"
+        if one.most_longer:
+            share += f", and {one.longer} of {one.most_longer} beyond"
+        lines.append(f"| [{one.part.title}](#{anchor}) | {trials:,} | {violations:,} | {share} | {_minutes(one)} |")
+    return "\n".join(lines) + "\n"
+
+
+def _minutes(result: Result) -> str:
+    return f"{result.seconds / 60:.0f}" if result.whole and result.seconds else ""
+
+
+def write_faults(rows: Iterable[Row]) -> str:
+    """The faults that the board reports: what raises each, and the longest time until the motors were off."""
+    seen = {row.tried: row for row in rows}
+    enum = next(enum for enum in load(ROOT / "shared/link").enums if enum.name == "Fault")
+    lines = ["| fault | raised when | staged as | ms on the Mega | ms on the Nano |", "|---|---|---|--:|--:|"]
+    for value in enum.values:
+        if staged := STAGED_AS.get(value.name):
+            times = [_time(seen.get(f"{board}: {staged}"), value.name) for board in ("mega", "nano")]
+            shown = " | ".join("" if time is None else f"{time:.4g}" for time in times)
+            lines.append(f"| `{value.name}` | {value.cause} | {staged} | {shown} |")
+    return "\n".join(lines) + "\n"
+
+
+def _time(row: Row | None, fault: str) -> float | None:
+    """The longest time until the motors were off, where it was this fault that turned them off."""
+    if row is None:
+        return None
+    off = row.trials - row.counts.get("motors stayed on", 0)
+    return row.worst.get("ms") if row.counts.get(fault, 0) >= MOSTLY * off else None
+
+
+def write_page(results: Sequence[Result]) -> str:
+    sections = [
+        f"## {one.part.title}\n\n{' '.join(one.part.holds.split())}\n\n{write_table(one.rows)}\n"
+        f"`python -m tools.attack {one.part.name}`; digest `{identity(one.part)}`.\n"
+        for one in results
+    ]
+    faults = [row for one in results if one.part.name == "faults" for row in one.rows]
+    return "\n".join([HEAD, write_summary(results), FAULTS_HEAD, write_faults(faults), *sections])

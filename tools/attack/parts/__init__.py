@@ -1,0 +1,16 @@
+"""All parts of the attacks, in the order of the page."""
+
+from __future__ import annotations
+
+from tools.attack.part import Part
+from tools.attack.parts import cuts, eeprom, faults, fuzz, line, link, soak
+
+PARTS: tuple[Part, ...] = (
+    faults.PART,
+    line.PART,
+    link.PART,
+    fuzz.PART,
+    cuts.PART,
+    eeprom.PART,
+    soak.PART,
+)

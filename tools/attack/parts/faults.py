@@ -1,0 +1,118 @@
+"""How soon the motors are off after something has gone wrong, and how far the arm has gone by then."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from functools import partial
+from typing import Any
+
+from greywhale.files import controller
+from greywhale.files.arm import default_arm
+from greywhale.files.paper_tables import paper_table
+from greywhale.protocol.table import ParameterTable, physical
+from greywhale.tune.stall import STALL_VOLTS, stall_limit
+from greywhale_sim.wiring import BOARDS
+from tools.attack.copies import in_a_copy
+from tools.attack.part import Part, Piece, Row, split
+from tools.attack.rig import Rig
+from tools.attack.staging import LEASE_MS, SOFT_START_MS, Inject, Trial, begin, faults, person, suffer
+
+MOMENTS, PER_PIECE = 1000, 20
+AT_ONCE_MS = 10.0
+# What takes longer, and why: docs/firmware.md. A hang inside an interrupt is one with interrupts off.
+SLOWER_MS = {
+    f"lease of {LEASE_MS} ms runs out": LEASE_MS + 2.0,
+    "flood of 80 bytes a ms": 30.0,
+    "hang, interrupts on": 20.0,
+    "hang, interrupts off": 20.0,
+    "bit of the running set flips": 103.0,
+    "supply sinks by 0.1 V a ms": 24.0,  # 23 ms to the level of the brown-out detector
+} | {f"{side} {state} 2 of 10 ms": 20.0 for side in ("leader", "follower") for state in ("open", "shorted")}
+# Some show only once the person has moved that joint. Then a way counts and not the time: of the true error where a
+# potentiometer lies, of the follower where a motor does not obey.
+BY_ERROR = {"follower frozen", "follower reads neighbour", "follower floats"}
+BY_WAY = {"motor dead", "motor reversed", "follower pot reversed", "joint blocked"}
+FARTHEST_RAD = 0.5
+# What these cost depends on the voltage that a standing joint may have: a row for each `stall_volts`.
+BY_LIMIT = {"follower frozen", "follower floats"}
+
+
+def is_violation(name: str, trial: Trial) -> bool:
+    if name in BY_ERROR:
+        return trial.grown_rad > FARTHEST_RAD
+    if name in BY_WAY:
+        return trial.gone_rad > FARTHEST_RAD
+    return trial.off_ms is None or trial.off_ms > SLOWER_MS.get(name, AT_ONCE_MS)
+
+
+def count(board: str, name: str, trial: Trial, limit: str = "") -> Row:
+    seen = trial.fault if trial.off_ms is not None else "motors stayed on"
+    worst = {"rad": round(trial.gone_rad if name in BY_WAY else trial.grown_rad, 3)} | (
+        {} if trial.off_ms is None else {"ms": round(trial.off_ms, 2)}
+    )
+    return Row(f"{board}: {name}{limit}", 1, int(is_violation(name, trial)), {seen: 1}, worst)
+
+
+def tuned_stall_volts() -> int:
+    """`stall_volts` as `greywhale tune` works it out for the default arm, raw."""
+    limit = stall_limit(default_arm(), ParameterTable.defaults(), samples=1)
+    assert limit is not None
+    return limit.raw
+
+
+def suffer_it(rig: Rig, inject: Inject, joint: int) -> dict[str, Any]:
+    return asdict(suffer(rig, inject, joint))
+
+
+def run(piece: Piece) -> list[Row]:
+    """At each moment every fault in a copy of its own: all of them meet the same motion and the same phase of a tick.
+
+    Even seeds run the paper's untuned controllers, odd ones its tuned ones and the `stall_volts` that belongs to the
+    arm. Unrest is off: the tuned ones make a joint of this arm ring at times, which is not the fault that is meant.
+    """
+    seed = piece["seed"]
+    stall = tuned_stall_volts() if seed % 2 else ParameterTable.defaults()["stall_volts"]
+    limit = f", stall_volts {physical(STALL_VOLTS, stall):g} V"
+    rig = Rig(piece["board"], person(seed), seed)
+    table = paper_table(("before_tuning", "table_10")[seed % 2])
+    changes = {key: int(raw) for key, raw in controller.load(table).raw_values().items()}
+    rig.apply(changes | {"soft_start_ms": SOFT_START_MS, "unrest_amplitude": 0, "stall_volts": stall})
+    staged = {name: inject for name, inject in faults().items() if name in piece.get("faults", faults())}
+    rows = []
+    for moment in range(piece["trials"]):
+        begin(rig)
+        for name, inject in staged.items():
+            trial = in_a_copy(partial(suffer_it, rig, inject, moment % 4))
+            rows.append(count(piece["board"], name, Trial(**trial), limit if name in BY_LIMIT else ""))
+    return rows
+
+
+def pieces(share: float) -> list[Piece]:
+    return [piece for board in BOARDS for piece in split(MOMENTS, share, PER_PIECE, board=board)]
+
+
+PART = Part(
+    "faults",
+    "From a fault to the motors off",
+    f"""The real images on both simulated boards with the default arm, a person's motion and the paper's controllers
+        before and after tuning, those with the `stall_volts` that `tune` works out for this arm. At {MOMENTS:,} random
+        moments of a run, and of a tick, each fault begins. The motors must be off within {AT_ONCE_MS:g} ms; within
+        {LEASE_MS + 2} ms for the lease, 20 ms for a hang (the watchdog's time) and for a wire that touches only 2 ms
+        in 10, 30 ms for a flood, 24 ms for a supply that sinks (the brown-out detector acts after 23), 103 ms for a
+        flipped bit. Some faults show only once the person moves that joint. Then a way counts, at most {FARTHEST_RAD}
+        rad: of the follower where a motor does not obey (dead, reversed, blocked) or a potentiometer turns the other
+        way, and by which the true error has grown where one lies. `ms` is the longest time, `rad` the greatest such
+        way.""",
+    (
+        "firmware/lib",
+        "firmware/src",
+        "host/src/greywhale/tune/stall.py",
+        "shared",
+        "sim/board",
+        "sim/arm",
+        "tools/attack/rig.py",
+        "tools/attack/staging.py",
+    ),
+    pieces,
+    run,
+)

@@ -1,0 +1,134 @@
+"""A line that damages bytes: what acts, what runs, how soon the next frame is understood."""
+
+from __future__ import annotations
+
+import subprocess
+from collections.abc import Iterator
+
+from greywhale.protocol.frames import FrameDecoder, decode_frame
+from tools.attack import crc
+from tools.attack.native import FAST, Program, build, depends, run_counts
+from tools.attack.part import Part, Piece, Row, split
+
+PROGRAM = Program("link_faults", ("link_faults", "channel", "host", "machine", "sets"), FAST)
+# Faults in a million bytes: how many in all, and in a piece of some 20 s.
+SESSIONS = {
+    100: (40_000, 5_000),
+    1_000: (1_000_000, 100_000),
+    10_000: (4_000_000, 800_000),
+    50_000: (8_000_000, 4_000_000),
+}
+REPLIES = {10_000: (200_000, 100_000), 50_000: (200_000, 100_000)}
+FLIPS, FLIPS_PIECE = 10_000_000, 5_000_000
+FLIPPED = range(1, 9)
+SUMMED_BITS = (1 + 1 + 6 + 2) * 8  # of a param_set: type, sequence number, payload, CRC
+LINE_BITS = SUMMED_BITS + 8  # and the code byte in front
+BROKEN = ("wrong set", "started by chance", "on after stop", "whole but not understood", "slow recovery")
+
+
+def flips_share(bits: int) -> float:
+    """How many of all frames with so many flipped bits pass, at most: those that only the CRC can notice, and those
+    whose code bytes moved so that anything may stand there."""
+    untouched = crc.unnoticed_share(SUMMED_BITS, bits, LINE_BITS)
+    return untouched + (0.0 if bits == 1 else crc.RANDOM)
+
+
+def pieces(share: float) -> list[Piece]:
+    found: list[Piece] = []
+    for what, plan in (("session", SESSIONS), ("replies", REPLIES)):
+        for rate, (faults, size) in plan.items():
+            found += split(faults, share, size, what=what, how=rate)
+    for bits in FLIPPED:
+        found += split(FLIPS, share, FLIPS_PIECE, what="flips", how=bits)
+    return found
+
+
+def run(piece: Piece) -> list[Row]:
+    arguments = [piece["what"], piece["seed"], piece["trials"], piece["how"]]
+    if piece["what"] == "replies":
+        return [judge_replies(piece["how"], piece["trials"], read_replies(arguments))]
+    counts = run_counts(PROGRAM, arguments)
+    return [judge_session(piece["how"], counts) if piece["what"] == "session" else judge_flips(piece["how"], counts)]
+
+
+def judge_session(rate: int, counts: dict[str, int]) -> Row:
+    """Of the damaged pieces of the line one in 65,536 may pass. More than chance explains are violations."""
+    broken = sum(counts.pop(name, 0) for name in BROKEN)
+    expected = (counts["faults"] + counts["frames hit"]) * crc.RANDOM
+    broken += crc.too_many(counts.get("passed by chance", 0), expected)
+    shown = {"frames hit", "applied", "passed by chance", "acted by chance"}
+    return Row(
+        f"board: {rate / 1e4:g} % of the bytes hit",
+        counts["faults"],
+        broken,
+        {"frames": counts["frames"]} | {name: count for name, count in counts.items() if name in shown},
+        {"bytes until a frame was understood": float(counts.get("worst recovery", 0))},
+    )
+
+
+def judge_flips(bits: int, counts: dict[str, int]) -> Row:
+    passed, share = counts.get("passed by chance", 0), flips_share(bits)
+    return Row(
+        f"frames with {bits} flipped bit{'s' * (bits > 1)}",
+        counts["frames"],
+        crc.too_many(passed, share * counts["frames"]),
+        {"passed by chance": passed},
+        {"expected in a million, at most": share * 1e6},
+    )
+
+
+Reply = tuple[bytes, bytes, bool]  # what was sent, what came, whether it must be understood
+
+
+def read_replies(arguments: list[object]) -> Iterator[Reply]:
+    data = subprocess.run([str(build(PROGRAM)), *map(str, arguments)], stdout=subprocess.PIPE, check=True).stdout
+    at = 0
+    while at < len(data):
+        middle = at + 1 + data[at]
+        end = middle + 1 + data[middle]
+        yield data[at + 1 : middle], data[middle + 1 : end], bool(data[end])
+        at = end + 1
+
+
+def judge_replies(rate: int, faults: int, replies: Iterator[Reply]) -> Row:
+    """The host's decoder: every whole frame behind a zero comes out, and nothing else but by chance."""
+    decoder = FrameDecoder()
+    recent = [decode_frame(b"")] * 4
+    frames = missed = passed = 0
+    for sent, came, must in replies:
+        recent = [*recent[1:], decode_frame(sent[:-1])]
+        got = decoder.feed(came)
+        missed += must and (not got or got[-1] != recent[-1])
+        passed += sum(frame not in recent for frame in got)
+        frames += 1
+    broken = missed + crc.too_many(passed, 2 * faults * crc.RANDOM)
+    return Row(
+        f"host: {rate / 1e4:g} % of the bytes hit", faults, broken, {"frames": frames, "passed by chance": passed}
+    )
+
+
+PART = Part(
+    "link",
+    "A bad line",
+    """A host works with the board (the firmware's own code on a computer): it stages sets value by value, applies and
+saves them, enables or leads, sends points, renews, asks, stops, and repeats what is not answered. On the way to the
+board bytes are hit: a flipped bit, a burst of 2 to 8 random bytes, a byte lost, doubled, inserted or swapped with the
+next, a frame cut short, two frames spliced, 1 to 40 bytes of garbage between frames. Each is as likely as the others.
+
+What must hold: a set that runs is the one that this host meant, value by value. A stop that is understood turns the
+motors off. No damaged frame starts the motors. Every frame that comes whole behind a zero is understood. So after a
+fault the next whole frame but one is: within 108 bytes, two of the longest frames, which is 1.1 ms at 1 Mbaud.
+
+A CRC of 16 bits lets some damage through: these are the frames that passed by chance, and some of them acted (staged a
+value that the CRC of the apply then refused, moved the reference by a wrong step, set another lease). Of damage
+without order one piece in 65,536 has the right CRC, and COBS refuses most of those as well. Of few flipped bits the
+CRC lets through what the weights of its code say (MacWilliams' identity gives them from the 65,536 words of the dual
+code): none of up to three and none of any odd number. A flipped bit in a code byte moves a zero, so two or more may
+become damage without order. The rows for frames with flipped bits, all of them `param_set`, stand beside these odds.
+More than they explain would be violations, in every row.
+
+The other way, the host's decoder takes what a board sends, samples and status, over the same line.""",
+    (*depends(PROGRAM), "tools/attack/crc.py", "host/src/greywhale/protocol"),
+    pieces,
+    run,
+)

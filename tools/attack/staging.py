@@ -1,0 +1,222 @@
+"""Everything that can go wrong with an arm on the pins of the real image: each staged by name at a moment of a run.
+
+A trial is the real image on the simulated board with the default arm: a leader that a person moves, everything in
+order, and at a random moment a fault. A leader that a person moves makes the error grow as well.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from greywhale.base.types import Floats
+from greywhale.board.device import stop_message
+from greywhale.motion import human_reaches
+from greywhale.protocol import frames, schema
+from tools.attack.rig import CYCLES_PER_MS, SLICE_S, Leader, Rig
+
+PATIENCE_S = 2.0
+SOFT_START_MS = 100
+CHATTER = ((2, 3), (1, 2), (2, 4), (2, 10))  # ms at the rail, of so many
+NOISE_MV = 2.4
+LEASE_MS = 20
+SINKS_MV_PER_MS = 100.0
+FLOOD_BYTES = 20  # in each slice of 250 us: 80 a millisecond
+
+
+@dataclass(frozen=True)
+class Trial:
+    """Until the motors went off (`off_ms` None: never) the true error had grown by at most `grown_rad`, and the
+    follower alone had gone `gone_rad`."""
+
+    off_ms: float | None
+    grown_rad: float
+    gone_rad: float
+    fault: str
+    where: int
+
+
+Inject = Callable[[Rig, int], None]  # does it to a joint of the rig
+
+
+def _at(millivolts: float, follower: bool, pattern: tuple[int, int] | None = None) -> Inject:
+    """A pot at a rail, all the time or so many ms of so many."""
+
+    def inject(rig: Rig, joint: int) -> None:
+        pot = joint + 4 * follower
+
+        def lie(volts: Floats, since: float) -> None:
+            if pattern is None or since * 1000 % pattern[1] < pattern[0] - 1e-9:
+                volts[pot] = millivolts
+
+        rig.lie = lie
+
+    return inject
+
+
+def _freeze(rig: Rig, joint: int) -> None:
+    """The wiper slips on its shaft: it stays where it is, with the noise of any reading."""
+    kept: list[float] = []
+
+    def lie(volts: Floats, since: float) -> None:
+        if not kept:
+            kept.append(volts[4 + joint])
+        volts[4 + joint] = kept[0] + rig.random.normal(0.0, NOISE_MV)
+
+    rig.lie = lie
+
+
+def _read_neighbour(rig: Rig, joint: int) -> None:
+    other = 4 + (joint + int(rig.random.integers(1, 4))) % 4
+
+    def lie(volts: Floats, since: float) -> None:
+        volts[4 + joint] = volts[other]
+
+    rig.lie = lie
+
+
+def _float(rig: Rig, joint: int) -> None:
+    rig.board.set_floating(1 << (4 + joint))
+
+
+def _reverse_motor(rig: Rig, joint: int) -> None:
+    rig.motor_signs[joint] = -1.0
+
+
+def _reverse_pot(rig: Rig, joint: int) -> None:
+    """It turns the other way about the place where it is now."""
+    middle: list[float] = []
+
+    def lie(volts: Floats, since: float) -> None:
+        if not middle:
+            middle.append(volts[4 + joint])
+        volts[4 + joint] = 2 * middle[0] - volts[4 + joint]
+
+    rig.lie = lie
+
+
+def _block(rig: Rig, joint: int) -> None:
+    rig.stuck[joint] = float(rig.angles[joint])
+
+
+def _press_estop(rig: Rig, joint: int) -> None:
+    rig.board.hold_pin(rig.wiring.estop.port, rig.wiring.estop.bit, False)
+
+
+def _cut_motor(rig: Rig, joint: int) -> None:
+    rig.motor_signs[joint] = 0.0
+
+
+def _send_stop(rig: Rig, joint: int) -> None:
+    rig.board.uart_send(stop_message(7))
+
+
+def _end_lease(rig: Rig, joint: int) -> None:
+    """The host renews for a short time and is gone."""
+    rig.board.uart_send(frames.encode_frame(schema.RenewRequest.TYPE, 7, LEASE_MS.to_bytes(2, "little")))
+
+
+def _flood(rig: Rig, joint: int) -> None:
+    def pour(volts: Floats, since: float) -> None:
+        rig.board.uart_send(rig.random.bytes(FLOOD_BYTES))
+
+    rig.lie = pour
+
+
+def _hang(interrupts: bool) -> Inject:
+    """Into the endless loop behind main(), which begins with turning interrupts off, or just behind that."""
+
+    def inject(rig: Rig, joint: int) -> None:
+        rig.board.pc = rig.symbols["_exit"].address + 2 * interrupts
+
+    return inject
+
+
+def _flip_bit(rig: Rig, joint: int) -> None:
+    """Of the running set."""
+    at = rig.running_set + int(rig.random.integers(schema.TABLE.size))
+    rig.board.poke(at, bytes([rig.board.peek(at, 1)[0] ^ 1 << int(rig.random.integers(8))]))
+
+
+def _sink(rig: Rig, joint: int) -> None:
+    """The board's supply falls by 0.1 V a millisecond to 2 V, the potentiometers' with it."""
+
+    def fall(volts: Floats, since: float) -> None:
+        supply = max(2000.0, 5000.0 - SINKS_MV_PER_MS * 1000 * since)
+        rig.board.set_supply(round(supply))
+        volts *= supply / 5000.0
+
+    rig.lie = fall
+
+
+def faults() -> dict[str, Inject]:
+    """Everything that can be staged, by name."""
+    found: dict[str, Inject] = {
+        "stop request": _send_stop,
+        "emergency stop pressed": _press_estop,
+        f"lease of {LEASE_MS} ms runs out": _end_lease,
+        "flood of 80 bytes a ms": _flood,
+        "hang, interrupts on": _hang(True),
+        "hang, interrupts off": _hang(False),
+        "bit of the running set flips": _flip_bit,
+        "supply sinks by 0.1 V a ms": _sink,
+    }
+    for side, follower in (("leader", False), ("follower", True)):
+        for state, rail in (("open", 0.0), ("shorted", 5000.0)):
+            found[f"{side} {state}"] = _at(rail, follower)
+            for pattern in CHATTER:
+                found[f"{side} {state} {pattern[0]} of {pattern[1]} ms"] = _at(rail, follower, pattern)
+    return found | {
+        "motor dead": _cut_motor,
+        "follower frozen": _freeze,
+        "follower reads neighbour": _read_neighbour,
+        "follower floats": _float,
+        "motor reversed": _reverse_motor,
+        "follower pot reversed": _reverse_pot,
+        "joint blocked": _block,
+    }
+
+
+def person(seed: int) -> Leader:
+    """A leader that a person moves, without a rest at the beginning; worked out once for every slice."""
+    motion = human_reaches(seed)
+    times, angles = np.asarray(motion.time_s), np.asarray(motion.angles)
+    moves = int(np.argmax(np.abs(angles - angles[0]).max(axis=1) > 0.02))
+    slices = times[moves] + SLICE_S * np.arange(math.ceil((times[-1] - times[moves]) / SLICE_S) + 1)
+    path = np.column_stack([np.interp(slices, times, angles[:, joint]) for joint in range(4)])
+
+    def at(seconds: float) -> Floats:
+        place: Floats = path[min(round(seconds / SLICE_S), len(path) - 1)]
+        return place
+
+    return at
+
+
+def begin(rig: Rig) -> None:
+    """All in order, and some of a motion done: the moment for a fault."""
+    rig.start()
+    rig.run(SOFT_START_MS / 1000 + rig.random.uniform(0.3, 3.0))
+    assert rig.motors_on, f"nothing was wrong yet, but the board says {rig.status().fault.key}"
+    rig.shift_phase()
+
+
+def suffer(rig: Rig, inject: Inject, joint: int) -> Trial:
+    """From the fault to the motors off; the rig can be used again."""
+    before = abs(rig.true_error[joint])
+    begun, place, grown, gone = rig.board.cycle, rig.angles[joint], 0.0, 0.0
+    inject(rig, joint)
+    off_ms = None
+    for _ in range(round(PATIENCE_S / SLICE_S)):
+        rig.slice()
+        if not rig.motors_on:
+            off_ms = (rig.board.cycle - begun) / CYCLES_PER_MS
+            break
+        grown = max(grown, abs(rig.true_error[joint]) - before)
+        gone = max(gone, abs(rig.angles[joint] - place))
+    rig.lie = None
+    rig.board.set_supply(5000)
+    status = rig.status()
+    return Trial(off_ms, float(grown), float(gone), status.fault.key, status.fault_where)

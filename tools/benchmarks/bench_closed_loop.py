@@ -1,0 +1,177 @@
+"""The closed loop of four joints at a 1 ms tick: greywhale alone and in batches, beside MuJoCo, Pinocchio and numba.
+
+Each peer that is installed (`make oracles` does it) runs in the same process or right after; times are the best of
+several repeats, for the machine may be busy. Figures are simulated seconds per second of one core unless they say
+otherwise.
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import os
+import subprocess
+import sysconfig
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from greywhale.arm.export import mjcf
+from greywhale.files.arm import default_arm
+from greywhale.motion import human_reaches
+from greywhale.simulate import Experiment, default_controller, plant_row
+from tools import ROOT
+from tools.benchmarks.figure import Figure
+
+CANDIDATES = 512
+SECONDS = 12.0
+REPEATS = 7
+PEERS = Path(__file__).parent / "peers"
+
+
+def _best(work: Callable[[], object], clock: Callable[[], float], repeats: int = REPEATS) -> float:
+    times = []
+    for _ in range(repeats):
+        start = clock()
+        work()
+        times.append(clock() - start)
+    return min(times)
+
+
+def run() -> list[Figure]:
+    arm = default_arm()
+    random = np.random.default_rng(1)
+    plants = np.repeat(plant_row(arm)[None], CANDIDATES, axis=0)
+    plants[:, 11:59:12] *= np.exp(random.uniform(-0.3, 0.3, (CANDIDATES, 4)))  # torque per volt
+    controllers = np.repeat(default_controller()[None], CANDIDATES, axis=0)
+    controllers[:, :, 8] = (controllers[:, :, 8] * random.uniform(0.7, 1.3, (CANDIDATES, 4))).astype(np.int32)
+    experiment = Experiment(human_reaches(1, SECONDS), arm)
+    simulated = experiment.ticks * 1e-3
+
+    single = simulated / _best(experiment.run_single, time.process_time)
+    quiet = Experiment(human_reaches(1, SECONDS), arm, noise=False)
+    single_quiet = simulated / _best(quiet.run_single, time.process_time)
+    figures = [
+        Figure("closed loop, one candidate, no sensor noise", single_quiet, "x real", ">= 1,000", single_quiet >= 1000),
+        Figure("closed loop, one candidate, sensor noise", single, "x real"),
+    ]
+    batch = {}
+    for steps in (1, 2, 4):
+
+        def one_thread(steps: int = steps) -> object:
+            return experiment.run(controllers, plants, steps_per_tick=steps, threads=1)
+
+        batch[steps] = CANDIDATES * simulated / _best(one_thread, time.process_time)
+        figures.append(Figure(f"closed loop, batch, {steps} steps a tick", batch[steps], "x real"))
+    reach = max(batch.values())
+    figures.append(Figure("closed loop, batch, fastest", reach, "x real", ">= 40,000", reach >= 40_000))
+
+    def threads(count: int) -> Callable[[], object]:
+        return lambda: experiment.run(controllers, plants, steps_per_tick=1, threads=count)
+
+    gain = _best(threads(1), time.perf_counter) / _best(threads(2), time.perf_counter)
+    figures.append(Figure("closed loop, two threads against one (wall clock)", gain, "x", "close to 2", gain > 1.7))
+    return figures + _mujoco(reach) + _pinocchio() + _numba(reach, plants, experiment)
+
+
+def _mujoco(ours: float) -> list[Figure]:
+    found = importlib.util.find_spec("mujoco")
+    if found is None or not found.submodule_search_locations:
+        return []
+    folder = Path(found.submodule_search_locations[0])
+    library = next(folder.glob("libmujoco.so*"))
+    law = ROOT / "firmware" / "lib" / "fuzzy_pdi" / "src"
+    with tempfile.TemporaryDirectory() as name:
+        program, model = Path(name) / "mujoco_loop", Path(name) / "arm.xml"
+        sources = [str(PEERS / "mujoco_loop.cpp"), str(law / "fuzzy_pdi.cpp"), str(law / "compile.cpp")]
+        build = [
+            "g++",
+            "-std=c++17",
+            "-O3",
+            "-march=native",
+            f"-I{folder / 'include'}",
+            f"-I{law}",
+            *sources,
+            str(library),
+        ]
+        subprocess.run([*build, f"-Wl,-rpath,{folder}", "-pthread", "-o", str(program)], check=True)
+        model.write_text(mjcf(default_arm()), encoding="utf-8")
+        without = Path(name) / "frictionless.xml"
+        without.write_text(_without_friction(model.read_text(encoding="utf-8")), encoding="utf-8")
+
+        def seconds_a_second(xml: Path, count: int) -> float:
+            taken = []
+            for _ in range(3):
+                result = subprocess.run(
+                    [str(program), str(xml), "10", str(count)], check=True, capture_output=True, text=True
+                )
+                taken.append(float(result.stdout.split()[0]))
+            return 10.0 * count / min(taken)
+
+        free, dry, two = seconds_a_second(without, 1), seconds_a_second(model, 1), seconds_a_second(without, 2)
+    best = max(free, dry)
+    return [
+        Figure("MuJoCo from C++, implicitfast, no dry friction", free, "x real"),
+        Figure("MuJoCo from C++, implicitfast, dry friction", dry, "x real"),
+        Figure("MuJoCo from C++, two threads, no dry friction", two, "x real"),
+        Figure("batch against MuJoCo without friction", ours / best, "x", ">= 20", ours / best >= 20),
+        *_mujoco_rollout(),
+    ]
+
+
+def _without_friction(xml: str) -> str:
+    import re
+
+    return re.sub(r' frictionloss="[^"]*"', "", xml)
+
+
+def _mujoco_rollout() -> list[Figure]:
+    """Its own batch, open loop: Python cannot close the loop inside it."""
+    import mujoco  # type: ignore[import-not-found,import-untyped,unused-ignore]
+    from mujoco import rollout  # type: ignore[import-not-found,import-untyped,unused-ignore]
+
+    model = mujoco.MjModel.from_xml_string(_without_friction(mjcf(default_arm())))
+    model.opt.timestep = 1e-3
+    model.opt.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    count, steps = 32, 2000
+    size = mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_FULLPHYSICS)
+    data = mujoco.MjData(model)
+    state = np.zeros((count, size))
+    control = np.random.default_rng(1).uniform(-2, 2, (count, steps, 4))
+    taken = _best(lambda: rollout.rollout(model, data, state, control), time.perf_counter, 3)
+    return [Figure("MuJoCo's batch rollout, open loop, no controllers", count * steps * 1e-3 / taken, "x real")]
+
+
+def _pinocchio() -> list[Figure]:
+    if importlib.util.find_spec("pinocchio") is None:
+        return []
+    from tools.benchmarks.peers.pinocchio_loop import ticks_per_second
+
+    rate = max(ticks_per_second(default_arm()) for _ in range(3))
+    return [Figure("Pinocchio from Python, arm alone", rate * 1e-3, "x real")]
+
+
+def _numba(ours: float, plants: np.ndarray, experiment: Experiment) -> list[Figure]:
+    if importlib.util.find_spec("numba") is None:
+        return []
+    numba_loop: Any = importlib.import_module("tools.benchmarks.peers.numba_loop")
+
+    gains = np.tile(np.array([2.0, 0.5, 4.0, 15.0]), (4, 1))
+    some = np.ascontiguousarray(plants[:8])
+    numba_loop.batch(some, gains, experiment.leader)
+    taken = _best(lambda: numba_loop.batch(some, gains, experiment.leader), time.process_time)
+    rate = len(some) * experiment.ticks * 1e-3 / taken
+    return [
+        Figure("numba, fastmath, no backlash, float controller", rate, "x real"),
+        Figure("batch against numba", ours / rate, "x", ">= 4", ours / rate >= 4),
+    ]
+
+
+if __name__ == "__main__":
+    for figure in run():
+        print(f"{figure.name:56} {figure.value:12,.4g} {figure.unit} {figure.reach} {figure.holds}")
+    print(os.uname().machine, sysconfig.get_platform())

@@ -1,0 +1,105 @@
+"""What a control tick costs on the simulated boards: cycles, jitter, time from pot to duty, memory with the stack."""
+
+from __future__ import annotations
+
+import struct
+
+import numpy as np
+
+from greywhale.protocol import schema
+from tools.benchmarks.figure import Figure
+from tools.support.board_with_image import BOARDS, CYCLES_PER_TICK, UNWATCHED, BoardWithImage, apply, ram_of_a_life
+from tools.support.fuzzy_search import Random
+
+TICKS = 250
+SETS, TICKS_PER_SET = 300, 10  # for the worst tick over the parameters
+
+
+def ticks(name: str) -> list[Figure]:
+    bench = BoardWithImage(name)
+    apply(bench, UNWATCHED)
+    bench.ask(schema.EnableRequest, struct.pack("<H", 0))
+    bench.wait(1100)
+    whole, alone = [], []
+    for _ in range(TICKS):
+        bench.wiggle(1000)  # up to 2 rad apart, another way each tick
+        both = bench.tick_cycles()
+        whole.append(both[0])
+        alone.append(both[1])
+    worst = max(alone)
+    return [
+        Figure(f"{name}: tick, worst of {TICKS}", worst, "cycles", "<= 3,200 cycles", worst <= 3200),
+        Figure(f"{name}: tick, mean", float(np.mean(alone)), "cycles"),
+        Figure(f"{name}: tick with its interrupts, worst", max(whole) / 16, "us"),
+    ]
+
+
+def over_parameters(name: str) -> Figure:
+    """The dearest tick over random sets for all joints, most of them where the sets bend, with the slowest low-pass."""
+    bench, draw = BoardWithImage(name), Random(5)
+    worst = 0.0
+    for _ in range(SETS):
+        bench.millivolts[:] = 2500.0
+        bench.board.set_millivolts(bench.millivolts)
+        bench.wait(30)
+        values = {"filter_shift": 2, "soft_start_ms": 100, "tracking_limit": 0} | UNWATCHED
+        for joint in range(4):
+            values |= {f"joint{joint}.{key}": value for key, value in vars(draw.settings(1)).items()}
+        apply(bench, values)
+        bench.wait(30)
+        bench.ask(schema.EnableRequest, struct.pack("<H", 0))
+        bench.wait(110)
+        for _ in range(TICKS_PER_SET):
+            bench.wiggle(10.0 ** bench.random.uniform(0, 3.3))
+            worst = max(worst, bench.tick_cycles()[1])
+        bench.ask(schema.StopRequest)
+    return Figure(f"{name}: tick, worst of {SETS * TICKS_PER_SET} over the parameters", worst, "cycles")
+
+
+def jitter(name: str) -> Figure:
+    """Of the tick's interrupt, which starts the first conversion itself, while telemetry and noise use the link."""
+    bench = BoardWithImage(name)
+    bench.ask(schema.TelemetryRequest, struct.pack("<H", 1))
+    first = bench.next_entry()
+    late = []
+    for i in range(1, TICKS):
+        bench.run_to(first + CYCLES_PER_TICK * (i - 1) + int(bench.random.integers(9_000, 15_800)))
+        bench.board.uart_send(bench.random.bytes(30))
+        bench.run_to(first + CYCLES_PER_TICK * i - 150)
+        late.append(bench.next_entry() - first - CYCLES_PER_TICK * i)
+    spread = (max(late) - min(late)) / 16
+    return Figure(f"{name}: tick jitter", spread, "us", "<= 10 us", spread <= 10)
+
+
+def latency(name: str) -> list[Figure]:
+    """From a step at a leader pot to the first change of the duty, over all phases of the tick."""
+    bench = BoardWithImage(name)
+    apply(bench, UNWATCHED)
+    bench.ask(schema.EnableRequest, struct.pack("<H", 0))
+    bench.wait(1100)
+    delays = []
+    for _ in range(60):
+        bench.wait(40 + bench.random.uniform(0, 1))  # the low-pass has settled
+        bench.millivolts[0] += 300.0 if bench.millivolts[0] < 2500 else -300.0
+        bench.board.set_millivolts(bench.millivolts)
+        start, duty = bench.board.cycle, bench.board.duty(*bench.output)
+        while bench.board.duty(*bench.output) == duty:
+            bench.board.run_until(bench.board.cycle + 16)
+        delays.append((bench.board.cycle - start) / CYCLES_PER_TICK)
+    mean = float(np.mean(delays))
+    return [
+        Figure(f"{name}: leader pot to duty, mean over the phases of the tick", mean, "ms"),
+        Figure(f"{name}: leader pot to duty, worst phase", max(delays), "ms", "<= 1.3 ms", max(delays) <= 1.3),
+    ]
+
+
+def memory(name: str) -> Figure:
+    total = ram_of_a_life(name)
+    return Figure(f"{name}: RAM with the deepest stack", total, "bytes", "<= 1,536 bytes", total <= 1536)
+
+
+def run() -> list[Figure]:
+    figures = []
+    for name in BOARDS:
+        figures += [*ticks(name), over_parameters(name), jitter(name), *latency(name), memory(name)]
+    return figures

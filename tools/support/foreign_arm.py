@@ -1,0 +1,114 @@
+"""Arms that greywhale's model does not know: MuJoCo moves them, and their potentiometers have play behind the joint."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree as xml
+
+import numpy as np
+
+from greywhale.arm import ArmParameters
+from greywhale.arm.export import mjcf
+from greywhale.base.types import Floats
+from greywhale.files.arm import load_arm
+from greywhale.files.model import arm_toml
+from greywhale.protocol.firmware import JOINTS
+from greywhale_sim.assemble import BenchOptions, build_bench
+from greywhale_sim.lockstep import LockStepBench
+
+MASS, MOTOR = 0.1, 0.6  # masses are off by this share, motors by this logarithm, both uniform
+FRICTION_V = (0.15, 0.9)
+PLAY_RAD = (0.002, 0.020)  # of the whole band
+NOISE_V = (0.001, 0.004)
+
+
+@dataclass(frozen=True)
+class ForeignArm:
+    """Masses, motors and friction of an arm, and the play (4,) rad between each joint and its potentiometer."""
+
+    parameters: ArmParameters
+    play: Floats
+
+
+def foreign_arm(seed: int, play: bool = True) -> ForeignArm:
+    """The white box with masses, motors, friction, noise and play of its own; rigid gears, no Stribeck friction."""
+    random = np.random.default_rng(7000 + seed)
+    white = load_arm("white_box")
+    links = []
+    for link in white.link:
+        factor = float(np.exp(random.uniform(-MASS, MASS)))
+        inertia = {key: factor * value for key, value in link.inertia.model_dump().items()}
+        links.append(link.model_dump() | {"mass": factor * link.mass, "inertia": inertia})
+    joints = []
+    for number, joint in enumerate(white.joint):
+        known = white.actuator(number)
+        alpha, inertia_volts, damping_volts = random.uniform(-MOTOR, MOTOR, 3)
+        torque_per_volt = float(known.torque_per_volt * np.exp(-alpha))
+        damping = float(known.damping * np.exp(damping_volts - alpha))
+        motor = {
+            "gear_ratio": 1.0,
+            "torque_constant": 0.5 * damping / torque_per_volt,
+            "resistance": 0.5 * damping / torque_per_volt**2,
+            "inertia": float(known.inertia * np.exp(inertia_volts - alpha)),
+            "viscous": 0.5 * damping,
+        }
+        coulomb = float(random.uniform(*FRICTION_V)) * torque_per_volt
+        joints.append(joint.model_dump() | {"motor": motor, "friction": {"coulomb": coulomb, "breakaway": coulomb}})
+    noise = float(random.uniform(*NOISE_V))
+    pots = {"supply": 5.0, "joint": [{"noise": noise}] * JOINTS}
+    data = white.model_dump() | {"name": f"foreign arm {seed}", "link": links, "joint": joints}
+    data |= {"motor_equation": "physical", "follower_pots": pots, "leader_pots": pots}
+    width = random.uniform(*PLAY_RAD, JOINTS)
+    parameters = ArmParameters.model_validate(data, strict=False)
+    return ForeignArm(parameters, width if play else np.zeros(JOINTS))
+
+
+class MuJoCoPlant:
+    """The follower of a bench: `step` turns voltages into the angles that the potentiometers show."""
+
+    def __init__(self, arm: ForeignArm) -> None:
+        import mujoco  # only `make oracles` installs it
+
+        self._advance = mujoco.mj_step
+        self._model = mujoco.MjModel.from_xml_string(_as_soft_as_usual(mjcf(arm.parameters)))
+        self._model.opt.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+        self._data: Any = mujoco.MjData(self._model)
+        self._half = 0.5 * arm.play
+        self._shown = np.zeros(JOINTS)
+
+    def reset(self, angles: Floats) -> None:
+        """Hold the arm in a pose by hand."""
+        self._data.qpos[:] = angles
+        self._data.qvel[:] = 0.0
+        self._shown = angles.copy()
+
+    def step(self, voltages: Floats, dt: float) -> Floats:
+        self._model.opt.timestep = dt
+        self._data.ctrl[:] = voltages
+        self._advance(self._model, self._data)
+        # The joint drags the wiper along at either end of the play.
+        self._shown = np.clip(self._shown, self._data.qpos - self._half, self._data.qpos + self._half)
+        return self._shown
+
+
+def _as_soft_as_usual(text: str) -> str:
+    """The exported arm with friction and stops as MuJoCo has them by default: softer than this arm's own."""
+    root = xml.fromstring(text)
+    (default,) = root.findall("default")
+    default.remove(default.findall("joint")[0])
+    return xml.tostring(root, encoding="unicode")
+
+
+def save(arm: ForeignArm, path: Path) -> Path:
+    """Write the arm file that a bench needs for potentiometers and supply."""
+    path.write_text(arm_toml(arm.parameters, "An arm of another engine."), encoding="utf-8")
+    return path
+
+
+def bench_of(seed: int, folder: Path) -> LockStepBench:
+    """A bench in lock step with that arm on it."""
+    arm = foreign_arm(seed)
+    options = BenchOptions(arm=save(arm, folder / "foreign.toml"))
+    return LockStepBench(options, build_bench(options, MuJoCoPlant(arm)))

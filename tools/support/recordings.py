@@ -1,0 +1,168 @@
+"""Recordings of arms that the identification must not know: the native closed loop plays the bench, the log is all
+that leaves this file.
+
+The follower's readings are made as the firmware makes them: four 10-bit conversions in a tick of noisy potentiometers,
+filtered, scaled to 1/4096 rad.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from greywhale.arm import ArmParameters, Potentiometers
+from greywhale.base.types import Floats
+from greywhale.files import controller
+from greywhale.files.arm import load_arm
+from greywhale.files.log import Log, LogWriter, read_log
+from greywhale.files.log.layout import Origin
+from greywhale.files.trajectory import Trajectory
+from greywhale.motion import human_reaches
+from greywhale.protocol.firmware import ANGLE_LSB, JOINTS, pwm_steps
+from greywhale.protocol.table import ParameterTable
+from greywhale.simulate import Experiment
+from tools import ROOT
+
+TABLES = ROOT / "shared" / "fuzzy_tables"
+# Within a tick, when the four conversions of a follower's potentiometer hold their input (ms).
+MOMENTS = (0.1, 0.3, 0.5, 0.7)
+SUPPLY = 15.0
+WEAR = ("play", "load", "creep", "lag", "linearity", "supply")
+START_S = 1.5  # the log begins that long after the motors went on, as `greywhale record` does
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """Three logs of one arm: to fit, to validate, and to validate with another controller."""
+
+    fit: Log
+    second: Log
+    changed: Log
+
+
+def table_of(name: str) -> ParameterTable:
+    """A whole parameter table with the controllers of shared/fuzzy_tables/`name`.toml."""
+    return controller.load(TABLES / f"{name}.toml").table().with_name(name)
+
+
+def record(
+    arm: ArmParameters,
+    motion: Trajectory,
+    path: Path,
+    table: ParameterTable | None = None,
+    seed: int = 1,
+    every: int = 1,
+) -> Log:
+    """Record `motion` on the table's board into the log `path`, a row every `every` ticks."""
+    table = ParameterTable.defaults() if table is None else table
+    experiment = Experiment(motion, arm, table=table, seed=seed, wait_s=START_S + 0.1)
+    result = experiment.run_single(every=1)
+    if result.diverged[0]:
+        raise RuntimeError("the recorded arm left the range of numbers")
+    follower = _readings(np.asarray(result.angles[0], dtype=np.float64), arm, table, seed)
+    volts = result.duties[0].astype(np.float64) / pwm_steps(table.board) * arm.drive.supply
+    origin = Origin("0.1.0", table.board.key, table.crc, table.period_ms, every, joints=table.joints_in_use)
+    first = round(START_S * 1000)
+    with LogWriter(path, origin) as log:
+        for row, tick in enumerate(range(first, len(volts), every)):
+            leader = [float(value) * ANGLE_LSB for value in experiment.reference[tick]]
+            log.append(row * every / 1000, leader, list(follower[tick]), list(volts[tick]), "following")
+    return read_log(path)
+
+
+def _readings(angles: Floats, arm: ArmParameters, table: ParameterTable, seed: int) -> Floats:
+    """What the firmware makes of the true angles at every tick."""
+    pots = Potentiometers(arm.follower_pots, seed + 1)
+    shift = table["filter_shift"]
+    before = np.vstack([angles[:1], angles[:-1]])
+    between = np.stack([before + moment * (angles - before) for moment in MOMENTS], axis=1)
+    counts = np.array([pots.counts(row) for row in np.ascontiguousarray(between.reshape(-1, JOINTS))])
+    filtered = counts.reshape(len(angles), len(MOMENTS), JOINTS).sum(axis=1) * 4.0
+    for tick in range(1, len(filtered)):
+        filtered[tick] = filtered[tick - 1] + (filtered[tick] - filtered[tick - 1]) / (1 << shift)
+    zero, scale = np.array(table.each("follower", "zero")), np.array(table.each("follower", "scale"))
+    readings: Floats = np.floor((filtered - zero) * scale / 8192.0 + 0.5) * ANGLE_LSB
+    return readings
+
+
+def random_arm(seed: int) -> ArmParameters:
+    """The white box with motor combinations times e^(+-0.9), friction, backlash and sensor noise of its own."""
+    random = np.random.default_rng(seed)
+    white = load_arm("white_box")
+    joints = []
+    for number, joint in enumerate(white.joint):
+        known = white.actuator(number)
+        alpha, inertia_volts, damping_volts = random.uniform(-0.9, 0.9, 3)
+        torque_per_volt = known.torque_per_volt * np.exp(-alpha)
+        inertia = known.inertia * np.exp(inertia_volts - alpha)
+        damping = known.damping * np.exp(damping_volts - alpha)
+        coulomb = random.uniform(0.2, 0.9) * torque_per_volt
+        motor = {
+            "gear_ratio": 1.0,
+            "torque_constant": 0.5 * damping / torque_per_volt,
+            "resistance": 0.5 * damping / torque_per_volt**2,
+            "inertia": inertia,
+            "viscous": 0.5 * damping,
+        }
+        stiffness = 15.0 * torque_per_volt / 0.004
+        joints.append(
+            joint.model_dump()
+            | {
+                "motor": {key: float(value) for key, value in motor.items()},
+                "friction": {
+                    "coulomb": float(coulomb),
+                    "breakaway": float(coulomb * random.uniform(1.05, 1.5)),
+                    "stribeck_velocity": float(random.uniform(0.05, 0.15)),
+                },
+                "gear": {
+                    "half_gap": float(random.uniform(0.001, 0.006)),
+                    "stiffness": float(stiffness),
+                    "damping": float(stiffness * 0.002),
+                    "drag": float(0.02 * damping),
+                },
+            }
+        )
+    noise = float(random.uniform(0.001, 0.004))
+    pots = {"supply": 5.0, "joint": [{"noise": noise}] * 4}
+    data = white.model_dump() | {"name": f"random arm {seed}", "joint": joints, "motor_equation": "physical"}
+    return ArmParameters.model_validate(data | {"follower_pots": pots, "leader_pots": pots}, strict=False)
+
+
+def wear_out(arm: ArmParameters, seed: int, kinds: tuple[str, ...] = WEAR) -> ArmParameters:
+    """The same arm with some of what used arms have, drawn at random: play of 0 to 20 mrad, load friction to 50 %."""
+    random = np.random.default_rng([seed, 9])
+    data = arm.model_dump()
+    drawn = {
+        "play": random.uniform(0.0, 0.02, 4),
+        "load": random.uniform(0.0, 0.5, 4),
+        "creep": random.uniform(0.0, 0.03, 4),
+        "lag": random.uniform(0.0, 2e-3) * np.ones(4),
+        "linearity": random.uniform(0.0, 0.005, 4),
+    }
+    supply = float(random.uniform(0.0, 0.3))
+    for joint in range(JOINTS):
+        friction, pot = data["joint"][joint]["friction"], data["follower_pots"]["joint"][joint]
+        for kind, place, key in (
+            ("play", pot, "play"),
+            ("lag", pot, "lag"),
+            ("linearity", pot, "linearity"),
+            ("load", friction, "load"),
+            ("creep", friction, "creep_velocity"),
+        ):
+            if kind in kinds:
+                place[key] = float(drawn[kind][joint])
+    if "supply" in kinds:
+        data["drive"]["supply_resistance"] = supply
+    return ArmParameters.model_validate(data | {"name": f"{arm.name}, worn"}, strict=False)
+
+
+def record_three(arm: ArmParameters, folder: Path, seed: int = 1, seconds: float = 30.0) -> Recorded:
+    """The fitting log, a second one, and one with the controllers of the paper's Table 10."""
+    before, after = table_of("before_tuning"), table_of("table_10")
+    return Recorded(
+        record(arm, human_reaches(10 * seed + 1, seconds), folder / "fit.csv", before, 10 * seed + 1),
+        record(arm, human_reaches(10 * seed + 2, seconds), folder / "second.csv", before, 10 * seed + 2),
+        record(arm, human_reaches(10 * seed + 3, seconds), folder / "changed.csv", after, 10 * seed + 3),
+    )
