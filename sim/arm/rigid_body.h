@@ -2,7 +2,7 @@
 //
 // Angles: q0 base yaw, q1 shoulder pitch, q2 wrist pitch, q3 wrist roll; phi = q1 + q2. Yaw and roll couple with each
 // other and the two pitches with each other, never across, so the mass matrix is two 2x2 blocks. The number type may be
-// double or lanes of either precision (scalar.h): the bench, the single run, the windows and the batch have their
+// double or lanes of either precision (scalar.h): the bench, the exact run, the windows and the batch have their
 // equations from here.
 #pragma once
 

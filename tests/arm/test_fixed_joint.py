@@ -75,13 +75,13 @@ def test_the_rest_moves_as_the_arm_with_its_row_and_column_removed(make_arm: Any
 def test_batch_single_run_and_ideal_law_hold_it(make_arm: Any, worn: bool) -> None:
     arm = with_joints(make_arm, (0, 1), "worn" if worn else "default")
     experiment = Experiment(human_reaches(4, 3.0), arm, noise=False)
-    batch, single = experiment.run(every=1, steps_per_tick=4), experiment.run_single(every=1)
-    for result in (batch, single):
+    batch, exact = experiment.run(every=1, steps_per_tick=4), experiment.run_exact(every=1)
+    for result in (batch, exact):
         np.testing.assert_array_equal(result.angles[..., 2:], 0.0)
         np.testing.assert_array_equal(result.mse[:, 2:], 0.0)
         assert not result.diverged.any()
-    np.testing.assert_allclose(batch.angles, single.angles, atol=5e-3)
-    assert np.abs(single.angles[..., :2]).max() > 0.2
+    np.testing.assert_allclose(batch.angles, exact.angles, atol=5e-3)
+    assert np.abs(exact.angles[..., :2]).max() > 0.2
     slices = np.repeat(experiment.leader, 4, axis=0)
     floor = saturation_floor(slices, plant_row(arm))
     np.testing.assert_array_equal(floor.mse[2:], 0.0)

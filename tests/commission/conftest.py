@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from greywhale.commission import Options
-from greywhale.commission.book import Book
+from greywhale.commission import CommissioningRequest
+from greywhale.commission.journal import CommissioningJournal
 from greywhale.commission.motions import check_motion
 from greywhale.commission.trials import Trials
 from greywhale.files.arm import default_arm
@@ -24,10 +24,10 @@ def rig() -> SimulatedRig:
 @pytest.fixture
 def trials(tmp_path: Path, rig: SimulatedRig) -> Trials:
     """Nothing tried yet."""
-    return Trials(Book(tmp_path / "trials", {}, resume=False), check_motion(ROOM), rig.before)
+    return Trials(CommissioningJournal(tmp_path / "trials", {}, resume=False), check_motion(ROOM), rig.before)
 
 
 @pytest.fixture
-def options(tmp_path: Path) -> Callable[..., Options]:
+def options(tmp_path: Path) -> Callable[..., CommissioningRequest]:
     """A short commissioning that begins with a model of the default arm."""
     return options_in(tmp_path)

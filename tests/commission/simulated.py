@@ -19,10 +19,10 @@ from greywhale.arm.plants import plant_row
 from greywhale.base.errors import UserError
 from greywhale.base.types import show_no_progress
 from greywhale.board.stream import Received
-from greywhale.commission import Options
-from greywhale.commission.motions import Room
-from greywhale.commission.rig import Played
-from greywhale.commission.watch import Hunting, Watch
+from greywhale.commission import CommissioningRequest
+from greywhale.commission.arm_on_port import PlayedMotion
+from greywhale.commission.hunting_stop import Hunting, HuntingStop
+from greywhale.commission.motions import JointRange
 from greywhale.files.log import LogWriter, read_log
 from greywhale.files.log.layout import Origin
 from greywhale.files.trajectory import Trajectory
@@ -34,7 +34,7 @@ from greywhale.simulate.controllers import controllers_of
 from tests.tune.models import write_model
 
 POSE = np.array([0.0, 0.4, 0.0, 0.0])
-ROOM = Room(POSE, POSE - 0.9, POSE + 0.9)
+ROOM = JointRange(POSE, POSE - 0.9, POSE + 0.9)
 WAIT = 300  # ticks at the first pose
 EVERY = 4  # ticks from one row of a log to the next
 
@@ -55,13 +55,13 @@ class SimulatedRig:
 
     def play(
         self, motion: Trajectory, path: Path, table: ParameterTable, *, patient: bool = False, watched: bool = True
-    ) -> Played:
+    ) -> PlayedMotion:
         self.at_play(len(self.played))
         self.report("recording", 0.0)
         self.played.append(table)
         log, stopped = _recorded(self.arm, motion, table, watched)
         path.write_bytes(log)
-        return Played(read_log(path), "" if stopped is None else f"joint {stopped} hunted", stopped)
+        return PlayedMotion(read_log(path), "" if stopped is None else f"joint {stopped} hunted", stopped)
 
     def keep(self, table: ParameterTable) -> None:
         self.stored = self.before = table
@@ -70,18 +70,18 @@ class SimulatedRig:
     def connected(
         self, port: str, before: ParameterTable | None, progress: Callable[[str, float], None]
     ) -> Iterator[SimulatedRig]:
-        """In the place of greywhale.commission.rig.connected."""
+        """In the place of greywhale.commission.arm_on_port.connected."""
         self.report = progress
         if before is not None and before.crc != self.stored.crc:
             raise UserError(f"{port}: the board runs another set.")
         yield self
 
 
-def options_in(folder: Path) -> Callable[..., Options]:
+def options_in(folder: Path) -> Callable[..., CommissioningRequest]:
     """Makes the options of a short commissioning in a folder; it begins with a model of the default arm."""
     model = write_model(folder / "model.toml")
 
-    def make(**changes: Any) -> Options:
+    def make(**changes: Any) -> CommissioningRequest:
         given: dict[str, Any] = {
             "port": "port",
             "out": folder / "out",
@@ -90,7 +90,7 @@ def options_in(folder: Path) -> Callable[..., Options]:
             "trials": 4,
             "budget": 12,
         }
-        return Options(**given | changes)
+        return CommissioningRequest(**given | changes)
 
     return make
 
@@ -104,13 +104,13 @@ def _recorded(arm: ArmParameters, motion: Trajectory, table: ParameterTable, wat
     if key not in _known:
         with TemporaryDirectory() as folder:
             path = Path(folder) / "log.csv"
-            stopped = _record(arm, motion, table, path, Watch() if watched else None)
+            stopped = _record(arm, motion, table, path, HuntingStop() if watched else None)
             _known[key] = path.read_bytes(), stopped
     return _known[key]
 
 
 def _record(
-    arm: ArmParameters, motion: Trajectory, table: ParameterTable, path: Path, watch: Watch | None
+    arm: ArmParameters, motion: Trajectory, table: ParameterTable, path: Path, watch: HuntingStop | None
 ) -> int | None:
     leader = motion.at(np.arange(round(motion.duration_s / TICK_S), dtype=np.float64) * TICK_S)
     reference = np.vstack([np.tile(leader[:1], (WAIT, 1)), leader])
@@ -129,7 +129,12 @@ def _record(
 
 
 def _write(
-    path: Path, table: ParameterTable, leader: np.ndarray, follower: np.ndarray, volts: np.ndarray, watch: Watch | None
+    path: Path,
+    table: ParameterTable,
+    leader: np.ndarray,
+    follower: np.ndarray,
+    volts: np.ndarray,
+    watch: HuntingStop | None,
 ) -> int | None:
     """The log of the traces; the joint for which the watch stopped it."""
     counts = np.round(np.stack([leader, follower]) / ANGLE_LSB).astype(int).tolist()

@@ -9,8 +9,8 @@ import pytest
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import column, plant_row
-from greywhale.commission.book import Book
 from greywhale.commission.evidence import failing_plants, gather
+from greywhale.commission.journal import CommissioningJournal
 from greywhale.commission.motions import check_motion
 from greywhale.commission.predict import predict
 from greywhale.commission.trials import Trials
@@ -43,7 +43,7 @@ def test_a_model_predicts_what_its_own_arm_does(trials: Trials, rig: SimulatedRi
 
 def test_the_plant_that_shows_the_hunting_is_the_model_with_one_change(tmp_path: Path) -> None:
     rig = SimulatedRig(loose_arm())
-    trials = Trials(Book(tmp_path, {}, resume=False), check_motion(ROOM), rig.before)
+    trials = Trials(CommissioningJournal(tmp_path, {}, resume=False), check_motion(ROOM), rig.before)
     play_before(trials, rig)
     trial = play(trials, rig, stiffer(trials, [JOINT], 12.0))
     assert trial.verdicts[JOINT].hunts

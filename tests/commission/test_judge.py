@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from greywhale.commission.judge import Limits, Verdict, judge
+from greywhale.commission.judge import Limits, TrialVerdict, judge
 from greywhale.commission.measures import Measures
 from greywhale.commission.motions import PARTS
 
@@ -31,7 +31,7 @@ def with_joint(name: str, joint: int, value: float, part: int = 1) -> Measures:
     return replace(BEFORE, **{name: values})
 
 
-def verdict(measured: Measures, joint: int, kept: np.ndarray = KEPT, guilty: tuple[str, ...] = QUIET) -> Verdict:
+def verdict(measured: Measures, joint: int, kept: np.ndarray = KEPT, guilty: tuple[str, ...] = QUIET) -> TrialVerdict:
     return judge(measured, BEFORE, Limits.of([BEFORE], kept), guilty)[joint]
 
 

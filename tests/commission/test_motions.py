@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from greywhale.commission.motions import PARTS, Room, check_motion, first_motion
+from greywhale.commission.motions import PARTS, JointRange, check_motion, first_motion
 from greywhale.protocol.firmware import FASTEST_LED_RAD_S, POINT_S
 from tests.commission.simulated import ROOM
 
@@ -13,13 +13,13 @@ POSE = np.array([0.0, 0.4, -0.3, 0.1])
 # At the edge of the room, in its middle, and in a narrow one.
 ROOMS = [
     ROOM,
-    Room(POSE, POSE - np.array([1.0, 0.0, 0.3, 0.02]), POSE + np.array([0.0, 1.0, 0.3, 0.3])),
-    Room(POSE, POSE - 0.1, POSE + 0.1),
+    JointRange(POSE, POSE - np.array([1.0, 0.0, 0.3, 0.02]), POSE + np.array([0.0, 1.0, 0.3, 0.3])),
+    JointRange(POSE, POSE - 0.1, POSE + 0.1),
 ]
 
 
 @pytest.mark.parametrize("room", ROOMS)
-def test_the_check_stays_in_the_room_and_can_be_led(room: Room) -> None:
+def test_the_check_stays_in_the_room_and_can_be_led(room: JointRange) -> None:
     motion = check_motion(room).motion
     played = motion.at(np.arange(0.0, motion.duration_s, POINT_S))
     assert (played >= room.low - 1e-12).all()
@@ -28,7 +28,7 @@ def test_the_check_stays_in_the_room_and_can_be_led(room: Room) -> None:
 
 
 @pytest.mark.parametrize("room", ROOMS)
-def test_it_begins_and_ends_at_rest_at_the_pose_and_so_does_each_part(room: Room) -> None:
+def test_it_begins_and_ends_at_rest_at_the_pose_and_so_does_each_part(room: JointRange) -> None:
     check = check_motion(room)
     assert tuple(check.parts) == PARTS
     ends = [0.0]

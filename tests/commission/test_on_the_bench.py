@@ -20,9 +20,9 @@ from greywhale.board.record import Recording
 from greywhale.board.upload import read_parameters
 from greywhale.cli.entry import run
 from greywhale.cli.story import BenchProcess, RunningBench
-from greywhale.commission import rig
-from greywhale.commission.motions import Room, check_motion, first_motion
-from greywhale.commission.rig import connected
+from greywhale.commission import arm_on_port
+from greywhale.commission.arm_on_port import connected
+from greywhale.commission.motions import JointRange, check_motion, first_motion
 from greywhale.files.arm import default_arm
 from greywhale.files.log import read_log
 from greywhale.files.model import to_toml
@@ -55,8 +55,8 @@ def wild() -> ParameterTable:
     return BEFORE.with_controllers(rows)
 
 
-def small_check(pose: np.ndarray) -> Room:
-    return Room(pose, pose - 0.5, pose + 0.5)
+def small_check(pose: np.ndarray) -> JointRange:
+    return JointRange(pose, pose - 0.5, pose + 0.5)
 
 
 def running(bench: RunningBench) -> tuple[ParameterTable, State]:
@@ -90,7 +90,7 @@ def test_a_fault_of_the_board_ends_the_trial_and_not_the_commissioning(bench: Lo
     rows[:, 11] = 50
     with connected(bench.port, BEFORE, told) as arm:
         pose = arm.pose()
-        room = Room(pose, pose - 1.2, pose + 1.2)
+        room = JointRange(pose, pose - 1.2, pose + 1.2)
         played = arm.play(check_motion(room).motion, tmp_path / "log.csv", BEFORE.with_controllers(rows), watched=False)
         assert "the board stopped" in played.stopped
         assert arm.device.status().state is State.DISABLED
@@ -130,7 +130,7 @@ def send_in_the_check(number: int, patch: pytest.MonkeyPatch) -> None:
 
         return record.record_led(device, path, motion, progress=told, **options)
 
-    patch.setattr(rig, "record_led", record_led)
+    patch.setattr(arm_on_port, "record_led", record_led)
 
 
 def commission_killed(port: str, folder: Path) -> None:

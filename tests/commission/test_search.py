@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from greywhale.commission.judge import Verdict
+from greywhale.commission.judge import TrialVerdict
 from greywhale.commission.search import GOOD, KD, KI, KP, MOST_SOFTER, JointSearch
 from greywhale.simulate import CONTROLLER_COLUMNS, default_controller
 from greywhale.simulate.controllers import check_controllers
@@ -20,9 +20,9 @@ Row = np.ndarray
 
 def verdict(
     score: float, *, restless: bool = False, chatters: bool = False, worse: bool = False, excess: float = 3.0
-) -> Verdict:
+) -> TrialVerdict:
     faults = (("restless",) if restless or chatters else ()) + (("worse",) if worse else ())
-    return Verdict(0, faults, restless or chatters, chatters and not restless, excess, score, True, not faults)
+    return TrialVerdict(0, faults, restless or chatters, chatters and not restless, excess, score, True, not faults)
 
 
 def begun() -> JointSearch:
@@ -32,7 +32,7 @@ def begun() -> JointSearch:
     return search
 
 
-def run(judge: Callable[[Row], Verdict], trials: int = 20) -> JointSearch:
+def run(judge: Callable[[Row], TrialVerdict], trials: int = 20) -> JointSearch:
     """Play the search against an arm of which `judge` says how it does."""
     search, row = begun(), TUNED
     for number in range(trials):
@@ -65,7 +65,7 @@ def test_a_joint_that_hunts_hardly_more_than_it_may_is_softened_a_little() -> No
 
 
 def test_what_can_be_borne_is_softened_a_little_and_then_varied_like_what_passed() -> None:
-    borne = Verdict(0, ("restless",), True, False, 1.05, 0.2, True, True)
+    borne = TrialVerdict(0, ("restless",), True, False, 1.05, 0.2, True, True)
     search = begun()
     search.add(TUNED, borne, "trial-1")
     for number in range(MOST_SOFTER):

@@ -9,7 +9,7 @@ import pytest
 
 from greywhale.arm import ArmParameters
 from greywhale.base.errors import UserError
-from greywhale.commission.book import Book
+from greywhale.commission.journal import CommissioningJournal
 from greywhale.commission.start import refuse_stuck, refuse_uncalibrated, shares_moved
 from greywhale.files.arm import default_arm
 from greywhale.files.log import Log
@@ -33,22 +33,22 @@ def with_pot(arm: ArmParameters, joint: int, **values: float) -> ArmParameters:
 
 
 @pytest.fixture
-def book(tmp_path: Path) -> Book:
-    return Book(tmp_path / "out", {}, resume=False)
+def book(tmp_path: Path) -> CommissioningJournal:
+    return CommissioningJournal(tmp_path / "out", {}, resume=False)
 
 
-def stuck(rig: SimulatedRig, book: Book) -> None:
+def stuck(rig: SimulatedRig, book: CommissioningJournal) -> None:
     refuse_stuck(rig, book, ROOM)  # type: ignore[arg-type]
 
 
-def test_an_arm_that_follows_is_moved_once(rig: SimulatedRig, book: Book) -> None:
+def test_an_arm_that_follows_is_moved_once(rig: SimulatedRig, book: CommissioningJournal) -> None:
     stuck(rig, book)
     assert len(rig.played) == 1
     stuck(rig, book)
     assert len(rig.played) == 1, "not again after a break"
 
 
-def test_friction_that_holds_a_joint_gets_a_larger_motion(book: Book) -> None:
+def test_friction_that_holds_a_joint_gets_a_larger_motion(book: CommissioningJournal) -> None:
     held = 8.0 * default_arm().actuator(3).torque_per_volt  # V that friction takes
     weak = with_joint(default_arm(), 3, "friction", coulomb=held, breakaway=held)
     rig = SimulatedRig(weak)
@@ -56,7 +56,7 @@ def test_friction_that_holds_a_joint_gets_a_larger_motion(book: Book) -> None:
     assert len(rig.played) == 2
 
 
-def test_a_joint_that_cannot_move_is_named(book: Book) -> None:
+def test_a_joint_that_cannot_move_is_named(book: CommissioningJournal) -> None:
     blocked = with_joint(default_arm(), 2, "friction", coulomb=50.0, breakaway=50.0)
     with pytest.raises(UserError, match=r"joint 2 \(wrist pitch\) did not move when led by 0.4 rad") as caught:
         stuck(SimulatedRig(blocked), book)

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from greywhale.base.errors import UserError
+from greywhale.commission.arm_on_port import ArmOnPort
 from greywhale.commission.choose import confirm
 from greywhale.commission.judge import BEARABLE
-from greywhale.commission.outcome import Outcome
-from greywhale.commission.rig import Rig
+from greywhale.commission.result import CommissioningResult
 from greywhale.commission.search import KD, KI, KP, JointSearch
 from greywhale.commission.trials import Trial, Trials
 from greywhale.simulate.controllers import controllers_of
@@ -74,9 +74,9 @@ def test_the_summary_says_what_is_borne_and_fits_a_terminal(trials: Trials, rig:
     fault = "it hunts at rest (2.2 mrad rms, at most 2.0)"
     restless = judged(play_before(trials, rig), (fault,), True, 0.1)
     said = f"Joint 0 (base yaw): {fault}. No quieter controller follows as well."
-    text = Outcome(trials, (), restless).text()
+    text = CommissioningResult(trials, (), restless).text()
     assert said in text
-    assert said not in Outcome(trials, (), judged(trials.before, (), True, 0.1)).text()
+    assert said not in CommissioningResult(trials, (), judged(trials.before, (), True, 0.1)).text()
     measured = 1e3 * np.sqrt(restless.measured.error[1, 3])
     assert f"-> {measured:.1f}\n" in next(line + "\n" for line in text.splitlines() if line.startswith("moves "))
     assert text.startswith(f"The board now runs and stores {restless.name}")
@@ -171,4 +171,4 @@ def test_controllers_from_before_that_the_board_stops_are_refused(trials: Trials
 
 def test_a_simulated_rig_offers_what_a_rig_offers() -> None:
     offered = {name for name in vars(SimulatedRig) if not name.startswith("_")}
-    assert {name for name in vars(Rig) if not name.startswith("_")} <= offered
+    assert {name for name in vars(ArmOnPort) if not name.startswith("_")} <= offered

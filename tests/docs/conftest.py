@@ -19,9 +19,10 @@ from greywhale.cli import flash as flash_verb
 from greywhale.cli import identify as identify_verb
 from greywhale.cli import tune as tune_verb
 from greywhale.cli.story import DemoOptions
-from greywhale.commission import Options, campaign, learn
-from greywhale.commission.book import Book
-from greywhale.commission.learn import Learnt
+from greywhale.commission import CommissioningRequest, learn
+from greywhale.commission import run as commission_run
+from greywhale.commission.journal import CommissioningJournal
+from greywhale.commission.learn import LearntController
 from greywhale.commission.search import KI, KP
 from greywhale.files import parameter_file
 from greywhale.files.arm import content_of, default_arm, load_arm
@@ -126,17 +127,22 @@ def commissioned(yours: Path, tmp_path_factory: pytest.TempPathFactory) -> Once:
     out = tmp_path_factory.mktemp("commission") / "out"
     rig = SimulatedRig(default_arm())
 
-    def find(book: Book, name: str, model: Model, start: np.ndarray, **options: object) -> Learnt:
+    def find(
+        book: CommissioningJournal, name: str, model: Model, start: np.ndarray, **options: object
+    ) -> LearntController:
         rows = start.copy()
         rows[:, [KP, KI]] *= 2
         book.note(name, {})
-        return Learnt(model.arm, rows, (), True)
+        return LearntController(model.arm, rows, (), True)
 
     def compute() -> Any:
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(campaign, "connected", rig.connected)
+            patch.setattr(commission_run, "connected", rig.connected)
             patch.setattr(learn, "find_controllers", find)
-            return real(Options(port="port", out=out, model=yours / "model.toml", rounds=1, trials=1, budget=4), None)
+            return real(
+                CommissioningRequest(port="port", out=out, model=yours / "model.toml", rounds=1, trials=1, budget=4),
+                None,
+            )
 
     return Once(compute)
 
@@ -167,7 +173,7 @@ def once(
     that has its firmware. A page's own bench is in this process.
     """
 
-    def commission(options: Options, report: Any) -> Any:
+    def commission(options: CommissioningRequest, report: Any) -> Any:
         options.out.mkdir(exist_ok=True)
         return commissioned()
 

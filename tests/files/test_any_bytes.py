@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from greywhale.base.errors import LONGEST, UserError
 from greywhale.base.formats import toml_file
-from greywhale.commission.book import NAME, Book
+from greywhale.commission.journal import NAME, CommissioningJournal
 from greywhale.files import controller, parameter_file
 from greywhale.files.arm import content_of, load_arm
 from greywhale.files.leader import load_leader, save_leader
@@ -22,7 +22,7 @@ from greywhale.files.log.layout import Origin
 from greywhale.files.paper_tables import paper_table
 from greywhale.files.trajectory import Trajectory
 from greywhale.protocol.table import ParameterTable
-from greywhale.tune.search.journal import Journal
+from greywhale.tune.search.journal import TuningJournal
 
 REQUEST = {"seed": 1}
 SLOWEST_S = 5.0  # of the processor; what these tests guard against took 14 s and more
@@ -37,22 +37,22 @@ def log(path: Path) -> None:
 
 def book(path: Path) -> None:
     (path.parent / NAME).unlink(missing_ok=True)
-    Book(path.parent, REQUEST, resume=False).note("before", {"stopped": ""})
+    CommissioningJournal(path.parent, REQUEST, resume=False).note("before", {"stopped": ""})
     (path.parent / NAME).replace(path)
 
 
 def read_book(path: Path) -> None:
     path.replace(path.parent / NAME)
-    Book(path.parent, REQUEST, resume=True)
+    CommissioningJournal(path.parent, REQUEST, resume=True)
 
 
 def journal(path: Path) -> None:
-    with Journal(path, REQUEST) as one:
+    with TuningJournal(path, REQUEST) as one:
         one.tell("stage", np.ones((2, 12), dtype=np.int32), np.ones((2, 4)))
 
 
 def read_journal(path: Path) -> None:
-    Journal(path, REQUEST, resume=True).close()
+    TuningJournal(path, REQUEST, resume=True).close()
 
 
 def leader(path: Path) -> None:

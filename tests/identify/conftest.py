@@ -15,7 +15,7 @@ from greywhale.arm import ArmParameters
 from greywhale.files.arm import load_arm
 from greywhale.files.log import Log
 from greywhale.files.trajectory import Trajectory
-from greywhale.identify import Outcome, identify
+from greywhale.identify import IdentificationResult, identify
 from greywhale.motion import human_reaches
 from greywhale.protocol.table import ParameterTable
 from tools.support.recordings import Recorded, random_arm, record, record_three, table_of
@@ -66,5 +66,5 @@ def tables() -> list[ParameterTable]:
 
 
 @pytest.fixture(scope="session")
-def outcome(recorded: Recorded, white_box: ArmParameters, tables: list[ParameterTable]) -> Outcome:
+def outcome(recorded: Recorded, white_box: ArmParameters, tables: list[ParameterTable]) -> IdentificationResult:
     return identify([recorded.fit], white_box, validate=[recorded.second, recorded.changed], tables=tables)

@@ -7,7 +7,7 @@ import pytest
 
 from greywhale.base.types import Floats
 from greywhale.identify.hunting import Swings, describe_difference, swings_of
-from greywhale.identify.judge import CHANGED, FIT, Following, Verdict, doubts_of
+from greywhale.identify.judge import CHANGED, FIT, Following, LogVerdict, doubts_of
 
 ROW_S = 5e-3
 TIME = np.arange(0.0, 20.0, ROW_S)
@@ -68,10 +68,10 @@ def test_sentences_name_the_joint_and_what_may_be_missing() -> None:
     assert describe_difference("log3.csv", hunts, REST, (0, 1, 3)) == []
 
 
-def verdict(role: str, left: float) -> Verdict:
+def verdict(role: str, left: float) -> LogVerdict:
     errors = (1e-4,) * 4
     following = Following((1e-3,) * 4, (left, 1e-8, 1e-8, 1e-8), errors, REST, REST)
-    return Verdict("log.csv", role, "closed loop", (1e-3,) * 4, (1e-8,) * 4, following)
+    return LogVerdict("log.csv", role, "closed loop", (1e-3,) * 4, (1e-8,) * 4, following)
 
 
 def test_model_that_fails_with_a_changed_controller_only_is_doubted() -> None:

@@ -10,12 +10,12 @@ import pytest
 from greywhale.cli import identify as verb
 from greywhale.cli.entry import run
 from greywhale.files.arm import load_arm
-from greywhale.identify import Outcome
+from greywhale.identify import IdentificationResult
 from tools.support.recordings import TABLES, Recorded
 
 
 @pytest.fixture
-def found(monkeypatch: pytest.MonkeyPatch, outcome: Outcome) -> Outcome:
+def found(monkeypatch: pytest.MonkeyPatch, outcome: IdentificationResult) -> IdentificationResult:
     """The verb around an identification that has run already."""
     monkeypatch.setattr(verb, "identify", lambda *logs, **options: outcome)
     return outcome
@@ -29,7 +29,7 @@ def arguments(recorded: Recorded, folder: Path) -> list[str]:
 
 @pytest.mark.slow
 def test_text_model_and_pictures(
-    found: Outcome, recorded: Recorded, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    found: IdentificationResult, recorded: Recorded, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert run([*arguments(recorded, tmp_path), "--pictures", str(tmp_path / "pictures")]) == 0
     text = capsys.readouterr().out
@@ -43,7 +43,7 @@ def test_text_model_and_pictures(
 
 @pytest.mark.slow
 def test_json_is_one_object(
-    found: Outcome, recorded: Recorded, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    found: IdentificationResult, recorded: Recorded, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert run([*arguments(recorded, tmp_path), "--json"]) == 0
     facts = json.loads(capsys.readouterr().out)
@@ -54,7 +54,7 @@ def test_json_is_one_object(
 
 @pytest.mark.slow
 def test_interrupt_writes_the_model_and_says_so(
-    outcome: Outcome,
+    outcome: IdentificationResult,
     recorded: Recorded,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,

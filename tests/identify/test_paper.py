@@ -11,7 +11,7 @@ from greywhale.files.arm import load_arm
 from greywhale.identify import paper
 from greywhale.identify.closed_loop import Loop
 from greywhale.identify.data import prepare
-from greywhale.identify.identification import identify
+from greywhale.identify.run import identify
 from greywhale.protocol.table import ParameterTable
 from greywhale.simulate import plant_row
 from tools.support.recordings import Recorded

@@ -13,7 +13,7 @@ from greywhale.arm.parameters import Drive
 from greywhale.base.errors import UserError
 from greywhale.files.arm import load_arm
 from greywhale.files.log import Log
-from greywhale.identify import Outcome, identify
+from greywhale.identify import IdentificationResult, identify
 from greywhale.identify.checks import check
 from greywhale.identify.data import LONGEST_GAP_S, prepare, windows_of
 from greywhale.motion import human_reaches, multi_steps
@@ -98,7 +98,9 @@ def test_ctrl_c_at_any_moment_keeps_the_best_model_so_far(
         if what.startswith(moment):
             raise KeyboardInterrupt
 
-    outcome: Outcome = identify([rows(shoulder.fit, slice(5000))], white_box, tables=tables, report=interrupt)
+    outcome: IdentificationResult = identify(
+        [rows(shoulder.fit, slice(5000))], white_box, tables=tables, report=interrupt
+    )
     assert not outcome.complete
     outcome.save(tmp_path / "model.toml")
     facts = load_arm(tmp_path / "model.toml").identification

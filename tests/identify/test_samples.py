@@ -11,14 +11,14 @@ from greywhale.arm import ArmParameters
 from greywhale.arm.plants import check_plants, column
 from greywhale.base.errors import UserError
 from greywhale.files.arm import load_arm
-from greywhale.identify import Outcome, sampled_plants
-from greywhale.identify.found import Rival
+from greywhale.identify import IdentificationResult, sampled_plants
+from greywhale.identify.found_model import Rival
 from greywhale.identify.space import KINDS, Space
 from greywhale.simulate import plant_row
 
 
 @pytest.fixture(scope="module")
-def model(outcome: Outcome, tmp_path_factory: pytest.TempPathFactory) -> ArmParameters:
+def model(outcome: IdentificationResult, tmp_path_factory: pytest.TempPathFactory) -> ArmParameters:
     """Without rivals, which take the place of draws."""
     path = tmp_path_factory.mktemp("model") / "model.toml"
     replace(outcome, found=replace(outcome.found, rivals=())).save(path)
@@ -48,7 +48,7 @@ def test_every_drawn_plant_is_one_that_an_arm_can_have(model: ArmParameters) -> 
 
 
 @pytest.mark.slow
-def test_draws_have_the_covariance_of_the_file(model: ArmParameters, outcome: Outcome) -> None:
+def test_draws_have_the_covariance_of_the_file(model: ArmParameters, outcome: IdentificationResult) -> None:
     """Of the logarithms that no range cuts, taken back out of the plants."""
     plants = sampled_plants(model, 4000)
     columns = Space.of(model, ("alpha", "inertia", "damping"), range(4))
@@ -75,7 +75,9 @@ def test_draws_have_the_covariance_of_the_file(model: ArmParameters, outcome: Ou
 
 
 @pytest.mark.slow
-def test_nothing_is_surer_than_it_is_written_and_nothing_less_sure_than_the_users_arm(outcome: Outcome) -> None:
+def test_nothing_is_surer_than_it_is_written_and_nothing_less_sure_than_the_users_arm(
+    outcome: IdentificationResult,
+) -> None:
     """Every searched number has a deviation above 0, and the arm file counts where the readings tell nothing."""
     assert outcome.found.covariance is not None
     doubts = {name: kind.doubt for name, kind in KINDS.items()}
@@ -106,7 +108,7 @@ def test_an_arm_without_a_covariance_and_a_wrong_count_are_refused(model: ArmPar
 
 @pytest.mark.slow
 def test_rivals_take_every_third_row_and_the_draws_between_stay(
-    model: ArmParameters, outcome: Outcome, tmp_path_factory: pytest.TempPathFactory
+    model: ArmParameters, outcome: IdentificationResult, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     other = plant_row(load_arm("worn"))
     rivals = (Rival("backlash", 0.9, other), Rival("creep", 0.9, 2.0 * other))

@@ -57,7 +57,7 @@ def test_no_beginning_of_a_healthy_arms_log_is_an_alarm_but_a_dead_motor_is(kind
     for seed in (1, 2):
         experiment = Experiment(human_reaches(seed, 8.0), arm, seed=seed)
         for plant in (healthy, dead):
-            angles = experiment.run_single(None, plant, every=10).angles[0].astype(np.float64)
+            angles = experiment.run_exact(None, plant, every=10).angles[0].astype(np.float64)
             leaders = experiment.leader[::10]
             if plant is dead:
                 assert not any(follows(*pair, 0.01) for pair in zip(leaders.T, angles.T, strict=True))

@@ -108,8 +108,8 @@ class Calls:
         return self._board(**board) + reals(home) + reals(gap) + arrays
 
     @staticmethod
-    def pack_run(*, controllers: Array, plants: Array, substeps: int, every: int, single: bool, **_: Any) -> bytes:
-        return array(controllers, np.int32) + array(plants, np.float64) + wholes([substeps, every, single])
+    def pack_run(*, controllers: Array, plants: Array, substeps: int, every: int, exact: bool, **_: Any) -> bytes:
+        return array(controllers, np.int32) + array(plants, np.float64) + wholes([substeps, every, exact])
 
     @staticmethod
     def _sixteen_laws(

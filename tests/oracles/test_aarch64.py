@@ -143,8 +143,8 @@ def test_batch(name: str, calls: Calls, driver: Path, tmp_path: Path) -> None:
 def test_single_runs(name: str, calls: Calls, driver: Path, tmp_path: Path) -> None:
     loop = experiment(name)
     controllers, plants = candidates()
-    result = loop.run_single(controllers[::3], plants[::3], every=5)
-    loop.run_single(controllers[1], plants[1], every=5, steps_per_slice=3)
+    result = loop.run_exact(controllers[::3], plants[::3], every=5)
+    loop.run_exact(controllers[1], plants[1], every=5, steps_per_slice=3)
     assert len(np.unique(result.duties)) > 100
     require_same_bits(calls, driver, tmp_path)
 

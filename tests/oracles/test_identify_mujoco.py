@@ -13,7 +13,7 @@ from mujoco_recording import record
 
 from greywhale.arm import ArmParameters
 from greywhale.files.arm import load_arm
-from greywhale.identify import Outcome, identify
+from greywhale.identify import IdentificationResult, identify
 from greywhale.motion import human_reaches
 from tools.support.recordings import random_arm, table_of
 
@@ -28,7 +28,7 @@ def arm() -> ArmParameters:
 
 
 @pytest.fixture(scope="module")
-def outcome(arm: ArmParameters, tmp_path_factory: pytest.TempPathFactory) -> Outcome:
+def outcome(arm: ArmParameters, tmp_path_factory: pytest.TempPathFactory) -> IdentificationResult:
     folder = tmp_path_factory.mktemp("mujoco")
     tables = [table_of(name) for name in NAMES]
     logs = [
@@ -38,14 +38,14 @@ def outcome(arm: ArmParameters, tmp_path_factory: pytest.TempPathFactory) -> Out
     return identify(logs[:1], load_arm("white_box"), validate=logs[1:], tables=tables)
 
 
-def test_it_is_predicted_far_better_than_by_the_white_box(outcome: Outcome) -> None:
+def test_it_is_predicted_far_better_than_by_the_white_box(outcome: IdentificationResult) -> None:
     """MuJoCo's soft friction lets joints creep that hold in greywhale's plant: that is what is left."""
     assert outcome.verdicts[1].improvement > 0.95
     assert outcome.verdicts[2].improvement > 0.95
     assert outcome.warnings == ()
 
 
-def test_armature_damping_and_friction_loss_come_out(outcome: Outcome, arm: ArmParameters) -> None:
+def test_armature_damping_and_friction_loss_come_out(outcome: IdentificationResult, arm: ArmParameters) -> None:
     found = {one.name: one.value for one in outcome.estimates}
     for joint in range(4):
         true = arm.actuator(joint)
@@ -61,7 +61,7 @@ PLAY_RAD = 0.008  # to either side
 
 
 @pytest.fixture(scope="module")
-def with_play(arm: ArmParameters, tmp_path_factory: pytest.TempPathFactory) -> Outcome:
+def with_play(arm: ArmParameters, tmp_path_factory: pytest.TempPathFactory) -> IdentificationResult:
     folder = tmp_path_factory.mktemp("mujoco")
     table = table_of(NAMES[0])
     logs = [
@@ -71,7 +71,7 @@ def with_play(arm: ArmParameters, tmp_path_factory: pytest.TempPathFactory) -> O
     return identify(logs[:1], load_arm("white_box"), validate=logs[1:], tables=[table])
 
 
-def test_play_at_the_potentiometers_is_found_and_explained(with_play: Outcome) -> None:
+def test_play_at_the_potentiometers_is_found_and_explained(with_play: IdentificationResult) -> None:
     assert "play at the potentiometers" in with_play.found.order
     assert with_play.verdicts[1].improvement > 0.95
     found = {one.name: one.value for one in with_play.estimates}
@@ -82,7 +82,7 @@ def test_play_at_the_potentiometers_is_found_and_explained(with_play: Outcome) -
     assert plays == pytest.approx([PLAY_RAD] * 4, rel=0.35)
 
 
-def test_standard_deviations_are_honest_here_too(outcome: Outcome, arm: ArmParameters) -> None:
+def test_standard_deviations_are_honest_here_too(outcome: IdentificationResult, arm: ArmParameters) -> None:
     """Errors in standard deviations; the two engines' friction is not quite the same, which no formula can know."""
     errors = []
     for one in outcome.estimates:

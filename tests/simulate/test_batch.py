@@ -63,15 +63,15 @@ def test_the_wires_of_a_motor_change_nothing() -> None:
 
 
 def test_steps_of_a_slice_follow_the_single_run_tick_by_tick() -> None:
-    """Four steps a tick are the single run but for its double precision: the same duties until a reading tips over."""
+    """Four steps a tick are the exact run but for its double precision: the same duties until a reading tips over."""
     arm = default_arm()
     experiment = Experiment(human_reaches(4, 5.0), arm, noise=False)
-    batch, single = experiment.run(every=1, steps_per_tick=4), experiment.run_single(every=1)
+    batch, exact = experiment.run(every=1, steps_per_tick=4), experiment.run_exact(every=1)
     moving = 3000
-    assert np.abs(single.duties[0, :moving]).max() > 40
-    differ = (batch.duties[0, :moving] != single.duties[0, :moving]).mean()
+    assert np.abs(exact.duties[0, :moving]).max() > 40
+    differ = (batch.duties[0, :moving] != exact.duties[0, :moving]).mean()
     assert differ < 0.02
-    np.testing.assert_allclose(batch.angles[0, :moving], single.angles[0, :moving], atol=2e-3)
+    np.testing.assert_allclose(batch.angles[0, :moving], exact.angles[0, :moving], atol=2e-3)
 
 
 # Largest error of the total mean squared error against steps of 25 us: median, nine of ten candidates.
@@ -86,7 +86,7 @@ BOUNDS = {
 def test_error_against_a_fine_reference(arm: str, spread: float) -> None:
     experiment = Experiment(human_reaches(4, 4.0), default_arm())
     controllers, plants = search_box(arm, 32, spread, seed=3)
-    fine = experiment.run_single(controllers, plants, steps_per_slice=10).mse.sum(axis=1)
+    fine = experiment.run_exact(controllers, plants, steps_per_slice=10).mse.sum(axis=1)
     for steps, (median, most) in BOUNDS[arm, spread].items():
         error = np.abs(experiment.run(controllers, plants, steps_per_tick=steps).mse.sum(axis=1) / fine - 1)
         assert np.median(error) < median, steps
@@ -100,7 +100,7 @@ def test_impossible_plants_cost_much_but_never_nan(experiment: Experiment) -> No
     plants[:32, PLANT_COLUMNS.index("ixx3")] = 10.0
     strength = columns("torque_per_volt") + columns("inertia") + columns("damping")
     plants[32:, strength] *= 10.0 ** random.uniform(-12, 12, (32, 12))
-    for result in (experiment.run(controllers, plants), experiment.run_single(controllers, plants)):
+    for result in (experiment.run(controllers, plants), experiment.run_exact(controllers, plants)):
         for measure in (result.mse, result.itae, result.itau):
             assert np.isfinite(measure).all()
         assert (result.mse[result.diverged] == 1e9).all()

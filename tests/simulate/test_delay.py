@@ -24,7 +24,7 @@ def stuck() -> np.ndarray:
     return plant
 
 
-@pytest.mark.parametrize("run", ["run", "run_single"])
+@pytest.mark.parametrize("run", ["run", "run_exact"])
 def test_late_duties_are_the_prompt_ones_shifted(run: str) -> None:
     motion, arm = human_reaches(3, 4.0), quiet(default_arm())
     traces = {}
@@ -38,10 +38,10 @@ def test_late_duties_are_the_prompt_ones_shifted(run: str) -> None:
 
 def test_both_kernels_move_the_arm_alike_under_late_duties() -> None:
     experiment = Experiment(human_reaches(4, 4.0), default_arm(), noise=False, timing=Timing(late=3))
-    batch, single = experiment.run(every=1, steps_per_tick=4), experiment.run_single(every=1)
+    batch, exact = experiment.run(every=1, steps_per_tick=4), experiment.run_exact(every=1)
     moving = 2500
-    assert np.abs(single.duties[0, :moving]).max() > 40
-    np.testing.assert_allclose(batch.angles[0, :moving], single.angles[0, :moving], atol=2e-3)
+    assert np.abs(exact.duties[0, :moving]).max() > 40
+    np.testing.assert_allclose(batch.angles[0, :moving], exact.angles[0, :moving], atol=2e-3)
 
 
 def test_a_long_delay_makes_the_loop_swing() -> None:

@@ -36,7 +36,7 @@ def test_without_noise_the_duties_are_the_same_from_enable_on(board: str) -> Non
     """Soft start, large and small motions, stiction and backlash of the default arm: every duty of every tick."""
     parameters = quiet(default_arm())
     recording = record(parameters, human_reaches(3, 6.0), 6.0, board)
-    result = native(recording, parameters, board).run_single(every=1)
+    result = native(recording, parameters, board).run_exact(every=1)
     duties = result.duties[0].astype(float) / PWM_TOP[board]
     for joint in range(4):
         acts = recording.timing.acts[joint]
@@ -53,5 +53,5 @@ def test_with_noise_the_errors_are_the_same_within_two_percent() -> None:
     parameters = default_arm()
     recording = record(parameters, multi_steps([0.0, 0.8, -0.4, 0.5], [1.0, 2.0, 2.0, 2.0]), 1.5 + HAND_S + 6.0)
     bench_error = recording.leader[::SLICES_PER_TICK] - recording.angles[::SLICES_PER_TICK]
-    result = native(recording, parameters, noise=True).run_single()
+    result = native(recording, parameters, noise=True).run_exact()
     np.testing.assert_allclose(result.mse[0], (bench_error**2).mean(axis=0), rtol=0.02)

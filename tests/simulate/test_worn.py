@@ -1,4 +1,4 @@
-"""Arms with play, load friction, creep, lag and a sagging supply: batch, single run and compiled firmware agree."""
+"""Arms with play, load friction, creep, lag and a sagging supply: batch, exact run and compiled firmware agree."""
 
 from __future__ import annotations
 
@@ -41,12 +41,12 @@ def test_batch_follows_the_single_run(experiment: Experiment, wear: str) -> None
     sound = experiment.run(None, plant, every=1, steps_per_tick=4)
     for name, value in WEAR[wear].items():
         plant[[column(name)] if name == "supply_resistance" else columns(name)] = value
-    batch, single = experiment.run(None, plant, every=1, steps_per_tick=4), experiment.run_single(None, plant, every=1)
-    assert np.abs(single.angles - sound.angles).max() > 1e-3, "the wear changes nothing, so nothing is compared"
+    batch, exact = experiment.run(None, plant, every=1, steps_per_tick=4), experiment.run_exact(None, plant, every=1)
+    assert np.abs(exact.angles - sound.angles).max() > 1e-3, "the wear changes nothing, so nothing is compared"
     moving = 3000  # until some reading tips over
-    assert (batch.duties != single.duties)[0, :moving].mean() < 0.02
-    np.testing.assert_allclose(batch.angles[0, :moving], single.angles[0, :moving], atol=2e-3)
-    np.testing.assert_allclose(batch.mse, single.mse, rtol=0.02)
+    assert (batch.duties != exact.duties)[0, :moving].mean() < 0.02
+    np.testing.assert_allclose(batch.angles[0, :moving], exact.angles[0, :moving], atol=2e-3)
+    np.testing.assert_allclose(batch.mse, exact.mse, rtol=0.02)
 
 
 def test_sound_plants_keep_every_bit_beside_worn_ones(experiment: Experiment) -> None:
@@ -66,7 +66,7 @@ def test_sound_plants_keep_every_bit_beside_worn_ones(experiment: Experiment) ->
 def test_worn_arm_gets_the_same_duties_from_the_compiled_firmware() -> None:
     parameters = quiet(load_arm("worn"))
     recording = record(parameters, multi_steps([0.0, 0.5, -0.3, 0.4], [0.55, 1.5, 1.5, 1.5]), 6.0)
-    result = native(recording, parameters).run_single(every=1)
+    result = native(recording, parameters).run_exact(every=1)
     duties = result.duties[0].astype(float) / PWM_TOP["mega"]
     for joint in range(4):
         seen = recording.duties[recording.timing.acts[joint] :: SLICES_PER_TICK, joint]

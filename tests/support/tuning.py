@@ -14,14 +14,16 @@ from greywhale.tune.judge import held_out
 from greywhale.tune.judge.margins import REST_S, Margins
 from greywhale.tune.possible import scale_of
 from greywhale.tune.search import training
-from greywhale.tune.search.objective import Scale
-from greywhale.tune.search.training import Drill
+from greywhale.tune.search.objective import ErrorScale
+from greywhale.tune.search.training import TrainingMotion
 
-_known: dict[bytes, Scale] = {}
+_known: dict[bytes, ErrorScale] = {}
 
 
 def shorten(patch: pytest.MonkeyPatch) -> None:
-    def shared(drills: Sequence[Drill], plants: np.ndarray, before: np.ndarray, threads: int = 0) -> Scale:
+    def shared(
+        drills: Sequence[TrainingMotion], plants: np.ndarray, before: np.ndarray, threads: int = 0
+    ) -> ErrorScale:
         arrays = [
             plants,
             before,

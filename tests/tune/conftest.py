@@ -13,12 +13,12 @@ from greywhale.tune.judge.floor import Floor
 from greywhale.tune.judge.held_out import HeldOut
 from greywhale.tune.judge.margins import Margin
 from greywhale.tune.model import load_model
-from greywhale.tune.outcome import Curve, Outcome
+from greywhale.tune.result import Curve, TuningResult
 from tests.tune.models import evaluation, log_facts, write_model
 
 
 @pytest.fixture
-def outcome(tmp_path: Path) -> Outcome:
+def outcome(tmp_path: Path) -> TuningResult:
     """Two held-out motions, one of which saturates nothing; a model that was not validated."""
     model = load_model(write_model(tmp_path / "model.toml", log=[log_facts()]), force=True, samples=2)
     after = default_controller()
@@ -33,7 +33,7 @@ def outcome(tmp_path: Path) -> Outcome:
         for name, floor in zip(("steps", "reaches"), floors, strict=True)
     ]
     margins = [Margin("at rest", joint, 0, 0.0, 0, 2) for joint in (1, 0, 2, 3)]
-    return Outcome(
+    return TuningResult(
         model=model,
         table=model.table,
         strategy="both",

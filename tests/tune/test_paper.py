@@ -8,7 +8,7 @@ import pytest
 from greywhale.arm.plants import column
 from greywhale.motion import multi_steps, steps
 from greywhale.simulate import Experiment, default_controller
-from greywhale.tune import Outcome, tune
+from greywhale.tune import TuningResult, tune
 from greywhale.tune.model import Model, load_model
 from greywhale.tune.paper import AGENTS, BUDGET, ITERATIONS, Loops, move_one_joint, time_since_step
 
@@ -22,11 +22,11 @@ def model() -> Model:
 
 
 @pytest.fixture(scope="module")
-def tuned(model: Model) -> Outcome:
+def tuned(model: Model) -> TuningResult:
     return tune(model, method="paper", strategy="mf", floors=False)
 
 
-def test_ten_agents_move_thirty_times(tuned: Outcome) -> None:
+def test_ten_agents_move_thirty_times(tuned: TuningResult) -> None:
     assert (AGENTS, ITERATIONS) == (10, 30)
     assert tuned.budget == tuned.evaluations == BUDGET == 310
     assert tuned.curves[0].evaluations == tuple(range(10, 311, 10))
@@ -68,13 +68,13 @@ def test_joints_are_tuned_on_their_own(model: Model) -> None:
     assert np.ptp(motion.angles, axis=0).tolist() == [0.0, 2.0, 0.0, 0.0]
 
 
-def test_the_period_is_20_ms_and_the_supply_the_models(tuned: Outcome, model: Model) -> None:
+def test_the_period_is_20_ms_and_the_supply_the_models(tuned: TuningResult, model: Model) -> None:
     assert tuned.period_ms == 20
     assert tuned.supply_v == 15.0
     assert model.table.period_ms == 1
 
 
-def test_only_sets_change_and_none_is_too_narrow(tuned: Outcome) -> None:
+def test_only_sets_change_and_none_is_too_narrow(tuned: TuningResult) -> None:
     np.testing.assert_array_equal(tuned.after[:, 8:], BEFORE[:, 8:])
     assert (np.abs(tuned.after[:, :8]) >= 164).all()
     assert (np.sign(tuned.after[:, :8]) == [-1, -1, 1, 1] * 2).all()
@@ -83,11 +83,11 @@ def test_only_sets_change_and_none_is_too_narrow(tuned: Outcome) -> None:
     )
 
 
-def test_its_own_objective_falls(tuned: Outcome) -> None:
+def test_its_own_objective_falls(tuned: TuningResult) -> None:
     assert all(after < before for before, after in zip(tuned.cost_before, tuned.cost_after, strict=True))
 
 
-def test_no_set_lets_its_grey_box_reach_the_papers_improvement(tuned: Outcome) -> None:
+def test_no_set_lets_its_grey_box_reach_the_papers_improvement(tuned: TuningResult) -> None:
     """78 % is beyond what the supply leaves; its tuning stays below even a third of that."""
     by_name = {one.name: one for one in tuned.held_out}
     before, after = by_name["steps"].mse_before.sum(), by_name["steps"].mse_after.sum()

@@ -10,8 +10,8 @@ from greywhale.files.arm import default_arm
 from greywhale.protocol.table import ParameterTable
 from greywhale.simulate import default_controller, plant_row
 from greywhale.tune.possible import LEAST_RAD, LEAST_SHARE, lateness_s, scale_of
-from greywhale.tune.search.objective import Scale, follow
-from greywhale.tune.search.training import Drill, drills
+from greywhale.tune.search.objective import ErrorScale, follow
+from greywhale.tune.search.training import TrainingMotion, training_motions
 
 ARM = default_arm()
 TABLE = ParameterTable.defaults()
@@ -21,16 +21,18 @@ BEFORE = default_controller()
 
 
 @pytest.fixture(scope="module")
-def motions() -> tuple[Drill, ...]:
-    return drills(ARM, TABLE, PLANTS)
+def motions() -> tuple[TrainingMotion, ...]:
+    return training_motions(ARM, TABLE, PLANTS)
 
 
 @pytest.fixture(scope="module")
-def scale(motions: tuple[Drill, ...]) -> Scale:
+def scale(motions: tuple[TrainingMotion, ...]) -> ErrorScale:
     return scale_of(motions, PLANTS, BEFORE)
 
 
-def test_the_floor_lies_below_any_controller_that_there_is(motions: tuple[Drill, ...], scale: Scale) -> None:
+def test_the_floor_lies_below_any_controller_that_there_is(
+    motions: tuple[TrainingMotion, ...], scale: ErrorScale
+) -> None:
     found = follow(motions, PLANTS, BEFORE[None])
     assert scale.floor.shape == (2, len(motions), 4)
     assert (scale.floor > 0.0).all()
@@ -38,17 +40,17 @@ def test_the_floor_lies_below_any_controller_that_there_is(motions: tuple[Drill,
     np.testing.assert_allclose(scale.floor + scale.room, found.error[0])
 
 
-def test_a_stronger_arm_has_a_lower_floor_on_large_moves(scale: Scale) -> None:
+def test_a_stronger_arm_has_a_lower_floor_on_large_moves(scale: ErrorScale) -> None:
     assert (scale.floor[1, 0] < 0.95 * scale.floor[0, 0]).all()
 
 
-def test_large_moves_can_hardly_be_helped_and_slow_ones_nearly_all(scale: Scale) -> None:
+def test_large_moves_can_hardly_be_helped_and_slow_ones_nearly_all(scale: ErrorScale) -> None:
     assert (scale.floor[:, 0] > 2.0 * scale.room[:, 0]).all()
     assert (scale.floor[:, 1:] < 0.5 * scale.room[:, 1:]).all()
 
 
 def test_a_joint_at_its_floor_has_room_all_the_same(
-    motions: tuple[Drill, ...], scale: Scale, monkeypatch: pytest.MonkeyPatch
+    motions: tuple[TrainingMotion, ...], scale: ErrorScale, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """As if the controllers from before reached the floor, on one of the motions."""
     one = motions[1:2]

@@ -16,7 +16,7 @@ from greywhale.base.study import Task
 from greywhale.base.types import Floats
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.files.trajectory import Trajectory
-from greywhale.identify import Outcome, identify
+from greywhale.identify import IdentificationResult, identify
 from greywhale.identify.excite import Design, design
 from greywhale.identify.space import MOTOR, Space
 from greywhale.motion import human_reaches
@@ -48,7 +48,7 @@ def rows_of(motion: Trajectory) -> Floats:
     return motion.at(np.arange(0.0, SECONDS, 0.016))
 
 
-def errors_of(outcome: Outcome, arm: ArmParameters) -> Floats:
+def errors_of(outcome: IdentificationResult, arm: ArmParameters) -> Floats:
     """Identified minus true logarithms (4 joints x alpha, inertia, damping, Coulomb)."""
     truth = dict(zip((space := Space.of(arm, CHECKED, range(4))).names, space.values(space.start()), strict=True))
     found = {one.name: one.value for one in outcome.estimates}

@@ -14,7 +14,7 @@ from greywhale.arm import ArmParameters
 from greywhale.base.study import Task
 from greywhale.base.types import show_no_progress
 from greywhale.files.arm import default_arm, load_arm
-from greywhale.identify import Outcome, identify
+from greywhale.identify import IdentificationResult, identify
 from greywhale.identify.closed_loop import Loop, LoopResidual
 from greywhale.identify.data import prepare
 from greywhale.identify.fit import least_squares_fit
@@ -36,7 +36,7 @@ def tables() -> list[ParameterTable]:
     return [table_of(name) for name in NAMES]
 
 
-def identified(recorded: Recorded) -> tuple[Outcome, float]:
+def identified(recorded: Recorded) -> tuple[IdentificationResult, float]:
     begin = time.perf_counter()
     outcome = identify(
         [recorded.fit], load_arm("white_box"), validate=[recorded.second, recorded.changed], tables=tables()
@@ -46,7 +46,7 @@ def identified(recorded: Recorded) -> tuple[Outcome, float]:
     return outcome, time.perf_counter() - begin
 
 
-def side_by_side(recorded: Recorded, outcome: Outcome) -> list[Figure]:
+def side_by_side(recorded: Recorded, outcome: IdentificationResult) -> list[Figure]:
     """Improvement on the second log and with the changed controller: at the paper's 500 closed loops, and at as many
     closed loops as take the seconds of arm that the default method simulates (mostly in windows of half a second).
     """
@@ -92,12 +92,12 @@ def side_by_side(recorded: Recorded, outcome: Outcome) -> list[Figure]:
     ]
 
 
-def of_arm(arm: ArmParameters, seed: int) -> tuple[Outcome, float]:
+def of_arm(arm: ArmParameters, seed: int) -> tuple[IdentificationResult, float]:
     with tempfile.TemporaryDirectory() as folder:
         return identified(record_three(arm, Path(folder), seed))
 
 
-def truth(outcome: Outcome, arm: ArmParameters) -> float:
+def truth(outcome: IdentificationResult, arm: ArmParameters) -> float:
     """What the true arm itself reaches on the changed record: where joints hunt, no model repeats every swing."""
     subject, verdict = outcome.subjects[2], outcome.verdicts[2]
     assert subject.table is not None

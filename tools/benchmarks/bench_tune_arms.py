@@ -72,7 +72,7 @@ def on_the_true_arm(seed: int, arm: ArmParameters, tuned: Controllers) -> Verdic
     before, after = {}, {}
     rows, plant = np.stack([default_controller(), tuned]), plant_row(arm)
     for name, motion in MOTIONS.items():
-        result = Experiment(motion, arm, seed=seed).run_single(rows, plant, every=1)
+        result = Experiment(motion, arm, seed=seed).run_exact(rows, plant, every=1)
         before[name], after[name] = result.mse
         if name == "multi-steps":
             cycling = unrest(np.asarray(result.angles[1], dtype=np.float64))

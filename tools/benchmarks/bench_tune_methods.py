@@ -25,9 +25,9 @@ from greywhale.identify import identify
 from greywhale.optimise import DEFAULT
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.default import SEARCH_PLANTS, DefaultMethod
-from greywhale.tune.method import Task
 from greywhale.tune.model import Model, load_model
-from greywhale.tune.search.journal import Journal
+from greywhale.tune.request import TuningRequest
+from greywhale.tune.search.journal import TuningJournal
 from tools import ROOT
 from tools.benchmarks.figure import Figure
 from tools.benchmarks.study import repeat, threads
@@ -71,7 +71,7 @@ def method_of(model: Model, method: str, seed: int, budget: int) -> DefaultMetho
     """The stages of the default method with an optimiser, before its search."""
     before = model.controllers
     return DefaultMethod(
-        Task(model, "both", method, budget, seed, threads(), before, {}, show_no_progress, floors=False)
+        TuningRequest(model, "both", method, budget, seed, threads(), before, {}, show_no_progress, floors=False)
     )
 
 
@@ -79,7 +79,7 @@ def cost(seed: int, model: str, method: str, budget: int) -> float:
     """What a method found with one seed and so many evaluations for a model.toml, judged with other noise."""
     known, judge = judged_model(model)
     search = method_of(known, method, seed, budget)
-    with Journal(None, {}) as book:
+    with TuningJournal(None, {}) as book:
         search.search(book)
     return float(judge.costs(search.found.best[None]).sum())
 

@@ -50,7 +50,7 @@ def errors(table: ParameterTable, rows: Controllers) -> tuple[Floats, Floats]:
     found = []
     for motion in (steps(), multi_steps()):
         experiment = Experiment(motion, model.arm, table=table, noise=False)
-        found.append(experiment.run_single(rows, plant).mse.sum(axis=1))
+        found.append(experiment.run_exact(rows, plant).mse.sum(axis=1))
     return found[0], found[1]
 
 

@@ -13,9 +13,9 @@ import numpy.typing as npt
 
 from greywhale.base.types import Floats
 from greywhale.cli.story import RunningBench, record_motion
-from greywhale.commission import Options, commission
+from greywhale.commission import CommissioningRequest, commission
 from greywhale.commission.measures import unrest
-from greywhale.commission.outcome import Outcome
+from greywhale.commission.result import CommissioningResult
 from greywhale.files.leader import save_leader
 from greywhale.files.trajectory import Trajectory
 from greywhale.motion import evaluate
@@ -37,7 +37,7 @@ class Commissioned:
 
     before: Run
     after: Run
-    outcome: Outcome
+    outcome: CommissioningResult
     wall_s: float
 
     @property
@@ -52,7 +52,7 @@ def commissioned(seed: int, folder: Path, unseen: Mapping[str, Trajectory], **op
     with bench_of(seed, folder) as bench:
         before = recorded(bench, folder, "before", unseen)
         started = time.monotonic()
-        outcome = commission(Options(port=bench.port, out=folder / "commission", **options))
+        outcome = commission(CommissioningRequest(port=bench.port, out=folder / "commission", **options))
         wall = time.monotonic() - started
         return Commissioned(before, recorded(bench, folder, "after", unseen), outcome, wall)
 

@@ -58,7 +58,7 @@ def record(
     """Record `motion` on the table's board into the log `path`, a row every `every` ticks."""
     table = ParameterTable.defaults() if table is None else table
     experiment = Experiment(motion, arm, table=table, seed=seed, wait_s=START_S + 0.1)
-    result = experiment.run_single(every=1)
+    result = experiment.run_exact(every=1)
     if result.diverged[0]:
         raise RuntimeError("the recorded arm left the range of numbers")
     follower = _readings(np.asarray(result.angles[0], dtype=np.float64), arm, table, seed)

@@ -126,7 +126,7 @@ void make_loop(ClosedLoop* self, const loop::Settings& settings, const loop::Tim
 }
 
 nb::tuple run(const ClosedLoop& self, const ControllerTable& controllers, const PlantTable& plants, int substeps,
-              int threads, std::size_t every, bool single, const std::string& instructions) {
+              int threads, std::size_t every, bool exact, const std::string& instructions) {
   const std::size_t count = std::max(controllers.shape(0), plants.shape(0));
   if (count == 0 || (controllers.shape(0) != count && controllers.shape(0) != 1) ||
       (plants.shape(0) != count && plants.shape(0) != 1)) {
@@ -145,7 +145,7 @@ nb::tuple run(const ClosedLoop& self, const ControllerTable& controllers, const 
     const loop::Batch batch{laws.data(), laws.size(), plant_rows, plants.shape(0), count};
     const loop::Outputs outputs{mse.data(), itae.data(), itau.data(),   diverged.data(),
                                 every,      rows,        angles.data(), duties.data()};
-    loop::run_batch(self.x, batch, {substeps, threads, single, instructions}, outputs);
+    loop::run_batch(self.x, batch, {substeps, threads, exact, instructions}, outputs);
   }
   return nb::make_tuple(mse.numpy(), itae.numpy(), itau.numpy(), diverged.numpy(), angles.numpy(), duties.numpy());
 }
@@ -255,7 +255,7 @@ void bind_closed_loop(nb::module_& m) {
       .def("__init__", &make_loop, nb::kw_only(), "settings"_a, "timing"_a, "pots"_a, "pot_supply"_a, "seed"_a,
            "home"_a, "gap"_a, "reference"_a.noconvert(), "leader"_a.noconvert(), "weight"_a.noconvert())
       .def("run", &run, nb::kw_only(), "controllers"_a.noconvert(), "plants"_a.noconvert(), "substeps"_a, "threads"_a,
-           "every"_a, "single"_a, "instructions"_a,
+           "every"_a, "exact"_a, "instructions"_a,
            "mse, itae, itau (n x 4), diverged (n), angles (float32) and duties (int16), both n x rows x 4. The GIL is "
            "released.");
   m.def("leader_readings", &leader_readings, nb::kw_only(), "settings"_a, "timing"_a, "pots"_a, "pot_supply"_a,

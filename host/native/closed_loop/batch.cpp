@@ -50,7 +50,7 @@ Trace trace_of(std::size_t n, const Outputs& out) {
   return {out.every, out.angles + offset, out.duties + offset};
 }
 
-// The noise of every slice in converter counts, the same for all candidates: the numbers that the single run draws.
+// The noise of every slice in converter counts, the same for all candidates: the numbers that the exact run draws.
 std::vector<float> noise_of(const Experiment& x) {
   const bool quiet =
       std::all_of(x.pots.begin(), x.pots.end(), [](const arm::Potentiometer& pot) { return pot.noise == 0.0; });
@@ -130,9 +130,9 @@ void run_lanes(const Experiment& x, const Batch& batch, const How& how, const Ou
 }  // namespace
 
 void run_batch(const Experiment& x, const Batch& batch, const How& how, const Outputs& out) {
-  if (!how.single) return run_lanes(x, batch, how, out);
+  if (!how.exact) return run_lanes(x, batch, how, out);
   share_out(batch.count, how.threads, [&](std::size_t n) {
-    store(run_single(x, controllers_of(batch, n), plant_of(batch, n), how.substeps, trace_of(n, out)), n, out);
+    store(run_exact(x, controllers_of(batch, n), plant_of(batch, n), how.substeps, trace_of(n, out)), n, out);
   });
 }
 

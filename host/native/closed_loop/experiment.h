@@ -102,7 +102,7 @@ constexpr std::size_t kPlantColumns = sizeof(PlantRow) / sizeof(double);
 using Controllers = std::array<fuzzy_pdi::Coefficients, kJoints>;
 
 // The bench's own arithmetic in double precision; each slice in `substeps` steps of the arm.
-Measures run_single(const Experiment& experiment, const Controllers& controllers, const PlantRow& row, int substeps,
+Measures run_exact(const Experiment& experiment, const Controllers& controllers, const PlantRow& row, int substeps,
                     const Trace& trace);
 
 // The leader's readings and true angles at every tick from its angles (rad) in every slice: slices x 4 -> ticks x 4.

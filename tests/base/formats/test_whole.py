@@ -19,7 +19,7 @@ from greywhale.files.log.layout import Origin
 from greywhale.files.parameter_file import save
 from greywhale.files.trajectory import Trajectory
 from greywhale.protocol.table import ParameterTable
-from greywhale.tune.search.journal import Journal
+from greywhale.tune.search.journal import TuningJournal
 
 
 def write_log(path: Path) -> None:
@@ -88,7 +88,7 @@ def test_a_log_is_on_the_disk_before_it_says_that_it_is_complete(
 
 def test_a_journal_is_on_the_disk_when_it_is_closed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     disk = Disk(monkeypatch)
-    with Journal(tmp_path / "journal", {"seed": 1}) as book:
+    with TuningJournal(tmp_path / "journal", {"seed": 1}) as book:
         assert disk.done == ["folder"]
         book.tell("stage", np.zeros((2, 12), dtype=np.int32), np.ones((2, 4)))
     assert disk.done == ["folder", f"file of {(tmp_path / 'journal').stat().st_size}"]

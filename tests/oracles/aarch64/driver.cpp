@@ -166,7 +166,7 @@ void run(Calls& calls, Results& results) {
   const std::size_t plant_count = plants.size() / loop::kPlantColumns, count = std::max(controller_count, plant_count);
   const int substeps = calls.number();
   const std::size_t every = calls.size();
-  const bool single = calls.whole() != 0;
+  const bool exact = calls.whole() != 0;
 
   const std::size_t rows = every == 0 ? 0 : (x.ticks + every - 1) / every;
   std::vector<double> mse(count * kJoints), itae(mse), itau(mse);
@@ -174,7 +174,7 @@ void run(Calls& calls, Results& results) {
   std::vector<float> angles(count * rows * kJoints);
   std::vector<std::int16_t> duties(angles.size());
   const auto* plant_rows = reinterpret_cast<const loop::PlantRow*>(plants.data());
-  loop::run_batch(x, {laws.data(), laws.size(), plant_rows, plant_count, count}, {substeps, 0, single, ""},
+  loop::run_batch(x, {laws.data(), laws.size(), plant_rows, plant_count, count}, {substeps, 0, exact, ""},
                   {mse.data(), itae.data(), itau.data(), diverged.get(), every, rows, angles.data(), duties.data()});
   results.give(mse);
   results.give(itae);

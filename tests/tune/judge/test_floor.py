@@ -88,7 +88,7 @@ def test_the_floor_is_of_the_experiments_own_window_and_below_its_controller() -
     np.testing.assert_array_equal(floor.leader, experiment.leader)
     np.testing.assert_allclose(floor.time_s, experiment.time_s, atol=1e-12)
     np.testing.assert_allclose(floor.mse, np.mean((floor.leader - floor.angles) ** 2, axis=0), rtol=1e-12)
-    before = experiment.run_single().mse[0]
+    before = experiment.run_exact().mse[0]
     multiples = floor.multiple(before)
     assert all(one is not None and one > 1.1 for one in multiples)
     assert multiples[4] == pytest.approx(before.sum() / floor.total)

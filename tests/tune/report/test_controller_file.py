@@ -10,11 +10,11 @@ import numpy as np
 from greywhale.files import controller
 from greywhale.protocol.table import ParameterTable
 from greywhale.simulate import controller_row
-from greywhale.tune.outcome import Outcome
 from greywhale.tune.report.controller_file import provenance, save
+from greywhale.tune.result import TuningResult
 
 
-def test_it_is_a_controller_file_with_the_very_numbers(outcome: Outcome, tmp_path: Path) -> None:
+def test_it_is_a_controller_file_with_the_very_numbers(outcome: TuningResult, tmp_path: Path) -> None:
     save(outcome, tmp_path / "controller.toml")
     loaded = controller.load(tmp_path / "controller.toml")
     np.testing.assert_array_equal(controller_row(loaded), outcome.after)
@@ -22,14 +22,14 @@ def test_it_is_a_controller_file_with_the_very_numbers(outcome: Outcome, tmp_pat
     assert loaded.source == f"greywhale tune, method default, strategy both, seed 3, for {outcome.model.name}"
 
 
-def test_it_tells_the_crc_that_the_board_will_have(outcome: Outcome) -> None:
+def test_it_tells_the_crc_that_the_board_will_have(outcome: TuningResult) -> None:
     defaults = ParameterTable.defaults()
     assert outcome.model.stall is not None
     changed = defaults.with_raw({"joint2.kp": defaults["joint2.kp"] + 1, "stall_volts": outcome.model.stall.raw})
     assert provenance(outcome)["parameter_crc"] == f"0x{changed.crc:04x}"
 
 
-def test_a_measure_that_not_every_joint_has_is_left_out(outcome: Outcome) -> None:
+def test_a_measure_that_not_every_joint_has_is_left_out(outcome: TuningResult) -> None:
     first, second = provenance(outcome)["expected"]
     assert (first["motion"], second["motion"]) == ("steps", "reaches")
     assert first["mse_after_rad2"] == [0.002468] * 4
@@ -37,7 +37,7 @@ def test_a_measure_that_not_every_joint_has_is_left_out(outcome: Outcome) -> Non
     assert not any(key.startswith(("steady", "onset")) for key in first)
 
 
-def test_comments_tell_people_what_to_expect(outcome: Outcome, tmp_path: Path) -> None:
+def test_comments_tell_people_what_to_expect(outcome: TuningResult, tmp_path: Path) -> None:
     save(outcome, tmp_path / "controller.toml")
     lines = (tmp_path / "controller.toml").read_text(encoding="utf-8").splitlines()
     assert "# For a control period of 1 ms and a supply of 15 V." in lines
@@ -49,7 +49,7 @@ def test_comments_tell_people_what_to_expect(outcome: Outcome, tmp_path: Path) -
     assert not any("UNFINISHED" in line or "NOT STEADY" in line for line in lines)
 
 
-def test_what_is_unfinished_or_not_steady_says_so_on_top(outcome: Outcome, tmp_path: Path) -> None:
+def test_what_is_unfinished_or_not_steady_says_so_on_top(outcome: TuningResult, tmp_path: Path) -> None:
     swinging = replace(outcome.margins[0], reversals=9, plants_failing=1)
     save(replace(outcome, complete=False, margins=(swinging, *outcome.margins[1:])), tmp_path / "controller.toml")
     text = (tmp_path / "controller.toml").read_text(encoding="utf-8")
@@ -64,7 +64,7 @@ def test_what_is_unfinished_or_not_steady_says_so_on_top(outcome: Outcome, tmp_p
     assert tuning["margin"][0]["holds"] == [True, False, True, True]
 
 
-def test_equal_outcomes_give_equal_files(outcome: Outcome, tmp_path: Path) -> None:
+def test_equal_outcomes_give_equal_files(outcome: TuningResult, tmp_path: Path) -> None:
     for name in ("a.toml", "b.toml"):
         save(outcome, tmp_path / name)
     assert (tmp_path / "a.toml").read_bytes() == (tmp_path / "b.toml").read_bytes()

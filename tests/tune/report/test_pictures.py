@@ -21,9 +21,9 @@ from greywhale.motion import multi_steps
 from greywhale.pictures import looks
 from greywhale.pictures.page import style
 from greywhale.simulate import controller_row
-from greywhale.tune.outcome import Outcome
 from greywhale.tune.report import pictures
 from greywhale.tune.report.pictures import Response
+from greywhale.tune.result import TuningResult
 from tests.pictures.sight import faults
 
 
@@ -214,11 +214,11 @@ def test_a_tuning_gets_all_its_pictures_and_an_unfinished_one_those_there_are(tm
         held_out=(held_out,),
         curves=(SimpleNamespace(evaluations=(10, 20), cost=(2.0, 1.0)),) * 4,
     )
-    drawn = pictures.draw(cast(Outcome, outcome), tmp_path / "new" / "folder")
+    drawn = pictures.draw(cast(TuningResult, outcome), tmp_path / "new" / "folder")
     assert [path.name for path in drawn] == ["sets.png", "responses_human_like_reaches.png", "convergence.png"]
     assert all(path.read_bytes().startswith(b"\x89PNG") for path in drawn)
     outcome.held_out, outcome.curves = (), ()
-    assert [path.name for path in pictures.draw(cast(Outcome, outcome), tmp_path)] == ["sets.png"]
+    assert [path.name for path in pictures.draw(cast(TuningResult, outcome), tmp_path)] == ["sets.png"]
 
 
 @pytest.mark.slow

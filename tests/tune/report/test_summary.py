@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from greywhale.tune.outcome import Outcome
 from greywhale.tune.report.controller_file import save
 from greywhale.tune.report.summary import summary
+from greywhale.tune.result import TuningResult
 from tests.tune.models import evaluation
 
 
-def test_it_shows_before_and_after_and_the_multiple_of_the_floor(outcome: Outcome) -> None:
+def test_it_shows_before_and_after_and_the_multiple_of_the_floor(outcome: TuningResult) -> None:
     lines = summary(outcome).splitlines()
     assert lines[0].endswith("at 1 ms and 15 V: default, strategy both, seed 3, 10 evaluations.")
     row = next(line for line in lines if line.startswith("1 shoulder pitch"))
@@ -31,7 +31,7 @@ def test_it_shows_before_and_after_and_the_multiple_of_the_floor(outcome: Outcom
     ]
 
 
-def test_what_is_worse_than_before_says_so(outcome: Outcome) -> None:
+def test_what_is_worse_than_before_says_so(outcome: TuningResult) -> None:
     motion = replace(outcome.held_out[0], after=evaluation(0.0103))
     lines = summary(replace(outcome, held_out=(motion,))).splitlines()
     assert [line.endswith(" WORSE") for line in lines if line[:1].isdigit()] == [True] * 4
@@ -40,7 +40,7 @@ def test_what_is_worse_than_before_says_so(outcome: Outcome) -> None:
 
 
 def test_steps_have_overshoot_and_settling_time_and_more_overshoot_than_before_says_so(
-    outcome: Outcome, tmp_path: Path
+    outcome: TuningResult, tmp_path: Path
 ) -> None:
     calm, brisk = (
         replace(whole, joints=tuple(replace(joint, overshoot_percent=over, settling_s=0.5) for joint in whole.joints))
@@ -63,7 +63,7 @@ def test_steps_have_overshoot_and_settling_time_and_more_overshoot_than_before_s
     assert "OVERSHOOT" not in summary(outcome)
 
 
-def test_what_does_not_come_to_rest_is_named(outcome: Outcome) -> None:
+def test_what_does_not_come_to_rest_is_named(outcome: TuningResult) -> None:
     swinging = replace(outcome.margins[0], reversals=9, chatter_hz=12.3, plants_failing=1)
     text = summary(replace(outcome, margins=(swinging, *outcome.margins[1:])))
     assert "\nNOT STEADY: joint 1 (shoulder pitch), at rest.\n" in text
@@ -75,7 +75,7 @@ def test_what_does_not_come_to_rest_is_named(outcome: Outcome) -> None:
     assert "NOT STEADY" not in text
 
 
-def test_an_unfinished_one_was_not_judged(outcome: Outcome) -> None:
+def test_an_unfinished_one_was_not_judged(outcome: TuningResult) -> None:
     text = summary(replace(outcome, complete=False, margins=(), held_out=()))
     assert text.startswith("UNFINISHED: interrupted; this is the best so far.\n")
     assert "Expected" not in text

@@ -14,9 +14,9 @@ from greywhale.files.controller import load
 from greywhale.files.paper_tables import paper_table
 from greywhale.motion import Evaluation, JointMeasures
 from greywhale.simulate import controller_row
-from greywhale.tune.outcome import Outcome
 from greywhale.tune.report import tables
 from greywhale.tune.report.tables import Table
+from greywhale.tune.result import TuningResult
 
 BEFORE = (0.02, 0.01, 0.004, 0.006)
 AFTER = (0.01, 0.012, 0.001, 0.003)
@@ -142,7 +142,7 @@ def test_a_tuning_fills_the_table_of_its_strategy_and_one_for_every_motion(strat
         after=controllers("table_9"),
         held_out=tuple(held_out(name) for name in ("steps", "multi-steps", "human-like reaches")),
     )
-    parameters, steps, multi_steps, human = tables.tables_of(cast(Outcome, outcome), paper=True)
+    parameters, steps, multi_steps, human = tables.tables_of(cast(TuningResult, outcome), paper=True)
     assert len(parameters.as_dict()["rows"]) == rows
     assert row(steps, "All joints", "Mean")["paper after"] == 0.0405
     assert row(multi_steps, "All joints", "Mean")["paper after"] == 0.4360

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from greywhale.base.errors import UserError
 from greywhale.simulate import default_controller
-from greywhale.tune.search.journal import Journal
+from greywhale.tune.search.journal import TuningJournal
 
 ROWS = np.repeat(default_controller()[None], 2, axis=0)
 COSTS = np.array([[0.1, 1 / 3, 1e9, 2.0], [5e-324, 0.2, 0.3, 1e300]])
@@ -21,7 +21,7 @@ REQUEST: dict[str, Any] = {"seed": 1, "bounds": {}, "pair": (1, 2)}
 
 
 def written(path: Path, batches: int = 3, request: dict[str, Any] | None = None) -> bytes:
-    with Journal(path, request or REQUEST) as book:
+    with TuningJournal(path, request or REQUEST) as book:
         for number in range(batches):
             book.tell(f"stage {number}", ROWS + number, COSTS * (number + 1))
     return path.read_bytes()
@@ -30,7 +30,7 @@ def written(path: Path, batches: int = 3, request: dict[str, Any] | None = None)
 def test_costs_come_back_bit_for_bit(tmp_path: Path) -> None:
     path = tmp_path / "j"
     whole = written(path)
-    with Journal(path, REQUEST, resume=True) as book:
+    with TuningJournal(path, REQUEST, resume=True) as book:
         for number in range(3):
             assert book.replaying
             costs = book.costs(f"stage {number}", ROWS + number)
@@ -48,7 +48,7 @@ def test_a_torn_last_line_is_forgotten_wherever_it_was_torn(tmp_path: Path) -> N
     for length in range(0, len(whole) + 1, 7):
         path.write_bytes(whole[:length])
         known = max(0, sum(end <= length for end in ends) - 1)
-        with Journal(path, REQUEST, resume=True) as book:
+        with TuningJournal(path, REQUEST, resume=True) as book:
             for number in range(3):
                 costs = book.costs(f"stage {number}", ROWS + number)
                 assert (costs is not None) == (number < known)
@@ -59,7 +59,7 @@ def test_a_torn_last_line_is_forgotten_wherever_it_was_torn(tmp_path: Path) -> N
 
 def test_every_line_is_in_the_file_when_it_was_told(tmp_path: Path) -> None:
     path = tmp_path / "j"
-    with Journal(path, REQUEST) as book:
+    with TuningJournal(path, REQUEST) as book:
         for number in range(3):
             book.tell("stage", ROWS, COSTS)
             assert path.read_bytes().count(b"\n") == number + 2
@@ -68,13 +68,13 @@ def test_every_line_is_in_the_file_when_it_was_told(tmp_path: Path) -> None:
 def test_without_resume_a_journal_begins_anew(tmp_path: Path) -> None:
     path = tmp_path / "j"
     written(path)
-    with Journal(path, REQUEST):
+    with TuningJournal(path, REQUEST):
         pass
     assert path.read_bytes().count(b"\n") == 1
 
 
 def test_resuming_what_is_not_there_begins_anew(tmp_path: Path) -> None:
-    with Journal(tmp_path / "j", REQUEST, resume=True) as book:
+    with TuningJournal(tmp_path / "j", REQUEST, resume=True) as book:
         assert not book.replaying
         book.tell("stage 0", ROWS, COSTS)
     assert (tmp_path / "j").read_bytes() == written(tmp_path / "k", 1)
@@ -93,14 +93,14 @@ def test_another_request_is_refused_with_what_differs(tmp_path: Path, changed: d
     path = tmp_path / "j"
     whole = written(path)
     with pytest.raises(UserError, match=sentence):
-        Journal(path, REQUEST | changed, resume=True)
+        TuningJournal(path, REQUEST | changed, resume=True)
     assert path.read_bytes() == whole
 
 
 def test_other_candidates_than_the_journals_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "j"
     written(path)
-    with Journal(path, REQUEST, resume=True) as book:
+    with TuningJournal(path, REQUEST, resume=True) as book:
         book.costs("stage 0", ROWS)
         with pytest.raises(UserError, match=r"batch 2 of the journal is of other candidates \(stage 1\)"):
             book.costs("stage 1", ROWS)
@@ -130,7 +130,7 @@ def test_what_is_no_journal_is_refused(tmp_path: Path, spoil: Any, sentence: str
     path = tmp_path / "j"
     path.write_bytes(b"\n".join(spoil(written(path).split(b"\n"))))
     with pytest.raises(UserError, match=sentence):
-        Journal(path, REQUEST, resume=True)
+        TuningJournal(path, REQUEST, resume=True)
 
 
 @given(st.data())
@@ -144,7 +144,7 @@ def test_no_changed_byte_gives_another_cost(tmp_path: Path, data: st.DataObject)
     spoilt[place] = data.draw(st.integers(0, 255).filter(lambda byte: byte != whole[place]))
     path.write_bytes(spoilt)
     try:
-        book = Journal(path, REQUEST, resume=True)
+        book = TuningJournal(path, REQUEST, resume=True)
     except UserError:
         return
     with book:
@@ -156,14 +156,14 @@ def test_no_changed_byte_gives_another_cost(tmp_path: Path, data: st.DataObject)
 
 def test_places_that_cannot_hold_a_journal_are_refused(tmp_path: Path) -> None:
     with pytest.raises(UserError, match="cannot be used as a journal: is a directory"):
-        Journal(tmp_path, REQUEST)
+        TuningJournal(tmp_path, REQUEST)
     with pytest.raises(UserError, match="cannot be used as a journal: no such file"):
-        Journal(tmp_path / "no" / "folder", REQUEST)
+        TuningJournal(tmp_path / "no" / "folder", REQUEST)
 
 
 def test_a_full_disk_is_said_with_the_remedy() -> None:
     with pytest.raises(UserError, match="/dev/full: cannot be written: no space left on device; make room and go on"):
-        Journal(Path("/dev/full"), REQUEST)
+        TuningJournal(Path("/dev/full"), REQUEST)
 
 
 def test_lines_are_json(tmp_path: Path) -> None:

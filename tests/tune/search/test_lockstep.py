@@ -12,8 +12,8 @@ from greywhale.optimise import Optimiser, create
 from greywhale.simulate import default_controller
 from greywhale.tune.judge.choose import choose
 from greywhale.tune.search import lockstep as search
-from greywhale.tune.search.journal import Journal
-from greywhale.tune.search.lockstep import KEPT, TOGETHER, TURNS, Found, search_in_lockstep, try_again
+from greywhale.tune.search.journal import TuningJournal
+from greywhale.tune.search.lockstep import KEPT, TOGETHER, TURNS, SearchState, search_in_lockstep, try_again
 from greywhale.tune.search.space import Space
 
 BEFORE = default_controller()
@@ -34,9 +34,9 @@ class Hills:
         return np.asarray(((share - AIMS[:, None]) ** 2).sum(axis=2))
 
 
-def run(method: str = "gwo-woa-relative", budget: int = 400, groups: object = TOGETHER) -> tuple[Found, Hills]:
-    found, hills = Found.nothing(BEFORE), Hills()
-    with Journal(None, {}) as book:
+def run(method: str = "gwo-woa-relative", budget: int = 400, groups: object = TOGETHER) -> tuple[SearchState, Hills]:
+    found, hills = SearchState.nothing(BEFORE), Hills()
+    with TuningJournal(None, {}) as book:
         try_again(hills, found, book, "start")
         search_in_lockstep(
             SPACE, hills, found, book, stage="test", method=method, budget=budget, seed=(1,), start=BEFORE,
@@ -78,10 +78,10 @@ def test_restarts_with_other_packs_keep_the_joints_apart() -> None:
 @pytest.mark.parametrize("method", ["gwo-woa-relative", "de", "cma-es"])
 def test_a_narrow_stage_begins_around_its_start(method: str) -> None:
     hills = Hills()
-    with Journal(None, {}) as book:
+    with TuningJournal(None, {}) as book:
         search_in_lockstep(
-            SPACE, hills, Found.nothing(BEFORE), book, stage="test", method=method, budget=8, seed=(1,), start=BEFORE,
-            tick=lambda _: None, sigma=0.02,
+            SPACE, hills, SearchState.nothing(BEFORE), book, stage="test", method=method, budget=8, seed=(1,),
+            start=BEFORE, tick=lambda _: None, sigma=0.02,
         )  # fmt: skip
     tried = SPACE.points(np.concatenate(hills.rows))
     away = np.abs(tried - SPACE.points(BEFORE[None])) / (SPACE.upper - SPACE.lower)
@@ -92,7 +92,7 @@ def test_a_narrow_stage_begins_around_its_start(method: str) -> None:
 def test_trying_again_forgets_what_neighbours_that_are_gone_made_of_a_cost() -> None:
     found, hills = run(budget=57)
     best = found.best.copy()
-    with Journal(None, {}) as book:
+    with TuningJournal(None, {}) as book:
         try_again(lambda rows: hills(rows) + 1.0, found, book, "again")
     np.testing.assert_array_equal(found.best, best)
     np.testing.assert_allclose(found.cost, hills(best[None])[0] + 1.0)
@@ -134,9 +134,9 @@ def test_optimisers_are_given_back_when_a_search_is_cut_off(monkeypatch: pytest.
         raise KeyboardInterrupt
 
     monkeypatch.setattr(search, "create", watched)
-    with pytest.raises(KeyboardInterrupt), Journal(None, {}) as book:
+    with pytest.raises(KeyboardInterrupt), TuningJournal(None, {}) as book:
         search_in_lockstep(
-            SPACE, interrupted, Found.nothing(BEFORE), book, stage="test", method="gwo-woa", budget=10, seed=(1,),
+            SPACE, interrupted, SearchState.nothing(BEFORE), book, stage="test", method="gwo-woa", budget=10, seed=(1,),
             start=BEFORE, tick=lambda _: None,
         )  # fmt: skip
     assert len(closed) == 4
@@ -213,14 +213,14 @@ def test_one_bad_joint_does_not_spoil_the_others_tuning() -> None:
 
 
 def test_a_found_of_nothing_costs_infinitely_much() -> None:
-    assert np.isinf(Found.nothing(BEFORE).total)
+    assert np.isinf(SearchState.nothing(BEFORE).total)
 
 
 def test_the_journal_is_asked_before_anything_is_simulated(tmp_path: Path) -> None:
     path = tmp_path / "journal"
     for resume, evaluate in ((False, Hills()), (True, None)):
-        found = Found.nothing(BEFORE)
-        with Journal(path, {"budget": 30}, resume) as book:
+        found = SearchState.nothing(BEFORE)
+        with TuningJournal(path, {"budget": 30}, resume) as book:
             search_in_lockstep(
                 SPACE, evaluate or _never, found, book, stage="test", method="cma-es", budget=30, seed=(1,),
                 start=BEFORE, tick=lambda _: None,

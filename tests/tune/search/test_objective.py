@@ -19,15 +19,23 @@ from greywhale.tune.search.objective import (
     LOUDER,
     QUIET_RAD,
     RATTLE,
-    Following,
+    ErrorScale,
+    FollowingErrors,
     Objective,
-    Scale,
     combine_plants,
     follow,
     pair_with_plants,
     relative_costs,
 )
-from greywhale.tune.search.training import LEVELS, SOON_S, drills, moves, reach, slow_following, time_since_move
+from greywhale.tune.search.training import (
+    LEVELS,
+    SOON_S,
+    moves,
+    reach,
+    slow_following,
+    time_since_move,
+    training_motions,
+)
 
 ARM = default_arm()
 PLANTS = plant_row(ARM)[None]
@@ -36,7 +44,7 @@ BEFORE = default_controller()
 
 @pytest.fixture(scope="module")
 def objective() -> Objective:
-    motions = drills(ARM, ParameterTable.defaults(), PLANTS)
+    motions = training_motions(ARM, ParameterTable.defaults(), PLANTS)
     return Objective(motions, PLANTS, scale_of(motions, PLANTS, BEFORE))
 
 
@@ -64,9 +72,9 @@ def test_the_effort_is_a_small_part_of_the_cost(objective: Objective) -> None:
 def test_fine_following_counts_as_much_as_large_moves() -> None:
     """Half of what can be avoided costs the same in a class whose errors are ten times as large."""
     floor, room = np.zeros((1, 2, 4)), np.stack([np.full(4, 0.1), np.full(4, 0.01)])[None]
-    scale = Scale(floor + np.array([0.3, 0.0])[:, None], room, np.zeros((1, 2, 4)))
+    scale = ErrorScale(floor + np.array([0.3, 0.0])[:, None], room, np.zeros((1, 2, 4)))
     none = np.zeros((1, 1, 2, 4))
-    found = Following(scale.floor[None] + 0.5 * room[None], none, none, none)
+    found = FollowingErrors(scale.floor[None] + 0.5 * room[None], none, none, none)
     np.testing.assert_allclose(relative_costs(found, scale, 15.0), np.sqrt(0.5))
 
 
@@ -80,17 +88,17 @@ def test_large_moves_count_half_and_fine_following_the_other_half(objective: Obj
 
 def test_rattling_and_chatter_cost_in_every_class_and_most_beyond_what_was_before() -> None:
     floor, room, before = np.zeros((1, 2, 4)), np.full((1, 2, 4), 0.05), np.full((1, 2, 4), 0.002)
-    scale, none = Scale(floor, room, before), np.zeros((1, 1, 2, 4))
+    scale, none = ErrorScale(floor, room, before), np.zeros((1, 1, 2, 4))
     quiet, loud, chattering = none.copy(), none.copy(), none.copy()
     quiet[0, 0, 1, 3], loud[0, 0, 1, 3], chattering[0, 0, 0, 2] = 0.002, 0.003, 170.0
-    costs = [relative_costs(Following(none, none, rattle, none), scale, 15.0) for rattle in (quiet, loud)]
+    costs = [relative_costs(FollowingErrors(none, none, rattle, none), scale, 15.0) for rattle in (quiet, loud)]
     assert costs[0][0, 0, 1, 3] == pytest.approx(np.sqrt(RATTLE * 0.002 / 0.05))
     assert costs[1][0, 0, 1, 3] == pytest.approx(np.sqrt(RATTLE * (0.003 + LOUDER * 0.001) / 0.05))
     assert np.count_nonzero(costs[1]) == 1
-    beaten = relative_costs(Following(none, none, none, chattering), scale, 15.0)
+    beaten = relative_costs(FollowingErrors(none, none, none, chattering), scale, 15.0)
     assert beaten[0, 0, 0, 2] == pytest.approx(np.sqrt(CHATTER * 1.0))
     silent = replace(scale, rattle=np.zeros((1, 2, 4)))
-    free = relative_costs(Following(none, none, np.full_like(none, QUIET_RAD), none), silent, 15.0)
+    free = relative_costs(FollowingErrors(none, none, np.full_like(none, QUIET_RAD), none), silent, 15.0)
     np.testing.assert_allclose(free, np.sqrt(RATTLE * QUIET_RAD / 0.05))
 
 
@@ -103,8 +111,8 @@ def test_a_joint_that_is_tuned_one_sidedly_pays(objective: Objective) -> None:
 
 
 def test_the_bench_s_own_arithmetic_agrees(objective: Objective) -> None:
-    batch, single = objective.costs(BEFORE[None]), objective.costs(BEFORE[None], single=True)
-    np.testing.assert_allclose(batch, single, rtol=0.03)
+    batch, exact = objective.costs(BEFORE[None]), objective.costs(BEFORE[None], exact=True)
+    np.testing.assert_allclose(batch, exact, rtol=0.03)
 
 
 def test_the_plants_mean_and_worst_count_half_each() -> None:
@@ -161,7 +169,7 @@ def test_motions_keep_within_limits_and_stops() -> None:
     plants = PLANTS.copy()
     plants[0, column("stop_min", 3)] = -0.4
     low, high = reach(ARM, table, plants)
-    for drill in drills(ARM, table, plants):
+    for drill in training_motions(ARM, table, plants):
         leader = drill.experiment.leader
         assert (leader >= low - 1e-9).all()
         assert (leader <= high + 1e-9).all()

@@ -32,7 +32,7 @@ void Sampling::configure(const params::Table& table) {
   prepare();
 }
 
-bool Sampling::configure(const params::Table& table, uint8_t joint, bool led) {
+bool Sampling::configure(const params::Table& table, uint8_t joint, bool host_leads) {
   JointSignals& kept = signals_.joint[joint];
   const params::PotParameters &leader = table.leader[joint], &follower = table.follower[joint];
   // A joint that is not in use has no error, so no voltage.
@@ -50,7 +50,7 @@ bool Sampling::configure(const params::Table& table, uint8_t joint, bool led) {
   kept.limit_max = most;
   pots_in_use_ = pots;
   changed |= calibrate(kept.follower, follower);
-  if (!led) changed |= calibrate(kept.leader, leader);
+  if (!host_leads) changed |= calibrate(kept.leader, leader);
   return changed;
 }
 

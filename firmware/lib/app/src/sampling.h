@@ -21,9 +21,9 @@ class Sampling {
   uint8_t pots_in_use() const { return pots_in_use_; }
   // Once between two ticks: what the next one's low-pass can have beforehand.
   void prepare();
-  // Takes what is kept of the table for one joint anew. Whether that changed anything: then a bit had flipped. `led`:
-  // the host leads, so the leader's line is a reference.
-  bool configure(const params::Table& table, uint8_t joint, bool led);
+  // Takes what is kept of the table for one joint anew. Says whether that changed anything: then a bit had flipped.
+  // With `host_leads` the leader's line is a reference.
+  bool configure(const params::Table& table, uint8_t joint, bool host_leads);
 
   // What is a rail.
   Part rails() const {

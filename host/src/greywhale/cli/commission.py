@@ -75,7 +75,7 @@ def command(
     motors at any point; --resume goes on. FOLDER/report.html tells the story.
     """
     # Scipy and the native simulation take a moment to import.
-    from greywhale.commission import Options, commission
+    from greywhale.commission import CommissioningRequest, commission
     from greywhale.commission.page import save_page
     from greywhale.identify.excite import parse_range
 
@@ -83,7 +83,7 @@ def command(
     if len(chosen) < len(ranges):
         raise UserError("--range names a joint twice; give each joint once.", BAD_USAGE)
     require_folder(out, "logs, models and controllers", "report.html")
-    options = Options(
+    options = CommissioningRequest(
         port=choose_port(port),
         out=out,
         arm_file=arm_file,

@@ -1,9 +1,10 @@
 """Commissioning: controllers that are proven on the arm itself, joint by joint, never worse than those from before.
 
->>> outcome = commission(Options(port, Path("commission"), load_arm("arm.toml")), report)
+>>> outcome = commission(CommissioningRequest(port, Path("commission"), load_arm("arm.toml")), report)
 """
 
-from greywhale.commission.campaign import ROUNDS, TRIALS, Options, commission
-from greywhale.commission.outcome import Outcome
+from greywhale.commission.request import ROUNDS, TRIALS, CommissioningRequest
+from greywhale.commission.result import CommissioningResult
+from greywhale.commission.run import commission
 
-__all__ = ["ROUNDS", "TRIALS", "Options", "Outcome", "commission"]
+__all__ = ["ROUNDS", "TRIALS", "CommissioningRequest", "CommissioningResult", "commission"]

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from greywhale.commission.rig import Rig
+from greywhale.commission.arm_on_port import ArmOnPort
 from greywhale.commission.search import JointSearch, Row
 from greywhale.commission.trials import Trial, Trials
 from greywhale.simulate.controllers import controllers_of
@@ -14,7 +14,7 @@ from greywhale.simulate.controllers import controllers_of
 MOST_CONFIRMATIONS = 12
 
 
-def confirm(trials: Trials, searches: Sequence[JointSearch], arm: Callable[[], Rig]) -> Trial:
+def confirm(trials: Trials, searches: Sequence[JointSearch], arm: Callable[[], ArmOnPort]) -> Trial:
     """The best set that was measured as a whole. A combination that was not measured is played before it counts."""
     rows = np.array([_next(search, [], trials) for search in searches])
     failed: list[list[bytes]] = [[] for _ in searches]

@@ -18,7 +18,7 @@ from greywhale.arm import ArmParameters
 from greywhale.arm.plants import plant_row
 from greywhale.base.types import Controllers, Floats
 from greywhale.commission.measures import Measures, Traces, measure
-from greywhale.commission.motions import PARTS, Check, Room
+from greywhale.commission.motions import PARTS, Check, JointRange
 from greywhale.commission.predict import predict
 from greywhale.motion import multi_steps
 from greywhale.protocol.firmware import JOINTS
@@ -70,7 +70,7 @@ class Foresight:
 
 
 def foresee(
-    arm: ArmParameters, table: ParameterTable, room: Room, check: Check, traces: Traces, measured: Measures
+    arm: ArmParameters, table: ParameterTable, room: JointRange, check: Check, traces: Traces, measured: Measures
 ) -> Foresight:
     """What a model of this arm foresees; `traces` and `measured` are those of the check before, with `table`."""
     moves = PARTS.index("moves")
@@ -83,6 +83,6 @@ def foresee(
 
 
 def _errors(experiment: Experiment, plant: Floats, rows: Controllers) -> Floats:
-    angles = experiment.run_single(rows[None], plant, every=1).angles[0]
+    angles = experiment.run_exact(rows[None], plant, every=1).angles[0]
     errors: Floats = np.mean((experiment.leader - angles) ** 2, axis=0)
     return errors

@@ -63,7 +63,7 @@ class Limits:
 
 
 @dataclass(frozen=True)
-class Verdict:
+class TrialVerdict:
     """One joint in one trial: `faults` are clauses, empty where it passed; `score` is its error relative to before."""
 
     joint: int
@@ -99,14 +99,16 @@ def judge(
     limits: Limits,
     guilty: Sequence[str],
     foreseen: Sequence[str] = ("",) * JOINTS,
-) -> tuple[Verdict, ...]:
+) -> tuple[TrialVerdict, ...]:
     """A verdict for every joint; `guilty` has a clause for each joint that ended the trial, `foreseen` for each that a
     model speaks against, "" for the others.
     """
     return tuple(_judge(measured, before, limits, joint, guilty[joint], foreseen[joint]) for joint in range(JOINTS))
 
 
-def _judge(measured: Measures, before: Measures, limits: Limits, joint: int, guilty: str, foreseen: str) -> Verdict:
+def _judge(
+    measured: Measures, before: Measures, limits: Limits, joint: int, guilty: str, foreseen: str
+) -> TrialVerdict:
     faults = [guilty] if guilty else []
     unrest, rattle, chatter = (_closest(measured, limits, name, joint) for name in ("unrest", "rattle", "chatter"))
     excess = np.inf if guilty else max(0.0, unrest.share, rattle.share, chatter.share)
@@ -129,7 +131,7 @@ def _judge(measured: Measures, before: Measures, limits: Limits, joint: int, gui
     known = measured.whole or bool(faults)
     hardly = restless and len(faults) == 1 and excess <= BEARABLE
     bearable = measured.whole and (hardly or not faults)
-    return Verdict(joint, tuple(faults), restless, restless and quiet, excess, score, known, bearable)
+    return TrialVerdict(joint, tuple(faults), restless, restless and quiet, excess, score, known, bearable)
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,8 @@ import numpy as np
 from greywhale.arm import ArmParameters
 from greywhale.base.errors import UserError
 from greywhale.base.types import Controllers, Floats, NotedProgress
-from greywhale.commission.book import Book
 from greywhale.commission.evidence import Evidence
+from greywhale.commission.journal import CommissioningJournal
 from greywhale.commission.predict import predict
 from greywhale.commission.trials import Trial
 from greywhale.files import controller as controller_file
@@ -29,7 +29,7 @@ MOST_APART = 0.5
 
 
 @dataclass(frozen=True)
-class Learnt:
+class LearntController:
     """A round's model and controllers (4, 12), and what speaks against the model."""
 
     arm: ArmParameters
@@ -40,7 +40,7 @@ class Learnt:
 
 
 def find_model(
-    book: Book,
+    book: CommissioningJournal,
     name: str,
     nominal: ArmParameters,
     known: Evidence,
@@ -68,7 +68,7 @@ def find_model(
 
 
 def find_controllers(
-    book: Book,
+    book: CommissioningJournal,
     name: str,
     model: Model,
     *,
@@ -77,7 +77,7 @@ def find_controllers(
     seed: int,
     threads: int,
     report: NotedProgress,
-) -> Learnt:
+) -> LearntController:
     """Tune on a model, or take the controllers of that name from the journal. An interrupted search goes on."""
     path, journal = book.path(f"{name}.toml"), book.path(f"{name}.toml.journal")
     known = book.get(name)
@@ -102,7 +102,7 @@ def find_controllers(
         book.note(name, known)
     found = controller_file.load(path)
     stall = found.raw_values().get("stall_volts")
-    return Learnt(model.arm, controller_row(found), tuple(known["doubts"]), known["steady"], stall)
+    return LearntController(model.arm, controller_row(found), tuple(known["doubts"]), known["steady"], stall)
 
 
 def read_model(path: Path, seed: int, params: Path) -> Model:

@@ -34,7 +34,7 @@ PARTS = ("small moves", "moves", "reaches", "slow motion", "holding still")
 
 
 @dataclass(frozen=True)
-class Room:
+class JointRange:
     """Where the arm is, and how far each joint may go: `pose`, `low` and `high` (4,) in rad."""
 
     pose: Floats
@@ -56,7 +56,7 @@ class Check:
     parts: dict[str, tuple[float, float]]
 
 
-def first_motion(room: Room, size: float) -> Trajectory:
+def first_motion(room: JointRange, size: float) -> Trajectory:
     """Every joint goes `size` rad to the side with more room, slowly, and back."""
     side = np.where(room.high - room.pose >= room.pose - room.low, 1.0, -1.0)
     reach = np.minimum(size, np.where(side > 0.0, room.high - room.pose, room.pose - room.low))
@@ -64,7 +64,7 @@ def first_motion(room: Room, size: float) -> Trajectory:
     return _through(stops, [FIRST_HOLD_S] * len(stops), FIRST_EDGE_S)
 
 
-def check_motion(room: Room) -> Check:
+def check_motion(room: JointRange) -> Check:
     """Small moves, moves through the room, human-like reaches, slow motion, and moves of every second joint while the
     others hold still; at rest at the pose between the parts.
     """
@@ -93,14 +93,14 @@ def _turned(number: int) -> Floats:
     return np.array([-share if joint % 2 else share for joint, share in enumerate(shares)])
 
 
-def _still(room: Room) -> list[Floats]:
+def _still(room: JointRange) -> list[Floats]:
     """The pose, then moves of joints 0 and 2 while 1 and 3 hold still, then the other way round."""
     turns = [np.array([share, 0.0, share, 0.0]) for share in STILL_SHARES]
     turns += [np.array([0.0, share, 0.0, share]) for share in STILL_SHARES]
     return [room.pose, *(room.place(shares) for shares in turns)]
 
 
-def _within(room: Room, angles: Floats) -> Floats:
+def _within(room: JointRange, angles: Floats) -> Floats:
     """A small move goes to the other side where this side has no room."""
     beyond = (angles > room.high) | (angles < room.low)
     mirrored: Floats = np.clip(np.where(beyond, 2.0 * room.pose - angles, angles), room.low, room.high)
@@ -123,7 +123,7 @@ def _through(stops: list[Floats], holds: list[float], edge_s: float) -> Trajecto
     return Trajectory(np.concatenate(times), np.vstack(rows))
 
 
-def _reaches(room: Room) -> Trajectory:
+def _reaches(room: JointRange) -> Trajectory:
     """Human-like reaches, scaled into the room; from the pose and back to it."""
     human = human_reaches(REACHES_SEED, REACHES_S)
     middle, half = RANGE_RAD.mean(axis=1), 0.5 * (RANGE_RAD[:, 1] - RANGE_RAD[:, 0])
@@ -134,7 +134,7 @@ def _reaches(room: Room) -> Trajectory:
     return _back(Trajectory(human.time_s, angles), room.pose)
 
 
-def _slow(room: Room) -> Trajectory:
+def _slow(room: JointRange) -> Trajectory:
     """One slow swing to both sides, in which a joint rattles most easily."""
     time_s = np.arange(round(SLOW_S * RATE_HZ) + 1) / RATE_HZ
     turn = 2.0 * np.pi * time_s / SLOW_S

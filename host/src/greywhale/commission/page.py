@@ -13,7 +13,7 @@ from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.formats.whole import write_text
 from greywhale.commission.measures import Measures
 from greywhale.commission.motions import PARTS
-from greywhale.commission.outcome import Outcome
+from greywhale.commission.result import CommissioningResult
 from greywhale.commission.trials import Trial
 from greywhale.files.log import read_evidence
 
@@ -29,7 +29,7 @@ MEASURES: tuple[Measure, ...] = (
 NOTHING = {"predicted": "-", "measured": "-"}
 
 
-def save_page(outcome: Outcome, path: Path) -> Path:
+def save_page(outcome: CommissioningResult, path: Path) -> Path:
     """Write the report, whole or not at all; it needs no other file."""
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("greywhale.commission", "data"), autoescape=True, undefined=jinja2.StrictUndefined
@@ -38,7 +38,7 @@ def save_page(outcome: Outcome, path: Path) -> Path:
     return path
 
 
-def facts(outcome: Outcome) -> dict[str, Any]:
+def facts(outcome: CommissioningResult) -> dict[str, Any]:
     """All that the page shows, as texts."""
     trials = outcome.trials
     rounds = []
@@ -58,7 +58,7 @@ def facts(outcome: Outcome) -> dict[str, Any]:
     }
 
 
-def _trial(outcome: Outcome, trial: Trial) -> dict[str, Any]:
+def _trial(outcome: CommissioningResult, trial: Trial) -> dict[str, Any]:
     predicted = outcome.predicted(trial, outcome.round_of(trial))
     joints = list(outcome.trials.table.joints_in_use)
     rows = []
@@ -94,7 +94,7 @@ def _text(value: float, form: str) -> str:
     return "-" if value != value else f"{value:{form}}"
 
 
-def _picture(outcome: Outcome) -> str:
+def _picture(outcome: CommissioningResult) -> str:
     """Before and after on the check, as a data URL."""
     # Matplotlib takes a second to import.
     from greywhale.pictures.follow import plot_following, trace

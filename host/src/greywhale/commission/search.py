@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from greywhale.commission.judge import Verdict
+from greywhale.commission.judge import TrialVerdict
 from greywhale.fuzzy.settings import GAIN_UNIT
 from greywhale.protocol import schema
 from greywhale.simulate import CONTROLLER_COLUMNS
@@ -40,15 +40,15 @@ LEAST_KI, MOST_KI = 30.0, 300.0  # V/(rad s), where a step enlarges it; less doe
 
 
 @dataclass(frozen=True)
-class Tried:
+class TriedController:
     """A joint's controller (12,) and what the arm said about it; `trial` is where that was measured."""
 
     row: Row
-    verdict: Verdict
+    verdict: TrialVerdict
     trial: str
 
 
-def _rank(one: Tried) -> tuple[bool, float]:
+def _rank(one: TriedController) -> tuple[bool, float]:
     """What can be borne comes first, then what follows best; a joint that another one stopped has no score."""
     score = one.verdict.value if one.verdict.bearable else one.verdict.score
     return not one.verdict.bearable, score if np.isfinite(score) else np.inf
@@ -60,14 +60,14 @@ class JointSearch:
 
     joint: int
     period_ms: int
-    tried: list[Tried] = field(default_factory=list)
+    tried: list[TriedController] = field(default_factory=list)
     _softened: int = 0
     _step: int = 0
     _from: Row | None = None
     _factors: dict[int, float] | None = None  # of the step that is on trial, None where it is not to be halved
 
     @property
-    def best(self) -> Tried | None:
+    def best(self) -> TriedController | None:
         """The best that passed or can be borne."""
         return next(iter(self.ranked()), None)
 
@@ -76,13 +76,13 @@ class JointSearch:
         """Whether the best follows so well that no trial is made for its sake."""
         return self.best is not None and self.best.verdict.value <= GOOD
 
-    def ranked(self) -> list[Tried]:
+    def ranked(self) -> list[TriedController]:
         """All that passed or can be borne, the best first."""
         return sorted((one for one in self.tried if one.verdict.bearable), key=_rank)
 
-    def add(self, row: Row, verdict: Verdict, trial: str) -> None:
+    def add(self, row: Row, verdict: TrialVerdict, trial: str) -> None:
         """Note a judged controller."""
-        self.tried.append(Tried(row.copy(), verdict, trial))
+        self.tried.append(TriedController(row.copy(), verdict, trial))
 
     def propose(self, promises: Callable[[Row], bool] = lambda row: True) -> Row | None:
         """The next controller to try; None where there is nothing left to vary.
@@ -124,7 +124,7 @@ class JointSearch:
     def _is_new(self, row: Row) -> bool:
         return not any(np.array_equal(row, one.row) for one in self.tried)
 
-    def _halve(self, centre: Tried) -> Row | None:
+    def _halve(self, centre: TriedController) -> Row | None:
         """The last step from `centre`, half as far: where it follows better, but is hardly too much."""
         last, factors = self.tried[-1].verdict, self._factors
         if factors is None or not last.restless or last.excess > HARDLY or not last.score < centre.verdict.score:
@@ -132,7 +132,7 @@ class JointSearch:
         self._factors = None
         return self._scaled(centre.row, {column: factor**HALF for column, factor in factors.items()})
 
-    def _soften(self, last: Tried) -> Row | None:
+    def _soften(self, last: TriedController) -> Row | None:
         factors = FIRST_SOFTER if self._softened == 0 else SOFTER
         if last.verdict.chatters_only:
             factors = QUIETER

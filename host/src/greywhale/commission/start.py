@@ -8,9 +8,9 @@ from greywhale.arm import ArmParameters
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.errors import UserError
 from greywhale.base.types import Floats
-from greywhale.commission.book import Book
-from greywhale.commission.motions import FIRST_RAD, Room, first_motion
-from greywhale.commission.rig import Rig
+from greywhale.commission.arm_on_port import ArmOnPort
+from greywhale.commission.journal import CommissioningJournal
+from greywhale.commission.motions import FIRST_RAD, JointRange, first_motion
 from greywhale.files.log import Log
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.joints import require_same
@@ -45,7 +45,7 @@ def refuse_uncalibrated(arm: ArmParameters, table: ParameterTable) -> None:
             )
 
 
-def refuse_stuck(rig: Rig, book: Book, room: Room) -> None:
+def refuse_stuck(rig: ArmOnPort, book: CommissioningJournal, room: JointRange) -> None:
     """Move every joint a little, then, where friction held one, a little more. Refuse an arm that does not follow."""
     if book.get("first motion") is not None:
         return

@@ -10,12 +10,12 @@ import numpy as np
 
 from greywhale.base.errors import UserError
 from greywhale.base.types import Controllers
-from greywhale.commission.book import Book
+from greywhale.commission.arm_on_port import ArmOnPort, PlayedMotion
 from greywhale.commission.foresee import Foresight
-from greywhale.commission.judge import Limits, Verdict, judge
+from greywhale.commission.journal import CommissioningJournal
+from greywhale.commission.judge import Limits, TrialVerdict, judge
 from greywhale.commission.measures import Measures, Traces, measure, traces_of
 from greywhale.commission.motions import Check
-from greywhale.commission.rig import Played, Rig
 from greywhale.files.log import read_evidence
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.table import ParameterTable
@@ -37,7 +37,7 @@ class Trial:
     path: Path
     stopped: str
     measured: Measures
-    verdicts: tuple[Verdict, ...]
+    verdicts: tuple[TrialVerdict, ...]
     traces: Traces = field(repr=False)
 
     @property
@@ -76,7 +76,7 @@ class Trial:
 class Trials:
     """All trials so far. The first is that of the controllers from before, against which the others are judged."""
 
-    def __init__(self, book: Book, check: Check, before: ParameterTable) -> None:
+    def __init__(self, book: CommissioningJournal, check: Check, before: ParameterTable) -> None:
         self.book = book
         self.check = check
         self.table = before
@@ -97,10 +97,10 @@ class Trials:
         """Whether the next trial was played before an interrupt, so that no arm is needed for it."""
         return self.book.get(self._next_name()) is not None
 
-    def play_before(self, rig: Rig | None) -> Trial:
+    def play_before(self, rig: ArmOnPort | None) -> Trial:
         """Play the check with the controllers from before; twice, to see how much two recordings differ."""
         rows = controllers_of(self.table)
-        seen: list[tuple[Path, Played, Traces, Measures]] = []
+        seen: list[tuple[Path, PlayedMotion, Traces, Measures]] = []
         for name in (BEFORE, AGAIN):
             path, played = self._played(name, rig, rows, watched=False)
             if played.stopped:
@@ -113,7 +113,7 @@ class Trials:
         self.done.append(self._judged(BEFORE, rows, *seen[0]))
         return self.before
 
-    def play(self, rig: Rig | None, rows: Controllers) -> Trial:
+    def play(self, rig: ArmOnPort | None, rows: Controllers) -> Trial:
         """Play the check with these controllers, or take the result from the journal."""
         name = self._next_name()
         path, played = self._played(name, rig, rows, watched=True)
@@ -121,7 +121,7 @@ class Trials:
         self.done.append(trial)
         return trial
 
-    def _played(self, name: str, rig: Rig | None, rows: Controllers, watched: bool) -> tuple[Path, Played]:
+    def _played(self, name: str, rig: ArmOnPort | None, rows: Controllers, watched: bool) -> tuple[Path, PlayedMotion]:
         """A log and how it ended. The controllers from before may hunt already: unwatched, they do so to the end."""
         path = self.book.path(f"{name}.csv")
         facts = self.book.get(name)
@@ -131,7 +131,7 @@ class Trials:
                     f"{self.book.folder}: {name} of this commissioning was made by another version of greywhale, which "
                     "would go on differently; begin anew in another folder."
                 )
-            return path, Played(read_evidence(path), facts["stopped"], facts["joint"])
+            return path, PlayedMotion(read_evidence(path), facts["stopped"], facts["joint"])
         assert rig is not None
         played = rig.play(self.check.motion, path, self.table_of(rows), watched=watched)
         self.book.note(name, {"controllers": rows.tolist(), "stopped": played.stopped, "joint": played.joint})
@@ -145,12 +145,12 @@ class Trials:
     def _next_name(self) -> str:
         return f"trial-{len(self.done):02d}" if self.done else AGAIN
 
-    def _measured(self, played: Played) -> tuple[Traces, Measures]:
+    def _measured(self, played: PlayedMotion) -> tuple[Traces, Measures]:
         traces = traces_of(played.log, self.check)
         return traces, measure(traces, self.check, self.table.supply_v)
 
     def _judged(
-        self, name: str, rows: Controllers, path: Path, played: Played, traces: Traces, measured: Measures
+        self, name: str, rows: Controllers, path: Path, played: PlayedMotion, traces: Traces, measured: Measures
     ) -> Trial:
         guilty = [played.stopped if joint == played.joint else "" for joint in range(JOINTS)]
         kept = (rows == controllers_of(self.table)).all(axis=1)

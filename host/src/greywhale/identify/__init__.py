@@ -4,9 +4,9 @@
 >>> outcome.save("model.toml")
 """
 
-from greywhale.identify.found import ParameterEstimate
-from greywhale.identify.identification import METHODS, identify
-from greywhale.identify.outcome import Outcome
+from greywhale.identify.found_model import ParameterEstimate
+from greywhale.identify.result import IdentificationResult
+from greywhale.identify.run import METHODS, identify
 from greywhale.identify.samples import sampled_plants
 
-__all__ = ["METHODS", "Outcome", "ParameterEstimate", "identify", "sampled_plants"]
+__all__ = ["METHODS", "IdentificationResult", "ParameterEstimate", "identify", "sampled_plants"]

@@ -9,7 +9,8 @@ from greywhale.identify.bootstrap import scatter_of_fits, spread_covariance
 from greywhale.identify.candidate import Candidate
 from greywhale.identify.combinations import combinations
 from greywhale.identify.data import FINE_STEP_S
-from greywhale.identify.found import Found, ParameterEstimate, Rival, Task
+from greywhale.identify.found_model import FoundModel, ParameterEstimate, Rival
+from greywhale.identify.request import IdentificationRequest
 from greywhale.identify.samples import draw_plants, read_search
 from greywhale.identify.search import Search
 from greywhale.identify.space import KINDS, Space
@@ -19,7 +20,7 @@ from greywhale.identify.windows import WindowResidual
 DRAWS = 60  # plants that tell how much better or worse a model may do by chance
 
 
-def find_default(task: Task) -> Found:
+def find_default(task: IdentificationRequest) -> FoundModel:
     """Run the search. An interrupt after the first model ends it early; before that, the interrupt is raised again."""
     arm, joints = task.white_box, task.moving
     prepared = [subject.log for subject in task.fitted]
@@ -47,7 +48,7 @@ def find_default(task: Task) -> Found:
             lambda done: task.report("testing the fit", done),
         )
         sure = sure.widened(spread_covariance(sure.covariance, scatter, best.space), best.space, best.x, joints)
-    return Found(
+    return FoundModel(
         plant=best.plant,
         zero=best.zero,
         joints=joints,
@@ -66,7 +67,7 @@ def find_default(task: Task) -> Found:
     )
 
 
-def _begin(task: Task) -> Candidate | None:
+def _begin(task: IdentificationRequest) -> Candidate | None:
     """The model to begin with, in the search's own numbers: all quantities that it states of any joint."""
     if task.begin is None:
         return None

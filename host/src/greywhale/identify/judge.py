@@ -35,7 +35,7 @@ FIT, SECOND, CHANGED = "fit", "validation", "validation, changed controller"
 
 
 @dataclass(frozen=True)
-class Subject:
+class JudgedLog:
     """A log on which arms are judged."""
 
     log: Prepared
@@ -58,7 +58,7 @@ class Following:
 
     @property
     def improvement(self) -> float:
-        """As in Verdict."""
+        """As in LogVerdict."""
         before = sum(self.white_box)
         return 1.0 - sum(self.model) / before if before > 0.0 else 0.0
 
@@ -82,7 +82,7 @@ class Following:
 
 
 @dataclass(frozen=True)
-class Verdict:
+class LogVerdict:
     """Mean squared differences between log and model, rad², per joint.
 
     `chance` (rad², of all joints together) is what a model that was fitted to a log of the white box itself may be
@@ -131,13 +131,13 @@ class Verdict:
 
 
 def judge(
-    subject: Subject,
+    subject: JudgedLog,
     arm: ArmParameters,
     plant: Floats,
     zero: Floats,
     joints: Sequence[int],
     draws: Floats | None = None,
-) -> Verdict:
+) -> LogVerdict:
     """Judge both arms on one log; joints that were not identified do not count.
 
     `draws` (n, columns) are plants that the fit allows as well; without them only a converter's steps are chance.
@@ -164,7 +164,7 @@ def judge(
     one, other = (tuple(float(value) for value in np.where(kept, errors, 0.0)) for errors in (before, after))
     chance = _worse_by_chance(float(after[kept].sum()), np.array([errors[kept].sum() for errors in others]))
     chance += float(_unresolved(arm)[kept].sum())
-    return Verdict(subject.log.log.name, subject.role, measure, one, other, following, chance)
+    return LogVerdict(subject.log.log.name, subject.role, measure, one, other, following, chance)
 
 
 def _worse_by_chance(estimate: float, draws: Floats) -> float:
@@ -194,7 +194,7 @@ def _following(loop: Loop, white: Floats, model: Floats, kept: NDArray[np.bool_]
     return Following(parts[0], parts[1], parts[2], swings_of(log, leader, row_s), swings_of(model, leader, row_s))
 
 
-def warnings_of(verdicts: Sequence[Verdict]) -> list[str]:
+def warnings_of(verdicts: Sequence[LogVerdict]) -> list[str]:
     """Sentences for numbers that speak against the model."""
     sentences = []
     for verdict in verdicts:
@@ -213,7 +213,7 @@ def warnings_of(verdicts: Sequence[Verdict]) -> list[str]:
     return sentences
 
 
-def doubts_of(verdicts: Sequence[Verdict], joints: Sequence[int]) -> tuple[str, ...]:
+def doubts_of(verdicts: Sequence[LogVerdict], joints: Sequence[int]) -> tuple[str, ...]:
     """Sentences about joints that the model does not understand: hunting, or a changed controller predicted badly."""
     sentences = []
     own = [one.following for one in verdicts if one.role != CHANGED and one.following is not None]
@@ -228,7 +228,7 @@ def doubts_of(verdicts: Sequence[Verdict], joints: Sequence[int]) -> tuple[str, 
     return tuple(sentences)
 
 
-def _describe_unexplained(verdict: Verdict, own: Sequence[Following], joints: Sequence[int]) -> list[str]:
+def _describe_unexplained(verdict: LogVerdict, own: Sequence[Following], joints: Sequence[int]) -> list[str]:
     assert verdict.following is not None
     sentences = []
     for joint in joints:

@@ -16,7 +16,8 @@ from greywhale.arm import ArmParameters
 from greywhale.arm.plants import column
 from greywhale.base.types import Floats, Progress
 from greywhale.identify.closed_loop import Loop
-from greywhale.identify.found import Found, ParameterEstimate, Task
+from greywhale.identify.found_model import FoundModel, ParameterEstimate
+from greywhale.identify.request import IdentificationRequest
 from greywhale.optimise import create
 from greywhale.protocol.firmware import JOINTS
 from greywhale.simulate import plant_row
@@ -80,7 +81,7 @@ class PaperSearch:
         return rows
 
 
-def find_as_paper(task: Task, method: str) -> Found:
+def find_as_paper(task: IdentificationRequest, method: str) -> FoundModel:
     """Run the search. An interrupt after the first pack ends it early; before that, the interrupt is raised again."""
     loops = task.required_loops()
     search = PaperSearch(task.white_box, loops, task.seed, task.report, method)
@@ -90,7 +91,7 @@ def find_as_paper(task: Task, method: str) -> Found:
         if search.x is None:
             raise
     assert search.x is not None
-    return Found(
+    return FoundModel(
         plant=search.plants(search.x[None])[0],
         zero=np.zeros(JOINTS),
         joints=tuple(range(JOINTS)),

@@ -8,8 +8,8 @@ import numpy as np
 
 from greywhale.base.types import Floats
 from greywhale.identify.closed_loop import COMPARED_TICKS, Loop
-from greywhale.identify.judge import Subject, Verdict
-from greywhale.identify.outcome import Outcome
+from greywhale.identify.judge import JudgedLog, LogVerdict
+from greywhale.identify.result import IdentificationResult
 from greywhale.pictures import looks
 from greywhale.pictures.names import distinct_names
 from greywhale.pictures.page import (
@@ -28,7 +28,7 @@ from greywhale.protocol.joints import ALL, Joints
 from greywhale.simulate import plant_row
 
 
-def draw(outcome: Outcome, folder: Path) -> list[Path]:
+def draw(outcome: IdentificationResult, folder: Path) -> list[Path]:
     """Write the pictures into `folder`; their paths."""
     written = []
     with style():
@@ -55,7 +55,7 @@ def plot_convergence(costs: tuple[float, ...], method: str) -> Figure:
     return figure
 
 
-def _responses(outcome: Outcome, subject: Subject, verdict: Verdict, name: str) -> Figure:
+def _responses(outcome: IdentificationResult, subject: JudgedLog, verdict: LogVerdict, name: str) -> Figure:
     assert subject.table is not None
     loop = Loop(subject.log, subject.table, outcome.white_box)
     white = loop.angles(plant_row(outcome.white_box)[None])[0]

@@ -155,7 +155,7 @@ class ClosedLoop:
         substeps: int,
         every: int = 0,
         threads: int = 0,
-        single: bool = False,
+        exact: bool = False,
         instructions: str = "",
     ) -> Result:
         """Simulate candidates that are already checked; Experiment explains the arguments, and checks them."""
@@ -166,7 +166,7 @@ class ClosedLoop:
                 substeps=substeps,
                 threads=threads,
                 every=every,
-                single=single,
+                exact=exact,
                 instructions=instructions,
             )
         except ValueError as error:

@@ -96,7 +96,7 @@ class Experiment:
             raise UserError(f"steps_per_tick is {steps_per_tick}, but it must be 1, 2 or 4.")
         return self._run(controllers, plants, every, threads, steps_per_tick, False, instructions)
 
-    def run_single(
+    def run_exact(
         self,
         controllers: npt.NDArray[np.int32] | None = None,
         plants: Floats | None = None,
@@ -117,7 +117,7 @@ class Experiment:
         every: int,
         threads: int,
         substeps: int,
-        single: bool,
+        exact: bool,
         instructions: str,
     ) -> Result:
         laws = check_controllers(controllers_of(self.table) if controllers is None else controllers)
@@ -135,7 +135,7 @@ class Experiment:
             substeps=substeps,
             every=every,
             threads=threads,
-            single=single,
+            exact=exact,
             instructions=instructions,
         )
 

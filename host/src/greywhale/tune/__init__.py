@@ -5,9 +5,9 @@
 """
 
 from greywhale.tune.judge.held_out import HeldOut
-from greywhale.tune.outcome import Curve, Outcome
+from greywhale.tune.result import Curve, TuningResult
+from greywhale.tune.run import DEFAULT_BUDGET, DEFAULT_STRATEGY, METHODS, check_request, tune
 from greywhale.tune.search.space import STRATEGIES
-from greywhale.tune.tuning import DEFAULT_BUDGET, DEFAULT_STRATEGY, METHODS, check_request, tune
 
 __all__ = [
     "DEFAULT_BUDGET",
@@ -16,7 +16,7 @@ __all__ = [
     "STRATEGIES",
     "Curve",
     "HeldOut",
-    "Outcome",
+    "TuningResult",
     "check_request",
     "tune",
 ]

@@ -29,15 +29,16 @@ from greywhale.protocol.table import CONTROLLER_COLUMNS
 from greywhale.tune.judge.choose import choose, is_fair
 from greywhale.tune.judge.held_out import judge_held_out
 from greywhale.tune.judge.margins import MOVING, REST_LONG_S, Margin, Margins, loosest_plant, penalty
-from greywhale.tune.method import Costs, Judgement, Task
+from greywhale.tune.method import Costs, Judgement
 from greywhale.tune.model import Model
 from greywhale.tune.possible import scale_of
+from greywhale.tune.request import TuningRequest
 from greywhale.tune.search import lockstep
-from greywhale.tune.search.journal import Journal
-from greywhale.tune.search.lockstep import Found
+from greywhale.tune.search.journal import TuningJournal
+from greywhale.tune.search.lockstep import SearchState
 from greywhale.tune.search.objective import Objective
 from greywhale.tune.search.space import Space
-from greywhale.tune.search.training import drills
+from greywhale.tune.search.training import training_motions
 
 BUDGET = 3000
 METHOD = RelativeWolfWhale.name  # of the default method
@@ -75,31 +76,31 @@ KU = CONTROLLER_COLUMNS.index("ku_mv")
 class DefaultMethod:
     """See the head of this file."""
 
-    def __init__(self, task: Task) -> None:
+    def __init__(self, task: TuningRequest) -> None:
         self.task = task
         self.model = model = give_usual_noise(task.model)
         self.table = model.table
         supply = self.table["supply_mv"]
         period = self.table.period_ms
         self.space = Space.default(task.strategy, task.before, supply, period).with_bounds(task.bounds, period)
-        motions = drills(model.arm, self.table, model.plants, task.seed)
+        motions = training_motions(model.arm, self.table, model.plants, task.seed)
         scale = scale_of(motions, model.plants, task.before, task.threads)
         some = model.plants[:SEARCH_PLANTS]
         self.objective = Objective(motions, some, scale.first(len(some)), task.threads)
-        other_noise = drills(model.arm, self.table, model.plants, task.seed + JUDGING_SEED)
+        other_noise = training_motions(model.arm, self.table, model.plants, task.seed + JUDGING_SEED)
         self.judging = Objective(other_noise, model.plants, scale, task.threads)
         self.margins = self._margins(_extreme_plants(model.plants), searching=True)
         # Longer and with other noise, since a search learns its own noise by heart.
         self.judging_margins = self._margins(_extreme_plants(model.plants), rest_s=REST_LONG_S, noise=1)
         # With bounds, what is uploaded keeps within them, whatever ran before.
         self.start = self.space.controllers(self.space.points(task.before[None]))[0] if task.bounds else task.before
-        self.found = Found.nothing(self.start)
+        self.found = SearchState.nothing(self.start)
 
     def _margins(self, plants: Floats, **options: Any) -> Margins:
         task = self.task
         return Margins(self.model.arm, self.table, plants, threads=task.threads, seed=task.seed, **options)
 
-    def request(self) -> dict[str, Any]:
+    def facts(self) -> dict[str, Any]:
         return {
             "parameters": list(self.table.raw),
             "board": self.table.board.key,
@@ -110,11 +111,11 @@ class DefaultMethod:
     def cost_before(self) -> Costs:
         return self.found.curve[0][1]
 
-    def search(self, journal: Journal) -> None:
+    def search(self, journal: TuningJournal) -> None:
         """Try the controllers from before first, then run the stages."""
         task = self.task
 
-        def tick(found: Found) -> None:
+        def tick(found: SearchState) -> None:
             what = "replaying the journal" if journal.replaying else "tuning"
             task.report(what, min(1.0, found.evaluations / task.budget), note=f"cost {found.total:.3f}")
 
@@ -127,7 +128,7 @@ class DefaultMethod:
                 share -= 1
             self._run(stage, number, share // len(lockstep.TURNS), journal, tick)
 
-    def _run(self, stage: Stage, number: int, budget: int, journal: Journal, tick: lockstep.Tick) -> None:
+    def _run(self, stage: Stage, number: int, budget: int, journal: TuningJournal, tick: lockstep.Tick) -> None:
         """Spend a stage's evaluations of each joint."""
         if budget < 1:
             return
@@ -153,11 +154,11 @@ class DefaultMethod:
         costs: Floats = self.objective.costs(controllers) + penalty(self.margins.unrest(controllers))
         return costs
 
-    def judge_costs(self, controllers: Controllers, single: bool = False) -> Floats:
-        """The same cost on all plants, with other noise; `single`: in the bench's own arithmetic."""
-        unrest = self.judging_margins.unrest(controllers, single=single)
+    def judge_costs(self, controllers: Controllers, exact: bool = False) -> Floats:
+        """The same cost on all plants, with other noise; `exact`: in the bench's own arithmetic."""
+        unrest = self.judging_margins.unrest(controllers, exact=exact)
         weight = ON_TRIAL if self.task.on_trial else DEARER
-        costs: Floats = self.judging.costs(controllers, single=single) + weight * penalty(unrest)
+        costs: Floats = self.judging.costs(controllers, exact=exact) + weight * penalty(unrest)
         return costs
 
     def _choose(self) -> tuple[Controllers, Floats, Floats]:
@@ -168,10 +169,10 @@ class DefaultMethod:
         """
         contenders = self._contenders()
         after, _, _ = choose(self.start, contenders, self.judge_costs)
-        before_cost, after_cost = self.judge_costs(np.stack([self.start, after]), single=True)
+        before_cost, after_cost = self.judge_costs(np.stack([self.start, after]), exact=True)
         if is_fair(after_cost, before_cost):
             return after, before_cost, after_cost
-        return choose(self.start, contenders, partial(self.judge_costs, single=True))
+        return choose(self.start, contenders, partial(self.judge_costs, exact=True))
 
     def _contenders(self) -> Controllers:
         """The best few of every joint (k, 4, 12), and the best with less voltage, which is a quieter second choice."""

@@ -1,48 +1,18 @@
-"""What every method of tuning is given, offers and returns. The default and the paper's are two of them."""
+"""What every method of tuning offers and returns. The default and the paper's are two of them."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
-from greywhale.base.types import Controllers, NotedProgress
+from greywhale.base.types import Controllers
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.judge.held_out import HeldOut
 from greywhale.tune.judge.margins import Margin
-from greywhale.tune.model import Model
-from greywhale.tune.search.journal import Journal
-from greywhale.tune.search.lockstep import Found
+from greywhale.tune.search.journal import TuningJournal
+from greywhale.tune.search.lockstep import SearchState
 
 Costs = tuple[float, ...]
-
-
-@dataclass(frozen=True)
-class Task:
-    """A model to tune for, and how: `budget` evaluations, controllers `before` (4, 12), bounds in a file's units."""
-
-    model: Model
-    strategy: str
-    method: str
-    budget: int
-    seed: int
-    threads: int
-    before: Controllers
-    bounds: dict[str, tuple[float, float]]
-    report: NotedProgress
-    floors: bool  # whether to work out the least possible error
-    on_trial: bool = False  # whether the arm itself will judge what is found
-
-    def request(self) -> dict[str, Any]:
-        """The facts that every journal must agree with."""
-        return {
-            "model": self.model.name,
-            "model_digest": self.model.digest,
-            "strategy": self.strategy,
-            "method": self.method,
-            "budget": self.budget,
-            "seed": self.seed,
-            "before": self.before.tolist(),
-        }
 
 
 @dataclass(frozen=True)
@@ -62,13 +32,13 @@ class Method(Protocol):
     """A way to tune. It simulates with `table`, and keeps the best so far in `found`."""
 
     table: ParameterTable
-    found: Found
+    found: SearchState
 
-    def request(self) -> dict[str, Any]:
-        """The facts that a journal must agree with, besides the task's own."""
+    def facts(self) -> dict[str, Any]:
+        """The facts that a journal must agree with, besides the request's own."""
         ...
 
-    def search(self, journal: Journal) -> None:
+    def search(self, journal: TuningJournal) -> None:
         """Spend the budget."""
         ...
 

@@ -15,7 +15,7 @@ from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.errors import UserError
 from greywhale.base.types import Floats
 from greywhale.identify import sampled_plants
-from greywhale.identify.judge import FIT, Verdict, warnings_of
+from greywhale.identify.judge import FIT, LogVerdict, warnings_of
 from greywhale.identify.uncertainty import EXCITATION
 from greywhale.motion import human_reaches
 from greywhale.protocol import schema
@@ -63,10 +63,10 @@ class LogFacts(_Facts):
     parameter_crc: str | None = None
 
     @property
-    def verdict(self) -> Verdict:
+    def verdict(self) -> LogVerdict:
         """What the identification said about this log."""
         pairs = self.white_box_mse_rad2, self.model_mse_rad2
-        return Verdict(self.name, self.role, self.measure, *pairs, chance=self.chance_rad2)
+        return LogVerdict(self.name, self.role, self.measure, *pairs, chance=self.chance_rad2)
 
 
 class ParameterFacts(_Facts):

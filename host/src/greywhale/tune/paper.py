@@ -32,10 +32,11 @@ from greywhale.protocol.firmware import JOINTS
 from greywhale.simulate import Experiment
 from greywhale.tune.judge.held_out import judge_held_out
 from greywhale.tune.judge.margins import Margins
-from greywhale.tune.method import Costs, Judgement, Task
+from greywhale.tune.method import Costs, Judgement
 from greywhale.tune.model import Model
-from greywhale.tune.search.journal import Journal
-from greywhale.tune.search.lockstep import Found, search_in_lockstep
+from greywhale.tune.request import TuningRequest
+from greywhale.tune.search.journal import TuningJournal
+from greywhale.tune.search.lockstep import SearchState, search_in_lockstep
 from greywhale.tune.search.space import Space
 
 METHOD = "gwo-woa"
@@ -85,20 +86,20 @@ class Loops:
 class PaperMethod:
     """See the head of this file."""
 
-    def __init__(self, task: Task) -> None:
+    def __init__(self, task: TuningRequest) -> None:
         self.task = task
         self.loops = Loops(task.model, task.strategy, task.before, task.threads)
         self.table = self.loops.table
-        self.found = Found.nothing(task.before)
+        self.found = SearchState.nothing(task.before)
 
-    def request(self) -> dict[str, Any]:
+    def facts(self) -> dict[str, Any]:
         return {"parameters": list(self.table.raw), "board": self.table.board.key}
 
-    def search(self, journal: Journal) -> None:
+    def search(self, journal: TuningJournal) -> None:
         """GWO-WOA for every joint on its own."""
         task = self.task
 
-        def tick(now: Found) -> None:
+        def tick(now: SearchState) -> None:
             task.report("tuning", min(1.0, now.evaluations / task.budget), note=f"J {now.total:.2f}")
 
         search_in_lockstep(
@@ -145,7 +146,7 @@ def time_since_step(motion: Trajectory, wait_s: float) -> Floats:
     return since
 
 
-def _notes(found: Found, strategy: str, loops: Loops) -> tuple[str, ...]:
+def _notes(found: SearchState, strategy: str, loops: Loops) -> tuple[str, ...]:
     supply = loops.plant[column("supply")]
     notes = [f"simulated with a control period of {PERIOD_MS} ms and {supply:g} V, each joint alone"]
     if strategy != "sf":

@@ -16,8 +16,8 @@ from greywhale.base.types import Controllers, Floats
 from greywhale.protocol.firmware import TICK_S
 from greywhale.protocol.table import ParameterTable
 from greywhale.tune.judge.floor import follow_ideally
-from greywhale.tune.search.objective import Scale, error_of, follow
-from greywhale.tune.search.training import WAIT_S, Drill
+from greywhale.tune.search.objective import ErrorScale, error_of, follow
+from greywhale.tune.search.training import WAIT_S, TrainingMotion
 
 LEAST_SHARE = 0.1
 LEAST_RAD = 0.004
@@ -25,13 +25,13 @@ LEAST_RAD = 0.004
 CONVERSIONS_S = 0.5e-3
 
 
-def scale_of(drills: Sequence[Drill], plants: Floats, before: Controllers, threads: int = 0) -> Scale:
+def scale_of(drills: Sequence[TrainingMotion], plants: Floats, before: Controllers, threads: int = 0) -> ErrorScale:
     """Floors, and errors and rattling of the controllers from before (4, 12), on every plant."""
     late = lateness_s(drills[0].experiment.table)
     floor = np.stack([[_least_error(drill, plant, late, threads) for drill in drills] for plant in plants])
     found = follow(drills, plants, before[None], threads=threads)
     least = np.maximum(LEAST_SHARE * floor, LEAST_RAD)
-    return Scale(floor, np.maximum(found.error[0] - floor, least), found.rattle[0])
+    return ErrorScale(floor, np.maximum(found.error[0] - floor, least), found.rattle[0])
 
 
 def lateness_s(table: ParameterTable) -> float:
@@ -40,7 +40,7 @@ def lateness_s(table: ParameterTable) -> float:
     return CONVERSIONS_S + low_pass + 0.5e-3 * table.period_ms
 
 
-def _least_error(drill: Drill, plant: Floats, late_s: float, threads: int) -> Floats:
+def _least_error(drill: TrainingMotion, plant: Floats, late_s: float, threads: int) -> Floats:
     """The ideal controller's error (4,) in rad, measured like a candidate's."""
     leader, angles = follow_ideally(drill.motion, plant, delay_s=late_s, wait_s=WAIT_S, threads=threads)
     distance = np.abs(leader - angles)

@@ -17,9 +17,9 @@ from greywhale.files.arm import load_arm
 if TYPE_CHECKING:
     from greywhale.base.types import NotedProgress
     from greywhale.files.log import Log
-    from greywhale.identify import Outcome as Identification
+    from greywhale.identify import IdentificationResult
     from greywhale.protocol.table import ParameterTable
-    from greywhale.tune import Outcome as Tuning
+    from greywhale.tune import TuningResult
 
 
 @dataclass(frozen=True)
@@ -28,8 +28,8 @@ class Learnt:
 
     model: Path
     controller: Path
-    identification: Identification
-    tuning: Tuning
+    identification: IdentificationResult
+    tuning: TuningResult
     identify_s: float
     tune_s: float
 

@@ -126,13 +126,13 @@ class _Stage:
     def prove(self, learnt: Learnt) -> None:
         """Try the tuned controllers and variants of them on the arm, while the person holds the leader still."""
         # It brings identification and tuning along, which are slow to import.
-        from greywhale.commission import Options, commission
+        from greywhale.commission import CommissioningRequest, commission
         from greywhale.commission.page import save_page
 
         options = self._options
         self._bench.command(f"leader {shlex.quote(str((options.out / REST_FILE).resolve()))}")
         outcome = commission(
-            Options(
+            CommissioningRequest(
                 port=self._bench.port,
                 out=options.out / "commission",
                 model=learnt.model,

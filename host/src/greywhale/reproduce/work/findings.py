@@ -25,8 +25,8 @@ from greywhale.reproduce.work.motions import MOTIONS, WAIT_S, judged, paper_boar
 from greywhale.simulate import CONTROLLER_COLUMNS, Experiment
 from greywhale.tune.model import load_model
 from greywhale.tune.paper import AGENTS, BUDGET, METHOD, Loops
-from greywhale.tune.search.journal import Journal
-from greywhale.tune.search.lockstep import Found, search_in_lockstep
+from greywhale.tune.search.journal import TuningJournal
+from greywhale.tune.search.lockstep import SearchState, search_in_lockstep
 from greywhale.tune.search.space import Space
 
 PERIODS_MS = (1, 2, 5, 10, 20, 50)
@@ -126,8 +126,8 @@ def objective(seed: int) -> dict[str, Any]:
         }
         found["share_of_effort"][name] = float(itau.sum() / (itae + itau).sum())
     space = Space.paper("sf", before)
-    best = Found.nothing(before)
-    with Journal(None, {}) as book:
+    best = SearchState.nothing(before)
+    with TuningJournal(None, {}) as book:
         search_in_lockstep(
             space, both.costs, best, book, stage="two-sided", method=METHOD, budget=BUDGET, seed=(seed,),
             tick=lambda now: None, pack=AGENTS,

@@ -10,11 +10,11 @@ from greywhale.files.arm import load_arm
 from greywhale.protocol.table import ParameterTable
 from greywhale.reproduce.work.motions import MOTIONS, judged, paper_board, printed
 from greywhale.tune.judge.floor import saturation_floor
-from greywhale.tune.method import Task
 from greywhale.tune.model import Model, load_model
-from greywhale.tune.outcome import curves_of
 from greywhale.tune.paper import BUDGET, LARGEST_SUPPLY_V, PaperMethod
-from greywhale.tune.search.journal import Journal
+from greywhale.tune.request import TuningRequest
+from greywhale.tune.result import curves_of
+from greywhale.tune.search.journal import TuningJournal
 
 # Strategy -> the table of the paper that prints its result.
 STRATEGIES = {"sf": "table_8", "both": "table_9", "mf": "table_10"}
@@ -34,9 +34,11 @@ def supply_of(strategy: str) -> float:
 
 def tune_as_paper(model: Model, strategy: str, seed: int) -> tuple[PaperMethod, dict[str, Any]]:
     """The paper's search; what it found, as a board stores it, and its course."""
-    task = Task(model, strategy, "paper", BUDGET, seed, 1, printed("before_tuning"), {}, show_no_progress, floors=False)
+    task = TuningRequest(
+        model, strategy, "paper", BUDGET, seed, 1, printed("before_tuning"), {}, show_no_progress, floors=False
+    )
     method = PaperMethod(task)
-    with Journal(None, {}) as book:
+    with TuningJournal(None, {}) as book:
         method.search(book)
     curves = curves_of(method.found)
     return method, {

@@ -49,7 +49,7 @@ def play(
 ) -> tuple[Floats, Floats, Floats]:
     """Time (rows,), leader (rows, 4) and followers (n, rows, 4) in rad, in the bench's own arithmetic."""
     experiment = Experiment(motion, arm, table=table, seed=SEED, wait_s=WAIT_S)
-    result = experiment.run_single(rows, plant, every=every, threads=1)
+    result = experiment.run_exact(rows, plant, every=every, threads=1)
     return result.time_s, experiment.leader[::every], result.angles.astype(np.float64)
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from greywhale.arm.plants import plant_row
 from greywhale.files.arm import load_arm
-from greywhale.identify import Outcome, identify
+from greywhale.identify import IdentificationResult, identify
 from greywhale.identify.closed_loop import COMPARED_TICKS, Loop
 from greywhale.reproduce.work.bench import record_data, try_controllers
 from greywhale.reproduce.work.grey_box import setting, tune_as_paper
@@ -41,7 +41,7 @@ def _require_whole(complete: bool) -> None:
         raise KeyboardInterrupt
 
 
-def _facts(outcome: Outcome) -> dict[str, Any]:
+def _facts(outcome: IdentificationResult) -> dict[str, Any]:
     return {
         "estimates": {one.name: one.value for one in outcome.estimates},
         "curve": [float(cost) for cost in outcome.found.curve],
@@ -56,7 +56,7 @@ def _facts(outcome: Outcome) -> dict[str, Any]:
     }
 
 
-def _responses(outcome: Outcome, place: int) -> dict[str, Any]:
+def _responses(outcome: IdentificationResult, place: int) -> dict[str, Any]:
     subject = outcome.subjects[place]
     assert subject.table is not None
     loop = Loop(subject.log, subject.table, outcome.white_box)

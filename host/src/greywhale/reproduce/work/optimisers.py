@@ -18,8 +18,8 @@ from greywhale.reproduce.work.bench import record_data
 from greywhale.reproduce.work.motions import printed
 from greywhale.tune.model import load_model
 from greywhale.tune.paper import BUDGET, Loops
-from greywhale.tune.search.journal import Journal
-from greywhale.tune.search.lockstep import Found, search_in_lockstep
+from greywhale.tune.search.journal import TuningJournal
+from greywhale.tune.search.lockstep import SearchState, search_in_lockstep
 from greywhale.tune.search.space import Space
 
 # The paper's hybrid first, then what it is made of, then established others, then chance.
@@ -51,8 +51,8 @@ def tune_with(seed: int, method: str) -> dict[str, Any]:
     model, before = load_model("grey_box", force=True), printed("before_tuning")
     loops = Loops(model, "mf", before, 1)
     space = Space.paper("mf", before)
-    found = Found.nothing(before)
-    with Journal(None, {}) as book:
+    found = SearchState.nothing(before)
+    with TuningJournal(None, {}) as book:
         search_in_lockstep(
             space, loops.costs, found, book, stage="paper", method=method, budget=BUDGET, seed=(seed,),
             tick=lambda now: None,

@@ -90,7 +90,7 @@ def judge_held_out(
     judged = []
     for name, motion in motions(*reach(arm, table, plant[None])).items():
         experiment = Experiment(motion, arm, table=table, seed=7, wait_s=WAIT_S)
-        result = experiment.run_single(np.stack([before, after]), plant, every=EVERY, threads=threads)
+        result = experiment.run_exact(np.stack([before, after]), plant, every=EVERY, threads=threads)
         leader = experiment.leader[::EVERY]
         angles = result.angles.astype(np.float64)
         judged.append(

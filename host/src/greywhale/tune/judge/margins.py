@@ -35,7 +35,7 @@ from greywhale.simulate.closed_loop import count_swings
 from greywhale.tune.search.objective import CHATTER_HZ as MOVING_CHATTER_HZ
 from greywhale.tune.search.objective import follow, pair_with_plants
 from greywhale.tune.search.rattle import duty_swings
-from greywhale.tune.search.training import EDGE_S, RATE_HZ, centre, drills, reach
+from greywhale.tune.search.training import EDGE_S, RATE_HZ, centre, reach, training_motions
 
 SWING_RAD = 0.01
 REVERSALS = 3
@@ -171,28 +171,26 @@ class Margins:
         self._prompt = Experiment(motion, arm, **common)
         self._late = Experiment(motion, arm, timing=Timing(late=period), **common)
 
-    def unrest(self, controllers: Controllers, *, single: bool = False, every: int = 1) -> dict[str, Unrest]:
+    def unrest(self, controllers: Controllers, *, exact: bool = False, every: int = 1) -> dict[str, Unrest]:
         """Run every scenario for every candidate (n, 4, 12) on every plant."""
         count, plants = len(controllers), len(self.plants)
         variants = {name: with_gain(self.plants, self._widen(gain)) for name, gain in GAINS.items()}
         variants[TEETH] = with_softer_teeth(self.plants)
-        prompt = self._run(self._prompt, controllers, np.concatenate(list(variants.values())), single, every)
+        prompt = self._run(self._prompt, controllers, np.concatenate(list(variants.values())), exact, every)
         found = {
             name: _part(prompt, slice(number * plants, (number + 1) * plants)) for number, name in enumerate(variants)
         }
-        found[DELAY] = self._run(self._late, controllers, self.plants, single, every)
+        found[DELAY] = self._run(self._late, controllers, self.plants, exact, every)
         assert all(one.reversals.shape == (count, plants, JOINTS) for one in found.values())
         return found
 
     def _widen(self, gain: float) -> float:
         return gain * self._beyond if gain > 1.0 else gain / self._beyond if gain < 1.0 else gain
 
-    def _run(
-        self, experiment: Experiment, controllers: Controllers, plants: Floats, single: bool, every: int
-    ) -> Unrest:
+    def _run(self, experiment: Experiment, controllers: Controllers, plants: Floats, exact: bool, every: int) -> Unrest:
         laws, arms = pair_with_plants(controllers, plants)
-        if single:
-            result = experiment.run_single(laws, arms, every=every, threads=self._threads)
+        if exact:
+            result = experiment.run_exact(laws, arms, every=every, threads=self._threads)
         else:
             result = experiment.run(laws, arms, every=every, threads=self._threads)
         return unrest_of(result, self._rests, every, (len(controllers), len(plants)), self._board, self._band)
@@ -200,7 +198,7 @@ class Margins:
     def check(self, controllers: Controllers) -> tuple[Margin, ...]:
         """Check one controller (4, 12) in the bench's own arithmetic: a verdict for each scenario and joint."""
         verdicts = []
-        for name, found in self.unrest(controllers[None], single=True, every=1).items():
+        for name, found in self.unrest(controllers[None], exact=True, every=1).items():
             for joint in range(JOINTS):
                 verdicts.append(
                     Margin(
@@ -216,8 +214,8 @@ class Margins:
 
     def _check_moving(self, controllers: Controllers) -> list[Margin]:
         """A verdict for each joint on the training motions, with other sensor noise than in a search."""
-        motions = drills(self._arm, self._table, self.plants, self._seed)
-        found = follow(motions, self.plants, controllers[None], single=True, threads=self._threads)
+        motions = training_motions(self._arm, self._table, self.plants, self._seed)
+        found = follow(motions, self.plants, controllers[None], exact=True, threads=self._threads)
         # The worst class counts.
         rattle, chatter = found.rattle[0].max(axis=1), found.chatter[0].max(axis=1)
         failing = (rattle >= RATTLE_RAD) | (chatter > MOVING_CHATTER_HZ)

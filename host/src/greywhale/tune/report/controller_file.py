@@ -13,13 +13,13 @@ from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.files import controller
 from greywhale.tune.judge.held_out import HeldOut
 from greywhale.tune.judge.margins import Margin
-from greywhale.tune.outcome import Outcome
 from greywhale.tune.report.summary import failing_margins, overshooting
+from greywhale.tune.result import TuningResult
 
 DIGITS = 4  # significant digits of expected values
 
 
-def save(outcome: Outcome, path: str | Path) -> None:
+def save(outcome: TuningResult, path: str | Path) -> None:
     """Write controller.toml, whole or not at all."""
     notes = [_note(outcome, joint) for joint in range(len(JOINT_NAMES))]
     controller.save(
@@ -33,7 +33,7 @@ def save(outcome: Outcome, path: str | Path) -> None:
     )
 
 
-def provenance(outcome: Outcome) -> dict[str, Any]:
+def provenance(outcome: TuningResult) -> dict[str, Any]:
     """The table [tuning]: how the controllers were found, and what to expect of each joint."""
     model = outcome.model
     facts: dict[str, Any] = {
@@ -65,12 +65,12 @@ def provenance(outcome: Outcome) -> dict[str, Any]:
     return facts
 
 
-def _source(outcome: Outcome) -> str:
+def _source(outcome: TuningResult) -> str:
     how = f"method {outcome.method}, strategy {outcome.strategy}, seed {outcome.seed}"
     return f"greywhale tune, {how}, for {outcome.model.name}" + ("" if outcome.complete else " (unfinished)")
 
 
-def _header(outcome: Outcome) -> list[str]:
+def _header(outcome: TuningResult) -> list[str]:
     lines = [
         "Written by greywhale tune. Exactly what was simulated: greywhale upload stores these numbers as they are.",
         f"For a control period of {outcome.period_ms} ms and a supply of {outcome.supply_v:g} V.",
@@ -84,7 +84,7 @@ def _header(outcome: Outcome) -> list[str]:
     return [*lines, *(f"Doubt: {doubt}" for doubt in outcome.model.doubts)]
 
 
-def _note(outcome: Outcome, joint: int) -> str:
+def _note(outcome: TuningResult, joint: int) -> str:
     if joint not in outcome.model.arm.joints_in_use:
         return f"{JOINT_NAMES[joint]}; not in use, as before"
     if not outcome.held_out:

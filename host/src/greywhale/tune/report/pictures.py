@@ -34,7 +34,7 @@ from greywhale.protocol.joints import ALL, Joints
 from greywhale.simulate import CONTROLLER_COLUMNS
 
 if TYPE_CHECKING:
-    from greywhale.tune.outcome import Outcome
+    from greywhale.tune.result import TuningResult
 
 
 _SET_NAMES = (("NE", "ZE", "PE"), ("NCE", "ZCE", "PCE"))
@@ -62,7 +62,7 @@ class Response:
     mse: Floats  # (4,) rad^2
 
 
-def draw(outcome: Outcome, folder: Path) -> list[Path]:
+def draw(outcome: TuningResult, folder: Path) -> list[Path]:
     """Write all pictures of a tuning into `folder`; their paths."""
     joints = outcome.model.arm.joints_in_use
     drawn = [draw_sets(folder / "sets.png", outcome.before, outcome.after, joints)]

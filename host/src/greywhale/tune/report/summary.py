@@ -6,14 +6,14 @@ from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.motion import more_overshoot
 from greywhale.tune.judge.held_out import HeldOut
 from greywhale.tune.judge.margins import GAINS, Margin
-from greywhale.tune.outcome import Outcome
+from greywhale.tune.result import TuningResult
 
 # From this ratio on a joint's error counts as worse than before; a smaller change is noise.
 WORSE = 1.02
 (AS_IT_IS,) = (name for name, gain in GAINS.items() if gain == 1.0)
 
 
-def summary(outcome: Outcome) -> str:
+def summary(outcome: TuningResult) -> str:
     """The text for people."""
     how = f"{outcome.method}, strategy {outcome.strategy}, seed {outcome.seed}, {outcome.evaluations:,} evaluations"
     lines = [] if outcome.complete else ["UNFINISHED: interrupted; this is the best so far.", ""]
@@ -84,7 +84,7 @@ def _multiple(one: HeldOut, joint: int) -> str:
     return "-" if multiple is None else f"{multiple:.2f}"
 
 
-def _margins(outcome: Outcome) -> list[str]:
+def _margins(outcome: TuningResult) -> list[str]:
     """Whether all margins hold, or which do not; the notes say how far a joint swings."""
     if failing := failing_margins(outcome):
         return failing
@@ -94,14 +94,14 @@ def _margins(outcome: Outcome) -> list[str]:
     return [f"Margins hold {arms}, no joint swings, rattles or chatters: {scenarios}."]
 
 
-def overshooting(outcome: Outcome) -> list[str]:
+def overshooting(outcome: TuningResult) -> list[str]:
     """A sentence for the joints that overshoot more than before the tuning, if there are any."""
     found = [(one.name, more_overshoot(one.before, one.after)) for one in outcome.held_out]
     said = "; ".join(f"on {name} {more}" for name, more in found if more)
     return [f"MORE OVERSHOOT than before: {said}."] if said else []
 
 
-def failing_margins(outcome: Outcome) -> list[str]:
+def failing_margins(outcome: TuningResult) -> list[str]:
     """A sentence for joints that are not steady, and one for those that would not be on a slightly different arm."""
     failing = [margin for margin in outcome.margins if not margin.holds]
     groups = {

@@ -23,7 +23,7 @@ from greywhale.protocol.joints import ALL, Joints
 from greywhale.simulate import CONTROLLER_COLUMNS, controller_row
 
 if TYPE_CHECKING:
-    from greywhale.tune.outcome import Outcome
+    from greywhale.tune.result import TuningResult
 
 Numbers = Sequence[float | None]
 
@@ -249,7 +249,7 @@ def _improvement(before: float | None, after: float | None) -> float | None:
     return 100.0 * (1.0 - after / before)
 
 
-def tables_of(outcome: Outcome, *, paper: bool = False) -> tuple[Table, ...]:
+def tables_of(outcome: TuningResult, *, paper: bool = False) -> tuple[Table, ...]:
     """The tables that a tuning fills: 8, 9 or 10 by its strategy, 11 for steps, 12 for every other held-out motion."""
     joints = outcome.model.arm.joints_in_use
     parameters = {

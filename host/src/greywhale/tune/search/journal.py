@@ -20,7 +20,7 @@ from greywhale.base.formats.checked_lines import CheckedLines, Kind
 from greywhale.base.types import Controllers, Floats
 
 
-class Journal:
+class TuningJournal:
     """The costs in the order in which they are told. Without a path nothing is kept. Use as a context."""
 
     def __init__(self, path: Path | None, request: dict[str, Any], resume: bool = False) -> None:

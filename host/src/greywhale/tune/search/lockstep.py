@@ -19,11 +19,11 @@ from greywhale.optimise.box import latin_hypercube
 from greywhale.optimise.cma_es import SIGMA, CmaEs
 from greywhale.optimise.optimiser import PACK
 from greywhale.protocol.firmware import JOINTS
-from greywhale.tune.search.journal import Journal
+from greywhale.tune.search.journal import TuningJournal
 from greywhale.tune.search.space import Space
 
 Costs = Callable[[Controllers], Floats]
-Tick = Callable[["Found"], None]
+Tick = Callable[["SearchState"], None]
 
 # Which joints' candidates are tried at the same time.
 TOGETHER = (range(JOINTS),)
@@ -31,7 +31,7 @@ TURNS = ((0, 2), (1, 3))
 
 
 @dataclass
-class Found:
+class SearchState:
     """The best so far of every joint, and the course of the search."""
 
     best: Controllers  # (4, 12)
@@ -42,7 +42,7 @@ class Found:
     ranking: list[list[tuple[float, bytes]]] = field(default_factory=lambda: [[] for _ in range(JOINTS)])
 
     @classmethod
-    def nothing(cls, start: Controllers) -> Found:
+    def nothing(cls, start: Controllers) -> SearchState:
         return cls(start.copy(), np.full(JOINTS, np.inf))
 
     @property
@@ -91,8 +91,8 @@ def _best_few(ranked: list[tuple[float, bytes]]) -> list[tuple[float, bytes]]:
 def search_in_lockstep(
     space: Space,
     evaluate: Costs,
-    found: Found,
-    journal: Journal,
+    found: SearchState,
+    journal: TuningJournal,
     *,
     stage: str,
     method: str,
@@ -153,7 +153,7 @@ def _surround(space: Space, start: Floats, sigma: float, source: np.random.Gener
     return np.concatenate([start, around])
 
 
-def try_again(evaluate: Costs, found: Found, journal: Journal, stage: str) -> None:
+def try_again(evaluate: Costs, found: SearchState, journal: TuningJournal, stage: str) -> None:
     """Judge the best of all joints together, and forget all other costs, so that later candidates must beat that.
 
     A joint's cost depends on what its neighbours did in the same row. The best of many was also lucky in that, and
@@ -164,7 +164,7 @@ def try_again(evaluate: Costs, found: Found, journal: Journal, stage: str) -> No
 
 
 def _evaluate(
-    rows: Controllers, counts: list[int], evaluate: Costs, found: Found, journal: Journal, stage: str
+    rows: Controllers, counts: list[int], evaluate: Costs, found: SearchState, journal: TuningJournal, stage: str
 ) -> Floats:
     """Take the costs of candidates from the journal, or simulate them."""
     costs = journal.costs(stage, rows)
@@ -178,8 +178,8 @@ def _evaluate(
 def _run_batch(
     space: Space,
     evaluate: Costs,
-    found: Found,
-    journal: Journal,
+    found: SearchState,
+    journal: TuningJournal,
     stage: str,
     packs: list[Optimiser],
     group: Sequence[int],

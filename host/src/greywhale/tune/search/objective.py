@@ -6,7 +6,7 @@ The error of a joint in a class is a length (rad), the sum of
 - RMS times the root of the mean of e^2, without weights: this is what the paper's tables measure, and it arises mostly
   during moves.
 
-A class counts relative to what is possible in it (`Scale`): 0 is the error of the ideal controller, 1 that of the
+A class counts relative to what is possible in it (`ErrorScale`): 0 is the error of the ideal controller, 1 that of the
 controller from before. So fine following counts as much as large moves, whose error is ten times as large, but mostly
 cannot be helped. To this come, in every class,
 
@@ -32,7 +32,7 @@ from greywhale.base.types import Controllers, Floats
 from greywhale.protocol.firmware import JOINTS
 from greywhale.simulate import Result
 from greywhale.tune.search.rattle import chatter, rattle
-from greywhale.tune.search.training import WAIT_S, Drill
+from greywhale.tune.search.training import WAIT_S, TrainingMotion
 
 RMS = 1.5
 RATTLE = 3.0
@@ -67,7 +67,7 @@ def error_of(weighted: Floats, square: Floats) -> Floats:
 
 
 @dataclass(frozen=True)
-class Following:
+class FollowingErrors:
     """How candidates follow: (n, plants, classes, 4) each."""
 
     error: Floats  # rad, see the head
@@ -77,7 +77,7 @@ class Following:
 
 
 @dataclass(frozen=True)
-class Scale:
+class ErrorScale:
     """What is possible on every plant in every class, and what was reached before: (plants, classes, 4) each, in rad.
 
     `room` is the way from the floor to the error before.
@@ -87,30 +87,30 @@ class Scale:
     room: Floats
     rattle: Floats
 
-    def first(self, plants: int) -> Scale:
+    def first(self, plants: int) -> ErrorScale:
         """The same for the first few plants only."""
-        return Scale(self.floor[:plants], self.room[:plants], self.rattle[:plants])
+        return ErrorScale(self.floor[:plants], self.room[:plants], self.rattle[:plants])
 
 
 @dataclass(frozen=True)
 class Objective:
     """The training motions and the plants on which candidates are judged, by what is possible."""
 
-    drills: Sequence[Drill]
+    drills: Sequence[TrainingMotion]
     plants: Floats
-    scale: Scale
+    scale: ErrorScale
     threads: int = 0
 
-    def costs(self, controllers: Controllers, single: bool = False) -> Floats:
-        """(n, 4), over all plants; without the price of unrest. `single`: in the bench's own arithmetic."""
-        found = follow(self.drills, self.plants, controllers, single=single, threads=self.threads)
+    def costs(self, controllers: Controllers, exact: bool = False) -> Floats:
+        """(n, 4), over all plants; without the price of unrest. `exact`: in the bench's own arithmetic."""
+        found = follow(self.drills, self.plants, controllers, exact=exact, threads=self.threads)
         supply = self.drills[0].experiment.table.supply_v
         weights = np.array([drill.importance for drill in self.drills])
         weighted = weights[:, None] * relative_costs(found, self.scale, supply)
         return combine_plants(weighted.sum(axis=2) / weights.sum())
 
 
-def relative_costs(found: Following, scale: Scale, supply_v: float) -> Floats:
+def relative_costs(found: FollowingErrors, scale: ErrorScale, supply_v: float) -> Floats:
     """The cost of every class: (n, plants, classes, 4)."""
     louder = np.maximum(found.rattle - np.maximum(scale.rattle, QUIET_RAD), 0.0)
     # One joint may come out a little below its floor, where a neighbour carries it.
@@ -123,20 +123,25 @@ def relative_costs(found: Following, scale: Scale, supply_v: float) -> Floats:
 
 
 def follow(
-    drills: Sequence[Drill], plants: Floats, controllers: Controllers, *, single: bool = False, threads: int = 0
-) -> Following:
-    """Simulate every candidate on every plant and motion; `single`: in the bench's own arithmetic."""
+    drills: Sequence[TrainingMotion],
+    plants: Floats,
+    controllers: Controllers,
+    *,
+    exact: bool = False,
+    threads: int = 0,
+) -> FollowingErrors:
+    """Simulate every candidate on every plant and motion; `exact`: in the bench's own arithmetic."""
     laws, arms = pair_with_plants(controllers, plants)
     shape = (len(controllers), len(plants), JOINTS)
     kept: list[list[Floats]] = [[], [], [], []]
     for drill in drills:
-        run = drill.experiment.run_single if single else drill.experiment.run
+        run = drill.experiment.run_exact if exact else drill.experiment.run
         for place, value in enumerate(_measures(drill, run(laws, arms, every=1, threads=threads))):
             kept[place].append(value.reshape(shape))
-    return Following(*(np.stack(values, axis=2) for values in kept))
+    return FollowingErrors(*(np.stack(values, axis=2) for values in kept))
 
 
-def _measures(drill: Drill, result: Result) -> tuple[Floats, Floats, Floats, Floats]:
+def _measures(drill: TrainingMotion, result: Result) -> tuple[Floats, Floats, Floats, Floats]:
     """Error, volts, rattling and chatter (n k, 4) of one motion."""
     experiment = drill.experiment
     error = error_of(result.itae / drill.total_weight, result.mse)

@@ -48,7 +48,7 @@ MOVING_RAD, MOVING_S = 0.02, 0.1
 
 
 @dataclass(frozen=True)
-class Drill:
+class TrainingMotion:
     """One training motion, the only one of its class, with its weights."""
 
     name: str
@@ -58,7 +58,9 @@ class Drill:
     importance: float  # beside the other classes
 
 
-def drills(arm: ArmParameters, table: ParameterTable, plants: Floats, seed: int = 0) -> tuple[Drill, ...]:
+def training_motions(
+    arm: ArmParameters, table: ParameterTable, plants: Floats, seed: int = 0
+) -> tuple[TrainingMotion, ...]:
     """The training motions within the range of this arm and table, with sensor noise."""
     low, high = reach(arm, table, plants)
     large = moves(low, high)
@@ -75,7 +77,7 @@ def drills(arm: ArmParameters, table: ParameterTable, plants: Floats, seed: int 
             motion, arm, table=table, seed=100 * seed + number + 11, wait_s=WAIT_S, soft_start=False,
             weight_s=weight,
         )  # fmt: skip
-        made.append(Drill(name, motion, experiment, float(weight.sum()) * 1e-3, importance))
+        made.append(TrainingMotion(name, motion, experiment, float(weight.sum()) * 1e-3, importance))
     return tuple(made)
 
 

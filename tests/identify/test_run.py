@@ -15,8 +15,8 @@ from greywhale.base.errors import UserError
 from greywhale.files.arm import load_arm
 from greywhale.files.log import Log
 from greywhale.files.log.condition import Condition
-from greywhale.identify import Outcome, identify
-from greywhale.identify.judge import CHANGED, FIT, SECOND, Verdict, judge, warnings_of
+from greywhale.identify import IdentificationResult, identify
+from greywhale.identify.judge import CHANGED, FIT, SECOND, LogVerdict, judge, warnings_of
 from greywhale.motion import human_reaches
 from greywhale.protocol.table import ParameterTable
 from greywhale.simulate import plant_row
@@ -26,7 +26,7 @@ from tools.support.recordings import Recorded, record
 
 
 @pytest.mark.slow
-def test_model_predicts_other_logs_far_better_than_the_white_box(outcome: Outcome) -> None:
+def test_model_predicts_other_logs_far_better_than_the_white_box(outcome: IdentificationResult) -> None:
     assert [verdict.role for verdict in outcome.verdicts] == [FIT, SECOND, CHANGED]
     assert outcome.verdicts[1].improvement > 0.97
     assert outcome.verdicts[2].improvement > 0.9
@@ -36,7 +36,11 @@ def test_model_predicts_other_logs_far_better_than_the_white_box(outcome: Outcom
 
 @pytest.mark.slow
 def test_search_can_go_on_from_a_model_of_the_same_arm(
-    outcome: Outcome, shoulder: Recorded, white_box: ArmParameters, tables: list[ParameterTable], tmp_path: Path
+    outcome: IdentificationResult,
+    shoulder: Recorded,
+    white_box: ArmParameters,
+    tables: list[ParameterTable],
+    tmp_path: Path,
 ) -> None:
     """With two short logs of one joint; a third, which it has not seen, is predicted well."""
     outcome.save(tmp_path / "model.toml")
@@ -51,7 +55,7 @@ def test_search_can_go_on_from_a_model_of_the_same_arm(
 
 
 @pytest.mark.slow
-def test_motors_come_out_as_they_are(outcome: Outcome, hidden: ArmParameters) -> None:
+def test_motors_come_out_as_they_are(outcome: IdentificationResult, hidden: ArmParameters) -> None:
     """Speed per volt and friction in volts are what such logs show best; torque per volt only where gravity acts."""
     for joint in range(4):
         true = hidden.actuator(joint)
@@ -65,7 +69,7 @@ def test_motors_come_out_as_they_are(outcome: Outcome, hidden: ArmParameters) ->
 
 
 @pytest.mark.slow
-def test_order_is_chosen_by_held_out_data(outcome: Outcome) -> None:
+def test_order_is_chosen_by_held_out_data(outcome: IdentificationResult) -> None:
     """Coulomb friction must be seen to be worth it: this arm has a lot."""
     errors = dict(outcome.found.orders)
     assert errors["Coulomb friction"] < 0.5 * errors["motors"]
@@ -73,7 +77,7 @@ def test_order_is_chosen_by_held_out_data(outcome: Outcome) -> None:
 
 
 @pytest.mark.slow
-def test_model_file_is_an_arm_file(outcome: Outcome, tables: list[ParameterTable], tmp_path: Path) -> None:
+def test_model_file_is_an_arm_file(outcome: IdentificationResult, tables: list[ParameterTable], tmp_path: Path) -> None:
     outcome.save(tmp_path / "model.toml")
     arm = load_arm(tmp_path / "model.toml")
     np.testing.assert_allclose(plant_row(arm), outcome.plant, rtol=1e-9, atol=1e-12)
@@ -92,7 +96,7 @@ def test_model_file_is_an_arm_file(outcome: Outcome, tables: list[ParameterTable
 
 
 @pytest.mark.slow
-def test_what_is_not_known_is_said_with_a_remedy(outcome: Outcome) -> None:
+def test_what_is_not_known_is_said_with_a_remedy(outcome: IdentificationResult) -> None:
     """Yaw and roll feel no gravity; whatever is named open must name its joint and a motion that would settle it."""
     wide = [
         one.name
@@ -175,8 +179,8 @@ def test_the_share_moves_on_with_every_step_of_a_fit(shoulder: Recorded, white_b
 
 
 def test_model_that_learnt_its_controller_is_warned_about() -> None:
-    def verdict(name: str, role: str, model: float) -> Verdict:
-        return Verdict(name, role, "closed loop", (1.0, 0.0, 0.0, 0.0), (model, 0.0, 0.0, 0.0))
+    def verdict(name: str, role: str, model: float) -> LogVerdict:
+        return LogVerdict(name, role, "closed loop", (1.0, 0.0, 0.0, 0.0), (model, 0.0, 0.0, 0.0))
 
     good = [verdict("a", FIT, 0.1), verdict("b", SECOND, 0.2)]
     assert warnings_of([*good, verdict("c", CHANGED, 0.3)]) == []
@@ -187,8 +191,8 @@ def test_model_that_learnt_its_controller_is_warned_about() -> None:
 
 
 def test_chance_decides_whether_a_model_is_worse() -> None:
-    def verdict(model: float, chance: float) -> Verdict:
-        return Verdict("a", SECOND, "closed loop", (1.0, 1.0, 0.0, 0.0), (model, 1.0, 0.0, 0.0), chance=chance)
+    def verdict(model: float, chance: float) -> LogVerdict:
+        return LogVerdict("a", SECOND, "closed loop", (1.0, 1.0, 0.0, 0.0), (model, 1.0, 0.0, 0.0), chance=chance)
 
     assert (verdict(1.2, 0.3).is_as_good, verdict(1.2, 0.3).is_worse) == (True, False)
     assert (verdict(1.4, 0.3).is_as_good, verdict(1.4, 0.3).is_worse) == (False, True)
@@ -198,7 +202,9 @@ def test_chance_decides_whether_a_model_is_worse() -> None:
 
 
 @pytest.mark.slow
-def test_chance_is_what_plants_that_the_fit_allows_are_worse_by(outcome: Outcome, white_box: ArmParameters) -> None:
+def test_chance_is_what_plants_that_the_fit_allows_are_worse_by(
+    outcome: IdentificationResult, white_box: ArmParameters
+) -> None:
     """It is far below what the white box is off, and the converter's steps where the fit allows its estimate alone."""
     second, found = outcome.subjects[1], outcome.found
     assert found.draws is not None
@@ -219,8 +225,8 @@ def test_chance_is_what_plants_that_the_fit_allows_are_worse_by(outcome: Outcome
 @pytest.mark.slow
 @pytest.mark.parametrize("begun", ["model", "exact"])
 def test_second_round_is_as_good_as_the_arm_that_it_began_with(
-    outcome: Outcome, recorded: Recorded, hidden: ArmParameters, tables: list[ParameterTable], tmp_path: Path,
-    begun: str,
+    outcome: IdentificationResult, recorded: Recorded, hidden: ArmParameters, tables: list[ParameterTable],
+    tmp_path: Path, begun: str,
 ) -> None:  # fmt: skip
     """A model of before, or an arm file that is exact: there is little to learn, and that is no fault."""
     arm = outcome.arm if begun == "model" else hidden
@@ -244,7 +250,7 @@ def test_second_round_is_as_good_as_the_arm_that_it_began_with(
 
 
 @pytest.mark.slow
-def test_model_that_is_really_worse_is_told(outcome: Outcome) -> None:
+def test_model_that_is_really_worse_is_told(outcome: IdentificationResult) -> None:
     """A joint's friction half of what it is: the arm file that the search began with knew better."""
     found = outcome.found
     assert found.draws is not None

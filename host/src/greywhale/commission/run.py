@@ -8,9 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -18,13 +15,14 @@ import numpy.typing as npt
 from greywhale.base.errors import UserError
 from greywhale.base.types import Controllers, NotedProgress, show_no_progress
 from greywhale.commission import learn, start
-from greywhale.commission.book import open_book
+from greywhale.commission.arm_on_port import ArmOnPort, connected
 from greywhale.commission.choose import confirm
 from greywhale.commission.evidence import failing_plants, gather
 from greywhale.commission.foresee import foresee
-from greywhale.commission.motions import Room, check_motion
-from greywhale.commission.outcome import Outcome, Round
-from greywhale.commission.rig import Rig, connected
+from greywhale.commission.journal import open_journal
+from greywhale.commission.motions import JointRange, check_motion
+from greywhale.commission.request import CommissioningRequest
+from greywhale.commission.result import CommissioningResult, Round
 from greywhale.commission.search import JointSearch, Row
 from greywhale.commission.trials import Trials
 from greywhale.files.arm import load_arm
@@ -39,48 +37,18 @@ from greywhale.protocol.table import ParameterTable, find_board
 from greywhale.simulate.controllers import controllers_of
 from greywhale.tune.model_checks import doubt_other_arm
 
-ROUNDS, TRIALS = 2, 8
 DESIGN_BUDGET = 150  # the last evaluations of a search for a motion would gain little
 # Another round follows while a joint's best is above this share of before.
 WANTING = 0.3
 
 
-@dataclass(frozen=True)
-class Options:
-    """What to commission, and how much effort to spend."""
-
-    port: str
-    out: Path
-    arm_file: str | None = None  # None: the model's arm, or the white box
-    model: Path | None = None
-    ranges: dict[int, tuple[float, float]] | None = None
-    rounds: int = ROUNDS
-    trials: int = TRIALS  # for each round
-    seed: int = 0
-    budget: int | None = None
-    threads: int = 0
-    resume: bool = False
-
-    def request(self) -> dict[str, Any]:
-        """What a journal must agree with."""
-        return {
-            "arm": self.arm_file,
-            "model": None if self.model is None else str(self.model),
-            "ranges": {str(joint): list(pair) for joint, pair in sorted((self.ranges or {}).items())},
-            "rounds": self.rounds,
-            "trials": self.trials,
-            "seed": self.seed,
-            "budget": self.budget,
-        }
-
-
-def commission(options: Options, report: NotedProgress | None = None) -> Outcome:
+def commission(options: CommissioningRequest, report: NotedProgress | None = None) -> CommissioningResult:
     """Find controllers on the arm; the board then runs and stores the best that was measured. Raises UserError."""
-    return _Campaign(options, report or show_no_progress).run()
+    return _Commissioning(options, report or show_no_progress).run()
 
 
-class _Campaign:
-    def __init__(self, options: Options, report: NotedProgress) -> None:
+class _Commissioning:
+    def __init__(self, options: CommissioningRequest, report: NotedProgress) -> None:
         self.options = options
         self.report = report
         self.nominal = load_arm(options.arm_file or options.model or "white_box")
@@ -91,12 +59,12 @@ class _Campaign:
         self.before: ParameterTable | None = None
         self.trying = ""  # which trial of a round runs, for the reports
 
-    def run(self) -> Outcome:
+    def run(self) -> CommissioningResult:
         options = self.options
-        with open_book(options.out, options.request(), options.resume) as self.book:
+        with open_journal(options.out, options.facts(), options.resume) as self.book:
             return self._run()
 
-    def _run(self) -> Outcome:
+    def _run(self) -> CommissioningResult:
         self._begin()
         trials, searches = self.trials, self.searches
         for number in range(1, self.options.rounds + 1):
@@ -114,7 +82,7 @@ class _Campaign:
             if self.book.get("end") is None:
                 arm().keep(best.table)
                 self.book.note("end", {"best": best.name})
-        return Outcome(trials, tuple(self.rounds), best)
+        return CommissioningResult(trials, tuple(self.rounds), best)
 
     def _begin(self) -> None:
         """Connect, refuse what must not move, and record the arm with the controllers from before."""
@@ -125,7 +93,7 @@ class _Campaign:
                 rig = arm()
                 start.refuse_uncalibrated(self.nominal, rig.before)
                 limits = limits_of(self.nominal, rig.before, rig.pose(), options.ranges or {})
-                room = Room(limits.pose, limits.low, limits.high)
+                room = JointRange(limits.pose, limits.low, limits.high)
                 start.refuse_stuck(rig, book, room)
                 save_parameters(book.path("before.toml"), rig.before)
                 facts = {
@@ -134,7 +102,7 @@ class _Campaign:
                 }
                 book.note("start", facts)
         self.before = before = load_parameters(book.path("before.toml")).for_board(find_board(facts["board"]))
-        self.room = Room(*(np.array(values) for values in facts["room"]))
+        self.room = JointRange(*(np.array(values) for values in facts["room"]))
         self.trials = Trials(book, check_motion(self.room), before)
         with self._arm("before") as arm:
             first = self.trials.play_before(None if self.trials.known() else arm())
@@ -145,7 +113,7 @@ class _Campaign:
         if options.model is not None:
             learn.refuse_other_arm(load_arm(options.model), str(options.model), first, before)
 
-    def _learn(self, number: int) -> learn.Learnt:
+    def _learn(self, number: int) -> learn.LearntController:
         """A round's model and controllers."""
         options, book, report = self.options, self.book, self._report(f"round {number}")
         if number == 1 and options.model is not None:
@@ -192,7 +160,7 @@ class _Campaign:
             self.book.note("excite", {"log": path.name})
         return read_evidence(path)
 
-    def _try(self, arm: Callable[[], Rig], tuned: Controllers) -> None:
+    def _try(self, arm: Callable[[], ArmOnPort], tuned: Controllers) -> None:
         """Try a round's controllers on the arm, then vary what failed or follows poorly."""
         trials, searches = self.trials, self.searches
         wanted: list[npt.NDArray[np.int32] | None] = [tuned[search.joint] for search in searches]
@@ -243,12 +211,12 @@ class _Campaign:
         return told
 
     @contextmanager
-    def _arm(self, stage: str) -> Iterator[Callable[[], Rig]]:
+    def _arm(self, stage: str) -> Iterator[Callable[[], ArmOnPort]]:
         """The arm, connected when it is first asked for, and left with its motors off at the end."""
         with ExitStack() as stack:
-            rigs: list[Rig] = []
+            rigs: list[ArmOnPort] = []
 
-            def arm() -> Rig:
+            def arm() -> ArmOnPort:
                 if not rigs:
                     told = self._report(stage)
                     rigs.append(stack.enter_context(connected(self.options.port, self.before, told)))

@@ -13,11 +13,11 @@ from greywhale.files.log.reader import refuse_altered
 from greywhale.identify import checks, controllers, judge
 from greywhale.identify.data import prepare
 from greywhale.identify.default import find_default
-from greywhale.identify.found import Task
-from greywhale.identify.outcome import Outcome
 from greywhale.identify.overlap import refuse_shared
 from greywhale.identify.paper import METHODS as PAPER_METHODS
 from greywhale.identify.paper import find_as_paper
+from greywhale.identify.request import IdentificationRequest
+from greywhale.identify.result import IdentificationResult
 from greywhale.protocol.joints import ALL, require_same
 from greywhale.protocol.table import ParameterTable
 
@@ -34,7 +34,7 @@ def identify(
     seed: int = 0,
     begin: ArmParameters | None = None,
     report: Progress | None = None,
-) -> Outcome:
+) -> IdentificationResult:
     """Find the arm that made the logs. `arm` is the white box to start from and supplies all geometry.
 
     `begin` is a model of the same arm that the default method found from other logs: its quantities are fitted to these
@@ -54,12 +54,12 @@ def identify(
         refuse_altered(log, Check.CHANGED)
     refuse_shared(logs, validate)
     subjects, doubts = _subjects(logs, validate, arm, tables)
-    task = Task(arm, tuple(subjects), seed, report or show_no_progress, begin)
+    task = IdentificationRequest(arm, tuple(subjects), seed, report or show_no_progress, begin)
     found = find_default(task) if method == "default" else find_as_paper(task, method)
     verdicts = tuple(
         judge.judge(subject, arm, found.plant, found.zero, found.joints, found.draws) for subject in subjects
     )
-    return Outcome(
+    return IdentificationResult(
         white_box=arm,
         method=method,
         seed=seed,
@@ -78,7 +78,7 @@ def _remarks(*logs: Sequence[Log]) -> list[str]:
 
 def _subjects(
     logs: Sequence[Log], validate: Sequence[Log], arm: ArmParameters, tables: Sequence[ParameterTable]
-) -> tuple[list[judge.Subject], list[str]]:
+) -> tuple[list[judge.JudgedLog], list[str]]:
     """Make every log ready, and check it."""
     subjects, doubts = [], []
     crcs = {log.origin.param_crc for log in logs}
@@ -96,7 +96,7 @@ def _subjects(
             role = judge.FIT
         else:
             role = judge.SECOND if log.origin.param_crc in crcs else judge.CHANGED
-        subjects.append(judge.Subject(prepared, table, role))
+        subjects.append(judge.JudgedLog(prepared, table, role))
         if table is None:
             doubts.append(
                 f"{log.name}: its controller is not known, so the closed loop cannot be simulated; give it with "

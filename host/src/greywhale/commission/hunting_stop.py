@@ -30,7 +30,7 @@ class Hunting(Exception):
         self.joint = joint
 
 
-class Watch:
+class HuntingStop:
     """Call it with every sample; it raises Hunting."""
 
     def __init__(self) -> None:

@@ -11,11 +11,11 @@ import pytest
 
 from greywhale.arm import ArmParameters
 from greywhale.base.errors import UserError
-from greywhale.commission import Options, campaign, commission, foresee, learn
-from greywhale.commission.book import Book
-from greywhale.commission.learn import Learnt
-from greywhale.commission.outcome import Outcome
+from greywhale.commission import CommissioningRequest, commission, foresee, learn, run
+from greywhale.commission.journal import CommissioningJournal
+from greywhale.commission.learn import LearntController
 from greywhale.commission.page import facts, save_page
+from greywhale.commission.result import CommissioningResult
 from greywhale.commission.search import KD, KI, KP, JointSearch
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.files.leader import load_leader
@@ -29,7 +29,7 @@ from tests.commission.simulated import SimulatedRig, options_in
 from tests.support.tuning import judge_nothing, shorten
 from tests.tune.models import write_model
 
-Make = Callable[..., Options]
+Make = Callable[..., CommissioningRequest]
 
 
 find_controllers = learn.find_controllers
@@ -38,15 +38,17 @@ find_controllers = learn.find_controllers
 def in_no_time(rig: SimulatedRig, patch: pytest.MonkeyPatch) -> None:
     """No board; controllers are found at once, twice as stiff, and too stiff for joint 2; few steps are foreseen."""
 
-    def find(book: Book, name: str, model: Model, start: np.ndarray, **options: object) -> Learnt:
+    def find(
+        book: CommissioningJournal, name: str, model: Model, start: np.ndarray, **options: object
+    ) -> LearntController:
         rows = start.copy()
         rows[:, [KP, KI]] *= 2
         rows[:, KD] = np.rint(1.4 * rows[:, KD])
         rows[2, KP] *= 10
         book.note(name, {})
-        return Learnt(model.arm, rows, (), True)
+        return LearntController(model.arm, rows, (), True)
 
-    patch.setattr(campaign, "connected", rig.connected)
+    patch.setattr(run, "connected", rig.connected)
     patch.setattr(learn, "find_controllers", find)
     steps = multi_steps()
     few = Trajectory(steps.time_s[steps.time_s < 4.0], steps.angles[steps.time_s < 4.0])
@@ -64,7 +66,7 @@ class Whole:
 
     rig: SimulatedRig
     options: Make
-    outcome: Outcome
+    outcome: CommissioningResult
 
 
 @pytest.fixture(scope="module")
@@ -91,7 +93,9 @@ def test_interrupted_anywhere_the_board_keeps_what_it_had_and_resuming_ends_the_
     rig: SimulatedRig, options: Make, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """At the first motion, at a recording before, at a trial of the round, and at the confirmation."""
-    monkeypatch.setattr(Outcome, "predicted", lambda outcome, trial, round_: trial.measured)  # what follows from trials
+    monkeypatch.setattr(
+        CommissioningResult, "predicted", lambda outcome, trial, round_: trial.measured
+    )  # what follows from trials
     whole = commission(options(trials=2))
     told, plays, before = whole.as_dict(), len(rig.played), whole.trials.table
     assert plays == 6, "the first motion, two recordings before, two trials, and the confirmation"
@@ -207,8 +211,8 @@ def test_without_a_model_the_arm_is_excited_and_identified(
         return options().model
 
     monkeypatch.setattr(learn, "find_model", find)
-    monkeypatch.setattr(campaign, "DESIGN_BUDGET", 2)
-    monkeypatch.setattr(campaign, "WANTING", 0.0)
+    monkeypatch.setattr(run, "DESIGN_BUDGET", 2)
+    monkeypatch.setattr(run, "WANTING", 0.0)
     outcome = commission(options(model=None, rounds=2, trials=2))
     first, second = given["model-1"], given["model-2"]
     assert begun == [None, outcome.rounds[0].learnt.arm], "the second model goes on from the first"
@@ -240,7 +244,7 @@ def test_of_an_arm_with_two_joints_those_are_tried_and_the_others_keep_what_they
 ) -> None:
     arm, before = load_arm("two_joints"), ParameterTable.defaults().with_joints((0, 1))
     rig = SimulatedRig(arm, before)
-    monkeypatch.setattr(campaign, "connected", rig.connected)
+    monkeypatch.setattr(run, "connected", rig.connected)
     (tmp_path / "arm.toml").write_text(arm_toml(arm, "Two joints."), encoding="utf-8")
     model = write_model(tmp_path / "two.toml", arm, joints=(0, 1), parameters=before.changes())
     outcome = commission(options(model=model, arm_file=str(tmp_path / "arm.toml"), trials=2))

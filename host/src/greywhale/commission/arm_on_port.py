@@ -16,7 +16,7 @@ from greywhale.base.types import Floats, Progress
 from greywhale.board.device import Device, hold_ctrl_c
 from greywhale.board.record import pose_of, record_led
 from greywhale.board.upload import read_parameters, run_set, upload_set
-from greywhale.commission.watch import Hunting, Watch
+from greywhale.commission.hunting_stop import Hunting, HuntingStop
 from greywhale.files.log import Log, read_evidence
 from greywhale.files.trajectory import Trajectory
 from greywhale.protocol import schema
@@ -28,7 +28,7 @@ OF_A_CONTROLLER = ("tracking", "unrest", "runaway", "stalled")
 
 
 @dataclass(frozen=True)
-class Played:
+class PlayedMotion:
     """A log, and why it ended early: `joint` is the one that the board or this host stopped for, None where unknown."""
 
     log: Log
@@ -36,7 +36,7 @@ class Played:
     joint: int | None = None
 
 
-class Rig:
+class ArmOnPort:
     """A board on an open port that runs the table `before`."""
 
     def __init__(self, device: Device, before: ParameterTable, progress: Progress) -> None:
@@ -51,14 +51,14 @@ class Rig:
 
     def play(
         self, motion: Trajectory, path: Path, table: ParameterTable, *, patient: bool = False, watched: bool = True
-    ) -> Played:
+    ) -> PlayedMotion:
         """Lead the arm along a motion with the controllers of a table, and put those from before back.
 
         A `patient` rig waits for a follower that lags; a `watched` arm is stopped when a joint hunts.
         """
         try:
             self._run(table)
-            played = self._record(motion, path, table, patient, Watch() if watched else None)
+            played = self._record(motion, path, table, patient, HuntingStop() if watched else None)
         except BaseException as error:
             self._put_back(error)
             raise
@@ -85,14 +85,14 @@ class Rig:
             self._running = table
 
     def _record(
-        self, motion: Trajectory, path: Path, table: ParameterTable, patient: bool, watch: Watch | None
-    ) -> Played:
+        self, motion: Trajectory, path: Path, table: ParameterTable, patient: bool, watch: HuntingStop | None
+    ) -> PlayedMotion:
         path.unlink(missing_ok=True)
         try:
             record_led(self.device, path, motion, progress=self._progress, table=table, patient=patient, watch=watch)
         except Hunting as hunting:
             self.device.telemetry(0)
-            return Played(read_evidence(path), f"joint {hunting.joint} hunted", hunting.joint)
+            return PlayedMotion(read_evidence(path), f"joint {hunting.joint} hunted", hunting.joint)
         except UserError:
             status = self._status()
             if status is None or status.fault.key not in OF_A_CONTROLLER or not path.exists():
@@ -101,8 +101,8 @@ class Rig:
             self.device.ask(schema.ClearFaultRequest())
             where = status.fault_where if status.fault_where < len(table.controllers) else None
             whose = "" if where is None else f" (joint {where})"
-            return Played(read_evidence(path), f"the board stopped: {status.fault.description}{whose}", where)
-        return Played(read_evidence(path))
+            return PlayedMotion(read_evidence(path), f"the board stopped: {status.fault.description}{whose}", where)
+        return PlayedMotion(read_evidence(path))
 
     def _status(self) -> schema.StatusReply | None:
         """The board's state after an error; None where it does not answer any more."""
@@ -113,7 +113,7 @@ class Rig:
 
 
 @contextmanager
-def connected(port: str, before: ParameterTable | None, progress: Progress) -> Iterator[Rig]:
+def connected(port: str, before: ParameterTable | None, progress: Progress) -> Iterator[ArmOnPort]:
     """Open the port; the board must run the table `before`, where it is known. Leaving turns the motors off."""
     with Device(port) as device:
         running = read_parameters(device, progress)
@@ -122,4 +122,4 @@ def connected(port: str, before: ParameterTable | None, progress: Progress) -> I
                 f"{port}: the board runs parameter set {running.crc:#06x}, but this commissioning began with "
                 f"{before.crc:#06x}; connect that board, or begin anew in another folder."
             )
-        yield Rig(device, running, progress)
+        yield ArmOnPort(device, running, progress)

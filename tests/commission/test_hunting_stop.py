@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from greywhale.board.stream import Received
-from greywhale.commission.watch import Hunting, Watch
+from greywhale.commission.hunting_stop import Hunting, HuntingStop
 from greywhale.protocol import schema
 from greywhale.protocol.firmware import ANGLE_LSB
 
@@ -15,7 +15,7 @@ TICKS = np.arange(4000)
 
 def stopped_at(leader: np.ndarray, follower: np.ndarray, every: int = 1) -> float | None:
     """When the watch stops joint 2 (s), None where it never does; the other joints rest."""
-    watch = Watch()
+    watch = HuntingStop()
     for tick in TICKS[::every]:
         angles = [[0, 0, 0, 0], [0, 0, 0, 0]]
         for row, path in zip(angles, (leader, follower), strict=True):

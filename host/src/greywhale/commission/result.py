@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from greywhale.arm.parameters import JOINT_NAMES
-from greywhale.commission.learn import Learnt
+from greywhale.commission.learn import LearntController
 from greywhale.commission.measures import Measures, measure
 from greywhale.commission.motions import PARTS
 from greywhale.commission.predict import predict
@@ -21,12 +21,12 @@ class Round:
     """One model, the controllers tuned on it, and the trials that followed."""
 
     number: int
-    learnt: Learnt
+    learnt: LearntController
     trials: tuple[Trial, ...]
 
 
 @dataclass(frozen=True)
-class Outcome:
+class CommissioningResult:
     """What was tried, and the set `best` that the board runs and stores now."""
 
     trials: Trials

@@ -19,10 +19,10 @@ from greywhale.optimise import METHODS as OPTIMISERS
 from greywhale.protocol.schema import PARAMETER_BY_NAME, Refusal
 from greywhale.protocol.table import CONTROLLER_COLUMNS, ParameterTable, physical
 from greywhale.simulate import plant_row
-from greywhale.tune import METHODS, Outcome, check_request, default, tune
+from greywhale.tune import METHODS, TuningResult, check_request, default, tune
 from greywhale.tune.default import KU, WEAKER, DefaultMethod
-from greywhale.tune.method import Task
 from greywhale.tune.model import Model, load_model
+from greywhale.tune.request import TuningRequest
 from greywhale.tune.search import lockstep as search
 from greywhale.tune.search.lockstep import KEPT
 from greywhale.tune.search.objective import Objective
@@ -59,22 +59,22 @@ def unjudged(monkeypatch: pytest.MonkeyPatch) -> None:
     judge_nothing(monkeypatch)
 
 
-def run(model: Model, **options: Any) -> Outcome:
+def run(model: Model, **options: Any) -> TuningResult:
     return tune(model, **({"budget": BUDGET, "floors": False} | options))
 
 
 @pytest.fixture(scope="module")
-def tuned(model: Model, tmp_path_factory: pytest.TempPathFactory) -> tuple[Outcome, Path]:
+def tuned(model: Model, tmp_path_factory: pytest.TempPathFactory) -> tuple[TuningResult, Path]:
     journal = tmp_path_factory.mktemp("tuning") / "journal"
     return run(model, journal=journal, threads=1), journal
 
 
-def same(one: Outcome, other: Outcome) -> None:
+def same(one: TuningResult, other: TuningResult) -> None:
     assert json.dumps(one.as_dict()) == json.dumps(other.as_dict())
 
 
 @pytest.mark.slow
-def test_a_short_search_already_follows_much_better(tuned: tuple[Outcome, Path]) -> None:
+def test_a_short_search_already_follows_much_better(tuned: tuple[TuningResult, Path]) -> None:
     outcome, _ = tuned
     assert outcome.complete
     assert outcome.evaluations <= BUDGET
@@ -86,7 +86,7 @@ def test_a_short_search_already_follows_much_better(tuned: tuple[Outcome, Path])
 
 
 @pytest.mark.slow
-def test_every_joint_comes_to_rest(tuned: tuple[Outcome, Path]) -> None:
+def test_every_joint_comes_to_rest(tuned: tuple[TuningResult, Path]) -> None:
     outcome, _ = tuned
     assert len(outcome.margins) == len(outcome.margins_before) == 6 * 4
     assert outcome.steady
@@ -94,7 +94,7 @@ def test_every_joint_comes_to_rest(tuned: tuple[Outcome, Path]) -> None:
 
 
 @pytest.mark.slow
-def test_the_board_takes_what_comes_out(tuned: tuple[Outcome, Path]) -> None:
+def test_the_board_takes_what_comes_out(tuned: tuple[TuningResult, Path]) -> None:
     outcome, _ = tuned
     assert outcome.after.dtype == np.int32
     for row in outcome.after:
@@ -102,7 +102,7 @@ def test_the_board_takes_what_comes_out(tuned: tuple[Outcome, Path]) -> None:
 
 
 @pytest.mark.slow
-def test_the_outcome_is_plain_json(tuned: tuple[Outcome, Path]) -> None:
+def test_the_outcome_is_plain_json(tuned: tuple[TuningResult, Path]) -> None:
     facts = json.loads(json.dumps(tuned[0].as_dict(), allow_nan=False))
     table = ParameterTable.defaults().with_controllers(tuned[0].after)
     assert facts["after"] == {
@@ -115,7 +115,7 @@ def test_the_outcome_is_plain_json(tuned: tuple[Outcome, Path]) -> None:
 
 @pytest.mark.slow
 def test_an_interrupted_tuning_goes_on_to_the_same_bytes_on_any_number_of_threads(
-    model: Model, tuned: tuple[Outcome, Path], tmp_path: Path
+    model: Model, tuned: tuple[TuningResult, Path], tmp_path: Path
 ) -> None:
     outcome, journal = tuned
     path = tmp_path / "journal"
@@ -140,7 +140,7 @@ def test_an_interrupted_tuning_goes_on_to_the_same_bytes_on_any_number_of_thread
 
 
 @pytest.mark.slow
-def test_a_journal_of_another_tuning_is_refused(model: Model, tuned: tuple[Outcome, Path]) -> None:
+def test_a_journal_of_another_tuning_is_refused(model: Model, tuned: tuple[TuningResult, Path]) -> None:
     with pytest.raises(UserError, match="its seed is 0, now it is 1"):
         run(model, journal=tuned[1], resume=True, seed=1)
     with pytest.raises(UserError, match=r"its bounds is {}, now it is {.Ku.: \[3.0, 5.0\]}"):
@@ -149,7 +149,7 @@ def test_a_journal_of_another_tuning_is_refused(model: Model, tuned: tuple[Outco
 
 @pytest.mark.slow
 def test_a_finished_journal_needs_no_simulation_and_an_interrupt_while_judging_keeps_its_best(
-    model: Model, tuned: tuple[Outcome, Path], monkeypatch: pytest.MonkeyPatch
+    model: Model, tuned: tuple[TuningResult, Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def never(self: object, controllers: object) -> None:
         raise AssertionError("simulated although the journal knows")
@@ -202,7 +202,7 @@ def test_a_joint_whose_best_would_shake_its_gear_gets_less_voltage(
     """The last judgement refuses every candidate of the search, here by its Ku, but not one with less."""
     searched: list[int] = []
 
-    def judge_costs(self: Any, controllers: np.ndarray, single: bool = False) -> np.ndarray:
+    def judge_costs(self: Any, controllers: np.ndarray, exact: bool = False) -> np.ndarray:
         costs = Objective.costs(self.judging, controllers)
         if not searched:
             searched.extend(self.found.contenders(KEPT)[:, 1, KU].tolist())
@@ -222,10 +222,10 @@ def test_the_benchs_own_arithmetic_has_the_last_word(
 ) -> None:
     """Every change of joint 1 looks better in single precision, and is worse in truth."""
 
-    def judge_costs(self: Any, controllers: np.ndarray, single: bool = False) -> np.ndarray:
+    def judge_costs(self: Any, controllers: np.ndarray, exact: bool = False) -> np.ndarray:
         changed = (controllers != self.start).any(axis=2)
         costs = np.where(changed, 0.5, 1.0)
-        costs[:, 1] = np.where(changed[:, 1] & single, 2.0, costs[:, 1])
+        costs[:, 1] = np.where(changed[:, 1] & exact, 2.0, costs[:, 1])
         return np.asarray(costs)
 
     monkeypatch.setattr(DefaultMethod, "judge_costs", judge_costs)
@@ -238,7 +238,7 @@ def test_where_the_arm_itself_will_judge_unrest_on_the_model_counts_less(
     model: Model, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(default, "penalty", lambda unrest: np.ones((1, 4)))
-    task = Task(model, "both", "default", 1, 0, 1, model.controllers, {}, show_no_progress, floors=False)
+    task = TuningRequest(model, "both", "default", 1, 0, 1, model.controllers, {}, show_no_progress, floors=False)
     rows = model.controllers[None]
     usual = DefaultMethod(task).judge_costs(rows)
     on_trial = DefaultMethod(replace(task, on_trial=True)).judge_costs(rows)

@@ -11,11 +11,12 @@ from greywhale.protocol.joints import ALL
 from greywhale.simulate.controllers import check_controllers
 from greywhale.tune import default, paper
 from greywhale.tune.default import DefaultMethod
-from greywhale.tune.method import Judgement, Method, Task
+from greywhale.tune.method import Judgement, Method
 from greywhale.tune.model import Model
-from greywhale.tune.outcome import Outcome, curves_of
 from greywhale.tune.paper import PaperMethod
-from greywhale.tune.search.journal import Journal
+from greywhale.tune.request import TuningRequest
+from greywhale.tune.result import TuningResult, curves_of
+from greywhale.tune.search.journal import TuningJournal
 from greywhale.tune.search.space import Bounds, check_bounds, check_strategy
 
 DEFAULT_STRATEGY = "both"
@@ -62,7 +63,7 @@ def tune(
     report: NotedProgress | None = None,
     floors: bool = True,
     on_trial: bool = False,
-) -> Outcome:
+) -> TuningResult:
     """Tune the four controllers of a model.
 
     `budget` counts sets of four candidates, each tried on all plants and motions. The first set is `start`, the
@@ -76,7 +77,7 @@ def tune(
     if method == "paper" and model.arm.joints_in_use != ALL:
         raise UserError("the paper's method is for arms with all four joints; use --method default.", BAD_USAGE)
     usual = paper.BUDGET if method == "paper" else DEFAULT_BUDGET
-    task = Task(
+    task = TuningRequest(
         model=model,
         strategy=strategy,
         method=method,
@@ -92,9 +93,9 @@ def tune(
     return _run(task, PaperMethod(task) if method == "paper" else DefaultMethod(task), journal, resume)
 
 
-def _run(task: Task, method: Method, journal: Path | None, resume: bool) -> Outcome:
+def _run(task: TuningRequest, method: Method, journal: Path | None, resume: bool) -> TuningResult:
     """Search and judge; an interrupt on the way ends it with the best so far."""
-    with Journal(journal, task.request() | method.request(), resume) as book:
+    with TuningJournal(journal, task.facts() | method.facts(), resume) as book:
         try:
             method.search(book)
             return _outcome(task, method, method.judge(), complete=True)
@@ -107,8 +108,8 @@ def _run(task: Task, method: Method, journal: Path | None, resume: bool) -> Outc
     return _outcome(task, method, best, complete=False)
 
 
-def _outcome(task: Task, method: Method, judged: Judgement, complete: bool) -> Outcome:
-    return Outcome(
+def _outcome(task: TuningRequest, method: Method, judged: Judgement, complete: bool) -> TuningResult:
+    return TuningResult(
         model=task.model,
         table=method.table,
         strategy=task.strategy,

@@ -11,7 +11,7 @@ from greywhale.protocol.table import CONTROLLER_COLUMNS, ParameterTable, physica
 from greywhale.tune.judge.held_out import HeldOut
 from greywhale.tune.judge.margins import Margin
 from greywhale.tune.model import Model
-from greywhale.tune.search.lockstep import Found
+from greywhale.tune.search.lockstep import SearchState
 
 
 @dataclass(frozen=True)
@@ -22,14 +22,14 @@ class Curve:
     cost: tuple[float, ...]
 
 
-def curves_of(found: Found) -> tuple[Curve, ...]:
+def curves_of(found: SearchState) -> tuple[Curve, ...]:
     """One curve a joint, from the search's books."""
     at = tuple(evaluations for evaluations, _ in found.curve)
     return tuple(Curve(at, tuple(costs[joint] for _, costs in found.curve)) for joint in range(len(found.cost)))
 
 
 @dataclass(frozen=True)
-class Outcome:
+class TuningResult:
     """The controllers `before` and `after`, int32 (4, 12), exactly as a board stores them, and how they do.
 
     Costs are the joints', judged like the winners. `table` is the one with which everything was simulated: the model's,

@@ -240,7 +240,7 @@ class Run {
 
 }  // namespace
 
-Measures run_single(const Experiment& x, const Controllers& controllers, const PlantRow& row, int substeps,
+Measures run_exact(const Experiment& x, const Controllers& controllers, const PlantRow& row, int substeps,
                     const Trace& trace) {
   return Run(x, controllers, row, substeps, trace).measures();
 }

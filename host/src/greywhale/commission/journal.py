@@ -23,7 +23,7 @@ NAME = "commission.json"
 VERSION = 2
 
 
-class Book:
+class CommissioningJournal:
     """Facts of the steps that are done, by the step's name. `request` says what was asked for."""
 
     def __init__(self, folder: Path, request: dict[str, Any], resume: bool) -> None:
@@ -90,12 +90,12 @@ class Book:
 
 
 @contextmanager
-def open_book(folder: Path, request: dict[str, Any], resume: bool) -> Iterator[Book]:
+def open_journal(folder: Path, request: dict[str, Any], resume: bool) -> Iterator[CommissioningJournal]:
     """A commissioning's journal, which no other commissioning can open meanwhile."""
     if not resume:
         _make(folder)
     with _held(folder):
-        yield Book(folder, request, resume)
+        yield CommissioningJournal(folder, request, resume)
 
 
 def _make(folder: Path) -> None:
@@ -110,7 +110,7 @@ def _held(folder: Path) -> Iterator[None]:
     """A lock on the folder, which the system takes away when this process ends, however it ends."""
     try:
         descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
-    except OSError:  # Book says why
+    except OSError:  # CommissioningJournal says why
         yield
         return
     try:

@@ -13,24 +13,24 @@ from greywhale.arm.from_plant import arm_of
 from greywhale.base.formats.whole import write_text
 from greywhale.base.types import Floats
 from greywhale.files.model import sealed, to_toml
-from greywhale.identify.found import Found, ParameterEstimate
-from greywhale.identify.judge import FIT, Subject, Verdict
+from greywhale.identify.found_model import FoundModel, ParameterEstimate
+from greywhale.identify.judge import FIT, JudgedLog, LogVerdict
 from greywhale.identify.noise import pot_noise
 from greywhale.protocol.joints import Joints
 
 
 @dataclass(frozen=True)
-class Outcome:
+class IdentificationResult:
     """A model, how certain it is, and how it does on every log."""
 
     white_box: ArmParameters
     method: str
     seed: int
-    found: Found
-    verdicts: tuple[Verdict, ...]
+    found: FoundModel
+    verdicts: tuple[LogVerdict, ...]
     warnings: tuple[str, ...]
     doubts: tuple[str, ...]  # about joints that the model does not understand; `tune` refuses such a model
-    subjects: tuple[Subject, ...] = field(repr=False)
+    subjects: tuple[JudgedLog, ...] = field(repr=False)
 
     @property
     def plant(self) -> Floats:
@@ -109,7 +109,7 @@ class Outcome:
         return facts
 
     @staticmethod
-    def _log(subject: Subject, verdict: Verdict) -> dict[str, Any]:
+    def _log(subject: JudgedLog, verdict: LogVerdict) -> dict[str, Any]:
         origin = subject.log.log.origin
         facts: dict[str, Any] = {"name": verdict.name, "role": verdict.role}
         if origin.param_crc is not None:
@@ -157,7 +157,7 @@ class Outcome:
         return "\n".join(lines)
 
 
-def _table(verdict: Verdict, begun: str, joints: Joints) -> list[str]:
+def _table(verdict: LogVerdict, begun: str, joints: Joints) -> list[str]:
     lines = [
         f"{verdict.name} ({verdict.role}; {verdict.measure})",
         f"{'MSE [rad²]':12} {begun:>12} {'model':>12}",
@@ -169,7 +169,7 @@ def _table(verdict: Verdict, begun: str, joints: Joints) -> list[str]:
     return [*lines, ""]
 
 
-def _comparison(verdict: Verdict, begun: str) -> str:
+def _comparison(verdict: LogVerdict, begun: str) -> str:
     if verdict.is_as_good:
         return f"as good as the {begun}, as far as noise lets tell"
     return f"{100 * abs(verdict.improvement):.1f} % {'worse' if verdict.improvement < 0.0 else 'better'}"

@@ -1,0 +1,38 @@
+"""What a tuning is asked: a model, and how much to search."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from greywhale.base.types import Controllers, NotedProgress
+from greywhale.tune.model import Model
+
+
+@dataclass(frozen=True)
+class TuningRequest:
+    """A model to tune for, and how: `budget` evaluations, controllers `before` (4, 12), bounds in a file's units."""
+
+    model: Model
+    strategy: str
+    method: str
+    budget: int
+    seed: int
+    threads: int
+    before: Controllers
+    bounds: dict[str, tuple[float, float]]
+    report: NotedProgress
+    floors: bool  # whether to work out the least possible error
+    on_trial: bool = False  # whether the arm itself will judge what is found
+
+    def facts(self) -> dict[str, Any]:
+        """The facts that every journal must agree with."""
+        return {
+            "model": self.model.name,
+            "model_digest": self.model.digest,
+            "strategy": self.strategy,
+            "method": self.method,
+            "budget": self.budget,
+            "seed": self.seed,
+            "before": self.before.tolist(),
+        }
