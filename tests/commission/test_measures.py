@@ -1,72 +1,16 @@
-"""What a log of the check shows: traces made by hand, whose unrest, rattling and chatter are known."""
+"""What a log of the check shows: traces made by hand, whose measures are known."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from greywhale.commission.measures import STEPS, Traces, chatter, measure, rattle, traces_of, unrest
+from greywhale.commission.measures import STEPS, Traces, measure, traces_of
 from greywhale.commission.motions import PARTS, check_motion
 from greywhale.files.log import Log
 from greywhale.files.log.layout import Origin
 from greywhale.protocol.firmware import TICK_S
 from tests.commission.simulated import ROOM
-
-TIME = np.arange(0.0, 6.0, TICK_S)
-
-
-def staircase() -> np.ndarray:
-    """A leader that moves for a moment every two seconds, all joints alike."""
-    return np.tile((np.floor(TIME / 2.0) * 0.3)[:, None], (1, 4))
-
-
-def wave(hertz: float, rms: float) -> np.ndarray:
-    return np.asarray(rms * np.sqrt(2.0) * np.sin(2.0 * np.pi * hertz * TIME))
-
-
-def test_unrest_is_what_the_follower_swings_while_its_leader_rests() -> None:
-    leader = staircase()
-    follower = leader.copy()
-    follower[:, 1] += wave(7.0, 0.02)
-    found = unrest(leader, follower)
-    # The mean over 0.2 s keeps a fifth of a swing of 7 Hz.
-    assert found[1] == pytest.approx(0.02, rel=0.3)
-    assert found[[0, 2, 3]] == pytest.approx(np.zeros(3), abs=1e-12)
-
-
-def test_moving_is_no_unrest() -> None:
-    """A slow follower still creeps when the leader has stopped, and the next move begins at the end of a rest."""
-    leader = staircase()
-    late = np.maximum(TIME % 2.0, 0.0)
-    follower = leader - 0.3 * np.exp(-late / 0.15)[:, None]
-    assert unrest(leader, follower).max() < 1e-3
-
-
-def test_a_leader_that_never_rests_shows_no_unrest() -> None:
-    leader = np.tile((0.3 * TIME)[:, None], (1, 4))
-    assert np.isnan(unrest(leader, leader)).all()
-
-
-def test_rattle_is_what_the_follower_adds_between_6_and_40_hz() -> None:
-    leader = np.tile(np.sin(TIME)[:, None], (1, 4))
-    leader[:, 1] += wave(10.0, 0.002)
-    follower = leader.copy()
-    follower[:, 0] += wave(12.0, 0.004)
-    follower[:, 2] += wave(1.0, 0.05)
-    found = rattle(leader, follower)
-    assert found[0] == pytest.approx(0.004, rel=0.05)
-    assert found[1] == 0.0, "a hand's tremor that is followed is no rattling"
-    assert found[2] < 5e-4
-    assert found[3] == 0.0
-
-
-def test_chatter_counts_large_swings_of_the_voltage() -> None:
-    volts = np.zeros((2000, 4))
-    volts[:, 0] = np.where(np.arange(2000) % 10 < 5, 6.0, -6.0)
-    volts[:, 1] = np.where(np.arange(2000) % 10 < 5, 2.0, -2.0)
-    found = chatter(volts, 15.0)
-    assert found[0] == pytest.approx(200.0, rel=0.01)
-    assert found[1] == 0.0
 
 
 def log_of(leader: np.ndarray, follower: np.ndarray, drop: int = 0) -> Log:

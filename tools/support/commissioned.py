@@ -14,11 +14,11 @@ import numpy.typing as npt
 from greywhale.base.types import Floats
 from greywhale.cli.story import RunningBench, record_motion
 from greywhale.commission import CommissioningRequest, commission
-from greywhale.commission.measures import unrest
 from greywhale.commission.result import CommissioningResult
 from greywhale.files.leader import save_leader
 from greywhale.files.trajectory import Trajectory
 from greywhale.motion import evaluate
+from greywhale.motion.swings import unrest
 from greywhale.protocol.firmware import TICK_S
 from tools.support.foreign_arm import bench_of
 

@@ -9,12 +9,12 @@ from greywhale import _native
 from greywhale.arm.plants import columns
 from greywhale.files import controller
 from greywhale.files.arm import default_arm
+from greywhale.motion.swings import RATTLE_MOVING_RAD
 from greywhale.protocol.table import ParameterTable
 from greywhale.simulate import controller_row, default_controller, plant_row
 from greywhale.tune.judge.margins import (
     DELAY,
     MOVING,
-    RATTLE_RAD,
     SCENARIOS,
     TEETH,
     Margins,
@@ -94,15 +94,15 @@ def test_a_roll_joint_with_four_times_the_gain_rattles_while_it_moves(margins: M
     bold[3, 8] *= 4
     moving = [one for one in margins.check(bold) if one.scenario == MOVING]
     assert [one.holds for one in moving] == [True, True, True, False]
-    assert moving[3].rattle_rad > RATTLE_RAD
+    assert moving[3].rattle_rad > RATTLE_MOVING_RAD
     assert moving[3].chatter_hz < 10.0
-    assert all(one.rattle_rad < 0.5 * RATTLE_RAD for one in moving[:3])
+    assert all(one.rattle_rad < 0.5 * RATTLE_MOVING_RAD for one in moving[:3])
 
 
 def test_table_9_chatters_while_it_moves(margins: Margins) -> None:
     moving = [one for one in margins.check(TABLE_9) if one.scenario == MOVING]
     assert [one.holds for one in moving] == [True, True, True, False]
-    assert moving[3].rattle_rad < RATTLE_RAD
+    assert moving[3].rattle_rad < RATTLE_MOVING_RAD
     assert moving[3].chatter_hz > 100.0
 
 

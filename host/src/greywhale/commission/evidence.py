@@ -9,13 +9,13 @@ import numpy as np
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import column, plant_row
 from greywhale.base.types import Floats
-from greywhale.commission.measures import Traces, unrest
+from greywhale.commission.measures import Traces
 from greywhale.commission.predict import predict
 from greywhale.commission.trials import Trial, Trials
 from greywhale.files.log import Log, read_evidence
+from greywhale.motion.swings import LIMIT_CYCLE, turns_of, unrest
 from greywhale.protocol.firmware import JOINTS, TICK_S
 from greywhale.protocol.table import CONTROLLER_COLUMNS, ParameterTable
-from greywhale.simulate.closed_loop import count_swings
 
 KP = CONTROLLER_COLUMNS.index("kp")
 
@@ -26,8 +26,7 @@ MOST_FITTED = 2
 GAPS = (0.002, 0.005, 0.01, 0.02)
 LAGS = (1e-3, 2e-3, 4e-3)
 GAINS = (1.4, 2.0, 2.8)
-# A log that ended in hunting: turning points of this size in its last moments.
-SWING_RAD, REVERSALS, LAST_S = 0.01, 3, 0.8
+LAST_S = 0.8  # of a log that ended in hunting
 # A plant shows unrest from this share of the measured one on.
 SHOWN = 0.5
 
@@ -98,7 +97,5 @@ def _unrest(traces: Traces, joint: int) -> float:
 def _shows(shown: Traces, trial: Trial, joint: int, measured: float) -> bool:
     if not trial.stopped:
         return _unrest(shown, joint) >= SHOWN * measured
-    path = np.ascontiguousarray(shown.follower[None], dtype=np.float32)
-    rows = path.shape[1]
-    turned, _ = count_swings(path, max(0, rows - round(LAST_S / TICK_S)), rows, SWING_RAD)
-    return bool(turned[0, joint] >= REVERSALS)
+    first = max(0, len(shown.follower) - round(LAST_S / TICK_S))
+    return bool(turns_of(shown.follower, LIMIT_CYCLE.band_rad, first)[joint] >= LIMIT_CYCLE.turns)

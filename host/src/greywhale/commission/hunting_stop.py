@@ -11,11 +11,9 @@ from collections import deque
 import numpy as np
 
 from greywhale.board.stream import Received
+from greywhale.motion.swings import VIOLENT, turns_of
 from greywhale.protocol.firmware import ANGLE_LSB
-from greywhale.simulate.closed_loop import count_swings
 
-SWING_RAD = 0.03  # from one turning point to the next
-REVERSALS = 4
 WINDOW_S = 0.8
 LOOK_EVERY = 40  # samples
 SETTLE_S = 0.4  # a follower may still be on its way for so long after its leader stopped
@@ -55,8 +53,7 @@ class HuntingStop:
     def _look(self) -> None:
         leader, follower = (np.array(rows) * ANGLE_LSB for rows in (self._leader, self._follower))
         judged = np.array(self._ticks) > self._ticks[-1] - 1000 * WINDOW_S
-        path = np.ascontiguousarray(follower[judged][None], dtype=np.float32)
-        turned, _ = count_swings(path, 0, path.shape[1], SWING_RAD)
-        hunting = (turned[0] >= REVERSALS) & (np.ptp(leader, axis=0) <= STILL_RAD)
+        turned = turns_of(follower[judged], VIOLENT.band_rad)
+        hunting = (turned >= VIOLENT.turns) & (np.ptp(leader, axis=0) <= STILL_RAD)
         if hunting.any():
-            raise Hunting(int(np.argmax(np.where(hunting, turned[0], 0))))
+            raise Hunting(int(np.argmax(np.where(hunting, turned, 0))))

@@ -11,8 +11,8 @@ import numpy.typing as npt
 from greywhale.base.types import Floats
 from greywhale.commission.measures import NAMES, Measures
 from greywhale.commission.motions import PARTS
+from greywhale.motion.swings import CHATTER_AT_REST_HZ
 from greywhale.protocol.firmware import JOINTS
-from greywhale.tune.judge.margins import CHATTER_HZ
 
 # Unrest and rattling may grow by these factors, but not above this (rad rms). Below the second number nobody sees them,
 # whatever they were. Other motions show more unrest than the check: so its limit keeps clear of twice what it was.
@@ -57,7 +57,7 @@ class Limits:
                 MOST_UNREST,
             ),
             rattle=_allowed(before.rattle, lambda known: RATTLE_GROWTH * known, LEAST_RATTLE, MOST_RATTLE),
-            chatter=np.maximum(CHATTER_HZ, 1.1 * np.nan_to_num(before.chatter)),
+            chatter=np.maximum(CHATTER_AT_REST_HZ, 1.1 * np.nan_to_num(before.chatter)),
             error=(1.0 + share) * before.error + SAME_RAD2,
         )
 

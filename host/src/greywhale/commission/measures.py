@@ -1,9 +1,7 @@
 """What a log of the check says about every joint: error, unrest at rest, rattling in motion, chatter, voltage.
 
 - error: mean of (leader - follower)², rad²; in the part "holding still" only while the joint's own leader rests.
-- unrest: rms of the follower about its own mean over 0.2 s, rad, from 0.7 s after the leader stopped on.
-- rattle: rms of the follower between 6 and 40 Hz beyond the leader's own, rad, while a hand leads.
-- chatter: swings of the voltage by more than a third of the supply, 1/s.
+- unrest, rattle, chatter: see `motion/swings.py`; rattle only while a hand leads.
 - voltage: mean of |u|, V.
 - overshoot and settling: of the part "moves", by `motion/step_response.py`, % and s; no settling where a step never
   settled.
@@ -15,8 +13,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.ndimage import uniform_filter1d
-from scipy.signal import butter, sosfiltfilt
 
 from greywhale.base.types import Floats
 from greywhale.commission.motions import PARTS, Check
@@ -24,15 +20,9 @@ from greywhale.files.log import Log
 from greywhale.motion import Settings
 from greywhale.motion.runs import resting
 from greywhale.motion.step_response import answer, departures, worst
+from greywhale.motion.swings import REST_AFTER_S, STILL_RAD, chatter_of_record, rattle_of_record, unrest
 from greywhale.protocol.firmware import JOINTS, TICK_S
-from greywhale.simulate.closed_loop import count_swings
-from greywhale.tune.search.rattle import CHATTER_SHARE
 
-MEAN_S = 0.2
-SETTLE_S = 0.7
-STILL_RAD = 0.005  # the leader rests within this
-SHORTEST_REST_S = 0.3
-RATTLE_HZ = (6.0, 40.0)
 LATEST_BEGIN_S = 8.0  # from the first row of a log to the check: the way to its first pose
 HOLDING = "holding still"
 STEPS = "moves"
@@ -105,11 +95,11 @@ def measure(traces: Traces, check: Check, supply_v: float) -> Measures:
         if name == HOLDING:
             found["error"][place] = still_error(leader, follower)
         found["voltage"][place] = np.mean(np.abs(voltage), axis=0)
-        found["chatter"][place] = chatter(voltage, supply_v)
+        found["chatter"][place] = chatter_of_record(voltage, supply_v)
         if name == STEPS:
             found["overshoot"][place], found["settling"][place] = step_answers(leader, follower)
         if name in HAND_LED:
-            found["rattle"][place] = rattle(leader, follower)
+            found["rattle"][place] = rattle_of_record(leader, follower)
         else:
             found["unrest"][place] = unrest(leader, follower)
     return Measures(**found)
@@ -117,36 +107,10 @@ def measure(traces: Traces, check: Check, supply_v: float) -> Measures:
 
 def still_error(leader: Floats, follower: Floats) -> Floats:
     """(4,) rad² while the joint's own leader rests, whatever the other joints do."""
-    window = round(SETTLE_S / TICK_S)
+    window = round(REST_AFTER_S / TICK_S)
     rests = [resting(path, window, STILL_RAD) for path in leader.T]
     errors = ((leader - follower) ** 2).T
     return np.array([np.mean(error[rest]) for error, rest in zip(errors, rests, strict=True)])
-
-
-def unrest(leader: Floats, follower: Floats, still_rad: float = STILL_RAD) -> Floats:
-    """(4,) rad rms over all rests; NaN for a joint whose leader never rests. A row a millisecond."""
-    found = np.full(JOINTS, np.nan)
-    window, mean, least = (round(seconds / TICK_S) for seconds in (SETTLE_S, MEAN_S, SHORTEST_REST_S))
-    for joint in range(JOINTS):
-        rest = resting(leader[:, joint], window, still_rad)
-        edges = np.flatnonzero(np.diff(np.concatenate(([False], rest, [False])).astype(np.int8)))
-        swings = []
-        for first, last in zip(edges[::2], edges[1::2], strict=True):
-            # A mean over samples of the next move would show that move.
-            path = follower[first : last - mean, joint]
-            if len(path) >= least:
-                swings.append(path - uniform_filter1d(path, mean, mode="nearest"))
-        if swings:
-            found[joint] = np.sqrt(np.mean(np.concatenate(swings) ** 2))
-    return found
-
-
-def rattle(leader: Floats, follower: Floats) -> Floats:
-    """(4,) rad rms between 6 and 40 Hz, beyond what the leader has there."""
-    band = butter(4, RATTLE_HZ, btype="bandpass", fs=1.0 / TICK_S, output="sos")
-    powers = [np.mean(sosfiltfilt(band, angles, axis=0) ** 2, axis=0) for angles in (follower, leader)]
-    beyond: Floats = np.sqrt(np.maximum(powers[0] - powers[1], 0.0))
-    return beyond
 
 
 def step_answers(leader: Floats, follower: Floats) -> tuple[Floats, Floats]:
@@ -158,14 +122,6 @@ def step_answers(leader: Floats, follower: Floats) -> tuple[Floats, Floats]:
         answers = [answer(led, followed, rest, step, TICK_S, settings) for step in steps]
         found[:, joint] = [np.nan if one is None else one for one in worst([one for one in answers if one is not None])]
     return found[0], found[1]
-
-
-def chatter(voltage: Floats, supply_v: float) -> Floats:
-    """(4,) large swings of the voltage a second."""
-    traces = np.ascontiguousarray(voltage[None], dtype=np.float32)
-    turned, _ = count_swings(traces, 0, len(voltage), CHATTER_SHARE * supply_v)
-    per_second: Floats = turned[0] / (len(voltage) * TICK_S)
-    return per_second
 
 
 def _number(value: float) -> float | None:

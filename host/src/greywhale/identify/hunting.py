@@ -9,14 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import uniform_filter1d
 
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.types import Floats
+from greywhale.motion.swings import smooth_motion
 from greywhale.protocol.firmware import JOINTS
 
-# A swing is what a moving average over this time (s) takes away: of the follower, less what it takes from the leader.
-AVERAGE_S = 0.2
 # Swings are looked at in pieces of this length (s) in which the leader itself makes none larger than this (rad). A
 # joint hunts where some of its pieces do, not one alone.
 PIECE_S = 0.5
@@ -36,15 +34,8 @@ class Swings:
     hunts: tuple[bool, ...]
 
 
-def smooth_motion(angles: Floats, row_s: float) -> Floats:
-    """A motion (rows, 4) without its swings."""
-    size = max(3, round(AVERAGE_S / row_s))
-    smooth: Floats = uniform_filter1d(angles, size, axis=0, mode="nearest")
-    return smooth
-
-
 def swings_of(follower: Floats, leader: Floats, row_s: float) -> Swings:
-    """Measure the swings of a record, (rows, 4) rad with a row every `row_s` seconds."""
+    """Measure a record (rows, 4) rad with a row every `row_s` seconds: the follower's swings, less its leader's."""
     wanted = _pieces(leader - smooth_motion(leader, row_s), row_s)
     pieces = _pieces(follower - smooth_motion(follower, row_s), row_s) - wanted
     rms = np.sqrt(np.mean(pieces**2, axis=1))

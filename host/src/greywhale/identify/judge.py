@@ -18,9 +18,10 @@ from greywhale.base.types import Floats
 from greywhale.identify.bootstrap import COUNTS
 from greywhale.identify.closed_loop import COMPARED_TICKS, Loop
 from greywhale.identify.data import Prepared
-from greywhale.identify.hunting import Swings, describe_difference, smooth_motion, swings_of
+from greywhale.identify.hunting import Swings, describe_difference, swings_of
 from greywhale.identify.space import Space
 from greywhale.identify.windows import WindowResidual
+from greywhale.motion.swings import smooth_motion
 from greywhale.protocol.firmware import JOINTS, TICK_S
 from greywhale.protocol.table import ParameterTable
 

@@ -217,21 +217,3 @@ def shown_angles(angles: npt.NDArray[np.float32], plants: Plants, row_s: float) 
     """
     found: Floats = np.asarray(_native.shown_angles(angles=angles, plants=plants, row_s=row_s))
     return found
-
-
-def count_swings(
-    traces: npt.NDArray[np.float32] | npt.NDArray[np.int16], first: int, last: int, band: float
-) -> tuple[npt.NDArray[np.int32], Floats]:
-    """Count turning points of traces (n, rows, 4) more than `band` apart in rows first..last, and add up the way
-    between.
-    """
-    turned, moved = _native.swings(traces, first, last, band)
-    return turned, moved
-
-
-def band_power(angles: npt.NDArray[np.float32] | Floats, stride: int, length: int, sections: Floats) -> Floats:
-    """The mean square (n, blocks, 4) of angles (n, rows, 4) in the band that two second-order `sections` (2, 6) pass.
-
-    Every `stride`-th row counts, and `length` of those make a block; a block that is not full is left out.
-    """
-    return np.asarray(_native.band_power(angles, stride, length, sections), dtype=np.float64)

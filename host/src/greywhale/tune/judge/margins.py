@@ -3,14 +3,10 @@
 Different means half or twice the loop gain, one more control period of delay, or softer gear teeth than the model has
 (recordings show stiffness least of all, and backlash hunts on it).
 
-The leader makes large moves and stops. From SETTLE_S after each stop on, the follower must not swing. REVERSALS or more
-turning points of its true angle, each more than SWING_RAD from the next, are a limit cycle (a gear that hunts in its
-backlash, an integrator that breaks loose again and again, a loop without phase margin). Duties that swing by more than
-a third of the supply, more than CHATTER_HZ times a second, are chatter (a relay; sensor noise that Kd magnifies).
-A single overshoot, or creeping to the target, is neither.
-
-While the leader moves, in all classes of training motions, the follower must not rattle by RATTLE_RAD or more (rms, as
-`rattle` measures it), and its duty must not chatter: a gear that moves bears MOVING_CHATTER_HZ.
+The leader makes large moves and stops. From SETTLE_S after each stop on, the follower must not hunt, and its duty must
+not chatter. A single overshoot, or creeping to the target, is neither. While the leader moves, in all classes of
+training motions, the follower must not rattle, and its duty must not chatter more than a gear that moves bears.
+`motion/swings.py` says what each of these words is.
 """
 
 from __future__ import annotations
@@ -27,22 +23,23 @@ from greywhale.arm.plants import column, columns
 from greywhale.base.types import Controllers, Floats, Integers
 from greywhale.files.trajectory import Trajectory
 from greywhale.motion.generate import minimum_jerk
+from greywhale.motion.swings import (
+    CHATTER_AT_REST_HZ,
+    CHATTER_MOVING_HZ,
+    LIMIT_CYCLE,
+    RATTLE_MOVING_RAD,
+    SEARCH_BAND_RAD,
+    count_swings,
+    duty_swings,
+)
 from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.schema import Board
 from greywhale.protocol.table import ParameterTable
 from greywhale.simulate import Experiment, Result, Timing
-from greywhale.simulate.closed_loop import count_swings
-from greywhale.tune.search.objective import CHATTER_HZ as MOVING_CHATTER_HZ
 from greywhale.tune.search.objective import follow, pair_with_plants
-from greywhale.tune.search.rattle import duty_swings
 from greywhale.tune.search.training import EDGE_S, RATE_HZ, centre, reach, training_motions
 
-SWING_RAD = 0.01
-REVERSALS = 3
-RATTLE_RAD = 0.005
-CHATTER_HZ = 50.0
 SETTLE_S = 1.0
-SEARCH_SWING_RAD = 0.005
 WAIT_S = 0.2
 
 # Loop gains as factors of every joint's torque per volt.
@@ -101,7 +98,9 @@ class Unrest:
 
     @property
     def fails(self) -> npt.NDArray[np.bool_]:
-        failing: npt.NDArray[np.bool_] = (self.reversals >= REVERSALS) | (self.chatter > CHATTER_HZ) | self.lost
+        failing: npt.NDArray[np.bool_] = (
+            (self.reversals >= LIMIT_CYCLE.turns) | (self.chatter > CHATTER_AT_REST_HZ) | self.lost
+        )
         return failing
 
 
@@ -111,7 +110,7 @@ def unrest_of(
     every: int,
     shape: tuple[int, int],
     board: Board,
-    band: float = SWING_RAD,
+    band: float = LIMIT_CYCLE.band_rad,
 ) -> Unrest:
     """The unrest in traces of a board, with a row every `every` ticks; `rests` are pairs of first and last tick."""
     reversals = np.zeros((*shape, JOINTS), dtype=np.int32)
@@ -121,9 +120,9 @@ def unrest_of(
         seconds = (last - first) * 1e-3
         rows = (first // every, last // every)
         turned, moved = count_swings(result.angles, *rows, band)
-        beats = duty_swings(result, rows, board)
+        beats = duty_swings(result.duties, rows, board)
         reversals = np.maximum(reversals, turned.reshape(*shape, JOINTS))
-        travel = np.maximum(travel, np.where(turned >= REVERSALS, moved / seconds, 0.0).reshape(*shape, JOINTS))
+        travel = np.maximum(travel, np.where(turned >= LIMIT_CYCLE.turns, moved / seconds, 0.0).reshape(*shape, JOINTS))
         chatter = np.maximum(chatter, (beats / seconds).reshape(*shape, JOINTS))
     lost = np.repeat(result.diverged.reshape(shape)[:, :, None], JOINTS, axis=2)
     return Unrest(reversals, travel, chatter, lost)
@@ -155,7 +154,7 @@ class Margins:
         self._arm, self._table, self._seed = arm, table, 100 * seed + _MOVING_SEED + noise
         self._board = table.board
         self._threads = threads
-        self._band = SEARCH_SWING_RAD if searching else SWING_RAD
+        self._band = SEARCH_BAND_RAD if searching else LIMIT_CYCLE.band_rad
         self._beyond = SEARCH_BEYOND if searching else 1.0
         self._rests = [
             (round(1e3 * (WAIT_S + (number + 1) * rest_s - rest_s + _FIRST_S + EDGE_S + SETTLE_S)),
@@ -218,7 +217,7 @@ class Margins:
         found = follow(motions, self.plants, controllers[None], exact=True, threads=self._threads)
         # The worst class counts.
         rattle, chatter = found.rattle[0].max(axis=1), found.chatter[0].max(axis=1)
-        failing = (rattle >= RATTLE_RAD) | (chatter > MOVING_CHATTER_HZ)
+        failing = (rattle >= RATTLE_MOVING_RAD) | (chatter > CHATTER_MOVING_HZ)
         return [
             Margin(
                 scenario=MOVING,
@@ -236,8 +235,8 @@ class Margins:
 _MOVING_SEED = 50  # of sensor noise that no search hears
 # The leader rests this long before its first move.
 _FIRST_S = 0.2
-# What a search pays for a limit cycle, as shares of what is possible: for each rad/s of swinging, for each CHATTER_HZ
-# of chatter, and the least.
+# What a search pays for a limit cycle, as shares of what is possible: for each rad/s of swinging, for each
+# CHATTER_AT_REST_HZ of chatter, and the least.
 TRAVEL_PRICE = 0.5
 CHATTER_PRICE = 0.03
 LEAST_PRICE = 0.05
@@ -247,7 +246,7 @@ def penalty(found: dict[str, Unrest]) -> Floats:
     """What candidates pay (n, 4): nothing when quiet, otherwise LEAST_PRICE, and more for more unrest."""
     total = 0.0
     for one in found.values():
-        excess = np.maximum(one.chatter / CHATTER_HZ - SEARCH_CHATTER, 0.0)
+        excess = np.maximum(one.chatter / CHATTER_AT_REST_HZ - SEARCH_CHATTER, 0.0)
         price = TRAVEL_PRICE * one.travel + CHATTER_PRICE * excess + LEAST_PRICE * one.fails + 10.0 * one.lost
         total = total + price.mean(axis=1)
     return np.asarray(total, dtype=np.float64)

@@ -12,7 +12,7 @@ cannot be helped. To this come, in every class,
 
 - RATTLE times the rattling (`rattle`, rad), on the same scale, and as much as LOUDER times that for what is beyond the
   rattling from before;
-- CHATTER for every CHATTER_HZ of duty swings beyond those that a moving gear bears;
+- CHATTER for every CHATTER_MOVING_HZ of duty swings beyond those that a moving gear bears;
 - EFFORT times the mean of |u| as a share of the supply, weighted like |e|.
 
 The cost of the class is the root of this sum, because the last tenth of the way matters more than the first. Large
@@ -29,9 +29,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from greywhale.base.types import Controllers, Floats
+from greywhale.motion.swings import CHATTER_MOVING_HZ, chatter, rattle
 from greywhale.protocol.firmware import JOINTS
 from greywhale.simulate import Result
-from greywhale.tune.search.rattle import chatter, rattle
 from greywhale.tune.search.training import WAIT_S, TrainingMotion
 
 RMS = 1.5
@@ -40,8 +40,7 @@ LOUDER = 3.0
 # Rattling below this (rad) is never louder: a board's angle has steps of a quarter of it.
 QUIET_RAD = 1e-3
 CHATTER = 0.3
-CHATTER_HZ = 100.0
-BEARABLE = 0.7  # of CHATTER_HZ
+BEARABLE = 0.7  # of CHATTER_MOVING_HZ
 EFFORT = 0.02
 WORST_SHARE = 0.5
 LOST = 1e3  # a motion that left the range of numbers
@@ -116,7 +115,7 @@ def relative_costs(found: FollowingErrors, scale: ErrorScale, supply_v: float) -
     # One joint may come out a little below its floor, where a neighbour carries it.
     avoidable = np.maximum(found.error - scale.floor, 0.0)
     length = avoidable + RATTLE * (found.rattle + LOUDER * louder)
-    unbearable = np.maximum(found.chatter / CHATTER_HZ - BEARABLE, 0.0)
+    unbearable = np.maximum(found.chatter / CHATTER_MOVING_HZ - BEARABLE, 0.0)
     share = length / scale.room + CHATTER * unbearable + EFFORT * found.volts / supply_v
     costs: Floats = np.sqrt(share)
     return costs
@@ -148,4 +147,4 @@ def _measures(drill: TrainingMotion, result: Result) -> tuple[Floats, Floats, Fl
     error[result.diverged] = LOST
     shaken = rattle(result.angles, experiment.leader, 1, WAIT_S)
     shaken[result.diverged] = LOST
-    return error, result.itau / drill.total_weight, shaken, chatter(result, 1, experiment.table.board)
+    return error, result.itau / drill.total_weight, shaken, chatter(result.duties, 1, experiment.table.board)

@@ -1,4 +1,4 @@
-"""Rattling is what a follower does in a band beyond its leader. To follow a tremor or a quick move is none."""
+"""Unrest, rattle and chatter of motions made by hand. To follow a tremor or a quick move is none of them."""
 
 from __future__ import annotations
 
@@ -6,13 +6,19 @@ import numpy as np
 import pytest
 from scipy.signal import sosfilt
 
-from greywhale.files.arm import default_arm
-from greywhale.motion import human_reaches
+from greywhale.motion.swings import (
+    BLOCK,
+    SECTIONS,
+    band_power,
+    chatter,
+    chatter_of_record,
+    duty_swings,
+    rattle,
+    rattle_of_record,
+    unrest,
+)
 from greywhale.protocol.firmware import pwm_steps
 from greywhale.protocol.schema import Board
-from greywhale.simulate import Experiment, default_controller
-from greywhale.simulate.closed_loop import band_power
-from greywhale.tune.search.rattle import BLOCK, SECTIONS, chatter, duty_swings, rattle
 
 TIME_S = np.arange(6000) * 1e-3
 
@@ -70,12 +76,65 @@ def test_every_divisor_of_the_filters_rate_gives_the_same() -> None:
 
 def test_duties_are_counted_by_their_own_joints_range() -> None:
     """On a Nano two joints have a coarser PWM, so the same numbers are larger swings there."""
-    result = Experiment(human_reaches(1, 4.0), default_arm()).run(default_controller()[None], every=1)
     half = pwm_steps(Board.NANO328)[3] // 2
     square = np.where(np.arange(len(TIME_S)) % 10 < 5, half, 0).astype(np.int16)
-    result = type(result)(**{**vars(result), "duties": np.ascontiguousarray(np.tile(square[None, :, None], (1, 1, 4)))})
-    mega, nano = (chatter(result, 1, board)[0] for board in (Board.MEGA2560, Board.NANO328))
+    duties = np.ascontiguousarray(np.tile(square[None, :, None], (1, 1, 4)))
+    mega, nano = (chatter(duties, 1, board)[0] for board in (Board.MEGA2560, Board.NANO328))
     assert (mega[:2] == nano[:2]).all()
     assert nano[3] == pytest.approx(200.0, rel=0.01)
     assert mega[3] == 0.0
-    assert duty_swings(result, (0, 100), Board.NANO328).shape == (1, 4)
+    assert duty_swings(duties, (0, 100), Board.NANO328).shape == (1, 4)
+
+
+def staircase() -> np.ndarray:
+    """A leader that moves for a moment every two seconds, all joints alike."""
+    return np.tile((np.floor(TIME_S / 2.0) * 0.3)[:, None], (1, 4))
+
+
+def tone(hertz: float, rms: float) -> np.ndarray:
+    return np.asarray(rms * np.sqrt(2.0) * np.sin(2.0 * np.pi * hertz * TIME_S))
+
+
+def test_unrest_is_what_the_follower_swings_while_its_leader_rests() -> None:
+    leader = staircase()
+    follower = leader.copy()
+    follower[:, 1] += tone(7.0, 0.02)
+    found = unrest(leader, follower)
+    # The mean over 0.2 s keeps a fifth of a swing of 7 Hz.
+    assert found[1] == pytest.approx(0.02, rel=0.3)
+    assert found[[0, 2, 3]] == pytest.approx(np.zeros(3), abs=1e-12)
+
+
+def test_moving_is_no_unrest() -> None:
+    """A slow follower still creeps when the leader has stopped, and the next move begins at the end of a rest."""
+    leader = staircase()
+    late = np.maximum(TIME_S % 2.0, 0.0)
+    follower = leader - 0.3 * np.exp(-late / 0.15)[:, None]
+    assert unrest(leader, follower).max() < 1e-3
+
+
+def test_a_leader_that_never_rests_shows_no_unrest() -> None:
+    leader = np.tile((0.3 * TIME_S)[:, None], (1, 4))
+    assert np.isnan(unrest(leader, leader)).all()
+
+
+def test_rattle_is_what_the_follower_adds_between_6_and_40_hz() -> None:
+    leader = np.tile(np.sin(TIME_S)[:, None], (1, 4))
+    leader[:, 1] += tone(10.0, 0.002)
+    follower = leader.copy()
+    follower[:, 0] += tone(12.0, 0.004)
+    follower[:, 2] += tone(1.0, 0.05)
+    found = rattle_of_record(leader, follower)
+    assert found[0] == pytest.approx(0.004, rel=0.05)
+    assert found[1] == 0.0, "a hand's tremor that is followed is no rattling"
+    assert found[2] < 5e-4
+    assert found[3] == 0.0
+
+
+def test_chatter_counts_large_swings_of_the_voltage() -> None:
+    volts = np.zeros((2000, 4))
+    volts[:, 0] = np.where(np.arange(2000) % 10 < 5, 6.0, -6.0)
+    volts[:, 1] = np.where(np.arange(2000) % 10 < 5, 2.0, -2.0)
+    found = chatter_of_record(volts, 15.0)
+    assert found[0] == pytest.approx(200.0, rel=0.01)
+    assert found[1] == 0.0

@@ -1,0 +1,168 @@
+"""Swings that nobody asked for: four words, how each is measured, and from where on each counts. All of greywhale
+takes them from here.
+
+- Hunting: while its leader rests, a joint turns back again and again, each time by more than a band (a gear that hunts
+  in its backlash, an integrator that breaks loose, a loop without phase margin). `count_swings` counts the turns.
+- Unrest: while its leader rests, the rms of the angle about its own mean over MEAN_S.
+- Rattle: what the angle does at 6 to 40 Hz beyond what the leader does there (teeth that knock in their gap, friction
+  that sticks and slips). A hand's own tremor is no rattle.
+- Chatter: swings of the voltage by more than CHATTER_SHARE of its range, a second (a relay; noise that Kd magnifies).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.ndimage import maximum_filter1d, uniform_filter1d
+from scipy.signal import butter, sosfiltfilt
+
+from greywhale import _native
+from greywhale.base.types import Floats, Integers
+from greywhale.motion.runs import resting
+from greywhale.protocol.firmware import JOINTS, TICK_S, pwm_steps
+from greywhale.protocol.schema import Board
+
+Singles = npt.NDArray[np.float32]
+Duties = npt.NDArray[np.int16]
+
+MEAN_S = 0.2
+RATTLE_BAND_HZ = (6.0, 40.0)
+CHATTER_SHARE = 1 / 3
+
+
+@dataclass(frozen=True)
+class Hunting:
+    """The fewest turns, each more than a band (rad) from the last, that are hunting."""
+
+    band_rad: float
+    turns: int
+
+
+# A limit cycle in the rest after a move, in simulations and in a log that ended in hunting.
+LIMIT_CYCLE = Hunting(0.01, 3)
+SEARCH_BAND_RAD = 0.005  # a search keeps clear of the border: smaller swings already cost
+# What nobody can overlook: while an arm is led, the motors go off.
+VIOLENT = Hunting(0.03, 4)
+CHATTER_AT_REST_HZ = 50.0
+CHATTER_MOVING_HZ = 100.0  # a gear that moves bears more
+RATTLE_MOVING_RAD = 0.005  # rms
+
+
+def count_swings(traces: Singles | Duties, first: int, last: int, band: float) -> tuple[Integers, Floats]:
+    """Turning points of traces (n, rows, 4) more than `band` apart in rows first..last, and the way between: (n, 4)."""
+    turned, moved = _native.swings(traces, first, last, band)
+    return turned, moved
+
+
+def turns_of(angles: Floats, band_rad: float, first: int = 0) -> Integers:
+    """The turning points of one record (rows, 4) from row `first` on: (4,)."""
+    path = np.ascontiguousarray(angles[None], dtype=np.float32)
+    turned, _ = count_swings(path, first, path.shape[1], band_rad)
+    found: Integers = turned[0]
+    return found
+
+
+# --- unrest -----------------------------------------------------------------------------------------------------------
+
+REST_AFTER_S = 0.7  # a follower may still be on its way for so long after its leader stopped
+STILL_RAD = 0.005  # the leader rests within this
+SHORTEST_REST_S = 0.3
+
+
+def smooth_motion(angles: Floats, row_s: float) -> Floats:
+    """A motion (rows, 4) without its swings: its mean over MEAN_S."""
+    size = max(3, round(MEAN_S / row_s))
+    smooth: Floats = uniform_filter1d(angles, size, axis=0, mode="nearest")
+    return smooth
+
+
+def unrest(leader: Floats, follower: Floats, still_rad: float = STILL_RAD) -> Floats:
+    """(4,) rad rms over all rests; NaN for a joint whose leader never rests. A row a millisecond."""
+    found = np.full(JOINTS, np.nan)
+    window, mean, least = (round(seconds / TICK_S) for seconds in (REST_AFTER_S, MEAN_S, SHORTEST_REST_S))
+    for joint in range(JOINTS):
+        rest = resting(leader[:, joint], window, still_rad)
+        edges = np.flatnonzero(np.diff(np.concatenate(([False], rest, [False])).astype(np.int8)))
+        swings = []
+        for first, last in zip(edges[::2], edges[1::2], strict=True):
+            # A mean over samples of the next move would show that move.
+            path = follower[first : last - mean, joint]
+            if len(path) >= least:
+                swings.append(path - uniform_filter1d(path, mean, mode="nearest"))
+        if swings:
+            found[joint] = np.sqrt(np.mean(np.concatenate(swings) ** 2))
+    return found
+
+
+# --- rattle -----------------------------------------------------------------------------------------------------------
+
+# Ticks between the angles that a simulation filters: the band ends far below half of their rate.
+FILTER_EVERY = 4
+BLOCK_S = 0.1
+# A quick move of the leader has all frequencies, and the slowest usual arm has answered it after this time.
+REACT_S = 0.8
+
+# Rounded, so that it is the same filter on every computer.
+SECTIONS = np.round(butter(2, RATTLE_BAND_HZ, "bandpass", fs=1.0 / (FILTER_EVERY * TICK_S), output="sos"), 12)
+BLOCK = round(BLOCK_S / (FILTER_EVERY * TICK_S))
+
+
+def rattle(angles: Singles, leader: Floats, every: int, wait_s: float) -> Floats:
+    """The rattle (n, 4) in rad, rms over the motion, of simulated followers (n, rows, 4).
+
+    The power is compared block by block with the highest that the leader had in the last REACT_S. The angles have a row
+    every `every` ticks, a divisor of FILTER_EVERY. `leader` (ticks, 4) has one every tick. What happens in the first
+    `wait_s`, before the leader moves, is left out.
+    """
+    if FILTER_EVERY % every:
+        raise ValueError(f"there is a row every {every} ticks, but {FILTER_EVERY} must be a multiple of that")
+    followed = band_power(angles, FILTER_EVERY // every, BLOCK, SECTIONS)
+    led = band_power(leader[None], FILTER_EVERY, BLOCK, SECTIONS)
+    back = round(REACT_S / BLOCK_S)
+    # The filter is centred; shifted, it looks back only.
+    allowed = maximum_filter1d(led, back + 1, axis=1, origin=back // 2)
+    first = round(wait_s / BLOCK_S)
+    excess = np.maximum(followed - allowed, 0.0)[:, first:]
+    found: Floats = np.sqrt(excess.mean(axis=1))
+    return found
+
+
+def band_power(angles: Singles | Floats, stride: int, length: int, sections: Floats) -> Floats:
+    """The mean square (n, blocks, 4) of angles (n, rows, 4) in the band that two second-order `sections` (2, 6) pass.
+
+    Every `stride`-th row counts, and `length` of those make a block; a block that is not full is left out.
+    """
+    return np.asarray(_native.band_power(angles, stride, length, sections), dtype=np.float64)
+
+
+def rattle_of_record(leader: Floats, follower: Floats) -> Floats:
+    """The rattle (4,) in rad, rms, of a record (rows, 4) in which a hand leads: nothing in it is quick."""
+    band = butter(4, RATTLE_BAND_HZ, btype="bandpass", fs=1.0 / TICK_S, output="sos")
+    powers = [np.mean(sosfiltfilt(band, angles, axis=0) ** 2, axis=0) for angles in (follower, leader)]
+    beyond: Floats = np.sqrt(np.maximum(powers[0] - powers[1], 0.0))
+    return beyond
+
+
+# --- chatter ----------------------------------------------------------------------------------------------------------
+
+
+def duty_swings(duties: Duties, rows: tuple[int, int], board: Board) -> Integers:
+    """For every record and joint (n, 4): swings by more than CHATTER_SHARE of that joint's full PWM."""
+    steps = pwm_steps(board)
+    counted = {top: count_swings(duties, *rows, CHATTER_SHARE * top)[0] for top in set(steps)}
+    return np.stack([counted[top][:, joint] for joint, top in enumerate(steps)], axis=1)
+
+
+def chatter(duties: Duties, every: int, board: Board) -> Floats:
+    """Duty swings a second (n, 4) over whole records with a row every `every` ticks."""
+    rows = duties.shape[1]
+    found: Floats = duty_swings(duties, (0, rows), board) / (rows * every * TICK_S)
+    return found
+
+
+def chatter_of_record(voltage: Floats, supply_v: float) -> Floats:
+    """Large swings of the voltage (rows, 4) a second: (4,)."""
+    per_second: Floats = turns_of(voltage, CHATTER_SHARE * supply_v) / (len(voltage) * TICK_S)
+    return per_second
