@@ -3,6 +3,8 @@
 
 PYTHON := .venv/bin/python
 export PATH := $(CURDIR)/.venv/bin:$(PATH)
+# Tests start hundreds of Python processes; without bytecode each would compile all that it imports.
+unexport PYTHONDONTWRITEBYTECODE
 READY := setup
 
 CPPCHECK := cppcheck --quiet --error-exitcode=1 --inline-suppr --enable=warning,performance,portability -j2

@@ -11,6 +11,7 @@ from greywhale.cli import identify as verb
 from greywhale.cli.entry import run
 from greywhale.files.arm import load_arm
 from greywhale.identify import IdentificationResult
+from greywhale.pictures import page
 from tools.support.recordings import TABLES, Recorded
 
 
@@ -29,8 +30,13 @@ def arguments(recorded: Recorded, folder: Path) -> list[str]:
 
 @pytest.mark.slow
 def test_text_model_and_pictures(
-    found: IdentificationResult, recorded: Recorded, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    found: IdentificationResult,
+    recorded: Recorded,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
+    monkeypatch.setattr(page, "DPI", 100)
     assert run([*arguments(recorded, tmp_path), "--pictures", str(tmp_path / "pictures")]) == 0
     text = capsys.readouterr().out
     for word in ("white box", "all joints", "changed controller", "joint0.damping", "Fisher", "model.toml"):

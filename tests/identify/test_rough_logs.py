@@ -12,36 +12,20 @@ from greywhale.arm import ArmParameters
 from greywhale.arm.parameters import Drive
 from greywhale.base.errors import UserError
 from greywhale.files.arm import load_arm
-from greywhale.files.log import Log
 from greywhale.identify import IdentificationResult, identify
 from greywhale.identify.checks import check
 from greywhale.identify.data import LONGEST_GAP_S, prepare, windows_of
 from greywhale.motion import human_reaches, multi_steps
 from greywhale.protocol.table import ParameterTable
-from tests.identify.conftest import alone
+from tests.identify.conftest import alone, rows, without
 from tools.support.recordings import Recorded, record
 
 WEAK_V = 5.0
 
 
-def rows(log: Log, kept: np.ndarray | slice) -> Log:
-    columns = {name: getattr(log, name)[kept] for name in ("time", "leader", "follower", "voltage", "state")}
-    return replace(log, **columns)
-
-
-def without(log: Log, share: float) -> Log:
-    return rows(log, np.random.default_rng(1).random(len(log.time)) >= share)
-
-
 @pytest.mark.slow
-def test_rows_that_are_few_uneven_and_partly_missing_will_do(
-    shoulder: Recorded, white_box: ArmParameters, tables: list[ParameterTable]
-) -> None:
-    """Every third row or so, one to five ticks apart, a twentieth of them lost."""
-    chosen = np.cumsum(np.random.default_rng(3).integers(1, 6, len(shoulder.fit.time)))
-    log = without(rows(shoulder.fit, chosen[chosen < len(shoulder.fit.time)]), 0.05)
-    outcome = identify([log], white_box, validate=[shoulder.second], tables=tables)
-    assert outcome.verdicts[1].improvement > 0.9
+def test_rows_that_are_few_uneven_and_partly_missing_will_do(shoulder_outcome: IdentificationResult) -> None:
+    assert shoulder_outcome.verdicts[1].improvement > 0.9
 
 
 @pytest.mark.slow

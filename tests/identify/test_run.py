@@ -112,8 +112,8 @@ def test_what_is_not_known_is_said_with_a_remedy(outcome: IdentificationResult) 
 
 
 @pytest.mark.slow
-def test_joints_that_did_not_move_keep_the_users_values(shoulder: Recorded, white_box: ArmParameters) -> None:
-    outcome = identify([_first(shoulder.fit, 5.0)], white_box)
+def test_joints_that_did_not_move_keep_the_users_values(shoulder_outcome: IdentificationResult, white_box: ArmParameters) -> None:
+    outcome = shoulder_outcome
     for joint in (0, 2, 3):
         start = column("torque_per_volt", joint)
         np.testing.assert_array_equal(outcome.plant[start : start + 12], plant_row(white_box)[start : start + 12])

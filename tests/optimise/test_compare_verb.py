@@ -92,11 +92,25 @@ def test_folder_that_is_not_there(capsys: Captured, tmp_path: Path) -> None:
     assert f"{path}: the folder {path.parent} does not exist; create it, or write elsewhere." in capsys.readouterr().err
 
 
+# `greywhale`, which says of each process of its own that it has begun.
+TELLING = """
+import os, runpy
+from multiprocessing import util
+begin = util.spawnv_passfds
+def tell(*command):
+    number = begin(*command)
+    os.write(1, b"begun\\n")
+    return number
+util.spawnv_passfds = tell
+runpy.run_module("greywhale", run_name="__main__", alter_sys=True)
+"""
+
+
 # Interrupted while only the first process of the three has started, and with all of them there.
 @pytest.mark.slow
 @pytest.mark.parametrize("started", [1, 3])
 def test_interrupt_ends_all_processes_and_writes_nothing(tmp_path: Path, started: int) -> None:
-    command = [sys.executable, "-m", "greywhale", "-q", "compare", "--budget", "2000", "--seeds", "500", "--jobs", "2"]
+    command = [sys.executable, "-c", TELLING, "-q", "compare", "--budget", "2000", "--seeds", "500", "--jobs", "2"]
     running = subprocess.Popen(
         [*command, "--methods", "pso", "--out", "r.csv"],
         cwd=tmp_path,
@@ -106,18 +120,19 @@ def test_interrupt_ends_all_processes_and_writes_nothing(tmp_path: Path, started
         env={**os.environ, "PYTHONUNBUFFERED": "1"},
     )
     try:
-        # The workers are there once the process has children of its own.
-        children = Path(f"/proc/{running.pid}/task/{running.pid}/children")
-        while len(children.read_text().split()) < started:  # multiprocessing's resource tracker and two workers
-            assert running.poll() is None
-        ends = [os.pidfd_open(int(child)) for child in children.read_text().split()]
+        assert running.stdout is not None
+        for _ in range(started):  # of multiprocessing's resource tracker and two workers
+            assert running.stdout.readline() == b"begun\n"
+        children = Path(f"/proc/{running.pid}/task/{running.pid}/children").read_text().split()
+        assert len(children) >= started
+        ends = [os.pidfd_open(int(child)) for child in children]
         os.killpg(running.pid, signal.SIGINT)
         out, err = running.communicate(timeout=120)
     finally:
         with contextlib.suppress(ProcessLookupError):
             os.killpg(running.pid, signal.SIGKILL)
     assert running.returncode == 130
-    assert out == b""
+    assert out == b"begun\n" * (len(out) // 6)
     assert err.strip() == b"greywhale: interrupted."
     for end in ends:
         assert select.select([end], [], [], 60)[0], "a process of the comparison is still there"

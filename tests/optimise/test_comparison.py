@@ -7,6 +7,7 @@ import os
 import select
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -32,9 +33,11 @@ def small() -> Comparison:
 
 @pytest.mark.slow
 def test_processes_change_nothing_and_progress_ends_at_one(small: Comparison) -> None:
+    """Of the methods that a process imports quickly."""
     seen: list[float] = []
-    parallel = compare(SMALL, LocalWorkers(2), lambda what, fraction: seen.append(fraction))
-    assert (parallel.costs == small.costs).all()
+    plan = replace(SMALL, methods=("gwo-woa", "de"))
+    parallel = compare(plan, LocalWorkers(2), lambda what, fraction: seen.append(fraction))
+    assert (parallel.costs == small.costs[:, :, :2]).all()
     assert seen == sorted(seen)
     assert seen[-1] == 1.0
 

@@ -28,14 +28,14 @@ def log(gain: float, seed: int = 1) -> Log:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("ending", [".png", ".svg", ".pdf"])
-def test_the_same_logs_give_the_same_bytes(tmp_path: Path, ending: str) -> None:
-    for name in ("a", "b"):
-        draw_following(tmp_path / (name + ending), [trace(log(0.8), "before"), trace(log(0.95), "after")], "Title")
-    first, second = ((tmp_path / (name + ending)).read_bytes() for name in ("a", "b"))
+def test_the_same_logs_give_the_same_bytes(tmp_path: Path) -> None:
+    """As the kind with the most of a date and of random names in it; drawing/test_page.py has every kind."""
+    for name in ("a.svg", "b.svg"):
+        draw_following(tmp_path / name, [trace(log(0.8), "before"), trace(log(0.95), "after")], "Title")
+    first, second = ((tmp_path / name).read_bytes() for name in ("a.svg", "b.svg"))
     assert first == second
     assert len(first) > 10_000
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["a" + ending, "b" + ending]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.svg", "b.svg"]
 
 
 def test_only_the_measured_part_is_drawn_and_starts_at_zero() -> None:
@@ -46,7 +46,7 @@ def test_only_the_measured_part_is_drawn_and_starts_at_zero() -> None:
 
 
 def labels(traces: list[Trace]) -> list[str]:
-    figure = follow.plot_following(traces, "Title")
+    figure = follow.plot_following([replace(one, joints=(0,)) for one in traces], "Title")
     try:
         return [text.get_text() for text in figure.legends[0].get_texts()]
     finally:

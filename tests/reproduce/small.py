@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cache
+from inspect import isfunction
 from typing import Any
 
 import pytest
 
 from greywhale.motion import multi_steps, steps
 from greywhale.pictures import page
+from greywhale.reproduce.pictures import curves, diagrams
+from greywhale.reproduce.pictures.curves import Trace
 from greywhale.reproduce.work import errata, findings, on_the_bench, optimisers
 from greywhale.reproduce.work.motions import MOTIONS
 
@@ -17,6 +21,7 @@ BUDGET = 40
 
 
 _follow = on_the_bench.follow_as_paper
+_responses = curves.responses
 
 
 @cache
@@ -31,9 +36,21 @@ def as_paper(seed: int, seconds: float, period_ms: int, budget: int | None, trac
     return followed(seed=seed, seconds=seconds, period_ms=period_ms, traces=traces)  # as the other task calls it
 
 
+def responses(traces: Sequence[Trace], *titles: Any, **window: Any) -> bytes:
+    """One picture stands for all with as many lines and such a window."""
+    key = len(traces), *window.items()
+    if key not in _drawn:
+        _drawn[key] = _responses(traces, *titles, **window)
+    return _drawn[key]
+
+
+_drawn: dict[tuple[Any, ...], bytes] = {}
+
+
 def shrink(patch: pytest.MonkeyPatch) -> None:
     """Few methods, short motions, no long tuning, coarse pictures; the request is for one seed, quick."""
     patch.setattr(page, "DOCUMENT_DPI", 20)
+    patch.setattr(curves, "responses", responses)
     patch.setattr(on_the_bench, "follow_as_default", as_paper)
     patch.setattr(on_the_bench, "follow_as_paper", followed)
     patch.setattr(optimisers, "METHODS", METHODS)
@@ -51,3 +68,11 @@ def shrink(patch: pytest.MonkeyPatch) -> None:
     patch.setitem(MOTIONS, "multi-steps", lambda: multi_steps([0.0, 1.0, -0.5], [0.3, 0.5, 0.8]))
     patch.setattr("greywhale.reproduce.request.Request.logged_s", 5.0)
     patch.setattr("greywhale.reproduce.request.Request.function_runs", 4)
+
+
+def draw_nothing(patch: pytest.MonkeyPatch) -> None:
+    """For tests of what is said around the pictures."""
+    for module in (curves, diagrams):
+        for name, one in list(vars(module).items()):
+            if isfunction(one) and one.__annotations__.get("return") == "bytes":
+                patch.setattr(module, name, lambda *data, **options: b"")

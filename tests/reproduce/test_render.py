@@ -24,9 +24,10 @@ from greywhale.reproduce.render.pdf import (
     write_pdf,
 )
 from greywhale.reproduce.render.ranges import keep_ranges
+from tests.reproduce.small import draw_nothing
 
 
-@pytest.fixture(autouse=True)
+@pytest.fixture(scope="module", autouse=True)
 def _fonts() -> None:
     register_fonts()
 
@@ -120,12 +121,14 @@ def test_numbers_are_medians_with_their_range() -> None:
     assert percent(1.0, 2.0) == "100.0 % higher"
 
 
-def test_the_rules_of_the_firmware_are_the_printed_ones() -> None:
+def test_the_rules_of_the_firmware_are_the_printed_ones(monkeypatch: pytest.MonkeyPatch) -> None:
+    draw_nothing(monkeypatch)
     rules = next(entry for entry in law.chapter().entries if entry.label == "Table 6").as_dict()["blocks"][0]
     assert len(rules["rows"]) == 9
     assert all(printed == used for _, printed, used in rules["rows"])
 
 
-def test_table_3_differs_from_the_print_in_one_value_only() -> None:
+def test_table_3_differs_from_the_print_in_one_value_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    draw_nothing(monkeypatch)
     rows = next(entry for entry in system.chapter().entries if entry.label == "Table 3").as_dict()["blocks"][0]["rows"]
     assert [symbol for symbol, _, printed, used, *_ in rows if printed != used] == ["Iyy0"]

@@ -6,19 +6,16 @@ import json
 from pathlib import Path
 from typing import Any
 
-import matplotlib.pyplot as plt
 import pytest
-from matplotlib.figure import Figure
 
 from greywhale.base.study import choose_workers
 from greywhale.cli import entry
 from greywhale.cli.verbs import VERBS
 from greywhale.reproduce.pages.found import Found
 from greywhale.reproduce.pages.report import document
-from greywhale.reproduce.pictures import curves, diagrams
 from greywhale.reproduce.request import Request
 from greywhale.reproduce.run import run
-from tests.reproduce.small import shrink
+from tests.reproduce.small import draw_nothing, shrink
 
 LABELS = {f"Table {number}" for number in range(1, 13)} | {f"Fig. {number}" for number in range(1, 21)}
 
@@ -34,12 +31,6 @@ def reproduce(folder: Path, captured: pytest.CaptureFixture[str]) -> dict[str, A
     answer = json.loads(captured.readouterr().out)
     assert isinstance(answer, dict)
     return answer
-
-
-def close(figure: Figure) -> bytes:
-    """In the place of drawing it."""
-    plt.close(figure)
-    return b""
 
 
 @pytest.mark.slow
@@ -63,8 +54,7 @@ def test_every_table_and_figure_is_there_and_stays_the_same(
     before, request = results.read_bytes(), Request.of(0, 1, quick=True)
     again = Found(request, run(request, tmp_path / "one", choose_workers("local", 1)))  # nothing is left to do
     assert results.read_bytes() == before
-    monkeypatch.setattr(curves, "png", close)
-    monkeypatch.setattr(diagrams, "png", close)
+    draw_nothing(monkeypatch)
     assert document(again).as_dict()["chapters"] == report["chapters"]
 
 

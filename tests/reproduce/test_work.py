@@ -10,6 +10,7 @@ import pytest
 from greywhale.motion import human_reaches, steps
 from greywhale.reproduce.work import bench, errata, findings, grey_box
 from greywhale.reproduce.work.motions import PERIOD_MS, printed
+from tests.reproduce.small import shrink
 
 
 def test_corrected_equations_neither_gain_energy_nor_move_otherwise() -> None:
@@ -30,19 +31,20 @@ def test_the_bench_gives_the_same_log_byte_for_byte(tmp_path: Path) -> None:
     table = bench.board(printed("before_tuning"), PERIOD_MS)
     logs = []
     for name in ("one", "two"):
-        log = bench.record(tmp_path, name, human_reaches(3, 4.0), table)
+        log = bench.record(tmp_path, name, human_reaches(3, 1.5), table)
         assert log.complete
         assert (log.name, bench.why_ended(log)) == (f"{name}.csv", "")
         assert set(log.state) == {"following"}
         assert log.origin.param_crc == table.crc
         logs.append((tmp_path / f"{name}.csv").read_bytes())
     assert logs[0] == logs[1]
-    other = bench.record(tmp_path, "three", human_reaches(3, 4.0), table, bench.BENCH_SEED + 1)
+    other = bench.record(tmp_path, "three", human_reaches(3, 1.5), table, bench.BENCH_SEED + 1)
     assert other.follower.shape != (0, 4)
     assert (tmp_path / "three.csv").read_bytes() != logs[0]
 
 
-def test_the_floor_lies_below_every_printed_controller() -> None:
+def test_the_floor_lies_below_every_printed_controller(monkeypatch: pytest.MonkeyPatch) -> None:
+    shrink(monkeypatch)  # shorter motions
     found, floors = grey_box.print_on_grey_box(0), grey_box.floors(0)
     for strategy in grey_box.STRATEGIES:
         for motion in ("steps", "multi-steps"):
@@ -50,7 +52,8 @@ def test_the_floor_lies_below_every_printed_controller() -> None:
             assert floor < min(sum(found[strategy][motion][which]["mse"]) for which in ("before", "after"))
 
 
-def test_a_seed_gives_the_same_controllers_again() -> None:
+def test_a_seed_gives_the_same_controllers_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    shrink(monkeypatch)  # a smaller budget
     first, again, other = (grey_box.tune_on_grey_box(seed, "mf", False) for seed in (1, 1, 2))
     assert first == again
     assert first["controllers"] != other["controllers"]

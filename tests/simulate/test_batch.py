@@ -85,7 +85,7 @@ BOUNDS = {
 @pytest.mark.parametrize(("arm", "spread"), list(BOUNDS))
 def test_error_against_a_fine_reference(arm: str, spread: float) -> None:
     experiment = Experiment(human_reaches(4, 4.0), default_arm())
-    controllers, plants = search_box(arm, 32, spread, seed=3)
+    controllers, plants = search_box(arm, 16, spread, seed=3)
     fine = experiment.run_exact(controllers, plants, steps_per_slice=10).mse.sum(axis=1)
     for steps, (median, most) in BOUNDS[arm, spread].items():
         error = np.abs(experiment.run(controllers, plants, steps_per_tick=steps).mse.sum(axis=1) / fine - 1)

@@ -21,7 +21,7 @@ def rows(seconds: float) -> np.ndarray:
     return np.arange(0.0, seconds, 0.016)
 
 
-@pytest.mark.parametrize("arm", ["white_box", "default", 1, 4])
+@pytest.mark.parametrize("arm", ["white_box", 4])
 def test_a_design_tells_far_more_than_a_hand_and_is_safe_on_every_arm_of_its_family(arm: str | int) -> None:
     made = design(load_arm(arm) if isinstance(arm, str) else random_arm(arm), POSE, seconds=SECONDS, budget=40)
     hands = [made.problem.judge(human_reaches(seed, SECONDS).at(rows(SECONDS))).log_det for seed in range(1, 6)]
@@ -47,7 +47,7 @@ def test_the_same_seed_makes_the_same_motion_and_another_one_another() -> None:
 
 @pytest.mark.slow
 def test_searching_pays() -> None:
-    little, more = (design(load_arm("white_box"), POSE, seconds=5.0, budget=budget) for budget in (1, 100))
+    little, more = (design(load_arm("white_box"), POSE, seconds=5.0, budget=budget) for budget in (1, 50))
     assert more.judgement.log_det > little.judgement.log_det + 4.0
 
 

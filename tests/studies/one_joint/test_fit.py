@@ -11,6 +11,7 @@ from greywhale.base.errors import UserError
 from greywhale.identify.fit import Fit
 from studies.one_joint import (
     Example,
+    JointModel,
     JointSpace,
     Record,
     Rig,
@@ -46,10 +47,15 @@ def swings() -> Record:
     return made(led(8.0), proportional(4.0, 7.4), plant(SERVO, **TRUE), noise=1e-3)
 
 
+@pytest.fixture(scope="module")
+def model(swings: Record) -> JointModel:
+    """Fitted to their first half."""
+    return fit_joint(SERVO, [Example(swings, proportional(4.0, 7.4), 0, swings.middle)], tuple(TRUE))
+
+
 @pytest.mark.slow
-def test_a_fit_finds_motor_and_load_friction_of_a_servo_that_swings_a_weight(swings: Record) -> None:
+def test_a_fit_finds_motor_and_load_friction_of_a_servo_that_swings_a_weight(swings: Record, model: JointModel) -> None:
     law = proportional(4.0, 7.4)
-    model = fit_joint(SERVO, [Example(swings, law, 0, swings.middle)], tuple(TRUE))
     for name, value in model.values.items():
         assert value == pytest.approx(TRUE[name], rel=0.15), name
     lag = fit_lag([swings.until(swings.middle)], 2)
@@ -62,10 +68,9 @@ def test_a_fit_finds_motor_and_load_friction_of_a_servo_that_swings_a_weight(swi
 
 
 @pytest.mark.slow
-def test_a_model_holds_in_a_controller_that_it_was_not_fitted_in(swings: Record) -> None:
+def test_a_model_holds_in_a_controller_that_it_was_not_fitted_in(model: JointModel) -> None:
     stiff = proportional(12.0, 7.4)
     other = made(led(4.0), stiff, plant(SERVO, **TRUE))
-    model = fit_joint(SERVO, [Example(swings, proportional(4.0, 7.4))], tuple(TRUE))
     assert np.sqrt(np.mean(Runner(other, stiff).errors(model.plant, pieces_of(other, 0, 800)) ** 2)) < 0.01
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
 from typing import cast
@@ -49,7 +51,16 @@ def y_of(line: Line2D) -> Floats:
     return np.asarray(line.get_ydata(), dtype=np.float64)
 
 
+@pytest.fixture(scope="module", autouse=True)
+def _closed_at_the_end() -> Iterator[None]:
+    yield
+    figure_of.cache_clear()
+    plt.close("all")
+
+
+@cache
 def figure_of(name: str) -> Figure:
+    """Tests only look at it."""
     with style():
         if name == "sets":
             return pictures.plot_sets(controllers("before_tuning"), controllers("table_10"))
@@ -67,21 +78,15 @@ def figure_of(name: str) -> Figure:
 @pytest.mark.parametrize("name", ["sets", "unchanged sets", "responses", "convergence"])
 def test_nothing_is_cut_off_overlaps_or_lacks_a_unit(name: str) -> None:
     with style():
-        try:
-            assert faults(figure_of(name)) == []
-        finally:
-            plt.close("all")
+        assert faults(figure_of(name)) == []
 
 
 def test_sets_that_did_not_change_are_drawn_once_and_said_to_be_unchanged() -> None:
     figure = figure_of("unchanged sets")
-    try:
-        assert "unchanged" in figure.get_suptitle()
-        assert [text.get_text() for text in figure.legends[0].get_texts()] == ["NE / NCE", "ZE / ZCE", "PE / PCE"]
-        assert {len(axes.get_lines()) for axes in figure.axes} == {3}
-        assert {line.get_linestyle() for axes in figure.axes for line in axes.get_lines()} == {"-"}
-    finally:
-        plt.close("all")
+    assert "unchanged" in figure.get_suptitle()
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["NE / NCE", "ZE / ZCE", "PE / PCE"]
+    assert {len(axes.get_lines()) for axes in figure.axes} == {3}
+    assert {line.get_linestyle() for axes in figure.axes for line in axes.get_lines()} == {"-"}
 
 
 def test_a_panel_without_change_says_so_among_others() -> None:
@@ -93,96 +98,69 @@ def test_a_panel_without_change_says_so_among_others() -> None:
         assert unchanged == [True] * 4 + [False] * 2 + [True] * 2
         assert [len(axes.get_lines()) for axes in figure.axes] == [3] * 4 + [6] * 2 + [3] * 2
     finally:
-        plt.close("all")
+        plt.close(figure)
 
 
 def test_every_follower_looks_the_same_in_all_panels_and_in_the_legend() -> None:
     figure = figure_of("responses")
-    try:
-        shown = [(line.get_color(), line.get_linestyle()) for line in figure.legends[0].get_lines()[:4]]
-        assert shown == [(look.colour, look.style) for look in (looks.LEADER, looks.BEFORE, looks.AFTER, looks.FLOOR)]
-        for whole, error, near in zip(figure.axes[::3], figure.axes[1::3], figure.axes[2::3], strict=True):
-            for axes, expected in ((whole, shown), (error, shown[1:]), (near, shown)):
-                lines = axes.get_lines()[: len(expected)]
-                assert [(line.get_color(), line.get_linestyle()) for line in lines] == expected
-    finally:
-        plt.close("all")
+    shown = [(line.get_color(), line.get_linestyle()) for line in figure.legends[0].get_lines()[:4]]
+    assert shown == [(look.colour, look.style) for look in (looks.LEADER, looks.BEFORE, looks.AFTER, looks.FLOOR)]
+    for whole, error, near in zip(figure.axes[::3], figure.axes[1::3], figure.axes[2::3], strict=True):
+        for axes, expected in ((whole, shown), (error, shown[1:]), (near, shown)):
+            lines = axes.get_lines()[: len(expected)]
+            assert [(line.get_color(), line.get_linestyle()) for line in lines] == expected
 
 
 def test_an_error_that_leaves_its_panel_is_marked() -> None:
     figure = figure_of("responses")
-    try:
-        error = figure.axes[1]
-        assert error.get_ylim() == (-0.2, 0.2)
-        marks = [line for line in error.get_lines() if line.get_marker() in ("^", "v") and len(x_of(line))]
-        assert {line.get_color() for line in marks} == {looks.BEFORE.colour, looks.AFTER.colour, looks.FLOOR.colour}
-        assert any("beyond ±0.2 rad (up to 1.2)" in text.get_text() for text in figure.legends[0].get_texts())
-    finally:
-        plt.close("all")
+    error = figure.axes[1]
+    assert error.get_ylim() == (-0.2, 0.2)
+    marks = [line for line in error.get_lines() if line.get_marker() in ("^", "v") and len(x_of(line))]
+    assert {line.get_color() for line in marks} == {looks.BEFORE.colour, looks.AFTER.colour, looks.FLOOR.colour}
+    assert any("beyond ±0.2 rad (up to 1.2)" in text.get_text() for text in figure.legends[0].get_texts())
 
 
 def test_costs_have_a_unit() -> None:
     assert pictures.cost_words("paper") == "best J = ITAE [rad s²] + ITAU [V s²]"
     assert "1: before tuning" in pictures.cost_words("cma-es")
     figure = figure_of("convergence")
-    try:
-        assert figure.get_supylabel() == pictures.cost_words("default")
-    finally:
-        plt.close("all")
+    assert figure.get_supylabel() == pictures.cost_words("default")
 
 
 def test_the_sets_have_their_corners_where_the_board_has_them() -> None:
     figure = figure_of("sets")
-    try:
-        error, change = figure.axes[0], figure.axes[1]
-        assert "Joint 0, base yaw: error" in error.get_title()
-        lines = {(line.get_linestyle(), index % 3): line for index, line in enumerate(error.get_lines())}
-        np.testing.assert_allclose(x_of(lines["--", 1]), [-0.3, 0.0, 0.3], atol=1e-4)
-        np.testing.assert_allclose(x_of(lines["-", 0]), [-1.0, -0.0785, 0.0], atol=1e-4)
-        np.testing.assert_allclose(y_of(lines["-", 2]), [0.0, 1.0, 1.0])
-        np.testing.assert_allclose(x_of(change.get_lines()[5]), [0.0, 1.0, 1.0], atol=1e-4)
-    finally:
-        plt.close("all")
+    error, change = figure.axes[0], figure.axes[1]
+    assert "Joint 0, base yaw: error" in error.get_title()
+    lines = {(line.get_linestyle(), index % 3): line for index, line in enumerate(error.get_lines())}
+    np.testing.assert_allclose(x_of(lines["--", 1]), [-0.3, 0.0, 0.3], atol=1e-4)
+    np.testing.assert_allclose(x_of(lines["-", 0]), [-1.0, -0.0785, 0.0], atol=1e-4)
+    np.testing.assert_allclose(y_of(lines["-", 2]), [0.0, 1.0, 1.0])
+    np.testing.assert_allclose(x_of(change.get_lines()[5]), [0.0, 1.0, 1.0], atol=1e-4)
 
 
 def test_responses_show_every_follower_its_error_and_its_figure() -> None:
     time, _, followers = motion()
     figure = figure_of("responses")
-    try:
-        assert len(figure.axes) == 12
-        whole, error, near = figure.axes[:3]
-        assert len(whole.get_lines()) == 4
-        np.testing.assert_array_equal(y_of(whole.get_lines()[2]), followers["after tuning"].angles[:, 0])
-        assert f"after {followers['after tuning'].mse[0]:#.3g}" in whole.get_title(loc="left")
-        assert (whole.get_ylabel(), error.get_ylabel()) == ("angle [rad]", "error [rad]")
-        first, last = near.get_xlim()
-        assert first < 11.0 < last, "the largest of the steps, 1.2 rad, comes at 11 s"
-        assert [text.get_text() for text in figure.legends[0].get_texts()][:4] == ["leader", *followers]
-        assert time[0] == whole.get_xlim()[0]
-    finally:
-        plt.close("all")
+    assert len(figure.axes) == 12
+    whole, error, near = figure.axes[:3]
+    assert len(whole.get_lines()) == 4
+    np.testing.assert_array_equal(y_of(whole.get_lines()[2]), followers["after tuning"].angles[:, 0])
+    assert f"after {followers['after tuning'].mse[0]:#.3g}" in whole.get_title(loc="left")
+    assert (whole.get_ylabel(), error.get_ylabel()) == ("angle [rad]", "error [rad]")
+    first, last = near.get_xlim()
+    assert first < 11.0 < last, "the largest of the steps, 1.2 rad, comes at 11 s"
+    assert [text.get_text() for text in figure.legends[0].get_texts()][:4] == ["leader", *followers]
+    assert time[0] == whole.get_xlim()[0]
 
 
 def test_convergence_marks_the_last_improvement() -> None:
     figure = figure_of("convergence")
-    try:
-        for axes in figure.axes:
-            curve, last = axes.get_lines()
-            at = float(x_of(last)[0])
-            assert x_of(curve)[int(np.argmin(y_of(curve)))] == at
-            assert f"after {at:,.0f} evaluations" in axes.get_title()
-            assert axes.get_yscale() == "log"
-    finally:
-        plt.close("all")
-
-
-@pytest.mark.slow
-def test_the_same_numbers_give_the_same_bytes(tmp_path: Path) -> None:
-    for name in ("a", "b"):
-        pictures.draw_sets(tmp_path / name / "sets.png", controllers("before_tuning"), controllers("table_9"))
-    assert (tmp_path / "a" / "sets.png").read_bytes() == (tmp_path / "b" / "sets.png").read_bytes()
-    assert [path.name for path in (tmp_path / "a").iterdir()] == ["sets.png"]
-    assert plt.get_fignums() == []
+    for axes in figure.axes:
+        curve, last = axes.get_lines()
+        at = float(x_of(last)[0])
+        assert x_of(curve)[int(np.argmin(y_of(curve)))] == at
+        assert f"after {at:,.0f} evaluations" in axes.get_title()
+        assert axes.get_yscale() == "log"
 
 
 def test_a_folder_that_cannot_be_made_is_refused(tmp_path: Path) -> None:
@@ -194,6 +172,7 @@ def test_a_folder_that_cannot_be_made_is_refused(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_a_tuning_gets_all_its_pictures_and_an_unfinished_one_those_there_are(tmp_path: Path) -> None:
     time, leader, followers = motion()
+    open_ones = plt.get_fignums()
     before, after, floor = followers.values()
     held_out = SimpleNamespace(
         name="human-like reaches",
@@ -218,7 +197,11 @@ def test_a_tuning_gets_all_its_pictures_and_an_unfinished_one_those_there_are(tm
     assert [path.name for path in drawn] == ["sets.png", "responses_human_like_reaches.png", "convergence.png"]
     assert all(path.read_bytes().startswith(b"\x89PNG") for path in drawn)
     outcome.held_out, outcome.curves = (), ()
-    assert [path.name for path in pictures.draw(cast(TuningResult, outcome), tmp_path)] == ["sets.png"]
+    (again,) = pictures.draw(cast(TuningResult, outcome), tmp_path)
+    assert again.name == "sets.png"
+    assert again.read_bytes() == drawn[0].read_bytes(), "the same numbers give the same bytes"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["new", "sets.png"]
+    assert plt.get_fignums() == open_ones
 
 
 @pytest.mark.slow

@@ -35,6 +35,7 @@ class _Block:
 
     joints: tuple[int, ...]
     numbers: NDArray[np.intp]
+    rows: NDArray[np.intp]  # of the residual, of these joints
     damping: float = 0.1
     done: bool = False
 
@@ -54,19 +55,17 @@ class WindowFit:
         self._joint_of = residual.joint_of
         self._windows = int(residual.clusters.max()) + 1
         self._window_of = residual.joint_of * self._windows + residual.clusters
-        self._blocks = [
-            _Block(
-                joints, np.array([n for n, one in enumerate(space.parameters) if one.joint in joints], dtype=np.intp)
-            )
-            for joints in COUPLED
-        ]
-        whole = [n for n, one in enumerate(space.parameters) if one.joint == WHOLE_ARM]
-        self._blocks.append(_Block(tuple(range(JOINTS)), np.array(whole, dtype=np.intp)))
-        self._blocks = [block for block in self._blocks if len(block.numbers)]
+        blocks = [*(self._block(joints, joints) for joints in COUPLED), self._block(tuple(range(JOINTS)), (WHOLE_ARM,))]
+        self._blocks = [block for block in blocks if len(block.numbers)]
         self._numbers = self._simulate(self.x[None])[0]
         misfit = self._misfit(self._numbers)
         self._usual: Floats = USUAL * np.maximum(np.mean(misfit, axis=1), 1e-9)
         self._costs = self._costs_of(self.x, self._numbers)
+
+    def _block(self, joints: tuple[int, ...], whose: tuple[int, ...]) -> _Block:
+        """The numbers of `whose`, which move these joints."""
+        numbers = [n for n, one in enumerate(self._space.parameters) if one.joint in whose]
+        return _Block(joints, np.array(numbers, dtype=np.intp), np.flatnonzero(np.isin(self._joint_of, joints)))
 
     def run(self, most_steps: int, report: Callable[[float], None] = lambda share: None) -> Floats:
         """The best point found; `report` gets the share of the steps that are done."""
@@ -114,7 +113,7 @@ class WindowFit:
 
     def _proposed(self, block: _Block, jacobian: Floats, weights: Floats) -> Floats:
         """Levenberg-Marquardt steps of one block (dampings, numbers); a number at its bound does not leave the box."""
-        rows = np.isin(self._joint_of, block.joints)
+        rows = block.rows
         part = jacobian[np.ix_(rows, block.numbers)]
         doubts = self._doubts[block.numbers]
         weighted = part * weights[rows, None]
@@ -137,14 +136,17 @@ class WindowFit:
         Joints that do not feel each other are varied together. Numbers of blocks that are done are left out, save where
         they are varied with others.
         """
-        open_numbers = np.concatenate([block.numbers for block in self._blocks if not block.done])
-        groups = [group for group in self._space.groups() if np.isin(group, open_numbers).any()]
+        left = np.zeros(len(self.x), dtype=bool)
+        for block in self._blocks:
+            left[block.numbers] = not block.done
+        groups = [group for group in self._space.groups() if left[group].any()]
         steps = self._space.steps
         ahead = np.where(self.x + steps > self._high, -steps, steps)
         points = np.tile(self.x, (len(groups), 1))
         for row, group in enumerate(groups):
             points[row, group] += ahead[group]
-        moved = self._simulate(points) - self._numbers[None]
+        moved = self._simulate(points)
+        moved -= self._numbers
         jacobian = np.zeros((len(self._numbers), len(self.x)))
         for row, group in enumerate(groups):
             jacobian[:, group] = moved[row][:, None] / ahead[group]
