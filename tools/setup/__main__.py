@@ -7,6 +7,7 @@ Needs only the system's Python. Each step checks whether it has anything to do, 
 from __future__ import annotations
 
 import fcntl
+import signal
 import sys
 import time
 
@@ -16,14 +17,24 @@ if sys.version_info < (3, 11):  # noqa: UP036 (an older Python is what this is a
     sys.exit(f"greywhale needs Python 3.11 or newer, but {sys.executable} is {sys.version.split()[0]}.")
 
 from tools.setup import debian, extensions, firmware, platformio, venv
-from tools.setup.console import SetupError, say
+from tools.setup.console import SetupError, say, side_by_side
 
-STEPS = (debian.step, venv.step, platformio.step, extensions.step, firmware.step)
+
+def steps(checks: bool) -> None:
+    def firmware_after_packages() -> None:
+        for step in (venv.packages, platformio.step, firmware.step):
+            step(checks)
+
+    debian.step(checks)
+    venv.step(checks)
+    side_by_side(lambda: extensions.step(checks), firmware_after_packages)
 
 
 def main(arguments: list[str]) -> int:
     checks = arguments != ["run"]
     start = time.monotonic()
+    for request in (signal.SIGTERM, signal.SIGHUP):  # they end all as Ctrl-C does
+        signal.signal(request, signal.default_int_handler)
     build = ROOT / "build"
     build.mkdir(exist_ok=True)
     with (build / "setup.lock").open("w") as lock:
@@ -33,8 +44,7 @@ def main(arguments: list[str]) -> int:
             say("waiting for another set-up of this folder to finish")
             fcntl.flock(lock, fcntl.LOCK_EX)
         try:
-            for step in STEPS:
-                step(checks)
+            steps(checks)
         except SetupError as error:
             print(f"set-up: {error}", file=sys.stderr)
             return 1

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -15,6 +16,7 @@ VENV = ROOT / ".venv"
 PYTHON = VENV / "bin" / "python"
 REQUIREMENTS = ROOT / "requirements.txt"  # what it takes to build and run
 FOR_CHECKS = ROOT / "tools" / "requirements.txt"
+BUILDERS = ("cmake", "nanobind", "ninja", "packaging", "pathspec", "scikit-build-core")
 
 
 def environment() -> dict[str, str]:
@@ -36,22 +38,36 @@ def works() -> bool:
     return answer.returncode == 0 and Path(answer.stdout.strip()) == VENV
 
 
+def _builders() -> Path:
+    """A file with those packages of requirements.txt that build the extensions."""
+    packages = re.split(r"^(?=\w)", REQUIREMENTS.read_text(encoding="utf-8"), flags=re.MULTILINE)
+    file = ROOT / "build" / "builders.txt"
+    file.write_text("".join(one for one in packages if one.split("==")[0] in BUILDERS), encoding="utf-8")
+    return file
+
+
+def _install(**files: Path) -> None:
+    """Install what the files pin and their stamps do not know."""
+    stamped = {stamp: stamps.digest([file], sys.version) for stamp, file in files.items()}
+    missing = {stamp: files[stamp] for stamp, value in stamped.items() if not stamps.is_current(stamp, value)}
+    if not missing:
+        return
+    names = " and ".join(str(file.relative_to(ROOT)) for file in missing.values())
+    say(f"installing the Python packages of {names}")
+    given = [word for file in missing.values() for word in ("--requirement", file)]
+    pip_install("--require-hashes", "--no-deps", *given, what=f"Installing the Python packages of {names}")
+    for stamp in missing:
+        stamps.set_current(stamp, stamped[stamp])
+
+
 def step(checks: bool) -> None:
+    """Make .venv with what builds the extensions."""
     if not works():
         say("making the Python environment .venv")
         stamps.forget()  # nothing is installed in it
         run([sys.executable, "-m", "venv", "--clear", VENV], what="Making .venv")
-    files = [REQUIREMENTS, FOR_CHECKS] if checks else [REQUIREMENTS]
-    missing = [file for file in files if not stamps.is_current(_stamp(file), stamps.digest([file], sys.version))]
-    if not missing:
-        return
-    names = " and ".join(str(file.relative_to(ROOT)) for file in missing)
-    say(f"installing the Python packages of {names} (about a minute the first time)")
-    given = [word for file in missing for word in ("--requirement", file)]
-    pip_install("--require-hashes", "--no-deps", *given, what=f"Installing the Python packages of {names}")
-    for file in missing:
-        stamps.set_current(_stamp(file), stamps.digest([file], sys.version))
+    _install(venv_builders=_builders())
 
 
-def _stamp(requirements: Path) -> str:
-    return "venv-checks" if requirements == FOR_CHECKS else "venv-run"
+def packages(checks: bool) -> None:
+    _install(venv_run=REQUIREMENTS, **({"venv_checks": FOR_CHECKS} if checks else {}))
