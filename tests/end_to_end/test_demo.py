@@ -33,14 +33,12 @@ def test_the_demo_tells_its_story_and_proves_its_controllers_on_the_arm(
     in_this_process(monkeypatch)
     shorten(monkeypatch)
     monkeypatch.setattr(story, "PROVING_TRIALS", 1)
-    monkeypatch.setattr(motions, "REACHES_S", 2.0)
-    monkeypatch.setattr(motions, "HOLD_S", 0.6)
-    monkeypatch.setattr(motions, "SLOW_S", 1.0)
+    short = {"REACHES_S": 2.0, "HOLD_S": 0.6, "SLOW_S": 1.0, "PAUSE_S": 0.3, "MOVES": (0.5, -0.9, 0.3)}
+    for name, value in short.items():
+        monkeypatch.setattr(motions, name, value)
     told: list[str] = []
     out = tmp_path / "new" / "demo"
-    options = DemoOptions(
-        out, arm=arm_with_joints(1, tmp_path), duration_s=4.0, practice_s=10.0, budget=100, prove=True
-    )
+    options = DemoOptions(out, arm=arm_with_joints(1, tmp_path), duration_s=4.0, practice_s=10.0, budget=40, prove=True)
     result = run(options, lambda what, fraction, note="": told.append(what))
     recordings = ["before", "after", "proven", "practice", "check", "check_changed"]
     leaders = ["leader", "rest_leader", "practice_leader", "check_leader", "check_changed_leader"]
