@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -22,9 +22,10 @@ def rig() -> SimulatedRig:
 
 
 @pytest.fixture
-def trials(tmp_path: Path, rig: SimulatedRig) -> Trials:
+def trials(tmp_path: Path, rig: SimulatedRig) -> Iterator[Trials]:
     """Nothing tried yet."""
-    return Trials(CommissioningJournal(tmp_path / "trials", {}, resume=False), check_motion(ROOM), rig.before)
+    with CommissioningJournal(tmp_path / "trials", {}, resume=False) as journal:
+        yield Trials(journal, check_motion(ROOM), rig.before)
 
 
 @pytest.fixture

@@ -43,10 +43,11 @@ def test_a_model_predicts_what_its_own_arm_does(trials: Trials, rig: SimulatedRi
 
 def test_the_plant_that_shows_the_hunting_is_the_model_with_one_change(tmp_path: Path) -> None:
     rig = SimulatedRig(loose_arm())
-    trials = Trials(CommissioningJournal(tmp_path, {}, resume=False), check_motion(ROOM), rig.before)
-    play_before(trials, rig)
-    trial = play(trials, rig, stiffer(trials, [JOINT], 12.0))
-    assert trial.verdicts[JOINT].hunts
+    with CommissioningJournal(tmp_path, {}, resume=False) as journal:
+        trials = Trials(journal, check_motion(ROOM), rig.before)
+        play_before(trials, rig)
+        trial = play(trials, rig, stiffer(trials, [JOINT], 12.0))
+        assert trial.verdicts[JOINT].hunts
     model = default_arm()
     plants = failing_plants(model, trials)
     assert len(plants) == sum(one.hunts for one in trial.verdicts)

@@ -157,7 +157,7 @@ def test_ctrl_c_stops_the_motors_and_says_how_to_go_on(
     assert "--resume goes on" in capsys.readouterr().err
     assert not bench.command("status")["motors_enabled"]
     assert running(bench) == (BEFORE, State.DISABLED)
-    steps = json.loads((tmp_path / "commission.json").read_text())["steps"]
+    steps = [json.loads(line).get("step") for line in (tmp_path / "commission.journal").read_text().splitlines()]
     assert "first motion" in steps
     assert "before" not in steps
 

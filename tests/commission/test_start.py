@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -33,8 +34,9 @@ def with_pot(arm: ArmParameters, joint: int, **values: float) -> ArmParameters:
 
 
 @pytest.fixture
-def book(tmp_path: Path) -> CommissioningJournal:
-    return CommissioningJournal(tmp_path / "out", {}, resume=False)
+def book(tmp_path: Path) -> Iterator[CommissioningJournal]:
+    with CommissioningJournal(tmp_path / "out", {}, resume=False) as journal:
+        yield journal
 
 
 def stuck(rig: SimulatedRig, book: CommissioningJournal) -> None:

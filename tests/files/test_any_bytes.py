@@ -37,13 +37,15 @@ def log(path: Path) -> None:
 
 def book(path: Path) -> None:
     (path.parent / NAME).unlink(missing_ok=True)
-    CommissioningJournal(path.parent, REQUEST, resume=False).note("before", {"stopped": ""})
+    with CommissioningJournal(path.parent, REQUEST, resume=False) as one:
+        one.note("before", {"stopped": ""})
     (path.parent / NAME).replace(path)
 
 
 def read_book(path: Path) -> None:
     path.replace(path.parent / NAME)
-    CommissioningJournal(path.parent, REQUEST, resume=True)
+    with CommissioningJournal(path.parent, REQUEST, resume=True):
+        pass
 
 
 def journal(path: Path) -> None:

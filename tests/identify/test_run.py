@@ -112,7 +112,9 @@ def test_what_is_not_known_is_said_with_a_remedy(outcome: IdentificationResult) 
 
 
 @pytest.mark.slow
-def test_joints_that_did_not_move_keep_the_users_values(shoulder_outcome: IdentificationResult, white_box: ArmParameters) -> None:
+def test_joints_that_did_not_move_keep_the_users_values(
+    shoulder_outcome: IdentificationResult, white_box: ArmParameters
+) -> None:
     outcome = shoulder_outcome
     for joint in (0, 2, 3):
         start = column("torque_per_volt", joint)

@@ -19,7 +19,7 @@ from greywhale.commission.arm_on_port import ArmOnPort, connected
 from greywhale.commission.choose import confirm
 from greywhale.commission.evidence import failing_plants, gather
 from greywhale.commission.foresee import foresee
-from greywhale.commission.journal import open_journal
+from greywhale.commission.journal import CommissioningJournal
 from greywhale.commission.motions import JointRange, check_motion
 from greywhale.commission.request import CommissioningRequest
 from greywhale.commission.result import CommissioningResult, Round
@@ -61,7 +61,7 @@ class _Commissioning:
 
     def run(self) -> CommissioningResult:
         options = self.options
-        with open_journal(options.out, options.facts(), options.resume) as self.book:
+        with CommissioningJournal(options.out, options.facts(), options.resume) as self.book:
             return self._run()
 
     def _run(self) -> CommissioningResult:
