@@ -17,10 +17,11 @@ import pytest
 from greywhale.base.errors import UserError
 from greywhale.base.study import LocalWorkers
 from greywhale.optimise.comparison import Comparison, Duel, Plan, compare, run_once
-from greywhale.optimise.comparison_report import as_dict, plot_ranks, statement, text, write_report
+from greywhale.optimise.comparison_report import as_dict, statement, text, write_report
 from greywhale.optimise.functions import SETTINGS
 from greywhale.optimise.methods import METHODS
 from greywhale.pictures.page import style
+from greywhale.pictures.ranks import plot_ranks
 from tests.pictures.sight import faults
 
 SMALL = Plan(("sphere", "ackley"), SETTINGS, ("gwo-woa", "de", "cma-es"), dimensions=3, budget=60, runs=4, seed=7)
@@ -166,7 +167,8 @@ def test_every_method_is_named_beside_its_line_and_no_name_is_over_another(noise
     methods = tuple(METHODS)
     costs = np.arange(len(methods))[:, None] + noise * np.random.default_rng(1).normal(size=(1, 3, len(methods), 40))
     with style():
-        figure = plot_ranks(Comparison(Plan(("sphere",), SETTINGS, methods, runs=40), costs))
+        comparison = Comparison(Plan(("sphere",), SETTINGS, methods, runs=40), costs)
+        figure = plot_ranks({setting: comparison.mean_ranks(setting) for setting in SETTINGS}, "ranks")
         try:
             assert faults(figure) == []
             assert [one.get_text() for one in figure.axes[0].texts] == list(methods)

@@ -11,8 +11,9 @@ import pytest
 
 from greywhale.motion import multi_steps, steps
 from greywhale.pictures import page
-from greywhale.reproduce.pictures import curves, diagrams
-from greywhale.reproduce.pictures.curves import Trace
+from greywhale.pictures import paper_curves as curves
+from greywhale.pictures import paper_diagrams as diagrams
+from greywhale.pictures.paper_curves import Trace
 from greywhale.reproduce.work import errata, findings, on_the_bench, optimisers
 from greywhale.reproduce.work.motions import MOTIONS
 

@@ -4,25 +4,15 @@ from __future__ import annotations
 
 import csv
 import io
-from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from greywhale.base.errors import BAD_USAGE, UserError
 from greywhale.base.formats.whole import write_text
 from greywhale.optimise.comparison import Comparison
 from greywhale.optimise.functions import Setting
-from greywhale.pictures import looks
 from greywhale.pictures.kinds import KINDS
 
-if TYPE_CHECKING:
-    from greywhale.pictures.plotting import Axes, Figure
-
 FORMATS = (".csv", *KINDS)
-# Methods in a picture: dark and saturated colours first, then the same dashed.
-_COLOURS = (looks.BLUE, looks.ORANGE, looks.GREEN, looks.DARK, looks.PURPLE, looks.AMBER, looks.SKY, looks.GREY)
-_STYLES = ("-", "--", ":")
-_NAMES_IN, _NAME_HIGH_IN = 1.35, 0.15  # room for the methods' names, inches
 RIVAL = "de"
 # A method that changes its place by at least this many is named in the statement.
 WORTH_SAYING = 2
@@ -166,62 +156,10 @@ def _csv(comparison: Comparison) -> str:
 def _draw(path: Path, comparison: Comparison) -> None:
     # Matplotlib takes a second to import, and most comparisons draw nothing.
     from greywhale.pictures.page import save, style
-
-    with style():
-        save(plot_ranks(comparison), path)
-
-
-def plot_ranks(comparison: Comparison) -> Figure:
-    """A line a method from setting to setting, its name at the end, as a figure of pyplot's that the caller closes."""
-    from greywhale.pictures.page import WIDE, leave
-    from greywhale.pictures.plotting import plt
+    from greywhale.pictures.ranks import plot_ranks
 
     plan = comparison.plan
-    across = range(len(plan.settings))
-    ranks = [comparison.mean_ranks(setting) for setting in plan.settings]
-    figure, axes = plt.subplots(figsize=(WIDE, 0.9 + 0.36 * max(len(plan.methods), 6)))
-    figure.subplots_adjust(**leave(figure, 0.5, _NAMES_IN, 0.3, 0.32))
-    for index, method in enumerate(plan.methods):
-        colour = _COLOURS[index % len(_COLOURS)]
-        style = _STYLES[index // len(_COLOURS) % len(_STYLES)]
-        drawn = [rank[method] for rank in ranks]
-        axes.plot(across, drawn, "o", linestyle=style, color=colour, linewidth=1.3, markersize=4)
-    axes.margins(x=0.06)
-    axes.invert_yaxis()
-    _name_lines(axes, ranks[-1], across[-1])
-    axes.set_xticks(list(across), list(plan.settings))
-    axes.set_ylabel("mean rank (1 is best)")
     counts = {"functions": len(plan.functions), "dimensions": plan.dimensions, "evaluations": plan.budget}
-    axes.set_title(", ".join(f"{name}: {count}" for name, count in (counts | {"runs": plan.runs}).items()))
-    return figure
-
-
-def _name_lines(axes: Axes, ranks: dict[str, float], at: float) -> None:
-    """Each method's name right of the panel, joined to the end of its line."""
-    low, high = sorted(axes.get_ylim())
-    height = axes.get_figure().get_size_inches()[1] * axes.get_position().height  # type: ignore[union-attr]
-    places = _spread(ranks, (high - low) * _NAME_HIGH_IN / height, high)
-    for line, method in zip(axes.get_lines(), ranks, strict=True):
-        colour = line.get_color()
-        axes.annotate(
-            method,
-            (at, ranks[method]),
-            (1.03, places[method]),
-            textcoords=axes.get_yaxis_transform(),
-            va="center",
-            color=colour,
-            arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.5, "shrinkA": 1.0, "shrinkB": 3.0},
-        )
-
-
-def _spread(ranks: dict[str, float], gap: float, most: float) -> dict[str, float]:
-    """Where the names go: beside their lines, but `gap` apart, and none beyond `most`."""
-    order = sorted(ranks, key=lambda method: ranks[method])
-    places = dict(ranks)
-    for above, below in pairwise(order):
-        places[below] = max(places[below], places[above] + gap)
-    limit = most
-    for method in reversed(order):
-        places[method] = min(places[method], limit)
-        limit = places[method] - gap
-    return places
+    title = ", ".join(f"{name}: {count}" for name, count in (counts | {"runs": plan.runs}).items())
+    with style():
+        save(plot_ranks({setting: comparison.mean_ranks(setting) for setting in plan.settings}, title), path)

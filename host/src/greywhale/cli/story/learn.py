@@ -74,7 +74,7 @@ def learn(
 def draw(learnt: Learnt, folder: Path) -> tuple[Path, ...]:
     """Draw the fuzzy sets before and after tuning, and how the costs fell; the paths."""
     # Matplotlib takes a second to import.
-    from greywhale.tune.report.pictures import cost_words, draw_convergence, draw_sets
+    from greywhale.pictures.tuning import cost_words, draw_convergence, draw_sets
 
     tuning = learnt.tuning
     joints = tuning.model.arm.joints_in_use

@@ -6,14 +6,14 @@ from collections.abc import Sequence
 from typing import Any
 
 from greywhale.pictures import looks
+from greywhale.pictures import paper_curves as curves
+from greywhale.pictures.paper_curves import Trace
 from greywhale.protocol.firmware import JOINTS
 from greywhale.reproduce.pages.document import Chapter, Entry, Picture, Row, Sheet, Status, sheet, words
 from greywhale.reproduce.pages.found import Found
 from greywhale.reproduce.pages.numbers import lower, one, several
 from greywhale.reproduce.pages.printed import MULTI_STEPS_LOWER, STEPS_LOWER
 from greywhale.reproduce.pages.tuning import totals
-from greywhale.reproduce.pictures import curves
-from greywhale.reproduce.pictures.curves import Trace
 from greywhale.reproduce.tasks import OWN_PERIOD_MS
 from greywhale.reproduce.work.motions import PERIOD_MS
 from greywhale.tune.report.tables import PAPER_DELAY, PAPER_MULTI_STEP_MSE, PAPER_STEADY_STATE, PAPER_STEP_MSE

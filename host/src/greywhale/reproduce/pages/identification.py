@@ -11,12 +11,13 @@ from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.files.arm import load_arm
 from greywhale.identify.paper import AGENTS, ITERATIONS, LOWER, UPPER, VALUES
 from greywhale.pictures import looks
+from greywhale.pictures import paper_curves as curves
+from greywhale.pictures import paper_diagrams as diagrams
+from greywhale.pictures.paper_curves import Trace
 from greywhale.reproduce.pages.document import Chapter, Code, Entry, Picture, Row, Sheet, Status, sheet, words
 from greywhale.reproduce.pages.found import Found
 from greywhale.reproduce.pages.numbers import lower, one, several
 from greywhale.reproduce.pages.printed import FIG_6_FLAT, GREY_BOX_BETTER, TABLE_2, TABLE_5
-from greywhale.reproduce.pictures import curves, diagrams
-from greywhale.reproduce.pictures.curves import Trace
 from greywhale.reproduce.work.bench import DATA_SETS
 
 SYMBOLS = {

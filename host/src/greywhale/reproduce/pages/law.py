@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from greywhale.fuzzy.rules import RULES
+from greywhale.pictures import paper_curves as curves
+from greywhale.pictures import paper_diagrams as diagrams
 from greywhale.reproduce.pages.document import Chapter, Entry, Picture, Row, Status, sheet, words
-from greywhale.reproduce.pictures import curves, diagrams
+from greywhale.reproduce.work.errata import surface
 from greywhale.reproduce.work.motions import printed
 
 # Table 6 in the paper's order: e, ce, u.
@@ -87,7 +89,7 @@ def chapter() -> Chapter:
                 Status.OURS,
                 (
                     Picture(
-                        curves.surfaces({"before tuning": before, "Table 10": after}, 0),
+                        curves.surfaces({"before tuning": surface(before, 0), "Table 10": surface(after, 0)}),
                         "The fuzzy output over both inputs; lines at -0.5, 0 and 0.5.",
                     ),
                 ),

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from greywhale.files.arm import load_arm
+from greywhale.pictures import paper_diagrams as diagrams
 from greywhale.reproduce.pages.document import Chapter, Entry, Picture, Row, Status, sheet, words
 from greywhale.reproduce.pages.printed import TABLE_3
-from greywhale.reproduce.pictures import diagrams
 
 REMARKS = {
     "Iyy0": "No body has this: Iyy is at most Ixx + Izz. 8.26e-5 is taken.",

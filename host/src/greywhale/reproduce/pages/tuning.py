@@ -9,13 +9,13 @@ import numpy as np
 
 from greywhale.base.types import Controllers
 from greywhale.pictures import looks
+from greywhale.pictures import paper_curves as curves
+from greywhale.pictures.paper_curves import Trace
 from greywhale.protocol.firmware import JOINTS
 from greywhale.reproduce.pages.document import Chapter, Entry, Picture, Row, Sheet, Status, sheet, words
 from greywhale.reproduce.pages.found import Found, controllers
 from greywhale.reproduce.pages.numbers import lower, one, several
 from greywhale.reproduce.pages.printed import FIG_19_FLAT, TABLE_7
-from greywhale.reproduce.pictures import curves
-from greywhale.reproduce.pictures.curves import Trace
 from greywhale.reproduce.work.grey_box import STRATEGIES, supply_of
 from greywhale.reproduce.work.motions import PERIOD_MS, printed
 from greywhale.simulate import CONTROLLER_COLUMNS

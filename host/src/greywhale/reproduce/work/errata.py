@@ -16,6 +16,7 @@ from greywhale.arm.printed import BODY_ERRATA, ERRATA, PrintedBody, motor_equati
 from greywhale.base.types import Controllers, Floats
 from greywhale.files.arm import load_arm
 from greywhale.fuzzy.settings import GAIN_UNIT, SET_UNIT
+from greywhale.protocol.firmware import JOINTS
 from greywhale.reproduce.work.motions import PERIOD_MS, printed
 from greywhale.simulate import CONTROLLER_COLUMNS
 
@@ -68,6 +69,16 @@ class Law:
         else:
             low, high = np.clip(x / left, 0.0, 1.0), np.clip(x / right, 0.0, 1.0)
         return low, np.clip(1.0 - np.where(x < 0.0, x / a, x / c), 0.0, 1.0), high
+
+
+def surface(rows: Controllers, joint: int, points: int = 201) -> Floats:
+    """The fuzzy output of a joint's sets over an even grid of change of error (rows) and error (columns), -1 to 1."""
+    law = Law.of(np.repeat(rows[joint][None], JOINTS, axis=0))
+    law = Law(law.sets, np.ones_like(law.gains))
+    y, x = np.meshgrid(np.linspace(-1.0, 1.0, points), np.linspace(-1.0, 1.0, points), indexing="ij")
+    u, _ = law.fuzzy(*(np.repeat(one.ravel()[:, None], JOINTS, axis=1) for one in (x, y)))
+    found: Floats = u[:, 0].reshape(x.shape)
+    return found
 
 
 def follow(arm: str, wrong: frozenset[str], law: Law) -> tuple[Floats, float]:

@@ -1,4 +1,4 @@
-"""Responses, convergence, sets and control surfaces."""
+"""Pictures of the paper's report: responses, convergence, sets, control surfaces and ranks."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from greywhale.base.types import Controllers, Floats
 from greywhale.fuzzy.settings import SET_UNIT
 from greywhale.pictures import looks
 from greywhale.pictures.looks import BLUE, DARK, GREEN, GREY, ORANGE, PURPLE, SIGNS, Look
+from greywhale.pictures.membership import draw_shapes
 from greywhale.pictures.page import JOINTS as JOINT_TITLES
 from greywhale.pictures.page import (
     SMALL,
@@ -25,9 +26,8 @@ from greywhale.pictures.page import (
     png,
     style,
 )
-from greywhale.pictures.plotting import Axes, Figure, Line2D, plt
+from greywhale.pictures.plotting import Figure, Line2D, plt
 from greywhale.protocol.firmware import JOINTS
-from greywhale.reproduce.work.errata import Law
 from greywhale.simulate import CONTROLLER_COLUMNS
 
 # Jumps would hide the error that is left after them (rad).
@@ -171,28 +171,13 @@ def sets_of(controllers: Controllers, joint: int, change: bool) -> tuple[float, 
     return left, a, c, right
 
 
-def _draw_sets(
-    axes: Axes, corners: tuple[float, float, float, float], names: Sequence[str], look: Look = looks.SETS_AFTER
-) -> None:
-    left, a, c, right = corners
-    shapes = (
-        ([-1.0, left, 0.0], [1.0, 1.0, 0.0]),
-        ([a, 0.0, c], [0.0, 1.0, 0.0]),
-        ([0.0, right, 1.0], [0.0, 1.0, 1.0]),
-    )
-    for (x, y), colour, name in zip(shapes, SIGNS, names, strict=True):
-        axes.plot(x, y, label=name, **Look(colour, look.style, look.width).line)
-    axes.set_xlim(-1.03, 1.03)
-    axes.set_ylim(-0.03, 1.08)
-
-
 def sets_before(controllers: Controllers) -> bytes:
     """Fig. 11: both inputs and the output."""
     with style():
         figure, row = plt.subplots(1, 3, figsize=(WIDE, 2.1), sharey=True)
         figure.subplots_adjust(**leave(figure, 0.5, 0.12, 0.42, 0.26, wspace=0.1))
-        _draw_sets(row[0], sets_of(controllers, 0, False), _SETS["e"])
-        _draw_sets(row[1], sets_of(controllers, 0, True), _SETS["ce"])
+        draw_shapes(row[0], sets_of(controllers, 0, False), looks.SETS_AFTER, _SETS["e"])
+        draw_shapes(row[1], sets_of(controllers, 0, True), looks.SETS_AFTER, _SETS["ce"])
         width = 0.02
         for centre, colour, name in zip((-1.0, 0.0, 1.0), SIGNS, _SETS["u"], strict=True):
             row[2].plot(
@@ -218,7 +203,7 @@ def tuneable() -> bytes:
         figure.subplots_adjust(**leave(figure, 0.5, 0.12, 0.42, 0.26, wspace=0.08))
         for axes, own, words in zip(row, names, (_SETS["e"], _SETS["ce"]), strict=True):
             corners = (-0.6, -0.5, 0.5, 0.6)
-            _draw_sets(axes, corners, words)
+            draw_shapes(axes, corners, looks.SETS_AFTER, words)
             for x, y, name, place in zip(corners, (1.0, 0.0, 0.0, 1.0), own, (0.6, 0.16, 0.16, 0.6), strict=True):
                 side = 1.0 if x > 0.0 else -1.0
                 axes.plot([x], [y], "o", color=GREEN, zorder=4)
@@ -246,8 +231,8 @@ def sets_after(before: Controllers, after: Mapping[str, Controllers]) -> bytes:
                 words = _SETS["ce" if change else "e"]
                 for joint in range(JOINTS):
                     axes = grid[joint, 2 * column + change]
-                    _draw_sets(axes, sets_of(before, joint, change), words, looks.SETS_BEFORE)
-                    _draw_sets(axes, sets_of(controllers, joint, change), words)
+                    draw_shapes(axes, sets_of(before, joint, change), looks.SETS_BEFORE, words)
+                    draw_shapes(axes, sets_of(controllers, joint, change), looks.SETS_AFTER, words)
                     axes.set_xticks((-1.0, 0.0, 1.0))
                 grid[0, 2 * column + change].set_title(
                     f"{name}:\n{'change of error' if change else 'error'}".replace(", ", ",\n"), fontsize=9
@@ -263,18 +248,13 @@ def sets_after(before: Controllers, after: Mapping[str, Controllers]) -> bytes:
         return png(figure)
 
 
-def surfaces(controllers: Mapping[str, Controllers], joint: int) -> bytes:
-    """The control surface: the fuzzy output over both inputs."""
-    axis = np.linspace(-1.0, 1.0, 201)
-    x, y = np.meshgrid(axis, axis)
+def surfaces(outputs: Mapping[str, Floats]) -> bytes:
+    """The control surface: fuzzy outputs (rows, columns) over an even grid of change of error and error, -1 to 1."""
     with style():
-        figure, row = plt.subplots(1, len(controllers), figsize=(WIDE, 3.1), sharey=True)
+        figure, row = plt.subplots(1, len(outputs), figsize=(WIDE, 3.1), sharey=True)
         figure.subplots_adjust(**leave(figure, 0.7, 0.75, 0.42, 0.26, wspace=0.08))
-        for axes, (name, rows) in zip(np.atleast_1d(row), controllers.items(), strict=True):
-            law = Law.of(np.repeat(rows[joint][None], JOINTS, axis=0))
-            law = Law(law.sets, np.ones_like(law.gains))
-            points = [np.repeat(one.ravel()[:, None], JOINTS, axis=1) for one in (x, y)]
-            u = law.fuzzy(*points)[0][:, 0].reshape(x.shape)
+        for axes, (name, u) in zip(np.atleast_1d(row), outputs.items(), strict=True):
+            y, x = (np.linspace(-1.0, 1.0, count) for count in u.shape)
             shade = axes.contourf(x, y, u, levels=np.linspace(-1.0, 1.0, 21), cmap="RdBu_r")
             axes.contour(x, y, u, levels=(-0.5, 0.0, 0.5), colors=DARK, linewidths=0.7)
             axes.set_title(name)

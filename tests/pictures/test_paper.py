@@ -12,10 +12,12 @@ from matplotlib.figure import Figure
 
 from greywhale.motion import multi_steps
 from greywhale.pictures import looks
+from greywhale.pictures import paper_curves as curves
+from greywhale.pictures import paper_diagrams as diagrams
 from greywhale.pictures.page import style
+from greywhale.pictures.paper_curves import Trace
 from greywhale.reproduce.pages.optimisers import SAID
-from greywhale.reproduce.pictures import curves, diagrams
-from greywhale.reproduce.pictures.curves import Trace
+from greywhale.reproduce.work.errata import surface
 from greywhale.reproduce.work.motions import printed
 from tests.pictures.sight import faults
 
@@ -58,7 +60,7 @@ FIGURES: dict[str, Draw] = {
         printed("before_tuning"), {"Table 10": printed("table_10"), "paper's method, first seed": printed("table_9")}
     ),
     "surfaces": lambda: curves.surfaces(
-        {"before tuning": printed("before_tuning"), "Table 10": printed("table_10")}, 0
+        {name: surface(printed(key), 0) for name, key in (("before tuning", "before_tuning"), ("Table 10", "table_10"))}
     ),
     "ranks": lambda: curves.ranks(
         {

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from greywhale.identify import pictures
 from greywhale.motion import multi_steps
+from greywhale.pictures import identification as pictures
 from greywhale.pictures import looks
 from greywhale.pictures.page import style
 from tests.pictures.sight import faults

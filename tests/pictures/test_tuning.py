@@ -21,10 +21,11 @@ from greywhale.files.controller import load
 from greywhale.files.paper_tables import paper_table
 from greywhale.motion import multi_steps
 from greywhale.pictures import looks
+from greywhale.pictures import tuning as pictures
 from greywhale.pictures.page import style
+from greywhale.pictures.tuning import Response
 from greywhale.simulate import controller_row
-from greywhale.tune.report import pictures
-from greywhale.tune.report.pictures import Response
+from greywhale.tune.report.pictures import draw
 from greywhale.tune.result import TuningResult
 from tests.pictures.sight import faults
 
@@ -193,11 +194,11 @@ def test_a_tuning_gets_all_its_pictures_and_an_unfinished_one_those_there_are(tm
         held_out=(held_out,),
         curves=(SimpleNamespace(evaluations=(10, 20), cost=(2.0, 1.0)),) * 4,
     )
-    drawn = pictures.draw(cast(TuningResult, outcome), tmp_path / "new" / "folder")
+    drawn = draw(cast(TuningResult, outcome), tmp_path / "new" / "folder")
     assert [path.name for path in drawn] == ["sets.png", "responses_human_like_reaches.png", "convergence.png"]
     assert all(path.read_bytes().startswith(b"\x89PNG") for path in drawn)
     outcome.held_out, outcome.curves = (), ()
-    (again,) = pictures.draw(cast(TuningResult, outcome), tmp_path)
+    (again,) = draw(cast(TuningResult, outcome), tmp_path)
     assert again.name == "sets.png"
     assert again.read_bytes() == drawn[0].read_bytes(), "the same numbers give the same bytes"
     assert sorted(path.name for path in tmp_path.iterdir()) == ["new", "sets.png"]

@@ -1,0 +1,22 @@
+"""The shapes of one input's sets."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from greywhale.pictures import looks
+from greywhale.pictures.plotting import Axes
+
+
+def draw_shapes(
+    axes: Axes, corners: Sequence[float], look: looks.Look, names: Sequence[str | None] = (None,) * 3
+) -> None:
+    """NE [-1,-1,left,0], ZE [a,0,c], PE [0,right,1,1]: every foot is at zero. `names` are for a legend."""
+    left, a, c, right = corners
+    shapes = (
+        ([-1.0, left, 0.0], [1.0, 1.0, 0.0]),
+        ([a, 0.0, c], [0.0, 1.0, 0.0]),
+        ([0.0, right, 1.0], [0.0, 1.0, 1.0]),
+    )
+    for (x, y), colour, name in zip(shapes, looks.SIGNS, names, strict=True):
+        axes.plot(x, y, label=name, **looks.Look(colour, look.style, look.width).line)
