@@ -1,5 +1,5 @@
-// The power of recorded angles in a band (closed_loop/band_power.h). greywhale.simulate.band designs the filter; use that,
-// not this.
+// The power of recorded angles in a band (closed_loop/band_power.h). greywhale.simulate.band designs the filter; use
+// that, not this.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 

@@ -21,7 +21,7 @@ struct Batch {
 struct How {
   int substeps;              // exact: steps of the arm in a slice; else: steps of the arm in a tick, 1, 2 or 4
   int threads;               // 0: as many as there are cores
-  bool exact;               // in the bench's double precision, one by one
+  bool exact;                // in the bench's double precision, one by one
   std::string instructions;  // one of instruction_sets(), or empty for the best; results are the same bits with all
 };
 

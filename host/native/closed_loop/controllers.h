@@ -9,7 +9,8 @@
 
 namespace greywhale::loop {
 
-// One joint's controller: eight set corners, three gains, Ku; greywhale.protocol.table names these columns in the same order.
+// One joint's controller: eight set corners, three gains, Ku; greywhale.protocol.table names these columns in the same
+// order.
 constexpr std::size_t kControllerColumns = 12;
 
 fuzzy_pdi::Refusal compile(const std::int32_t* columns, int period_ms, fuzzy_pdi::Coefficients& result);

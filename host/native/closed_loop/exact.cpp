@@ -241,7 +241,7 @@ class Run {
 }  // namespace
 
 Measures run_exact(const Experiment& x, const Controllers& controllers, const PlantRow& row, int substeps,
-                    const Trace& trace) {
+                   const Trace& trace) {
   return Run(x, controllers, row, substeps, trace).measures();
 }
 

@@ -103,7 +103,7 @@ using Controllers = std::array<fuzzy_pdi::Coefficients, kJoints>;
 
 // The bench's own arithmetic in double precision; each slice in `substeps` steps of the arm.
 Measures run_exact(const Experiment& experiment, const Controllers& controllers, const PlantRow& row, int substeps,
-                    const Trace& trace);
+                   const Trace& trace);
 
 // The leader's readings and true angles at every tick from its angles (rad) in every slice: slices x 4 -> ticks x 4.
 void read_leader(const Settings& settings, const Timing& timing, arm::Potentiometers pots, const double* angles,
