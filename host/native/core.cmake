@@ -26,8 +26,8 @@ add_library(greywhale_core STATIC ${CORE_SOURCES})
 add_library(greywhale_common INTERFACE)
 target_compile_options(greywhale_common INTERFACE -ffp-contract=off -Wall -Wextra -Wconversion)
 target_include_directories(greywhale_common INTERFACE
-  ${NATIVE} ${REPOSITORY}/sim ${REPOSITORY}/sim/arm ${REPOSITORY}/firmware/lib/fuzzy_pdi/src
-  ${REPOSITORY}/firmware/lib/signal_chain/src)
+  ${NATIVE} ${REPOSITORY}/sim ${REPOSITORY}/sim/arm ${REPOSITORY}/firmware/lib/codes/src
+  ${REPOSITORY}/firmware/lib/fuzzy_pdi/src ${REPOSITORY}/firmware/lib/signal_chain/src)
 target_link_libraries(greywhale_core PUBLIC greywhale_common)
 
 # The kernels, compiled once for each instruction set. The set's name is the namespace of all that these files define. So the linker

@@ -11,6 +11,7 @@ import numpy as np
 from tools.support.fuzzy_search import Random
 
 SOURCES = Path(__file__).parents[2] / "firmware/lib/fuzzy_pdi/src"
+INCLUDES = [f"-I{SOURCES}", f"-I{SOURCES.parents[1]}/codes/src"]
 DRIVER = Path(__file__).with_name("fuzzy_cortex_m0.cpp")
 FLAGS = [
     "-mcpu=cortex-m0",
@@ -60,7 +61,7 @@ def test_same_bits(tmp_path: Path) -> None:
 
     elf = tmp_path / "core.elf"
     sources = [str(DRIVER), *map(str, sorted(SOURCES.glob("*.cpp")))]
-    command = ["arm-none-eabi-g++", *FLAGS, *LINKING, f"-I{SOURCES}", *sources, "-o", str(elf)]
+    command = ["arm-none-eabi-g++", *FLAGS, *LINKING, *INCLUDES, *sources, "-o", str(elf)]
     subprocess.run(command, check=True)
     (tmp_path / "vectors.bin").write_bytes(b"".join(packed))
     subprocess.run([*QEMU, str(elf)], check=True, cwd=tmp_path, timeout=300)

@@ -13,7 +13,7 @@ from tools import ROOT
 
 GENERATED = [
     "firmware/lib/link/src/link/schema.h",
-    "firmware/lib/link/src/link/enum_copies.h",
+    "firmware/lib/codes/src/codes/codes.h",
     "firmware/lib/params/src/params/table.h",
     "firmware/lib/params/src/params/table.cpp",
     "firmware/test/native/test_link/golden.h",

@@ -95,6 +95,7 @@ def _mujoco(ours: float) -> list[Figure]:
             "-march=native",
             f"-I{folder / 'include'}",
             f"-I{law}",
+            f"-I{ROOT}/firmware/lib/codes/src",
             *sources,
             str(library),
         ]

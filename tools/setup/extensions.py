@@ -7,7 +7,8 @@ from tools.setup import stamps, venv
 from tools.setup.console import say
 
 SHARED = ("requirements.txt", "LICENSE")
-NATIVE = ("pyproject.toml", "host/native", "sim/arm", "firmware/lib/fuzzy_pdi", "firmware/lib/signal_chain")
+ROOMS = ("codes", "fuzzy_pdi", "signal_chain")  # of the firmware
+NATIVE = ("pyproject.toml", "host/native", "sim/arm", *(f"firmware/lib/{room}" for room in ROOMS))
 BOARD = ("sim/pyproject.toml", "sim/CMakeLists.txt", "sim/board")
 STUDY = ("studies/one_joint/native", "sim/arm", "host/native/share_out.h")
 

@@ -13,15 +13,15 @@ import sys
 from pathlib import Path
 
 from tools import ROOT
-from tools.generate.link import cpp_enum_copies, cpp_messages, cpp_parameters, golden, page, python_module
+from tools.generate.link import cpp_codes, cpp_messages, cpp_parameters, golden, page, python_module
 from tools.generate.link.declaration import Declaration, DeclarationError, load
 
 
 def outputs(declaration: Declaration) -> dict[str, str]:
     """Path below the root -> text of every generated file."""
     return {
+        "firmware/lib/codes/src/codes/codes.h": cpp_codes.header(declaration),
         "firmware/lib/link/src/link/schema.h": cpp_messages.header(declaration),
-        "firmware/lib/link/src/link/enum_copies.h": cpp_enum_copies.header(declaration),
         "firmware/lib/params/src/params/table.h": cpp_parameters.header(declaration),
         "firmware/lib/params/src/params/table.cpp": cpp_parameters.source(declaration),
         "firmware/test/native/test_link/golden.h": golden.header(declaration),

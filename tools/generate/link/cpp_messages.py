@@ -1,9 +1,9 @@
-"""Writes the C++ header of messages and enums (C++14, no standard library)."""
+"""Writes the C++ header of messages (C++14, no standard library)."""
 
 from __future__ import annotations
 
 from . import NOTICE
-from .declaration import REPLY_BIT, WIDTHS, Declaration, Enum, Field, Message
+from .declaration import REPLY_BIT, WIDTHS, Declaration, Field, Message
 
 C_TYPES = {"u8": "uint8_t", "i8": "int8_t", "u16": "uint16_t", "i16": "int16_t", "u32": "uint32_t", "i32": "int32_t"}
 
@@ -11,11 +11,12 @@ C_TYPES = {"u8": "uint8_t", "i8": "int8_t", "u16": "uint16_t", "i16": "int16_t",
 def header(declaration: Declaration) -> str:
     """Text of link/schema.h."""
     parts = [
-        f"// Messages and enums of the serial link.\n// {NOTICE}\n#pragma once\n",
-        '#include <stdint.h>\n\n#include "link/bytes.h"\n',
+        f"// Messages of the serial link.\n// {NOTICE}\n#pragma once\n",
+        '#include <codes/codes.h>\n#include <stdint.h>\n\n#include "link/bytes.h"\n',
         "namespace wire {\n",
+        *(f"using codes::{enum.name};" for enum in declaration.enums),
+        "",
         _constants(declaration),
-        *(_enum(enum) for enum in declaration.enums),
         *(_struct(message) for message in declaration.messages),
         "}  // namespace wire",
     ]
@@ -35,12 +36,6 @@ def _constants(declaration: Declaration) -> str:
         "};",
     ]
     return "\n".join(lines) + "\n"
-
-
-def _enum(enum: Enum) -> str:
-    lines = [f"// {enum.description}", f"enum class {enum.name} : uint8_t {{"]
-    lines += [f"  {value.name} = {value.value},  // {value.description}" for value in enum.values]
-    return "\n".join([*lines, "};"]) + "\n"
 
 
 def _struct(message: Message) -> str:

@@ -76,7 +76,6 @@ class App {
   void send_hello(uint8_t seq);
   void send_status();
   __attribute__((noinline)) void send_sample();  // inlined, its variables would take stack in all of service()
-  wire::State state_on_link() const;
   void refuse_not_disabled();
   void refuse_lead(wire::LeadRefusal why, uint8_t joint);
   void refuse_set();

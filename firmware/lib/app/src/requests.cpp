@@ -2,7 +2,6 @@
 #include <hal.h>
 
 #include "app.h"
-#include "on_link.h"
 #include "version.h"
 
 namespace app {
@@ -172,24 +171,24 @@ void App::serve(const wire::TelemetryRequest& request) {
 void App::serve(const wire::EnableRequest& request) {
   // While the host leads, the leader arm cannot take over: it may be anywhere.
   if (lead_.on()) return refuse_not_disabled();
-  if (granted(supervisor_.enable(request.lease_ms, seen_, distances()))) reply(wire::EnableReply{state_on_link()});
+  if (granted(supervisor_.enable(request.lease_ms, seen_, distances()))) reply(wire::EnableReply{supervisor_.state()});
 }
 
 void App::serve(const wire::StopRequest&) {
   supervisor_.stop();
   follow_supervisor();
-  reply(wire::StopReply{state_on_link()});
+  reply(wire::StopReply{supervisor_.state()});
 }
 
 void App::serve(const wire::RenewRequest& request) {
   // Without a lease the motors would hold the arm for ever after the host has gone.
   if (lead_.on() && request.lease_ms == 0) return refuse_lead(wire::LeadRefusal::no_lease, 0);
   supervisor_.renew(request.lease_ms);
-  reply(wire::RenewReply{state_on_link()});
+  reply(wire::RenewReply{supervisor_.state()});
 }
 
 void App::serve(const wire::ClearFaultRequest&) {
-  if (granted(supervisor_.clear_fault(seen_, distances()))) reply(wire::ClearFaultReply{state_on_link()});
+  if (granted(supervisor_.clear_fault(seen_, distances()))) reply(wire::ClearFaultReply{supervisor_.state()});
 }
 
 // When the supervisor refuses, the motors stay off; service() then gives the lead back to the leader arm before it does
@@ -200,7 +199,7 @@ void App::serve(const wire::LeadRequest& request) {
   if (!supervisor_.motors_on()) lead_.begin(sampling_);
   if (!granted(supervisor_.enable(request.lease_ms, seen_, distances()))) return;
   wire::LeadReply out;
-  out.state = state_on_link();
+  out.state = supervisor_.state();
   out.next = lead_.next();
   for (uint8_t i = 0; i < hal::joint_count; ++i) out.reference[i] = lead_.last(i);
   reply(out);
@@ -289,18 +288,18 @@ void App::send_hello(uint8_t seq) {
   hello.fw_minor = version_minor;
   hello.fw_patch = version_patch;
   hello.schema_hash = wire::schema_hash;
-  hello.board = on_link(hal::board_id());
+  hello.board = hal::board_id();
   hello.param_crc = sets_.crc();
   hello.param_source = sets_.source();
-  hello.reset_cause = on_link(hal::reset_cause());
+  hello.reset_cause = hal::reset_cause();
   send(seq, hello);
 }
 
 void App::send_status() {
   wire::StatusReply status;
-  status.state = state_on_link();
-  status.stop_reason = on_link(supervisor_.stop_reason());
-  status.fault = on_link(supervisor_.fault());
+  status.state = supervisor_.state();
+  status.stop_reason = supervisor_.stop_reason();
+  status.fault = supervisor_.fault();
   status.fault_where = supervisor_.fault_where();
   status.tick = tick_;
   status.late_ticks = late_ticks_;
@@ -318,8 +317,8 @@ void App::send_sample() {
   sample_due_ = false;
   wire::Sample sample;
   sample.tick = tick_;
-  sample.state = state_on_link();
-  sample.fault = on_link(supervisor_.fault());
+  sample.state = supervisor_.state();
+  sample.fault = supervisor_.fault();
   for (uint8_t i = 0; i < hal::joint_count; ++i) {
     // When the host leads, sampling_.leader() is already that of the next tick.
     sample.leader[i] = lead_.on() ? sampling_.reference(i) : sampling_.leader(i);
@@ -329,9 +328,7 @@ void App::send_sample() {
   send(sample_seq_, sample);
 }
 
-wire::State App::state_on_link() const { return on_link(supervisor_.state()); }
-
-void App::refuse_not_disabled() { refuse(wire::NackCode::not_disabled, static_cast<uint8_t>(state_on_link())); }
+void App::refuse_not_disabled() { refuse(wire::NackCode::not_disabled, static_cast<uint8_t>(supervisor_.state())); }
 
 void App::refuse_lead(wire::LeadRefusal why, uint8_t joint) {
   refuse(wire::NackCode::lead_refused, pair(joint, static_cast<uint8_t>(why)));
@@ -339,7 +336,7 @@ void App::refuse_lead(wire::LeadRefusal why, uint8_t joint) {
 
 void App::refuse_set() {
   const Unfit unfit = sets_.unfit();
-  refuse(wire::NackCode::set_refused, pair(unfit.joint, static_cast<uint8_t>(on_link(unfit.refusal))));
+  refuse(wire::NackCode::set_refused, pair(unfit.joint, static_cast<uint8_t>(unfit.refusal)));
 }
 
 void App::refuse(wire::NackCode code, uint16_t detail) { reply(wire::Nack{request_, code, detail}); }

@@ -6,6 +6,7 @@
 // the bound.
 #pragma once
 
+#include <codes/codes.h>
 #include <stdint.h>
 
 namespace fuzzy_pdi {
@@ -20,15 +21,8 @@ struct Settings {
   uint16_t ku_mv;       // volts at full output, in mV
 };
 
-// Why compile() refuses. The numbers go over the link, so none of them ever gets another meaning.
-enum class Refusal : uint8_t {
-  none = 0,
-  order = 1,   // a set on the wrong side of zero: ne_c, ze_a, nce_c, zce_a < 0 < ze_c, pe_b, zce_c, pce_b
-  range = 2,   // a set outside [-1, 1]
-  width = 3,   // a set narrower than 0.01
-  gain = 4,    // a scaling factor above its limit, or Ki times the period above the format's limit
-  period = 5,  // a control period outside 1..50 ms
-};
+// Why compile() refuses. `order` is kept by ne_c, ze_a, nce_c, zce_a < 0 < ze_c, pe_b, zce_c, pce_b.
+using codes::Refusal;
 
 // Bits of Side::short_ramps. Each has bit 7 too, so that the assembly finds them and small sizes by one comparison.
 enum ShortRamp : uint8_t { zero_is_short = 0x81, outer_is_short = 0x82, zero_is_medium = 0x84 };

@@ -1,6 +1,7 @@
 // The hardware as the rest of the firmware sees it: plain functions. Each target links one implementation of them.
 // avr/ serves the two boards and holds every register access; fake/ serves unit tests on a computer.
 #pragma once
+#include <codes/codes.h>
 #include <stdint.h>
 
 namespace hal {
@@ -10,13 +11,11 @@ constexpr uint8_t pot_count = 8;            // 0..3 leader, 4..7 follower
 constexpr uint8_t conversions_per_pot = 4;  // summed each tick
 constexpr uint16_t rail_mark = 0x1000;      // above every sum
 
-// unknown: a board that has no name yet.
-enum class Board : uint8_t { unknown, mega2560, nano328, native };
-Board board_id();
+using codes::Board;
+Board board_id();  // unknown for one that has no name yet
 
-// unknown: a bootloader has cleared the chip's record. watchdog: a restart after a hang, by whatever means.
-enum class ResetCause : uint8_t { unknown, power_on, external, brown_out, watchdog };
-ResetCause reset_cause();
+using codes::ResetCause;
+ResetCause reset_cause();  // watchdog after a hang, by whatever means the program was started anew
 
 // Takes timers, ADC and serial port over from the framework. Outputs have been low and drivers off since the reset.
 void begin();

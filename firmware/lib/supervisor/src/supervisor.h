@@ -1,5 +1,6 @@
 // When the motors may run: states, faults, soft start and lease. A pure state machine that is called once in each tick.
 #pragma once
+#include <codes/codes.h>
 #include <signal_chain/soft_start.h>
 #include <stdint.h>
 
@@ -13,25 +14,9 @@ namespace supervisor {
 constexpr uint8_t joint_count = 4;
 constexpr uint8_t nowhere = 255;  // fault_where when the fault has no pot or joint
 
-// The numbers go over the link; app/src/on_link.h checks that they are the same there.
-enum class State : uint8_t { boot, disabled, soft_start, following, fault };
-enum class StopReason : uint8_t { none, host, lease, fault, reset };
-enum class Fault : uint8_t {
-  none,
-  pot_low,
-  pot_high,
-  late_tick,
-  tracking,
-  watchdog,
-  params,
-  flood,
-  unrest,
-  estop,
-  speed,
-  runaway,
-  stalled,
-  memory
-};
+using codes::Fault;
+using codes::State;
+using codes::StopReason;
 
 struct Limits {
   uint16_t enable_limit;    // q12 rad
