@@ -22,7 +22,7 @@ def errors(folder: Path, declaration: Declaration) -> str:
     done = subprocess.run(
         ["g++", "-std=gnu++14", "-fsyntax-only", "-Wall", "-Wextra", "-Wconversion", "-Werror", f"-I{folder}"]
         + [f"-I{room}" for room in rooms]
-        + [ROOT / "firmware/lib/app/src/requests.cpp"],
+        + [ROOT / "firmware/lib/app/src/link_server.cpp"],
         capture_output=True,
         text=True,
         check=False,

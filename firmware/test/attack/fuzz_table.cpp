@@ -56,7 +56,7 @@ void judge_table(const params::Table& table) {
   for (std::uint8_t i = 0; i < hal::joint_count; ++i) {
     if (controllers.take(table, i) != fuzzy_pdi::Refusal::none) continue;
     for (const int error : {0, 1, -1, 32767, -32767, 4096}) {
-      const app::Outcome out = controllers.step(i, static_cast<std::int16_t>(error), limit_mv);
+      const app::MotorVoltage out = controllers.step(i, static_cast<std::int16_t>(error), limit_mv);
       must(out.size_mv <= limit_mv, "no voltage above its limit");
     }
   }

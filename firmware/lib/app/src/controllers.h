@@ -6,12 +6,12 @@
 #include <signal_chain/duty.h>
 #include <stdint.h>
 
-#include "memory_watch.h"
+#include "memory_check.h"
 
 namespace app {
 
 // The part of fuzzy_pdi::Output that the app uses.
-struct Outcome {
+struct MotorVoltage {
   uint16_t size_mv;
   uint8_t sign;       // bit 7: the voltage is negative
   uint16_t volts_mv;  // both: bit 15 is the sign
@@ -22,8 +22,8 @@ struct Outcome {
 
 // Calls the bare entry of fuzzy_pdi::step_error(). It saves no registers: hal::run_tick() lets the tick use all of
 // them. It returns the size and the sign of the voltage apart, as the duty needs them.
-inline __attribute__((always_inline)) Outcome step_in_registers(fuzzy_pdi::Joint& joint, int16_t error,
-                                                                uint16_t limit) {
+inline __attribute__((always_inline)) MotorVoltage step_in_registers(fuzzy_pdi::Joint& joint, int16_t error,
+                                                                     uint16_t limit) {
   register uint16_t r30 __asm__("r30") = reinterpret_cast<uint16_t>(&joint);
   register int16_t r24 __asm__("r24") = error;
   register uint16_t r4 __asm__("r4") = limit;
@@ -45,7 +45,7 @@ inline __attribute__((always_inline)) Outcome step_in_registers(fuzzy_pdi::Joint
 
 #else
 
-inline Outcome step_in_registers(fuzzy_pdi::Joint& joint, int16_t error, uint16_t limit) {
+inline MotorVoltage step_in_registers(fuzzy_pdi::Joint& joint, int16_t error, uint16_t limit) {
   const fuzzy_pdi::Output out = fuzzy_pdi::step_error(joint, error, limit);
   const bool negative = out.volts_mv < 0;
   const auto size = static_cast<uint16_t>(negative ? -out.volts_mv : out.volts_mv);
@@ -65,8 +65,8 @@ class Controllers {
   void set_limit(uint16_t supply_mv, uint16_t share_q15) { limit_mv_ = signal_chain::limit_mv(supply_mv, share_q15); }
   uint16_t limit_mv() const { return limit_mv_; }
   // One control period of a joint: the voltage for its motor.
-  Outcome step(uint8_t joint, int16_t error, uint16_t limit_mv) {
-    const Outcome out = step_in_registers(joints_[joint], error, limit_mv);
+  MotorVoltage step(uint8_t joint, int16_t error, uint16_t limit_mv) {
+    const MotorVoltage out = step_in_registers(joints_[joint], error, limit_mv);
     if (out.no_rule) count_no_rule();
     volts_[joint] = out.volts_mv;
     return out;
@@ -85,7 +85,7 @@ class Controllers {
   void count_no_rule();
 
   fuzzy_pdi::Joint joints_[hal::joint_count] = {};
-  uint16_t volts_[hal::joint_count] = {};  // as in Outcome::volts_mv
+  uint16_t volts_[hal::joint_count] = {};  // as in MotorVoltage::volts_mv
   uint16_t limit_mv_ = 0;
   uint16_t no_rule_ = 0;
 };

@@ -5,7 +5,7 @@
 #include <signal_chain/duty.h>
 #include <stdint.h>
 
-#include "memory_watch.h"
+#include "memory_check.h"
 
 namespace app {
 

@@ -25,15 +25,15 @@ void Sampling::configure(const params::Table& table) {
   signals_.span = rail ? static_cast<uint16_t>(highest - lowest) : static_cast<uint16_t>(hal::rail_mark - 1);
   signals_.rails = rail ? tell_rails : 0;  // the motors are off, so nothing is held
   for (uint8_t i = 0; i < hal::joint_count; ++i) {
-    configure(table, i, false);
+    configure_joint(table, i, false);
     JointSignals& joint = signals_.joint[i];
     joint.follower_angle = signal_chain::angle(joint.follower);
   }
-  prepare();
+  prepare_low_passes();
 }
 
-bool Sampling::configure(const params::Table& table, uint8_t joint, bool host_leads) {
-  JointSignals& kept = signals_.joint[joint];
+bool Sampling::configure_joint(const params::Table& table, uint8_t joint, bool host_leads) {
+  JointSignals& signals = signals_.joint[joint];
   const params::PotParameters &leader = table.leader[joint], &follower = table.follower[joint];
   // A joint that is not in use has no error, so no voltage.
   int16_t least = 0, most = 0;
@@ -45,12 +45,12 @@ bool Sampling::configure(const params::Table& table, uint8_t joint, bool host_le
   }
   const uint8_t others = static_cast<uint8_t>(~(0x11u << joint));
   const uint8_t pots = static_cast<uint8_t>((pots_in_use_ & others) | (in_use << joint));
-  bool changed = kept.limit_min != least || kept.limit_max != most || pots_in_use_ != pots;
-  kept.limit_min = least;
-  kept.limit_max = most;
+  bool changed = signals.limit_min != least || signals.limit_max != most || pots_in_use_ != pots;
+  signals.limit_min = least;
+  signals.limit_max = most;
   pots_in_use_ = pots;
-  changed |= calibrate(kept.follower, follower);
-  if (!host_leads) changed |= calibrate(kept.leader, leader);
+  changed |= calibrate(signals.follower, follower);
+  if (!host_leads) changed |= calibrate(signals.leader, leader);
   return changed;
 }
 
@@ -59,9 +59,9 @@ void Sampling::tick(const uint16_t* sums, supervisor::Observation& seen) {
   primed_ = true;
 }
 
-void Sampling::prepare() {
+void Sampling::prepare_low_passes() {
   if (primed_) signals_.low_pass = signal_chain::low_pass(shift_);
-  keep_filtered(signals_);
+  app::prepare_low_passes(signals_);
 }
 
 int16_t Sampling::within_limits(uint8_t joint, int16_t angle) const {

@@ -4,7 +4,7 @@
 #include <params/table.h>
 #include <stdint.h>
 
-#include "memory_watch.h"
+#include "memory_check.h"
 #include "signals.h"
 
 namespace app {
@@ -12,20 +12,21 @@ namespace app {
 class Sampling {
  public:
   Sampling() : shift_(0), primed_(false) {}
+
   void configure(const params::Table& table);
+  // The same for one joint. True when that changed anything: if the table is as before, a bit had flipped. While the
+  // host leads, the leader's line stays as it is: it is the host's reference.
+  bool configure_joint(const params::Table& table, uint8_t joint, bool host_leads);
+  // Before each tick.
+  void prepare_low_passes();
   // Takes the sums of all pots, as hal::pot_sums() gives them, and writes the rails into `seen`.
   void tick(const uint16_t* sums, supervisor::Observation& seen);
-
+  // From here to the next tick no reading counts: the distances are farther than two angles can be apart.
   void forget();
-  // A bit for each that has a scale. The others are not there, and their inputs say nothing.
-  uint8_t pots_in_use() const { return pots_in_use_; }
-  // Once between two ticks: what the next one's low-pass can have beforehand.
-  void prepare();
-  // Takes what is kept of the table for one joint anew. Says whether that changed anything: then a bit had flipped.
-  // With `host_leads` the leader's line is a reference.
-  bool configure(const params::Table& table, uint8_t joint, bool host_leads);
 
-  // What is a rail.
+  // A bit for each pot that has a scale. The others are not there, and their inputs may read anything.
+  uint8_t pots_in_use() const { return pots_in_use_; }
+  // Where the rails begin.
   Part rails() const {
     return {reinterpret_cast<const uint8_t*>(&signals_.lowest), sizeof signals_.lowest + sizeof signals_.span};
   }
@@ -37,12 +38,10 @@ class Sampling {
   int16_t error(uint8_t joint) const { return signals_.joint[joint].error; }
   // Of the last tick, also when the host's reference has moved on since.
   int16_t reference(uint8_t joint) const { return static_cast<int16_t>(follower(joint) + error(joint)); }
-  // Whether readings at a rail leave the angles as they are: while the motors are on. Otherwise they are seen as they
-  // are.
+  // While the motors are on, a reading at a rail leaves its angle as it is.
   void hold(bool on) { signals_.rails = static_cast<uint8_t>((signals_.rails & tell_rails) | (on ? hold_rails : 0)); }
   int16_t within_limits(uint8_t joint, int16_t angle) const;
-  // Between reference and follower, as they are now; the last tick may have seen another reference. Farther than two
-  // angles can be apart until a tick has seen the pots after forget().
+  // Between reference and follower, as they are now; the last tick may have seen another reference.
   uint16_t distance(uint8_t joint) const;
 
   // Puts a reference in the place of a leader pot until configure() is called. The reference is a line of slope 0, so a
@@ -55,8 +54,8 @@ class Sampling {
 
   Signals signals_ = {signal_chain::low_pass(0), 0, hal::rail_mark - 1, 0, {}};  // the first sample is taken whole
   uint8_t pots_in_use_ = 0;
-  uint8_t shift_ : 7;
-  bool primed_ : 1;
+  uint8_t shift_ : 7;  // of the low-passes
+  bool primed_ : 1;    // a tick has come, so the low-passes hold something
 };
 
 }  // namespace app

@@ -16,8 +16,8 @@ static_assert(offsetof(signal_chain::LowPass, gain) == SIGNALS_GAIN && offsetof(
                   offsetof(Signals, rails) == SIGNALS_RAILS && offsetof(Signals, joint) == SIGNALS_JOINT,
               "signals_layout.h");
 static_assert(offsetof(JointSignals, leader) == JOINT_LEADER && offsetof(JointSignals, follower) == JOINT_FOLLOWER &&
-                  offsetof(JointSignals, leader_kept) == JOINT_LEADER_KEPT &&
-                  offsetof(JointSignals, follower_kept) == JOINT_FOLLOWER_KEPT &&
+                  offsetof(JointSignals, leader_old_share) == JOINT_LEADER_OLD_SHARE &&
+                  offsetof(JointSignals, follower_old_share) == JOINT_FOLLOWER_OLD_SHARE &&
                   offsetof(JointSignals, follower_angle) == JOINT_FOLLOWER_ANGLE &&
                   offsetof(JointSignals, limit_min) == JOINT_LIMIT_MIN &&
                   offsetof(JointSignals, limit_max) == JOINT_LIMIT_MAX &&
@@ -53,10 +53,10 @@ bool note_rail(uint8_t pot, uint16_t& sum, const Signals& signals, uint16_t filt
   return (signals.rails & hold_rails) != 0;
 }
 
-int16_t follow(signal_chain::Pot& pot, uint16_t kept, uint8_t number, uint16_t sum, const Signals& signals,
+int16_t follow(signal_chain::Pot& pot, uint16_t old_share, uint8_t number, uint16_t sum, const Signals& signals,
                supervisor::Observation& seen) {
   const bool hold = note_rail(number, sum, signals, pot.filtered, seen);
-  if (!hold) pot.filtered = signal_chain::add_to_kept(kept, sum, signals.low_pass);
+  if (!hold) pot.filtered = signal_chain::add_sum(old_share, sum, signals.low_pass);
   return signal_chain::angle(pot);
 }
 
@@ -67,18 +67,18 @@ void follow_pots_portable(const uint16_t* sums, Signals* signals, supervisor::Ob
   for (uint8_t i = 0; i < hal::joint_count; ++i) {
     const uint8_t other = static_cast<uint8_t>(i + hal::joint_count);
     JointSignals& joint = signals->joint[i];
-    const int16_t wanted = signal_chain::clamp(follow(joint.leader, joint.leader_kept, i, sums[i], *signals, *seen),
-                                               joint.limit_min, joint.limit_max);
-    const int16_t is = follow(joint.follower, joint.follower_kept, other, sums[other], *signals, *seen);
+    const int16_t wanted = signal_chain::clamp(
+        follow(joint.leader, joint.leader_old_share, i, sums[i], *signals, *seen), joint.limit_min, joint.limit_max);
+    const int16_t is = follow(joint.follower, joint.follower_old_share, other, sums[other], *signals, *seen);
     joint.follower_angle = is;
     joint.error = fuzzy_pdi::difference(wanted, is);
   }
 }
 
-void keep_filtered(Signals& signals) {
+void prepare_low_passes(Signals& signals) {
   for (JointSignals& joint : signals.joint) {
-    joint.leader_kept = signal_chain::kept(joint.leader.filtered, signals.low_pass);
-    joint.follower_kept = signal_chain::kept(joint.follower.filtered, signals.low_pass);
+    joint.leader_old_share = signal_chain::old_share(joint.leader.filtered, signals.low_pass);
+    joint.follower_old_share = signal_chain::old_share(joint.follower.filtered, signals.low_pass);
   }
 }
 

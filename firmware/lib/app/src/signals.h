@@ -9,13 +9,14 @@ namespace app {
 
 struct JointSignals {
   signal_chain::Pot leader, follower;
-  uint16_t leader_kept, follower_kept;  // of the low-passes, for the next tick: keep_filtered()
-  int16_t follower_angle;               // q12 rad
-  int16_t limit_min, limit_max;         // of the reference, which is the leader within them
-  int16_t error;                        // reference - follower, saturated at +-32767
+  uint16_t leader_old_share, follower_old_share;  // see signal_chain::LowPass
+  int16_t follower_angle;                         // q12 rad
+  int16_t limit_min, limit_max;                   // of the reference, which is the leader within them
+  int16_t error;                                  // reference - follower, saturated at +-32767
 };
 
-// A rail is told in Observation. The sum is not taken: the angle stays that of the last good one.
+// What a sum at a rail means. tell_rails: Observation has the pot's bit. hold_rails: its angle stays that of the last
+// good sum.
 enum Rails : uint8_t { hold_rails = 1, tell_rails = 2 };
 
 struct Signals {
@@ -28,8 +29,8 @@ struct Signals {
 // `sums` are those of all pots, as hal::pot_sums() gives them, marks included. Writes the rails of `seen`.
 void follow_pots_portable(const uint16_t* sums, Signals* signals, supervisor::Observation* seen);
 
-// Between ticks: takes the next one's share of the work.
-void keep_filtered(Signals& signals);
+// Between ticks: works out the share of the old value in each low-pass, for the next tick.
+void prepare_low_passes(Signals& signals);
 
 #if defined(__AVR__)
 

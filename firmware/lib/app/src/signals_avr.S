@@ -20,16 +20,16 @@
 // Places in the record of one joint, from Z. Z is at Signals for joint 0 and one record further for each next joint.
 #define LEADER (SIGNALS_JOINT + JOINT_LEADER)
 #define FOLLOWER (SIGNALS_JOINT + JOINT_FOLLOWER)
-#define LEADER_KEPT (SIGNALS_JOINT + JOINT_LEADER_KEPT)
-#define FOLLOWER_KEPT (SIGNALS_JOINT + JOINT_FOLLOWER_KEPT)
+#define LEADER_OLD_SHARE (SIGNALS_JOINT + JOINT_LEADER_OLD_SHARE)
+#define FOLLOWER_OLD_SHARE (SIGNALS_JOINT + JOINT_FOLLOWER_OLD_SHARE)
 #define FOLLOWER_ANGLE (SIGNALS_JOINT + JOINT_FOLLOWER_ANGLE)
 #define LIMIT_MIN (SIGNALS_JOINT + JOINT_LIMIT_MIN)
 #define LIMIT_MAX (SIGNALS_JOINT + JOINT_LIMIT_MAX)
 #define ERROR (SIGNALS_JOINT + JOINT_ERROR)
 
-// The low-pass of a pot into r19:r18. `pot` is 0..7, `at` the place of its Pot after Z, `kept` that of what its low-pass keeps. Where
-// its sum is at a rail and must not be used, this jumps to `held`.
-.macro filtered pot, at, kept, held
+// The low-pass of a pot into r19:r18. `pot` is 0..7, `at` the place of its Pot after Z, `share` that of its old
+// value's share. Where its sum is at a rail and must not be used, this jumps to `held`.
+.macro filtered pot, at, share, held
   ldd r24, Y+2*(\pot)
   ldd r25, Y+2*(\pot)+1
   cp HIGHEST_LOW, r24
@@ -62,9 +62,9 @@
   rjmp 5f
 4:rjmp \held
 5:
-  // kept + sum (r25:r24) * GAIN
-  ldd r18, Z+(\kept)
-  ldd r19, Z+(\kept)+1
+  // the old share + sum (r25:r24) * GAIN
+  ldd r18, Z+(\share)
+  ldd r19, Z+(\share)+1
   mul r24, GAIN
   add r18, r0
   adc r19, r1
@@ -106,7 +106,7 @@
 .endm
 
 .macro joint number
-  filtered \number, LEADER, LEADER_KEPT, .Lleader_held_\number
+  filtered \number, LEADER, LEADER_OLD_SHARE, .Lleader_held_\number
 .Lleader_\number:
   angle LEADER
   ldd r18, Z+LIMIT_MIN
@@ -121,7 +121,7 @@
   brge 3f
 2:movw r24, r18
 3:movw r8, r24
-  filtered \number+4, FOLLOWER, FOLLOWER_KEPT, .Lfollower_held_\number
+  filtered \number+4, FOLLOWER, FOLLOWER_OLD_SHARE, .Lfollower_held_\number
   angle FOLLOWER
   std Z+FOLLOWER_ANGLE, r24
   std Z+FOLLOWER_ANGLE+1, r25

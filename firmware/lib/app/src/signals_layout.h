@@ -11,8 +11,8 @@
 // In JointSignals, which are in a row
 #define JOINT_LEADER 0
 #define JOINT_FOLLOWER 8
-#define JOINT_LEADER_KEPT 16
-#define JOINT_FOLLOWER_KEPT 18
+#define JOINT_LEADER_OLD_SHARE 16
+#define JOINT_FOLLOWER_OLD_SHARE 18
 #define JOINT_FOLLOWER_ANGLE 20
 #define JOINT_LIMIT_MIN 22
 #define JOINT_LIMIT_MAX 24

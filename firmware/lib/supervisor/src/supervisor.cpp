@@ -76,7 +76,7 @@ void Supervisor::forget_fault() {
 bool Supervisor::restart(const Observation& seen, const Distances& distances) {
   if (fault_ != Fault::unrest || state_ != State::fault) return false;
   state_ = State::disabled;
-  if (enable(lease_, seen, distances).answer == Answer::ok) return true;
+  if (enable(lease_, seen, distances).refusal == NackCode::none) return true;
   state_ = State::fault;
   return false;
 }
@@ -85,14 +85,14 @@ void Supervisor::bytes_lost(uint16_t tick) {
   if (motors_on() && overruns_.lost(tick)) raise(Fault::flood, nowhere);
 }
 
-void Supervisor::look_at_rails(const Observation& seen) {
+void Supervisor::note_rails(const Observation& seen) {
   if ((seen.rail_low | seen.rail_high) != 0) rails_.fill(seen.rail_low, seen.rail_high);
   if (!motors_on()) return;
   if (rails_.bad_low()) return raise(Fault::pot_low, lowest_bit(rails_.bad_low()));
   if (rails_.bad_high()) raise(Fault::pot_high, lowest_bit(rails_.bad_high()));
 }
 
-void Supervisor::look(uint8_t joint, const JointSeen& seen, const MotionLimits& limits) {
+void Supervisor::look_at_joint(uint8_t joint, const JointSeen& seen, const MotionLimits& limits) {
   rails_.leak(joint);
   if (state_ == State::soft_start && !soft_start_.ended()) soft_start_.advance();
   if (motors_on()) watch_joint(joint, seen, limits);
@@ -136,17 +136,17 @@ void Supervisor::raise(Fault fault, uint8_t where) {
 Reply Supervisor::enable(uint16_t lease_ms, const Observation& seen, const Distances& distances) {
   if (motors_on()) {
     lease_ = lease_ms;
-    return {Answer::ok, nowhere, 0};
+    return {NackCode::none, nowhere, 0};
   }
-  if (state_ == State::boot) return {Answer::booting, nowhere, 0};
-  if (state_ == State::fault) return {Answer::in_fault, nowhere, static_cast<uint16_t>(fault_)};
-  if (seen.estop) return {Answer::estop, nowhere, 0};
+  if (state_ == State::boot) return {NackCode::booting, nowhere, 0};
+  if (state_ == State::fault) return {NackCode::in_fault, nowhere, static_cast<uint16_t>(fault_)};
+  if (seen.estop) return {NackCode::estop_pressed, nowhere, 0};
   const uint8_t low = rails_.bad_low() | seen.rail_low, high = rails_.bad_high() | seen.rail_high;
-  if (low) return {Answer::pot_bad, lowest_bit(low), static_cast<uint16_t>(Fault::pot_low)};
-  if (high) return {Answer::pot_bad, lowest_bit(high), static_cast<uint16_t>(Fault::pot_high)};
+  if (low) return {NackCode::pot_bad, lowest_bit(low), static_cast<uint16_t>(Fault::pot_low)};
+  if (high) return {NackCode::pot_bad, lowest_bit(high), static_cast<uint16_t>(Fault::pot_high)};
   for (uint8_t i = 0; i < joint_count; ++i) {
     const uint16_t distance = distances.of[i];
-    if (distance > limits_.enable_limit) return {Answer::too_far, i, distance};
+    if (distance > limits_.enable_limit) return {NackCode::error_too_large, i, distance};
     lost_ms_[i] = 0;
   }
   state_ = State::soft_start;
@@ -156,7 +156,7 @@ Reply Supervisor::enable(uint16_t lease_ms, const Observation& seen, const Dista
   unrest_.forget();
   motion_.forget();
   lease_ = lease_ms;
-  return {Answer::ok, nowhere, 0};
+  return {NackCode::none, nowhere, 0};
 }
 
 void Supervisor::stop() {
@@ -168,21 +168,21 @@ void Supervisor::renew(uint16_t lease_ms) {
 }
 
 Reply Supervisor::clear_fault(const Observation& seen, const Distances& distances) {
-  if (state_ == State::boot) return {Answer::booting, nowhere, 0};
-  if (state_ != State::fault) return {Answer::ok, nowhere, 0};
-  if (seen.estop) return {Answer::estop, nowhere, 0};
+  if (state_ == State::boot) return {NackCode::booting, nowhere, 0};
+  if (state_ != State::fault) return {NackCode::none, nowhere, 0};
+  if (seen.estop) return {NackCode::estop_pressed, nowhere, 0};
   const uint8_t low = rails_.bad_low(), high = rails_.bad_high();
-  if (low) return {Answer::pot_bad, lowest_bit(low), static_cast<uint16_t>(Fault::pot_low)};
-  if (high) return {Answer::pot_bad, lowest_bit(high), static_cast<uint16_t>(Fault::pot_high)};
-  if (!params_ok_) return {Answer::params, nowhere, static_cast<uint16_t>(Fault::params)};
-  if (fault_ == Fault::late_tick && seen.late) return {Answer::in_fault, nowhere, static_cast<uint16_t>(fault_)};
+  if (low) return {NackCode::pot_bad, lowest_bit(low), static_cast<uint16_t>(Fault::pot_low)};
+  if (high) return {NackCode::pot_bad, lowest_bit(high), static_cast<uint16_t>(Fault::pot_high)};
+  if (!params_ok_) return {NackCode::set_lost, nowhere, 0};
+  if (fault_ == Fault::late_tick && seen.late) return {NackCode::in_fault, nowhere, static_cast<uint16_t>(fault_)};
   if (fault_ == Fault::tracking) {
     const uint16_t distance = distances.of[fault_where_];
-    if (distance > limits_.tracking_limit) return {Answer::too_far, fault_where_, distance};
+    if (distance > limits_.tracking_limit) return {NackCode::error_too_large, fault_where_, distance};
   }
   state_ = State::disabled;
   forget_fault();
-  return {Answer::ok, nowhere, 0};
+  return {NackCode::none, nowhere, 0};
 }
 
 }  // namespace supervisor

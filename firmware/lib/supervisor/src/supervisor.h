@@ -15,6 +15,7 @@ constexpr uint8_t joint_count = 4;
 constexpr uint8_t nowhere = 255;  // fault_where when the fault has no pot or joint
 
 using codes::Fault;
+using codes::NackCode;
 using codes::State;
 using codes::StopReason;
 
@@ -46,12 +47,11 @@ struct JointSeen {
   uint16_t supply_mv;
 };
 
-// Why a request was refused; `where` is a pot for pot_bad and a joint for too_far.
-enum class Answer : uint8_t { ok, booting, in_fault, pot_bad, too_far, params, estop };
+// Why a request is refused, or NackCode::none.
 struct Reply {
-  Answer answer;
-  uint8_t where;
-  uint16_t detail;  // the Fault for pot_bad and in_fault, the distance for too_far
+  NackCode refusal;
+  uint8_t where;    // a pot for pot_bad, a joint for error_too_large, else nowhere
+  uint16_t detail;  // the Fault for pot_bad and in_fault, the distance for error_too_large
 };
 
 class Supervisor {
@@ -70,9 +70,9 @@ class Supervisor {
   // Bytes of the link were lost in this tick: a stop may have been among them.
   void bytes_lost(uint16_t tick);
   // Right after tick() when it has seen potentiometers at a rail.
-  void look_at_rails(const Observation& seen);
+  void note_rails(const Observation& seen);
   // Between ticks, the next joint after each. It also moves the soft start on, which a tick has no time for.
-  void look(uint8_t joint, const JointSeen& seen, const MotionLimits& limits);
+  void look_at_joint(uint8_t joint, const JointSeen& seen, const MotionLimits& limits);
   // After unrest: starts the motors again, within the lease as it was. The fault stays to be seen. False when refused.
   bool restart(const Observation& seen, const Distances& distances);
 

@@ -20,7 +20,7 @@ int angle_of(int sum, int zero, int scale) {
 
 void tick(app::Sampling& sampling, const std::uint16_t* sums, supervisor::Observation& seen) {
   sampling.tick(sums, seen);
-  sampling.prepare();
+  sampling.prepare_low_passes();
 }
 
 }  // namespace

@@ -51,9 +51,9 @@ struct Arm : Supervisor {
   Arm& run(unsigned ticks, const Seen& seen = calm) {
     for (; ticks > 0; --ticks, ++now) {
       tick(seen);
-      look_at_rails(seen);
+      note_rails(seen);
       const auto joint = static_cast<std::uint8_t>(now % joint_count);
-      look(joint, {0, 0, seen.distances.of[joint], 0, 15000}, {});
+      look_at_joint(joint, {0, 0, seen.distances.of[joint], 0, 15000}, {});
     }
     last = seen;
     return *this;
@@ -65,7 +65,7 @@ struct Arm : Supervisor {
   Arm& booted() { return run(20); }
   Arm& enabled(std::uint16_t lease = 0) {
     booted();
-    REQUIRE(enable(lease).answer == Answer::ok);
+    REQUIRE(enable(lease).refusal == NackCode::none);
     return *this;
   }
   Arm& following() {
@@ -82,8 +82,8 @@ TEST_CASE("boot lasts 20 ticks, ends in disabled and refuses enable until then")
   CHECK(arm.stop_reason() == StopReason::reset);
   arm.run(19);
   CHECK(arm.state() == State::boot);
-  CHECK(arm.enable(0).answer == Answer::booting);
-  CHECK(arm.clear_fault().answer == Answer::booting);
+  CHECK(arm.enable(0).refusal == NackCode::booting);
+  CHECK(arm.clear_fault().refusal == NackCode::booting);
   arm.run(1);
   CHECK(arm.state() == State::disabled);
   CHECK_FALSE(arm.motors_on());
@@ -95,9 +95,9 @@ TEST_CASE("after a watchdog reset the arm waits in fault until it is cleared") {
   CHECK(arm.state() == State::fault);
   CHECK(arm.fault() == Fault::watchdog);
   const Reply refused = arm.enable(0);
-  CHECK(refused.answer == Answer::in_fault);
+  CHECK(refused.refusal == NackCode::in_fault);
   CHECK(refused.detail == static_cast<unsigned>(Fault::watchdog));
-  CHECK(arm.clear_fault().answer == Answer::ok);
+  CHECK(arm.clear_fault().refusal == NackCode::none);
   CHECK(arm.state() == State::disabled);
   CHECK(arm.fault() == Fault::none);
 }
@@ -106,10 +106,10 @@ TEST_CASE("a stored set that cannot run is a fault until another set is applied"
   Arm arm(false, false);
   arm.booted();
   CHECK(arm.fault() == Fault::params);
-  CHECK(arm.clear_fault().answer == Answer::params);
+  CHECK(arm.clear_fault().refusal == NackCode::set_lost);
   CHECK(arm.state() == State::fault);
   arm.params_mended();
-  CHECK(arm.clear_fault().answer == Answer::ok);
+  CHECK(arm.clear_fault().refusal == NackCode::none);
   CHECK(arm.state() == State::disabled);
 }
 
@@ -118,12 +118,12 @@ TEST_CASE("enable is refused beyond the limit on any joint and names it") {
     Arm arm;
     arm.booted().run(1, apart(joint, 3278));
     const Reply refused = arm.enable(0);
-    CHECK(refused.answer == Answer::too_far);
+    CHECK(refused.refusal == NackCode::error_too_large);
     CHECK(refused.where == joint);
     CHECK(refused.detail == 3278);
     CHECK(arm.state() == State::disabled);
     arm.run(1, apart(joint, 3277));
-    CHECK(arm.enable(0).answer == Answer::ok);
+    CHECK(arm.enable(0).refusal == NackCode::none);
   }
 }
 
@@ -131,7 +131,7 @@ TEST_CASE("enable is refused while a pot is at a rail") {
   Arm arm;
   arm.booted().run(1, with_rails(1 << 5, 0));
   Reply refused = arm.enable(0);
-  CHECK(refused.answer == Answer::pot_bad);
+  CHECK(refused.refusal == NackCode::pot_bad);
   CHECK(refused.where == 5);
   CHECK(refused.detail == static_cast<unsigned>(Fault::pot_low));
   arm.run(1, with_rails(0, 1 << 2));
@@ -169,7 +169,7 @@ TEST_CASE("a second enable ramps from zero again") {
   Arm arm;
   arm.following().stop();
   CHECK(arm.share_q15() == 0);
-  CHECK(arm.enable(0).answer == Answer::ok);
+  CHECK(arm.enable(0).refusal == NackCode::none);
   CHECK(arm.state() == State::soft_start);
   CHECK(arm.share_q15() == 32768 / limits.soft_start_ms);
 }
@@ -201,15 +201,15 @@ TEST_CASE("a late tick is a fault at once while motors are on, and only then") {
   arm.booted().run(3, late());
   CHECK(arm.state() == State::disabled);
   arm.run(1);
-  REQUIRE(arm.enable(0).answer == Answer::ok);
+  REQUIRE(arm.enable(0).refusal == NackCode::none);
   arm.run(1, late());
   CHECK(arm.state() == State::fault);
   CHECK(arm.fault() == Fault::late_tick);
   CHECK(arm.fault_where() == nowhere);
   CHECK_FALSE(arm.motors_on());
-  CHECK(arm.clear_fault().answer == Answer::in_fault);  // the last tick was late
+  CHECK(arm.clear_fault().refusal == NackCode::in_fault);  // the last tick was late
   arm.run(1);
-  CHECK(arm.clear_fault().answer == Answer::ok);
+  CHECK(arm.clear_fault().refusal == NackCode::none);
 }
 
 TEST_CASE("a pot at a rail for three ticks in a row is a fault and names the pot; two are not") {
@@ -225,11 +225,11 @@ TEST_CASE("a pot at a rail for three ticks in a row is a fault and names the pot
       CHECK(arm.fault() == (high ? Fault::pot_high : Fault::pot_low));
       CHECK(arm.fault_where() == pot);
       const Reply refused = arm.clear_fault();
-      CHECK(refused.answer == Answer::pot_bad);
+      CHECK(refused.refusal == NackCode::pot_bad);
       CHECK(refused.where == pot);
       CHECK(refused.detail == static_cast<unsigned>(arm.fault()));
       arm.run(50);
-      CHECK(arm.clear_fault().answer == Answer::ok);
+      CHECK(arm.clear_fault().refusal == NackCode::none);
     }
   }
 }
@@ -283,9 +283,9 @@ TEST_CASE("tracking: beyond the limit for tracking_ms in a row, to a look") {
   CHECK(arm.state() == State::fault);
   CHECK(arm.fault() == Fault::tracking);
   CHECK(arm.fault_where() == 3);
-  CHECK(arm.clear_fault().answer == Answer::too_far);
+  CHECK(arm.clear_fault().refusal == NackCode::error_too_large);
   arm.run(1, apart(3, 10240));
-  CHECK(arm.clear_fault().answer == Answer::ok);
+  CHECK(arm.clear_fault().refusal == NackCode::none);
 }
 
 TEST_CASE("tracking: at the limit is within it, and a limit of 0 turns the check off") {
@@ -302,7 +302,7 @@ TEST_CASE("time lost before a stop does not count after the next enable") {
   Arm arm;
   arm.following().run(400, apart(1, 20000)).stop();
   arm.run(1);
-  REQUIRE(arm.enable(0).answer == Answer::ok);
+  REQUIRE(arm.enable(0).refusal == NackCode::none);
   arm.run(496, apart(1, 20000));
   CHECK(arm.motors_on());
   arm.run(4, apart(1, 20000));
@@ -321,7 +321,7 @@ TEST_CASE("a lease runs out on its tick; renew and a repeated enable start it an
   renewed.enabled(100).run(99).renew(100);
   renewed.run(99);
   CHECK(renewed.motors_on());
-  CHECK(renewed.enable(50).answer == Answer::ok);
+  CHECK(renewed.enable(50).refusal == NackCode::none);
   CHECK(renewed.state() == State::soft_start);
   renewed.run(49);
   CHECK(renewed.motors_on());
@@ -376,18 +376,18 @@ TEST_CASE("the emergency stop acts at once in every state but boot, where it wai
 TEST_CASE("the emergency stop is latched, and neither clear_fault nor enable works while it is pressed") {
   Arm arm;
   arm.following().run(1, pressed());
-  CHECK(arm.clear_fault().answer == Answer::estop);
+  CHECK(arm.clear_fault().refusal == NackCode::estop_pressed);
   arm.run(1000);
   CHECK(arm.fault() == Fault::estop);
-  CHECK(arm.enable(0).answer == Answer::in_fault);
-  CHECK(arm.clear_fault().answer == Answer::ok);
+  CHECK(arm.enable(0).refusal == NackCode::in_fault);
+  CHECK(arm.clear_fault().refusal == NackCode::none);
   arm.run(1);
-  CHECK(arm.enable(0).answer == Answer::ok);
+  CHECK(arm.enable(0).refusal == NackCode::none);
 
   Arm just_pressed;
   just_pressed.booted();
   just_pressed.last = pressed();  // since the last tick
-  CHECK(just_pressed.enable(0).answer == Answer::estop);
+  CHECK(just_pressed.enable(0).refusal == NackCode::estop_pressed);
 }
 
 TEST_CASE("the emergency stop comes before every other fault of its tick, but leaves one that stands") {
@@ -400,7 +400,7 @@ TEST_CASE("the emergency stop comes before every other fault of its tick, but le
   Arm later;
   later.following().run(1, late()).run(5, pressed());
   CHECK(later.fault() == Fault::late_tick);
-  CHECK(later.clear_fault().answer == Answer::estop);
+  CHECK(later.clear_fault().refusal == NackCode::estop_pressed);
 }
 
 TEST_CASE("damaged parameters are a fault in every state, which stands until a set is applied") {
@@ -418,13 +418,13 @@ TEST_CASE("damaged parameters are a fault in every state, which stands until a s
   CHECK(arm.state() == State::fault);
   CHECK(arm.fault() == Fault::memory);
   CHECK(arm.stop_reason() == StopReason::fault);
-  CHECK(arm.clear_fault().answer == Answer::params);
+  CHECK(arm.clear_fault().refusal == NackCode::set_lost);
   arm.params_mended();
-  CHECK(arm.clear_fault().answer == Answer::ok);
-  CHECK(arm.enable(0).answer == Answer::ok);
+  CHECK(arm.clear_fault().refusal == NackCode::none);
+  CHECK(arm.enable(0).refusal == NackCode::none);
 
   Arm late_before;
   late_before.following().run(1, late()).lose_params();
   CHECK(late_before.fault() == Fault::late_tick);
-  CHECK(late_before.clear_fault().answer == Answer::params);
+  CHECK(late_before.clear_fault().refusal == NackCode::set_lost);
 }

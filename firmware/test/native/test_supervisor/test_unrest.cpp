@@ -29,7 +29,7 @@ struct Arm : Supervisor {
     set_unrest_limits(unrest);
     begin(false, true);
     for (int i = 0; i < 20; ++i) tick({});
-    REQUIRE(enable(0, {}, {}).answer == Answer::ok);
+    REQUIRE(enable(0, {}, {}).refusal == NackCode::none);
   }
 
   // Joint 2 has this leader and this error, all others are at rest. The time in s of the fault, or -1.
@@ -47,7 +47,8 @@ struct Arm : Supervisor {
 
   void look_at(std::uint8_t joint, double leader, double error) {
     const auto reference = std::lround(q12 * leader), apart = std::lround(q12 * error);
-    look(joint, {static_cast<std::int16_t>(reference - apart), static_cast<std::int16_t>(apart), 0, 0, 15000}, {});
+    look_at_joint(joint, {static_cast<std::int16_t>(reference - apart), static_cast<std::int16_t>(apart), 0, 0, 15000},
+                  {});
   }
 
   unsigned now = 0;  // ms
@@ -173,11 +174,11 @@ TEST_CASE(
   CHECK(arm.run(0.9, still, swing(0.1, 8)) < 0);
   arm.stop();
   CHECK(arm.run(5, still, swing(0.1, 8)) < 0);
-  REQUIRE(arm.enable(0, {}, {}).answer == Answer::ok);
+  REQUIRE(arm.enable(0, {}, {}).refusal == NackCode::none);
   CHECK(arm.run(0.95, still, swing(0.1, 8)) < 0);
   CHECK(arm.run(0.6, still, swing(0.1, 8)) > 0);
   CHECK(arm.stop_reason() == StopReason::fault);
-  CHECK(arm.enable(0, {}, {}).answer == Answer::in_fault);
-  CHECK(arm.clear_fault({}, {}).answer == Answer::ok);
-  CHECK(arm.enable(0, {}, {}).answer == Answer::ok);
+  CHECK(arm.enable(0, {}, {}).refusal == NackCode::in_fault);
+  CHECK(arm.clear_fault({}, {}).refusal == NackCode::none);
+  CHECK(arm.enable(0, {}, {}).refusal == NackCode::none);
 }

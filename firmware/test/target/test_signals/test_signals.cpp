@@ -72,8 +72,8 @@ void setup() {
       uint16_t sums[hal::pot_count];
       for (uint16_t& sum : sums) sum = reading() | (next_random() & 7 ? 0 : hal::rail_mark * (1 + (next_random() & 3)));
       supervisor::Observation by_fast = {}, by_portable = {};
-      app::keep_filtered(fast);
-      app::keep_filtered(portable);
+      app::prepare_low_passes(fast);
+      app::prepare_low_passes(portable);
       app::follow_pots(sums, &fast, &by_fast);
       app::follow_pots_portable(sums, &portable, &by_portable);
       signals_differ += memcmp(&fast, &portable, sizeof fast) != 0;

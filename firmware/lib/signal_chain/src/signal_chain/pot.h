@@ -4,27 +4,28 @@
 
 namespace signal_chain {
 
-// The weights of the low-pass: filtered = filtered * keep / 2^8 + sum * gain.
+// A low-pass smooths a potentiometer's readings: each tick gives it the new value
+//   filtered * keep / 2^8, rounded, + sum * gain
+// where `filtered` is the value before, the 10-bit count x 64, and `sum` is of four 10-bit conversions. The first
+// product is the share of the old value. It does not need the sum, so it is worked out before the tick.
 struct LowPass {
   uint8_t keep, gain;
 };
 
-// Each tick takes a share of 2^-shift of the new sum, shift 0..4; 0 takes the sum whole.
+// The new sum has a weight of 2^-shift, shift 0..4; with 0 nothing is left of the old value.
 constexpr LowPass low_pass(uint8_t shift) {
   return {static_cast<uint8_t>(256 - (256 >> shift)), static_cast<uint8_t>(16 >> shift)};
 }
 
-// One tick of the low-pass. `sum` is of four 10-bit conversions, `filtered` the 10-bit count x 64. What is kept of it
-// is known before the sum is.
-inline uint16_t kept(uint16_t filtered, LowPass weights) {
+inline uint16_t old_share(uint16_t filtered, LowPass weights) {
   if (weights.keep == 128) return static_cast<uint16_t>(filtered - (filtered >> 1));  // the default, and no product
   return static_cast<uint16_t>((static_cast<uint32_t>(filtered) * weights.keep + 128) >> 8);
 }
-inline uint16_t add_to_kept(uint16_t kept, uint16_t sum, LowPass weights) {
-  return static_cast<uint16_t>(kept + static_cast<uint32_t>(sum) * weights.gain);
+inline uint16_t add_sum(uint16_t old_share, uint16_t sum, LowPass weights) {
+  return static_cast<uint16_t>(old_share + static_cast<uint32_t>(sum) * weights.gain);
 }
 inline uint16_t filter(uint16_t filtered, uint16_t sum, LowPass weights) {
-  return add_to_kept(kept(filtered, weights), sum, weights);
+  return add_sum(old_share(filtered, weights), sum, weights);
 }
 
 // angle = (filtered * scale + offset) / 2^15 in q12 rad. The sum has 31 bits at most, the angle 16.

@@ -1,0 +1,253 @@
+// See tick.h.
+#include "tick.h"
+
+#include <hal.h>
+
+#include "counting.h"
+
+namespace app {
+namespace {
+
+constexpr uint8_t checked_parts = hal::joint_count + 4;
+
+// Sets the LED every 32 ms: on while following, quick while starting, a short flash each second while disabled, 4 Hz in
+// fault.
+void show(supervisor::State state, uint16_t ms) {
+  if (static_cast<uint8_t>(ms) & 31) return;
+  switch (state) {
+    case supervisor::State::boot:
+    case supervisor::State::following: hal::set_led(true); break;
+    case supervisor::State::disabled: hal::set_led((ms & 1023) < 64); break;
+    case supervisor::State::soft_start: hal::set_led(ms & 32); break;
+    case supervisor::State::fault: hal::set_led(ms & 128); break;
+  }
+}
+
+}  // namespace
+
+void Tick::begin() {
+  const bool same_set = sets_.begin(controllers_);
+  take_running_set();
+  supervisor_.begin(hal::reset_cause() == hal::ResetCause::watchdog, same_set);
+  hal::begin();
+  hal::watchdog_start();
+}
+
+// Hands the running set to those who keep parts of it in a form of their own. The controllers have taken theirs joint
+// by joint.
+void Tick::take_running_set() {
+  const params::Table& table = sets_.running();
+  sampling_.configure(table);
+  drive_.configure(table);
+  supervisor_.set_limits({table.enable_limit, table.tracking_limit, table.tracking_ms, table.soft_start_ms});
+  supervisor_.set_unrest_limits({table.unrest_amplitude, table.unrest_rate, table.unrest_time});
+  learn_memory();
+}
+
+void Tick::run() {
+  const hal::TickStart start = hal::tick_begin();
+  count(start);
+  if (const uint16_t* sums = hal::pot_sums()) {
+    sampling_.tick(sums, seen_);
+    hal::release_pots();
+  }
+  supervise(start.late);
+  follow_supervisor();
+  if (drivers_on_) control();
+  const uint16_t age_us = hal::tick_age_us();
+  if (age_us > longest_us_ && !set_touched_) longest_us_ = age_us;
+  set_touched_ = finished_ = false;
+  hal::watchdog_kick();
+  hal::tick_end();
+}
+
+void Tick::count(hal::TickStart start) {
+  number_ += start.elapsed;
+  if (!start.late || set_touched_) return;
+  late_ticks_ = add_saturated(late_ticks_, start.elapsed > 1 ? static_cast<uint8_t>(start.elapsed - 1) : uint8_t{1});
+}
+
+// A closing button pulls its input low. An opening one holds it low until it is pressed, or until a wire breaks.
+inline bool Tick::estop_pressed() const {
+  const uint8_t button = sets_.running().estop_input;
+  return button != 0 && hal::estop_low() == (button == 1);
+}
+
+void Tick::supervise(bool late) {
+  seen_.late = late;
+  seen_.estop = estop_pressed();
+  supervisor_.tick(seen_);
+  if ((seen_.rail_low | seen_.rail_high) != 0) note_rails();
+}
+
+__attribute__((noinline)) void Tick::note_rails() {
+  const uint8_t pots = sampling_.pots_in_use();
+  seen_.rail_low &= pots;
+  seen_.rail_high &= pots;
+  supervisor_.note_rails(seen_);
+}
+
+__attribute__((noinline)) void Tick::switch_drivers() {
+  drivers_on_ = !drivers_on_;
+  if (!drivers_on_) hal::set_drivers(false);
+  controllers_.reset();
+  drive_.release();
+  sampling_.hold(drivers_on_);
+  until_control_ = 1;
+  set_limit();
+  if (drivers_on_) hal::set_drivers(true);
+}
+
+void Tick::set_limit() { controllers_.set_limit(sets_.running().supply_mv, supervisor_.share_q15()); }
+
+// Each joint is written out: its number, known at compile time, makes its registers constants.
+void Tick::control() {
+  if (--until_control_) return;
+  until_control_ = sets_.running().period_ms;
+  const uint16_t limit_mv = controllers_.limit_mv();
+  control_joint<0>(limit_mv);
+  control_joint<1>(limit_mv);
+  control_joint<2>(limit_mv);
+  control_joint<3>(limit_mv);
+}
+
+template <uint8_t joint>
+inline __attribute__((always_inline)) void Tick::control_joint(uint16_t limit_mv) {
+  const MotorVoltage out = controllers_.step(joint, sampling_.error(joint), limit_mv);
+  drive_.set<joint>(out.size_mv, out.sign, sets_.running());
+}
+
+// --- Between two ticks
+
+bool Tick::move_reference() {
+  if (!lead_.on()) return false;
+  const auto number = static_cast<uint8_t>(number_);
+  if (drivers_on_) {
+    if (!lead_.due(number)) return false;
+    lead_.advance(number, sampling_);
+    return true;
+  }
+  lead_.end();
+  sampling_.configure(sets_.running());
+  return true;
+}
+
+bool Tick::finish() {
+  if (finished_) return false;
+  finished_ = true;
+  look_at_joint();
+  check_memory();
+  prepare_next();
+  return true;
+}
+
+__attribute__((noinline)) void Tick::prepare_next() {
+  sampling_.prepare_low_passes();
+  set_limit();
+  show(supervisor_.state(), static_cast<uint16_t>(number_));
+}
+
+// The next joint after each tick.
+__attribute__((noinline)) void Tick::look_at_joint() {
+  const uint8_t joint = static_cast<uint8_t>(number_) % hal::joint_count;
+  const params::Table& table = sets_.running();
+  supervisor_.look_at_joint(joint,
+                            {sampling_.follower(joint), sampling_.error(joint), sampling_.distance(joint),
+                             controllers_.volts_mv(joint), table.supply_mv},
+                            {table.speed_limit, table.runaway_limit, table.stall_volts, table.stall_ms});
+  if (!drivers_on_ || supervisor_.motors_on()) return;
+  follow_supervisor();
+  if (supervisor_.fault() == supervisor::Fault::unrest) begin_safe_set();
+}
+
+// If the host wants one, and if there is nothing in its way. There is one safe set until a host applies another.
+void Tick::begin_safe_set() {
+  const bool can = !lead_.on() && sets_.save_state() != wire::SaveState::saving;
+  if (can && sets_.running().unrest_action == 1 && sets_.safe() == ParameterSets::Safe::no) sets_.begin_safe();
+}
+
+ParameterSets::Progress Tick::apply_step() {
+  set_touched_ = true;
+  const ParameterSets::Progress progress = sets_.work_on_apply(controllers_);
+  if (progress != ParameterSets::Progress::applied) return progress;
+  take_running_set();
+  if (sets_.safe() == ParameterSets::Safe::applied) return progress;
+  sampling_.forget();
+  supervisor_.params_mended();
+  return progress;
+}
+
+bool Tick::start_with_safe_set() {
+  if (set_touched_) return false;
+  sets_.safe_runs();
+  supervisor_.restart(seen_, distances());
+  follow_supervisor();
+  return true;
+}
+
+// --- What a host wants
+
+supervisor::Reply Tick::enable(uint16_t lease_ms) {
+  const supervisor::Reply reply = supervisor_.enable(lease_ms, seen_, distances());
+  follow_supervisor();
+  return reply;
+}
+
+// When the supervisor refuses, the motors stay off; move_reference() then gives the lead back to the leader arm.
+supervisor::Reply Tick::enable_with_host_leading(uint16_t lease_ms) {
+  if (!supervisor_.motors_on()) lead_.begin(sampling_);
+  return enable(lease_ms);
+}
+
+supervisor::Reply Tick::clear_fault() { return supervisor_.clear_fault(seen_, distances()); }
+
+void Tick::stop() {
+  supervisor_.stop();
+  follow_supervisor();
+}
+
+void Tick::note_lost_bytes() {
+  supervisor_.bytes_lost(static_cast<uint16_t>(number_));
+  follow_supervisor();
+}
+
+supervisor::Distances Tick::distances() const {
+  supervisor::Distances now;
+  for (uint8_t i = 0; i < hal::joint_count; ++i) now.of[i] = sampling_.distance(i);
+  return now;
+}
+
+// --- The memory that the tick works by
+
+Part Tick::checked_part(uint8_t number) const {
+  if (number < hal::joint_count) return controllers_.coefficients(number);
+  if (number == hal::joint_count) return {reinterpret_cast<const uint8_t*>(&sets_.running()), sizeof(params::Table)};
+  if (number == hal::joint_count + 1) return drive_.settings();
+  if (number == hal::joint_count + 2) return sampling_.rails();
+  return {reinterpret_cast<const uint8_t*>(&supervisor_.running_limits()), sizeof(supervisor::Limits)};
+}
+
+// False at the end of a round.
+__attribute__((noinline)) bool Tick::check_some_bytes() {
+  memory_.add(checked_part(memory_.part()));
+  return memory_.part() < checked_parts;
+}
+
+void Tick::learn_memory() {
+  memory_.restart();
+  while (check_some_bytes()) {
+  }
+  memory_.learn();
+}
+
+// After each tick, but not while a set is being applied.
+__attribute__((noinline)) void Tick::check_memory() {
+  if (sets_.applying()) return memory_.restart();
+  const uint8_t joint = static_cast<uint8_t>(number_) % hal::joint_count;
+  const bool pots_are_right = !sampling_.configure_joint(sets_.running(), joint, lead_.on());
+  if (pots_are_right && (check_some_bytes() || memory_.ends_well())) return;
+  supervisor_.lose_params();
+  follow_supervisor();
+}
+
+}  // namespace app

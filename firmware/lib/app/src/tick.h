@@ -1,0 +1,97 @@
+// The tick: from the potentiometers to the motors' duties, within what the supervisor allows. Between two ticks it
+// takes orders: a host's, by the link server, and its own, such as the safe set after unrest.
+#pragma once
+#include <link/schema.h>
+#include <stdint.h>
+#include <supervisor.h>
+
+#include "controllers.h"
+#include "drive.h"
+#include "lead.h"
+#include "memory_check.h"
+#include "parameter_sets.h"
+#include "sampling.h"
+
+namespace app {
+
+class Tick {
+ public:
+  Tick() : finished_(true), set_touched_(false) {}
+  void begin();
+  void run();  // when hal::tick_pending()
+
+  // --- Between two ticks, in this order.
+  // Moves the host's reference on, once in each tick and before anything else. When the motors have gone off, for
+  // whatever reason, the leader arm leads again before any request is taken. False when there was nothing to do.
+  bool move_reference();
+  // Looks at a joint, checks memory and prepares the next tick, once after each. False when that has been done.
+  bool finish();
+  // A set is being applied, or has been since the last tick, or the motors wait for the safe set.
+  bool set_changes() const { return sets_.applying() || set_touched_ || sets_.safe() == ParameterSets::Safe::applied; }
+  ParameterSets::Progress apply_step();  // while sets().applying()
+  // Starts the motors again, with the safe set. False while no tick has run with it.
+  bool start_with_safe_set();
+
+  // --- What a host may want.
+  supervisor::Reply enable(uint16_t lease_ms);
+  supervisor::Reply enable_with_host_leading(uint16_t lease_ms);
+  supervisor::Reply clear_fault();
+  void stop();
+  void renew(uint16_t lease_ms) { supervisor_.renew(lease_ms); }
+  Lead::Verdict take_point(const wire::LeadPointRequest& point) { return lead_.take(point, sampling_); }
+  void note_lost_bytes();
+  ParameterSets& sets() { return sets_; }
+
+  // --- What a host may know.
+  const ParameterSets& sets() const { return sets_; }
+  const supervisor::Supervisor& supervisor() const { return supervisor_; }
+  const Sampling& sampling() const { return sampling_; }
+  const Controllers& controllers() const { return controllers_; }
+  const Lead& lead() const { return lead_; }
+  uint32_t number() const { return number_; }
+  uint16_t late_ticks() const { return late_ticks_; }  // stops at 65535
+  uint16_t longest_us() const { return longest_us_; }  // tick, from the timer's start to its end
+
+ private:
+  void count(hal::TickStart start);
+  void supervise(bool late);
+  bool estop_pressed() const;
+  // Switches the drivers as the supervisor has decided. Call it wherever the supervisor may have changed its mind.
+  void follow_supervisor() {
+    if (supervisor_.motors_on() != drivers_on_) switch_drivers();
+  }
+  void switch_drivers();
+  void control();
+  template <uint8_t joint>
+  void control_joint(uint16_t limit_mv);
+  void set_limit();
+  void note_rails();
+  void look_at_joint();
+  void begin_safe_set();
+  void prepare_next();
+  void take_running_set();
+  supervisor::Distances distances() const;
+
+  Part checked_part(uint8_t number) const;
+  bool check_some_bytes();
+  void learn_memory();
+  void check_memory();
+
+  Sampling sampling_;
+  Controllers controllers_;
+  Drive drive_;
+  supervisor::Supervisor supervisor_;
+  supervisor::Observation seen_ = {};  // what the last tick has seen
+  ParameterSets sets_;
+  Lead lead_;
+  MemoryCheck memory_;
+
+  uint32_t number_ = 0;
+  uint16_t late_ticks_ = 0, longest_us_ = 0;
+  uint8_t until_control_ = 1;  // ticks
+  bool drivers_on_ = false;
+  bool finished_ : 1;
+  bool set_touched_ : 1;  // by a step of applying it since the last tick, so the next one may be late uncounted
+};
+
+}  // namespace app
