@@ -50,7 +50,7 @@ def read_book(path: Path) -> None:
 
 def journal(path: Path) -> None:
     with TuningJournal(path, REQUEST) as one:
-        one.tell("stage", np.ones((2, 12), dtype=np.int32), np.ones((2, 4)))
+        one.tell("stage", np.ones((2, 13), dtype=np.int32), np.ones((2, 4)))
 
 
 def read_journal(path: Path) -> None:

@@ -11,7 +11,7 @@ from greywhale.base.errors import UserError
 from greywhale.files.log import LogWriter, read_log
 from greywhale.files.log.layout import Origin
 from greywhale.files.log.parameters import lines_of, table_in
-from greywhale.files.parameter_file import SINCE_LAYOUT_2
+from greywhale.protocol import schema
 from greywhale.protocol.schema import Board
 from greywhale.protocol.table import ParameterTable
 from tests.files.test_parameter_file import tables
@@ -49,9 +49,12 @@ def test_a_log_gives_back_the_table_and_all_else(tmp_path: Path) -> None:
     assert max(len(line) for line in new) < 500
 
 
-def test_a_log_from_before_a_parameter_was_added_has_its_default() -> None:
-    facts = facts_of(TABLE)
-    facts["parameters"] = " ".join(one for one in facts["parameters"].split() if not one.startswith(SINCE_LAYOUT_2))
+@pytest.mark.parametrize("layout", [1, 2])
+def test_a_log_from_before_a_parameter_was_added_has_its_default(layout: int) -> None:
+    newer = tuple(one.name.rpartition(".")[2] for one in schema.PARAMETERS if one.since > layout)
+    facts = {
+        key: " ".join(one for one in text.split() if not one.startswith(newer)) for key, text in facts_of(TABLE).items()
+    }
     assert table_in(facts, "log", 0x1234, TABLE.board.key) == TABLE
 
 

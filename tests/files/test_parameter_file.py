@@ -44,12 +44,14 @@ def test_neighbouring_raw_values_stay_apart_at_the_ends_of_the_range(parameter: 
         assert parameter.to_raw(physical(parameter, raw)) == raw
 
 
-def test_a_backup_of_layout_1_gets_the_defaults_of_what_it_lacks(tmp_path: Path) -> None:
+@pytest.mark.parametrize("layout", [1, 2])
+def test_a_backup_of_an_older_layout_gets_the_defaults_of_what_it_lacks(tmp_path: Path, layout: int) -> None:
+    newer = tuple(one.name.rpartition(".")[2] for one in schema.PARAMETERS if one.since > layout)
     path = tmp_path / "backup.toml"
     table = ParameterTable.defaults().with_raw({"joint1.kp": 50_000})
-    parameter_file.save(path, table.with_raw({"unrest_amplitude": 0}))
+    parameter_file.save(path, table.with_raw({"joint2.ce_ticks": 9} | ({"unrest_amplitude": 0} if layout == 1 else {})))
     lines = path.read_text().splitlines(keepends=True)
-    path.write_text("".join(line for line in lines if not line.startswith(parameter_file.SINCE_LAYOUT_2)))
+    path.write_text("".join(line for line in lines if not line.startswith(newer)))
     assert parameter_file.load(path) == table
 
 

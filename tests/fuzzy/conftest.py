@@ -10,7 +10,15 @@ import pytest
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from greywhale.fuzzy.settings import GAIN_UNIT, LARGEST_KI_PERIOD, LEAST_WIDTH, SET_UNIT, JointSettings, load_joints
+from greywhale.fuzzy.settings import (
+    GAIN_UNIT,
+    LARGEST_KI_PERIOD,
+    LEAST_WIDTH,
+    MOST_CE_TICKS,
+    SET_UNIT,
+    JointSettings,
+    load_joints,
+)
 
 TABLES = Path(__file__).parents[2] / "shared" / "fuzzy_tables"
 LARGEST = 32767
@@ -54,6 +62,7 @@ def cases() -> st.SearchStrategy[Case]:
             kd=draw(gain),
             ki=ki,
             ku_mv=draw(st.integers(0, 30_000)),
+            ce_ticks=draw(st.one_of(st.just(1), st.integers(1, MOST_CE_TICKS))),
         )
         return settings, period
 
@@ -63,7 +72,10 @@ def cases() -> st.SearchStrategy[Case]:
 def _corners(settings: JointSettings, period_ms: int) -> tuple[list[float], list[float]]:
     """Sizes at which a set begins or ends, in 1/4096 rad."""
     e = [abs(width) * SET_UNIT / max(settings.kp, 1) for width in settings.as_tuple()[:4]]
-    ce = [abs(width) * SET_UNIT * period_ms / max(20 * settings.kd, 1) for width in settings.as_tuple()[4:8]]
+    ce = [
+        abs(width) * SET_UNIT * settings.ce_ticks * period_ms / max(20 * settings.kd, 1)
+        for width in settings.as_tuple()[4:8]
+    ]
     return e, ce
 
 

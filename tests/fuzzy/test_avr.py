@@ -83,7 +83,7 @@ def _at_the_ends_of_the_integral(
     ours = twin.Controller(joint, period)
     for integral in (twin.INTEGRAL_END - 1, -twin.INTEGRAL_END, twin.INTEGRAL_END - 70_000, 70_000 - twin.INTEGRAL_END):
         for k in range(8):
-            ours.integral, ours.previous = integral, int(follower[k])
+            ours.integral, ours.errors = integral, np.full(joint.ce_ticks, follower[k])
             board.set_state(integral, int(follower[k]))
             run = ours.run([leader[k]], [follower[k + 1]], [32767])
             got = board.step(_error(leader[k], follower[k + 1]), 32767)

@@ -57,11 +57,13 @@ def test_volts_of_one_step(cases: st.SearchStrategy[Case], data: st.DataObject) 
     joint, period = data.draw(cases)
     law, ours = exact.Law(joint, period), twin.Controller(joint, period)
     ours.integral = data.draw(st.integers(-twin.INTEGRAL_END, twin.INTEGRAL_END - 1))
-    ours.previous = data.draw(st.integers(-32767, 32767))
+    ours.errors = np.array(
+        data.draw(st.lists(st.integers(-32767, 32767), min_size=joint.ce_ticks, max_size=joint.ce_ticks))
+    )
     leader, follower = (data.draw(st.integers(-32768, 32767)) for _ in range(2))
     limit = data.draw(st.integers(0, 30_000))
 
-    state = exact.State(Fraction(ours.previous, ANGLE), Fraction(ours.integral, 1000 << 31))
+    state = exact.State(tuple(Fraction(e, ANGLE) for e in ours.errors.tolist()), Fraction(ours.integral, 1000 << 31))
     output, after = law.step(state, Fraction(leader, ANGLE), Fraction(follower, ANGLE), Fraction(limit, 1000))
     run = ours.run([leader], [follower], [limit])
 
@@ -71,6 +73,7 @@ def test_volts_of_one_step(cases: st.SearchStrategy[Case], data: st.DataObject) 
     assert run.saturated[0] == output.saturated
     assert abs(run.volts_mv[0] - 1000 * output.volts) <= bound
     assert abs(Fraction(run.integral[0], 1000 << 31) - after.integral) <= Fraction(1, 1000 << 31)
+    assert after.errors == tuple(Fraction(e, ANGLE) for e in ours.errors.tolist())
 
 
 def test_falling_heights_are_within_three_quarters_of_a_bit() -> None:

@@ -94,6 +94,20 @@ def test_monotone_in_e_wherever_the_exact_law_is(
             assert high >= low - 1
 
 
+@pytest.mark.parametrize("ticks", [1, 2, 20])
+def test_the_change_spans_so_many_periods(ticks: int) -> None:
+    """An error that grows evenly: its change is 0 until it has been seen for so long, then that of the whole span."""
+    joint, law = replace(PLAIN, ce_ticks=ticks), exact.Law(replace(PLAIN, ce_ticks=ticks), 1)
+    state, u = exact.State(), []
+    for k in range(2 * ticks + 1):
+        output, state = law.step(state, Fraction(10 * k, 4096), Fraction(0), Fraction(100))
+        u.append(output.u_fuzzy)
+        change = Fraction(10 * ticks if k >= ticks else 0, 4096)
+        assert output.u_fuzzy == law.infer(Fraction(10 * k, 4096), change).u
+    ours = twin.Controller(joint, 1).run(10 * np.arange(2 * ticks + 1), 0, 32767)
+    assert np.abs(ours.u_fuzzy - np.array([float(one) for one in u]) * Q15).max() <= 1
+
+
 def test_a_partition_of_unity_makes_a_straight_line() -> None:
     """The sets before tuning, without a change of error: u_fuzzy is x / 0.3 up to 1, and the integers never fall."""
     e = np.arange(-12000, 12001)
@@ -157,6 +171,7 @@ def test_host_and_firmware_refuse_the_same(data: st.DataObject) -> None:
     gain = st.sampled_from([0, 1, GAIN_UNIT, 64 * GAIN_UNIT, 64 * GAIN_UNIT + 1, 2**32 - 1])
     ki = st.sampled_from([0, GAIN_UNIT, 1000 * GAIN_UNIT, 1000 * GAIN_UNIT + 1, (1 << 28) - 1, 1 << 28, 1 << 27])
     values += [data.draw(gain), data.draw(gain), data.draw(ki), data.draw(st.sampled_from([0, 30_000, 30_001]))]
+    values.append(data.draw(st.sampled_from([0, 1, 20, 21])))
     joint = JointSettings(*values)
     period = data.draw(st.sampled_from([0, 1, 2, 4, 20, 50, 51, 255]))
     assert Refusal(_native.fuzzy_refusal(joint.native(), period)) is joint.refusal(period)

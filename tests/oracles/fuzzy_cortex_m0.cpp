@@ -33,6 +33,7 @@ Settings take_settings() {
   s.kd = take<uint32_t>();
   s.ki = take<uint32_t>();
   s.ku_mv = take<uint16_t>();
+  s.ce_ticks = take<uint8_t>();
   return s;
 }
 
@@ -54,7 +55,7 @@ static int run() {
     Coefficients c = {};
     give(static_cast<uint8_t>(compile(settings, period_ms, c)));
     State state;
-    reset(state);
+    reset(c, state);
     for (uint16_t periods = take<uint16_t>(); periods; --periods) {
       const int16_t leader = take<int16_t>();
       const int16_t follower = take<int16_t>();

@@ -37,7 +37,7 @@ QEMU = [
     "-semihosting",
     "-kernel",
 ]
-SETTINGS = struct.Struct("<8h3IHB")
+SETTINGS = struct.Struct("<8h3IHBB")
 RESULT = struct.Struct("<hhBiH")
 CONTROLLERS, PERIODS = 200, 100
 

@@ -101,7 +101,7 @@ def test_a_changed_description_leaves_the_schema_hash_alone(copy: Path) -> None:
             'name = "rail_counts", type = "u16"',
             "layout_hash = 0x",
         ),
-        ("parameters.toml", "layout = 2", "layout = 3", "layout_hash = 0x"),
+        ("parameters.toml", "layout = 3", "layout = 4", "layout_hash = 0x"),
     ],
 )
 def test_a_declaration_that_cannot_be_is_refused(copy: Path, file: str, old: str, new: str, sentence: str) -> None:

@@ -37,13 +37,14 @@ tables = st.tuples(*map(raw_values, PARAMETERS))
 
 
 def test_names_and_flat_indices() -> None:
-    assert [parameter.index for parameter in PARAMETERS] == list(range(94))
+    assert [parameter.index for parameter in PARAMETERS] == list(range(98))
     assert PARAMETERS[0].name == "period_ms"
     assert PARAMETER_BY_NAME["joint0.ne_c"].index == 8
     assert PARAMETER_BY_NAME["joint3.limit_max"].index == 67
     assert PARAMETER_BY_NAME["leader2.zero"].index == 72
     assert PARAMETER_BY_NAME["follower3.scale"].index == 83
-    assert TABLE.size == 195
+    assert PARAMETER_BY_NAME["joint3.ce_ticks"].index == 97
+    assert TABLE.size == 199
 
 
 def test_defaults_are_the_golden_bytes(firmware: Firmware) -> None:
@@ -153,7 +154,7 @@ def test_contradicting_limits_are_named() -> None:
 
 
 def test_a_set_that_is_not_whole_is_refused() -> None:
-    with pytest.raises(UserError, match=r"94 values, but 93"):
+    with pytest.raises(UserError, match=r"98 values, but 97"):
         param_crc(DEFAULTS[:-1])
-    with pytest.raises(UserError, match=r"195 bytes, but 194"):
-        unpack_parameters(bytes(194))
+    with pytest.raises(UserError, match=r"199 bytes, but 198"):
+        unpack_parameters(bytes(198))

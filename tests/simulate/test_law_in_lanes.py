@@ -29,6 +29,7 @@ def random_controllers(random: np.random.Generator, period_ms: int) -> npt.NDArr
     columns["kd"] = wide(1, 64 * 65536).round() * (random.random(LANES) > 0.05)
     columns["ki"] = wide(1, 1000 * 65536 / period_ms).round() * (random.random(LANES) > 0.1)
     columns["ku_mv"] = random.integers(0, 30001, LANES).astype(np.float64)
+    columns["ce_ticks"] = random.integers(1, 21, LANES).astype(np.float64)
     return np.column_stack([columns[name] for name in CONTROLLER_COLUMNS]).astype(np.int32)
 
 

@@ -43,7 +43,7 @@ def tuned(seed: int, strategy: str) -> dict[str, Any]:
 
 
 def errors(table: ParameterTable, rows: Controllers) -> tuple[Floats, Floats]:
-    """Total MSE of controllers (n, 4, 12) on the steps and the multi-steps, (n,) each."""
+    """Total MSE of controllers (n, 4, 13) on the steps and the multi-steps, (n,) each."""
     model = load_model("grey_box", force=True)
     plant = model.plants[0].copy()
     plant[column("supply")] = table.supply_v

@@ -10,8 +10,8 @@ from elftools.elf.sections import SymbolTableSection
 
 from tools.setup.firmware import BOARDS, BUILD
 
-FLASH_LIMIT = 24 * 1024
-RAM_LIMIT = 1536
+FLASH_LIMIT = 26 * 1024
+RAM_LIMIT = 1664
 
 FLASH_SECTIONS = (".text", ".data")
 RAM_SECTIONS = (".data", ".bss", ".noinit")

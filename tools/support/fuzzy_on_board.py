@@ -10,7 +10,7 @@ import struct
 from dataclasses import dataclass
 from pathlib import Path
 
-from greywhale.fuzzy.settings import JointSettings
+from greywhale.fuzzy.settings import MOST_CE_TICKS, JointSettings
 from greywhale.protocol.schema import Refusal
 from greywhale_sim._board import Board
 from greywhale_sim.symbols import read_symbols
@@ -22,10 +22,10 @@ IMAGES = {
 }
 
 COMPILE = "_ZN9fuzzy_pdi7compileERKNS_8SettingsEhRNS_12CoefficientsE"
-SETTINGS = struct.Struct("<8h3IH")
-STATE = struct.Struct("<iHh?")
+SETTINGS = struct.Struct("<8h3IHB")
+STATE = struct.Struct(f"<iHBB{MOST_CE_TICKS}h")
 SIDE_SIZE = 9
-COEFFICIENTS_SIZE = 4 * SIDE_SIZE + 6
+COEFFICIENTS_SIZE = 4 * SIDE_SIZE + 7
 # Scratch memory. Only powered, the board has not run an instruction: no variables, no watchdog, the stack at the end.
 SETTINGS_AT, JOINT_AT = 0x0600, 0x0640
 STATE_AT = JOINT_AT + COEFFICIENTS_SIZE
@@ -70,21 +70,24 @@ class FuzzyOnBoard:
 
     def compile(self, settings: JointSettings, period_ms: int) -> tuple[Refusal, int]:
         """Derives the coefficients on the board; the refusal and its cycles."""
+        self._ce_ticks = settings.ce_ticks
         self._board.poke(SETTINGS_AT, SETTINGS.pack(*settings.as_tuple()))
         self._registers(24, SETTINGS_AT, period_ms, JOINT_AT)
         cycles = self._board.call(self._compile, LIMIT)
         return Refusal(self._board.peek(24)[0]), cycles
 
     def set_state(self, integral: int, previous: int | None) -> None:
-        """What step() remembers: the integral in 2^-31 mV and the last error."""
-        self._board.poke(STATE_AT, STATE.pack(integral >> 16, integral & 0xFFFF, previous or 0, previous is not None))
+        """What step() remembers: the integral in 2^-31 mV and the error of all periods before, None at the start."""
+        until_change = self._ce_ticks if previous is None else 0
+        errors = [previous or 0] * MOST_CE_TICKS
+        self._board.poke(STATE_AT, STATE.pack(integral >> 16, integral & 0xFFFF, until_change, 0, *errors))
 
     def step(self, error: int, limit_mv: int) -> Stepped:
         """One control period, as C++ calls it."""
         self._registers(24, JOINT_AT, error, limit_mv)
         self._board.call(self._step, LIMIT)
         u_fuzzy, volts, saturated, no_rule = struct.unpack("<hh??", self._board.peek(18, 6))
-        whole, fraction, _, _ = STATE.unpack(self._board.peek(STATE_AT, STATE.size))
+        whole, fraction, *_ = STATE.unpack(self._board.peek(STATE_AT, STATE.size))
         return Stepped(u_fuzzy, volts, saturated, no_rule, (whole << 16) + fraction)
 
     def _bare_arguments(self, error: int, limit_mv: int) -> None:

@@ -38,9 +38,8 @@ void write_bank(unsigned b, const Bank& bytes) {
 }
 
 std::size_t table_bytes(const Bank& bytes) {
-  return bytes[bank::layout_at] == params::layout   ? params::table_size
-         : bytes[bank::layout_at] == bank::layout_1 ? std::size_t{bank::layout_1_table}
-                                                    : 0;
+  const unsigned layout = bytes[bank::layout_at];
+  return layout >= 1 && layout <= params::layout ? params::layout_sizes[layout - 1] : 0;
 }
 
 bool whole(const Bank& bytes) {
@@ -53,8 +52,12 @@ bool whole(const Bank& bytes) {
   return bytes[at] == (crc & 0xFF) && bytes[at + 1] == crc >> 8;
 }
 
-// A bank as a firmware of layout 1 has written it.
-Bank old_bank(const params::Table& table, std::uint16_t sequence) {
+// The older layout of which bank b is made: each has one of its own.
+std::uint8_t old_layout(unsigned b) { return static_cast<std::uint8_t>(1 + b); }
+
+// A bank as an older firmware has written it.
+Bank old_bank(std::uint8_t layout, const params::Table& table, std::uint16_t sequence) {
+  const std::size_t size = params::layout_sizes[layout - 1];
   Bank out;
   out.fill(0xFF);
   const auto put_u16 = [&](std::size_t at, unsigned value) {
@@ -62,20 +65,20 @@ Bank old_bank(const params::Table& table, std::uint16_t sequence) {
     out[at + 1] = static_cast<std::uint8_t>(value >> 8);
   };
   put_u16(0, bank::magic);
-  out[bank::layout_at] = bank::layout_1;
-  put_u16(bank::length_at, bank::layout_1_table);
+  out[bank::layout_at] = layout;
+  put_u16(bank::length_at, static_cast<unsigned>(size));
   put_u16(bank::sequence_at, sequence);
-  std::memcpy(&out[bank::payload_at], &table, bank::layout_1_table);
-  const std::size_t covered = bank::payload_at + bank::layout_1_table - bank::layout_at;
-  put_u16(bank::payload_at + bank::layout_1_table, crc_by_definition(&out[bank::layout_at], covered));
+  std::memcpy(&out[bank::payload_at], &table, size);
+  const std::size_t covered = bank::payload_at + size - bank::layout_at;
+  put_u16(bank::payload_at + size, crc_by_definition(&out[bank::layout_at], covered));
   return out;
 }
 
-// What a firmware of today makes of a set of layout 1: the parameters that it lacks have their defaults.
-params::Table from_old(const params::Table& table) {
+// What a firmware of today makes of an older set: the parameters that it lacks have their defaults.
+params::Table from_old(std::uint8_t layout, const params::Table& table) {
   params::Table out;
   params::load_defaults(out);
-  std::memcpy(&out, &table, bank::layout_1_table);
+  std::memcpy(&out, &table, params::layout_sizes[layout - 1]);
   return out;
 }
 
@@ -132,13 +135,14 @@ History after_saves(Random& random, int saves) {
   return out;
 }
 
-// The banks in the layouts that the bits of `old` say: bit b is bank b.
+// Makes the banks old whose bit is set in `old`: bit b is bank b.
 void make_old(History& history, unsigned old, std::uint16_t sequence) {
   for (unsigned b = 0; b < 2; ++b) {
     if (!(old >> b & 1)) continue;
     params::Table& table = b == history.newest_bank ? history.newest : history.older;
-    table = from_old(table);
-    write_bank(b, old_bank(table, static_cast<std::uint16_t>(sequence - (b == history.newest_bank ? 0 : 1))));
+    table = from_old(old_layout(b), table);
+    write_bank(
+        b, old_bank(old_layout(b), table, static_cast<std::uint16_t>(sequence - (b == history.newest_bank ? 0 : 1))));
   }
 }
 

@@ -84,12 +84,12 @@ void judge_changes(params::Table table, const std::uint8_t* data, std::size_t si
 }
 
 // Makes a bank whole around the bytes that it holds, so that they are looked at.
-void seal(std::uint16_t start, bool old) {
+void seal(std::uint16_t start, std::uint8_t layout) {
   namespace bank = params::bank;
   std::uint8_t* at = &hal::fake::board.eeprom[start];
-  const std::uint8_t bytes = old ? std::uint8_t{bank::layout_1_table} : static_cast<std::uint8_t>(params::table_size);
+  const std::uint8_t bytes = params::layout_sizes[layout - 1];
   wire::put_u16(at, bank::magic);
-  at[bank::layout_at] = old ? bank::layout_1 : params::layout;
+  at[bank::layout_at] = layout;
   wire::put_u16(at + bank::length_at, bytes);
   const std::size_t covered = bank::payload_at + std::size_t{bytes} - bank::layout_at;
   wire::put_u16(at + bank::payload_at + bytes, crc_by_definition(at + bank::layout_at, covered));
@@ -99,8 +99,8 @@ void judge_eeprom(const std::uint8_t* data, std::size_t size) {
   using hal::fake::board;
   board = hal::fake::FakeBoard();
   std::copy_n(data, std::min(size, board.eeprom.size()), board.eeprom.begin() + params::bank::start_a);
-  if (size % 4 != 0) seal(params::bank::start_a, size % 4 == 1);
-  if (size % 8 >= 4) seal(params::bank::start_b, size % 8 == 5);
+  if (size % 4 != 0) seal(params::bank::start_a, static_cast<std::uint8_t>(size % 4));
+  if (size % 8 >= 4) seal(params::bank::start_b, size % 8 == 5 ? std::uint8_t{1} : params::layout);
   app::ParameterSets sets;
   app::Controllers controllers;
   sets.begin(controllers);

@@ -16,8 +16,9 @@ constexpr std::uint16_t whole_q15 = 32768;
 
 fuzzy_pdi::Refusal compile(const params::Table& table, std::uint8_t joint, fuzzy_pdi::Coefficients& out) {
   const params::JointParameters& p = table.joint[joint];
-  const fuzzy_pdi::Settings settings = {p.ne_c,  p.ze_a,  p.ze_c, p.pe_b, p.nce_c, p.zce_a,
-                                        p.zce_c, p.pce_b, p.kp,   p.kd,   p.ki,    p.ku_mv};
+  const std::uint8_t ce_ticks = table.change[joint].ce_ticks;
+  const fuzzy_pdi::Settings settings = {p.ne_c,  p.ze_a, p.ze_c, p.pe_b, p.nce_c, p.zce_a, p.zce_c,
+                                        p.pce_b, p.kp,   p.kd,   p.ki,   p.ku_mv, ce_ticks};
   return fuzzy_pdi::compile(settings, table.period_ms, out);
 }
 
@@ -39,7 +40,7 @@ void Law::take(const params::Table& table) {
 }
 
 void Law::start() {
-  for (fuzzy_pdi::Joint& joint : joints_) fuzzy_pdi::reset(joint.state);
+  for (fuzzy_pdi::Joint& joint : joints_) fuzzy_pdi::reset(joint.coefficients, joint.state);
   volts_mv_ = {};
   ticks_on_ = 0;
   until_control_ = 1;

@@ -26,7 +26,7 @@ params::Table defaults() {
 }
 
 params::Table safe_form(params::Table table) {
-  for (std::uint8_t i = 0; i < hal::joint_count; ++i) params::make_safe(table.joint[i], i);
+  for (std::uint8_t i = 0; i < hal::joint_count; ++i) params::make_safe(table, i);
   return table;
 }
 

@@ -168,7 +168,7 @@ double worst_difference(const law::Settings& s, uint8_t period_ms, std::array<in
   std::vector<Both> changes;
   for (int32_t ce = ce_range[0]; ce <= ce_range[1]; ++ce) {
     const law::Input input = split(ce);
-    const double y = s.kd / 65536.0 * 20 / period_ms * ce / 4096;
+    const double y = s.kd / 65536.0 * 20 / (s.ce_ticks * period_ms) * ce / 4096;
     changes.push_back({input.negative, law::fuzzify(c.ce[input.negative], input.size),
                        memberships(y * 16384, s.nce_c, s.zce_a, s.zce_c, s.pce_b, 16384)});
   }
@@ -202,7 +202,8 @@ void bind_fuzzy(nb::module_& m) {
       .def_rw("kp", &law::Settings::kp)
       .def_rw("kd", &law::Settings::kd)
       .def_rw("ki", &law::Settings::ki)
-      .def_rw("ku_mv", &law::Settings::ku_mv);
+      .def_rw("ku_mv", &law::Settings::ku_mv)
+      .def_rw("ce_ticks", &law::Settings::ce_ticks);
 
   m.def(
       "fuzzy_refusal",
@@ -221,16 +222,10 @@ void bind_fuzzy(nb::module_& m) {
           "__init__",
           [](Controller* self, const law::Settings& settings, uint8_t period_ms) {
             new (self) Controller{compiled(settings, period_ms), {}};
-            law::reset(self->state);
+            law::reset(self->coefficients, self->state);
           },
           "settings"_a, "period_ms"_a)
-      .def("reset", [](Controller& self) { law::reset(self.state); })
-      .def(
-          "configure",
-          [](Controller& self, const law::Settings& settings, uint8_t period_ms) {
-            self.coefficients = compiled(settings, period_ms);
-          },
-          "settings"_a, "period_ms"_a, "New settings or period; the memory stays.")
+      .def("reset", [](Controller& self) { law::reset(self.coefficients, self.state); })
       .def("run", &run, "leader"_a, "follower"_a, "limit_mv"_a, "step() over arrays of angles (q12) and limits.")
       .def(
           "infer",
@@ -248,6 +243,7 @@ void bind_fuzzy(nb::module_& m) {
         result["sides"] = sides;
         result["integral"] = c.integral;
         result["ku_mv"] = c.ku_mv;
+        result["ce_ticks"] = c.ce_ticks;
         return result;
       });
 }

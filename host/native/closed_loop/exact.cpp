@@ -115,7 +115,7 @@ class Run {
         worn_(arm::is_worn(row.plant)),
         sags_(row.supply.resistance > 0.0),
         waiting_(static_cast<std::size_t>(x.timing.late)) {
-    for (fuzzy_pdi::State& memory : memories_) fuzzy_pdi::reset(memory);
+    for (std::size_t i = 0; i < kJoints; ++i) fuzzy_pdi::reset(controllers[i], memories_[i]);
     Four millivolts;
     Potentiometers quiet(without_noise(x.pots), x.pot_supply, 0);
     quiet.millivolts(state_.q, millivolts);

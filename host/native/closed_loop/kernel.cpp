@@ -39,7 +39,7 @@ class Run {
     for (std::size_t i = 0; i < kJoints; ++i) {
       plant_.joints[i] = joint_of(block, i, h, x.settings.pwm_top[i]);
       laws_[i] = law_of(block, i, short_ramps_);
-      memories_[i] = {all(0), all(0), all(0)};
+      reset(memories_[i]);
       state_[i] = {all(static_cast<std::int32_t>(units(x.home[i]))), all(0.0f),
                    plant_.joints[i].gap * all(static_cast<float>(x.gap[i])), all(0.0f)};
       begin(sensors_, i, counts(i, state_[i].q));
@@ -109,7 +109,7 @@ class Run {
       leader[i] = all(is < s.limit_min[i] ? s.limit_min[i] : is > s.limit_max[i] ? s.limit_max[i] : is);
       follower[i] = to_angle(filtered_[i], s.follower.zero[i], s.follower.scale[i]);
     }
-    step(laws_, memories_, leader, follower, shared_.limit_mv[tick], tick == 1, short_ramps_, millivolts);
+    step(laws_, memories_, leader, follower, shared_.limit_mv[tick], short_ramps_, millivolts);
     for (std::size_t i = 0; i < kJoints; ++i)
       commanded_[i] = compare_value(millivolts[i], shared_.duty_scale[i], s.motor_sign[i]);
   }
@@ -272,11 +272,12 @@ void check_law(const LawCheck& c) {
   for (std::size_t n = 0; n < kBlock; ++n) block.controllers[n] = c.laws + n;
   bool short_ramps = false;
   const Law law[1] = {law_of(block, 0, short_ramps)};
-  Memory memory[1] = {{all(0), all(0), all(0)}};
+  Memory memory[1];
+  reset(memory[0]);
   for (std::size_t k = 0; k < c.n; ++k) {
     const Int leader[1] = {load(c.leader + k * kBlock)}, follower[1] = {load(c.follower + k * kBlock)};
     Int millivolts[1];
-    step(law, memory, leader, follower, c.limit_mv[k], k == 0, short_ramps, millivolts);
+    step(law, memory, leader, follower, c.limit_mv[k], short_ramps, millivolts);
     store(c.millivolts + k * kBlock, millivolts[0]);
   }
 }

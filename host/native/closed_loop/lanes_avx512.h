@@ -84,6 +84,8 @@ GREYWHALE_INLINE bool any(Mask a) { return a.bits != 0; }
 GREYWHALE_INLINE Float choose(Mask m, Float yes, Float no) { return {_mm512_mask_blend_ps(m.bits, no.v, yes.v)}; }
 GREYWHALE_INLINE Int choose(Mask m, Int yes, Int no) { return {_mm512_mask_blend_epi32(m.bits, no.v, yes.v)}; }
 
+GREYWHALE_INLINE Int pick(const std::int32_t* from, Int places) { return {_mm512_i32gather_epi32(places.v, from, 4)}; }
+
 // Position of the highest bit set, 0..23, of numbers 1..2^24-1.
 GREYWHALE_INLINE Int highest_bit(Int a) { return all(31) - Int{_mm512_lzcnt_epi32(a.v)}; }
 

@@ -3,6 +3,10 @@
 // against the other.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+
+#include "block.h"
 #include "fuzzy_pdi.h"
 
 namespace greywhale::loop::GREYWHALE_INSTRUCTIONS {
@@ -14,12 +18,38 @@ struct Side {
 
 struct Law {
   Side e[2], ce[2];
-  Int integral, ku;
+  Int integral, ku, ce_ticks;
+  Int behind;  // in Memory::errors, from a row to a lane's error of ce_ticks periods before
 };
 
+// The last errors of sixteen joints, a row a control period.
+constexpr std::size_t kErrors = 32;
+static_assert(kErrors > fuzzy_pdi::most_ce_ticks && (kErrors & (kErrors - 1)) == 0, "a power of two");
+
 struct Memory {
-  Int integral, fraction, previous;
+  Int integral, fraction;
+  std::size_t periods;
+  std::int32_t errors[kErrors * kBlock];
 };
+
+GREYWHALE_INLINE void reset(Memory& memory) {
+  memory.integral = memory.fraction = all(0);
+  memory.periods = 0;
+  for (std::size_t row = 0; row < kErrors; ++row) store(memory.errors + row * kBlock, all(0));
+}
+
+// The error's change over each lane's ce_ticks; 0 while there have been fewer periods.
+GREYWHALE_INLINE Int change_of(const Law& law, Memory& memory, Int error) {
+  constexpr std::int32_t kPlaces = kErrors * kBlock;
+  const auto now = static_cast<std::int32_t>(memory.periods % kErrors * kBlock);
+  store(memory.errors + now, error);
+  const Int before = pick(memory.errors, (all(now) - law.behind) & all(kPlaces - 1));
+  const Mask early = law.ce_ticks > all(static_cast<std::int32_t>(memory.periods));
+  ++memory.periods;
+  const Int furthest = all(32767);
+  const Int change = greatest(least(error - before, furthest), all(0) - furthest);
+  return choose(early, all(0), change);
+}
 
 struct Heights {
   Int zero, outer;
@@ -91,11 +121,10 @@ struct Fired {
   Mask e_below, backwards, fires;
 };
 
-GREYWHALE_INLINE Fired fire(const Law& law, Memory& memory, Int leader, Int follower, bool first, bool short_ramps) {
+GREYWHALE_INLINE Fired fire(const Law& law, Memory& memory, Int leader, Int follower, bool short_ramps) {
   const Int furthest = all(32767);
   const Int error = greatest(least(leader - follower, furthest), all(0) - furthest);
-  const Int change = first ? all(0) : greatest(least(error - memory.previous, furthest), all(0) - furthest);
-  memory.previous = error;
+  const Int change = change_of(law, memory, error);
 
   Fired f;
   f.e_below = negative(error);
@@ -147,11 +176,10 @@ GREYWHALE_INLINE Int finish(const Law& law, Memory& memory, const Fired& f, Int 
 // in mV.
 template <int N>
 GREYWHALE_INLINE void step(const Law (&laws)[N], Memory (&memories)[N], const Int (&leader)[N],
-                           const Int (&follower)[N], std::int32_t limit_mv, bool first, bool short_ramps,
-                           Int (&millivolts)[N]) {
+                           const Int (&follower)[N], std::int32_t limit_mv, bool short_ramps, Int (&millivolts)[N]) {
   Fired fired[N];
   Int ratio[N];
-  for (int i = 0; i < N; ++i) fired[i] = fire(laws[i], memories[i], leader[i], follower[i], first, short_ramps);
+  for (int i = 0; i < N; ++i) fired[i] = fire(laws[i], memories[i], leader[i], follower[i], short_ramps);
   for (int i = 0; i < N; ++i) ratio[i] = ratio_q15(fired[i].part, fired[i].whole);
   for (int i = 0; i < N; ++i) millivolts[i] = finish(laws[i], memories[i], fired[i], ratio[i], all(limit_mv));
 }

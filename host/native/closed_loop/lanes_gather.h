@@ -170,6 +170,8 @@ inline Law law_of(const Block& block, std::size_t joint, bool& short_ramps) {
   }
   law.integral = gather_int([&](std::size_t n) { return block.controllers[n][joint].integral; });
   law.ku = gather_int([&](std::size_t n) { return block.controllers[n][joint].ku_mv; });
+  law.ce_ticks = gather_int([&](std::size_t n) { return block.controllers[n][joint].ce_ticks; });
+  law.behind = gather_int([&](std::size_t n) { return kBlock * block.controllers[n][joint].ce_ticks - n; });
   return law;
 }
 

@@ -184,6 +184,22 @@ GREYWHALE_INLINE Int to_nearest(Float a) {
 }
 #endif
 
+#ifdef __AVX2__
+GREYWHALE_INLINE Int pick(const std::int32_t* from, Int places) {
+  return parts<Int>([&](int p) {
+    return reinterpret_cast<IntPart>(_mm256_i32gather_epi32(from, reinterpret_cast<__m256i>(places.v[p]), 4));
+  });
+}
+#else
+GREYWHALE_INLINE Int pick(const std::int32_t* from, Int places) {
+  std::int32_t picked[16];
+  for (int part = 0; part < kParts; ++part) {
+    for (int n = 0; n < kWidth / 4; ++n) picked[part * kWidth / 4 + n] = from[places.v[part][n]];
+  }
+  return load(picked);
+}
+#endif
+
 // Position of the highest bit set, 0..23, of numbers 1..2^24-1: they are exact in single precision.
 GREYWHALE_INLINE Int highest_bit(Int a) { return shift_right<23>(bits_of(to_float(a))) - all(127); }
 

@@ -90,7 +90,7 @@ def test_a_journal_is_on_the_disk_when_it_is_closed(tmp_path: Path, monkeypatch:
     disk = Disk(monkeypatch)
     with TuningJournal(tmp_path / "journal", {"seed": 1}) as book:
         assert disk.done == ["folder"]
-        book.tell("stage", np.zeros((2, 12), dtype=np.int32), np.ones((2, 4)))
+        book.tell("stage", np.zeros((2, 13), dtype=np.int32), np.ones((2, 4)))
     assert disk.done == ["folder", f"file of {(tmp_path / 'journal').stat().st_size}"]
 
 

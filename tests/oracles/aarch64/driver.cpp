@@ -211,7 +211,7 @@ void fuzzy_run(Calls& calls, Results& results) {
   std::vector<std::int16_t> u_fuzzy, volts_mv;
   std::vector<std::int32_t> integral;
   fuzzy_pdi::State state;
-  fuzzy_pdi::reset(state);
+  fuzzy_pdi::reset(law, state);
   for (std::size_t n = 0; n < leader.size(); ++n) {
     const fuzzy_pdi::Output out = fuzzy_pdi::step(law, state, leader[n], follower[n], limit[n]);
     u_fuzzy.push_back(out.u_fuzzy);

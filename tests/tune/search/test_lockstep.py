@@ -14,7 +14,7 @@ from greywhale.tune.judge.choose import choose
 from greywhale.tune.search import lockstep as search
 from greywhale.tune.search.journal import TuningJournal
 from greywhale.tune.search.lockstep import KEPT, TOGETHER, TURNS, SearchState, search_in_lockstep, try_again
-from greywhale.tune.search.space import Space
+from greywhale.tune.search.space import CE_TICKS, Space
 
 BEFORE = default_controller()
 SPACE = Space.default("both", BEFORE, 15_000, 1)
@@ -72,7 +72,7 @@ def test_restarts_with_other_packs_keep_the_joints_apart() -> None:
     found, hills = run("cma-es", budget=2000)
     sizes = {len(rows) for rows in hills.rows}
     assert len(sizes) > 2, "no joint restarted"
-    assert (found.cost < 1e-3).all()
+    assert (found.cost < 2e-3).all()  # not 0: the aim of ce_ticks lies between two whole numbers
 
 
 @pytest.mark.parametrize("method", ["gwo-woa-relative", "de", "cma-es"])
@@ -86,7 +86,8 @@ def test_a_narrow_stage_begins_around_its_start(method: str) -> None:
     tried = SPACE.points(np.concatenate(hills.rows))
     away = np.abs(tried - SPACE.points(BEFORE[None])) / (SPACE.upper - SPACE.lower)
     assert (away < 0.1).all()
-    assert (away.max(axis=0) > 0.0).all()
+    moved = away.max(axis=0) > 0.0
+    assert moved[:, [name != CE_TICKS for name in SPACE.names]].all()  # the next number of ticks is far away
 
 
 def test_trying_again_forgets_what_neighbours_that_are_gone_made_of_a_cost() -> None:

@@ -11,7 +11,7 @@ from greywhale.base.errors import UserError
 from greywhale.fuzzy.settings import LEAST_WIDTH, SET_UNIT, JointSettings
 from greywhale.protocol.schema import Refusal
 from greywhale.simulate import CONTROLLER_COLUMNS, default_controller
-from greywhale.tune.search.space import GAINS, SETS, STRATEGIES, Space, check_bounds, check_strategy
+from greywhale.tune.search.space import CE_TICKS, GAINS, SETS, STRATEGIES, Space, check_bounds, check_strategy
 
 BEFORE = default_controller()
 
@@ -60,13 +60,13 @@ def test_stored_numbers_come_back_as_themselves(strategy: str) -> None:
 def test_the_supply_bounds_ku_to_its_double_and_the_firmware_to_30_volts() -> None:
     for supply_mv, highest in ((6_000, 12_000), (15_000, 30_000), (24_000, 30_000)):
         space = Space.default("both", BEFORE, supply_mv, 1)
-        assert space.controllers(space.upper + np.zeros((1, 4, 12)))[0, :, 11].tolist() == [highest] * 4
+        assert space.controllers(space.upper + np.zeros((1, 4, 13)))[0, :, 11].tolist() == [highest] * 4
 
 
 def test_ki_goes_from_none_to_the_most_that_the_firmware_takes() -> None:
     for period_ms, most in ((1, 1000.0), (20, 204.8)):
         space = box("both", period_ms=period_ms)
-        ends = space.controllers(np.stack([space.lower, space.upper])[:, None] + np.zeros((2, 4, 12)))
+        ends = space.controllers(np.stack([space.lower, space.upper])[:, None] + np.zeros((2, 4, 13)))
         assert (ends[0, :, 10] == 0).all()
         np.testing.assert_allclose(ends[1, :, 10] / 65536, most, rtol=1e-3)
 
@@ -95,13 +95,13 @@ def test_widths_that_no_board_takes_are_widened_and_counted() -> None:
 
 def test_the_reduced_box_is_the_same_to_both_sides_and_lets_kp_and_kd_be() -> None:
     space = box("both").reduce()
-    assert space.names == ("Ze_c", "Pe_b", "Zce_c", "Pce_b", "Ki", "Ku")
+    assert space.names == ("Ze_c", "Pe_b", "Zce_c", "Pce_b", "Ki", "Ku", CE_TICKS)
     rows = space.controllers(anywhere(space))
     for left, right in (("ne_c", "pe_b"), ("ze_a", "ze_c"), ("nce_c", "pce_b"), ("zce_a", "zce_c")):
         assert (rows[..., CONTROLLER_COLUMNS.index(left)] == -rows[..., CONTROLLER_COLUMNS.index(right)]).all()
     assert (rows[..., 8] == 1 << 16).all()
     assert (rows[..., 9] == round(0.3 * (1 << 16))).all()
-    assert box("sf").reduce().names == GAINS
+    assert box("sf").reduce().names == (*GAINS, CE_TICKS)
     assert box("mf").reduce().names == ("Ze_c", "Pe_b", "Zce_c", "Pce_b")
 
 
@@ -165,4 +165,5 @@ def test_unknown_strategies_are_bad_usage() -> None:
 
 
 def test_names_are_those_of_the_paper() -> None:
-    assert len(SETS) + len(GAINS) == len(CONTROLLER_COLUMNS)
+    assert {name.lower() for name in (*SETS, *GAINS, CE_TICKS)} == {*CONTROLLER_COLUMNS} - {"ku_mv"} | {"ku"}
+    assert CE_TICKS not in Space.paper("both", BEFORE).names

@@ -22,12 +22,12 @@ std::int16_t reading(double angle) {
 }
 
 double run(const mjModel* model, int ticks) {
-  const fuzzy_pdi::Settings settings = {-8192, -8192, 8192,   8192,  -8192,  -8192,
-                                        8192,  8192,  131072, 32768, 262144, 15000};
+  const fuzzy_pdi::Settings settings = {-8192, -8192,  8192,  8192,   -8192, -8192, 8192,
+                                        8192,  131072, 32768, 262144, 15000, 1};
   fuzzy_pdi::Coefficients law;
   if (fuzzy_pdi::compile(settings, 1, law) != fuzzy_pdi::Refusal::none) std::abort();
   fuzzy_pdi::State memory[kJoints];
-  for (fuzzy_pdi::State& m : memory) fuzzy_pdi::reset(m);
+  for (fuzzy_pdi::State& m : memory) fuzzy_pdi::reset(law, m);
   mjData* data = mj_makeData(model);
   double sum = 0.0;
   for (int tick = 0; tick < ticks; ++tick) {

@@ -26,6 +26,8 @@ def header(declaration: Declaration) -> str:
         *(_struct(name, group) for name, group in structs.items()),
         _table(declaration),
         f"constexpr uint16_t table_size = {declaration.table_size};",
+        "// Of every layout so far: each is the beginning of the next.",
+        f"constexpr uint8_t layout_sizes[layout] = {{{', '.join(_layout_sizes(declaration))}}};",
         'static_assert(sizeof(Table) == table_size, "the table must have no padding");\n',
         _DESCRIPTORS,
         "}  // namespace params",
@@ -60,6 +62,10 @@ extern const Table default_table;            // PROGMEM
 """
 
 
+def _layout_sizes(declaration: Declaration) -> list[str]:
+    return [str(declaration.layout_size(layout)) for layout in range(1, declaration.layout + 1)]
+
+
 def _comment(parameter: Parameter) -> str:
     lsb = f"{parameter.lsb} " if parameter.lsb != 1 else ""
     return parameter.description + (
@@ -77,7 +83,7 @@ def _table(declaration: Declaration) -> str:
     lines = ["struct __attribute__((packed)) Table {"]
     for group in declaration.groups:
         if group.name:
-            lines.append(f"  {group.struct} {group.name}[{group.count}];")
+            lines.append(f"  {group.struct} {group.member}[{group.count}];")
         else:
             lines += [f"  {C_TYPES[p.kind]} {p.name};  // {_comment(p)}" for p in group.parameters]
     return "\n".join([*lines, "};"]) + "\n"
@@ -115,7 +121,7 @@ def _groups(declaration: Declaration) -> str:
     lines = ["const Group groups[group_count] PROGMEM = {"]
     first = 0
     for group in declaration.groups:
-        place = f"offsetof(Table, {group.name}), sizeof({group.struct})" if group.name else "0, 0"
+        place = f"offsetof(Table, {group.member}), sizeof({group.struct})" if group.name else "0, 0"
         lines.append(f"    {{{group.count}, {len(group.parameters)}, {first}, {place}}},")
         first += len(group.parameters)
     return "\n".join([*lines, "};"]) + "\n"

@@ -97,6 +97,8 @@ class Group:
     description: str
     count: int
     parameters: tuple[Parameter, ...]
+    member: str  # of the firmware's table
+    since: int  # the first layout that has it
 
     @property
     def size(self) -> int:
@@ -115,7 +117,11 @@ class Declaration:
 
     @property
     def table_size(self) -> int:
-        return sum(group.count * group.size for group in self.groups)
+        return self.layout_size(self.layout)
+
+    def layout_size(self, layout: int) -> int:
+        """Bytes of the table in this or an older layout: the beginning of today's."""
+        return sum(group.count * group.size for group in self.groups if group.since <= layout)
 
     @property
     def parameter_count(self) -> int:
@@ -240,7 +246,16 @@ def _group(entry: dict[str, Any]) -> Group:
     if entry["name"] == "" and entry["count"] != 1:
         raise DeclarationError("parameters.toml: a group without a name must have the count 1.")
     title = entry["title"] if entry["name"] == "" else f"{entry['name']}0 .. {entry['name']}{entry['count'] - 1}"
-    return Group(entry["name"], entry.get("struct", ""), title, entry["description"], entry["count"], parameters)
+    return Group(
+        entry["name"],
+        entry.get("struct", ""),
+        title,
+        entry["description"],
+        entry["count"],
+        parameters,
+        entry.get("member", entry["name"]),
+        entry.get("since", 1),
+    )
 
 
 def _schema_hash(
@@ -289,6 +304,9 @@ def _check(declaration: Declaration, layout_hash: int) -> None:
                 raise DeclarationError(
                     f"parameters.toml: {parameter.name} is below {parameter.below}, which its group lacks."
                 )
+    since = [1, *(group.since for group in declaration.groups), declaration.layout]
+    if since != sorted(since):
+        raise DeclarationError("parameters.toml: a group's `since` is below that of one before; put new groups last.")
     if declaration.table_size > 247 or declaration.parameter_count > 255:
         raise DeclarationError(
             "parameters.toml: the table is larger than 247 bytes or 255 parameters; widen the store first."

@@ -134,7 +134,7 @@ def _parameters(declaration: Declaration) -> str:
 
 
 def _group(group: Group) -> list[str]:
-    lines = [f"    Group({_text(group.name)}, {group.count}, {_text(group.description)}, ("]
+    lines = [f"    Group({_text(group.name)}, {group.count}, {_text(group.description)}, {group.since}, ("]
     for p in group.parameters:
         lines.append(
             f"        Field({_text(p.name)}, {_text(p.kind)}, {_text(p.unit)}, {float(p.lsb)!r}, "

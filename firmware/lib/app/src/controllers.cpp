@@ -6,18 +6,22 @@ namespace {
 
 fuzzy_pdi::Settings settings_of(const params::Table& table, uint8_t joint) {
   const params::JointParameters& p = table.joint[joint];
-  return {p.ne_c, p.ze_a, p.ze_c, p.pe_b, p.nce_c, p.zce_a, p.zce_c, p.pce_b, p.kp, p.kd, p.ki, p.ku_mv};
+  const uint8_t ce_ticks = table.change[joint].ce_ticks;
+  return {p.ne_c, p.ze_a, p.ze_c, p.pe_b, p.nce_c, p.zce_a, p.zce_c, p.pce_b, p.kp, p.kd, p.ki, p.ku_mv, ce_ticks};
 }
 
 }  // namespace
 
 fuzzy_pdi::Refusal Controllers::take(const params::Table& table, uint8_t joint) {
-  return fuzzy_pdi::compile(settings_of(table, joint), table.period_ms, joints_[joint].coefficients);
+  fuzzy_pdi::Joint& own = joints_[joint];
+  const fuzzy_pdi::Refusal refusal = fuzzy_pdi::compile(settings_of(table, joint), table.period_ms, own.coefficients);
+  fuzzy_pdi::reset(own.coefficients, own.state);
+  return refusal;
 }
 
 void Controllers::reset() {
   for (uint8_t i = 0; i < hal::joint_count; ++i) {
-    fuzzy_pdi::reset(joints_[i].state);
+    fuzzy_pdi::reset(joints_[i].coefficients, joints_[i].state);
     volts_[i] = 0;
   }
 }

@@ -39,7 +39,7 @@ void ParameterSets::begin_apply(uint16_t crc) {
 void ParameterSets::begin_safe() {
   params::Table& table = sets_.staged();
   table = sets_.running();
-  for (uint8_t i = 0; i < hal::joint_count; ++i) params::make_safe(table.joint[i], i);
+  for (uint8_t i = 0; i < hal::joint_count; ++i) params::make_safe(table, i);
   safe_ = Safe::begun;
   at_ = 0;
   step_ = Step::joints;

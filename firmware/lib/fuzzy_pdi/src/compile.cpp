@@ -12,7 +12,7 @@ constexpr uint32_t largest_ki = 1000UL << 16;
 constexpr uint32_t largest_ki_period = 1UL << 28;  // 4096 V ms / (rad s): a step of the integral stays below 2^30
 constexpr uint16_t largest_ku_mv = 30000;
 constexpr uint8_t longest_period_ms = 50;
-constexpr uint8_t kd_period_ms = 20;
+constexpr uint8_t kd_span_ms = 20;
 
 constexpr uint32_t largest_slope = 0xFFFFFFFF;
 
@@ -93,7 +93,7 @@ Refusal check_gains(const Settings& s, uint8_t period_ms) {
   return s.ki * period_ms >= largest_ki_period ? Refusal::gain : Refusal::none;
 }
 
-uint32_t width(int value, uint8_t period_ms) { return static_cast<uint32_t>(value) * period_ms; }
+uint32_t width(int value, uint16_t span_ms) { return static_cast<uint32_t>(value) * span_ms; }
 
 }  // namespace
 
@@ -102,17 +102,20 @@ __attribute__((noinline, noclone))  // the tests call this function in the image
 #endif
 Refusal compile(const Settings& s, uint8_t period_ms, Coefficients& out) {
   if (period_ms < 1 || period_ms > longest_period_ms) return Refusal::period;
+  if (s.ce_ticks < 1 || s.ce_ticks > most_ce_ticks) return Refusal::range;
   Refusal refusal = check_sets(s);
   if (refusal == Refusal::none) refusal = check_gains(s, period_ms);
   if (refusal != Refusal::none) return refusal;
 
-  const uint32_t kd = s.kd * kd_period_ms;
+  const uint32_t kd = s.kd * kd_span_ms;
+  const auto span_ms = static_cast<uint16_t>(s.ce_ticks * period_ms);
   make_side(width(s.ze_c, 1), width(s.pe_b, 1), s.kp, out.e[0]);
   make_side(width(-s.ze_a, 1), width(-s.ne_c, 1), s.kp, out.e[1]);
-  make_side(width(s.zce_c, period_ms), width(s.pce_b, period_ms), kd, out.ce[0]);
-  make_side(width(-s.zce_a, period_ms), width(-s.nce_c, period_ms), kd, out.ce[1]);
+  make_side(width(s.zce_c, span_ms), width(s.pce_b, span_ms), kd, out.ce[0]);
+  make_side(width(-s.zce_a, span_ms), width(-s.nce_c, span_ms), kd, out.ce[1]);
   out.integral = (s.ki * period_ms) << 3;
   out.ku_mv = s.ku_mv;
+  out.ce_ticks = s.ce_ticks;
   return Refusal::none;
 }
 

@@ -17,9 +17,12 @@ namespace fuzzy_pdi {
 struct Settings {
   int16_t ne_c, ze_a, ze_c, pe_b;
   int16_t nce_c, zce_a, zce_c, pce_b;
-  uint32_t kp, kd, ki;  // q16; kd belongs to a control period of 20 ms and is scaled by 20 / period_ms
+  uint32_t kp, kd, ki;  // q16; kd belongs to a change over 20 ms and is scaled by 20 / (ce_ticks period_ms)
   uint16_t ku_mv;       // volts at full output, in mV
+  uint8_t ce_ticks;     // control periods that the change of error spans
 };
+
+constexpr uint8_t most_ce_ticks = 20;
 
 // Why compile() refuses. `order` is kept by ne_c, ze_a, nce_c, zce_a < 0 < ze_c, pe_b, zce_c, pce_b.
 using codes::Refusal;
@@ -40,14 +43,16 @@ struct Coefficients {
   Side ce[2];
   uint32_t integral;  // 2^-31 mV per control period and 1/4096 rad
   uint16_t ku_mv;
+  uint8_t ce_ticks;
 };
 
 // What one joint remembers between control periods.
 struct State {
-  int32_t integral;   // 2^-15 mV, held within +-2^15 mV
-  uint16_t fraction;  // 2^-31 mV: nothing is lost in the sum
-  int16_t previous_e;
-  bool started;  // false until the first step: its change of error is 0
+  int32_t integral;               // 2^-15 mV, held within +-2^15 mV
+  uint16_t fraction;              // 2^-31 mV: nothing is lost in the sum
+  uint8_t until_change;           // control periods until `errors` is full: the change of error is 0 until then
+  uint8_t oldest;                 // in `errors`
+  int16_t errors[most_ce_ticks];  // the last ce_ticks errors, in turn
 };
 
 // A joint's controller. Both parts are together because the assembly reaches both from one address.
@@ -66,7 +71,8 @@ struct Output {
 // Derives the coefficients. Leaves `out` untouched unless it returns Refusal::none. Divides: not for the tick.
 Refusal compile(const Settings& settings, uint8_t period_ms, Coefficients& out);
 
-void reset(State& state);
+// Begins anew; due before the first step and whenever the coefficients have changed.
+void reset(const Coefficients& c, State& state);
 
 // a - b, saturated so that its size has 15 bits.
 inline int16_t difference(int16_t a, int16_t b) {

@@ -20,11 +20,13 @@
 #define C_INTEGRAL (4 * SIDE_SIZE)
 #define C_KU (4 * SIDE_SIZE + 4)
 // and the state.
-#define STATE (4 * SIDE_SIZE + 6)
+#define C_CE_TICKS (4 * SIDE_SIZE + 6)
+#define STATE (4 * SIDE_SIZE + 7)
 #define STATE_INTEGRAL (STATE + 0)
 #define STATE_FRACTION (STATE + 4)
-#define STATE_PREVIOUS (STATE + 6)
-#define STATE_STARTED (STATE + 8)
+#define STATE_UNTIL_CHANGE (STATE + 6)
+#define STATE_OLDEST (STATE + 7)
+#define STATE_ERRORS (STATE + 8)
 
 // r3:r2 holds the joint until the inference is done, then the size of u_fuzzy. r9:r8 is the size of e. Signs in bit 7:
 #define E_SIGN r6  /* until the inference is done, then in T */
@@ -98,9 +100,9 @@ fuzzy_pdi_step_detours:
 .Lslow_e:
   rjmp .Lslow_far_e
 
-.Lfirst:
-  ldi S, 1
-  std Z+STATE_STARTED, S
+.Lno_change:
+  dec S
+  std Z+STATE_UNTIL_CHANGE, S
   clr S
   ldi r18, 0
   ldi r19, 0
@@ -121,14 +123,29 @@ fuzzy_pdi_step_bare:
   clr ZERO
   movw r2, r30
 
+  // e takes the place of the oldest error, which goes to r21:r20
+  movw r26, r30
+  ldd r18, Z+STATE_OLDEST
+  add r26, r18
+  adc r27, ZERO
+  add r26, r18
+  adc r27, ZERO
+  adiw r26, STATE_ERRORS
+  ld r20, X+
+  ld r21, X
+  st X, r25
+  st -X, r24
+  inc r18
+  ldd r19, Z+C_CE_TICKS
+  cp r18, r19
+  brlo 1f
+  clr r18
+1:std Z+STATE_OLDEST, r18
+
   // size of e's change in r19:r18, its sign in S
-  ldd r20, Z+STATE_PREVIOUS
-  ldd r21, Z+STATE_PREVIOUS+1
-  std Z+STATE_PREVIOUS, r24
-  std Z+STATE_PREVIOUS+1, r25
-  ldd S, Z+STATE_STARTED
+  ldd S, Z+STATE_UNTIL_CHANGE
   tst S
-  breq .Lfirst
+  brne .Lno_change
   movw r18, r24
   sub r18, r20
   sbc r19, r21

@@ -133,10 +133,11 @@ TEST_CASE("samples tell the error and voltage of one and the same tick, whoever 
     params::Table table;
     params::load_defaults(table);
     const auto& p = table.joint[0];
-    const fuzzy_pdi::Settings settings = {p.ne_c,  p.ze_a,  p.ze_c, p.pe_b, p.nce_c, p.zce_a,
-                                          p.zce_c, p.pce_b, p.kp,   p.kd,   p.ki,    p.ku_mv};
+    const uint8_t ce_ticks = table.change[0].ce_ticks;
+    const fuzzy_pdi::Settings settings = {p.ne_c,  p.ze_a, p.ze_c, p.pe_b, p.nce_c, p.zce_a, p.zce_c,
+                                          p.pce_b, p.kp,   p.kd,   p.ki,   p.ku_mv, ce_ticks};
     REQUIRE(fuzzy_pdi::compile(settings, table.period_ms, law.coefficients) == fuzzy_pdi::Refusal::none);
-    fuzzy_pdi::reset(law.state);
+    fuzzy_pdi::reset(law.coefficients, law.state);
     int moved = 0, wrong = 0;
     for (const wire::Sample& sample : arm.samples) {
       if (sample.state != wire::State::following && sample.state != wire::State::soft_start) continue;

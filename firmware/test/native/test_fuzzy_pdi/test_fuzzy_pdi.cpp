@@ -9,7 +9,7 @@ using namespace fuzzy_pdi;
 namespace {
 
 // The paper's sets before tuning, joint 0's scaling factors, 15 V.
-const Settings before = {-4915, -4915, 4915, 4915, -1638, -1638, 1638, 1638, 33620, 10486, 20513, 15000};
+const Settings before = {-4915, -4915, 4915, 4915, -1638, -1638, 1638, 1638, 33620, 10486, 20513, 15000, 1};
 
 Coefficients compiled(const Settings& settings, uint8_t period_ms = 20) {
   Coefficients c = {};
@@ -18,9 +18,10 @@ Coefficients compiled(const Settings& settings, uint8_t period_ms = 20) {
 }
 
 Output first(const Settings& settings, int16_t leader, int16_t follower, uint16_t limit = 15000) {
+  const Coefficients c = compiled(settings);
   State state;
-  reset(state);
-  return step(compiled(settings), state, leader, follower, limit);
+  reset(c, state);
+  return step(c, state, leader, follower, limit);
 }
 
 }  // namespace
@@ -63,7 +64,7 @@ TEST_CASE("the integral is exact and waits while the output is saturated on the 
   s.ki = 65536;  // 1 V per rad and second
   const Coefficients c = compiled(s, 20);
   State state;
-  reset(state);
+  reset(c, state);
   for (int i = 1; i <= 1000; ++i) CHECK(step(c, state, 4096, 0, 30000).volts_mv == 20 * i);  // 1 rad for 20 ms a step
   for (int i = 0; i < 10; ++i) {
     const Output out = step(c, state, 4096, 0, 20000);
@@ -81,14 +82,14 @@ TEST_CASE("the integral is held within 2^15 mV") {
   s.ki = 20UL << 16;
   const Coefficients c = compiled(s, 4);
   State state;
-  reset(state);
+  reset(c, state);
   step(c, state, 32767, 0, 30000);
   // A shrinking error: the proportional part pulls down with all its 30 V while the integral grows.
   for (int16_t e = 32000; e > 3000; e = static_cast<int16_t>(e - 200))
     CHECK(step(c, state, e, 0, 30000).u_fuzzy == -32767);
   CHECK(state.integral == (int32_t{1} << 30) - 1);
   CHECK(state.fraction == 0xFFFF);
-  reset(state);
+  reset(c, state);
   step(c, state, 0, 32767, 30000);
   for (int16_t e = 32000; e > 3000; e = static_cast<int16_t>(e - 200))
     CHECK(step(c, state, 0, e, 30000).u_fuzzy == 32767);
@@ -103,23 +104,42 @@ TEST_CASE("the first change of error is zero, also after a reset") {
   s.kd = 65536;
   const Coefficients c = compiled(s);
   State state;
-  reset(state);
+  reset(c, state);
   CHECK(step(c, state, 400, 0, 15000).volts_mv == 0);
   CHECK(step(c, state, 500, 0, 15000).volts_mv > 0);
-  reset(state);
+  reset(c, state);
   CHECK(step(c, state, 900, 0, 15000).volts_mv == 0);
 }
 
+TEST_CASE("the change of error spans ce_ticks periods, and is zero until there were so many") {
+  Settings s = before;
+  s.ki = 0;
+  s.kp = 0;
+  s.ce_ticks = 3;
+  const Coefficients c = compiled(s);
+  State state;
+  reset(c, state);
+  const int16_t errors[] = {500, 100, 900};
+  for (const int16_t error : errors) CHECK(step(c, state, error, 0, 15000).volts_mv == 0);
+  CHECK(step(c, state, 500, 0, 15000).volts_mv == 0);  // as three periods before
+  CHECK(step(c, state, 200, 0, 15000).volts_mv > 0);   // 100 then
+  CHECK(step(c, state, 800, 0, 15000).volts_mv < 0);   // 900 then
+}
+
 TEST_CASE("Kd is stored for 20 ms") {
-  Settings slow = before;
-  slow.kd = 20 * 1000;
-  Settings fast = before;
-  fast.kd = 1000;
-  const Coefficients a = compiled(slow, 20);
-  const Coefficients b = compiled(fast, 1);
-  CHECK(a.ce[0].zero == b.ce[0].zero);
-  CHECK(a.ce[1].outer == b.ce[1].outer);
-  CHECK(a.ce[1].short_ramps == b.ce[1].short_ramps);
+  Settings whole = before;
+  whole.kd = 20 * 1000;
+  Settings short_period = before;
+  short_period.kd = 1000;
+  Settings spanning = whole;
+  spanning.ce_ticks = 20;
+  const Coefficients a = compiled(whole, 20);
+  const Coefficients same[] = {compiled(short_period, 1), compiled(spanning, 1)};
+  for (const Coefficients& b : same) {
+    CHECK(a.ce[0].zero == b.ce[0].zero);
+    CHECK(a.ce[1].outer == b.ce[1].outer);
+    CHECK(a.ce[1].short_ramps == b.ce[1].short_ramps);
+  }
 }
 
 TEST_CASE("bad settings are refused with their reason and leave the running set untouched") {
@@ -146,6 +166,8 @@ TEST_CASE("bad settings are refused with their reason and leave the running set 
   CHECK(refuses([](Settings& s) { s.ki = (1000UL << 16) + 1; }, 1) == Refusal::gain);
   CHECK(refuses([](Settings& s) { s.ki = 1000UL << 16; }, 5) == Refusal::gain);
   CHECK(refuses([](Settings& s) { s.ku_mv = 30001; }) == Refusal::gain);
+  CHECK(refuses([](Settings& s) { s.ce_ticks = 0; }) == Refusal::range);
+  CHECK(refuses([](Settings& s) { s.ce_ticks = 21; }) == Refusal::range);
   CHECK(refuses([](Settings&) {}, 0) == Refusal::period);
   CHECK(refuses([](Settings&) {}, 51) == Refusal::period);
 }
@@ -190,15 +212,24 @@ TEST_CASE("whatever is asked, settings are refused or the output is within the l
   Random random;
   uint32_t taken = 0;
   for (uint32_t i = 0; i < 3000; ++i) {
-    const Settings s = {random.corner(-1),       random.corner(-1),         random.corner(1),
-                        random.corner(1),        random.corner(-1),         random.corner(-1),
-                        random.corner(1),        random.corner(1),          random.some(64UL << 16),
-                        random.some(64UL << 16), random.some(1000UL << 16), static_cast<uint16_t>(random.some(30000))};
+    const Settings s = {random.corner(-1),
+                        random.corner(-1),
+                        random.corner(1),
+                        random.corner(1),
+                        random.corner(-1),
+                        random.corner(-1),
+                        random.corner(1),
+                        random.corner(1),
+                        random.some(64UL << 16),
+                        random.some(64UL << 16),
+                        random.some(1000UL << 16),
+                        static_cast<uint16_t>(random.some(30000)),
+                        static_cast<uint8_t>(random.next() % 22)};
     Coefficients c = {};
     if (compile(s, static_cast<uint8_t>(random.next() % 60), c) != Refusal::none) continue;
     ++taken;
     State state;
-    reset(state);
+    reset(c, state);
     for (uint32_t k = 0; k < 50; ++k) {
       const uint16_t limit = static_cast<uint16_t>(random.next() % 32768);
       const Output out = step(c, state, random.angle(), random.angle(), limit);

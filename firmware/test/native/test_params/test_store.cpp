@@ -266,7 +266,7 @@ TEST_CASE("bytes that are right already are not worn") {
     EXPECT(save(eeprom, table) == wire::SaveState::saved);
   }
   // Per save: the magic byte twice, the low byte of the sequence, the period, two bytes of CRC; now and then one more.
-  CHECK(eeprom.writes < 1000 * 6 + 2 * 194 + 10);
+  CHECK(eeprom.writes < 1000 * 6 + 2 * params::table_size + 20);
   int worst = 0;
   for (const int wear : eeprom.wear) worst = wear > worst ? wear : worst;
   CHECK(worst <= 1001);
@@ -349,37 +349,42 @@ TEST_CASE("banks of another layout or length are left alone until they are neede
 
 namespace {
 
-// Makes of a bank what the firmware before wrote: the beginning of the table only.
-void turn_into_layout_1(FakeEeprom& eeprom, uint16_t start) {
+// Makes of a bank what an older firmware wrote: the beginning of the table only.
+void turn_into(uint8_t old, FakeEeprom& eeprom, uint16_t start) {
+  const int end = bank::payload_at + params::layout_sizes[old - 1];
   const auto cell = [&](int at) -> uint8_t& { return eeprom.cells.at(static_cast<size_t>(start + at)); };
-  cell(bank::layout_at) = 1;
-  cell(bank::length_at) = 185;
+  cell(bank::layout_at) = old;
+  cell(bank::length_at) = params::layout_sizes[old - 1];
   wire::Crc16 crc;
-  for (int i = bank::layout_at; i < bank::payload_at + 185; ++i) crc.add(cell(i));
-  cell(bank::payload_at + 185) = crc.low();
-  cell(bank::payload_at + 186) = crc.high();
-  for (int i = bank::payload_at + 187; i < bank::size; ++i) cell(i) = 0xFF;
+  for (int i = bank::layout_at; i < end; ++i) crc.add(cell(i));
+  cell(end) = crc.low();
+  cell(end + 1) = crc.high();
+  for (int i = end + 2; i < bank::size; ++i) cell(i) = 0xFF;
 }
 
 }  // namespace
 
-TEST_CASE("a bank of layout 1 keeps its values, the rest gets its defaults, and a save writes today's layout") {
-  for (const int saves : {1, 2, 3}) {
+TEST_CASE("a bank of an older layout keeps its values, the rest gets its defaults, and a save writes today's layout") {
+  for (const int i : {0, 1, 2, 3, 4, 5}) {
+    const int saves = 1 + i / 2;
+    const auto old = static_cast<uint8_t>(1 + i % 2);
     params::Table newest;
     FakeEeprom eeprom = history(saves, newest);
-    turn_into_layout_1(eeprom, bank::start_a);
-    if (saves > 1) turn_into_layout_1(eeprom, bank::start_b);
+    turn_into(old, eeprom, bank::start_a);
+    if (saves > 1) turn_into(old, eeprom, bank::start_b);
     CHECK(same(boot(eeprom), newest));
     CHECK_FALSE(lost(eeprom));
     params::Table changed = newest;
     changed.unrest_amplitude = 33;
+    changed.change[3].ce_ticks = 7;
     FakeEeprom before = eeprom;
     CHECK(save(eeprom, newest) == wire::SaveState::saved);
     CHECK(same(boot(eeprom), newest));
     CHECK(save(eeprom, changed) == wire::SaveState::saved);
     CHECK(same(boot(eeprom), changed));
     CHECK_FALSE(lost(eeprom));
-    const size_t spoilt = (saves == 2 ? bank::start_b : bank::start_a) + bank::payload_at + 184U;
+    const auto last = static_cast<size_t>(bank::payload_at + params::layout_sizes[old - 1] - 1);
+    const size_t spoilt = (saves == 2 ? bank::start_b : bank::start_a) + last;
     before.cells.at(spoilt) ^= 1;  // the last byte of the newest
     CHECK_FALSE(same(boot(before), newest));
     CHECK(lost(before));

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int32]
-Controllers = NDArray[np.int32]  # (4, 12), or (n, 4, 12) for n sets: columns as in `protocol.table.CONTROLLER_COLUMNS`
+Controllers = NDArray[np.int32]  # (4, 13), or (n, 4, 13) for n sets: columns as in `protocol.table.CONTROLLER_COLUMNS`
 
 
 Progress = Callable[[str, float], None]  # takes what is being done, and the share of it that is done

@@ -19,9 +19,9 @@ from greywhale.tune.model import SAMPLES, load_model
 from greywhale.tune.report.controller_file import save
 from greywhale.tune.report.summary import summary
 from greywhale.tune.report.tables import tables_of
-from greywhale.tune.search.space import GAINS, SETS
+from greywhale.tune.search.space import NAMES
 
-NAMES = {name.lower(): name for name in (*SETS, *GAINS)}
+GIVEN_NAMES = {name.lower(): name for name in NAMES}
 EXISTING = click.Path(path_type=Path)
 
 
@@ -148,7 +148,7 @@ def _bounds(given: tuple[str, ...]) -> dict[str, tuple[float, float]]:
     found: dict[str, tuple[float, float]] = {}
     for one in given:
         given_name, equals, interval = one.partition("=")
-        name = NAMES.get(given_name.lower(), given_name)
+        name = GIVEN_NAMES.get(given_name.lower(), given_name)
         low, dots, high = interval.partition("..")
         try:
             limits = float(low), float(high)

@@ -46,7 +46,7 @@ class Foresight:
     believed: npt.NDArray[np.bool_]
 
     def ratios(self, rows: Controllers) -> Floats:
-        """(4,): each joint's error on steps with controllers (4, 12), as a share of that before."""
+        """(4,): each joint's error on steps with controllers (4, 13), as a share of that before."""
         ratios: Floats = _errors(self.experiment, self.plant, rows) / np.maximum(self.error, LEAST)
         return ratios
 

@@ -30,7 +30,7 @@ MOST_APART = 0.5
 
 @dataclass(frozen=True)
 class LearntController:
-    """A round's model and controllers (4, 12), and what speaks against the model."""
+    """A round's model and controllers (4, 13), and what speaks against the model."""
 
     arm: ArmParameters
     controllers: Controllers

@@ -26,7 +26,7 @@ BEFORE, AGAIN = "before", "before-again"
 
 @dataclass(frozen=True)
 class Trial:
-    """Controllers (4, 12) that ran on the arm, their log, and what was measured. `stopped` says why it ended early.
+    """Controllers (4, 13) that ran on the arm, their log, and what was measured. `stopped` says why it ended early.
 
     `table` is the whole set that the board ran.
     """

@@ -55,12 +55,16 @@ class Sets(toml_file.Table):
 
 
 class JointController(toml_file.Table):
-    """One joint: scaling factors kp (1/rad), kd (1/rad over 20 ms), ki (V/(rad s)), ku (V), and the sets."""
+    """One joint: scaling factors kp (1/rad), kd (1/rad over 20 ms), ki (V/(rad s)), ku (V), and the sets.
+
+    The change of error spans `ce_ticks` control periods; a file that does not say has the paper's 1.
+    """
 
     kp: float
     kd: float
     ki: float
     ku: float
+    ce_ticks: int = 1
     sets: Sets
 
     @model_validator(mode="after")
@@ -76,7 +80,8 @@ class JointController(toml_file.Table):
 
     def parameters(self, joint: int = 0) -> list[tuple[str, Parameter, float]]:
         """Key in the file, parameter of the board and value in the parameter's unit."""
-        values = {"kp": self.kp, "kd": self.kd, "ki": self.ki, "ku": 1000.0 * self.ku, **self.sets.model_dump()}
+        gains = {"kp": self.kp, "kd": self.kd, "ki": self.ki, "ku": 1000.0 * self.ku, "ce_ticks": self.ce_ticks}
+        values = gains | self.sets.model_dump()
         return [
             (key, schema.PARAMETER_BY_NAME[f"joint{joint}.{'ku_mv' if key == 'ku' else key.lower()}"], value)
             for key, value in values.items()
@@ -147,9 +152,9 @@ def save(
 ) -> None:
     """Write a controller file, or nothing at all where a board would refuse it.
 
-    `rows` are raw as a board stores them: (4, 12), a joint's keys in the order of its parameters (sets 1/16384, gains
-    1/65536, mV); an int32 array is one. `load` gives the same raw values back. `header` are lines of comment on top,
-    `notes` one for each joint.
+    `rows` are raw as a board stores them: (4, 13), a joint's keys in the order of its parameters (sets 1/16384, gains
+    1/65536, mV, control periods); an int32 array is one. `load` gives the same raw values back. `header` are lines of
+    comment on top, `notes` one for each joint.
     """
     text = to_text(rows, source, header=header, notes=notes, stall_volts=stall_volts, tuning=tuning)
     toml_file.loads(text, Controller, str(path))
@@ -172,7 +177,7 @@ def to_text(
     for joint, (row, note) in enumerate(zip(rows, notes, strict=True)):
         values = _in_file(joint, row)
         lines += ["", f"[[joint]]  # {joint}" + (f": {note}" if note else "")]
-        lines += [f"{key} = {toml_text.value(values[key])}" for key in GAINS]
+        lines += [f"{key} = {toml_text.value(values[key])}" for key in (*GAINS, "ce_ticks")]
         lines += ["[joint.sets]", *(f"{key} = {toml_text.value(values[key])}" for key in Sets.model_fields)]
     if tuning is not None:
         lines += ["", *toml_text.table("tuning", tuning)]
@@ -183,10 +188,10 @@ def _in_file(joint: int, row: Iterable[int]) -> dict[str, float]:
     """A joint's raw values by their keys in the file, exactly as the board will use them."""
     raw = dict(zip(CONTROLLER_COLUMNS, row, strict=True))
     found = {}
-    for key in (*Sets.model_fields, *GAINS):
+    for key in (*Sets.model_fields, *GAINS, "ce_ticks"):
         name = "ku_mv" if key == "ku" else key.lower()
         parameter = schema.PARAMETER_BY_NAME[f"joint{joint}.{name}"]
         value = index(raw[name])
         parameter.check_raw(value)
-        found[key] = parameter.to_physical(value) / (1000.0 if key == "ku" else 1.0)
+        found[key] = value if key == "ce_ticks" else parameter.to_physical(value) / (1000.0 if key == "ku" else 1.0)
     return found

@@ -11,32 +11,27 @@ from greywhale.base.formats.whole import write_text
 from greywhale.files import controller
 from greywhale.files.paper_tables import controller_path
 from greywhale.protocol import schema
+from greywhale.protocol.declared import Parameter
 from greywhale.protocol.table import ParameterTable, physical
-
-SINCE_LAYOUT_2 = (
-    *("unrest_amplitude", "unrest_rate", "unrest_time", "unrest_action"),
-    *("speed_limit", "runaway_limit", "stall_volts", "stall_ms", "estop_input", "driver"),
-)
 
 
 def save(path: str | Path, table: ParameterTable) -> None:
     """Write every parameter; `load` gives the same table back."""
     lines = [f"# greywhale parameters, CRC {table.crc:#06x}"]
-    heading = ""
-    for parameter in sorted(schema.PARAMETERS, key=lambda one: one.group != ""):  # TOML: values of no table come first
-        group, _, name = parameter.name.rpartition(".")
-        if group != heading:
-            heading = group
-            lines += ["", f"[{group}]"]
-        unit = f"  # {parameter.unit}" if parameter.unit else ""
-        lines.append(f"{name} = {physical(parameter, table.raw[parameter.index])}{unit}")
+    for group, parameters in _tables().items():
+        lines += ["", f"[{group}]"] if group else []
+        for parameter in parameters:
+            unit = f"  # {parameter.unit}" if parameter.unit else ""
+            name = parameter.name.rpartition(".")[2]
+            lines.append(f"{name} = {physical(parameter, table.raw[parameter.index])}{unit}")
     write_text(path, "\n".join(lines) + "\n")
 
 
 def load(path: str | Path) -> ParameterTable:
     """A whole table; every parameter must be there, in range, and nothing else.
 
-    A file of layout 1 gets the defaults of the parameters that this layout lacks, as a board does with its banks.
+    A file of an older layout gets the defaults of the parameters that this layout lacks, as a board does with its
+    banks.
     """
     data = toml_file.read(path)
     refuse_other_kind(data, str(path), Kind.PARAMETERS)
@@ -47,9 +42,9 @@ def load(path: str | Path) -> ParameterTable:
         key = toml_file.key_path(unknown[:1])
         raise UserError(f"{path}: unknown key {key}; {advice}.")
     values = []
-    older = not any(name in found for name in SINCE_LAYOUT_2)
+    layout = max((schema.PARAMETER_BY_NAME[name].since for name in found), default=1)
     for parameter in schema.PARAMETERS:
-        if older and parameter.name in SINCE_LAYOUT_2:
+        if parameter.since > layout:
             values.append(parameter.default)
             continue
         if parameter.name not in found:
@@ -74,6 +69,14 @@ def load_table(path: str | Path) -> ParameterTable:
     if isinstance(data.get("joint"), list):
         return controller.load(path).table().with_name(str(path))
     return load(path)
+
+
+def _tables() -> dict[str, list[Parameter]]:
+    """The parameters by their table in the file; those of none, "", come first, as TOML asks."""
+    tables: dict[str, list[Parameter]] = {"": []}
+    for parameter in schema.PARAMETERS:
+        tables.setdefault(parameter.name.rpartition(".")[0], []).append(parameter)
+    return tables
 
 
 def _flat(data: dict[str, object], path: str | Path) -> dict[str, object]:

@@ -7,12 +7,12 @@ Units: radians, volts, seconds as fractions.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
 
 from greywhale.fuzzy.rules import OUTPUTS, RULES
-from greywhale.fuzzy.settings import ANGLE_UNIT, GAIN_UNIT, KD_PERIOD_MS, JointSettings
+from greywhale.fuzzy.settings import ANGLE_UNIT, GAIN_UNIT, KD_SPAN_MS, JointSettings
 
 ZERO = Fraction(0)
 ONE = Fraction(1)
@@ -80,9 +80,9 @@ def infer(x: Fraction, y: Fraction, sets: Mapping[str, Fraction], feet: Feet = F
 
 @dataclass(frozen=True)
 class State:
-    """What the law remembers: the last error (none before the first period) and the integral in V."""
+    """What the law remembers: the errors of the last `ce_ticks` periods, the oldest first, and the integral in V."""
 
-    error: Fraction | None = None
+    errors: tuple[Fraction, ...] = ()
     integral: Fraction = ZERO
 
 
@@ -105,7 +105,7 @@ class Law:
     def inputs(self, error: Fraction, change: Fraction) -> tuple[Fraction, Fraction]:
         """x and y: the error and its change as the fuzzy sets get them."""
         kp = Fraction(self.settings.kp, GAIN_UNIT)
-        kd = Fraction(self.settings.kd, GAIN_UNIT) * KD_PERIOD_MS / self.period_ms
+        kd = Fraction(self.settings.kd, GAIN_UNIT) * KD_SPAN_MS / (self.settings.ce_ticks * self.period_ms)
         return clamp(kp * error, ONE), clamp(kd * change, ONE)
 
     def infer(self, error: Fraction, change: Fraction) -> Inference:
@@ -116,7 +116,8 @@ class Law:
         on the error's own side.
         """
         error = clamp(leader - follower, LARGEST_DIFFERENCE)
-        change = ZERO if state.error is None else clamp(error - state.error, LARGEST_DIFFERENCE)
+        full = len(state.errors) == self.settings.ce_ticks
+        change = clamp(error - state.errors[0], LARGEST_DIFFERENCE) if full else ZERO
         inference = self.infer(error, change)
         proportional = Fraction(self.settings.ku_mv, 1000) * inference.u
         ki = Fraction(self.settings.ki, GAIN_UNIT)
@@ -126,4 +127,4 @@ class Law:
         if saturated and (wanted < 0) == (error < 0):
             integral = state.integral
         output = Output(inference.u, clamp(proportional + integral, limit), saturated, inference.no_rule, wanted)
-        return output, replace(state, error=error, integral=integral)
+        return output, State((*state.errors[full:], error), integral)

@@ -21,7 +21,8 @@ LARGEST_KI = 1000 * GAIN_UNIT
 LARGEST_KI_PERIOD = 1 << 28
 LARGEST_KU_MV = 30_000
 LONGEST_PERIOD_MS = 50
-KD_PERIOD_MS = 20
+KD_SPAN_MS = 20
+MOST_CE_TICKS = 20
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,7 @@ class JointSettings:
     kd: int
     ki: int
     ku_mv: int
+    ce_ticks: int = 1  # control periods that the change of error spans
 
     @classmethod
     def of(cls, joint: JointController) -> Self:
@@ -66,6 +68,8 @@ class JointSettings:
         """Why a board would refuse these settings: the checks of the firmware's compile(), in their order."""
         if not 1 <= period_ms <= LONGEST_PERIOD_MS:
             return Refusal.PERIOD
+        if not 1 <= self.ce_ticks <= MOST_CE_TICKS:
+            return Refusal.RANGE
         left = (self.ne_c, self.ze_a, self.nce_c, self.zce_a)
         right = (self.pe_b, self.ze_c, self.pce_b, self.zce_c)
         for outward in (size for pair in zip((-value for value in left), right, strict=True) for size in pair):

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from greywhale.fuzzy.settings import KD_PERIOD_MS, JointSettings
+from greywhale.fuzzy.settings import KD_SPAN_MS, JointSettings
 
 Ints = NDArray[np.int64]
 
@@ -46,6 +46,7 @@ class Coefficients:
     ce: tuple[Side, Side]
     integral: int
     ku_mv: int
+    ce_ticks: int
 
 
 def _slope(width: int, gain: int, shift: int) -> int:
@@ -73,15 +74,16 @@ def _side(zero_width: int, outer_width: int, gain: int) -> Side:
 
 def compile_settings(s: JointSettings, period_ms: int) -> Coefficients:
     """The coefficients that the firmware derives from settings it does not refuse."""
-    kd = s.kd * KD_PERIOD_MS
+    kd, span_ms = s.kd * KD_SPAN_MS, s.ce_ticks * period_ms
     return Coefficients(
         e=(_side(s.ze_c, s.pe_b, s.kp), _side(-s.ze_a, -s.ne_c, s.kp)),
         ce=(
-            _side(s.zce_c * period_ms, s.pce_b * period_ms, kd),
-            _side(-s.zce_a * period_ms, -s.nce_c * period_ms, kd),
+            _side(s.zce_c * span_ms, s.pce_b * span_ms, kd),
+            _side(-s.zce_a * span_ms, -s.nce_c * span_ms, kd),
         ),
         integral=(s.ki * period_ms) << 3,
         ku_mv=s.ku_mv,
+        ce_ticks=s.ce_ticks,
     )
 
 
@@ -173,23 +175,21 @@ class Controller:
     """The law of one joint with its memory."""
 
     def __init__(self, settings: JointSettings, period_ms: int) -> None:
-        self.configure(settings, period_ms)
-        self.reset()
-
-    def configure(self, settings: JointSettings, period_ms: int) -> None:
-        """New settings or period; the memory stays."""
         self.coefficients = compile_settings(settings, period_ms)
+        self.reset()
 
     def reset(self) -> None:
         self.integral = 0  # 2^-31 mV
-        self.previous: int | None = None
+        self.errors = np.empty(0, np.int64)  # of the last `ce_ticks` periods
 
     def run(self, leader: ArrayLike, follower: ArrayLike, limit_mv: ArrayLike) -> Run:
         """One period after another; only the integral cannot be vectorised."""
         c = self.coefficients
         error = _difference(np.asarray(leader, np.int64), np.asarray(follower, np.int64))
-        before = np.concatenate([[error[0] if self.previous is None else self.previous], error[:-1]])
-        inference = infer(c, error, _difference(error, before))
+        known = np.concatenate([self.errors, error])
+        self.errors = known[-c.ce_ticks :]
+        change = _difference(known[c.ce_ticks :], known[: -c.ce_ticks])
+        inference = infer(c, error, np.concatenate([np.zeros(len(error) - len(change), np.int64), change]))
         limits = np.broadcast_to(np.asarray(limit_mv, np.int64), error.shape)
         drive = inference.u * c.ku_mv
 
@@ -204,7 +204,6 @@ class Controller:
             self.integral = taken
             integral.append(taken)
             volts.append(-min(millivolts, limit) if down else min(millivolts, limit))
-        self.previous = int(error[-1])
         return Run(
             np.clip(inference.u, -32767, 32767),
             np.array(volts, np.int64),

@@ -65,7 +65,7 @@ def cost_words(method: str) -> str:
 
 
 def draw_sets(path: Path, before: Controllers, after: Controllers, joints: Joints = ALL) -> Path:
-    """Draw the input sets of controllers as a board stores them, int32 (4, 12): before dashed, after solid.
+    """Draw the input sets of controllers as a board stores them, int32 (4, 13): before dashed, after solid.
 
     Sets that the tuning left as they were are drawn once, and it is said.
     """

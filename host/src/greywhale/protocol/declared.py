@@ -126,6 +126,7 @@ class Group:
     name: str
     count: int
     description: str
+    since: int  # the first layout that has it
     fields: tuple[Field, ...]
 
 
@@ -150,6 +151,7 @@ class Parameter:
     description: str
     group: str
     element: int
+    since: int  # the first layout that has it
 
     def to_physical(self, raw: int) -> float:
         return raw * self.lsb
@@ -258,6 +260,7 @@ def _expand(groups: tuple[Group, ...]) -> list[Parameter]:
                     description=field.description,
                     group=group.name,
                     element=element,
+                    since=group.since,
                 )
                 for place, field in enumerate(group.fields)
             ]

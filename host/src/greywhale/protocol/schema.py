@@ -18,10 +18,10 @@ from typing import ClassVar
 from .declared import Described, Field, Group, Message, Parameter, Table, check_length
 
 PROTOCOL = 1
-SCHEMA_HASH = 0xB6660B07
+SCHEMA_HASH = 0x106689E6
 MAX_PAYLOAD = 48
 REPLY_BIT = 0x80
-LAYOUT = 2
+LAYOUT = 3
 
 
 class State(Described):
@@ -982,7 +982,7 @@ MESSAGES: tuple[type[Message], ...] = (
 
 
 TABLE = Table((
-    Group("", 1, "Whole arm.", (
+    Group("", 1, "Whole arm.", 1, (
         Field("period_ms", "u8", "ms", 1.0, 1, 50, (1,), False, None, "control period"),
         Field("supply_mv", "u16", "mV", 1.0, 3000, 30000, (15000,), False, None, "motor supply; a duty of 1 puts this on a motor"),
         Field("enable_limit", "u16", "rad", 0.000244140625, 41, 25723, (3277,), False, None, "largest distance between leader and follower at which enable works"),
@@ -992,7 +992,7 @@ TABLE = Table((
         Field("filter_shift", "u8", "", 1.0, 0, 4, (1,), False, None, "potentiometer low-pass: new = old + (sample - old) / 2^filter_shift each tick; 0 is no filter"),
         Field("rail_counts", "u8", "10-bit counts", 1.0, 0, 100, (4,), False, None, "a potentiometer this close to 0 or 1023 is a fault; 0 turns the check off"),
     )),
-    Group("joint", 4, "One joint's controller. Fuzzy sets as in the paper: NE [-1,-1,Ne_c,0], ZE [Ze_a,0,Ze_c], PE [0,Pe_b,1,1], the same for the change of error. Defaults are the paper's controllers before tuning.", (
+    Group("joint", 4, "One joint's controller. Fuzzy sets as in the paper: NE [-1,-1,Ne_c,0], ZE [Ze_a,0,Ze_c], PE [0,Pe_b,1,1], the same for the change of error. Defaults are the paper's controllers before tuning.", 1, (
         Field("ne_c", "i16", "", 6.103515625e-05, -16384, 16384, (-4915, -4915, -4915, -4915), False, None, "Ne_c, inner shoulder of negative error"),
         Field("ze_a", "i16", "", 6.103515625e-05, -16384, 16384, (-4915, -4915, -4915, -4915), False, None, "Ze_a, left foot of zero error"),
         Field("ze_c", "i16", "", 6.103515625e-05, -16384, 16384, (4915, 4915, 4915, 4915), False, None, "Ze_c, right foot of zero error"),
@@ -1002,38 +1002,41 @@ TABLE = Table((
         Field("zce_c", "i16", "", 6.103515625e-05, -16384, 16384, (1638, 1638, 1638, 1638), False, None, "Zce_c, right foot of zero change of error"),
         Field("pce_b", "i16", "", 6.103515625e-05, -16384, 16384, (1638, 1638, 1638, 1638), False, None, "Pce_b, inner shoulder of positive change of error"),
         Field("kp", "u32", "1/rad", 1.52587890625e-05, 0, 4194304, (33620, 38666, 41288, 51249), False, None, "scales the error into -1..1"),
-        Field("kd", "u32", "1/rad", 1.52587890625e-05, 0, 4194304, (10486, 9634, 15991, 11076), False, None, "scales the change of error over 20 ms into -1..1; the firmware multiplies it by 20 / period_ms"),
+        Field("kd", "u32", "1/rad", 1.52587890625e-05, 0, 4194304, (10486, 9634, 15991, 11076), False, None, "scales the change of error over 20 ms into -1..1; the firmware multiplies it by 20 / (ce_ticks x period_ms)"),
         Field("ki", "u32", "V/(rad s)", 1.52587890625e-05, 0, 65536000, (20513, 13173, 16450, 15270), False, None, "integral gain"),
         Field("ku_mv", "u16", "mV", 1.0, 0, 30000, (15000, 11550, 13150, 14500), False, None, "voltage for a fuzzy output of 1"),
         Field("motor_sign", "i8", "", 1.0, -1, 1, (1, 1, 1, 1), True, None, "1, or -1 when a positive voltage turns the joint the wrong way"),
         Field("limit_min", "i16", "rad", 0.000244140625, -25723, 25723, (-10240, -10240, -10240, -10240), False, 'limit_max', "lowest angle the joint is sent to"),
         Field("limit_max", "i16", "rad", 0.000244140625, -25723, 25723, (10240, 10240, 10240, 10240), False, None, "highest angle the joint is sent to"),
     )),
-    Group("leader", 4, "One leader potentiometer. angle = (count14 - zero) x scale, count14 = 16 x the 10-bit count.", (
+    Group("leader", 4, "One leader potentiometer. angle = (count14 - zero) x scale, count14 = 16 x the 10-bit count.", 1, (
         Field("zero", "u16", "count14", 1.0, 0, 16368, (8184, 8184, 8184, 8184), False, None, "reading at 0 rad"),
         Field("scale", "i16", "rad/count14", 2.9802322387695312e-08, -16384, 16384, (10734, 10734, 10734, 10734), False, None, "angle of one count, negative when the potentiometer turns the other way; 0 when there is none"),
     )),
-    Group("follower", 4, "One follower potentiometer, as the leader's.", (
+    Group("follower", 4, "One follower potentiometer, as the leader's.", 1, (
         Field("zero", "u16", "count14", 1.0, 0, 16368, (8184, 8184, 8184, 8184), False, None, "reading at 0 rad"),
         Field("scale", "i16", "rad/count14", 2.9802322387695312e-08, -16384, 16384, (10734, 10734, 10734, 10734), False, None, "angle of one count, negative when the potentiometer turns the other way; 0 when there is none"),
     )),
-    Group("", 1, "When a joint counts as restless: its error swings to and fro while the leader is still.", (
+    Group("", 1, "When a joint counts as restless: its error swings to and fro while the leader is still.", 2, (
         Field("unrest_amplitude", "u8", "rad", 0.0009765625, 0, 205, (10,), False, None, "a joint is restless when its error swings with more than this amplitude (from turn to turn twice this) while no joint of the leader moves by more than this within 1/unrest_rate; 0 turns the check off"),
         Field("unrest_rate", "u8", "1/s", 1.0, 1, 10, (6,), False, None, "turns of the error in a second that are unrest; a swing to and fro has two"),
         Field("unrest_time", "u8", "s", 0.1, 2, 60, (11,), False, None, "time of unrest that becomes a fault"),
         Field("unrest_action", "u8", "", 1.0, 0, 1, (0,), False, None, "what unrest does: 0 turns the motors off, 1 goes on with the safe controllers, and turns the motors off at the next unrest"),
     )),
-    Group("", 1, "What a follower's motion must be like: a reading that lies, a motor or potentiometer the wrong way round and a stuck joint are faults.", (
+    Group("", 1, "What a follower's motion must be like: a reading that lies, a motor or potentiometer the wrong way round and a stuck joint are faults.", 2, (
         Field("speed_limit", "u8", "rad/s", 1.0, 0, 100, (25,), False, None, "a follower's reading that moves faster is a fault; 0 turns the check off"),
         Field("runaway_limit", "u8", "rad", 0.0078125, 0, 192, (40,), False, None, "way of a follower against its voltage of at least 2 V, without slowing down, that becomes a fault; 0 turns the check off"),
         Field("stall_volts", "u8", "V", 0.1, 0, 250, (32,), False, None, "voltage above which a follower must move; more than any joint needs to hold its load. 0 turns the check off"),
         Field("stall_ms", "u8", "ms", 4.0, 5, 125, (42,), False, None, "time above stall_volts without motion that becomes a fault; half of it with more than half the supply, and time below takes off three times as much"),
     )),
-    Group("", 1, "A button that turns the motors off, between the emergency stop's pin and ground.", (
+    Group("", 1, "A button that turns the motors off, between the emergency stop's pin and ground.", 2, (
         Field("estop_input", "u8", "", 1.0, 0, 2, (1,), False, None, "the emergency stop: 0 is none, 1 a button that closes to ground (without one, nothing is stopped), 2 one that opens, so that a broken wire stops as well"),
     )),
-    Group("", 1, "Which signals the motor drivers take. docs/firmware.md has the pins.", (
+    Group("", 1, "Which signals the motor drivers take. docs/firmware.md has the pins.", 2, (
         Field("driver", "u8", "", 1.0, 0, 3, (0,), False, None, "the signals of a motor: 0 PWM and direction, 1 PWM and two directions (IN1, IN2), 2 two PWM inputs, both low between pulses, 3 two PWM inputs, both high between pulses; 1 to 3 need a Mega"),
+    )),
+    Group("joint", 4, "How one joint's change of error is formed.", 3, (
+        Field("ce_ticks", "u8", "control periods", 1.0, 1, 20, (1, 1, 1, 1), False, None, "the change of error is the error less that of so many control periods ago; more make the motor quieter and the controller later"),
     )),
 ))
 PARAMETERS: tuple[Parameter, ...] = TABLE.parameters

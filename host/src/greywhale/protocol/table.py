@@ -17,8 +17,22 @@ from greywhale.protocol.firmware import JOINTS
 from greywhale.protocol.joints import ALL, Joints, unused
 from greywhale.protocol.schema import Board
 
-# One joint's controller as the table holds it: sets q14, gains q16, mV.
-CONTROLLER_COLUMNS = ("ne_c", "ze_a", "ze_c", "pe_b", "nce_c", "zce_a", "zce_c", "pce_b", "kp", "kd", "ki", "ku_mv")
+# One joint's controller as the table holds it: sets q14, gains q16, mV, control periods.
+CONTROLLER_COLUMNS = (
+    "ne_c",
+    "ze_a",
+    "ze_c",
+    "pe_b",
+    "nce_c",
+    "zce_a",
+    "zce_c",
+    "pce_b",
+    "kp",
+    "kd",
+    "ki",
+    "ku_mv",
+    "ce_ticks",
+)
 
 
 @dataclass(frozen=True)
@@ -74,7 +88,7 @@ class ParameterTable:
 
     @property
     def controllers(self) -> tuple[tuple[int, ...], ...]:
-        """(4, 12) raw: a row a joint, in the order of CONTROLLER_COLUMNS."""
+        """(4, 13) raw: a row a joint, in the order of CONTROLLER_COLUMNS."""
         return tuple(tuple(self[f"joint{joint}.{key}"] for key in CONTROLLER_COLUMNS) for joint in range(JOINTS))
 
     def by_name(self) -> dict[str, int]:
@@ -106,7 +120,7 @@ class ParameterTable:
         )
 
     def with_controllers(self, rows: Iterable[Iterable[int]]) -> Self:
-        """The same table with other controllers, (4, 12) raw."""
+        """The same table with other controllers, (4, 13) raw."""
         return self.with_raw(
             {
                 f"joint{joint}.{key}": int(raw)

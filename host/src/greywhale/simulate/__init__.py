@@ -1,7 +1,7 @@
 """The closed loop of leader, firmware, motors and arm, for one candidate or thousands, far faster than real time.
 
 >>> experiment = Experiment(human_reaches(), default_arm())
->>> result = experiment.run(controllers, plants)  # int32 (n, 4, 12) and float64 (n, columns): docs/closed_loop.md
+>>> result = experiment.run(controllers, plants)  # int32 (n, 4, 13) and float64 (n, columns): docs/closed_loop.md
 >>> result.mse  # (n, 4), rad^2
 """
 

@@ -1,4 +1,4 @@
-"""Controllers as rows of numbers, as the firmware stores them: int32 (4, 12), the columns of a parameter table."""
+"""Controllers as rows of numbers, as the firmware stores them: int32 (4, 13), the columns of a parameter table."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from greywhale.protocol.table import CONTROLLER_COLUMNS, ParameterTable
 
 
 def controllers_of(table: ParameterTable) -> Controllers:
-    """The controllers of a whole parameter table: int32 (4, 12)."""
+    """The controllers of a whole parameter table: int32 (4, 13)."""
     return np.array(table.controllers, dtype=np.int32)
 
 
 def controller_row(controller: Controller) -> Controllers:
-    """A controller.toml as the firmware will store it: int32 (4, 12)."""
+    """A controller.toml as the firmware will store it: int32 (4, 13)."""
     return controllers_of(controller.table())
 
 
 def default_controller() -> Controllers:
-    """The firmware's own defaults: int32 (4, 12)."""
+    """The firmware's own defaults: int32 (4, 13)."""
     return controllers_of(ParameterTable.defaults())
 
 
@@ -33,7 +33,7 @@ def check_controllers(controllers: Controllers) -> Controllers:
     check_type("controllers", controllers, np.int32)
     rows = controllers[None] if controllers.ndim == 2 else controllers
     if rows.ndim != 3 or rows.shape[1:] != (JOINTS, len(CONTROLLER_COLUMNS)):
-        raise UserError(f"controllers have the shape {controllers.shape}, but (n, 4, 12) or (4, 12) is needed.")
+        raise UserError(f"controllers have the shape {controllers.shape}, but (n, 4, 13) or (4, 13) is needed.")
     parameters = [schema.PARAMETER_BY_NAME[f"joint0.{key}"] for key in CONTROLLER_COLUMNS]
     low = np.array([parameter.minimum for parameter in parameters])
     high = np.array([parameter.maximum for parameter in parameters])

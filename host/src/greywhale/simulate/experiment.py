@@ -86,7 +86,7 @@ class Experiment:
         steps_per_tick: int = 2,
         instructions: str = "",
     ) -> Result:
-        """Simulate a batch: controllers int32 (n, 4, 12), plants float64 (n, columns), or one row of either for all.
+        """Simulate a batch: controllers int32 (n, 4, 13), plants float64 (n, columns), or one row of either for all.
 
         Sixteen candidates run at a time in single precision, on `threads` threads (0: one per core); the result does
         not depend on their number. `every` > 0 keeps angles and duties of every so many ticks. `steps_per_tick` 1, 2 or

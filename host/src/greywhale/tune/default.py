@@ -175,7 +175,7 @@ class DefaultMethod:
         return choose(self.start, contenders, partial(self.judge_costs, exact=True))
 
     def _contenders(self) -> Controllers:
-        """The best few of every joint (k, 4, 12), and the best with less voltage, which is a quieter second choice."""
+        """The best few of every joint (k, 4, 13), and the best with less voltage, which is a quieter second choice."""
         kept = self.found.contenders(lockstep.KEPT)
         weaker = np.repeat(kept[:1], len(WEAKER), axis=0)
         weaker[:, :, KU] = np.round(weaker[:, :, KU] * np.array(WEAKER)[:, None])

@@ -17,7 +17,7 @@ Costs = tuple[float, ...]
 
 @dataclass(frozen=True)
 class Judgement:
-    """The chosen controllers (4, 12), and how they and those from before did."""
+    """The chosen controllers (4, 13), and how they and those from before did."""
 
     after: Controllers
     cost_before: Costs

@@ -47,7 +47,7 @@ class Model:
 
     @property
     def controllers(self) -> NDArray[np.int32]:
-        """The controllers that the board runs now: int32 (4, 12)."""
+        """The controllers that the board runs now: int32 (4, 13)."""
         return controllers_of(self.table)
 
     @property

@@ -73,7 +73,7 @@ class Loops:
         ]
 
     def costs(self, rows: Controllers) -> Floats:
-        """J of every joint, tried alone: (n, 4) for (n, 4, 12)."""
+        """J of every joint, tried alone: (n, 4) for (n, 4, 13)."""
         costs = np.empty((len(rows), JOINTS))
         for joint, experiment in enumerate(self._experiments):
             laws = np.repeat(self.before[None], len(rows), axis=0)

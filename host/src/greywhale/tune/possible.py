@@ -26,7 +26,7 @@ CONVERSIONS_S = 0.5e-3
 
 
 def scale_of(drills: Sequence[TrainingMotion], plants: Floats, before: Controllers, threads: int = 0) -> ErrorScale:
-    """Floors, and errors and rattling of the controllers from before (4, 12), on every plant."""
+    """Floors, and errors and rattling of the controllers from before (4, 13), on every plant."""
     late = lateness_s(drills[0].experiment.table)
     floor = np.stack([[_least_error(drill, plant, late, threads) for drill in drills] for plant in plants])
     found = follow(drills, plants, before[None], threads=threads)

@@ -11,7 +11,7 @@ from greywhale.tune.model import Model
 
 @dataclass(frozen=True)
 class TuningRequest:
-    """A model to tune for, and how: `budget` evaluations, controllers `before` (4, 12), bounds in a file's units."""
+    """A model to tune for, and how: `budget` evaluations, controllers `before` (4, 13), bounds in a file's units."""
 
     model: Model
     strategy: str

@@ -30,7 +30,7 @@ def curves_of(found: SearchState) -> tuple[Curve, ...]:
 
 @dataclass(frozen=True)
 class TuningResult:
-    """The controllers `before` and `after`, int32 (4, 12), exactly as a board stores them, and how they do.
+    """The controllers `before` and `after`, int32 (4, 13), exactly as a board stores them, and how they do.
 
     Costs are the joints', judged like the winners. `table` is the one with which everything was simulated: the model's,
     except for the paper's method, whose control period is 20 ms.

@@ -67,7 +67,7 @@ def tune(
     """Tune the four controllers of a model.
 
     `budget` counts sets of four candidates, each tried on all plants and motions. The first set is `start`, the
-    controller from before: int32 (4, 12), by default that of the model's table. `journal` is a file that keeps every
+    controller from before: int32 (4, 13), by default that of the model's table. `journal` is a file that keeps every
     cost; with `resume` the tuning goes on from it. `threads` (0: all cores) changes no bit. `floors` False leaves out
     the held-out motions' floors. `on_trial`: the arm itself will judge, so unrest on the model counts less. After an
     interrupt (KeyboardInterrupt) the best so far comes back at once, with `complete` False and not judged; if nothing

@@ -109,7 +109,8 @@ Access set(Table& table, uint16_t index, int32_t value) {
 
 void load_defaults(Table& table) { read_flash(table, default_table); }
 
-void make_safe(JointParameters& own, uint8_t joint) {
+void make_safe(Table& table, uint8_t joint) {
+  const JointParameters own = table.joint[joint];
   JointParameters safe;
   read_flash(safe, default_table.joint[joint]);
   safe.kp = safe.kp < own.kp ? uint32_t{safe.kp} : uint32_t{own.kp};
@@ -119,7 +120,8 @@ void make_safe(JointParameters& own, uint8_t joint) {
   safe.motor_sign = own.motor_sign;
   safe.limit_min = own.limit_min;
   safe.limit_max = own.limit_max;
-  own = safe;
+  table.joint[joint] = safe;
+  read_flash(table.change[joint], default_table.change[joint]);
 }
 
 uint16_t crc(const Table& table) { return wire::crc_over(bytes_of(table), static_cast<uint8_t>(table_size)); }

@@ -20,7 +20,7 @@ Access set(Table& table, uint16_t index, int32_t value);
 void load_defaults(Table& table);
 
 // Gives a joint the controller of the defaults, with no gain and no voltage above its own.
-void make_safe(JointParameters& own, uint8_t joint);
+void make_safe(Table& table, uint8_t joint);
 
 // CRC over the packed table, as the host computes it. About 4,000 cycles: not for the tick.
 uint16_t crc(const Table& table);

@@ -8,8 +8,8 @@
 // that is already stored writes nothing. Any other save writes each cell of one bank at most once, but the first magic
 // byte twice. The banks take turns, so even that byte is written once per save on average: it lasts for 100,000 saves.
 //
-// A bank of layout 1 is read as well: it lacks the last parameters, which get their defaults. The next save writes the
-// other bank in today's layout.
+// A bank of an older layout is read as well: it lacks the last parameters, which get their defaults. The next save
+// writes the other bank in today's layout.
 //
 // A bank that is neither whole nor blank held a set once, or was to hold one: rot, another layout, or a save that a
 // power cut ended. Nobody can tell any more whether that set was the newest. So lost() is true then, whatever the other
@@ -37,9 +37,6 @@ constexpr uint8_t sequence_at = 5;
 constexpr uint8_t payload_at = 7;
 constexpr uint8_t crc_at = payload_at + table_size;
 constexpr uint8_t size = crc_at + 2;
-constexpr uint8_t layout_1 = 1;
-constexpr uint8_t layout_1_table = offsetof(Table, unrest_amplitude);
-static_assert(layout_1_table == 185 && layout == 2, "a bank of layout 1 must be the beginning of the table");
 static_assert(payload_at + table_size + 2 <= 255, "positions within a bank are bytes");
 // Address 0 is not used: a brown-out is most likely to spoil that cell.
 constexpr uint16_t start_a = 16;
@@ -118,7 +115,7 @@ bool Store<Eeprom>::whole(uint8_t b, uint16_t& sequence) {
 template <class Eeprom>
 uint8_t Store<Eeprom>::table_bytes(uint8_t b) {
   const uint8_t found = eeprom_.read(start(b) + bank::layout_at);
-  return found == layout ? table_size : found == bank::layout_1 ? bank::layout_1_table : 0;
+  return found >= 1 && found <= layout ? layout_sizes[found - 1] : 0;
 }
 
 template <class Eeprom>

@@ -45,6 +45,7 @@ const Field fields[field_count] PROGMEM = {
     {Kind::u8, offsetof(Table, stall_ms), no_field, false, 5, 125},
     {Kind::u8, offsetof(Table, estop_input), no_field, false, 0, 2},
     {Kind::u8, offsetof(Table, driver), no_field, false, 0, 3},
+    {Kind::u8, offsetof(ChangeParameters, ce_ticks), no_field, false, 1, 20},
 };
 
 const Group groups[group_count] PROGMEM = {
@@ -56,6 +57,7 @@ const Group groups[group_count] PROGMEM = {
     {1, 4, 31, 0, 0},
     {1, 1, 35, 0, 0},
     {1, 1, 36, 0, 0},
+    {4, 1, 37, offsetof(Table, change), sizeof(ChangeParameters)},
 };
 
 const Table default_table PROGMEM = {
@@ -82,6 +84,12 @@ const Table default_table PROGMEM = {
     25, 40, 32, 42,
     1,
     0,
+    {
+        {1},
+        {1},
+        {1},
+        {1},
+    },
 };
 
 }  // namespace params

@@ -7,10 +7,10 @@
 
 namespace params {
 
-constexpr uint8_t layout = 2;
-constexpr uint8_t count = 94;
-constexpr uint8_t field_count = 37;
-constexpr uint8_t group_count = 8;
+constexpr uint8_t layout = 3;
+constexpr uint8_t count = 98;
+constexpr uint8_t field_count = 38;
+constexpr uint8_t group_count = 9;
 
 // Packed, so that the bytes in RAM are the bytes on the link and in EEPROM, in the order of the flat index.
 // Read members by value: a reference to a packed member does not compile.
@@ -24,7 +24,7 @@ struct __attribute__((packed)) JointParameters {
   int16_t zce_c;  // Zce_c, right foot of zero change of error [1/16384]
   int16_t pce_b;  // Pce_b, inner shoulder of positive change of error [1/16384]
   uint32_t kp;  // scales the error into -1..1 [1/65536 1/rad]
-  uint32_t kd;  // scales the change of error over 20 ms into -1..1; the firmware multiplies it by 20 / period_ms [1/65536 1/rad]
+  uint32_t kd;  // scales the change of error over 20 ms into -1..1; the firmware multiplies it by 20 / (ce_ticks x period_ms) [1/65536 1/rad]
   uint32_t ki;  // integral gain [1/65536 V/(rad s)]
   uint16_t ku_mv;  // voltage for a fuzzy output of 1 [mV]
   int8_t motor_sign;  // 1, or -1 when a positive voltage turns the joint the wrong way
@@ -35,6 +35,10 @@ struct __attribute__((packed)) JointParameters {
 struct __attribute__((packed)) PotParameters {
   uint16_t zero;  // reading at 0 rad [count14]
   int16_t scale;  // angle of one count, negative when the potentiometer turns the other way; 0 when there is none [1/33554432 rad/count14]
+};
+
+struct __attribute__((packed)) ChangeParameters {
+  uint8_t ce_ticks;  // the change of error is the error less that of so many control periods ago; more make the motor quieter and the controller later [control periods]
 };
 
 struct __attribute__((packed)) Table {
@@ -59,9 +63,12 @@ struct __attribute__((packed)) Table {
   uint8_t stall_ms;  // time above stall_volts without motion that becomes a fault; half of it with more than half the supply, and time below takes off three times as much [4 ms]
   uint8_t estop_input;  // the emergency stop: 0 is none, 1 a button that closes to ground (without one, nothing is stopped), 2 one that opens, so that a broken wire stops as well
   uint8_t driver;  // the signals of a motor: 0 PWM and direction, 1 PWM and two directions (IN1, IN2), 2 two PWM inputs, both low between pulses, 3 two PWM inputs, both high between pulses; 1 to 3 need a Mega
+  ChangeParameters change[4];
 };
 
-constexpr uint16_t table_size = 195;
+constexpr uint16_t table_size = 199;
+// Of every layout so far: each is the beginning of the next.
+constexpr uint8_t layout_sizes[layout] = {185, 195, 199};
 static_assert(sizeof(Table) == table_size, "the table must have no padding");
 
 enum class Kind : uint8_t { u8, i8, u16, i16, u32, i32 };

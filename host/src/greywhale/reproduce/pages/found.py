@@ -70,5 +70,5 @@ def _count(seeds: int) -> str:
 
 
 def controllers(result: Result) -> Controllers:
-    """What a tuning found: int32 (4, 12)."""
+    """What a tuning found: int32 (4, 13)."""
     return np.array(result["controllers"], dtype=np.int32)

@@ -46,7 +46,7 @@ DATA_SETS = (
 
 
 def board(rows: Controllers, period_ms: int) -> ParameterTable:
-    """The bench's board with controllers (4, 12) at a control period, without the supervisor's checks of motion."""
+    """The bench's board with controllers (4, 13) at a control period, without the supervisor's checks of motion."""
     return paper_board(SUPPLY_V, period_ms).with_raw(UNGUARDED).with_controllers(rows.tolist())
 
 
@@ -97,7 +97,7 @@ def swings(log: Log) -> list[float]:
 
 
 def try_controllers(seed: int, rows: list[list[int]], period_ms: int, traces: bool = True) -> dict[str, Any]:
-    """Steps and multi-steps of controllers (4, 12) on the bench: the paper's measures of the logs.
+    """Steps and multi-steps of controllers (4, 13) on the bench: the paper's measures of the logs.
 
     `seed` changes the noise of the bench's potentiometers, and where its gears stand.
     """

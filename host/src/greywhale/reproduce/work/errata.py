@@ -41,7 +41,7 @@ class Law:
 
     @classmethod
     def of(cls, rows: Controllers, crisp: bool = False, rate: bool = False) -> Law:
-        """As a board stores them, int32 (4, 12)."""
+        """As a board stores them, int32 (4, 13)."""
         names = CONTROLLER_COLUMNS
         sets = rows[:, [names.index(name) for name in names[:8]]] / SET_UNIT
         gains = rows[:, [names.index(name) for name in ("kp", "kd", "ki")]] / GAIN_UNIT

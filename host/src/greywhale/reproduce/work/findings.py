@@ -100,7 +100,7 @@ class TwoSided:
         self._experiment = Experiment(motion, model.arm, table=table, noise=False, wait_s=WAIT_S, soft_start=False)
 
     def parts(self, rows: Controllers) -> tuple[Floats, Floats]:
-        """ITAE and ITAU, (n, 4) each, for (n, 4, 12)."""
+        """ITAE and ITAU, (n, 4) each, for (n, 4, 13)."""
         result = self._experiment.run(rows, self.plant, threads=1)
         return result.itae, result.itau
 

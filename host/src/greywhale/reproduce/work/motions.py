@@ -30,7 +30,7 @@ _DIGITS = 5  # of shown angles
 
 
 def printed(name: str) -> Controllers:
-    """The controllers of "before_tuning", "table_8", "table_9" or "table_10": int32 (4, 12)."""
+    """The controllers of "before_tuning", "table_8", "table_9" or "table_10": int32 (4, 13)."""
     return controller_row(load(paper_table(name)))
 
 

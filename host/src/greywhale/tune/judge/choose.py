@@ -21,9 +21,9 @@ ENOUGH = 0.5
 
 
 def choose(start: Controllers, contenders: Controllers, judge: Judge) -> tuple[Controllers, Floats, Floats]:
-    """The best combination (4, 12), with the costs of `start` and of itself (4,).
+    """The best combination (4, 13), with the costs of `start` and of itself (4,).
 
-    No joint costs more than FAIR times what it costs in `start`. `contenders` (k, 4, 12) hold the k-th best of every
+    No joint costs more than FAIR times what it costs in `start`. `contenders` (k, 4, 13) hold the k-th best of every
     joint. Each row is judged as it stands, then every joint's best among the neighbours of `start`, then the best of
     every joint together. Where a joint turns out worse among its new neighbours, its other candidates are tried there,
     also the one that it had in `start`. If that gains little, the joints of `start` are exchanged one after the other

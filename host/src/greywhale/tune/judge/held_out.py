@@ -86,7 +86,7 @@ def judge_held_out(
     threads: int = 0,
     floors: bool = True,
 ) -> tuple[HeldOut, ...]:
-    """Evaluate both controllers (4, 12) on one plant (columns,), in the bench's own arithmetic, with sensor noise."""
+    """Evaluate both controllers (4, 13) on one plant (columns,), in the bench's own arithmetic, with sensor noise."""
     judged = []
     for name, motion in motions(*reach(arm, table, plant[None])).items():
         experiment = Experiment(motion, arm, table=table, seed=7, wait_s=WAIT_S)

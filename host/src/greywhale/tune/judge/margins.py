@@ -171,7 +171,7 @@ class Margins:
         self._late = Experiment(motion, arm, timing=Timing(late=period), **common)
 
     def unrest(self, controllers: Controllers, *, exact: bool = False, every: int = 1) -> dict[str, Unrest]:
-        """Run every scenario for every candidate (n, 4, 12) on every plant."""
+        """Run every scenario for every candidate (n, 4, 13) on every plant."""
         count, plants = len(controllers), len(self.plants)
         variants = {name: with_gain(self.plants, self._widen(gain)) for name, gain in GAINS.items()}
         variants[TEETH] = with_softer_teeth(self.plants)
@@ -195,7 +195,7 @@ class Margins:
         return unrest_of(result, self._rests, every, (len(controllers), len(plants)), self._board, self._band)
 
     def check(self, controllers: Controllers) -> tuple[Margin, ...]:
-        """Check one controller (4, 12) in the bench's own arithmetic: a verdict for each scenario and joint."""
+        """Check one controller (4, 13) in the bench's own arithmetic: a verdict for each scenario and joint."""
         verdicts = []
         for name, found in self.unrest(controllers[None], exact=True, every=1).items():
             for joint in range(JOINTS):

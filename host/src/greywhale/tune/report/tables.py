@@ -1,6 +1,6 @@
 """A tuning in the layouts of the paper's Tables 8 to 12, as text and as data, with the paper's figures if asked.
 
-Controllers come raw as a board stores them, int32 (4, 12), and are shown as it will use them. Beside the paper's
+Controllers come raw as a board stores them, int32 (4, 13), and are shown as it will use them. Beside the paper's
 columns stand the improvement and, where a `Floor` is known, the error as a multiple of the least possible.
 """
 

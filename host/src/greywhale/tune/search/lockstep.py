@@ -34,7 +34,7 @@ TURNS = ((0, 2), (1, 3))
 class SearchState:
     """The best so far of every joint, and the course of the search."""
 
-    best: Controllers  # (4, 12)
+    best: Controllers  # (4, 13)
     cost: Floats  # (4,); infinite while a joint has none
     evaluations: int = 0
     narrowed: int = 0  # numbers whose width was below 0.01 and became 0.01
@@ -50,7 +50,7 @@ class SearchState:
         return float(self.cost.sum())
 
     def take(self, rows: Controllers, costs: Floats, counts: list[int]) -> None:
-        """Take in candidates (n, 4, 12) with their costs (n, 4); of joint j the first counts[j] rows are new."""
+        """Take in candidates (n, 4, 13) with their costs (n, 4); of joint j the first counts[j] rows are new."""
         self.evaluations += len(rows)
         for joint, count in enumerate(counts):
             self.ranking[joint] += [(float(costs[row, joint]), rows[row, joint].tobytes()) for row in range(count)]
@@ -66,7 +66,7 @@ class SearchState:
         self.ranking = [[] for _ in range(JOINTS)]
 
     def contenders(self, count: int) -> Controllers:
-        """(count, 4, 12): every joint's best, then others from further down its list; the first few are alike."""
+        """(count, 4, 13): every joint's best, then others from further down its list; the first few are alike."""
         rows = np.repeat(self.best[None], count, axis=0)
         for joint, ranked in enumerate(self.ranking):
             for place, rank in enumerate(RANKS[:count]):
@@ -104,7 +104,7 @@ def search_in_lockstep(
     sigma: float | None = None,
     pack: int = PACK,
 ) -> None:
-    """Spend `budget` evaluations a joint and leave the best in `found`; a `start` (4, 12) is in the first pack.
+    """Spend `budget` evaluations a joint and leave the best in `found`; a `start` (4, 13) is in the first pack.
 
     The first pack lies all over the box, or around `start` with a standard deviation of `sigma` times the box. CMA-ES
     has a pack of its own size.

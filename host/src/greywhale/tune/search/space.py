@@ -16,7 +16,15 @@ import numpy.typing as npt
 
 from greywhale.base.errors import BAD_USAGE, UserError
 from greywhale.base.types import Controllers, Floats
-from greywhale.fuzzy.settings import GAIN_UNIT, LARGEST_KI, LARGEST_KI_PERIOD, LARGEST_KU_MV, LEAST_WIDTH, SET_UNIT
+from greywhale.fuzzy.settings import (
+    GAIN_UNIT,
+    LARGEST_KI,
+    LARGEST_KI_PERIOD,
+    LARGEST_KU_MV,
+    LEAST_WIDTH,
+    MOST_CE_TICKS,
+    SET_UNIT,
+)
 from greywhale.protocol import schema
 from greywhale.simulate import CONTROLLER_COLUMNS
 
@@ -27,9 +35,11 @@ Bounds = Mapping[str, tuple[float, float]]
 # The paper's names (Tables 8 to 10) in the order of its vector w (section 4), then the scaling factors.
 SETS = ("Ne_c", "Ze_a", "Ze_c", "Pe_b", "Nce_c", "Zce_a", "Zce_c", "Pce_b")
 GAINS = ("Kp", "Kd", "Ki", "Ku")
+CE_TICKS = "ce_ticks"  # searched with the factors, but not by the paper
+NAMES = (*SETS, *GAINS, CE_TICKS)
 _PAIRS = (("Ne_c", "Pe_b"), ("Ze_a", "Ze_c"), ("Nce_c", "Pce_b"), ("Zce_a", "Zce_c"))
 _NEGATIVE = frozenset({"Ne_c", "Ze_a", "Nce_c", "Zce_a"})
-_UNIT = {"Kp": GAIN_UNIT, "Kd": GAIN_UNIT, "Ki": GAIN_UNIT, "Ku": 1000}
+_UNIT = {"Kp": GAIN_UNIT, "Kd": GAIN_UNIT, "Ki": GAIN_UNIT, "Ku": 1000, CE_TICKS: 1}
 NARROWEST = LEAST_WIDTH / SET_UNIT
 NARROWEST_STATED = 0.01  # as people write it; stored, it is the next width above
 
@@ -106,7 +116,7 @@ class Variable:
 
 @dataclass(frozen=True)
 class Space:
-    """The box of one strategy, the same for every joint; all other numbers stay as in `base` (4, 12)."""
+    """The box of one strategy, the same for every joint; all other numbers stay as in `base` (4, 13)."""
 
     strategy: str
     variables: tuple[Variable, ...]
@@ -130,6 +140,7 @@ class Space:
         gains = [
             Variable(name, lowest[name], highest[name], name != "Ku", offset=offset.get(name, 0.0)) for name in GAINS
         ]
+        gains.append(Variable(CE_TICKS, 1.0, float(MOST_CE_TICKS), True))
         return cls(strategy, _chosen(strategy, sets, gains), base)
 
     @classmethod
@@ -173,7 +184,7 @@ class Space:
         return np.array([variable.bounds[1] for variable in self.variables])
 
     def controllers(self, points: Floats) -> Controllers:
-        """Points (n, 4, d) in search units as controllers that the firmware stores: int32 (n, 4, 12)."""
+        """Points (n, 4, d) in search units as controllers that the firmware stores: int32 (n, 4, 13)."""
         rows = np.repeat(self.base[None], len(points), axis=0).astype(np.int64)
         for place, variable in enumerate(self.variables):
             raw = variable.raw(points[:, :, place])
@@ -183,7 +194,7 @@ class Space:
         return rows.astype(np.int32)
 
     def points(self, controllers: Controllers) -> Floats:
-        """Controllers (n, 4, 12) as points (n, 4, d), moved into the box where they lie outside."""
+        """Controllers (n, 4, 13) as points (n, 4, d), moved into the box where they lie outside."""
         columns = [variable.search_value(controllers[:, :, variable.column]) for variable in self.variables]
         return np.stack(columns, axis=-1)
 
@@ -208,7 +219,7 @@ class Space:
         return replace(self, variables=tuple(by_name.values()), base=base)
 
     def restretch(self, controllers: Controllers) -> Controllers:
-        """The same laws (4, 12) with Kp and Kd of `base` where this space does not search them: the sets are stretched
+        """The same laws (4, 13) with Kp and Kd of `base` where this space does not search them: the sets are stretched
         instead.
         """
         rows = controllers.astype(np.float64)
@@ -245,9 +256,9 @@ def check_strategy(strategy: str) -> None:
 def check_bounds(strategy: str, bounds: Bounds) -> None:
     """Refuse bounds (in the file's units and signs) that the strategy does not search or no board can store."""
     for name, (low, high) in bounds.items():
-        if name not in (*SETS, *GAINS):
-            raise UserError(f"there is no bound for {name!r}; there are {', '.join((*SETS, *GAINS))}.", BAD_USAGE)
-        if name in (GAINS if strategy == "mf" else SETS if strategy == "sf" else ()):
+        if name not in NAMES:
+            raise UserError(f"there is no bound for {name!r}; there are {', '.join(NAMES)}.", BAD_USAGE)
+        if name in ((*GAINS, CE_TICKS) if strategy == "mf" else SETS if strategy == "sf" else ()):
             raise UserError(f"{name} is not searched by strategy {strategy}; leave out its bounds.", BAD_USAGE)
         if not (math.isfinite(low) and math.isfinite(high)):
             raise UserError(f"the bounds of {name} are {low:g} and {high:g}; give two finite numbers.", BAD_USAGE)
@@ -266,7 +277,7 @@ def storable_range(name: str) -> tuple[float, float]:
     if name in SETS:
         return _ordered(name, NARROWEST_STATED, 1.0)
     parameter = schema.PARAMETER_BY_NAME["joint0.ku_mv" if name == "Ku" else f"joint0.{name.lower()}"]
-    # A gain is searched by its logarithm, so 0 cannot be a bound; one step of the format serves as well.
+    # A factor is searched by its logarithm, so 0 cannot be a bound; one step of the format serves as well.
     return 1.0 / _UNIT[name], parameter.maximum / _UNIT[name]
 
 
