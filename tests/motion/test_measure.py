@@ -234,4 +234,4 @@ def test_only_joints_in_use_count() -> None:
     found = evaluate(log)
     assert found.joints_in_use == (0, 1)
     assert found.total_mse == pytest.approx(found.joints[0].mse + found.joints[1].mse)
-    assert [joint["in_use"] for joint in found.as_dict()["joints"]] == [True, True, False, False]  # type: ignore[attr-defined]
+    assert [joint["in_use"] for joint in found.as_dict()["joints"]] == [True, True, False, False]

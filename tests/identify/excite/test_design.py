@@ -111,11 +111,8 @@ def test_a_model_with_a_parameter_that_nobody_knows_is_refused_by_its_name(name:
         design(load_arm("white_box").model_copy(update={"identification": facts}), POSE)
 
 
-def test_a_design_tells_itself_in_a_sentence_and_in_numbers() -> None:
+def test_a_design_tells_itself_in_a_sentence() -> None:
     made = design(load_arm("white_box"), POSE, seconds=5.0, budget=4)
-    told = made.as_dict()
-    assert set(told) == {"seconds", "log_det", "expected_deviation", "left_open", "largest_lag_rad", "evaluations"}
-    assert "joint3.alpha" in told["expected_deviation"]  # type: ignore[operator]
     assert made.text().endswith(".")
     assert " % after this motion" in made.text()
 

@@ -11,6 +11,7 @@ import itertools
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated, NotRequired, TypedDict
 
 import numpy as np
 
@@ -50,11 +51,23 @@ _MOVING = (schema.State.SOFT_START, schema.State.FOLLOWING)
 _VOLT = schema.Sample.LSB["voltage"]
 
 
+class RecordingFacts(TypedDict):
+    log: str  # the file
+    samples: int  # rows of the log
+    dropped: int  # samples that the link lost
+    duration_s: float  # by the board's clock
+    gaps_s: NotRequired[list[Annotated[list[float], ("minItems", 2), ("maxItems", 2)]]]  # port away: when, how long
+
+
+class LedRecordingFacts(RecordingFacts):
+    slowest_pace: float  # of the motion that this host led; 1 is as planned
+    waits: int  # how often the board had to wait for this host
+
+
 @dataclass(frozen=True)
 class Recording:
     """What was recorded: rows in the log, samples that the link lost, duration by the board's clock.
 
-    For a motion that this host led also its `slowest` pace (1: as planned), and how often the board had to wait for it.
     `gaps` are those in which the port was away: when each began and its length, s.
     """
 
@@ -62,20 +75,29 @@ class Recording:
     rows: int
     dropped: int
     duration_s: float
-    slowest: float | None = None
-    waits: int | None = None
     gaps: tuple[tuple[float, float], ...] = ()
 
-    def as_dict(self) -> dict[str, object]:
-        led = {} if self.slowest is None else {"slowest_pace": round(self.slowest, 2), "waits": self.waits}
-        return {
+    def as_dict(self) -> RecordingFacts:
+        facts: RecordingFacts = {
             "log": str(self.path),
             "samples": self.rows,
             "dropped": self.dropped,
             "duration_s": self.duration_s,
-            **led,
-            **({"gaps_s": [list(gap) for gap in self.gaps]} if self.gaps else {}),
         }
+        if self.gaps:
+            facts["gaps_s"] = [list(gap) for gap in self.gaps]
+        return facts
+
+
+@dataclass(frozen=True)
+class LedRecording(Recording):
+    """A motion that this host led: its slowest pace (1: as planned), and how often the board had to wait for it."""
+
+    slowest: float = 1.0
+    waits: int = 0
+
+    def as_dict(self) -> LedRecordingFacts:
+        return {**super().as_dict(), "slowest_pace": round(self.slowest, 2), "waits": self.waits}
 
 
 def record(
@@ -113,7 +135,7 @@ def record_led(
     *,
     patient: bool = True,
     watch: Watch | None = None,
-) -> Recording:
+) -> LedRecording:
     """Lead the arm along `motion`, from where it is, and record that; `table` is the table that runs, where it is
     known.
 
@@ -135,7 +157,7 @@ def record_led(
             received = _await_following(device, received, report, leading)
             duration = _write_led(device, log, received, leading, report, watch)
     device.telemetry(0)
-    return Recording(Path(path), log.rows, log.dropped, duration, leading.slowest, leading.starved)
+    return LedRecording(Path(path), log.rows, log.dropped, duration, (), leading.slowest, leading.starved)
 
 
 def check_every_led(every: int) -> None:

@@ -9,9 +9,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypedDict
 
 from greywhale.base.errors import UserError
-from greywhale.base.types import Progress
+from greywhale.base.types import Crc, Progress
 from greywhale.board.device import Device
 from greywhale.board.refusal import RefusedError
 from greywhale.files import controller as controller_file
@@ -21,6 +22,11 @@ from greywhale.protocol.table import ParameterTable
 # A whole set takes 0.7 s to write into the EEPROM of an Arduino.
 SAVE_WAIT_S = 10.0
 _POLL_S = 0.02
+
+
+class UploadFacts(TypedDict):
+    parameter_crc: Crc
+    changed: list[str]  # names of the parameters that changed
 
 
 @dataclass(frozen=True)
@@ -34,7 +40,7 @@ class Uploaded:
     def param_crc(self) -> int:
         return self.table.crc
 
-    def as_dict(self) -> dict[str, object]:
+    def as_dict(self) -> UploadFacts:
         return {"parameter_crc": f"0x{self.param_crc:04x}", "changed": list(self.changed)}
 
 

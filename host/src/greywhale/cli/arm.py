@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Annotated, TypedDict
 
 import click
 import numpy as np
@@ -11,6 +12,7 @@ from greywhale.arm.from_urdf import Imported, import_urdf
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.errors import BAD_USAGE, UserError
 from greywhale.base.formats.whole import refuse_inputs, write_text
+from greywhale.base.types import PerJoint
 from greywhale.cli.arm_match import match
 from greywhale.cli.arm_new import new
 from greywhale.cli.group import Group
@@ -19,6 +21,13 @@ from greywhale.files.model import arm_toml
 from greywhale.files.outputs import require_new
 
 SUPPLY_V = (1.0, 60.0)
+
+
+class ImportAnswer(TypedDict):
+    written: str  # the file
+    signs: PerJoint[Annotated[int, ("enum", [1, -1])]]
+    offsets_rad: PerJoint[float]
+    remarks: list[str]  # what was left out or guessed
 
 
 @click.group("arm", cls=Group)
@@ -35,7 +44,7 @@ command.add_command(match)
 @click.option("--out", "-o", type=click.Path(path_type=Path), default=Path("arm.toml"), show_default=True)
 @click.option("--supply", default=15.0, show_default=True, help="The motors' supply, V.")
 @overwrite_option
-@json_option
+@json_option(ImportAnswer)
 def import_(urdf: Path, out: Path, supply: float, overwrite: bool, as_json: bool) -> None:
     """Read a URDF: a yaw, two parallel pitches and a roll along the last link; a chain may end earlier.
 
@@ -52,7 +61,7 @@ def import_(urdf: Path, out: Path, supply: float, overwrite: bool, as_json: bool
     show(as_json, _facts(out, found), _text(out, found))
 
 
-def _facts(out: Path, found: Imported) -> dict[str, object]:
+def _facts(out: Path, found: Imported) -> ImportAnswer:
     return {
         "written": str(out),
         "signs": [int(sign) for sign in found.signs],

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TypedDict
 
 import click
 import numpy as np
 
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.formats.whole import refuse_inputs, write_text
+from greywhale.base.types import PerJoint
 from greywhale.board.calibrate.match import with_board_pots
 from greywhale.board.device import Device
 from greywhale.board.upload import read_parameters
@@ -19,12 +21,22 @@ from greywhale.files.outputs import require_new
 from greywhale.protocol.ports import choose_port
 
 
+class Tracks(TypedDict):
+    leader: PerJoint[float]
+    follower: PerJoint[float]
+
+
+class MatchAnswer(TypedDict):
+    written: str  # the file
+    track_deg: Tracks
+
+
 @click.command("match")
 @click.argument("arm")
 @port_option
 @click.option("--out", "-o", type=click.Path(path_type=Path), default=Path("matched.toml"), show_default=True)
 @overwrite_option
-@json_option
+@json_option(MatchAnswer)
 def match(arm: str, port: str | None, out: Path, overwrite: bool, as_json: bool) -> None:
     """Write an arm file, or one that comes with greywhale, with the potentiometers as the board is calibrated.
 
@@ -37,15 +49,13 @@ def match(arm: str, port: str | None, out: Path, overwrite: bool, as_json: bool)
         table = read_parameters(device)
     found = with_board_pots(before, table)
     write_text(out, arm_toml(found, f"Made by greywhale arm match from {Path(arm).name}."))
-    facts = {
-        "written": str(out),
-        "track_deg": {
-            side: [round(float(np.degrees(pot.track)), 2) for pot in bank.joint]
-            for side, bank in (("leader", found.leader_pots), ("follower", found.follower_pots))
-        },
-    }
+    leader, follower = (
+        [round(float(np.degrees(pot.track)), 2) for pot in bank.joint]
+        for bank in (found.leader_pots, found.follower_pots)
+    )
+    answer: MatchAnswer = {"written": str(out), "track_deg": {"leader": leader, "follower": follower}}
     lines = [f"{out} is written. Tracks in degrees, leader and follower:"]
     for joint, name in enumerate(JOINT_NAMES):
         pair = (found.leader_pots.joint[joint], found.follower_pots.joint[joint])
         lines.append(f"  {name:16}" + "".join(f"{np.degrees(pot.direction * pot.track):>9.1f}" for pot in pair))
-    show(as_json, facts, "\n".join(lines))
+    show(as_json, answer, "\n".join(lines))

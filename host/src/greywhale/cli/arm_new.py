@@ -7,6 +7,7 @@ import itertools
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Annotated, TypedDict
 
 import click
 import numpy as np
@@ -26,11 +27,29 @@ from greywhale.protocol.table import ParameterTable
 MUCH_TO_HOLD = 0.6  # of stall_volts: the rest is for starting
 
 
+class JointFacts(TypedDict):
+    joint: int
+    gravity_nm: float  # the largest torque of gravity
+    stall_nm: float  # the motor's torque at standstill
+    no_load_speed_rad_s: float
+    hold_v: float  # holds the worst pose
+    holds_without_power: bool
+
+
+class NewAnswer(TypedDict):
+    written: str  # the file
+    mass_kg: float
+    joints: Annotated[list[JointFacts], ("minItems", 1), ("maxItems", 4)]  # in use
+    warnings: list[str]
+    before_it_moves: str  # what to do; empty where nothing
+    left_out: list[str]  # answers that were taken as usual
+
+
 @click.command("new")
 @click.option("--answers", type=click.Path(path_type=Path), metavar="FILE", help="TOML with the answers, for scripts.")
 @click.option("--out", "-o", type=click.Path(path_type=Path), default=Path("arm.toml"), show_default=True)
 @overwrite_option
-@json_option
+@json_option(NewAnswer)
 def new(answers: Path | None, out: Path, overwrite: bool, as_json: bool) -> None:
     """Ask for lengths, masses or materials, motors' data sheets and ranges; write an arm.toml.
 
@@ -192,8 +211,8 @@ def _advice(found: Summary) -> str:
     )
 
 
-def _facts(out: Path, found: Summary, left_out: tuple[str, ...]) -> dict[str, object]:
-    joints = [
+def _facts(out: Path, found: Summary, left_out: tuple[str, ...]) -> NewAnswer:
+    joints: list[JointFacts] = [
         {
             "joint": one.joint,
             "gravity_nm": round(one.gravity, 6),

@@ -5,18 +5,20 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Annotated, TypedDict
 
 import click
 import numpy as np
 import numpy.typing as npt
 
 from greywhale.base.errors import BAD_USAGE, UserError, cut
+from greywhale.base.types import Crc, PerJoint
 from greywhale.board.calibrate import Options, Result, calibrate
 from greywhale.board.calibrate.solve import Calibration
 from greywhale.board.device import Device
 from greywhale.board.pots import FULL_SCALE, POTS
 from greywhale.board.upload import upload_set
-from greywhale.cli.output import json_option, overwrite_option, port_option, show
+from greywhale.cli.output import OnPort, json_option, overwrite_option, port_option, show
 from greywhale.cli.person import Terminal
 from greywhale.files import parameter_file
 from greywhale.files.outputs import require_new
@@ -26,6 +28,26 @@ from greywhale.protocol.ports import choose_port
 
 TRACK_DEG = (180.0, 450.0)
 FARTHEST_DEG = 359.0
+
+
+class MotorFacts(TypedDict):
+    joint: int
+    sign: Annotated[int, ("enum", [1, -1])]  # -1: it turned the wrong way
+    volts: float  # that moved it
+    way_rad: float  # how far it moved
+
+
+class Answer(OnPort):
+    backup: str  # where the parameters from before are kept
+    parameter_crc: Crc
+    joints: list[int]  # in use
+    changed: dict[str, int]  # parameter to raw value
+    track_deg: Annotated[list[float], ("minItems", 8), ("maxItems", 8)]  # a potentiometer each; 0 where there is none
+    limits_rad: PerJoint[Annotated[list[float], ("minItems", 2), ("maxItems", 2)]]  # lowest and highest angle
+    motors: list[MotorFacts]  # empty with --no-motors
+    reversed: list[str]  # potentiometers that read the other way
+    remarks: list[str]
+    apart_rad: PerJoint[float]  # how far the arms are apart in the last pose
 
 
 @click.command("calibrate")
@@ -44,7 +66,7 @@ FARTHEST_DEG = 359.0
 @click.option("--no-motors", is_flag=True, help="Leave the motors alone; motor_sign stays as it is.")
 @click.option("--yes", "-y", is_flag=True, help="Store the result without asking.")
 @overwrite_option
-@json_option
+@json_option(Answer)
 def command(
     port: str | None,
     in_use: str,
@@ -119,7 +141,7 @@ def _angles(option: str, text: str) -> npt.NDArray[np.float64]:
     return angles
 
 
-def _facts(port: str, result: Result, backup: Path) -> dict[str, object]:
+def _facts(port: str, result: Result, backup: Path) -> Answer:
     found = result.calibration
     return {
         "port": port,

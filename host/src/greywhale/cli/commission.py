@@ -47,7 +47,7 @@ EXISTING = click.Path(path_type=Path)
 @click.option("--resume", is_flag=True, help="Go on where an interrupted commissioning in this folder ended.")
 @yes_option
 @port_option
-@json_option
+@json_option("greywhale.commission.result:Answer")
 def command(
     out: Path,
     arm_file: str | None,
@@ -77,6 +77,7 @@ def command(
     # Scipy and the native simulation take a moment to import.
     from greywhale.commission import CommissioningRequest, commission
     from greywhale.commission.page import save_page
+    from greywhale.commission.result import Answer
     from greywhale.identify.excite import parse_range
 
     chosen = dict(parse_range(text) for text in ranges)
@@ -109,8 +110,5 @@ def command(
         )
         raise
     page = save_page(outcome, out / "report.html")
-    show(
-        as_json,
-        {"port": options.port, **outcome.as_dict(), "report": str(page)},
-        f"{outcome.text()}\n\nWritten: {page}",
-    )
+    answer: Answer = {"port": options.port, **outcome.as_dict(), "report": str(page)}
+    show(as_json, answer, f"{outcome.text()}\n\nWritten: {page}")

@@ -13,12 +13,16 @@ from greywhale.cli.output import json_option, overwrite_option, progress, show
 from greywhale.cli.workers import executor_options, results_option
 from greywhale.files.outputs import require_new
 from greywhale.optimise.comparison import Plan, compare
-from greywhale.optimise.comparison_report import as_dict, check_format, text, write_report
+from greywhale.optimise.comparison_report import ComparisonFacts, as_dict, check_format, text, write_report
 from greywhale.optimise.functions import FUNCTIONS, Setting
 from greywhale.optimise.methods import METHODS
 
 # With fewer evaluations in all, starting other processes takes longer than they save.
 SMALL = 300_000
+
+
+class Answer(ComparisonFacts):
+    files: list[str]
 
 
 @click.command("compare")
@@ -46,7 +50,7 @@ SMALL = 300_000
     help="Write all runs (.csv) or a picture of the ranks (.png, .svg, .pdf); may be given more than once.",
 )
 @overwrite_option
-@json_option
+@json_option(Answer)
 def command(
     functions: str | None,
     methods: str | None,
@@ -92,7 +96,8 @@ def command(
     for path in out:
         write_report(path, comparison)
     written = "".join(f"\nWritten: {path}" for path in out)
-    show(as_json, {**as_dict(comparison), "files": [str(path) for path in out]}, text(comparison) + written)
+    answer: Answer = {**as_dict(comparison), "files": [str(path) for path in out]}
+    show(as_json, answer, text(comparison) + written)
 
 
 def _names(chosen: str | None, default: tuple[str, ...]) -> tuple[str, ...]:

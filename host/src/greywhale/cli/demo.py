@@ -52,7 +52,7 @@ from greywhale.files.outputs import require_folder
     help="Controllers tried for each joint; without it, as many as `tune` tries.",
 )
 @click.option("--prove", is_flag=True, help="Also prove the tuned controllers on the arm, as `commission` does.")
-@json_option
+@json_option("greywhale.cli.story.result:Answer")
 def command(
     out: Path,
     leader: Path | None,

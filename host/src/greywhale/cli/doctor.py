@@ -10,12 +10,17 @@ from greywhale.base.errors import BAD_USAGE, UserError, counted
 from greywhale.base.types import show_no_progress
 from greywhale.board.doctor import Finding, Options, Verdict, examine, worst
 from greywhale.board.doctor.examine import LINK_S
-from greywhale.cli.output import json_option, port_option, progress, show
+from greywhale.cli.output import OnPort, json_option, port_option, progress, show
 from greywhale.protocol.ports import choose_port
 
 LONGEST_S = 3600.0
 SUPPLY_V = (1.0, 60.0)
 INDENT = 21  # of what is said, behind verdict and check
+
+
+class Answer(OnPort):
+    verdict: Verdict  # the gravest
+    findings: list[Finding]
 
 
 @click.command("doctor")
@@ -31,7 +36,7 @@ INDENT = 21  # of what is said, behind verdict and check
 @click.option(
     "--hex", "hex_file", type=click.Path(path_type=Path), metavar="FILE", help="With --image: compare with this file."
 )
-@json_option
+@json_option(Answer)
 @click.pass_context
 def command(
     context: click.Context,
@@ -57,8 +62,8 @@ def command(
     with progress(brief=True) as report:
         findings = examine(Options(chosen, params, seconds, supply, image, hex_file), report or show_no_progress)
     verdict = worst(findings)
-    facts = {"port": chosen, "verdict": verdict.value, "findings": [one.as_dict() for one in findings]}
-    show(as_json, facts, "\n".join([*map(_line, findings), "", _summary(findings)]), hang=INDENT)
+    answer: Answer = {"port": chosen, "verdict": verdict, "findings": findings}
+    show(as_json, answer, "\n".join([*map(_line, findings), "", _summary(findings)]), hang=INDENT)
     context.exit(int(verdict is Verdict.BAD))
 
 

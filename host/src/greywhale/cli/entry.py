@@ -13,7 +13,7 @@ import sys
 import time
 from collections.abc import Sequence
 from types import FrameType
-from typing import NoReturn
+from typing import Annotated, NoReturn, TypedDict
 
 import click
 
@@ -25,6 +25,13 @@ from greywhale.cli.wrapping import fit
 
 INTERRUPTED = 130
 logger = logging.getLogger(__name__)
+
+
+class Failure(TypedDict):
+    """What any verb prints with --json when it fails."""
+
+    error: str  # one sentence: what is wrong, and what to do
+    exit_code: Annotated[int, ("enum", [FAILED, BAD_USAGE, INTERRUPTED])]
 
 
 def main() -> NoReturn:
@@ -108,7 +115,8 @@ def _failed(message: str, code: int, as_json: bool) -> int:
     logger.info("failed: %s", printable(message))
     logger.debug("where:", exc_info=True)
     if as_json:
-        print(json_of({"error": message, "exit_code": code}))
+        answer: Failure = {"error": message, "exit_code": code}
+        print(json_of(answer))
     with contextlib.suppress(OSError):  # the terminal may be gone
         print(fit(f"greywhale: {printable(message)}", sys.stderr), file=sys.stderr)
     return code

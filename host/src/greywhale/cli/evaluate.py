@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import NotRequired, TypedDict
 
 import click
 
@@ -10,12 +11,30 @@ from greywhale.base.errors import counted
 from greywhale.base.formats.whole import refuse_inputs
 from greywhale.cli.output import json_option, overwrite_option, show
 from greywhale.files.log import Log, read_log
+from greywhale.files.log.check import Check
+from greywhale.files.log.condition import Gap
 from greywhale.files.outputs import require_new
 from greywhale.motion import Evaluation, evaluate
+from greywhale.motion.evaluate import EvaluationFacts
 from greywhale.pictures.kinds import kind_of
 from greywhale.protocol.joints import named, unused
 
 _WIDTHS = (11, 14, 10, 11, 11, 10)  # of the table's columns behind the first
+
+
+class LogFacts(EvaluationFacts):
+    log: str  # the file
+    dropped: int  # samples that the link lost
+    complete: bool  # whether nothing ended the recording early
+    ended_by: str  # what did
+    check: Check  # shortened: rows are missing; changed: rows or header are others; unchecked: it has no check
+    gaps: list[Gap]  # where more than ten samples in a row are missing
+    remarks: list[str]  # check and gaps in sentences
+
+
+class Answer(TypedDict):
+    logs: list[LogFacts]  # in the order given
+    picture: NotRequired[str]  # with --picture
 
 
 @click.command("evaluate")
@@ -24,7 +43,7 @@ _WIDTHS = (11, 14, 10, 11, 11, 10)  # of the table's columns behind the first
     "--picture", type=click.Path(path_type=Path), help="Draw angles, errors and voltages (.png, .svg or .pdf)."
 )
 @overwrite_option
-@json_option
+@json_option(Answer)
 def command(logs: tuple[Path, ...], picture: Path | None, overwrite: bool, as_json: bool) -> None:
     """Measure how well the follower followed in a log.
 
@@ -45,25 +64,26 @@ def command(logs: tuple[Path, ...], picture: Path | None, overwrite: bool, as_js
         log = read_log(path, voltages=picture is not None)
         evaluations.append(evaluate(log))
         read.append(log if picture is not None else log.without_samples())
-    results = [
+    results: list[LogFacts] = [
         {
             "log": log.name,
             "dropped": log.dropped,
             "complete": log.complete,
             "ended_by": log.ended_by,
-            **log.condition.as_dict(),
+            "check": log.condition.check,
+            "gaps": list(log.condition.gaps),
             "remarks": list(log.remarks),
             **evaluation.as_dict(),
         }
         for log, evaluation in zip(read, evaluations, strict=True)
     ]
     text = "\n\n".join(_text(log, evaluation) for log, evaluation in zip(read, evaluations, strict=True))
-    facts: dict[str, object] = {"logs": results}
+    answer: Answer = {"logs": results}
     if picture is not None:
         _draw(picture, read)
-        facts["picture"] = str(picture)
+        answer["picture"] = str(picture)
         text += f"\n\nPicture: {picture}"
-    show(as_json, facts, text)
+    show(as_json, answer, text)
 
 
 def _draw(picture: Path, logs: list[Log]) -> None:

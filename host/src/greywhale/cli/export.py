@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TypedDict
 
 import click
 
@@ -10,6 +11,10 @@ from greywhale.base.formats.whole import refuse_inputs, write_text
 from greywhale.cli import completion
 from greywhale.cli.output import json_option, overwrite_option, show
 from greywhale.files.outputs import require_new
+
+
+class Answer(TypedDict):
+    written: list[str]  # files
 
 
 @click.command("export")
@@ -25,7 +30,7 @@ from greywhale.files.outputs import require_new
 @click.option("--out", "-o", required=True, type=click.Path(path_type=Path), help="The file to write.")
 @click.option("--joint", type=click.IntRange(0, 3), help="With --fis: this joint only, into OUT itself.")
 @overwrite_option
-@json_option
+@json_option(Answer)
 def command(
     fis: Path | None,
     urdf: str | None,
@@ -48,8 +53,8 @@ def command(
         raise click.UsageError("--joint goes with --fis: an arm is written whole.")
     arms = (urdf, mjcf)
     written = _export_fis(fis, out, joint, overwrite) if fis is not None else [_export_arm(*arms, out, overwrite)]
-    names = [str(path) for path in written]
-    show(as_json, {"written": names}, "\n".join(names))
+    answer: Answer = {"written": [str(path) for path in written]}
+    show(as_json, answer, "\n".join(answer["written"]))
 
 
 def _export_fis(source: Path, out: Path, joint: int | None, overwrite: bool) -> list[Path]:

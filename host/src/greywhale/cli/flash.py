@@ -6,10 +6,17 @@ from pathlib import Path
 
 import click
 
+from greywhale.base.types import Crc
 from greywhale.board.device import version
 from greywhale.board.flash import BOARDS, flash
-from greywhale.cli.output import json_option, port_option, progress, show
+from greywhale.cli.output import OnPort, json_option, port_option, progress, show
 from greywhale.protocol.ports import choose_port
+
+
+class Answer(OnPort):
+    board: str  # mega2560 or nano328
+    firmware: str  # version
+    parameter_crc: Crc
 
 
 @click.command("flash")
@@ -21,7 +28,7 @@ from greywhale.protocol.ports import choose_port
 )
 @click.option("--hex", "hex_file", type=click.Path(path_type=Path), help="Upload this HEX file.")
 @port_option
-@json_option
+@json_option(Answer)
 def command(board: str | None, firmware: Path | None, hex_file: Path | None, port: str | None, as_json: bool) -> None:
     """Put the firmware onto a board.
 
@@ -34,10 +41,10 @@ def command(board: str | None, firmware: Path | None, hex_file: Path | None, por
     chosen = choose_port(port)
     with progress() as report:
         hello = flash(chosen, board, firmware, hex_file, report)
-    facts = {
+    answer: Answer = {
         "port": chosen,
         "board": hello.board.key,
         "firmware": version(hello),
         "parameter_crc": f"0x{hello.param_crc:04x}",
     }
-    show(as_json, facts, f"{chosen}: greywhale firmware {version(hello)} runs on the {hello.board.description}.")
+    show(as_json, answer, f"{chosen}: greywhale firmware {version(hello)} runs on the {hello.board.description}.")

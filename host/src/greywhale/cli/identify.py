@@ -16,6 +16,12 @@ from greywhale.files.log.selection import MOST_S, informative
 from greywhale.files.outputs import require_folder, require_new, require_no_files
 from greywhale.files.parameter_file import load_table
 from greywhale.identify import METHODS, identify
+from greywhale.identify.result import ResultFacts
+
+
+class Answer(ResultFacts):
+    files: list[str]  # that were written
+    notes: list[str]  # logs of which a part was used
 
 
 @click.command("identify")
@@ -51,7 +57,7 @@ from greywhale.identify import METHODS, identify
 )
 @click.option("--pictures", type=click.Path(path_type=Path), help="Folder for pictures of responses and convergence.")
 @overwrite_option
-@json_option
+@json_option(Answer)
 def command(
     logs: tuple[Path, ...],
     validate: tuple[Path, ...],
@@ -92,8 +98,8 @@ def command(
 
         files += draw(outcome, pictures)
     written = "\n\nWritten: " + ", ".join(str(path) for path in files)
-    facts = {**outcome.as_dict(), "files": [str(path) for path in files], "notes": notes}
-    show(as_json, facts, "\n".join([*notes, outcome.text() + written]))
+    answer: Answer = {**outcome.as_dict(), "files": [str(path) for path in files], "notes": notes}
+    show(as_json, answer, "\n".join([*notes, outcome.text() + written]))
 
 
 def _read(path: Path, notes: list[str]) -> Log:

@@ -3,27 +3,61 @@
 from __future__ import annotations
 
 import contextlib
+from typing import Annotated, TypedDict
 
 import click
 
 from greywhale.base.errors import BAD_USAGE, UserError, counted
+from greywhale.base.types import Crc
 from greywhale.board.device import Device
 from greywhale.board.doctor.board import EEPROM_WRITES
 from greywhale.board.pots import POTS, PotReadings, read_pots
 from greywhale.board.refusal import fault_text, pot_name
 from greywhale.board.upload import read_parameters
-from greywhale.cli.output import json_option, port_option, show
+from greywhale.cli.output import OnPort, json_option, port_option, show
 from greywhale.protocol import schema
 from greywhale.protocol.ports import choose_port
 
 BESIDE = 15  # columns: where a row's value begins
 
 
+class PotFacts(TypedDict):
+    pot: str  # leader0 to follower3
+    lowest: int  # reading, 0 to 1023
+    highest: int
+    in_use: bool  # whether the board's parameters say that it is there (scale is not 0)
+    fault: Annotated[str, ("enum", ["none", "pot_low", "pot_high"])]  # the rail that it is at
+
+
+class Answer(OnPort):
+    board: str  # mega2560 or nano328
+    firmware: str  # version
+    protocol: int  # version of the link
+    schema: str  # hash of the link's declarations
+    parameter_crc: Crc
+    parameter_source: str  # where the running parameters came from at the start
+    reset_cause: str
+    state: Annotated[str, ("enum", [one.key for one in schema.State])]
+    fault: str  # of the link reference, or none
+    fault_where: int | None  # joint, potentiometer or other place of the fault
+    stop_reason: str  # what last turned the motors off
+    uptime_s: float
+    save_state: str  # how far storing parameters is
+    saves: int  # parameter sets that were stored so far, modulo 65536
+    late_ticks: int  # not finished in time
+    frames_bad: int  # with a wrong CRC
+    rx_overruns: int  # bytes that the board lost
+    telemetry_dropped: int  # samples that the board could not send
+    no_rule: int  # how often no rule fired
+    tick_us_max: int  # the longest tick
+    pots: list[PotFacts] | None  # null while the motors are on
+
+
 @click.command("info")
 @click.option("--watch", is_flag=True, help="Show angles, errors, voltages and faults as they are, until Ctrl-C.")
 @click.option("--seconds", "-s", type=click.FloatRange(min=0.0), help="With --watch: end after so long.")
 @port_option
-@json_option
+@json_option(Answer)
 def command(watch: bool, seconds: float | None, port: str | None, as_json: bool) -> None:
     """Tell a board's version, state, faults and counters, and which potentiometers are broken.
 
@@ -54,9 +88,7 @@ def _watch(port: str | None, seconds: float | None) -> None:
         watch(device, read_parameters(device), seconds)  # Ctrl-C is how it ends
 
 
-def _facts(
-    device: Device, hello: schema.HelloReply, status: schema.StatusReply, pots: PotReadings | None
-) -> dict[str, object]:
+def _facts(device: Device, hello: schema.HelloReply, status: schema.StatusReply, pots: PotReadings | None) -> Answer:
     return {
         "port": device.port,
         "board": hello.board.key,
@@ -73,12 +105,17 @@ def _facts(
         "uptime_s": status.tick / 1000,
         "save_state": status.save_state.key,
         "saves": status.saves,
-        **{name: getattr(status, name) for name in _COUNTERS},
+        "late_ticks": status.late_ticks,
+        "frames_bad": status.frames_bad,
+        "rx_overruns": status.rx_overruns,
+        "telemetry_dropped": status.telemetry_dropped,
+        "no_rule": status.no_rule,
+        "tick_us_max": status.tick_us_max,
         "pots": None if pots is None else [_pot_facts(pots, number) for number in range(len(POTS))],
     }
 
 
-def _pot_facts(pots: PotReadings, number: int) -> dict[str, object]:
+def _pot_facts(pots: PotReadings, number: int) -> PotFacts:
     counts = pots.counts[:, number]
     return {
         "pot": POTS[number],
@@ -90,7 +127,6 @@ def _pot_facts(pots: PotReadings, number: int) -> dict[str, object]:
 
 
 _MOTORS_OFF = (schema.State.DISABLED, schema.State.FAULT)
-_COUNTERS = ("late_ticks", "frames_bad", "rx_overruns", "telemetry_dropped", "no_rule", "tick_us_max")
 
 
 def _text(device: Device, hello: schema.HelloReply, status: schema.StatusReply, pots: PotReadings | None) -> str:

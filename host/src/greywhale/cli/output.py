@@ -8,7 +8,7 @@ import logging
 import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import Any, TypeVar
+from typing import Any, TypedDict, TypeVar
 
 import click
 
@@ -17,13 +17,24 @@ from greywhale.base.types import NotedProgress
 from greywhale.cli import completion, tracing
 from greywhale.cli.wrapping import fit
 
+ANSWER = "answer"  # attribute of a verb's function: the type of what it prints with --json
 QUIET = "greywhale.quiet"  # in the context's `meta`: whether --quiet was said
 logger = logging.getLogger(__name__)
 Command = TypeVar("Command", bound=Callable[..., Any])
 
 
-def json_option(command: Command) -> Command:
-    return click.option("--json", "as_json", is_flag=True, help="Print exactly one JSON object on stdout.")(command)
+class OnPort(TypedDict):
+    port: str  # the serial port that was used
+
+
+def json_option(answer: object) -> Callable[[Command], Command]:
+    """--json; `answer` is the type of what it prints, or module:name of one whose import takes a moment."""
+
+    def add(command: Command) -> Command:
+        setattr(command, ANSWER, answer)
+        return click.option("--json", "as_json", is_flag=True, help="Print exactly one JSON object on stdout.")(command)
+
+    return add
 
 
 def overwrite_option(command: Command) -> Command:
@@ -42,7 +53,7 @@ def port_option(command: Command) -> Command:
     )(command)
 
 
-def show(as_json: bool, result: Mapping[str, Any], text: str, hang: int = 0) -> None:
+def show(as_json: bool, result: Mapping[str, object], text: str, hang: int = 0) -> None:
     """Print the result of a verb: for programs or for people. `hang` indents what is broken off a long line."""
     if as_json:
         click.echo(json_of(result))
@@ -61,10 +72,13 @@ def warn(sentences: Iterable[str]) -> None:
         tell(f"Warning: {sentence}")
 
 
-def json_of(result: Mapping[str, Any]) -> str:
-    """One line of JSON, readable in every language, that no terminal obeys: JSON itself escapes not all controls."""
-    text = json.dumps(result, ensure_ascii=False)
-    return text if text.isprintable() else json.dumps(result)
+def json_of(result: Mapping[str, object]) -> str:
+    """One line of JSON, readable in every language, that no terminal obeys: JSON itself escapes not all controls.
+
+    A dataclass in it becomes an object of its fields.
+    """
+    text = json.dumps(result, ensure_ascii=False, default=vars)
+    return text if text.isprintable() else json.dumps(result, default=vars)
 
 
 @contextlib.contextmanager

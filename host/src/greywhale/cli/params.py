@@ -5,16 +5,18 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TypedDict
 
 import click
 
 from greywhale.base.errors import BAD_USAGE, UserError, cut
 from greywhale.base.formats.units import read_number, unit_of
+from greywhale.base.types import Crc
 from greywhale.board.device import Device
-from greywhale.board.upload import change_parameters, read_parameters
+from greywhale.board.upload import UploadFacts, change_parameters, read_parameters
 from greywhale.cli import completion
 from greywhale.cli.group import Group
-from greywhale.cli.output import json_option, overwrite_option, port_option, progress, show
+from greywhale.cli.output import OnPort, json_option, overwrite_option, port_option, progress, show
 from greywhale.files import parameter_file
 from greywhale.files.names import did_you_mean
 from greywhale.files.outputs import require_new
@@ -22,6 +24,33 @@ from greywhale.protocol import schema
 from greywhale.protocol.declared import Parameter
 from greywhale.protocol.ports import choose_port
 from greywhale.protocol.table import physical
+
+
+class GetAnswer(OnPort):
+    parameters: dict[str, float]  # name to value, in the parameter's unit
+
+
+class SetAnswer(OnPort, UploadFacts):
+    stored: dict[str, float]  # name to value as stored, in the parameter's unit
+
+
+class BackupAnswer(OnPort):
+    file: str
+    parameter_crc: Crc
+
+
+class RestoreAnswer(OnPort, UploadFacts):
+    pass
+
+
+class Difference(TypedDict):
+    board: float
+    file: float
+
+
+class DiffAnswer(OnPort):
+    file: str
+    differences: dict[str, Difference]  # name to both values, in the parameter's unit
 
 
 @click.group("params", cls=Group)
@@ -35,7 +64,7 @@ def command() -> None:
 @command.command("get")
 @click.argument("names", metavar="[NAME]...", nargs=-1, shell_complete=completion.parameters)
 @port_option
-@json_option
+@json_option(GetAnswer)
 def get(names: tuple[str, ...], port: str | None, as_json: bool) -> None:
     """Show parameters; without names, all of them.
 
@@ -46,13 +75,14 @@ def get(names: tuple[str, ...], port: str | None, as_json: bool) -> None:
         table = read_parameters(device, report)
     facts = {parameter.name: physical(parameter, table[parameter.name]) for parameter in wanted}
     lines = [f"{name:<16} {value:>12g} {schema.PARAMETER_BY_NAME[name].unit}" for name, value in facts.items()]
-    show(as_json, {"port": device.port, "parameters": facts}, "\n".join(line.rstrip() for line in lines))
+    answer: GetAnswer = {"port": device.port, "parameters": facts}
+    show(as_json, answer, "\n".join(line.rstrip() for line in lines))
 
 
 @command.command("set")
 @click.argument("settings", metavar="NAME=VALUE...", nargs=-1, required=True, shell_complete=completion.settings)
 @port_option
-@json_option
+@json_option(SetAnswer)
 def set_(settings: tuple[str, ...], port: str | None, as_json: bool) -> None:
     """Change parameters, all together: run them and store them.
 
@@ -67,53 +97,48 @@ def set_(settings: tuple[str, ...], port: str | None, as_json: bool) -> None:
         done = change_parameters(device, changes, report)
     stored = {name: physical(schema.PARAMETER_BY_NAME[name], raw) for name, raw in changes.items()}
     lines = [f"  {name} = {value:.9g} {schema.PARAMETER_BY_NAME[name].unit}".rstrip() for name, value in stored.items()]
-    show(
-        as_json,
-        {"port": device.port, **done.as_dict(), "stored": stored},
-        "\n".join([_changed(device.port, done.changed), "The board now runs and keeps:", *lines]),
-    )
+    answer: SetAnswer = {"port": device.port, **done.as_dict(), "stored": stored}
+    show(as_json, answer, "\n".join([_changed(device.port, done.changed), "The board now runs and keeps:", *lines]))
 
 
 @command.command("backup")
 @click.argument("file", type=click.Path(path_type=Path))
 @port_option
 @overwrite_option
-@json_option
+@json_option(BackupAnswer)
 def backup(file: Path, port: str | None, overwrite: bool, as_json: bool) -> None:
     """Write all parameters of a board into a TOML file."""
     require_new(overwrite, file)
     with Device(choose_port(port)) as device, progress(brief=True) as report:
         table = read_parameters(device, report)
     parameter_file.save(file, table)
-    show(
-        as_json,
-        {"port": device.port, "file": str(file), "parameter_crc": f"0x{table.crc:04x}"},
-        f"{file}: {len(table.raw)} parameters, CRC {table.crc:#06x}.",
-    )
+    answer: BackupAnswer = {"port": device.port, "file": str(file), "parameter_crc": f"0x{table.crc:04x}"}
+    show(as_json, answer, f"{file}: {len(table.raw)} parameters, CRC {table.crc:#06x}.")
 
 
 @command.command("restore")
 @click.argument("file", type=click.Path(path_type=Path))
 @port_option
-@json_option
+@json_option(RestoreAnswer)
 def restore(file: Path, port: str | None, as_json: bool) -> None:
     """Run and store the parameters of a backup."""
     wanted = parameter_file.load(file)
     with Device(choose_port(port)) as device, progress(brief=True) as report:
         done = change_parameters(device, wanted.by_name(), report)
-    show(as_json, {"port": device.port, **done.as_dict()}, _changed(device.port, done.changed))
+    answer: RestoreAnswer = {"port": device.port, **done.as_dict()}
+    show(as_json, answer, _changed(device.port, done.changed))
 
 
 @command.command("diff")
 @click.argument("file", type=click.Path(path_type=Path))
 @port_option
-@json_option
+@json_option(DiffAnswer)
 def diff(file: Path, port: str | None, as_json: bool) -> None:
     """Show where a board differs from a backup."""
     wanted = parameter_file.load(file)
     with Device(choose_port(port)) as device, progress(brief=True) as report:
         running = read_parameters(device, report)
-    differences = {
+    differences: dict[str, Difference] = {
         parameter.name: {
             "board": physical(parameter, running[parameter.name]),
             "file": physical(parameter, wanted[parameter.name]),
@@ -122,11 +147,8 @@ def diff(file: Path, port: str | None, as_json: bool) -> None:
         if running[parameter.name] != wanted[parameter.name]
     }
     lines = [f"{name:<16} board {both['board']:g}, file {both['file']:g}" for name, both in differences.items()]
-    show(
-        as_json,
-        {"port": device.port, "file": str(file), "differences": differences},
-        "\n".join(lines) or f"{device.port} and {file} hold the same parameters.",
-    )
+    answer: DiffAnswer = {"port": device.port, "file": str(file), "differences": differences}
+    show(as_json, answer, "\n".join(lines) or f"{device.port} and {file} hold the same parameters.")
 
 
 def _beginning_with(name: str) -> list[Parameter]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NotRequired, TypedDict
 
 import click
 
@@ -14,11 +14,20 @@ from greywhale.base.formats.whole import refuse_inputs
 from greywhale.board.device import Device
 from greywhale.board.pots import FOLLOWERS, require_good_pots
 from greywhale.board.reconnect import record_through_losses
-from greywhale.board.record import Recording, check_every_led, pose_of, record, record_led
+from greywhale.board.record import (
+    LedRecording,
+    LedRecordingFacts,
+    Recording,
+    RecordingFacts,
+    check_every_led,
+    pose_of,
+    record,
+    record_led,
+)
 from greywhale.board.upload import read_parameters
 from greywhale.cli import completion
 from greywhale.cli.countdown import prepare_motion, yes_option
-from greywhale.cli.output import json_option, overwrite_option, port_option, progress, show
+from greywhale.cli.output import OnPort, json_option, overwrite_option, port_option, progress, show
 from greywhale.files.leader import save_leader
 from greywhale.files.outputs import require_new
 from greywhale.protocol.ports import choose_port
@@ -35,6 +44,27 @@ _OF_EXCITE = {
     "seed": "--seed",
     "budget": "--budget",
 }
+
+
+class Answer(OnPort, RecordingFacts):
+    pass
+
+
+class DesignFacts(TypedDict):
+    seconds: float  # length of the motion
+    log_det: float  # logarithm of the information's determinant
+    expected_deviation: dict[str, float]  # parameter to standard deviation
+    left_open: list[str]  # parameters that the motion will not show
+    largest_lag_rad: float  # on the arms that it was tried on
+    evaluations: int  # motions tried
+
+
+class Saved(TypedDict):
+    motion: NotRequired[str]  # with --save-motion
+
+
+class ExciteAnswer(OnPort, LedRecordingFacts, Saved):
+    design: DesignFacts
 
 
 @click.command("record")
@@ -79,7 +109,7 @@ _OF_EXCITE = {
 @overwrite_option
 @yes_option
 @port_option
-@json_option
+@json_option(Answer | ExciteAnswer)
 def command(
     out: Path,
     seconds: float | None,
@@ -122,11 +152,12 @@ def command(
         chosen, length = choose_port(port), RECORDED_S if seconds is None else seconds
         if reconnect:
             with progress() as report:
-                recording = record_through_losses(chosen, out, length, every, report)
+                recorded = record_through_losses(chosen, out, length, every, report)
         else:
             with Device(chosen) as device, progress() as report:
-                recording = record(device, out, length, every, enable, report)
-        show(as_json, {"port": chosen, **recording.as_dict()}, describe(recording))
+                recorded = record(device, out, length, every, enable, report)
+        answer: Answer = {"port": chosen, **recorded.as_dict()}
+        show(as_json, answer, describe(recorded))
         return
     if enable:
         raise UserError("--excite turns the motors on by itself; leave --enable out.", BAD_USAGE)
@@ -149,9 +180,21 @@ def command(
         warn()
         with progress() as report:
             recording = record_led(device, out, designed.motion, every, report, running)
-    saved = {} if save_motion is None else {"motion": str(save_motion)}
-    result = {"port": device.port, **recording.as_dict(), "design": designed.as_dict(), **saved}
+    saved: Saved = {} if save_motion is None else {"motion": str(save_motion)}
+    result: ExciteAnswer = {"port": device.port, **recording.as_dict(), "design": _facts(designed), **saved}
     show(as_json, result, f"{describe(recording)}\n{designed.text()}")
+
+
+def _facts(designed: Design) -> DesignFacts:
+    rows = zip(designed.problem.parameters, designed.judgement.deviations, strict=True)
+    return {
+        "seconds": designed.motion.duration_s,
+        "log_det": round(designed.judgement.log_det, 3),
+        "expected_deviation": {one.name: float(f"{value:.3g}") for one, value in rows},
+        "left_open": designed.left_open(),
+        "largest_lag_rad": round(float(designed.judgement.tried.lag.max()), 3),
+        "evaluations": designed.evaluations,
+    }
 
 
 def _plan(
@@ -179,10 +222,12 @@ def _refuse_without_excite(**given: object) -> None:
 def describe(recording: Recording) -> str:
     """Describe a recording in a sentence."""
     lost = f", {recording.dropped} dropped by the link" if recording.dropped else ""
-    waits = f", the board waited {counted(recording.waits, 'time')} for this host" if recording.waits else ""
-    slow = ""
-    if recording.slowest is not None and recording.slowest < 1.0:
-        slow = f", slowed down to {100 * recording.slowest:.0f} % where a follower lagged"
+    waits = slow = ""
+    if isinstance(recording, LedRecording):
+        if recording.waits:
+            waits = f", the board waited {counted(recording.waits, 'time')} for this host"
+        if recording.slowest < 1.0:
+            slow = f", slowed down to {100 * recording.slowest:.0f} % where a follower lagged"
     gaps = "".join(f" The port was away for {length:g} s after {begin:g} s." for begin, length in recording.gaps)
     samples = counted(recording.rows, "sample")
     return f"{recording.path}: {samples}{lost}, {recording.duration_s:g} s{waits}{slow}.{gaps}"

@@ -9,9 +9,9 @@ import click
 
 from greywhale.base.formats.whole import refuse_inputs
 from greywhale.board.device import Device
-from greywhale.board.record import check_every_led, record_led
+from greywhale.board.record import LedRecordingFacts, check_every_led, record_led
 from greywhale.cli.countdown import prepare_motion, yes_option
-from greywhale.cli.output import json_option, overwrite_option, port_option, progress, show, warn
+from greywhale.cli.output import OnPort, json_option, overwrite_option, port_option, progress, show, warn
 from greywhale.cli.record import describe
 from greywhale.files.leader import load_leader
 from greywhale.files.names import suggesting
@@ -26,6 +26,11 @@ MOTIONS: dict[str, Callable[..., Trajectory]] = {"steps": steps, "multi-steps": 
 SHARE = 0.9
 
 
+class Answer(OnPort, LedRecordingFacts):
+    motion: str  # the file that was led
+    warnings: list[str]  # of a log as the motion: that it is not as it was recorded, or has gaps
+
+
 @click.command("replay")
 @click.argument("motion", metavar="FILE", type=click.Path(path_type=Path))
 @click.option(
@@ -35,7 +40,7 @@ SHARE = 0.9
 @overwrite_option
 @yes_option
 @port_option
-@json_option
+@json_option(Answer)
 def command(motion: Path, out: Path, every: int, overwrite: bool, yes: bool, port: str | None, as_json: bool) -> None:
     """Turn the motors on, lead the arm along the motion in FILE and record that.
 
@@ -58,5 +63,10 @@ def command(motion: Path, out: Path, every: int, overwrite: bool, yes: bool, por
         count_down()
         with progress() as report:
             recording = record_led(device, out, trajectory, every, report)
-    facts = {"port": device.port, "motion": str(motion), "warnings": list(trajectory.remarks), **recording.as_dict()}
-    show(as_json, facts, describe(recording))
+    answer: Answer = {
+        "port": device.port,
+        "motion": str(motion),
+        "warnings": list(trajectory.remarks),
+        **recording.as_dict(),
+    }
+    show(as_json, answer, describe(recording))

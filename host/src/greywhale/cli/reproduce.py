@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Annotated, TypedDict
 
 import click
 
@@ -11,6 +12,15 @@ from greywhale.cli.bench import need_bench
 from greywhale.cli.output import json_option, progress, show
 from greywhale.cli.workers import executor_options
 from greywhale.files.outputs import require_folder
+from greywhale.reproduce.request import Request
+
+STATUSES = ("computed anew", "measured anew on the bench", "drawn from the text", "cannot be reproduced")
+
+
+class Answer(TypedDict):
+    request: Request
+    files: list[str]  # HTML, PDF, JSON
+    entries: dict[str, Annotated[str, ("enum", [*STATUSES])]]  # what became of each table and figure, by its label
 
 
 @click.command("reproduce")
@@ -26,7 +36,7 @@ from greywhale.files.outputs import require_folder
 @click.option("--seeds", type=int, help="Runs of everything random; without it 10, with --quick 3.")
 @click.option("--seed", type=int, default=0, show_default=True, help="The first of them.")
 @executor_options()
-@json_option
+@json_option(Answer)
 def command(
     out: Path, quick: bool, seeds: int | None, seed: int, workers: int | None, executor: str, as_json: bool
 ) -> None:
@@ -42,7 +52,6 @@ def command(
     from greywhale.base.formats.whole import write_text
     from greywhale.base.study import choose_workers
     from greywhale.reproduce.pages.found import Found
-    from greywhale.reproduce.request import Request
     from greywhale.reproduce.run import run
 
     request = Request.of(seed, seeds, quick)
@@ -59,8 +68,5 @@ def command(
         write_text(out / "report.json", json.dumps(facts, indent=1, ensure_ascii=False) + "\n")
     files.append(out / "report.json")
     statuses = {entry.label: entry.status.value for entry in made.entries if entry.label}
-    show(
-        as_json,
-        {"request": request.as_dict(), "files": [str(path) for path in files], "entries": statuses},
-        "\n".join([*made.about, f"Written: {', '.join(map(str, files))}"]),
-    )
+    answer: Answer = {"request": request, "files": [str(path) for path in files], "entries": statuses}
+    show(as_json, answer, "\n".join([*made.about, f"Written: {', '.join(answer['files'])}"]))

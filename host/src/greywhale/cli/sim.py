@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import TypedDict
 
 import click
 
@@ -11,6 +12,14 @@ from greywhale.cli.bench import need_bench
 from greywhale.cli.output import json_option, show, tell, warn
 from greywhale.files.leader import load_leader
 from greywhale.protocol.ports import lasting_name
+
+
+class Port(TypedDict):
+    port: str  # the bench's, as soon as it can be used
+
+
+class Mistakes(TypedDict):
+    mistakes: dict[str, str]  # with --mistake list: name to what is wrong then
 
 
 @click.command("sim")
@@ -26,7 +35,7 @@ from greywhale.protocol.ports import lasting_name
     "--mistake", multiple=True, metavar="NAME", help="Wire it wrongly, NAME or NAME:PLACE; `--mistake list` names all."
 )
 @click.option("--by-hand", is_flag=True, help="Be the person: type `turn leader 0`, `hold 30`; `help` lists all.")
-@json_option
+@json_option(Port | Mistakes)
 def command(
     board: str,
     leader: Path | None,
@@ -47,7 +56,8 @@ def command(
     serve = need_bench("greywhale_sim.serve")
     mistakes = need_bench("greywhale_sim.mistakes")
     if "list" in mistake:
-        show(as_json, {"mistakes": {one.name: one.says for one in mistakes.MISTAKES}}, mistakes.listed())
+        answer: Mistakes = {"mistakes": {one.name: one.says for one in mistakes.MISTAKES}}
+        show(as_json, answer, mistakes.listed())
         return
     if leader is not None:
         warn(load_leader(leader).remarks)
@@ -65,7 +75,8 @@ def command(
     )
 
     def ready(port: str) -> None:
-        click.echo(json.dumps({"port": port}) if as_json else port)
+        answer: Port = {"port": port}
+        click.echo(json.dumps(answer) if as_json else port)
         tell(f"greywhale: {_hint(port)}")  # standard output is the port alone, for scripts
         if by_hand:
             tell("Your hands are words here, such as: turn leader 0, hold 30, hang. help lists all.")

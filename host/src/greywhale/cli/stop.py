@@ -2,21 +2,29 @@
 
 from __future__ import annotations
 
+from typing import NotRequired
+
 import click
 
 from greywhale.base.errors import UserError
 from greywhale.board.device import Device
 from greywhale.board.session import ask_to_stop
-from greywhale.cli.output import json_option, port_option, show
+from greywhale.cli.output import OnPort, json_option, port_option, show
 from greywhale.protocol import schema
 from greywhale.protocol.ports import choose_port
 from greywhale.protocol.transport import PortBusyError
 
 
+class Answer(OnPort):
+    state: str | None  # of the board
+    restarted: NotRequired[bool]  # whether opening the port restarted the board
+    ended: NotRequired[int]  # process that held the port, and ends
+
+
 @click.command("stop")
 @click.option("--clear-fault", is_flag=True, help="Also leave the fault state, if the cause has gone.")
 @port_option
-@json_option
+@json_option(Answer)
 def command(clear_fault: bool, port: str | None, as_json: bool) -> None:
     """Stop the motors; clear a fault.
 
@@ -29,22 +37,20 @@ def command(clear_fault: bool, port: str | None, as_json: bool) -> None:
     chosen = choose_port(port)
     session = ask_to_stop(chosen, wait_for_end=clear_fault)
     if session is not None and not clear_fault:
-        facts = {"port": chosen, "state": session["state"], "ended": session["pid"]}
+        answer: Answer = {"port": chosen, "state": session["state"], "ended": session["pid"]}
         state = f", state {session['state']}" if session["state"] else ""
-        show(as_json, facts, f"{chosen}: motors off{state}; what held the port (process {session['pid']}) ends.")
+        show(as_json, answer, f"{chosen}: motors off{state}; what held the port (process {session['pid']}) ends.")
         return
     with _open(chosen) as device:
         device.stop()
         if clear_fault:
             device.ask(schema.ClearFaultRequest())
         state = device.status().state.key
-    ended = {} if session is None else {"ended": session["pid"]}
+    answer = {"port": device.port, "state": state, "restarted": device.restarted}
+    if session is not None:
+        answer["ended"] = session["pid"]
     restart = " Opening the port restarted the board." if device.restarted else ""
-    show(
-        as_json,
-        {"port": device.port, "state": state, "restarted": device.restarted, **ended},
-        f"{device.port}: motors off, state {state}.{restart}",
-    )
+    show(as_json, answer, f"{device.port}: motors off, state {state}.{restart}")
 
 
 def _open(port: str) -> Device:

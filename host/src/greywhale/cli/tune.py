@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NotRequired, TypedDict
 
 import click
 
@@ -18,11 +19,21 @@ from greywhale.tune import METHODS, STRATEGIES, check_request, tune
 from greywhale.tune.model import SAMPLES, load_model
 from greywhale.tune.report.controller_file import save
 from greywhale.tune.report.summary import summary
-from greywhale.tune.report.tables import tables_of
+from greywhale.tune.report.tables import TableFacts, tables_of
+from greywhale.tune.result import TuningFacts
 from greywhale.tune.search.space import NAMES
 
 GIVEN_NAMES = {name.lower(): name for name in NAMES}
 EXISTING = click.Path(path_type=Path)
+
+
+class Layouts(TypedDict):
+    tables: NotRequired[list[TableFacts]]  # with --tables
+
+
+class Answer(TuningFacts, Layouts):
+    doubts: list[str]  # about the model, with --force
+    files: list[str]  # that were written
 
 
 @click.command("tune")
@@ -72,7 +83,7 @@ EXISTING = click.Path(path_type=Path)
 @click.option("--tables", is_flag=True, help="Also print the paper's Tables 8 to 12: ours beside the printed.")
 @click.option("--pictures", type=EXISTING, help="Folder for pictures of sets, responses and convergence.")
 @overwrite_option
-@json_option
+@json_option(Answer)
 def command(
     model_file: str,
     out: Path,
@@ -137,10 +148,14 @@ def command(
         files += draw(outcome, pictures)
     layouts = tables_of(outcome, paper=True) if tables else ()
     texts = [summary(outcome), *(table.text() for table in layouts), "Written: " + ", ".join(map(str, files))]
-    facts = outcome.as_dict() | {"doubts": list(model.doubts), "files": [str(path) for path in files]}
-    if tables:
-        facts["tables"] = [table.as_dict() for table in layouts]
-    show(as_json, facts, "\n\n".join(texts))
+    shown: Layouts = {"tables": [table.as_dict() for table in layouts]} if tables else {}
+    answer: Answer = {
+        **outcome.as_dict(),
+        "doubts": list(model.doubts),
+        "files": [str(path) for path in files],
+        **shown,
+    }
+    show(as_json, answer, "\n\n".join(texts))
 
 
 def _bounds(given: tuple[str, ...]) -> dict[str, tuple[float, float]]:

@@ -11,9 +11,9 @@ import click
 
 from greywhale.base.errors import UserError, counted
 from greywhale.board.device import Device
-from greywhale.board.upload import change_parameters, read_parameters
+from greywhale.board.upload import UploadFacts, change_parameters, read_parameters
 from greywhale.cli import completion
-from greywhale.cli.output import json_option, port_option, progress, show, tell
+from greywhale.cli.output import OnPort, json_option, port_option, progress, show, tell
 from greywhale.files import controller as controller_file
 from greywhale.protocol.ports import choose_port
 from greywhale.protocol.table import ParameterTable
@@ -21,11 +21,17 @@ from greywhale.protocol.table import ParameterTable
 MOST_NAMED = 3  # margins in the warning
 
 
+class Answer(OnPort, UploadFacts):
+    controller: str  # the file
+    source: str  # what the file says of its numbers
+    warnings: list[str]
+
+
 @click.command("upload")
 @click.argument("controller", type=click.Path(path_type=Path), shell_complete=completion.controllers)
 @click.option("--yes", "-y", is_flag=True, help="Store it without a question, also where a joint may swing.")
 @port_option
-@json_option
+@json_option(Answer)
 def command(controller: Path, yes: bool, port: str | None, as_json: bool) -> None:
     """Run and store the controllers of a controller.toml, or of one that comes with greywhale.
 
@@ -48,9 +54,15 @@ def command(controller: Path, yes: bool, port: str | None, as_json: bool) -> Non
             uploaded = change_parameters(device, checked.raw_values(), report, running)
     count = len(uploaded.changed)
     what = f"{counted(count, 'parameter')} changed" if count else "nothing had to change"
-    facts = {"port": device.port, "controller": str(controller), "source": checked.source, "warnings": warnings}
+    answer: Answer = {
+        "port": device.port,
+        "controller": str(controller),
+        "source": checked.source,
+        "warnings": warnings,
+        **uploaded.as_dict(),
+    }
     text = f"{controller} runs and is stored on {device.port}: {what}, parameter CRC {uploaded.param_crc:#06x}."
-    show(as_json, facts | uploaded.as_dict(), text)
+    show(as_json, answer, text)
 
 
 def _warnings(tuning: Mapping[str, Any], table: ParameterTable) -> list[str]:

@@ -10,11 +10,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TypedDict
 
 import numpy as np
 
-from greywhale.base.types import Floats
+from greywhale.base.types import Floats, PerJoint
 from greywhale.commission.motions import PARTS, Check
 from greywhale.files.log import Log
 from greywhale.motion import Settings
@@ -44,6 +44,16 @@ class Traces:
         return slice(min(first, len(self.leader)), min(last, len(self.leader)))
 
 
+class PartFacts(TypedDict):
+    error: PerJoint[float | None]  # mean squared, rad²
+    unrest: PerJoint[float | None]  # swings at rest, rad rms
+    rattle: PerJoint[float | None]  # swings in motion, rad rms
+    chatter: PerJoint[float | None]  # swings of the voltage, 1/s
+    voltage: PerJoint[float | None]  # mean size, V
+    overshoot: PerJoint[float | None]  # the largest of the moves, % of the step
+    settling: PerJoint[float | None]  # the longest of the moves, s; null where one never settles
+
+
 @dataclass(frozen=True)
 class Measures:
     """(parts, 4) each, NaN where a part was not played to its end or has no such measure; the parts as in PARTS."""
@@ -68,10 +78,22 @@ class Measures:
         largest = np.where(known, values, -np.inf).max(axis=0)
         return np.where(known.any(axis=0), largest, np.nan)
 
-    def as_dict(self) -> dict[str, Any]:
-        """Part -> measure -> a value a joint."""
+    def as_dict(self) -> dict[str, PartFacts]:
+        """The facts of each part of the check."""
+
+        def of(values: Floats) -> list[float | None]:
+            return [float(f"{value:.6g}") if np.isfinite(value) else None for value in values]
+
         return {
-            part: {name: [_number(value) for value in getattr(self, name)[place]] for name in NAMES}
+            part: {
+                "error": of(self.error[place]),
+                "unrest": of(self.unrest[place]),
+                "rattle": of(self.rattle[place]),
+                "chatter": of(self.chatter[place]),
+                "voltage": of(self.voltage[place]),
+                "overshoot": of(self.overshoot[place]),
+                "settling": of(self.settling[place]),
+            }
             for place, part in enumerate(PARTS)
         }
 
@@ -122,10 +144,6 @@ def step_answers(leader: Floats, follower: Floats) -> tuple[Floats, Floats]:
         answers = [answer(led, followed, rest, step, TICK_S, settings) for step in steps]
         found[:, joint] = [np.nan if one is None else one for one in worst([one for one in answers if one is not None])]
     return found[0], found[1]
-
-
-def _number(value: float) -> float | None:
-    return float(f"{value:.6g}") if np.isfinite(value) else None
 
 
 def _at(times: Floats, known: Floats, values: Floats) -> Floats:

@@ -4,16 +4,41 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TypedDict
 
 import numpy as np
 
 from greywhale.arm.parameters import JOINT_NAMES
+from greywhale.base.types import Crc
 from greywhale.commission.learn import LearntController
-from greywhale.commission.measures import Measures, measure
+from greywhale.commission.measures import Measures, PartFacts, measure
 from greywhale.commission.motions import PARTS
 from greywhale.commission.predict import predict
-from greywhale.commission.trials import Trial, Trials
+from greywhale.commission.trials import Trial, TrialFacts, Trials
+
+
+class RoundFacts(TypedDict):
+    round: int  # counted from 1
+    doubts: list[str]  # about the round's model
+    margins_hold: bool  # all those of its tuned controllers on its model
+    trials: list[str]  # their names
+
+
+class ForeseenFacts(TrialFacts):
+    predicted: dict[str, PartFacts]  # by the round's model
+
+
+class CommissioningFacts(TypedDict):
+    improved: bool  # whether the board ends with other controllers than before
+    best: str  # name of the trial that the board ends with
+    parameter_crc: Crc
+    rounds: list[RoundFacts]
+    trials: list[ForeseenFacts]  # those from before first
+
+
+class Answer(CommissioningFacts):
+    port: str  # the serial port that was used
+    report: str  # the page
 
 
 @dataclass(frozen=True)
@@ -50,7 +75,7 @@ class CommissioningResult:
         """The round that a trial belongs to; the last one's model is asked about what belongs to none."""
         return next((one for one in self.rounds if any(trial is done for done in one.trials)), self.rounds[-1])
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> CommissioningFacts:
         return {
             "improved": self.improved,
             "best": self.best.name,

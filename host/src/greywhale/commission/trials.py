@@ -4,24 +4,36 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Annotated, TypedDict
 
 import numpy as np
 
 from greywhale.base.errors import UserError
-from greywhale.base.types import Controllers
+from greywhale.base.types import Controllers, PerJoint
 from greywhale.commission.arm_on_port import ArmOnPort, PlayedMotion
 from greywhale.commission.foresee import Foresight
 from greywhale.commission.journal import CommissioningJournal
 from greywhale.commission.judge import Limits, TrialVerdict, judge
-from greywhale.commission.measures import Measures, Traces, measure, traces_of
+from greywhale.commission.measures import Measures, PartFacts, Traces, measure, traces_of
 from greywhale.commission.motions import Check
 from greywhale.files.log import read_evidence
 from greywhale.protocol.firmware import JOINTS
-from greywhale.protocol.table import ParameterTable
+from greywhale.protocol.table import CONTROLLER_COLUMNS, ParameterTable
 from greywhale.simulate.controllers import controllers_of
 
 BEFORE, AGAIN = "before", "before-again"
+_COLUMNS = len(CONTROLLER_COLUMNS)
+
+
+class TrialFacts(TypedDict):
+    trial: str  # its name
+    log: str  # in the folder
+    controllers: PerJoint[Annotated[list[int], ("minItems", _COLUMNS), ("maxItems", _COLUMNS)]]  # raw, as stored
+    stopped: str  # why, or empty
+    passed: bool  # whether all joints did, with each other
+    faults: PerJoint[list[str]]
+    score: PerJoint[float | None]  # against before; below 1 is better
+    measured: dict[str, PartFacts]  # a part of the check each
 
 
 @dataclass(frozen=True)
@@ -60,7 +72,7 @@ class Trial:
         """The geometric mean of the values of the joints in use; less is better."""
         return _mean([verdict.value for verdict in self.verdicts])
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> TrialFacts:
         return {
             "trial": self.name,
             "log": self.path.name,

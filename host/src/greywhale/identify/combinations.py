@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import TypedDict
 
 import numpy as np
 
@@ -20,6 +20,12 @@ from greywhale.identify.space import Space
 UNCERTAIN, SHARPER = 0.05, 3.0
 
 
+class CombinationFacts(TypedDict):
+    name: str  # the numbers that it is made of, such as joint1.inertia / joint1.alpha
+    value: float  # from theirs in their units
+    relative_deviation: float  # standard deviation as a share of the value
+
+
 @dataclass(frozen=True)
 class Combination:
     """A quotient (or product) of two numbers of a joint; `deviation` is its standard deviation as a share of it."""
@@ -28,7 +34,7 @@ class Combination:
     value: float
     deviation: float
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> CombinationFacts:
         return {"name": self.name, "value": self.value, "relative_deviation": self.deviation}
 
 

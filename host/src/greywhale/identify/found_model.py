@@ -3,10 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import NotRequired, TypedDict
 
 from greywhale.base.types import Floats
 from greywhale.identify.combinations import Combination
+
+
+class EstimateFacts(TypedDict):
+    name: str  # joint1.alpha, ...
+    means: str
+    unit: str  # of white_box, value and standard_deviation
+    white_box: float  # where it began
+    value: float  # what was found
+    standard_deviation: NotRequired[float]  # absent where the logs do not say it
+
+
+class RivalFacts(TypedDict):
+    order: str
+    held_out_error: float  # in the same unit as that of orders_tried
+    plant: list[float]  # the arm as a row of numbers
 
 
 @dataclass(frozen=True)
@@ -20,10 +35,17 @@ class ParameterEstimate:
     value: float
     deviation: float | None
 
-    def as_dict(self) -> dict[str, Any]:
-        facts = {"name": self.name, "means": self.means, "unit": self.unit}
-        numbers = {"white_box": self.white_box, "value": self.value}
-        return facts | numbers | ({} if self.deviation is None else {"standard_deviation": self.deviation})
+    def as_dict(self) -> EstimateFacts:
+        facts: EstimateFacts = {
+            "name": self.name,
+            "means": self.means,
+            "unit": self.unit,
+            "white_box": self.white_box,
+            "value": self.value,
+        }
+        if self.deviation is not None:
+            facts["standard_deviation"] = self.deviation
+        return facts
 
 
 @dataclass(frozen=True)
@@ -34,7 +56,7 @@ class Rival:
     held_out: float
     plant: Floats = field(repr=False)
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> RivalFacts:
         return {"order": self.order, "held_out_error": self.held_out, "plant": self.plant.tolist()}
 
 

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Annotated, NotRequired, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.parameters import JOINT_NAMES
-from greywhale.base.types import Floats
+from greywhale.base.types import Floats, PerJoint
 from greywhale.identify.bootstrap import COUNTS
 from greywhale.identify.closed_loop import COMPARED_TICKS, Loop
 from greywhale.identify.data import Prepared
@@ -31,8 +32,28 @@ TINY = 1e-12  # rad², beside every error of a joint that moved
 UNEXPLAINED = 0.5
 WORSE = 4.0
 SMALL_RAD = 5e-3
+CLOSED_LOOP, WINDOWS = "closed loop", "logged voltages, windows"
 SURE = 0.95  # a model that is further from the log than this share of those that the fit allows is not so by chance
 FIT, SECOND, CHANGED = "fit", "validation", "validation, changed controller"
+
+
+class FollowingFacts(TypedDict):
+    following_improvement: NotRequired[float]  # without the swings of joints that hunt
+    unexplained: NotRequired[PerJoint[float]]  # share of the tracking error that the model leaves
+    hunts: NotRequired[PerJoint[bool]]  # in the log
+    model_hunts: NotRequired[PerJoint[bool]]
+    swings_rad: NotRequired[PerJoint[float]]  # rms, in the log
+    model_swings_rad: NotRequired[PerJoint[float]]
+    swings_hz: NotRequired[PerJoint[float]]  # in the log
+    model_swings_hz: NotRequired[PerJoint[float]]
+
+
+class VerdictFacts(FollowingFacts):
+    measure: Annotated[str, ("enum", [CLOSED_LOOP, WINDOWS])]  # how model and log were compared
+    white_box_mse_rad2: PerJoint[float]  # your arm's error; 0 for joints that were not identified
+    model_mse_rad2: PerJoint[float]
+    improvement: float  # 1 is perfect, 0 no better than your arm
+    chance_rad2: float  # by how much the model may be further from the log than your arm without being worse
 
 
 @dataclass(frozen=True)
@@ -68,8 +89,7 @@ class Following:
         """What the model leaves of each joint's tracking error, as a share of it."""
         return tuple(left / max(whole, TINY) for left, whole in zip(self.model, self.error, strict=True))
 
-    def as_dict(self) -> dict[str, object]:
-        """In the file's words."""
+    def as_dict(self) -> FollowingFacts:
         return {
             "following_improvement": self.improvement,
             "unexplained": list(self.unexplained),
@@ -119,16 +139,16 @@ class LogVerdict:
         """By how much the model is further from the log than the white box is, all joints together, rad²."""
         return sum(self.model) - sum(self.white_box)
 
-    def as_dict(self) -> dict[str, object]:
+    def as_dict(self) -> VerdictFacts:
+        following: FollowingFacts = {} if self.following is None else self.following.as_dict()
         return {
-            "log": self.name,
-            "role": self.role,
             "measure": self.measure,
             "white_box_mse_rad2": list(self.white_box),
             "model_mse_rad2": list(self.model),
             "improvement": self.improvement,
             "chance_rad2": self.chance,
-        } | (self.following.as_dict() if self.following else {})
+            **following,
+        }
 
 
 def judge(
@@ -155,13 +175,13 @@ def judge(
         before, after = (_squares(angles, log) for angles in shown)
         others = [_squares(angles, log) for angles in (own.angles(draws) if len(draws) else ())]
         following = _following(loop, shown[0], shown[1], kept)
-        measure = "closed loop"
+        measure = CLOSED_LOOP
     else:
         windows = WindowResidual([subject.log], arm, range(JOINTS))
         before = windows.mse(white.base, np.zeros(JOINTS))
         after = windows.mse(plant, zero)
         others = [windows.mse(draw, zero) for draw in draws]
-        measure = "logged voltages, windows"
+        measure = WINDOWS
     one, other = (tuple(float(value) for value in np.where(kept, errors, 0.0)) for errors in (before, after))
     chance = _worse_by_chance(float(after[kept].sum()), np.array([errors[kept].sum() for errors in others]))
     chance += float(_unresolved(arm)[kept].sum())

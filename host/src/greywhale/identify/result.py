@@ -4,19 +4,67 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import NotRequired, TypedDict
 
 import numpy as np
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.from_plant import arm_of
 from greywhale.base.formats.whole import write_text
-from greywhale.base.types import Floats
+from greywhale.base.types import Crc, Floats
 from greywhale.files.model import sealed, to_toml
-from greywhale.identify.found_model import FoundModel, ParameterEstimate
-from greywhale.identify.judge import FIT, JudgedLog, LogVerdict
+from greywhale.identify.combinations import CombinationFacts
+from greywhale.identify.found_model import EstimateFacts, FoundModel, ParameterEstimate, RivalFacts
+from greywhale.identify.judge import FIT, JudgedLog, LogVerdict, VerdictFacts
 from greywhale.identify.noise import pot_noise
 from greywhale.protocol.joints import Joints
+
+
+class OriginFacts(TypedDict):
+    parameter_crc: NotRequired[Crc]
+    period_ms: NotRequired[int]  # of the control
+
+
+class LogFacts(OriginFacts, VerdictFacts):
+    name: str
+    role: str  # fit, validation, or validation, changed controller
+
+
+class OrderFacts(TypedDict):
+    order: str  # the groups of parameters that were admitted
+    held_out_error: float  # on the held-out windows
+
+
+class KnownFacts(TypedDict):
+    fisher_condition: NotRequired[float]  # condition number of the Fisher information
+    covariance: NotRequired[list[list[float]]]  # over the searched numbers, in the order of `parameter`
+    parameters: NotRequired[dict[str, int]]  # raw, of the logs, that differ from the defaults
+    board: NotRequired[str]  # mega2560 or nano328
+
+
+class TriedFacts(TypedDict):
+    orders_tried: NotRequired[list[OrderFacts]]  # the models that were compared on windows held out of the fit
+    rival: NotRequired[list[RivalFacts]]  # orders that are nearly as good
+    combination: NotRequired[list[CombinationFacts]]  # quotients and products that are surer than their numbers
+
+
+class IdentificationFacts(KnownFacts, TriedFacts):
+    status: str  # complete, or unfinished with the reason
+    method: str  # default, or the paper's
+    seed: int
+    white_box: str  # the arm that it began with
+    simulations: int  # candidates
+    simulated_s: float
+    order: str  # the groups of parameters that were admitted
+    not_identified: list[str]  # what the logs leave open, and which motion would settle it
+    warnings: list[str]  # about the logs, and about the fit
+    doubts: list[str]  # why tune would refuse the model
+    log: list[LogFacts]  # those of the fit first
+    parameter: list[EstimateFacts]  # the numbers that were searched
+
+
+class ResultFacts(IdentificationFacts):
+    convergence: list[float]  # costs of a method that has one
 
 
 @dataclass(frozen=True)
@@ -74,9 +122,9 @@ class IdentificationResult:
         """Write model.toml."""
         write_text(path, to_toml(self.arm, sealed(self.arm, self.identification())))
 
-    def identification(self) -> dict[str, Any]:
+    def identification(self) -> IdentificationFacts:
         """The table [identification] of model.toml; it is also the JSON."""
-        facts: dict[str, Any] = {
+        return {
             "status": "complete" if self.complete else "unfinished: interrupted; the best model so far",
             "method": self.method,
             "seed": self.seed,
@@ -84,7 +132,17 @@ class IdentificationResult:
             "simulations": self.found.simulations,
             "simulated_s": self.found.simulated,
             "order": self.found.order,
+            **self._known(),
+            "not_identified": list(self.found.open),
+            "warnings": list(self.warnings),
+            "doubts": list(self.doubts),
+            "log": [self._log(*pair) for pair in zip(self.subjects, self.verdicts, strict=True)],
+            **self._tried(),
+            "parameter": [one.as_dict() for one in self.estimates],
         }
+
+    def _known(self) -> KnownFacts:
+        facts: KnownFacts = {}
         if self.found.condition is not None:
             facts["fisher_condition"] = self.found.condition
         if self.found.covariance is not None:
@@ -95,31 +153,29 @@ class IdentificationResult:
         board = next((one.log.log.origin.board for one in self.subjects if one.role == FIT), None)
         if board is not None:
             facts["board"] = board
-        facts["not_identified"] = list(self.found.open)
-        facts["warnings"] = list(self.warnings)
-        facts["doubts"] = list(self.doubts)
-        facts["log"] = [self._log(*pair) for pair in zip(self.subjects, self.verdicts, strict=True)]
+        return facts
+
+    def _tried(self) -> TriedFacts:
+        facts: TriedFacts = {}
         if self.found.orders:
             facts["orders_tried"] = [{"order": order, "held_out_error": error} for order, error in self.found.orders]
         if self.found.rivals:
             facts["rival"] = [one.as_dict() for one in self.found.rivals]
         if self.found.combinations:
             facts["combination"] = [one.as_dict() for one in self.found.combinations]
-        facts["parameter"] = [one.as_dict() for one in self.estimates]
         return facts
 
     @staticmethod
-    def _log(subject: JudgedLog, verdict: LogVerdict) -> dict[str, Any]:
-        origin = subject.log.log.origin
-        facts: dict[str, Any] = {"name": verdict.name, "role": verdict.role}
+    def _log(subject: JudgedLog, verdict: LogVerdict) -> LogFacts:
+        origin, known = subject.log.log.origin, OriginFacts()
         if origin.param_crc is not None:
-            facts["parameter_crc"] = f"0x{origin.param_crc:04x}"
+            known["parameter_crc"] = f"0x{origin.param_crc:04x}"
         if origin.period_ms is not None:
-            facts["period_ms"] = origin.period_ms
-        return facts | {key: value for key, value in verdict.as_dict().items() if key not in ("log", "role")}
+            known["period_ms"] = origin.period_ms
+        return {"name": verdict.name, "role": verdict.role, **known, **verdict.as_dict()}
 
-    def as_dict(self) -> dict[str, Any]:
-        return self.identification() | {"convergence": list(self.found.curve)}
+    def as_dict(self) -> ResultFacts:
+        return {**self.identification(), "convergence": list(self.found.curve)}
 
     @property
     def begun(self) -> str:

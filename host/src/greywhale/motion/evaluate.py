@@ -18,13 +18,14 @@ look only at runs of samples without a gap.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from greywhale.base.errors import UserError
-from greywhale.base.types import Floats
+from greywhale.base.types import Floats, PerJoint
 from greywhale.files.log import Log
 from greywhale.motion.delay import correlation_delay, onset_delay
 from greywhale.motion.following import follows
@@ -32,6 +33,29 @@ from greywhale.motion.runs import Run, gap_free_runs, resting
 from greywhale.motion.settings import Settings
 from greywhale.motion.step_response import Answer, answer, departures, worst
 from greywhale.protocol.joints import ALL, Joints
+
+
+class JointFacts(TypedDict):
+    in_use: bool  # whether the arm has this joint
+    mse_rad2: float
+    steady_state_error_rad: float | None  # mean absolute error while the leader rests; null where it never does
+    time_delay_s: float | None  # lag at which the follower resembles the leader most; null where nothing moves
+    onset_delay_s: float | None  # between the onsets of steps; null without steps out of a rest
+    overshoot_percent: float | None  # beyond the leader's new place, % of the step, the largest; null without steps
+    settling_s: float | None  # until the follower stays within 5 % of the step (0.02 rad), the longest; null: never
+    steps: int  # out of a rest
+    unsettled_steps: int  # after which the follower never settles
+    follows: bool  # whether the joint follows its leader at all
+    leader_rested_s: float
+
+
+class EvaluationFacts(TypedDict):
+    joints: PerJoint[JointFacts]
+    total_mse_rad2: float  # sum over the joints
+    samples: int  # that were measured
+    duration_s: float  # that was measured: without gaps
+    span_s: float  # from the log's first row to its last
+    measured: Literal["following", "whole log, motors never followed"]  # which part of the log
 
 
 @dataclass(frozen=True)
@@ -75,8 +99,7 @@ class Evaluation:
     joints_in_use: Joints = ALL  # the others have measures too, of a motion that is 0
     span_s: float | None = None  # None: all of it was measured
 
-    def as_dict(self) -> dict[str, object]:
-        """For JSON: plain numbers with their units in the keys."""
+    def as_dict(self) -> EvaluationFacts:
         return {
             "joints": [
                 {

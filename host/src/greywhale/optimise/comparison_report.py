@@ -5,10 +5,11 @@ from __future__ import annotations
 import csv
 import io
 from pathlib import Path
+from typing import TypedDict
 
 from greywhale.base.errors import BAD_USAGE, UserError
 from greywhale.base.formats.whole import write_text
-from greywhale.optimise.comparison import Comparison
+from greywhale.optimise.comparison import Comparison, Duel
 from greywhale.optimise.functions import Setting
 from greywhale.pictures.kinds import KINDS
 
@@ -16,6 +17,17 @@ FORMATS = (".csv", *KINDS)
 RIVAL = "de"
 # A method that changes its place by at least this many is named in the statement.
 WORTH_SAYING = 2
+
+
+class ComparisonFacts(TypedDict):
+    dimensions: int
+    budget: int  # evaluations of a run
+    seeds: int  # runs of each method on each function
+    seed: int
+    median_cost: dict[str, dict[str, dict[str, float]]]  # setting, function, method
+    mean_rank: dict[str, dict[str, float]]  # setting, method; 1 is best
+    against_de: dict[str, dict[str, Duel]]  # setting, method (Mann-Whitney, 5 %)
+    statement: str
 
 
 def check_format(path: Path) -> None:
@@ -32,7 +44,7 @@ def write_report(path: Path, comparison: Comparison) -> None:
         _draw(path, comparison)
 
 
-def as_dict(comparison: Comparison) -> dict[str, object]:
+def as_dict(comparison: Comparison) -> ComparisonFacts:
     """Everything but the single runs, for JSON."""
     plan = comparison.plan
     medians = comparison.medians
@@ -50,9 +62,7 @@ def as_dict(comparison: Comparison) -> dict[str, object]:
         },
         "mean_rank": {setting: comparison.mean_ranks(setting) for setting in plan.settings},
         "against_de": {
-            setting: {
-                method: vars(comparison.duel(setting, method, RIVAL)) for method in plan.methods if method != RIVAL
-            }
+            setting: {method: comparison.duel(setting, method, RIVAL) for method in plan.methods if method != RIVAL}
             for setting in plan.settings
             if RIVAL in plan.methods
         },

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypedDict
 
 from serial.tools import list_ports
 
@@ -29,6 +30,13 @@ LASTING = (Path("/dev/serial/by-id"), Path("/dev/serial/by-path"))
 _BRIDGES = {0x1A86, 0x0403, 0x10C4, 0x067B}
 
 
+class PortFacts(TypedDict):
+    port: str
+    description: str
+    board: str | None  # mega or nano, where the port tells
+    bench: bool  # whether it is a simulated board
+
+
 @dataclass(frozen=True)
 class Port:
     """One serial port; `board` is mega, nano or None where the port does not say; `bench` marks a simulated board."""
@@ -44,7 +52,7 @@ class Port:
         """Whether a greywhale board may be behind it."""
         return self.bench or self.usb
 
-    def as_dict(self) -> dict[str, object]:
+    def as_dict(self) -> PortFacts:
         return {"port": self.device, "description": self.description, "board": self.board, "bench": self.bench}
 
 

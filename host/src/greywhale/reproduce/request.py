@@ -17,9 +17,9 @@ DEFAULT_SEEDS, QUICK_DEFAULT_SEEDS = 3, 1
 class Request:
     """`seeds` runs of everything random, counted from `seed`."""
 
-    seed: int = 0
-    seeds: int = SEEDS
-    quick: bool = False
+    seed: int = 0  # the first
+    seeds: int = SEEDS  # runs of everything random
+    quick: bool = False  # whether logs, seeds and budgets are cut
 
     def __post_init__(self) -> None:
         require_within("seed", self.seed, 0, MOST_SEED - MOST_SEEDS)

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Annotated, TypedDict
 
-from greywhale.base.types import Controllers
+from greywhale.base.types import Controllers, PerJoint
 from greywhale.protocol.schema import PARAMETER_BY_NAME
 from greywhale.protocol.table import CONTROLLER_COLUMNS, ParameterTable, physical
-from greywhale.tune.judge.held_out import HeldOut
-from greywhale.tune.judge.margins import Margin
+from greywhale.tune.judge.held_out import HeldOut, HeldOutFacts
+from greywhale.tune.judge.margins import Margin, MarginFacts
 from greywhale.tune.model import Model
 from greywhale.tune.search.lockstep import SearchState
+from greywhale.tune.search.space import STRATEGIES
+from greywhale.tune.stall import StallFacts
 
 
 @dataclass(frozen=True)
@@ -26,6 +28,43 @@ def curves_of(found: SearchState) -> tuple[Curve, ...]:
     """One curve a joint, from the search's books."""
     at = tuple(evaluations for evaluations, _ in found.curve)
     return tuple(Curve(at, tuple(costs[joint] for _, costs in found.curve)) for joint in range(len(found.cost)))
+
+
+# As `greywhale params get` shows them, a joint in use each.
+_COLUMNS = "|".join(CONTROLLER_COLUMNS)
+ByName = Annotated[
+    dict[str, float],
+    ("propertyNames", {"pattern": rf"^joint[0-3]\.({_COLUMNS})$"}),
+    ("patternProperties", {"_(mv|ticks)$": {"type": "integer"}}),
+    ("minProperties", len(CONTROLLER_COLUMNS)),
+]
+
+
+class CurveFacts(TypedDict):
+    evaluations: list[int]  # made until then
+    cost: list[float]  # the best after so many
+
+
+class TuningFacts(TypedDict):
+    model: str  # what the model file calls its arm
+    strategy: Annotated[str, ("enum", [*STRATEGIES])]  # searched: mf: membership functions, sf: scaling factors
+    method: str  # default, paper, or the optimiser
+    seed: int
+    budget: int  # evaluations of each joint's controller
+    evaluations: int  # that were made
+    complete: bool  # false where it was interrupted
+    period_ms: int  # of the control
+    supply_v: float
+    before: ByName  # the controllers before the tuning: parameter to value
+    after: ByName
+    cost_before: PerJoint[float]  # 0: the floor, 1: before the tuning (the paper's method: J in rad s² + V s²)
+    cost_after: PerJoint[float]
+    margins_before: list[MarginFacts]  # whether each joint comes to rest: a scenario and a joint each
+    margins: list[MarginFacts]  # with the controllers after; empty where the tuning was interrupted
+    held_out: list[HeldOutFacts]  # motions that nobody trained on
+    curves: PerJoint[CurveFacts]
+    stall: StallFacts | None  # null: the board's own limit stays
+    notes: list[str]
 
 
 @dataclass(frozen=True)
@@ -75,8 +114,7 @@ class TuningResult:
         """Whether every joint comes to rest in every scenario."""
         return all(margin.holds for margin in self.margins)
 
-    def as_dict(self) -> dict[str, Any]:
-        """A dictionary for JSON; the controllers' numbers are as `greywhale params get` shows them."""
+    def as_dict(self) -> TuningFacts:
         return {
             "model": self.model.name,
             "strategy": self.strategy,

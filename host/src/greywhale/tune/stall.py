@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import TypedDict
 
 import numpy as np
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.holding import starting_volts
 from greywhale.arm.parameters import JOINT_NAMES
-from greywhale.base.types import Floats
+from greywhale.base.types import Floats, PerJoint
 from greywhale.identify import sampled_plants
 from greywhale.protocol import schema
 from greywhale.protocol.firmware import JOINTS
@@ -27,6 +27,12 @@ DEVIATIONS = 3.0  # of what the model leaves open
 LEAST_MARGIN = 0.25  # of the need: friction differs from place to place, and from day to day
 LEAST_V = 1.6  # voltages below this start a joint so slowly that it may not be seen to move in time
 MOST_OF_SUPPLY = 0.8  # a blocked joint's integral part goes to the supply, and the limit must lie below that
+
+
+class StallFacts(TypedDict):
+    stall_volts: float  # the board's limit, V
+    needs_v: PerJoint[float]  # to start where gravity pulls most
+    deviation_v: PerJoint[float]  # standard deviation
 
 
 @dataclass(frozen=True)
@@ -56,7 +62,7 @@ class StallLimit:
             f"(± {self.deviations[joint]:.1g}) to start where gravity pulls most."
         )
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> StallFacts:
         return {
             "stall_volts": self.volts,
             "needs_v": [round(value, 3) for value in self.needs],

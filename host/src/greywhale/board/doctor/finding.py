@@ -19,13 +19,10 @@ class Verdict(StrEnum):
 class Finding:
     """`says` is a sentence; `remedy`, another one, is empty where nothing has to be done."""
 
-    check: str
+    check: str  # what was looked at
     verdict: Verdict
-    says: str
-    remedy: str = ""
-
-    def as_dict(self) -> dict[str, str]:
-        return {"check": self.check, "verdict": self.verdict.value, "says": self.says, "remedy": self.remedy}
+    says: str  # what was found
+    remedy: str = ""  # what to do; empty where nothing
 
 
 def worst(findings: Iterable[Finding]) -> Verdict:

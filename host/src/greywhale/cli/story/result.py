@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NotRequired, TypedDict
 
 from greywhale.arm.parameters import JOINT_NAMES
+from greywhale.base.types import Crc
 from greywhale.cli.story.learn import Learnt
 from greywhale.cli.story.recorder import Recorded
 from greywhale.motion import Evaluation, JointMeasures, more_overshoot
+from greywhale.motion.evaluate import EvaluationFacts
 
 Measure = tuple[str, Callable[[JointMeasures], str]]  # heading, and a joint's cell
 MEASURES: tuple[Measure, ...] = (
@@ -21,6 +24,35 @@ MEASURES: tuple[Measure, ...] = (
 )
 
 
+class RunFacts(TypedDict):
+    controllers: str  # which
+    log: str  # the file
+    parameter_crc: Crc
+    samples: int  # rows of the log
+    dropped: int  # samples that the link lost
+    measures: EvaluationFacts  # as `greywhale evaluate` measures the log
+
+
+class LearntFacts(TypedDict):
+    model: str  # file
+    controller: str  # file
+    identify_s: float  # wall time
+    tune_s: float
+    upload_s: float
+    improvement_of_the_model: list[float]  # over the arm's drawings, a share, on each log, the fitted one first
+    doubts: list[str]  # about the model
+
+
+class Answer(TypedDict):
+    leader: str  # the motion
+    board: str  # mega2560 or nano328
+    firmware: str  # version
+    runs: list[RunFacts]  # the same motion with each set of controllers
+    pictures: list[str]  # files
+    wall_s: float
+    learnt: NotRequired[LearntFacts]  # not with --controller
+
+
 @dataclass(frozen=True)
 class Run:
     """One recording with one set of controllers."""
@@ -29,7 +61,7 @@ class Run:
     recorded: Recorded
     measures: Evaluation
 
-    def as_dict(self) -> dict[str, object]:
+    def as_dict(self) -> RunFacts:
         return {
             "controllers": self.name,
             "log": str(self.recorded.path),
@@ -52,8 +84,8 @@ class DemoResult:
     pictures: tuple[Path, ...]
     wall_s: float
 
-    def as_dict(self) -> dict[str, object]:
-        facts: dict[str, object] = {
+    def as_dict(self) -> Answer:
+        facts: Answer = {
             "leader": self.leader,
             "board": self.board,
             "firmware": self.firmware,

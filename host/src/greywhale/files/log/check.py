@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 import zlib
 from collections.abc import Iterable, Mapping
-from enum import Enum
+from enum import StrEnum
 
 from greywhale.base.errors import UserError, cut
 from greywhale.files.log.parameters import KEY as PARAMETERS
@@ -31,7 +31,7 @@ _FACTS = {
 _FORM = re.compile(r"([0-9]{1,18}) rows, crc32 [0-9a-f]{8}")
 
 
-class Check(Enum):
+class Check(StrEnum):
     """What the check of a log says."""
 
     WHOLE = "whole"  # as it was recorded

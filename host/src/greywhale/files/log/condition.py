@@ -27,9 +27,6 @@ class Gap:
     length_s: float
     samples: int
 
-    def as_dict(self) -> dict[str, object]:
-        return {"after_s": self.after_s, "length_s": self.length_s, "samples": self.samples}
-
 
 @dataclass(frozen=True)
 class Condition:
@@ -38,9 +35,6 @@ class Condition:
     check: Check = Check.UNCHECKED
     gaps: tuple[Gap, ...] = ()
     remarks: tuple[str, ...] = ()
-
-    def as_dict(self) -> dict[str, object]:
-        return {"check": self.check.value, "gaps": [gap.as_dict() for gap in self.gaps]}
 
 
 def judge_condition(name: str, facts: Mapping[str, str], crc: int, time_s: NDArray[np.float64]) -> Condition:

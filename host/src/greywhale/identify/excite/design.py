@@ -113,20 +113,6 @@ class Design:
     judgement: Judgement = field(repr=False)
     evaluations: int
 
-    def as_dict(self) -> dict[str, object]:
-        parameters = self.problem.parameters
-        return {
-            "seconds": self.motion.duration_s,
-            "log_det": round(self.judgement.log_det, 3),
-            "expected_deviation": {
-                one.name: float(f"{value:.3g}")
-                for one, value in zip(parameters, self.judgement.deviations, strict=True)
-            },
-            "left_open": self.left_open(),
-            "largest_lag_rad": round(float(self.judgement.tried.lag.max()), 3),
-            "evaluations": self.evaluations,
-        }
-
     def left_open(self) -> list[str]:
         """Names of parameters that this motion will not settle either, by the arm file."""
         rows = zip(self.problem.parameters, self.judgement.deviations, strict=True)

@@ -6,16 +6,17 @@ The measures run from the moment the motors go on, as a log's do: WAIT_S of soft
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Annotated, TypedDict
 
 import numpy as np
 
 from greywhale.arm import ArmParameters
-from greywhale.base.types import Controllers, Floats
+from greywhale.base.types import Controllers, Floats, PerJoint
 from greywhale.files.log import Log
 from greywhale.files.log.layout import Origin
 from greywhale.files.trajectory import Trajectory
 from greywhale.motion import Evaluation, evaluate, human_reaches, multi_steps, steps
+from greywhale.motion.evaluate import EvaluationFacts
 from greywhale.protocol.joints import Joints
 from greywhale.protocol.table import ParameterTable
 from greywhale.simulate import Experiment
@@ -25,6 +26,15 @@ from greywhale.tune.search.training import clip_motion, reach
 WAIT_S = 1.5
 SEED = 2001  # of reaches that are played nowhere else
 EVERY = 2  # ticks between the rows of the traces
+
+
+class HeldOutFacts(TypedDict):
+    motion: str
+    floor_mse_rad2: PerJoint[float] | None  # the least possible error
+    floor_bound_mse_rad2: PerJoint[float] | None  # what no controller can be below
+    after_as_multiple_of_floor: Annotated[list[float | None], ("minItems", 5), ("maxItems", 5)]  # joints, and in total
+    before: EvaluationFacts
+    after: EvaluationFacts
 
 
 @dataclass(frozen=True)
@@ -57,7 +67,7 @@ class HeldOut:
         """The error after tuning as a multiple of the floor, of each joint and all; None where it means nothing."""
         return (None,) * (len(self.mse_after) + 1) if self.floor is None else self.floor.multiple(self.mse_after)
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> HeldOutFacts:
         return {
             "motion": self.name,
             "floor_mse_rad2": None if self.floor is None else self.floor.mse.tolist(),

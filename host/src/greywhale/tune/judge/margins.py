@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 import numpy.typing as npt
@@ -58,6 +58,17 @@ SEARCH_BEYOND = 1.15
 SEARCH_CHATTER = 0.7
 
 
+class MarginFacts(TypedDict):
+    scenario: str
+    joint: int
+    holds: bool
+    reversals: int
+    chatter_hz: float
+    rattle_rad: float  # rms, in motion
+    plants_failing: int
+    plants: int  # that were tried
+
+
 @dataclass(frozen=True)
 class Margin:
     """One joint in one scenario over all plants: the worst of them."""
@@ -74,7 +85,7 @@ class Margin:
     def holds(self) -> bool:
         return self.plants_failing == 0
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> MarginFacts:
         return {
             "scenario": self.scenario,
             "joint": self.joint,

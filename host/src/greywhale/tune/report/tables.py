@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, TypedDict
 
 import numpy as np
 import numpy.typing as npt
@@ -61,6 +61,20 @@ _MEASURES: tuple[_Measure, ...] = (
 _SETTLING = "settling time: to within 5 % of the step (at least 0.02 rad); -: one never settled."
 
 
+# A value, or null, for each column, and names of the row and of the heading above it.
+_NAME = {"type": "string"}
+Row = Annotated[
+    dict[str, str | float | None], ("properties", {"group": _NAME, "row": _NAME}), ("required", ["group", "row"])
+]
+
+
+class TableFacts(TypedDict):
+    title: str
+    columns: list[str]  # keys of each row
+    rows: list[Row]
+    remarks: list[str]
+
+
 @dataclass(frozen=True)
 class Group:
     """Rows under one heading; `form` is how numbers are shown where the column has no form of its own."""
@@ -79,10 +93,10 @@ class Table:
     groups: tuple[Group, ...]
     remarks: tuple[str, ...] = ()
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> TableFacts:
         """For JSON: a row an object, numbers as they are, None where there is none."""
         names = [name for name, _ in self.columns]
-        rows = [
+        rows: list[Row] = [
             {"group": group.heading, "row": label, **dict(zip(names, values, strict=True))}
             for group in self.groups
             for label, values in group.rows
