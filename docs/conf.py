@@ -17,7 +17,6 @@ source_suffix = {".md": "markdown"}
 exclude_patterns = ["derivation"]
 html_theme = "furo"
 html_title = f"greywhale {release}"
-html_static_path = ["schemas"]
 html_copy_source = html_show_sourcelink = False
 templates_path: list[str] = []
 

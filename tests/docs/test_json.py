@@ -1,21 +1,20 @@
-"""What every verb really prints with --json is what its schema in docs/schemas says."""
+"""What every verb really prints with --json is what its schema says, which is made from the type of its answer."""
 
 from __future__ import annotations
 
+import functools
 import json
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, Literal, NotRequired, TypedDict
 
-import click
 import pytest
 from jsonschema import Draft202012Validator, ValidationError
 
 from greywhale.cli.story.learn import Learnt
-from greywhale.cli.verbs import VERBS, greywhale
+from greywhale.cli.verbs import VERBS
 from tests.docs.running import Once, run, writes_over
-from tools import ROOT
-from tools.docs.schemas import SCHEMAS, read_answer, schema_name, validate
+from tools.docs.schemas import answers, schema_of, schemas
 from tools.support.hands import SECOND_DEG, Hands, bench_of, mounted_anyhow, run_calibrate
 
 # Verb -> ways to call it that print different keys.
@@ -39,7 +38,7 @@ CALLS = {
     "tune": ["model.toml", "model.toml --tables"],
     "commission": ["--model model.toml"],
     "demo": ["--controller controller.toml"],
-    "sim": ["--speed max"],
+    "sim": ["--speed max", "--mistake list"],
     "export": ["--fis controller.toml --out c.fis", "--urdf arm.toml --out a.urdf"],
     "arm new": ["--answers answers.toml --out new.toml"],
     "arm match": ["arm.toml --out matched.toml"],
@@ -51,48 +50,76 @@ CALLS = {
 BELOW = ("calibrate",)
 
 
-def leaves(group: click.Group, above: str = "") -> set[str]:
-    """The commands that run something, by their words."""
-    context = click.Context(group)
-    found: set[str] = set()
-    for name in group.list_commands(context):
-        command = group.get_command(context, name)
-        found |= leaves(command, f"{above}{name} ") if isinstance(command, click.Group) else {f"{above}{name}"}
-    return found
+known = functools.cache(schemas)
 
 
-def test_every_verb_is_called_and_has_a_schema() -> None:
-    assert {name.split()[0] for name in leaves(greywhale)} == set(VERBS)
-    assert leaves(greywhale) == {*CALLS, *BELOW}
-    wanted = {schema_name(verb) for verb in (*CALLS, *BELOW, "error")}
-    assert {path.name for path in SCHEMAS.glob("*.json")} == wanted
-    page = (ROOT / "docs" / "json.md").read_text(encoding="utf-8")
-    assert [name for name in sorted(wanted) if f"docs/schemas/{name}" not in page] == []
+def read_answer(text: str) -> Any:
+    """What a verb printed with --json: one line that holds one object, without the NaN that Python would let pass."""
+    if text.count("\n") != 1:
+        raise ValueError(f"{text.count(chr(10))} lines, where there must be one")
+    return json.loads(text, parse_constant=_refuse)
 
 
-@pytest.mark.parametrize("path", sorted(SCHEMAS.glob("*.json")), ids=lambda path: path.stem)
-def test_a_schema_is_one_and_leaves_no_key_open(path: Path) -> None:
-    schema = json.loads(path.read_text(encoding="utf-8"))
-    Draft202012Validator.check_schema(schema)
-    assert schema["additionalProperties"] is False
+def _refuse(name: str) -> Any:
+    raise ValueError(f"{name} is no JSON")
+
+
+def validate(verb: str, answer: Any) -> None:
+    Draft202012Validator(known()[verb]).validate(answer)
+
+
+def test_every_verb_is_called() -> None:
+    assert {name.split()[0] for name in answers()} == {*VERBS, "error"}
+    assert set(answers()) == {*CALLS, *BELOW, "error"}
+
+
+@pytest.mark.parametrize("verb", [*CALLS, *BELOW, "error"])
+def test_a_schema_is_one_and_leaves_no_key_open(verb: str) -> None:
+    Draft202012Validator.check_schema(known()[verb])
     with pytest.raises(ValidationError):
-        Draft202012Validator(schema).validate({"unheard_of": 1})
+        validate(verb, {"unheard_of": 1})
 
 
-def undescribed(schema: Any, where: str = "") -> list[str]:
-    """Keys, at any depth, of which the schema does not say what they are."""
-    found: list[str] = []
-    for kind in ("properties", "patternProperties"):
-        for key, value in schema.get(kind, {}).items():
-            found += [f"{where}.{key}"] if "description" not in value else []
-            found += undescribed(value, f"{where}.{key}")
-    below = [schema[kind] for kind in ("items", "additionalProperties") if isinstance(schema.get(kind), dict)]
-    return found + [key for one in below for key in undescribed(one, f"{where}[]")]
+class Shared(TypedDict):
+    crc: Annotated[str, ("pattern", "^0x")]  # of all
 
 
-@pytest.mark.parametrize("name", ["commission", "demo", "evaluate", "identify", "tune"])
-def test_every_key_is_described(name: str) -> None:
-    assert undescribed(json.loads((SCHEMAS / f"{name}.json").read_text(encoding="utf-8"))) == []
+@dataclass(frozen=True)
+class Part:
+    length_s: float  # of it
+    rows: tuple[int, ...]
+
+
+class Whole(Shared):
+    parts: list[Part] | None  # null: none
+    kind: NotRequired[Literal["a", "b"]]
+    by_name: dict[str, bool]
+
+
+def test_a_schema_says_what_the_type_says() -> None:
+    part = {"length_s": 1.0, "rows": [1, 2]}
+    good = {"crc": "0x12", "parts": [part], "kind": "a", "by_name": {"x": True}}
+    check = Draft202012Validator(schema_of(Whole))
+    right: list[dict[str, Any]] = [{}, {"parts": None}, {"parts": []}, {"by_name": {}}]
+    assert [changes for changes in right if not check.is_valid(good | changes)] == []
+    assert check.is_valid({key: value for key, value in good.items() if key != "kind"})
+    wrong: list[dict[str, Any]] = [
+        {"crc": "12"},
+        {"parts": [part | {"length_s": "1"}]},
+        {"parts": [part | {"rows": [1.5]}]},
+        {"parts": [part | {"width": 1}]},
+        {"parts": [{"rows": []}]},
+        {"kind": "c"},
+        {"kind": None},
+        {"by_name": {"x": 1}},
+        {"other": 1},
+    ]
+    assert [changes for changes in wrong if check.is_valid(good | changes)] == []
+    assert not check.is_valid({key: value for key, value in good.items() if key != "crc"})
+    described = schema_of(Whole)["properties"]
+    assert [described[key].get("description") for key in ("crc", "parts", "kind")] == ["of all", "null: none", None]
+    with pytest.raises(TypeError, match="is no type of an answer"):
+        schema_of(set[int])
 
 
 @pytest.mark.parametrize("text", ['{"a": NaN}\n', '{"a": 1}\n{}\n', '{"a": 1}'])

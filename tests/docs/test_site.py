@@ -53,7 +53,13 @@ def test_a_verb_shows_options_defaults_codes_and_schema(site: Path) -> None:
         "../_static/record.json",
     ):
         assert words in record, words
-    assert (site / "_static" / "record.json").is_file()
+    pages = [*(site / "verbs").glob("*.html"), site / "json.html"]
+    linked = {
+        name for page in pages for name in re.findall(r'_static/([\w-]+\.json)"', page.read_text(encoding="utf-8"))
+    }
+    made = {path.name for path in (site / "_static").glob("*.json")}
+    assert "record.json" in made
+    assert linked == made
 
 
 @pytest.mark.slow

@@ -15,7 +15,7 @@ import click
 from pydantic import BaseModel
 from sphinx.application import Sphinx
 
-from tools.docs.schemas import SCHEMAS, schema_name
+from tools.docs.schemas import schema_name, write_schemas
 
 CODES = "Exit codes: 0 done; 1 failed; 2 bad usage; 130 interrupted (motors off, files whole)."
 OWN_CODES = {"doctor": "Exit codes: 0 nothing must be mended; 1 something must, or failed; 2 bad usage."}
@@ -36,8 +36,7 @@ def add_notes(app: Sphinx, context: click.Context, lines: list[str]) -> None:
         return
     lines += ["", OWN_CODES.get(verb, CODES), ""]
     schema = schema_name(verb)
-    if (SCHEMAS / schema).exists():
-        lines += [f"With ``--json`` it prints one object: `{schema} <../_static/{schema}>`__.", ""]
+    lines += [f"With ``--json`` it prints one object: `{schema} <../_static/{schema}>`__.", ""]
 
 
 def name_paths(app: Sphinx, context: click.Context, lines: list[str]) -> None:
@@ -83,6 +82,9 @@ def fields_of(subject: object) -> list[str]:
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
+    folder = Path(app.doctreedir) / "schemas"
+    write_schemas(folder)
+    app.config.html_static_path = [str(folder)]
     app.connect("sphinx-click-process-epilog", add_notes)
     app.connect("sphinx-click-process-options", name_paths)
     app.connect("source-read", keep_pages)
