@@ -64,11 +64,6 @@ def test_another_seed_other_costs(capsys: Captured) -> None:
         (("--dimensions", "1"), "dimensions is 1, but it must be at least 2."),
         (("--seeds", "0"), "seeds is 0, but it must be at least 1."),
         (("--jobs", "0"), "Invalid value for '--workers' / '--jobs'"),
-        (
-            ("--executor", "cloud"),
-            "there is no executor 'cloud'; it is local, dask://HOST:PORT (of this machine) or tls://HOST:PORT.",
-        ),
-        (("--executor", "dask://127.0.0.1:1", "--workers", "2"), "--workers is for local;"),
         (("--results", "r.csv", "--out", "r.csv"), "r.csv: this is the results file; write the report elsewhere."),
         (("--pack", "2"), "the pack is 2, but gwo-woa-relative needs at least 3."),
         (("--out", "r.txt"), "r.txt: reports end in .csv, .png, .svg, .pdf."),

@@ -52,7 +52,7 @@ def test_every_table_and_figure_is_there_and_stays_the_same(
                 assert "nan" not in json.dumps(block).lower().split()
     results = next((tmp_path / "one").glob("*.study"))
     before, request = results.read_bytes(), Request.of(0, 1, quick=True)
-    again = Found(request, run(request, tmp_path / "one", choose_workers("local", 1)))  # nothing is left to do
+    again = Found(request, run(request, tmp_path / "one", choose_workers(1)))  # nothing is left to do
     assert results.read_bytes() == before
     draw_nothing(monkeypatch)
     assert document(again).as_dict()["chapters"] == report["chapters"]
@@ -60,6 +60,5 @@ def test_every_table_and_figure_is_there_and_stays_the_same(
 
 def test_the_verb_refuses_what_makes_no_sense(capsys: pytest.CaptureFixture[str]) -> None:
     assert "reproduce" in VERBS
-    for wrong, words in ((["--seeds", "0"], "seeds is 0"), (["--executor", "here"], "there is no executor")):
-        assert entry.run(["reproduce", *wrong]) == 2
-        assert words in capsys.readouterr().err
+    assert entry.run(["reproduce", "--seeds", "0"]) == 2
+    assert "seeds is 0" in capsys.readouterr().err

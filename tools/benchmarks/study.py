@@ -1,7 +1,7 @@
-"""Runs what a benchmark repeats (arms, seeds, methods) as a study, here or elsewhere, and goes on after a kill.
+"""Runs what a benchmark repeats (arms, seeds, methods) as a study, which goes on after a kill.
 
-GREYWHALE_EXECUTOR and GREYWHALE_WORKERS say where, as --executor and --workers do for verbs. A wall time among the
-figures is that of a machine of its own only with one worker.
+GREYWHALE_WORKERS says in how many processes, as --workers does for verbs. A wall time among the figures is that of a
+machine of its own only with one worker.
 """
 
 from __future__ import annotations
@@ -22,12 +22,10 @@ SOURCES = ("firmware/lib", "host/native", "host/src", "shared", "sim", "tools/be
 
 def repeat(name: str, tasks: Sequence[Task], workers: int = 1) -> dict[str, Any]:
     """Do the tasks; their results by key. Their file is kept until all are done, so that a new run measures anew."""
-    executor = os.environ.get("GREYWHALE_EXECUTOR", "local")
-    chosen = os.environ.get("GREYWHALE_WORKERS")
-    count = int(chosen) if chosen else (workers if executor == "local" else None)
+    count = int(os.environ.get("GREYWHALE_WORKERS") or workers)
     FOLDER.mkdir(parents=True, exist_ok=True)
     path = FOLDER / f"{name}-{digest_of(SOURCES)}.study"
-    found = run_study(tasks, choose_workers(executor, count), path, _say, what=name)
+    found = run_study(tasks, choose_workers(count), path, _say, what=name)
     path.unlink()
     return found
 

@@ -87,9 +87,6 @@ class UnsteadyWorkers:
             executor.asked.put(None)
             executor.thread.join()
 
-    def deaths(self, error: BaseException) -> int:
-        return 1 if isinstance(error, BrokenExecutor) else 0
-
 
 @given(st.integers(0, 2**32), st.lists(st.integers(0, 5), max_size=2), st.sampled_from([1, 2, 3, None]))
 @settings(deadline=None, max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])

@@ -206,7 +206,7 @@ if __name__ == "__main__":
     folder, count = Path(sys.argv[1]), int(sys.argv[2])
     tasks = [*jobs.notes(3, folder), jobs.Task("long", jobs.hang_first, 3, {"folder": str(folder), "count": 5})]
     tasks += [jobs.Task(f"draw {seed}", jobs.draw, seed, {"count": 5}) for seed in range(3)]
-    found = run_study(tasks, choose_workers("local", count), folder / "r", lambda *one: print(*one, flush=True))
+    found = run_study(tasks, choose_workers(count), folder / "r", lambda *one: print(*one, flush=True))
     print(*found)
 """
 

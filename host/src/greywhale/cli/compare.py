@@ -10,7 +10,7 @@ import click
 from greywhale.base.errors import BAD_USAGE, UserError
 from greywhale.base.study import choose_workers
 from greywhale.cli.output import json_option, overwrite_option, progress, show
-from greywhale.cli.workers import executor_options, results_option
+from greywhale.cli.workers import results_option, workers_option
 from greywhale.files.outputs import require_new
 from greywhale.optimise.comparison import Plan, compare
 from greywhale.optimise.comparison_report import ComparisonFacts, as_dict, check_format, text, write_report
@@ -40,7 +40,7 @@ class Answer(ComparisonFacts):
 @click.option("--seeds", type=int, default=25, show_default=True, help="Runs of every method on every function.")
 @click.option("--pack", type=int, help="Pack of every method; without it, each method's own.")
 @click.option("--seed", type=int, default=0, show_default=True, help="Where all random numbers start.")
-@executor_options("--jobs")
+@workers_option("--jobs")
 @results_option
 @click.option(
     "--out",
@@ -60,7 +60,6 @@ def command(
     seeds: int,
     pack: int | None,
     seed: int,
-    executor: str,
     workers: int | None,
     results: Path | None,
     out: tuple[Path, ...],
@@ -71,7 +70,7 @@ def command(
 
     Grey wolf and whale optimisers favour the origin of the coordinates, where most standard functions have their
     minimum. The same functions shifted show what they are worth elsewhere. The result depends on --seed alone, not on
-    where and in how many processes it is computed.
+    how many processes compute it.
     """
     for path in out:
         check_format(path)
@@ -89,10 +88,10 @@ def command(
         pack=pack,
     )
     plan.check()
-    if executor == "local" and workers is None and plan.evaluations < SMALL:
+    if workers is None and plan.evaluations < SMALL:
         workers = 1
     with progress() as report:
-        comparison = compare(plan, choose_workers(executor, workers), report, results)
+        comparison = compare(plan, choose_workers(workers), report, results)
     for path in out:
         write_report(path, comparison)
     written = "".join(f"\nWritten: {path}" for path in out)

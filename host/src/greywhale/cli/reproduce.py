@@ -10,7 +10,7 @@ import click
 
 from greywhale.cli.bench import need_bench
 from greywhale.cli.output import json_option, progress, show
-from greywhale.cli.workers import executor_options
+from greywhale.cli.workers import workers_option
 from greywhale.files.outputs import require_folder
 from greywhale.reproduce.request import Request
 
@@ -35,11 +35,9 @@ class Answer(TypedDict):
 @click.option("--quick", is_flag=True, help="Fewer seeds, shorter logs, smaller budgets: a look at everything.")
 @click.option("--seeds", type=int, help="Runs of everything random; without it 10, with --quick 3.")
 @click.option("--seed", type=int, default=0, show_default=True, help="The first of them.")
-@executor_options()
+@workers_option()
 @json_option(Answer)
-def command(
-    out: Path, quick: bool, seeds: int | None, seed: int, workers: int | None, executor: str, as_json: bool
-) -> None:
+def command(out: Path, quick: bool, seeds: int | None, seed: int, workers: int | None, as_json: bool) -> None:
     """Reproduce the paper: every table and figure with our numbers beside the printed ones.
 
     Writes report.html, which needs no other file, report.pdf and report.json into the folder. The experiment is the
@@ -56,7 +54,7 @@ def command(
 
     request = Request.of(seed, seeds, quick)
     with progress() as report:
-        results = run(request, out, choose_workers(executor, workers), report)
+        results = run(request, out, choose_workers(workers), report)
         # Slow to import, and of no use before all is done.
         from greywhale.reproduce.pages.report import document
         from greywhale.reproduce.render.html import write_html

@@ -1,4 +1,4 @@
-"""What verbs that repeat something share: where it is computed, and the file that lets an interrupted study go on."""
+"""Options of verbs that repeat something: the number of processes, and the file to go on from."""
 
 from __future__ import annotations
 
@@ -9,32 +9,19 @@ from typing import Any, TypeVar
 import click
 
 from greywhale.base.errors import MOST_WORKERS
-from greywhale.base.study.choose import FORMS
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
 
-def executor_options(*names: str) -> Callable[[Command], Command]:
-    """--executor and --workers, which `base.study.choose_workers` takes; `names` are other names of --workers."""
-
-    def add(command: Command) -> Command:
-        workers = click.option(
-            "--workers",
-            *names,
-            "workers",
-            type=click.IntRange(1, MOST_WORKERS),
-            help="Processes here; without it, one for every processor.",
-        )
-        executor = click.option(
-            "--executor",
-            default="local",
-            show_default=True,
-            metavar="WHERE",
-            help=f"Where it is computed: {FORMS}. The result is the same.",
-        )
-        return executor(workers(command))
-
-    return add
+def workers_option(*names: str) -> Callable[[Command], Command]:
+    """--workers, which `base.study.choose_workers` takes; `names` are other names of it."""
+    return click.option(
+        "--workers",
+        *names,
+        "workers",
+        type=click.IntRange(1, MOST_WORKERS),
+        help="Processes; without it, one for every processor. The result is the same.",
+    )
 
 
 def results_option(command: Command) -> Command:

@@ -1,7 +1,7 @@
-"""Repeated studies (seeds, arms, methods) on any `concurrent.futures.Executor`: here, on a cluster, and after a kill.
+"""Repeated studies (seeds, arms, methods) on any `concurrent.futures.Executor`, and after a kill.
 
     tasks = [Task(f"arm {n}", judge_arm, seed=n, arguments={"budget": 500}) for n in range(10)]
-    found = run_study(tasks, choose_workers("tls://10.0.0.5:8786"), results=Path("arms.study"), what="judging arms")
+    found = run_study(tasks, choose_workers(), results=Path("arms.study"), what="judging arms")
     found["arm 3"]          # what judge_arm(seed=3, budget=500) returned
 
 - A `Task` is a function of a module, called as `function(seed=seed, **arguments)`. Arguments and what it returns are
@@ -13,8 +13,7 @@
 
       SerialWorkers()               this process, one task after another
       LocalWorkers(4)               four processes here
-      DaskWorkers("HOST:PORT")      a Dask scheduler here; with tls=True anywhere (greywhale[dask])
-      choose_workers(text, count)   what --executor and --workers of a verb say
+      choose_workers(count)         what --workers of a verb says: one of these
 
 - `results` is a file with a checked line for every task that is done. A study that finds its file does only what is
   missing. The file belongs to the version of greywhale, the tasks and `about` (what the study is about, for people:
@@ -28,15 +27,12 @@
   ends it too, at once. What is done stays in the file.
 """
 
-from greywhale.base.study.choose import choose_workers
-from greywhale.base.study.cluster import DaskWorkers
-from greywhale.base.study.local import LocalWorkers, SerialWorkers
+from greywhale.base.study.local import LocalWorkers, SerialWorkers, choose_workers
 from greywhale.base.study.run import LostTasks, run_study
 from greywhale.base.study.task import Task, TaskFailed
 from greywhale.base.study.workers import Workers
 
 __all__ = [
-    "DaskWorkers",
     "LocalWorkers",
     "LostTasks",
     "SerialWorkers",

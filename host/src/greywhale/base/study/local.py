@@ -12,7 +12,7 @@ import os
 import signal
 import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
 from typing import Any, ParamSpec, TypeVar
@@ -31,9 +31,6 @@ class SerialWorkers:
     @contextlib.contextmanager
     def executor(self) -> Iterator[Executor]:
         yield _Serial()
-
-    def deaths(self, error: BaseException) -> int:
-        return 0
 
 
 class _Serial(Executor):
@@ -69,8 +66,10 @@ class LocalWorkers:
             ours.close()
             theirs.close()
 
-    def deaths(self, error: BaseException) -> int:
-        return 1 if isinstance(error, BrokenExecutor) else 0
+
+def choose_workers(count: int | None = None) -> SerialWorkers | LocalWorkers:
+    """As --workers of a verb says: this process where it is 1, else so many; without it one for every processor."""
+    return SerialWorkers() if count == 1 else LocalWorkers(count)
 
 
 class _Pool(ProcessPoolExecutor):

@@ -131,7 +131,7 @@ class _Run:
     def _take(self, future: Future[str], running: dict[Future[str], Task]) -> bool:
         """Keep what a future brought; whether the executor is lost."""
         task = running.pop(future)
-        if future.cancelled():  # not by this study: the executor lost its workers or its scheduler
+        if future.cancelled():  # not by this study: the executor lost its workers
             self._ready.append(task)
             return True
         error = future.exception()
@@ -140,12 +140,11 @@ class _Run:
             self._fruitless = 0
             self._tell()
             return False
-        deaths = self._workers.deaths(error)
-        if not deaths:
+        if not isinstance(error, BrokenExecutor):
             raise error
-        self._deaths[task.key] += deaths
-        (self._lost if self._deaths[task.key] >= DEATHS else self._suspects).append(task)
-        return isinstance(error, BrokenExecutor)
+        self._deaths[task.key] += 1
+        (self._lost if self._deaths[task.key] == DEATHS else self._suspects).append(task)
+        return True
 
     def _require_some_fruit(self) -> None:
         """With tasks left to share out, it is no single task's fault when every executor is lost at once."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Iterator
-from concurrent.futures import BrokenExecutor, Executor
+from concurrent.futures import Executor
 from contextlib import AbstractContextManager
 from typing import Protocol
 
@@ -18,16 +18,14 @@ class Workers(Protocol):
     """Those who do the tasks of a study. `executor()` makes a new one whenever the last one is lost; leaving it after
     an error ends the workers at once.
 
-    `at_once` is how many tasks they are given at a time, None for all. `deaths` says how many workers' ends an error of
-    a future stands for, 0 where it is the task's own.
+    `at_once` is how many tasks they are given at a time, None for all. A future whose worker ended has a
+    `BrokenExecutor`, or is cancelled.
     """
 
     @property
     def at_once(self) -> int | None: ...
 
     def executor(self) -> AbstractContextManager[Executor]: ...
-
-    def deaths(self, error: BaseException) -> int: ...
 
 
 class Given:
@@ -44,6 +42,3 @@ class Given:
         if executor is None:
             raise UserError("the workers were lost, and this study cannot make new ones.")
         yield executor
-
-    def deaths(self, error: BaseException) -> int:
-        return 1 if isinstance(error, BrokenExecutor) else 0
