@@ -21,12 +21,6 @@ def test_nothing_is_late_or_lost_while_everything_happens_at_once(board: str, mo
     assert row.counts["samples"] > 15_000
 
 
-def test_the_pieces_of_two_hours_are_the_first_of_24() -> None:
-    short, long = soak.PART.pieces(1.0), soak.PART.pieces(soak.PART.longest)
-    assert sum(piece["trials"] for piece in long) == 24 * 3600
-    assert all(piece in long for piece in short)
-
-
 def test_a_sample_that_is_missing_and_a_request_without_an_answer_are_seen() -> None:
     late = Soak("Nano", 1)
     late.take(7, 41)

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from tools import ROOT
-from tools.attack.journal import identity
 from tools.attack.part import Row
-from tools.attack.runner import Result
+from tools.attack.run import Result, digest
 from tools.generate.link.declaration import load
 
 HEAD = """<!-- Written by `make attack`; change the attacks, not this page. -->
@@ -17,15 +16,12 @@ HEAD = """<!-- Written by `make attack`; change the attacks, not this page. -->
 What was attacked, how often, and what came of it. Every figure on this page was counted by `make attack` on the code
 whose digest stands below its table. A small share of the same attacks runs in every `make test`.
 
-A violation is a trial that broke what the section says must hold. A part that is not yet at its full size says so;
-`make attack` goes on with it. A part with pieces beyond its full size can be run longer, some at any time
-(`python -m tools.attack PART --share N --minutes M`); what is done of that is counted. Numbers in a section's text
-are those of the full size; the table has what was done. `min` are the minutes of one core that the full size took.
+A violation is a trial that broke what the section says must hold. `min` are the minutes of one core that a part took.
 """
 
 FAULTS_HEAD = """## The faults and how soon the motors are off
 
-From the moment at which the cause began to the drivers' enable pin, the longest of all moments so far on each board,
+From the moment at which the cause began to the drivers' enable pin, the longest of all moments on each board,
 to 0.25 ms. The [link reference](link.md#fault) has the remedies. Without a time: a trial that other faults may end as
 well, see its row below. Not in the table: `params` is found at start, with the motors off; the times of `tracking` and
 `unrest` are parameters; a hang turns the motors off as `late_tick` before the watchdog restarts the board, if
@@ -61,19 +57,12 @@ def write_table(rows: Iterable[Row]) -> str:
 
 def write_summary(results: Iterable[Result]) -> str:
     """One line for each part."""
-    lines = ["| | trials | violations | done | min |", "|---|--:|--:|--:|--:|"]
+    lines = ["| | trials | violations | min |", "|---|--:|--:|--:|"]
     for one in results:
         trials, violations = sum(row.trials for row in one.rows), sum(row.violations for row in one.rows)
         anchor = one.part.title.lower().replace(" ", "-").replace(",", "")
-        share = "all" if one.whole else f"{one.done} of {one.pieces} pieces"
-        if one.most_longer:
-            share += f", and {one.longer} of {one.most_longer} beyond"
-        lines.append(f"| [{one.part.title}](#{anchor}) | {trials:,} | {violations:,} | {share} | {_minutes(one)} |")
+        lines.append(f"| [{one.part.title}](#{anchor}) | {trials:,} | {violations:,} | {one.seconds / 60:.0f} |")
     return "\n".join(lines) + "\n"
-
-
-def _minutes(result: Result) -> str:
-    return f"{result.seconds / 60:.0f}" if result.whole and result.seconds else ""
 
 
 def write_faults(rows: Iterable[Row]) -> str:
@@ -100,7 +89,7 @@ def _time(row: Row | None, fault: str) -> float | None:
 def write_page(results: Sequence[Result]) -> str:
     sections = [
         f"## {one.part.title}\n\n{' '.join(one.part.holds.split())}\n\n{write_table(one.rows)}\n"
-        f"`python -m tools.attack {one.part.name}`; digest `{identity(one.part)}`.\n"
+        f"`python -m tools.attack {one.part.name}`; digest `{digest(one.part)}`.\n"
         for one in results
     ]
     faults = [row for one in results if one.part.name == "faults" for row in one.rows]

@@ -26,11 +26,10 @@ class Row:
 
 @dataclass(frozen=True)
 class Part:
-    """`pieces` gives the work for a share (1: full size) of the trials, `run` does one piece in a process of its own.
+    """`pieces` gives the work for a share (1: full size) of the trials, `run` does one piece.
 
     `depends` names the files and folders of the project that the result is about: when one of them changes, what was
-    measured before no longer counts. A part that is worth more than its full size goes on up to the share `longest`
-    when it is asked to (`--share`), in pieces at any time: what is done of that counts too.
+    measured before no longer counts.
     """
 
     name: str
@@ -39,7 +38,6 @@ class Part:
     depends: tuple[str, ...]
     pieces: Callable[[float], list[Piece]]
     run: Callable[[Piece], list[Row]]
-    longest: float = 1.0
 
 
 def add_up(rows: Iterable[Row]) -> list[Row]:

@@ -6,9 +6,6 @@ from tools.attack import crc
 from tools.attack.native import FAST, ROOMS_OF_SETS, Program, depends, run_counts
 from tools.attack.part import Part, Piece, Row, split
 
-ROOMS = (
-    "params/src/params/*.cpp app/src/parameter_sets.cpp app/src/controllers.cpp fuzzy_pdi/src/*.cpp hal/src/fake/*.cpp"
-)
 PROGRAM = Program("eeprom_faults", ("eeprom_faults", "sets"), FAST, ROOMS_OF_SETS)
 BANK_BITS = 203 * 8
 SUMMED_BITS = (2 + 194 + 2) * 8  # sequence, table and CRC: damage to the rest of a bank is always noticed

@@ -22,12 +22,7 @@ COMMAND = (*WATCHED, "-fsanitize=fuzzer,address,undefined")
 TARGETS = {
     "app": Program("fuzz_app", ("fuzz_app", "watcher", "law", "machine"), COMMAND),
     "frames": Program("fuzz_frames", ("fuzz_frames",), COMMAND, "link/src/link/*.cpp"),
-    "table": Program(
-        "fuzz_table",
-        ("fuzz_table", "law"),
-        COMMAND,
-        ROOMS_OF_SETS,
-    ),
+    "table": Program("fuzz_table", ("fuzz_table", "law"), COMMAND, ROOMS_OF_SETS),
 }
 TITLES = {
     "app": "the whole firmware",

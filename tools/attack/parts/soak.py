@@ -12,8 +12,7 @@ from greywhale.protocol.declared import Message
 from tools.attack.part import Part, Piece, Row, split
 from tools.support.board_with_image import BOARDS, BoardWithImage
 
-HOURS, PIECE_S = 2.0, 450
-LONGEST = 12.0  # times the hours, when asked to
+HOURS, PIECE_S = 24, 450
 ANSWER_MS = 25  # a set that is applied takes 12
 EXCUSED = 4  # samples after the answer: what was lost shows at the next one
 WRAP_AFTER = 60_000  # ticks, until the counter of 32 bits begins anew
@@ -176,21 +175,19 @@ def run(piece: Piece) -> list[Row]:
 
 
 def pieces(share: float) -> list[Piece]:
-    seconds = round(HOURS * 3600 / len(BOARDS))
+    seconds = HOURS * 3600 // len(BOARDS)
     return [piece for board in BOARDS for piece in split(seconds, share, PIECE_S, board=board)]
 
 
 PART = Part(
     "soak",
     "Hours of everything at once",
-    f"""The real images on both simulated boards, {HOURS:g} simulated hours in runs of {PIECE_S / 60:g} minutes, and up
-        to {HOURS * LONGEST:g} hours with `--share {LONGEST:g}`. The host takes a sample of every tick and all the time
-        asks for something else: parameters, apply, save, enable, stop, status. In each run the counter of ticks passes
-        its end at 2^32. No tick may be late, every request must be answered within {ANSWER_MS} ms, no sample may be
-        missing but while a set is applied (motors off), no fault may come, and the stack must not grow after the first
-        minute and a half. A trial is a second.""",
+    f"""The real images on both simulated boards, {HOURS} simulated hours in runs of {PIECE_S / 60:g} minutes. The host
+        takes a sample of every tick and all the time asks for something else: parameters, apply, save, enable, stop,
+        status. In each run the counter of ticks passes its end at 2^32. No tick may be late, every request must be
+        answered within {ANSWER_MS} ms, no sample may be missing but while a set is applied (motors off), no fault may
+        come, and the stack must not grow after the first minute and a half. A trial is a second.""",
     ("firmware/lib", "firmware/src", "shared", "sim/board"),
     pieces,
     run,
-    LONGEST,
 )
