@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
+from greywhale_sim.board_with_image import BoardWithImage
 from tools.attack.parts.cuts import cut, cut_a_save, judge, running_crc
-from tools.support.board_with_image import BoardWithImage
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("board", "earlier"), [("Mega", 0), ("Nano", 1), ("Mega", 2)])
+@pytest.mark.parametrize(("board", "earlier"), [("mega", 0), ("nano", 1), ("mega", 2)])
 def test_the_old_set_or_the_new_one_runs_and_a_loss_is_told(board: str, earlier: int) -> None:
     row = cut_a_save(board, earlier, 12, seed=5)
     assert row.violations == 0, row
@@ -17,7 +17,7 @@ def test_the_old_set_or_the_new_one_runs_and_a_loss_is_told(board: str, earlier:
 
 
 def test_a_foreign_set_a_lost_save_and_a_silent_loss_are_seen() -> None:
-    bench = BoardWithImage("Nano")
+    bench = BoardWithImage("nano")
     runs = running_crc(bench)
     cut(bench, 1)
     assert judge(bench, runs ^ 1, runs ^ 2, True, False) == "wrong: a set that was never stored runs"

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from tools.attack.arm_faults import CHATTER, Trial, faults
 from tools.attack.part import Row, add_up
 from tools.attack.parts.faults import count, is_violation, run
-from tools.attack.staging import CHATTER, Trial, faults
 
 RAILS = {"open": "pot_low", "shorted": "pot_high"}
 # What the board may say of each; a joint that nobody moves shows nothing.

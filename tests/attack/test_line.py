@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from greywhale.protocol import frames, schema
+from greywhale_sim.board_with_image import BoardWithImage
+from greywhale_sim.wiring import BOARDS
 from tools.attack.damage import DAMAGES, damage
 from tools.attack.parts.line import RECOVERY_MS, Session, run
-from tools.support.board_with_image import BOARDS, BoardWithImage
 
 
 @pytest.mark.slow
@@ -43,6 +44,6 @@ def test_a_line_that_makes_up_requests_is_seen() -> None:
             return frames.encode_frame(frame.type, frame.seq, b"\x04" + frame.payload[1:]), 1
         return data, 0
 
-    session = Session(BoardWithImage("Nano"), "a bit flipped", 1, lie)
+    session = Session(BoardWithImage("nano"), "a bit flipped", 1, lie)
     session.go_on(0.0)
     assert session.violations > 0

@@ -11,10 +11,10 @@ import pytest
 from greywhale.base.study import TaskFailed
 from greywhale.protocol.schema import Fault
 from tools.attack import parts
+from tools.attack.arm_faults import faults
 from tools.attack.page import STAGED_AS, write_page
 from tools.attack.part import Part, Piece, Row, add_up, split
 from tools.attack.run import Result, attack, digest
-from tools.attack.staging import faults
 
 
 def double(piece: Piece) -> list[Row]:

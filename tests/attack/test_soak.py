@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from greywhale.protocol import schema
+from greywhale_sim.wiring import BOARDS
 from tools.attack.parts import soak
 from tools.attack.parts.soak import Soak, run
-from tools.support.board_with_image import BOARDS
 
 
 @pytest.mark.slow
@@ -22,7 +22,7 @@ def test_nothing_is_late_or_lost_while_everything_happens_at_once(board: str, mo
 
 
 def test_a_sample_that_is_missing_and_a_request_without_an_answer_are_seen() -> None:
-    late = Soak("Nano", 1)
+    late = Soak("nano", 1)
     late.take(7, 41)
     late.take(9, 43)
     late.bench.board.pc = late.bench.symbols["_exit"].address  # it hangs

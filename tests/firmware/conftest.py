@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from tools.support.board_with_image import BOARDS, BoardWithImage
+from greywhale_sim.board_with_image import BoardWithImage
+from greywhale_sim.wiring import BOARDS
 
 
 @pytest.fixture(params=BOARDS)

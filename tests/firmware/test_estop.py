@@ -8,24 +8,22 @@ import numpy as np
 import pytest
 
 from greywhale.protocol import schema
-from greywhale_sim.wiring import BOARDS
-from tests.firmware.test_stop import enable, motors_on, status
+from greywhale_sim.board_with_image import CYCLES_PER_TICK, BoardWithImage
+from tests.firmware.test_stop import enable
 from tests.firmware.test_unrest import apply
-from tools.support.board_with_image import CYCLES_PER_TICK, BoardWithImage
 
 PHASES = 60
 TICK_AND_ITS_WORK_MS = 1.06  # the pin is read once in each tick, after the potentiometers
-PIN = {wiring.mcu: wiring.estop for wiring in BOARDS.values()}
 OPENING = 2
 
 
 def press(bench: BoardWithImage, low: bool = True) -> None:
-    pin = PIN[bench.board.chip]
+    pin = bench.wiring.estop
     bench.board.hold_pin(pin.port, pin.bit, not low)
 
 
 def release(bench: BoardWithImage) -> None:
-    pin = PIN[bench.board.chip]
+    pin = bench.wiring.estop
     bench.board.let_pin_go(pin.port, pin.bit)
 
 
@@ -36,13 +34,13 @@ def drive(bench: BoardWithImage) -> None:
     bench.wait(30)
     enable(bench)
     bench.wait(bench.random.uniform(120, 125))
-    assert bench.board.duty(*bench.output) > 0.0
+    assert bench.duty() > 0.0
 
 
 def ms_until_off(bench: BoardWithImage) -> float:
     """Until the drivers are off and the duty is gone, to 4 us."""
     begun = bench.board.cycle
-    while motors_on(bench) or bench.board.duty(*bench.output) > 0.0:
+    while bench.motors_on or bench.duty() > 0.0:
         bench.board.run_until(bench.board.cycle + 64)
         assert bench.board.cycle - begun < 10 * CYCLES_PER_TICK
     return float((bench.board.cycle - begun) / CYCLES_PER_TICK)
@@ -56,7 +54,7 @@ def test_motors_are_off_within_a_tick_of_the_pin_going_low(bench: BoardWithImage
         press(bench)
         took.append(ms_until_off(bench))
         release(bench)
-    seen = status(bench)
+    seen = bench.status()
     assert (seen.state, seen.fault, seen.stop_reason) == (
         schema.State.FAULT,
         schema.Fault.ESTOP,
@@ -75,8 +73,8 @@ def test_a_pressed_stop_cannot_be_cleared_and_a_released_one_can(bench: BoardWit
         bench.ask(schema.ClearFaultRequest)
     release(bench)
     bench.wait(1000)
-    assert not motors_on(bench), "it is latched"
-    assert status(bench).fault is schema.Fault.ESTOP
+    assert not bench.motors_on, "it is latched"
+    assert bench.status().fault is schema.Fault.ESTOP
     with pytest.raises(RuntimeError, match="Enable"):
         bench.ask(schema.EnableRequest, struct.pack("<H", 0))
     enable(bench)
@@ -87,7 +85,7 @@ def test_a_tap_while_the_motors_are_off_keeps_them_off(bench: BoardWithImage) ->
     bench.wait(5)
     release(bench)
     bench.wait(5)
-    assert (status(bench).state, status(bench).fault) == (schema.State.FAULT, schema.Fault.ESTOP)
+    assert (bench.status().state, bench.status().fault) == (schema.State.FAULT, schema.Fault.ESTOP)
     with pytest.raises(RuntimeError, match="Enable"):
         bench.ask(schema.EnableRequest, struct.pack("<H", 0))
 
@@ -96,12 +94,12 @@ def test_a_stop_that_is_pressed_through_a_reset_keeps_the_motors_off(bench: Boar
     press(bench)
     bench.board.reset()
     bench.wait(60)
-    assert (status(bench).state, status(bench).fault) == (schema.State.FAULT, schema.Fault.ESTOP)
+    assert (bench.status().state, bench.status().fault) == (schema.State.FAULT, schema.Fault.ESTOP)
 
 
 def test_an_opening_button_stops_when_it_opens_or_its_wire_breaks(bench: BoardWithImage) -> None:
     apply(bench, "estop_input", OPENING)
-    assert status(bench).fault is schema.Fault.ESTOP, "nothing is wired: the pull-up holds the pin high"
+    assert bench.status().fault is schema.Fault.ESTOP, "nothing is wired: the pull-up holds the pin high"
     press(bench, low=True)
     bench.wait(2)
     drive(bench)
@@ -114,7 +112,7 @@ def test_without_a_stop_the_pin_means_nothing(bench: BoardWithImage) -> None:
     press(bench)
     drive(bench)
     bench.wait(20)
-    assert motors_on(bench)
+    assert bench.motors_on
     release(bench)
     bench.wait(20)
-    assert motors_on(bench)
+    assert bench.motors_on

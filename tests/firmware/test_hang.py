@@ -12,10 +12,8 @@ from collections.abc import Callable
 import pytest
 
 from greywhale.protocol import schema
-from greywhale_sim.wiring import BOARDS as WIRINGS
-from tests.firmware.test_stop import motors_on, status
+from greywhale_sim.board_with_image import CYCLES_PER_TICK, BoardWithImage
 from tests.simulated_board.stk500 import Version1, Version2
-from tools.support.board_with_image import CYCLES_PER_TICK, BoardWithImage
 
 PHASES = 20
 OFF_MS = 20.0
@@ -27,14 +25,13 @@ RESETS = 2
 @pytest.fixture
 def booted(bench: BoardWithImage) -> BoardWithImage:
     """A board whose bootloader has started the firmware."""
-    wiring = next(one for one in WIRINGS.values() if one.mcu == bench.board.chip)
-    bench.board.load_hex(str(wiring.bootloader), bootloader=True)
+    bench.board.load_hex(str(bench.wiring.bootloader), bootloader=True)
     cut_power(bench)
     return bench
 
 
 def is_nano(bench: BoardWithImage) -> bool:
-    return bench.board.chip == "atmega328p"
+    return bench.wiring.name == "nano"
 
 
 def reset(bench: BoardWithImage) -> None:
@@ -93,7 +90,7 @@ def reset_cause(bench: BoardWithImage) -> schema.ResetCause:
 
 def ms_until_off(bench: BoardWithImage) -> float:
     begun = bench.board.cycle
-    while motors_on(bench):
+    while bench.motors_on:
         bench.board.run_until(bench.board.cycle + 200)
     return float((bench.board.cycle - begun) / CYCLES_PER_TICK)
 
@@ -105,9 +102,9 @@ def test_a_hang_with_interrupts_off_turns_the_motors_off_within_20_ms(bench: Boa
         hang(bench)
         assert ms_until_off(bench) < OFF_MS
         bench.wait(60)
-        seen = status(bench)
+        seen = bench.status()
         assert (seen.state, seen.fault) == (schema.State.FAULT, schema.Fault.WATCHDOG)
-        assert not motors_on(bench)
+        assert not bench.motors_on
 
 
 def see_it_stay_silent(nano: BoardWithImage) -> None:
@@ -120,11 +117,11 @@ def see_it_stay_silent(nano: BoardWithImage) -> None:
         before = nano.board.stats().watchdog_resets
         nano.wait(160)
         assert nano.board.stats().watchdog_resets == before + 10
-        assert not motors_on(nano)
+        assert not nano.motors_on
         nano.board.reset()
     assert not nano.board.uart_receive()
     cut_power(nano)
-    assert status(nano).fault is schema.Fault.NONE
+    assert nano.status().fault is schema.Fault.NONE
 
 
 @pytest.mark.parametrize("stop_working", [hang, hang_with_interrupts_on, go_astray])
@@ -139,7 +136,7 @@ def test_a_hang_is_told_through_the_bootloader_where_that_comes_back(
         stop_working(booted)
         assert ms_until_off(booted) < OFF_MS
         booted.wait(60)  # so it did not wait for a host in its bootloader
-        seen = status(booted)
+        seen = booted.status()
         assert (seen.state, seen.fault) == (schema.State.FAULT, schema.Fault.WATCHDOG)
         assert reset_cause(booted) is schema.ResetCause.WATCHDOG
 
@@ -153,7 +150,7 @@ def test_no_other_restart_is_taken_for_a_hang(booted: BoardWithImage) -> None:
         follow(booted)
         restart(booted)
         assert reset_cause(booted) is not schema.ResetCause.WATCHDOG
-        assert (status(booted).state, status(booted).fault) == (schema.State.DISABLED, schema.Fault.NONE)
+        assert (booted.status().state, booted.status().fault) == (schema.State.DISABLED, schema.Fault.NONE)
 
 
 @pytest.mark.slow
@@ -168,8 +165,8 @@ def test_the_watchdog_leaves_boot_and_every_step_of_a_parameter_set_alone(bench:
         bench.ask(schema.ParamApplyRequest, struct.pack("<H", schema.param_crc(values)))
         bench.ask(schema.ParamSaveRequest)
         bench.wait(1000)
-        assert status(bench).save_state is schema.SaveState.SAVED
+        assert bench.status().save_state is schema.SaveState.SAVED
     bench.board.reset()
     bench.wait(60)
-    assert status(bench).fault is schema.Fault.NONE
+    assert bench.status().fault is schema.Fault.NONE
     assert bench.board.stats().watchdog_resets == 0

@@ -7,13 +7,10 @@ import struct
 import pytest
 
 from greywhale.protocol import frames, schema
-from tools.support.board_with_image import BOARDS, UNWATCHED, BoardWithImage, apply, ram_of_a_life
+from greywhale_sim.board_with_image import UNWATCHED, BoardWithImage, ram_of_a_life
+from greywhale_sim.wiring import BOARDS
 
 BYTES_A_MS = 100  # what the wire carries at 1 Mbaud
-
-
-def status(bench: BoardWithImage) -> schema.StatusReply:
-    return schema.StatusReply.unpack(bench.ask(schema.StatusRequest))
 
 
 def babble(bench: BoardWithImage, ms: int) -> None:
@@ -24,7 +21,7 @@ def babble(bench: BoardWithImage, ms: int) -> None:
 
 def test_a_babbling_host_neither_starts_the_motors_nor_delays_a_tick(bench: BoardWithImage) -> None:
     babble(bench, 1000)
-    seen = status(bench)
+    seen = bench.status()
     assert seen.state == schema.State.DISABLED
     assert seen.late_ticks == 0
     assert seen.frames_bad > 0
@@ -35,7 +32,7 @@ def test_a_babbling_host_delays_no_tick_of_a_moving_arm_and_ends_in_a_fault(benc
     bench.ask(schema.TelemetryRequest, struct.pack("<H", 1))
     bench.ask(schema.EnableRequest, struct.pack("<H", 0))
     babble(bench, 500)
-    seen = status(bench)
+    seen = bench.status()
     assert (seen.state, seen.fault) == (schema.State.FAULT, schema.Fault.FLOOD)
     assert seen.late_ticks == 0
     assert schema.ClearFaultReply.unpack(bench.ask(schema.ClearFaultRequest)).state == schema.State.DISABLED
@@ -48,14 +45,14 @@ def test_no_tick_is_late_while_a_set_is_staged_applied_and_saved_with_telemetry_
     bench.ask(schema.ParamApplyRequest, struct.pack("<H", schema.param_crc(schema.DEFAULTS)))
     bench.ask(schema.ParamSaveRequest)
     bench.wait(1500)
-    seen = status(bench)
+    seen = bench.status()
     assert seen.save_state == schema.SaveState.SAVED
     assert seen.late_ticks == 0
     assert seen.tick_us_max < 500
 
 
 def test_the_board_counts_the_sets_that_were_stored(bench: BoardWithImage) -> None:
-    assert status(bench).saves == 0, "its EEPROM is blank"
+    assert bench.status().saves == 0, "its EEPROM is blank"
     values = list(schema.DEFAULTS)
     for saves, limit in enumerate((1.0, 1.1, 1.1, 1.2)):
         parameter = schema.PARAMETER_BY_NAME["tracking_limit"]
@@ -64,31 +61,31 @@ def test_the_board_counts_the_sets_that_were_stored(bench: BoardWithImage) -> No
         bench.ask(schema.ParamApplyRequest, struct.pack("<H", schema.param_crc(values)))
         bench.ask(schema.ParamSaveRequest)
         bench.wait(1500)
-        assert status(bench).saves == (saves + 1 if saves < 2 else saves), "the same set again writes nothing"
+        assert bench.status().saves == (saves + 1 if saves < 2 else saves), "the same set again writes nothing"
     bench.board.reset()
     bench.wait(100)
-    assert status(bench).saves == 3
+    assert bench.status().saves == 3
 
 
 def test_enabling_right_after_applying_works(bench: BoardWithImage) -> None:
     bench.ask(schema.ParamApplyRequest, struct.pack("<H", schema.param_crc(schema.DEFAULTS)))
     bench.ask(schema.EnableRequest, struct.pack("<H", 0))
     bench.wait(1200)
-    assert status(bench).state == schema.State.FOLLOWING
+    assert bench.status().state == schema.State.FOLLOWING
 
 
 def test_a_reset_while_the_motors_run_leaves_them_off(bench: BoardWithImage) -> None:
-    apply(bench, UNWATCHED)  # its follower stays where it is
+    bench.apply(UNWATCHED)  # its follower stays where it is
     bench.millivolts[0] += 300
     bench.board.set_millivolts(bench.millivolts)
     bench.ask(schema.EnableRequest, struct.pack("<H", 0))
     bench.wait(500)
-    assert bench.board.duty(*bench.output) > 0.05
+    assert bench.duty() > 0.05
     bench.board.reset()
     for _ in range(100):
         bench.wait(1)
-        assert bench.board.duty(*bench.output) == 0
-    assert status(bench).stop_reason == schema.StopReason.RESET
+        assert bench.duty() == 0
+    assert bench.status().stop_reason == schema.StopReason.RESET
 
 
 def test_a_damaged_newest_set_is_a_fault_until_the_host_has_confirmed_one(bench: BoardWithImage) -> None:
@@ -105,7 +102,7 @@ def test_a_damaged_newest_set_is_a_fault_until_the_host_has_confirmed_one(bench:
     bench.board.set_eeprom(bytes(content))
     bench.board.reset()
     bench.wait(60)
-    assert (status(bench).state, status(bench).fault) == (schema.State.FAULT, schema.Fault.PARAMS)
+    assert (bench.status().state, bench.status().fault) == (schema.State.FAULT, schema.Fault.PARAMS)
     with pytest.raises(RuntimeError, match="ClearFault"):
         bench.ask(schema.ClearFaultRequest)
     bench.ask(schema.ParamSetRequest, struct.pack("<Hi", index, -1))
@@ -143,8 +140,8 @@ def test_a_host_that_leads_costs_the_tick_nothing_and_delays_none(bench: BoardWi
     after = schema.LeadReply.unpack(bench.ask(schema.LeadRequest, struct.pack("<H", 60000)))
     assert after.reference[0] == reply.reference[0] + 4 * sum(taken)
     assert leader(bench) == after.reference
-    assert status(bench).state == schema.State.FOLLOWING
-    assert status(bench).late_ticks == 0
+    assert bench.status().state == schema.State.FOLLOWING
+    assert bench.status().late_ticks == 0
 
 
 @pytest.mark.parametrize("name", BOARDS)

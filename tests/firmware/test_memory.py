@@ -9,9 +9,9 @@ import pytest
 from greywhale.fuzzy import twin
 from greywhale.fuzzy.settings import JointSettings
 from greywhale.protocol import schema
-from tests.firmware.test_stop import enable, motors_on, status
+from greywhale_sim.board_with_image import CYCLES_PER_TICK, BoardWithImage
+from tests.firmware.test_stop import enable
 from tests.firmware.test_unrest import apply
-from tools.support.board_with_image import CYCLES_PER_TICK, BoardWithImage
 
 FLIPS = 60
 LOOK_MS = 4.0  # at one joint after each tick
@@ -70,7 +70,7 @@ def flip(bench: BoardWithImage, address: int) -> None:
 
 def ms_until_off(bench: BoardWithImage) -> float:
     begun = bench.board.cycle
-    while motors_on(bench) and bench.board.cycle - begun < 1000 * CYCLES_PER_TICK:
+    while bench.motors_on and bench.board.cycle - begun < 1000 * CYCLES_PER_TICK:
         bench.wait(0.25)
     return float((bench.board.cycle - begun) / CYCLES_PER_TICK)
 
@@ -84,7 +84,7 @@ def test_motors_are_off_soon_after_any_bit_of_the_running_set_has_flipped(bench:
         bench.wait(bench.random.uniform(0, 60))
         flip(bench, address + int(bench.random.integers(size)))
         assert ms_until_off(bench) <= 2 * ROUND_MS + 1
-        seen = status(bench)
+        seen = bench.status()
         assert seen.late_ticks == 0
         assert seen.fault in (schema.Fault.MEMORY, schema.Fault.ESTOP), "a flipped estop_input means an opening button"
         apply(bench, *SOFT_START)
@@ -102,10 +102,10 @@ def test_motors_are_off_before_much_is_done_by_a_potentiometers_line_that_has_fl
         flip(bench, address + int(bench.random.integers(size)))
         bench.wait(LOOK_MS + 1)
         assert bench.board.peek(address, size) == right
-        if motors_on(bench):
+        if bench.motors_on:
             mended += 1  # just as it was written anew, before anybody used it
             continue
-        seen = status(bench)
+        seen = bench.status()
         assert seen.late_ticks == 0
         assert seen.fault is schema.Fault.MEMORY or seen.fault in JUMPS
         apply(bench, *SOFT_START)
@@ -116,13 +116,13 @@ def test_damaged_parameters_are_told_with_the_motors_off_as_well_until_a_set_is_
     address, _ = watched(bench)[1]
     flip(bench, address)
     bench.wait(2 * ROUND_MS)
-    assert (status(bench).state, status(bench).fault) == (schema.State.FAULT, schema.Fault.MEMORY)
+    assert (bench.status().state, bench.status().fault) == (schema.State.FAULT, schema.Fault.MEMORY)
     with pytest.raises(RuntimeError, match="ClearFault"):
         bench.ask(schema.ClearFaultRequest)
     apply(bench, *SOFT_START)
     enable(bench)
     bench.wait(2 * ROUND_MS)
-    assert motors_on(bench)
+    assert bench.motors_on
 
 
 def test_the_staged_set_is_not_looked_over(bench: BoardWithImage) -> None:
@@ -130,7 +130,7 @@ def test_the_staged_set_is_not_looked_over(bench: BoardWithImage) -> None:
     flip(bench, running + size)
     enable(bench)
     bench.wait(4 * ROUND_MS)
-    assert motors_on(bench)
+    assert bench.motors_on
 
 
 def test_a_set_that_is_refused_or_saved_is_no_damage(bench: BoardWithImage) -> None:
@@ -143,4 +143,4 @@ def test_a_set_that_is_refused_or_saved_is_no_damage(bench: BoardWithImage) -> N
     bench.ask(schema.ParamSaveRequest)
     enable(bench)
     bench.wait(1000)
-    assert motors_on(bench)
+    assert bench.motors_on

@@ -10,10 +10,9 @@ import pytest
 
 from greywhale.board.device import STOP_REPEAT_S, stop_message
 from greywhale.protocol import frames, schema
+from greywhale_sim.board_with_image import CYCLES_PER_TICK, BoardWithImage
 from greywhale_sim.line import Noise
-from tools.support.board_with_image import CYCLES_PER_TICK, BoardWithImage
 
-ENABLE_PINS = {"atmega2560": ("H", 6), "atmega328p": ("B", 4)}
 OFF_MS = 30.0
 PIECE_MS = 0.1  # the flood is poured in so small pieces
 LONGEST_FRAME = 54
@@ -45,18 +44,10 @@ def zeros(_: np.random.Generator, count: int) -> bytes:
     return bytes(count)
 
 
-def motors_on(bench: BoardWithImage) -> bool:
-    return bool(bench.board.pin(*ENABLE_PINS[bench.board.chip]))
-
-
-def status(bench: BoardWithImage) -> schema.StatusReply:
-    return schema.StatusReply.unpack(bench.ask(schema.StatusRequest))
-
-
 def enable(bench: BoardWithImage) -> None:
     bench.ask(schema.ClearFaultRequest)
     bench.ask(schema.EnableRequest, struct.pack("<H", 0))
-    assert motors_on(bench)
+    assert bench.motors_on
 
 
 class Pour:
@@ -80,7 +71,7 @@ class Pour:
             self.bench.wait(PIECE_MS)
             if self.lost_at is None and board.stats().rx_overruns > self._overruns:
                 self.lost_at = board.cycle
-            if self.off_at is None and not motors_on(self.bench):
+            if self.off_at is None and not self.bench.motors_on:
                 self.off_at = board.cycle
 
 
@@ -105,7 +96,7 @@ def test_motors_are_off_soon_after_a_stop_inside_a_flood_or_after_the_line_is_lo
         assert (flood.off_at - since) / CYCLES_PER_TICK < OFF_MS
         bench.board.uart_send(b"\0")
         bench.wait(20)
-        seen = status(bench)
+        seen = bench.status()
         assert seen.late_ticks == 0
         assert seen.fault in (schema.Fault.NONE, schema.Fault.FLOOD)
 
@@ -119,8 +110,8 @@ def test_a_short_burst_is_no_flood(bench: BoardWithImage, count: int, lossless: 
         bench.wait(bench.random.uniform(191.5, 192.5))
         bench.board.uart_send(bench.random.bytes(count) + b"\0")
     bench.wait(192)
-    assert status(bench).fault is schema.Fault.NONE
-    assert motors_on(bench)
+    assert bench.status().fault is schema.Fault.NONE
+    assert bench.motors_on
     assert bench.board.stats().rx_overruns == 0 or not lossless
 
 
@@ -133,14 +124,14 @@ def test_a_stop_acts_although_one_byte_in_twenty_is_damaged(bench: BoardWithImag
     for trial in range(trials):
         begun = bench.board.cycle
         bench.board.uart_send(line(bytes([1, 2, 3])))  # what a damaged request has left behind
-        while motors_on(bench):
+        while bench.motors_on:
             bench.board.uart_send(line(stop_message(trial % 255 + 1)))
             for _ in range(round(1000 * STOP_REPEAT_S)):
                 bench.wait(1)
-                if not motors_on(bench):
+                if not bench.motors_on:
                     break
         late += (bench.board.cycle - begun) / CYCLES_PER_TICK > 50
         bench.board.uart_send(b"\0")
         enable(bench)
     assert late <= trials / 100
-    assert status(bench).late_ticks == 0
+    assert bench.status().late_ticks == 0

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import struct
-
 import numpy as np
 import pytest
 
 from greywhale.protocol import schema
-from tests.firmware.test_stop import enable, motors_on, status
-from tools.support.board_with_image import CYCLES_PER_TICK, BoardWithImage
+from greywhale_sim.board_with_image import CYCLES_PER_TICK, BoardWithImage
+from tests.firmware.test_stop import enable
 
 MILLIVOLTS_A_RAD = 5000.0 / np.deg2rad(300.0)
 FOLLOWER = 4  # the first of its pots
@@ -29,8 +27,8 @@ def shake(bench: BoardWithImage, pot: int, amplitude: float, hertz: float, leade
         millivolts[pot - FOLLOWER] += leader * swing
         bench.board.set_millivolts(millivolts)
         bench.wait(0.25)
-        if not motors_on(bench):
-            return ms
+        if not bench.motors_on:
+            return float(ms)
     return None
 
 
@@ -45,7 +43,7 @@ def test_a_hunting_joint_is_off_within_a_second_and_a_half_whenever_it_begins(be
         off = shake(bench, FOLLOWER + joint, bench.random.uniform(0.015, 0.1), bench.random.uniform(3.5, 15))
         assert off is not None
         took.append(off)
-        seen = status(bench)
+        seen = bench.status()
         assert (seen.fault, seen.fault_where, seen.late_ticks) == (schema.Fault.UNREST, joint, 0)
     assert min(took) >= 1100
     assert max(took) <= 1550
@@ -54,16 +52,12 @@ def test_a_hunting_joint_is_off_within_a_second_and_a_half_whenever_it_begins(be
 def test_a_joint_that_swings_with_its_leader_keeps_its_motors(bench: BoardWithImage) -> None:
     enable(bench)
     assert shake(bench, FOLLOWER + 2, 0.05, 6.0, leader=-0.05) is None
-    assert status(bench).fault is schema.Fault.NONE
+    assert bench.status().fault is schema.Fault.NONE
 
 
 def apply(bench: BoardWithImage, name: str, raw: int) -> None:
     """Run the defaults with another value of one parameter."""
-    values = list(schema.DEFAULTS)
-    index = schema.PARAMETER_BY_NAME[name].index
-    values[index] = raw
-    bench.ask(schema.ParamSetRequest, struct.pack("<Hi", index, raw))
-    bench.ask(schema.ParamApplyRequest, struct.pack("<H", schema.param_crc(values)))
+    bench.apply({name: raw}, fresh=True)
     bench.wait(20)
 
 
@@ -74,13 +68,13 @@ def test_the_safe_set_takes_over_within_some_ticks_and_none_is_late(bench: Board
     assert shake(bench, FOLLOWER + 1, 0.05, 8.0) is not None
     bench.board.set_millivolts(bench.millivolts)
     off_at = bench.board.cycle
-    while not motors_on(bench):
+    while not bench.motors_on:
         bench.wait(0.1)
         assert bench.board.cycle - off_at < 12 * CYCLES_PER_TICK
-    seen = status(bench)
+    seen = bench.status()
     assert (seen.state, seen.fault, seen.late_ticks) == (schema.State.SOFT_START, schema.Fault.UNREST, 0)
     bench.wait(1200)
-    assert status(bench).state is schema.State.FOLLOWING
+    assert bench.status().state is schema.State.FOLLOWING
 
 
 def test_looking_for_unrest_costs_the_tick_nothing(bench: BoardWithImage) -> None:

@@ -7,8 +7,9 @@ import struct
 import numpy as np
 
 from greywhale.protocol import schema
+from greywhale_sim.board_with_image import CYCLES_PER_TICK, UNWATCHED, BoardWithImage, ram_of_a_life
+from greywhale_sim.wiring import BOARDS
 from tools.benchmarks.figure import Figure
-from tools.support.board_with_image import BOARDS, CYCLES_PER_TICK, UNWATCHED, BoardWithImage, apply, ram_of_a_life
 from tools.support.fuzzy_search import Random
 
 TICKS = 250
@@ -17,7 +18,7 @@ SETS, TICKS_PER_SET = 300, 10  # for the worst tick over the parameters
 
 def ticks(name: str) -> list[Figure]:
     bench = BoardWithImage(name)
-    apply(bench, UNWATCHED)
+    bench.apply(UNWATCHED)
     bench.ask(schema.EnableRequest, struct.pack("<H", 0))
     bench.wait(1100)
     whole, alone = [], []
@@ -28,9 +29,9 @@ def ticks(name: str) -> list[Figure]:
         alone.append(both[1])
     worst = max(alone)
     return [
-        Figure(f"{name}: tick, worst of {TICKS}", worst, "cycles", "<= 3,200 cycles", worst <= 3200),
-        Figure(f"{name}: tick, mean", float(np.mean(alone)), "cycles"),
-        Figure(f"{name}: tick with its interrupts, worst", max(whole) / 16, "us"),
+        Figure(f"{name.title()}: tick, worst of {TICKS}", worst, "cycles", "<= 3,200 cycles", worst <= 3200),
+        Figure(f"{name.title()}: tick, mean", float(np.mean(alone)), "cycles"),
+        Figure(f"{name.title()}: tick with its interrupts, worst", max(whole) / 16, "us"),
     ]
 
 
@@ -45,7 +46,7 @@ def over_parameters(name: str) -> Figure:
         values = {"filter_shift": 2, "soft_start_ms": 100, "tracking_limit": 0} | UNWATCHED
         for joint in range(4):
             values |= {f"joint{joint}.{key}": value for key, value in vars(draw.settings(1)).items()}
-        apply(bench, values)
+        bench.apply(values)
         bench.wait(30)
         bench.ask(schema.EnableRequest, struct.pack("<H", 0))
         bench.wait(110)
@@ -53,7 +54,7 @@ def over_parameters(name: str) -> Figure:
             bench.wiggle(10.0 ** bench.random.uniform(0, 3.3))
             worst = max(worst, bench.tick_cycles()[1])
         bench.ask(schema.StopRequest)
-    return Figure(f"{name}: tick, worst of {SETS * TICKS_PER_SET} over the parameters", worst, "cycles")
+    return Figure(f"{name.title()}: tick, worst of {SETS * TICKS_PER_SET} over the parameters", worst, "cycles")
 
 
 def jitter(name: str) -> Figure:
@@ -63,18 +64,18 @@ def jitter(name: str) -> Figure:
     first = bench.next_entry()
     late = []
     for i in range(1, TICKS):
-        bench.run_to(first + CYCLES_PER_TICK * (i - 1) + int(bench.random.integers(9_000, 15_800)))
+        bench.board.run_until(first + CYCLES_PER_TICK * (i - 1) + int(bench.random.integers(9_000, 15_800)))
         bench.board.uart_send(bench.random.bytes(30))
-        bench.run_to(first + CYCLES_PER_TICK * i - 150)
+        bench.board.run_until(first + CYCLES_PER_TICK * i - 150)
         late.append(bench.next_entry() - first - CYCLES_PER_TICK * i)
     spread = (max(late) - min(late)) / 16
-    return Figure(f"{name}: tick jitter", spread, "us", "<= 10 us", spread <= 10)
+    return Figure(f"{name.title()}: tick jitter", spread, "us", "<= 10 us", spread <= 10)
 
 
 def latency(name: str) -> list[Figure]:
     """From a step at a leader pot to the first change of the duty, over all phases of the tick."""
     bench = BoardWithImage(name)
-    apply(bench, UNWATCHED)
+    bench.apply(UNWATCHED)
     bench.ask(schema.EnableRequest, struct.pack("<H", 0))
     bench.wait(1100)
     delays = []
@@ -82,20 +83,20 @@ def latency(name: str) -> list[Figure]:
         bench.wait(40 + bench.random.uniform(0, 1))  # the low-pass has settled
         bench.millivolts[0] += 300.0 if bench.millivolts[0] < 2500 else -300.0
         bench.board.set_millivolts(bench.millivolts)
-        start, duty = bench.board.cycle, bench.board.duty(*bench.output)
-        while bench.board.duty(*bench.output) == duty:
+        start, duty = bench.board.cycle, bench.duty()
+        while bench.duty() == duty:
             bench.board.run_until(bench.board.cycle + 16)
         delays.append((bench.board.cycle - start) / CYCLES_PER_TICK)
     mean = float(np.mean(delays))
     return [
-        Figure(f"{name}: leader pot to duty, mean over the phases of the tick", mean, "ms"),
-        Figure(f"{name}: leader pot to duty, worst phase", max(delays), "ms", "<= 1.3 ms", max(delays) <= 1.3),
+        Figure(f"{name.title()}: leader pot to duty, mean over the phases of the tick", mean, "ms"),
+        Figure(f"{name.title()}: leader pot to duty, worst phase", max(delays), "ms", "<= 1.3 ms", max(delays) <= 1.3),
     ]
 
 
 def memory(name: str) -> Figure:
     total = ram_of_a_life(name)
-    return Figure(f"{name}: RAM with the deepest stack", total, "bytes", "<= 1,792 bytes", total <= 1792)
+    return Figure(f"{name.title()}: RAM with the deepest stack", total, "bytes", "<= 1,792 bytes", total <= 1792)
 
 
 def run() -> list[Figure]:

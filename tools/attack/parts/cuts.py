@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import struct
 from collections import Counter
 from functools import partial
 from typing import Any
@@ -10,33 +9,29 @@ from typing import Any
 import numpy as np
 
 from greywhale.protocol import frames, schema
+from greywhale_sim.board_with_image import BoardWithImage
+from greywhale_sim.wiring import BOARDS
 from tools.attack.copies import in_a_copy
 from tools.attack.part import Part, Piece, Row, split
-from tools.support.board_with_image import BOARDS, BoardWithImage
 
 CUTS, PER_PIECE = 10_000, 250
 SUPPLY_MV = 5000.0
 SAVE_MS = 900.0  # a save of a whole set takes up to 750 ms
 HISTORIES = ("the first save of a blank EEPROM", "the second save, into the other bank", "the third, over the oldest")
+CHANGED = ("kp", "kd", "ki", "zero", "soft_start_ms", "tracking_ms")
 SAVE = frames.encode_frame(schema.ParamSaveRequest.TYPE, 9, b"")
 
 
 def stage_another(bench: BoardWithImage, random: np.random.Generator) -> int:
     """Apply a set that differs in many places from every other, and return its CRC."""
-    values = list(schema.DEFAULTS)
-    for parameter in schema.PARAMETERS:
-        name = parameter.name.rpartition(".")[2]
-        if name in ("kp", "kd", "ki", "zero", "soft_start_ms", "tracking_ms"):
-            value = schema.DEFAULTS[parameter.index] + int(random.integers(1, 200))
-            values[parameter.index] = min(value, parameter.maximum)
-            bench.ask(schema.ParamSetRequest, struct.pack("<Hi", parameter.index, values[parameter.index]))
-    bench.ask(schema.ParamApplyRequest, struct.pack("<H", schema.param_crc(values)))
+    changes = {
+        one.name: min(one.default + int(random.integers(1, 200)), one.maximum)
+        for one in schema.PARAMETERS
+        if one.name.rpartition(".")[2] in CHANGED
+    }
+    values = bench.apply(changes, fresh=True)
     bench.wait(20)
     return schema.param_crc(values)
-
-
-def status(bench: BoardWithImage) -> schema.StatusReply:
-    return schema.StatusReply.unpack(bench.ask(schema.StatusRequest))
 
 
 def running_crc(bench: BoardWithImage) -> int:
@@ -46,7 +41,7 @@ def running_crc(bench: BoardWithImage) -> int:
 def save(bench: BoardWithImage) -> None:
     bench.ask(schema.ParamSaveRequest)
     bench.wait(SAVE_MS)
-    assert status(bench).save_state is schema.SaveState.SAVED
+    assert bench.status().save_state is schema.SaveState.SAVED
 
 
 def cut(bench: BoardWithImage, seed: int) -> None:
@@ -71,7 +66,7 @@ def sink(bench: BoardWithImage, random: np.random.Generator, seed: int) -> None:
 
 def judge(bench: BoardWithImage, old: int, new: int, changed: bool, saved: bool) -> str:
     """What came of a cut; what must not be begins with "wrong". `changed`: the EEPROM is not as before the save."""
-    running, fault = running_crc(bench), status(bench).fault
+    running, fault = running_crc(bench), bench.status().fault
     told = fault is schema.Fault.PARAMS
     if running not in (old, new):
         return "wrong: a set that was never stored runs"
@@ -86,7 +81,7 @@ def judge(bench: BoardWithImage, old: int, new: int, changed: bool, saved: bool)
 
 def is_saved(bench: BoardWithImage) -> bool:
     """Asked in a copy of the board: the question takes time, and the cut shall come now."""
-    return bool(in_a_copy(lambda: status(bench).save_state is schema.SaveState.SAVED))
+    return bool(in_a_copy(lambda: bench.status().save_state is schema.SaveState.SAVED))
 
 
 def cut_and_look(bench: BoardWithImage, old: int, new: int, seed: int, before: bytes) -> dict[str, Any]:
@@ -104,7 +99,7 @@ def cut_and_look(bench: BoardWithImage, old: int, new: int, seed: int, before: b
 def cycles_of_a_save(bench: BoardWithImage) -> int:
     begun = bench.board.cycle
     bench.ask(schema.ParamSaveRequest)
-    while status(bench).save_state is not schema.SaveState.SAVED:
+    while bench.status().save_state is not schema.SaveState.SAVED:
         bench.wait(1)
     return int(bench.board.cycle - begun)
 
@@ -124,7 +119,7 @@ def cut_a_save(board: str, earlier: int, trials: int, seed: int) -> Row:
         bench.board.run_until(begun + at)
         found[in_a_copy(partial(cut_and_look, bench, old, new, 11 * number + 1, before))["found"]] += 1
     wrong = sum(count for name, count in found.items() if name.startswith("wrong"))
-    return Row(f"{board}: {HISTORIES[earlier]}", trials, wrong, dict(sorted(found.items())))
+    return Row(f"{board.title()}: {HISTORIES[earlier]}", trials, wrong, dict(sorted(found.items())))
 
 
 def run(piece: Piece) -> list[Row]:

@@ -12,10 +12,10 @@ from greywhale.files.paper_tables import paper_table
 from greywhale.protocol.table import ParameterTable, physical
 from greywhale.tune.stall import STALL_VOLTS, stall_limit
 from greywhale_sim.wiring import BOARDS
+from tools.attack.arm_faults import LEASE_MS, SOFT_START_MS, Inject, Trial, begin, faults, person, suffer
+from tools.attack.arm_on_board import ArmOnBoard
 from tools.attack.copies import in_a_copy
 from tools.attack.part import Part, Piece, Row, split
-from tools.attack.rig import Rig
-from tools.attack.staging import LEASE_MS, SOFT_START_MS, Inject, Trial, begin, faults, person, suffer
 
 MOMENTS, PER_PIECE = 1000, 20
 AT_ONCE_MS = 10.0
@@ -60,8 +60,8 @@ def tuned_stall_volts() -> int:
     return limit.raw
 
 
-def suffer_it(rig: Rig, inject: Inject, joint: int) -> dict[str, Any]:
-    return asdict(suffer(rig, inject, joint))
+def suffer_it(arm: ArmOnBoard, inject: Inject, joint: int) -> dict[str, Any]:
+    return asdict(suffer(arm, inject, joint))
 
 
 def run(piece: Piece) -> list[Row]:
@@ -73,16 +73,16 @@ def run(piece: Piece) -> list[Row]:
     seed = piece["seed"]
     stall = tuned_stall_volts() if seed % 2 else ParameterTable.defaults()["stall_volts"]
     limit = f", stall_volts {physical(STALL_VOLTS, stall):g} V"
-    rig = Rig(piece["board"], person(seed), seed)
+    arm = ArmOnBoard(piece["board"], person(seed), seed)
     table = paper_table(("before_tuning", "table_10")[seed % 2])
     changes = {key: int(raw) for key, raw in controller.load(table).raw_values().items()}
-    rig.apply(changes | {"soft_start_ms": SOFT_START_MS, "unrest_amplitude": 0, "stall_volts": stall})
-    staged = {name: inject for name, inject in faults().items() if name in piece.get("faults", faults())}
+    arm.run_set(changes | {"soft_start_ms": SOFT_START_MS, "unrest_amplitude": 0, "stall_volts": stall})
+    chosen = {name: inject for name, inject in faults().items() if name in piece.get("faults", faults())}
     rows = []
     for moment in range(piece["trials"]):
-        begin(rig)
-        for name, inject in staged.items():
-            trial = in_a_copy(partial(suffer_it, rig, inject, moment % 4))
+        begin(arm)
+        for name, inject in chosen.items():
+            trial = in_a_copy(partial(suffer_it, arm, inject, moment % 4))
             rows.append(count(piece["board"], name, Trial(**trial), limit if name in BY_LIMIT else ""))
     return rows
 
@@ -110,8 +110,9 @@ PART = Part(
         "shared",
         "sim/board",
         "sim/arm",
-        "tools/attack/rig.py",
-        "tools/attack/staging.py",
+        "sim/bench/greywhale_sim/board_with_image.py",
+        "tools/attack/arm_faults.py",
+        "tools/attack/arm_on_board.py",
     ),
     pieces,
     run,

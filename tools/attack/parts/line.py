@@ -9,9 +9,10 @@ import numpy as np
 
 from greywhale.protocol import frames, schema
 from greywhale.protocol.declared import Message
+from greywhale_sim.board_with_image import CYCLES_PER_TICK, BoardWithImage
+from greywhale_sim.wiring import BOARDS
 from tools.attack.damage import DAMAGES, damage
 from tools.attack.part import Part, Piece, Row
-from tools.support.board_with_image import BOARDS, CYCLES_PER_TICK, BoardWithImage
 
 FAULTS, PER_PIECE = 100_000, 1000
 RATES = (0.003, 0.01, 0.05)
@@ -20,7 +21,6 @@ SHARES = ", ".join(f"{100 * rate:g}" for rate in RATES)
 CLEAN_EVERY = 200  # requests
 PATIENCE_MS = 12  # as long as a set takes to be applied
 RECOVERY_MS = 12  # a set that is being applied takes as long; a stop alone 1 ms
-ENABLE_PINS = {"atmega2560": ("H", 6), "atmega328p": ("B", 4)}
 
 
 class Session:
@@ -89,7 +89,7 @@ class Session:
         found = self._decoder.feed(self.bench.board.uart_receive())
         for frame in found:
             self._check(frame)
-        if self.bench.board.pin(*ENABLE_PINS[self.bench.board.chip]) and self.enabled <= self.stopped:
+        if self.bench.motors_on and self.enabled <= self.stopped:
             self.violations += 1
         return found
 
@@ -131,7 +131,7 @@ def run(piece: Piece) -> list[Row]:
         turn += 1
     return [
         Row(
-            f"{piece['board']}: {piece['kind']}",
+            f"{piece['board'].title()}: {piece['kind']}",
             session.faults,
             session.violations,
             {"answers": session.answers},

@@ -9,8 +9,9 @@ import numpy as np
 
 from greywhale.protocol import frames, schema
 from greywhale.protocol.declared import Message
+from greywhale_sim.board_with_image import BoardWithImage
+from greywhale_sim.wiring import BOARDS
 from tools.attack.part import Part, Piece, Row, split
-from tools.support.board_with_image import BOARDS, BoardWithImage
 
 HOURS, PIECE_S = 24, 450
 ANSWER_MS = 25  # a set that is applied takes 12
@@ -164,7 +165,7 @@ def run(piece: Piece) -> list[Row]:
     grown = soak.bench.stack() - stack
     return [
         Row(
-            f"{piece['board']}: everything at once, seconds",
+            f"{piece['board'].title()}: everything at once, seconds",
             seconds,
             counts.violations + (grown > 0),
             {name: getattr(counts, name) for name in ("requests", "samples", "applied", "saved", "enabled", "wraps")}

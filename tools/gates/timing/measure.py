@@ -12,7 +12,8 @@ import numpy as np
 
 from greywhale.protocol import frames, schema
 from greywhale.protocol.declared import Message
-from greywhale_sim._board import Board
+from greywhale_sim.board_with_image import BoardWithImage
+from greywhale_sim.wiring import BOARDS
 from tools.gates.timing.image import PERIOD, TICK, Target
 from tools.gates.timing.listing import read_program
 from tools.support.fuzzy_search import Random
@@ -25,39 +26,27 @@ STACK_POINTER = 0x5D  # data address of SPL
 WIDE, STEEP = 25_723, 16_384  # the largest limit of a joint and the steepest pot that the table allows
 
 
-class Session:
-    """The real image on a simulated board, with a host that knows frames only."""
+class Session(BoardWithImage):
+    """The real image, with motors on and readings that disturb it."""
 
     def __init__(self, target: Target, seed: int) -> None:
-        self.target = target
-        program = read_program(target.elf)
-        self.tick = program.entry(TICK)
-        self.vector = 4 * target.vectors["tick's interrupt"]
+        super().__init__(
+            next(name for name, wiring in BOARDS.items() if wiring.environment == target.environment), seed
+        )
         self.random = np.random.default_rng(seed)
-        self.board = Board(target.chip.name.lower())
-        self.board.load_elf(str(target.elf))
-        self.board.power_on(seed)
-        self.rest()
-        self.board.run_until(60 * PERIOD)
+        self.tick = read_program(target.elf).entry(TICK)
+        self.return_address = target.chip.return_address
+
+    def ask(self, message: type[Message], payload: bytes = b"") -> bytes:
+        """A zero first: noise may have come before."""
+        self.board.uart_send(b"\0")
+        return super().ask(message, payload)
 
     def rest(self) -> None:
-        self.board.set_millivolts(np.full(8, RAIL_MV / 2))
+        self.board.set_millivolts(self.millivolts)
 
     def disturb(self) -> None:
         self.board.set_millivolts(_readings(self.random))
-
-    def wait(self, ms: float) -> None:
-        self.board.run_until(self.board.cycle + int(ms * PERIOD))
-
-    def ask(self, message: type[Message], payload: bytes = b"") -> None:
-        self.board.uart_receive()
-        self.board.uart_send(b"\0" + frames.encode_frame(message.TYPE, 1, payload))
-        decoder = frames.FrameDecoder()
-        for _ in range(60):
-            self.wait(1)
-            if any(frame.type == message.TYPE | 0x80 for frame in decoder.feed(self.board.uart_receive())):
-                return
-        raise RuntimeError(f"the firmware did not do as asked: {message.__name__}")
 
     def run_set(self, values: dict[str, int]) -> None:
         """Runs the defaults but for these values, motors on."""
@@ -65,38 +54,21 @@ class Session:
         self.rest()
         self.wait(40)
         self.ask(schema.ClearFaultRequest)
-        wanted = list(schema.DEFAULTS)
-        for key, value in values.items():
-            wanted[schema.PARAMETER_BY_NAME[key].index] = value
-        for index, value in enumerate(wanted):
-            self.ask(schema.ParamSetRequest, struct.pack("<Hi", index, value))
-        self.ask(schema.ParamApplyRequest, struct.pack("<H", schema.param_crc(wanted)))
+        self.apply(values)
         self.wait(30)
         self.ask(schema.EnableRequest, struct.pack("<H", 0))
         self.wait(5)
 
-    def interrupt_cycles(self) -> float:
-        return sum(times.count * times.mean for times in self.board.stats().vectors.values())
-
-    def _run_to(self, address: int) -> int:
-        while self.board.pc != address:
-            self.board.run_until(self.board.cycle + 1)
-        return self.board.cycle
-
-    def next_tick(self) -> int:
-        """Runs to the next tick's interrupt; its cycle."""
-        return self._run_to(self.vector)
-
     def end_of_tick(self) -> int:
         """Runs through the next tick's function; the cycle at which it has returned."""
-        self._run_to(self.tick)
+        self.run_to(self.tick)
         level = int.from_bytes(self.board.peek(STACK_POINTER, 2), "little")
-        back = self.board.peek(level + 1, self.target.chip.return_address)
-        return self._run_to(2 * int.from_bytes(back, "big"))
+        back = self.board.peek(level + 1, self.return_address)
+        return self.run_to(2 * int.from_bytes(back, "big"))
 
-    def tick_cycles(self) -> int:
+    def cycles_of_tick_alone(self) -> int:
         """Cycles of the next tick alone, from its first instruction to the end of its return."""
-        start, interrupts = self._run_to(self.tick), self.interrupt_cycles()
+        start, interrupts = self.run_to(self.tick), self.interrupt_cycles()
         return round(self.end_of_tick() - start - (self.interrupt_cycles() - interrupts))
 
 
@@ -158,8 +130,8 @@ def worst(target: Target, sets: int = SETS, seed: int = 5) -> dict[str, int]:
             session.disturb()
             if session.random.random() < 0.3:
                 session.board.uart_send(session.random.bytes(60))
-            dearest = max(dearest, session.tick_cycles())
-            dearest = max(dearest, session.tick_cycles())
+            dearest = max(dearest, session.cycles_of_tick_alone())
+            dearest = max(dearest, session.cycles_of_tick_alone())
             session.rest()
             session.wait(FORGIVEN_MS)
         session.wait(10)  # until all that was sent has been read
@@ -183,13 +155,13 @@ def busiest(target: Target, sets: int = SETS, seed: int = 9) -> int:
         session.ask(schema.TelemetryRequest, struct.pack("<H", 1))
         for _ in range(TICKS_PER_SET):
             session.wait(3)
-            start = session.next_tick()
+            start = session.next_entry()
             board.run_until(start + int(random.integers(10_000, 12_500)))
             board.uart_send(status * int(random.integers(4, 9)))
             board.run_until(start + int(random.integers(14_700, PERIOD - 10)))
             board.uart_send(random.bytes(100))
             session.disturb()
-            start = session.next_tick()
+            start = session.next_entry()
             longest = max(longest, session.end_of_tick() - start)
             session.rest()
         session.wait(10)  # until all that was sent has been read

@@ -1,4 +1,4 @@
-"""Everything that can go wrong with an arm on the pins of the real image: each staged by name at a moment of a run.
+"""Everything that can go wrong with an arm on the pins of the real image: each injected by name at a moment of a run.
 
 A trial is the real image on the simulated board with the default arm: a leader that a person moves, everything in
 order, and at a random moment a fault. A leader that a person moves makes the error grow as well.
@@ -16,7 +16,8 @@ from greywhale.base.types import Floats
 from greywhale.board.device import stop_message
 from greywhale.motion import human_reaches
 from greywhale.protocol import frames, schema
-from tools.attack.rig import CYCLES_PER_MS, SLICE_S, Leader, Rig
+from greywhale_sim.board_with_image import CYCLES_PER_TICK
+from tools.attack.arm_on_board import SLICE_S, ArmOnBoard, Leader
 
 PATIENCE_S = 2.0
 SOFT_START_MS = 100
@@ -39,121 +40,121 @@ class Trial:
     where: int
 
 
-Inject = Callable[[Rig, int], None]  # does it to a joint of the rig
+Inject = Callable[[ArmOnBoard, int], None]  # does it to a joint of the arm
 
 
 def _at(millivolts: float, follower: bool, pattern: tuple[int, int] | None = None) -> Inject:
     """A pot at a rail, all the time or so many ms of so many."""
 
-    def inject(rig: Rig, joint: int) -> None:
+    def inject(arm: ArmOnBoard, joint: int) -> None:
         pot = joint + 4 * follower
 
-        def lie(volts: Floats, since: float) -> None:
+        def fault(volts: Floats, since: float) -> None:
             if pattern is None or since * 1000 % pattern[1] < pattern[0] - 1e-9:
                 volts[pot] = millivolts
 
-        rig.lie = lie
+        arm.pot_fault = fault
 
     return inject
 
 
-def _freeze(rig: Rig, joint: int) -> None:
+def _freeze(arm: ArmOnBoard, joint: int) -> None:
     """The wiper slips on its shaft: it stays where it is, with the noise of any reading."""
     kept: list[float] = []
 
-    def lie(volts: Floats, since: float) -> None:
+    def fault(volts: Floats, since: float) -> None:
         if not kept:
             kept.append(volts[4 + joint])
-        volts[4 + joint] = kept[0] + rig.random.normal(0.0, NOISE_MV)
+        volts[4 + joint] = kept[0] + arm.random.normal(0.0, NOISE_MV)
 
-    rig.lie = lie
+    arm.pot_fault = fault
 
 
-def _read_neighbour(rig: Rig, joint: int) -> None:
-    other = 4 + (joint + int(rig.random.integers(1, 4))) % 4
+def _read_neighbour(arm: ArmOnBoard, joint: int) -> None:
+    other = 4 + (joint + int(arm.random.integers(1, 4))) % 4
 
-    def lie(volts: Floats, since: float) -> None:
+    def fault(volts: Floats, since: float) -> None:
         volts[4 + joint] = volts[other]
 
-    rig.lie = lie
+    arm.pot_fault = fault
 
 
-def _float(rig: Rig, joint: int) -> None:
-    rig.board.set_floating(1 << (4 + joint))
+def _float(arm: ArmOnBoard, joint: int) -> None:
+    arm.board.set_floating(1 << (4 + joint))
 
 
-def _reverse_motor(rig: Rig, joint: int) -> None:
-    rig.motor_signs[joint] = -1.0
+def _reverse_motor(arm: ArmOnBoard, joint: int) -> None:
+    arm.motor_signs[joint] = -1.0
 
 
-def _reverse_pot(rig: Rig, joint: int) -> None:
+def _reverse_pot(arm: ArmOnBoard, joint: int) -> None:
     """It turns the other way about the place where it is now."""
     middle: list[float] = []
 
-    def lie(volts: Floats, since: float) -> None:
+    def fault(volts: Floats, since: float) -> None:
         if not middle:
             middle.append(volts[4 + joint])
         volts[4 + joint] = 2 * middle[0] - volts[4 + joint]
 
-    rig.lie = lie
+    arm.pot_fault = fault
 
 
-def _block(rig: Rig, joint: int) -> None:
-    rig.stuck[joint] = float(rig.angles[joint])
+def _block(arm: ArmOnBoard, joint: int) -> None:
+    arm.stuck[joint] = float(arm.angles[joint])
 
 
-def _press_estop(rig: Rig, joint: int) -> None:
-    rig.board.hold_pin(rig.wiring.estop.port, rig.wiring.estop.bit, False)
+def _press_estop(arm: ArmOnBoard, joint: int) -> None:
+    arm.board.hold_pin(arm.wiring.estop.port, arm.wiring.estop.bit, False)
 
 
-def _cut_motor(rig: Rig, joint: int) -> None:
-    rig.motor_signs[joint] = 0.0
+def _cut_motor(arm: ArmOnBoard, joint: int) -> None:
+    arm.motor_signs[joint] = 0.0
 
 
-def _send_stop(rig: Rig, joint: int) -> None:
-    rig.board.uart_send(stop_message(7))
+def _send_stop(arm: ArmOnBoard, joint: int) -> None:
+    arm.board.uart_send(stop_message(7))
 
 
-def _end_lease(rig: Rig, joint: int) -> None:
+def _end_lease(arm: ArmOnBoard, joint: int) -> None:
     """The host renews for a short time and is gone."""
-    rig.board.uart_send(frames.encode_frame(schema.RenewRequest.TYPE, 7, LEASE_MS.to_bytes(2, "little")))
+    arm.board.uart_send(frames.encode_frame(schema.RenewRequest.TYPE, 7, LEASE_MS.to_bytes(2, "little")))
 
 
-def _flood(rig: Rig, joint: int) -> None:
+def _flood(arm: ArmOnBoard, joint: int) -> None:
     def pour(volts: Floats, since: float) -> None:
-        rig.board.uart_send(rig.random.bytes(FLOOD_BYTES))
+        arm.board.uart_send(arm.random.bytes(FLOOD_BYTES))
 
-    rig.lie = pour
+    arm.pot_fault = pour
 
 
 def _hang(interrupts: bool) -> Inject:
     """Into the endless loop behind main(), which begins with turning interrupts off, or just behind that."""
 
-    def inject(rig: Rig, joint: int) -> None:
-        rig.board.pc = rig.symbols["_exit"].address + 2 * interrupts
+    def inject(arm: ArmOnBoard, joint: int) -> None:
+        arm.board.pc = arm.symbols["_exit"].address + 2 * interrupts
 
     return inject
 
 
-def _flip_bit(rig: Rig, joint: int) -> None:
+def _flip_bit(arm: ArmOnBoard, joint: int) -> None:
     """Of the running set."""
-    at = rig.running_set + int(rig.random.integers(schema.TABLE.size))
-    rig.board.poke(at, bytes([rig.board.peek(at, 1)[0] ^ 1 << int(rig.random.integers(8))]))
+    at = arm.running_set + int(arm.random.integers(schema.TABLE.size))
+    arm.board.poke(at, bytes([arm.board.peek(at, 1)[0] ^ 1 << int(arm.random.integers(8))]))
 
 
-def _sink(rig: Rig, joint: int) -> None:
+def _sink(arm: ArmOnBoard, joint: int) -> None:
     """The board's supply falls by 0.1 V a millisecond to 2 V, the potentiometers' with it."""
 
     def fall(volts: Floats, since: float) -> None:
         supply = max(2000.0, 5000.0 - SINKS_MV_PER_MS * 1000 * since)
-        rig.board.set_supply(round(supply))
+        arm.board.set_supply(round(supply))
         volts *= supply / 5000.0
 
-    rig.lie = fall
+    arm.pot_fault = fall
 
 
 def faults() -> dict[str, Inject]:
-    """Everything that can be staged, by name."""
+    """Everything that can be injected, by name."""
     found: dict[str, Inject] = {
         "stop request": _send_stop,
         "emergency stop pressed": _press_estop,
@@ -195,28 +196,28 @@ def person(seed: int) -> Leader:
     return at
 
 
-def begin(rig: Rig) -> None:
+def begin(arm: ArmOnBoard) -> None:
     """All in order, and some of a motion done: the moment for a fault."""
-    rig.start()
-    rig.run(SOFT_START_MS / 1000 + rig.random.uniform(0.3, 3.0))
-    assert rig.motors_on, f"nothing was wrong yet, but the board says {rig.status().fault.key}"
-    rig.shift_phase()
+    arm.start()
+    arm.wait(SOFT_START_MS + 1000 * arm.random.uniform(0.3, 3.0))
+    assert arm.motors_on, f"nothing was wrong yet, but the board says {arm.status().fault.key}"
+    arm.shift_phase()
 
 
-def suffer(rig: Rig, inject: Inject, joint: int) -> Trial:
-    """From the fault to the motors off; the rig can be used again."""
-    before = abs(rig.true_error[joint])
-    begun, place, grown, gone = rig.board.cycle, rig.angles[joint], 0.0, 0.0
-    inject(rig, joint)
+def suffer(arm: ArmOnBoard, inject: Inject, joint: int) -> Trial:
+    """From the fault to the motors off; the arm can be used again."""
+    before = abs(arm.true_error[joint])
+    begun, place, grown, gone = arm.board.cycle, arm.angles[joint], 0.0, 0.0
+    inject(arm, joint)
     off_ms = None
     for _ in range(round(PATIENCE_S / SLICE_S)):
-        rig.slice()
-        if not rig.motors_on:
-            off_ms = (rig.board.cycle - begun) / CYCLES_PER_MS
+        arm.slice()
+        if not arm.motors_on:
+            off_ms = (arm.board.cycle - begun) / CYCLES_PER_TICK
             break
-        grown = max(grown, abs(rig.true_error[joint]) - before)
-        gone = max(gone, abs(rig.angles[joint] - place))
-    rig.lie = None
-    rig.board.set_supply(5000)
-    status = rig.status()
+        grown = max(grown, abs(arm.true_error[joint]) - before)
+        gone = max(gone, abs(arm.angles[joint] - place))
+    arm.pot_fault = None
+    arm.board.set_supply(5000)
+    status = arm.status()
     return Trial(off_ms, float(grown), float(gone), status.fault.key, status.fault_where)

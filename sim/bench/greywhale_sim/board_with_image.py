@@ -1,0 +1,148 @@
+"""The firmware's image as it was compiled on a simulated board, alone: no bootloader and no arm, a host of frames.
+
+For those who measure it or attack it, in a checkout.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from greywhale.protocol import frames, schema
+from greywhale.protocol.declared import Message
+from greywhale_sim._board import Board
+from greywhale_sim.assemble import BUILDS
+from greywhale_sim.symbols import read_symbols
+from greywhale_sim.wiring import BOARDS
+
+CYCLES_PER_TICK = 16_000
+PAINT = 0xA5
+PATIENCE_MS = 60
+UNWATCHED = {"speed_limit": 0, "runaway_limit": 0, "stall_volts": 0}  # potentiometers here move as no arm does
+RUNNING = "_ZN3hal12_GLOBAL__N_17runningE"  # hal's flag, set from the timer's interrupt to the end of the tick
+VECTOR = {"atmega2560": "__vector_21", "atmega328p": "__vector_14"}  # of the tick
+RAM = {"atmega2560": (0x200, 0x2200), "atmega328p": (0x100, 0x900)}
+
+
+class BoardWithImage:
+    """A board that has booted, with all potentiometers in their middle."""
+
+    def __init__(self, board: str, seed: int = 1) -> None:
+        self.wiring = BOARDS[board]
+        self.ram = RAM[self.wiring.mcu]
+        self.random = np.random.default_rng(7)
+        self.millivolts = np.full(8, 2500.0)
+        self.board: Any = Board(self.wiring.mcu)
+        elf = BUILDS / self.wiring.environment / "firmware.elf"
+        self.symbols = read_symbols(elf)
+        self.board.load_elf(str(elf))
+        self.board.power_on(seed)
+        self.board.set_millivolts(self.millivolts)
+        self.paint()
+        self.boot()
+
+    def boot(self) -> None:
+        self.wait(60)
+
+    # --- time and pins
+
+    def wait(self, ms: float) -> None:
+        self.board.run_until(self.board.cycle + int(ms * CYCLES_PER_TICK))
+
+    @property
+    def motors_on(self) -> bool:
+        return bool(self.board.pin(self.wiring.enable.port, self.wiring.enable.bit))
+
+    def duty(self) -> float:
+        """Of joint 0."""
+        pwm = self.wiring.motors[0].pwm
+        return float(self.board.duty(pwm.timer, pwm.channel))
+
+    def wiggle(self, millivolts: float) -> None:
+        self.board.set_millivolts(self.millivolts + self.random.uniform(-millivolts, millivolts, 8))
+
+    # --- the host
+
+    def ask(self, message: type[Message], payload: bytes = b"") -> bytes:
+        """The payload of the answer; RuntimeError where the board refuses."""
+        self.board.uart_receive()
+        self.board.uart_send(frames.encode_frame(message.TYPE, 1, payload))
+        decoder = frames.FrameDecoder()
+        for _ in range(PATIENCE_MS):
+            self.wait(1)
+            for frame in decoder.feed(self.board.uart_receive()):
+                if frame.type == message.TYPE | 0x80:
+                    return bytes(frame.payload)
+        raise RuntimeError(f"the firmware did not do as asked: {message.__name__}")
+
+    def status(self) -> schema.StatusReply:
+        return schema.StatusReply.unpack(self.ask(schema.StatusRequest))
+
+    def apply(self, changes: Mapping[str, int], fresh: bool = False) -> list[int]:
+        """Run the defaults but for these raw values; all values. On a `fresh` board all others are defaults already."""
+        changed = {schema.PARAMETER_BY_NAME[name].index: raw for name, raw in changes.items()}
+        values = [changed.get(index, raw) for index, raw in enumerate(schema.DEFAULTS)]
+        for index in changed if fresh else range(len(values)):
+            self.ask(schema.ParamSetRequest, struct.pack("<Hi", index, values[index]))
+        self.ask(schema.ParamApplyRequest, struct.pack("<H", schema.param_crc(values)))
+        return values
+
+    # --- memory
+
+    @property
+    def statics(self) -> int:
+        return max(self.symbols[name].address for name in ("__bss_end", "_end")) - self.ram[0]
+
+    def paint(self) -> None:
+        """Fill the memory behind the variables, so that the stack leaves its traces there."""
+        start = self.ram[0] + self.statics
+        self.board.poke(start, bytes([PAINT]) * (self.ram[1] - start))
+
+    def stack(self) -> int:
+        """The most bytes that the stack has had since the memory was painted."""
+        start = self.ram[0] + self.statics
+        free = self.board.peek(start, self.ram[1] - start)
+        return len(free) - next(i for i, byte in enumerate(free) if byte != PAINT)
+
+    # --- cycles
+
+    def run_to(self, address: int) -> int:
+        """Run to an instruction; the cycle at which it begins."""
+        while self.board.pc != address:
+            self.board.run_until(self.board.cycle + 1)
+        return int(self.board.cycle)
+
+    def next_entry(self) -> int:
+        """Run to the tick's interrupt; its cycle."""
+        return self.run_to(self.symbols[VECTOR[self.wiring.mcu]].address)
+
+    def interrupt_cycles(self) -> float:
+        return float(sum(times.count * times.mean for times in self.board.stats().vectors.values()))
+
+    def tick_cycles(self) -> tuple[int, float]:
+        """Cycles from the tick's interrupt to the end of its work: with all interrupts, and the work alone."""
+        running = next(symbol for name, symbol in self.symbols.items() if name.startswith(RUNNING)).address
+        entry = self.next_entry()
+        before = self.interrupt_cycles()
+        for wanted in (1, 0):
+            while self.board.peek(running, 1)[0] != wanted:
+                self.board.run_until(self.board.cycle + 1)
+        whole = int(self.board.cycle - entry)
+        return whole, whole - (self.interrupt_cycles() - before)
+
+
+def ram_of_a_life(board: str) -> int:
+    """Bytes of variables and of the deepest stack: boot, every request, a set applied and saved, following, noise."""
+    bench = BoardWithImage(board)
+    for message in (schema.HelloRequest, schema.StatusRequest, schema.StopRequest, schema.ClearFaultRequest):
+        bench.ask(message)
+    bench.apply({})
+    bench.ask(schema.ParamSaveRequest)
+    bench.ask(schema.TelemetryRequest, struct.pack("<H", 1))
+    bench.ask(schema.EnableRequest, struct.pack("<H", 0))
+    bench.board.uart_send(bench.random.bytes(20_000))
+    bench.wait(1500)
+    return bench.statics + bench.stack()
