@@ -12,7 +12,7 @@ from greywhale.base.study import TaskFailed
 from greywhale.protocol.schema import Fault
 from tools.attack import parts
 from tools.attack.arm_faults import faults
-from tools.attack.page import STAGED_AS, write_page
+from tools.attack.page import INJECTED_AS, write_page
 from tools.attack.part import Part, Piece, Row, add_up, split
 from tools.attack.run import Result, attack, digest
 
@@ -52,19 +52,19 @@ def test_the_page_shows_every_violation() -> None:
 
 def test_the_page_lists_the_faults_with_their_times_on_both_boards() -> None:
     part = Part("faults", "Faults", "", ("Makefile",), lambda share: [], lambda piece: [])
-    names = {staged: name for name, staged in STAGED_AS.items()}
+    names = {injected: name for name, injected in INJECTED_AS.items()}
     rows = [
-        Row(f"{board}: {staged}", 5, 0, {names.get(staged, "none"): 5}, {"ms": 3.25})
+        Row(f"{board}: {injected}", 5, 0, {names.get(injected, "none"): 5}, {"ms": 3.25})
         for board in ("mega", "nano")
-        for staged in faults()
+        for injected in faults()
     ]
     page = write_page([Result(part, rows, 60.0)])
-    for name in STAGED_AS:
+    for name in INJECTED_AS:
         assert re.search(rf"\| `{name}` \| .+ \| .+ \| 3.25 \| 3.25 \|", page), name
-    assert set(STAGED_AS.values()) <= set(faults())
+    assert set(INJECTED_AS.values()) <= set(faults())
     mixed = Row("mega: joint blocked", 5, 0, {"stalled": 3, "speed": 2}, {"ms": 1.5})
     assert re.search(r"\| joint blocked \|  \|  \|", write_page([Result(part, [mixed], 60.0)])), "whose time is it?"
-    assert set(STAGED_AS) | {"none", "late_tick", "params", "tracking", "unrest"} == {fault.key for fault in Fault}
+    assert set(INJECTED_AS) | {"none", "late_tick", "params", "tracking", "unrest"} == {fault.key for fault in Fault}
 
 
 def test_a_share_is_done_once_and_kept_until_the_code_changes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

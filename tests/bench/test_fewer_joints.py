@@ -14,7 +14,7 @@ from greywhale.board.upload import read_parameters
 from greywhale.files.log import read_log
 from greywhale.files.trajectory import Trajectory
 from greywhale.protocol.table import ParameterTable
-from greywhale_sim import mistakes, serve
+from greywhale_sim import faults, serve
 from greywhale_sim.assemble import BenchOptions, build_bench
 from greywhale_sim.bench import SLICE_S, Bench
 from greywhale_sim.leader import LeaderPlayer
@@ -33,12 +33,12 @@ def two(board: FakeBoard, plant: FakePlant, motion: Trajectory) -> Bench:
 
 def test_their_inputs_float_and_their_motors_are_off_whatever_is_staged_and_taken_back(two: Bench) -> None:
     assert two.floating == 0b1100_1100
-    mistakes.stage(two, "motor-reversed:2")
-    mistakes.stage(two, "motor-swapped:1")
+    faults.inject(two, "motor-reversed:2")
+    faults.inject(two, "motor-swapped:1")
     two.let_float(3, False)
     assert two.floating == 0b1100_1100
     assert two.motor_gains[2:] == [0.0, 0.0]
-    mistakes.take_back(two)
+    faults.mend(two)
     assert two.motor_gains == [1.0, 1.0, 0.0, 0.0]
     assert two.floating == 0b1100_1100
 

@@ -30,8 +30,8 @@ interrupts are on.
 
 MOSTLY = 0.95  # a flipped bit may also be that of another fault's parameter
 
-# The staged trial that shows a fault best. A person must move the joint first before `runaway` and `stalled` can show.
-STAGED_AS = {
+# The injected fault that shows a fault best. A person must move the joint first before `runaway` and `stalled` can show.
+INJECTED_AS = {
     "pot_low": "follower open",
     "pot_high": "follower shorted",
     "watchdog": "hang, interrupts off",
@@ -69,12 +69,12 @@ def write_faults(rows: Iterable[Row]) -> str:
     """The faults that the board reports: what raises each, and the longest time until the motors were off."""
     seen = {row.tried: row for row in rows}
     enum = next(enum for enum in load(ROOT / "shared/link").enums if enum.name == "Fault")
-    lines = ["| fault | raised when | staged as | ms on the Mega | ms on the Nano |", "|---|---|---|--:|--:|"]
+    lines = ["| fault | raised when | injected as | ms on the Mega | ms on the Nano |", "|---|---|---|--:|--:|"]
     for value in enum.values:
-        if staged := STAGED_AS.get(value.name):
-            times = [_time(seen.get(f"{board}: {staged}"), value.name) for board in ("mega", "nano")]
+        if injected := INJECTED_AS.get(value.name):
+            times = [_time(seen.get(f"{board}: {injected}"), value.name) for board in ("mega", "nano")]
             shown = " | ".join("" if time is None else f"{time:.4g}" for time in times)
-            lines.append(f"| `{value.name}` | {value.cause} | {staged} | {shown} |")
+            lines.append(f"| `{value.name}` | {value.cause} | {injected} | {shown} |")
     return "\n".join(lines) + "\n"
 
 

@@ -21,7 +21,7 @@ from greywhale.cli.story import RunningBench, record_motion
 from greywhale.files.arm import default_arm
 from greywhale.files.leader import save_leader
 from greywhale.motion import evaluate, human_reaches
-from greywhale_sim.mistakes import BY_NAME, MISTAKES, WHERE
+from greywhale_sim.faults import BY_NAME, FAULTS, WHERE
 from tools.benchmarks.figure import Figure
 from tools.benchmarks.study import repeat
 from tools.support.hands import SECOND_DEG, Hands, bench_of, mounted_anyhow, run_calibrate
@@ -50,44 +50,44 @@ def assembled(seed: int) -> float:
 
 def is_named(seed: int, name: str) -> bool:
     """Whether its verb names a mistake of a random assembly, at the first try, and stores nothing it should not."""
-    mistake = BY_NAME[name]
-    places = WHERE[mistake.on]
+    fault = BY_NAME[name]
+    places = WHERE[fault.on]
     arm = mounted_anyhow(seed)
     pots = (*arm.leader_pots.joint, *arm.follower_pots.joint)
-    number = (seed + MISTAKES.index(mistake)) % len(places)
+    number = (seed + FAULTS.index(fault)) % len(places)
     if name == "pot-reversed":  # one that is the right way round before
         number = next(pot for pot in (*range(number, 8), *range(8)) if pots[pot].direction > 0)
     with tempfile.TemporaryDirectory() as folder, bench_of(arm, Path(folder)) as bench:
         bench.command(f"mistake {name}" + (f":{places[number]}" if places[number] else ""))
-        if mistake.verb == "calibrate":
+        if fault.verb == "calibrate":
             done = run_calibrate(Hands(bench), Path(folder), *SECOND)
             code, told = done.code, done.said + done.printed
         else:
             bench.command("hand both 0.1 -0.6 0.7 0.4")
             out = io.StringIO()
             with contextlib.redirect_stdout(out):
-                code = verb(["doctor", "--port", bench.port, "--seconds", "0.5", "--json", *mistake.options])
+                code = verb(["doctor", "--port", bench.port, "--seconds", "0.5", "--json", *fault.options])
             told = out.getvalue()
-        named = re.search(mistake.tells(number), told) is not None
+        named = re.search(fault.tells(number), told) is not None
         within = max(bench.command("pins")["duties"]) <= SHARES[-1] + 1 / 400
         stored = bool(bench.command("status")["eeprom_writes"])
-        return named and within and code == int(mistake.ends == "refused") and (code == 0 or not stored)
+        return named and within and code == int(fault.ends == "refused") and (code == 0 or not stored)
 
 
 def run() -> list[Figure]:
     with tempfile.TemporaryDirectory() as name, bench_of(default_arm(), Path(name)) as bench:
         usual = error_of(bench, Path(name))
     seeds = range(1, ASSEMBLIES + 1)
-    tries = [[Task(f"{seed}, {one.name}", is_named, seed, {"name": one.name}) for seed in seeds] for one in MISTAKES]
+    tries = [[Task(f"{seed}, {one.name}", is_named, seed, {"name": one.name}) for seed in seeds] for one in FAULTS]
     tasks = [Task(f"{seed}", assembled, seed) for seed in seeds]
     found = repeat("calibrate", [*tasks, *chain(*tries)], WORKERS)
     ratios = np.array([found[task.key] for task in tasks]) / usual
-    named = [sum(found[task.key] for task in of_mistake) for of_mistake in tries]
+    named = [sum(found[task.key] for task in of_fault) for of_fault in tries]
     apart = float(np.abs(ratios - 1.0).max())
     return [
         Figure("error of 20 assemblies / calibrated bench, farthest from 1", apart, "", f"<= {LIKE}", apart <= LIKE),
         *(
-            Figure(f"{mistake.name}: named in so many assemblies", count, "", f"{ASSEMBLIES}", count == ASSEMBLIES)
-            for mistake, count in zip(MISTAKES, named, strict=True)
+            Figure(f"{fault.name}: named in so many assemblies", count, "", f"{ASSEMBLIES}", count == ASSEMBLIES)
+            for fault, count in zip(FAULTS, named, strict=True)
         ),
     ]

@@ -8,14 +8,14 @@ if __name__ == "__main__" and not sys.flags.safe_path:
 import json
 
 from greywhale.base.errors import UserError
-from greywhale_sim.mistakes import listed
+from greywhale_sim.faults import listed
 from greywhale_sim.serve import serve
 from greywhale_sim.words import read
 
 
 def main() -> int:
     options, as_json = read()
-    if "list" in options.mistakes:
+    if "list" in options.faults:
         print(listed())
         return 0
 

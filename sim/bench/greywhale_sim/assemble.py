@@ -17,8 +17,8 @@ from greywhale.motion import human_reaches
 from greywhale_sim import eeprom_file
 from greywhale_sim.bench import SLICE_S, Bench, Plant
 from greywhale_sim.drivers import CHIPS, Chip
+from greywhale_sim.faults import inject
 from greywhale_sim.leader import LeaderPlayer
-from greywhale_sim.mistakes import stage
 from greywhale_sim.wiring import BOARDS, Wiring
 
 BUILDS = Path(__file__).resolve().parents[3] / "firmware" / ".pio" / "build"
@@ -36,7 +36,7 @@ class BenchOptions:
     blank: bool = False  # a board with nothing but its bootloader
     eeprom: Path | None = None  # file that keeps the EEPROM; None: forgotten at the end
     seed: int = 1  # of everything random
-    mistakes: tuple[str, ...] = ()  # staged from the beginning: NAME or NAME:PLACE
+    faults: tuple[str, ...] = ()  # there from the beginning: NAME or NAME:PLACE
 
 
 def chip_of(driver: str) -> Chip:
@@ -93,8 +93,8 @@ def build_bench(options: BenchOptions, plant: Plant | None = None) -> Bench:
         emf=np.array([motor.torque_per_volt * motor.resistance for motor in map(parameters.actuator, range(4))]),
         joints=parameters.joints_in_use,
     )
-    for mistake in options.mistakes:
-        stage(bench, mistake)
+    for fault in options.faults:
+        inject(bench, fault)
     return bench
 
 

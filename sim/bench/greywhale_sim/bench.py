@@ -21,8 +21,8 @@ from greywhale.protocol.joints import ALL, Joints
 from greywhale_sim.board_supply import SharedSupply
 from greywhale_sim.drivers import CHIPS, OPEN, Bridge, Chip, Pins, mean_volts
 from greywhale_sim.leader import LeaderPlayer
-from greywhale_sim.lies import Lies
 from greywhale_sim.pins_seen import PinsSeen
+from greywhale_sim.pot_faults import PotFaults
 from greywhale_sim.wiring import Wiring
 
 CLOCK_HZ = 16_000_000
@@ -93,7 +93,7 @@ class Bench:
         self.chip = chip
         self.emf: Floats = np.zeros(4) if emf is None else emf
         self.estop_pressed = False
-        self.lies = Lies()
+        self.pot_faults = PotFaults()
         self.joints = joints
         # -1: both wires of a motor are swapped; 0: one is off; 0.2: it is weak
         self.motor_gains = [1.0 if joint in joints else 0.0 for joint in ALL]
@@ -201,8 +201,8 @@ class Bench:
             advance(self._enabled, angles)
             leader_pots(leader.angles, leader_millivolts)
             follower_pots(angles, follower_millivolts)
-            if self.lies.any:
-                self.lies.apply(millivolts)
+            if self.pot_faults.any:
+                self.pot_faults.apply(millivolts)
             set_millivolts(millivolts)
             if self.shared_supply is not None:
                 self.shared_supply.look(self.voltages)

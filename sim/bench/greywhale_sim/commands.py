@@ -12,7 +12,7 @@ pot leader|follower 0..3 STATE     a potentiometer: connected, open (its wire is
                                    230), noisy, humming, reversed, turned (its dead zone first), crossed (wiper and end)
 swap POT POT                       exchange the wires of two potentiometers: leader0..3, follower0..3
 line flip|lose PROBABILITY         damage or lose bytes on the serial line, per byte
-mistake NAME[:PLACE]|none|list     stage what a person may do wrong (greywhale_sim.mistakes), or take all back
+mistake NAME[:PLACE]|none|list     stage what a person may do wrong (greywhale_sim.faults), or take all back
 pins                               the highest duty of each driver, and how long they were on, since the last `pins`
 estop press|release                the emergency stop's button, which closes its pin to ground
 motor 0..3 STATE                   a motor's wires: connected, reversed, dead (one is off), weak, or
@@ -34,9 +34,9 @@ import numpy as np
 from greywhale import arm
 from greywhale.base.errors import UserError
 from greywhale.files.leader import load_leader
-from greywhale_sim import hands, lies, mistakes
+from greywhale_sim import faults, hands, pot_faults
 from greywhale_sim.bench import CLOCK_HZ
-from greywhale_sim.mistakes import POTS
+from greywhale_sim.faults import POTS
 from greywhale_sim.pins_seen import PinsSeen
 from greywhale_sim.server import Server
 
@@ -108,24 +108,24 @@ def hand(server: Server, side: str, *words: str) -> Answer:
 
 def pot(server: Server, side: str, joint: str, state: str) -> Answer:
     pots = {"leader": server.bench.leader_pots, "follower": server.bench.follower_pots}
-    if side not in pots or not 0 <= int(joint) <= 3 or state not in (*_WIRINGS, *lies.KINDS):
+    if side not in pots or not 0 <= int(joint) <= 3 or state not in (*_WIRINGS, *pot_faults.KINDS):
         raise ValueError
     number = int(joint) + (4 if side == "follower" else 0)
     pots[side].set_wiring(int(joint), _WIRINGS.get(state, arm.Wiring.CONNECTED))  # type: ignore[attr-defined]
     server.bench.let_float(number, state == "floating")
-    server.bench.lies.stage(number, state if state in lies.KINDS else None)
+    server.bench.pot_faults.inject(number, state if state in pot_faults.KINDS else None)
     return {"pot": f"{side}_{joint}", "state": state}
 
 
 def swap(server: Server, one: str, other: str) -> Answer:
-    server.bench.lies.swap(POTS.index(one), POTS.index(other))
+    server.bench.pot_faults.swap(POTS.index(one), POTS.index(other))
     return {"swapped": [one, other]}
 
 
 def mistake(server: Server, words: str) -> Answer:
     if words == "list":
-        return {"mistakes": {one.name: one.says for one in mistakes.MISTAKES}}
-    return {"staged": words, "says": mistakes.stage(server.bench, words)}
+        return {"mistakes": {one.name: one.says for one in faults.FAULTS}}
+    return {"staged": words, "says": faults.inject(server.bench, words)}
 
 
 def pins(server: Server) -> Answer:
@@ -135,7 +135,7 @@ def pins(server: Server) -> Answer:
 
 
 def motor(server: Server, joint: str, state: str) -> Answer:
-    gains = {"connected": 1.0, "reversed": -1.0, "dead": 0.0, "weak": mistakes.WEAK_GAIN}
+    gains = {"connected": 1.0, "reversed": -1.0, "dead": 0.0, "weak": faults.WEAK_GAIN}
     driver = int(joint) if state in gains else int(state)
     if not 0 <= int(joint) <= 3 or not 0 <= driver <= 3:
         raise ValueError
@@ -179,7 +179,7 @@ COMMANDS: dict[str, tuple[Callable[..., Answer], str]] = {
     "turn": (hands.turn, "leader|follower 0..3 [SECONDS]"),
     "hold": (hands.hold, "DEGREES, once or four times"),
     "hang": (hands.hang, ""),
-    "pot": (pot, f"leader|follower 0..3 {'|'.join((*_WIRINGS, *lies.KINDS))}"),
+    "pot": (pot, f"leader|follower 0..3 {'|'.join((*_WIRINGS, *pot_faults.KINDS))}"),
     "swap": (swap, "POT POT"),
     "mistake": (mistake, "NAME[:PLACE]|none|list"),
     "pins": (pins, ""),

@@ -15,8 +15,8 @@ from greywhale_sim.wiring import BOARDS
 def read(words: Sequence[str] | None = None) -> tuple[ServeOptions, bool]:
     """The options that these words name, those of the command line by default, and whether the answer is JSON."""
     given = vars(parser().parse_args(words))
-    as_json, mistakes = given.pop("json"), tuple(given.pop("mistake"))
-    return ServeOptions(**given, mistakes=mistakes), as_json
+    as_json, faults = given.pop("json"), tuple(given.pop("mistake"))
+    return ServeOptions(**given, faults=faults), as_json
 
 
 def lock_step(*words: str) -> LockStepBench:

@@ -12,7 +12,7 @@ from greywhale.board.calibrate.motors import LEASE_MS, SHARES
 from greywhale.board.device import Device
 from greywhale.cli.entry import run
 from greywhale.cli.story import RunningBench
-from greywhale_sim.mistakes import MISTAKES, USUAL, WHERE, Mistake
+from greywhale_sim.faults import FAULTS, USUAL, WHERE, Fault
 from greywhale_sim.words import lock_step
 from tools.support.hands import SECOND_DEG, Hands, run_calibrate
 
@@ -29,22 +29,22 @@ def bench() -> Iterator[RunningBench]:
         yield started
 
 
-def described(mistake: Mistake) -> str:
-    return mistake.name
+def described(fault: Fault) -> str:
+    return fault.name
 
 
-@pytest.mark.parametrize("mistake", [one for one in MISTAKES if one.verb == "calibrate"], ids=described)
+@pytest.mark.parametrize("fault", [one for one in FAULTS if one.verb == "calibrate"], ids=described)
 def test_calibrate_names_it_and_no_motor_gets_more_than_a_pulse(
-    bench: RunningBench, tmp_path: Path, mistake: Mistake
+    bench: RunningBench, tmp_path: Path, fault: Fault
 ) -> None:
-    place, tried = USUAL[mistake.on], "1,2" if mistake.name in BESIDE_ANOTHER else TRIED[mistake.on]
+    place, tried = USUAL[fault.on], "1,2" if fault.name in BESIDE_ANOTHER else TRIED[fault.on]
     hands = Hands(bench)
     hands.bring("both", SECOND_DEG * 0.0)
     with Device(bench.port, restart=False) as device:
         before = device.hello.param_crc
     writes = bench.command("status")["eeprom_writes"]
     bench.command("pins")
-    bench.command(f"mistake {mistake.name}")
+    bench.command(f"mistake {fault.name}")
     try:
         done = run_calibrate(hands, tmp_path, *SECOND, "--joints", tried)
         seen = bench.command("pins")
@@ -57,8 +57,8 @@ def test_calibrate_names_it_and_no_motor_gets_more_than_a_pulse(
         backup = tmp_path / "before-calibration.toml"
         if backup.exists():
             assert run(["params", "restore", str(backup), "--port", bench.port]) == 0
-    assert re.search(mistake.tells(WHERE[mistake.on].index(place)), done.said + done.printed), done.said + done.printed
-    assert done.code == ENDS[mistake.ends]
+    assert re.search(fault.tells(WHERE[fault.on].index(place)), done.said + done.printed), done.said + done.printed
+    assert done.code == ENDS[fault.ends]
     assert backup.exists() == (done.code == 0)
     assert max(seen["duties"]) <= SHARES[-1] + PWM_STEP
     assert seen["longest_on_s"] <= LEASE_MS / 1000 + 0.002

@@ -54,10 +54,10 @@ def command(
     On stderr it says the name under which `greywhale ports` lists the port.
     """
     serve = need_bench("greywhale_sim.serve")
-    mistakes = need_bench("greywhale_sim.mistakes")
+    faults = need_bench("greywhale_sim.faults")
     if "list" in mistake:
-        answer: Mistakes = {"mistakes": {one.name: one.says for one in mistakes.MISTAKES}}
-        show(as_json, answer, mistakes.listed())
+        answer: Mistakes = {"mistakes": {one.name: one.says for one in faults.FAULTS}}
+        show(as_json, answer, faults.listed())
         return
     if leader is not None:
         warn(load_leader(leader).remarks)
@@ -70,7 +70,7 @@ def command(
         eeprom=eeprom,
         blank=blank,
         firmware=firmware,
-        mistakes=mistake,
+        faults=mistake,
         by_hand=by_hand,
     )
 

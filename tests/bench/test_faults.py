@@ -1,4 +1,4 @@
-"""The list of mistakes: each can be staged and taken back, and command line and page show the same list."""
+"""The list of faults: each can be injected and mended, and command line and page show the same list."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ import pytest
 
 from greywhale.base.errors import UserError
 from greywhale.cli.entry import run
-from greywhale_sim import mistakes
+from greywhale_sim import faults
 from greywhale_sim.bench import Bench
 from greywhale_sim.board_supply import FULL_MV, SUNK_MV, SUNK_SLICES, SharedSupply
-from greywhale_sim.mistakes import BY_NAME, MISTAKES, WHERE, Mistake
+from greywhale_sim.faults import BY_NAME, FAULTS, WHERE, Fault
 from greywhale_sim.pins_seen import PinsSeen
 from tests.bench.conftest import FakeBoard
 from tools import ROOT
@@ -21,24 +21,31 @@ PAGE = ROOT / "docs" / "bench.md"
 
 
 def wired(bench: Bench) -> tuple[object, ...]:
-    return (bench.lies.any, bench.floating, *bench.motor_gains, *bench.motor_wires, bench.supply_v, bench.shared_supply)
+    return (
+        bench.pot_faults.any,
+        bench.floating,
+        *bench.motor_gains,
+        *bench.motor_wires,
+        bench.supply_v,
+        bench.shared_supply,
+    )
 
 
-@pytest.mark.parametrize("mistake", MISTAKES, ids=lambda one: one.name)
-def test_each_is_staged_at_every_place_and_taken_back(bench: Bench, mistake: Mistake) -> None:
+@pytest.mark.parametrize("fault", FAULTS, ids=lambda one: one.name)
+def test_each_is_injected_at_every_place_and_mended(bench: Bench, fault: Fault) -> None:
     before = wired(bench)
-    for place in WHERE[mistake.on]:
-        mistakes.stage(bench, f"{mistake.name}:{place}" if place else mistake.name)
+    for place in WHERE[fault.on]:
+        faults.inject(bench, f"{fault.name}:{place}" if place else fault.name)
         wires = [*bench.leader_pots.wirings.values(), *bench.follower_pots.wirings.values()]  # type: ignore[attr-defined]
         assert wired(bench) != before or any(wire != wires[0] for wire in wires) or len(wires) == 1
-        mistakes.take_back(bench)
+        faults.mend(bench)
         assert wired(bench) == before
 
 
-@pytest.mark.parametrize("mistake", MISTAKES, ids=lambda one: one.name)
-def test_what_a_verb_says_is_a_pattern_for_each_place(mistake: Mistake) -> None:
-    told = {mistake.tells(number) for number in range(len(WHERE[mistake.on]))}
-    assert len(told) >= len(WHERE[mistake.on]) - 2, "next joints go round"
+@pytest.mark.parametrize("fault", FAULTS, ids=lambda one: one.name)
+def test_what_a_verb_says_is_a_pattern_for_each_place(fault: Fault) -> None:
+    told = {fault.tells(number) for number in range(len(WHERE[fault.on]))}
+    assert len(told) >= len(WHERE[fault.on]) - 2, "next joints go round"
     for pattern in told:
         re.compile(pattern)
         assert "<" not in pattern
@@ -55,7 +62,7 @@ def test_what_a_verb_says_is_a_pattern_for_each_place(mistake: Mistake) -> None:
 def test_what_is_not_understood_changes_nothing(bench: Bench, words: str, says: str) -> None:
     before = wired(bench)
     with pytest.raises(UserError, match=re.escape(says)):
-        mistakes.stage(bench, words)
+        faults.inject(bench, words)
     assert wired(bench) == before
 
 
@@ -66,7 +73,7 @@ def test_the_command_line_lists_them_all(capsys: pytest.CaptureFixture[str]) -> 
 
 
 def test_the_page_shows_the_same_list() -> None:
-    assert mistakes.markdown_table() in PAGE.read_text(encoding="utf-8")
+    assert faults.markdown_table() in PAGE.read_text(encoding="utf-8")
 
 
 def test_a_shared_supply_sinks_while_a_motor_draws_and_comes_back() -> None:

@@ -5,61 +5,61 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from greywhale_sim.lies import LOOSE_EVERY, LOOSE_FOR, SLIPS, Lies
+from greywhale_sim.pot_faults import LOOSE_EVERY, LOOSE_FOR, SLIPS, PotFaults
 
 
-def shown(lies: Lies, pot: int, path: np.ndarray) -> np.ndarray:
+def shown(faults: PotFaults, pot: int, path: np.ndarray) -> np.ndarray:
     rows = []
     for millivolts in path:
         row = 100.0 * np.arange(1.0, 9.0)
         row[pot] = millivolts
-        lies.apply(row)
+        faults.apply(row)
         rows.append(row)
     return np.array(rows)
 
 
-def test_nothing_is_staged_at_first_and_everything_can_be_taken_back() -> None:
-    lies = Lies()
-    assert not lies.any
-    lies.stage(3, "frozen")
-    lies.swap(0, 5)
-    assert lies.any
-    lies.stage(3, None)
-    lies.swap(0, 5)
-    assert not lies.any
+def test_there_is_no_fault_at_first_and_each_can_be_mended() -> None:
+    faults = PotFaults()
+    assert not faults.any
+    faults.inject(3, "frozen")
+    faults.swap(0, 5)
+    assert faults.any
+    faults.inject(3, None)
+    faults.swap(0, 5)
+    assert not faults.any
 
 
 def test_a_frozen_one_stays_and_the_others_go_on() -> None:
-    lies = Lies()
-    lies.stage(2, "frozen")
-    rows = shown(lies, 2, np.linspace(1000.0, 3000.0, 50))
+    faults = PotFaults()
+    faults.inject(2, "frozen")
+    rows = shown(faults, 2, np.linspace(1000.0, 3000.0, 50))
     assert set(rows[:, 2]) == {1000.0}
     assert rows[:, 3] == pytest.approx(400.0)
 
 
 def test_a_slipping_one_loses_its_share_of_every_way_up_and_none_to_noise() -> None:
-    lies = Lies()
-    lies.stage(6, "slipping")
+    faults = PotFaults()
+    faults.inject(6, "slipping")
     way = np.concatenate([np.arange(1000.0, 3001.0, 50.0), np.arange(2950.0, 999.0, -50.0)])
-    rows = shown(lies, 6, way)
+    rows = shown(faults, 6, way)
     assert rows[40, 6] == pytest.approx(1000.0 + 2000.0 * (1.0 - SLIPS))
     assert rows[-1, 6] == pytest.approx(1000.0 - 2000.0 * SLIPS)
     noise = np.random.default_rng(1).normal(rows[-1, 6] + 600.0, 3.0, 5000)
-    noisy = shown(lies, 6, noise)
+    noisy = shown(faults, 6, noise)
     assert np.ptp(noisy[100:, 6]) < 40.0, "noise alone does not move it away"
 
 
 def test_a_loose_one_is_off_now_and_then() -> None:
-    lies = Lies()
-    lies.stage(0, "loose")
-    rows = shown(lies, 0, np.full(2 * LOOSE_EVERY, 2500.0))
+    faults = PotFaults()
+    faults.inject(0, "loose")
+    rows = shown(faults, 0, np.full(2 * LOOSE_EVERY, 2500.0))
     assert np.count_nonzero(rows[:, 0] == 0.0) == 2 * LOOSE_FOR
     assert set(rows[:, 0]) == {0.0, 2500.0}
 
 
 def test_swapped_wires_exchange_two_readings() -> None:
-    lies = Lies()
-    lies.swap(1, 6)
+    faults = PotFaults()
+    faults.swap(1, 6)
     row = np.arange(8.0)
-    lies.apply(row)
+    faults.apply(row)
     assert row.tolist() == [0, 6, 2, 3, 4, 5, 1, 7]

@@ -15,7 +15,7 @@ from greywhale.board.refusal import pot_name
 from greywhale.protocol.firmware import JOINTS
 from greywhale_sim.bench import Bench
 from greywhale_sim.board_supply import SharedSupply
-from greywhale_sim.lies import Lies
+from greywhale_sim.pot_faults import PotFaults
 
 POTS = tuple(f"{side}{joint}" for side in ("leader", "follower") for joint in range(JOINTS))
 WHERE = {"pot": POTS, "motor": tuple(map(str, range(JOINTS))), "arm": ("",)}
@@ -26,8 +26,8 @@ NOTHING = "none"
 
 
 @dataclass(frozen=True)
-class Mistake:
-    """A mistake: `stage` does it to a bench at the potentiometer 0..7 or the joint 0..3 in question.
+class Fault:
+    """A fault: `inject` does it to a bench at the potentiometer 0..7 or the joint 0..3 in question.
 
     `verb` then says what `told` matches, a regular expression with <pot>, <other>, <first>, <second> (potentiometers)
     and <joint>, <near>, <low>, <high> (joints; `near` is the one with which something is exchanged). What is `mended`
@@ -39,7 +39,7 @@ class Mistake:
     says: str
     verb: Literal["calibrate", "doctor"]
     told: str
-    stage: Callable[[Bench, int], None]
+    inject: Callable[[Bench, int], None]
     ends: Literal["refused", "mended", "noted"] = "refused"
     options: tuple[str, ...] = ()
 
@@ -62,16 +62,16 @@ def _near(number: int) -> int:
     return number - number % JOINTS + (number + 1) % JOINTS
 
 
-def _lie(kind: str) -> Callable[[Bench, int], None]:
-    return lambda bench, pot: bench.lies.stage(pot, kind)
+def _at_pot(kind: str) -> Callable[[Bench, int], None]:
+    return lambda bench, pot: bench.pot_faults.inject(pot, kind)
 
 
 def _wire(wiring: Any) -> Callable[[Bench, int], None]:
-    def stage(bench: Bench, pot: int) -> None:
+    def rewire(bench: Bench, pot: int) -> None:
         bank: Any = bench.leader_pots if pot < JOINTS else bench.follower_pots
         bank.set_wiring(pot % JOINTS, wiring)
 
-    return stage
+    return rewire
 
 
 def _motor(gain: float) -> Callable[[Bench, int], None]:
@@ -86,7 +86,7 @@ def _swap_motors(bench: Bench, joint: int) -> None:
 
 def _swap_arms(bench: Bench, number: int) -> None:
     for joint in range(JOINTS):
-        bench.lies.swap(joint, joint + JOINTS)
+        bench.pot_faults.swap(joint, joint + JOINTS)
 
 
 def _cut_supply(bench: Bench, number: int) -> None:
@@ -98,119 +98,119 @@ def _share_supply(bench: Bench, number: int) -> None:
     bench.shared_supply = SharedSupply(bench.board)
 
 
-MISTAKES = (
-    Mistake(
+FAULTS = (
+    Fault(
         "pot-swapped", "pot", "the wires of this potentiometer and of the next joint's are exchanged", "calibrate",
         "<first> reads .* and did not move, but .<second> did: their wires are swapped",
-        lambda bench, pot: bench.lies.swap(pot, _near(pot)),
+        lambda bench, pot: bench.pot_faults.swap(pot, _near(pot)),
     ),
-    Mistake(
+    Fault(
         "arms-swapped", "arm", "the leader's plug is where the follower's belongs, and the other way round",
         "calibrate", "eader potentiometer 0 reads .* but follower potentiometer 0 did: the two arms are swapped",
         _swap_arms,
     ),
-    Mistake(
+    Fault(
         "pot-reversed", "pot", "the two ends of the track are exchanged, so that it reads the other way", "calibrate",
-        r'"reversed": \[[^]]*"<id>"', _lie("reversed"), ends="mended",
+        r'"reversed": \[[^]]*"<id>"', _at_pot("reversed"), ends="mended",
     ),
-    Mistake(
+    Fault(
         "pot-crossed", "pot", "the wiper is on 5 V and an end of the track on the pin", "calibrate",
-        "<pot> reads .* and hardly changes .* its wiper's wire and an end's are exchanged", _lie("crossed"),
+        "<pot> reads .* and hardly changes .* its wiper's wire and an end's are exchanged", _at_pot("crossed"),
     ),
-    Mistake(
+    Fault(
         "pot-open", "pot", "the wiper's wire is off, and a pull-down wins", "doctor",
         "<pot> reads 0..0 of 1023, at a rail", _wire(arm.Wiring.OPEN),
     ),
-    Mistake(
+    Fault(
         "pot-floating", "pot", "the wiper's wire is off, and nothing pulls the pin down", "doctor",
         "These read alike: .*<pot>", lambda bench, pot: bench.let_float(pot, True),
     ),
-    Mistake(
+    Fault(
         "pot-shorted", "pot", "the wiper's wire touches 5 V", "doctor",
         "<pot> reads 1023..1023 of 1023, at a rail", _wire(arm.Wiring.SHORTED),
     ),
-    Mistake(
+    Fault(
         "pot-touching", "pot", "the wiper's wire touches that of the next joint", "doctor",
-        "These read alike: .<first> and .<second>", lambda bench, pot: bench.lies.touch(pot, _near(pot)),
+        "These read alike: .<first> and .<second>", lambda bench, pot: bench.pot_faults.touch(pot, _near(pot)),
     ),
-    Mistake(
+    Fault(
         "pot-loose", "pot", "the wiper's wire is off for 2 ms again and again", "doctor",
-        r"Readings jumped: .<pot> \d+ times", _lie("loose"),
+        r"Readings jumped: .<pot> \d+ times", _at_pot("loose"),
     ),
-    Mistake(
+    Fault(
         "pot-noisy", "pot", "the wiper's wire runs along a motor's", "doctor",
-        r"Noisy, in counts rms: .<pot> \d", _lie("noisy"),
+        r"Noisy, in counts rms: .<pot> \d", _at_pot("noisy"),
     ),
-    Mistake(
+    Fault(
         "pot-humming", "pot", "the mains reach the wiper's wire", "doctor",
-        r"Mains hum: .<pot> \d.* counts at 50 Hz", _lie("humming"), ends="noted",
+        r"Mains hum: .<pot> \d.* counts at 50 Hz", _at_pot("humming"), ends="noted",
     ),
-    Mistake(
-        "pot-dead-zone", "pot", "the track is mounted so that its dead zone lies within the joint's range",
-        "calibrate", "<pot> jumps from one end of its track to the other .* its dead zone lies there", _lie("turned"),
+    Fault(
+        "pot-dead-zone", "pot", "the track is mounted so that its dead zone lies within the joint's range", "calibrate",
+        "<pot> jumps from one end of its track to the other .* its dead zone lies there", _at_pot("turned"),
     ),
-    Mistake(
+    Fault(
         "pot-slipping", "pot", "its shaft slips and loses a part of every way up", "calibrate",
-        r"<pot> (reads? \d+|reaches an end|turned the other way)", _lie("slipping"),
+        r"<pot> (reads? \d+|reaches an end|turned the other way)", _at_pot("slipping"),
     ),
-    Mistake(
+    Fault(
         "pot-frozen", "pot", "its shaft does not turn with the joint", "calibrate",
-        "<pot> reads .* and did not move: check that its shaft", _lie("frozen"),
+        "<pot> reads .* and did not move: check that its shaft", _at_pot("frozen"),
     ),
-    Mistake(
+    Fault(
         "motor-swapped", "motor", "this motor and the next joint's are on each other's drivers", "calibrate",
         "the motor of joint <low> moved joint <high>: their motors, or .* are swapped", _swap_motors,
     ),
-    Mistake(
+    Fault(
         "motor-reversed", "motor", "both wires of the motor are exchanged", "calibrate",
         r'"joint": <joint>, "sign": -1', _motor(-1.0), ends="mended",
     ),
-    Mistake(
+    Fault(
         "motor-weak", "motor", "the motor or its driver gives a fifth of its torque", "calibrate",
         "The motor of joint <joint> moved it by .* mrad a volt, .* it is weak", _motor(WEAK_GAIN), ends="noted",
     ),
-    Mistake(
+    Fault(
         "motor-dead", "motor", "a wire of the motor is off", "calibrate",
         "the motor of joint <joint> did not move it", _motor(0.0),
     ),
-    Mistake(
+    Fault(
         "no-supply", "arm", "the motors' supply is off", "calibrate",
         "the motor of joint 0 did not move it with .* check that the motors' supply is on", _cut_supply,
     ),
-    Mistake(
+    Fault(
         "wrong-supply", "arm", f"the motors' supply has {OTHER_SUPPLY_V:g} V, and the board counts on another one",
         "doctor", "The board counts on 15 V for the motors, not 24 V",
         lambda bench, number: bench.change_supply(OTHER_SUPPLY_V), options=("--supply", f"{OTHER_SUPPLY_V:g}"),
     ),
-    Mistake(
+    Fault(
         "brown-out", "arm", "the board lives on the motors' supply, which sinks when a motor draws", "calibrate",
         "restarted while the motor of joint 0 was driven", _share_supply,
     ),
 )  # fmt: skip
-BY_NAME = {mistake.name: mistake for mistake in MISTAKES}
+BY_NAME = {fault.name: fault for fault in FAULTS}
 
 
-def stage(bench: Bench, words: str) -> str:
+def inject(bench: Bench, words: str) -> str:
     """Stage NAME or NAME:PLACE, or take all back (`none`); a sentence says what was done. Raises UserError."""
     name, _, where = words.partition(":")
     if words == NOTHING:
-        take_back(bench)
+        mend(bench)
         return "every mistake is taken back."
     if name not in BY_NAME:
         raise UserError(f'"{name}" is no mistake; there are: {", ".join(BY_NAME)}, and {NOTHING}.', 2)
-    mistake = BY_NAME[name]
-    place = where or USUAL[mistake.on]
-    if place not in WHERE[mistake.on]:
-        places = WHERE[mistake.on]
+    fault = BY_NAME[name]
+    place = where or USUAL[fault.on]
+    if place not in WHERE[fault.on]:
+        places = WHERE[fault.on]
         remedy = f"say {name}:{places[0]} to {name}:{places[-1]}" if places[0] else f"say {name} alone"
         raise UserError(f'"{where}" is no place for {name}; {remedy}.', 2)
-    mistake.stage(bench, WHERE[mistake.on].index(place))
-    return f"{place}{': ' if place else ''}{mistake.says}."
+    fault.inject(bench, WHERE[fault.on].index(place))
+    return f"{place}{': ' if place else ''}{fault.says}."
 
 
-def take_back(bench: Bench) -> None:
+def mend(bench: Bench) -> None:
     """Wire everything rightly again."""
-    bench.lies = Lies()
+    bench.pot_faults = PotFaults()
     for pot in range(len(POTS)):
         _wire(arm.Wiring.CONNECTED)(bench, pot)
     bench.connect_all()
@@ -222,18 +222,18 @@ def take_back(bench: Bench) -> None:
 
 def listed() -> str:
     """All mistakes, a line each."""
-    return "\n".join(f"{_usage(one):<28} {one.says[:1].upper()}{one.says[1:]}." for one in MISTAKES)
+    return "\n".join(f"{_usage(one):<28} {one.says[:1].upper()}{one.says[1:]}." for one in FAULTS)
 
 
 def markdown_table() -> str:
     """The table in docs/bench.md."""
     rows = ["| mistake | what is wrong | found by |", "|---|---|---|"]
     found = {"refused": "", "mended": ", which puts it right", "noted": ", as a note"}
-    for one in MISTAKES:
+    for one in FAULTS:
         verb = " ".join((one.verb, *one.options))
         rows.append(f"| `{_usage(one)}` | {one.says} | `{verb}`{found[one.ends]} |")
     return "\n".join(rows)
 
 
-def _usage(mistake: Mistake) -> str:
-    return f"{mistake.name}{ {'pot': ':leader0', 'motor': ':0', 'arm': ''}[mistake.on] }"
+def _usage(fault: Fault) -> str:
+    return f"{fault.name}{ {'pot': ':leader0', 'motor': ':0', 'arm': ''}[fault.on] }"

@@ -17,24 +17,24 @@ HUM_MV, HUM_HZ = 25.0, 50.0
 TRACK_SHARE = 300.0 / 360.0  # of a turn; the rest is the dead zone
 PULL_DOWN = 10.0  # how many times its resistance is the track's
 
-Lie = Callable[[float, int], float]  # the true voltage and the slice's number -> what is shown
+PotFault = Callable[[float, int], float]  # the true voltage and the slice's number -> what is shown
 
 
-class Lies:
+class PotFaults:
     """Changes the eight voltages (mV) of a slice; `any` tells whether there is anything to change."""
 
     def __init__(self) -> None:
         self.order = list(range(8))  # which potentiometer is on each input
-        self._lies: dict[int, Lie] = {}
+        self._faults: dict[int, PotFault] = {}
         self._touching: tuple[int, int] | None = None
         self._slice = 0
         self.any = False
 
-    def stage(self, pot: int, kind: str | None) -> None:
+    def inject(self, pot: int, kind: str | None) -> None:
         """Let potentiometer 0..7 (leader, follower) lie in this way from now on; None: it tells the truth again."""
-        self._lies.pop(pot, None)
+        self._faults.pop(pot, None)
         if kind is not None:
-            self._lies[pot] = KINDS[kind]()
+            self._faults[pot] = KINDS[kind]()
         self._look()
 
     def swap(self, one: int, other: int) -> None:
@@ -50,14 +50,14 @@ class Lies:
     def apply(self, millivolts: Floats) -> None:
         """Change the voltages in place, once a slice."""
         self._slice += 1
-        for pot, lie in self._lies.items():
-            millivolts[pot] = min(max(lie(float(millivolts[pot]), self._slice), 0.0), SUPPLY_MV)
+        for pot, fault in self._faults.items():
+            millivolts[pot] = min(max(fault(float(millivolts[pot]), self._slice), 0.0), SUPPLY_MV)
         if self._touching is not None:  # of one make: each pulls as hard
             millivolts[list(self._touching)] = millivolts[list(self._touching)].mean()
         millivolts[:] = millivolts[self.order]
 
     def _look(self) -> None:
-        self.any = bool(self._lies) or self._touching is not None or self.order != list(range(8))
+        self.any = bool(self._faults) or self._touching is not None or self.order != list(range(8))
 
 
 class _Frozen:
@@ -115,7 +115,7 @@ def _crossed(true: float, number: int) -> float:
     return SUPPLY_MV * PULL_DOWN / (PULL_DOWN + 1.0 - true / SUPPLY_MV)
 
 
-KINDS: dict[str, Callable[[], Lie]] = {
+KINDS: dict[str, Callable[[], PotFault]] = {
     "frozen": _Frozen,
     "slipping": _Slipping,
     "loose": lambda: _loose,
