@@ -1,10 +1,11 @@
-"""What holds for every test: children hear signals, and nobody else's temporary files are in sight. Under `-n`: how
-rooms of tests are shared out among workers.
+"""What holds for every test: each error is one whole sentence, children hear signals, and nobody else's temporary files
+are in sight. Under `-n`: how rooms of tests are shared out among workers.
 """
 
 from __future__ import annotations
 
 import gc
+import re
 import signal
 import tempfile
 from collections.abc import Generator, Iterator
@@ -13,6 +14,7 @@ import pytest
 from hypothesis import settings
 from xdist.scheduler import LoadScopeScheduling
 
+from greywhale.base.errors import UserError
 from greywhale.base.runtime import VARIABLE
 
 # What a test finds depends on the code alone: neither on chance nor on the load of the machine.
@@ -38,6 +40,31 @@ def pytest_collection() -> Generator[None, object, object]:
     finally:
         gc.freeze()
         gc.enable()
+
+
+# A name or a value that is missing from a sentence.
+HOLE = re.compile(r"``|(?<!\w)\(\)|\bNone\b|\{\w+\}|  |^:|: [.:]")
+
+
+def is_sentence(message: str) -> bool:
+    """Whether an error is one printable line that ends, with a value wherever it has room for one."""
+    return message.isprintable() and message.endswith((".", "?")) and not HOLE.search(message)
+
+
+@pytest.fixture(autouse=True)
+def _errors_are_sentences(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Every error for a user, whatever test causes it. A test then compares only the thing and the value in it."""
+    poor: list[str] = []
+    construct = UserError.__init__
+
+    def note(error: UserError, *given: object, **options: object) -> None:
+        construct(error, *given, **options)  # type: ignore[arg-type] # as they came
+        if not is_sentence(error.message):
+            poor.append(error.message)
+
+    monkeypatch.setattr(UserError, "__init__", note)
+    yield
+    assert poor == [], "errors that are no whole sentence"
 
 
 @pytest.fixture(autouse=True)

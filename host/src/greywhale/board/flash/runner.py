@@ -71,7 +71,7 @@ def run_tool(tool: Tool, look: Callable[[str], None]) -> str:
     if code == guard.CANNOT_START:
         raise UserError(f"{tool.name} cannot be started: {text.strip()}.")
     if code != 0:
-        raise UserError(f"{tool.name} failed with exit code {code}: {_problem(text)}{_remedy(text)}")
+        raise UserError(f"{tool.name} failed with exit code {code}: {_problem(text).rstrip('.')}{_remedy(text)}")
     return text
 
 
@@ -119,5 +119,5 @@ def _problem(text: str) -> str:
 
 def _remedy(text: str) -> str:
     if not _NO_BOOTLOADER.search(text):
-        return ""
+        return "."
     return "; no bootloader answered: check --board and the cable, press the board's reset button and try again."
