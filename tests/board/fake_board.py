@@ -6,13 +6,16 @@ cable. Its time runs only while its host reads or waits.
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 from collections import Counter
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from types import TracebackType
 from typing import Self
 
 from greywhale.base.errors import UserError
+from greywhale.board.device import Device
 from greywhale.protocol import schema
 from greywhale.protocol.declared import Message
 from greywhale.protocol.frames import FrameDecoder, encode_frame
@@ -314,3 +317,15 @@ class FakeBoard:
             self.state, self.stop_reason, self.fault, self.fault_where, self.tick, 0, 0, 0, 0, 0, 300, self._save_state,
             self.saves,
         ).pack()  # fmt: skip
+
+
+def open_device(board: FakeBoard) -> Device:
+    """A device that does not wait for a bootloader."""
+    return Device(board.port, quiet_s=0.0, patience_s=0.5)
+
+
+@contextlib.contextmanager
+def served(faults: Faults | None = None) -> Iterator[tuple[FakeBoard, Device]]:
+    """A board and a device that talks with it."""
+    with FakeBoard(faults) as board, open_device(board) as device:
+        yield board, device

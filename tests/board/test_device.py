@@ -16,17 +16,12 @@ from greywhale.board.refusal import RefusedError
 from greywhale.protocol import schema
 from greywhale.protocol.frames import encode_frame
 from greywhale.protocol.schema import Fault, NackCode, Refusal, State
-from tests.board.fake_board import FakeBoard, Faults
+from tests.board.fake_board import FakeBoard, Faults, open_device, served
 from tests.board.port_board import PortBoard
 
 
-def open_device(board: FakeBoard) -> Device:
-    """A device that does not wait for a bootloader."""
-    return Device(board.port, quiet_s=0.0, patience_s=0.5)
-
-
 def test_greeting_tells_who_is_there() -> None:
-    with FakeBoard() as board, open_device(board) as device:
+    with served() as (_, device):
         assert device.firmware_version == "0.1.0"
         assert device.hello.param_crc == schema.param_crc(schema.DEFAULTS)
         assert device.status().state is State.DISABLED
@@ -50,7 +45,7 @@ def test_garbage_of_a_bootloader_is_no_greeting() -> None:
 
 @pytest.mark.parametrize("lost", [1, 4])
 def test_lost_answers_are_asked_for_again_under_the_same_number(lost: int) -> None:
-    with FakeBoard() as board, open_device(board) as device:
+    with served() as (board, device):
         board.faults.lose[schema.ParamSetRequest.TYPE] = lost
         reply = device.ask(schema.ParamSetRequest(0, 5))
         assert (reply.index, reply.value) == (0, 5)
@@ -60,15 +55,15 @@ def test_lost_answers_are_asked_for_again_under_the_same_number(lost: int) -> No
 
 
 def test_a_board_that_falls_silent_is_named() -> None:
-    with FakeBoard() as board, open_device(board) as device:
+    with served() as (board, device):
         board.faults.silent = True
-        with pytest.raises(NoAnswerError, match=rf"^{board.port}: the board did not answer status, sent 5 times"):
+        with pytest.raises(NoAnswerError, match=rf"^{board.port}: .*status, sent 5 times"):
             device.status()
         assert board.asked(schema.StatusRequest) == 5
 
 
 def test_answers_to_earlier_requests_are_not_taken_for_this_one() -> None:
-    with FakeBoard() as board, open_device(board) as device:
+    with served() as (board, device):
         stale = schema.StatusReply(
             State.FOLLOWING, schema.StopReason.NONE, Fault.NONE, 255, 0, 0, 0, 0, 0, 0, 0, schema.SaveState.IDLE, 0
         )
@@ -77,7 +72,7 @@ def test_answers_to_earlier_requests_are_not_taken_for_this_one() -> None:
 
 
 def test_sequence_numbers_wrap_without_the_number_of_unasked_hellos() -> None:
-    with FakeBoard() as board, open_device(board) as device:
+    with served() as (board, device):
         for _ in range(260):
             device.status()
         numbers = [seq for kind, seq in board.requests if kind == schema.StatusRequest.TYPE]
@@ -86,25 +81,19 @@ def test_sequence_numbers_wrap_without_the_number_of_unasked_hellos() -> None:
         assert len(set(numbers)) == 255
 
 
-def test_silent_port_suggests_flashing() -> None:
-    with FakeBoard(Faults(silent=True)) as board, pytest.raises(UserError) as caught:
-        open_device(board)
-    assert "nothing answers" in caught.value.message
-    assert f"greywhale flash --port {board.port}" in caught.value.message
-
-
-def test_other_firmware_is_told_from_silence() -> None:
-    faults = Faults(silent=True, chatter=b"Hello from some other sketch\r\n")
-    with FakeBoard(faults) as board, pytest.raises(UserError, match="sends data, but no greywhale firmware answers"):
+@pytest.mark.parametrize(
+    ("faults", "words"),
+    [
+        (Faults(silent=True), "nothing answers.*greywhale flash --port"),
+        (Faults(silent=True, chatter=b"Hello from some other sketch\r\n"), "no greywhale firmware answers"),
+        (Faults(hello=bytes([9, 1])), f"protocol version 9, this host version {schema.PROTOCOL};"),
+        (Faults(hello=bytes([schema.PROTOCOL, 1, 2])), "3 bytes"),
+    ],
+    ids=["silent", "another sketch", "another protocol", "a short hello"],
+)
+def test_who_is_no_board_of_ours_is_told(faults: Faults, words: str) -> None:
+    with FakeBoard(faults) as board, pytest.raises(UserError, match=f"^{board.port}: .*{words}"):
         Device(board.port, quiet_s=0.1, patience_s=0.5)
-
-
-def test_other_protocol_names_both_versions() -> None:
-    with (
-        FakeBoard(Faults(hello=bytes([9, 1]))) as board,
-        pytest.raises(UserError, match=rf"protocol version 9, this host version {schema.PROTOCOL}; flash"),
-    ):
-        open_device(board)
 
 
 def test_other_schema_names_both_hashes_and_the_firmware() -> None:
@@ -114,14 +103,6 @@ def test_other_schema_names_both_hashes_and_the_firmware() -> None:
         board.faults.hello = bytes(payload)
         with pytest.raises(UserError, match=rf"firmware 3\.2\.1 .*0x11223344.*{schema.SCHEMA_HASH:#010x}; flash"):
             open_device(board)
-
-
-def test_malformed_hello_is_one_sentence() -> None:
-    with (
-        FakeBoard(Faults(hello=bytes([schema.PROTOCOL, 1, 2]))) as board,
-        pytest.raises(UserError, match=rf"^{board.port}: .*3 bytes"),
-    ):
-        open_device(board)
 
 
 @pytest.mark.parametrize(
@@ -139,7 +120,7 @@ def test_malformed_hello_is_one_sentence() -> None:
     ],
 )
 def test_refusals_say_what_where_and_the_remedy(code: NackCode, detail: int, words: str) -> None:
-    with FakeBoard() as board, open_device(board) as device:
+    with served() as (board, device):
         board.faults.refuse[schema.EnableRequest.TYPE] = (code, int(detail))
         with pytest.raises(RefusedError) as caught:
             device.enable(500)
@@ -172,7 +153,7 @@ def test_motors_that_never_ran_are_not_stopped() -> None:
 
 
 def test_enabled_stops_on_ctrl_c_and_after_a_refusal() -> None:
-    with FakeBoard() as board, open_device(board) as device:
+    with served() as (board, device):
         with pytest.raises(KeyboardInterrupt), device.enabled(500):
             raise KeyboardInterrupt
         assert board.state is State.DISABLED
@@ -189,14 +170,14 @@ def fall_silent_and_fail(board: FakeBoard, device: Device) -> None:
 
 
 def test_an_unconfirmed_stop_is_told_with_the_error() -> None:
-    with FakeBoard() as board, open_device(board) as device:
+    with served() as (board, device):
         with pytest.raises(ZeroDivisionError) as caught:
             fall_silent_and_fail(board, device)
-        assert "not confirmed; the board stops by itself within 700 ms" in caught.value.__notes__[0]
+        assert "within 700 ms" in caught.value.__notes__[0]
 
 
 def test_an_unconfirmed_stop_without_lease_says_what_to_do() -> None:
-    with FakeBoard() as board, open_device(board) as device:
+    with served() as (board, device):
         device.enable(0)
         board.faults.silent = True
         with pytest.raises(UserError, match="switch the motors' supply off"):
@@ -204,10 +185,10 @@ def test_an_unconfirmed_stop_without_lease_says_what_to_do() -> None:
 
 
 def test_a_restart_during_a_request_is_named() -> None:
-    with FakeBoard() as board, open_device(board) as device:
+    with served() as (board, device):
         board.faults.silent = True
         board.say(board.own_hello())
-        with pytest.raises(UserError, match=r"restarted in the middle \(the reset pin.*motors are off"):
+        with pytest.raises(UserError, match="restarted.*the reset pin"):
             device.status()
 
 
@@ -217,22 +198,22 @@ def read_for_ever(device: Device) -> None:
 
 
 def test_an_unplugged_cable_is_one_sentence() -> None:
-    with FakeBoard() as board, open_device(board) as device:
+    with served() as (board, device):
         board.faults.unplug_at = 1
-        with pytest.raises(UserError, match=rf"^{board.port}: the port went away in the middle"):
+        with pytest.raises(UserError, match=rf"^{board.port}: the port went away"):
             device.telemetry(1)
             read_for_ever(device)
 
 
 def test_wrong_telemetry_echo_is_noticed() -> None:
-    with FakeBoard() as board, open_device(board) as device:
+    with served() as (board, device):
         board.faults.replies[schema.TelemetryRequest.TYPE] = schema.TelemetryReply(3).pack()
         with pytest.raises(UserError, match="every 3 ticks instead of 4"):
             device.telemetry(4)
 
 
 def test_ports_that_cannot_be_opened(tmp_path: Path) -> None:
-    with pytest.raises(UserError, match="there is no such port; `greywhale ports`"):
+    with pytest.raises(UserError, match="there is no such port"):
         Device(str(tmp_path / "ttyNONE"))
     plain = tmp_path / "file"
     plain.write_text("")
@@ -246,7 +227,7 @@ def test_ports_that_cannot_be_opened(tmp_path: Path) -> None:
 
 def test_the_terminal_is_not_taken_for_a_port(monkeypatch: pytest.MonkeyPatch) -> None:
     """Neither as /dev/tty nor by its number: it would be set to another speed under a person's hands."""
-    with pytest.raises(UserError, match="^/dev/tty: this is a terminal, not a board's port; `greywhale ports`"):
+    with pytest.raises(UserError, match="^/dev/tty: this is a terminal"):
         Device("/dev/tty")
     with PortBoard() as board, monkeypatch.context() as patch:
         terminal = os.stat(board.port)
@@ -260,7 +241,7 @@ def test_the_terminal_is_not_taken_for_a_port(monkeypatch: pytest.MonkeyPatch) -
     ("number", "words"),
     [
         (errno.EACCES, "usermod -aG dialout"),
-        (errno.EBUSY, r"in use by another program; close that \(a serial monitor\?\)"),
+        (errno.EBUSY, "in use by another program"),
         (errno.ENODEV, "no such port any more"),
         (errno.EIO, "cannot be opened: input/output error"),
     ],

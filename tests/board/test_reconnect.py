@@ -87,10 +87,7 @@ def test_it_goes_away_twice(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, poi
 
 def test_a_port_that_stays_away_ends_the_log_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     out = tmp_path / "log.csv"
-    with (
-        FakeBoard(Faults(unplug_at=300)) as board,
-        pytest.raises(UserError, match=r"went away in the middle.* It did not come back before the recording's end"),
-    ):
+    with FakeBoard(Faults(unplug_at=300)) as board, pytest.raises(UserError, match="went away .* not come back"):
         lives(monkeypatch, board)
         record_through_losses(board.port, out, 1.0, open_device=opens())
     log = read_log(out)
@@ -107,7 +104,7 @@ def test_another_board_in_its_place_is_refused(tmp_path: Path, monkeypatch: pyte
         other.running[schema.PARAMETER_BY_NAME["joint1.kp"].index] += 1
         point(first)
         steps = opens(nothing, lambda: point(other))
-        with pytest.raises(UserError, match="is another one, or runs other parameters; record anew"):
+        with pytest.raises(UserError, match="another one"):
             record_through_losses(NAME, out, 5.0, open_device=steps)
     assert not read_log(out).complete
 

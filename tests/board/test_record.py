@@ -8,17 +8,12 @@ import numpy as np
 import pytest
 
 from greywhale.base.errors import UserError
-from greywhale.board.device import Device
 from greywhale.board.record import LEASE_MS, record, record_led
 from greywhale.files.log import read_log
 from greywhale.files.trajectory import Trajectory
 from greywhale.protocol import schema
 from greywhale.protocol.schema import Fault, State
-from tests.board.fake_board import FakeBoard, Faults
-
-
-def open_device(board: FakeBoard) -> Device:
-    return Device(board.port, quiet_s=0.0, patience_s=0.5)
+from tests.board.fake_board import FakeBoard, Faults, open_device, served
 
 
 def parts(folder: Path) -> list[Path]:
@@ -50,23 +45,20 @@ def test_listening_records_every_sample_and_leaves_the_motors_alone(tmp_path: Pa
     ("faults", "words"),
     [
         (Faults(read_error=1), "asked for parameter 0, the board answered 1"),
-        (Faults(read_garbled=schema.PARAMETER_BY_NAME["joint1.limit_max"].index), "the parameters read have CRC"),
+        (Faults(read_garbled=schema.PARAMETER_BY_NAME["joint1.limit_max"].index), "have CRC"),
     ],
 )
 def test_a_motion_is_never_planned_from_limits_that_were_read_wrong(tmp_path: Path, faults: Faults, words: str) -> None:
-    """The joints' limits come from a table that its CRC proves; else the motors stay off."""
+    """The joints' limits come from a table that its CRC proves; else the motors stay off. Nor is there a log."""
     motion = Trajectory(np.array([0.0, 1.0]), np.zeros((2, 4)))
     with FakeBoard(faults) as board:
-        with open_device(board) as device, pytest.raises(UserError, match=words):
-            record_led(device, tmp_path / "log.csv", motion)
+        with open_device(board) as device:
+            with pytest.raises(UserError, match=words):
+                record_led(device, tmp_path / "log.csv", motion)
+            if faults.read_error:
+                with pytest.raises(UserError, match=words):
+                    record(device, tmp_path / "log.csv", 0.1)
         assert board.asked(schema.LeadRequest) == 0
-    assert not list(tmp_path.iterdir())
-
-
-def test_a_period_that_was_read_wrong_is_in_no_log(tmp_path: Path) -> None:
-    with FakeBoard(Faults(read_error=1)) as board, open_device(board) as device:
-        with pytest.raises(UserError, match="asked for parameter 0, the board answered 1"):
-            record(device, tmp_path / "log.csv", 0.1)
     assert not list(tmp_path.iterdir())
 
 
@@ -106,13 +98,9 @@ def test_lost_samples_are_counted_and_not_invented(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("ticks", "enable", "words"),
     [
-        ((1 << 31) - 1, False, r"the board's clock jumped by 2147483\.648 s between two samples, so the times"),
-        ((1 << 31) - 1, True, r"the board's clock jumped by 2147483\.648 s between two samples, so the times"),
-        (
-            5_000,
-            False,
-            r"end of the recording was lost: after \d\.\d+ of 3 s no sample came for 5\.001 s by the board's",
-        ),
+        ((1 << 31) - 1, False, r"jumped by 2147483\.648 s"),
+        ((1 << 31) - 1, True, r"jumped by 2147483\.648 s"),
+        (5_000, False, r"after \d\.\d+ of 3 s no sample came for 5\.001 s"),
     ],
 )
 def test_a_recording_whose_end_never_came_is_not_what_was_asked_for(
@@ -141,44 +129,33 @@ def test_a_few_samples_that_are_lost_at_the_end_are_counted(tmp_path: Path) -> N
 @pytest.mark.parametrize(
     ("faults", "words"),
     [
-        (Faults(restart_at=200), "restarted in the middle"),
-        (Faults(unplug_at=200), "went away in the middle"),
-        (Faults(fault_at=(200, Fault.POT_HIGH, 6)), r"upper rail \(follower potentiometer 2\): check"),
-        (Faults(fault_at=(200, Fault.TRACKING, 1)), r"too far from its leader for too long \(joint 1\): check"),
+        (Faults(restart_at=200), "restarted"),
+        (Faults(restart_at=200, restart_says_hello=False), "restarted"),
+        (Faults(unplug_at=200), "went away"),
+        (Faults(fault_at=(200, Fault.POT_HIGH, 6)), r"upper rail \(follower potentiometer 2\)"),
+        (Faults(fault_at=(200, Fault.TRACKING, 1)), r"\(joint 1\)"),
     ],
 )
 def test_a_bad_end_keeps_what_was_recorded_and_says_why(tmp_path: Path, faults: Faults, words: str) -> None:
     out = tmp_path / "log.csv"
     with FakeBoard(faults) as board:
-        with pytest.raises(UserError, match=words), open_device(board) as device:
+        with pytest.raises(UserError, match=words) as caught, open_device(board) as device:
             record(device, out, 10.0, enable=True)
         assert board.state in (State.DISABLED, State.FAULT) or faults.unplug_at
+    assert f"What was recorded is in {out}, marked as interrupted." in caught.value.__notes__
     log = read_log(out)
     assert not log.complete
+    assert log.ended_by.startswith(caught.value.message[:60])
     assert 0 < len(log.time) < 200
     assert parts(tmp_path) == []
 
 
-def test_a_restart_without_a_word_is_found(tmp_path: Path) -> None:
-    faults = Faults(restart_at=200, restart_says_hello=False)
-    with (
-        FakeBoard(faults) as board,
-        pytest.raises(UserError, match="restarted in the middle"),
-        open_device(board) as device,
-    ):
-        record(device, tmp_path / "log.csv", 10.0)
-
-
 def test_samples_that_stop_coming_are_named(tmp_path: Path) -> None:
-    with (
-        FakeBoard(Faults(stop_sampling_at=100)) as board,
-        open_device(board) as device,
-        pytest.raises(UserError, match=r"answers but sent no sample for 2 s \(state disabled\)"),
-    ):
+    with served(Faults(stop_sampling_at=100)) as (_, device), pytest.raises(UserError, match=r"\(state disabled\)"):
         record(device, tmp_path / "log.csv", 10.0)
 
 
-def test_ctrl_c_stops_the_motors_and_marks_the_log(tmp_path: Path) -> None:
+def test_ctrl_c_stops_the_motors_and_the_log_says_so(tmp_path: Path) -> None:
     out = tmp_path / "log.csv"
 
     def interrupt(what: str, fraction: float) -> None:
@@ -189,16 +166,19 @@ def test_ctrl_c_stops_the_motors_and_marks_the_log(tmp_path: Path) -> None:
         with pytest.raises(KeyboardInterrupt), open_device(board) as device:
             record(device, out, 10.0, enable=True, progress=interrupt)
         assert board.state is State.DISABLED
-    assert not read_log(out).complete
+    assert (read_log(out).complete, read_log(out).ended_by) == (False, "Ctrl-C, or a signal to end.")
+
+
+def test_the_lease_running_out_is_named(tmp_path: Path) -> None:
+    with served() as (_, device), pytest.raises(UserError, match="the lease of 500 ms"):
+        device.renew = lambda: None  # type: ignore[method-assign]
+        record(device, tmp_path / "log.csv", 10.0, enable=True)
+    assert len(read_log(tmp_path / "log.csv").time) <= LEASE_MS
 
 
 def test_a_refused_enable_leaves_no_file(tmp_path: Path) -> None:
     faults = Faults(refuse={schema.EnableRequest.TYPE: (schema.NackCode.ERROR_TOO_LARGE, 2 << 8 | 40)})
-    with (
-        FakeBoard(faults) as board,
-        pytest.raises(UserError, match=r"joint 2, 1\.25 rad"),
-        open_device(board) as device,
-    ):
+    with served(faults) as (_, device), pytest.raises(UserError, match=r"joint 2, 1\.25 rad"):
         record(device, tmp_path / "log.csv", 1.0, enable=True)
     assert list(tmp_path.iterdir()) == []
 
@@ -219,42 +199,8 @@ def test_bad_settings_are_bad_usage(tmp_path: Path, seconds: float, every: int, 
     assert caught.value.exit_code == 2
 
 
-def test_the_lease_running_out_is_named(tmp_path: Path) -> None:
-    with FakeBoard() as board, open_device(board) as device:
-        device.renew = lambda: None  # type: ignore[method-assign]
-        with pytest.raises(UserError, match="did not renew the lease of 500 ms"):
-            record(device, tmp_path / "log.csv", 10.0, enable=True)
-    log = read_log(tmp_path / "log.csv")
-    assert len(log.time) <= LEASE_MS
-
-
 def test_a_sample_that_comes_twice_is_taken_once(tmp_path: Path) -> None:
     with FakeBoard(Faults(repeat_ticks=frozenset({20, 21, 50}))) as board, open_device(board) as device:
         recording = record(device, tmp_path / "log.csv", 0.2)
     assert (recording.rows, recording.dropped) == (200, 0)
     assert len(read_log(tmp_path / "log.csv").time) == 200
-
-
-def test_a_fault_tells_which_log_was_kept_and_the_log_why_it_ended(tmp_path: Path) -> None:
-    path = tmp_path / "log.csv"
-    with FakeBoard(Faults(fault_at=(150, Fault.POT_LOW, 5))) as board:
-        with pytest.raises(UserError) as caught, open_device(board) as device:
-            record(device, path, 60.0, enable=True)
-        text = caught.value.message
-    assert caught.value.__notes__ == [f"What was recorded is in {path}, marked as interrupted."]
-    log = read_log(path)
-    assert not log.complete
-    assert log.ended_by.startswith(text[:60])
-    assert "follower potentiometer 1" in log.ended_by
-
-
-def test_a_log_says_when_a_person_ended_it(tmp_path: Path) -> None:
-    path = tmp_path / "log.csv"
-
-    def press(what: str, fraction: float) -> None:
-        if what == "recording":
-            raise KeyboardInterrupt
-
-    with FakeBoard() as board, pytest.raises(KeyboardInterrupt), open_device(board) as device:
-        record(device, path, 60.0, progress=press)
-    assert read_log(path).ended_by == "Ctrl-C, or a signal to end."

@@ -26,11 +26,10 @@ from greywhale.board.session import NOTE, Session, StopAsked, ask_to_stop
 from greywhale.files.log import read_log
 from greywhale.protocol import schema
 from greywhale.protocol.schema import State, StopReason
+from tests.board.fake_board import open_device
 from tests.board.port_board import PortBoard
 
-
-def open_device(board: PortBoard) -> Device:
-    return Device(board.port, quiet_s=0.0, patience_s=0.5)
+STOPPED = {"pid": os.getpid(), "state": "disabled"}
 
 
 def names(board: PortBoard) -> list[str]:
@@ -78,6 +77,11 @@ class Asker(threading.Thread):
             self._now.set()
 
 
+def listen(device: Device) -> None:
+    while True:
+        device.samples()
+
+
 def recorded(board: PortBoard, path: Path, report: Callable[[str, float], None]) -> None:
     with open_device(board) as device:
         record(device, path, 60.0, enable=True, progress=report)
@@ -90,7 +94,7 @@ def test_a_recording_ends_as_on_ctrl_c(tmp_path: Path) -> None:
             recorded(board, log, lambda what, fraction: other.ask(what, 1.0))
         other.join()
         assert board.stop_reason is StopReason.HOST
-    assert other.answer == {"pid": os.getpid(), "state": "disabled"}
+    assert other.answer == STOPPED
     assert NOTE in caught.value.__notes__
     assert not read_log(log).complete
     assert read_log(log).ended_by == NOTE
@@ -105,7 +109,7 @@ def test_it_ends_too_where_ctrl_c_is_ignored(tmp_path: Path) -> None:
             recorded(board, tmp_path / "log.csv", lambda what, fraction: other.ask(what, 1.0))
     finally:
         signal.signal(signal.SIGINT, before)
-    assert other.answer == {"pid": os.getpid(), "state": "disabled"}
+    assert other.answer == STOPPED
 
 
 def test_a_session_in_a_thread_ends_without_its_main_thread(tmp_path: Path) -> None:
@@ -128,7 +132,7 @@ def test_a_session_in_a_thread_ends_without_its_main_thread(tmp_path: Path) -> N
         worker = threading.Thread(target=work, args=(board,))
         worker.start()
         recording.wait()
-        assert ask_to_stop(board.port) == {"pid": os.getpid(), "state": "disabled"}
+        assert ask_to_stop(board.port) == STOPPED
         worker.join()
     assert isinstance(ended[0], StopAsked)
 
@@ -177,18 +181,17 @@ def test_a_stop_that_is_not_confirmed_is_told(tmp_path: Path) -> None:
         with pytest.raises(KeyboardInterrupt):
             recorded(board, tmp_path / "log.csv", fall_silent)
         other.join()
-    assert "not confirmed; the board stops by itself within 500 ms" in other.problem
+    assert "within 500 ms" in other.problem
 
 
 def test_a_session_without_motors_is_stopped_as_well() -> None:
     with PortBoard() as board, Asker(board.port) as other:
         with pytest.raises(KeyboardInterrupt), open_device(board) as device:
             other.ask()
-            while True:
-                device.samples()
+            listen(device)
         other.join()
         assert board.asked(schema.StopRequest) > 0
-    assert other.answer == {"pid": os.getpid(), "state": "disabled"}
+    assert other.answer == STOPPED
 
 
 def test_what_holds_a_port_now_and_then_is_stopped_in_between() -> None:
@@ -251,10 +254,7 @@ def test_nobody_takes_the_port_of_another_session() -> None:
     with PortBoard() as board:
         with (
             another(lambda: Session.of(board.port)) as child,
-            pytest.raises(
-                UserError,
-                match=rf"^{board.port}: the port is in use by another greywhale, process {child} \(.*greywhale stop",
-            ),
+            pytest.raises(UserError, match=rf"^{board.port}: .* process {child} \(.*greywhale stop"),
         ):
             open_device(board)
         assert ask_to_stop(board.port) is None, "killed"
@@ -267,12 +267,8 @@ def test_a_session_that_does_not_hear_is_told_with_the_switch_first() -> None:
     with PortBoard() as board, another(lambda: Session.of(board.port)) as child:
         os.kill(child, signal.SIGSTOP)
         os.waitpid(child, os.WUNTRACED)  # until it stands still
-        with pytest.raises(UserError) as caught:
+        with pytest.raises(UserError, match=rf"^Switch the motors' supply off: {board.port} .*`kill -9 {child}`"):
             ask_to_stop(board.port, heard_s=0.05)
-    assert caught.value.message.startswith(f"Switch the motors' supply off: {board.port} is held by process {child} (")
-    assert caught.value.message.endswith(
-        f"which does not answer. Then bring it back (`fg`, after Ctrl-Z) or end it with `kill -9 {child}`."
-    )
 
 
 def test_only_this_user_reaches_the_session(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -311,10 +307,9 @@ def test_another_user_who_takes_a_name_first_hinders_nobody(monkeypatch: pytest.
         with pytest.raises(KeyboardInterrupt), open_device(board) as device:
             device.enable(0)
             other.ask()
-            while True:
-                device.samples()
+            listen(device)
         other.join()
-    assert other.answer == {"pid": os.getpid(), "state": "disabled"}
+    assert other.answer == STOPPED
 
 
 def test_no_motor_starts_where_nothing_could_stop_it(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -322,13 +317,8 @@ def test_no_motor_starts_where_nothing_could_stop_it(monkeypatch: pytest.MonkeyP
     with PortBoard() as board, squat(monkeypatch, names(board)) as child, open_device(board) as device:
         assert device.status().state is State.DISABLED, "to look is safe"
         for start in (device.enable, device.lead):
-            with pytest.raises(UserError) as caught:
+            with pytest.raises(UserError, match=rf"^{board.port}: .*process {child} of user 4711"):
                 start(500)
-            assert caught.value.message == (
-                f"{board.port}: `greywhale stop` cannot reach this session, because process {child} of user 4711 has "
-                "taken all names for it; nor can the Ctrl-C of a terminal, so the motors stay off: run it in the "
-                "foreground of a terminal, or end what is in the way."
-            )
         assert board.asked(schema.EnableRequest) == board.asked(schema.LeadRequest) == 0
 
 
@@ -363,8 +353,7 @@ def test_a_port_is_found_by_whatever_name(tmp_path: Path) -> None:
         (tmp_path / "arm").symlink_to(board.port)
         with pytest.raises(KeyboardInterrupt), open_device(board) as device:
             other.ask()
-            while True:
-                device.samples()
+            listen(device)
         other.join()
     assert other.answer is not None
 
@@ -376,10 +365,9 @@ def test_clients_that_say_nothing_hinder_nobody(monkeypatch: pytest.MonkeyPatch)
                 stack.enter_context(connected(board))
                 device.status()
             other.ask()
-            while True:
-                device.samples()
+            listen(device)
         other.join()
-    assert other.answer == {"pid": os.getpid(), "state": "disabled"}
+    assert other.answer == STOPPED
 
 
 def test_a_client_that_says_something_else_stops_nothing() -> None:
@@ -393,5 +381,4 @@ def test_a_client_that_does_not_wait_for_the_answer_is_heard() -> None:
     with PortBoard() as board, pytest.raises(KeyboardInterrupt), open_device(board) as device:
         with connected(board) as client:
             client.sendall(b"stop\n")
-        while True:
-            device.samples()
+        listen(device)

@@ -64,40 +64,30 @@ def test_unknown_tracks_agree_between_the_arms_after_one_more_pose(
     assert shown[4:] == pytest.approx(shown[:4])
 
 
-def test_a_second_pose_that_hardly_differs_is_refused() -> None:
-    scale, zero = mounted([5.2] * 8, [1] * 8, [0.0] * 8)
-    near = pose(np.array([0.8, 0.1, 0.8, 0.8]), scale, zero)
-    with pytest.raises(UserError, match=r"differ by 0\.1 rad at joint 1; choose a second pose"):
-        solve(sweeps(scale, zero), pose(FIRST, scale, zero), near, None)
+SCALE, ZERO = mounted([5.2] * 8, [1] * 8, [0.0] * 8)
+GOOD, NEAR = pose(SECOND, SCALE, ZERO), pose(np.array([0.8, 0.1, 0.8, 0.8]), SCALE, ZERO)
+SLIPPED = Pose(SECOND, np.where(np.arange(8) == 6, ZERO - 20.0, GOOD.counts))
+OTHER_END = [one if one.pot != 3 else Sweep(3, -1, one.low, one.high, ()) for one in sweeps(SCALE, ZERO)]
+ELSEWHERE = sweeps(SCALE, ZERO + (np.arange(8) == 4) * 2.5 / SCALE)
 
 
-def test_a_potentiometer_that_slips_between_the_poses_is_named() -> None:
-    scale, zero = mounted([5.2] * 8, [1] * 8, [0.0] * 8)
-    counts = pose(SECOND, scale, zero).counts.copy()
-    counts[6] = zero[6] - 20.0
-    with pytest.raises(UserError, match=r"^follower potentiometer 2 read .* in the two poses"):
-        solve(sweeps(scale, zero), pose(FIRST, scale, zero), Pose(SECOND, counts), None)
-
-
-def test_a_sweep_begun_at_the_wrong_end_is_named() -> None:
-    scale, zero = mounted([5.2] * 8, [1] * 8, [0.0] * 8)
-    wrong = [one if one.pot != 3 else Sweep(3, -1, one.low, one.high, ()) for one in sweeps(scale, zero)]
-    with pytest.raises(UserError, match=r"^leader potentiometer 3 turned the other way .* positive end first"):
-        solve(wrong, pose(FIRST, scale, zero), pose(SECOND, scale, zero), None)
-
-
-def test_arms_without_a_common_range_are_refused() -> None:
-    scale, zero = mounted([5.2] * 8, [1] * 8, [0.0] * 8)
-    moved = zero.copy()
-    moved[4] += 2.5 / scale[4]
-    some = sweeps(scale, moved)
-    with pytest.raises(UserError, match=r"^joint 0 has no range that both arms can reach"):
-        solve(some, pose(FIRST, scale, zero), None, 5.2)
+@pytest.mark.parametrize(
+    ("swept", "second", "words"),
+    [
+        (sweeps(SCALE, ZERO), NEAR, r"0\.1 rad at joint 1"),
+        (sweeps(SCALE, ZERO), SLIPPED, "^follower potentiometer 2 "),
+        (OTHER_END, GOOD, "^leader potentiometer 3 .* positive end first"),
+        (ELSEWHERE, None, "^joint 0 has no range"),
+    ],
+    ids=["poses alike", "slipped", "the wrong end", "no common range"],
+)
+def test_a_contradiction_is_refused_by_name(swept: list[Sweep], second: Pose | None, words: str) -> None:
+    with pytest.raises(UserError, match=words):
+        solve(swept, pose(FIRST, SCALE, ZERO), second, None if second else 5.2)
 
 
 def test_the_same_pose_twice_shows_what_slipped() -> None:
-    scale, zero = mounted([5.2] * 8, [1] * 8, [0.0] * 8)
-    first = pose(FIRST, scale, zero)
+    first = pose(FIRST, SCALE, ZERO)
     again = first.counts.copy()
     again[1] += 9.0
     (told,) = slipped(first, Pose(FIRST, again))

@@ -51,20 +51,13 @@ def answering(monkeypatch: pytest.MonkeyPatch, programmer: str, baud: int, signa
     monkeypatch.setattr(module, "find_bootloader", lambda port, likely, others: found)
 
 
-def test_a_port_that_is_not_there_stops_before_any_tool(told: Path, tmp_path: Path) -> None:
-    # avrdude would wait for it for ever
+def test_a_port_that_is_not_there_or_in_use_stops_before_any_tool(told: Path, tmp_path: Path) -> None:
+    """avrdude would wait for it for ever, or reset a board that runs its motors."""
     image = write_image(tmp_path / "x.hex")
     with pytest.raises(UserError, match="there is no such port"):
         module.flash(str(tmp_path / "ttyNONE"), "mega", hex_file=image)
-    assert not told.exists()
-
-
-def test_a_port_in_use_stops_before_any_tool(told: Path, tmp_path: Path) -> None:
-    # avrdude would break into it, and reset a board that runs its motors
-    image = write_image(tmp_path / "x.hex")
-    with PortBoard() as board, Device(board.port, 0.0, 0.5):
-        with pytest.raises(UserError, match="the port is in use by this program itself"):
-            module.flash(board.port, "mega", hex_file=image)
+    with PortBoard() as board, Device(board.port, 0.0, 0.5), pytest.raises(UserError, match="in use by this program"):
+        module.flash(board.port, "mega", hex_file=image)
     assert not told.exists()
 
 
@@ -89,13 +82,13 @@ def test_nobody_gets_the_port_while_avrdude_has_it(told: Path, tmp_path: Path, m
 
 
 def test_missing_sources_and_files_are_bad_usage(tmp_path: Path) -> None:
-    with pytest.raises(UserError, match=r"holds no platformio\.ini; name the firmware folder") as caught:
+    with pytest.raises(UserError, match=r"no platformio\.ini") as caught:
         module.flash("/dev/null", "mega", firmware_dir=tmp_path)
     assert caught.value.exit_code == 2
     with pytest.raises(UserError, match=r"x\.hex: there is no such file") as caught:
         module.flash("/dev/null", "mega", hex_file=tmp_path / "x.hex")
     assert caught.value.exit_code == 2
-    with pytest.raises(UserError, match="board 'uno' is unknown; choose one of mega, nano"):
+    with pytest.raises(UserError, match="'uno' .* mega, nano"):
         module.flash("/dev/null", "uno")
 
 
@@ -125,12 +118,8 @@ def test_avrdude_gets_the_speed_of_a_nanos_bootloader(
 @pytest.mark.parametrize(
     ("bootloader", "named", "words"),
     [
-        (
-            Version2,
-            "nano",
-            r"the bootloader of an Arduino Mega 2560 answers, not that of an Arduino Nano.*--board mega",
-        ),
-        (Version1, "mega", r"the bootloader of an Arduino Nano .* answers, not that of an Arduino Mega.*--board nano"),
+        (Version2, "nano", "of an Arduino Mega 2560 answers, .*--board mega"),
+        (Version1, "mega", "of an Arduino Nano .* answers, .*--board nano"),
     ],
     ids=["a Mega", "a Nano"],
 )
@@ -145,14 +134,16 @@ def test_a_board_that_is_named_wrongly_is_recognised_by_its_bootloader(
     assert not told.exists()
 
 
-def test_a_board_that_is_named_wrongly_is_recognised_by_its_port(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.usefixtures("quick_device")
+def test_a_board_that_is_named_wrongly_is_recognised_by_its_port_and_its_firmware(
+    told: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    answering(monkeypatch, "arduino", 57600, None)
+    with FakeBoard() as board, pytest.raises(UserError, match="flashed for nano, .* for Arduino Mega 2560"):
+        module.flash(board.port, "nano", hex_file=write_image(tmp_path / "firmware.hex"))
     monkeypatch.setattr(module, "board_of", lambda port: "mega")
-    with pytest.raises(UserError) as caught:
+    with pytest.raises(UserError, match="^/dev/ttyACM0: .*Arduino Mega 2560, not .* an Arduino Nano"):
         module.flash("/dev/ttyACM0", "nano")
-    assert caught.value.message == (
-        "/dev/ttyACM0: this port belongs to an Arduino Mega 2560, not to an Arduino Nano (ATmega328P); "
-        "leave --board out, or choose another port."
-    )
 
 
 @pytest.mark.parametrize(
@@ -164,7 +155,7 @@ def test_a_board_that_nobody_names_is_asked_and_gets_no_image_of_the_other(
     bootloader: type[FakeBootloader], signature: bytes, other: object, told: Path, tmp_path: Path
 ) -> None:
     image = write_image(tmp_path / "firmware.hex", ATMEGA328P if other is NANO else MEGA2560)
-    with bootloader(115200, signature) as line, pytest.raises(UserError, match="this image is for an Arduino .*, but"):
+    with bootloader(115200, signature) as line, pytest.raises(UserError, match="for an Arduino"):
         module.flash(line.port, hex_file=image)
     assert not told.exists()
 
@@ -178,14 +169,6 @@ def test_a_chip_that_greywhale_does_not_know_is_refused(told: Path, tmp_path: Pa
 
 
 @pytest.mark.usefixtures("quick_device")
-def test_firmware_of_another_board_is_noticed(told: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    image = write_image(tmp_path / "firmware.hex")
-    answering(monkeypatch, "arduino", 57600, None)
-    with FakeBoard() as board, pytest.raises(UserError, match="flashed for nano, but .* built for Arduino Mega 2560"):
-        module.flash(board.port, "nano", hex_file=image)
-
-
-@pytest.mark.usefixtures("quick_device")
 def test_an_installed_package_writes_the_image_that_came_with_it(
     told: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -193,9 +176,7 @@ def test_an_installed_package_writes_the_image_that_came_with_it(
     monkeypatch.setattr(images, "PACKAGED", tmp_path)
     answering(monkeypatch, "wiring", 115200, MEGA2560)
     with FakeBoard() as board:
-        with pytest.raises(
-            UserError, match="this installation of greywhale holds no firmware for an Arduino Mega 2560"
-        ):
+        with pytest.raises(UserError, match="no firmware for an Arduino Mega 2560"):
             module.flash(board.port)
         image = write_image(tmp_path / "mega.hex", MEGA.signature)
         module.flash(board.port)

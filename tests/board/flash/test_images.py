@@ -63,19 +63,15 @@ def test_a_damaged_file_is_named_with_its_line(content: bytes, words: str, tmp_p
 def test_an_image_for_the_other_board_is_refused(tmp_path: Path) -> None:
     nano = read_image(write_image(tmp_path / "nano.hex", NANO.signature))
     check_image(nano, NANO, "/dev/ttyUSB0")
-    with pytest.raises(UserError) as caught:
+    with pytest.raises(UserError, match=f"^{nano.path}: .*Arduino Nano .* on /dev/ttyUSB0 is an Arduino Mega 2560"):
         check_image(nano, MEGA, "/dev/ttyUSB0")
-    assert caught.value.message == (
-        f"{nano.path}: this image is for an Arduino Nano (ATmega328P), but the board on /dev/ttyUSB0 is an "
-        "Arduino Mega 2560; choose another file."
-    )
     other = read_image(write_image(tmp_path / "other.hex", b"\x1e\x97\x03"))
-    with pytest.raises(UserError, match="is for a chip with signature 1e9703"):
+    with pytest.raises(UserError, match="1e9703"):
         check_image(other, MEGA, "/dev/ttyUSB0")
 
 
 def test_an_image_that_does_not_fit_is_refused_whoever_made_it(tmp_path: Path) -> None:
     image = read_image(write_image(tmp_path / "large.hex", size=NANO.space + 1))
     check_image(image, MEGA, "/dev/ttyUSB0")
-    with pytest.raises(UserError, match="reaches up to byte 30721, but an Arduino Nano .* has room for 30720"):
+    with pytest.raises(UserError, match="30721, .*Nano.* 30720"):
         check_image(image, NANO, "/dev/ttyUSB0")

@@ -65,15 +65,6 @@ def test_what_an_image_leaves_out_is_not_read(tmp_path: Path) -> None:
     assert (found.compared, found.differing, found.first) == (BLOCK + 3, 29, 100)
 
 
-def test_an_image_for_another_board_is_refused(tmp_path: Path) -> None:
-    path = write_image(tmp_path / "image.hex", ATMEGA328P)
-    with Version2(115200, MEGA2560) as board, pytest.raises(UserError, match="this image is for an Arduino Nano"):
-        compare_image(board.port, path)
-
-
 def test_a_bootloader_that_answers_wrongly_again_and_again_is_named() -> None:
-    with (
-        Version2(115200, MEGA2560, MEMORY, garble=99) as board,
-        pytest.raises(UserError, match="the bootloader stopped answering at address 0x0"),
-    ):
+    with Version2(115200, MEGA2560, MEMORY, garble=99) as board, pytest.raises(UserError, match="at address 0x0"):
         read_flash(board.port, Bootloader(dialect(Version2, 115200), MEGA2560), BLOCKS, told)

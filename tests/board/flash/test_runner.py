@@ -36,38 +36,36 @@ def test_output_is_watched_and_returned() -> None:
         ("one\\nlast words", "last words"),
         ("", "it said nothing"),
         ("OS error: ioctl(TIOCMGET): Inappropriate ioctl for device", "it said nothing"),
-        (
-            "avrdude OS error: ioctl(TIOCMGET): Inappropriate ioctl for device\\n"
-            "avrdude error: timeout communicating with programmer\\navrdude done.  Thank you.",
-            "avrdude error: timeout communicating with programmer; no bootloader answered: check --board and the "
-            "cable, press the board's reset button and try again.",
-        ),
+        ("OS error: ioctl(TIOCMGET): x\\navrdude error: timeout\\navrdude done.  Thank you.", "avrdude error: timeout"),
     ],
 )
 def test_a_failed_tool_is_quoted_where_it_names_the_problem(output: str, words: str) -> None:
-    with pytest.raises(UserError) as caught:
+    with pytest.raises(UserError, match=rf"exit code 3: {words}"):
         run_tool(tool(sys.executable, "-c", f"print('{output}'); raise SystemExit(3)"), lambda text: None)
-    assert caught.value.message == f"the tool failed with exit code 3: {words}"
 
 
 def test_a_tool_that_is_not_there_is_named() -> None:
-    with pytest.raises(UserError, match=r"the tool cannot be started: /nowhere/tool: No such file or directory\.$"):
+    with pytest.raises(UserError, match="/nowhere/tool: No such file"):
         run_tool(tool("/nowhere/tool"), lambda text: None)
 
 
-def test_a_tool_that_hangs_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("end", ["hangs", "Ctrl-C"])
+def test_a_tool_that_hangs_or_is_interrupted_is_ended(monkeypatch: pytest.MonkeyPatch, end: str) -> None:
     started: list[subprocess.Popen[bytes]] = []
-    real = subprocess.Popen
+    start: Any = subprocess.Popen
 
-    def start(*args: object, **options: object) -> subprocess.Popen[bytes]:
-        started.append(real(*args, **options))  # type: ignore[call-overload]
+    def keep(*words: Any, **options: Any) -> subprocess.Popen[bytes]:
+        started.append(start(*words, **options))
         return started[-1]
 
-    monkeypatch.setattr(subprocess, "Popen", start)
-    with pytest.raises(UserError, match=r"has not ended after 0\.3 s; reset the board"):
-        run_tool(
-            tool(sys.executable, "-c", "import threading; threading.Event().wait()", limit_s=0.3), lambda text: None
-        )
+    def look(text: str) -> None:
+        if end == "Ctrl-C":
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(subprocess, "Popen", keep)
+    waiting = tool(sys.executable, "-c", "import threading; threading.Event().wait()", limit_s=0.3)
+    with pytest.raises((UserError, KeyboardInterrupt), match=r"0\.3 s" if end == "hangs" else None):
+        run_tool(waiting, look)
     assert started[0].returncode == -signal.SIGTERM
 
 
@@ -95,21 +93,3 @@ def test_what_the_tool_started_ends_with_it(monkeypatch: pytest.MonkeyPatch) -> 
         assert select.select(started, [], [])[0] == started  # readable once the process has ended
     finally:
         os.close(started[0])
-
-
-def test_ctrl_c_ends_the_tool_too(monkeypatch: pytest.MonkeyPatch) -> None:
-    started: list[subprocess.Popen[bytes]] = []
-    start: Any = subprocess.Popen
-
-    def keep(*words: Any, **options: Any) -> subprocess.Popen[bytes]:
-        started.append(start(*words, **options))
-        return started[-1]
-
-    monkeypatch.setattr(subprocess, "Popen", keep)
-
-    def interrupt(text: str) -> None:
-        raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        run_tool(tool(sys.executable, "-c", "import threading; threading.Event().wait()"), interrupt)
-    assert started[0].returncode == -signal.SIGTERM
