@@ -68,8 +68,8 @@ def take_the_name(kind: str) -> Path:
 @pytest.mark.parametrize(
     ("kind", "words"),
     [
-        ("open", "is open to other users (mode 777)"),
-        ("readable", "is open to other users (mode 755)"),
+        ("open", r"other users \(mode 777\)"),
+        ("readable", r"other users \(mode 755\)"),
         ("link", "is not a folder"),
         ("file", "file exists"),
     ],
@@ -80,10 +80,8 @@ def test_what_cannot_be_trusted_is_not_used(kind: str, words: str) -> None:
         (folder / f"mega-{os.getpid()}").symlink_to("/dev/null")
     assert private_runtime_directories() == []
     assert ports.find_ports() == [] or not any(port.bench for port in ports.find_ports())
-    with pytest.raises(UserError) as caught:
+    with pytest.raises(UserError, match=f"{folder}.*{words}"):
         make_runtime_directory()
-    assert str(folder) in caught.value.message
-    assert words in caught.value.message
 
 
 def test_a_folder_of_another_user_is_not_used(place: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import re
 from pathlib import Path
 from typing import Any
 
@@ -110,38 +111,34 @@ def test_warnings_of_the_identification_go_along(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"status": "unfinished"}, 'its identification is "unfinished"; identify again and let it end,'),
-        ({"log": [log_facts()]}, "it was not validated on a second log; record another one and identify again with"),
-        (
-            {"log": [log_facts(), log_facts("validation", -0.5)]},
-            "on validation.csv (validation) it is worse than the arm file it began with, by more than chance explains "
-            "(0.015 against 0.01 rad²);",
-        ),
+        ({"status": "unfinished"}, '"unfinished"'),
+        ({"log": [log_facts()]}, "validated on a second log"),
+        ({"log": [log_facts(), log_facts("validation", -0.5)]}, r"validation\.csv .*\(0\.015 against 0\.01 rad²\)"),
         (
             {"log": [log_facts(), log_facts("validation"), log_facts("validation, changed controller", -0.2)]},
-            "(0.012 against 0.01 rad²), though on others it is not: it may have learnt its controller, not the arm;",
+            r"\(0\.012 against 0\.01 rad²\), .* its controller, not the arm",
         ),
-        ({"covariance": None, "method": "paper"}, "it does not say how uncertain it is (method paper does not);"),
-        ({"joints": (0, 1, 3)}, "joint 2 (wrist pitch) did not move in its logs, so nothing of it was identified;"),
-        ({"parameters": {"supply_mv": 12_000}}, "its drive.supply is 15 V, but the board's supply_mv says 12 V;"),
-        ({"parameters": {"period_ms": 5}}, "recorded at a control period of 1 ms, but the tuning is for 5 ms;"),
+        ({"covariance": None, "method": "paper"}, "how uncertain .*method paper"),
+        ({"joints": (0, 1, 3)}, r"joint 2 \(wrist pitch\) did not move"),
+        ({"parameters": {"supply_mv": 12_000}}, "drive.supply is 15 V, .*supply_mv says 12 V"),
+        ({"parameters": {"period_ms": 5}}, "1 ms, .* 5 ms"),
         (
             {"parameters": {"follower1.scale": 8_000}},
-            "its follower potentiometer 1 turns 5.24 rad from end to end, but the board's follower1.scale makes it 3.9",
+            r"potentiometer 1 turns 5\.24 rad .*follower1\.scale makes it 3\.9",
         ),
-        ({"parameters": None}, "the parameter table of its logs is not known; give the board's own (greywhale params"),
+        ({"parameters": None}, "parameter table .*greywhale params"),
     ],
 )
 def test_a_doubtful_model_is_refused_with_the_reason(tmp_path: Path, changes: dict[str, Any], words: str) -> None:
     sentence = refused(write_model(tmp_path / "model.toml", **changes))
-    assert words in sentence
+    assert re.search(words, sentence), sentence
     assert "more reason" not in sentence
 
 
 def test_a_bare_arm_file_is_no_model_but_can_be_forced(tmp_path: Path) -> None:
     path = tmp_path / "arm.toml"
     path.write_text(to_toml(default_arm(), {}).replace("[identification]", ""), encoding="utf-8")
-    assert "nothing in it was identified: it is an arm file, not a model; make a model from logs" in refused(path)
+    assert "an arm file, not a model" in refused(path)
     assert load_model(path, force=True).plants.shape == (1, len(plant_row(default_arm())))
 
 
@@ -168,10 +165,9 @@ def test_too_uncertain_names_the_number_its_size_and_the_motion_that_settles_it(
     facts["covariance"][index][index] = 1.5**2
     facts["parameter"][index]["standard_deviation"] = 1.5 * facts["parameter"][index]["value"]
     sentence = refused(write_model(tmp_path / "model.toml", facts=facts))
-    assert f"joint {joint} is too uncertain: arms that its logs allow follow" in sentence
     value = facts["parameter"][index]["value"]
-    assert f"most of all because {guilty} is {value:.2g} +- {1.5 * value:.2g} V" in sentence
-    assert f"; record again ({motion}" in sentence
+    for words in (f"joint {joint} is too uncertain", f"{guilty} is {value:.2g} +- {1.5 * value:.2g} V", motion):
+        assert words in sentence
 
 
 def test_a_number_that_no_motion_feels_may_be_uncertain(tmp_path: Path) -> None:
@@ -186,9 +182,7 @@ def test_a_number_that_no_motion_feels_may_be_uncertain(tmp_path: Path) -> None:
 
 def test_numbers_edited_after_the_identification_are_found(tmp_path: Path) -> None:
     path = write_model(tmp_path / "model.toml", facts=facts_of(load_arm("white_box")))
-    sentence = refused(path)
-    assert "its numbers are not those that were identified (joint0.torque_per_volt is" in sentence
-    assert "edited or put together from two arms; identify again, also after a change of the arm or" in sentence
+    assert "not those that were identified (joint0.torque_per_volt is" in refused(path)
 
 
 def other_arm(**link: float) -> ArmParameters:
@@ -200,10 +194,7 @@ def other_arm(**link: float) -> ArmParameters:
 def test_a_model_of_another_arm_is_found(tmp_path: Path) -> None:
     path, arm = write_model(tmp_path / "model.toml"), tmp_path / "arm.toml"
     arm.write_text(to_toml(other_arm(mass=0.5), {}), encoding="utf-8")
-    sentence = refused(path, arm=arm)
-    assert (
-        f"it is of another arm than {arm}: link[1].mass is {default_arm().link[1].mass} here and 0.5 there;" in sentence
-    )
+    assert f"{arm}: link[1].mass is {default_arm().link[1].mass} here and 0.5 there" in refused(path, arm=arm)
 
 
 def test_motors_friction_and_noise_may_differ_from_the_arm_file(tmp_path: Path) -> None:
@@ -230,15 +221,14 @@ def test_motors_friction_and_noise_may_differ_from_the_arm_file(tmp_path: Path) 
 def test_a_board_that_is_not_that_of_the_logs_is_found(tmp_path: Path, changes: dict[str, int], words: str) -> None:
     backup = tmp_path / "backup.toml"
     parameter_file.save(backup, table(**changes))
-    sentence = refused(write_model(tmp_path / "model.toml"), params=backup)
-    assert f"its logs were recorded with another parameter table than {backup}: {words}" in sentence
+    assert f"{backup}: {words}" in refused(write_model(tmp_path / "model.toml"), params=backup)
 
 
 def test_of_several_reasons_the_gravest_is_told_and_the_others_counted(tmp_path: Path) -> None:
     path = write_model(tmp_path / "model.toml", status="unfinished", log=[log_facts()], parameters={"supply_mv": 9000})
     sentence = refused(path)
-    assert 'its identification is "unfinished"; identify again and let it end, or go on with --force' in sentence
-    assert sentence.endswith("(2 more reasons would come after this one).")
+    assert '"unfinished"' in sentence
+    assert "(2 more reasons" in sentence
     assert len(load_model(path, force=True).doubts) == 3
 
 
@@ -249,27 +239,18 @@ def test_of_several_reasons_the_gravest_is_told_and_the_others_counted(tmp_path:
     ("changes", "words"),
     [
         ({"status": None}, "identification.status: field required"),
-        (
-            {"log": [log_facts() | {"improvement": "much"}]},
-            "identification.log.0.improvement: input should be a valid number",
-        ),
-        ({"parameters": {"kp": 1}}, "identification.parameters: kp is no parameter of a board"),
-        ({"parameters": {"period_ms": 99}}, "identification.parameters: period_ms is 99 ms, which is out of range"),
+        ({"log": [log_facts() | {"improvement": "much"}]}, "identification.log.0.improvement:"),
+        ({"parameters": {"kp": 1}}, "identification.parameters: kp"),
+        ({"parameters": {"period_ms": 99}}, "identification.parameters: period_ms is 99 ms"),
     ],
 )
 def test_a_broken_table_is_refused_even_with_force(tmp_path: Path, changes: dict[str, Any], words: str) -> None:
     path = write_model(tmp_path / "model.toml", **changes)
-    with pytest.raises(UserError) as caught:
+    with pytest.raises(UserError, match=f"^{path}: {words}"):
         load_model(path, force=True)
-    assert caught.value.message.startswith(f"{path}: {words}")
 
 
 def test_no_samples_are_bad_usage(tmp_path: Path) -> None:
-    with pytest.raises(UserError) as caught:
+    with pytest.raises(UserError, match="samples is 0") as caught:
         load_model(write_model(tmp_path / "model.toml"), samples=0)
-    assert (caught.value.exit_code, caught.value.message) == (BAD_USAGE, "samples is 0, but it must be at least 1.")
-
-
-def test_a_missing_file_is_named(tmp_path: Path) -> None:
-    with pytest.raises(UserError, match=r"none\.toml: cannot be read: no such file or directory"):
-        load_model(tmp_path / "none.toml")
+    assert caught.value.exit_code == BAD_USAGE

@@ -141,10 +141,9 @@ def test_an_interrupted_tuning_goes_on_to_the_same_bytes_on_any_number_of_thread
 
 @pytest.mark.slow
 def test_a_journal_of_another_tuning_is_refused(model: Model, tuned: tuple[TuningResult, Path]) -> None:
-    with pytest.raises(UserError, match="its seed is 0, now it is 1"):
-        run(model, journal=tuned[1], resume=True, seed=1)
-    with pytest.raises(UserError, match=r"its bounds is {}, now it is {.Ku.: \[3.0, 5.0\]}"):
-        run(model, journal=tuned[1], resume=True, bounds={"Ku": (3.0, 5.0)})
+    for request, words in (({"seed": 1}, "its seed is 0"), ({"bounds": {"Ku": (3.0, 5.0)}}, "its bounds is {}")):
+        with pytest.raises(UserError, match=words):
+            run(model, journal=tuned[1], resume=True, **request)
 
 
 @pytest.mark.slow
@@ -259,12 +258,12 @@ def test_silent_potentiometers_get_the_noise_of_ordinary_ones(model: Model) -> N
     ("request_", "sentence"),
     [
         ({"strategy": "all"}, "there is no strategy 'all'"),
-        ({"method": "magic"}, "there is no method 'magic'; there are default, paper, gwo-woa-relative"),
+        ({"method": "magic"}, "'magic'; there are default, paper, gwo"),
         ({"budget": 0}, "budget is 0, but it must be at least 1"),
         ({"seed": -1}, "seed is -1"),
         ({"threads": -1}, "threads is -1"),
         ({"bounds": {"Ku": (5.0, 3.0)}}, "give the lower one first"),
-        ({"method": "paper", "bounds": {"Ku": (3.0, 5.0)}}, "the paper's method has bounds of its own"),
+        ({"method": "paper", "bounds": {"Ku": (3.0, 5.0)}}, "bounds of its own"),
     ],
 )
 def test_wrong_requests_are_bad_usage(request_: dict[str, Any], sentence: str) -> None:
@@ -275,7 +274,5 @@ def test_wrong_requests_are_bad_usage(request_: dict[str, Any], sentence: str) -
 
 def test_a_ki_that_the_period_forbids_is_bad_usage(model: Model) -> None:
     slow = replace(model, table=model.table.with_raw({"period_ms": 20}))
-    with pytest.raises(
-        UserError, match="Ki reach to 500, but at a control period of 20 ms the firmware takes at most 204"
-    ):
+    with pytest.raises(UserError, match="Ki reach to 500, .* 20 ms .* at most 204"):
         run(slow, bounds={"Ki": (1.0, 500.0)})

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from greywhale.base.errors import UserError
 from greywhale.base.formats.checked_lines import CheckedLines, Kind
@@ -60,16 +63,58 @@ def test_a_torn_last_line_is_forgotten_wherever_it_was_torn(tmp_path: Path) -> N
 def test_what_never_was_such_a_file_is_left_alone(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "d"
     path.write_bytes(content)
-    with pytest.raises(UserError, match="line 1 is not a line of a voyage's diary; begin another one"):
+    with pytest.raises(UserError, match="line 1 is not a line of a voyage's diary"):
         CheckedLines(path, KIND, REQUEST, keep=True)
     assert path.read_bytes() == content
+
+
+@pytest.mark.parametrize(
+    ("spoil", "words"),
+    [
+        (lambda lines: [b"hello", *lines[1:]], "line 1 is not a line"),
+        (lambda lines: [lines[0], b"\xff\xfe", *lines[2:]], "line 2 is not a line"),
+        (lambda lines: [lines[0], b"[" * 100_000, *lines[2:]], "line 2 is not a line"),
+        (
+            lambda lines: [lines[0], lines[1].replace(b"0.3", b"0.4"), *lines[2:]],
+            "line 2 is damaged; remove it and all",
+        ),
+        (lambda lines: [lines[0].replace(b":9", b":8"), *lines[1:]], "line 1 is damaged; begin another one"),
+        (lambda lines: [lines[0], *lines[2:]], "line 2 is damaged"),
+        (lambda lines: [*lines[:2], lines[1], *lines[2:]], "line 3 is damaged"),
+        (lambda lines: [lines[0].replace(b":2,", b":1,", 1), *lines[1:]], "of another version of greywhale"),
+    ],
+)
+def test_a_damaged_line_is_named_with_the_remedy(tmp_path: Path, spoil: Any, words: str) -> None:
+    path = tmp_path / "d"
+    path.write_bytes(b"\n".join(spoil(written(path).split(b"\n"))))
+    with pytest.raises(UserError, match=words):
+        CheckedLines(path, KIND, REQUEST, keep=True)
+
+
+@given(st.data())
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_no_changed_byte_gives_another_line(tmp_path: Path, data: st.DataObject) -> None:
+    """It is told in a sentence, or torn off with the last line."""
+    path = tmp_path / "d"
+    whole = written(path)
+    place = data.draw(st.integers(0, len(whole) - 1))
+    spoilt = bytearray(whole)
+    spoilt[place] = data.draw(st.integers(0, 255).filter(lambda byte: byte != whole[place]))
+    path.write_bytes(spoilt)
+    with contextlib.suppress(UserError), CheckedLines(path, KIND, REQUEST, keep=True) as lines:
+        assert lines.found in (DAYS, DAYS[:-1])
+
+
+def test_places_that_cannot_hold_one_are_refused(tmp_path: Path) -> None:
+    for path, words in ((tmp_path, "is a directory"), (tmp_path / "no" / "folder", "no such file")):
+        with pytest.raises(UserError, match=f"cannot be used as a diary: {words}"):
+            CheckedLines(path, KIND, REQUEST, keep=False)
 
 
 def test_a_choice_is_named_before_what_follows_from_it(tmp_path: Path) -> None:
     path = tmp_path / "d"
     written(path)
-    sentence = 'the diary is of another voyage: its ship is "Whale", now it is "Wolf"; give the same again, or begin'
-    with pytest.raises(UserError, match=sentence):
+    with pytest.raises(UserError, match='its ship is "Whale", now it is "Wolf"'):
         CheckedLines(path, KIND, {**REQUEST, "crew": 8, "ship": "Wolf"}, keep=True)
 
 
@@ -88,7 +133,5 @@ def test_a_file_that_another_has_is_not_touched(tmp_path: Path, keep: bool) -> N
 
 
 def test_a_full_disk_is_said_with_the_remedy() -> None:
-    with pytest.raises(
-        UserError, match="/dev/full: cannot be written: no space left on device; make room and go on on"
-    ):
+    with pytest.raises(UserError, match="/dev/full: .*no space left on device; make room and go on on page two"):
         CheckedLines(Path("/dev/full"), KIND, REQUEST, keep=False)

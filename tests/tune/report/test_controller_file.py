@@ -62,9 +62,3 @@ def test_what_is_unfinished_or_not_steady_says_so_on_top(outcome: TuningResult, 
     assert tuning is not None
     assert (tuning["status"], tuning["margins_hold"]) == ("unfinished: interrupted; the best so far", False)
     assert tuning["margin"][0]["holds"] == [True, False, True, True]
-
-
-def test_equal_outcomes_give_equal_files(outcome: TuningResult, tmp_path: Path) -> None:
-    for name in ("a.toml", "b.toml"):
-        save(outcome, tmp_path / name)
-    assert (tmp_path / "a.toml").read_bytes() == (tmp_path / "b.toml").read_bytes()

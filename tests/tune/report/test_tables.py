@@ -123,13 +123,6 @@ def test_table_12_shows_a_joint_that_got_worse_and_no_floor_where_none_is_known(
     assert row(perfect, "Joint 0", "Mean")["lower by %"] is None
 
 
-def test_columns_are_aligned() -> None:
-    for line in tables.step_performance(evaluation(BEFORE), evaluation(AFTER, None)).text().splitlines():
-        assert line == line.rstrip()
-    lines = tables.fuzzy_sets(controllers("before_tuning"), controllers("table_10"), paper=True).text().splitlines()
-    assert len({len(line) for line in lines[1:]}) == 1
-
-
 @pytest.mark.parametrize(("strategy", "rows"), [("sf", 4), ("both", 12), ("mf", 8)])
 def test_a_tuning_fills_the_table_of_its_strategy_and_one_for_every_motion(strategy: str, rows: int) -> None:
     def held_out(name: str) -> SimpleNamespace:

@@ -117,12 +117,6 @@ def test_contenders_are_the_best_different_ones_in_order() -> None:
     np.testing.assert_array_equal(found.contenders(1)[0], found.best)
 
 
-def test_the_same_seed_gives_the_same_search() -> None:
-    one, other = run(budget=100)[0], run(budget=100)[0]
-    np.testing.assert_array_equal(one.best, other.best)
-    assert one.curve == other.curve
-
-
 def test_optimisers_are_given_back_when_a_search_is_cut_off(monkeypatch: pytest.MonkeyPatch) -> None:
     closed: list[Optimiser] = []
 
@@ -211,10 +205,6 @@ def test_one_bad_joint_does_not_spoil_the_others_tuning() -> None:
     after, before, costs = choose(marked(0, 0, 0, 0), rows, Table(*feuds))
     assert (costs <= before).all()
     assert after[:, 11].tolist() == [2, 0, 2, 2]
-
-
-def test_a_found_of_nothing_costs_infinitely_much() -> None:
-    assert np.isinf(SearchState.nothing(BEFORE).total)
 
 
 def test_the_journal_is_asked_before_anything_is_simulated(tmp_path: Path) -> None:
