@@ -62,6 +62,14 @@ def test_a_motion_is_never_planned_from_limits_that_were_read_wrong(tmp_path: Pa
     assert not list(tmp_path.iterdir())
 
 
+def test_a_motion_that_is_too_fast_never_starts_a_motor(tmp_path: Path) -> None:
+    quick = Trajectory(np.array([0.0, 0.1, 1.0]), np.array([[0.0] * 4, [0, 0, 1.0, 0], [0, 0, 1.0, 0]]))
+    with served() as (board, device), pytest.raises(UserError, match="joint 2 at"):
+        record_led(device, tmp_path / "log.csv", quick)
+    assert board.asked(schema.LeadRequest) == 0
+    assert not list(tmp_path.iterdir())
+
+
 def test_following_is_recorded_from_the_end_of_the_soft_start(tmp_path: Path) -> None:
     out = tmp_path / "log.csv"
     seconds = 5 * LEASE_MS / 1000  # the lease must be renewed meanwhile

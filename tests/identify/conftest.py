@@ -35,6 +35,10 @@ def rows(log: Log, kept: np.ndarray | slice) -> Log:
     return replace(log, **columns)
 
 
+def first(log: Log, seconds: float) -> Log:
+    return rows(log, slice(None, int(np.searchsorted(log.time, seconds))))
+
+
 def without(log: Log, share: float) -> Log:
     return rows(log, np.random.default_rng(1).random(len(log.time)) >= share)
 

@@ -23,14 +23,13 @@ from greywhale.identify.data import prepare
 from greywhale.protocol import schema
 from greywhale.protocol.schema import Board
 from greywhale.protocol.table import ParameterTable
+from tests.identify.conftest import rows
 from tools.support.recordings import TABLES, Recorded
 from tools.support.recordings import table_of as values_of
 
 
 def short(log: Log) -> Log:
-    return replace(
-        log, **{name: getattr(log, name)[:2000] for name in ("time", "leader", "follower", "voltage", "state")}
-    )
+    return rows(log, slice(2000))
 
 
 def still(log: Log) -> Log:
@@ -113,18 +112,17 @@ def test_a_log_whose_rows_were_changed_is_refused(
     """Also one that only judges the model."""
     log = replace(recorded.fit, condition=Condition(Check.CHANGED, remarks=("its check fails.",)))
     fit, validate = ([recorded.second], [log]) if validates else ([log], [])
-    with pytest.raises(UserError) as refused:
+    with pytest.raises(UserError, match=f"^{log.name}: its check fails"):
         identify(fit, white_box, validate=validate)
-    assert refused.value.message.startswith(f"{log.name}: its check fails; take the log as it was recorded")
 
 
 def test_another_controller_than_the_logs_is_refused(recorded: Recorded, white_box: ArmParameters) -> None:
     paper = values_of("table_10")
     other = paper.with_raw({"joint1.ku_mv": paper["joint1.ku_mv"] - 1}).with_name("other.toml")
-    with pytest.raises(UserError, match=r"recorded with parameter set 0x\w{4}, but there are only other.toml 0x\w{4}"):
+    with pytest.raises(UserError, match=r"0x\w{4}, but .* other.toml 0x\w{4}"):
         identify([recorded.changed], white_box, tables=[other])
     without = replace(recorded.fit, origin=Origin(period_ms=20))
-    with pytest.raises(UserError, match="its control period is 20 ms, but other.toml has 1 ms"):
+    with pytest.raises(UserError, match="20 ms, but other.toml has 1 ms"):
         table_of(without, [other])
     with pytest.raises(UserError, match="only one --controller"):
         table_of(without, [other, other])

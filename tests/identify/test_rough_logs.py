@@ -86,6 +86,7 @@ def test_ctrl_c_at_any_moment_keeps_the_best_model_so_far(
         [rows(shoulder.fit, slice(5000))], white_box, tables=tables, report=interrupt
     )
     assert not outcome.complete
+    assert outcome.text().startswith("UNFINISHED")
     outcome.save(tmp_path / "model.toml")
     facts = load_arm(tmp_path / "model.toml").identification
     assert facts is not None

@@ -13,7 +13,6 @@ from greywhale.arm import ArmParameters
 from greywhale.arm.plants import column
 from greywhale.base.errors import UserError
 from greywhale.files.arm import load_arm
-from greywhale.files.log import Log
 from greywhale.files.log.condition import Condition
 from greywhale.identify import IdentificationResult, identify
 from greywhale.identify.judge import CHANGED, FIT, SECOND, LogVerdict, judge, warnings_of
@@ -21,7 +20,7 @@ from greywhale.motion import human_reaches
 from greywhale.protocol.table import ParameterTable
 from greywhale.simulate import plant_row
 from greywhale.tune.model import load_model
-from tests.identify.conftest import alone
+from tests.identify.conftest import alone, first, rows
 from tools.support.recordings import Recorded, record
 
 
@@ -45,7 +44,7 @@ def test_search_can_go_on_from_a_model_of_the_same_arm(
     """With two short logs of one joint; a third, which it has not seen, is predicted well."""
     outcome.save(tmp_path / "model.toml")
     begin = load_arm(tmp_path / "model.toml")
-    logs = [_first(shoulder.fit, 5.0), _first(shoulder.changed, 5.0)]
+    logs = [first(shoulder.fit, 5.0), first(shoulder.changed, 5.0)]
     more = identify(logs, white_box, validate=[shoulder.second], tables=tables, begin=begin)
     orders = [order for order, _ in more.found.orders]
     assert orders[:3] == ["motors", "Coulomb friction", outcome.found.order], "nothing in between is tried again"
@@ -130,7 +129,7 @@ def test_without_its_controller_a_log_is_still_worth_something(shoulder: Recorde
     """Only the logged voltages remain; at a tenth of the rows, as another tool may log."""
     origin = replace(shoulder.fit.origin, param_crc=None, firmware=None, every_ticks=10)
     old = Condition(remarks=("it has no check.",))
-    log = _every(replace(_first(shoulder.fit, 6.0), origin=origin, condition=old), 10)
+    log = rows(replace(first(shoulder.fit, 6.0), origin=origin, condition=old), slice(None, None, 10))
     outcome = identify([log], white_box)
     assert outcome.verdicts[0].measure.startswith("logged voltages")
     assert outcome.verdicts[0].improvement > 0.8
@@ -148,17 +147,6 @@ def interrupt_at(stage: str) -> Callable[[str, float], None]:
     return report
 
 
-def test_interrupt_keeps_the_best_model(recorded: Recorded, white_box: ArmParameters, tmp_path: Path) -> None:
-    outcome = identify([_first(recorded.fit, 5.0)], white_box, report=interrupt_at("global search"))
-    assert not outcome.complete
-    assert outcome.found.order == "motors"
-    outcome.save(tmp_path / "model.toml")
-    facts = load_arm(tmp_path / "model.toml").identification
-    assert facts is not None
-    assert facts["status"].startswith("unfinished")
-    assert outcome.text().startswith("UNFINISHED")
-
-
 def test_interrupt_before_any_model_is_an_interrupt(recorded: Recorded, white_box: ArmParameters) -> None:
     with pytest.raises(KeyboardInterrupt):
         identify([recorded.fit], white_box, report=interrupt_at("fitting the motors"))
@@ -172,7 +160,7 @@ def test_the_share_moves_on_with_every_step_of_a_fit(shoulder: Recorded, white_b
         shares.setdefault(what, []).append(fraction)
         interrupt_at("choosing the model's order")(what, fraction)
 
-    identify([_first(shoulder.fit, 5.0)], white_box, report=report)
+    identify([first(shoulder.fit, 5.0)], white_box, report=report)
     told = shares["least squares from several starts"]
     assert told == sorted(told)
     starts = 4
@@ -270,16 +258,3 @@ def test_unknown_method_and_no_logs_are_bad_usage(recorded: Recorded, white_box:
     assert refused.value.exit_code == 2
     with pytest.raises(UserError, match="at least one log"):
         identify([], white_box)
-
-
-def _every(log: Log, rows: int) -> Log:
-    return _rows(log, slice(None, None, rows))
-
-
-def _first(log: Log, seconds: float) -> Log:
-    return _rows(log, slice(None, int(np.searchsorted(log.time, seconds))))
-
-
-def _rows(log: Log, rows: slice) -> Log:
-    columns = {name: getattr(log, name)[rows] for name in ("time", "leader", "follower", "voltage", "state")}
-    return replace(log, **columns)

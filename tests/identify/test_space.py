@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from greywhale.arm import ArmParameters
 from greywhale.arm.from_plant import arm_of
 from greywhale.arm.plants import column, columns
 from greywhale.files.arm import default_arm, load_arm
@@ -98,8 +97,3 @@ def test_text_keeps_every_value(tmp_path_factory: pytest.TempPathFactory) -> Non
     read = load_arm(path)
     assert read.identification == {"status": "complete", "log": [{"name": "a", "numbers": [1.0, 2.5]}]}
     assert read.model_copy(update={"identification": None}) == arm
-
-
-def test_identification_table_does_not_change_the_plant(white_box: ArmParameters) -> None:
-    told = white_box.model_copy(update={"identification": {"status": "complete"}})
-    np.testing.assert_array_equal(plant_row(told), plant_row(white_box))

@@ -49,14 +49,14 @@ def test_a_weaker_supply_means_slower_motion() -> None:
 
 def test_a_pose_outside_its_range_and_a_range_without_width_are_refused() -> None:
     arm = load_arm("white_box")
-    with pytest.raises(UserError, match=r"joint 1 is at 0\.45 rad, outside of the range -0\.50 to 0\.30 rad"):
+    with pytest.raises(UserError, match=r"joint 1 is at 0\.45 rad, .*-0\.50 to 0\.30 rad"):
         limits_of(arm, DEFAULTS, POSE, {1: (-0.5, 0.3)})
     with pytest.raises(UserError, match="range of joint 3 is -0.05 to 0.05 rad"):
         limits_of(arm, DEFAULTS, POSE, {3: (-0.05, 0.05)})
 
 
 def test_a_motor_that_cannot_lift_its_arm_is_named() -> None:
-    with pytest.raises(UserError, match="motor of joint 1 can hardly lift its own weight"):
+    with pytest.raises(UserError, match="motor of joint 1"):
         limits_of(load_arm("default"), table(joint1__ku_mv=300), POSE, {})
 
 
@@ -98,12 +98,9 @@ def test_a_range_that_is_none_is_refused(text: str) -> None:
 
 @pytest.mark.parametrize("text", ["1:1:-1", "1:0:0", "1:-9:1", "1:nan:1"])
 def test_a_range_that_is_empty_or_too_far_says_so(text: str) -> None:
-    with pytest.raises(UserError, match=r"--range is .* MIN must be less than MAX, and both within ±7 rad") as refused:
+    with pytest.raises(UserError, match="--range is .*±7 rad") as refused:
         parse_range(text)
     assert refused.value.exit_code == BAD_USAGE
-
-
-def test_a_range_is_a_joint_and_two_angles() -> None:
     assert parse_range("2:-0.5:0.75") == (2, (-0.5, 0.75))
 
 
@@ -116,5 +113,5 @@ def test_joints_that_are_not_in_use_stay_at_0() -> None:
     assert np.all(family(arm)[:, columns("stop_max")][:, 2:] == 0.0)
     with pytest.raises(UserError, match="--range names joint 2, which is not in use"):
         limits_of(arm, board, np.zeros(4), {2: (-0.5, 0.5)})
-    with pytest.raises(UserError, match="the arm file uses joints 0 and 1, but the board uses all four joints"):
+    with pytest.raises(UserError, match="joints 0 and 1, .* all four joints"):
         limits_of(arm, DEFAULTS, np.zeros(4), {})

@@ -20,7 +20,6 @@ from greywhale.files.arm import default_arm, load_arm
 from greywhale.files.leader import load_leader, save_leader
 from greywhale.files.log import read_log
 from greywhale.files.model import to_toml
-from greywhale.files.trajectory import Trajectory
 from greywhale.identify import identify
 from greywhale.motion import human_reaches
 from greywhale.protocol.firmware import JOINTS, STEP_LSB
@@ -171,15 +170,6 @@ def test_a_fault_ends_the_motion_and_is_named_and_the_pots_lead_again(bench: Run
         recording = record(device, tmp_path / "after.csv", 0.2, enable=True)
     assert recording.rows == 200
     assert not read_log(tmp_path / "log.csv").complete
-
-
-def test_a_motion_that_is_too_fast_is_refused_with_the_motors_off(bench: RunningBench, tmp_path: Path) -> None:
-    quick = Trajectory(np.array([0.0, 0.1, 1.0]), np.array([[0.0] * 4, [0, 0, 1.0, 0], [0, 0, 1.0, 0]]))
-    with Device(bench.port) as device:
-        with pytest.raises(UserError, match="moves joint 2 at"):
-            record_led(device, tmp_path / "log.csv", quick)
-        assert device.status().stop_reason is StopReason.RESET, "they were never on"
-    assert not (tmp_path / "log.csv").exists()
 
 
 @pytest.mark.parametrize(
