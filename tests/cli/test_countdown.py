@@ -17,11 +17,6 @@ from greywhale.protocol.ports import Port
 from tests.board.port_board import PortBoard
 
 
-@pytest.fixture(autouse=True)
-def _no_ports(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("greywhale.protocol.ports.find_ports", list)
-
-
 def on_a_terminal(monkeypatch: pytest.MonkeyPatch, answer: bool) -> None:
     monkeypatch.setattr(sys.stderr, "isatty", lambda: answer)
 

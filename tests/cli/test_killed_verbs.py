@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from greywhale.arm.export import urdf
-from greywhale.board.device import Device
 from greywhale.cli import entry
 from greywhale.files import parameter_file
 from greywhale.files.arm import load_arm
@@ -45,7 +44,6 @@ ALONE = {
 @pytest.fixture(autouse=True)
 def _quick_boards_and_inputs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(Device.__init__, "__defaults__", (0.0, 0.5))  # no bootloader needs time
     times = np.arange(0.0, 0.3, 0.05)
     save_leader(tmp_path / "motion.csv", Trajectory(times, 0.02 * np.sin(9.0 * times)[:, None] * np.ones(4)))
     parameter_file.save(tmp_path / "table.toml", ParameterTable.defaults().with_raw({"supply_mv": 12000}))

@@ -13,7 +13,6 @@ from pathlib import Path
 import click
 import pytest
 
-from greywhale.board import device
 from greywhale.cli import entry
 from greywhale.cli.output import QUIET, progress
 from tests.board.fake_board import FakeBoard
@@ -100,7 +99,6 @@ def test_a_reader_that_has_gone_ends_no_work(monkeypatch: pytest.MonkeyPatch) ->
 def test_stdout_is_one_object_and_the_steps_are_on_stderr_once(
     before: list[str], lines: list[str], tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(device.Device.__init__, "__defaults__", (0.0, 0.5))
     with FakeBoard() as board:
         out = tmp_path / "log.csv"
         arguments = ["record", "--enable", "-s", "0.1", "-o", str(out), "--port", board.port, "--json"]

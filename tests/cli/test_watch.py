@@ -14,7 +14,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from greywhale.board import device
 from greywhale.board.device import Device
 from greywhale.board.upload import read_parameters
 from greywhale.cli import entry
@@ -30,11 +29,6 @@ SAMPLE = schema.Sample(
     12_300, State.FOLLOWING, Fault.NONE, (4096, -4096, 0, 2048), (4055, -4096, 0, 0), (1500, 0, -3, 0)
 )
 LOOK = Look("/dev/ttyACM0", 12_300, SAMPLE, np.arange(8), (), "", 0)
-
-
-@pytest.fixture(autouse=True)
-def _quick(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(device.Device.__init__, "__defaults__", (0.0, 0.5))
 
 
 def test_a_table_says_what_there_is() -> None:

@@ -116,21 +116,11 @@ def test_without_room_for_the_header_nothing_stays(tmp_path: Path) -> None:
 
 def test_folders_and_devices_are_refused_before_anything_is_recorded(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "device")
-    for name, words in (("device", "not an ordinary file"), (".", "is a directory")):
+    for name, words in (("device", "not an ordinary file"), (".", "is a directory"), ("none/log", "no such file")):
         with pytest.raises(UserError, match=f"cannot be written: {words}"):
             LogWriter(tmp_path / name, ORIGIN).__enter__()
     assert stat.S_ISFIFO((tmp_path / "device").stat().st_mode)
     assert os.listdir(tmp_path) == ["device"]
-
-
-def test_the_old_file_stays_until_the_new_one_is_whole(tmp_path: Path) -> None:
-    path = tmp_path / "log.csv"
-    path.write_text("precious")
-    with LogWriter(path, ORIGIN) as log:
-        log.append(0.0, *ROW)
-        assert path.read_text() == "precious"
-        log.append(0.1, *ROW)
-    assert len(read_log(path).time) == 2
 
 
 def test_an_empty_recording_leaves_the_old_file_and_nothing_else(tmp_path: Path) -> None:
@@ -168,13 +158,6 @@ def test_what_cannot_be_brought_to_the_disk_stays_unfinished(tmp_path: Path, mon
     assert (len(log.time), log.complete) == (5, False)
 
 
-def test_the_file_has_the_rights_of_any_new_file(tmp_path: Path) -> None:
-    write(tmp_path / "log.csv")
-    other = tmp_path / "other"
-    other.touch()
-    assert stat.S_IMODE((tmp_path / "log.csv").stat().st_mode) == stat.S_IMODE(other.stat().st_mode)
-
-
 @pytest.mark.parametrize(
     ("time", "leader", "state"),
     [
@@ -207,17 +190,8 @@ def test_a_period_that_the_rows_contradict_is_refused(tmp_path: Path, voltages: 
         write_changing(every, period_ms)
         assert len(read_log(path, voltages).time) == 3000
     write_changing(1, 20)
-    with pytest.raises(UserError) as refused:
+    with pytest.raises(UserError, match=f"{path}: period_ms is 20 .* every 1 ms"):
         read_log(path, voltages)
-    assert refused.value.message == (
-        f"{path}: period_ms is 20 in the header, but by the time column voltages change every 1 ms: "
-        "it is the header of another log, or was edited."
-    )
-
-
-def test_a_folder_that_is_not_there_is_named(tmp_path: Path) -> None:
-    with pytest.raises(UserError, match=r"none/log\.csv: cannot be written: no such file or directory"):
-        write(tmp_path / "none" / "log.csv")
 
 
 def changed(folder: Path, old: str, new: str) -> Log:
@@ -234,9 +208,6 @@ def changed(folder: Path, old: str, new: str) -> Log:
     [
         ("following\n", "dancing\n", "line 12, column state: 'dancing' is not one of boot, disabled"),
         ("0.005000,", "0.000000,", "line 13, column time_s: time must increase"),
-        ("-0.300000,", "nan,", "line 12, column follower_2: nan is not a finite number"),
-        ("0.400000,-", "-", "line 12: 13 values where 14 columns are named"),
-        ("0.300000,", "\u0660.\u0663,", "line 12, column leader_2: '\u0660.\u0663' is not a number"),
         ("period_ms: 20", "period_ms: \u0662\u0660", "period_ms is '\u0662\u0660' in the header"),
         ("-0.300000,", "-57.3,", "line 12, column follower_2: -57.3 rad is beyond 8 rad; logs are in rad"),
         ("0.200000,", "8.001,", "line 12, column leader_1: 8.001 rad is beyond 8 rad"),

@@ -61,14 +61,10 @@ def test_a_log_from_before_a_parameter_was_added_has_its_default(layout: int) ->
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ("kp=", "kq=", "the header has the parameter joint0.kq, which this greywhale does not know; read the log with"),
+        ("kp=", "kq=", "joint0.kq"),
         ("supply_mv=15000", "supply_mv=\u0661", "a parameter in the header is no number: \u0661"),
         ("joint0: ", "joint7: ", "the header has the parameter joint7.ne_c, which"),
-        (
-            "period_ms=1",
-            "period_ms=51",
-            "a parameter in the header is wrong: period_ms is 51 ms, which is out of range",
-        ),
+        ("period_ms=1", "period_ms=51", "period_ms is 51 ms"),
         ("period_ms=1", "period_ms=one", "a parameter in the header is no number: could not convert"),
         ("period_ms=1", "period_ms=nan", "a parameter in the header is wrong: period_ms is nan"),
         ("period_ms=1", "period_ms", "'period_ms' in the header is not NAME=VALUE"),
@@ -81,7 +77,5 @@ def test_a_header_that_was_changed_is_refused(tmp_path: Path, old: str, new: str
     text = path.read_text()
     assert old in text
     path.write_text(text.replace(old, new, 1))
-    with pytest.raises(UserError) as error:
+    with pytest.raises(UserError, match=f"^{path}: .*{words}"):
         read_log(path)
-    assert error.value.message.startswith(f"{path}: ")
-    assert words in error.value.message

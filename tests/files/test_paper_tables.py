@@ -10,11 +10,6 @@ from greywhale.files.paper_tables import controller_names, paper_table
 from greywhale.files.parameter_file import load_table
 
 
-@pytest.mark.parametrize("name", ["before_tuning", "table_8", "table_9", "table_10"])
-def test_every_table_is_a_controller(name: str) -> None:
-    assert len(controller.load(paper_table(name)).joint) == 4
-
-
 def test_the_names_are_those_of_the_files_of_the_one_source() -> None:
     folder = paper_table("table_8").parent
     assert folder == Path(__file__).parents[2] / "shared" / "fuzzy_tables"

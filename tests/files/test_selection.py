@@ -61,8 +61,3 @@ def test_rows_without_following_motors_are_left_out() -> None:
     log.state[: 100 * RATE] = "soft_star"
     kept = informative(log, 50.0)
     assert kept.time.min() >= 100.0
-
-
-def test_the_same_log_gives_the_same_part() -> None:
-    log = log_of(300, {0: (0, 300), 1: (20, 90)})
-    assert np.array_equal(informative(log, 50.0).time, informative(log, 50.0).time)

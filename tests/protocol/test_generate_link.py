@@ -95,12 +95,7 @@ def test_a_changed_description_leaves_the_schema_hash_alone(copy: Path) -> None:
         ("parameters.toml", "default = 15000", "default = 2000", "supply_mv does not fit its type"),
         ("parameters.toml", '"0.630", "0.782"]', '"0.630"]', "kp does not fit its type"),
         ("parameters.toml", 'below = "limit_max"', 'below = "limit"', "limit_min is below limit, which"),
-        (
-            "parameters.toml",
-            'name = "rail_counts", type = "u8"',
-            'name = "rail_counts", type = "u16"',
-            "layout_hash = 0x",
-        ),
+        ("parameters.toml", '"rail_counts", type = "u8"', '"rail_counts", type = "u16"', "layout_hash = 0x"),
         ("parameters.toml", "layout = 3", "layout = 4", "layout_hash = 0x"),
     ],
 )
