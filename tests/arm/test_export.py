@@ -73,10 +73,3 @@ def test_only_a_file_that_holds_the_motors_is_called_identified(make_arm: Any) -
     arm = make_arm("white_box").model_copy(update={"name": "my arm, identified"})
     assert xml.fromstring(mjcf(arm)).get("model") == "my arm, identified"
     assert xml.fromstring(urdf(arm)).get("name") == "my arm"
-
-
-def test_every_link_of_a_urdf_has_a_rod_to_see_and_to_bump_into() -> None:
-    robot = xml.fromstring(urdf(default_arm()))
-    for use in ("visual", "collision"):
-        rods = robot.findall(f"link/{use}/geometry/cylinder")
-        assert [numbers(rod, "length") for rod in rods] == [[0.086], [0.14], [0.049], [0.172]]

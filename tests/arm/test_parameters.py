@@ -55,46 +55,24 @@ def test_default_motors_are_near_the_white_box_but_not_equal() -> None:
     [
         ("mass = 0.21\n", "mass = -0.21\n", "link[0].mass is -0.21, but it must be at least 1e-09"),
         ("mass = 0.0   ", "mass = -0.1   ", "tip.mass is -0.1, but it must be at least 0"),
-        (
-            "yy = 8.26e-5",
-            "yy = 8.26e-3",
-            "link[0].inertia: yy is 0.00826, more than xx + zz = 0.000258, which no body can have "
-            "(triangle inequality of moments of inertia); "
-            "the paper's Table 3 prints this value for link 0, 8.26e-5 is probably meant",
-        ),
+        ("yy = 8.26e-5", "yy = 8.26e-3", "link[0].inertia: yy is 0.00826, more than xx + zz = 0.000258"),
         ("zz = 1.13e-4", "zz = 1.14e-4", "link[2].inertia: zz is 0.000114, more than xx + yy = 0.0001133"),
         ("xx = 3.17e-5", "xx = 0", "link[1].inertia.xx is 0, but it must be at least 1e-18 and at most 1e+08."),
         ("centre = 0.07\n", "centre = 0.2\n", "link[1]: centre is 0.2 m, beyond the link's length of 0.14 m"),
-        (
-            "min = -2.55, max = 2.55",
-            "min = 2.55, max = -2.55",
-            "joint[0].stops: min is 2.55 rad, not below max = -2.55 rad",
-        ),
-        (
-            "resistance = 3.9",
-            "resistance = 0",
-            "joint[0].motor.resistance is 0, but it must be at least 1e-18 and at",
-        ),
+        ("min = -2.55, max = 2.55", "min = 2.55, max = -2.55", "joint[0].stops: min is 2.55 rad, not below max"),
+        ("resistance = 3.9", "resistance = 0", "joint[0].motor.resistance is 0, but it must be at least 1e-18"),
         ("coulomb = 0.078", "coulomb = 0.2", "joint[0].friction: breakaway is 0.1 N m, below coulomb = 0.2 N m"),
         ("stiffness = 320.0", "stiffness = 0.0", "joint[0].gear: half_gap is 0.004 rad, so stiffness must be above 0"),
         ("viscous = 0.055", "viscous = 0.055, viscosity = 1", "unknown key joint[0].motor.viscosity"),
         ("mass = 0.21", "mass = 1e308", "link[0].mass is 1e+308, but it must be at least 1e-09 and at most 10000."),
         ("gear_ratio = 0.8", "gear_ratio = 1e-30", "joint[0].motor.gear_ratio is 1e-30, but it must be at least 0.001"),
-        (
-            "coulomb = 0.078",
-            "coulomb = 1e7",
-            "joint[0].friction.coulomb is 10000000.0, but it must be at least 0",
-        ),
+        ("coulomb = 0.078", "coulomb = 1e7", "joint[0].friction.coulomb is 10000000.0, but"),
         ("gravity = 9.81", "gravity = 981", "gravity is 981, but it must be at least 0 and at most 100."),
         ("gravity = 9.81", "gravity = nan", "gravity is nan; it must be a finite number"),
         ("gravity = 9.81", 'gravity = "9.81"', 'gravity is "9.81", but it should be a valid number'),
         ("supply = 15.0", "supply = 150.0", "drive.supply is 150.0, but it must be greater than 0 and at most 60"),
         ("direction = 1,", "direction = 2,", "leader_pots.joint[0].direction is 2, but it should be 1 or -1"),
-        (
-            'motor_equation = "physical"',
-            'motor_equation = "printed"',
-            "motor_equation is \"printed\", but it should be 'physical' or 'paper'",
-        ),
+        ('motor_equation = "physical"', 'motor_equation = "printed"', 'motor_equation is "printed"'),
         ("[drive]\nsupply = 15.0", "[drives]\nsupply = 15.0", "unknown key drives; perhaps drive is meant"),
     ],
 )
@@ -111,11 +89,5 @@ def test_missing_joint_is_refused(tmp_path: Path) -> None:
     start, end = DEFAULT.index("[[joint]]             # 3"), DEFAULT.index("[drive]")
     path = tmp_path / "arm.toml"
     path.write_text(DEFAULT[:start] + DEFAULT[end:], encoding="utf-8")
-    with pytest.raises(UserError) as refused:
+    with pytest.raises(UserError, match="joint: it lists 3, .* four"):
         load_arm(path)
-    assert "joint: it lists 3, but the arm needs exactly four: base yaw, shoulder pitch" in refused.value.message
-
-
-def test_absent_file_is_one_sentence() -> None:
-    with pytest.raises(UserError, match="no-such-arm.toml: cannot be read"):
-        load_arm("no-such-arm.toml")

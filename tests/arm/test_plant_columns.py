@@ -49,28 +49,3 @@ def test_columns_hold_what_they_are_called(name: str) -> None:
         }
         found = {column.split(".")[1]: columns[column] for column in columns if column.startswith(f"joint{index}.")}
         assert found == expected
-
-
-def test_body_columns_hold_masses_and_lengths() -> None:
-    """The constants of docs/arm.md, worked out from the arm's links."""
-    arm = load_arm("default")
-    columns = named(arm)
-    one, two, three = arm.link[1:]
-    tip = arm.tip.mass
-    carried = two.mass + three.mass + tip
-    first1 = one.mass * one.centre + carried * one.length
-    first2 = two.mass * two.centre + three.mass * (two.length + three.centre) + tip * (two.length + three.length)
-    expected = {
-        "yaw": arm.link[0].inertia.yy,
-        "ixx1": one.inertia.xx,
-        "iyy1": one.inertia.yy + one.mass * one.centre**2 + carried * one.length**2,
-        "izz1": one.inertia.zz + one.mass * one.centre**2 + carried * one.length**2,
-        "ixx3": three.inertia.xx,
-        "ixx23": two.inertia.xx + three.inertia.xx,
-        "coupling": one.length * first2,
-        "gravity1": arm.gravity * first1,
-        "gravity2": arm.gravity * first2,
-    }
-    for name, value in expected.items():
-        assert columns[name] == pytest.approx(value, rel=1e-12), name
-    assert columns["iyy23"] - columns["izz23"] == pytest.approx(two.inertia.yy - two.inertia.zz, rel=1e-9)

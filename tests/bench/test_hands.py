@@ -100,9 +100,3 @@ def test_a_person_is_answered_in_words_and_told_when_the_hands_are_there(
         os.close(into)
         person.look()
     assert server.ending, "the end of the input ends the bench"
-
-
-def test_the_help_fits_a_small_terminal_and_names_real_commands() -> None:
-    for line in HELP.splitlines():
-        assert len(line) <= 80
-        assert line.split()[0] in (*commands.COMMANDS, commands.QUIT)
