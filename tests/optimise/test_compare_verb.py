@@ -43,29 +43,14 @@ def test_text_tables_and_files(capsys: Captured, tmp_path: Path) -> None:
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 
-def test_another_seed_other_costs(capsys: Captured) -> None:
-    answers = []
-    for seed in ("1", "2"):
-        assert entry.run([*QUICK, *BUDGET, "--seed", seed, "--json"]) == 0
-        answers.append(json.loads(capsys.readouterr().out)["median_cost"])
-    assert answers[0] != answers[1]
-
-
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
-        (("--budget", "0"), "budget is 0, but it must be at least 1."),
         (("--budget", "many"), "Invalid value for '--budget': 'many' is not a valid integer."),
         (("--methods", "gwo,newton"), "there is no method 'newton'; there are gwo-woa-relative, gwo-woa,"),
-        (("--functions", "cube"), "there is no function 'cube'; there are sphere,"),
         (("--functions", ","), "no function was chosen; there are sphere,"),
-        (("--settings", "plain,turned"), "there is no setting 'turned'; there are plain, shifted, rotated."),
-        (("--pack", "1000000"), "pack is 1000000, but it must be at most 10000."),
-        (("--dimensions", "1"), "dimensions is 1, but it must be at least 2."),
-        (("--seeds", "0"), "seeds is 0, but it must be at least 1."),
         (("--jobs", "0"), "Invalid value for '--workers' / '--jobs'"),
         (("--results", "r.csv", "--out", "r.csv"), "r.csv: this is the results file; write the report elsewhere."),
-        (("--pack", "2"), "the pack is 2, but gwo-woa-relative needs at least 3."),
         (("--out", "r.txt"), "r.txt: reports end in .csv, .png, .svg, .pdf."),
     ],
 )
@@ -79,12 +64,6 @@ def test_bad_usage_is_one_sentence_and_code_2(
     assert sentence in captured.err
     assert captured.err.count("\n") == 1
     assert list(tmp_path.iterdir()) == []
-
-
-def test_folder_that_is_not_there(capsys: Captured, tmp_path: Path) -> None:
-    path = tmp_path / "none" / "r.csv"
-    assert entry.run([*QUICK, *BUDGET, "--out", str(path)]) == 2
-    assert f"{path}: the folder {path.parent} does not exist; create it, or write elsewhere." in capsys.readouterr().err
 
 
 # `greywhale`, which says of each process of its own that it has begun.

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
@@ -27,17 +26,6 @@ def log(gain: float, seed: int = 1) -> Log:
     return Log("x.csv", Origin(), time, leader + noise, gain * leader, 0 * leader, state, 0, True)
 
 
-@pytest.mark.slow
-def test_the_same_logs_give_the_same_bytes(tmp_path: Path) -> None:
-    """As the kind with the most of a date and of random names in it; drawing/test_page.py has every kind."""
-    for name in ("a.svg", "b.svg"):
-        draw_following(tmp_path / name, [trace(log(0.8), "before"), trace(log(0.95), "after")], "Title")
-    first, second = ((tmp_path / name).read_bytes() for name in ("a.svg", "b.svg"))
-    assert first == second
-    assert len(first) > 10_000
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.svg", "b.svg"]
-
-
 def test_only_the_measured_part_is_drawn_and_starts_at_zero() -> None:
     one = trace(log(0.8), "before")
     assert one.time[0] == 0.0
@@ -47,10 +35,7 @@ def test_only_the_measured_part_is_drawn_and_starts_at_zero() -> None:
 
 def labels(traces: list[Trace]) -> list[str]:
     figure = follow.plot_following([replace(one, joints=(0,)) for one in traces], "Title")
-    try:
-        return [text.get_text() for text in figure.legends[0].get_texts()]
-    finally:
-        plt.close(figure)
+    return [text.get_text() for text in figure.legends[0].get_texts()]
 
 
 def test_leaders_of_the_same_motion_are_one_line_and_others_two() -> None:
@@ -71,19 +56,6 @@ def test_steps_that_are_played_again_are_one_leader_if_they_come_at_the_same_mom
     assert labels(drawn)[len(lines)] == "follower, first"
 
 
-def test_axes_have_units_and_titles_their_figures() -> None:
-    figure = follow.plot_following([trace(log(0.8), "before")], "A title")
-    try:
-        axes = figure.get_axes()
-        assert len(axes) == 12
-        assert [one.get_ylabel() for one in axes[:3]] == ["angle [rad]", "error [rad]", "voltage [V]"]
-        assert {one.get_xlabel() for one in axes[2::3]} == {"time [s]"}
-        assert "Joint 3, wrist roll" in axes[9].get_title()
-        assert figure.get_suptitle() == "A title"
-    finally:
-        plt.close(figure)
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("names", "size"),
@@ -97,10 +69,7 @@ def test_nothing_is_cut_off_overlaps_or_lacks_a_unit(names: tuple[str, ...], siz
     one = Trace("", time, leader, leader - error, (0.000123, 0.1, 1.23e-5, 0.1), 9.0 * np.sin(leader), 12.0)
     with style():
         figure = follow.plot_following([replace(one, label=name) for name in names], "A title")
-        try:
-            assert faults(figure) == []
-        finally:
-            plt.close(figure)
+        assert faults(figure) == []
 
 
 def test_a_noisy_voltage_shows_its_mean_and_the_leader_lies_on_top() -> None:
@@ -108,14 +77,11 @@ def test_a_noisy_voltage_shows_its_mean_and_the_leader_lies_on_top() -> None:
     still = np.zeros((len(time), 4))
     buzz = np.where(np.arange(len(time)) % 2, 3.0, 1.0)[:, None] * np.ones(4)
     figure = follow.plot_following([Trace("log", time, still, still, (0.0,) * 4, buzz, 15.0)], "Title")
-    try:
-        angle, voltage = figure.axes[0].get_lines(), figure.axes[2].get_lines()
-        assert max(angle, key=lambda line: line.get_zorder()).get_color() == looks.LEADER.colour
-        raw, mean = voltage[-2:]
-        assert raw.get_alpha() == 0.3
-        np.testing.assert_allclose(np.asarray(mean.get_ydata())[50:-50], 2.0, atol=0.05)
-    finally:
-        plt.close(figure)
+    angle, voltage = figure.axes[0].get_lines(), figure.axes[2].get_lines()
+    assert max(angle, key=lambda line: line.get_zorder()).get_color() == looks.LEADER.colour
+    raw, mean = voltage[-2:]
+    assert raw.get_alpha() == 0.3
+    np.testing.assert_allclose(np.asarray(mean.get_ydata())[50:-50], 2.0, atol=0.05)
 
 
 def test_voltages_are_drawn_within_their_limit() -> None:
@@ -128,16 +94,13 @@ def test_voltages_are_drawn_within_their_limit() -> None:
     assert labels([known])[-1] == "voltage limit, 12 V"
     assert labels([known, one])[-1] == "voltage limit, 12 V"
     figure = follow.plot_following([known], "Title")
-    try:
-        voltage = figure.axes[2]
-        assert voltage.get_ylabel() == "voltage [V]"
-        limits = voltage.get_lines()[:2]
-        assert sorted(float(np.asarray(line.get_ydata())[0]) for line in limits) == [-12.0, 12.0]
-        assert {line.get_linestyle() for line in limits} == {looks.VOLTAGE_LIMIT.style}
-        np.testing.assert_array_equal(np.asarray(voltage.get_lines()[2].get_ydata()), one.voltage[:, 0])
-        assert voltage.get_ylim()[0] < -12.0 < 12.0 < voltage.get_ylim()[1]
-    finally:
-        plt.close(figure)
+    voltage = figure.axes[2]
+    assert voltage.get_ylabel() == "voltage [V]"
+    limits = voltage.get_lines()[:2]
+    assert sorted(float(np.asarray(line.get_ydata())[0]) for line in limits) == [-12.0, 12.0]
+    assert {line.get_linestyle() for line in limits} == {looks.VOLTAGE_LIMIT.style}
+    np.testing.assert_array_equal(np.asarray(voltage.get_lines()[2].get_ydata()), one.voltage[:, 0])
+    assert voltage.get_ylim()[0] < -12.0 < 12.0 < voltage.get_ylim()[1]
 
 
 def test_the_supply_is_known_of_a_log_with_its_parameters_or_with_the_defaults() -> None:
@@ -152,12 +115,9 @@ def test_the_supply_is_known_of_a_log_with_its_parameters_or_with_the_defaults()
 def test_one_log_has_the_followers_colour_and_two_those_of_before_and_after() -> None:
     for names, colours in ((["x"], [looks.FOLLOWER]), (["x", "y"], [looks.BEFORE, looks.AFTER])):
         figure = follow.plot_following([replace(trace(log(0.8), ""), label=name) for name in names], "Title")
-        try:
-            lines = figure.axes[0].get_lines()
-            assert lines[0].get_color() == looks.LEADER.colour
-            assert [line.get_color() for line in lines[1:]] == [look.colour for look in colours]
-        finally:
-            plt.close(figure)
+        lines = figure.axes[0].get_lines()
+        assert lines[0].get_color() == looks.LEADER.colour
+        assert [line.get_color() for line in lines[1:]] == [look.colour for look in colours]
 
 
 def test_bad_requests_leave_no_file(tmp_path: Path) -> None:
@@ -177,9 +137,6 @@ def test_only_joints_in_use_have_a_panel(joints: tuple[int, ...]) -> None:
     one = replace(trace(log(0.8), "before"), joints=joints)
     with style():
         figure = follow.plot_following([one], "A title")
-        try:
-            assert faults(figure) == []
-            titles = [axes.get_title() for axes in figure.get_axes() if axes.get_title()]
-            assert [title[:7] for title in titles] == [f"Joint {joint}" for joint in joints]
-        finally:
-            plt.close(figure)
+        assert faults(figure) == []
+        titles = [axes.get_title() for axes in figure.get_axes() if axes.get_title()]
+        assert [title[:7] for title in titles] == [f"Joint {joint}" for joint in joints]

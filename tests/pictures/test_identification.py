@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
@@ -28,27 +27,21 @@ def test_nothing_is_cut_off_overlaps_or_lacks_a_unit(name: str) -> None:
     with style():
         costs = tuple(0.5 * 0.8**step for step in range(50))
         figure = responses() if name == "responses" else pictures.plot_convergence(costs, "paper-printed")
-        try:
-            assert faults(figure) == []
-        finally:
-            plt.close(figure)
+        assert faults(figure) == []
 
 
 @pytest.mark.parametrize("begun", ["white box", "model before"])
 def test_leader_follower_arms_and_errors_are_drawn(begun: str) -> None:
     figure = responses(begun)
-    try:
-        angle, error = figure.axes[:2]
-        words = [text.get_text() for text in figure.legends[0].get_texts()]
-        assert words == ["leader", "recorded follower", begun, "model"]
-        expected = [looks.LEADER, looks.FOLLOWER, looks.WHITE_BOX, looks.MODEL]
-        assert [line.get_color() for line in angle.get_lines()] == [look.colour for look in expected]
-        leader, follower, *simulated = (np.asarray(line.get_ydata()) for line in angle.get_lines())
-        np.testing.assert_allclose(follower, 0.99 * leader)
-        for line, angles in zip(error.get_lines(), simulated, strict=False):
-            np.testing.assert_allclose(np.asarray(line.get_ydata()), follower - angles)
-    finally:
-        plt.close(figure)
+    angle, error = figure.axes[:2]
+    words = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert words == ["leader", "recorded follower", begun, "model"]
+    expected = [looks.LEADER, looks.FOLLOWER, looks.WHITE_BOX, looks.MODEL]
+    assert [line.get_color() for line in angle.get_lines()] == [look.colour for look in expected]
+    leader, follower, *simulated = (np.asarray(line.get_ydata()) for line in angle.get_lines())
+    np.testing.assert_allclose(follower, 0.99 * leader)
+    for line, angles in zip(error.get_lines(), simulated, strict=False):
+        np.testing.assert_allclose(np.asarray(line.get_ydata()), follower - angles)
 
 
 @pytest.mark.slow
@@ -56,8 +49,5 @@ def test_leader_follower_arms_and_errors_are_drawn(begun: str) -> None:
 def test_only_joints_in_use_have_a_panel(joints: tuple[int, ...]) -> None:
     with style():
         figure = responses(joints=joints)
-        try:
-            assert faults(figure) == []
-            assert len(figure.axes) == 2 * len(joints)
-        finally:
-            plt.close(figure)
+        assert faults(figure) == []
+        assert len(figure.axes) == 2 * len(joints)

@@ -48,26 +48,19 @@ def test_the_users_own_settings_change_no_picture() -> None:
         assert matplotlib.rcParams["lines.linewidth"] == 9.0
 
 
-def test_pictures_are_as_wide_as_the_columns_of_a_paper() -> None:
-    assert (round(2.54 * WIDE, 6), round(2.54 * COLUMN, 6)) == (17.0, 8.5)
-
-
 def test_a_good_picture_has_no_faults_and_each_fault_is_seen() -> None:
     with style():
-        try:
-            assert faults(simple()) == []
-            figure = simple()
-            axes = figure.axes[0]
-            axes.set_xlabel("time")
-            axes.set_ylabel("")
-            axes.text(0.5, 1.5, "tiny", fontsize=4)
-            figure.text(0.98, 0.5, "over the edge")
-            figure.text(0.5, 0.5, "over the panel")
-            figure.text(0.5, 0.5, "over the same")
-            figure.legend([Line2D([], [], **looks.FLOOR.line)], ["floor"], loc="upper left")
-            said = "\n".join(faults(figure))
-        finally:
-            plt.close("all")
+        assert faults(simple()) == []
+        figure = simple()
+        axes = figure.axes[0]
+        axes.set_xlabel("time")
+        axes.set_ylabel("")
+        axes.text(0.5, 1.5, "tiny", fontsize=4)
+        figure.text(0.98, 0.5, "over the edge")
+        figure.text(0.5, 0.5, "over the panel")
+        figure.text(0.5, 0.5, "over the same")
+        figure.legend([Line2D([], [], **looks.FLOOR.line)], ["floor"], loc="upper left")
+        said = "\n".join(faults(figure))
     for fault in (
         "'time' has no unit", "has no label", "4 pt", "'over the edge' touches", "'over the panel' lies over",
         "'over the panel' and 'over the same' overlap", "as the legend shows 'floor': --",
@@ -79,76 +72,61 @@ def test_a_good_picture_has_no_faults_and_each_fault_is_seen() -> None:
 def test_a_legend_takes_the_rows_that_it_needs(words: list[str]) -> None:
     with style():
         figure = plt.figure(figsize=(WIDE, 3.0))
-        try:
-            height = legend_below(figure, [Line2D([], [], **looks.LEADER.line)] * len(words), words)
-            assert len(figure.legends) == 1
-            box = figure.legends[0].get_window_extent()
-            assert box.x0 >= 0.0
-            assert box.width <= WIDE * figure.dpi
-            assert height == pytest.approx(box.height / figure.dpi)
-            assert (height > 0.3) == (len(words) > 1)
-        finally:
-            plt.close(figure)
+        height = legend_below(figure, [Line2D([], [], **looks.LEADER.line)] * len(words), words)
+        assert len(figure.legends) == 1
+        box = figure.legends[0].get_window_extent()
+        assert box.x0 >= 0.0
+        assert box.width <= WIDE * figure.dpi
+        assert height == pytest.approx(box.height / figure.dpi)
+        assert (height > 0.3) == (len(words) > 1)
 
 
 def test_what_leaves_a_panel_is_marked_in_its_colour_and_nothing_else_is() -> None:
     x = np.arange(0.0, 10.0, 0.01)
     high, low = np.where(np.abs(x - 3.0) < 0.2, 1.2, 0.1), np.where(np.abs(x - 7.0) < 0.2, -0.5, 0.1)
-    figure, axes = plt.subplots()
-    try:
-        for y, look in ((high, looks.BEFORE), (low, looks.AFTER)):
-            axes.plot(x, y, **look.line)
-        assert mark_beyond(axes, 0.2, [(x, high, looks.BEFORE), (x, low, looks.AFTER)]) == pytest.approx(1.2)
-        assert axes.get_ylim() == (-0.2, 0.2)
-        marks = {(line.get_marker(), line.get_color()): list(line.get_xydata()) for line in axes.get_lines()[2:]}  # type: ignore[arg-type]
-        assert {key: len(places) for key, places in marks.items() if places} == {
-            ("^", looks.BEFORE.colour): 1,
-            ("v", looks.AFTER.colour): 1,
-        }
-        assert marks["^", looks.BEFORE.colour][0] == pytest.approx([2.8, 0.2], abs=0.02)
-    finally:
-        plt.close(figure)
+    _, axes = plt.subplots()
+    for y, look in ((high, looks.BEFORE), (low, looks.AFTER)):
+        axes.plot(x, y, **look.line)
+    assert mark_beyond(axes, 0.2, [(x, high, looks.BEFORE), (x, low, looks.AFTER)]) == pytest.approx(1.2)
+    assert axes.get_ylim() == (-0.2, 0.2)
+    marks = {(line.get_marker(), line.get_color()): list(line.get_xydata()) for line in axes.get_lines()[2:]}  # type: ignore[arg-type]
+    assert {key: len(places) for key, places in marks.items() if places} == {
+        ("^", looks.BEFORE.colour): 1,
+        ("v", looks.AFTER.colour): 1,
+    }
+    assert marks["^", looks.BEFORE.colour][0] == pytest.approx([2.8, 0.2], abs=0.02)
 
 
 def test_swings_that_leave_a_panel_all_the_time_are_marked_all_along() -> None:
     x = np.arange(0.0, 10.0, 0.01)
-    figure, axes = plt.subplots()
-    try:
-        axes.plot(x, np.sin(20.0 * x))
-        mark_beyond(axes, 0.2, [(x, np.sin(20.0 * x), looks.BEFORE)])
-        for marks in axes.get_lines()[1:]:
-            at = np.asarray(marks.get_xdata(), dtype=np.float64)
-            assert 8 <= len(at) <= 30
-            assert np.diff(at).max() < 2.0
-    finally:
-        plt.close(figure)
+    _, axes = plt.subplots()
+    axes.plot(x, np.sin(20.0 * x))
+    mark_beyond(axes, 0.2, [(x, np.sin(20.0 * x), looks.BEFORE)])
+    for marks in axes.get_lines()[1:]:
+        at = np.asarray(marks.get_xdata(), dtype=np.float64)
+        assert 8 <= len(at) <= 30
+        assert np.diff(at).max() < 2.0
 
 
 def test_a_panel_that_holds_everything_stays_as_it_is() -> None:
-    figure, axes = plt.subplots()
-    try:
-        x, y = np.array([0.0, 1.0]), np.array([0.0, 0.2])
-        axes.plot(x, y)
-        limits = axes.get_ylim()
-        assert mark_beyond(axes, 0.2, [(x, y, looks.BEFORE)]) == pytest.approx(0.2)
-        assert axes.get_ylim() == limits
-        assert len(axes.get_lines()) == 1
-    finally:
-        plt.close(figure)
+    _, axes = plt.subplots()
+    x, y = np.array([0.0, 1.0]), np.array([0.0, 0.2])
+    axes.plot(x, y)
+    limits = axes.get_ylim()
+    assert mark_beyond(axes, 0.2, [(x, y, looks.BEFORE)]) == pytest.approx(0.2)
+    assert axes.get_ylim() == limits
+    assert len(axes.get_lines()) == 1
 
 
 @pytest.mark.parametrize("highest", [5.0, 1e9])
 def test_a_logarithmic_axis_has_plain_numbers(highest: float) -> None:
     figure, axes = plt.subplots(figsize=(COLUMN, 2.5))
-    try:
-        axes.plot([1.0, 2.0], [0.2, highest])
-        make_logarithmic(axes)
-        figure.canvas.draw()
-        words = [label.get_text() for label in axes.get_yticklabels(which="both") if label.get_text()]
-        assert len(words) >= 3
-        assert all(float(word) > 0.0 for word in words)
-    finally:
-        plt.close(figure)
+    axes.plot([1.0, 2.0], [0.2, highest])
+    make_logarithmic(axes)
+    figure.canvas.draw()
+    words = [label.get_text() for label in axes.get_yticklabels(which="both") if label.get_text()]
+    assert len(words) >= 3
+    assert all(float(word) > 0.0 for word in words)
 
 
 @pytest.mark.parametrize("kind", KINDS)

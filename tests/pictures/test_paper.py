@@ -98,15 +98,12 @@ def test_the_errors_are_the_differences_and_what_leaves_the_panel_is_marked() ->
     drawn = traces()
     with style():
         figure = curves.plot_responses(drawn, drawn[0], "Title", "leader less follower")
-    try:
-        angle, strip = figure.axes[:2]
-        assert [line.get_color() for line in angle.get_lines()] == [one.look.colour for one in drawn]
-        for line, one in zip(strip.get_lines(), drawn[1:], strict=False):
-            np.testing.assert_allclose(np.asarray(line.get_ydata()), drawn[0].angles[:, 0] - one.angles[:, 0])
-            assert (line.get_color(), line.get_linestyle()) == (one.look.colour, one.look.style)
-        assert strip.get_ylim() == (-curves.LARGEST_ERROR, curves.LARGEST_ERROR)
-        words = [text.get_text() for text in figure.legends[0].get_texts()]
-        assert words[4] == "error: leader less follower"
-        assert words[5].startswith("beyond ±0.2 rad (up to ")
-    finally:
-        plt.close(figure)
+    angle, strip = figure.axes[:2]
+    assert [line.get_color() for line in angle.get_lines()] == [one.look.colour for one in drawn]
+    for line, one in zip(strip.get_lines(), drawn[1:], strict=False):
+        np.testing.assert_allclose(np.asarray(line.get_ydata()), drawn[0].angles[:, 0] - one.angles[:, 0])
+        assert (line.get_color(), line.get_linestyle()) == (one.look.colour, one.look.style)
+    assert strip.get_ylim() == (-curves.LARGEST_ERROR, curves.LARGEST_ERROR)
+    words = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert words[4] == "error: leader less follower"
+    assert words[5].startswith("beyond ±0.2 rad (up to ")

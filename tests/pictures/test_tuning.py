@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -52,13 +51,6 @@ def y_of(line: Line2D) -> Floats:
     return np.asarray(line.get_ydata(), dtype=np.float64)
 
 
-@pytest.fixture(scope="module", autouse=True)
-def _closed_at_the_end() -> Iterator[None]:
-    yield
-    figure_of.cache_clear()
-    plt.close("all")
-
-
 @cache
 def figure_of(name: str) -> Figure:
     """Tests only look at it."""
@@ -94,12 +86,9 @@ def test_a_panel_without_change_says_so_among_others() -> None:
     before, after = controllers("before_tuning"), controllers("before_tuning").copy()
     after[2] = controllers("table_10")[2]
     figure = pictures.plot_sets(before, after)
-    try:
-        unchanged = ["unchanged" in axes.get_title() for axes in figure.axes]
-        assert unchanged == [True] * 4 + [False] * 2 + [True] * 2
-        assert [len(axes.get_lines()) for axes in figure.axes] == [3] * 4 + [6] * 2 + [3] * 2
-    finally:
-        plt.close(figure)
+    unchanged = ["unchanged" in axes.get_title() for axes in figure.axes]
+    assert unchanged == [True] * 4 + [False] * 2 + [True] * 2
+    assert [len(axes.get_lines()) for axes in figure.axes] == [3] * 4 + [6] * 2 + [3] * 2
 
 
 def test_every_follower_looks_the_same_in_all_panels_and_in_the_legend() -> None:
@@ -119,13 +108,6 @@ def test_an_error_that_leaves_its_panel_is_marked() -> None:
     marks = [line for line in error.get_lines() if line.get_marker() in ("^", "v") and len(x_of(line))]
     assert {line.get_color() for line in marks} == {looks.BEFORE.colour, looks.AFTER.colour, looks.FLOOR.colour}
     assert any("beyond ±0.2 rad (up to 1.2)" in text.get_text() for text in figure.legends[0].get_texts())
-
-
-def test_costs_have_a_unit() -> None:
-    assert pictures.cost_words("paper") == "best J = ITAE [rad s²] + ITAU [V s²]"
-    assert "1: before tuning" in pictures.cost_words("cma-es")
-    figure = figure_of("convergence")
-    assert figure.get_supylabel() == pictures.cost_words("default")
 
 
 def test_the_sets_have_their_corners_where_the_board_has_them() -> None:
@@ -216,23 +198,17 @@ def test_only_joints_in_use_have_a_panel(joints: tuple[int, ...]) -> None:
             pictures.plot_convergence(costs, "Convergence", pictures.cost_words("default"), joints),
         )
         for figure in figures:
-            try:
-                assert faults(figure) == []
-                told = " ".join(axes.get_title() + axes.get_title(loc="left") for axes in figure.get_axes())
-                assert {joint for joint in range(4) if f"Joint {joint}" in told} == set(joints)
-            finally:
-                plt.close(figure)
+            assert faults(figure) == []
+            told = " ".join(axes.get_title() + axes.get_title(loc="left") for axes in figure.get_axes())
+            assert {joint for joint in range(4) if f"Joint {joint}" in told} == set(joints)
 
 
 def test_the_lowest_panel_of_each_column_has_its_axis() -> None:
     costs = [(np.arange(10, 310, 10), 1.0 / np.arange(10, 310, 10))] * 4
     figure = pictures.plot_convergence(costs, "Convergence", pictures.cost_words("default"), (0, 1, 3))
-    try:
-        assert [axes.get_xlabel() for axes in figure.axes] == ["", "evaluations", "evaluations"]
-        figure.canvas.draw()
-        assert figure.axes[1].xaxis.get_major_ticks()[0].label1.get_visible()
-    finally:
-        plt.close(figure)
+    assert [axes.get_xlabel() for axes in figure.axes] == ["", "evaluations", "evaluations"]
+    figure.canvas.draw()
+    assert figure.axes[1].xaxis.get_major_ticks()[0].label1.get_visible()
 
 
 def test_an_error_of_an_unused_joint_is_not_spoken_of() -> None:
@@ -241,7 +217,4 @@ def test_an_error_of_an_unused_joint_is_not_spoken_of() -> None:
         name: replace(one, angles=np.hstack([leader[:, :1], one.angles[:, 1:]])) for name, one in followers.items()
     }
     figure = pictures.plot_responses(time, leader, still, "Response", (0,))
-    try:
-        assert not any("beyond" in text.get_text() for text in figure.legends[0].get_texts())
-    finally:
-        plt.close(figure)
+    assert not any("beyond" in text.get_text() for text in figure.legends[0].get_texts())

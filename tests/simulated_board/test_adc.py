@@ -63,35 +63,6 @@ def test_a_single_conversion_starts_at_the_next_adc_clock(program: MakeProgram) 
         assert 13 * 32 <= took <= 14 * 32 + 40
 
 
-@pytest.mark.parametrize("chip", CHIPS)
-@pytest.mark.parametrize(
-    ("input_mv", "count"),
-    [(0, 0), (4.8, 0), (4.9, 1), (1234.5, 252), (2500, 512), (4995, 1022), (5000, 1023), (6000, 1023)],
-)
-def test_the_result_is_the_input_over_the_reference(
-    program: MakeProgram, chip: str, input_mv: float, count: int
-) -> None:
-    source = """
-    volatile uint16_t result[8];
-    int main(void) {
-        ADCSRA = _BV(ADEN) | 5;
-        for (uint8_t i = 0; i < 8; ++i) {
-            ADMUX = 0x40 | i; ADCSRA |= _BV(ADSC); while (ADCSRA & _BV(ADSC)); result[i] = ADC;
-        }
-        DONE();
-    }
-    """
-    run = program(source, chip)
-    for channel in range(8):
-        volts = np.zeros(8)
-        volts[channel] = input_mv
-        run.board.set_millivolts(volts)
-        run.finish()
-        expected = [0] * 8
-        expected[channel] = count
-        assert run.u16("result") == expected
-
-
 EACH = """
 volatile uint16_t result[8];
 int main(void) {
@@ -102,6 +73,25 @@ int main(void) {
     DONE();
 }
 """
+
+
+@pytest.mark.parametrize("chip", CHIPS)
+@pytest.mark.parametrize(
+    ("input_mv", "count"),
+    [(0, 0), (4.8, 0), (4.9, 1), (1234.5, 252), (2500, 512), (4995, 1022), (5000, 1023), (6000, 1023)],
+)
+def test_the_result_is_the_input_over_the_reference(
+    program: MakeProgram, chip: str, input_mv: float, count: int
+) -> None:
+    run = program(EACH, chip)
+    for channel in range(8):
+        volts = np.zeros(8)
+        volts[channel] = input_mv
+        run.board.set_millivolts(volts)
+        run.finish()
+        expected = [0] * 8
+        expected[channel] = count
+        assert run.u16("result") == expected
 
 
 def test_a_floating_input_reads_what_the_conversion_before_left(program: MakeProgram) -> None:
