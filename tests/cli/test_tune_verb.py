@@ -188,6 +188,7 @@ def test_doubts_go_along_into_text_and_file(no_floors: None, tmp_path: Path, cap
             {"status": "unfinished", "period_ms": 20, "supply_v": 12.0},
             ["not finished", "period_ms = 20, but this board has 1", "supply_mv = 12000, but this board has 15000"],
         ),
+        ({"board": "nano328"}, ["for the board nano328, but this board is a mega2560"]),
         ({"margins_hold": False}, ["a margin does not hold"]),
         (
             {"margins_hold": False, "notes": [f"joint {joint}, at rest: it turns round" for joint in range(4)]},

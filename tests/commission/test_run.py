@@ -169,7 +169,7 @@ def test_a_model_of_another_arm_is_refused_before_it_moves_the_board(rig: Simula
     joints[1]["motor"]["resistance"] *= 5.0
     other = arm.model_validate(arm.model_dump() | {"joint": joints}, strict=False)
     path = write_model(options().out.parent / "other.toml", other)
-    with pytest.raises(UserError, match=r"other.toml is a model of another arm: joint 1"):
+    with pytest.raises(UserError, match="other.toml .*: joint 1"):
         commission(options(model=path))
     assert all(table == rig.before for table in rig.played), "nothing but the controllers from before has run"
 
@@ -180,7 +180,7 @@ def test_a_finished_commissioning_needs_no_arm_to_tell_its_story_again(rig: Simu
 
 
 def test_a_model_of_another_arm_file_is_refused_before_anything_moves(rig: SimulatedRig, options: Make) -> None:
-    with pytest.raises(UserError, match=r"model.toml: it is of another arm than white_box"):
+    with pytest.raises(UserError, match="model.toml: .* white_box"):
         commission(options(arm_file="white_box"))
     assert rig.played == []
 
@@ -262,6 +262,6 @@ def test_of_an_arm_with_two_joints_those_are_tried_and_the_others_keep_what_they
 
 def test_an_arm_file_of_other_joints_is_refused(tmp_path: Path, rig: SimulatedRig, options: Make) -> None:
     (tmp_path / "arm.toml").write_text(arm_toml(load_arm("two_joints"), "Two joints."), encoding="utf-8")
-    with pytest.raises(UserError, match="the arm file uses joints 0 and 1, but the board uses all four joints"):
+    with pytest.raises(UserError, match="joints 0 and 1, .* all four joints"):
         commission(options(model=None, arm_file=str(tmp_path / "arm.toml")))
     assert rig.played == []

@@ -60,7 +60,7 @@ def test_friction_that_holds_a_joint_gets_a_larger_motion(book: CommissioningJou
 
 def test_a_joint_that_cannot_move_is_named(book: CommissioningJournal) -> None:
     blocked = with_joint(default_arm(), 2, "friction", coulomb=50.0, breakaway=50.0)
-    with pytest.raises(UserError, match=r"joint 2 \(wrist pitch\) did not move when led by 0.4 rad") as caught:
+    with pytest.raises(UserError, match=r"joint 2 \(wrist pitch\) did not move") as caught:
         stuck(SimulatedRig(blocked), book)
     assert "joint 1" not in caught.value.message
     assert book.get("first motion") is None
@@ -74,12 +74,9 @@ def test_a_joint_that_runs_the_wrong_way_is_named() -> None:
     assert shares_moved(log) == pytest.approx([1.0, 0.9, -0.6, 0.05], abs=0.05)
 
 
-def test_a_board_that_fits_its_arm_file_is_taken() -> None:
-    refuse_uncalibrated(default_arm(), ParameterTable.defaults())
-
-
 def test_a_joint_that_was_never_calibrated_is_named() -> None:
     """The arm file says where its potentiometer stands; the board still has the default."""
+    refuse_uncalibrated(default_arm(), ParameterTable.defaults())
     arm = with_pot(default_arm(), 1, centre=0.6)
     with pytest.raises(UserError, match=r"joint 1 \(shoulder pitch\) was never calibrated: .* 0.60 rad"):
         refuse_uncalibrated(arm, ParameterTable.defaults())

@@ -43,16 +43,8 @@ def test_the_demo_tells_its_story_and_proves_its_controllers_on_the_arm(
     recordings = ["before", "after", "proven", "practice", "check", "check_changed"]
     leaders = ["leader", "rest_leader", "practice_leader", "check_leader", "check_changed_leader"]
     pictures = ["following.png", "sets.png", "convergence.png"]
-    assert sorted(path.name for path in out.iterdir()) == sorted(
-        [
-            "model.toml",
-            "controller.toml",
-            "summary.json",
-            "commission",
-            *pictures,
-            *(f"{name}.csv" for name in recordings + leaders),
-        ]
-    )
+    others = {"model.toml", "controller.toml", "summary.json", "commission", *pictures}
+    assert {path.name for path in out.iterdir()} == others | {f"{name}.csv" for name in recordings + leaders}
     assert json.loads((out / "summary.json").read_text()) == result.as_dict()
     for picture in result.pictures:
         assert picture.read_bytes().startswith(b"\x89PNG\r\n")
@@ -115,11 +107,8 @@ def test_why_the_arms_are_not_at_the_start_of_a_motion_is_told(tmp_path: Path) -
     arm = arm.model_copy(update={"joint": joints, "follower_pots": bank})
     (tmp_path / "arm.toml").write_text(arm_toml(arm, "Other potentiometers."))
     motions = {
-        "far.csv": (
-            1.5,
-            "far.csv: the motion begins with joint 2 at 1.50 rad, but the follower's stops let it .* 1.00",
-        ),
-        "home.csv": (0.0, "stands at 0.00 rad, but the board reads .* does not know these potentiometers"),
+        "far.csv": (1.5, "far.csv: .* joint 2 at 1.50 rad, .* 1.00"),
+        "home.csv": (0.0, "stands at 0.00 rad, but the board reads .* does not know"),
     }
     with lock_step("--arm", str(tmp_path / "arm.toml")) as bench:
         for name, (angle, sentence) in motions.items():

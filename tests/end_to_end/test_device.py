@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
@@ -11,12 +10,9 @@ import pytest
 
 from greywhale.base.errors import UserError
 from greywhale.board.device import Device
-from greywhale.board.record import record
 from greywhale.board.upload import upload_controller
-from greywhale.cli import entry
-from greywhale.files.log import read_log
 from greywhale.protocol import schema
-from greywhale.protocol.schema import Fault, State, StopReason
+from greywhale.protocol.schema import Fault, State
 from greywhale_sim.lockstep import LockStepBench
 from greywhale_sim.words import lock_step
 
@@ -62,51 +58,6 @@ def test_a_power_cut_during_a_save_keeps_the_old_set(start: Start, tmp_path: Pat
         new = upload_controller(device, TABLES / "table_10.toml").param_crc
     with Device(bench.port) as device:
         assert device.hello.param_crc == new != old
-
-
-@pytest.mark.slow
-def test_a_broken_potentiometer_ends_the_recording(start: Start, tmp_path: Path) -> None:
-    bench = start()
-    reported: list[str] = []
-
-    def break_it(what: str, fraction: float) -> None:
-        if what == "recording" and not reported:
-            reported.append(what)
-            bench.command("pot follower 2 open")
-
-    with Device(bench.port) as device, pytest.raises(UserError, match="potentiometer 2"):
-        record(device, tmp_path / "log.csv", 60.0, enable=True, progress=break_it)
-    assert reported
-    assert not bench.command("status")["motors_enabled"]
-    assert not read_log(tmp_path / "log.csv").complete
-
-
-@pytest.mark.slow
-def test_info_names_broken_potentiometers_before_anyone_enables(
-    start: Start, capsys: pytest.CaptureFixture[str]
-) -> None:
-    bench = start()
-    bench.command("pot leader 1 shorted")
-    bench.command("pot follower 3 open")
-    assert entry.run(["info", "--port", bench.port]) == 0
-    told = capsys.readouterr().out
-    broken = re.findall(r"(leader|follower) potentiometer (\d) reads (\d+)\.\.(\d+) of 1023, at a rail", told)
-    assert broken == [("leader", "1", "1023", "1023"), ("follower", "3", "0", "0")]
-
-
-@pytest.mark.slow
-def test_ctrl_c_stops_the_motors(start: Start, tmp_path: Path) -> None:
-    bench = start()
-
-    def press(what: str, fraction: float) -> None:
-        if what == "recording":
-            raise KeyboardInterrupt
-
-    with Device(bench.port) as device:
-        with pytest.raises(KeyboardInterrupt):
-            record(device, tmp_path / "log.csv", 60.0, enable=True, progress=press)
-        assert device.status().stop_reason is StopReason.HOST
-        assert not bench.command("status")["motors_enabled"]
 
 
 @pytest.mark.slow

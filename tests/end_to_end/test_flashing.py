@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
 from collections.abc import Callable
 from pathlib import Path
 
@@ -10,11 +9,9 @@ import pytest
 
 from greywhale.base.errors import UserError
 from greywhale.board import flash
-from greywhale.board.device import Device
 from greywhale.board.flash.bootloader import Bootloader, Dialect, find_bootloader
 from greywhale.cli.story import BenchProcess
 from greywhale.protocol import schema
-from greywhale.protocol.frames import encode_frame
 from greywhale_sim.assemble import BUILDS
 from greywhale_sim.words import lock_step
 
@@ -62,50 +59,3 @@ def test_neither_a_wrong_name_nor_the_other_boards_image_reaches_a_board(monkeyp
         with pytest.raises(UserError, match="this image is for an Arduino Nano"):
             flash.flash(bench.port, hex_file=NANO_IMAGE)
         assert bench.command("status")["in_bootloader"]
-
-
-OTHER_PROTOCOL = """
-#include <avr/io.h>
-#include <avr/pgmspace.h>
-#include <avr/sleep.h>
-#include <stdint.h>
-/* A firmware of another protocol version: answers each hello with the frame of its sequence number. */
-static const uint8_t frames[256][32] PROGMEM = {@FRAMES@};
-int main(void) {
-    uint8_t received[64], n = 0;
-    UCSR0A = _BV(U2X0);
-    UBRR0 = 1; /* 1 Mbaud */
-    UCSR0B = _BV(RXEN0) | _BV(TXEN0);
-    for (;;) {
-        while (!(UCSR0A & _BV(RXC0))) {}
-        uint8_t byte = UDR0;
-        if (byte) { received[n++ & 63] = byte; continue; }
-        n = 0;
-        const uint8_t* frame = frames[received[2]]; /* COBS: code, type, sequence number, ... */
-        uint8_t size = pgm_read_byte(frame);
-        while (size--) {
-            while (!(UCSR0A & _BV(UDRE0))) {}
-            UDR0 = pgm_read_byte(++frame);
-        }
-    }
-}
-"""
-
-
-@pytest.mark.slow
-def test_a_firmware_of_another_protocol_version_is_named(tmp_path: Path) -> None:
-    payload = bytes([schema.PROTOCOL + 1]) + b"a later hello"
-    rows = []
-    for sequence in range(256):
-        frame = encode_frame(schema.HelloReply.TYPE, sequence, payload)
-        rows.append("{" + ",".join(str(byte) for byte in (len(frame), *frame)) + "}")
-    source, elf, hex_file = (tmp_path / f"other.{ending}" for ending in ("c", "elf", "hex"))
-    source.write_text(OTHER_PROTOCOL.replace("@FRAMES@", ",\n".join(rows)))
-    subprocess.run(["avr-gcc", "-mmcu=atmega2560", "-Os", "-Wall", "-Werror", "-o", elf, source], check=True)
-    subprocess.run(["avr-objcopy", "-O", "ihex", elf, hex_file], check=True)
-    with lock_step("--firmware", str(hex_file)) as bench, pytest.raises(UserError) as caught:
-        Device(bench.port)
-    message = caught.value.message
-    assert f"protocol version {schema.PROTOCOL + 1}" in message
-    assert f"version {schema.PROTOCOL}" in message
-    assert "greywhale flash" in message

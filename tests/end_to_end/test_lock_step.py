@@ -120,53 +120,6 @@ def test_a_broken_potentiometer_stops_the_motors(
     assert host.bench.motors_enabled
 
 
-def test_enable_is_refused_while_a_potentiometer_is_broken(lock_step: Any) -> None:
-    host = lock_step()
-    host.bench.follower_pots.set_wiring(2, Wiring.OPEN)
-    host.run(0.1)
-    with pytest.raises(AssertionError) as refused:
-        host.ask(schema.EnableRequest(0))
-    nack = refused.value.nack  # type: ignore[attr-defined]
-    assert (nack.code, nack.detail) == (NackCode.POT_BAD, 6 << 8 | Fault.POT_LOW)
-    assert not host.bench.motors_enabled
-
-
-def test_enable_is_refused_while_the_arms_are_apart(lock_step: Any) -> None:
-    host = lock_step()
-
-    class Elsewhere:
-        """An arm that leans against the wall, 1 rad away in joint 3."""
-
-        def step(self, voltages: np.ndarray, dt: float) -> np.ndarray:
-            return np.asarray(host.bench.leader.home + np.array([0.0, 0.0, 0.0, -1.0]))
-
-    host.bench.plant = Elsewhere()
-    host.bench.leader.hold = None
-    host.run(0.1)
-    with pytest.raises(AssertionError) as refused:
-        host.ask(schema.EnableRequest(0))
-    nack = refused.value.nack  # type: ignore[attr-defined]
-    assert (nack.code, nack.detail >> 8) == (NackCode.ERROR_TOO_LARGE, 3)
-    assert (nack.detail & 0xFF) / 32 == pytest.approx(1.0, abs=0.05)
-
-
-def test_a_follower_that_cannot_follow_is_a_fault(lock_step: Any) -> None:
-    host = lock_step()
-    limit = schema.PARAMETER_BY_NAME["tracking_limit"]
-    set_parameters(host, {"tracking_limit": limit.to_raw(0.3), "stall_volts": 0})
-    stuck: np.ndarray = host.bench.leader.home.copy()
-
-    class Stuck:
-        def step(self, voltages: np.ndarray, dt: float) -> np.ndarray:
-            return stuck
-
-    host.bench.plant = Stuck()
-    host.follow()
-    host.run(2.0)
-    assert not host.bench.motors_enabled
-    assert host.status().fault is Fault.TRACKING
-
-
 @pytest.mark.parametrize("joint", range(4))
 def test_a_motor_with_the_wrong_sign_is_switched_off(lock_step: Any, joint: int) -> None:
     """Its controller drives it away from the leader, faster and faster: a fault before it has gone far."""

@@ -109,13 +109,3 @@ def test_the_very_voltages_of_a_nanos_log_come_in_its_steps(tmp_path: Path, caps
     assert table == ParameterTable.defaults(Board.NANO328)
     loop = Loop(prepare(log, table["filter_shift"]), table, load_arm("default"))
     assert loop.error(plant_row(load_arm("default"))[None]).sum() < 1e-4, "the true arm in its own loop repeats the log"
-
-
-@pytest.mark.slow
-def test_a_controller_for_a_nano_is_doubted_on_a_mega(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    table = Path(__file__).parents[2] / "shared" / "fuzzy_tables" / "table_10.toml"
-    controller = tmp_path / "controller.toml"
-    controller.write_text(table.read_text() + '\n[tuning]\nboard = "nano328"\n')
-    with lock_step() as bench:
-        warnings = told(capsys, "upload", controller, "-p", bench.port)["warnings"]
-    assert warnings == ["it was tuned for the board nano328, but this board is a mega2560."]

@@ -84,13 +84,6 @@ def breaks(bench: BenchProcess) -> None:
     bench.command("pot follower 2 open")
 
 
-def test_opening_a_port_for_the_first_time_restarts_the_board_and_that_is_said(start_bench: Start) -> None:
-    bench = start_bench()
-    with greywhale("stop", "--port", bench.port) as stop:
-        answer, _ = stop.communicate()
-    assert answer == f"{bench.port}: motors off, state disabled. Opening the port restarted the board.\n"
-
-
 @pytest.mark.slow
 def test_a_host_that_stood_still_is_told_of_the_lease(start_bench: Start, tmp_path: Path) -> None:
     """A laptop that slept, Ctrl-Z in the terminal: the board is well, and stopped the motors by itself."""

@@ -13,7 +13,6 @@ from typing import Any
 
 import pytest
 
-from greywhale.base.errors import UserError
 from greywhale.board.device import Device
 from greywhale.board.record import record
 from greywhale.board.upload import upload_controller
@@ -98,14 +97,6 @@ def test_a_killed_host_leaves_no_motor_on(start_bench: Start) -> None:
     assert now["resets"] == before["resets"], "off by its own lease, not by a reset"
 
 
-def test_a_second_host_is_turned_away(start_bench: Start) -> None:
-    bench = start_bench()
-    with Device(bench.port) as device:
-        with pytest.raises(UserError, match="in use"):
-            Device(bench.port)
-        assert device.status().state is State.DISABLED
-
-
 @pytest.mark.slow
 def test_the_bench_ends_with_its_parent_and_leaves_no_link(start_bench: Start, tmp_path: Path) -> None:
     link = tmp_path / "bench"
@@ -129,10 +120,7 @@ def test_the_bench_ends_with_its_parent_and_leaves_no_link(start_bench: Start, t
     ],
 )
 def test_bad_options_are_one_sentence(
-    options: tuple[str, ...],
-    sentence: str,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+    options: tuple[str, ...], sentence: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(ROOT)
     monkeypatch.setattr(sys, "argv", ["greywhale_sim", *options])
@@ -156,18 +144,6 @@ def test_signals_end_serving_cleanly(leader_file: Path, tmp_path: Path, number: 
     serve(ServeOptions(leader=leader_file, link=link), on_ready)
     assert ready == [True]
     assert not link.is_symlink()
-
-
-@pytest.mark.slow
-def test_a_signal_ends_the_bench_cleanly(leader_file: Path, tmp_path: Path) -> None:
-    link = tmp_path / "bench"
-    command = [sys.executable, "-m", "greywhale_sim", "--leader", str(leader_file), "--link", str(link)]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as bench:
-        assert bench.stdout is not None
-        assert bench.stdout.readline().decode().strip() == str(link)
-        bench.send_signal(signal.SIGINT)
-        _, errors = bench.communicate()
-    assert (bench.returncode, errors) == (0, b"")
 
 
 @pytest.mark.slow
