@@ -29,10 +29,15 @@ struct Frame {
   std::vector<std::uint8_t> payload;
 };
 
-// The defaults for an arm that stays where it is, or jumps: without the checks of its motion.
-inline params::Table unwatched() {
+inline params::Table defaults() {
   params::Table table;
   params::load_defaults(table);
+  return table;
+}
+
+// The defaults for an arm that stays where it is, or jumps: without the checks of its motion.
+inline params::Table unwatched() {
+  params::Table table = defaults();
   table.speed_limit = table.runaway_limit = table.stall_volts = 0;
   return table;
 }
@@ -43,6 +48,8 @@ class Bench {
     hal::fake::board = hal::fake::FakeBoard();  // a blank EEPROM
     power_on();
   }
+  // An arm that has booted and runs this set.
+  explicit Bench(const params::Table& table) : Bench() { boot_with(table); }
 
   // A power cycle: what is in EEPROM stays.
   void power_on(hal::ResetCause cause = hal::ResetCause::power_on) {
@@ -60,6 +67,10 @@ class Bench {
     return *this;
   }
   Bench& boot() { return run(30); }
+  Bench& boot_with(const params::Table& table) {
+    boot().apply_ok(table);
+    return run(2);
+  }
 
   void tick() {
     move_plant();
@@ -133,6 +144,13 @@ class Bench {
   wire::StatusReply status() { return get<wire::StatusReply>(wire::StatusRequest{}); }
   wire::State state() { return status().state; }
   wire::State enable(std::uint16_t lease_ms = 0) { return get<wire::EnableReply>(wire::EnableRequest{lease_ms}).state; }
+  // The motors are off, because of this fault.
+  bool stopped_by(wire::Fault fault, std::uint8_t where = supervisor::nowhere) {
+    const auto now = status();
+    return !board.drivers && joint_max(board.duty) == 0 && now.state == wire::State::fault && now.fault == fault &&
+           now.fault_where == where && now.stop_reason == wire::StopReason::fault;
+  }
+  wire::State clear_fault() { return get<wire::ClearFaultReply>(wire::ClearFaultRequest{}).state; }
   wire::State stop() { return get<wire::StopReply>(wire::StopRequest{}).state; }
 
   void follow() {
@@ -153,6 +171,7 @@ class Bench {
     }
     return ask(wire::ParamApplyRequest{params::crc(table)});
   }
+  void apply_ok(const params::Table& table) { REQUIRE(apply(table).type == 0x85); }
 
   void set_leader(std::uint8_t joint, double angle) { set(joint, angle); }
   void set_follower(std::uint8_t joint, double angle) {
@@ -210,6 +229,14 @@ class Bench {
   wire::Decoder decoder_;
   std::uint8_t seq_ = 0;
   std::array<double, 4> position_ = {};
+};
+
+struct Booted : Bench {
+  Booted() { boot(); }
+};
+
+struct Following : Bench {
+  Following() { follow(); }
 };
 
 }  // namespace bench

@@ -5,11 +5,11 @@
 
 using bench::Bench;
 using bench::board;
+using bench::Booted;
 
 TEST_CASE("samples come every so many ticks with numbers in a row, until they are turned off") {
   for (std::uint16_t every : {std::uint16_t{1}, std::uint16_t{7}, std::uint16_t{1000}}) {
-    Bench arm;
-    arm.boot();
+    Booted arm;
     CHECK(arm.get<wire::TelemetryReply>(wire::TelemetryRequest{every}).every == every);
     arm.run(every * 20u);
     REQUIRE(arm.samples.size() == 20);
@@ -30,8 +30,7 @@ TEST_CASE("a sample tells angles, voltages, state and fault") {
   Bench arm;
   arm.set_leader(1, 0.5);
   arm.set_follower(3, -0.4);
-  arm.boot();
-  REQUIRE(arm.apply(bench::unwatched()).type == 0x85);
+  arm.boot_with(bench::unwatched());
   arm.get<wire::TelemetryReply>(wire::TelemetryRequest{1});
   arm.run(50);
   CHECK(arm.samples.back().leader[1] / 4096.0 == doctest::Approx(0.5).epsilon(0.01));
@@ -54,8 +53,7 @@ TEST_CASE("a sample tells angles, voltages, state and fault") {
 }
 
 TEST_CASE("samples that find no room are dropped and counted, and their numbers stay out") {
-  Bench arm;
-  arm.boot();
+  Booted arm;
   arm.get<wire::TelemetryReply>(wire::TelemetryRequest{1});
   arm.run(5);
   const auto sent = arm.samples.size();
@@ -78,8 +76,7 @@ TEST_CASE("samples that find no room are dropped and counted, and their numbers 
 }
 
 TEST_CASE("a request that is repeated is answered again and changes nothing") {
-  Bench arm;
-  arm.boot();
+  Booted arm;
   arm.frames.clear();
   for (int i = 0; i < 3; ++i) arm.send_raw(Bench::frame(wire::EnableRequest{500}, 42));
   arm.run(2);
@@ -89,8 +86,7 @@ TEST_CASE("a request that is repeated is answered again and changes nothing") {
 }
 
 TEST_CASE("many requests at once are all answered, in their order, a few each tick") {
-  Bench arm;
-  arm.boot();
+  Booted arm;
   arm.frames.clear();
   for (std::uint8_t seq = 0; seq < 60; ++seq) arm.send_raw(Bench::frame(wire::StatusRequest{}, seq));
   arm.run(60);
@@ -101,8 +97,7 @@ TEST_CASE("many requests at once are all answered, in their order, a few each ti
 }
 
 TEST_CASE("random bytes never turn a motor on, and afterwards the link works") {
-  Bench arm;
-  arm.boot();
+  Booted arm;
   std::mt19937 random(20221);
   for (int ms = 0; ms < 4000; ++ms) {
     std::vector<std::uint8_t> noise(random() % 100);
@@ -119,8 +114,7 @@ TEST_CASE("random bytes never turn a motor on, and afterwards the link works") {
 
 TEST_CASE("an enable frame with any one or two bits wrong does not turn the motors on") {
   const auto good = Bench::frame(wire::EnableRequest{1000}, 5);
-  Bench arm;
-  arm.boot();
+  Booted arm;
   const auto bits = good.size() * 8;
   for (std::size_t a = 0; a < bits; ++a) {
     for (std::size_t b = a; b < bits; ++b) {  // b == a: one bit
@@ -139,8 +133,7 @@ TEST_CASE("an enable frame with any one or two bits wrong does not turn the moto
 }
 
 TEST_CASE("lost bytes are counted") {
-  Bench arm;
-  arm.boot();
+  Booted arm;
   board.lost = 7;
   arm.tick();
   board.lost = 3;

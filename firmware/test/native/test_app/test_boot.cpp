@@ -3,6 +3,7 @@
 
 using bench::Bench;
 using bench::board;
+using bench::Booted;
 
 TEST_CASE("nothing moves from power-on on, and hello is said once without being asked") {
   Bench arm;
@@ -18,15 +19,12 @@ TEST_CASE("nothing moves from power-on on, and hello is said once without being 
 }
 
 TEST_CASE("hello tells what this firmware is") {
-  Bench arm;
-  arm.boot();
+  Booted arm;
   const auto hello = arm.get<wire::HelloReply>(wire::HelloRequest{});
   CHECK(unsigned(hello.protocol) == unsigned(wire::protocol));
   CHECK(hello.schema_hash == std::uint32_t{wire::schema_hash});
   CHECK(hello.board == wire::Board::native);
-  params::Table defaults;
-  params::load_defaults(defaults);
-  CHECK(hello.param_crc == params::crc(defaults));
+  CHECK(hello.param_crc == params::crc(bench::defaults()));
   CHECK(hello.param_source == wire::ParamSource::defaults);
   CHECK(hello.reset_cause == wire::ResetCause::power_on);
 }
@@ -41,17 +39,6 @@ TEST_CASE("requests are answered during boot, but enable is refused") {
   CHECK(status.state == wire::State::disabled);
   CHECK(status.stop_reason == wire::StopReason::reset);
   CHECK(status.tick == arm.ticks);
-}
-
-TEST_CASE("after a watchdog reset the arm is in fault until the fault is cleared") {
-  Bench arm;
-  arm.power_on(hal::ResetCause::watchdog);
-  arm.boot();
-  CHECK(arm.status().fault == wire::Fault::watchdog);
-  CHECK(arm.refused(wire::EnableRequest{0}).code == wire::NackCode::in_fault);
-  CHECK_FALSE(board.drivers);
-  CHECK(arm.get<wire::ClearFaultReply>(wire::ClearFaultRequest{}).state == wire::State::disabled);
-  CHECK(arm.enable() == wire::State::soft_start);
 }
 
 TEST_CASE("the watchdog is fed by finished ticks and by nothing else") {

@@ -3,12 +3,12 @@
 
 using bench::Bench;
 using bench::board;
+using bench::Following;
 
 namespace {
 
 params::Table with_input(std::uint8_t input) {
-  params::Table table;
-  params::load_defaults(table);
+  params::Table table = bench::defaults();
   table.estop_input = input;
   return table;
 }
@@ -16,31 +16,24 @@ params::Table with_input(std::uint8_t input) {
 }  // namespace
 
 TEST_CASE("a board without a button starts, and a button that closes turns the motors off in the same tick") {
-  Bench arm;
-  arm.follow();
+  Following arm;
   board.estop_low = true;
   arm.tick();
-  CHECK_FALSE(board.drivers);
-  CHECK(bench::joint_max(board.duty) == 0);
-  const auto status = arm.status();
-  CHECK(status.state == wire::State::fault);
-  CHECK(status.fault == wire::Fault::estop);
+  CHECK(arm.stopped_by(wire::Fault::estop));
   CHECK(arm.refused(wire::ClearFaultRequest{}).code == wire::NackCode::estop_pressed);
   board.estop_low = false;
   arm.tick();
-  CHECK(arm.get<wire::ClearFaultReply>(wire::ClearFaultRequest{}).state == wire::State::disabled);
+  CHECK(arm.clear_fault() == wire::State::disabled);
   CHECK(arm.enable() == wire::State::soft_start);
 }
 
 TEST_CASE("a button that opens stops when its input is high") {
-  Bench arm;
-  arm.boot();
-  REQUIRE(arm.apply(with_input(2)).type == 0x85);
+  Bench arm(with_input(2));
   arm.run(2);
   CHECK(arm.status().fault == wire::Fault::estop);
   board.estop_low = true;
-  arm.run(2);
-  REQUIRE(arm.get<wire::ClearFaultReply>(wire::ClearFaultRequest{}).state == wire::State::disabled);
+  arm.tick();
+  REQUIRE(arm.clear_fault() == wire::State::disabled);
   REQUIRE(arm.enable() == wire::State::soft_start);
   arm.run(50);
   CHECK(board.drivers);
@@ -50,9 +43,7 @@ TEST_CASE("a button that opens stops when its input is high") {
 }
 
 TEST_CASE("with estop_input 0 the pin means nothing") {
-  Bench arm;
-  arm.boot();
-  REQUIRE(arm.apply(with_input(0)).type == 0x85);
+  Bench arm(with_input(0));
   board.estop_low = true;
   arm.run(2);
   REQUIRE(arm.enable() == wire::State::soft_start);
@@ -62,11 +53,9 @@ TEST_CASE("with estop_input 0 the pin means nothing") {
 
 TEST_CASE("the safe set does not start the motors while the stop is pressed, nor after a tap") {
   for (const unsigned pressed_ms : {1u, 100u}) {
-    Bench arm;
-    arm.boot();
     params::Table table = with_input(1);
     table.unrest_action = 1;
-    REQUIRE(arm.apply(table).type == 0x85);
+    Bench arm(table);
     arm.run(2);
     REQUIRE(arm.enable() == wire::State::soft_start);
     arm.run(1001);
@@ -80,7 +69,6 @@ TEST_CASE("the safe set does not start the motors while the stop is pressed, nor
     arm.run(pressed_ms);
     board.estop_low = false;
     arm.run(100);
-    CHECK_FALSE(board.drivers);
-    CHECK(arm.status().fault == wire::Fault::estop);
+    CHECK(arm.stopped_by(wire::Fault::estop));
   }
 }

@@ -8,8 +8,7 @@ namespace {
 
 // The first two joints are in use.
 params::Table two_joints() {
-  params::Table table;
-  params::load_defaults(table);
+  params::Table table = bench::defaults();
   for (int i = 2; i < 4; ++i) table.leader[i].scale = table.follower[i].scale = 0;
   return table;
 }
@@ -29,17 +28,10 @@ void stir(Bench& arm, unsigned now) {
   }
 }
 
-void boot_with(Bench& arm, const params::Table& table) {
-  arm.boot();
-  REQUIRE(arm.apply(table).type == 0x85);
-  arm.run(2);
-}
-
 }  // namespace
 
 TEST_CASE("two joints follow while the inputs of the other two are open, whatever those read") {
-  Bench arm;
-  boot_with(arm, two_joints());
+  Bench arm(two_joints());
   arm.speed = 2;
   stir(arm, 0);
   REQUIRE(arm.enable() == wire::State::soft_start);
@@ -58,8 +50,7 @@ TEST_CASE("two joints follow while the inputs of the other two are open, whateve
 }
 
 TEST_CASE("a joint that is not there stays at angle 0 in every sample") {
-  Bench arm;
-  boot_with(arm, two_joints());
+  Bench arm(two_joints());
   (void)arm.ask(wire::TelemetryRequest{1});
   arm.samples.clear();
   for (unsigned i = 0; i < 100; ++i) {
@@ -76,16 +67,12 @@ TEST_CASE("a joint that is not there stays at angle 0 in every sample") {
 }
 
 TEST_CASE("a pot of a joint in use still stops the arm") {
-  Bench arm;
-  boot_with(arm, two_joints());
+  Bench arm(two_joints());
   REQUIRE(arm.enable() == wire::State::soft_start);
   arm.run(50);
   arm.set_count(5, 0);
   arm.run(5);
-  const auto status = arm.status();
-  CHECK(status.fault == wire::Fault::pot_low);
-  CHECK(status.fault_where == 5);
-  CHECK_FALSE(board.drivers);
+  CHECK(arm.stopped_by(wire::Fault::pot_low, 5));
 }
 
 TEST_CASE("a joint whose follower alone has no pot is not in use, whatever its leader and its limits are") {
@@ -93,8 +80,7 @@ TEST_CASE("a joint whose follower alone has no pot is not in use, whatever its l
   table.leader[2].scale = 10734;
   table.joint[2].limit_min = 1000;  // 0 is outside
   table.joint[2].limit_max = 2000;
-  Bench arm;
-  boot_with(arm, table);
+  Bench arm(table);
   REQUIRE(arm.enable() == wire::State::soft_start);
   for (unsigned i = 0; i < 2000; ++i) {
     arm.set_leader(2, 0.5 * std::sin(0.01 * i));
@@ -105,8 +91,7 @@ TEST_CASE("a joint whose follower alone has no pot is not in use, whatever its l
 }
 
 TEST_CASE("without leader pots the arm starts near 0 and stays there, open inputs or not") {
-  Bench arm;
-  boot_with(arm, no_leaders());
+  Bench arm(no_leaders());
   for (const int pot : {0, 1, 2, 3}) arm.set_count(static_cast<std::uint8_t>(pot), 0);
   for (const int joint : {0, 1, 2, 3}) arm.set_follower(static_cast<std::uint8_t>(joint), 0.1);
   arm.speed = 2;
@@ -118,8 +103,7 @@ TEST_CASE("without leader pots the arm starts near 0 and stays there, open input
 }
 
 TEST_CASE("a host that leads cannot lead a joint that is not there") {
-  Bench arm;
-  boot_with(arm, two_joints());
+  Bench arm(two_joints());
   const auto begun = arm.get<wire::LeadReply>(wire::LeadRequest{1000});
   const auto nack = arm.refused(wire::LeadPointRequest{begun.next, {0, 0, 5, 0}});
   CHECK(nack.code == wire::NackCode::lead_refused);

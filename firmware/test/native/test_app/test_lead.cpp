@@ -11,6 +11,7 @@ namespace {
 constexpr int piece = 16;  // ticks from point to point
 
 struct Led : Bench {
+  using Bench::Bench;
   wire::LeadReply lead(std::uint16_t lease_ms = 60000) { return get<wire::LeadReply>(wire::LeadRequest{lease_ms}); }
 
   wire::LeadPointReply send(std::uint8_t number, int step) {
@@ -64,11 +65,9 @@ TEST_CASE("the reference starts at the follower's pose, wherever the leader arm 
 }
 
 TEST_CASE("the reference is the B-spline of the points to the last bit, and rests at the last point") {
-  Led arm;
-  arm.boot();
   params::Table table = bench::unwatched();
   table.tracking_limit = 0;  // this follower stays where it is
-  REQUIRE(arm.apply(table).type == 0x85);
+  Led arm(table);
   arm.sampling();
   const wire::LeadReply begun = arm.lead();
   const int base = begun.reference[0];
@@ -130,8 +129,7 @@ TEST_CASE("samples tell the error and voltage of one and the same tick, whoever 
       }
     }
     fuzzy_pdi::Joint law{};
-    params::Table table;
-    params::load_defaults(table);
+    params::Table table = bench::defaults();
     const auto& p = table.joint[0];
     const uint8_t ce_ticks = table.change[0].ce_ticks;
     const fuzzy_pdi::Settings settings = {p.ne_c,  p.ze_a, p.ze_c, p.pe_b, p.nce_c, p.zce_a, p.zce_c,
@@ -206,13 +204,10 @@ TEST_CASE("numbers of points go on past 255") {
 }
 
 TEST_CASE("a point beyond a limit is refused, names the joint and changes nothing") {
-  Led arm;
-  arm.boot();
-  params::Table table;
-  params::load_defaults(table);
+  params::Table table = bench::defaults();
   table.joint[3].limit_max = 300;
   table.joint[1].limit_min = -200;
-  REQUIRE(arm.apply(table).type == 0x85);
+  Led arm(table);
   const wire::LeadReply begun = arm.lead();
   const int up = (300 - begun.reference[3]) / 4, down = (-200 - begun.reference[1]) / 4;
   const auto to = [&begun](int one, int three) {
@@ -294,12 +289,9 @@ TEST_CASE("a refused lead leaves the leader arm leading") {
 }
 
 TEST_CASE("a follower beyond its limits is led back to the limit, or not at all from too far") {
-  Led arm;
-  arm.boot();
-  params::Table table;
-  params::load_defaults(table);
+  params::Table table = bench::defaults();
   table.joint[0].limit_max = 1024;
-  REQUIRE(arm.apply(table).type == 0x85);
+  Led arm(table);
   arm.set_follower(0, 0.6);
   arm.run(30);
   CHECK(arm.lead().reference[0] == 1024);
@@ -314,8 +306,7 @@ TEST_CASE(
     "a follower that does not follow the host is the same fault as with the leader arm, and the lease keeps it "
     "running") {
   Led arm;  // its speed is 0: it stays where it is
-  arm.boot();
-  REQUIRE(arm.apply(bench::unwatched()).type == 0x85);
+  arm.boot_with(bench::unwatched());
   arm.run(1);
   std::uint8_t next = arm.lead(200).next;
   for (int i = 1; i <= 40; ++i) {
@@ -326,8 +317,5 @@ TEST_CASE(
     arm.get<wire::RenewReply>(wire::RenewRequest{200});
     if (i * 200 < 3686) REQUIRE(board.drivers);
   }
-  const wire::StatusReply status = arm.status();
-  CHECK(status.fault == wire::Fault::tracking);
-  CHECK(status.fault_where == 0);
-  CHECK_FALSE(board.drivers);
+  CHECK(arm.stopped_by(wire::Fault::tracking, 0));
 }

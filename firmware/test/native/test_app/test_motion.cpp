@@ -5,6 +5,8 @@
 
 using bench::Bench;
 using bench::board;
+using bench::Booted;
+using bench::Following;
 
 TEST_CASE("enable is refused while leader and follower differ too much, and names the joint") {
   Bench arm;
@@ -37,8 +39,7 @@ TEST_CASE("enable is refused while a pot is at a rail, and names the pot") {
 TEST_CASE("soft start: the duty stays below the ramp, and the ramp reaches the top") {
   Bench arm;
   for (std::uint8_t i = 0; i < 4; ++i) arm.set_leader(i, 0.79);  // as far as enable allows: more volts than the ramp
-  arm.boot();
-  REQUIRE(arm.apply(bench::unwatched()).type == 0x85);
+  arm.boot_with(bench::unwatched());
   arm.run(1);
   REQUIRE(arm.enable() == wire::State::soft_start);
   CHECK(board.drivers);
@@ -68,12 +69,9 @@ TEST_CASE("the followers come to their leaders, each to its own") {
 }
 
 TEST_CASE("a motor that turns the other way is set right by motor_sign") {
-  Bench arm;
-  arm.boot();
-  params::Table table;
-  params::load_defaults(table);
+  params::Table table = bench::defaults();
   table.joint[1].motor_sign = -1;
-  REQUIRE(arm.apply(table).type == 0x85);
+  Bench arm(table);
   arm.set_leader(0, 0.5);
   arm.set_leader(1, 0.5);
   arm.run(30);
@@ -84,12 +82,9 @@ TEST_CASE("a motor that turns the other way is set right by motor_sign") {
 }
 
 TEST_CASE("a leader beyond the joint's limits is followed to the limit only") {
-  Bench arm;
-  arm.boot();
-  params::Table table;
-  params::load_defaults(table);
+  params::Table table = bench::defaults();
   table.joint[0].limit_max = 1024;  // 0.25 rad
-  REQUIRE(arm.apply(table).type == 0x85);
+  Bench arm(table);
   arm.speed = 3.0;
   arm.set_leader(0, 2.0);  // 2 rad away from the follower, but the reference is not
   arm.run(30);
@@ -99,8 +94,7 @@ TEST_CASE("a leader beyond the joint's limits is followed to the limit only") {
 }
 
 TEST_CASE("stop turns the drivers off before it is answered, in soft start and in following") {
-  Bench starting;
-  starting.boot();
+  Booted starting;
   starting.enable();
   starting.run(10);
   REQUIRE(board.drivers);
@@ -112,8 +106,7 @@ TEST_CASE("stop turns the drivers off before it is answered, in soft start and i
   starting.tick();
   CHECK(starting.status().stop_reason == wire::StopReason::host);
 
-  Bench following;
-  following.follow();
+  Following following;
   CHECK(following.stop() == wire::State::disabled);
   CHECK_FALSE(board.drivers);
   CHECK_FALSE(board.drivers_when_sending);
@@ -123,14 +116,12 @@ TEST_CASE("stop is answered in every other state too, and gets through while sam
   Bench boot;
   boot.run(1);
   CHECK(boot.stop() == wire::State::boot);
-  Bench fault;
-  fault.follow();
+  Following fault;
   board.late = true;
   fault.tick();
   CHECK(fault.stop() == wire::State::fault);
 
-  Bench busy;
-  busy.follow();
+  Following busy;
   busy.get<wire::TelemetryReply>(wire::TelemetryRequest{1});
   board.age_us = 900;  // the processor is busy: every tick ends late
   busy.run(10);
@@ -139,8 +130,7 @@ TEST_CASE("stop is answered in every other state too, and gets through while sam
 
 TEST_CASE("behind a request none begins late until the ticks that it may delay are over; then a stop gets through") {
   for (const std::uint16_t age_us : {std::uint16_t{800}, std::uint16_t{804}}) {
-    Bench arm;
-    arm.follow();
+    Following arm;
     board.age_us = age_us;
     arm.run(10);
     unsigned before = arm.ticks;
@@ -157,93 +147,46 @@ TEST_CASE("behind a request none begins late until the ticks that it may delay a
 
 TEST_CASE("a pot that goes to a rail stops the arm within three ticks and is named") {
   for (std::uint8_t pot = 0; pot < 8; ++pot) {
-    Bench arm;
-    arm.follow();
+    Following arm;
     arm.set_count(pot, pot % 2 ? 0 : 1023);
     arm.run(2);
     CHECK(board.drivers);
     arm.run(1);
-    CHECK_FALSE(board.drivers);
-    const auto status = arm.status();
-    CHECK(status.state == wire::State::fault);
-    CHECK(status.fault == (pot % 2 ? wire::Fault::pot_low : wire::Fault::pot_high));
-    CHECK(status.fault_where == pot);
-    CHECK(status.stop_reason == wire::StopReason::fault);
+    CHECK(arm.stopped_by(pot % 2 ? wire::Fault::pot_low : wire::Fault::pot_high, pot));
     CHECK(arm.refused(wire::ClearFaultRequest{}).code == wire::NackCode::pot_bad);
     arm.set_count(pot, 512);
     arm.run(5);
-    CHECK(arm.get<wire::ClearFaultReply>(wire::ClearFaultRequest{}).state == wire::State::disabled);
+    CHECK(arm.clear_fault() == wire::State::disabled);
     CHECK_FALSE(board.drivers);
   }
 }
 
-TEST_CASE("the rail is where rail_counts says, to the count") {
-  Bench arm;
-  arm.follow();
-  arm.set_leader(0, 0);
-  arm.set_count(0, 5);
-  arm.set_count(1, 1018);
-  arm.run(50);
-  CHECK(arm.status().fault == wire::Fault::none);
-  arm.set_count(1, 1019);
-  arm.run(5);
-  CHECK(arm.status().fault == wire::Fault::pot_high);
-}
-
 TEST_CASE("a late tick stops the arm at once and is counted") {
-  Bench arm;
-  arm.follow();
+  Following arm;
   board.late = true;
   board.elapsed = 3;
   hal::fake::start_tick();
   CHECK_FALSE(board.drivers);  // the interrupt does not wait for the main loop
   arm.tick();
-  CHECK_FALSE(board.drivers);
-  const auto status = arm.status();
-  CHECK(status.fault == wire::Fault::late_tick);
-  CHECK(status.late_ticks == 2);
-  CHECK(bench::joint_max(board.duty) == 0);
-}
-
-TEST_CASE("a lease that is not renewed ends in disabled; one that is renewed goes on") {
-  Bench arm;
-  arm.boot();
-  REQUIRE(arm.enable(100) == wire::State::soft_start);
-  for (int i = 0; i < 5; ++i) {
-    arm.run(80);
-    REQUIRE(arm.get<wire::RenewReply>(wire::RenewRequest{100}).state == wire::State::soft_start);
-  }
-  arm.run(99);
-  CHECK(board.drivers);
-  arm.run(2);
-  CHECK_FALSE(board.drivers);
-  const auto status = arm.status();
-  CHECK(status.state == wire::State::disabled);
-  CHECK(status.stop_reason == wire::StopReason::lease);
+  CHECK(arm.stopped_by(wire::Fault::late_tick));
+  CHECK(arm.status().late_ticks == 2);
 }
 
 TEST_CASE("a follower that does not come is lost after tracking_ms") {
-  Bench arm;
-  arm.boot();
-  REQUIRE(arm.apply(bench::unwatched()).type == 0x85);
+  Bench arm(bench::unwatched());
   arm.follow();  // the plant stands still
   arm.set_leader(3, 2.4);
   arm.set_follower(3, 1.4);  // 1 rad; with 0.8 rad it might go on
   arm.run(195);
   CHECK(board.drivers);
   arm.run(20);
-  const auto status = arm.status();
-  CHECK(status.fault == wire::Fault::tracking);
-  CHECK(status.fault_where == 3);
-  CHECK_FALSE(board.drivers);
+  CHECK(arm.stopped_by(wire::Fault::tracking, 3));
 }
 
 TEST_CASE("controllers run every period_ms ticks and hold in between") {
-  Bench arm;
-  arm.boot();
   params::Table table = bench::unwatched();
   table.period_ms = 10;
-  REQUIRE(arm.apply(table).type == 0x85);
+  Bench arm(table);
   arm.set_leader(0, 0.7);
   arm.run(30);
   REQUIRE(arm.enable() == wire::State::soft_start);
@@ -267,8 +210,7 @@ TEST_CASE("the LED tells the states apart, a 32nd of a second later at most") {
     }
     return on;
   };
-  Bench arm;
-  arm.boot();
+  Booted arm;
   CHECK(share(arm) == 64);
   arm.enable();
   arm.run(1001);
@@ -294,32 +236,25 @@ int lossy_ticks(Bench& arm, int count, unsigned period) {
 }  // namespace
 
 TEST_CASE("bytes lost in the fourth tick in a row are a flood: the motors go off, and the fault can be cleared") {
-  Bench arm;
-  arm.follow();
+  Following arm;
   CHECK(lossy_ticks(arm, 100, 1) == 3);
-  const auto status = arm.status();
-  CHECK(status.state == wire::State::fault);
-  CHECK(status.fault == wire::Fault::flood);
-  CHECK(status.fault_where == supervisor::nowhere);
-  CHECK(status.rx_overruns == 12);
-  CHECK(arm.get<wire::ClearFaultReply>(wire::ClearFaultRequest{}).state == wire::State::disabled);
+  CHECK(arm.stopped_by(wire::Fault::flood));
+  CHECK(arm.status().rx_overruns == 12);
+  CHECK(arm.clear_fault() == wire::State::disabled);
 }
 
 TEST_CASE(
     "loss that goes on is a flood, however far apart it comes below 128 ticks; beyond that it is ridden through") {
   for (const unsigned period : {2u, 20u, 64u, 127u}) {
-    Bench arm;
-    arm.follow();
+    Following arm;
     CHECK(lossy_ticks(arm, 600, period) < 400);
   }
-  Bench arm;
-  arm.follow();
+  Following arm;
   CHECK(lossy_ticks(arm, 100, 128) == 100);
 }
 
 TEST_CASE("bytes lost while the motors are off do not count against the next start") {
-  Bench arm;
-  arm.boot();
+  Booted arm;
   for (int i = 0; i < 50; ++i) {
     board.lost = 1;
     arm.tick();
@@ -331,8 +266,7 @@ TEST_CASE("bytes lost while the motors are off do not count against the next sta
 }
 
 TEST_CASE("while the motors are on, a reading at a rail is not taken; while they are off, it is seen as it is") {
-  Bench arm;
-  arm.follow();
+  Following arm;
   arm.get<wire::TelemetryReply>(wire::TelemetryRequest{1});
   for (const std::uint8_t pot : {std::uint8_t{1}, std::uint8_t{6}}) {
     for (const std::uint16_t rail : std::initializer_list<std::uint16_t>{0, 1023}) {
@@ -353,11 +287,9 @@ TEST_CASE("while the motors are on, a reading at a rail is not taken; while they
 }
 
 TEST_CASE("with rail_counts 0 a reading at a rail is a reading like any other") {
-  Bench arm;
-  arm.boot();
   params::Table table = bench::unwatched();
   table.rail_counts = 0;
-  REQUIRE(arm.apply(table).type == 0x85);
+  Bench arm(table);
   arm.set_count(1, 0);
   arm.set_count(5, 3);
   arm.run(40);

@@ -3,12 +3,13 @@
 
 using bench::Bench;
 using bench::board;
+using bench::Booted;
+using bench::Following;
 
 namespace {
 
 params::Table changed() {
-  params::Table table;
-  params::load_defaults(table);
+  params::Table table = bench::defaults();
   table.supply_mv = 12000;
   table.joint[2].kp = 70000;
   table.leader[1].zero = 8000;
@@ -21,30 +22,23 @@ std::int32_t value_of(Bench& arm, std::uint16_t index) {
 
 }  // namespace
 
-TEST_CASE("a set is staged piece by piece and runs only once it is applied") {
-  Bench arm;
-  arm.boot();
+TEST_CASE("a set is staged piece by piece, runs once it is applied, and is gone after a power cycle without a save") {
+  Booted arm;
   CHECK(value_of(arm, 1) == 15000);
   arm.get<wire::ParamSetReply>(wire::ParamSetRequest{1, 12000});
   CHECK(value_of(arm, 1) == 15000);
-  const auto answer = arm.apply(changed());
-  CHECK(answer.type == 0x85);
+  arm.apply_ok(changed());
   CHECK(value_of(arm, 1) == 12000);
-  CHECK(arm.get<wire::HelloReply>(wire::HelloRequest{}).param_crc == params::crc(changed()));
-}
-
-TEST_CASE("a repeated apply is answered again") {
-  Bench arm;
-  arm.boot();
-  arm.apply(changed());
   const auto crc = params::crc(changed());
-  CHECK(arm.get<wire::ParamApplyReply>(wire::ParamApplyRequest{crc}).param_crc == crc);
+  CHECK(arm.get<wire::HelloReply>(wire::HelloRequest{}).param_crc == crc);
+  CHECK(arm.get<wire::ParamApplyReply>(wire::ParamApplyRequest{crc}).param_crc == crc);  // repeated
+  arm.power_on();
+  arm.boot();
+  CHECK(value_of(arm, 1) == 15000);
 }
 
 TEST_CASE("a lower supply means more duty for the same voltage") {
-  Bench arm;
-  arm.boot();
-  REQUIRE(arm.apply(bench::unwatched()).type == 0x85);
+  Bench arm(bench::unwatched());
   arm.set_leader(0, 0.3);
   arm.run(30);
   arm.enable();
@@ -54,15 +48,14 @@ TEST_CASE("a lower supply means more duty for the same voltage") {
   params::Table table = bench::unwatched();
   table.supply_mv = 12000;
   table.joint[0].ki = 0;  // the integral would go on in between
-  REQUIRE(arm.apply(table).type == 0x85);
+  arm.apply_ok(table);
   arm.enable();
   arm.run(1100);
   CHECK(board.duty[0] / double(at_15v) == doctest::Approx(1.25).epsilon(0.03));
 }
 
 TEST_CASE("apply is refused while the motors are on, and the running set stays") {
-  Bench arm;
-  arm.follow();
+  Following arm;
   arm.get<wire::ParamSetReply>(wire::ParamSetRequest{1, 12000});  // staging is harmless
   const wire::Nack nack = arm.refused(wire::ParamApplyRequest{0});
   CHECK(nack.code == wire::NackCode::not_disabled);
@@ -72,12 +65,11 @@ TEST_CASE("apply is refused while the motors are on, and the running set stays")
 }
 
 TEST_CASE("a set chooses the motor drivers when it is applied, and after a power cycle") {
-  Bench arm;
-  arm.boot();
+  Booted arm;
   CHECK(board.driver == hal::Driver::pwm_direction);
   params::Table table = changed();
   table.driver = static_cast<std::uint8_t>(hal::Driver::two_pwm_high);
-  REQUIRE(arm.apply(table).type == 0x85);
+  arm.apply_ok(table);
   CHECK(board.driver == hal::Driver::two_pwm_high);
   arm.get<wire::ParamSaveReply>(wire::ParamSaveRequest{});
   arm.run(2000);
@@ -86,8 +78,7 @@ TEST_CASE("a set chooses the motor drivers when it is applied, and after a power
 }
 
 TEST_CASE("motor drivers that the board has no pins for are refused") {
-  Bench arm;
-  arm.boot();
+  Booted arm;
   params::Table table = changed();
   table.driver = static_cast<std::uint8_t>(hal::Driver::two_pwm_low);
   board.last_driver = hal::Driver::pwm_direction;  // a Nano
@@ -100,10 +91,8 @@ TEST_CASE("motor drivers that the board has no pins for are refused") {
 }
 
 TEST_CASE("apply is refused for another CRC, for contradictions and for a set that cannot run") {
-  Bench arm;
-  arm.boot();
-  params::Table table;
-  params::load_defaults(table);
+  Booted arm;
+  params::Table table = bench::defaults();
   CHECK(arm.refused(wire::ParamApplyRequest{static_cast<std::uint16_t>(params::crc(table) + 1)}).code ==
         wire::NackCode::crc_mismatch);
 
@@ -112,7 +101,7 @@ TEST_CASE("apply is refused for another CRC, for contradictions and for a set th
   CHECK(arm.apply(table).type == 0xff);
   CHECK(arm.refused(wire::ParamApplyRequest{params::crc(table)}).code == wire::NackCode::inconsistent);
 
-  params::load_defaults(table);
+  table = bench::defaults();
   table.joint[3].ze_c = 10;  // narrower than 0.01
   table.supply_mv = 9000;
   CHECK(arm.apply(table).type == 0xff);
@@ -129,8 +118,7 @@ TEST_CASE("a refused set leaves the controllers of the joints before it as they 
     for (std::uint8_t i = 0; i < 4; ++i) arm.set_leader(i, 0.4);
     arm.boot();
     if (refuse_first) {
-      params::Table table;
-      params::load_defaults(table);
+      params::Table table = bench::defaults();
       for (auto& joint : table.joint) joint.kp = 300000;
       table.joint[2].limit_max = 100;
       table.joint[3].ze_a = 0;
@@ -145,8 +133,7 @@ TEST_CASE("a refused set leaves the controllers of the joints before it as they 
 }
 
 TEST_CASE("values out of range and indices that do not exist are refused and named") {
-  Bench arm;
-  arm.boot();
+  Booted arm;
   wire::Nack nack = arm.refused(wire::ParamSetRequest{1, 2999});
   CHECK(nack.code == wire::NackCode::out_of_range);
   CHECK(nack.detail == 1);
@@ -157,10 +144,8 @@ TEST_CASE("values out of range and indices that do not exist are refused and nam
 }
 
 TEST_CASE("an enable on the heels of an apply is judged by the new calibration") {
-  Bench arm;
-  arm.boot();
-  params::Table table;
-  params::load_defaults(table);
+  Booted arm;
+  params::Table table = bench::defaults();
   table.leader[0].zero = 8184 - 6100;  // the leader now stands 1.95 rad away from the follower
   for (std::uint8_t i = 0; i < params::count; ++i) {
     std::int32_t value = 0;
@@ -190,9 +175,8 @@ TEST_CASE("an enable on the heels of an apply is judged by the new calibration")
 }
 
 TEST_CASE("after an apply no enable works before potentiometers were read") {
-  Bench arm;
-  arm.boot();
-  REQUIRE(arm.apply(changed()).type == 0x85);
+  Booted arm;
+  arm.apply_ok(changed());
   board.samples_ready = false;  // ticks without samples
   CHECK(arm.refused(wire::EnableRequest{0}).code == wire::NackCode::error_too_large);
   CHECK_FALSE(board.drivers);
@@ -202,20 +186,17 @@ TEST_CASE("after an apply no enable works before potentiometers were read") {
 }
 
 TEST_CASE("defaults are staged, not run") {
-  Bench arm;
-  arm.boot();
+  Booted arm;
   arm.apply(changed());
   arm.get<wire::ParamDefaultsReply>(wire::ParamDefaultsRequest{});
   CHECK(value_of(arm, 1) == 12000);
-  params::Table table;
-  params::load_defaults(table);
+  params::Table table = bench::defaults();
   REQUIRE(arm.ask(wire::ParamApplyRequest{params::crc(table)}).type == 0x85);
   CHECK(value_of(arm, 1) == 15000);
 }
 
 TEST_CASE("a saved set survives a power cycle; ticks go on and motors may run meanwhile") {
-  Bench arm;
-  arm.boot();
+  Booted arm;
   arm.apply(changed());
   CHECK(arm.status().save_state == wire::SaveState::idle);
   arm.enable();
@@ -240,22 +221,12 @@ TEST_CASE("a saved set survives a power cycle; ticks go on and motors may run me
   CHECK(hello.param_crc == params::crc(changed()));
 }
 
-TEST_CASE("what is not saved is gone after a power cycle") {
-  Bench arm;
-  arm.boot();
-  arm.apply(changed());
-  arm.power_on();
-  arm.boot();
-  CHECK(value_of(arm, 1) == 15000);
-}
-
 TEST_CASE("a lost set is a fault until the host has confirmed another; a save makes it good for the next reset") {
-  Bench arm;
-  arm.boot();
+  Booted arm;
   params::Table newest = changed();
   for (const std::int8_t sign : {std::int8_t{1}, std::int8_t{-1}}) {  // one set into each bank
     newest.joint[1].motor_sign = sign;
-    REQUIRE(arm.apply(newest).type == 0x85);
+    arm.apply_ok(newest);
     arm.get<wire::ParamSaveReply>(wire::ParamSaveRequest{});
     arm.run(1500);
     REQUIRE(arm.status().save_state == wire::SaveState::saved);
@@ -269,14 +240,14 @@ TEST_CASE("a lost set is a fault until the host has confirmed another; a save ma
   CHECK(arm.status().fault == wire::Fault::params);
   CHECK(arm.refused(wire::EnableRequest{0}).code == wire::NackCode::in_fault);
   CHECK(arm.refused(wire::ClearFaultRequest{}).code == wire::NackCode::set_lost);
-  REQUIRE(arm.apply(newest).type == 0x85);
-  CHECK(arm.get<wire::ClearFaultReply>(wire::ClearFaultRequest{}).state == wire::State::disabled);
+  arm.apply_ok(newest);
+  CHECK(arm.clear_fault() == wire::State::disabled);
   CHECK(arm.enable() == wire::State::soft_start);
 
   arm.power_on();  // without a save
   arm.boot();
   CHECK(arm.status().fault == wire::Fault::params);
-  REQUIRE(arm.apply(newest).type == 0x85);
+  arm.apply_ok(newest);
   arm.get<wire::ParamSaveReply>(wire::ParamSaveRequest{});
   arm.run(3000);
   CHECK(arm.status().save_state == wire::SaveState::saved);
@@ -307,7 +278,7 @@ TEST_CASE("a stored set that cannot run: defaults, a fault, and a way out") {
   CHECK(value_of(arm, 1) == 15000);
   CHECK(arm.refused(wire::EnableRequest{0}).code == wire::NackCode::in_fault);
   CHECK(arm.refused(wire::ClearFaultRequest{}).code == wire::NackCode::set_refused);
-  REQUIRE(arm.apply(changed()).type == 0x85);
-  CHECK(arm.get<wire::ClearFaultReply>(wire::ClearFaultRequest{}).state == wire::State::disabled);
+  arm.apply_ok(changed());
+  CHECK(arm.clear_fault() == wire::State::disabled);
   CHECK(arm.enable() == wire::State::soft_start);
 }

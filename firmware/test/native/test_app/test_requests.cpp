@@ -13,6 +13,7 @@
 
 using bench::Bench;
 using bench::board;
+using bench::Booted;
 
 namespace {
 
@@ -65,8 +66,7 @@ void add(std::vector<int>& trace, const Message& message) {
 std::vector<int> life(const std::function<void(Bench&)>& begin, const std::vector<Odd>& frames, bool send) {
   Bench arm;
   begin(arm);
-  params::Table staged;
-  params::load_defaults(staged);
+  params::Table staged = bench::defaults();
   staged.soft_start_ms = 777;  // place 3 of the table
   arm.get<wire::ParamSetReply>(wire::ParamSetRequest{3, 777});
   arm.get<wire::TelemetryReply>(wire::TelemetryRequest{1});
@@ -130,8 +130,7 @@ TEST_CASE("an undeclared type in any length, and a declared one in a wrong lengt
 }
 
 TEST_CASE("every declared request is answered by its own reply") {
-  Bench arm;
-  arm.boot();
+  Booted arm;
   std::map<std::uint8_t, std::size_t> asked;
   const auto answers = [&](const auto& request) {
     using Request = std::decay_t<decltype(request)>;
@@ -140,8 +139,7 @@ TEST_CASE("every declared request is answered by its own reply") {
     CHECK(int(arm.ask(request).type) == (type | wire::reply_bit));
     asked[type] = size;
   };
-  params::Table table;
-  params::load_defaults(table);
+  params::Table table = bench::defaults();
   answers(wire::HelloRequest{});
   answers(wire::StatusRequest{});
   answers(wire::ParamGetRequest{0});

@@ -1,16 +1,9 @@
-// Sampling and drive against their definitions, over their whole ranges.
-#include <drive.h>
+// Sampling against its definition, over its whole range.
 #include <sampling.h>
 
 #include "bench.h"
 
 namespace {
-
-params::Table defaults() {
-  params::Table table;
-  params::load_defaults(table);
-  return table;
-}
 
 // The definition: ((count14 - zero) * scale + 4096) >> 13
 int angle_of(int sum, int zero, int scale) {
@@ -25,38 +18,11 @@ void tick(app::Sampling& sampling, const std::uint16_t* sums, supervisor::Observ
 
 }  // namespace
 
-TEST_CASE("an unfiltered angle is what the definition says, for every reading and extreme pots") {
-  int wrong = 0;
-  for (const int scale : {10734, -10734, 1, -1, 16384, -16384}) {
-    for (const int zero : {0, 1, 8184, 16368}) {
-      params::Table table = defaults();
-      table.filter_shift = 0;
-      for (int i = 0; i < 4; ++i) {
-        table.leader[i] = {static_cast<std::uint16_t>(zero), static_cast<std::int16_t>(scale)};
-        table.follower[i] = table.leader[i];
-      }
-      app::Sampling sampling;
-      supervisor::Observation seen = {};
-      sampling.configure(table);
-      for (int sum = 0; sum <= 4092; sum += 4) {
-        std::uint16_t sums[8];
-        for (int i = 0; i < 8; ++i) sums[i] = static_cast<std::uint16_t>(std::min(sum + i % 4, 4092));
-        tick(sampling, sums, seen);
-        for (std::uint8_t i = 0; i < 4; ++i) {
-          wrong += sampling.leader(i) != angle_of(sums[i], zero, scale);
-          wrong += sampling.follower(i) != angle_of(sums[i + 4], zero, scale);
-        }
-      }
-    }
-  }
-  CHECK(wrong == 0);
-}
-
 TEST_CASE("the filter reaches a step from both sides, never overshoots, and its first sample is taken whole") {
   for (std::uint8_t shift = 0; shift <= 4; ++shift) {
     for (const int from : {0, 1000, 4092}) {
       for (const int to : {0, 997, 4092}) {
-        params::Table table = defaults();
+        params::Table table = bench::defaults();
         table.filter_shift = shift;
         app::Sampling sampling;
         supervisor::Observation seen = {};
@@ -83,7 +49,7 @@ TEST_CASE("the filter reaches a step from both sides, never overshoots, and its 
 }
 
 TEST_CASE("filter_shift is the share of a step taken each tick") {
-  params::Table table = defaults();
+  params::Table table = bench::defaults();
   table.filter_shift = 2;
   table.leader[0] = {0, 8192};  // the angle is count14
   app::Sampling sampling;
@@ -99,7 +65,7 @@ TEST_CASE("filter_shift is the share of a step taken each tick") {
 }
 
 TEST_CASE("an error is that from the follower to the leader within its joint's limits, and a distance is its size") {
-  params::Table table = defaults();
+  params::Table table = bench::defaults();
   table.filter_shift = 0;
   int wrong = 0;
   for (std::uint8_t joint = 0; joint < 4; ++joint) {
@@ -128,7 +94,7 @@ TEST_CASE("an error is that from the follower to the leader within its joint's l
 }
 
 TEST_CASE("rails are flagged per pot on the raw reading, and rail_counts 0 turns them off") {
-  params::Table table = defaults();
+  params::Table table = bench::defaults();
   app::Sampling sampling;
   supervisor::Observation seen = {};
   sampling.configure(table);
@@ -149,31 +115,4 @@ TEST_CASE("rails are flagged per pot on the raw reading, and rail_counts 0 turns
   tick(sampling, sums, seen);
   CHECK(seen.rail_low == 0);
   CHECK(seen.rail_high == 0);
-}
-
-TEST_CASE("a duty is the PWM step nearest to voltage over supply, odd in the voltage, and full at the supply") {
-  for (const int supply : {3000, 3001, 7777, 12000, 15000, 24000, 29999, 30000}) {
-    params::Table table = defaults();
-    table.supply_mv = static_cast<std::uint16_t>(supply);
-    table.joint[1].motor_sign = -1;
-    app::Drive drive;
-    drive.configure(table);
-    double worst = 0;
-    int unequal = 0;
-    for (int mv = 0; mv <= supply; ++mv) {
-      drive.set<0>(static_cast<std::uint16_t>(mv), 0, table);
-      drive.set<1>(static_cast<std::uint16_t>(mv), 0, table);
-      const int positive = bench::board.duty[0];
-      unequal += bench::board.duty[1] != -positive;
-      drive.set<0>(static_cast<std::uint16_t>(mv), 0x80, table);
-      unequal += bench::board.duty[0] != -positive;
-      worst = std::max(worst, std::abs(positive - mv * bench::full_duty / double(supply)));
-    }
-    CHECK(worst < 0.56);  // half a step, and what the rounded quotient costs at the highest supply
-    CHECK(unequal == 0);
-    drive.set<0>(static_cast<std::uint16_t>(supply), 0, table);
-    CHECK(bench::board.duty[0] == bench::full_duty);
-    drive.set<0>(0, 0, table);
-    CHECK(bench::board.duty[0] == 0);
-  }
 }

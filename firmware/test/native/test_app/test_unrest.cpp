@@ -3,6 +3,8 @@
 
 using bench::Bench;
 using bench::board;
+using bench::Booted;
+using bench::Following;
 
 namespace {
 
@@ -19,8 +21,7 @@ unsigned shake(Bench& arm, std::uint8_t joint, unsigned ms, double follower, dou
 }
 
 params::Table with_amplitude(std::uint8_t amplitude) {
-  params::Table table;
-  params::load_defaults(table);
+  params::Table table = bench::defaults();
   table.unrest_amplitude = amplitude;
   return table;
 }
@@ -29,54 +30,42 @@ params::Table with_amplitude(std::uint8_t amplitude) {
 
 TEST_CASE("a follower that swings about its still leader is off within a second and a half, each joint, and named") {
   for (std::uint8_t joint = 0; joint < 4; ++joint) {
-    Bench arm;
-    arm.follow();
+    Following arm;
     const unsigned off = shake(arm, joint, 5000, 0.04);
     CHECK(off > 1100);
     CHECK(off < 1550);
-    const auto status = arm.status();
-    CHECK(status.state == wire::State::fault);
-    CHECK(status.fault == wire::Fault::unrest);
-    CHECK(status.fault_where == joint);
-    CHECK(status.stop_reason == wire::StopReason::fault);
-    CHECK(arm.get<wire::ClearFaultReply>(wire::ClearFaultRequest{}).state == wire::State::disabled);
+    CHECK(arm.stopped_by(wire::Fault::unrest, joint));
+    CHECK(arm.clear_fault() == wire::State::disabled);
   }
 }
 
 TEST_CASE("a follower that swings with its leader, or against it, is not restless") {
   for (const double follower : {0.04, -0.04}) {
-    Bench arm;
-    arm.follow();
+    Following arm;
     CHECK(shake(arm, 1, 8000, follower, 0.04) == 8000);
   }
 }
 
 TEST_CASE("unrest is seen in the soft start too") {
-  Bench arm;
-  arm.boot();
   params::Table table = with_amplitude(10);
   table.soft_start_ms = 10000;
-  REQUIRE(arm.apply(table).type == 0x85);
+  Bench arm(table);
   REQUIRE(arm.enable() == wire::State::soft_start);
   CHECK(shake(arm, 0, 5000, 0.04) < 1550);
 }
 
 TEST_CASE("the limits come from the running set; 0 turns the check off") {
   for (const int amplitude : {0, 60, 30}) {
-    Bench arm;
-    arm.boot();
-    REQUIRE(arm.apply(with_amplitude(static_cast<std::uint8_t>(amplitude))).type == 0x85);
+    Bench arm(with_amplitude(static_cast<std::uint8_t>(amplitude)));
     REQUIRE(arm.enable() == wire::State::soft_start);
     CHECK((shake(arm, 2, 5000, 0.04) < 5000) == (amplitude == 30));
   }
 }
 
 TEST_CASE("a leader beyond its joint's limit is still as long as it stays there") {
-  Bench arm;
-  arm.boot();
   params::Table table = with_amplitude(10);
   table.joint[0].limit_max = 0;
-  REQUIRE(arm.apply(table).type == 0x85);
+  Bench arm(table);
   arm.set_leader(0, 0.3);
   arm.run(50);
   REQUIRE(arm.enable() == wire::State::soft_start);
@@ -90,8 +79,7 @@ TEST_CASE("a leader beyond its joint's limit is still as long as it stays there"
 
 TEST_CASE("while the host leads, a reference that rests is a still leader, and one that moves is not") {
   for (const int size : {8, 0}) {  // 1/1024 rad in 16 ms
-    Bench arm;
-    arm.boot();
+    Booted arm;
     auto lead = arm.get<wire::LeadReply>(wire::LeadRequest{60000});
     for (int i = 0; i < 150 && board.drivers; ++i) {
       const auto step = static_cast<std::int8_t>(i % 20 < 10 ? size : -size);
@@ -108,8 +96,7 @@ namespace {
 
 // The safe set for what runs: the controllers of the defaults with no more gain, motor and limits as they are.
 params::Table hot() {
-  params::Table table;
-  params::load_defaults(table);
+  params::Table table = bench::defaults();
   table.unrest_action = 1;
   table.joint[1].kp *= 8;
   table.joint[1].ku_mv = 9000;
@@ -121,23 +108,20 @@ params::Table hot() {
 }  // namespace
 
 TEST_CASE("with action 1 the safe set takes over within some ticks, in a soft start; the next unrest is the end") {
-  Bench arm;
-  arm.boot();
-  REQUIRE(arm.apply(hot()).type == 0x85);
+  Bench arm(hot());
   REQUIRE(arm.enable() == wire::State::soft_start);
   arm.run(1100);
   CHECK(shake(arm, 2, 3000, 0.04) < 1550);
   unsigned off = 0;
   for (; !board.drivers && off < 100; ++off) arm.tick();
   CHECK(off <= 12);
-  auto status = arm.status();
+  const auto status = arm.status();
   CHECK(status.state == wire::State::soft_start);
   CHECK(status.fault == wire::Fault::unrest);
   CHECK(status.fault_where == 2);
   CHECK(status.late_ticks == 0);
 
-  params::Table safe = hot(), defaults;
-  params::load_defaults(defaults);
+  params::Table safe = hot(), defaults = bench::defaults();
   safe.joint[1].kp = defaults.joint[1].kp;
   safe.joint[3].ne_c = defaults.joint[3].ne_c;
   CHECK(arm.get<wire::HelloReply>(wire::HelloRequest{}).param_crc == params::crc(safe));
@@ -146,13 +130,10 @@ TEST_CASE("with action 1 the safe set takes over within some ticks, in a soft st
   CHECK(arm.state() == wire::State::following);
   CHECK(shake(arm, 2, 3000, 0.04) < 1550);
   arm.run(50);
-  CHECK_FALSE(board.drivers);
-  status = arm.status();
-  CHECK(status.state == wire::State::fault);
-  CHECK(status.fault == wire::Fault::unrest);
+  CHECK(arm.stopped_by(wire::Fault::unrest, 2));
 
-  REQUIRE(arm.apply(hot()).type == 0x85);  // the host's set again, and with it another safe start
-  CHECK(arm.get<wire::ClearFaultReply>(wire::ClearFaultRequest{}).state == wire::State::disabled);
+  arm.apply_ok(hot());  // the host's set again, and with it another safe start
+  CHECK(arm.clear_fault() == wire::State::disabled);
   REQUIRE(arm.enable() == wire::State::soft_start);
   CHECK(shake(arm, 0, 3000, 0.04) < 1550);
   arm.run(20);
@@ -161,9 +142,7 @@ TEST_CASE("with action 1 the safe set takes over within some ticks, in a soft st
 
 TEST_CASE("the lease goes on while the safe set takes over, and a stop then is a stop") {
   for (const bool stop : {true, false}) {
-    Bench arm;
-    arm.boot();
-    REQUIRE(arm.apply(hot()).type == 0x85);
+    Bench arm(hot());
     REQUIRE(arm.enable(2000) == wire::State::soft_start);
     CHECK(shake(arm, 2, 3000, 0.04) < 1550);
     if (stop) {
@@ -180,12 +159,9 @@ TEST_CASE("the lease goes on while the safe set takes over, and a stop then is a
 }
 
 TEST_CASE("a host that leads gets no safe set: the motors stay off") {
-  Bench arm;
-  arm.boot();
-  REQUIRE(arm.apply(hot()).type == 0x85);
+  Bench arm(hot());
   arm.get<wire::LeadReply>(wire::LeadRequest{60000});
   CHECK(shake(arm, 2, 3000, 0.04) < 1550);
   arm.run(50);
-  CHECK_FALSE(board.drivers);
-  CHECK(arm.status().state == wire::State::fault);
+  CHECK(arm.stopped_by(wire::Fault::unrest, 2));
 }

@@ -175,25 +175,20 @@ TEST_CASE("a second enable ramps from zero again") {
 }
 
 TEST_CASE("stop works in every state") {
-  Arm boot;
-  boot.stop();
-  CHECK(boot.state() == State::boot);
-  Arm disabled;
-  disabled.booted().stop();
-  CHECK(disabled.state() == State::disabled);
-  CHECK(disabled.stop_reason() == StopReason::reset);
-  Arm starting;
-  starting.enabled().run(10).stop();
-  CHECK(starting.state() == State::disabled);
-  CHECK(starting.stop_reason() == StopReason::host);
-  Arm following;
-  following.following().stop();
-  CHECK_FALSE(following.motors_on());
-  CHECK(following.stop_reason() == StopReason::host);
-  Arm fault;
-  fault.following().run(1, late()).stop();
-  CHECK(fault.state() == State::fault);
-  CHECK(fault.stop_reason() == StopReason::fault);
+  struct Case {
+    Arm arm;
+    State state;
+    StopReason reason;
+  } cases[] = {{Arm(), State::boot, StopReason::reset},
+               {Arm().booted(), State::disabled, StopReason::reset},
+               {Arm().enabled().run(10), State::disabled, StopReason::host},
+               {Arm().following(), State::disabled, StopReason::host},
+               {Arm().following().run(1, late()), State::fault, StopReason::fault}};
+  for (Case& one : cases) {
+    one.arm.stop();
+    CHECK(one.arm.state() == one.state);
+    CHECK(one.arm.stop_reason() == one.reason);
+  }
 }
 
 TEST_CASE("a late tick is a fault at once while motors are on, and only then") {
@@ -349,28 +344,36 @@ TEST_CASE("the first fault is the one reported") {
   CHECK(arm.fault() == Fault::late_tick);
 }
 
-TEST_CASE("the emergency stop acts at once in every state but boot, where it waits for the end") {
+TEST_CASE("the emergency stop and lost parameters act at once in every state but boot, where they wait for the end") {
+  struct Case {
+    Arm before;
+    StopReason reason;
+  } cases[] = {{Arm().booted(), StopReason::reset},
+               {Arm().enabled().run(1), StopReason::fault},
+               {Arm().enabled().run(500), StopReason::fault},
+               {Arm().following(), StopReason::fault}};
+  for (const Case& one : cases) {
+    Arm stopped = one.before, lost = one.before;
+    stopped.run(1, pressed());
+    CHECK(stopped.fault() == Fault::estop);
+    lost.lose_params();
+    CHECK(lost.fault() == Fault::memory);
+    for (const Arm& arm : {stopped, lost}) {
+      CHECK(arm.state() == State::fault);
+      CHECK(arm.fault_where() == nowhere);
+      CHECK(arm.stop_reason() == one.reason);
+    }
+  }
   Arm boot;
   boot.run(19, pressed());
   CHECK(boot.state() == State::boot);
   boot.run(2, pressed());
   CHECK(boot.fault() == Fault::estop);
   CHECK(boot.stop_reason() == StopReason::reset);
-
-  Arm disabled;
-  disabled.booted().run(1, pressed());
-  CHECK(disabled.state() == State::fault);
-  CHECK(disabled.fault() == Fault::estop);
-  CHECK(disabled.stop_reason() == StopReason::reset);
-
-  for (const unsigned ticks : {1u, 500u, 2000u}) {
-    Arm arm;
-    arm.enabled().run(ticks).run(1, pressed());
-    CHECK(arm.state() == State::fault);
-    CHECK(arm.fault() == Fault::estop);
-    CHECK(arm.fault_where() == nowhere);
-    CHECK(arm.stop_reason() == StopReason::fault);
-  }
+  Arm lost;
+  lost.lose_params();
+  CHECK(lost.state() == State::boot);
+  CHECK(lost.run(30).fault() == Fault::memory);
 }
 
 TEST_CASE("the emergency stop is latched, and neither clear_fault nor enable works while it is pressed") {
@@ -403,21 +406,9 @@ TEST_CASE("the emergency stop comes before every other fault of its tick, but le
   CHECK(later.clear_fault().refusal == NackCode::estop_pressed);
 }
 
-TEST_CASE("damaged parameters are a fault in every state, which stands until a set is applied") {
-  Arm boot;
-  boot.lose_params();
-  CHECK(boot.run(30).fault() == Fault::memory);
-
-  Arm disabled;
-  disabled.booted().lose_params();
-  CHECK(disabled.fault() == Fault::memory);
-  CHECK(disabled.stop_reason() == StopReason::reset);
-
+TEST_CASE("lost parameters stand until a set is applied") {
   Arm arm;
   arm.following().lose_params();
-  CHECK(arm.state() == State::fault);
-  CHECK(arm.fault() == Fault::memory);
-  CHECK(arm.stop_reason() == StopReason::fault);
   CHECK(arm.clear_fault().refusal == NackCode::set_lost);
   arm.params_mended();
   CHECK(arm.clear_fault().refusal == NackCode::none);
