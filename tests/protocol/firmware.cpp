@@ -16,7 +16,7 @@ struct Reencode {
   int result;
 
   template <class Message>
-  void operator()(const char* candidate, int, const Message&, const uint8_t*, size_t, const uint8_t*, size_t) {
+  void operator()(const char* candidate, int, const Message&, const golden::Bytes&, const golden::Bytes&) {
     if (strcmp(name, candidate) != 0) return;
     Message message{};
     if (!Message::decode(in, size, message)) {

@@ -87,23 +87,22 @@ def default_table(declaration: Declaration) -> bytes:
 def toml(declaration: Declaration) -> str:
     """Text of shared/link/golden.toml."""
     table = default_table(declaration)
+    rows = [
+        f'  {{ message = "{vector.message.struct}", seq = {vector.seq}, payload = "{vector.payload.hex()}", '
+        f'wire = "{vector.wire.hex()}", values = {{ {", ".join(_pairs(vector))} }} }},'
+        for vector in vectors(declaration)
+    ]
     lines = [
         f"# Golden vectors of the link. {NOTICE}",
+        "",
+        "vector = [",
+        *rows,
+        "]",
         "",
         "[parameters]",
         f'defaults = "{table.hex()}"',
         f"crc = 0x{crc16(table):04X}",
     ]
-    for vector in vectors(declaration):
-        lines += [
-            "",
-            "[[vector]]",
-            f'message = "{vector.message.struct}"',
-            f"seq = {vector.seq}",
-            f'payload = "{vector.payload.hex()}"',
-            f'wire = "{vector.wire.hex()}"',
-            f"values = {{ {', '.join(_pairs(vector))} }}",
-        ]
     return "\n".join(lines) + "\n"
 
 
@@ -118,6 +117,7 @@ def _pairs(vector: Vector) -> list[str]:
 def header(declaration: Declaration) -> str:
     """Text of golden.h: the same vectors for the firmware's native tests."""
     table = default_table(declaration)
+    longest = max(len(vector.wire) for vector in vectors(declaration))
     lines = [
         f"// Golden vectors of the link.\n// {NOTICE}\n#pragma once\n",
         '#include <stddef.h>\n#include <stdint.h>\n\n#include "link/schema.h"\n',
@@ -127,20 +127,22 @@ def header(declaration: Declaration) -> str:
         "struct Range {\n  int32_t minimum;\n  int32_t maximum;\n  int32_t initial;\n  bool nonzero;\n};\n",
         f"constexpr Range ranges[] = {{  // in index order\n{_ranges(declaration)}\n}};\n",
         f"constexpr int vector_count = {len(vectors(declaration))};\n",
-        "// Calls visit(name, seq, message, payload, payload_size, wire, wire_size) for every vector.",
+        f"struct Bytes {{\n  size_t size;\n  uint8_t data[{longest}];\n}};\n",
+        "// Calls visit(name, seq, message, payload, wire) for every vector.",
         "template <class Visit>\nvoid for_each(Visit visit) {",
+        *(_visit(vector) for vector in vectors(declaration)),
     ]
-    for vector in vectors(declaration):
-        lines += _visit(vector)
     return "\n".join([*lines, "}\n", "}  // namespace golden"]) + "\n"
 
 
 def _ranges(declaration: Declaration) -> str:
     return "\n".join(
-        f"    {{{p.minimum}, {p.maximum}, {p.defaults[element]}, {str(p.nonzero).lower()}}},"
+        "    "
+        + " ".join(
+            f"{{{p.minimum}, {p.maximum}, {p.defaults[element]}, {str(p.nonzero).lower()}}}," for p in group.parameters
+        )
         for group in declaration.groups
         for element in range(group.count)
-        for p in group.parameters
     )
 
 
@@ -156,18 +158,11 @@ def _literal(field: Field, value: int) -> str:
     return f"{value}u" if field.kind == "u32" else str(value)
 
 
-def _visit(vector: Vector) -> list[str]:
-    lines = ["  {", f"    wire::{vector.message.struct} message{{}};"]
+def _visit(vector: Vector) -> str:
+    fields = []
     for field in vector.message.fields:
-        for i, value in enumerate(vector.values[field.name]):
-            place = f"[{i}]" if field.count else ""
-            lines.append(f"    message.{field.name}{place} = {_literal(field, value)};")
-    payload = _bytes(vector.payload or b"\0")
-    return [
-        *lines,
-        f"    const uint8_t payload[] = {payload};",
-        f"    const uint8_t wire_bytes[] = {_bytes(vector.wire)};",
-        f'    visit("{vector.message.struct}", {vector.seq}, message, payload, size_t{{{len(vector.payload)}}}, '
-        f"wire_bytes, size_t{{{len(vector.wire)}}});",
-        "  }",
-    ]
+        values = ", ".join(_literal(field, value) for value in vector.values[field.name])
+        fields.append(f"{{{values}}}" if field.count else values)
+    message = f"wire::{vector.message.struct}{{{', '.join(fields)}}}"
+    payload, wire = (f"Bytes{{{len(data)}, {_bytes(data)}}}" for data in (vector.payload, vector.wire))
+    return f'  visit("{vector.message.struct}", {vector.seq}, {message}, {payload}, {wire});'

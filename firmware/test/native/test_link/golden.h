@@ -20,98 +20,21 @@ struct Range {
 };
 
 constexpr Range ranges[] = {  // in index order
-    {1, 50, 1, false},
-    {3000, 30000, 15000, false},
-    {41, 25723, 3277, false},
-    {100, 10000, 1000, false},
-    {0, 51446, 3686, false},
-    {1, 60000, 200, false},
-    {0, 4, 1, false},
-    {0, 100, 4, false},
-    {-16384, 16384, -4915, false},
-    {-16384, 16384, -4915, false},
-    {-16384, 16384, 4915, false},
-    {-16384, 16384, 4915, false},
-    {-16384, 16384, -1638, false},
-    {-16384, 16384, -1638, false},
-    {-16384, 16384, 1638, false},
-    {-16384, 16384, 1638, false},
-    {0, 4194304, 33620, false},
-    {0, 4194304, 10486, false},
-    {0, 65536000, 20513, false},
-    {0, 30000, 15000, false},
-    {-1, 1, 1, true},
-    {-25723, 25723, -10240, false},
-    {-25723, 25723, 10240, false},
-    {-16384, 16384, -4915, false},
-    {-16384, 16384, -4915, false},
-    {-16384, 16384, 4915, false},
-    {-16384, 16384, 4915, false},
-    {-16384, 16384, -1638, false},
-    {-16384, 16384, -1638, false},
-    {-16384, 16384, 1638, false},
-    {-16384, 16384, 1638, false},
-    {0, 4194304, 38666, false},
-    {0, 4194304, 9634, false},
-    {0, 65536000, 13173, false},
-    {0, 30000, 11550, false},
-    {-1, 1, 1, true},
-    {-25723, 25723, -10240, false},
-    {-25723, 25723, 10240, false},
-    {-16384, 16384, -4915, false},
-    {-16384, 16384, -4915, false},
-    {-16384, 16384, 4915, false},
-    {-16384, 16384, 4915, false},
-    {-16384, 16384, -1638, false},
-    {-16384, 16384, -1638, false},
-    {-16384, 16384, 1638, false},
-    {-16384, 16384, 1638, false},
-    {0, 4194304, 41288, false},
-    {0, 4194304, 15991, false},
-    {0, 65536000, 16450, false},
-    {0, 30000, 13150, false},
-    {-1, 1, 1, true},
-    {-25723, 25723, -10240, false},
-    {-25723, 25723, 10240, false},
-    {-16384, 16384, -4915, false},
-    {-16384, 16384, -4915, false},
-    {-16384, 16384, 4915, false},
-    {-16384, 16384, 4915, false},
-    {-16384, 16384, -1638, false},
-    {-16384, 16384, -1638, false},
-    {-16384, 16384, 1638, false},
-    {-16384, 16384, 1638, false},
-    {0, 4194304, 51249, false},
-    {0, 4194304, 11076, false},
-    {0, 65536000, 15270, false},
-    {0, 30000, 14500, false},
-    {-1, 1, 1, true},
-    {-25723, 25723, -10240, false},
-    {-25723, 25723, 10240, false},
-    {0, 16368, 8184, false},
-    {-16384, 16384, 10734, false},
-    {0, 16368, 8184, false},
-    {-16384, 16384, 10734, false},
-    {0, 16368, 8184, false},
-    {-16384, 16384, 10734, false},
-    {0, 16368, 8184, false},
-    {-16384, 16384, 10734, false},
-    {0, 16368, 8184, false},
-    {-16384, 16384, 10734, false},
-    {0, 16368, 8184, false},
-    {-16384, 16384, 10734, false},
-    {0, 16368, 8184, false},
-    {-16384, 16384, 10734, false},
-    {0, 16368, 8184, false},
-    {-16384, 16384, 10734, false},
-    {0, 205, 10, false},
-    {1, 10, 6, false},
-    {2, 60, 11, false},
-    {0, 1, 0, false},
-    {0, 100, 25, false},
-    {0, 192, 40, false},
-    {0, 250, 32, false},
-    {5, 125, 42, false},
+    {1, 50, 1, false}, {3000, 30000, 15000, false}, {41, 25723, 3277, false}, {100, 10000, 1000, false}, {0, 51446, 3686, false}, {1, 60000, 200, false}, {0, 4, 1, false}, {0, 100, 4, false},
+    {-16384, 16384, -4915, false}, {-16384, 16384, -4915, false}, {-16384, 16384, 4915, false}, {-16384, 16384, 4915, false}, {-16384, 16384, -1638, false}, {-16384, 16384, -1638, false}, {-16384, 16384, 1638, false}, {-16384, 16384, 1638, false}, {0, 4194304, 33620, false}, {0, 4194304, 10486, false}, {0, 65536000, 20513, false}, {0, 30000, 15000, false}, {-1, 1, 1, true}, {-25723, 25723, -10240, false}, {-25723, 25723, 10240, false},
+    {-16384, 16384, -4915, false}, {-16384, 16384, -4915, false}, {-16384, 16384, 4915, false}, {-16384, 16384, 4915, false}, {-16384, 16384, -1638, false}, {-16384, 16384, -1638, false}, {-16384, 16384, 1638, false}, {-16384, 16384, 1638, false}, {0, 4194304, 38666, false}, {0, 4194304, 9634, false}, {0, 65536000, 13173, false}, {0, 30000, 11550, false}, {-1, 1, 1, true}, {-25723, 25723, -10240, false}, {-25723, 25723, 10240, false},
+    {-16384, 16384, -4915, false}, {-16384, 16384, -4915, false}, {-16384, 16384, 4915, false}, {-16384, 16384, 4915, false}, {-16384, 16384, -1638, false}, {-16384, 16384, -1638, false}, {-16384, 16384, 1638, false}, {-16384, 16384, 1638, false}, {0, 4194304, 41288, false}, {0, 4194304, 15991, false}, {0, 65536000, 16450, false}, {0, 30000, 13150, false}, {-1, 1, 1, true}, {-25723, 25723, -10240, false}, {-25723, 25723, 10240, false},
+    {-16384, 16384, -4915, false}, {-16384, 16384, -4915, false}, {-16384, 16384, 4915, false}, {-16384, 16384, 4915, false}, {-16384, 16384, -1638, false}, {-16384, 16384, -1638, false}, {-16384, 16384, 1638, false}, {-16384, 16384, 1638, false}, {0, 4194304, 51249, false}, {0, 4194304, 11076, false}, {0, 65536000, 15270, false}, {0, 30000, 14500, false}, {-1, 1, 1, true}, {-25723, 25723, -10240, false}, {-25723, 25723, 10240, false},
+    {0, 16368, 8184, false}, {-16384, 16384, 10734, false},
+    {0, 16368, 8184, false}, {-16384, 16384, 10734, false},
+    {0, 16368, 8184, false}, {-16384, 16384, 10734, false},
+    {0, 16368, 8184, false}, {-16384, 16384, 10734, false},
+    {0, 16368, 8184, false}, {-16384, 16384, 10734, false},
+    {0, 16368, 8184, false}, {-16384, 16384, 10734, false},
+    {0, 16368, 8184, false}, {-16384, 16384, 10734, false},
+    {0, 16368, 8184, false}, {-16384, 16384, 10734, false},
+    {0, 205, 10, false}, {1, 10, 6, false}, {2, 60, 11, false}, {0, 1, 0, false},
+    {0, 100, 25, false}, {0, 192, 40, false}, {0, 250, 32, false}, {5, 125, 42, false},
     {0, 2, 1, false},
     {0, 3, 0, false},
     {1, 20, 1, false},
@@ -122,681 +45,90 @@ constexpr Range ranges[] = {  // in index order
 
 constexpr int vector_count = 76;
 
-// Calls visit(name, seq, message, payload, payload_size, wire, wire_size) for every vector.
+struct Bytes {
+  size_t size;
+  uint8_t data[36];
+};
+
+// Calls visit(name, seq, message, payload, wire) for every vector.
 template <class Visit>
 void for_each(Visit visit) {
-  {
-    wire::HelloRequest message{};
-    const uint8_t payload[] = {0x00};
-    const uint8_t wire_bytes[] = {0x02, 0x01, 0x03, 0x3E, 0x2E, 0x00};
-    visit("HelloRequest", 0, message, payload, size_t{0}, wire_bytes, size_t{6});
-  }
-  {
-    wire::HelloReply message{};
-    message.protocol = 0;
-    message.fw_major = 0;
-    message.fw_minor = 0;
-    message.fw_patch = 0;
-    message.schema_hash = 0u;
-    message.board = static_cast<wire::Board>(0);
-    message.param_crc = 0;
-    message.param_source = static_cast<wire::ParamSource>(0);
-    message.reset_cause = static_cast<wire::ResetCause>(0);
-    const uint8_t payload[] = {0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00};
-    const uint8_t wire_bytes[] = {0x02, 0x81, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x03, 0x2D, 0xB4, 0x00};
-    visit("HelloReply", 0, message, payload, size_t{13}, wire_bytes, size_t{19});
-  }
-  {
-    wire::HelloReply message{};
-    message.protocol = 255;
-    message.fw_major = 255;
-    message.fw_minor = 255;
-    message.fw_patch = 255;
-    message.schema_hash = 4294967295u;
-    message.board = static_cast<wire::Board>(3);
-    message.param_crc = 65535;
-    message.param_source = static_cast<wire::ParamSource>(2);
-    message.reset_cause = static_cast<wire::ResetCause>(4);
-    const uint8_t payload[] = {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x03, 0xFF, 0xFF, 0x02, 0x04};
-    const uint8_t wire_bytes[] = {0x12, 0x81, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x03, 0xFF, 0xFF, 0x02, 0x04, 0xF2, 0x51, 0x00};
-    visit("HelloReply", 255, message, payload, size_t{13}, wire_bytes, size_t{19});
-  }
-  {
-    wire::HelloReply message{};
-    message.protocol = 246;
-    message.fw_major = 158;
-    message.fw_minor = 176;
-    message.fw_patch = 2;
-    message.schema_hash = 1963438277u;
-    message.board = static_cast<wire::Board>(1);
-    message.param_crc = 40157;
-    message.param_source = static_cast<wire::ParamSource>(2);
-    message.reset_cause = static_cast<wire::ResetCause>(4);
-    const uint8_t payload[] = {0xF6, 0x9E, 0xB0, 0x02, 0xC5, 0xB0, 0x07, 0x75, 0x01, 0xDD, 0x9C, 0x02, 0x04};
-    const uint8_t wire_bytes[] = {0x12, 0x81, 0x60, 0xF6, 0x9E, 0xB0, 0x02, 0xC5, 0xB0, 0x07, 0x75, 0x01, 0xDD, 0x9C, 0x02, 0x04, 0xD3, 0x5F, 0x00};
-    visit("HelloReply", 96, message, payload, size_t{13}, wire_bytes, size_t{19});
-  }
-  {
-    wire::StatusRequest message{};
-    const uint8_t payload[] = {0x00};
-    const uint8_t wire_bytes[] = {0x02, 0x02, 0x03, 0x6D, 0x7B, 0x00};
-    visit("StatusRequest", 0, message, payload, size_t{0}, wire_bytes, size_t{6});
-  }
-  {
-    wire::StatusReply message{};
-    message.state = static_cast<wire::State>(0);
-    message.stop_reason = static_cast<wire::StopReason>(0);
-    message.fault = static_cast<wire::Fault>(0);
-    message.fault_where = 0;
-    message.tick = 0u;
-    message.late_ticks = 0;
-    message.frames_bad = 0;
-    message.rx_overruns = 0;
-    message.telemetry_dropped = 0;
-    message.no_rule = 0;
-    message.tick_us_max = 0;
-    message.save_state = static_cast<wire::SaveState>(0);
-    message.saves = 0;
-    const uint8_t payload[] = {0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00};
-    const uint8_t wire_bytes[] = {0x02, 0x82, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x03, 0x89, 0xD3, 0x00};
-    visit("StatusReply", 0, message, payload, size_t{23}, wire_bytes, size_t{29});
-  }
-  {
-    wire::StatusReply message{};
-    message.state = static_cast<wire::State>(4);
-    message.stop_reason = static_cast<wire::StopReason>(4);
-    message.fault = static_cast<wire::Fault>(13);
-    message.fault_where = 255;
-    message.tick = 4294967295u;
-    message.late_ticks = 65535;
-    message.frames_bad = 65535;
-    message.rx_overruns = 65535;
-    message.telemetry_dropped = 65535;
-    message.no_rule = 65535;
-    message.tick_us_max = 65535;
-    message.save_state = static_cast<wire::SaveState>(3);
-    message.saves = 65535;
-    const uint8_t payload[] = {0x04, 0x04, 0x0D, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x03, 0xFF, 0xFF};
-    const uint8_t wire_bytes[] = {0x1C, 0x82, 0xFF, 0x04, 0x04, 0x0D, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x03, 0xFF, 0xFF, 0xED, 0x76, 0x00};
-    visit("StatusReply", 255, message, payload, size_t{23}, wire_bytes, size_t{29});
-  }
-  {
-    wire::StatusReply message{};
-    message.state = static_cast<wire::State>(0);
-    message.stop_reason = static_cast<wire::StopReason>(1);
-    message.fault = static_cast<wire::Fault>(0);
-    message.fault_where = 92;
-    message.tick = 2785972755u;
-    message.late_ticks = 8510;
-    message.frames_bad = 39561;
-    message.rx_overruns = 344;
-    message.telemetry_dropped = 1090;
-    message.no_rule = 11248;
-    message.tick_us_max = 26290;
-    message.save_state = static_cast<wire::SaveState>(1);
-    message.saves = 8816;
-    const uint8_t payload[] = {0x00, 0x01, 0x00, 0x5C, 0x13, 0x92, 0x0E, 0xA6, 0x3E, 0x21, 0x89, 0x9A, 0x58, 0x01, 0x42, 0x04, 0xF0, 0x2B, 0xB2, 0x66, 0x01, 0x70, 0x22};
-    const uint8_t wire_bytes[] = {0x03, 0x82, 0xC5, 0x02, 0x01, 0x17, 0x5C, 0x13, 0x92, 0x0E, 0xA6, 0x3E, 0x21, 0x89, 0x9A, 0x58, 0x01, 0x42, 0x04, 0xF0, 0x2B, 0xB2, 0x66, 0x01, 0x70, 0x22, 0x97, 0x14, 0x00};
-    visit("StatusReply", 197, message, payload, size_t{23}, wire_bytes, size_t{29});
-  }
-  {
-    wire::ParamGetRequest message{};
-    message.index = 0;
-    const uint8_t payload[] = {0x00, 0x00};
-    const uint8_t wire_bytes[] = {0x02, 0x03, 0x01, 0x01, 0x03, 0x1C, 0x1F, 0x00};
-    visit("ParamGetRequest", 0, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::ParamGetRequest message{};
-    message.index = 65535;
-    const uint8_t payload[] = {0xFF, 0xFF};
-    const uint8_t wire_bytes[] = {0x07, 0x03, 0xFF, 0xFF, 0xFF, 0x70, 0xCD, 0x00};
-    visit("ParamGetRequest", 255, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::ParamGetRequest message{};
-    message.index = 46418;
-    const uint8_t payload[] = {0x52, 0xB5};
-    const uint8_t wire_bytes[] = {0x07, 0x03, 0x52, 0x52, 0xB5, 0x11, 0xB0, 0x00};
-    visit("ParamGetRequest", 82, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::ParamGetReply message{};
-    message.index = 0;
-    message.value = INT32_MIN;
-    const uint8_t payload[] = {0x00, 0x00, 0x00, 0x00, 0x00, 0x80};
-    const uint8_t wire_bytes[] = {0x02, 0x83, 0x01, 0x01, 0x01, 0x01, 0x01, 0x04, 0x80, 0x42, 0x95, 0x00};
-    visit("ParamGetReply", 0, message, payload, size_t{6}, wire_bytes, size_t{12});
-  }
-  {
-    wire::ParamGetReply message{};
-    message.index = 65535;
-    message.value = 2147483647;
-    const uint8_t payload[] = {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x7F};
-    const uint8_t wire_bytes[] = {0x0B, 0x83, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x7F, 0xEC, 0xA7, 0x00};
-    visit("ParamGetReply", 255, message, payload, size_t{6}, wire_bytes, size_t{12});
-  }
-  {
-    wire::ParamGetReply message{};
-    message.index = 17134;
-    message.value = 1421461110;
-    const uint8_t payload[] = {0xEE, 0x42, 0x76, 0xC6, 0xB9, 0x54};
-    const uint8_t wire_bytes[] = {0x0B, 0x83, 0x41, 0xEE, 0x42, 0x76, 0xC6, 0xB9, 0x54, 0x68, 0x70, 0x00};
-    visit("ParamGetReply", 65, message, payload, size_t{6}, wire_bytes, size_t{12});
-  }
-  {
-    wire::ParamSetRequest message{};
-    message.index = 0;
-    message.value = INT32_MIN;
-    const uint8_t payload[] = {0x00, 0x00, 0x00, 0x00, 0x00, 0x80};
-    const uint8_t wire_bytes[] = {0x02, 0x04, 0x01, 0x01, 0x01, 0x01, 0x01, 0x04, 0x80, 0xDB, 0xAF, 0x00};
-    visit("ParamSetRequest", 0, message, payload, size_t{6}, wire_bytes, size_t{12});
-  }
-  {
-    wire::ParamSetRequest message{};
-    message.index = 65535;
-    message.value = 2147483647;
-    const uint8_t payload[] = {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x7F};
-    const uint8_t wire_bytes[] = {0x0B, 0x04, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x7F, 0x75, 0x9D, 0x00};
-    visit("ParamSetRequest", 255, message, payload, size_t{6}, wire_bytes, size_t{12});
-  }
-  {
-    wire::ParamSetRequest message{};
-    message.index = 60987;
-    message.value = 1292110597;
-    const uint8_t payload[] = {0x3B, 0xEE, 0x05, 0x0B, 0x04, 0x4D};
-    const uint8_t wire_bytes[] = {0x0B, 0x04, 0xE7, 0x3B, 0xEE, 0x05, 0x0B, 0x04, 0x4D, 0x67, 0x3E, 0x00};
-    visit("ParamSetRequest", 231, message, payload, size_t{6}, wire_bytes, size_t{12});
-  }
-  {
-    wire::ParamSetReply message{};
-    message.index = 0;
-    message.value = INT32_MIN;
-    const uint8_t payload[] = {0x00, 0x00, 0x00, 0x00, 0x00, 0x80};
-    const uint8_t wire_bytes[] = {0x02, 0x84, 0x01, 0x01, 0x01, 0x01, 0x01, 0x04, 0x80, 0x5A, 0x52, 0x00};
-    visit("ParamSetReply", 0, message, payload, size_t{6}, wire_bytes, size_t{12});
-  }
-  {
-    wire::ParamSetReply message{};
-    message.index = 65535;
-    message.value = 2147483647;
-    const uint8_t payload[] = {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x7F};
-    const uint8_t wire_bytes[] = {0x0B, 0x84, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x7F, 0xF4, 0x60, 0x00};
-    visit("ParamSetReply", 255, message, payload, size_t{6}, wire_bytes, size_t{12});
-  }
-  {
-    wire::ParamSetReply message{};
-    message.index = 21492;
-    message.value = 1103466399;
-    const uint8_t payload[] = {0xF4, 0x53, 0x9F, 0x8F, 0xC5, 0x41};
-    const uint8_t wire_bytes[] = {0x0B, 0x84, 0xDD, 0xF4, 0x53, 0x9F, 0x8F, 0xC5, 0x41, 0x15, 0xB0, 0x00};
-    visit("ParamSetReply", 221, message, payload, size_t{6}, wire_bytes, size_t{12});
-  }
-  {
-    wire::ParamApplyRequest message{};
-    message.crc = 0;
-    const uint8_t payload[] = {0x00, 0x00};
-    const uint8_t wire_bytes[] = {0x02, 0x05, 0x01, 0x01, 0x03, 0x85, 0x38, 0x00};
-    visit("ParamApplyRequest", 0, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::ParamApplyRequest message{};
-    message.crc = 65535;
-    const uint8_t payload[] = {0xFF, 0xFF};
-    const uint8_t wire_bytes[] = {0x07, 0x05, 0xFF, 0xFF, 0xFF, 0xE9, 0xEA, 0x00};
-    visit("ParamApplyRequest", 255, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::ParamApplyRequest message{};
-    message.crc = 27197;
-    const uint8_t payload[] = {0x3D, 0x6A};
-    const uint8_t wire_bytes[] = {0x07, 0x05, 0x59, 0x3D, 0x6A, 0xFF, 0x46, 0x00};
-    visit("ParamApplyRequest", 89, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::ParamApplyReply message{};
-    message.param_crc = 0;
-    const uint8_t payload[] = {0x00, 0x00};
-    const uint8_t wire_bytes[] = {0x02, 0x85, 0x01, 0x01, 0x03, 0xBD, 0xE5, 0x00};
-    visit("ParamApplyReply", 0, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::ParamApplyReply message{};
-    message.param_crc = 65535;
-    const uint8_t payload[] = {0xFF, 0xFF};
-    const uint8_t wire_bytes[] = {0x07, 0x85, 0xFF, 0xFF, 0xFF, 0xD1, 0x37, 0x00};
-    visit("ParamApplyReply", 255, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::ParamApplyReply message{};
-    message.param_crc = 39470;
-    const uint8_t payload[] = {0x2E, 0x9A};
-    const uint8_t wire_bytes[] = {0x07, 0x85, 0x9A, 0x2E, 0x9A, 0x5F, 0x5D, 0x00};
-    visit("ParamApplyReply", 154, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::ParamSaveRequest message{};
-    const uint8_t payload[] = {0x00};
-    const uint8_t wire_bytes[] = {0x02, 0x06, 0x03, 0xA9, 0xB7, 0x00};
-    visit("ParamSaveRequest", 0, message, payload, size_t{0}, wire_bytes, size_t{6});
-  }
-  {
-    wire::ParamSaveReply message{};
-    message.param_crc = 0;
-    const uint8_t payload[] = {0x00, 0x00};
-    const uint8_t wire_bytes[] = {0x02, 0x86, 0x01, 0x01, 0x03, 0x61, 0x7E, 0x00};
-    visit("ParamSaveReply", 0, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::ParamSaveReply message{};
-    message.param_crc = 65535;
-    const uint8_t payload[] = {0xFF, 0xFF};
-    const uint8_t wire_bytes[] = {0x07, 0x86, 0xFF, 0xFF, 0xFF, 0x0D, 0xAC, 0x00};
-    visit("ParamSaveReply", 255, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::ParamSaveReply message{};
-    message.param_crc = 22687;
-    const uint8_t payload[] = {0x9F, 0x58};
-    const uint8_t wire_bytes[] = {0x07, 0x86, 0x6B, 0x9F, 0x58, 0xD3, 0xC6, 0x00};
-    visit("ParamSaveReply", 107, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::ParamDefaultsRequest message{};
-    const uint8_t payload[] = {0x00};
-    const uint8_t wire_bytes[] = {0x02, 0x07, 0x03, 0x98, 0x84, 0x00};
-    visit("ParamDefaultsRequest", 0, message, payload, size_t{0}, wire_bytes, size_t{6});
-  }
-  {
-    wire::ParamDefaultsReply message{};
-    const uint8_t payload[] = {0x00};
-    const uint8_t wire_bytes[] = {0x02, 0x87, 0x01, 0x02, 0x9F, 0x00};
-    visit("ParamDefaultsReply", 0, message, payload, size_t{0}, wire_bytes, size_t{6});
-  }
-  {
-    wire::EnableRequest message{};
-    message.lease_ms = 0;
-    const uint8_t payload[] = {0x00, 0x00};
-    const uint8_t wire_bytes[] = {0x02, 0x08, 0x01, 0x01, 0x03, 0x03, 0x01, 0x00};
-    visit("EnableRequest", 0, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::EnableRequest message{};
-    message.lease_ms = 65535;
-    const uint8_t payload[] = {0xFF, 0xFF};
-    const uint8_t wire_bytes[] = {0x07, 0x08, 0xFF, 0xFF, 0xFF, 0x6F, 0xD3, 0x00};
-    visit("EnableRequest", 255, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::EnableRequest message{};
-    message.lease_ms = 56757;
-    const uint8_t payload[] = {0xB5, 0xDD};
-    const uint8_t wire_bytes[] = {0x07, 0x08, 0xC2, 0xB5, 0xDD, 0xBC, 0xB2, 0x00};
-    visit("EnableRequest", 194, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::EnableReply message{};
-    message.state = static_cast<wire::State>(0);
-    const uint8_t payload[] = {0x00};
-    const uint8_t wire_bytes[] = {0x02, 0x88, 0x01, 0x03, 0x67, 0x5E, 0x00};
-    visit("EnableReply", 0, message, payload, size_t{1}, wire_bytes, size_t{7});
-  }
-  {
-    wire::EnableReply message{};
-    message.state = static_cast<wire::State>(4);
-    const uint8_t payload[] = {0x04};
-    const uint8_t wire_bytes[] = {0x06, 0x88, 0xFF, 0x04, 0x1C, 0x1D, 0x00};
-    visit("EnableReply", 255, message, payload, size_t{1}, wire_bytes, size_t{7});
-  }
-  {
-    wire::EnableReply message{};
-    message.state = static_cast<wire::State>(1);
-    const uint8_t payload[] = {0x01};
-    const uint8_t wire_bytes[] = {0x06, 0x88, 0x02, 0x01, 0x24, 0x28, 0x00};
-    visit("EnableReply", 2, message, payload, size_t{1}, wire_bytes, size_t{7});
-  }
-  {
-    wire::StopRequest message{};
-    const uint8_t payload[] = {0x00};
-    const uint8_t wire_bytes[] = {0x02, 0x09, 0x03, 0x97, 0xA7, 0x00};
-    visit("StopRequest", 0, message, payload, size_t{0}, wire_bytes, size_t{6});
-  }
-  {
-    wire::StopReply message{};
-    message.state = static_cast<wire::State>(0);
-    const uint8_t payload[] = {0x00};
-    const uint8_t wire_bytes[] = {0x02, 0x89, 0x01, 0x03, 0x57, 0x69, 0x00};
-    visit("StopReply", 0, message, payload, size_t{1}, wire_bytes, size_t{7});
-  }
-  {
-    wire::StopReply message{};
-    message.state = static_cast<wire::State>(4);
-    const uint8_t payload[] = {0x04};
-    const uint8_t wire_bytes[] = {0x06, 0x89, 0xFF, 0x04, 0x2C, 0x2A, 0x00};
-    visit("StopReply", 255, message, payload, size_t{1}, wire_bytes, size_t{7});
-  }
-  {
-    wire::StopReply message{};
-    message.state = static_cast<wire::State>(3);
-    const uint8_t payload[] = {0x03};
-    const uint8_t wire_bytes[] = {0x06, 0x89, 0x4D, 0x03, 0xA4, 0x22, 0x00};
-    visit("StopReply", 77, message, payload, size_t{1}, wire_bytes, size_t{7});
-  }
-  {
-    wire::RenewRequest message{};
-    message.lease_ms = 0;
-    const uint8_t payload[] = {0x00, 0x00};
-    const uint8_t wire_bytes[] = {0x02, 0x0A, 0x01, 0x01, 0x03, 0x6B, 0xEC, 0x00};
-    visit("RenewRequest", 0, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::RenewRequest message{};
-    message.lease_ms = 65535;
-    const uint8_t payload[] = {0xFF, 0xFF};
-    const uint8_t wire_bytes[] = {0x07, 0x0A, 0xFF, 0xFF, 0xFF, 0x07, 0x3E, 0x00};
-    visit("RenewRequest", 255, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::RenewRequest message{};
-    message.lease_ms = 53449;
-    const uint8_t payload[] = {0xC9, 0xD0};
-    const uint8_t wire_bytes[] = {0x07, 0x0A, 0x8D, 0xC9, 0xD0, 0xD1, 0xF2, 0x00};
-    visit("RenewRequest", 141, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::RenewReply message{};
-    message.state = static_cast<wire::State>(0);
-    const uint8_t payload[] = {0x00};
-    const uint8_t wire_bytes[] = {0x02, 0x8A, 0x01, 0x03, 0x07, 0x30, 0x00};
-    visit("RenewReply", 0, message, payload, size_t{1}, wire_bytes, size_t{7});
-  }
-  {
-    wire::RenewReply message{};
-    message.state = static_cast<wire::State>(4);
-    const uint8_t payload[] = {0x04};
-    const uint8_t wire_bytes[] = {0x06, 0x8A, 0xFF, 0x04, 0x7C, 0x73, 0x00};
-    visit("RenewReply", 255, message, payload, size_t{1}, wire_bytes, size_t{7});
-  }
-  {
-    wire::RenewReply message{};
-    message.state = static_cast<wire::State>(1);
-    const uint8_t payload[] = {0x01};
-    const uint8_t wire_bytes[] = {0x06, 0x8A, 0x66, 0x01, 0xAA, 0x81, 0x00};
-    visit("RenewReply", 102, message, payload, size_t{1}, wire_bytes, size_t{7});
-  }
-  {
-    wire::ClearFaultRequest message{};
-    const uint8_t payload[] = {0x00};
-    const uint8_t wire_bytes[] = {0x02, 0x0B, 0x03, 0xF5, 0xC1, 0x00};
-    visit("ClearFaultRequest", 0, message, payload, size_t{0}, wire_bytes, size_t{6});
-  }
-  {
-    wire::ClearFaultReply message{};
-    message.state = static_cast<wire::State>(0);
-    const uint8_t payload[] = {0x00};
-    const uint8_t wire_bytes[] = {0x02, 0x8B, 0x01, 0x03, 0x37, 0x07, 0x00};
-    visit("ClearFaultReply", 0, message, payload, size_t{1}, wire_bytes, size_t{7});
-  }
-  {
-    wire::ClearFaultReply message{};
-    message.state = static_cast<wire::State>(4);
-    const uint8_t payload[] = {0x04};
-    const uint8_t wire_bytes[] = {0x06, 0x8B, 0xFF, 0x04, 0x4C, 0x44, 0x00};
-    visit("ClearFaultReply", 255, message, payload, size_t{1}, wire_bytes, size_t{7});
-  }
-  {
-    wire::ClearFaultReply message{};
-    message.state = static_cast<wire::State>(3);
-    const uint8_t payload[] = {0x03};
-    const uint8_t wire_bytes[] = {0x06, 0x8B, 0x2F, 0x03, 0x8C, 0x21, 0x00};
-    visit("ClearFaultReply", 47, message, payload, size_t{1}, wire_bytes, size_t{7});
-  }
-  {
-    wire::TelemetryRequest message{};
-    message.every = 0;
-    const uint8_t payload[] = {0x00, 0x00};
-    const uint8_t wire_bytes[] = {0x02, 0x0C, 0x01, 0x01, 0x03, 0xF2, 0xCB, 0x00};
-    visit("TelemetryRequest", 0, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::TelemetryRequest message{};
-    message.every = 65535;
-    const uint8_t payload[] = {0xFF, 0xFF};
-    const uint8_t wire_bytes[] = {0x07, 0x0C, 0xFF, 0xFF, 0xFF, 0x9E, 0x19, 0x00};
-    visit("TelemetryRequest", 255, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::TelemetryRequest message{};
-    message.every = 55288;
-    const uint8_t payload[] = {0xF8, 0xD7};
-    const uint8_t wire_bytes[] = {0x07, 0x0C, 0x5F, 0xF8, 0xD7, 0xFF, 0x98, 0x00};
-    visit("TelemetryRequest", 95, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::TelemetryReply message{};
-    message.every = 0;
-    const uint8_t payload[] = {0x00, 0x00};
-    const uint8_t wire_bytes[] = {0x02, 0x8C, 0x01, 0x01, 0x03, 0xCA, 0x16, 0x00};
-    visit("TelemetryReply", 0, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::TelemetryReply message{};
-    message.every = 65535;
-    const uint8_t payload[] = {0xFF, 0xFF};
-    const uint8_t wire_bytes[] = {0x07, 0x8C, 0xFF, 0xFF, 0xFF, 0xA6, 0xC4, 0x00};
-    visit("TelemetryReply", 255, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::TelemetryReply message{};
-    message.every = 7032;
-    const uint8_t payload[] = {0x78, 0x1B};
-    const uint8_t wire_bytes[] = {0x07, 0x8C, 0xE6, 0x78, 0x1B, 0xF1, 0x26, 0x00};
-    visit("TelemetryReply", 230, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::LeadRequest message{};
-    message.lease_ms = 0;
-    const uint8_t payload[] = {0x00, 0x00};
-    const uint8_t wire_bytes[] = {0x02, 0x0D, 0x01, 0x01, 0x03, 0x46, 0xBD, 0x00};
-    visit("LeadRequest", 0, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::LeadRequest message{};
-    message.lease_ms = 65535;
-    const uint8_t payload[] = {0xFF, 0xFF};
-    const uint8_t wire_bytes[] = {0x07, 0x0D, 0xFF, 0xFF, 0xFF, 0x2A, 0x6F, 0x00};
-    visit("LeadRequest", 255, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::LeadRequest message{};
-    message.lease_ms = 10232;
-    const uint8_t payload[] = {0xF8, 0x27};
-    const uint8_t wire_bytes[] = {0x07, 0x0D, 0x31, 0xF8, 0x27, 0x3E, 0x81, 0x00};
-    visit("LeadRequest", 49, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::LeadReply message{};
-    message.state = static_cast<wire::State>(0);
-    message.next = 0;
-    message.reference[0] = -32768;
-    message.reference[1] = -32768;
-    message.reference[2] = -32768;
-    message.reference[3] = -32768;
-    const uint8_t payload[] = {0x00, 0x00, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80};
-    const uint8_t wire_bytes[] = {0x02, 0x8D, 0x01, 0x01, 0x01, 0x02, 0x80, 0x02, 0x80, 0x02, 0x80, 0x04, 0x80, 0xAA, 0x18, 0x00};
-    visit("LeadReply", 0, message, payload, size_t{10}, wire_bytes, size_t{16});
-  }
-  {
-    wire::LeadReply message{};
-    message.state = static_cast<wire::State>(4);
-    message.next = 255;
-    message.reference[0] = 32767;
-    message.reference[1] = 32767;
-    message.reference[2] = 32767;
-    message.reference[3] = 32767;
-    const uint8_t payload[] = {0x04, 0xFF, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F};
-    const uint8_t wire_bytes[] = {0x0F, 0x8D, 0xFF, 0x04, 0xFF, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0x48, 0x26, 0x00};
-    visit("LeadReply", 255, message, payload, size_t{10}, wire_bytes, size_t{16});
-  }
-  {
-    wire::LeadReply message{};
-    message.state = static_cast<wire::State>(1);
-    message.next = 138;
-    message.reference[0] = 17368;
-    message.reference[1] = 9361;
-    message.reference[2] = -18991;
-    message.reference[3] = -4599;
-    const uint8_t payload[] = {0x01, 0x8A, 0xD8, 0x43, 0x91, 0x24, 0xD1, 0xB5, 0x09, 0xEE};
-    const uint8_t wire_bytes[] = {0x0F, 0x8D, 0x14, 0x01, 0x8A, 0xD8, 0x43, 0x91, 0x24, 0xD1, 0xB5, 0x09, 0xEE, 0x63, 0x4A, 0x00};
-    visit("LeadReply", 20, message, payload, size_t{10}, wire_bytes, size_t{16});
-  }
-  {
-    wire::LeadPointRequest message{};
-    message.number = 0;
-    message.step[0] = -128;
-    message.step[1] = -128;
-    message.step[2] = -128;
-    message.step[3] = -128;
-    const uint8_t payload[] = {0x00, 0x80, 0x80, 0x80, 0x80};
-    const uint8_t wire_bytes[] = {0x02, 0x0E, 0x01, 0x07, 0x80, 0x80, 0x80, 0x80, 0x34, 0xAF, 0x00};
-    visit("LeadPointRequest", 0, message, payload, size_t{5}, wire_bytes, size_t{11});
-  }
-  {
-    wire::LeadPointRequest message{};
-    message.number = 255;
-    message.step[0] = 127;
-    message.step[1] = 127;
-    message.step[2] = 127;
-    message.step[3] = 127;
-    const uint8_t payload[] = {0xFF, 0x7F, 0x7F, 0x7F, 0x7F};
-    const uint8_t wire_bytes[] = {0x0A, 0x0E, 0xFF, 0xFF, 0x7F, 0x7F, 0x7F, 0x7F, 0xEB, 0x38, 0x00};
-    visit("LeadPointRequest", 255, message, payload, size_t{5}, wire_bytes, size_t{11});
-  }
-  {
-    wire::LeadPointRequest message{};
-    message.number = 47;
-    message.step[0] = 31;
-    message.step[1] = -31;
-    message.step[2] = 2;
-    message.step[3] = 24;
-    const uint8_t payload[] = {0x2F, 0x1F, 0xE1, 0x02, 0x18};
-    const uint8_t wire_bytes[] = {0x0A, 0x0E, 0x07, 0x2F, 0x1F, 0xE1, 0x02, 0x18, 0x59, 0xCB, 0x00};
-    visit("LeadPointRequest", 7, message, payload, size_t{5}, wire_bytes, size_t{11});
-  }
-  {
-    wire::LeadPointReply message{};
-    message.next = 0;
-    message.waiting = 0;
-    const uint8_t payload[] = {0x00, 0x00};
-    const uint8_t wire_bytes[] = {0x02, 0x8E, 0x01, 0x01, 0x03, 0xA2, 0xFB, 0x00};
-    visit("LeadPointReply", 0, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::LeadPointReply message{};
-    message.next = 255;
-    message.waiting = 255;
-    const uint8_t payload[] = {0xFF, 0xFF};
-    const uint8_t wire_bytes[] = {0x07, 0x8E, 0xFF, 0xFF, 0xFF, 0xCE, 0x29, 0x00};
-    visit("LeadPointReply", 255, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::LeadPointReply message{};
-    message.next = 170;
-    message.waiting = 17;
-    const uint8_t payload[] = {0xAA, 0x11};
-    const uint8_t wire_bytes[] = {0x07, 0x8E, 0xD8, 0xAA, 0x11, 0x32, 0xC7, 0x00};
-    visit("LeadPointReply", 216, message, payload, size_t{2}, wire_bytes, size_t{8});
-  }
-  {
-    wire::Sample message{};
-    message.tick = 0u;
-    message.state = static_cast<wire::State>(0);
-    message.fault = static_cast<wire::Fault>(0);
-    message.leader[0] = -32768;
-    message.leader[1] = -32768;
-    message.leader[2] = -32768;
-    message.leader[3] = -32768;
-    message.follower[0] = -32768;
-    message.follower[1] = -32768;
-    message.follower[2] = -32768;
-    message.follower[3] = -32768;
-    message.voltage[0] = -32768;
-    message.voltage[1] = -32768;
-    message.voltage[2] = -32768;
-    message.voltage[3] = -32768;
-    const uint8_t payload[] = {0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80};
-    const uint8_t wire_bytes[] = {0x02, 0x40, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x02, 0x80, 0x02, 0x80, 0x02, 0x80, 0x02, 0x80, 0x02, 0x80, 0x02, 0x80, 0x02, 0x80, 0x02, 0x80, 0x02, 0x80, 0x02, 0x80, 0x02, 0x80, 0x04, 0x80, 0xD6, 0xE1, 0x00};
-    visit("Sample", 0, message, payload, size_t{30}, wire_bytes, size_t{36});
-  }
-  {
-    wire::Sample message{};
-    message.tick = 4294967295u;
-    message.state = static_cast<wire::State>(4);
-    message.fault = static_cast<wire::Fault>(13);
-    message.leader[0] = 32767;
-    message.leader[1] = 32767;
-    message.leader[2] = 32767;
-    message.leader[3] = 32767;
-    message.follower[0] = 32767;
-    message.follower[1] = 32767;
-    message.follower[2] = 32767;
-    message.follower[3] = 32767;
-    message.voltage[0] = 32767;
-    message.voltage[1] = 32767;
-    message.voltage[2] = 32767;
-    message.voltage[3] = 32767;
-    const uint8_t payload[] = {0xFF, 0xFF, 0xFF, 0xFF, 0x04, 0x0D, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F};
-    const uint8_t wire_bytes[] = {0x23, 0x40, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x04, 0x0D, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0x3B, 0xC6, 0x00};
-    visit("Sample", 255, message, payload, size_t{30}, wire_bytes, size_t{36});
-  }
-  {
-    wire::Sample message{};
-    message.tick = 2036536042u;
-    message.state = static_cast<wire::State>(4);
-    message.fault = static_cast<wire::Fault>(8);
-    message.leader[0] = -26774;
-    message.leader[1] = 8351;
-    message.leader[2] = 2784;
-    message.leader[3] = 20387;
-    message.follower[0] = -14288;
-    message.follower[1] = -3218;
-    message.follower[2] = -1393;
-    message.follower[3] = 15277;
-    message.voltage[0] = -30919;
-    message.voltage[1] = -17384;
-    message.voltage[2] = -6522;
-    message.voltage[3] = -11529;
-    const uint8_t payload[] = {0xEA, 0x12, 0x63, 0x79, 0x04, 0x08, 0x6A, 0x97, 0x9F, 0x20, 0xE0, 0x0A, 0xA3, 0x4F, 0x30, 0xC8, 0x6E, 0xF3, 0x8F, 0xFA, 0xAD, 0x3B, 0x39, 0x87, 0x18, 0xBC, 0x86, 0xE6, 0xF7, 0xD2};
-    const uint8_t wire_bytes[] = {0x23, 0x40, 0x33, 0xEA, 0x12, 0x63, 0x79, 0x04, 0x08, 0x6A, 0x97, 0x9F, 0x20, 0xE0, 0x0A, 0xA3, 0x4F, 0x30, 0xC8, 0x6E, 0xF3, 0x8F, 0xFA, 0xAD, 0x3B, 0x39, 0x87, 0x18, 0xBC, 0x86, 0xE6, 0xF7, 0xD2, 0xFC, 0x22, 0x00};
-    visit("Sample", 51, message, payload, size_t{30}, wire_bytes, size_t{36});
-  }
-  {
-    wire::Nack message{};
-    message.request = 0;
-    message.code = static_cast<wire::NackCode>(0);
-    message.detail = 0;
-    const uint8_t payload[] = {0x00, 0x00, 0x00, 0x00};
-    const uint8_t wire_bytes[] = {0x02, 0xFF, 0x01, 0x01, 0x01, 0x01, 0x03, 0xAF, 0x5A, 0x00};
-    visit("Nack", 0, message, payload, size_t{4}, wire_bytes, size_t{10});
-  }
-  {
-    wire::Nack message{};
-    message.request = 255;
-    message.code = static_cast<wire::NackCode>(17);
-    message.detail = 65535;
-    const uint8_t payload[] = {0xFF, 0x11, 0xFF, 0xFF};
-    const uint8_t wire_bytes[] = {0x09, 0xFF, 0xFF, 0xFF, 0x11, 0xFF, 0xFF, 0xFF, 0x22, 0x00};
-    visit("Nack", 255, message, payload, size_t{4}, wire_bytes, size_t{10});
-  }
-  {
-    wire::Nack message{};
-    message.request = 166;
-    message.code = static_cast<wire::NackCode>(6);
-    message.detail = 52720;
-    const uint8_t payload[] = {0xA6, 0x06, 0xF0, 0xCD};
-    const uint8_t wire_bytes[] = {0x08, 0xFF, 0x75, 0xA6, 0x06, 0xF0, 0xCD, 0x11, 0x01, 0x00};
-    visit("Nack", 117, message, payload, size_t{4}, wire_bytes, size_t{10});
-  }
+  visit("HelloRequest", 0, wire::HelloRequest{}, Bytes{0, {}}, Bytes{6, {0x02, 0x01, 0x03, 0x3E, 0x2E, 0x00}});
+  visit("HelloReply", 0, wire::HelloReply{0, 0, 0, 0, 0u, static_cast<wire::Board>(0), 0, static_cast<wire::ParamSource>(0), static_cast<wire::ResetCause>(0)}, Bytes{13, {0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00}}, Bytes{19, {0x02, 0x81, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x03, 0x2D, 0xB4, 0x00}});
+  visit("HelloReply", 255, wire::HelloReply{255, 255, 255, 255, 4294967295u, static_cast<wire::Board>(3), 65535, static_cast<wire::ParamSource>(2), static_cast<wire::ResetCause>(4)}, Bytes{13, {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x03, 0xFF, 0xFF, 0x02, 0x04}}, Bytes{19, {0x12, 0x81, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x03, 0xFF, 0xFF, 0x02, 0x04, 0xF2, 0x51, 0x00}});
+  visit("HelloReply", 96, wire::HelloReply{246, 158, 176, 2, 1963438277u, static_cast<wire::Board>(1), 40157, static_cast<wire::ParamSource>(2), static_cast<wire::ResetCause>(4)}, Bytes{13, {0xF6, 0x9E, 0xB0, 0x02, 0xC5, 0xB0, 0x07, 0x75, 0x01, 0xDD, 0x9C, 0x02, 0x04}}, Bytes{19, {0x12, 0x81, 0x60, 0xF6, 0x9E, 0xB0, 0x02, 0xC5, 0xB0, 0x07, 0x75, 0x01, 0xDD, 0x9C, 0x02, 0x04, 0xD3, 0x5F, 0x00}});
+  visit("StatusRequest", 0, wire::StatusRequest{}, Bytes{0, {}}, Bytes{6, {0x02, 0x02, 0x03, 0x6D, 0x7B, 0x00}});
+  visit("StatusReply", 0, wire::StatusReply{static_cast<wire::State>(0), static_cast<wire::StopReason>(0), static_cast<wire::Fault>(0), 0, 0u, 0, 0, 0, 0, 0, 0, static_cast<wire::SaveState>(0), 0}, Bytes{23, {0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00}}, Bytes{29, {0x02, 0x82, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x03, 0x89, 0xD3, 0x00}});
+  visit("StatusReply", 255, wire::StatusReply{static_cast<wire::State>(4), static_cast<wire::StopReason>(4), static_cast<wire::Fault>(13), 255, 4294967295u, 65535, 65535, 65535, 65535, 65535, 65535, static_cast<wire::SaveState>(3), 65535}, Bytes{23, {0x04, 0x04, 0x0D, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x03, 0xFF, 0xFF}}, Bytes{29, {0x1C, 0x82, 0xFF, 0x04, 0x04, 0x0D, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x03, 0xFF, 0xFF, 0xED, 0x76, 0x00}});
+  visit("StatusReply", 197, wire::StatusReply{static_cast<wire::State>(0), static_cast<wire::StopReason>(1), static_cast<wire::Fault>(0), 92, 2785972755u, 8510, 39561, 344, 1090, 11248, 26290, static_cast<wire::SaveState>(1), 8816}, Bytes{23, {0x00, 0x01, 0x00, 0x5C, 0x13, 0x92, 0x0E, 0xA6, 0x3E, 0x21, 0x89, 0x9A, 0x58, 0x01, 0x42, 0x04, 0xF0, 0x2B, 0xB2, 0x66, 0x01, 0x70, 0x22}}, Bytes{29, {0x03, 0x82, 0xC5, 0x02, 0x01, 0x17, 0x5C, 0x13, 0x92, 0x0E, 0xA6, 0x3E, 0x21, 0x89, 0x9A, 0x58, 0x01, 0x42, 0x04, 0xF0, 0x2B, 0xB2, 0x66, 0x01, 0x70, 0x22, 0x97, 0x14, 0x00}});
+  visit("ParamGetRequest", 0, wire::ParamGetRequest{0}, Bytes{2, {0x00, 0x00}}, Bytes{8, {0x02, 0x03, 0x01, 0x01, 0x03, 0x1C, 0x1F, 0x00}});
+  visit("ParamGetRequest", 255, wire::ParamGetRequest{65535}, Bytes{2, {0xFF, 0xFF}}, Bytes{8, {0x07, 0x03, 0xFF, 0xFF, 0xFF, 0x70, 0xCD, 0x00}});
+  visit("ParamGetRequest", 82, wire::ParamGetRequest{46418}, Bytes{2, {0x52, 0xB5}}, Bytes{8, {0x07, 0x03, 0x52, 0x52, 0xB5, 0x11, 0xB0, 0x00}});
+  visit("ParamGetReply", 0, wire::ParamGetReply{0, INT32_MIN}, Bytes{6, {0x00, 0x00, 0x00, 0x00, 0x00, 0x80}}, Bytes{12, {0x02, 0x83, 0x01, 0x01, 0x01, 0x01, 0x01, 0x04, 0x80, 0x42, 0x95, 0x00}});
+  visit("ParamGetReply", 255, wire::ParamGetReply{65535, 2147483647}, Bytes{6, {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x7F}}, Bytes{12, {0x0B, 0x83, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x7F, 0xEC, 0xA7, 0x00}});
+  visit("ParamGetReply", 65, wire::ParamGetReply{17134, 1421461110}, Bytes{6, {0xEE, 0x42, 0x76, 0xC6, 0xB9, 0x54}}, Bytes{12, {0x0B, 0x83, 0x41, 0xEE, 0x42, 0x76, 0xC6, 0xB9, 0x54, 0x68, 0x70, 0x00}});
+  visit("ParamSetRequest", 0, wire::ParamSetRequest{0, INT32_MIN}, Bytes{6, {0x00, 0x00, 0x00, 0x00, 0x00, 0x80}}, Bytes{12, {0x02, 0x04, 0x01, 0x01, 0x01, 0x01, 0x01, 0x04, 0x80, 0xDB, 0xAF, 0x00}});
+  visit("ParamSetRequest", 255, wire::ParamSetRequest{65535, 2147483647}, Bytes{6, {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x7F}}, Bytes{12, {0x0B, 0x04, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x7F, 0x75, 0x9D, 0x00}});
+  visit("ParamSetRequest", 231, wire::ParamSetRequest{60987, 1292110597}, Bytes{6, {0x3B, 0xEE, 0x05, 0x0B, 0x04, 0x4D}}, Bytes{12, {0x0B, 0x04, 0xE7, 0x3B, 0xEE, 0x05, 0x0B, 0x04, 0x4D, 0x67, 0x3E, 0x00}});
+  visit("ParamSetReply", 0, wire::ParamSetReply{0, INT32_MIN}, Bytes{6, {0x00, 0x00, 0x00, 0x00, 0x00, 0x80}}, Bytes{12, {0x02, 0x84, 0x01, 0x01, 0x01, 0x01, 0x01, 0x04, 0x80, 0x5A, 0x52, 0x00}});
+  visit("ParamSetReply", 255, wire::ParamSetReply{65535, 2147483647}, Bytes{6, {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x7F}}, Bytes{12, {0x0B, 0x84, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x7F, 0xF4, 0x60, 0x00}});
+  visit("ParamSetReply", 221, wire::ParamSetReply{21492, 1103466399}, Bytes{6, {0xF4, 0x53, 0x9F, 0x8F, 0xC5, 0x41}}, Bytes{12, {0x0B, 0x84, 0xDD, 0xF4, 0x53, 0x9F, 0x8F, 0xC5, 0x41, 0x15, 0xB0, 0x00}});
+  visit("ParamApplyRequest", 0, wire::ParamApplyRequest{0}, Bytes{2, {0x00, 0x00}}, Bytes{8, {0x02, 0x05, 0x01, 0x01, 0x03, 0x85, 0x38, 0x00}});
+  visit("ParamApplyRequest", 255, wire::ParamApplyRequest{65535}, Bytes{2, {0xFF, 0xFF}}, Bytes{8, {0x07, 0x05, 0xFF, 0xFF, 0xFF, 0xE9, 0xEA, 0x00}});
+  visit("ParamApplyRequest", 89, wire::ParamApplyRequest{27197}, Bytes{2, {0x3D, 0x6A}}, Bytes{8, {0x07, 0x05, 0x59, 0x3D, 0x6A, 0xFF, 0x46, 0x00}});
+  visit("ParamApplyReply", 0, wire::ParamApplyReply{0}, Bytes{2, {0x00, 0x00}}, Bytes{8, {0x02, 0x85, 0x01, 0x01, 0x03, 0xBD, 0xE5, 0x00}});
+  visit("ParamApplyReply", 255, wire::ParamApplyReply{65535}, Bytes{2, {0xFF, 0xFF}}, Bytes{8, {0x07, 0x85, 0xFF, 0xFF, 0xFF, 0xD1, 0x37, 0x00}});
+  visit("ParamApplyReply", 154, wire::ParamApplyReply{39470}, Bytes{2, {0x2E, 0x9A}}, Bytes{8, {0x07, 0x85, 0x9A, 0x2E, 0x9A, 0x5F, 0x5D, 0x00}});
+  visit("ParamSaveRequest", 0, wire::ParamSaveRequest{}, Bytes{0, {}}, Bytes{6, {0x02, 0x06, 0x03, 0xA9, 0xB7, 0x00}});
+  visit("ParamSaveReply", 0, wire::ParamSaveReply{0}, Bytes{2, {0x00, 0x00}}, Bytes{8, {0x02, 0x86, 0x01, 0x01, 0x03, 0x61, 0x7E, 0x00}});
+  visit("ParamSaveReply", 255, wire::ParamSaveReply{65535}, Bytes{2, {0xFF, 0xFF}}, Bytes{8, {0x07, 0x86, 0xFF, 0xFF, 0xFF, 0x0D, 0xAC, 0x00}});
+  visit("ParamSaveReply", 107, wire::ParamSaveReply{22687}, Bytes{2, {0x9F, 0x58}}, Bytes{8, {0x07, 0x86, 0x6B, 0x9F, 0x58, 0xD3, 0xC6, 0x00}});
+  visit("ParamDefaultsRequest", 0, wire::ParamDefaultsRequest{}, Bytes{0, {}}, Bytes{6, {0x02, 0x07, 0x03, 0x98, 0x84, 0x00}});
+  visit("ParamDefaultsReply", 0, wire::ParamDefaultsReply{}, Bytes{0, {}}, Bytes{6, {0x02, 0x87, 0x01, 0x02, 0x9F, 0x00}});
+  visit("EnableRequest", 0, wire::EnableRequest{0}, Bytes{2, {0x00, 0x00}}, Bytes{8, {0x02, 0x08, 0x01, 0x01, 0x03, 0x03, 0x01, 0x00}});
+  visit("EnableRequest", 255, wire::EnableRequest{65535}, Bytes{2, {0xFF, 0xFF}}, Bytes{8, {0x07, 0x08, 0xFF, 0xFF, 0xFF, 0x6F, 0xD3, 0x00}});
+  visit("EnableRequest", 194, wire::EnableRequest{56757}, Bytes{2, {0xB5, 0xDD}}, Bytes{8, {0x07, 0x08, 0xC2, 0xB5, 0xDD, 0xBC, 0xB2, 0x00}});
+  visit("EnableReply", 0, wire::EnableReply{static_cast<wire::State>(0)}, Bytes{1, {0x00}}, Bytes{7, {0x02, 0x88, 0x01, 0x03, 0x67, 0x5E, 0x00}});
+  visit("EnableReply", 255, wire::EnableReply{static_cast<wire::State>(4)}, Bytes{1, {0x04}}, Bytes{7, {0x06, 0x88, 0xFF, 0x04, 0x1C, 0x1D, 0x00}});
+  visit("EnableReply", 2, wire::EnableReply{static_cast<wire::State>(1)}, Bytes{1, {0x01}}, Bytes{7, {0x06, 0x88, 0x02, 0x01, 0x24, 0x28, 0x00}});
+  visit("StopRequest", 0, wire::StopRequest{}, Bytes{0, {}}, Bytes{6, {0x02, 0x09, 0x03, 0x97, 0xA7, 0x00}});
+  visit("StopReply", 0, wire::StopReply{static_cast<wire::State>(0)}, Bytes{1, {0x00}}, Bytes{7, {0x02, 0x89, 0x01, 0x03, 0x57, 0x69, 0x00}});
+  visit("StopReply", 255, wire::StopReply{static_cast<wire::State>(4)}, Bytes{1, {0x04}}, Bytes{7, {0x06, 0x89, 0xFF, 0x04, 0x2C, 0x2A, 0x00}});
+  visit("StopReply", 77, wire::StopReply{static_cast<wire::State>(3)}, Bytes{1, {0x03}}, Bytes{7, {0x06, 0x89, 0x4D, 0x03, 0xA4, 0x22, 0x00}});
+  visit("RenewRequest", 0, wire::RenewRequest{0}, Bytes{2, {0x00, 0x00}}, Bytes{8, {0x02, 0x0A, 0x01, 0x01, 0x03, 0x6B, 0xEC, 0x00}});
+  visit("RenewRequest", 255, wire::RenewRequest{65535}, Bytes{2, {0xFF, 0xFF}}, Bytes{8, {0x07, 0x0A, 0xFF, 0xFF, 0xFF, 0x07, 0x3E, 0x00}});
+  visit("RenewRequest", 141, wire::RenewRequest{53449}, Bytes{2, {0xC9, 0xD0}}, Bytes{8, {0x07, 0x0A, 0x8D, 0xC9, 0xD0, 0xD1, 0xF2, 0x00}});
+  visit("RenewReply", 0, wire::RenewReply{static_cast<wire::State>(0)}, Bytes{1, {0x00}}, Bytes{7, {0x02, 0x8A, 0x01, 0x03, 0x07, 0x30, 0x00}});
+  visit("RenewReply", 255, wire::RenewReply{static_cast<wire::State>(4)}, Bytes{1, {0x04}}, Bytes{7, {0x06, 0x8A, 0xFF, 0x04, 0x7C, 0x73, 0x00}});
+  visit("RenewReply", 102, wire::RenewReply{static_cast<wire::State>(1)}, Bytes{1, {0x01}}, Bytes{7, {0x06, 0x8A, 0x66, 0x01, 0xAA, 0x81, 0x00}});
+  visit("ClearFaultRequest", 0, wire::ClearFaultRequest{}, Bytes{0, {}}, Bytes{6, {0x02, 0x0B, 0x03, 0xF5, 0xC1, 0x00}});
+  visit("ClearFaultReply", 0, wire::ClearFaultReply{static_cast<wire::State>(0)}, Bytes{1, {0x00}}, Bytes{7, {0x02, 0x8B, 0x01, 0x03, 0x37, 0x07, 0x00}});
+  visit("ClearFaultReply", 255, wire::ClearFaultReply{static_cast<wire::State>(4)}, Bytes{1, {0x04}}, Bytes{7, {0x06, 0x8B, 0xFF, 0x04, 0x4C, 0x44, 0x00}});
+  visit("ClearFaultReply", 47, wire::ClearFaultReply{static_cast<wire::State>(3)}, Bytes{1, {0x03}}, Bytes{7, {0x06, 0x8B, 0x2F, 0x03, 0x8C, 0x21, 0x00}});
+  visit("TelemetryRequest", 0, wire::TelemetryRequest{0}, Bytes{2, {0x00, 0x00}}, Bytes{8, {0x02, 0x0C, 0x01, 0x01, 0x03, 0xF2, 0xCB, 0x00}});
+  visit("TelemetryRequest", 255, wire::TelemetryRequest{65535}, Bytes{2, {0xFF, 0xFF}}, Bytes{8, {0x07, 0x0C, 0xFF, 0xFF, 0xFF, 0x9E, 0x19, 0x00}});
+  visit("TelemetryRequest", 95, wire::TelemetryRequest{55288}, Bytes{2, {0xF8, 0xD7}}, Bytes{8, {0x07, 0x0C, 0x5F, 0xF8, 0xD7, 0xFF, 0x98, 0x00}});
+  visit("TelemetryReply", 0, wire::TelemetryReply{0}, Bytes{2, {0x00, 0x00}}, Bytes{8, {0x02, 0x8C, 0x01, 0x01, 0x03, 0xCA, 0x16, 0x00}});
+  visit("TelemetryReply", 255, wire::TelemetryReply{65535}, Bytes{2, {0xFF, 0xFF}}, Bytes{8, {0x07, 0x8C, 0xFF, 0xFF, 0xFF, 0xA6, 0xC4, 0x00}});
+  visit("TelemetryReply", 230, wire::TelemetryReply{7032}, Bytes{2, {0x78, 0x1B}}, Bytes{8, {0x07, 0x8C, 0xE6, 0x78, 0x1B, 0xF1, 0x26, 0x00}});
+  visit("LeadRequest", 0, wire::LeadRequest{0}, Bytes{2, {0x00, 0x00}}, Bytes{8, {0x02, 0x0D, 0x01, 0x01, 0x03, 0x46, 0xBD, 0x00}});
+  visit("LeadRequest", 255, wire::LeadRequest{65535}, Bytes{2, {0xFF, 0xFF}}, Bytes{8, {0x07, 0x0D, 0xFF, 0xFF, 0xFF, 0x2A, 0x6F, 0x00}});
+  visit("LeadRequest", 49, wire::LeadRequest{10232}, Bytes{2, {0xF8, 0x27}}, Bytes{8, {0x07, 0x0D, 0x31, 0xF8, 0x27, 0x3E, 0x81, 0x00}});
+  visit("LeadReply", 0, wire::LeadReply{static_cast<wire::State>(0), 0, {-32768, -32768, -32768, -32768}}, Bytes{10, {0x00, 0x00, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80}}, Bytes{16, {0x02, 0x8D, 0x01, 0x01, 0x01, 0x02, 0x80, 0x02, 0x80, 0x02, 0x80, 0x04, 0x80, 0xAA, 0x18, 0x00}});
+  visit("LeadReply", 255, wire::LeadReply{static_cast<wire::State>(4), 255, {32767, 32767, 32767, 32767}}, Bytes{10, {0x04, 0xFF, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F}}, Bytes{16, {0x0F, 0x8D, 0xFF, 0x04, 0xFF, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0x48, 0x26, 0x00}});
+  visit("LeadReply", 20, wire::LeadReply{static_cast<wire::State>(1), 138, {17368, 9361, -18991, -4599}}, Bytes{10, {0x01, 0x8A, 0xD8, 0x43, 0x91, 0x24, 0xD1, 0xB5, 0x09, 0xEE}}, Bytes{16, {0x0F, 0x8D, 0x14, 0x01, 0x8A, 0xD8, 0x43, 0x91, 0x24, 0xD1, 0xB5, 0x09, 0xEE, 0x63, 0x4A, 0x00}});
+  visit("LeadPointRequest", 0, wire::LeadPointRequest{0, {-128, -128, -128, -128}}, Bytes{5, {0x00, 0x80, 0x80, 0x80, 0x80}}, Bytes{11, {0x02, 0x0E, 0x01, 0x07, 0x80, 0x80, 0x80, 0x80, 0x34, 0xAF, 0x00}});
+  visit("LeadPointRequest", 255, wire::LeadPointRequest{255, {127, 127, 127, 127}}, Bytes{5, {0xFF, 0x7F, 0x7F, 0x7F, 0x7F}}, Bytes{11, {0x0A, 0x0E, 0xFF, 0xFF, 0x7F, 0x7F, 0x7F, 0x7F, 0xEB, 0x38, 0x00}});
+  visit("LeadPointRequest", 7, wire::LeadPointRequest{47, {31, -31, 2, 24}}, Bytes{5, {0x2F, 0x1F, 0xE1, 0x02, 0x18}}, Bytes{11, {0x0A, 0x0E, 0x07, 0x2F, 0x1F, 0xE1, 0x02, 0x18, 0x59, 0xCB, 0x00}});
+  visit("LeadPointReply", 0, wire::LeadPointReply{0, 0}, Bytes{2, {0x00, 0x00}}, Bytes{8, {0x02, 0x8E, 0x01, 0x01, 0x03, 0xA2, 0xFB, 0x00}});
+  visit("LeadPointReply", 255, wire::LeadPointReply{255, 255}, Bytes{2, {0xFF, 0xFF}}, Bytes{8, {0x07, 0x8E, 0xFF, 0xFF, 0xFF, 0xCE, 0x29, 0x00}});
+  visit("LeadPointReply", 216, wire::LeadPointReply{170, 17}, Bytes{2, {0xAA, 0x11}}, Bytes{8, {0x07, 0x8E, 0xD8, 0xAA, 0x11, 0x32, 0xC7, 0x00}});
+  visit("Sample", 0, wire::Sample{0u, static_cast<wire::State>(0), static_cast<wire::Fault>(0), {-32768, -32768, -32768, -32768}, {-32768, -32768, -32768, -32768}, {-32768, -32768, -32768, -32768}}, Bytes{30, {0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80, 0x00, 0x80}}, Bytes{36, {0x02, 0x40, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x01, 0x02, 0x80, 0x02, 0x80, 0x02, 0x80, 0x02, 0x80, 0x02, 0x80, 0x02, 0x80, 0x02, 0x80, 0x02, 0x80, 0x02, 0x80, 0x02, 0x80, 0x02, 0x80, 0x04, 0x80, 0xD6, 0xE1, 0x00}});
+  visit("Sample", 255, wire::Sample{4294967295u, static_cast<wire::State>(4), static_cast<wire::Fault>(13), {32767, 32767, 32767, 32767}, {32767, 32767, 32767, 32767}, {32767, 32767, 32767, 32767}}, Bytes{30, {0xFF, 0xFF, 0xFF, 0xFF, 0x04, 0x0D, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F}}, Bytes{36, {0x23, 0x40, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x04, 0x0D, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0xFF, 0x7F, 0x3B, 0xC6, 0x00}});
+  visit("Sample", 51, wire::Sample{2036536042u, static_cast<wire::State>(4), static_cast<wire::Fault>(8), {-26774, 8351, 2784, 20387}, {-14288, -3218, -1393, 15277}, {-30919, -17384, -6522, -11529}}, Bytes{30, {0xEA, 0x12, 0x63, 0x79, 0x04, 0x08, 0x6A, 0x97, 0x9F, 0x20, 0xE0, 0x0A, 0xA3, 0x4F, 0x30, 0xC8, 0x6E, 0xF3, 0x8F, 0xFA, 0xAD, 0x3B, 0x39, 0x87, 0x18, 0xBC, 0x86, 0xE6, 0xF7, 0xD2}}, Bytes{36, {0x23, 0x40, 0x33, 0xEA, 0x12, 0x63, 0x79, 0x04, 0x08, 0x6A, 0x97, 0x9F, 0x20, 0xE0, 0x0A, 0xA3, 0x4F, 0x30, 0xC8, 0x6E, 0xF3, 0x8F, 0xFA, 0xAD, 0x3B, 0x39, 0x87, 0x18, 0xBC, 0x86, 0xE6, 0xF7, 0xD2, 0xFC, 0x22, 0x00}});
+  visit("Nack", 0, wire::Nack{0, static_cast<wire::NackCode>(0), 0}, Bytes{4, {0x00, 0x00, 0x00, 0x00}}, Bytes{10, {0x02, 0xFF, 0x01, 0x01, 0x01, 0x01, 0x03, 0xAF, 0x5A, 0x00}});
+  visit("Nack", 255, wire::Nack{255, static_cast<wire::NackCode>(17), 65535}, Bytes{4, {0xFF, 0x11, 0xFF, 0xFF}}, Bytes{10, {0x09, 0xFF, 0xFF, 0xFF, 0x11, 0xFF, 0xFF, 0xFF, 0x22, 0x00}});
+  visit("Nack", 117, wire::Nack{166, static_cast<wire::NackCode>(6), 52720}, Bytes{4, {0xA6, 0x06, 0xF0, 0xCD}}, Bytes{10, {0x08, 0xFF, 0x75, 0xA6, 0x06, 0xF0, 0xCD, 0x11, 0x01, 0x00}});
 }
 
 }  // namespace golden

@@ -78,13 +78,14 @@ namespace {
 struct CheckVector {
   int& count;
   template <class Message>
-  void operator()(const char* name, int seq, const Message& message, const uint8_t* payload, size_t payload_size,
-                  const uint8_t* wire_bytes, size_t wire_size) {
+  void operator()(const char* name, int seq, const Message& message, const golden::Bytes& golden_payload,
+                  const golden::Bytes& frame) {
     INFO(name);
     ++count;
-    const Bytes expected(wire_bytes, wire_bytes + wire_size);
+    const Bytes expected(frame.data, frame.data + frame.size);
+    const uint8_t* payload = golden_payload.data;
     const uint8_t size = Message::size;
-    REQUIRE(size == payload_size);
+    REQUIRE(size == golden_payload.size);
 
     wire::Encoder encoder;
     encoder.encode(static_cast<uint8_t>(seq), message);
