@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -13,7 +12,6 @@ from greywhale.board.device import Device
 from greywhale.cli.entry import run
 from greywhale.cli.story import RunningBench
 from greywhale_sim.faults import FAULTS, USUAL, WHERE, Fault
-from greywhale_sim.words import lock_step
 from tools.support.hands import SECOND_DEG, Hands, run_calibrate
 
 SECOND = ("--second", ",".join(f"{angle:g}" for angle in SECOND_DEG))
@@ -23,17 +21,7 @@ BESIDE_ANOTHER = ("pot-swapped", "motor-swapped", "motor-weak")  # only so does 
 ENDS = {"refused": 1, "mended": 0, "noted": 0}
 
 
-@pytest.fixture(scope="module")
-def bench() -> Iterator[RunningBench]:
-    with lock_step() as started:
-        yield started
-
-
-def described(fault: Fault) -> str:
-    return fault.name
-
-
-@pytest.mark.parametrize("fault", [one for one in FAULTS if one.verb == "calibrate"], ids=described)
+@pytest.mark.parametrize("fault", [one for one in FAULTS if one.verb == "calibrate"], ids=lambda one: one.name)
 def test_calibrate_names_it_and_no_motor_gets_more_than_a_pulse(
     bench: RunningBench, tmp_path: Path, fault: Fault
 ) -> None:

@@ -19,18 +19,11 @@ from greywhale.cli.story import RunningBench
 from greywhale.files.arm import default_arm
 from greywhale.protocol import schema
 from greywhale.protocol.table import ParameterTable
-from greywhale_sim.words import lock_step
 from tools.support.hands import bench_of
 
 # At the strongest pulse a motor that runs away is at 5 rad/s when it is stopped, and coasts.
 WITH_COASTING_RAD = 0.45
 MOVING = (schema.State.SOFT_START, schema.State.FOLLOWING)
-
-
-@pytest.fixture(scope="module")
-def bench() -> Iterator[RunningBench]:
-    with lock_step() as started:
-        yield started
 
 
 @pytest.fixture

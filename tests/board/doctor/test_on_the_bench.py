@@ -1,9 +1,10 @@
-"""Doctor on a real port: a sound bench is good, each staged trouble is named, and the motors never move."""
+"""Doctor on a real port: a sound bench is good, each staged trouble or mistake is named, and no motor moves."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator
+import re
+from collections.abc import Iterable
 from pathlib import Path
 
 import pytest
@@ -11,15 +12,10 @@ import pytest
 from greywhale.cli.entry import run
 from greywhale.cli.story import RunningBench
 from greywhale.protocol.table import ParameterTable
+from greywhale_sim.faults import FAULTS, USUAL, WHERE, Fault
 from greywhale_sim.words import lock_step
 
 SECONDS = "1"
-
-
-@pytest.fixture(scope="module")
-def bench() -> Iterator[RunningBench]:
-    with lock_step() as started:
-        yield started
 
 
 def doctor(bench: RunningBench, capsys: pytest.CaptureFixture[str], *more: str) -> tuple[int, dict[str, str]]:
@@ -41,6 +37,49 @@ def test_a_sound_bench_is_good(bench: RunningBench, tmp_path: Path, capsys: pyte
     known = {"stored set", "calibration", "link"}
     assert noted <= known, "nothing is stored yet, the calibration is as shipped, and this machine may be slow"
     assert "none lost" in found["link"]
+
+
+def test_open_inputs_of_joints_that_are_not_in_use_are_no_trouble(capsys: pytest.CaptureFixture[str]) -> None:
+    idle = [f"{side}{joint}.scale" for side in ("leader", "follower") for joint in (2, 3)]
+    with lock_step("--arm", "two_joints") as two:
+
+        def set_scales(values: Iterable[float]) -> None:
+            settings = [f"{name}={value:g}" for name, value in zip(idle, values, strict=True)]
+            assert run(["params", "set", *settings, "--port", two.port]) == 0
+            capsys.readouterr()
+
+        set_scales(ParameterTable.defaults().physical(name) for name in idle)
+        code, found = doctor(two, capsys)
+        assert code == 1
+        assert "These read alike" in found["inputs"]
+        set_scales([0.0] * len(idle))
+        code, found = doctor(two, capsys)
+        assert code == 0
+        assert found["joints"].startswith("good: Joints 2 and 3 are not in use")
+        assert run(["info", "--port", two.port]) == 0
+        assert "not in use: leader potentiometer 2, leader potentiometer 3, follower potentiometer 2" in (
+            capsys.readouterr().out
+        )
+
+
+EXIT_CODES = {"refused": 1, "noted": 0}
+
+
+@pytest.mark.parametrize("fault", [one for one in FAULTS if one.verb == "doctor"], ids=lambda one: one.name)
+def test_doctor_names_it_and_no_motor_is_driven(
+    bench: RunningBench, capsys: pytest.CaptureFixture[str], fault: Fault
+) -> None:
+    bench.command("hand both 0.1 -0.6 0.7 0.4")  # apart from each other, so that only what touches reads alike
+    bench.command("pins")
+    bench.command(f"mistake {fault.name}")
+    try:
+        code = run(["doctor", "--port", bench.port, "--seconds", "0.5", "--json", *fault.options])
+    finally:
+        bench.command("mistake none")
+    said = "\n".join(one["says"] for one in json.loads(capsys.readouterr().out)["findings"])
+    assert re.search(fault.tells(WHERE[fault.on].index(USUAL[fault.on])), said), said
+    assert code == EXIT_CODES[fault.ends]
+    assert bench.command("pins") == {"duties": [0.0] * 4, "longest_on_s": 0.0}
 
 
 @pytest.mark.parametrize(
@@ -71,26 +110,3 @@ def test_a_board_without_power_is_named_and_the_port_is_still_good(
     assert code == 1
     assert found["port"].startswith("good")
     assert "nothing answers" in found["board"]
-
-
-def test_open_inputs_of_joints_that_are_not_in_use_are_no_trouble(capsys: pytest.CaptureFixture[str]) -> None:
-    idle = [f"{side}{joint}.scale" for side in ("leader", "follower") for joint in (2, 3)]
-    with lock_step("--arm", "two_joints") as two:
-
-        def set_scales(values: Iterable[float]) -> None:
-            settings = [f"{name}={value:g}" for name, value in zip(idle, values, strict=True)]
-            assert run(["params", "set", *settings, "--port", two.port]) == 0
-            capsys.readouterr()
-
-        set_scales(ParameterTable.defaults().physical(name) for name in idle)
-        code, found = doctor(two, capsys)
-        assert code == 1
-        assert "These read alike" in found["inputs"]
-        set_scales([0.0] * len(idle))
-        code, found = doctor(two, capsys)
-        assert code == 0
-        assert found["joints"].startswith("good: Joints 2 and 3 are not in use")
-        assert run(["info", "--port", two.port]) == 0
-        assert "not in use: leader potentiometer 2, leader potentiometer 3, follower potentiometer 2" in (
-            capsys.readouterr().out
-        )

@@ -1,0 +1,16 @@
+"""One simulated bench for all tests of a file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from greywhale.cli.story import RunningBench
+from greywhale_sim.words import lock_step
+
+
+@pytest.fixture(scope="module")
+def bench() -> Iterator[RunningBench]:
+    with lock_step() as started:
+        yield started
