@@ -46,11 +46,7 @@ def build(folder: Path, program: str, chip: str = "atmega328p") -> Path:
     ("body", "complaint"),
     [
         ("a = a / b;", "a software division"),
-        ("a = a % b;", "a software division"),
-        ("a = (uint16_t)(int32_t(a) * 1000 / b);", "a software division"),
         ("f = f * 2.5f;", "floating point"),
-        ("if (f > 2) a = 1;", "floating point"),
-        ("a = (uint16_t)f;", "floating point"),
         ("a = (uint16_t)(uintptr_t)malloc(b);", "a heap"),
     ],
 )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -220,18 +222,7 @@ def test_only_joints_in_use_count() -> None:
     time = np.arange(2000) / 1000
     leader = np.zeros((2000, 4))
     leader[:, :2] = np.sin(2.0 * time)[:, None]
-    log = Log(
-        "log",
-        Origin(joints=(0, 1)),
-        time,
-        leader,
-        0.9 * leader,
-        np.zeros((2000, 4)),
-        np.full(2000, "following"),
-        0,
-        True,
-    )
-    found = evaluate(log)
+    found = evaluate(replace(log_of(time, leader, 0.9 * leader), origin=Origin(joints=(0, 1))))
     assert found.joints_in_use == (0, 1)
     assert found.total_mse == pytest.approx(found.joints[0].mse + found.joints[1].mse)
     assert [joint["in_use"] for joint in found.as_dict()["joints"]] == [True, True, False, False]

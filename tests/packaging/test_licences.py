@@ -22,7 +22,6 @@ def test_no_file_is_without_a_licence_and_the_gpl_covers_simulated_board_and_ben
     assert under_gpl == bench
     assert "sim/board/board.cpp" in bench
     assert all(files[name] == {"Apache-2.0"} for name in files.keys() - under_gpl)
-    assert len(files) > 500
 
 
 def test_the_texts_are_the_same_where_pip_and_where_reuse_look() -> None:

@@ -64,14 +64,6 @@ def test_each_stale_or_missing_file_is_named(copy: Path) -> None:
     assert all((copy / path).read_bytes() == (ROOT / path).read_bytes() for path in GENERATED)
 
 
-def test_a_changed_declaration_makes_both_sides_stale(copy: Path) -> None:
-    edit(copy / "shared/link/messages.toml", "type = 0x0C", "type = 0x0F")
-    stale = generate("--check", "--root", copy).stderr
-    assert "schema.h" in stale
-    assert "schema.py" in stale
-    assert "link.md" in stale
-
-
 def test_a_changed_description_leaves_the_schema_hash_alone(copy: Path) -> None:
     edit(copy / "shared/link/messages.toml", "Motors off. Works in every state.", "Motors off, always.")
     generate("--root", copy)
@@ -89,14 +81,11 @@ def test_a_changed_description_leaves_the_schema_hash_alone(copy: Path) -> None:
         ("messages.toml", "max_payload = 48", "max_payload = 20", "more than max_payload"),
         ("messages.toml", 'enum = "Board"', 'enum = "Bord"', "names the enum Bord"),
         ("messages.toml", "protocol = 1", "protokoll = 1", "lacks the key 'protocol'"),
-        ("messages.toml", "[[message]]", "[[message]", "messages.toml"),
         ("enums.toml", 'name = "disabled", value = 1', 'name = "disabled", value = 0', "State repeats a value"),
         ("parameters.toml", "min = 3000, max = 30000", "min = 3000, max = 70000", "supply_mv does not fit its type"),
-        ("parameters.toml", "default = 15000", "default = 2000", "supply_mv does not fit its type"),
         ("parameters.toml", '"0.630", "0.782"]', '"0.630"]', "kp does not fit its type"),
         ("parameters.toml", 'below = "limit_max"', 'below = "limit"', "limit_min is below limit, which"),
         ("parameters.toml", '"rail_counts", type = "u8"', '"rail_counts", type = "u16"', "layout_hash = 0x"),
-        ("parameters.toml", "layout = 3", "layout = 4", "layout_hash = 0x"),
     ],
 )
 def test_a_declaration_that_cannot_be_is_refused(copy: Path, file: str, old: str, new: str, sentence: str) -> None:

@@ -16,7 +16,6 @@ from greywhale.protocol.schema import (
     DEFAULTS,
     PARAMETER_BY_NAME,
     PARAMETERS,
-    TABLE,
     check_parameters,
     pack_parameters,
     param_crc,
@@ -34,17 +33,6 @@ def raw_values(parameter: Parameter) -> st.SearchStrategy[int]:
 
 
 tables = st.tuples(*map(raw_values, PARAMETERS))
-
-
-def test_names_and_flat_indices() -> None:
-    assert [parameter.index for parameter in PARAMETERS] == list(range(98))
-    assert PARAMETERS[0].name == "period_ms"
-    assert PARAMETER_BY_NAME["joint0.ne_c"].index == 8
-    assert PARAMETER_BY_NAME["joint3.limit_max"].index == 67
-    assert PARAMETER_BY_NAME["leader2.zero"].index == 72
-    assert PARAMETER_BY_NAME["follower3.scale"].index == 83
-    assert PARAMETER_BY_NAME["joint3.ce_ticks"].index == 97
-    assert TABLE.size == 199
 
 
 def test_defaults_are_the_golden_bytes(firmware: Firmware) -> None:

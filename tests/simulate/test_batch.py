@@ -12,7 +12,7 @@ from greywhale.base.types import Floats
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.motion import human_reaches
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate import PLANT_COLUMNS, Experiment, Result, default_controller, plant_row
+from greywhale.simulate import PLANT_COLUMNS, Experiment, Result, Timing, default_controller, plant_row
 
 INTEGERS = npt.NDArray[np.int32]
 
@@ -62,12 +62,13 @@ def test_the_wires_of_a_motor_change_nothing() -> None:
     same(wired.run(every=5), Experiment(motion, default_arm(), table=table).run(every=5))
 
 
-def test_steps_of_a_slice_follow_the_single_run_tick_by_tick() -> None:
+@pytest.mark.parametrize("late", [0, 3])
+def test_steps_of_a_slice_follow_the_single_run_tick_by_tick(late: int) -> None:
     """Four steps a tick are the exact run but for its double precision: the same duties until a reading tips over."""
     arm = default_arm()
-    experiment = Experiment(human_reaches(4, 5.0), arm, noise=False)
+    experiment = Experiment(human_reaches(4, 5.0), arm, noise=False, timing=Timing(late=late))
     batch, exact = experiment.run(every=1, steps_per_tick=4), experiment.run_exact(every=1)
-    moving = 3000
+    moving = 2500
     assert np.abs(exact.duties[0, :moving]).max() > 40
     differ = (batch.duties[0, :moving] != exact.duties[0, :moving]).mean()
     assert differ < 0.02

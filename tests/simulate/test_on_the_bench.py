@@ -10,7 +10,7 @@ from greywhale.files.arm import default_arm
 from greywhale.motion import human_reaches, multi_steps
 from greywhale.protocol.schema import Board
 from greywhale.protocol.table import ParameterTable
-from greywhale.simulate import Experiment
+from greywhale.simulate import Experiment, Result
 from tests.simulate.on_the_bench import Recording, quiet, record
 
 PWM_TOP = {"mega": np.array([400, 400, 400, 400]), "nano": np.array([400, 400, 255, 255])}
@@ -30,6 +30,15 @@ def native(recording: Recording, parameters: ArmParameters, board: str = "mega",
     )
 
 
+def require_same_duties(recording: Recording, result: Result, board: str = "mega") -> None:
+    duties = result.duties[0].astype(float) / PWM_TOP[board]
+    for joint in range(4):
+        seen = recording.duties[recording.timing.acts[joint] :: SLICES_PER_TICK, joint]
+        ticks = min(len(seen), len(duties))
+        np.testing.assert_allclose(seen[:ticks], duties[:ticks, joint], rtol=0, atol=1e-9)
+        assert len(np.unique(seen)) > 50, "the joint was hardly driven, so little was compared"
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("board", ["mega", "nano"])
 def test_without_noise_the_duties_are_the_same_from_enable_on(board: str) -> None:
@@ -37,13 +46,7 @@ def test_without_noise_the_duties_are_the_same_from_enable_on(board: str) -> Non
     parameters = quiet(default_arm())
     recording = record(parameters, human_reaches(3, 6.0), 6.0, board)
     result = native(recording, parameters, board).run_exact(every=1)
-    duties = result.duties[0].astype(float) / PWM_TOP[board]
-    for joint in range(4):
-        acts = recording.timing.acts[joint]
-        seen = recording.duties[acts::SLICES_PER_TICK, joint]
-        ticks = min(len(seen), len(duties))
-        np.testing.assert_allclose(seen[:ticks], duties[:ticks, joint], rtol=0, atol=1e-9)
-        assert len(np.unique(seen)) > 50, "the joint was hardly driven, so little was compared"
+    require_same_duties(recording, result, board)
     bench_angles = recording.angles[::SLICES_PER_TICK][: len(result.angles[0])]
     np.testing.assert_allclose(bench_angles, result.angles[0], rtol=0, atol=1e-6)
 

@@ -89,7 +89,7 @@ def test_wrong_experiments_are_refused(arguments: dict[str, Any], sentence: str)
         Experiment(**{"leader": motion(EVEN), "arm": default_arm(), **arguments}).run()
 
 
-@pytest.mark.parametrize("wrong", [{"chain_start": 8000}, {"acts": (0, 1, 1, 1)}, {"drivers_on": 5}])
+@pytest.mark.parametrize("wrong", [{"chain_start": 8000}, {"acts": (0, 1, 1, 1)}, {"drivers_on": 5}, {"late": -1}])
 def test_wrong_timing_is_refused(wrong: dict[str, Any]) -> None:
     with pytest.raises(UserError, match=next(iter(wrong))):
         Timing(**wrong)

@@ -68,24 +68,6 @@ def _finer(record: Record, law: Law, plant: Floats, times: int) -> Floats:
     return moved
 
 
-def test_a_joint_under_dry_friction_slides_as_the_closed_form_says_and_then_stays_where_it_stopped() -> None:
-    record = still(1.0, volts=6.0)
-    record.volts[500:] = 0.0
-    moved = angles(record, plant_of(SLIDER, coulomb=1.0))
-    lag, final = SLIDER.inertia / SLIDER.damping, (6.0 - 1.0) / SLIDER.damping
-    time = record.time[:500]
-    np.testing.assert_allclose(moved[:500], final * (time - lag * -np.expm1(-time / lag)), atol=0.01)
-    stopped = 0.5 + lag * math.log1p(final * -math.expm1(-0.5 / lag) * SLIDER.damping / 1.0)
-    assert len(set(moved[record.time > stopped + 0.02])) == 1
-    assert moved[record.time < stopped - 0.02][-1] < moved[-1]
-
-
-@pytest.mark.parametrize(("volts", "moves"), [(1.45, False), (1.55, True)])
-def test_more_than_the_breakaway_voltage_is_needed_to_start(volts: float, moves: bool) -> None:
-    moved = angles(still(0.5, volts=volts), plant_of(SLIDER, coulomb=1.0, breakaway=0.5))
-    assert (np.ptp(moved) > 0.0) == moves
-
-
 @pytest.mark.parametrize(("share", "moves"), [(0.55, True), (0.65, False), (1.35, False), (1.45, True)])
 def test_a_gear_with_load_friction_holds_a_weight_between_lowering_and_lifting_it(share: float, moves: bool) -> None:
     angle = 0.8
