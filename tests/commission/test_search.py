@@ -32,6 +32,19 @@ def begun() -> JointSearch:
     return search
 
 
+def after_trial(found: TrialVerdict) -> JointSearch:
+    """Of the tuned controller."""
+    search = begun()
+    search.add(TUNED, found, "trial-1")
+    return search
+
+
+def proposal(search: JointSearch, promises: Callable[[Row], bool] = lambda row: True) -> Row:
+    row = search.propose(promises)
+    assert row is not None
+    return row
+
+
 def run(judge: Callable[[Row], TrialVerdict], trials: int = 20) -> JointSearch:
     """Play the search against an arm of which `judge` says how it does."""
     search, row = begun(), TUNED
@@ -57,33 +70,26 @@ def test_a_joint_that_hunts_gets_softer_until_it_rests() -> None:
 
 
 def test_a_joint_that_hunts_hardly_more_than_it_may_is_softened_a_little() -> None:
-    search = begun()
-    search.add(TUNED, verdict(0.1, restless=True, excess=1.1), "trial-1")
-    row = search.propose()
-    assert row is not None
+    search = after_trial(verdict(0.1, restless=True, excess=1.1))
+    row = proposal(search)
     assert 0.7 * TUNED[KP] < row[KP] < 0.9 * TUNED[KP]
 
 
 def test_what_can_be_borne_is_softened_a_little_and_then_varied_like_what_passed() -> None:
     borne = TrialVerdict(0, ("restless",), True, False, 1.05, 0.2, True, True)
-    search = begun()
-    search.add(TUNED, borne, "trial-1")
+    search = after_trial(borne)
     for number in range(MOST_SOFTER):
-        row = search.propose()
-        assert row is not None
+        row = proposal(search)
         assert row[KP] > 0.7 * search.tried[-1].row[KP]
         search.add(row, verdict(0.8, worse=True) if number else borne, f"trial-{number + 2}")
-    row = search.propose()
-    assert row is not None
+    row = proposal(search)
     better = min(search.tried[1:], key=lambda one: one.verdict.value).row
     assert np.count_nonzero(row != better) <= 2, "one step from the best that can be borne"
 
 
 def test_a_joint_that_only_chatters_gets_less_damping_and_keeps_its_stiffness() -> None:
-    search = begun()
-    search.add(TUNED, verdict(0.1, chatters=True), "trial-1")
-    row = search.propose()
-    assert row is not None
+    search = after_trial(verdict(0.1, chatters=True))
+    row = proposal(search)
     assert row[KD] < TUNED[KD]
     assert row[KP] == TUNED[KP]
 
@@ -109,28 +115,22 @@ def test_a_step_that_follows_better_but_is_hardly_too_much_is_made_half_as_far()
     stiff[KI] = 300 * 65536  # no more integral part: the first step makes it stiffer
     search = begun()
     search.add(stiff, verdict(0.5), "trial-1")
-    wider = search.propose()
-    assert wider is not None
+    wider = proposal(search)
     search.add(wider, verdict(0.3, restless=True, excess=1.1), "trial-2")
-    half = search.propose()
-    assert half is not None
+    half = proposal(search)
     assert float(half[KP] / stiff[KP]) ** 2 == pytest.approx(wider[KP] / stiff[KP], rel=1e-3)
     assert float(half[KD] / stiff[KD]) ** 2 == pytest.approx(wider[KD] / stiff[KD], rel=1e-3)
     search.add(half, verdict(0.4), "trial-3")
-    following = search.propose()
-    assert following is not None
+    following = proposal(search)
     assert following[KP] == half[KP], "the same step is not made again"
 
 
 @pytest.mark.parametrize(("score", "excess"), [(0.6, 1.1), (0.3, 3.0)])
 def test_a_step_that_follows_worse_or_is_far_too_much_is_not_halved(score: float, excess: float) -> None:
-    search = begun()
-    search.add(TUNED, verdict(0.5), "trial-1")
-    wider = search.propose()
-    assert wider is not None
+    search = after_trial(verdict(0.5))
+    wider = proposal(search)
     search.add(wider, verdict(score, restless=True, excess=excess), "trial-2")
-    following = search.propose()
-    assert following is not None
+    following = proposal(search)
     assert np.flatnonzero(following != TUNED).tolist() != np.flatnonzero(wider != TUNED).tolist()
 
 
@@ -148,18 +148,15 @@ def test_where_nothing_passes_the_controller_from_before_is_the_best() -> None:
 
 
 def test_a_joint_that_follows_worse_is_varied_from_the_better_of_the_two() -> None:
-    search = begun()
-    search.add(TUNED, verdict(1.5, worse=True), "trial-1")
-    row = search.propose()
-    assert row is not None
+    search = after_trial(verdict(1.5, worse=True))
+    row = proposal(search)
     sets = [place for place, name in enumerate(CONTROLLER_COLUMNS) if name not in ("kp", "kd", "ki")]
     assert np.array_equal(row[sets], BEFORE[sets])
 
 
 def test_a_joint_without_a_score_is_never_the_better_one() -> None:
     """It failed in the first part, and another joint then ended the trial."""
-    search = begun()
-    search.add(TUNED, verdict(float("nan"), worse=True), "trial-1")
+    search = after_trial(verdict(float("nan"), worse=True))
     assert search.propose() is not None
     assert search.best is not None
     assert search.best.trial == "before"
@@ -181,27 +178,22 @@ def test_every_proposal_is_one_that_the_firmware_takes() -> None:
 
 
 def test_a_step_that_promises_nothing_is_left_out() -> None:
-    search = begun()
-    search.add(TUNED, verdict(0.5), "trial-1")
+    search = after_trial(verdict(0.5))
     first = search.propose()
-    other = begun()
-    other.add(TUNED, verdict(0.5), "trial-1")
+    other = after_trial(verdict(0.5))
     assert first is not None
-    second = other.propose(lambda row: not np.array_equal(row, first))
-    assert second is not None
+    second = proposal(other, lambda row: not np.array_equal(row, first))
     assert not np.array_equal(second, first)
     assert other.propose(lambda row: False) is None
 
 
 def test_a_restless_joint_gets_softer_whatever_it_promises() -> None:
-    search = begun()
-    search.add(TUNED, verdict(0.5, restless=True), "trial-1")
+    search = after_trial(verdict(0.5, restless=True))
     assert search.propose(lambda row: False) is not None
 
 
 def test_a_joint_is_good_once_its_best_follows_well_enough() -> None:
-    search = begun()
-    search.add(TUNED, verdict(0.5 * GOOD, worse=True), "trial-1")
+    search = after_trial(verdict(0.5 * GOOD, worse=True))
     assert not search.good, "what cannot be borne does not count"
     search.add(TUNED, verdict(1.01 * GOOD), "trial-2")
     assert not search.good

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -66,8 +67,6 @@ def test_interrupt_writes_the_model_and_says_so(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    from dataclasses import replace
-
     unfinished = replace(outcome, found=replace(outcome.found, complete=False))
     monkeypatch.setattr(verb, "identify", lambda *logs, **options: unfinished)
     assert run(arguments(recorded, tmp_path)) == 130

@@ -34,14 +34,18 @@ class Hills:
         return np.asarray(((share - AIMS[:, None]) ** 2).sum(axis=2))
 
 
+def lockstep(evaluate: Any, found: SearchState, book: TuningJournal, method: str, budget: int, **options: Any) -> None:
+    search_in_lockstep(
+        SPACE, evaluate, found, book, stage="test", method=method, budget=budget, seed=(1,), start=BEFORE,
+        tick=lambda _: None, **options,
+    )  # fmt: skip
+
+
 def run(method: str = "gwo-woa-relative", budget: int = 400, groups: object = TOGETHER) -> tuple[SearchState, Hills]:
     found, hills = SearchState.nothing(BEFORE), Hills()
     with TuningJournal(None, {}) as book:
         try_again(hills, found, book, "start")
-        search_in_lockstep(
-            SPACE, hills, found, book, stage="test", method=method, budget=budget, seed=(1,), start=BEFORE,
-            tick=lambda _: None, groups=groups,  # type: ignore[arg-type]
-        )  # fmt: skip
+        lockstep(hills, found, book, method, budget, groups=groups)
     return found, hills
 
 
@@ -79,10 +83,7 @@ def test_restarts_with_other_packs_keep_the_joints_apart() -> None:
 def test_a_narrow_stage_begins_around_its_start(method: str) -> None:
     hills = Hills()
     with TuningJournal(None, {}) as book:
-        search_in_lockstep(
-            SPACE, hills, SearchState.nothing(BEFORE), book, stage="test", method=method, budget=8, seed=(1,),
-            start=BEFORE, tick=lambda _: None, sigma=0.02,
-        )  # fmt: skip
+        lockstep(hills, SearchState.nothing(BEFORE), book, method, 8, sigma=0.02)
     tried = SPACE.points(np.concatenate(hills.rows))
     away = np.abs(tried - SPACE.points(BEFORE[None])) / (SPACE.upper - SPACE.lower)
     assert (away < 0.1).all()
@@ -130,10 +131,7 @@ def test_optimisers_are_given_back_when_a_search_is_cut_off(monkeypatch: pytest.
 
     monkeypatch.setattr(search, "create", watched)
     with pytest.raises(KeyboardInterrupt), TuningJournal(None, {}) as book:
-        search_in_lockstep(
-            SPACE, interrupted, SearchState.nothing(BEFORE), book, stage="test", method="gwo-woa", budget=10, seed=(1,),
-            start=BEFORE, tick=lambda _: None,
-        )  # fmt: skip
+        lockstep(interrupted, SearchState.nothing(BEFORE), book, "gwo-woa", 10)
     assert len(closed) == 4
 
 
@@ -212,10 +210,7 @@ def test_the_journal_is_asked_before_anything_is_simulated(tmp_path: Path) -> No
     for resume, evaluate in ((False, Hills()), (True, None)):
         found = SearchState.nothing(BEFORE)
         with TuningJournal(path, {"budget": 30}, resume) as book:
-            search_in_lockstep(
-                SPACE, evaluate or _never, found, book, stage="test", method="cma-es", budget=30, seed=(1,),
-                start=BEFORE, tick=lambda _: None,
-            )  # fmt: skip
+            lockstep(evaluate or _never, found, book, "cma-es", 30)
         if not resume:
             expected = found
     assert found.curve == expected.curve
