@@ -23,13 +23,7 @@ STEPS = 1000  # of a PWM period, in the integration
 def bridge(chip: str, pins: dict[str, float], enable: bool = True) -> Bridge:
     levels = {"pwm": 0.0, "direction": 0.0, "second_pwm": 0.0, "second_direction": 0.0, **pins}
     return CHIPS[chip].bridge(
-        Pins(
-            enable,
-            levels["pwm"],
-            bool(levels["direction"]),
-            levels["second_pwm"],
-            bool(levels["second_direction"]),
-        )
+        Pins(enable, levels["pwm"], bool(levels["direction"]), levels["second_pwm"], bool(levels["second_direction"]))
     )
 
 

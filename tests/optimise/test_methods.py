@@ -74,12 +74,7 @@ def test_every_method_gets_far_better_than_its_first_pack(method: str) -> None:
 
 @EVERY
 @settings(max_examples=15, deadline=None)
-@given(
-    low=st.floats(-1e6, 1e6),
-    width=st.floats(1e-6, 1e6),
-    at=st.floats(-0.5, 1.5),
-    seed=st.integers(0, 2**31),
-)
+@given(low=st.floats(-1e6, 1e6), width=st.floats(1e-6, 1e6), at=st.floats(-0.5, 1.5), seed=st.integers(0, 2**31))
 def test_no_candidate_leaves_the_box(method: str, low: float, width: float, at: float, seed: int) -> None:
     high = low + width
     seen = Recorder()

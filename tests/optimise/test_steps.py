@@ -108,11 +108,7 @@ def test_gwo_draws_only_r1_and_r2() -> None:
 
 @pytest.mark.parametrize(
     ("method", "expected"),
-    [
-        (GreyWolf, [2, 1.5, 1, 0.5]),
-        (GreyWolfWhale, [2, 1.5, 1, 0.5]),
-        (GreyWolfWhaleAsPrinted, [2, 1.75, 1.5, 1.25]),
-    ],
+    [(GreyWolf, [2, 1.5, 1, 0.5]), (GreyWolfWhale, [2, 1.5, 1, 0.5]), (GreyWolfWhaleAsPrinted, [2, 1.75, 1.5, 1.25])],
 )
 def test_a_falls_over_the_moves(method: type[GreyWolf], expected: list[float]) -> None:
     # 10 x 5 evaluations: the first pack and four moves.

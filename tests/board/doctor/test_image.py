@@ -55,9 +55,7 @@ def test_the_image_is_read_back_a_wrong_byte_named_and_the_bootloader_looked_at(
 
 
 @pytest.mark.slow
-def test_a_board_whose_motors_are_on_is_not_restarted(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
+def test_a_board_whose_motors_are_on_is_not_restarted(capsys: pytest.CaptureFixture[str]) -> None:
     with lock_step() as bench:
         line = open_line(bench.port)
         with pytest.MonkeyPatch.context() as dying:

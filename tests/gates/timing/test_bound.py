@@ -103,12 +103,7 @@ int main() { work(sink); }
 @CHIPS
 @pytest.mark.parametrize(
     ("body", "times", "dearest"),
-    [
-        (STRAIGHT, (), 0),
-        (DIAMOND, (), 5),
-        (COUNTED, (8, 4), 7),
-        (CALLS, (), 1),
-    ],
+    [(STRAIGHT, (), 0), (DIAMOND, (), 5), (COUNTED, (8, 4), 7), (CALLS, (), 1)],
     ids=["straight", "diamond", "nested loops", "calls"],
 )
 def test_the_bound_is_what_the_dearest_input_takes(

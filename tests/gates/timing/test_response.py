@@ -4,13 +4,7 @@ from __future__ import annotations
 
 from tools.gates.timing.image import Times
 
-KINDS = {
-    "tick's interrupt": 10,
-    "start of the chain": 10,
-    "conversion done": 20,
-    "byte received": 50,
-    "byte sent": 30,
-}
+KINDS = {"tick's interrupt": 10, "start of the chain": 10, "conversion done": 20, "byte received": 50, "byte sent": 30}
 
 
 def test_interrupts_add_to_the_tick_as_often_as_they_may_come() -> None:
