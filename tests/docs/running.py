@@ -2,8 +2,8 @@
 
 The rule, in order:
 
-1. What a page marks as `parsed only`, what needs hands or answers, `sudo`, a shell's start file, a real port or another
-   machine is parsed, not run.
+1. A command that needs hands or answers, `sudo`, a shell's start file, a real port or another machine is parsed, not
+   run.
 2. `make`, `pip` and `python -m` are looked at: the target, the package or the module must exist.
 3. Every other verb is run as printed, with files of the scratch folder where a page speaks of yours. What would only
    take long is shortened by options behind the printed ones (SHORTER).
@@ -64,11 +64,11 @@ def run_block(block: Block, names: dict[str, Any]) -> None:
             exec(code, names)
         return
     for line in block.commands:
-        said = run_line(line, bool(block.parsed_only))
+        said = run_line(line)
         assert said == "", f"{place}: {line}\n{said}"
 
 
-def run_line(line: str, parsed_only: bool = False) -> str:
+def run_line(line: str) -> str:
     """Run or parse a line; what is wrong with it, "" for nothing."""
     command = split(line)
     words = command.words
@@ -82,7 +82,7 @@ def run_line(line: str, parsed_only: bool = False) -> str:
         return "" if importlib.util.find_spec(words[2]) else f"there is no module {words[2]}"
     if words[:1] != ["greywhale"]:
         return "a test must learn what this is"
-    if parsed_only or _is_parsed_only(command):
+    if _is_parsed_only(command):
         return parse(words[1:])
     done = run([*words[1:], *_shorter(words[1:]), *writes_over(words[1:])])
     return "" if done.code == 0 else f"{done.code}: {done.err}"

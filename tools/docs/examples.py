@@ -1,8 +1,4 @@
-"""The commands and the Python that the project's pages show: every ```sh and ```python block, with where it stands.
-
-The comment `<!-- parsed only: why -->` on the line before a block says that its commands take too long to be run by a
-test, or need what a test does not have; a reader of the page does not see it.
-"""
+"""The commands and the Python that the project's pages show: every ```sh and ```python block, with where it stands."""
 
 from __future__ import annotations
 
@@ -12,21 +8,17 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-BLOCK = re.compile(
-    r"(?:^<!-- parsed only: (?P<why>[^\n]+?) -->\n)?^```(?P<language>sh|python)\n(?P<text>.*?)^```$",
-    re.MULTILINE | re.DOTALL,
-)
+BLOCK = re.compile(r"^```(?P<language>sh|python)\n(?P<text>.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
 @dataclass(frozen=True)
 class Block:
-    """A block of code of a page: the line on which its text begins, and why it is not run, "" where it is."""
+    """A block of code of a page, and the line on which its text begins."""
 
     page: Path
     line: int
     language: str
     text: str
-    parsed_only: str
 
     @property
     def commands(self) -> list[str]:
@@ -48,7 +40,7 @@ def blocks(page: Path) -> Iterator[Block]:
     text = page.read_text(encoding="utf-8")
     for found in BLOCK.finditer(text):
         line = text.count("\n", 0, found.start("text")) + 1
-        yield Block(page, line, found["language"], found["text"], found["why"] or "")
+        yield Block(page, line, found["language"], found["text"])
 
 
 def split(line: str) -> Command:

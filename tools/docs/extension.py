@@ -1,15 +1,13 @@
 """A Sphinx extension: what the pages do not say themselves.
 
-Below the options of every verb it adds the exit codes and the schema of what the verb prints with --json. Classes get
-a list of what the comments behind their fields say: units, shapes. In a toctree a page with a question mark, `study?`,
-may be missing.
+Each page of a verb gets the verb's own help, its exit codes and the schema of what it prints with --json. Modules of
+the API get their names as headings, classes a list of the comments behind their fields: units, shapes.
 """
 
 from __future__ import annotations
 
 import inspect
 import re
-from pathlib import Path
 
 import click
 from pydantic import BaseModel
@@ -19,7 +17,13 @@ from tools.docs.schemas import schema_name, write_schemas
 
 CODES = "Exit codes: 0 done; 1 failed; 2 bad usage; 130 interrupted (motors off, files whole)."
 OWN_CODES = {"doctor": "Exit codes: 0 nothing must be mended; 1 something must, or failed; 2 bad usage."}
-OPTIONAL = re.compile(r"^([\w-]+)\?\n", re.MULTILINE)
+HELP = """
+```{{eval-rst}}
+.. click:: greywhale.cli.{verb}:command
+   :prog: greywhale {verb}
+   :nested: full
+```
+"""
 SLASH = chr(92)  # a backslash
 PATH = re.compile(r"PosixPath\('([^']*)'\)")
 # numpy's own way of writing an array of any shape.
@@ -44,11 +48,11 @@ def name_paths(app: Sphinx, context: click.Context, lines: list[str]) -> None:
     lines[:] = [PATH.sub(r"'\1'", line) for line in lines]
 
 
-def keep_pages(app: Sphinx, docname: str, source: list[str]) -> None:
-    """Leave out pages that may be missing and are."""
-    source[0] = OPTIONAL.sub(
-        lambda found: f"{found[1]}\n" if (Path(app.srcdir) / f"{found[1]}.md").exists() else "", source[0]
-    )
+def add_help(app: Sphinx, docname: str, source: list[str]) -> None:
+    """End the page of a verb with the verb's own help."""
+    folder, _, verb = docname.partition("/")
+    if folder == "verbs" and verb != "index":
+        source[0] += HELP.format(verb=verb)
 
 
 def shorten_arrays(
@@ -60,8 +64,10 @@ def shorten_arrays(
     return tuple(None if part is None else ARRAY.sub(r"NDArray[\1]", part) for part in (signature, returned))  # type: ignore[return-value]
 
 
-def list_fields(app: Sphinx, what: str, name: str, subject: object, options: object, lines: list[str]) -> None:
-    """Add what the comments behind a class's fields say: their units, shapes and meanings."""
+def add_to_docstring(app: Sphinx, what: str, name: str, subject: object, options: object, lines: list[str]) -> None:
+    """Add a module's name above its text, and below a class's what the comments behind its fields say."""
+    if what == "module":
+        lines[:0] = [f".. rubric:: {name}", ""]
     if what == "class":
         lines += fields_of(subject)
 
@@ -87,7 +93,7 @@ def setup(app: Sphinx) -> dict[str, bool]:
     app.config.html_static_path = [str(folder)]
     app.connect("sphinx-click-process-epilog", add_notes)
     app.connect("sphinx-click-process-options", name_paths)
-    app.connect("source-read", keep_pages)
+    app.connect("source-read", add_help)
     app.connect("autodoc-process-signature", shorten_arrays)
-    app.connect("autodoc-process-docstring", list_fields)
+    app.connect("autodoc-process-docstring", add_to_docstring)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

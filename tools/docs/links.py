@@ -1,7 +1,7 @@
 """The links of the project's Markdown: where each points, and the anchors that a page has.
 
-Sphinx checks those between pages of the site. This module knows README.md and its like too, and lists links to the
-web, which nothing here opens.
+Sphinx checks those between pages of the site; this module knows README.md and its like too. Nothing opens a link to the
+web.
 """
 
 from __future__ import annotations
