@@ -13,8 +13,9 @@ HEAD = """<!-- Written by `make attack`; change the attacks, not this page. -->
 
 # Reliability
 
-What was attacked, how often, and what came of it. Every figure on this page was counted by `make attack` on the code
-whose digest stands below its table. A small share of the same attacks runs in every `make test`.
+For whoever asks what can go wrong, and how often. {result} Every
+figure on this page was counted by `make attack` on the code whose digest stands below its table. A small share of the
+same attacks runs in every `make test`.
 
 A violation is a trial that broke what the section says must hold. `min` are the minutes of one core that a part took.
 """
@@ -55,6 +56,14 @@ def write_table(rows: Iterable[Row]) -> str:
     return "\n".join(lines) + "\n"
 
 
+def write_result(results: Sequence[Result]) -> str:
+    """One sentence: how many trials there were, and where some broke a promise."""
+    trials = sum(row.trials for one in results for row in one.rows)
+    broken = {one.part.title: sum(row.violations for row in one.rows) for one in results}
+    where = ", ".join(f'{count:,} in "{title}"' for title, count in broken.items() if count)
+    return f"**Of {trials:,} trials, these broke a promise: {where or 'none'}.**"
+
+
 def write_summary(results: Iterable[Result]) -> str:
     """One line for each part."""
     lines = ["| | trials | violations | min |", "|---|--:|--:|--:|"]
@@ -93,4 +102,5 @@ def write_page(results: Sequence[Result]) -> str:
         for one in results
     ]
     faults = [row for one in results if one.part.name == "faults" for row in one.rows]
-    return "\n".join([HEAD, write_summary(results), FAULTS_HEAD, write_faults(faults), *sections])
+    head = HEAD.format(result=write_result(results))
+    return "\n".join([head, write_summary(results), FAULTS_HEAD, write_faults(faults), *sections])
