@@ -26,7 +26,7 @@ def page(declaration: Declaration) -> str:
 
 
 def _frame(declaration: Declaration) -> str:
-    return f"""Protocol {declaration.protocol}, schema hash `0x{declaration.schema_hash:08X}`.
+    return f"""For whoever writes another host, or reads a parameter's meaning. Protocol {declaration.protocol}, schema hash `0x{declaration.schema_hash:08X}`.
 1 Mbaud, 8 data bits, no parity, 1 stop bit.
 
 ```
@@ -53,26 +53,37 @@ def _meaning(field: Field) -> str:
     return field.description + unit + enum
 
 
-def _fields(message: Message) -> str:
-    if not message.fields:
-        return "empty"
-    rows, offset = [], 0
-    for field in message.fields:
-        rows.append(f"| {offset} | {_type(field)} | `{field.name}` | {_meaning(field)} |")
-        offset += field.size
-    return "\n".join([f"{message.size} bytes:\n", "| at | type | name | meaning |", "|---:|---|---|---|", *rows])
-
-
 def _messages(declaration: Declaration) -> list[str]:
+    replies = {message.type: message for message in declaration.messages}
     parts = []
     for message in declaration.messages:
         if message.struct.endswith("Reply"):
-            parts.append(f"Reply (0x{message.type:02X}): {_fields(message)}")
-        elif message.reply is not None:
-            parts += [f"### {message.name} (0x{message.type:02X})", message.description, f"Request: {_fields(message)}"]
-        else:
-            parts += [f"### {message.name} (0x{message.type:02X})", message.description, f"Payload: {_fields(message)}"]
+            continue
+        sides = {"": message}
+        if message.reply is not None:
+            reply = replies[message.type + REPLY_BIT]
+            sides = {"request": message, f"reply 0x{reply.type:02X}": reply}
+        sizes = ", ".join(f"{side or 'payload'}: {_bytes(one.size)}" for side, one in sides.items())
+        rows = [row for side, one in sides.items() for row in _rows(side, one)]
+        table = ["| | at | type | name | meaning |", "|---|---:|---|---|---|", *rows]
+        parts.append(
+            f"### {message.name} (0x{message.type:02X})\n\n{message.description} {sizes[0].upper()}{sizes[1:]}."
+        )
+        if rows:
+            parts.append("\n".join(table))
     return parts
+
+
+def _bytes(count: int) -> str:
+    return "1 byte" if count == 1 else f"{count or 'no'} bytes"
+
+
+def _rows(side: str, message: Message) -> list[str]:
+    rows, offset = [], 0
+    for field in message.fields:
+        rows.append(f"| {side} | {offset} | {_type(field)} | `{field.name}` | {_meaning(field)} |")
+        offset += field.size
+    return rows
 
 
 def _enum(enum: Enum) -> str:
