@@ -116,8 +116,8 @@ def _table(declaration: Declaration) -> str:
     return f"""{declaration.parameter_count} parameters, {declaration.table_size} bytes packed in index order
 without padding; `param_crc` is the CRC of these bytes. `param_set` writes a staged copy, `param_apply` checks it whole
 and makes it the running set between two ticks, `param_save` writes the running set to EEPROM. The EEPROM banks have
-layout {declaration.layout}. A board also reads banks of older layouts, which lack the groups at the end (each tells
-since which layout it is there), and adds their defaults. When it finds a newer layout, it starts from the defaults.
+layout {declaration.layout}. A board also reads banks of older layouts, which lack the groups at the end (each says
+since which layout it exists), and adds their defaults. When it finds a newer layout, it starts from the defaults.
 
 A bank is magic 0x5747 u16, layout u8, length u16, sequence u16, the packed table, and the CRC of layout to table u16. Bank
 A is at address 16, bank B at 272; a save writes the older one and sets its magic last, and a board starts from the newer
