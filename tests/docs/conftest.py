@@ -75,8 +75,7 @@ def yours(tmp_path_factory: pytest.TempPathFactory) -> Path:
     write_model(folder / "model.toml")
     for name in ("controller.toml", "table.toml"):
         shutil.copy(TABLES / "table_10.toml", folder / name)
-    for name in ("board.toml", "mine.toml", "before-calibration.toml"):
-        parameter_file.save(folder / name, ParameterTable.defaults())
+    parameter_file.save(folder / "board.toml", ParameterTable.defaults())
     times = np.arange(0.0, 2.0, 0.02)
     save_leader(folder / "motion.csv", Trajectory(times, 0.1 * np.sin(3.0 * times)[:, None] * np.ones(4)))
     page = (ROOT / "docs" / "your-arm.md").read_text(encoding="utf-8")
