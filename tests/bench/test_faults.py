@@ -15,9 +15,6 @@ from greywhale_sim.board_supply import FULL_MV, SUNK_MV, SUNK_SLICES, SharedSupp
 from greywhale_sim.faults import BY_NAME, FAULTS, WHERE, Fault
 from greywhale_sim.pins_seen import PinsSeen
 from tests.bench.conftest import FakeBoard
-from tools import ROOT
-
-PAGE = ROOT / "docs" / "bench.md"
 
 
 def wired(bench: Bench) -> tuple[object, ...]:
@@ -70,10 +67,6 @@ def test_the_command_line_lists_them_all(capsys: pytest.CaptureFixture[str]) -> 
     assert run(["sim", "--mistake", "list"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert [re.split("[: ]", line)[0] for line in lines] == list(BY_NAME)
-
-
-def test_the_page_shows_the_same_list() -> None:
-    assert faults.markdown_table() in PAGE.read_text(encoding="utf-8")
 
 
 def test_a_shared_supply_sinks_while_a_motor_draws_and_comes_back() -> None:

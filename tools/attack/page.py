@@ -31,7 +31,7 @@ interrupts are on.
 
 MOSTLY = 0.95  # a flipped bit may also be that of another fault's parameter
 
-# The injected fault that shows a fault best. A person must move the joint first before `runaway` and `stalled` can show.
+# The injected fault that shows a fault best. A person must move the joint before `runaway` and `stalled` can show.
 INJECTED_AS = {
     "pot_low": "follower open",
     "pot_high": "follower shorted",

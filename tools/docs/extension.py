@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import inspect
 import re
+from pathlib import Path
 
 import click
 from pydantic import BaseModel
 from sphinx.application import Sphinx
 
+from greywhale_sim.faults import markdown_table
 from tools.docs.schemas import schema_name, write_schemas
 
 CODES = "Exit codes: 0 done; 1 failed; 2 bad usage; 130 interrupted (motors off, files whole)."
@@ -49,10 +51,10 @@ def name_paths(app: Sphinx, context: click.Context, lines: list[str]) -> None:
 
 
 def add_help(app: Sphinx, docname: str, source: list[str]) -> None:
-    """End the page of a verb with the verb's own help."""
+    """End the page of a verb with the verb's own help, that of `sim` with a table of the mistakes it stages first."""
     folder, _, verb = docname.partition("/")
     if folder == "verbs" and verb != "index":
-        source[0] += HELP.format(verb=verb)
+        source[0] += f"\n{markdown_table()}\n" * (verb == "sim") + HELP.format(verb=verb)
 
 
 def shorten_arrays(

@@ -1,6 +1,6 @@
 """What a person may do wrong with an arm, each by name: what it does to the bench, and which verb says so.
 
-The one list behind `greywhale sim --mistake`, the bench's command `mistake`, docs/bench.md and the tests.
+The one list behind `greywhale sim --mistake`, the bench's command `mistake`, the site and the tests.
 """
 
 from __future__ import annotations
@@ -226,7 +226,7 @@ def listed() -> str:
 
 
 def markdown_table() -> str:
-    """The table in docs/bench.md."""
+    """The table on the site's page of `greywhale sim`."""
     rows = ["| mistake | what is wrong | found by |", "|---|---|---|"]
     found = {"refused": "", "mended": ", which puts it right", "noted": ", as a note"}
     for one in FAULTS:
