@@ -14,20 +14,23 @@ START = 1.0
 FALLEN = np.array([-1.0, -1.0, -1.0, -1.0])
 
 
+@pytest.fixture
+def player(motion: Trajectory) -> LeaderPlayer:
+    return LeaderPlayer(motion, SLICE, START)
+
+
 def advance(player: LeaderPlayer, seconds: float, enabled: bool, follower: np.ndarray = FALLEN) -> None:
     for _ in range(round(seconds / SLICE)):
         player.step(enabled, follower)
 
 
-def test_holds_both_arms_at_the_first_pose_until_enabled(motion: Trajectory) -> None:
-    player = LeaderPlayer(motion, SLICE, START)
+def test_holds_both_arms_at_the_first_pose_until_enabled(player: LeaderPlayer, motion: Trajectory) -> None:
     advance(player, 30.0, enabled=False)
     np.testing.assert_array_equal(player.angles, motion.angles[0])
     np.testing.assert_array_equal(player.hold, motion.angles[0])
 
 
-def test_lets_the_follower_go_at_once_and_moves_after_the_soft_start(motion: Trajectory) -> None:
-    player = LeaderPlayer(motion, SLICE, START)
+def test_lets_the_follower_go_at_once_and_moves_after_the_soft_start(player: LeaderPlayer, motion: Trajectory) -> None:
     player.step(True, FALLEN)
     assert player.hold is None
     advance(player, START - SLICE, enabled=True)
@@ -37,8 +40,7 @@ def test_lets_the_follower_go_at_once_and_moves_after_the_soft_start(motion: Tra
     assert player.plays == 0
 
 
-def test_plays_once_and_holds_the_last_pose(motion: Trajectory) -> None:
-    player = LeaderPlayer(motion, SLICE, START)
+def test_plays_once_and_holds_the_last_pose(player: LeaderPlayer, motion: Trajectory) -> None:
     advance(player, START + motion.duration_s + 0.05, enabled=True)
     assert player.finished
     assert player.plays == 1
@@ -47,8 +49,9 @@ def test_plays_once_and_holds_the_last_pose(motion: Trajectory) -> None:
     np.testing.assert_allclose(player.angles, motion.angles[-1])
 
 
-def test_brings_both_arms_back_after_the_motors_went_off_and_plays_again(motion: Trajectory) -> None:
-    player = LeaderPlayer(motion, SLICE, START)
+def test_brings_both_arms_back_after_the_motors_went_off_and_plays_again(
+    player: LeaderPlayer, motion: Trajectory
+) -> None:
     advance(player, START + motion.duration_s + 0.05, enabled=True)
     advance(player, LET_GO_S, enabled=False)
     assert player.hold is None, "a fall after a stop must be visible"
@@ -63,8 +66,7 @@ def test_brings_both_arms_back_after_the_motors_went_off_and_plays_again(motion:
     assert player.plays == 2
 
 
-def test_a_short_break_starts_the_motion_over_from_where_the_hand_is(motion: Trajectory) -> None:
-    player = LeaderPlayer(motion, SLICE, START)
+def test_a_short_break_starts_the_motion_over_from_where_the_hand_is(player: LeaderPlayer, motion: Trajectory) -> None:
     advance(player, START + 0.5, enabled=True)
     advance(player, LET_GO_S / 2, enabled=False)
     advance(player, START, enabled=True)
@@ -72,8 +74,9 @@ def test_a_short_break_starts_the_motion_over_from_where_the_hand_is(motion: Tra
 
 
 @pytest.mark.parametrize("off_s", [LET_GO_S + 0.3 * BRING_BACK_S, LET_GO_S / 2])
-def test_the_leader_never_jumps_when_the_motors_go_on_before_it_is_back(motion: Trajectory, off_s: float) -> None:
-    player = LeaderPlayer(motion, SLICE, START)
+def test_the_leader_never_jumps_when_the_motors_go_on_before_it_is_back(
+    player: LeaderPlayer, motion: Trajectory, off_s: float
+) -> None:
     advance(player, START + motion.duration_s + 0.05, enabled=True)
     advance(player, off_s, enabled=False)
     fastest, before = 0.0, player.angles
@@ -94,9 +97,8 @@ def test_a_long_motion_is_read_in_pieces() -> None:
     np.testing.assert_allclose(player.angles, 301.0 / 600.0 * 1.2, atol=1e-6)
 
 
-def test_takes_up_another_motion_from_where_the_arms_are_held(motion: Trajectory) -> None:
+def test_takes_up_another_motion_from_where_the_arms_are_held(player: LeaderPlayer, motion: Trajectory) -> None:
     other = Trajectory(np.array([0.0, 2.0]), np.array([[-0.4] * 4, [0.6] * 4]))
-    player = LeaderPlayer(motion, SLICE, START)
     advance(player, START + motion.duration_s + 0.05, enabled=True)
     advance(player, LET_GO_S + BRING_BACK_S + SLICE, enabled=False)
     player.take_up(other)
@@ -113,8 +115,9 @@ def test_takes_up_another_motion_from_where_the_arms_are_held(motion: Trajectory
     assert player.finished
 
 
-def test_another_motion_taken_up_right_after_a_stop_still_shows_the_fall(motion: Trajectory) -> None:
-    player = LeaderPlayer(motion, SLICE, START)
+def test_another_motion_taken_up_right_after_a_stop_still_shows_the_fall(
+    player: LeaderPlayer, motion: Trajectory
+) -> None:
     advance(player, START + 0.5, enabled=True)
     advance(player, LET_GO_S / 2, enabled=False)
     player.take_up(Trajectory(motion.time_s, motion.angles - 1.0))
@@ -124,8 +127,7 @@ def test_another_motion_taken_up_right_after_a_stop_still_shows_the_fall(motion:
     np.testing.assert_array_equal(player.hold, motion.angles[0] - 1.0)
 
 
-def test_brings_one_held_arm_elsewhere_while_the_other_stays(motion: Trajectory) -> None:
-    player = LeaderPlayer(motion, SLICE, START)
+def test_brings_one_held_arm_elsewhere_while_the_other_stays(player: LeaderPlayer, motion: Trajectory) -> None:
     place = np.array([0.5, -0.5, 0.2, 0.0])
     player.bring(None, place, 2.0)
     advance(player, 1.0, enabled=False)
@@ -138,8 +140,9 @@ def test_brings_one_held_arm_elsewhere_while_the_other_stays(motion: Trajectory)
     np.testing.assert_allclose(player.angles, place)
 
 
-def test_brings_an_arm_along_places_and_forgets_those_to_come_when_the_motors_go_on(motion: Trajectory) -> None:
-    player = LeaderPlayer(motion, SLICE, START)
+def test_brings_an_arm_along_places_and_forgets_those_to_come_when_the_motors_go_on(
+    player: LeaderPlayer, motion: Trajectory
+) -> None:
     places = [(np.full(4, angle), None, seconds) for angle, seconds in ((1.0, 1.0), (-1.0, 2.0), (0.5, 1.0))]
     player.bring_along(places)
     for seconds, angle in ((1.0, 1.0), (2.0, -1.0), (1.0, 0.5), (9.0, 0.5)):
@@ -153,8 +156,9 @@ def test_brings_an_arm_along_places_and_forgets_those_to_come_when_the_motors_go
     np.testing.assert_array_equal(player.angles, motion.angles[0])
 
 
-def test_after_a_run_both_arms_are_brought_to_the_motion_and_not_where_hands_had_them(motion: Trajectory) -> None:
-    player = LeaderPlayer(motion, SLICE, START)
+def test_after_a_run_both_arms_are_brought_to_the_motion_and_not_where_hands_had_them(
+    player: LeaderPlayer, motion: Trajectory
+) -> None:
     player.bring(np.ones(4), None, 1.0)
     advance(player, 1.0 + SLICE, enabled=False)
     advance(player, START + motion.duration_s + 0.05, enabled=True)
@@ -163,8 +167,7 @@ def test_after_a_run_both_arms_are_brought_to_the_motion_and_not_where_hands_had
     np.testing.assert_array_equal(player.hold, motion.angles[0])
 
 
-def test_no_hand_is_on_an_arm_whose_motors_are_on(motion: Trajectory) -> None:
-    player = LeaderPlayer(motion, SLICE, START)
+def test_no_hand_is_on_an_arm_whose_motors_are_on(player: LeaderPlayer) -> None:
     player.step(True, FALLEN)
     with pytest.raises(UserError, match="only while the motors are off"):
         player.bring(np.ones(4), None, 1.0)

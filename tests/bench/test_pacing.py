@@ -40,12 +40,6 @@ def test_real_time_waits_for_the_wall_clock(clock: Clock, pacer: Pacer) -> None:
     assert pacer.lag_s == 0.0
 
 
-def test_as_fast_as_possible_never_waits(clock: Clock, pacer: Pacer) -> None:
-    for millisecond in range(1000):
-        pacer.pace(millisecond / 1000, real_time=False)
-    assert clock.waits == []
-
-
 def test_time_spent_fast_is_not_waited_for_afterwards(clock: Clock, pacer: Pacer) -> None:
     pacer.pace(0.0, real_time=True)
     pacer.pace(50.0, real_time=False)

@@ -18,17 +18,6 @@ def shown(faults: PotFaults, pot: int, path: np.ndarray) -> np.ndarray:
     return np.array(rows)
 
 
-def test_there_is_no_fault_at_first_and_each_can_be_mended() -> None:
-    faults = PotFaults()
-    assert not faults.any
-    faults.inject(3, "frozen")
-    faults.swap(0, 5)
-    assert faults.any
-    faults.inject(3, None)
-    faults.swap(0, 5)
-    assert not faults.any
-
-
 def test_a_frozen_one_stays_and_the_others_go_on() -> None:
     faults = PotFaults()
     faults.inject(2, "frozen")

@@ -89,14 +89,6 @@ def test_backlog_is_an_upper_bound_that_reading_clears(port: SerialPort) -> None
         assert port.backlog(500) == 0
 
 
-def test_unread_bytes_can_be_discarded(port: SerialPort) -> None:
-    with serial.Serial(port.path, timeout=0) as host:
-        port.write(b"old news")
-        port.discard_unread()
-        assert port.unread() == 0
-        assert host.read(10) == b""
-
-
 def test_a_full_queue_loses_bytes_and_blocks_nobody(port: SerialPort) -> None:
     fitted = [port.write(bytes(1000)) for _ in range(200)]
     assert fitted[0] == 1000

@@ -52,8 +52,7 @@ def nothing() -> None:
     """As it is."""
 
 
-def test_it_goes_on_after_a_stated_gap(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, point: Point) -> None:
-    out = tmp_path / "log.csv"
+def test_it_goes_on_after_a_stated_gap(out: Path, monkeypatch: pytest.MonkeyPatch, point: Point) -> None:
     with FakeBoard(Faults(unplug_at=300)) as first, FakeBoard() as second:
         lives(monkeypatch, first, second)
         point(first)
@@ -74,8 +73,7 @@ def test_it_goes_on_after_a_stated_gap(tmp_path: Path, monkeypatch: pytest.Monke
     assert f"# gaps: 1: {length:g} s after {begin:g} s" in out.read_text(encoding="ascii")
 
 
-def test_it_goes_away_twice(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, point: Point) -> None:
-    out = tmp_path / "log.csv"
+def test_it_goes_away_twice(out: Path, monkeypatch: pytest.MonkeyPatch, point: Point) -> None:
     with FakeBoard(Faults(unplug_at=300)) as one, FakeBoard(Faults(unplug_at=200)) as two, FakeBoard() as three:
         lives(monkeypatch, one, two, three)
         point(one)
@@ -85,8 +83,7 @@ def test_it_goes_away_twice(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, poi
     assert read_log(out).complete
 
 
-def test_a_port_that_stays_away_ends_the_log_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    out = tmp_path / "log.csv"
+def test_a_port_that_stays_away_ends_the_log_whole(out: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with FakeBoard(Faults(unplug_at=300)) as board, pytest.raises(UserError, match="went away .* not come back"):
         lives(monkeypatch, board)
         record_through_losses(board.port, out, 1.0, open_device=opens())
@@ -97,8 +94,7 @@ def test_a_port_that_stays_away_ends_the_log_whole(tmp_path: Path, monkeypatch: 
     assert os.listdir(tmp_path) == ["log.csv"]
 
 
-def test_another_board_in_its_place_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, point: Point) -> None:
-    out = tmp_path / "log.csv"
+def test_another_board_in_its_place_is_refused(out: Path, monkeypatch: pytest.MonkeyPatch, point: Point) -> None:
     with FakeBoard(Faults(unplug_at=300)) as first, FakeBoard() as other:
         lives(monkeypatch, first, other)
         other.running[schema.PARAMETER_BY_NAME["joint1.kp"].index] += 1

@@ -20,8 +20,7 @@ def parts(folder: Path) -> list[Path]:
     return [path for path in folder.iterdir() if path.name.startswith(".")]
 
 
-def test_listening_records_every_sample_and_leaves_the_motors_alone(tmp_path: Path) -> None:
-    out = tmp_path / "log.csv"
+def test_listening_records_every_sample_and_leaves_the_motors_alone(out: Path) -> None:
     with FakeBoard() as board:
         with open_device(board) as device:
             recording = record(device, out, seconds=0.5)
@@ -70,8 +69,7 @@ def test_a_motion_that_is_too_fast_never_starts_a_motor(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
-def test_following_is_recorded_from_the_end_of_the_soft_start(tmp_path: Path) -> None:
-    out = tmp_path / "log.csv"
+def test_following_is_recorded_from_the_end_of_the_soft_start(out: Path) -> None:
     seconds = 5 * LEASE_MS / 1000  # the lease must be renewed meanwhile
     with FakeBoard() as board:
         with open_device(board) as device:
@@ -112,9 +110,8 @@ def test_lost_samples_are_counted_and_not_invented(tmp_path: Path) -> None:
     ],
 )
 def test_a_recording_whose_end_never_came_is_not_what_was_asked_for(
-    tmp_path: Path, ticks: int, enable: bool, words: str
+    out: Path, ticks: int, enable: bool, words: str
 ) -> None:
-    out = tmp_path / "log.csv"
     with FakeBoard(Faults(jump_at=(400, ticks))) as board:
         with pytest.raises(UserError, match=words) as caught, open_device(board) as device:
             record(device, out, 3.0, enable=enable)
@@ -126,8 +123,7 @@ def test_a_recording_whose_end_never_came_is_not_what_was_asked_for(
     assert (log.complete, log.dropped < 3000) == (False, True)
 
 
-def test_a_few_samples_that_are_lost_at_the_end_are_counted(tmp_path: Path) -> None:
-    out = tmp_path / "log.csv"
+def test_a_few_samples_that_are_lost_at_the_end_are_counted(out: Path) -> None:
     with FakeBoard(Faults(lose_ticks=frozenset(range(500, 510)))) as board, open_device(board) as device:
         recording = record(device, out, 0.504, every=1)
     assert 500 < recording.rows + recording.dropped <= 504
@@ -144,8 +140,7 @@ def test_a_few_samples_that_are_lost_at_the_end_are_counted(tmp_path: Path) -> N
         (Faults(fault_at=(200, Fault.TRACKING, 1)), r"\(joint 1\)"),
     ],
 )
-def test_a_bad_end_keeps_what_was_recorded_and_says_why(tmp_path: Path, faults: Faults, words: str) -> None:
-    out = tmp_path / "log.csv"
+def test_a_bad_end_keeps_what_was_recorded_and_says_why(out: Path, tmp_path: Path, faults: Faults, words: str) -> None:
     with FakeBoard(faults) as board:
         with pytest.raises(UserError, match=words) as caught, open_device(board) as device:
             record(device, out, 10.0, enable=True)
@@ -163,8 +158,7 @@ def test_samples_that_stop_coming_are_named(tmp_path: Path) -> None:
         record(device, tmp_path / "log.csv", 10.0)
 
 
-def test_ctrl_c_stops_the_motors_and_the_log_says_so(tmp_path: Path) -> None:
-    out = tmp_path / "log.csv"
+def test_ctrl_c_stops_the_motors_and_the_log_says_so(out: Path) -> None:
 
     def interrupt(what: str, fraction: float) -> None:
         if what == "recording" and fraction > 0.02:

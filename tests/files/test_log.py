@@ -64,9 +64,8 @@ def test_every_count_of_the_board_survives(
 
 @pytest.mark.parametrize("error", [KeyboardInterrupt, UserError("gone"), SystemExit])
 def test_what_was_recorded_before_an_interruption_is_kept_and_marked(
-    tmp_path: Path, error: BaseException | type[BaseException]
+    path: Path, tmp_path: Path, error: BaseException | type[BaseException]
 ) -> None:
-    path = tmp_path / "log.csv"
 
     def interrupted() -> None:
         with LogWriter(path, ORIGIN) as log:
@@ -96,8 +95,7 @@ def disk_for(size: int) -> Iterator[None]:
 
 
 @pytest.mark.parametrize("rows", [300, 10_000])
-def test_on_a_full_disk_the_lines_that_are_whole_stay(tmp_path: Path, rows: int) -> None:
-    path = tmp_path / "log.csv"
+def test_on_a_full_disk_the_lines_that_are_whole_stay(path: Path, tmp_path: Path, rows: int) -> None:
     with disk_for(20_000), pytest.raises(UserError, match=r"log\.csv: cannot be written: "):
         write(path, rows)
     log = read_log(path)
@@ -123,8 +121,7 @@ def test_folders_and_devices_are_refused_before_anything_is_recorded(tmp_path: P
     assert os.listdir(tmp_path) == ["device"]
 
 
-def test_an_empty_recording_leaves_the_old_file_and_nothing_else(tmp_path: Path) -> None:
-    path = tmp_path / "log.csv"
+def test_an_empty_recording_leaves_the_old_file_and_nothing_else(path: Path, tmp_path: Path) -> None:
     path.write_text("precious")
     with LogWriter(path, ORIGIN):
         pass
@@ -177,9 +174,8 @@ def test_the_writer_refuses_what_the_reader_would(tmp_path: Path, time: float, l
 
 
 @pytest.mark.parametrize("voltages", [True, False])
-def test_a_period_that_the_rows_contradict_is_refused(tmp_path: Path, voltages: bool) -> None:
+def test_a_period_that_the_rows_contradict_is_refused(path: Path, voltages: bool) -> None:
     """The voltages change at every row of 1 ms, or at every 20th."""
-    path = tmp_path / "log.csv"
 
     def write_changing(every: int, period_ms: int) -> None:
         with LogWriter(path, replace(ORIGIN, period_ms=period_ms, every_ticks=1)) as log:
@@ -226,8 +222,7 @@ def test_a_spoiled_log_is_refused_by_line_and_column(tmp_path: Path, old: str, n
     assert words in caught.value.message
 
 
-def test_a_log_of_another_tool_needs_no_header(tmp_path: Path) -> None:
-    path = tmp_path / "log.csv"
+def test_a_log_of_another_tool_needs_no_header(path: Path) -> None:
     row = ",".join(["0"] * 12) + ",disabled"
     path.write_text(f"{HEADING}\n0,{row}\n1,{row}\n")
     log = read_log(path)
@@ -295,8 +290,7 @@ def test_rows_in_any_other_form_are_left_to_the_cells(old: bytes, new: bytes) ->
 
 
 @pytest.mark.usefixtures("small_blocks")
-def test_a_log_in_many_blocks_is_the_same(tmp_path: Path) -> None:
-    path = tmp_path / "log.csv"
+def test_a_log_in_many_blocks_is_the_same(path: Path) -> None:
     write(path, 50)
     log = read_log(path)
     assert np.array_equal(log.time, np.arange(50) / 200)
@@ -309,8 +303,7 @@ def test_a_log_in_many_blocks_is_the_same(tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("small_blocks")
-def test_a_bad_cell_in_a_later_block_is_named_by_its_line(tmp_path: Path) -> None:
-    path = tmp_path / "log.csv"
+def test_a_bad_cell_in_a_later_block_is_named_by_its_line(path: Path) -> None:
     write(path, 50)
     lines = path.read_text().splitlines(keepends=True)
     lines[40] = lines[40].replace("0.300000", "x")
@@ -323,8 +316,7 @@ def test_a_bad_cell_in_a_later_block_is_named_by_its_line(tmp_path: Path) -> Non
         read_log(path)
 
 
-def test_only_an_unfinished_log_may_end_in_the_middle_of_a_line(tmp_path: Path) -> None:
-    path = tmp_path / "log.csv"
+def test_only_an_unfinished_log_may_end_in_the_middle_of_a_line(path: Path) -> None:
     write(path, 5)
     text = path.read_text()[:-30]
     path.write_text(text)
@@ -334,9 +326,8 @@ def test_only_an_unfinished_log_may_end_in_the_middle_of_a_line(tmp_path: Path) 
     assert len(read_log(path).time) == 4
 
 
-def test_a_log_takes_no_more_memory_than_its_numbers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_log_takes_no_more_memory_than_its_numbers(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(csv_file, "BLOCK", 1 << 16)
-    path = tmp_path / "log.csv"
     write(path, 60_000)
     tracemalloc.start()
     log = read_log(path)
@@ -347,8 +338,7 @@ def test_a_log_takes_no_more_memory_than_its_numbers(tmp_path: Path, monkeypatch
     assert most < 60_000 * 13 * 8 + 60_000 + block
 
 
-def test_the_header_says_which_joints_are_in_use_where_not_all_are(tmp_path: Path) -> None:
-    path = tmp_path / "log.csv"
+def test_the_header_says_which_joints_are_in_use_where_not_all_are(path: Path) -> None:
     with LogWriter(path, Origin(joints=(0, 2))) as log:
         for row in range(3):
             log.append(row * 0.005, *ROW)

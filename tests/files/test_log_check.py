@@ -77,9 +77,8 @@ def short_log(tmp_path_factory: pytest.TempPathFactory) -> bytes:
 
 @given(damages())
 @settings(deadline=None, max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
-def test_no_damage_to_rows_goes_unsaid(tmp_path: Path, short_log: bytes, damage: Callable[[bytes], bytes]) -> None:
+def test_no_damage_to_rows_goes_unsaid(path: Path, short_log: bytes, damage: Callable[[bytes], bytes]) -> None:
     """By the readers of logs and of motions: they refuse the file, or say that it is not as it was recorded."""
-    path = tmp_path / "log.csv"
     head, heading, rows = short_log.partition(b",state\n")
     damaged = damage(rows)
     assume(damaged != rows)
@@ -138,8 +137,7 @@ def test_a_fact_that_was_changed_is_told(tmp_path: Path, line: str) -> None:
     assert log.condition.check is Check.CHANGED
 
 
-def test_a_fact_that_was_removed_or_added_is_told(tmp_path: Path) -> None:
-    path = tmp_path / "log.csv"
+def test_a_fact_that_was_removed_or_added_is_told(path: Path) -> None:
     assert with_line(path, "firmware", "").condition.check is Check.CHANGED
     assert with_line(path, "board", "# board: mega2560\n# joints_in_use: 0\n").condition.check is Check.CHANGED
     assert with_line(path, "board", "# board: mega2560\n# board: nano328\n").condition.check is Check.CHANGED
@@ -166,8 +164,7 @@ def test_a_group_of_parameters_that_was_removed_is_told(tmp_path: Path) -> None:
     ],
     ids=["other ends of lines", "a mark of its encoding", "a comment", "other order"],
 )
-def test_what_editors_and_people_add_is_no_change(tmp_path: Path, save: Callable[[bytes], bytes]) -> None:
-    path = tmp_path / "log.csv"
+def test_what_editors_and_people_add_is_no_change(path: Path, save: Callable[[bytes], bytes]) -> None:
     write(path)
     path.write_bytes(save(path.read_bytes()))
     log = read_log(path)
@@ -199,8 +196,7 @@ def test_a_check_in_another_form_is_refused(tmp_path: Path, check: str) -> None:
         with_line(tmp_path / "log.csv", "check", f"# check: {check}\n")
 
 
-def test_results_rest_on_no_log_that_was_altered(tmp_path: Path) -> None:
-    path = tmp_path / "log.csv"
+def test_results_rest_on_no_log_that_was_altered(path: Path) -> None:
     changed = edited(path, lambda rows: [*rows[:-1], [*rows[-1][:-1], "disabled"]])
     with pytest.raises(UserError, match=f"^{path}: its check fails.*`# check`"):
         refuse_altered(changed, Check.CHANGED)

@@ -19,6 +19,7 @@ from greywhale.motion.delay import correlations
 from greywhale.motion.runs import gap_free_runs, resting
 
 STEP = 0.5
+TIME = np.arange(0, 10, 0.001)
 
 
 def log(time: Floats, leader: Floats, follower: Floats, state: NDArray[np.str_] | None = None) -> Log:
@@ -46,9 +47,8 @@ def motion(time: Floats) -> Floats:
 
 
 def test_mse_of_a_sine_error_is_half_its_square() -> None:
-    time = np.arange(0, 10, 0.001)
-    leader = np.sin(2 * np.pi * time)
-    result = evaluate(log(time, leader, leader - 0.2 * np.sin(2 * np.pi * 3 * time)))
+    leader = np.sin(2 * np.pi * TIME)
+    result = evaluate(log(TIME, leader, leader - 0.2 * np.sin(2 * np.pi * 3 * TIME)))
     assert result.joints[0].mse == pytest.approx(0.02, rel=1e-6)
     assert result.total_mse == pytest.approx(4 * 0.02, rel=1e-6)  # the total is the sum, as in the paper's table 11
     assert result.joints[0].steady_state_error is None  # the leader never rests
@@ -87,41 +87,37 @@ def test_a_first_order_lag_delays_slow_motion_by_its_time_constant() -> None:
 
 
 def test_no_delay_is_claimed_where_there_is_none_to_see() -> None:
-    time = np.arange(0, 10, 0.001)
-    noise = np.random.default_rng(1).normal(0, 0.003, len(time))
-    still = evaluate(log(time, 0.2 + noise, 0.1 + noise)).joints[0]
+    noise = np.random.default_rng(1).normal(0, 0.003, len(TIME))
+    still = evaluate(log(TIME, 0.2 + noise, 0.1 + noise)).joints[0]
     assert (still.delay_s, still.onset_delay_s) == (None, None)
-    stuck = evaluate(log(time, motion(time), np.zeros_like(time))).joints[0]
+    stuck = evaluate(log(TIME, motion(TIME), np.zeros_like(TIME))).joints[0]
     assert (stuck.delay_s, stuck.onset_delay_s, stuck.steps) == (None, None, 0)
-    unrelated = evaluate(log(time, motion(time), np.sin(20 * time))).joints[0]
+    unrelated = evaluate(log(TIME, motion(TIME), np.sin(20 * TIME))).joints[0]
     assert unrelated.delay_s is None
-    too_late = evaluate(log(time, motion(time), motion(time - 1.5))).joints[0]
+    too_late = evaluate(log(TIME, motion(TIME), motion(TIME - 1.5))).joints[0]
     assert too_late.delay_s is None
 
 
 def test_the_onset_delay_is_the_papers() -> None:
-    time = np.arange(0, 10, 0.001)
-    joint = evaluate(log(time, motion(time), motion(time - 0.2345))).joints[0]
+    joint = evaluate(log(TIME, motion(TIME), motion(TIME - 0.2345))).joints[0]
     assert joint.steps == 4
     assert joint.onset_delay_s == pytest.approx(0.2345, abs=0.0005)
 
 
 def test_the_onset_delay_ignores_offsets_slow_drifts_and_small_moves() -> None:
-    time = np.arange(0, 10, 0.001)
-    drift = 0.02 * time  # slower than a step, faster than a rest may be
-    assert evaluate(log(time, drift, drift)).joints[0].steps == 0
-    small = reach(time, 2.0, 0.1)
-    assert evaluate(log(time, small, small)).joints[0].steps == 0
-    step = reach(time, 2.0)
-    joint = evaluate(log(time, step, 0.4 + reach(time - 0.1, 2.0))).joints[0]
+    drift = 0.02 * TIME  # slower than a step, faster than a rest may be
+    assert evaluate(log(TIME, drift, drift)).joints[0].steps == 0
+    small = reach(TIME, 2.0, 0.1)
+    assert evaluate(log(TIME, small, small)).joints[0].steps == 0
+    step = reach(TIME, 2.0)
+    joint = evaluate(log(TIME, step, 0.4 + reach(TIME - 0.1, 2.0))).joints[0]
     assert joint.steps == 1
     assert joint.onset_delay_s == pytest.approx(0.1, abs=0.0005)
 
 
 def test_steady_state_error_is_the_mean_error_while_the_leader_has_rested() -> None:
-    time = np.arange(0, 10, 0.001)
-    leader = motion(time)
-    joint = evaluate(log(time, leader, 0.9 * leader)).joints[0]
+    leader = motion(TIME)
+    joint = evaluate(log(TIME, leader, 0.9 * leader)).joints[0]
     # Rests at 0, 0.5, 0.8, 0.2 and 0.7 rad; the error is a tenth of that. The first half second of a rest does not
     # count, so each weighs by the rest of its length.
     lengths = np.array([1.0 - 0.5, 2.0 - 0.9, 2.0 - 0.9, 2.0 - 0.9, 3.0 - 0.9])
@@ -140,10 +136,9 @@ def test_tremor_within_the_band_is_rest_and_beyond_it_is_not() -> None:
 
 
 def test_only_samples_in_following_count() -> None:
-    time = np.arange(0, 10, 0.001)
-    state = np.where((time >= 2) & (time < 8), "following", "soft_start")
+    state = np.where((TIME >= 2) & (TIME < 8), "following", "soft_start")
     leader = np.where(state == "following", 0.1, 3.0)
-    result = evaluate(log(time, leader, 0 * time, state))
+    result = evaluate(log(TIME, leader, 0 * TIME, state))
     assert result.joints[0].mse == pytest.approx(0.01)
     assert result.joints[0].steady_state_error == pytest.approx(0.1)
     assert (result.samples, result.following) == (6000, True)
@@ -159,10 +154,9 @@ def test_a_log_without_following_is_measured_whole_and_says_so() -> None:
 
 
 def test_a_gap_breaks_rests_and_delays_but_not_the_mean() -> None:
-    time = np.arange(0, 10, 0.001)
-    keep = (time < 4.0) | (time > 4.4)
-    whole = log(time, motion(time), motion(time - 0.1))
-    gapped = evaluate(log(time[keep], motion(time)[keep], motion(time - 0.1)[keep]))
+    keep = (TIME < 4.0) | (TIME > 4.4)
+    whole = log(TIME, motion(TIME), motion(TIME - 0.1))
+    gapped = evaluate(log(TIME[keep], motion(TIME)[keep], motion(TIME - 0.1)[keep]))
     assert gapped.joints[0].delay_s == pytest.approx(0.1, abs=0.002)
     assert gapped.rests_s[0] == pytest.approx(evaluate(whole).rests_s[0] - 0.4 - 0.5, abs=0.01)
     assert gapped.samples == keep.sum()

@@ -27,6 +27,11 @@ REQUEST: dict[str, Any] = {"crew": 9, "ship": "Whale", "ports": (1, 2)}
 DAYS: list[dict[str, Any]] = [{"day": 1, "wind": 0.1 + 0.2}, {"day": 2, "wind": None}, {"day": 3}]
 
 
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    return tmp_path / "d"
+
+
 def written(path: Path, days: list[dict[str, Any]] | None = None, keep: bool = False) -> bytes:
     with CheckedLines(path, KIND, REQUEST, keep) as lines:
         for day in DAYS if days is None else days:
@@ -34,8 +39,7 @@ def written(path: Path, days: list[dict[str, Any]] | None = None, keep: bool = F
     return path.read_bytes()
 
 
-def test_lines_come_back_and_more_can_follow(tmp_path: Path) -> None:
-    path = tmp_path / "d"
+def test_lines_come_back_and_more_can_follow(path: Path) -> None:
     whole = written(path)
     assert written(path, DAYS[:1]) != whole, "without keep it begins anew"
     with CheckedLines(path, KIND, REQUEST, keep=True) as lines:
@@ -46,8 +50,7 @@ def test_lines_come_back_and_more_can_follow(tmp_path: Path) -> None:
     assert written(path, [], keep=True) == whole
 
 
-def test_a_torn_last_line_is_forgotten_wherever_it_was_torn(tmp_path: Path) -> None:
-    path = tmp_path / "d"
+def test_a_torn_last_line_is_forgotten_wherever_it_was_torn(path: Path) -> None:
     whole = written(path)
     for length in range(len(whole)):
         path.write_bytes(whole[:length])
@@ -60,8 +63,7 @@ def test_a_torn_last_line_is_forgotten_wherever_it_was_torn(tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("content", [b"a list of things to buy", b'{"a_diary":2}', b"{}\n", b"\n", b"\xff\n"])
-def test_what_never_was_such_a_file_is_left_alone(tmp_path: Path, content: bytes) -> None:
-    path = tmp_path / "d"
+def test_what_never_was_such_a_file_is_left_alone(path: Path, content: bytes) -> None:
     path.write_bytes(content)
     with pytest.raises(UserError, match="line 1 is not a line of a voyage's diary"):
         CheckedLines(path, KIND, REQUEST, keep=True)
@@ -84,8 +86,7 @@ def test_what_never_was_such_a_file_is_left_alone(tmp_path: Path, content: bytes
         (lambda lines: [lines[0].replace(b":2,", b":1,", 1), *lines[1:]], "of another version of greywhale"),
     ],
 )
-def test_a_damaged_line_is_named_with_the_remedy(tmp_path: Path, spoil: Any, words: str) -> None:
-    path = tmp_path / "d"
+def test_a_damaged_line_is_named_with_the_remedy(path: Path, spoil: Any, words: str) -> None:
     path.write_bytes(b"\n".join(spoil(written(path).split(b"\n"))))
     with pytest.raises(UserError, match=words):
         CheckedLines(path, KIND, REQUEST, keep=True)
@@ -93,9 +94,8 @@ def test_a_damaged_line_is_named_with_the_remedy(tmp_path: Path, spoil: Any, wor
 
 @given(st.data())
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
-def test_no_changed_byte_gives_another_line(tmp_path: Path, data: st.DataObject) -> None:
+def test_no_changed_byte_gives_another_line(path: Path, data: st.DataObject) -> None:
     """It is told in a sentence, or torn off with the last line."""
-    path = tmp_path / "d"
     whole = written(path)
     place = data.draw(st.integers(0, len(whole) - 1))
     spoilt = bytearray(whole)
@@ -111,16 +111,14 @@ def test_places_that_cannot_hold_one_are_refused(tmp_path: Path) -> None:
             CheckedLines(path, KIND, REQUEST, keep=False)
 
 
-def test_a_choice_is_named_before_what_follows_from_it(tmp_path: Path) -> None:
-    path = tmp_path / "d"
+def test_a_choice_is_named_before_what_follows_from_it(path: Path) -> None:
     written(path)
     with pytest.raises(UserError, match='its ship is "Whale", now it is "Wolf"'):
         CheckedLines(path, KIND, {**REQUEST, "crew": 8, "ship": "Wolf"}, keep=True)
 
 
 @pytest.mark.parametrize("keep", [True, False])
-def test_a_file_that_another_has_is_not_touched(tmp_path: Path, keep: bool) -> None:
-    path = tmp_path / "d"
+def test_a_file_that_another_has_is_not_touched(path: Path, keep: bool) -> None:
     with CheckedLines(path, KIND, REQUEST, keep=False) as lines:
         lines.append(DAYS[0])
         before = path.read_bytes()
