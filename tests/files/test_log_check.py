@@ -1,4 +1,4 @@
-"""The check of a log: whoever cuts, patches or exchanges rows is told, and nobody else is."""
+"""Whoever cuts, patches or exchanges rows of a log is told, and nobody else is; so are its gaps."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import zlib
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
@@ -14,6 +15,7 @@ from greywhale.base.errors import UserError
 from greywhale.files.leader import load_leader
 from greywhale.files.log import Log, LogWriter, read_evidence, read_log
 from greywhale.files.log.check import Check, add_rows
+from greywhale.files.log.condition import Gap, gaps_in
 from greywhale.files.log.layout import Origin
 from greywhale.files.log.reader import refuse_altered
 from greywhale.protocol.table import ParameterTable
@@ -220,3 +222,50 @@ def test_ctrl_c_between_a_write_and_its_check_loses_no_row(tmp_path: Path, monke
         write(tmp_path / "log.csv", 1000)
     log = read_log(tmp_path / "log.csv")
     assert (len(log.time), log.complete, log.condition.check) == (256, False, Check.WHOLE)
+
+
+def without(first: int, last: int, step: float = 0.001, count: int = 1000) -> np.ndarray:
+    """Times of rows, of which some are missing."""
+    time = step * np.arange(count)
+    return np.delete(time, slice(first, last))
+
+
+@pytest.mark.parametrize("step", [0.001, 0.02])
+def test_a_gap_is_more_than_ten_samples(step: float) -> None:
+    assert gaps_in(without(100, 110, step)) == ()
+    assert gaps_in(without(100, 111, step)) == (Gap(round(99 * step, 6), round(12 * step, 6), 11),)
+
+
+def test_rows_that_are_few_or_uneven_are_no_gaps() -> None:
+    uneven = np.cumsum(np.random.default_rng(1).integers(1, 6, 500)) / 1000
+    assert gaps_in(uneven) == ()
+    assert gaps_in(np.array([0.0, 10.0])) == ()
+
+
+@pytest.mark.parametrize("times", [[0.0, 5e-324, 1e-323, 1e308], [-1e308, 0.0, 1.0, 2.0, 3.0]])
+def test_no_times_are_too_odd(times: list[float]) -> None:
+    (gap,) = gaps_in(np.array(times))
+    assert gap.samples < 1 << 63
+
+
+@pytest.mark.parametrize("counted", [0, 400])
+def test_a_log_and_a_motion_tell_where_samples_are_missing(tmp_path: Path, counted: int) -> None:
+    path = tmp_path / "log.csv"
+    with LogWriter(path, Origin(every_ticks=1)) as writer:
+        for time in without(200, 600):
+            writer.append(time, [0.1] * 4, [0.1] * 4, [0.0] * 4, "following")
+        writer.drop(counted)
+    log = read_log(path)
+    assert log.condition.gaps == (Gap(0.199, 0.401, 400),)
+    told = (f"{path}: samples are missing for 0.401 s (400 samples) after 0.199 s; nothing is known of the arm there.",)
+    assert (log.remarks, load_leader(path).remarks) == (told, told)
+
+
+def test_of_many_gaps_the_first_are_named(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    with LogWriter(path, Origin()) as writer:
+        for row in range(120):
+            writer.append(row / 1000 + row // 20, [0.1] * 4, [0.1] * 4, [0.0] * 4, "following")
+    (remark,) = read_log(path).remarks
+    assert remark.count("1.001 s (1000 samples) after") == 3
+    assert "after 2.059 s, and 2 gaps more; nothing" in remark

@@ -1,4 +1,4 @@
-"""Batches: the same bits however computed, close to a fine reference over the search box, finite whatever comes."""
+"""Batches: the same bits however computed, close to a fine reference, finite whatever comes, also with late duties."""
 
 from __future__ import annotations
 
@@ -7,12 +7,13 @@ import numpy.typing as npt
 import pytest
 
 from greywhale import _native
-from greywhale.arm.plants import columns
+from greywhale.arm.plants import column, columns
 from greywhale.base.types import Floats
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.motion import human_reaches
 from greywhale.protocol.table import ParameterTable
 from greywhale.simulate import PLANT_COLUMNS, Experiment, Result, Timing, default_controller, plant_row
+from tests.simulate.on_the_bench import quiet
 
 INTEGERS = npt.NDArray[np.int32]
 
@@ -106,3 +107,27 @@ def test_impossible_plants_cost_much_but_never_nan(experiment: Experiment) -> No
             assert np.isfinite(measure).all()
         assert (result.mse[result.diverged] == 1e9).all()
         assert (result.mse[~result.diverged] < 100).all(), "the stops hold the arm within a few radians"
+
+
+LATE = 7
+
+
+def stuck() -> np.ndarray:
+    """A follower that nothing moves, so that the duties follow from the leader alone."""
+    plant = plant_row(default_arm())
+    for joint in range(4):
+        for name in ("coulomb", "breakaway"):
+            plant[column(name, joint)] = 1e6
+    return plant
+
+
+@pytest.mark.parametrize("run", ["run", "run_exact"])
+def test_late_duties_are_the_prompt_ones_shifted(run: str) -> None:
+    motion, arm = human_reaches(3, 4.0), quiet(default_arm())
+    traces = {}
+    for late in (0, LATE):
+        experiment = Experiment(motion, arm, timing=Timing(late=late), noise=False)
+        traces[late] = getattr(experiment, run)(None, stuck(), every=1).duties[0]
+    assert len(np.unique(traces[0])) > 50, "the motors were hardly driven, so little is compared"
+    np.testing.assert_array_equal(traces[LATE][LATE:], traces[0][:-LATE])
+    assert (traces[LATE][:LATE] == 0).all()

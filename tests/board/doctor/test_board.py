@@ -1,4 +1,4 @@
-"""What a board says about itself, and its parameters against a file."""
+"""What a board says about itself and its link, and its parameters against a file."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import pytest
 from greywhale import __version__
 from greywhale.board.doctor.board import examine_hello, examine_status, examine_table
 from greywhale.board.doctor.finding import Verdict
+from greywhale.board.doctor.link import Traffic, examine_traffic
 from greywhale.files import parameter_file
 from greywhale.protocol import schema
 from greywhale.protocol.table import ParameterTable
@@ -96,3 +97,33 @@ def test_joints_that_are_not_in_use_are_told_and_no_trouble() -> None:
     assert told(2, 3) == ["GOOD: Joints 2 and 3 are not in use (follower's scale 0)."]
     assert told(1) == ["GOOD: Joint 1 is not in use (follower's scale 0)."]
     assert told(0, 1, 2, 3) == ["BAD: No joint is in use: every follower's scale is 0."]
+
+
+CLEAN = Traffic(10_001, 0, 1250, 0, 0.004, 0, 0, 0)
+
+
+def test_a_clean_link_is_good() -> None:
+    found = examine_traffic(CLEAN, 0.3)
+    assert found.verdict is Verdict.GOOD
+    assert found.says == "10,001 samples and 1,250 answers at 1 Mbaud, none lost, none damaged."
+
+
+@pytest.mark.parametrize(
+    ("name", "says"),
+    [
+        ("lost", "3 samples were lost"),
+        ("wrong", "3 answers were wrong"),
+        ("frames_bad", "3 frames reached the board damaged"),
+        ("rx_overruns", "3 times the board lost bytes"),
+    ],
+)
+def test_each_loss_is_bad_and_counted(name: str, says: str) -> None:
+    found = examine_traffic(replace(CLEAN, **{name: 3}), 0.3)
+    assert found.verdict is Verdict.BAD
+    assert says in found.says
+
+
+def test_a_slow_answer_alone_is_a_note() -> None:
+    found = examine_traffic(replace(CLEAN, slowest_s=0.6), 0.3)
+    assert found.verdict is Verdict.NOTE
+    assert "an answer took 0.60 s" in found.says

@@ -1,4 +1,4 @@
-"""Bounds of hand-written functions against their exact cycles on the simulated board."""
+"""Bounds of hand-written functions against their exact cycles on the simulated board, and their sum."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from tools.gates.timing.bound import Timing
 from tools.gates.timing.cycles import MEGA, NANO, Chip
 from tools.gates.timing.facts import Facts
 from tools.gates.timing.graph import Edge, build
+from tools.gates.timing.image import Times
 from tools.gates.timing.listing import ImageError
 
 CHIPS = pytest.mark.parametrize("chip", [MEGA, NANO], ids=lambda chip: chip.name)
@@ -190,3 +191,16 @@ def test_a_fact_needs_its_reason(tmp_path: Path) -> None:
     path.write_text('[[function]]\nname = "work"\nloop = [{ times = 3 }]\n')
     with pytest.raises(ImageError, match="no reason"):
         facts.load(path)
+
+
+KINDS = {"tick's interrupt": 10, "start of the chain": 10, "conversion done": 20, "byte received": 50, "byte sent": 30}
+
+
+def test_interrupts_add_to_the_tick_as_often_as_they_may_come() -> None:
+    bounds = Times(tick=1000, interrupts=KINDS, waking=0)
+    assert bounds.response(receiving=False) == 1020 + 2 * 30
+    assert bounds.response(receiving=True) == 1080 + (11 + 2) * 50
+    longer = Times(tick=3000, interrupts=KINDS, waking=0)
+    assert longer.response(receiving=False) == 3080 + 2 * 20
+    full = Times(tick=1000, interrupts=KINDS | {"byte received": 161}, waking=0)
+    assert full.response(receiving=True) is None

@@ -1,11 +1,16 @@
-"""Links as bodies: mass, centre and moments agree with the sum over many small pieces."""
+"""Links as bodies agree with the sum over many small pieces, motors with the values of their data sheets."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
 
 from greywhale.arm.make.body import Body, Section, bar, tube, uniform, with_parts
+from greywhale.arm.make.motor import DataSheet, contradiction, tables
+from greywhale.arm.parameters import ArmParameters
+from greywhale.files.arm import default_arm
 
 LENGTH, DENSITY = 0.14, 2700.0
 FINE = 400
@@ -57,3 +62,40 @@ def test_parts_move_the_centre_and_add_by_their_distance_from_it() -> None:
     assert loaded.about_width + loaded.mass * loaded.centre**2 == pytest.approx(about_joint)
     assert loaded.mass * loaded.centre == pytest.approx(link.mass * link.centre + 0.2 * 0.12)
     assert loaded.along == link.along
+
+
+SHEET = DataSheet(12.0, 100.0, 1.5, 2.0, 6.0, 0.1, 5e-7)
+
+
+def with_motor(sheet: DataSheet) -> ArmParameters:
+    data = default_arm().model_dump()
+    data["joint"][0].update(tables(sheet))
+    return ArmParameters.model_validate(data, strict=False)
+
+
+@given(st.floats(0.05, 20.0), st.floats(0.2, 20.0), st.floats(0.1, 60.0), st.floats(0.01, 0.3), st.floats(1.0, 500.0))
+def test_the_data_sheets_line_is_kept(torque: float, current: float, speed: float, idle: float, ratio: float) -> None:
+    assume(contradiction(torque, current, speed, 12.0) == "")
+    sheet = DataSheet(12.0, ratio, torque, current, speed, idle * current, 5e-7)
+    arm = with_motor(sheet)
+    actuator, friction = arm.actuator(0), arm.joint[0].friction
+    assert actuator.torque_per_volt * 12.0 - friction.coulomb == pytest.approx(torque)
+    assert (actuator.torque_per_volt * 12.0 - friction.coulomb) / actuator.damping == pytest.approx(speed)
+    assert friction.coulomb == pytest.approx(idle * torque)
+    assert actuator.inertia == pytest.approx(5e-7 * ratio**2)
+    assert arm.joint[0].motor.viscous >= 0.0
+
+
+def test_an_unknown_rotor_is_as_quick_as_usual_motors() -> None:
+    actuator = with_motor(DataSheet(12.0, 100.0, 1.5, 2.0, 6.0, 0.1)).actuator(0)
+    assert actuator.inertia / actuator.damping == pytest.approx(0.02)
+
+
+def test_the_winding_is_that_of_the_stall_current() -> None:
+    """Where back-EMF leaves room for it, the resistance is voltage by stall current."""
+    assert with_motor(SHEET).joint[0].motor.resistance == pytest.approx(12.0 / 2.0)
+
+
+def test_more_power_out_than_in_is_told() -> None:
+    told = contradiction(1.5, 2.0, 2 * np.pi, 1.5)
+    assert "stall torque x no-load speed is 9.42 W, more than voltage x stall current = 3 W" in told
