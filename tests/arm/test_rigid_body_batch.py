@@ -1,6 +1,9 @@
-"""The links' equations for many states at a time, against those for one, which golden values check."""
+"""The arm's equations for many states or arms at a time, against those for one, which golden values check."""
 
 from __future__ import annotations
+
+import subprocess
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -64,3 +67,16 @@ def test_mass_matrix_and_bias_are_the_native_arms(name: str) -> None:
         assert np.allclose(masses[row], mass, rtol=1e-12, atol=1e-14)
         assert np.allclose(biases[row], bias, rtol=1e-10, atol=1e-12)
         assert np.allclose(torques[row], mass @ a[row] + bias, rtol=1e-10, atol=1e-12)
+
+
+HERE = Path(__file__).parent
+ARM = HERE.parents[1] / "sim" / "arm"
+
+
+@pytest.mark.slow
+def test_vector_of_arms_equals_single_arms(tmp_path: Path) -> None:
+    program = tmp_path / "lanes"
+    build = ["g++", "-std=gnu++17", "-O1", "-Wall", "-Wextra", "-Werror", "-Wno-psabi", "-ffp-contract=off", f"-I{ARM}"]
+    subprocess.run([*build, str(HERE / "lanes.cpp"), "-o", str(program)], check=True)
+    result = subprocess.run([str(program)], capture_output=True, text=True, check=False)
+    assert result.returncode == 0, result.stdout

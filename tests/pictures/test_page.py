@@ -1,4 +1,4 @@
-"""The page: legends fit, what is cut off is marked, the same figure gives the same bytes."""
+"""The page: legends fit, what is cut off is marked, a figure gives the same bytes; short names tell files apart."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from matplotlib.lines import Line2D
 from greywhale.base.errors import UserError
 from greywhale.pictures import looks
 from greywhale.pictures.kinds import KINDS, kind_of
+from greywhale.pictures.names import distinct_names
 from greywhale.pictures.page import (
     COLUMN,
     WIDE,
@@ -148,3 +149,24 @@ def test_what_cannot_be_written_is_refused_and_leaves_nothing(tmp_path: Path) ->
         save_into(simple(), tmp_path / "file", "picture.png")
     assert plt.get_fignums() == []
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+@pytest.mark.parametrize(
+    ("files", "names"),
+    [
+        (["run/before.csv"], ["before"]),
+        (["before.csv", "after.csv"], ["before", "after"]),
+        (["one/log.csv", "two/log.csv", "two/other.csv"], ["one/log", "two/log", "other"]),
+        (["/x/one/run/log.csv", "/x/two/run/log.csv"], ["one/…/log", "two/…/log"]),
+        (["log.csv", "log.txt"], ["log.csv", "log.txt"]),
+        (["log.csv", "./log.csv"], ["log, 1", "log, 2"]),
+        (["x" * 100 + ".csv"], ["x" * 15 + "…" + "x" * 14]),
+    ],
+)
+def test_names_tell_files_apart(files: list[str], names: list[str]) -> None:
+    assert distinct_names(files) == names
+
+
+def test_no_two_names_are_the_same() -> None:
+    files = ["a/b/log.csv", "b/log.csv", "log.csv", "log.csv", "b/b/log.csv", "x" * 99 + "1.csv", "x" * 50 + "y1.csv"]
+    assert len(set(distinct_names(files))) == len(files)

@@ -1,4 +1,4 @@
-"""The parameter table by name: what it refuses, how it changes, and what it tells of its board."""
+"""The parameter table by name: what it refuses, how it changes, what it tells of its board; and lists of joints."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import pytest
 
 from greywhale.base.errors import UserError
 from greywhale.protocol import schema
+from greywhale.protocol.joints import ALL, listed, named, parse, require_same, unused
 from greywhale.protocol.schema import Board
 from greywhale.protocol.table import CONTROLLER_COLUMNS, ParameterTable, find_board, refuse_unknown
 
@@ -82,3 +83,31 @@ def test_a_table_for_fewer_joints_leaves_the_others_no_range() -> None:
     assert (lower[1], upper[1]) == (DEFAULTS["joint1.limit_min"], DEFAULTS["joint1.limit_max"])
     assert (lower[0], upper[0], lower[3], upper[3]) == (0, 0, 0, 0)
     assert table.each("joint", "limit_min") == DEFAULTS.each("joint", "limit_min"), "the stored ones stay"
+
+
+@pytest.mark.parametrize(
+    ("text", "joints"), [("0,1", (0, 1)), (" 3 , 1", (1, 3)), ("2", (2,)), ("0,1,2,3", ALL), ("3,2,1,0", ALL)]
+)
+def test_a_list_is_read_in_any_order(text: str, joints: tuple[int, ...]) -> None:
+    assert parse(text) == joints
+    assert parse(listed(joints)) == joints
+
+
+@pytest.mark.parametrize("text", ["", "4", "-1", "0,0", "0,", "0 1", "all", "0.0", "٣"])
+def test_what_is_no_list_is_refused(text: str) -> None:
+    with pytest.raises(UserError, match=r"--joints: .* is no list of joints; give one or more of 0 to 3"):
+        parse(text)
+
+
+def test_sentences() -> None:
+    assert named((2,)) == "joint 2"
+    assert named((0, 1)) == "joints 0 and 1"
+    assert named((0, 1, 3)) == "joints 0, 1 and 3"
+    assert named(ALL) == "all four joints"
+    assert unused((0, 3)) == (1, 2)
+
+
+def test_two_that_differ_are_told_with_a_remedy() -> None:
+    require_same("arm.toml", (0, 1), "log.csv", (0, 1))
+    with pytest.raises(UserError, match=r"arm.toml uses all four joints, but log.csv uses joints 0 and 1. .*`fixed = "):
+        require_same("arm.toml", ALL, "log.csv", (0, 1))

@@ -84,7 +84,11 @@ def test_doctor_names_it_and_no_motor_is_driven(
 
 @pytest.mark.parametrize(
     ("command", "undo", "check", "says"),
-    [("line lose 0.0005", "line lose 0", "link", "lost"), ("estop press", "estop release", "fault", "mergency")],
+    [
+        ("line lose 0.0005", "line lose 0", "link", "lost"),
+        ("estop press", "estop release", "fault", "mergency"),
+        ("power off", "power on", "board", "nothing answers"),
+    ],
 )
 def test_a_staged_trouble_is_named(
     bench: RunningBench, capsys: pytest.CaptureFixture[str], command: str, undo: str, check: str, says: str
@@ -95,18 +99,6 @@ def test_a_staged_trouble_is_named(
     finally:
         bench.command(undo)
     assert code == 1
+    assert found["port"].startswith("good")
     assert found[check].startswith("bad")
     assert says in found[check]
-
-
-def test_a_board_without_power_is_named_and_the_port_is_still_good(
-    bench: RunningBench, capsys: pytest.CaptureFixture[str]
-) -> None:
-    bench.command("power off")
-    try:
-        code, found = doctor(bench, capsys)
-    finally:
-        bench.command("power on")
-    assert code == 1
-    assert found["port"].startswith("good")
-    assert "nothing answers" in found["board"]
