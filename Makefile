@@ -89,7 +89,6 @@ firmware-tests-native firmware-tests-sim: firmware-tests-%: $(READY)
 	$(PYTHON) -m tools.firmware_tests $*
 
 gates: $(READY)
-	@$(PYTHON) -m tools.gates.size_limits
 	@$(PYTHON) -m tools.gates
 
 oracles: setup ## tests against heavy outside references (installs them first)

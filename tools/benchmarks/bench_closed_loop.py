@@ -9,9 +9,8 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
-import os
+import re
 import subprocess
-import sysconfig
 import tempfile
 import time
 from collections.abc import Callable
@@ -88,17 +87,8 @@ def _mujoco(ours: float) -> list[Figure]:
     with tempfile.TemporaryDirectory() as name:
         program, model = Path(name) / "mujoco_loop", Path(name) / "arm.xml"
         sources = [str(PEERS / "mujoco_loop.cpp"), str(law / "fuzzy_pdi.cpp"), str(law / "compile.cpp")]
-        build = [
-            "g++",
-            "-std=c++17",
-            "-O3",
-            "-march=native",
-            f"-I{folder / 'include'}",
-            f"-I{law}",
-            f"-I{ROOT}/firmware/lib/codes/src",
-            *sources,
-            str(library),
-        ]
+        headers = [f"-I{path}" for path in (folder / "include", law, ROOT / "firmware/lib/codes/src")]
+        build = ["g++", "-std=c++17", "-O3", "-march=native", *headers, *sources, str(library)]
         subprocess.run([*build, f"-Wl,-rpath,{folder}", "-pthread", "-o", str(program)], check=True)
         model.write_text(mjcf(default_arm()), encoding="utf-8")
         without = Path(name) / "frictionless.xml"
@@ -125,8 +115,6 @@ def _mujoco(ours: float) -> list[Figure]:
 
 
 def _without_friction(xml: str) -> str:
-    import re
-
     return re.sub(r' frictionloss="[^"]*"', "", xml)
 
 
@@ -170,9 +158,3 @@ def _numba(ours: float, plants: np.ndarray, experiment: Experiment) -> list[Figu
         Figure("numba, fastmath, no backlash, float controller", rate, "x real"),
         Figure("batch against numba", ours / rate, "x", ">= 4", ours / rate >= 4),
     ]
-
-
-if __name__ == "__main__":
-    for figure in run():
-        print(f"{figure.name:56} {figure.value:12,.4g} {figure.unit} {figure.reach} {figure.holds}")
-    print(os.uname().machine, sysconfig.get_platform())

@@ -1,20 +1,27 @@
-"""How much faster than real time the bench is, with the real firmware following at 1 kHz and sending every sample."""
+"""How fast the bench runs: the real firmware following at 1 kHz and sending every sample; board and arm alone."""
 
 from __future__ import annotations
 
 import tempfile
 import time
+import timeit
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from greywhale.arm import Arm, Potentiometers
 from greywhale.board.device import Device
 from greywhale.board.record import record
 from greywhale.cli.story import BenchProcess
+from greywhale.files.arm import default_arm
 from greywhale.files.leader import save_leader
 from greywhale.motion import human_reaches
 from greywhale.protocol import schema
 from greywhale.protocol.frames import encode_frame
 from greywhale_sim.assemble import BenchOptions, build_bench
+from greywhale_sim.bench import CLOCK_HZ, SLICE_CYCLES, SLICE_S
+from greywhale_sim.board_with_image import BoardWithImage
 from greywhale_sim.wiring import BOARDS
 from tools.benchmarks.figure import Figure
 
@@ -22,16 +29,19 @@ REACH = 20.0
 PIECE_S = 1.0
 PIECES = 12
 RECORD_S = 15.0
+ALONE_S = 2
+CALLS, REPEATS = 20_000, 5
 
 
 def run() -> list[Figure]:
     figures = []
     for board, wiring in BOARDS.items():
         speed = lock_step(board)
-        figures.append(Figure(f"bench, {wiring.title}, one core", speed, "x real", ">= 20", speed >= REACH))
-    speed = through_the_port()
-    figures.append(Figure("bench, Mega, with a host recording every tick", speed, "x real", "", None))
-    return figures
+        figures.append(Figure(f"bench, {wiring.title}, one core", speed, "x real", f">= {REACH:g}", speed >= REACH))
+    figures.append(Figure("bench, Mega, with a host recording every tick", through_the_port(), "x real"))
+    for board in BOARDS:
+        figures += board_alone(board)
+    return figures + arm_alone()
 
 
 def lock_step(board: str) -> float:
@@ -63,3 +73,45 @@ def through_the_port() -> float:
             started = time.perf_counter()
             record(device, Path(folder) / "log.csv", RECORD_S, enable=True)
             return (RECORD_S + 1.0) / (time.perf_counter() - started)
+
+
+def board_alone(name: str) -> list[Figure]:
+    """With the motors off, in the slices of the bench."""
+    board, volts = BoardWithImage(name).board, np.full(8, 2500.0)
+    for bit in range(8):
+        board.add_pin_output("B", bit)
+
+    def simulate() -> None:
+        for until in range(board.cycle, board.cycle + ALONE_S * CLOCK_HZ, SLICE_CYCLES):
+            board.run_until(until)
+            board.set_millivolts(volts)
+            board.outputs()
+            board.uart_receive()
+
+    def factor(reference: bool) -> float:
+        board.use_reference_decoder(reference)
+        return ALONE_S / min(timeit.repeat(simulate, number=1, repeat=REPEATS))
+
+    fast = factor(reference=False)
+    busy = 100 * (1 - board.stats().sleep_cycles / board.cycle)
+    return [
+        Figure(f"{name} alone, motors off", fast, "x real", f">= {REACH:g}", fast >= REACH),
+        Figure(f"{name} alone, with simavr's own decoder", factor(reference=True), "x real"),
+        Figure(f"{name} alone, CPU busy", busy, "%"),
+    ]
+
+
+def arm_alone() -> list[Figure]:
+    arm, pots = Arm(default_arm()), Potentiometers(default_arm().follower_pots)
+    volts, out = np.array([4.0, 1.0, -2.0, 3.0]), np.zeros(4)
+
+    def microseconds(call: object, inner: int = 1) -> float:
+        best = min(timeit.repeat(call, number=CALLS // inner, repeat=REPEATS))  # type: ignore[arg-type]
+        return best / CALLS * 1e6
+
+    reused = microseconds(lambda: arm.step(volts, SLICE_S, out))
+    return [
+        Figure("arm, one 250 us step from Python", reused, "us", "<= 3 us", reused <= 3),
+        Figure("arm, one 250 us step inside C++", microseconds(lambda: arm.step(volts, 100 * SLICE_S), 100), "us"),
+        Figure("four potentiometers", microseconds(lambda: pots.millivolts(out, out)), "us"),
+    ]

@@ -1,5 +1,5 @@
-"""Fails when a firmware image breaks a bound: its tick must hold no float, heap or division and keep to its cycles, as
-must its interrupts, and its stack must not meet its variables.
+"""Fails when a firmware image breaks a bound: it must fit the smaller board and hold no heap and no float, its tick
+must hold no division and keep to its cycles, as must its interrupts, and its stack must not meet its variables.
 
 python -m tools.gates
 """
@@ -9,7 +9,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from tools.gates import stack, tick
+from tools.gates import size, stack, tick
 from tools.gates.timing import budget
 from tools.gates.timing.image import TARGETS, Target, compiler, is_described, times
 from tools.gates.timing.listing import ImageError, read_program
@@ -17,7 +17,9 @@ from tools.gates.timing.listing import ImageError, read_program
 
 def check(elf: Path, target: Target) -> list[str]:
     """Complaints about one image; prints its bounds."""
-    found = tick.complaints(read_program(elf))
+    taken = size.measure(elf)
+    print(f"{target.chip.name:12} flash {taken.flash} of {size.FLASH_LIMIT} bytes, RAM {taken.ram} of {size.RAM_LIMIT}")
+    found = [*taken.complaints(), *tick.complaints(read_program(elf))]
     deepest = stack.bound(elf, target.chip)
     print(f"{target.chip.name:12} stack at most {deepest.bytes} bytes of {deepest.free}, in {' > '.join(deepest.path)}")
     if deepest.bytes > deepest.free:

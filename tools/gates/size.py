@@ -8,8 +8,6 @@ from pathlib import Path
 from elftools.elf.elffile import ELFFile
 from elftools.elf.sections import SymbolTableSection
 
-from tools.setup.firmware import BOARDS, BUILD
-
 FLASH_LIMIT = 26 * 1024
 RAM_LIMIT = 1664
 
@@ -23,7 +21,6 @@ FLOAT = {"__addsf3", "__subsf3", "__mulsf3", "__divsf3", "__floatsisf", "__float
 
 @dataclass(frozen=True)
 class Size:
-    board: str
     flash: int
     ram: int
     forbidden: tuple[str, ...]
@@ -31,28 +28,23 @@ class Size:
     def complaints(self) -> list[str]:
         found = []
         if self.flash > FLASH_LIMIT:
-            found.append(f"{self.board}: {self.flash} bytes of flash, but {FLASH_LIMIT} is the limit.")
+            found.append(f"{self.flash} bytes of flash, but {FLASH_LIMIT} is the limit.")
         if self.ram > RAM_LIMIT:
-            found.append(f"{self.board}: {self.ram} bytes of RAM before the stack, but {RAM_LIMIT} is the limit.")
-        found += [
-            f"{self.board}: {name} is linked in, but the firmware has no heap and no float." for name in self.forbidden
+            found.append(f"{self.ram} bytes of RAM before the stack, but {RAM_LIMIT} is the limit.")
+        return [
+            *found,
+            *(f"{name} is linked in; the firmware has no heap and no float." for name in self.forbidden),
         ]
-        return found
 
 
-def measure(board: str, elf_path: Path) -> Size:
+def measure(elf_path: Path) -> Size:
     with elf_path.open("rb") as stream:
         elf = ELFFile(stream)
         sizes = {section.name: int(section["sh_size"]) for section in elf.iter_sections()}
         tables = (section for section in elf.iter_sections() if isinstance(section, SymbolTableSection))
         names = {symbol.name for table in tables for symbol in table.iter_symbols()}
     return Size(
-        board=board,
         flash=sum(sizes.get(name, 0) for name in FLASH_SECTIONS),
         ram=sum(sizes.get(name, 0) for name in RAM_SECTIONS),
         forbidden=tuple(sorted(names & (HEAP | FLOAT))),
     )
-
-
-def measure_all() -> list[Size]:
-    return [measure(board, BUILD / board / "firmware.elf") for board in BOARDS]
