@@ -9,7 +9,7 @@ import pytest
 
 from greywhale.commission.judge import KEPT_SHARE, MOST_UNREST
 from greywhale.motion import human_reaches, multi_steps
-from tools.support.commissioned import Commissioned, commissioned
+from tools.support.foreign_arm import Commissioned, commissioned
 
 SEED = 2
 BUDGET, TRIALS = 400, 2  # a small share of the usual effort

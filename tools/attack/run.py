@@ -12,7 +12,7 @@ from typing import Any
 from greywhale.base.study import Task, choose_workers, run_study
 from tools.attack import parts
 from tools.attack.part import Part, Row, add_up
-from tools.sources import digest_of
+from tools.setup import stamps
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class Result:
 
 def digest(part: Part) -> str:
     """Of all that a part's result is about."""
-    return digest_of((*part.depends, f"tools/attack/parts/{part.name}.py"))
+    return stamps.digest(stamps.files_below(*part.depends, f"tools/attack/parts/{part.name}.py"))[:16]
 
 
 def attack(

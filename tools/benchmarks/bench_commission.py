@@ -19,7 +19,7 @@ from greywhale.commission.judge import MOST_UNREST
 from tools.benchmarks.figure import Figure
 from tools.benchmarks.study import repeat
 from tools.benchmarks.tuning import motions
-from tools.support.commissioned import Run, commissioned
+from tools.support.foreign_arm import Run, commissioned
 
 SEEDS = tuple(map(int, os.environ.get("GREYWHALE_FOREIGN", "1 2 3 4 5").split()))
 WALL_S = 240.0

@@ -14,7 +14,7 @@ from typing import Any
 
 from greywhale.base.study import Task, choose_workers, run_study
 from tools import ROOT
-from tools.sources import digest_of
+from tools.setup import stamps
 
 FOLDER = ROOT / "build" / "bench"
 SOURCES = ("firmware/lib", "host/native", "host/src", "shared", "sim", "tools/benchmarks")
@@ -24,7 +24,7 @@ def repeat(name: str, tasks: Sequence[Task], workers: int = 1) -> dict[str, Any]
     """Do the tasks; their results by key. Their file is kept until all are done, so that a new run measures anew."""
     count = int(os.environ.get("GREYWHALE_WORKERS") or workers)
     FOLDER.mkdir(parents=True, exist_ok=True)
-    path = FOLDER / f"{name}-{digest_of(SOURCES)}.study"
+    path = FOLDER / f"{name}-{stamps.digest(stamps.files_below(*SOURCES))[:16]}.study"
     found = run_study(tasks, choose_workers(count), path, _say, what=name)
     path.unlink()
     return found

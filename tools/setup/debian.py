@@ -27,7 +27,6 @@ FOR_CHECKS = (
     "clang-tidy",
     "clang",  # libFuzzer and the sanitizers, over the firmware
     "libclang-rt-dev",
-    "openssl",  # certificates of a test
 )
 
 
