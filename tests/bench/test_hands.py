@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 import pytest
@@ -17,12 +16,11 @@ from greywhale_sim.pacing import Pacer
 from greywhale_sim.serial_port import SerialPort
 from greywhale_sim.serve import ByHand
 from greywhale_sim.server import Server
-from greywhale_sim.wiring import MEGA
 
 
 @pytest.fixture
-def server(board: Any, bench: Bench) -> Iterator[Server]:
-    server = Server(bench, board, MEGA, SerialPort(), fast=True, pacer=Pacer(lambda: 0.0, lambda seconds: None))
+def server(bench: Bench) -> Iterator[Server]:
+    server = Server(bench, SerialPort(), fast=True, pacer=Pacer(lambda: 0.0, lambda seconds: None))
     yield server
     server.close()
 

@@ -19,7 +19,6 @@ from greywhale_sim.bench import Bench
 from greywhale_sim.pacing import Pacer
 from greywhale_sim.serial_port import SerialPort
 from greywhale_sim.server import Server
-from greywhale_sim.wiring import MEGA
 
 
 class Wall:
@@ -44,14 +43,14 @@ def eeprom(tmp_path: Path) -> Path:
     return tmp_path / "eeprom.bin"
 
 
-def serve(board: Any, bench: Bench, wall: Wall, eeprom: Path) -> Server:
+def serve(bench: Bench, wall: Wall, eeprom: Path) -> Server:
     pacer = Pacer(lambda: wall.now, wall.wait)
-    return Server(bench, board, MEGA, SerialPort(), fast=True, eeprom=eeprom, pacer=pacer)
+    return Server(bench, SerialPort(), fast=True, eeprom=eeprom, pacer=pacer)
 
 
 @pytest.fixture
-def server(board: Any, bench: Bench, wall: Wall, eeprom: Path) -> Iterator[Server]:
-    server = serve(board, bench, wall, eeprom)
+def server(bench: Bench, wall: Wall, eeprom: Path) -> Iterator[Server]:
+    server = serve(bench, wall, eeprom)
     yield server
     server.close()
 
@@ -160,7 +159,7 @@ def test_eeprom_reaches_its_file_when_it_changes(board: Any, server: Server, eep
 
 
 def test_the_last_byte_is_kept_when_the_bench_ends(board: Any, bench: Bench, wall: Wall, eeprom: Path) -> None:
-    server = serve(board, bench, wall, eeprom)
+    server = serve(bench, wall, eeprom)
     server.turn()
     board.memory = b"\x77" * 4096
     server.close()

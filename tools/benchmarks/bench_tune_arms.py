@@ -20,6 +20,7 @@ from greywhale.cli.story.learn import learn
 from greywhale.cli.story.practice import tables
 from greywhale.files.arm import load_arm
 from greywhale.motion import human_reaches, multi_steps, steps
+from greywhale.motion.swings import LIMIT_CYCLE, turns_of
 from greywhale.protocol.table import ParameterTable
 from greywhale.simulate import Experiment, default_controller, plant_row
 from greywhale.tune.judge.floor import saturation_floor
@@ -31,8 +32,7 @@ from tools.support.recordings import random_arm
 
 ARMS = range(1, 11)
 MOTIONS = {"steps": steps(), "multi-steps": multi_steps(), "human reaches": human_reaches(1, 20.0)}
-# A joint cycles that swings by this much (rad), with so many turning points, in the last second of a hold.
-SWING_RAD, REVERSALS, LOOK_S, HOLD_S = 0.01, 3, 1.0, 2.5
+LOOK_S, HOLD_S = 1.0, 2.5  # a joint cycles in the last second of a hold
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ def on_the_true_arm(seed: int, arm: ArmParameters, tuned: Controllers) -> Verdic
         result = Experiment(motion, arm, seed=seed).run_exact(rows, plant, every=1)
         before[name], after[name] = result.mse
         if name == "multi-steps":
-            cycling = unrest(np.asarray(result.angles[1], dtype=np.float64))
+            cycling = cycling_joints(np.asarray(result.angles[1], dtype=np.float64))
     return Verdict(
         seed=seed,
         before=before,
@@ -86,29 +86,11 @@ def on_the_true_arm(seed: int, arm: ArmParameters, tuned: Controllers) -> Verdic
     )
 
 
-def unrest(angles: Floats) -> tuple[int, ...]:
-    """Joints that keep swinging at the end of a hold of the multi-steps; `angles` at every tick of 1 ms."""
-    found = set()
+def cycling_joints(angles: Floats) -> tuple[int, ...]:
+    """Joints in a limit cycle at the end of a hold of the multi-steps; `angles` at every tick of 1 ms."""
     hold, look = round(1e3 * HOLD_S), round(1e3 * LOOK_S)
-    for end in range(len(angles), hold, -hold):
-        for joint, path in enumerate(angles[end - look : end].T):
-            if reversals(path) >= REVERSALS:
-                found.add(joint)
-    return tuple(sorted(found))
-
-
-def reversals(path: Floats) -> int:
-    """Turning points, each SWING_RAD or more away from the next."""
-    count, extreme, direction = 0, float(path[0]), 0
-    for value in map(float, path):
-        if direction == 0:
-            if abs(value - extreme) > SWING_RAD:
-                direction, extreme = (1 if value > extreme else -1), value
-        elif (value - extreme) * direction > 0:
-            extreme = value
-        elif (extreme - value) * direction > SWING_RAD:
-            count, direction, extreme = count + 1, -direction, value
-    return count
+    turns = [turns_of(angles[end - look : end], LIMIT_CYCLE.band_rad) for end in range(len(angles), hold, -hold)]
+    return tuple(np.flatnonzero(np.max(turns, axis=0) >= LIMIT_CYCLE.turns).tolist())
 
 
 def run() -> list[Figure]:

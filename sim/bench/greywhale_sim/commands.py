@@ -1,27 +1,4 @@
-"""The commands to a running bench, one a line; every answer is one JSON object.
-
-status                             time, motors, voltages, angles, resets, EEPROM, serial line
-leader FILE                        the person takes up another motion, while the motors are off
-hand leader|follower|both A0 A1 A2 A3 [S]  bring a held arm to a pose (rad) within S seconds, while the motors are off
-turn leader|follower 0..3 [S]      turn a joint by hand to both ends and back, as calibrate asks; S seconds each way
-hold DEG [DEG DEG DEG]             hold both arms in a pose, in degrees: one angle for all joints, or four
-hang                               let the follower hang, for the motors' pulses
-pot leader|follower 0..3 STATE     a potentiometer: connected, open (its wire is off, a pull-down wins), floating
-                                   (the same without a pull-down) or shorted (to the supply), frozen (its shaft
-                                   does not turn), slipping (3 in 10 of every way up are lost), loose (off 2 ms in
-                                   230), noisy, humming, reversed, turned (its dead zone first), crossed (wiper and end)
-swap POT POT                       exchange the wires of two potentiometers: leader0..3, follower0..3
-line flip|lose PROBABILITY         damage or lose bytes on the serial line, per byte
-mistake NAME[:PLACE]|none|list     stage what a person may do wrong (greywhale_sim.faults), or take all back
-pins                               the highest duty of each driver, and how long they were on, since the last `pins`
-estop press|release                the emergency stop's button, which closes its pin to ground
-motor 0..3 STATE                   a motor's wires: connected, reversed, dead (one is off), weak, or
-                                   on another's driver, 0..3
-power off|on                       cut or restore the board's supply
-help                               the commands that a person needs
-speed 1|max                        real time, or as fast as possible
-quit                               end the bench; there is no answer
-"""
+"""The commands to a running bench, one a line (docs/bench.md); every answer is one JSON object."""
 
 from __future__ import annotations
 

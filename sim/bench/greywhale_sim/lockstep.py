@@ -20,7 +20,7 @@ from greywhale.protocol import schema
 from greywhale.protocol.table import ParameterTable
 from greywhale.protocol.transport import BAUD, LINES, Line, PortBusyError
 from greywhale_sim import commands
-from greywhale_sim.assemble import BenchOptions, build_bench, wiring_of
+from greywhale_sim.assemble import BenchOptions, build_bench
 from greywhale_sim.bench import Bench
 from greywhale_sim.pacing import Pacer
 from greywhale_sim.server import Server
@@ -38,12 +38,9 @@ class LockStepBench:
         """With these options, or around a `bench` of them that has just been powered."""
         bench = bench or build_bench(options)
         self.port = f"bench in lock step {os.getpid()}.{next(_numbers)}"
-        board: Any = bench.board
         self._line = _Port(self.port)
         self.server = Server(
             bench,
-            board,
-            wiring_of(options.board),
             self._line,
             fast=True,
             eeprom=options.eeprom,

@@ -23,7 +23,7 @@ from greywhale.files.outputs import require_files
 from greywhale.protocol.joints import ALL
 from greywhale.protocol.ports import forget_dead_benches
 from greywhale_sim import commands
-from greywhale_sim.assemble import BenchOptions, build_bench, wiring_of
+from greywhale_sim.assemble import BenchOptions, build_bench
 from greywhale_sim.bench import Plant
 from greywhale_sim.lockstep import tell_joints
 from greywhale_sim.serial_port import SerialPort
@@ -57,9 +57,7 @@ def running(
     if bench.joints != ALL and _is_new(options):
         tell_joints(bench, options)
     port = SerialPort(_links(options, note))
-    server = Server(
-        bench, bench.board, wiring_of(options.board), port, fast=options.speed == "max", eeprom=options.eeprom
-    )
+    server = Server(bench, port, fast=options.speed == "max", eeprom=options.eeprom)
     try:
         yield server
     finally:

@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Protocol, cast
 
 from greywhale_sim import eeprom_file, line
 from greywhale_sim.bench import Bench
 from greywhale_sim.pacing import Pacer, wants_real_time
-from greywhale_sim.wiring import Wiring
 
 REAL_TIME_SLICES = 4  # 1 ms: as often as a USB port is served
 FAST_SLICES = 16  # a fifth of the time goes into the port otherwise
@@ -40,8 +39,6 @@ class Server:
     def __init__(
         self,
         bench: Bench,
-        board: Any,
-        wiring: Wiring,
         port: Port,
         fast: bool = False,
         eeprom: Path | None = None,
@@ -50,8 +47,7 @@ class Server:
         fast_slices: int = FAST_SLICES,
     ) -> None:
         self.bench = bench
-        self.board = board
-        self.wiring = wiring
+        self.board = cast(Any, bench.board)
         self.port = port
         self.fast = fast
         self.noise = line.Noise()
@@ -63,7 +59,7 @@ class Server:
         self._cut_at: int | None = None  # EEPROM writes at which the power goes
         self._pacer = pacer or Pacer()
         self._eeprom = eeprom
-        self._eeprom_kept = board.eeprom()
+        self._eeprom_kept = self.board.eeprom()
         self._eeprom_check_at = 0.0
         self._was_connected = False
         self._spoken_s = -math.inf  # when a byte last went over the line
@@ -134,7 +130,7 @@ class Server:
             self.port.connected,
             self.board.in_bootloader,
             self.port.baud() if self.fast else 0.0,
-            self.wiring.bootloader_baud,
+            self.bench.wiring.bootloader_baud,
             self.bench.time_s - self._spoken_s,
         )
 
