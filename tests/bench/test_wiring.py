@@ -44,7 +44,7 @@ def test_the_guide_shows_this_table() -> None:
 @pytest.mark.parametrize("name", PICTURES)
 def test_the_pictures_show_these_pins(name: str) -> None:
     """If not: `python -m tools.generate.wiring_pictures`."""
-    assert (IMAGES / name).read_text(encoding="utf-8") == PICTURES[name]().svg()
+    assert (IMAGES / name).read_text(encoding="utf-8") == PICTURES[name].svg()
 
 
 def test_the_guide_shows_the_other_drivers_pins() -> None:

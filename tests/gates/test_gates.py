@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from greywhale_sim._board import Board
-from tools.gates import stack, tick
+from tools.gates import size, stack, tick
 from tools.gates.__main__ import check
 from tools.gates.timing import budget
 from tools.gates.timing.cycles import MEGA, NANO, Chip
@@ -70,6 +70,15 @@ def test_multiplying_and_dividing_elsewhere_are_fine(tmp_path: Path) -> None:
     void firmware_tick() { a = (uint16_t)((uint32_t(a) * b) >> 3); }
     """
     assert tick.complaints(read_program(build(tmp_path, program))) == []
+
+
+def test_a_heap_a_float_or_too_much_is_found_anywhere_in_an_image(tmp_path: Path) -> None:
+    program = "__attribute__((used)) void elsewhere() { f = f * (uintptr_t)malloc(b); } void firmware_tick() {}"
+    assert {"malloc: a heap is linked in.", "__mulsf3: floating point is linked in."} <= set(
+        size.complaints(build(tmp_path, program))
+    )
+    large = "volatile uint8_t room[1700]; void firmware_tick() { sink = room[b]; }"
+    assert any("bytes of RAM, but 1664 is the limit" in one for one in size.complaints(build(tmp_path, large)))
 
 
 def test_an_image_without_a_tick_is_not_passed(tmp_path: Path) -> None:

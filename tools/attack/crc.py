@@ -47,12 +47,6 @@ def unnoticed_share(bits: int, weight: int, among: int | None = None) -> float:
     return unnoticed_patterns(bits, weight) / comb(bits if among is None else among, weight)
 
 
-def unnoticed_at(bits: int, rate: float) -> float:
-    """The share of words that are damaged unnoticed when each bit is flipped with probability `rate`."""
-    right = sum(count * (1 - 2 * rate) ** dual for dual, count in enumerate(_dual_weights(bits))) * RANDOM
-    return float(right - (1 - rate) ** bits)
-
-
 def too_many(found: int, expected: float) -> int:
     """By how much a count is above what chance explains: 0 but for once in some 10^9 times."""
     return max(0, found - int(expected + 6 * expected**0.5 + 6))

@@ -17,9 +17,9 @@ from tools.gates.timing.listing import ImageError, read_program
 
 def check(elf: Path, target: Target) -> list[str]:
     """Complaints about one image; prints its bounds."""
-    taken = size.measure(elf)
-    print(f"{target.chip.name:12} flash {taken.flash} of {size.FLASH_LIMIT} bytes, RAM {taken.ram} of {size.RAM_LIMIT}")
-    found = [*taken.complaints(), *tick.complaints(read_program(elf))]
+    flash, ram = size.taken(elf)
+    print(f"{target.chip.name:12} flash {flash} of {size.FLASH_LIMIT} bytes, RAM {ram} of {size.RAM_LIMIT}")
+    found = [*size.complaints(elf), *tick.complaints(read_program(elf))]
     deepest = stack.bound(elf, target.chip)
     print(f"{target.chip.name:12} stack at most {deepest.bytes} bytes of {deepest.free}, in {' > '.join(deepest.path)}")
     if deepest.bytes > deepest.free:

@@ -192,53 +192,45 @@ def driver(title: str, signals: Sequence[tuple[str, str]], enable: str, note: st
     return drawn
 
 
-def pwm_direction() -> Picture:
-    """PWM and direction."""
-    motor = MEGA.motors[0]
-    rows = (
-        (motor.pwm.arduino, "PWM"),
-        (motor.direction.arduino, "DIR (PHASE)"),
-    )
-    note = "A driver without an enable input needs no such wire."
-    return driver("A driver with PWM and direction: driver = 0", rows, "EN (nSLEEP)", note)
-
-
-def two_directions() -> Picture:
-    """PWM and two directions."""
+def drivers() -> dict[str, Picture]:
+    """One picture for each kind of driver, by the end of its file's name."""
     motor = MEGA.motors[0]
     assert motor.second_direction is not None
-    rows = (
-        (motor.pwm.arduino, "PWM (ENA)"),
-        (motor.direction.arduino, "IN1"),
-        (motor.second_direction.arduino, "IN2"),
-    )
-    return driver("A driver with PWM, IN1 and IN2: driver = 1", rows, "STBY", "An L298N has no such input.")
-
-
-def two_pwm() -> Picture:
-    """Two PWM inputs."""
-    motor = MEGA.motors[0]
     assert motor.second_pwm is not None
-    rows = (
-        (motor.pwm.arduino, "IN1 (RPWM)"),
-        (motor.second_pwm.arduino, "IN2 (LPWM)"),
-    )
-    note = "nSLEEP of a DRV8833; R_EN and L_EN of a BTS7960. A DRV8871 has no such input."
-    return driver("A driver with two PWM inputs: driver = 2 or 3", rows, "enable", note)
+    pwm, direction = motor.pwm.arduino, motor.direction.arduino
+    no_enable = "A driver without an enable input needs no such wire."
+    two_pwm = "nSLEEP of a DRV8833; R_EN and L_EN of a BTS7960. A DRV8871 has no such input."
+    return {
+        "pwm-direction": driver(
+            "A driver with PWM and direction: driver = 0",
+            ((pwm, "PWM"), (direction, "DIR (PHASE)")),
+            "EN (nSLEEP)",
+            no_enable,
+        ),
+        "two-directions": driver(
+            "A driver with PWM, IN1 and IN2: driver = 1",
+            ((pwm, "PWM (ENA)"), (direction, "IN1"), (motor.second_direction.arduino, "IN2")),
+            "STBY",
+            "An L298N has no such input.",
+        ),
+        "two-pwm": driver(
+            "A driver with two PWM inputs: driver = 2 or 3",
+            ((pwm, "IN1 (RPWM)"), (motor.second_pwm.arduino, "IN2 (LPWM)")),
+            "enable",
+            two_pwm,
+        ),
+    }
 
 
 PICTURES = {
-    "wiring-power.svg": power,
-    "wiring-potentiometer.svg": potentiometer,
-    "wiring-pwm-direction.svg": pwm_direction,
-    "wiring-two-directions.svg": two_directions,
-    "wiring-two-pwm.svg": two_pwm,
+    f"wiring-{name}.svg": picture
+    for name, picture in {"power": power(), "potentiometer": potentiometer(), **drivers()}.items()
 }
 
 
 def main() -> None:
-    for name, draw in PICTURES.items():
-        (IMAGES / name).write_text(draw().svg(), encoding="utf-8")
+    for name, picture in PICTURES.items():
+        (IMAGES / name).write_text(picture.svg(), encoding="utf-8")
 
 
 if __name__ == "__main__":

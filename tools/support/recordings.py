@@ -29,7 +29,6 @@ TABLES = ROOT / "shared" / "fuzzy_tables"
 # Within a tick, when the four conversions of a follower's potentiometer hold their input (ms).
 MOMENTS = (0.1, 0.3, 0.5, 0.7)
 SUPPLY = 15.0
-WEAR = ("play", "load", "creep", "lag", "linearity", "supply")
 START_S = 1.5  # the log begins that long after the motors went on, as `greywhale record` does
 
 
@@ -128,34 +127,6 @@ def random_arm(seed: int) -> ArmParameters:
     pots = {"supply": 5.0, "joint": [{"noise": noise}] * 4}
     data = white.model_dump() | {"name": f"random arm {seed}", "joint": joints, "motor_equation": "physical"}
     return ArmParameters.model_validate(data | {"follower_pots": pots, "leader_pots": pots}, strict=False)
-
-
-def wear_out(arm: ArmParameters, seed: int, kinds: tuple[str, ...] = WEAR) -> ArmParameters:
-    """The same arm with some of what used arms have, drawn at random: play of 0 to 20 mrad, load friction to 50 %."""
-    random = np.random.default_rng([seed, 9])
-    data = arm.model_dump()
-    drawn = {
-        "play": random.uniform(0.0, 0.02, 4),
-        "load": random.uniform(0.0, 0.5, 4),
-        "creep": random.uniform(0.0, 0.03, 4),
-        "lag": random.uniform(0.0, 2e-3) * np.ones(4),
-        "linearity": random.uniform(0.0, 0.005, 4),
-    }
-    supply = float(random.uniform(0.0, 0.3))
-    for joint in range(JOINTS):
-        friction, pot = data["joint"][joint]["friction"], data["follower_pots"]["joint"][joint]
-        for kind, place, key in (
-            ("play", pot, "play"),
-            ("lag", pot, "lag"),
-            ("linearity", pot, "linearity"),
-            ("load", friction, "load"),
-            ("creep", friction, "creep_velocity"),
-        ):
-            if kind in kinds:
-                place[key] = float(drawn[kind][joint])
-    if "supply" in kinds:
-        data["drive"]["supply_resistance"] = supply
-    return ArmParameters.model_validate(data | {"name": f"{arm.name}, worn"}, strict=False)
 
 
 def record_three(arm: ArmParameters, folder: Path, seed: int = 1, seconds: float = 30.0) -> Recorded:

@@ -85,11 +85,6 @@ def fail(seed: int) -> None:
     raise KeyError(f"seed {seed}")
 
 
-def fail_while(seed: int, path: str) -> None:
-    """Fails while a file is there."""
-    assert not Path(path).exists()
-
-
 def leave(seed: int) -> None:
     raise SystemExit(3)
 
