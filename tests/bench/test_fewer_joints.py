@@ -31,7 +31,7 @@ def two(board: FakeBoard, plant: FakePlant, motion: Trajectory) -> Bench:
     return Bench(board, MEGA, plant, leader, FakePots(), FakePots(), 15.0, joints=(0, 1))
 
 
-def test_their_inputs_float_and_their_motors_are_off_whatever_is_staged_and_taken_back(two: Bench) -> None:
+def test_their_inputs_float_and_their_motors_are_off_whatever_is_injected_and_mended(two: Bench) -> None:
     assert two.floating == 0b1100_1100
     faults.inject(two, "motor-reversed:2")
     faults.inject(two, "motor-swapped:1")
