@@ -12,7 +12,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from greywhale.base.types import Floats
-from studies.one_joint import Example, JointModel, Record, Runner, fit_joint, fit_lag, identify_joint, pieces_of
+from studies.one_joint.fit import Example, JointModel, fit_joint, identify_joint
+from studies.one_joint.loop import Runner
+from studies.one_joint.naive import fit_lag
+from studies.one_joint.record import Record, pieces_of
 from studies.real_data.rigs import Source
 
 # A motor without dry friction or gravity: to the speed it is a first-order lag with dead time.

@@ -17,7 +17,7 @@ from greywhale.files.log.layout import Origin
 from greywhale.identify import identify
 from greywhale.protocol.firmware import JOINTS
 from greywhale.simulate import PLANT_COLUMNS
-from studies.one_joint import COLUMNS, Rig
+from studies.one_joint.plant import COLUMNS, Rig
 from studies.real_data.rigs import Source
 
 STOP = 2 * math.pi  # no stop is known

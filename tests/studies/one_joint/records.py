@@ -6,7 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from studies.one_joint import Law, Record, Runner, pieces_of
+from studies.one_joint.law import Law
+from studies.one_joint.loop import Runner
+from studies.one_joint.record import Record, pieces_of
 
 
 def still(seconds: float, period: float = 1e-3, leader: float = 0.0, volts: float = 0.0, angle: float = 0.0) -> Record:

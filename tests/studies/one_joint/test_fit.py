@@ -9,22 +9,13 @@ import pytest
 
 from greywhale.base.errors import UserError
 from greywhale.identify.fit import Fit
-from studies.one_joint import (
-    Example,
-    JointModel,
-    JointSpace,
-    Lag,
-    Record,
-    Rig,
-    Runner,
-    fit,
-    fit_joint,
-    fit_lag,
-    identify_joint,
-    pieces_of,
-    plants,
-    proportional,
-)
+from studies.one_joint import fit
+from studies.one_joint.fit import Example, JointModel, fit_joint, identify_joint
+from studies.one_joint.law import proportional
+from studies.one_joint.loop import Runner
+from studies.one_joint.naive import Lag, fit_lag
+from studies.one_joint.plant import JointSpace, Rig, plants
+from studies.one_joint.record import Record, pieces_of
 from studies.one_joint.residual import Part, left_out
 from tests.studies.one_joint.records import made, still
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from studies.one_joint import Law, proportional, proportional_derivative, proportional_resonant, trapezoidal_pid
+from studies.one_joint.law import Law, proportional, proportional_derivative, proportional_resonant, trapezoidal_pid
 
 ROWS = 400
 PERIOD = 2e-3

@@ -14,8 +14,10 @@ from greywhale.base.errors import UserError
 from greywhale.base.types import Floats
 from greywhale.files.arm import default_arm
 from greywhale.simulate import PLANT_COLUMNS, plant_row
-from studies.one_joint import COLUMNS, Law, Record, Rig, Runner, pieces_of, plants, proportional, relay
-from studies.one_joint.law import trapezoidal_pid
+from studies.one_joint.law import Law, proportional, relay, trapezoidal_pid
+from studies.one_joint.loop import Runner
+from studies.one_joint.plant import COLUMNS, Rig, plants
+from studies.one_joint.record import Record, pieces_of
 from tests.studies.one_joint.records import still
 
 PENDULUM = Rig("pendulum", supply=7.4, alpha=10.0, inertia=0.02, damping=0.4, link_inertia=0.005, weight=0.48)

@@ -41,26 +41,26 @@ def run_study(
     if count > 1:
         raise ValueError(f"{count} tasks have the key {key!r}")
     workers = Given(executor) if isinstance(executor, Executor) else executor
-    with Results(results, tasks, about or {}) as book, threadpool_limits(limits=1, user_api="blas"):
-        run = _Run(tasks, workers, book, lambda share: progress(what, share) if progress is not None else None)
+    with Results(results, tasks, about or {}) as kept, threadpool_limits(limits=1, user_api="blas"):
+        run = _Run(tasks, workers, kept, lambda share: progress(what, share) if progress is not None else None)
         try:
             run.do_all()
         except (Exception, KeyboardInterrupt) as error:
             if results is not None:
                 error.add_note(
-                    f"{len(book)} of {len(tasks)} tasks are done and kept in {results}; with it the same study goes on."
+                    f"{len(kept)} of {len(tasks)} tasks are done and kept in {results}; with it the same study goes on."
                 )
             raise
-        return book.of(tasks)
+        return kept.of(tasks)
 
 
 class _Run:
-    def __init__(self, tasks: Sequence[Task], workers: Workers, book: Results, report: Callable[[float], None]) -> None:
+    def __init__(self, tasks: Sequence[Task], workers: Workers, kept: Results, report: Callable[[float], None]) -> None:
         self._tasks = tasks
         self._workers = workers
-        self._book = book
+        self._kept = kept
         self._report = report
-        self._ready = deque(task for task in tasks if task.key not in book)
+        self._ready = deque(task for task in tasks if task.key not in kept)
         # Tasks that were with a worker that ended. At last each is done alone, so that nobody else's end counts.
         self._suspects: deque[Task] = deque()
         self._deaths: Counter[str] = Counter()
@@ -77,7 +77,7 @@ class _Run:
             told = f"task {names} was" if len(self._lost) == 1 else f"tasks {names} were"
             raise LostTasks(
                 f"{told} given up, because every worker that did it ended (of too little memory, or by a crash).",
-                self._book.of(self._tasks),
+                self._kept.of(self._tasks),
             )
 
     def _use(self, executor: Executor) -> None:
@@ -136,7 +136,7 @@ class _Run:
             return True
         error = future.exception()
         if error is None:
-            self._book.tell(task.key, future.result())
+            self._kept.tell(task.key, future.result())
             self._fruitless = 0
             self._tell()
             return False
@@ -153,7 +153,7 @@ class _Run:
             raise UserError(f"{DEATHS} times all workers ended before any task was done.")
 
     def _tell(self) -> None:
-        self._report(len(self._book) / len(self._tasks) if self._tasks else 1.0)
+        self._report(len(self._kept) / len(self._tasks) if self._tasks else 1.0)
 
 
 def _wait_for_one(ended: SimpleQueue[Future[str]]) -> Future[str]:
