@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-import json
 import os
+import pickle
 from collections.abc import Callable
-from typing import Any
+from typing import TypeVar
+
+T = TypeVar("T")
 
 
-def in_a_copy(work: Callable[[], Any]) -> Any:
-    """What `work` returns (JSON), done in a copy of this process; here everything stays as it was."""
+def in_a_copy(work: Callable[[], T]) -> T:
+    """What `work` returns, done in a copy of this process; here everything stays as it was."""
     reader, writer = os.pipe()
     child = os.fork()
     if child == 0:
         try:
-            os.write(writer, json.dumps(work()).encode())
+            os.write(writer, pickle.dumps(work()))
         finally:
             os._exit(0)
     os.close(writer)
@@ -23,4 +25,5 @@ def in_a_copy(work: Callable[[], Any]) -> Any:
     os.waitpid(child, 0)
     if not answer:
         raise RuntimeError("a copy of this process ended without an answer")
-    return json.loads(answer)
+    done: T = pickle.loads(answer)
+    return done

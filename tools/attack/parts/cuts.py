@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -81,11 +80,11 @@ def judge(bench: BoardWithImage, old: int, new: int, changed: bool, saved: bool)
 
 def is_saved(bench: BoardWithImage) -> bool:
     """Asked in a copy of the board: the question takes time, and the cut shall come now."""
-    return bool(in_a_copy(lambda: bench.status().save_state is schema.SaveState.SAVED))
+    return in_a_copy(lambda: bench.status().save_state is schema.SaveState.SAVED)
 
 
-def cut_and_look(bench: BoardWithImage, old: int, new: int, seed: int, before: bytes) -> dict[str, Any]:
-    """A cut now. After it a set is stored again, which must end well."""
+def cut_and_look(bench: BoardWithImage, old: int, new: int, seed: int, before: bytes) -> str:
+    """What came of a cut now. After it a set is stored again, which must end well."""
     saved = is_saved(bench)
     cut(bench, seed)
     found = judge(bench, old, new, bench.board.eeprom() != before, saved)
@@ -93,7 +92,7 @@ def cut_and_look(bench: BoardWithImage, old: int, new: int, seed: int, before: b
     save(bench)
     cut(bench, seed + 2)
     whole = running_crc(bench) == again
-    return {"found": found if whole else "wrong: the next save did not end well"}
+    return found if whole else "wrong: the next save did not end well"
 
 
 def cycles_of_a_save(bench: BoardWithImage) -> int:
@@ -117,7 +116,7 @@ def cut_a_save(board: str, earlier: int, trials: int, seed: int) -> Row:
     begun, found = bench.board.cycle, Counter[str]()
     for number, at in enumerate(np.sort(random.integers(0, round(1.02 * length), trials)).tolist()):
         bench.board.run_until(begun + at)
-        found[in_a_copy(partial(cut_and_look, bench, old, new, 11 * number + 1, before))["found"]] += 1
+        found[in_a_copy(partial(cut_and_look, bench, old, new, 11 * number + 1, before))] += 1
     wrong = sum(count for name, count in found.items() if name.startswith("wrong"))
     return Row(f"{board.title()}: {HISTORIES[earlier]}", trials, wrong, dict(sorted(found.items())))
 

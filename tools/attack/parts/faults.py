@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from functools import partial
-from typing import Any
 
 from greywhale.files import controller
 from greywhale.files.arm import default_arm
@@ -12,7 +10,7 @@ from greywhale.files.paper_tables import paper_table
 from greywhale.protocol.table import ParameterTable, physical
 from greywhale.tune.stall import STALL_VOLTS, stall_limit
 from greywhale_sim.wiring import BOARDS
-from tools.attack.arm_faults import LEASE_MS, SOFT_START_MS, Inject, Trial, begin, faults, person, suffer
+from tools.attack.arm_faults import LEASE_MS, SOFT_START_MS, Trial, begin, faults, person, suffer
 from tools.attack.arm_on_board import ArmOnBoard
 from tools.attack.copies import in_a_copy
 from tools.attack.part import Part, Piece, Row, split
@@ -60,10 +58,6 @@ def tuned_stall_volts() -> int:
     return limit.raw
 
 
-def suffer_it(arm: ArmOnBoard, inject: Inject, joint: int) -> dict[str, Any]:
-    return asdict(suffer(arm, inject, joint))
-
-
 def run(piece: Piece) -> list[Row]:
     """At each moment every fault in a copy of its own: all of them meet the same motion and the same phase of a tick.
 
@@ -82,8 +76,8 @@ def run(piece: Piece) -> list[Row]:
     for moment in range(piece["trials"]):
         begin(arm)
         for name, inject in chosen.items():
-            trial = in_a_copy(partial(suffer_it, arm, inject, moment % 4))
-            rows.append(count(piece["board"], name, Trial(**trial), limit if name in BY_LIMIT else ""))
+            trial = in_a_copy(partial(suffer, arm, inject, moment % 4))
+            rows.append(count(piece["board"], name, trial, limit if name in BY_LIMIT else ""))
     return rows
 
 
