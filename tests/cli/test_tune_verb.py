@@ -139,7 +139,7 @@ def test_json_file_and_upload_speak_of_the_same_controllers_within_their_bounds_
 def assert_the_file_tells_the_same(answer: dict[str, Any], out: Path) -> None:
     written = controller.load(out)
     told = {name: schema.PARAMETER_BY_NAME[name].to_raw_as_given(value) for name, value in answer["after"].items()}
-    assert len(told) == 48
+    assert len(told) == 52
     assert told.items() <= written.raw_values().items()
     assert written.tuning is not None
     assert written.table().crc == int(str(written.tuning["parameter_crc"]), 16)

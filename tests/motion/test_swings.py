@@ -1,13 +1,15 @@
-"""Unrest, rattle and chatter of motions made by hand. To follow a tremor or a quick move is none of them."""
+"""Unrest, rattle, chatter and ripple of motions made by hand. To follow a tremor or a quick move is none of them."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy.signal import sosfilt
+from scipy.signal import butter, sosfilt
 
 from greywhale.motion.swings import (
     BLOCK,
+    FILTER_EVERY,
+    RATTLE_BAND_HZ,
     SECTIONS,
     band_power,
     chatter,
@@ -15,9 +17,11 @@ from greywhale.motion.swings import (
     duty_swings,
     rattle,
     rattle_of_record,
+    ripple,
+    ripple_of_record,
     unrest,
 )
-from greywhale.protocol.firmware import pwm_steps
+from greywhale.protocol.firmware import TICK_S, pwm_steps
 from greywhale.protocol.schema import Board
 
 TIME_S = np.arange(6000) * 1e-3
@@ -29,6 +33,11 @@ def wave(hz: float, size: float) -> np.ndarray:
 
 def follower(*paths: np.ndarray) -> np.ndarray:
     return np.ascontiguousarray(np.sum(paths, axis=0)[None].astype(np.float32))
+
+
+def test_the_bands_filter_is_scipys() -> None:
+    wanted = butter(2, RATTLE_BAND_HZ, "bandpass", fs=1.0 / (FILTER_EVERY * TICK_S), output="sos")
+    np.testing.assert_allclose(SECTIONS, wanted, atol=6e-13)
 
 
 @pytest.mark.parametrize("kind", [np.float32, np.float64])
@@ -138,3 +147,18 @@ def test_chatter_counts_large_swings_of_the_voltage() -> None:
     found = chatter_of_record(volts, 15.0)
     assert found[0] == pytest.approx(200.0, rel=0.01)
     assert found[1] == 0.0
+
+
+@pytest.mark.parametrize(("hz", "share"), [(2.0, 0.005), (200.0, 1.0)])
+def test_ripple_is_what_the_voltage_does_beyond_its_mean_over_25_ms(hz: float, share: float) -> None:
+    """Slow motion is none; a fast swing is all ripple, in a record in volts and in duties of any board."""
+    voltage = 5.0 + wave(hz, 3.0)
+    np.testing.assert_allclose(ripple_of_record(voltage), share * 3.0 / np.sqrt(2.0), atol=0.02)
+    for board in (Board.MEGA2560, Board.NANO328):
+        duties = np.round(voltage / 15.0 * np.array(pwm_steps(board))).astype(np.int16)[None]
+        np.testing.assert_allclose(15.0 * ripple(duties, (0, 6000), board)[0], ripple_of_record(voltage), atol=0.03)
+
+
+def test_ripple_of_noise_is_its_deviation_but_for_what_the_mean_takes() -> None:
+    noise = np.random.default_rng(0).normal(0.0, 1.0, (20_000, 4))
+    np.testing.assert_allclose(ripple_of_record(noise), np.sqrt(1.0 - 1.0 / 25.0), rtol=0.02)

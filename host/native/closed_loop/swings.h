@@ -1,5 +1,5 @@
 // How often and how far a recorded signal swings to and fro: what tells a limit cycle from rest, from creep and from
-// one overshoot.
+// one overshoot; and how large its ripple is.
 #pragma once
 
 #include <cstddef>
@@ -36,6 +36,22 @@ Swings swings_of(const T* signal, std::size_t rows, std::size_t stride, double b
     high = low = value;
   }
   return found;
+}
+
+// Mean square of a signal of integers less its own mean over `window` values around each (an odd number, at most
+// `rows`), where all of those are there.
+inline double ripple_of(const std::int16_t* signal, std::size_t rows, std::size_t stride, std::size_t window) {
+  const auto size = static_cast<std::int64_t>(window);
+  std::int64_t sum = 0;
+  double squares = 0.0;
+  for (std::size_t row = 0; row < rows; ++row) {
+    sum += signal[row * stride];
+    if (row + 1 < window) continue;
+    const auto less = static_cast<double>(size * signal[(row - window / 2) * stride] - sum);
+    squares += less * less;
+    sum -= signal[(row + 1 - window) * stride];
+  }
+  return squares / static_cast<double>(size * size) / static_cast<double>(rows - window + 1);
 }
 
 }  // namespace greywhale::loop

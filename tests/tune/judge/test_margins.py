@@ -15,6 +15,7 @@ from greywhale.simulate import controller_row, default_controller, plant_row
 from greywhale.tune.judge.margins import (
     DELAY,
     MOVING,
+    RIPPLE_PRICE,
     SCENARIOS,
     TEETH,
     Margins,
@@ -29,6 +30,7 @@ ARM = default_arm()
 PLANTS = plant_row(ARM)[None]
 BEFORE = default_controller()
 TABLE_9 = controller_row(controller.load(ROOT / "shared" / "fuzzy_tables" / "table_9.toml"))
+ANY_RIPPLE = np.full(4, np.inf)
 
 
 def turning_points(signal: np.ndarray, band: float) -> list[float]:
@@ -121,9 +123,27 @@ def test_more_gain_and_more_delay_bring_instability_nearer(margins: Margins) -> 
 def test_the_quiet_pay_nothing_and_the_others_more_the_more_they_swing(margins: Margins) -> None:
     wilder = TABLE_9.copy()
     wilder[3, 8] *= 4
-    prices = penalty(margins.unrest(np.stack([BEFORE, TABLE_9, wilder])))
+    prices = penalty(margins.unrest(np.stack([BEFORE, TABLE_9, wilder])), ANY_RIPPLE)
     assert (prices[0] == 0.0).all()
     assert 0.02 < prices[1, 3] < prices[2, 3]
+
+
+def test_ripple_costs_something_and_what_is_beyond_the_limit_much(margins: Margins) -> None:
+    louder = BEFORE.copy()
+    louder[:, 9] *= 3  # Kd
+    found = margins.unrest(np.stack([BEFORE, louder]))
+    quiet, loud = found["at rest"].ripple[:, 0]
+    assert (loud > 2.0 * quiet).all()
+    within, beyond = (penalty(found, limit)[1] - penalty(found, ANY_RIPPLE)[1] for limit in (2.0 * loud, 0.5 * loud))
+    np.testing.assert_allclose(within, 0.5 * RIPPLE_PRICE)
+    assert (beyond > 1.0).all()
+
+
+def test_a_change_of_error_over_more_periods_is_quieter(margins: Margins) -> None:
+    longer = BEFORE.copy()
+    longer[:, 12] = 8
+    short, long = margins.unrest(np.stack([BEFORE, longer]))["at rest"].ripple[:, 0]
+    assert (long < 0.5 * short).all()
 
 
 def test_a_search_stops_short_of_the_border() -> None:
@@ -133,7 +153,7 @@ def test_a_search_stops_short_of_the_border() -> None:
     rows = np.repeat(BEFORE[None], 24, axis=0).astype(np.float64)
     rows[:, :, 8:10] *= np.exp(random.uniform(-0.5, 1.2, (24, 4, 2)))
     candidates = rows.astype(np.int32)
-    strict = penalty(searching.unrest(candidates)) > 0.0
+    strict = penalty(searching.unrest(candidates), ANY_RIPPLE) > 0.0
     failing = np.any(
         [one.fails[:, 0] for one in Margins(ARM, ParameterTable.defaults(), PLANTS).unrest(candidates).values()], axis=0
     )

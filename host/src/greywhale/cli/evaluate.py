@@ -61,7 +61,7 @@ def command(logs: tuple[Path, ...], picture: Path | None, overwrite: bool, as_js
         kind_of(picture)
     read, evaluations = [], []
     for path in logs:
-        log = read_log(path, voltages=picture is not None)
+        log = read_log(path)
         evaluations.append(evaluate(log))
         read.append(log if picture is not None else log.without_samples())
     results: list[LogFacts] = [
@@ -115,6 +115,9 @@ def _text(log: Log, evaluation: Evaluation) -> str:
         steps = _number(joint.overshoot_percent, ".1f"), joint.settling(".3f") or "n/a"
         lines.append(_row(f"joint {number}", *errors, *delays, *steps))
     lines.append(_row("total", f"{evaluation.total_mse:.6f}"))
+    ripples = [evaluation.joints[number].ripple_v for number in evaluation.joints_in_use]
+    if None not in ripples:
+        lines.append(f"Ripple of the voltage above 20 Hz, V rms: {', '.join(f'{volts:.2f}' for volts in ripples)}")
     idle = unused(evaluation.joints_in_use)
     if idle:
         lines.append(f"{named(idle).capitalize()} {'is' if len(idle) == 1 else 'are'} not in use.")

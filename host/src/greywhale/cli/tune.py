@@ -78,6 +78,13 @@ class Answer(TuningFacts, Layouts):
 @click.option(
     "--samples", type=int, default=SAMPLES, show_default=True, help="Arms as likely as the model, itself among them."
 )
+@click.option(
+    "--quiet",
+    type=click.FloatRange(0.25, 4.0),
+    default=1.0,
+    show_default=True,
+    help="2 halves the hiss that is allowed at rest, 0.5 doubles it; quieter motors follow less closely.",
+)
 @click.option("--resume", is_flag=True, help="Go on where an interrupted tuning with the same options ended.")
 @click.option("--force", is_flag=True, help="Tune even if there are doubts about the model; the result states them.")
 @click.option("--tables", is_flag=True, help="Also print the paper's Tables 8 to 12: ours beside the printed.")
@@ -97,6 +104,7 @@ def command(
     arm: str | None,
     params: Path | None,
     samples: int,
+    quiet: float,
     resume: bool,
     force: bool,
     tables: bool,
@@ -130,6 +138,7 @@ def command(
             bounds=limits,
             journal=journal,
             resume=resume,
+            quiet=quiet,
             report=report,
         )
     save(outcome, out)

@@ -9,6 +9,7 @@
   defined for any motion; `onset_delay_s` is the paper's, "the difference between the times that the leader gives a
   position command and the follower begins to respond", and exists only where the leader steps out of a rest.
 - Overshoot and settling time of such steps: see `step_response.py`. Of several steps, the worst counts.
+- Ripple of the voltage: see `swings.py`. It needs a sample each tick.
 
 Measured samples are those in state `following`; a log without any (motors off) is measured whole, and says so.
 Samples that the link dropped are absent, not filled in: the means run over what was received. Steady state and delays
@@ -17,7 +18,7 @@ look only at runs of samples without a gap.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, TypedDict
 
 import numpy as np
@@ -32,6 +33,8 @@ from greywhale.motion.following import follows
 from greywhale.motion.runs import Run, gap_free_runs, resting
 from greywhale.motion.settings import Settings
 from greywhale.motion.step_response import Answer, answer, departures, worst
+from greywhale.motion.swings import RIPPLE_S, ripple_of_record
+from greywhale.protocol.firmware import TICK_S
 from greywhale.protocol.joints import ALL, Joints
 
 
@@ -46,6 +49,7 @@ class JointFacts(TypedDict):
     steps: int  # out of a rest
     unsettled_steps: int  # after which the follower never settles
     follows: bool  # whether the joint follows its leader at all
+    ripple_v: float | None  # rms of the voltage above some 20 Hz; null without a sample each ms
     leader_rested_s: float
 
 
@@ -75,6 +79,7 @@ class JointMeasures:
     overshoot_percent: float | None = None
     settling_s: float | None = None
     unsettled_steps: int = 0
+    ripple_v: float | None = None
 
     def settling(self, form: str) -> str | None:
         """The settling time as a person reads it; "never" where a step did not settle, None without steps."""
@@ -113,6 +118,7 @@ class Evaluation:
                     "steps": joint.steps,
                     "unsettled_steps": joint.unsettled_steps,
                     "follows": joint.follows,
+                    "ripple_v": joint.ripple_v,
                     "leader_rested_s": rested,
                 }
                 for number, (joint, rested) in enumerate(zip(self.joints, self.rests_s, strict=True))
@@ -140,7 +146,7 @@ def evaluate(log: Log, settings: Settings | None = None) -> Evaluation:
     with threadpool_limits(limits=1, user_api="blas"):
         for joint in range(log.leader.shape[1]):
             measures, rested = _joint(log.leader[:, joint], log.follower[:, joint], measured, runs, chosen)
-            joints.append(measures)
+            joints.append(replace(measures, ripple_v=_ripple(log.voltage[:, joint], runs)))
             rests.append(rested)
     return Evaluation(
         joints=tuple(joints),
@@ -152,6 +158,14 @@ def evaluate(log: Log, settings: Settings | None = None) -> Evaluation:
         joints_in_use=log.joints_in_use,
         span_s=float(log.time[-1] - log.time[0]),
     )
+
+
+def _ripple(voltage: Floats, runs: list[Run]) -> float | None:
+    """Over the longest run."""
+    longest = max(runs, key=lambda run: run.stop - run.start)
+    if abs(longest.period - TICK_S) > 0.1 * TICK_S or longest.stop - longest.start < 2 * RIPPLE_S / TICK_S:
+        return None
+    return float(ripple_of_record(voltage[longest.slice, None])[0])
 
 
 def _joint(

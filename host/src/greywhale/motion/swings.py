@@ -1,4 +1,4 @@
-"""Swings that nobody asked for: four words, how each is measured, and from where on each counts. All of greywhale
+"""Swings that nobody asked for: five words, how each is measured, and from where on each counts. All of greywhale
 takes them from here.
 
 - Hunting: while its leader rests, a joint turns back again and again, each time by more than a band (a gear that hunts
@@ -7,6 +7,8 @@ takes them from here.
 - Rattle: what the angle does at 6 to 40 Hz beyond what the leader does there (teeth that knock in their gap, friction
   that sticks and slips). A hand's own tremor is no rattle.
 - Chatter: swings of the voltage by more than CHATTER_SHARE of its range, a second (a relay; noise that Kd magnifies).
+- Ripple: the rms of the voltage less its own mean over RIPPLE_S: what is above some 20 Hz, which a motor does not
+  follow. It hisses and warms up.
 """
 
 from __future__ import annotations
@@ -16,7 +18,6 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
-from scipy.signal import butter, sosfiltfilt
 
 from greywhale import _native
 from greywhale.base.types import Floats, Integers
@@ -30,6 +31,7 @@ Duties = npt.NDArray[np.int16]
 MEAN_S = 0.2
 RATTLE_BAND_HZ = (6.0, 40.0)
 CHATTER_SHARE = 1 / 3
+RIPPLE_S = 0.025
 
 
 @dataclass(frozen=True)
@@ -104,8 +106,14 @@ BLOCK_S = 0.1
 # A quick move of the leader has all frequencies, and the slowest usual arm has answered it after this time.
 REACT_S = 0.8
 
-# Rounded, so that it is the same filter on every computer.
-SECTIONS = np.round(butter(2, RATTLE_BAND_HZ, "bandpass", fs=1.0 / (FILTER_EVERY * TICK_S), output="sos"), 12)
+# scipy's butter(2, RATTLE_BAND_HZ, "bandpass"), rounded, so that it is the same filter on every computer, and nobody
+# waits for scipy.signal.
+SECTIONS = np.array(
+    [
+        [0.111982691551, 0.223965383102, 0.111982691551, 1.0, -0.830049306597, 0.369325623667],
+        [1.0, -2.0, 1.0, 1.0, -1.798575677037, 0.824056907643],
+    ]
+)
 BLOCK = round(BLOCK_S / (FILTER_EVERY * TICK_S))
 
 
@@ -139,6 +147,8 @@ def band_power(angles: Singles | Floats, stride: int, length: int, sections: Flo
 
 def rattle_of_record(leader: Floats, follower: Floats) -> Floats:
     """The rattle (4,) in rad, rms, of a record (rows, 4) in which a hand leads: nothing in it is quick."""
+    from scipy.signal import butter, sosfiltfilt  # slow to import
+
     band = butter(4, RATTLE_BAND_HZ, btype="bandpass", fs=1.0 / TICK_S, output="sos")
     powers = [np.mean(sosfiltfilt(band, angles, axis=0) ** 2, axis=0) for angles in (follower, leader)]
     beyond: Floats = np.sqrt(np.maximum(powers[0] - powers[1], 0.0))
@@ -166,3 +176,28 @@ def chatter_of_record(voltage: Floats, supply_v: float) -> Floats:
     """Large swings of the voltage (rows, 4) a second: (4,)."""
     per_second: Floats = turns_of(voltage, CHATTER_SHARE * supply_v) / (len(voltage) * TICK_S)
     return per_second
+
+
+# --- ripple -----------------------------------------------------------------------------------------------------------
+
+# At rest, a share of the supply that nobody hears across a table.
+QUIET_SHARE = 0.03
+
+
+def ripple(duties: Duties, rows: tuple[int, int], board: Board) -> Floats:
+    """The ripple of every record and joint (n, 4), as a share of the supply; a row a tick."""
+    squares = np.asarray(_native.ripple(duties, *rows, _ticks(RIPPLE_S)), dtype=np.float64)
+    found: Floats = np.sqrt(squares) / np.array(pwm_steps(board))
+    return found
+
+
+def ripple_of_record(voltage: Floats) -> Floats:
+    """The ripple (4,) of a voltage (rows, 4), in its unit; a row a tick."""
+    size = _ticks(RIPPLE_S)
+    less = voltage - uniform_filter1d(voltage, size, axis=0, mode="nearest")
+    found: Floats = np.sqrt(np.mean(less[size // 2 : len(less) - size // 2] ** 2, axis=0))
+    return found
+
+
+def _ticks(seconds: float) -> int:
+    return round(seconds / TICK_S)

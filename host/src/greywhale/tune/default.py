@@ -15,7 +15,6 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -26,9 +25,10 @@ from greywhale.base.types import Controllers, Floats
 from greywhale.optimise.relative import RelativeWolfWhale
 from greywhale.protocol.joints import unused
 from greywhale.protocol.table import CONTROLLER_COLUMNS
-from greywhale.tune.judge.choose import choose, is_fair
+from greywhale.tune.judge.choose import FAIR, choose
 from greywhale.tune.judge.held_out import judge_held_out
 from greywhale.tune.judge.margins import MOVING, REST_LONG_S, Margin, Margins, loosest_plant, penalty
+from greywhale.tune.judge.standard import Standard
 from greywhale.tune.method import Costs, Judgement
 from greywhale.tune.model import Model
 from greywhale.tune.possible import scale_of
@@ -61,16 +61,17 @@ STAGES = (
     Stage("every corner", 0.3, 0.03, every_corner=True),
 )
 # The search tracks on so many plants, the estimate among them; the last judgement uses all.
-SEARCH_PLANTS = 4
+SEARCH_PLANTS = 2
 JUDGING_SEED = 1000  # of sensor noise that the search does not know by heart
-# The last judgement makes unrest so much dearer that it takes a joint which does not rest only if there is no other.
-DEARER = 3.0
+# More than any controller costs: none is chosen that falls short of the standard.
+UNFIT = 100.0
 # But if the arm itself will judge, a joint that only the model calls restless gets its chance there.
-ON_TRIAL = 0.5
-# Shares of the best's Ku that compete in the last judgement: full voltage may shake gears that were quiet in the
-# search.
-WEAKER = (0.7, 0.5, 0.35)
-KU = CONTROLLER_COLUMNS.index("ku_mv")
+ON_TRIAL = 0.1
+# Shares of the best's Ku and Ki that compete in the last judgement: full voltage may shake gears, and an integral swing
+# in friction, that were quiet in the search.
+CALMER = ((1.0, 0.5), (1.0, 0.2), (1.0, 0.0), (0.7, 0.7), (0.7, 0.3), (0.7, 0.0), (0.5, 0.3), (0.5, 0.0), (0.35, 0.0))
+SECOND_CHANCES = 3
+KU, KI = (CONTROLLER_COLUMNS.index(name) for name in ("ku_mv", "ki"))
 
 
 class DefaultMethod:
@@ -86,14 +87,17 @@ class DefaultMethod:
         motions = training_motions(model.arm, self.table, model.plants, task.seed)
         scale = scale_of(motions, model.plants, task.before, task.threads)
         some = model.plants[:SEARCH_PLANTS]
+        # The samples, and the estimate with the loosest gears that any of them has.
+        self.everywhere = np.vstack([model.plants, loosest_plant(model.plants)])
         self.objective = Objective(motions, some, scale.first(len(some)), task.threads)
         other_noise = training_motions(model.arm, self.table, model.plants, task.seed + JUDGING_SEED)
         self.judging = Objective(other_noise, model.plants, scale, task.threads)
-        self.margins = self._margins(_extreme_plants(model.plants), searching=True)
         # Longer and with other noise, since a search learns its own noise by heart.
-        self.judging_margins = self._margins(_extreme_plants(model.plants), rest_s=REST_LONG_S, noise=1)
+        self.judging_margins = self._margins(self.everywhere, rest_s=REST_LONG_S, noise=1)
         # With bounds, what is uploaded keeps within them, whatever ran before.
         self.start = self.space.controllers(self.space.points(task.before[None]))[0] if task.bounds else task.before
+        self.margins = self._margins(self.everywhere[[0, -1]], searching=True)
+        self.standard = Standard.of(self.judging_margins.check(self.start), self.table.supply_v, task.quiet)
         self.found = SearchState.nothing(self.start)
 
     def _margins(self, plants: Floats, **options: Any) -> Margins:
@@ -121,12 +125,23 @@ class DefaultMethod:
 
         lockstep.try_again(self.costs, self.found, journal, "start")
         for number, stage in enumerate(STAGES, 1):
+            if number > 1:
+                self._add_hard_plant()
             left = task.budget - self.found.evaluations
             share = left if stage is STAGES[-1] else min(left, round(stage.share * task.budget))
             if number > 1 and share > len(lockstep.TURNS):
                 lockstep.try_again(self.costs, self.found, journal, stage.name)
                 share -= 1
             self._run(stage, number, share // len(lockstep.TURNS), journal, tick)
+
+    def _add_hard_plant(self) -> None:
+        """From now on the margins are looked at also on the plant where the best so far fails most of them."""
+        unrest = self.judging_margins.unrest(self.found.best[None])
+        fails = np.sum([one.fails[0].sum(axis=1) for one in unrest.values()], axis=0)
+        known = (self.everywhere[:, None] == self.margins.plants[None]).all(axis=2).any(axis=1)
+        hardest = int(np.argmax(np.where(known, 0, fails)))
+        if fails[hardest] and not known[hardest]:
+            self.margins = self._margins(np.vstack([self.margins.plants, self.everywhere[hardest]]), searching=True)
 
     def _run(self, stage: Stage, number: int, budget: int, journal: TuningJournal, tick: lockstep.Tick) -> None:
         """Spend a stage's evaluations of each joint."""
@@ -151,46 +166,70 @@ class DefaultMethod:
 
     def costs(self, controllers: Controllers) -> Floats:
         """The search's costs: (n, 4)."""
-        costs: Floats = self.objective.costs(controllers) + penalty(self.margins.unrest(controllers))
+        costs: Floats = self.objective.costs(controllers) + penalty(
+            self.margins.unrest(controllers), self.standard.quiet_v
+        )
         return costs
 
     def judge_costs(self, controllers: Controllers, exact: bool = False) -> Floats:
         """The same cost on all plants, with other noise; `exact`: in the bench's own arithmetic."""
+        costs: Floats = self.judging.costs(controllers, exact=exact)
         unrest = self.judging_margins.unrest(controllers, exact=exact)
-        weight = ON_TRIAL if self.task.on_trial else DEARER
-        costs: Floats = self.judging.costs(controllers, exact=exact) + weight * penalty(unrest)
-        return costs
+        if self.task.on_trial:
+            return costs + ON_TRIAL * penalty(unrest, self.standard.quiet_v)
+        return costs + UNFIT * self.standard.falls_short(unrest)
 
-    def _choose(self) -> tuple[Controllers, Floats, Floats]:
-        """The combination that is uploaded, with the costs of what was before and of itself.
+    def _contenders(self) -> Controllers:
+        """The best few of every joint (k, 4, 13), and the best with less voltage or integral: steadier and quieter."""
+        kept = self.found.contenders(lockstep.KEPT)
+        calmer = np.repeat(kept[:1], len(CALMER), axis=0)
+        for row, (ku, ki) in zip(calmer, CALMER, strict=True):
+            row[:, KU] = np.round(ku * row[:, KU])
+            row[:, KI] = np.round(ki * row[:, KI])
+        unchanged = (kept[0] == self.start).all(axis=1)
+        calmer[:, unchanged] = self.start[unchanged]
+        # Within what is searched: nothing changes where a factor is not searched, or its bounds are narrower.
+        return np.concatenate([kept, self.space.controllers(self.space.points(calmer))])
 
-        Single precision chooses, which is 25 times as fast. If in the bench's own arithmetic a joint turns out worse
-        than before, that arithmetic chooses anew.
+    def _choose(self) -> tuple[Controllers, tuple[Margin, ...], Floats, Floats]:
+        """The combination that is uploaded, its margins, and the costs of what was before and of itself.
+
+        Single precision chooses, which is 25 times as fast. The bench's own arithmetic has the last word: a joint that
+        costs more than before there, or falls short of the standard, gets its next best, and at last what it had.
         """
         contenders = self._contenders()
         after, _, _ = choose(self.start, contenders, self.judge_costs)
-        before_cost, after_cost = self.judge_costs(np.stack([self.start, after]), exact=True)
-        if is_fair(after_cost, before_cost):
-            return after, before_cost, after_cost
-        return choose(self.start, contenders, partial(self.judge_costs, exact=True))
+        others = [self._next_best(after, contenders, joint) for joint in range(len(after))]
+        while True:
+            before_cost, after_cost = self.judge_costs(np.stack([self.start, after]), exact=True)
+            margins = self.judging_margins.check(after)
+            worse = after_cost > FAIR * before_cost
+            if not self.task.on_trial:
+                worse |= self.standard.joints_short(margins)
+            changed = (after != self.start).any(axis=1)
+            if not (worse & changed).any():  # a neighbour's doing
+                worse = np.full(len(after), worse.any())
+            if not (worse & changed).any():
+                return after, margins, before_cost, after_cost
+            for joint in np.flatnonzero(worse & changed):
+                after[joint] = others[joint].pop(0)
 
-    def _contenders(self) -> Controllers:
-        """The best few of every joint (k, 4, 13), and the best with less voltage, which is a quieter second choice."""
-        kept = self.found.contenders(lockstep.KEPT)
-        weaker = np.repeat(kept[:1], len(WEAKER), axis=0)
-        weaker[:, :, KU] = np.round(weaker[:, :, KU] * np.array(WEAKER)[:, None])
-        # Within what is searched: this changes nothing where Ku is not searched, or where its bounds are narrower.
-        return np.concatenate([kept, self.space.controllers(self.space.points(weaker))])
+    def _next_best(self, after: Controllers, contenders: Controllers, joint: int) -> list[Controllers]:
+        """The rows that a joint may have in the place of its own, the best first; the last is the one from before."""
+        rows = np.repeat(after[None], len(contenders), axis=0)
+        rows[:, joint] = contenders[:, joint]
+        costs = self.judge_costs(rows).sum(axis=1)
+        order = [k for k in np.argsort(costs, kind="stable") if not np.array_equal(contenders[k, joint], after[joint])]
+        return [*(contenders[k, joint] for k in order[:SECOND_CHANCES]), self.start[joint]]
 
     def judge(self) -> Judgement:
         task, model = self.task, self.model
         task.report("judging", 0.0)
-        after, cost_before, cost_after = self._choose()
+        after, margins, cost_before, cost_after = self._choose()
         idle = list(unused(model.arm.joints_in_use))
         after[idle] = task.before[idle]  # whatever was tried there made no difference
         task.report("judging", 0.5)
-        everywhere = self._margins(np.vstack([model.plants, loosest_plant(model.plants)]), rest_s=REST_LONG_S, noise=2)
-        margins_before, margins = everywhere.check(task.before), everywhere.check(after)
+        margins_before = self.judging_margins.check(task.before)
         task.report("judging", 0.8)
         held_out = judge_held_out(model.arm, self.table, model.plants[0], task.before, after, task.threads, task.floors)
         task.report("judging", 1.0)
@@ -218,12 +257,6 @@ def _note(margin: Margin) -> str:
         f"joint {margin.joint}, {margin.scenario}: {what}, and the duty swings {margin.chatter_hz:.0f} times a second "
         f"(the worst of the {margin.plants_failing} that fail of {margin.plants} simulated arms)"
     )
-
-
-def _extreme_plants(plants: Floats) -> Floats:
-    """The estimate, and the same with the loosest gears that the samples show, where they differ."""
-    loose = loosest_plant(plants)
-    return plants[:1] if np.array_equal(loose, plants[0]) else np.vstack([plants[0], loose])
 
 
 def _digest(plants: Floats) -> str:

@@ -24,6 +24,7 @@ class TuningRequest:
     report: NotedProgress
     floors: bool  # whether to work out the least possible error
     on_trial: bool = False  # whether the arm itself will judge what is found
+    quiet: float = 1.0  # what divides the ripple that is allowed at rest
 
     def facts(self) -> dict[str, Any]:
         """The facts that every journal must agree with."""
@@ -34,5 +35,6 @@ class TuningRequest:
             "method": self.method,
             "budget": self.budget,
             "seed": self.seed,
+            "quiet": self.quiet,
             "before": self.before.tolist(),
         }

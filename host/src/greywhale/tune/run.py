@@ -61,6 +61,7 @@ def tune(
     journal: Path | None = None,
     resume: bool = False,
     report: NotedProgress | None = None,
+    quiet: float = 1.0,
     floors: bool = True,
     on_trial: bool = False,
 ) -> TuningResult:
@@ -68,10 +69,11 @@ def tune(
 
     `budget` counts sets of four candidates, each tried on all plants and motions. The first set is `start`, the
     controller from before: int32 (4, 13), by default that of the model's table. `journal` is a file that keeps every
-    cost; with `resume` the tuning goes on from it. `threads` (0: all cores) changes no bit. `floors` False leaves out
-    the held-out motions' floors. `on_trial`: the arm itself will judge, so unrest on the model counts less. After an
-    interrupt (KeyboardInterrupt) the best so far comes back at once, with `complete` False and not judged; if nothing
-    was evaluated yet, the interrupt is raised again. Raises UserError.
+    cost; with `resume` the tuning goes on from it. `threads` (0: all cores) changes no bit. `quiet` divides the ripple
+    that is allowed at rest. `floors` False leaves out the held-out motions' floors. `on_trial`: the arm itself will
+    judge, so unrest on the model counts less. After an interrupt (KeyboardInterrupt) the best so far comes back at
+    once, with `complete` False and not judged; if nothing was evaluated yet, the interrupt is raised again. Raises
+    UserError.
     """
     check_request(strategy=strategy, method=method, budget=budget, seed=seed, threads=threads, bounds=bounds)
     if method == "paper" and model.arm.joints_in_use != ALL:
@@ -87,6 +89,7 @@ def tune(
         before=check_controllers(model.controllers if start is None else start)[0],
         bounds=dict(bounds or {}),
         report=report or show_no_progress,
+        quiet=quiet,
         floors=floors,
         on_trial=on_trial,
     )

@@ -63,11 +63,8 @@ class Log:
         return replace(self, time=np.empty(0), leader=none, follower=none, voltage=none, state=self.state[:0].copy())
 
 
-def read_log(path: str | Path, voltages: bool = True) -> Log:
-    """Read a log written by `greywhale record`, or by another tool with the same columns and any comments.
-
-    Without `voltages` those are checked, but not kept: the log then has none, (rows, 0), and needs less memory.
-    """
+def read_log(path: str | Path) -> Log:
+    """Read a log written by `greywhale record`, or by another tool with the same columns and any comments."""
     with csv_file.CsvFile(path, COLUMNS) as file:
         _check_version(file)
         facts = facts_of(file.comments)
@@ -78,7 +75,7 @@ def read_log(path: str | Path, voltages: bool = True) -> Log:
             )
         origin = _origin(facts, str(path))
         dropped = _whole(facts, "dropped_samples", str(path), 0, _MOST_WHOLE) or 0
-        columns, crc = _Columns(_count_lines(path), voltages), 0
+        columns, crc = _Columns(_count_lines(path)), 0
         for block in file.blocks(torn=ending == UNFINISHED):
             columns.take(file, block)
             crc = add_rows(crc, block.data)
@@ -120,11 +117,11 @@ def refuse_altered(log: Log, *refused: Check) -> None:
 class _Columns:
     """Room for so many rows, filled a block after another."""
 
-    def __init__(self, room: int, voltages: bool) -> None:
+    def __init__(self, room: int) -> None:
         self.rows = 0
         self.time = np.empty(room)
         self.leader, self.follower = np.empty((room, JOINTS)), np.empty((room, JOINTS))
-        self.voltage = np.empty((room, JOINTS if voltages else 0))
+        self.voltage = np.empty((room, JOINTS))
         self.state = np.empty(room, dtype=np.int8)
         self.changes = 0  # rows with another voltage than the row before, while the motors follow
         self._last = np.full((1, JOINTS), np.nan)
@@ -140,8 +137,7 @@ class _Columns:
         self.time[here] = numbers[:, 0]
         self.leader[here] = numbers[:, _PLACES["leader"]]
         self.follower[here] = numbers[:, _PLACES["follower"]]
-        if self.voltage.shape[1]:
-            self.voltage[here] = numbers[:, _PLACES["voltage"]]
+        self.voltage[here] = numbers[:, _PLACES["voltage"]]
         self.state[here] = states
         before_each = np.vstack([self._last, numbers[:, _PLACES["voltage"]]])
         self.changes += int(((np.diff(before_each, axis=0) != 0.0).any(axis=1) & (states == _FOLLOWING)).sum())

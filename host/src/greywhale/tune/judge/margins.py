@@ -11,8 +11,7 @@ training motions, the follower must not rattle, and its duty must not chatter mo
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any, TypedDict
 
 import numpy as np
@@ -31,9 +30,9 @@ from greywhale.motion.swings import (
     SEARCH_BAND_RAD,
     count_swings,
     duty_swings,
+    ripple,
 )
-from greywhale.protocol.firmware import JOINTS
-from greywhale.protocol.schema import Board
+from greywhale.protocol.firmware import JOINTS, TICK_S
 from greywhale.protocol.table import ParameterTable
 from greywhale.simulate import Experiment, Result, Timing
 from greywhale.tune.search.objective import follow, pair_with_plants
@@ -43,7 +42,8 @@ SETTLE_S = 1.0
 WAIT_S = 0.2
 
 # Loop gains as factors of every joint's torque per volt.
-GAINS = {"at rest": 1.0, "half the loop gain": 0.5, "twice the loop gain": 2.0}
+AT_REST = "at rest"
+GAINS = {AT_REST: 1.0, "half the loop gain": 0.5, "twice the loop gain": 2.0}
 DELAY = "one period more delay"
 TEETH = "softer gear teeth"
 MOVING = "while moving"
@@ -56,6 +56,7 @@ REST_LONG_S = 4.0
 # A search keeps clear of the border: its gains are further off, and smaller swings and less chatter already cost.
 SEARCH_BEYOND = 1.15
 SEARCH_CHATTER = 0.7
+SEARCH_RIPPLE = 0.9
 
 
 class MarginFacts(TypedDict):
@@ -65,6 +66,7 @@ class MarginFacts(TypedDict):
     reversals: int
     chatter_hz: float
     rattle_rad: float  # rms, in motion
+    ripple_v: float  # rms, at rest
     plants_failing: int
     plants: int  # that were tried
 
@@ -80,6 +82,7 @@ class Margin:
     plants_failing: int
     plants: int
     rattle_rad: float = 0.0  # rms; looked at while moving only
+    ripple_v: float = 0.0  # rms; looked at in rests only
 
     @property
     def holds(self) -> bool:
@@ -93,6 +96,7 @@ class Margin:
             "reversals": self.reversals,
             "chatter_hz": self.chatter_hz,
             "rattle_rad": self.rattle_rad,
+            "ripple_v": self.ripple_v,
             "plants_failing": self.plants_failing,
             "plants": self.plants,
         }
@@ -105,6 +109,7 @@ class Unrest:
     reversals: Integers
     travel: Floats  # rad/s, in swings of a limit cycle
     chatter: Floats  # 1/s, duty swings
+    ripple: Floats  # V rms
     lost: npt.NDArray[np.bool_]  # left the range of numbers
 
     @property
@@ -115,32 +120,8 @@ class Unrest:
         return failing
 
 
-def unrest_of(
-    result: Result,
-    rests: Sequence[tuple[int, int]],
-    every: int,
-    shape: tuple[int, int],
-    board: Board,
-    band: float = LIMIT_CYCLE.band_rad,
-) -> Unrest:
-    """The unrest in traces of a board, with a row every `every` ticks; `rests` are pairs of first and last tick."""
-    reversals = np.zeros((*shape, JOINTS), dtype=np.int32)
-    travel = np.zeros((*shape, JOINTS))
-    chatter = np.zeros((*shape, JOINTS))
-    for first, last in rests:
-        seconds = (last - first) * 1e-3
-        rows = (first // every, last // every)
-        turned, moved = count_swings(result.angles, *rows, band)
-        beats = duty_swings(result.duties, rows, board)
-        reversals = np.maximum(reversals, turned.reshape(*shape, JOINTS))
-        travel = np.maximum(travel, np.where(turned >= LIMIT_CYCLE.turns, moved / seconds, 0.0).reshape(*shape, JOINTS))
-        chatter = np.maximum(chatter, (beats / seconds).reshape(*shape, JOINTS))
-    lost = np.repeat(result.diverged.reshape(shape)[:, :, None], JOINTS, axis=2)
-    return Unrest(reversals, travel, chatter, lost)
-
-
 def _part(found: Unrest, plants: slice) -> Unrest:
-    return Unrest(found.reversals[:, plants], found.travel[:, plants], found.chatter[:, plants], found.lost[:, plants])
+    return Unrest(*(getattr(found, field.name)[:, plants] for field in fields(found)))
 
 
 class Margins:
@@ -163,7 +144,6 @@ class Margins:
         motion = stops(low, high, rest_s)
         self.plants = plants
         self._arm, self._table, self._seed = arm, table, 100 * seed + _MOVING_SEED + noise
-        self._board = table.board
         self._threads = threads
         self._band = SEARCH_BAND_RAD if searching else LIMIT_CYCLE.band_rad
         self._beyond = SEARCH_BEYOND if searching else 1.0
@@ -181,34 +161,45 @@ class Margins:
         self._prompt = Experiment(motion, arm, **common)
         self._late = Experiment(motion, arm, timing=Timing(late=period), **common)
 
-    def unrest(self, controllers: Controllers, *, exact: bool = False, every: int = 1) -> dict[str, Unrest]:
+    def unrest(self, controllers: Controllers, *, exact: bool = False) -> dict[str, Unrest]:
         """Run every scenario for every candidate (n, 4, 13) on every plant."""
-        count, plants = len(controllers), len(self.plants)
+        plants = len(self.plants)
         variants = {name: with_gain(self.plants, self._widen(gain)) for name, gain in GAINS.items()}
         variants[TEETH] = with_softer_teeth(self.plants)
-        prompt = self._run(self._prompt, controllers, np.concatenate(list(variants.values())), exact, every)
+        prompt = self._run(self._prompt, controllers, np.concatenate(list(variants.values())), exact)
         found = {
             name: _part(prompt, slice(number * plants, (number + 1) * plants)) for number, name in enumerate(variants)
         }
-        found[DELAY] = self._run(self._late, controllers, self.plants, exact, every)
-        assert all(one.reversals.shape == (count, plants, JOINTS) for one in found.values())
+        found[DELAY] = self._run(self._late, controllers, self.plants, exact)
         return found
 
     def _widen(self, gain: float) -> float:
         return gain * self._beyond if gain > 1.0 else gain / self._beyond if gain < 1.0 else gain
 
-    def _run(self, experiment: Experiment, controllers: Controllers, plants: Floats, exact: bool, every: int) -> Unrest:
+    def _run(self, experiment: Experiment, controllers: Controllers, plants: Floats, exact: bool) -> Unrest:
         laws, arms = pair_with_plants(controllers, plants)
-        if exact:
-            result = experiment.run_exact(laws, arms, every=every, threads=self._threads)
-        else:
-            result = experiment.run(laws, arms, every=every, threads=self._threads)
-        return unrest_of(result, self._rests, every, (len(controllers), len(plants)), self._board, self._band)
+        run = experiment.run_exact if exact else experiment.run
+        return self._unrest_of(run(laws, arms, every=1, threads=self._threads), (len(controllers), len(plants)))
+
+    def _unrest_of(self, result: Result, shape: tuple[int, int]) -> Unrest:
+        """The worst of the rests in these traces."""
+        reversals = np.zeros((*shape, JOINTS), dtype=np.int32)
+        travel, chatter, loud = (np.zeros((*shape, JOINTS)) for _ in range(3))
+        for rows in self._rests:
+            seconds = (rows[1] - rows[0]) * TICK_S
+            turned, moved = (one.reshape(*shape, JOINTS) for one in count_swings(result.angles, *rows, self._band))
+            beats = duty_swings(result.duties, rows, self._table.board).reshape(*shape, JOINTS)
+            hiss = self._table.supply_v * ripple(result.duties, rows, self._table.board).reshape(*shape, JOINTS)
+            reversals = np.maximum(reversals, turned)
+            travel = np.maximum(travel, np.where(turned >= LIMIT_CYCLE.turns, moved / seconds, 0.0))
+            chatter, loud = np.maximum(chatter, beats / seconds), np.maximum(loud, hiss)
+        lost = np.repeat(result.diverged.reshape(shape)[:, :, None], JOINTS, axis=2)
+        return Unrest(reversals, travel, chatter, loud, lost)
 
     def check(self, controllers: Controllers) -> tuple[Margin, ...]:
         """Check one controller (4, 13) in the bench's own arithmetic: a verdict for each scenario and joint."""
         verdicts = []
-        for name, found in self.unrest(controllers[None], exact=True, every=1).items():
+        for name, found in self.unrest(controllers[None], exact=True).items():
             for joint in range(JOINTS):
                 verdicts.append(
                     Margin(
@@ -216,8 +207,9 @@ class Margins:
                         joint=joint,
                         reversals=int(found.reversals[0, :, joint].max()),
                         chatter_hz=float(found.chatter[0, :, joint].max()),
+                        ripple_v=float(found.ripple[0, :, joint].max()),
                         plants_failing=int(found.fails[0, :, joint].sum()),
-                        plants=len(self.plants),
+                        plants=found.fails.shape[1],
                     )
                 )
         return (*verdicts, *self._check_moving(controllers))
@@ -246,19 +238,24 @@ class Margins:
 _MOVING_SEED = 50  # of sensor noise that no search hears
 # The leader rests this long before its first move.
 _FIRST_S = 0.2
-# What a search pays for a limit cycle, as shares of what is possible: for each rad/s of swinging, for each
-# CHATTER_AT_REST_HZ of chatter, and the least.
+# What a search pays, as shares of what is possible: for a limit cycle, for each rad/s of swinging in it, and for each
+# CHATTER_AT_REST_HZ of chatter; for ripple at rest as a share of what is allowed, and for what is beyond that.
 TRAVEL_PRICE = 0.5
 CHATTER_PRICE = 0.03
-LEAST_PRICE = 0.05
+FAIL_PRICE = 0.15
+TEETH_PRICE = 0.05  # of a failure with softer teeth: what no recording shows well is no reason to follow badly
+RIPPLE_PRICE = 0.05
+LOUD_PRICE = 1.0
 
 
-def penalty(found: dict[str, Unrest]) -> Floats:
-    """What candidates pay (n, 4): nothing when quiet, otherwise LEAST_PRICE, and more for more unrest."""
-    total = 0.0
-    for one in found.values():
+def penalty(found: dict[str, Unrest], quiet_v: Floats) -> Floats:
+    """What candidates pay (n, 4), mostly for scenarios that fail; `quiet_v` (4,) is the ripple that is allowed."""
+    share = found[AT_REST].ripple.mean(axis=1) / quiet_v
+    total = RIPPLE_PRICE * share + LOUD_PRICE * np.maximum(share - SEARCH_RIPPLE, 0.0)
+    for scenario, one in found.items():
+        fails = (TEETH_PRICE if scenario == TEETH else FAIL_PRICE) * one.fails
         excess = np.maximum(one.chatter / CHATTER_AT_REST_HZ - SEARCH_CHATTER, 0.0)
-        price = TRAVEL_PRICE * one.travel + CHATTER_PRICE * excess + LEAST_PRICE * one.fails + 10.0 * one.lost
+        price = TRAVEL_PRICE * one.travel + CHATTER_PRICE * excess + fails + 10.0 * one.lost
         total = total + price.mean(axis=1)
     return np.asarray(total, dtype=np.float64)
 

@@ -85,7 +85,22 @@ def _multiple(one: HeldOut, joint: int) -> str:
 
 
 def _margins(outcome: TuningResult) -> list[str]:
-    """Whether all margins hold, or which do not; the notes say how far a joint swings."""
+    """Whether all margins hold, or which do not; the notes say how far a joint swings. Then how loud the motors are."""
+    return [*_held(outcome), *ripples(outcome)]
+
+
+def ripples(outcome: TuningResult) -> list[str]:
+    """A sentence about the ripple at rest, before and after; none where it was not judged."""
+    pairs = [
+        (before, after)
+        for before, after in zip(outcome.margins_before, outcome.margins, strict=False)
+        if after.scenario == AS_IT_IS
+    ]
+    said = ", ".join(f"joint {now.joint} {was.ripple_v:.2f} -> {now.ripple_v:.2f}" for was, now in pairs)
+    return [f"Ripple of the voltage at rest (above 20 Hz), V rms: {said}."] if said else []
+
+
+def _held(outcome: TuningResult) -> list[str]:
     if failing := failing_margins(outcome):
         return failing
     plants = outcome.margins[0].plants

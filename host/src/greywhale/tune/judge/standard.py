@@ -1,0 +1,62 @@
+"""What a controller must hold to be uploaded: the margins that the one from before holds, and quiet at rest.
+
+Softer teeth are no part of it: the softest that recordings allow, made softer still, would forbid all close following.
+They cost a search something, and the report tells where they do not hold.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+import numpy.typing as npt
+
+from greywhale.base.types import Floats
+from greywhale.motion.swings import QUIET_SHARE
+from greywhale.protocol.firmware import JOINTS
+from greywhale.tune.judge.margins import AT_REST, TEETH, Margin, Unrest
+
+# Ripple is a figure of noise: the same controller differs so much from one noise to another.
+SAME = 1.05
+
+Flags = npt.NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Standard:
+    """On how many plants a joint may fail each scenario (4,), as the controller from before does, and its ripple."""
+
+    failing: Mapping[str, npt.NDArray[np.int64]]
+    quiet_v: Floats  # (4,) V rms, at rest
+
+    @classmethod
+    def of(cls, before: tuple[Margin, ...], supply_v: float, level: float = 1.0) -> Self:
+        """The ripple may be that from before or QUIET_SHARE of the supply, whichever is larger, divided by `level`."""
+        failing: dict[str, npt.NDArray[np.int64]] = {}
+        ripple = np.zeros(JOINTS)
+        for margin in before:
+            failing.setdefault(margin.scenario, np.zeros(JOINTS, np.int64))[margin.joint] = margin.plants_failing
+            if margin.scenario == AT_REST:
+                ripple[margin.joint] = margin.ripple_v
+        return cls(failing, np.maximum(ripple, QUIET_SHARE * supply_v) / level)
+
+    def falls_short(self, unrest: Mapping[str, Unrest]) -> Flags:
+        """Which joints of which candidates do: (n, 4)."""
+        short: Flags = unrest[AT_REST].ripple.max(axis=1) > SAME * self.quiet_v
+        for scenario, found in unrest.items():
+            if scenario == TEETH:
+                continue
+            short = short | (found.fails.sum(axis=1) > self.failing.get(scenario, 0))
+        return short
+
+    def joints_short(self, margins: tuple[Margin, ...]) -> Flags:
+        """Which joints of one controller do: (4,)."""
+        short = np.zeros(JOINTS, dtype=bool)
+        for margin in margins:
+            joint, scenario = margin.joint, margin.scenario
+            loud = scenario == AT_REST and margin.ripple_v > SAME * self.quiet_v[joint]
+            fails = scenario != TEETH and margin.plants_failing > self.failing[scenario][joint]
+            short[joint] |= loud or fails
+        return short
