@@ -23,7 +23,8 @@ def test_pieces_have_every_kind_at_any_share() -> None:
 def test_sessions_hold(rate: int) -> None:
     faults = max(50, rate // 2)
     (row,) = link.run({"what": "session", "how": rate, "seed": 1, "trials": faults})
-    assert (row.trials, row.violations) == (faults, 0)
+    assert faults <= row.trials < faults + 100, "the last turn of each session may have more than it needs"
+    assert row.violations == 0
     assert row.counts["applied"] > 10
     assert row.counts["frames hit"] > faults / 2
 
