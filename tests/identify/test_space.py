@@ -16,18 +16,13 @@ from greywhale.simulate import plant_row
 ALL = tuple(KINDS)
 
 
-@pytest.mark.parametrize("name", ["white_box", "grey_box", "default"])
-def test_motors_start_as_the_users_arm(name: str) -> None:
+@pytest.mark.parametrize(
+    ("name", "kinds"), [("white_box", MOTOR), ("grey_box", MOTOR), ("default", MOTOR), ("worn", ALL)]
+)
+def test_motors_friction_and_gears_start_as_the_users_arm(name: str, kinds: tuple[str, ...]) -> None:
     arm = load_arm(name)
-    space = Space.of(arm, MOTOR, range(JOINTS))
+    space = Space.of(arm, kinds, range(JOINTS))
     np.testing.assert_allclose(space.plants(space.start()[None])[0], plant_row(arm), rtol=1e-12)
-
-
-def test_friction_and_gears_of_the_users_arm_are_kept() -> None:
-    arm = load_arm("worn")
-    space = Space.of(arm, ALL, range(JOINTS))
-    np.testing.assert_allclose(space.plants(space.start()[None])[0], plant_row(arm), rtol=1e-12)
-    assert len(space) == 14 * 4 - 2 + 1, "only pitch joints have a zero angle that matters; the supply is the arm's"
 
 
 def test_each_number_moves_its_own_joint_only() -> None:
