@@ -9,19 +9,10 @@ namespace greywhale::loop {
 fuzzy_pdi::Refusal compile(const std::int32_t* c, int period_ms, fuzzy_pdi::Coefficients& result) {
   const auto set = [c](std::size_t i) { return static_cast<std::int16_t>(c[i]); };
   const auto gain = [c](std::size_t i) { return static_cast<std::uint32_t>(c[i]); };
-  const fuzzy_pdi::Settings settings = {set(0),
-                                        set(1),
-                                        set(2),
-                                        set(3),
-                                        set(4),
-                                        set(5),
-                                        set(6),
-                                        set(7),
-                                        gain(8),
-                                        gain(9),
-                                        gain(10),
-                                        static_cast<std::uint16_t>(c[11]),
-                                        static_cast<std::uint8_t>(c[12])};
+  const auto ku_mv = static_cast<std::uint16_t>(c[11]);
+  const auto ce_ticks = static_cast<std::uint8_t>(c[12]);
+  const fuzzy_pdi::Settings settings = {set(0), set(1),  set(2),  set(3),   set(4), set(5),  set(6),
+                                        set(7), gain(8), gain(9), gain(10), ku_mv,  ce_ticks};
   return fuzzy_pdi::compile(settings, static_cast<std::uint8_t>(period_ms), result);
 }
 

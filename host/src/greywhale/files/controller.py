@@ -57,7 +57,7 @@ class Sets(toml_file.Table):
 class JointController(toml_file.Table):
     """One joint: scaling factors kp (1/rad), kd (1/rad over 20 ms), ki (V/(rad s)), ku (V), and the sets.
 
-    The change of error spans `ce_ticks` control periods; a file that does not say has the paper's 1.
+    The change of error spans `ce_ticks` control periods; 1 where a file does not say.
     """
 
     kp: float

@@ -18,7 +18,7 @@ look only at runs of samples without a gap.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Literal, TypedDict
 
 import numpy as np
@@ -145,8 +145,9 @@ def evaluate(log: Log, settings: Settings | None = None) -> Evaluation:
     # Each of the thousands of correlations is too short for BLAS threads, which would wait for a busy core.
     with threadpool_limits(limits=1, user_api="blas"):
         for joint in range(log.leader.shape[1]):
-            measures, rested = _joint(log.leader[:, joint], log.follower[:, joint], measured, runs, chosen)
-            joints.append(replace(measures, ripple_v=_ripple(log.voltage[:, joint], runs)))
+            columns = log.leader[:, joint], log.follower[:, joint], log.voltage[:, joint]
+            measures, rested = _joint(*columns, measured, runs, chosen)
+            joints.append(measures)
             rests.append(rested)
     return Evaluation(
         joints=tuple(joints),
@@ -160,16 +161,19 @@ def evaluate(log: Log, settings: Settings | None = None) -> Evaluation:
     )
 
 
-def _ripple(voltage: Floats, runs: list[Run]) -> float | None:
-    """Over the longest run."""
-    longest = max(runs, key=lambda run: run.stop - run.start)
-    if abs(longest.period - TICK_S) > 0.1 * TICK_S or longest.stop - longest.start < 2 * RIPPLE_S / TICK_S:
+def _ripple(voltage: Floats, run: Run) -> float | None:
+    if abs(run.period - TICK_S) > 0.1 * TICK_S or run.stop - run.start < 2 * RIPPLE_S / TICK_S:
         return None
-    return float(ripple_of_record(voltage[longest.slice, None])[0])
+    return float(ripple_of_record(voltage[run.slice, None])[0])
 
 
 def _joint(
-    leader: Floats, follower: Floats, measured: NDArray[np.bool_], runs: list[Run], settings: Settings
+    leader: Floats,
+    follower: Floats,
+    voltage: Floats,
+    measured: NDArray[np.bool_],
+    runs: list[Run],
+    settings: Settings,
 ) -> tuple[JointMeasures, float]:
     error = leader - follower
     at_rest = np.zeros(len(leader), dtype=bool)
@@ -198,5 +202,6 @@ def _joint(
         overshoot_percent=overshoot,
         settling_s=settling,
         unsettled_steps=sum(one.settling_s is None for one in answers),
+        ripple_v=_ripple(voltage, longest),
     )
     return measures, float(np.count_nonzero(at_rest) * longest.period)

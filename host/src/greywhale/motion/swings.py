@@ -180,7 +180,7 @@ def chatter_of_record(voltage: Floats, supply_v: float) -> Floats:
 
 # --- ripple -----------------------------------------------------------------------------------------------------------
 
-# At rest, a share of the supply that nobody hears across a table.
+# So much ripple is allowed at rest in any case, as a share of the supply.
 QUIET_SHARE = 0.03
 
 

@@ -97,7 +97,8 @@ class DefaultMethod:
         # With bounds, what is uploaded keeps within them, whatever ran before.
         self.start = self.space.controllers(self.space.points(task.before[None]))[0] if task.bounds else task.before
         self.margins = self._margins(self.everywhere[[0, -1]], searching=True)
-        self.standard = Standard.of(self.judging_margins.check(self.start), self.table.supply_v, task.quiet)
+        self.margins_before = self.judging_margins.check(self.start)
+        self.standard = Standard.of(self.margins_before, self.table.supply_v, task.quiet)
         self.found = SearchState.nothing(self.start)
 
     def _margins(self, plants: Floats, **options: Any) -> Margins:
@@ -229,7 +230,7 @@ class DefaultMethod:
         idle = list(unused(model.arm.joints_in_use))
         after[idle] = task.before[idle]  # whatever was tried there made no difference
         task.report("judging", 0.5)
-        margins_before = self.judging_margins.check(task.before)
+        margins_before = self.judging_margins.check(task.before) if task.bounds else self.margins_before
         task.report("judging", 0.8)
         held_out = judge_held_out(model.arm, self.table, model.plants[0], task.before, after, task.threads, task.floors)
         task.report("judging", 1.0)
