@@ -6,6 +6,7 @@ import shutil
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,8 @@ from greywhale.commission import run as commission_run
 from greywhale.commission.journal import CommissioningJournal
 from greywhale.commission.learn import LearntController
 from greywhale.commission.search import KI, KP
+from greywhale.dashboard import bench as dashboard_bench
+from greywhale.dashboard import server as dashboard_server
 from greywhale.files import parameter_file
 from greywhale.files.arm import content_of, default_arm, load_arm
 from greywhale.files.leader import save_leader
@@ -163,13 +166,14 @@ def demonstrated(yours: Path, tmp_path_factory: pytest.TempPathFactory) -> Once:
 @pytest.fixture
 def once(
     monkeypatch: pytest.MonkeyPatch,
+    yours: Path,
     identified: Once,
     tuned: Once,
     commissioned: Once,
     demonstrated: Once,
 ) -> None:
-    """The verbs around what was computed for all of them; `sim` ends when its port is there. `flash` greets the board
-    that has its firmware. A page's own bench is in this process.
+    """The verbs around what was computed for all of them; `sim` ends when its port is there, `dashboard` when it would
+    wait for a browser. `flash` greets the board that has its firmware. A page's own bench is in this process.
     """
 
     def commission(options: CommissioningRequest, report: Any) -> Any:
@@ -196,4 +200,7 @@ def once(
     monkeypatch.setattr(greywhale.cli.story, "BenchProcess", lock_step)
     monkeypatch.setattr(greywhale.cli.story, "run", lambda options, report: demonstrated())
     monkeypatch.setattr(bench_serve, "serve", serve)
+    monkeypatch.setattr(dashboard_bench, "BenchProcess", lambda arm, board: lock_step("--board", board))
+    monkeypatch.setattr(dashboard_server, "require_page", lambda: yours)
+    monkeypatch.setattr(dashboard_server, "make_server", lambda app: SimpleNamespace(run=lambda listeners: None))
     monkeypatch.setattr(flash_verb, "flash", greet)

@@ -8,8 +8,8 @@ The rule, in order:
 3. Every other verb is run as printed, with files of the scratch folder where a page speaks of yours. What would only
    take long is shortened by options behind the printed ones (SHORTER).
 4. `identify`, `tune`, `commission`, `demo` and `reproduce` compute once for all pages (`Once`); reading, checking and
-   writing is done for each. `sim` puts its bench and port together and ends; `flash` greets a board that has the
-   firmware.
+   writing is done for each. `sim` puts its bench and port together and ends, `dashboard` its server; `flash` greets a
+   board that has the firmware.
 """
 
 from __future__ import annotations
@@ -33,6 +33,7 @@ SHORTER = {
     "record": "--seconds 0.5",
     "record --excite": "--seconds 4 --budget 2",
     "info --watch": "--seconds 0.5",
+    "dashboard": "--no-browser",
     "doctor": "--seconds 0.5",
     "compare": "--functions sphere --budget 60 --seeds 2 --jobs 1",
     "tune": "--force",  # the model is one of six seconds of log

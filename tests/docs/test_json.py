@@ -22,6 +22,7 @@ CALLS = {
     "ports": [""],
     "udev": [""],
     "info": [""],
+    "dashboard": ["--no-browser"],
     "doctor": ["--seconds 0.5"],
     "flash": ["--hex firmware.hex"],
     "upload": ["controller.toml"],

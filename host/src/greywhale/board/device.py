@@ -220,6 +220,11 @@ class Device:
         request = schema.RenewRequest(self.lease_ms)
         self._transport.write(encode_frame(request.TYPE, self._next_sequence(), request.pack()))
 
+    def lend(self) -> tuple[Line, Session]:
+        """Line and session, for who sends and reads frames there from now on; closing the device stops the motors."""
+        self._motors_may_run = True
+        return self._transport, self._session
+
     def stop(self) -> None:
         """Turn the motors off, confirmed by the board. A further Ctrl-C does not hold the request back."""
         with hold_ctrl_c():

@@ -15,6 +15,7 @@ from greywhale.cli.output import QUIET
 VERBS = {
     "demo": ("demo", "The whole story on the simulated bench in one go, pictures at the end."),
     "sim": ("sim", "Start the simulated bench and print its serial port."),
+    "dashboard": ("dashboard", "The arm live in the browser: what it does, its controllers, every verb."),
     "ports": ("ports", "List the serial ports and what is behind them."),
     "flash": ("flash", "Put the firmware onto a board."),
     "info": ("info", "Tell a board's version, state, faults and counters."),

@@ -60,8 +60,12 @@ class FrameDecoder:
 
     def feed(self, data: bytes) -> list[Frame]:
         """Take the next bytes and return the frames that they complete."""
+        return [frame for frame, _ in self.feed_wire(data)]
+
+    def feed_wire(self, data: bytes) -> list[tuple[Frame, bytes]]:
+        """The same, each with the bytes it came as, the closing zero included."""
         *whole, rest = (self._rest + data).split(b"\0")
-        frames: list[Frame] = []
+        frames: list[tuple[Frame, bytes]] = []
         for wire in whole:
             if self._skipping:  # the tail of an overlong piece that is counted already
                 self._skipping = False
@@ -70,7 +74,7 @@ class FrameDecoder:
                 if frame is None:
                     self.bad += 1
                 else:
-                    frames.append(frame)
+                    frames.append((frame, wire + b"\0"))
         if len(rest) > MAX_WIRE and not self._skipping:
             self._skipping = True
             self.bad += 1

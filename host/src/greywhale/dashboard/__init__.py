@@ -1,0 +1,1 @@
+"""The page's server: one board shared among pages, the verbs as jobs, and the bench's hands."""

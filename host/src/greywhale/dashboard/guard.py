@@ -1,0 +1,144 @@
+"""Lets only this machine's own pages in: checks host, origin and token of every request, bounds its size and rate.
+
+A page of a foreign site may send requests here too, as the browser of this user does; and a foreign name may lead to
+this address (DNS rebinding). Neither knows the token, and both say in their headers who they are.
+"""
+
+from __future__ import annotations
+
+import hmac
+import time
+from collections.abc import Callable
+
+from starlette.responses import PlainTextResponse
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+SUBPROTOCOL = "greywhale"
+TOKEN_PREFIX = "token."
+MOST_BODY_BYTES = 1 << 20
+# A page asks for some ten things at its start, and then for one at a time.
+REQUESTS_A_SECOND, AT_ONCE = 100.0, 300.0
+
+POLICY = "; ".join(
+    [
+        "default-src 'self'",
+        "script-src 'self' 'wasm-unsafe-eval'",
+        "img-src 'self' data: blob:",
+        "object-src 'none'",
+        "base-uri 'none'",
+        "form-action 'none'",
+        "frame-ancestors 'none'",
+    ]
+)
+_HEADERS = [
+    (b"content-security-policy", POLICY.encode()),
+    (b"x-content-type-options", b"nosniff"),
+    (b"referrer-policy", b"no-referrer"),
+    (b"cross-origin-resource-policy", b"same-origin"),
+    (b"cross-origin-opener-policy", b"same-origin"),
+    (b"cache-control", b"no-store"),
+]
+
+
+class Bucket:
+    """So many a second, and so many at once."""
+
+    def __init__(self, a_second: float, at_once: float, clock: Callable[[], float] = time.monotonic) -> None:
+        self._a_second, self._most, self._clock = a_second, at_once, clock
+        self._left, self._then_s = at_once, clock()
+
+    def take(self) -> bool:
+        """Whether there is still one."""
+        now_s = self._clock()
+        self._left = min(self._most, self._left + (now_s - self._then_s) * self._a_second)
+        self._then_s = now_s
+        if self._left < 1.0:
+            return False
+        self._left -= 1.0
+        return True
+
+
+class Guard:
+    """An ASGI application around another one; `is_public` tells which paths anybody on this machine may read."""
+
+    def __init__(self, inner: ASGIApp, token: str, port: int, is_public: Callable[[str], bool]) -> None:
+        self._inner = inner
+        self._token = token.encode()
+        self._hosts = {f"{name}:{port}" for name in ("127.0.0.1", "localhost")}
+        self._origins = {f"http://{host}" for host in self._hosts}
+        self._is_public = is_public
+        self._bucket = Bucket(REQUESTS_A_SECOND, AT_ONCE)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] == "lifespan":
+            await self._inner(scope, receive, send)
+            return
+        refusal = self._refusal(scope)
+        if refusal is None and _length(scope) > MOST_BODY_BYTES:
+            refusal = (413, f"The request is larger than {MOST_BODY_BYTES} bytes.")
+        if refusal is not None:
+            await PlainTextResponse(refusal[1], refusal[0], {"connection": "close"})(scope, receive, _hardened(send))
+            return
+        await self._inner(scope, _bounded(receive), _hardened(send))
+
+    def _refusal(self, scope: Scope) -> tuple[int, str] | None:
+        """Status and sentence, None for what may come in."""
+        headers: dict[bytes, bytes] = dict(scope["headers"])
+        names = [name for name, _ in scope["headers"]]
+        if names.count(b"host") != 1 or headers[b"host"].decode("latin-1") not in self._hosts:
+            return 403, "This server answers to 127.0.0.1 and localhost alone; use the address that it printed."
+        origin = headers.get(b"origin")
+        if names.count(b"origin") > 1 or (origin is not None and origin.decode("latin-1") not in self._origins):
+            return 403, "This server answers to its own pages alone; use the address that it printed."
+        if not self._bucket.take():
+            return 429, "Too many requests; wait a second."
+        if scope["type"] == "http" and scope["method"] in ("GET", "HEAD") and self._is_public(scope["path"]):
+            return None
+        if not hmac.compare_digest(_token(scope, headers), self._token):
+            return 403, "The token is missing or not this server's; open the address that it printed."
+        return None
+
+
+def _token(scope: Scope, headers: dict[bytes, bytes]) -> bytes:
+    """What a request has as its token: in a header, or beside the subprotocol where a browser sends no header."""
+    if scope["type"] == "http":
+        return headers.get(b"x-greywhale-token", b"")
+    offered: list[str] = scope["subprotocols"]
+    if SUBPROTOCOL not in offered:
+        return b""
+    return next((one[len(TOKEN_PREFIX) :].encode() for one in offered if one.startswith(TOKEN_PREFIX)), b"")
+
+
+def _length(scope: Scope) -> int:
+    """What a request says its body has; one that says nothing is counted while it comes."""
+    for name, value in scope["headers"]:
+        if name == b"content-length":
+            return int(value) if value.isdigit() else MOST_BODY_BYTES + 1
+    return 0
+
+
+def _bounded(receive: Receive) -> Receive:
+    """The body of a request breaks off where it is too long."""
+    had = 0
+
+    async def bounded() -> Message:
+        nonlocal had
+        message = await receive()
+        if message["type"] == "http.request":
+            had += len(message.get("body", b""))
+            if had > MOST_BODY_BYTES:
+                return {"type": "http.disconnect"}
+        return message
+
+    return bounded
+
+
+def _hardened(send: Send) -> Send:
+    """Every answer forbids what a page does not need."""
+
+    async def hardened(message: Message) -> None:
+        if message["type"] in ("http.response.start", "websocket.http.response.start"):
+            message = {**message, "headers": [*message.get("headers", []), *_HEADERS]}
+        await send(message)
+
+    return hardened

@@ -1,0 +1,95 @@
+"""Holds the board's port as every verb does, while the server runs: takes a board that comes, survives its loss."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable
+
+from greywhale.base.errors import UserError
+from greywhale.board.device import Device
+from greywhale.board.refusal import upper_first
+from greywhale.board.session import Session, StopAsked
+from greywhale.dashboard.relay import Relay
+from greywhale.protocol.ports import choose_port, lasting_name
+from greywhale.protocol.transport import Line, PortBusyError, PortLostError
+
+# How long until a board is looked for again, until one that does not answer is asked again (its bootloader ends only
+# if nobody speaks to it), and until one that was stopped from elsewhere is taken again.
+LOOK_AGAIN_S = 0.5
+ASK_AGAIN_S = 6.0
+AFTER_STOP_S = 3.0
+# Samples of so many milliseconds are read at once: to wake up at each tick would cost more than all else.
+ROUND_S = 0.004
+STOPPED = "The motors are off: `greywhale stop` was called in another terminal. The board is taken again in a moment."
+
+logger = logging.getLogger(__name__)
+
+
+class Keeper:
+    """A thread between its `start` and its `close`."""
+
+    def __init__(self, relay: Relay, named: str | None, choose: Callable[[str | None], str] = choose_port) -> None:
+        """`named` is the port, None for the only board that is found."""
+        self._relay = relay
+        self._named = named
+        self._choose = choose
+        self._ending = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="greywhale-board", daemon=True)
+
+    def start(self) -> None:
+        self._thread.start()
+
+    def end(self) -> None:
+        """Let `hold` return soon; from any thread."""
+        self._ending.set()
+
+    def close(self) -> None:
+        """Motors off, port free."""
+        self.end()
+        self._thread.join()
+
+    def _run(self) -> None:
+        while not self._ending.is_set():
+            self._ending.wait(self.hold())
+
+    def hold(self) -> float:
+        """Hold the board until it is lost or the server ends; after how many seconds to try again."""
+        port, again_s = "", LOOK_AGAIN_S
+        try:
+            port, again_s = self._choose(self._named), ASK_AGAIN_S
+            name = lasting_name(port)
+            with Device(port, restart=False) as device:
+                self._named = self._named and name  # the socket that it is plugged into, where that has a name
+                self._share(device, name)
+        except StopAsked:
+            self._relay.close(port, STOPPED)
+            return AFTER_STOP_S
+        except (PortLostError, PortBusyError) as error:
+            self._tell(port, error)
+            return LOOK_AGAIN_S
+        except UserError as error:
+            self._tell(port, error)
+            return again_s
+        return LOOK_AGAIN_S
+
+    def _tell(self, port: str, error: UserError) -> None:
+        logger.info("%s", error.message)
+        self._relay.close(port, upper_first(error.message))
+
+    def _share(self, device: Device, port: str) -> None:
+        line, session = device.lend()
+        self._relay.open(line, port, session.refuse_motion)
+        try:
+            while not self._ending.is_set():
+                turn(self._relay, line, session)
+                line.wait(ROUND_S)
+        finally:
+            self._relay.close(port, "")
+
+
+def turn(relay: Relay, line: Line, session: Session) -> None:
+    """One round: what the board said goes on. Raises where the port went away or a stop was asked for."""
+    session.check()
+    relay.heard(line.read())
+    relay.look()

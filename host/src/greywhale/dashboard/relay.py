@@ -1,0 +1,341 @@
+"""Shares one board among pages and a running verb: passes frames on, keeps the motors' lease for the page that drives.
+
+Every request gets a sequence number of the relay's own and its answer the client's again; nothing else of a frame
+changes. The board sends every tick: how many of them a client gets, it says with the usual request, which never
+reaches the board. Time is that of the line, so a simulated board may live faster than this machine.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import secrets
+import threading
+from collections.abc import Callable
+from typing import NamedTuple
+
+from greywhale.base.errors import UserError
+from greywhale.board.device import stop_message
+from greywhale.board.refusal import upper_first
+from greywhale.dashboard.history import History
+from greywhale.dashboard.outbox import Message, Outbox
+from greywhale.protocol import schema
+from greywhale.protocol.frames import Frame, FrameDecoder, encode_frame
+from greywhale.protocol.transport import Line
+
+# The motors go off when the page that drives says nothing for so long; the board's lease ends them if this host hangs.
+SILENCE_S = 0.28
+LEASE_MS = 250
+RENEW_S = 0.06
+# A board that sent no sample for so long may have restarted. A bootloader to which anybody speaks stays for 5 s, so
+# nothing but a stop is sent until its firmware must run; then it is asked for samples again, and then given up.
+QUIET_S = 0.1
+ASK_AGAIN_S = 6.0
+GIVE_UP_S = 7.0
+
+# What changes nothing, and what must always get through.
+_FOR_ALL = {schema.HelloRequest.TYPE, schema.StatusRequest.TYPE, schema.ParamGetRequest.TYPE, schema.StopRequest.TYPE}
+_LEASES = {schema.EnableRequest.TYPE, schema.LeadRequest.TYPE, schema.RenewRequest.TYPE}
+_STARTS = {schema.EnableRequest.TYPE, schema.LeadRequest.TYPE}
+_AT_REST = (schema.State.DISABLED, schema.State.FAULT)
+_STATE = 4  # place of the state in a sample's payload
+
+
+class Client:
+    """One who shares the board. `verb` marks a verb that runs for a page: it keeps its lease itself."""
+
+    def __init__(self, outbox: Outbox, verb: str | None = None) -> None:
+        self.id = secrets.token_hex(8)
+        self.outbox = outbox
+        self.verb = verb
+        self.every = 0  # ticks between the samples it gets; 0: none
+        self.seen_s = 0.0
+        self.decoder = FrameDecoder()
+
+
+class _Asked(NamedTuple):
+    """Whose request a sequence number of the relay stands for; None: the relay's own."""
+
+    client: Client | None
+    type: int
+    seq: int
+
+
+class _Open(NamedTuple):
+    """A board that is there."""
+
+    line: Line
+    port: str
+    may_move: Callable[[], None]  # raises where motors must not start
+
+
+class Relay:
+    """Any thread may call it; one at a time is inside."""
+
+    def __init__(self, history: History) -> None:
+        self.history = history
+        self._lock = threading.RLock()
+        self._clients: list[Client] = []
+        self._driver: Client | None = None
+        self._verb: Client | None = None
+        self._board: _Open | None = None
+        self._link: Message = {"kind": "link", "open": False, "port": "", "sentence": ""}
+        self._decoder = FrameDecoder()
+        self._asked: dict[int, _Asked] = {}
+        self._sequence = 0
+        self._motors: Client | None = None  # the page for which they run
+        self._confirmed = False  # that they do
+        self._renewed_s = self._heard_s = 0.0
+        self._asked_again = False
+
+    # --- the board --------------------------------------------------------------------------------------------------
+
+    @property
+    def link(self) -> Message:
+        """What pages are told of the board."""
+        return self._link
+
+    def open(self, line: Line, port: str, may_move: Callable[[], None]) -> None:
+        """A board is there, greeted; `may_move` raises where its motors must not start."""
+        with self._lock:
+            self._board = _Open(line, port, may_move)
+            self._decoder = FrameDecoder()
+            self._asked.clear()
+            self._motors = None
+            self._want_samples()
+            self._tell_link(True, port, "")
+
+    def close(self, port: str, sentence: str) -> None:
+        """No board is there, and why."""
+        with self._lock:
+            self._board = self._motors = None
+            if self._link["sentence"] != sentence or self._link["open"]:
+                self._tell_link(False, port, sentence)
+
+    def heard(self, data: bytes) -> None:
+        """Pass on what the board said."""
+        with self._lock:
+            for frame, wire in self._decoder.feed_wire(data):
+                if frame.type == schema.Sample.TYPE:
+                    self._pass_sample(frame, wire)
+                elif frame.type == schema.HelloReply.TYPE and frame.seq == 0:
+                    self._note_restart(frame, wire)
+                else:
+                    self._pass_answer(frame)
+
+    def look(self) -> None:
+        """Keep the lease, or end it. A UserError says that the board is silent for good."""
+        with self._lock:
+            if self._board is None:
+                return
+            now_s = self._board.line.clock()
+            self._look_for_samples(now_s - self._heard_s)
+            page = self._motors
+            if page is None:
+                return
+            if now_s > page.seen_s + SILENCE_S:
+                self._stop()
+                page.outbox.add_answer(_refused("the motors are off: the page that drives fell silent.", None))
+            elif now_s >= self._renewed_s + RENEW_S and not self._silent:
+                self._renewed_s = now_s
+                self._ask(schema.RenewRequest(LEASE_MS))
+
+    # --- clients ----------------------------------------------------------------------------------------------------
+
+    def join(self, client: Client) -> None:
+        with self._lock:
+            self._clients.append(client)
+            if client.verb is None:
+                client.outbox.add_answer({"kind": "page", "id": client.id})
+                client.outbox.add_answer(self._link)
+            else:
+                self._verb = client
+            self._tell_drivers()
+
+    def leave(self, client: Client) -> None:
+        """A client has gone: what runs for it is stopped."""
+        with self._lock:
+            if client in self._clients:
+                self._clients.remove(client)
+                if client is self._verb:
+                    self._verb = None
+                    self._stop()
+                self.release(client)
+                self._tell_drivers()
+
+    def drive(self, client: Client) -> None:
+        """Let a page drive, if no other one does."""
+        with self._lock:
+            self.seen(client)
+            if self._driver is None and client in self._clients:
+                self._driver = client
+                self._tell_drivers()
+            elif self._driver is not client:
+                client.outbox.add_answer(_refused("another page drives this arm; let go there first.", None))
+
+    def release(self, client: Client) -> None:
+        """Let another page drive; motors that run for this one go off."""
+        with self._lock:
+            if self._driver is client:
+                self._driver = None
+                if self._motors is client:
+                    self._stop()
+                self._tell_drivers()
+
+    def drives(self, page: str) -> bool:
+        """Whether the page with this id drives."""
+        with self._lock:
+            return self._driver is not None and secrets.compare_digest(self._driver.id, page)
+
+    def seen(self, client: Client) -> None:
+        """A sign of life."""
+        if self._board is not None:
+            client.seen_s = self._board.line.clock()
+
+    def receive(self, client: Client, data: bytes) -> None:
+        """Take frames from a client."""
+        with self._lock:
+            self.seen(client)
+            for frame in client.decoder.feed(data):
+                self._request(client, frame)
+
+    # --- inside -----------------------------------------------------------------------------------------------------
+
+    @property
+    def _silent(self) -> bool:
+        assert self._board is not None
+        return self._board.line.clock() > self._heard_s + QUIET_S
+
+    def _look_for_samples(self, silent_s: float) -> None:
+        assert self._board is not None
+        if silent_s > GIVE_UP_S:
+            raise UserError(f"{self._board.port}: the board fell silent; check its cable and its supply.")
+        if silent_s > ASK_AGAIN_S and not self._asked_again:
+            self._asked_again = True
+            self._ask(schema.TelemetryRequest(1))
+
+    def _request(self, client: Client, frame: Frame) -> None:
+        if self._board is None:
+            client.outbox.add_answer(_refused(self._link["sentence"] or "no board is there yet.", frame))
+        elif frame.type == schema.TelemetryRequest.TYPE and len(frame.payload) == schema.TelemetryRequest.SIZE:
+            client.every = int.from_bytes(frame.payload, "little")
+            client.outbox.add_answer(encode_frame(schema.TelemetryReply.TYPE, frame.seq, frame.payload))
+        elif frame.type == schema.StopRequest.TYPE:
+            self._motors = None
+            self._write(stop_message(self._number(_Asked(client, frame.type, frame.seq))))
+        elif problem := self._why_not(client, frame):
+            client.outbox.add_answer(_refused(problem, frame))
+        else:
+            self._forward(client, frame)
+
+    def _why_not(self, client: Client, frame: Frame) -> str:
+        """Why a request may not go on, in a sentence."""
+        if self._silent:
+            return "the board is silent; perhaps it has just restarted."
+        if frame.type in _FOR_ALL or client.verb is not None:
+            return ""
+        if self._verb is not None:
+            return f"`greywhale {self._verb.verb}` uses the board; stop it first, or wait for its end."
+        if self._driver is not client:
+            return "this page only watches; let it drive first."
+        if frame.type in _STARTS:
+            assert self._board is not None
+            try:
+                self._board.may_move()
+            except UserError as error:
+                return error.message
+            except KeyboardInterrupt:  # a stop was asked for elsewhere; who holds the port tells more
+                return "the motors stay off: a stop was asked for in another terminal."
+        return ""
+
+    def _forward(self, client: Client, frame: Frame) -> None:
+        payload = frame.payload
+        if client.verb is None and frame.type in _LEASES and len(payload) == schema.EnableRequest.SIZE:
+            payload = schema.EnableRequest(LEASE_MS).pack()
+            if frame.type in _STARTS:
+                self._motors, self._confirmed = client, False
+                self._renewed_s = client.seen_s
+        number = self._number(_Asked(client, frame.type, frame.seq))
+        self._write(encode_frame(frame.type, number, payload))
+
+    def _write(self, data: bytes) -> None:
+        assert self._board is not None
+        with contextlib.suppress(UserError):  # who holds the port finds out by itself that it went away
+            self._board.line.write(data)
+
+    def _number(self, asked: _Asked) -> int:
+        self._sequence = self._sequence % 255 + 1
+        self._asked[self._sequence] = asked
+        return self._sequence
+
+    def _ask(self, request: schema.RenewRequest | schema.TelemetryRequest) -> None:
+        number = self._number(_Asked(None, request.TYPE, 0))
+        self._write(encode_frame(request.TYPE, number, request.pack()))
+
+    def _want_samples(self) -> None:
+        assert self._board is not None
+        self._heard_s = self._board.line.clock()
+        self._asked_again = False
+        self._ask(schema.TelemetryRequest(1))
+
+    def _stop(self) -> None:
+        self._motors = None
+        if self._board is not None:
+            self._write(stop_message(self._number(_Asked(None, schema.StopRequest.TYPE, 0))))
+
+    def _pass_answer(self, frame: Frame) -> None:
+        asked = self._asked.get(frame.seq)
+        if asked is None:
+            return
+        refused = frame.type == schema.Nack.TYPE
+        if not refused and frame.type != asked.type | schema.REPLY_BIT:
+            return
+        if asked.client is not None:
+            if asked.client is self._motors and asked.type in _STARTS:
+                self._confirmed = True
+                self._motors = None if refused else self._motors
+            asked.client.outbox.add_answer(encode_frame(frame.type, asked.seq, frame.payload))
+
+    def _pass_sample(self, frame: Frame, wire: bytes) -> None:
+        assert self._board is not None
+        self._heard_s = self._board.line.clock()
+        self._asked_again = False
+        if len(frame.payload) != schema.Sample.SIZE:
+            return
+        tick = int.from_bytes(frame.payload[:_STATE], "little")
+        self.history.add(tick, wire)
+        if self._motors is not None and self._confirmed and frame.payload[_STATE] in _AT_REST:
+            self._motors = None
+        for client in self._clients:
+            if client.every and tick % client.every == 0:
+                client.outbox.add_sample(wire)
+
+    def _note_restart(self, frame: Frame, wire: bytes) -> None:
+        """The board says hello by itself: it has started, its motors are off, and it sends no samples."""
+        assert self._board is not None
+        self._motors = None
+        self._asked.clear()
+        for client in self._clients:
+            client.outbox.add_answer(wire)
+        self._want_samples()
+        cause = schema.HelloReply.unpack(frame.payload).reset_cause.description
+        self._tell_link(True, self._board.port, f"The board restarted ({cause}), and its motors are off.")
+
+    def _tell_link(self, open: bool, port: str, sentence: str) -> None:
+        self._link = {"kind": "link", "open": open, "port": port, "sentence": sentence}
+        for client in self._pages():
+            client.outbox.add_answer(self._link)
+
+    def _tell_drivers(self) -> None:
+        job = None if self._verb is None else self._verb.verb
+        for client in self._pages():
+            you, free = client is self._driver, self._driver is None
+            client.outbox.add_answer({"kind": "driver", "you": you, "free": free, "verb": job})
+
+    def _pages(self) -> list[Client]:
+        return [client for client in self._clients if client.verb is None]
+
+
+def _refused(sentence: str, frame: Frame | None) -> Message:
+    """What a page is told in the place of an answer; `frame` is the request."""
+    which = {} if frame is None else {"seq": frame.seq, "type": frame.type}
+    return {"kind": "refused", "sentence": upper_first(sentence), **which}

@@ -1,0 +1,111 @@
+"""The HTTP server: the page's files, the board's WebSocket and what a page asks beside it."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+
+import uvicorn
+from starlette.applications import Starlette
+from starlette.requests import Request
+from starlette.responses import JSONResponse, Response
+from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
+from starlette.staticfiles import StaticFiles
+from starlette.types import ASGIApp
+from starlette.websockets import WebSocket
+
+from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.dashboard.guard import Guard
+from greywhale.dashboard.house import House
+from greywhale.dashboard.sockets import serve_board
+
+PAGE = Path(__file__).resolve().parent / "page"
+# Frames of the link are 50 bytes; a page sends some at once.
+MOST_MESSAGE_BYTES = 1 << 16
+_END_WAIT_S = 1
+
+
+def require_page(page: Path = PAGE) -> Path:
+    """The folder with the page's files."""
+    if not (page / "index.html").is_file():
+        raise UserError(f"{page}: the page is not built; run `make setup` in a checkout, or install greywhale again.")
+    return page
+
+
+def application(house: House, page: Path, token: str, port: int) -> ASGIApp:
+    """All that the server does, at this port of the loopback, for who has the token."""
+    routes: list[BaseRoute] = [
+        WebSocketRoute("/board", _board(house)),
+        Route("/history", _history(house)),
+        Route("/state", _told(lambda request: house.state())),
+    ]
+    private = {route.path for route in routes if isinstance(route, Route | WebSocketRoute)}
+    first = {path.split("/")[1] for path in private}
+    files = Mount("/", StaticFiles(directory=page, html=True))
+    return Guard(Starlette(routes=[*routes, files]), token, port, lambda path: path.split("/")[1] not in first)
+
+
+def listen(port: int = 0) -> socket.socket:
+    """A socket on the loopback; port 0 is any free one."""
+    listener = socket.socket()
+    listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        listener.bind(("127.0.0.1", port))
+    except OSError:
+        listener.close()
+        raise UserError(
+            f"127.0.0.1:{port} is taken by another program; choose another --http-port.", BAD_USAGE
+        ) from None
+    listener.listen()
+    return listener
+
+
+def make_server(app: ASGIApp) -> uvicorn.Server:
+    """What serves an application; its `run` takes the sockets."""
+    return uvicorn.Server(
+        uvicorn.Config(
+            app,
+            http="h11",
+            ws="wsproto",
+            loop="asyncio",
+            ws_max_size=MOST_MESSAGE_BYTES,
+            ws_per_message_deflate=False,
+            timeout_graceful_shutdown=_END_WAIT_S,
+            log_config=None,
+            access_log=False,
+            server_header=False,
+            lifespan="off",
+        )
+    )
+
+
+def _board(house: House) -> Callable[[WebSocket], Awaitable[None]]:
+    async def serve(socket: WebSocket) -> None:
+        await serve_board(socket, house.relay)
+
+    return serve
+
+
+def _history(house: House) -> Callable[[Request], Awaitable[Response]]:
+    async def answer(request: Request) -> Response:
+        given = request.query_params.get("from")
+        if given is not None and not (given.isascii() and given.isdigit() and int(given) < 1 << 32):
+            return JSONResponse({"error": f"from is {given[:20]}; it must be a tick, 0 to 4294967295."}, 400)
+        frames = await asyncio.to_thread(house.relay.history.since, None if given is None else int(given))
+        return Response(frames, media_type="application/octet-stream")
+
+    return answer
+
+
+def _told(ask: Callable[[Request], object]) -> Callable[[Request], Awaitable[Response]]:
+    """An answer in JSON that takes a moment; a UserError is one too."""
+
+    async def answer(request: Request) -> Response:
+        try:
+            return JSONResponse(await asyncio.to_thread(ask, request))
+        except UserError as error:
+            return JSONResponse({"error": error.message, "exit_code": error.exit_code}, 400)
+
+    return answer

@@ -1,0 +1,108 @@
+"""The WebSocket that carries a board's frames to a page, unchanged, and what is said beside them."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+from collections.abc import Callable
+
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from greywhale.dashboard.guard import SUBPROTOCOL, Bucket
+from greywhale.dashboard.outbox import Outbox
+from greywhale.dashboard.relay import Client, Relay
+
+# Samples of so long go out in one message.
+BATCH_S = 0.02
+# A page that drives sends a sign of life every 100 ms and, while it leads, a point every 16 ms.
+MESSAGES_A_SECOND, AT_ONCE = 400.0, 2000.0
+_TOO_MANY, _NOT_UNDERSTOOD = 1008, 1003
+
+
+class Waiting:
+    """Lets a coroutine wait for an outbox that other threads fill."""
+
+    def __init__(self) -> None:
+        self._loop = asyncio.get_running_loop()
+        self._some, self._urgent = asyncio.Event(), asyncio.Event()
+
+    def notify(self, urgent: bool) -> None:
+        """From any thread."""
+        with contextlib.suppress(RuntimeError):  # the loop has ended
+            self._loop.call_soon_threadsafe(self._note, urgent)
+
+    def _note(self, urgent: bool) -> None:
+        self._some.set()
+        if urgent:
+            self._urgent.set()
+
+    async def wait(self) -> None:
+        """Until something is there; what is not urgent may gather for a moment."""
+        await self._some.wait()
+        with contextlib.suppress(TimeoutError):
+            await asyncio.wait_for(self._urgent.wait(), BATCH_S)
+        self._some.clear()
+        self._urgent.clear()
+
+
+async def serve_board(socket: WebSocket, relay: Relay) -> None:
+    """Be a page's board until it goes."""
+    await socket.accept(SUBPROTOCOL)
+    waiting = Waiting()
+    client = Client(Outbox(waiting.notify))
+    relay.join(client)
+    sending = asyncio.create_task(_send(socket, client.outbox, waiting))
+    try:
+        await _receive(socket, client, relay)
+    finally:
+        relay.leave(client)
+        sending.cancel()
+        with contextlib.suppress(asyncio.CancelledError, WebSocketDisconnect):
+            await sending
+
+
+async def _send(socket: WebSocket, outbox: Outbox, waiting: Waiting) -> None:
+    while True:
+        await waiting.wait()
+        answers, samples = outbox.take()
+        for answer in answers:
+            if isinstance(answer, bytes):
+                await socket.send_bytes(answer)
+            else:
+                await socket.send_text(json.dumps(answer))
+        if samples:
+            await socket.send_bytes(samples)
+
+
+async def _receive(socket: WebSocket, client: Client, relay: Relay) -> None:
+    bucket = Bucket(MESSAGES_A_SECOND, AT_ONCE)
+    wishes: dict[str, Callable[[Client], None]] = {
+        "drive": relay.drive,
+        "release": relay.release,
+        "here": relay.seen,
+    }
+    while True:
+        message = await socket.receive()
+        if message["type"] == "websocket.disconnect":
+            return
+        if not bucket.take():
+            await socket.close(_TOO_MANY, "too many messages")
+            return
+        if (data := message.get("bytes")) is not None:
+            relay.receive(client, data)
+            continue
+        wish = wishes.get(_kind(message["text"]))
+        if wish is None:
+            await socket.close(_NOT_UNDERSTOOD, "this message is not known")
+            return
+        wish(client)
+
+
+def _kind(text: str) -> str:
+    try:
+        told = json.loads(text)
+    except (ValueError, RecursionError):
+        return ""
+    kind = told.get("kind") if isinstance(told, dict) else None
+    return kind if isinstance(kind, str) else ""

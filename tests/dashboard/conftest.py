@@ -1,0 +1,23 @@
+"""One simulated bench for all tests of a file, its board shared."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from greywhale_sim.lockstep import LockStepBench
+from greywhale_sim.words import lock_step
+from tests.dashboard.shared import Shared
+
+
+@pytest.fixture(scope="module")
+def bench() -> Iterator[LockStepBench]:
+    with lock_step() as started:
+        yield started
+
+
+@pytest.fixture
+def shared(bench: LockStepBench) -> Iterator[Shared]:
+    with Shared(bench.port) as board:
+        yield board

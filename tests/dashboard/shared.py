@@ -1,0 +1,104 @@
+"""A board in this process, shared by a relay whose time is the board's own: it lives only while a test lets it."""
+
+from __future__ import annotations
+
+from types import TracebackType
+from typing import Any, Self
+
+from greywhale.board.device import Device
+from greywhale.dashboard.history import History
+from greywhale.dashboard.keeper import turn
+from greywhale.dashboard.outbox import Outbox
+from greywhale.dashboard.relay import Client, Relay
+from greywhale.protocol import schema
+from greywhale.protocol.declared import Message
+from greywhale.protocol.frames import Frame, FrameDecoder, encode_frame
+
+HERE_S = 0.1  # between two signs of life of a page that drives
+
+
+class Shared:
+    """A context."""
+
+    def __init__(self, port: str, samples: int = 60_000) -> None:
+        self._device = Device(port, restart=False)
+        self.line, self.session = self._device.lend()
+        self.relay = Relay(History(samples))
+        self.relay.open(self.line, port, self.session.refuse_motion)
+
+    def turn(self) -> None:
+        turn(self.relay, self.line, self.session)
+
+    def live(self, seconds: float, here: Viewer | None = None) -> None:
+        """Let so much of the board's time pass; meanwhile a page says that it is there."""
+        end = said = self.line.clock()
+        end += seconds
+        while (now := self.line.clock()) < end:
+            if here is not None and now >= said + HERE_S:
+                self.relay.seen(here.client)
+                said = now
+            self.turn()
+
+    def page(self, every: int = 1) -> Viewer:
+        """A page that has joined and wants samples."""
+        page = Viewer(self)
+        self.relay.join(page.client)
+        page.client.every = every
+        return page
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._device.close()
+
+
+class Viewer:
+    """What a page has got so far: words, answers and the bytes of samples."""
+
+    def __init__(self, shared: Shared, verb: str | None = None) -> None:
+        self._shared = shared
+        self.client = Client(Outbox(lambda urgent: None, most_samples=60_000), verb)
+        self._sequence = 0
+        self._words: list[dict[str, Any]] = []
+        self._answers: list[bytes] = []
+        self._samples = b""
+
+    def ask(self, request: Message, seq: int | None = None) -> int:
+        """Send a request; its number."""
+        self._sequence = self._sequence % 255 + 1 if seq is None else seq
+        self._shared.relay.receive(self.client, encode_frame(request.TYPE, self._sequence, request.pack()))
+        return self._sequence
+
+    def words(self, kind: str) -> list[dict[str, Any]]:
+        """All messages of a kind since the last look."""
+        self._look()
+        found = [word for word in self._words if word["kind"] == kind]
+        self._words = [word for word in self._words if word["kind"] != kind]
+        return found
+
+    def answers(self) -> list[Frame]:
+        """All answers since the last look."""
+        self._look()
+        found, self._answers = FrameDecoder().feed(b"".join(self._answers)), []
+        return found
+
+    def raw(self) -> bytes:
+        """The samples since the last look, as they came."""
+        self._look()
+        found, self._samples = self._samples, b""
+        return found
+
+    def samples(self) -> list[schema.Sample]:
+        return [schema.Sample.unpack(frame.payload) for frame in FrameDecoder().feed(self.raw())]
+
+    def _look(self) -> None:
+        answers, samples = self.client.outbox.take()
+        self._samples += samples
+        for one in answers:
+            if isinstance(one, bytes):
+                self._answers.append(one)
+            else:
+                self._words.append(one)

@@ -1,0 +1,55 @@
+"""The last samples, whole and in order, also beyond the ring's end and after a restart of the board."""
+
+from __future__ import annotations
+
+import pytest
+
+from greywhale.dashboard.history import FRAME_BYTES, History
+from greywhale.protocol.frames import FrameDecoder
+from greywhale.protocol.schema import Sample
+from tests.dashboard.shared import Shared
+
+
+def frame(tick: int) -> bytes:
+    return tick.to_bytes(4, "big") + bytes(FRAME_BYTES - 4)
+
+
+def kept(history: History, since: int | None = None) -> list[int]:
+    data = history.since(since)
+    return [int.from_bytes(data[at : at + 4], "big") for at in range(0, len(data), FRAME_BYTES)]
+
+
+@pytest.mark.parametrize("added", [0, 1, 99, 100, 101, 250])
+def test_the_newest_are_kept_in_order(added: int) -> None:
+    history = History(100)
+    for tick in range(added):
+        history.add(tick, frame(tick))
+    assert kept(history) == list(range(max(0, added - 100), added))
+
+
+@pytest.mark.parametrize(("since", "first"), [(0, 160), (160, 160), (200, 200), (259, 259), (260, 260)])
+def test_from_a_tick_on(since: int, first: int) -> None:
+    history = History(100)
+    for tick in range(260):
+        history.add(tick, frame(tick))
+    assert kept(history, since) == list(range(first, 260))
+
+
+def test_a_tick_counts_from_the_last_restart() -> None:
+    history = History(100)
+    for tick in (*range(500, 530), *range(10), *range(3, 20, 2)):
+        history.add(tick, frame(tick))
+    assert kept(history, 0) == list(range(3, 20, 2))
+    assert kept(history, 8) == list(range(9, 20, 2))
+    assert kept(history)[:30] == list(range(500, 530))
+
+
+def test_a_page_that_comes_later_misses_nothing(shared: Shared) -> None:
+    before = shared.page()
+    shared.live(0.5)
+    late = shared.page()
+    whole = FrameDecoder().feed(shared.relay.history.since(None))
+    shared.live(0.2)
+    ticks = [Sample.unpack(one.payload).tick for one in whole] + [one.tick for one in late.samples()]
+    assert ticks == list(range(ticks[0], ticks[0] + len(ticks)))
+    assert ticks == [one.tick for one in before.samples()]

@@ -1,0 +1,124 @@
+"""The board's port: taken when it comes, told when it goes, taken again, given up to a stop from another terminal."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+
+import pytest
+
+from greywhale.base.errors import UserError
+from greywhale.board.session import ask_to_stop
+from greywhale.dashboard.history import History
+from greywhale.dashboard.keeper import AFTER_STOP_S, ASK_AGAIN_S, LOOK_AGAIN_S, STOPPED, Keeper
+from greywhale.dashboard.outbox import Outbox
+from greywhale.dashboard.relay import Client, Relay
+from greywhale.protocol import schema
+from tests.board.fake_board import FakeBoard, Faults
+from tests.board.port_board import PortBoard
+
+
+class Told:
+    """A page that notes what it is told of the board, and does something after so many samples."""
+
+    def __init__(self, relay: Relay, after: int = 0, do: Callable[[], object] = lambda: None) -> None:
+        self.client = Client(Outbox(self._look))
+        self.sentences: list[str] = []
+        self.samples = 0
+        self._after, self._do = after, do
+        relay.join(self.client)
+        self.client.every = 1
+
+    def _look(self, urgent: bool) -> None:
+        answers, samples = self.client.outbox.take()
+        for answer in answers:
+            if isinstance(answer, dict) and answer["kind"] == "link":
+                self.sentences.append(f"open {answer['port']}" if answer["open"] else answer["sentence"])
+        had, self.samples = self.samples, self.samples + samples.count(0)
+        if had < self._after <= self.samples:
+            self._do()
+
+
+@pytest.fixture
+def relay() -> Relay:
+    return Relay(History(10_000))
+
+
+def chooser(*ports: str | None) -> Callable[[str | None], str]:
+    """Finds these ports one after the other; None is none."""
+    left = list(ports)
+
+    def choose(named: str | None) -> str:
+        port = left.pop(0)
+        if port is None:
+            raise UserError("no board was found on any serial port; plug it in.")
+        return port
+
+    return choose
+
+
+def test_a_board_is_taken_when_it_comes_and_again_after_it_went(relay: Relay) -> None:
+    with FakeBoard(Faults(unplug_at=200)) as first, FakeBoard() as second:
+        keeper = Keeper(relay, None, chooser(None, first.port, None, second.port))
+        page = Told(relay, 400, keeper.end)
+        assert [keeper.hold() for _ in range(4)] == [LOOK_AGAIN_S] * 4
+    nothing = "No board was found on any serial port; plug it in."
+    assert [one for one in page.sentences if one] == [
+        nothing,
+        f"open {first.port}",
+        f"{first.port}: the port went away in the middle; check the cable and try again.".capitalize(),
+        nothing,
+        f"open {second.port}",
+    ]
+    assert page.samples >= 400
+
+
+@pytest.mark.parametrize(
+    ("faults", "sentence"),
+    [
+        (Faults(silent=True), "the board has probably no greywhale firmware: flash it"),
+        (Faults(hello=bytes([9, 0, 1, 0])), "the board speaks protocol version 9, this host version 1; flash"),
+    ],
+)
+def test_a_board_that_is_no_greywhale_is_told_and_asked_again_later(
+    relay: Relay, faults: Faults, sentence: str
+) -> None:
+    with FakeBoard(faults) as board:
+        assert Keeper(relay, board.port).hold() == ASK_AGAIN_S
+    assert sentence in relay.link["sentence"]
+    assert not relay.link["open"]
+
+
+def test_a_board_that_falls_silent_is_given_up(relay: Relay) -> None:
+    with FakeBoard(Faults(stop_sampling_at=300)) as board:
+        assert Keeper(relay, board.port).hold() == ASK_AGAIN_S
+        assert board.asked(schema.TelemetryRequest) == 2, "once more before it is given up"
+    assert "the board fell silent" in relay.link["sentence"]
+
+
+@pytest.fixture
+def held(relay: Relay) -> Iterator[tuple[PortBoard, Keeper, threading.Event]]:
+    """A board on a port, held in another thread as by a server; the event says that it sends samples."""
+    there = threading.Event()
+    with ExitStack() as stack:
+        board = stack.enter_context(PortBoard())
+        keeper = Keeper(relay, board.port)
+        Told(relay, 1, there.set)
+        stack.callback(keeper.close)
+        keeper.start()
+        yield board, keeper, there
+
+
+@pytest.mark.slow
+def test_a_stop_from_another_terminal_turns_the_motors_off_and_is_told(
+    relay: Relay, held: tuple[PortBoard, Keeper, threading.Event]
+) -> None:
+    board, _, there = held
+    assert there.wait(60)
+    answer = ask_to_stop(board.port, wait_for_end=True)
+    assert answer is not None
+    assert answer["state"] == "disabled"
+    assert board.asked(schema.StopRequest) > 0
+    assert relay.link["sentence"] in (STOPPED, "")
+    assert AFTER_STOP_S > LOOK_AGAIN_S

@@ -1,0 +1,166 @@
+"""The server over the loopback: its own pages come in, nobody else does, and nothing too large."""
+
+from __future__ import annotations
+
+import json
+import secrets
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from urllib.parse import quote
+
+import pytest
+
+from greywhale.base.errors import UserError
+from greywhale.dashboard import server
+from greywhale.dashboard.guard import AT_ONCE, MOST_BODY_BYTES, Bucket
+from greywhale.dashboard.house import House
+from greywhale.protocol import schema
+from greywhale.protocol.frames import FrameDecoder
+from tests.dashboard.browser import BoardSocket, Page, RefusedError
+from tests.dashboard.shared import Shared
+
+INDEX = "<!doctype html><title>greywhale</title>"
+
+
+@pytest.fixture
+def page(shared: Shared, tmp_path: Path) -> Iterator[Page]:
+    """A page of a server whose board lives as the test lets it."""
+    files = tmp_path / "page"
+    files.mkdir()
+    (files / "index.html").write_text(INDEX)
+    (files / "page.js").write_text("1")
+    folder = tmp_path / "folder"
+    folder.mkdir()
+    (folder / "a log.csv").touch()
+    listener = server.listen()
+    port: int = listener.getsockname()[1]
+    token = secrets.token_urlsafe(8)
+    running = server.make_server(server.application(House(shared.relay, folder, "default"), files, token, port))
+    thread = threading.Thread(target=running.run, args=([listener],), daemon=True)
+    thread.start()
+    yield Page(port, token)
+    running.should_exit = True
+    thread.join()
+
+
+def test_the_pages_files_need_no_token_and_forbid_what_they_do_not_need(page: Page) -> None:
+    stranger = Page(page.port, "")
+    assert stranger.ask("GET", "/") == (200, INDEX.encode())
+    assert stranger.ask("GET", "/page.js") == (200, b"1")
+    assert stranger.ask("GET", "/../folder/a log.csv".replace(" ", "%20"))[0] == 404
+    assert stranger.ask("POST", "/")[0] == 403
+
+
+def test_all_else_needs_it(page: Page) -> None:
+    state = page.get("/state")
+    assert state["files"] == ["a log.csv"]
+    assert state["schema"] == f"{schema.SCHEMA_HASH:#010x}"
+    for path in ("/state", "/history", "/board"):
+        for token in ("", page.token + "x"):
+            assert Page(page.port, token).ask("GET", path)[0] == 403
+    for token in ("", "x"):
+        with pytest.raises(RefusedError, match="403"):
+            Page(page.port, token).open("/board")
+
+
+FOREIGN = [
+    {"Host": "evil.example"},
+    {"Host": "evil.example:{port}"},
+    {"Host": "127.0.0.1"},
+    {"Origin": "http://evil.example"},
+    {"Origin": "http://127.0.0.1:1"},
+    {"Origin": "https://127.0.0.1:{port}"},
+    {"Origin": "null"},
+]
+
+
+@pytest.mark.parametrize("headers", FOREIGN, ids=lambda headers: "".join(headers.values()))
+@pytest.mark.parametrize("path", ["/", "/state"])
+def test_foreign_pages_and_names_get_nothing(page: Page, headers: dict[str, str], path: str) -> None:
+    status, body = page.ask("GET", path, headers={name: text.format(port=page.port) for name, text in headers.items()})
+    assert status == 403
+    assert b"use the address that it printed" in body
+
+
+@pytest.mark.parametrize("headers", FOREIGN, ids=lambda headers: "".join(headers.values()))
+def test_nor_a_board(page: Page, headers: dict[str, str]) -> None:
+    given = {name: text.format(port=page.port) for name, text in headers.items()}
+    with pytest.raises(RefusedError, match="403"):
+        page.open("/board", host=given.pop("Host", None), headers=given)
+
+
+def test_localhost_is_this_server_too(page: Page) -> None:
+    own = f"localhost:{page.port}"
+    assert page.ask("GET", "/state", headers={"Host": own, "Origin": f"http://{own}"})[0] == 200
+
+
+def test_what_is_too_large_is_refused(page: Page) -> None:
+    assert page.ask("POST", "/state", b"x" * (MOST_BODY_BYTES + 1))[0] == 413
+    with page.open("/board") as socket:
+        with pytest.raises(ConnectionError, match="1009"):
+            socket.say(bytes(2_000_000))
+            while True:
+                socket.take()
+
+
+def test_a_message_that_is_not_known_ends_the_connection(page: Page) -> None:
+    for message in ({"kind": "dance"}, {"kind": 1}, {}):
+        with page.open("/board") as socket:
+            socket.say(message)
+            with pytest.raises(ConnectionError, match="1003"):
+                while True:
+                    socket.take()
+
+
+def test_a_bucket_lets_so_many_through() -> None:
+    now = [0.0]
+    bucket = Bucket(10.0, 3.0, lambda: now[0])
+    assert [bucket.take() for _ in range(5)] == [True, True, True, False, False]
+    now[0] = 0.2
+    assert [bucket.take() for _ in range(3)] == [True, True, False]
+    assert AT_ONCE > 100, "a page that opens asks for some ten files"
+
+
+def test_a_board_over_the_wire(page: Page, shared: Shared) -> None:
+    def states(first: int) -> list[schema.State]:
+        status, frames = page.ask("GET", f"/history?from={first}")
+        assert status == 200
+        samples = [schema.Sample.unpack(frame.payload) for frame in FrameDecoder().feed(frames)]
+        assert [one.tick for one in samples] == list(range(first, first + len(samples)))
+        return [one.state for one in samples]
+
+    with page.open("/board") as one, page.open("/board") as other:
+        driver, watcher = BoardSocket(one, shared.turn), BoardSocket(other, shared.turn)
+        assert driver.word("link", open=True)["port"] == shared.relay.link["port"]
+        driver.ask(schema.TelemetryRequest(1))
+        driver.frame(schema.TelemetryReply.TYPE)
+        first = schema.Sample.unpack(driver.frame(schema.Sample.TYPE).payload).tick
+        one.say({"kind": "drive"})
+        driver.word("driver", you=True)
+        watcher.word("driver", you=False, free=False)
+        other.say({"kind": "drive"})
+        assert "Another page" in watcher.word("refused")["sentence"]
+        driver.frame(schema.EnableReply.TYPE, driver.ask(schema.EnableRequest(0)))
+        assert schema.State.SOFT_START in states(first)
+        one.close()
+        watcher.word("driver", free=True)
+        shared.live(0.05)
+        assert states(first)[-1] is schema.State.DISABLED
+
+
+@pytest.mark.parametrize("tick", ["-1", "x", "4294967296", "", "١"])
+def test_a_history_from_nowhere(page: Page, tick: str) -> None:
+    status, body = page.ask("GET", f"/history?from={quote(tick)}")
+    assert status == 400
+    assert "must be a tick" in json.loads(body)["error"]
+
+
+def test_without_its_files_a_sentence_says_what_to_do(tmp_path: Path) -> None:
+    with pytest.raises(UserError, match="the page is not built; run `make setup`"):
+        server.require_page(tmp_path)
+
+
+def test_a_port_that_is_taken(page: Page) -> None:
+    with pytest.raises(UserError, match=f"127.0.0.1:{page.port} is taken"):
+        server.listen(page.port)
