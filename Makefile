@@ -23,7 +23,7 @@ SIDE_BY_SIDE := $(MAKE) READY= --no-print-directory --jobs=$(shell nproc) --outp
 PYTEST := $(PYTHON) -m pytest -n auto
 
 .DEFAULT_GOAL := help
-.PHONY: help setup ready build firmware demo report check test lint oracles benchmarks attack docs dist format lock hooks clean $(LINT) $(UNIT_TESTS) $(IMAGES)
+.PHONY: help setup ready build firmware demo dashboard report check test lint oracles benchmarks attack docs dist format lock hooks clean $(LINT) $(UNIT_TESTS) $(IMAGES)
 
 help: ## list the targets
 	@sed -n 's/^\([a-z]*\):[^#]*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12
@@ -40,6 +40,10 @@ ready: # what it takes to build and run, without checks and tests
 
 demo: ready ## the whole story on the simulated bench; options in ARGS, e.g. ARGS="--leader motion.csv"
 	@$(PYTHON) -m greywhale demo --out build/demo --prove $(ARGS)
+
+dashboard: ## the page on the simulated bench, in the browser; options in ARGS, e.g. ARGS=--no-browser
+	@python3 -m tools.setup page
+	@$(PYTHON) -m greywhale dashboard --sim $(ARGS)
 
 report: ready ## the paper from end to end, in build/report/report.html and .pdf; options in ARGS, e.g. ARGS=--quick
 	@$(PYTHON) -m greywhale reproduce --out build/report $(ARGS)

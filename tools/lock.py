@@ -1,6 +1,6 @@
 """Pins every Python package that the two pyproject.toml files lead to: `make lock` writes requirements.txt with what
-it takes to build and run, tools/requirements.txt with what checks and tests need beside it, and
-tools/oracles/requirements.txt with what the outside references need beside both.
+it takes to build and run, tools/setup/page.txt with what builds the page, tools/requirements.txt with what checks and
+tests need beside it, and tools/oracles/requirements.txt with what the outside references need beside all of them.
 
 Every version comes with the digests of its files, for all platforms, so that the set-up installs these files or none.
 """
@@ -26,6 +26,10 @@ RUN_HEADER = """\
 CHECKS = ROOT / "tools/requirements.txt"
 CHECKS_HEADER = """\
 # What checks and tests need besides, pinned with the digests of their files. Written by `make lock`.
+"""
+PAGE = ROOT / "tools/setup/page.txt"
+PAGE_HEADER = """\
+# What builds the page, pinned with the digests of its files. Written by `make lock`.
 """
 ORACLES = ROOT / "tools/oracles/requirements.txt"
 ORACLES_HEADER = """\
@@ -62,10 +66,16 @@ def wanted() -> list[str]:
     return _foreign([*build(), *extras, *host["dependency-groups"]["dev"]])
 
 
+def page() -> list[str]:
+    """What builds the page."""
+    host = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    return _foreign(host["dependency-groups"]["page"])
+
+
 def versions() -> list[str]:
     """The project's own pinned packages as name==version, without the digests of their files."""
-    lines = [line for file in (RUN, CHECKS) for line in file.read_text(encoding="utf-8").splitlines()]
-    return [line.rstrip(" \\") for line in lines if re.match(r"[\w.-]+==", line)]
+    lines = [line for file in (RUN, PAGE, CHECKS) for line in file.read_text(encoding="utf-8").splitlines()]
+    return _versions([line for line in lines if re.match(r"[\w.-]+==", line)])
 
 
 def _project(file: str) -> dict[str, list[str]]:
@@ -110,12 +120,18 @@ def main() -> None:
         subprocess.run([sys.executable, "-m", "venv", name], check=True)
         python = str(folder / "bin/python")
         subprocess.run([python, "-m", "pip", "install", "--quiet", "pip-tools"], check=True)
-        everything = _compile(python, folder, wanted())
-        run = _compile(python, folder, build(), [line.rstrip(" \\") for line in everything if not line.startswith(" ")])
+        everything = _compile(python, folder, [*wanted(), *page()])
+        run = _compile(python, folder, build(), _versions(everything))
         _write(RUN, RUN_HEADER, run)
-        _write(CHECKS, CHECKS_HEADER, without(everything, _names(run)))
+        built = without(_compile(python, folder, page(), _versions(everything)), _names(run))
+        _write(PAGE, PAGE_HEADER, built)
+        _write(CHECKS, CHECKS_HEADER, without(everything, _names(run) | _names(built)))
         references = _compile(python, folder, REFERENCES, versions())
         _write(ORACLES, ORACLES_HEADER, without(references, _names(versions())))
+
+
+def _versions(lines: Sequence[str]) -> list[str]:
+    return [line.rstrip(" \\") for line in lines if not line.startswith(" ")]
 
 
 def _names(lines: Sequence[str]) -> set[str]:

@@ -122,6 +122,7 @@ def test_the_wheel_holds_code_firmware_and_controllers_and_nothing_else(wheels: 
     assert data == {"firmware/mega.hex", "firmware/nano.hex", *(f"fuzzy_tables/{name}.toml" for name in CONTROLLERS)}
     assert len([name for name in names if name.startswith("greywhale/_native.") and name.endswith(".so")]) == 1
     assert {"greywhale/_native.pyi", "greywhale/py.typed", "greywhale/cli/flash.py"} <= names
+    assert {f"greywhale/dashboard/page/{name}" for name in ("index.html", "page.js", "page.css")} <= names
     assert {Path(name).parts[0].split("-")[0] for name in names} == {"greywhale"}
     assert not [name for name in names if "test" in name or "greywhale_sim" in name]
     licences = {Path(name).name for name in names if "/licenses/" in name}

@@ -1,5 +1,5 @@
-"""Everything that make needs, from a bare Debian on: `python3 -m tools.setup`; `python3 -m tools.setup run` leaves out
-what only checks and tests need.
+"""Everything that make needs, from a bare Debian on: `python3 -m tools.setup`; `python3 -m tools.setup page` leaves out
+what only checks and tests need, and `python3 -m tools.setup run` the page of the dashboard too.
 
 Needs only the system's Python. Each step checks whether it has anything to do, so that repeating it takes no time.
 """
@@ -16,22 +16,25 @@ from tools import ROOT
 if sys.version_info < (3, 11):  # noqa: UP036 (an older Python is what this is about)
     sys.exit(f"greywhale needs Python 3.11 or newer, but {sys.executable} is {sys.version.split()[0]}.")
 
-from tools.setup import debian, extensions, firmware, platformio, venv
+from tools.setup import debian, extensions, firmware, page, platformio, venv
 from tools.setup.console import SetupError, say, side_by_side
 
 
-def steps(checks: bool) -> None:
-    def firmware_after_packages() -> None:
-        for step in (venv.packages, platformio.step, firmware.step):
-            step(checks)
+def steps(with_page: bool, checks: bool) -> None:
+    def what_needs_packages() -> None:
+        venv.packages(with_page, checks)
+        if with_page:
+            page.step()
+        platformio.step(checks)
+        firmware.step(checks)
 
     debian.step(checks)
     venv.step(checks)
-    side_by_side(lambda: extensions.step(checks), firmware_after_packages)
+    side_by_side(lambda: extensions.step(checks), what_needs_packages)
 
 
 def main(arguments: list[str]) -> int:
-    checks = arguments != ["run"]
+    with_page, checks = arguments != ["run"], not arguments
     start = time.monotonic()
     for request in (signal.SIGTERM, signal.SIGHUP):  # they end all as Ctrl-C does
         signal.signal(request, signal.default_int_handler)
@@ -44,7 +47,7 @@ def main(arguments: list[str]) -> int:
             say("waiting for another set-up of this folder to finish")
             fcntl.flock(lock, fcntl.LOCK_EX)
         try:
-            steps(checks)
+            steps(with_page, checks)
         except SetupError as error:
             print(f"set-up: {error}", file=sys.stderr)
             return 1

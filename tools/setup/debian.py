@@ -27,6 +27,7 @@ FOR_CHECKS = (
     "clang-tidy",
     "clang",  # libFuzzer and the sanitizers, over the firmware
     "libclang-rt-dev",
+    "chromium",  # the page, in a real browser
 )
 
 

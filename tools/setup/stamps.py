@@ -10,7 +10,7 @@ from pathlib import Path
 from tools import ROOT
 
 STAMPS = ROOT / "build" / "stamps"
-SKIPPED = {"__pycache__", ".pio", ".pytest_cache"}
+SKIPPED = {"__pycache__", ".pio", ".pytest_cache", "node_modules"}
 GENERATED = {".pyc", ".pyi"}
 
 

