@@ -13,6 +13,7 @@ import pytest
 
 from greywhale.base.errors import UserError
 from greywhale.dashboard import server
+from greywhale.dashboard.folder import Folder
 from greywhale.dashboard.guard import AT_ONCE, MOST_BODY_BYTES, Bucket
 from greywhale.dashboard.house import House
 from greywhale.protocol import schema
@@ -32,11 +33,11 @@ def page(shared: Shared, tmp_path: Path) -> Iterator[Page]:
     (files / "page.js").write_text("1")
     folder = tmp_path / "folder"
     folder.mkdir()
-    (folder / "a log.csv").touch()
+    (folder / "a motion.csv").write_text("time_s,leader_0,leader_1,leader_2,leader_3\n")
     listener = server.listen()
     port: int = listener.getsockname()[1]
     token = secrets.token_urlsafe(8)
-    running = server.make_server(server.application(House(shared.relay, folder, "default"), files, token, port))
+    running = server.make_server(server.application(House(shared.relay, Folder(folder), "default"), files, token, port))
     thread = threading.Thread(target=running.run, args=([listener],), daemon=True)
     thread.start()
     yield Page(port, token)
@@ -48,13 +49,13 @@ def test_the_pages_files_need_no_token_and_forbid_what_they_do_not_need(page: Pa
     stranger = Page(page.port, "")
     assert stranger.ask("GET", "/") == (200, INDEX.encode())
     assert stranger.ask("GET", "/page.js") == (200, b"1")
-    assert stranger.ask("GET", "/../folder/a log.csv".replace(" ", "%20"))[0] == 404
+    assert stranger.ask("GET", "/../folder/a%20motion.csv")[0] == 404
     assert stranger.ask("POST", "/")[0] == 403
 
 
 def test_all_else_needs_it(page: Page) -> None:
     state = page.get("/state")
-    assert state["files"] == ["a log.csv"]
+    assert state["files"] == [{"name": "a motion.csv", "kind": "motion"}]
     assert state["schema"] == f"{schema.SCHEMA_HASH:#010x}"
     for path in ("/state", "/history", "/board"):
         for token in ("", page.token + "x"):

@@ -67,8 +67,11 @@ def command(
         load_arm(arm)
     from greywhale.dashboard import server
     from greywhale.dashboard.bench import BenchProcess
-    from greywhale.dashboard.house import make_house
+    from greywhale.dashboard.folder import Folder
+    from greywhale.dashboard.history import History
+    from greywhale.dashboard.house import House
     from greywhale.dashboard.keeper import Keeper
+    from greywhale.dashboard.relay import Relay
 
     page = server.require_page()
     with contextlib.ExitStack() as held:
@@ -77,7 +80,7 @@ def command(
             need_bench("greywhale_sim")
             bench = held.enter_context(BenchProcess(arm, board))
             port = bench.port
-        house = make_house(folder.resolve(), str(arm or "default"), bench)
+        house = House(Relay(History()), Folder(folder), str(arm or "default"), bench)
         keeper = Keeper(house.relay, port)
         listener = held.enter_context(server.listen(http_port))
         number: int = listener.getsockname()[1]

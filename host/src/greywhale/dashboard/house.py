@@ -1,31 +1,72 @@
-"""All that one dashboard has to do with: its board, its arm, its folder."""
+"""All that one dashboard has to do with, its board, arm, folder and bench, and what a page asks of them."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
+from typing import Any, TypedDict
 
 from greywhale import __version__
+from greywhale.arm.export import JOINT_IDS, urdf
+from greywhale.arm.parameters import ArmParameters
+from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.base.formats import toml_file
+from greywhale.base.formats.kinds import Kind, kind_of
 from greywhale.dashboard.bench import Hands
-from greywhale.dashboard.history import History
+from greywhale.dashboard.folder import FileFacts, Folder
 from greywhale.dashboard.relay import Relay
+from greywhale.files import controller, parameter_file
+from greywhale.files.arm import arm_names, load_arm
+from greywhale.files.paper_tables import controller_names, controller_path
 from greywhale.protocol import schema
+from greywhale.protocol.table import ParameterTable
+
+
+class State(TypedDict):
+    """What a page shows beside the board's own words."""
+
+    greywhale: str  # version
+    protocol: int
+    schema: str
+    port: str  # "" while no board is there
+    open: bool
+    arm: str
+    folder: str
+    sim: bool
+    files: list[FileFacts]
+    controllers: list[str]  # that come with greywhale
+    arms: list[str]
+
+
+class JointFacts(TypedDict):
+    id: str  # of the URDF
+    min: float  # rad, of the stops
+    max: float
+    fixed: bool
+
+
+class ArmFacts(TypedDict):
+    name: str
+    urdf: str
+    joints: list[JointFacts]
+
+
+class ControllerFacts(TypedDict):
+    file: str
+    source: str
+    raw: dict[str, int]  # parameter to raw value; a parameter file has all of them
 
 
 @dataclass
 class House:
-    """What the server's answers come from."""
+    """What the server's answers come from. `arm` is the name of a built-in arm or an arm.toml."""
 
     relay: Relay
-    folder: Path
-    arm: str  # name of a built-in arm or an arm.toml
-    bench: Hands | None = None  # the simulated bench, where there is one
+    folder: Folder
+    arm: str
+    bench: Hands | None = None
 
-    def state(self) -> dict[str, Any]:
-        """What a page shows beside the board's own words."""
+    def state(self) -> State:
         link = self.relay.link
-        logs = sorted(self.folder.glob("*.csv"), key=lambda path: path.name)
         return {
             "greywhale": __version__,
             "protocol": schema.PROTOCOL,
@@ -33,11 +74,43 @@ class House:
             "port": link["port"],
             "open": link["open"],
             "arm": self.arm,
-            "folder": str(self.folder),
+            "folder": str(self.folder.path),
             "sim": self.bench is not None,
-            "files": [path.name for path in logs],
+            "files": self.folder.files(),
+            "controllers": controller_names(),
+            "arms": arm_names(),
         }
 
+    def describe_arm(self, file: str | None) -> ArmFacts:
+        """The arm as the page draws it."""
+        arm = self._arm(file)
+        joints: list[JointFacts] = [
+            {"id": name, "min": joint.stops.min, "max": joint.stops.max, "fixed": joint.fixed}
+            for name, joint in zip(JOINT_IDS, arm.joint, strict=True)
+        ]
+        return {"name": arm.name, "urdf": urdf(arm), "joints": joints}
 
-def make_house(folder: Path, arm: str, bench: Hands | None) -> House:
-    return House(Relay(History()), folder, arm, bench)
+    def controller(self, file: str) -> ControllerFacts:
+        """The numbers of a controller.toml, or of a parameter file."""
+        path = controller_path(file) if file in controller_names() else self.folder.inside(file)
+        if kind_of(toml_file.read(path)) is Kind.PARAMETERS:
+            return {"file": file, "source": "", "raw": parameter_file.load(path).by_name()}
+        loaded = controller.load(path)
+        return {"file": file, "source": loaded.source, "raw": loaded.raw_values()}
+
+    def predict(self, asked: dict[str, Any]) -> object:
+        """What the arm would do under a whole parameter table."""
+        # The native loop takes a moment to import.
+        from greywhale.dashboard.predict import predict
+
+        raw, board, file = asked.get("raw"), asked.get("board"), asked.get("file")
+        if not isinstance(raw, list) or len(raw) != len(schema.PARAMETERS) or not all(type(one) is int for one in raw):
+            raise UserError(f"raw must be {len(schema.PARAMETERS)} whole numbers, a board's parameters.", BAD_USAGE)
+        if type(board) is not int or not (file is None or isinstance(file, str)):
+            raise UserError("board must be a number, and file the name of an arm or a model.", BAD_USAGE)
+        return predict(self._arm(file), ParameterTable(tuple(raw), schema.Board.of(board)))
+
+    def _arm(self, file: str | None) -> ArmParameters:
+        if file is None:
+            return load_arm(self.arm)
+        return load_arm(file if file in arm_names() else self.folder.inside(file))

@@ -6,6 +6,7 @@ import asyncio
 import socket
 from collections.abc import Awaitable, Callable
 from pathlib import Path
+from typing import Any
 
 import uvicorn
 from starlette.applications import Starlette
@@ -39,7 +40,10 @@ def application(house: House, page: Path, token: str, port: int) -> ASGIApp:
     routes: list[BaseRoute] = [
         WebSocketRoute("/board", _board(house)),
         Route("/history", _history(house)),
-        Route("/state", _told(lambda request: house.state())),
+        Route("/state", _told(lambda asked: house.state())),
+        Route("/arm", _told(lambda asked: house.describe_arm(asked.get("file")))),
+        Route("/controller", _told(lambda asked: house.controller(asked.get("file", "")))),
+        Route("/predict", _told(house.predict), methods=["POST"]),
     ]
     private = {route.path for route in routes if isinstance(route, Route | WebSocketRoute)}
     first = {path.split("/")[1] for path in private}
@@ -99,13 +103,24 @@ def _history(house: House) -> Callable[[Request], Awaitable[Response]]:
     return answer
 
 
-def _told(ask: Callable[[Request], object]) -> Callable[[Request], Awaitable[Response]]:
-    """An answer in JSON that takes a moment; a UserError is one too."""
+def _told(answer: Callable[[dict[str, Any]], object]) -> Callable[[Request], Awaitable[Response]]:
+    """An answer in JSON that takes a moment; what is asked is in the address, or a JSON object in the body."""
 
-    async def answer(request: Request) -> Response:
+    async def tell(request: Request) -> Response:
         try:
-            return JSONResponse(await asyncio.to_thread(ask, request))
+            asked = await _object(request) if request.method == "POST" else dict(request.query_params)
+            return JSONResponse(await asyncio.to_thread(answer, asked))
         except UserError as error:
             return JSONResponse({"error": error.message, "exit_code": error.exit_code}, 400)
 
-    return answer
+    return tell
+
+
+async def _object(request: Request) -> dict[str, Any]:
+    try:
+        told = await request.json()
+    except (ValueError, RecursionError):
+        told = None
+    if not isinstance(told, dict):
+        raise UserError("the body of the request must be a JSON object.", BAD_USAGE)
+    return told

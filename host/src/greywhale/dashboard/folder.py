@@ -1,0 +1,73 @@
+"""The folder that a page's verbs work in: names from the page never lead out of it."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TypedDict
+
+from greywhale.base.errors import BAD_USAGE, UserError, cut
+from greywhale.base.formats import toml_file
+from greywhale.base.formats.kinds import kind_of
+from greywhale.files.log.layout import TITLE
+
+MOST_FILES = 1000
+# Larger tables are nobody's that a page would name.
+_LARGEST_TABLE_BYTES = 1 << 20
+
+
+class FileFacts(TypedDict):
+    """A file that some verb takes; `kind` is log, motion, or a kind of table: arm, model, controller, ..."""
+
+    name: str  # from the folder on
+    kind: str
+
+
+class Folder:
+    """A folder by its whole path, without links."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path.resolve()
+
+    def inside(self, name: str) -> Path:
+        """The whole path of a name; one that leads out of the folder is refused, also through a link."""
+        whole = self.path / name if name and name.isprintable() else None
+        if whole is None or not whole.resolve().is_relative_to(self.path):
+            raise UserError(
+                f"{cut(name) or 'an empty name'}: it is not in {self.path}; name a file there, or start the dashboard "
+                "with another --folder.",
+                BAD_USAGE,
+            )
+        return whole
+
+    def files(self) -> list[FileFacts]:
+        """What verbs could take, here and one folder down, by name."""
+        found: list[FileFacts] = []
+        for path in sorted([*self.path.glob("*"), *self.path.glob("*/*")])[:MOST_FILES]:
+            kind = _kind(path)
+            if kind and not path.name.startswith("."):
+                found.append({"name": str(path.relative_to(self.path)), "kind": kind})
+        return found
+
+
+def _kind(path: Path) -> str:
+    """What a file is, "" for nothing that a verb takes."""
+    with contextlib.suppress(OSError, UserError, ValueError):
+        if path.suffix == ".csv" and path.is_file():
+            return next(_kinds_of_csv(path), "")
+        if path.suffix == ".toml" and path.is_file() and path.stat().st_size <= _LARGEST_TABLE_BYTES:
+            kind = kind_of(toml_file.read(path))
+            return "" if kind is None else kind.name.lower()
+    return ""
+
+
+def _kinds_of_csv(path: Path) -> Iterator[str]:
+    with path.open(encoding="utf-8") as file:
+        first = file.readline(200)
+        if TITLE in first:
+            yield "log"
+        while first.startswith("#"):
+            first = file.readline(4000)
+        if first.startswith("time_s,leader_0"):
+            yield "motion"

@@ -1,0 +1,120 @@
+"""What a page asks beside the board: files, the arm, controllers and what a model predicts for them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+from greywhale.base.errors import UserError
+from greywhale.dashboard.folder import Folder
+from greywhale.dashboard.history import History
+from greywhale.dashboard.house import House
+from greywhale.dashboard.predict import EVERY, predict
+from greywhale.dashboard.relay import Relay
+from greywhale.files import controller, parameter_file
+from greywhale.files.arm import content_of, load_arm
+from greywhale.files.log.layout import HEADING, TITLE
+from greywhale.protocol import schema
+from greywhale.protocol.joints import parse
+from greywhale.protocol.table import ParameterTable
+
+
+@pytest.fixture
+def house(tmp_path: Path) -> House:
+    """Its folder holds a file of each kind, and others."""
+    folder = tmp_path / "folder"
+    (folder / "out").mkdir(parents=True)
+    (folder / "out" / "log.csv").write_text(f"# {TITLE}\n{HEADING}\n")
+    (folder / "numbers.csv").write_text("a,b\n1,2\n")
+    (folder / "broken.toml").write_bytes(b"\xff\xfe")
+    (folder / "arm.toml").write_bytes(content_of("worn"))
+    parameter_file.save(folder / "board.toml", ParameterTable.defaults())
+    controller.save(folder / "c.toml", ParameterTable.defaults().controllers, "a <b>test</b>")
+    (tmp_path / "secret.toml").write_bytes(content_of("worn"))
+    (folder / "way.toml").symlink_to(tmp_path / "secret.toml")
+    return House(Relay(History(10)), Folder(folder), "default")
+
+
+def test_files_are_told_with_their_kind(house: House) -> None:
+    found = {one["name"]: one["kind"] for one in house.state()["files"]}
+    assert found == {
+        "arm.toml": "arm", "board.toml": "parameters", "c.toml": "controller", "out/log.csv": "log", "way.toml": "arm",
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ["../secret.toml", "/etc/passwd", "way.toml", "out/../../secret.toml", "", "a\0b"])
+def test_a_name_never_leads_out_of_the_folder(house: House, name: str) -> None:
+    for ask in (house.controller, house.describe_arm):
+        with pytest.raises(UserError, match="it is not in .*folder"):
+            ask(name)
+
+
+def test_the_arm_is_told_with_the_limits_of_its_joints(house: House) -> None:
+    told = house.describe_arm(None)
+    arm = load_arm("default")
+    assert [(one["min"], one["max"]) for one in told["joints"]] == [(one.stops.min, one.stops.max) for one in arm.joint]
+    names = {one.get("name") for one in ElementTree.fromstring(told["urdf"]).iter("joint")}
+    assert {one["id"] for one in told["joints"]} <= names
+    assert house.describe_arm("arm.toml")["name"] == load_arm("worn").name
+    assert [one["fixed"] for one in house.describe_arm("two_joints")["joints"]].count(True) == 2
+
+
+def test_a_controller_is_told_as_a_board_stores_it(house: House) -> None:
+    table = ParameterTable.defaults()
+    told = house.controller("c.toml")
+    assert told["source"] == "a <b>test</b>"
+    assert table.with_raw(told["raw"]) == table
+    assert house.controller("board.toml")["raw"] == table.by_name()
+    assert house.controller("table_8")["raw"] == controller.load("table_8").raw_values()
+    with pytest.raises(UserError, match=r"arm.toml: this is an arm file, but a controller file is needed"):
+        house.controller("arm.toml")
+
+
+def test_a_prediction_is_the_closed_loops() -> None:
+    found = predict(load_arm("default"), ParameterTable.defaults())
+    for told in (found["step"], found["reach"]):
+        leader, follower = np.array(told["leader"]), np.array(told["follower"])
+        assert leader.shape == follower.shape == (len(told["time_s"]), 4)
+        assert np.diff(told["time_s"]) == pytest.approx(EVERY / 1000)
+        mean = np.mean((leader - follower) ** 2, axis=0)
+        assert told["mse"] == pytest.approx(mean, rel=0.05)
+        assert np.abs(told["voltage"]).max() > 1.0
+
+
+def test_better_controllers_are_predicted_to_be_better() -> None:
+    arm, usual = load_arm("default"), ParameterTable.defaults()
+    stiff = usual.with_raw({f"joint{joint}.kp": 4 * usual[f"joint{joint}.kp"] for joint in range(4)})
+    weak = usual.with_raw({f"joint{joint}.ku_mv": 1000 for joint in range(4)})
+    assert max(predict(arm, stiff)["reach"]["mse"]) < min(predict(arm, weak)["reach"]["mse"])
+
+
+def test_how_a_board_is_wired_is_none_of_the_models() -> None:
+    """Potentiometers mounted anyhow and motors the wrong way round: the model has neither."""
+    arm, usual = load_arm("default"), ParameterTable.defaults()
+    anyhow = usual.with_raw({"leader0.scale": -usual["leader0.scale"], "follower2.zero": 300, "joint1.motor_sign": -1})
+    assert predict(arm, anyhow) == predict(arm, usual)
+
+
+def test_joints_that_the_arm_lacks_stay_where_they_are() -> None:
+    told = predict(load_arm("two_joints"), ParameterTable.defaults())["step"]
+    moved = np.ptp(np.array(told["follower"]), axis=0) > 0.1
+    assert tuple(np.flatnonzero(moved)) == load_arm("two_joints").joints_in_use == parse("0,1")
+
+
+def test_what_a_board_would_refuse_is_not_predicted(house: House) -> None:
+    raw = list(schema.DEFAULTS)
+    limits = [schema.PARAMETER_BY_NAME[f"joint0.limit_{end}"].index for end in ("min", "max")]
+    raw[limits[0]] = raw[limits[1]] + 1
+    for asked, reason in (
+        ({"raw": raw, "board": 1}, "joint0.limit_min"),
+        ({"raw": raw[1:], "board": 1}, "raw must be"),
+        ({"raw": [*schema.DEFAULTS[1:], 1.5], "board": 1}, "raw must be"),
+        ({"raw": list(schema.DEFAULTS), "board": "1"}, "board must be a number"),
+        ({"raw": list(schema.DEFAULTS), "board": 77}, "77"),
+        ({}, "raw must be"),
+    ):
+        with pytest.raises(UserError, match=reason):
+            house.predict(asked)
