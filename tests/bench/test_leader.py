@@ -8,6 +8,7 @@ import pytest
 from greywhale.base.errors import UserError
 from greywhale.files.trajectory import Trajectory
 from greywhale_sim.leader import BRING_BACK_S, LET_GO_S, LeaderPlayer
+from greywhale_sim.live_hand import FASTEST
 
 SLICE = 0.01
 START = 1.0
@@ -171,3 +172,42 @@ def test_no_hand_is_on_an_arm_whose_motors_are_on(player: LeaderPlayer) -> None:
     player.step(True, FALLEN)
     with pytest.raises(UserError, match="only while the motors are off"):
         player.bring(np.ones(4), None, 1.0)
+
+
+THERE = np.array([0.5, -0.2, 0.0, 1.0])
+
+
+@pytest.mark.parametrize("enabled", [False, True])
+def test_leads_live_as_quickly_as_a_hand_and_never_jumps(player: LeaderPlayer, enabled: bool) -> None:
+    advance(player, 0.1, enabled)
+    player.lead(THERE)
+    at = [player.angles]
+    for _ in range(round(1.0 / SLICE)):
+        player.step(enabled, FALLEN)
+        at.append(player.angles)
+    steps = np.abs(np.diff(at, axis=0)) / SLICE
+    assert 1.0 < steps.max() <= FASTEST + 1e-9
+    np.testing.assert_allclose(at[-1], THERE, atol=1e-3)
+    if not enabled:
+        np.testing.assert_array_equal(player.hold, player.angles)
+
+
+def test_a_live_hand_goes_on_where_it_is_when_the_motors_go_on_or_off(player: LeaderPlayer) -> None:
+    player.lead(THERE)
+    at = [player.angles]
+    for enabled, seconds in ((False, 0.05), (True, 0.1), (False, LET_GO_S + 0.2), (True, 1.5)):
+        for _ in range(round(seconds / SLICE)):
+            player.step(enabled, FALLEN)
+            at.append(player.angles)
+    assert np.abs(np.diff(at, axis=0)).max() / SLICE <= FASTEST + 1e-9
+    np.testing.assert_allclose(at[-1], THERE, atol=1e-3)
+
+
+def test_a_motion_or_a_place_ends_a_live_hand(player: LeaderPlayer, motion: Trajectory) -> None:
+    first = motion.angles[0]
+    for how, arguments in (("take_up", [motion]), ("bring", [first, first, 0.5])):
+        player.lead(THERE)
+        advance(player, 1.0, enabled=False)
+        getattr(player, how)(*arguments)
+        advance(player, 1.2, enabled=False)
+        np.testing.assert_allclose(player.angles, motion.angles[0])

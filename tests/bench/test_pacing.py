@@ -40,6 +40,18 @@ def test_real_time_waits_for_the_wall_clock(clock: Clock, pacer: Pacer) -> None:
     assert pacer.lag_s == 0.0
 
 
+def test_slow_motion_takes_as_much_longer(clock: Clock, pacer: Pacer) -> None:
+    pacer.pace(0.0, real_time=True)
+    pacer.pace(0.010, real_time=True)
+    pacer.rate = 0.1
+    pacer.pace(0.010, real_time=True)
+    pacer.pace(0.020, real_time=True)
+    pacer.rate = 1.0
+    pacer.pace(0.020, real_time=True)
+    pacer.pace(0.030, real_time=True)
+    assert sum(clock.waits) == pytest.approx(0.010 + 0.100 + 0.010)
+
+
 def test_time_spent_fast_is_not_waited_for_afterwards(clock: Clock, pacer: Pacer) -> None:
     pacer.pace(0.0, real_time=True)
     pacer.pace(50.0, real_time=False)

@@ -15,6 +15,7 @@ from greywhale.base.errors import UserError
 from greywhale.files.leader import save_leader
 from greywhale.files.trajectory import Trajectory
 from greywhale_sim import commands
+from greywhale_sim.assemble import BenchOptions, build_bench
 from greywhale_sim.bench import Bench
 from greywhale_sim.pacing import Pacer
 from greywhale_sim.serial_port import SerialPort
@@ -207,6 +208,48 @@ def test_commands_change_the_bench(server: Server) -> None:
     assert status["leader"] == pytest.approx([0.0, 0.1, 0.2, 0.3])
 
 
+def test_what_can_be_changed_is_told_with_its_ends_and_as_it_is(server: Server) -> None:
+    found = commands.run(server, "controls")
+    assert found["supply"] == {"minimum": 0.0, "maximum": 30.0, "value": 12.0}
+    assert "load" not in found, "this arm is no arm of the bench"
+    assert commands.run(server, "supply 9.5") == {"supply_v": 9.5}
+    assert commands.run(server, "speed 0.25") == {"speed": "0.25"}
+    assert not server.fast
+    commands.run(server, "power off")
+    found = commands.run(server, "controls")
+    assert (found["supply"]["value"], found["speed"]["value"], found["power"]) == (9.5, 0.25, False)
+    for fault in found["faults"]:
+        for place in fault["places"] or [""]:
+            commands.run(server, f"mistake {fault['name']}{place and ':'}{place}")
+    with pytest.raises(UserError, match="can carry a load"):
+        commands.run(server, "load 0.2")
+
+
+def test_a_load_hangs_on_the_arm_where_it_is(board: Any) -> None:
+    """It pulls the shoulder down once nobody holds it; what was changed stays changed."""
+    bench = build_bench(BenchOptions())
+    falls = {}
+    for mass in (0.0, 0.5):
+        bench.load_tip(mass)
+        assert bench.tip_kg == mass
+        bench.place(np.zeros(4))
+        bench.leader.hold = None
+        for _ in range(200):
+            bench.angles[:] = cast(Any, bench.plant).step([0.0] * 4, 0.001)
+        falls[mass] = -float(bench.angles[1])
+        before = bench.angles.copy()
+        bench.load_tip(mass)
+        np.testing.assert_allclose(cast(Any, bench.plant).step([0.0] * 4, 1e-6), before, atol=1e-6)
+    assert falls[0.5] > falls[0.0] + 0.01
+
+
+def test_a_person_leads_live(server: Server) -> None:
+    assert commands.run(server, "lead 0.1 0.2 0.3 0.4") == {"lead": [0.1, 0.2, 0.3, 0.4]}
+    server.bench.run(1.0)
+    assert commands.run(server, "status")["leader"] == pytest.approx([0.1, 0.2, 0.3, 0.4], abs=1e-3)
+    assert commands.run(server, "leader reaches")["duration_s"] > 10.0
+
+
 def test_a_potentiometer_floats_until_it_is_connected_again(server: Server, board: Any) -> None:
     assert commands.run(server, "pot leader 1 floating") == {"pot": "leader_1", "state": "floating"}
     commands.run(server, "pot follower 2 floating")
@@ -244,7 +287,8 @@ def test_the_person_takes_up_another_motion_between_two_enables(server: Server, 
         *("leader", "leader 'unfinished", "leader a b"),
         *("", "fly", "speed", "speed 2", "power maybe", "line flip", "line flip much", "line flip 2"),
         *("pot nobody 1 open", "pot leader 4 open", "pot leader x open", "pot leader 1 melted", "status now"),
-        *("estop", "estop hit"),
+        *("estop", "estop hit", "speed 0.01", "speed nan", "supply -1", "supply", "load 100", "load nan"),
+        *("lead 1 2 3", "lead 1 2 3 nan", "lead 1 2 3 7"),
     ],
 )
 def test_bad_commands_are_answered_with_a_sentence(server: Server, text: str) -> None:

@@ -15,6 +15,7 @@ from typing import Protocol
 import numpy as np
 
 from greywhale import arm
+from greywhale.arm.parameters import Tip
 from greywhale.base.errors import UserError
 from greywhale.base.types import Floats
 from greywhale.protocol.joints import ALL, Joints
@@ -160,6 +161,19 @@ class Bench:
         """Give the motors another supply."""
         self.supply_v = volts
         self._last_outputs = b""
+
+    def load_tip(self, mass: float) -> None:
+        """Let the arm carry so many kg; it is built anew where it is, at rest. Only the built-in arm can."""
+        if not isinstance(self.plant, arm.Arm):
+            raise UserError("only the bench's own arm can carry a load.")
+        parameters = self.plant.parameters
+        self.plant = arm.Arm(parameters.model_copy(update={"tip": Tip(mass=mass)}))
+        self.plant.reset(self.angles)
+
+    @property
+    def tip_kg(self) -> float | None:
+        """What the arm carries; None for an arm that cannot be loaded."""
+        return self.plant.parameters.tip.mass if isinstance(self.plant, arm.Arm) else None
 
     def let_float(self, pot: int, floats: bool) -> None:
         """Take the wire off a potentiometer (0..3 leader, 4..7 follower) without a pull-down, or put it back."""

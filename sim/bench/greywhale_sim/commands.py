@@ -11,15 +11,20 @@ import numpy as np
 from greywhale import arm
 from greywhale.base.errors import UserError
 from greywhale.files.leader import load_leader
+from greywhale.motion import human_reaches
 from greywhale_sim import faults, hands, pot_faults
-from greywhale_sim.bench import CLOCK_HZ
+from greywhale_sim.bench import CLOCK_HZ, stops_of
 from greywhale_sim.faults import POTS
 from greywhale_sim.pins_seen import PinsSeen
 from greywhale_sim.server import Server
 
 Answer = dict[str, Any]
+REACHES = "reaches"
 QUIT = "quit"  # obeyed by whoever reads the commands
 FARTHEST_RAD = 6.28
+MOST_SUPPLY_V = 30.0
+MOST_LOAD_KG = 2.0
+SLOWEST = 0.05  # simulated seconds a second
 _WIRINGS = {
     "connected": arm.Wiring.CONNECTED,
     "open": arm.Wiring.OPEN,
@@ -66,9 +71,10 @@ def status(server: Server) -> Answer:
 
 
 def leader(server: Server, file: str) -> Answer:
+    """Another motion for the person: a file's, or generated `reaches`."""
     if server.bench.motors_enabled:
         raise UserError("the person takes up another motion only while the motors are off; stop them first.")
-    motion = load_leader(file)
+    motion = human_reaches() if file == REACHES else load_leader(file)
     server.bench.leader.take_up(motion)
     return {"leader": file, "duration_s": motion.duration_s}
 
@@ -143,15 +149,58 @@ def power(server: Server, switch: str, writes: str = "0") -> Answer:
 
 
 def speed(server: Server, value: str) -> Answer:
-    if value not in ("1", "max"):
+    rate = 1.0 if value == "max" else float(value)
+    if not SLOWEST <= rate <= 1.0:
         raise ValueError
-    server.fast = value == "max"
+    server.fast, server.rate = value == "max", rate
     return {"speed": value}
+
+
+def lead(server: Server, *words: str) -> Answer:
+    angles = np.array([float(word) for word in words])
+    if len(words) != 4 or not np.all(np.abs(angles) <= FARTHEST_RAD):
+        raise ValueError
+    server.bench.leader.lead(angles)
+    return {"lead": angles.tolist()}
+
+
+def supply(server: Server, volts: str) -> Answer:
+    if not 0.0 <= float(volts) <= MOST_SUPPLY_V:
+        raise ValueError
+    server.bench.change_supply(float(volts))
+    return {"supply_v": server.bench.supply_v}
+
+
+def load(server: Server, mass: str) -> Answer:
+    if not 0.0 <= float(mass) <= MOST_LOAD_KG:
+        raise ValueError
+    server.bench.load_tip(float(mass))
+    return {"load_kg": float(mass)}
+
+
+def controls(server: Server) -> Answer:
+    """What can be changed while a bench runs, between which ends, and how it is now."""
+    bench = server.bench
+    low, high = (np.clip(ends, -FARTHEST_RAD, FARTHEST_RAD).tolist() for ends in stops_of(bench.plant))
+    found: Answer = {
+        "leader": {"minimum": low, "maximum": high},
+        "faults": [
+            {"name": one.name, "places": [place for place in faults.WHERE[one.on] if place], "description": one.says}
+            for one in faults.FAULTS
+        ],
+        "supply": {"minimum": 0.0, "maximum": MOST_SUPPLY_V, "value": bench.supply_v},
+        "speed": {"minimum": SLOWEST, "maximum": 1.0, "value": server.rate},
+        "power": server.board.powered,
+    }
+    if bench.tip_kg is not None:
+        found["load"] = {"minimum": 0.0, "maximum": MOST_LOAD_KG, "value": bench.tip_kg}
+    return found
 
 
 COMMANDS: dict[str, tuple[Callable[..., Answer], str]] = {
     "status": (status, ""),
-    "leader": (leader, "FILE.csv"),
+    "leader": (leader, f"FILE.csv|{REACHES}"),
+    "lead": (lead, "A0 A1 A2 A3"),
     "hand": (hand, "leader|follower|both A0 A1 A2 A3 [SECONDS]"),
     "turn": (hands.turn, "leader|follower 0..3 [SECONDS]"),
     "hold": (hands.hold, "DEGREES, once or four times"),
@@ -165,5 +214,8 @@ COMMANDS: dict[str, tuple[Callable[..., Answer], str]] = {
     "line": (line, "flip|lose PROBABILITY"),
     "power": (power, "on|off [WRITES]"),
     "help": (hands.explain, ""),
-    "speed": (speed, "1|max"),
+    "supply": (supply, "VOLTS"),
+    "load": (load, "KG"),
+    "speed": (speed, f"{SLOWEST:g}..1|max"),
+    "controls": (controls, ""),
 }

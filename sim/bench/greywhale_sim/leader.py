@@ -1,9 +1,9 @@
 """The person at the bench: moves the leader arm along a motion, and lifts the follower back when the motors are off.
 
 The person waits for the drivers' enable pin (a board's LED shows the same), lets the soft start pass, plays the motion
-once and holds the last pose. A while after the motors went off, the person brings both arms back to the first pose and
-holds them there, so that the next enable is accepted. Until then nobody touches the follower, so that a fall or
-coasting after a stop shows.
+once and holds the last pose, or leads live, wherever they are told. A while after the motors went off, the person
+brings both arms back to the first pose and holds them there, so that the next enable is accepted. Until then nobody
+touches the follower, so that a fall or coasting after a stop shows.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from greywhale.base.errors import UserError
 from greywhale.base.types import Floats
 from greywhale.files.trajectory import Trajectory
 from greywhale.protocol.joints import ALL, Joints
+from greywhale_sim.live_hand import LiveHand
 
 Place = tuple[Floats | None, Floats | None, float]  # of leader and follower, None: where it is; seconds on the way
 
@@ -47,13 +48,24 @@ class LeaderPlayer:
         self._taken_at: Floats = self.home  # the leader arm when the motors went on
         self.hold: Floats | None = self.home
         self.plays = 0
+        self._hand: LiveHand | None = None  # in the place of the motion
 
     def take_up(self, motion: Trajectory) -> None:
         """Play another motion from the next enable on; held arms are brought to its first pose within a second."""
+        self._hand = None
         self._learn(motion)
         self.rest, self._further = (self.home, self.home), []
         if self.hold is not None:
             self._set_out(self._bring_back)
+
+    def lead(self, angles: Floats) -> None:
+        """Lead to angles (4,) rad, now, whether the motors are on or off, and to others when this is called again.
+
+        While they are off, the other hand brings the follower along. Ends with `take_up` and with `bring`.
+        """
+        self._hand = self._hand or LiveHand(self.angles)
+        self._hand.target = angles * self._in_use
+        self._further = []
 
     def bring(self, leader: Floats | None, follower: Floats | None, seconds: float) -> None:
         """Bring a held arm, or both, to angles (4,) rad within so many seconds; both are held until the next enable."""
@@ -63,11 +75,15 @@ class LeaderPlayer:
         """The same to one place after another."""
         if self.hold is None:
             raise UserError("the hands are on the arms only while the motors are off; stop them first.")
+        self._hand = None
         self._further = list(places)
         self._bring_next()
 
     def step(self, enabled: bool, follower: Floats) -> None:
         """Advance one slice; `follower` is where the follower is now."""
+        if self._hand is not None:
+            self._hand.step(self._slice_s)
+            self.rest = (self._hand.angles, self._hand.angles)
         if enabled:
             self._follow_motion()
         elif self._off < self._let_go:
@@ -122,7 +138,12 @@ class LeaderPlayer:
             self.hold = None
             self.rest, self._further, self._way = (self.home, self.home), [], self._bring_back
             self._taken_at = self.angles
+            if self._hand is not None:
+                self._hand.take(self.angles)
         self._on += 1
+        if self._hand is not None:
+            self.angles = self._hand.angles
+            return
         row = self._on - self._start
         if row < 0:  # the motors may have gone on while the arms were being brought back
             self.angles = self._taken_at + self._on / self._start * (self.home - self._taken_at)

@@ -30,7 +30,17 @@ class Pacer:
         self._clock = clock
         self._wait = wait
         self._origin: tuple[float, float] | None = None  # simulated and wall time that belong together
+        self._rate = 1.0
         self.lag_s = 0.0
+
+    @property
+    def rate(self) -> float:
+        """Simulated seconds a second: 1 is real time, less is slow motion."""
+        return self._rate
+
+    @rate.setter
+    def rate(self, rate: float) -> None:
+        self._rate, self._origin = rate, None
 
     def pace(self, simulated_s: float, real_time: bool) -> None:
         """Call after every piece of simulation with the simulated time reached."""
@@ -41,7 +51,7 @@ class Pacer:
         if self._origin is None:
             self._origin = (simulated_s, now)
             return
-        ahead = (simulated_s - self._origin[0]) - (now - self._origin[1])
+        ahead = (simulated_s - self._origin[0]) / self._rate - (now - self._origin[1])
         if ahead > 0.0:
             self._wait(ahead)
         elif ahead < -GIVE_UP_S:

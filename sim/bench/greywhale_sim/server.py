@@ -94,6 +94,15 @@ class Server:
         if not self.board.powered:
             self.board.power_on(self._seed)
 
+    @property
+    def rate(self) -> float:
+        """Of simulated time while the bench keeps to the clock: 1 is real time, less is slow motion."""
+        return self._pacer.rate
+
+    @rate.setter
+    def rate(self, rate: float) -> None:
+        self._pacer.rate = rate
+
     def close(self) -> None:
         try:
             self._keep_eeprom(now=True)

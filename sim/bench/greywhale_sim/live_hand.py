@@ -1,0 +1,29 @@
+"""A hand that is told again and again where to lead the arm: it gets there smoothly, and no faster than hands are."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from greywhale.base.types import Floats
+
+# A critically damped pull (1/s): nine tenths of a short way take 0.16 s. No hand turns a joint faster (rad/s).
+PULL, FASTEST = 25.0, 5.0
+
+
+class LiveHand:
+    """`angles` (4,) rad follow `target` from slice to slice."""
+
+    def __init__(self, angles: Floats) -> None:
+        self.angles = angles.copy()
+        self.target = angles.copy()
+        self._speeds: Floats = np.zeros(len(angles))
+
+    def take(self, angles: Floats) -> None:
+        """Begin anew from where the arm is."""
+        self.angles = angles.copy()
+        self._speeds[:] = 0.0
+
+    def step(self, slice_s: float) -> None:
+        pull = PULL * PULL * (self.target - self.angles) - 2.0 * PULL * self._speeds
+        self._speeds = np.clip(self._speeds + slice_s * pull, -FASTEST, FASTEST)
+        self.angles = self.angles + slice_s * self._speeds
