@@ -15,6 +15,7 @@ import pytest
 import greywhale.cli.story
 import greywhale.commission
 from greywhale.arm.export import urdf
+from greywhale.base import bench_process
 from greywhale.board.device import Device
 from greywhale.cli import flash as flash_verb
 from greywhale.cli import identify as identify_verb
@@ -25,7 +26,6 @@ from greywhale.commission import run as commission_run
 from greywhale.commission.journal import CommissioningJournal
 from greywhale.commission.learn import LearntController
 from greywhale.commission.search import KI, KP
-from greywhale.dashboard import bench as dashboard_bench
 from greywhale.dashboard import server as dashboard_server
 from greywhale.files import parameter_file
 from greywhale.files.arm import content_of, default_arm, load_arm
@@ -200,7 +200,7 @@ def once(
     monkeypatch.setattr(greywhale.cli.story, "BenchProcess", lock_step)
     monkeypatch.setattr(greywhale.cli.story, "run", lambda options, report: demonstrated())
     monkeypatch.setattr(bench_serve, "serve", serve)
-    monkeypatch.setattr(dashboard_bench, "BenchProcess", lambda arm, board: lock_step("--board", board))
+    monkeypatch.setattr(bench_process, "BenchProcess", lock_step)
     monkeypatch.setattr(dashboard_server, "require_page", lambda: yours)
     monkeypatch.setattr(dashboard_server, "make_server", lambda app: SimpleNamespace(run=lambda listeners: None))
     monkeypatch.setattr(flash_verb, "flash", greet)

@@ -22,7 +22,7 @@ ANSWER_WAIT_S = 60.0  # the machine may be busy; a healthy bench answers in mill
 
 
 class RunningBench(Protocol):
-    """What a demo needs of a bench, in a process of its own or in this one (greywhale_sim.lockstep)."""
+    """What is needed of a bench, in a process of its own or in this one (greywhale_sim.lockstep)."""
 
     @property
     def port(self) -> str: ...

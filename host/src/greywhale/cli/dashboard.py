@@ -12,6 +12,7 @@ from typing import TypedDict
 import click
 from click.core import ParameterSource
 
+from greywhale.base import bench_process
 from greywhale.base.errors import BAD_USAGE, UserError
 from greywhale.cli import completion
 from greywhale.cli.bench import need_bench
@@ -66,7 +67,7 @@ def command(
     if arm is not None:
         load_arm(arm)
     from greywhale.dashboard import server
-    from greywhale.dashboard.bench import BenchProcess
+    from greywhale.dashboard.bench import BenchControls
     from greywhale.dashboard.folder import Folder
     from greywhale.dashboard.history import History
     from greywhale.dashboard.house import House
@@ -75,12 +76,14 @@ def command(
 
     page = server.require_page()
     with contextlib.ExitStack() as held:
-        bench = None
+        own_folder, bench = Folder(folder), None
         if sim:
             need_bench("greywhale_sim")
-            bench = held.enter_context(BenchProcess(arm, board))
-            port = bench.port
-        house = House(Relay(History()), Folder(folder), str(arm or "default"), bench)
+            process = held.enter_context(
+                bench_process.BenchProcess("--board", board, *(["--arm", str(arm)] if arm else []))
+            )
+            port, bench = process.port, BenchControls(process, own_folder)
+        house = House(Relay(History()), own_folder, str(arm or "default"), bench)
         keeper = Keeper(house.relay, port)
         listener = held.enter_context(server.listen(http_port))
         number: int = listener.getsockname()[1]

@@ -1,74 +1,68 @@
-"""The simulated bench that a dashboard starts: a process behind its own serial port, told by lines what to do."""
+"""The simulated bench under a page's hands: a wish becomes one of the bench's own commands (docs/bench.md)."""
 
 from __future__ import annotations
 
-import json
-import subprocess
-import sys
+import math
+import shlex
 import threading
-from pathlib import Path
-from types import TracebackType
-from typing import Any, Protocol, Self
+from typing import Any
 
-from greywhale.base import processes
-from greywhale.base.errors import UserError
-
-
-class Hands(Protocol):
-    """Whoever carries out a command of docs/bench.md and returns its answer; a bad one is a UserError."""
-
-    def command(self, text: str) -> dict[str, Any]: ...
+from greywhale.base.bench_process import RunningBench
+from greywhale.base.errors import BAD_USAGE, UserError, cut
+from greywhale.dashboard.folder import Folder
 
 
-class BenchProcess:
-    """A context: `python -m greywhale_sim` in real time. `port` is its serial port."""
+class BenchControls:
+    """What a page may do to the bench; any thread may call it."""
 
-    def __init__(self, arm: Path | None, board: str) -> None:
-        words = ["--control", "--json", "--board", board, *(["--arm", str(arm)] if arm is not None else [])]
-        self._process = processes.start(
-            [sys.executable, "-m", "greywhale_sim", *words],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            start_new_session=True,  # Ctrl-C ends it through this process, which turns the motors off first
-        )
+    def __init__(self, bench: RunningBench, folder: Folder) -> None:
+        self._bench = bench
+        self._folder = folder
         self._lock = threading.Lock()
-        self.port = str(self._answer().get("port"))
 
-    def command(self, text: str) -> dict[str, Any]:
-        """Carry out one command."""
-        assert self._process.stdin is not None
+    def controls(self) -> dict[str, Any]:
+        """What there is to change, between which ends."""
+        return self._do("controls")
+
+    def change(self, wish: dict[str, Any]) -> dict[str, Any]:
+        """Do one thing; what there is to change then, or the bench's answer to a `command`."""
+        match wish:
+            case {"leader": [_, _, _, _] as angles}:
+                self._do(f"lead {' '.join(_number(angle) for angle in angles)}")
+                return {}
+            case {"motion": "hold"}:
+                self._do(f"lead {' '.join(map(str, self._do('status')['leader']))}")
+            case {"motion": "reaches"}:
+                self._do("leader reaches")
+            case {"motion": str(file)}:
+                self._do(f"leader {shlex.quote(str(self._folder.inside(file)))}")
+            case {"fault": None}:
+                self._do("mistake none")
+            case {"fault": str(name)} if name.isprintable():  # a line is a command
+                self._do(f"mistake {shlex.quote(name)}")
+            case {"power": bool(on)}:
+                self._do(f"power {'on' if on else 'off'}")
+            case {"estop": bool(pressed)}:
+                self._do(f"estop {'press' if pressed else 'release'}")
+            case {"supply": volts}:
+                self._do(f"supply {_number(volts)}")
+            case {"load": mass}:
+                self._do(f"load {_number(mass)}")
+            case {"speed": rate}:
+                self._do(f"speed {_number(rate)}")
+            case _:
+                keys = "leader, motion, fault, power, estop, supply, load and speed"
+                raise UserError(
+                    f"{cut(repr(wish))} is nothing that a page does to a bench; it knows {keys}.", BAD_USAGE
+                )
+        return self.controls()
+
+    def _do(self, text: str) -> dict[str, Any]:
         with self._lock:
-            try:
-                self._process.stdin.write(text.replace("\n", " ").encode() + b"\n")
-                self._process.stdin.flush()
-            except OSError:
-                raise UserError("the bench has ended; start the dashboard again.") from None
-            answer = self._answer()
-        if "error" in answer:
-            raise UserError(answer["error"])
-        return answer
+            return self._bench.command(text)
 
-    def _answer(self) -> dict[str, Any]:
-        assert self._process.stdout is not None
-        assert self._process.stderr is not None
-        line = self._process.stdout.readline()
-        if not line:
-            said = self._process.stderr.read().decode("utf-8", "replace").strip().splitlines()
-            raise UserError(said[-1].removeprefix("greywhale_sim: ") if said else "the bench has ended by itself.")
-        answer: dict[str, Any] = json.loads(line)
-        return answer
 
-    def close(self) -> None:
-        """The end of its standard input ends it."""
-        for pipe in (self._process.stdin, self._process.stdout, self._process.stderr):
-            assert pipe is not None
-        self._process.communicate()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
+def _number(value: object) -> str:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise UserError(f"{cut(repr(value))} is no number, and the bench needs one here.", BAD_USAGE)
+    return repr(float(value))

@@ -11,7 +11,7 @@ from greywhale.arm.parameters import ArmParameters
 from greywhale.base.errors import BAD_USAGE, UserError
 from greywhale.base.formats import toml_file
 from greywhale.base.formats.kinds import Kind, kind_of
-from greywhale.dashboard.bench import Hands
+from greywhale.dashboard.bench import BenchControls
 from greywhale.dashboard.folder import FileFacts, Folder
 from greywhale.dashboard.relay import Relay
 from greywhale.files import controller, parameter_file
@@ -63,7 +63,7 @@ class House:
     relay: Relay
     folder: Folder
     arm: str
-    bench: Hands | None = None
+    bench: BenchControls | None = None
 
     def state(self) -> State:
         link = self.relay.link

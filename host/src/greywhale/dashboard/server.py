@@ -45,6 +45,11 @@ def application(house: House, page: Path, token: str, port: int) -> ASGIApp:
         Route("/controller", _told(lambda asked: house.controller(asked.get("file", "")))),
         Route("/predict", _told(house.predict), methods=["POST"]),
     ]
+    if (bench := house.bench) is not None:
+        routes += [
+            Route("/bench", _told(lambda asked: bench.controls()), methods=["GET"]),
+            Route("/bench", _told(bench.change), methods=["POST"]),
+        ]
     private = {route.path for route in routes if isinstance(route, Route | WebSocketRoute)}
     first = {path.split("/")[1] for path in private}
     files = Mount("/", StaticFiles(directory=page, html=True))

@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from greywhale.arm import ArmParameters
+from greywhale.base.bench_process import RunningBench
 from greywhale.base.types import Progress, show_no_progress
-from greywhale.cli.story.bench import RunningBench
 from greywhale.cli.story.recorder import record_excitation, record_motion
 from greywhale.files import controller as controller_file
 from greywhale.files.leader import save_leader

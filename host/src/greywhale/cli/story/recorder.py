@@ -10,13 +10,13 @@ from pathlib import Path
 
 import numpy as np
 
+from greywhale.base.bench_process import RunningBench
 from greywhale.base.errors import UserError
 from greywhale.base.types import Floats, Progress
 from greywhale.board.device import Device
 from greywhale.board.record import Recording, record, record_led
 from greywhale.board.stream import stream
 from greywhale.board.upload import read_parameters, upload_controller
-from greywhale.cli.story.bench import RunningBench
 from greywhale.files.leader import load_leader
 from greywhale.files.log import Log, read_evidence
 from greywhale.files.trajectory import Trajectory

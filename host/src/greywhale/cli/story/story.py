@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from greywhale.arm import ArmParameters
+from greywhale.base.bench_process import BenchProcess, RunningBench
 from greywhale.base.errors import BAD_USAGE, UserError, os_reason
 from greywhale.base.formats.whole import write_text
 from greywhale.base.types import NotedProgress, show_no_progress
@@ -19,7 +20,6 @@ from greywhale.board import flash
 from greywhale.board.device import Device
 from greywhale.board.upload import change_parameters
 from greywhale.cli.story import learn
-from greywhale.cli.story.bench import BenchProcess, RunningBench
 from greywhale.cli.story.learn import Learnt
 from greywhale.cli.story.practice import PRACTICE_S, REST_FILE, UNTUNED, practise, tables
 from greywhale.cli.story.recorder import Recorded, record_motion

@@ -1,0 +1,91 @@
+"""What a page does to the simulated bench: each wish does what it says, and what is none changes nothing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from greywhale.base.errors import UserError
+from greywhale.dashboard.bench import BenchControls
+from greywhale.dashboard.folder import Folder
+from greywhale.files.leader import save_leader
+from greywhale.files.trajectory import Trajectory
+from greywhale_sim.lockstep import LockStepBench
+
+
+@pytest.fixture
+def controls(bench: LockStepBench, tmp_path: Path) -> BenchControls:
+    return BenchControls(bench, Folder(tmp_path))
+
+
+def test_a_page_leads_by_hand(bench: LockStepBench, controls: BenchControls) -> None:
+    low, high = (np.array(controls.controls()["leader"][end]) for end in ("minimum", "maximum"))
+    pose = [0.5, 1, -0.5, 0.25]
+    assert ((low < pose) & (pose < high)).all()
+    assert controls.change({"leader": pose}) == {}
+    bench.bench.run(1.0)
+    assert bench.bench.leader.angles == pytest.approx(pose, abs=1e-3)
+    controls.change({"motion": "hold"})
+    bench.bench.run(0.5)
+    assert bench.bench.leader.angles == pytest.approx(pose, abs=1e-3)
+
+
+def test_a_recorded_motion_is_taken_up(bench: LockStepBench, controls: BenchControls, tmp_path: Path) -> None:
+    save_leader(tmp_path / "it's mine.csv", Trajectory(np.array([0.0, 1.0]), np.array([[0.3] * 4, [0.5] * 4])))
+    controls.change({"motion": "it's mine.csv"})
+    bench.bench.run(2.0)
+    assert bench.bench.leader.angles == pytest.approx([0.3] * 4)
+    controls.change({"motion": "reaches"})
+    bench.bench.run(2.0)
+    assert bench.bench.leader.angles == pytest.approx(bench.bench.leader.home)
+    with pytest.raises(UserError, match="it is not in"):
+        controls.change({"motion": "../motion.csv"})
+
+
+@pytest.mark.parametrize(
+    ("wish", "key", "value"),
+    [
+        ({"supply": 9}, "supply", 9.0),
+        ({"speed": 0.25}, "speed", 0.25),
+        ({"load": 0.2}, "load", 0.2),
+        ({"power": False}, "power", False),
+        ({"power": True}, "power", True),
+    ],
+)
+def test_a_wish_is_told_in_what_there_is_then(
+    controls: BenchControls, wish: dict[str, Any], key: str, value: float
+) -> None:
+    told = controls.change(wish)[key]
+    assert (told["value"] if isinstance(told, dict) else told) == value
+
+
+def test_every_fault_is_staged_by_its_name_and_mended(bench: LockStepBench, controls: BenchControls) -> None:
+    found = controls.controls()["faults"]
+    assert len({fault["name"] for fault in found}) == len(found) > 10
+    for fault in found:
+        controls.change({"fault": ":".join([fault["name"], *fault["places"][:1]])})
+    assert bench.bench.pot_faults.any
+    controls.change({"fault": None})
+    assert not bench.bench.pot_faults.any
+    assert bench.bench.motor_gains == [1.0] * 4
+    controls.change({"estop": True})
+    assert bench.bench.estop_pressed
+    controls.change({"estop": False})
+
+
+@pytest.mark.parametrize(
+    "wish",
+    [
+        *({}, {"dance": 1}, {"leader": [1, 2, 3]}, {"leader": [1, 2, 3, "4; power off"]}, {"leader": [0, 0, 0, 1e9]}),
+        *({"supply": True}, {"supply": "9"}, {"supply": float("nan")}, {"fault": "dance"}, {"fault": "x\npower off"}),
+        *({"power": 1}, {"motion": ""}, {"speed": 0}),
+    ],
+)
+def test_what_is_no_wish_changes_nothing(bench: LockStepBench, controls: BenchControls, wish: dict[str, Any]) -> None:
+    before = controls.controls()
+    with pytest.raises(UserError):
+        controls.change(wish)
+    assert controls.controls() == before
