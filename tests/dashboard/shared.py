@@ -2,17 +2,27 @@
 
 from __future__ import annotations
 
+import sys
 from types import TracebackType
 from typing import Any, Self
 
 from greywhale.board.device import Device
+from greywhale.cli.catalogue import catalogue
+from greywhale.dashboard.folder import Folder
 from greywhale.dashboard.history import History
+from greywhale.dashboard.jobs import Jobs
 from greywhale.dashboard.keeper import turn
 from greywhale.dashboard.outbox import Outbox
 from greywhale.dashboard.relay import Client, Relay
 from greywhale.protocol import schema
 from greywhale.protocol.declared import Message
 from greywhale.protocol.frames import Frame, FrameDecoder, encode_frame
+
+
+def jobs_of(relay: Relay, folder: Folder) -> Jobs:
+    """As the dashboard has them."""
+    return Jobs(relay, folder, catalogue, [sys.executable, "-m", "greywhale.cli.job"])
+
 
 HERE_S = 0.1  # between two signs of life of a page that drives
 

@@ -20,6 +20,7 @@ from greywhale.files.log.layout import HEADING, TITLE
 from greywhale.protocol import schema
 from greywhale.protocol.joints import parse
 from greywhale.protocol.table import ParameterTable
+from tests.dashboard.shared import jobs_of
 
 
 @pytest.fixture
@@ -35,7 +36,8 @@ def house(tmp_path: Path) -> House:
     controller.save(folder / "c.toml", ParameterTable.defaults().controllers, "a <b>test</b>")
     (tmp_path / "secret.toml").write_bytes(content_of("worn"))
     (folder / "way.toml").symlink_to(tmp_path / "secret.toml")
-    return House(Relay(History(10)), Folder(folder), "default")
+    relay = Relay(History(10))
+    return House(relay, Folder(folder), "default", jobs_of(relay, Folder(folder)))
 
 
 def test_files_are_told_with_their_kind(house: House) -> None:

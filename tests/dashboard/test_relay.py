@@ -102,7 +102,7 @@ def test_one_drives_until_it_lets_go(shared: Shared) -> None:
     shared.relay.drive(first.client)
     shared.relay.drive(second.client)
     assert "Another page drives" in second.words("refused")[0]["sentence"]
-    assert second.words("driver")[-1] == {"kind": "driver", "you": False, "free": False, "verb": None}
+    assert second.words("driver")[-1] == {"kind": "driver", "you": False, "free": False, "job": None, "verb": None}
     assert first.words("driver")[-1]["you"]
     shared.relay.release(first.client)
     assert second.words("driver")[-1]["free"]
@@ -129,9 +129,12 @@ def test_motors_run_as_long_as_their_page_is_there(shared: Shared) -> None:
 @pytest.mark.parametrize("how", ["leave", "release"])
 def test_motors_go_off_with_their_page(shared: Shared, how: str) -> None:
     driver, watcher = start(shared), shared.page()
+    gone: list[str] = []
+    shared.relay.on_let_go = gone.append
     shared.live(0.05)
     assert motors_on(watcher)
     getattr(shared.relay, how)(driver.client)
+    assert gone == [driver.client.id]
     shared.live(0.05)
     assert not motors_on(watcher)
 

@@ -19,7 +19,7 @@ from greywhale.dashboard.house import House
 from greywhale.protocol import schema
 from greywhale.protocol.frames import FrameDecoder
 from tests.dashboard.browser import BoardSocket, Page, RefusedError
-from tests.dashboard.shared import Shared
+from tests.dashboard.shared import Shared, jobs_of
 
 INDEX = "<!doctype html><title>greywhale</title>"
 
@@ -37,7 +37,8 @@ def page(shared: Shared, tmp_path: Path) -> Iterator[Page]:
     listener = server.listen()
     port: int = listener.getsockname()[1]
     token = secrets.token_urlsafe(8)
-    running = server.make_server(server.application(House(shared.relay, Folder(folder), "default"), files, token, port))
+    house = House(shared.relay, Folder(folder), "default", jobs_of(shared.relay, Folder(folder)))
+    running = server.make_server(server.application(house, files, token, port))
     thread = threading.Thread(target=running.run, args=([listener],), daemon=True)
     thread.start()
     yield Page(port, token)

@@ -23,6 +23,7 @@ from typing import Any, Self
 from greywhale.base.errors import UserError, os_reason
 from greywhale.board import meeting
 from greywhale.protocol.holder import describe
+from greywhale.protocol.transport import LENT
 
 NOTE = "It was stopped with `greywhale stop` from another terminal."
 # A session hears a stop within this time, or is itself stopped (Ctrl-Z) or hung.
@@ -46,7 +47,8 @@ class Session:
 
     def __init__(self, port: str) -> None:
         self.port = port
-        self._key, self._device = _key(port), meeting.device_of(port)
+        self._key = _key(port)
+        self._device = None if port in LENT else meeting.device_of(port)  # whoever lends a port listens for it
         self.asked = False
         self._users = 0
         self._send_stop: Callable[[], None] | None = None

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import contextlib
+import json
 import secrets
+import subprocess
+import sys
 import threading
 import webbrowser
 from pathlib import Path
-from typing import TypedDict
+from typing import Any, TypedDict
 
 import click
 from click.core import ParameterSource
 
-from greywhale.base import bench_process
+from greywhale.base import bench_process, processes
 from greywhale.base.errors import BAD_USAGE, UserError
 from greywhale.cli import completion
 from greywhale.cli.bench import need_bench
@@ -71,6 +74,7 @@ def command(
     from greywhale.dashboard.folder import Folder
     from greywhale.dashboard.history import History
     from greywhale.dashboard.house import House
+    from greywhale.dashboard.jobs import Jobs
     from greywhale.dashboard.keeper import Keeper
     from greywhale.dashboard.relay import Relay
 
@@ -83,7 +87,9 @@ def command(
                 bench_process.BenchProcess("--board", board, *(["--arm", str(arm)] if arm else []))
             )
             port, bench = process.port, BenchControls(process, own_folder)
-        house = House(Relay(History()), own_folder, str(arm or "default"), bench)
+        relay = Relay(History())
+        jobs = Jobs(relay, own_folder, _catalogue, [sys.executable, "-m", "greywhale.cli.job"])
+        house = House(relay, own_folder, str(arm or "default"), jobs, bench)
         keeper = Keeper(house.relay, port)
         listener = held.enter_context(server.listen(http_port))
         number: int = listener.getsockname()[1]
@@ -91,6 +97,7 @@ def command(
         address = f"http://127.0.0.1:{number}/#token={token}"
         running = server.make_server(server.application(house, page, token, number))
         held.callback(keeper.close)
+        held.callback(jobs.close)  # first, while their board is there
         keeper.start()
         answer: Answer = {"address": address}
         click.echo(json_of(answer) if as_json else address)
@@ -99,3 +106,10 @@ def command(
             threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
         with contextlib.suppress(KeyboardInterrupt):  # the usual end
             running.run([listener])
+
+
+def _catalogue() -> Any:
+    """The verbs that a page may start, from a process of its own: to import them all would hold the board up."""
+    command = [sys.executable, "-m", "greywhale.cli.catalogue"]
+    printed, _ = processes.start(command, stdout=subprocess.PIPE).communicate()
+    return json.loads(printed)

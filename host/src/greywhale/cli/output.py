@@ -20,6 +20,8 @@ from greywhale.cli.wrapping import fit
 ANSWER = "answer"  # attribute of a verb's function: the type of what it prints with --json
 QUIET = "greywhale.quiet"  # in the context's `meta`: whether --quiet was said
 logger = logging.getLogger(__name__)
+# Who gets the reports of a verb that runs for a page, in the place of a terminal.
+watcher: NotedProgress | None = None
 Command = TypeVar("Command", bound=Callable[..., Any])
 
 
@@ -88,6 +90,9 @@ def progress(brief: bool = False) -> Iterator[NotedProgress | None]:
     Without a terminal the steps of a `brief` verb, which takes seconds, are not told one by one. With --json all is
     the same: that is about stdout.
     """
+    if watcher is not None:
+        yield watcher
+        return
     steps = Steps() if logger.isEnabledFor(logging.INFO) else None
     context = click.get_current_context(silent=True)
     if context is not None and context.meta.get(QUIET):

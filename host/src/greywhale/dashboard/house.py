@@ -13,6 +13,7 @@ from greywhale.base.formats import toml_file
 from greywhale.base.formats.kinds import Kind, kind_of
 from greywhale.dashboard.bench import BenchControls
 from greywhale.dashboard.folder import FileFacts, Folder
+from greywhale.dashboard.jobs import Jobs
 from greywhale.dashboard.relay import Relay
 from greywhale.files import controller, parameter_file
 from greywhale.files.arm import arm_names, load_arm
@@ -63,6 +64,7 @@ class House:
     relay: Relay
     folder: Folder
     arm: str
+    jobs: Jobs
     bench: BenchControls | None = None
 
     def state(self) -> State:

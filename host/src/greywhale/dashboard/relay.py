@@ -41,10 +41,13 @@ _STATE = 4  # place of the state in a sample's payload
 
 
 class Client:
-    """One who shares the board. `verb` marks a verb that runs for a page: it keeps its lease itself."""
+    """One who shares the board. `verb` marks a verb that runs for a page, the job `id`: it keeps its lease itself.
 
-    def __init__(self, outbox: Outbox, verb: str | None = None) -> None:
-        self.id = secrets.token_hex(8)
+    A verb's outbox gets a message in words once: when the board is gone.
+    """
+
+    def __init__(self, outbox: Outbox, verb: str | None = None, id: str | None = None) -> None:
+        self.id = id or secrets.token_hex(8)
         self.outbox = outbox
         self.verb = verb
         self.every = 0  # ticks between the samples it gets; 0: none
@@ -85,6 +88,7 @@ class Relay:
         self._motors: Client | None = None  # the page for which they run
         self._confirmed = False  # that they do
         self._renewed_s = self._heard_s = 0.0
+        self.on_let_go: Callable[[str], None] = lambda page: None  # called with a page's id when it drives no more
         self._asked_again = False
 
     # --- the board --------------------------------------------------------------------------------------------------
@@ -108,13 +112,15 @@ class Relay:
         """No board is there, and why."""
         with self._lock:
             self._board = self._motors = None
+            if self._verb is not None:
+                self._verb.outbox.add_answer({"kind": "gone"})
             if self._link["sentence"] != sentence or self._link["open"]:
                 self._tell_link(False, port, sentence)
 
     def heard(self, data: bytes) -> None:
         """Pass on what the board said."""
         with self._lock:
-            for frame, wire in self._decoder.feed_wire(data):
+            for frame, wire in self._decoder.feed_wire(data) if self._board is not None else ():
                 if frame.type == schema.Sample.TYPE:
                     self._pass_sample(frame, wire)
                 elif frame.type == schema.HelloReply.TYPE and frame.seq == 0:
@@ -134,7 +140,7 @@ class Relay:
                 return
             if now_s > page.seen_s + SILENCE_S:
                 self._stop()
-                page.outbox.add_answer(_refused("the motors are off: the page that drives fell silent.", None))
+                self._refuse(page, "the motors are off: the page that drives fell silent.")
             elif now_s >= self._renewed_s + RENEW_S and not self._silent:
                 self._renewed_s = now_s
                 self._ask(schema.RenewRequest(LEASE_MS))
@@ -170,21 +176,22 @@ class Relay:
                 self._driver = client
                 self._tell_drivers()
             elif self._driver is not client:
-                client.outbox.add_answer(_refused("another page drives this arm; let go there first.", None))
+                self._refuse(client, "another page drives this arm; let go there first.")
 
     def release(self, client: Client) -> None:
         """Let another page drive; motors that run for this one go off."""
         with self._lock:
             if self._driver is client:
                 self._driver = None
-                if self._motors is client:
+                if self._motors is client or self._verb is not None:
                     self._stop()
                 self._tell_drivers()
+                self.on_let_go(client.id)
 
     def drives(self, page: str) -> bool:
         """Whether the page with this id drives."""
         with self._lock:
-            return self._driver is not None and secrets.compare_digest(self._driver.id, page)
+            return self._driver is not None and self._driver.id == page
 
     def seen(self, client: Client) -> None:
         """A sign of life."""
@@ -215,7 +222,7 @@ class Relay:
 
     def _request(self, client: Client, frame: Frame) -> None:
         if self._board is None:
-            client.outbox.add_answer(_refused(self._link["sentence"] or "no board is there yet.", frame))
+            self._refuse(client, self._link["sentence"] or "no board is there yet.", frame)
         elif frame.type == schema.TelemetryRequest.TYPE and len(frame.payload) == schema.TelemetryRequest.SIZE:
             client.every = int.from_bytes(frame.payload, "little")
             client.outbox.add_answer(encode_frame(schema.TelemetryReply.TYPE, frame.seq, frame.payload))
@@ -223,7 +230,7 @@ class Relay:
             self._motors = None
             self._write(stop_message(self._number(_Asked(client, frame.type, frame.seq))))
         elif problem := self._why_not(client, frame):
-            client.outbox.add_answer(_refused(problem, frame))
+            self._refuse(client, problem, frame)
         else:
             self._forward(client, frame)
 
@@ -246,6 +253,12 @@ class Relay:
             except KeyboardInterrupt:  # a stop was asked for elsewhere; who holds the port tells more
                 return "the motors stay off: a stop was asked for in another terminal."
         return ""
+
+    def _refuse(self, client: Client, sentence: str, frame: Frame | None = None) -> None:
+        """What a page is told in the place of an answer; a verb asks again, as if its request had been lost."""
+        if client.verb is None:
+            which = {} if frame is None else {"seq": frame.seq, "type": frame.type}
+            client.outbox.add_answer({"kind": "refused", "sentence": upper_first(sentence), **which})
 
     def _forward(self, client: Client, frame: Frame) -> None:
         payload = frame.payload
@@ -326,16 +339,10 @@ class Relay:
             client.outbox.add_answer(self._link)
 
     def _tell_drivers(self) -> None:
-        job = None if self._verb is None else self._verb.verb
+        job, verb = (None, None) if self._verb is None else (self._verb.id, self._verb.verb)
         for client in self._pages():
             you, free = client is self._driver, self._driver is None
-            client.outbox.add_answer({"kind": "driver", "you": you, "free": free, "verb": job})
+            client.outbox.add_answer({"kind": "driver", "you": you, "free": free, "job": job, "verb": verb})
 
     def _pages(self) -> list[Client]:
         return [client for client in self._clients if client.verb is None]
-
-
-def _refused(sentence: str, frame: Frame | None) -> Message:
-    """What a page is told in the place of an answer; `frame` is the request."""
-    which = {} if frame is None else {"seq": frame.seq, "type": frame.type}
-    return {"kind": "refused", "sentence": upper_first(sentence), **which}

@@ -20,12 +20,13 @@ from starlette.websockets import WebSocket
 from greywhale.base.errors import BAD_USAGE, UserError
 from greywhale.dashboard.guard import Guard
 from greywhale.dashboard.house import House
-from greywhale.dashboard.sockets import serve_board
+from greywhale.dashboard.sockets import serve_board, serve_host
 
 PAGE = Path(__file__).resolve().parent / "page"
 # Frames of the link are 50 bytes; a page sends some at once.
 MOST_MESSAGE_BYTES = 1 << 16
 _END_WAIT_S = 1
+PAGE_ID = "page id"  # among what is asked: which page asks, by the name that its board's socket told it
 
 
 def require_page(page: Path = PAGE) -> Path:
@@ -38,12 +39,17 @@ def require_page(page: Path = PAGE) -> Path:
 def application(house: House, page: Path, token: str, port: int) -> ASGIApp:
     """All that the server does, at this port of the loopback, for who has the token."""
     routes: list[BaseRoute] = [
-        WebSocketRoute("/board", _board(house)),
+        WebSocketRoute("/board", _socket(lambda socket: serve_board(socket, house.relay))),
+        WebSocketRoute("/host", _socket(lambda socket: serve_host(socket, house.jobs))),
         Route("/history", _history(house)),
         Route("/state", _told(lambda asked: house.state())),
         Route("/arm", _told(lambda asked: house.describe_arm(asked.get("file")))),
         Route("/controller", _told(lambda asked: house.controller(asked.get("file", "")))),
         Route("/predict", _told(house.predict), methods=["POST"]),
+        Route("/jobs", _told(lambda asked: house.jobs.listed()), methods=["GET"]),
+        Route("/jobs", _told(lambda asked: house.jobs.start(asked, asked.get(PAGE_ID, ""))), methods=["POST"]),
+        Route("/jobs/{id}", _told(lambda asked: house.jobs.stop(asked["id"])), methods=["DELETE"]),
+        Route("/jobs/{id}", _told(lambda asked: house.jobs.say(asked["id"], asked.get("line"))), methods=["POST"]),
     ]
     if (bench := house.bench) is not None:
         routes += [
@@ -90,11 +96,13 @@ def make_server(app: ASGIApp) -> uvicorn.Server:
     )
 
 
-def _board(house: House) -> Callable[[WebSocket], Awaitable[None]]:
-    async def serve(socket: WebSocket) -> None:
-        await serve_board(socket, house.relay)
+def _socket(serve: Callable[[WebSocket], Awaitable[None]]) -> Callable[[WebSocket], Awaitable[None]]:
+    """What Starlette takes for a WebSocket's endpoint."""
 
-    return serve
+    async def serve_it(socket: WebSocket) -> None:
+        await serve(socket)
+
+    return serve_it
 
 
 def _history(house: House) -> Callable[[Request], Awaitable[Response]]:
@@ -114,6 +122,9 @@ def _told(answer: Callable[[dict[str, Any]], object]) -> Callable[[Request], Awa
     async def tell(request: Request) -> Response:
         try:
             asked = await _object(request) if request.method == "POST" else dict(request.query_params)
+            asked |= request.path_params
+            if (page := request.headers.get("x-greywhale-page")) is not None:
+                asked[PAGE_ID] = page
             return JSONResponse(await asyncio.to_thread(answer, asked))
         except UserError as error:
             return JSONResponse({"error": error.message, "exit_code": error.exit_code}, 400)

@@ -1,4 +1,4 @@
-"""The WebSocket that carries a board's frames to a page, unchanged, and what is said beside them."""
+"""The WebSockets of a page: one carries a board's frames, unchanged, and one tells how the verbs go."""
 
 from __future__ import annotations
 
@@ -10,6 +10,8 @@ from collections.abc import Callable
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from greywhale.dashboard.guard import SUBPROTOCOL, Bucket
+from greywhale.dashboard.job import Facts
+from greywhale.dashboard.jobs import Jobs
 from greywhale.dashboard.outbox import Outbox
 from greywhale.dashboard.relay import Client, Relay
 
@@ -97,6 +99,34 @@ async def _receive(socket: WebSocket, client: Client, relay: Relay) -> None:
             await socket.close(_NOT_UNDERSTOOD, "this message is not known")
             return
         wish(client)
+
+
+async def serve_host(socket: WebSocket, jobs: Jobs) -> None:
+    """Tell a page of all jobs, then of each that has changed, until the page goes."""
+    await socket.accept(SUBPROTOCOL)
+    waiting = Waiting()
+    changed: dict[str, Facts] = {one["id"]: one for one in jobs.facts()}
+
+    def note(facts: Facts) -> None:
+        changed[facts["id"]] = facts
+        waiting.notify(False)
+
+    async def tell() -> None:
+        while True:
+            for id in list(changed):
+                await socket.send_text(json.dumps(changed.pop(id)))
+            await waiting.wait()
+
+    jobs.listeners.append(note)
+    telling = asyncio.create_task(tell())
+    try:
+        while (await socket.receive())["type"] != "websocket.disconnect":
+            pass  # a page has nothing to say here
+    finally:
+        jobs.listeners.remove(note)
+        telling.cancel()
+        with contextlib.suppress(asyncio.CancelledError, WebSocketDisconnect):
+            await telling
 
 
 def _kind(text: str) -> str:

@@ -24,7 +24,7 @@ from greywhale.protocol.holder import holder_of
 BAUD = 1_000_000
 
 # How long a read waits for the first byte. Short, so that deadlines are kept; long enough not to spin.
-_READ_WAIT_S = 0.02
+READ_WAIT_S = 0.02
 _WRITE_WAIT_S = 1.0
 # So long is DTR down before it rises again: a board's reset line needs some 2 ms.
 _DTR_DOWN_S = 0.05
@@ -64,11 +64,13 @@ class Line(Protocol):
 # Lines that are no ports of the system, such as to a bench in this process, by the name that stands for the port. Each
 # is opened with or without a restart of the board, at a speed.
 LINES: dict[str, Callable[[bool, int], Line]] = {}
+# Ports of the system that another process holds and lends to this one (lent_line.py).
+LENT: dict[str, Callable[[bool, int], Line]] = {}
 
 
 def open_line(port: str, restart: bool = True, baud: int = BAUD) -> Line:
     """Open the port, with a `restart` of the board or, if that can be, without: the line tells whether it restarted."""
-    opened = LINES.get(port)
+    opened = LENT.get(port) or LINES.get(port)
     return Transport(port, restart, baud) if opened is None else opened(restart, baud)
 
 
@@ -132,7 +134,7 @@ def _open(port: str, baud: int) -> serial.Serial:
     try:
         if _is_own_terminal(port):
             raise UserError(f"{port}: this is a terminal, not a board's port; `greywhale ports` lists those there are.")
-        return serial.Serial(port, baud, timeout=_READ_WAIT_S, write_timeout=_WRITE_WAIT_S, exclusive=True)
+        return serial.Serial(port, baud, timeout=READ_WAIT_S, write_timeout=_WRITE_WAIT_S, exclusive=True)
     except ValueError as error:
         raise UserError(f"{port}: cannot be opened: {error}.") from None
     except OSError as error:

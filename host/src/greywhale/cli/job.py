@@ -1,0 +1,48 @@
+"""`python -m greywhale.cli.job PROGRESS LINE PORT VERB ...`: a verb as the terminal runs it, for the page's server.
+
+PROGRESS and LINE are numbers of open files. The first gets the verb's progress as JSON, an object a line. The second is
+a socket that stands for PORT, which the server holds and lends; where the verb needs no board, LINE is -.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import socket
+import sys
+
+from greywhale.cli import entry, output
+from greywhale.protocol.lent_line import lend
+
+# A step's share is told again when it has grown by so much.
+TOLD_SHARE = 0.002
+
+
+class Reporter:
+    """Writes what a verb reports, but not each of thousands of samples."""
+
+    def __init__(self, descriptor: int) -> None:
+        self._file = os.fdopen(descriptor, "w", encoding="utf-8", buffering=1)
+        self._told: tuple[str, float, str] = ("", -1.0, "")
+
+    def __call__(self, what: str, fraction: float, note: str = "") -> None:
+        before = self._told
+        if (what, note) == (before[0], before[2]) and abs(fraction - before[1]) < TOLD_SHARE:
+            return
+        self._told = (what, fraction, note)
+        with contextlib.suppress(OSError):  # whoever watched has gone; the work goes on
+            print(json.dumps({"text": what, "done": fraction, "total": 1.0, "note": note}), file=self._file)
+
+
+def main() -> None:
+    progress, line, port, *arguments = sys.argv[1:]
+    output.watcher = Reporter(int(progress))
+    if line != "-":
+        lend(port, socket.socket(fileno=int(line)))
+    sys.argv[1:] = arguments
+    entry.main()
+
+
+if __name__ == "__main__":
+    main()

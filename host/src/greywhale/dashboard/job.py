@@ -1,0 +1,267 @@
+"""One verb that runs for a page: a process of its own, as in a terminal, whose output is told while it runs.
+
+A thread reads what the process says, and passes the frames of a board that is lent to it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import secrets
+import selectors
+import signal
+import socket
+import subprocess
+import threading
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any, Literal, TypedDict
+
+from greywhale.base import processes
+from greywhale.base.errors import printable
+from greywhale.dashboard.outbox import Outbox
+from greywhale.dashboard.relay import Client, Relay
+
+INTERRUPTED = 130
+# A verb that was interrupted stops motors and writes its files; one that does not end by then hangs.
+END_WAIT_S = 15.0
+MOST_SAID = 200
+# A verb may compute for a minute before it reads; it loses no sample that a port would have kept.
+MOST_SAMPLES = 60_000
+_PIECE = 65536
+
+
+class Facts(TypedDict):
+    """What pages are told of a job, again and again."""
+
+    kind: Literal["job"]
+    id: str
+    verb: str
+    arguments: dict[str, Any]
+    state: Literal["running", "done", "failed", "stopped"]
+    progress: dict[str, Any] | None  # done, total, text, note
+    result: Any  # what the verb prints with --json
+    error: str | None  # one sentence
+    exit_code: int | None
+    said: list[str]  # lines on its standard error
+
+
+class Job:
+    """Starts at once; `changed` is called in the job's thread after every change of `facts`."""
+
+    def __init__(
+        self,
+        program: Sequence[str],
+        verb: str,
+        words: Sequence[str],
+        arguments: dict[str, Any],
+        folder: Path,
+        changed: Callable[[Job], None],
+        lender: tuple[Relay, str, str] | None = None,
+    ) -> None:
+        """`program` takes two descriptors, a port and the verb's words; `lender` is a relay, its port and the page's id
+        for a verb that uses the board.
+        """
+        self.facts: Facts = {
+            "kind": "job", "id": secrets.token_hex(4), "verb": verb, "arguments": arguments, "state": "running",
+            "progress": None, "result": None, "error": None, "exit_code": None, "said": [],
+        }  # fmt: skip
+        self.page = lender[2] if lender else None  # that must be there for the job to go on
+        self._changed = changed
+        self._printed = b""
+        self._rests: dict[str, bytes] = {"progress": b"", "said": b""}
+        self._kill_at: float | None = None
+        self._wake_out, self._wake_in = os.pipe()
+        os.set_blocking(self._wake_in, False)
+        self._line: _LentEnd | None = None
+        progress, told = os.pipe()
+        handed = [told]
+        port, line = "-", "-"
+        if lender is not None:
+            port, (own, theirs) = lender[1], socket.socketpair()
+            handed.append(theirs.fileno())
+            line = str(theirs.fileno())
+            self._line = _LentEnd(lender[0], own, self.facts, self._wake)
+        self._process = processes.start(
+            [*program, str(told), line, port, *words],
+            cwd=folder,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            pass_fds=handed,
+            start_new_session=True,  # Ctrl-C in the server's terminal ends it through the server
+        )
+        os.close(told)
+        if lender is not None:
+            theirs.close()
+        self._thread = threading.Thread(target=self._run, args=(progress,), name="greywhale-job", daemon=True)
+        self._thread.start()
+
+    @property
+    def running(self) -> bool:
+        return self.facts["state"] == "running"
+
+    def stop(self) -> None:
+        """As Ctrl-C in a terminal; by force where that does not end it."""
+        if self.running:
+            self._process.send_signal(signal.SIGINT)
+            self._kill_at = self._kill_at or time.monotonic() + END_WAIT_S
+            self._wake()
+
+    def say(self, line: str) -> None:
+        """Write a line to its standard input, from which calibrate reads its answers."""
+        assert self._process.stdin is not None
+        with contextlib.suppress(OSError, ValueError):  # it has ended
+            self._process.stdin.write(printable(line).replace("\n", " ").encode() + b"\n")
+            self._process.stdin.flush()
+
+    def join(self) -> None:
+        """Wait for its end."""
+        self._thread.join()
+
+    def _wake(self, urgent: bool = True) -> None:
+        with contextlib.suppress(OSError):  # awake already, or at its end
+            os.write(self._wake_in, b"w")
+
+    def _run(self, progress: int) -> None:
+        assert self._process.stdout is not None
+        assert self._process.stderr is not None
+        open_pipes = {
+            self._process.stdout.fileno(): self._take_printed,
+            self._process.stderr.fileno(): self._take_said,
+            progress: self._take_progress,
+        }
+        with selectors.DefaultSelector() as selector:
+            for descriptor in (*open_pipes, self._wake_out):
+                selector.register(descriptor, selectors.EVENT_READ)
+            if self._line is not None:
+                self._line.register(selector)
+            while open_pipes:
+                for key, events in selector.select(self._patience_s()):
+                    if key.fd == self._wake_out:
+                        os.read(self._wake_out, _PIECE)
+                    elif key.fd in open_pipes:
+                        data = os.read(key.fd, _PIECE)
+                        if data:
+                            open_pipes[key.fd](data)
+                        else:
+                            selector.unregister(key.fd)
+                            del open_pipes[key.fd]
+                    elif self._line is not None:
+                        self._line.serve(selector, events)
+                if self._line is not None:
+                    self._line.pass_on(selector)
+        os.close(progress)
+        self._end()
+
+    def _patience_s(self) -> float | None:
+        """How long to wait for something to read; the end of the patience with a verb that was stopped."""
+        if self._kill_at is None:
+            return None
+        left_s = self._kill_at - time.monotonic()
+        if left_s <= 0.0:
+            self._process.kill()
+        return max(left_s, 0.1)
+
+    def _take_printed(self, data: bytes) -> None:
+        self._printed += data
+
+    def _take_said(self, data: bytes) -> None:
+        said = [printable(line) for line in self._lines("said", data)]
+        self.facts["said"] = [*self.facts["said"], *said][-MOST_SAID:]
+        self._changed(self)
+
+    def _take_progress(self, data: bytes) -> None:
+        lines = self._lines("progress", data)
+        if lines:
+            self.facts["progress"] = json.loads(lines[-1])
+            self._changed(self)
+
+    def _lines(self, name: str, data: bytes) -> list[str]:
+        *whole, self._rests[name] = (self._rests[name] + data).split(b"\n")
+        return [line.decode("utf-8", "replace") for line in whole]
+
+    def _end(self) -> None:
+        """Tell how it ended; motors that may run for it are off before."""
+        code = self._process.wait()
+        if self._line is not None:
+            self._line.close()
+        for pipe in (self._process.stdin, self._process.stdout, self._process.stderr):
+            assert pipe is not None
+            with contextlib.suppress(OSError):
+                pipe.close()
+        os.close(self._wake_out)
+        os.close(self._wake_in)
+        try:
+            answer = json.loads(self._printed)
+        except ValueError:
+            answer = {"error": f"{self.facts['verb']} ended without an answer (exit code {code})."}
+        failed = (isinstance(answer, dict) and "exit_code" in answer and "error" in answer) or not self._printed
+        self.facts["exit_code"] = code
+        self.facts["error"] = answer["error"] if failed else None
+        self.facts["result"] = None if failed else answer
+        self.facts["state"] = ("stopped" if code == INTERRUPTED else "failed") if failed else "done"
+        self._changed(self)
+
+
+class _LentEnd:
+    """The server's end of a line that is lent to a job."""
+
+    def __init__(self, relay: Relay, connection: socket.socket, facts: Facts, wake: Callable[[bool], None]) -> None:
+        self._relay = relay
+        self._connection = connection
+        connection.setblocking(False)
+        self._client = Client(Outbox(wake, MOST_SAMPLES), facts["verb"], facts["id"])
+        self._waiting = b""
+        self._open = True
+        relay.join(self._client)
+
+    def register(self, selector: selectors.BaseSelector) -> None:
+        selector.register(self._connection, selectors.EVENT_READ)
+
+    def serve(self, selector: selectors.BaseSelector, events: int) -> None:
+        """Take what the verb sent."""
+        if events & selectors.EVENT_READ:
+            try:
+                data = self._connection.recv(_PIECE)
+            except BlockingIOError:
+                return
+            except OSError:
+                data = b""
+            if data:
+                self._relay.receive(self._client, data)
+            else:
+                selector.unregister(self._connection)
+                self.close()
+
+    def pass_on(self, selector: selectors.BaseSelector) -> None:
+        """Send the verb what waits for it, as far as it takes it."""
+        while self._open:
+            if not self._waiting:
+                answers, samples = self._client.outbox.take()
+                if any(isinstance(one, dict) for one in answers):  # the board is gone
+                    selector.unregister(self._connection)
+                    self.close()
+                    return
+                self._waiting = b"".join(one for one in answers if isinstance(one, bytes)) + samples
+            if not self._waiting:
+                break
+            try:
+                sent = self._connection.send(self._waiting)
+            except BlockingIOError:
+                break
+            except OSError:
+                return
+            self._waiting = self._waiting[sent:]
+        if self._open:
+            wanted = selectors.EVENT_READ | (selectors.EVENT_WRITE if self._waiting else 0)
+            selector.modify(self._connection, wanted)
+
+    def close(self) -> None:
+        """The verb has the board no more: what it started is stopped."""
+        if self._open:
+            self._open = False
+            self._relay.leave(self._client)
+            self._connection.close()

@@ -1,0 +1,120 @@
+"""The verbs that run for pages: which there are, who may start one, and who is told how it goes."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Sequence
+from typing import Any, TypedDict
+
+from greywhale.base.errors import BAD_USAGE, UserError, cut
+from greywhale.dashboard.folder import Folder
+from greywhale.dashboard.job import Facts, Job
+from greywhale.dashboard.relay import Relay
+from greywhale.dashboard.verbs import VerbFacts, command_line
+
+MOST_RUNNING = 4
+MOST_KEPT = 50
+
+
+class Listed(TypedDict):
+    verbs: list[VerbFacts]
+    jobs: list[Facts]
+
+
+class Jobs:
+    """Any thread may call it. `listeners` are called with a job's facts after each change, in the job's thread."""
+
+    def __init__(
+        self, relay: Relay, folder: Folder, catalogue: Callable[[], list[VerbFacts]], program: Sequence[str]
+    ) -> None:
+        """`catalogue` tells the verbs there are, and may take seconds; `program` runs one as `Job` says."""
+        self._relay = relay
+        self._folder = folder
+        self._catalogue = catalogue
+        self._program = program
+        self._verbs: list[VerbFacts] = []
+        self._jobs: list[Job] = []
+        self._lock, self._asking = threading.Lock(), threading.Lock()
+        self.listeners: list[Callable[[Facts], None]] = []
+        relay.on_let_go = self._end_of_page
+
+    def listed(self) -> Listed:
+        """The verbs, and the jobs so far, oldest first."""
+        return {"verbs": self.verbs(), "jobs": self.facts()}
+
+    def facts(self) -> list[Facts]:
+        return [job.facts for job in self._jobs]
+
+    def verbs(self) -> list[VerbFacts]:
+        """What the command line has; it is asked once."""
+        with self._asking:
+            self._verbs = self._verbs or self._catalogue()
+            return self._verbs
+
+    def start(self, asked: dict[str, Any], page: str) -> Facts:
+        """Start a verb for a page: {"verb": ..., "arguments": {...}}."""
+        name, arguments = asked.get("verb"), asked.get("arguments", {})
+        verb = next((one for one in self.verbs() if one["verb"] == name), None)
+        if verb is None or not isinstance(arguments, dict):
+            names = ", ".join(one["verb"] for one in self.verbs())
+            raise UserError(f"{cut(repr(name))} is no verb of a page; there are: {names}.", BAD_USAGE)
+        words = command_line(verb, arguments, self._folder)
+        port: list[str] = []
+        with self._lock:
+            if sum(job.running for job in self._jobs) >= MOST_RUNNING:
+                raise UserError(f"{MOST_RUNNING} verbs are running; wait for the end of one, or stop it.")
+            lender = self._lender(verb, page)
+            if lender is not None:
+                port = ["--port", lender[1]]
+            line = [*words[: words.index("--")], *port, "--json", *words[words.index("--") :]]
+            job = Job(self._program, verb["verb"], line, arguments, self._folder.path, self._tell, lender)
+            self._jobs = [*self._jobs, job][-MOST_KEPT:]
+        return job.facts
+
+    def stop(self, id: str) -> Facts:
+        """As Ctrl-C."""
+        job = self._find(id)
+        job.stop()
+        return job.facts
+
+    def say(self, id: str, line: object) -> Facts:
+        """Answer a verb that asks."""
+        job = self._find(id)
+        if not isinstance(line, str) or len(line) > 200:
+            raise UserError("line must be a short text.", BAD_USAGE)
+        job.say(line)
+        return job.facts
+
+    def close(self) -> None:
+        """End all that runs, and wait for it."""
+        for job in self._jobs:
+            job.stop()
+        for job in self._jobs:
+            job.join()
+
+    def _lender(self, verb: VerbFacts, page: str) -> tuple[Relay, str, str] | None:
+        if not verb["board"]:
+            return None
+        if not self._relay.link["open"]:
+            raise UserError(self._relay.link["sentence"] or "no board is there yet.")
+        if any(job.running and job.page is not None for job in self._jobs):
+            raise UserError("another verb uses the board; wait for its end, or stop it.")
+        if not self._relay.drives(page):
+            raise UserError("this page only watches; let it drive first.")
+        return self._relay, self._relay.link["port"], page
+
+    def _find(self, id: str) -> Job:
+        job = next((one for one in self._jobs if one.facts["id"] == id), None)
+        if job is None:
+            raise UserError(f"{cut(repr(id))} is no job of this dashboard.", BAD_USAGE)
+        return job
+
+    def _end_of_page(self, page: str) -> None:
+        """Nobody is there who would stop the arm: what moves it for this page ends."""
+        for job in self._jobs:
+            if job.page == page:
+                job.stop()
+
+    def _tell(self, job: Job) -> None:
+        for listener in list(self.listeners):
+            listener(job.facts)

@@ -1,0 +1,77 @@
+"""What verbs a page may start and with which arguments, and the words of the command line that these make."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, Literal, TypedDict
+
+from greywhale.base.errors import BAD_USAGE, UserError, cut
+from greywhale.dashboard.folder import Folder
+
+LONGEST_VALUE = 1000
+MOST_VALUES = 100
+
+
+class ArgumentFacts(TypedDict):
+    """One argument; `option` is its word on the command line, "" where its place alone tells."""
+
+    name: str
+    option: str
+    kind: Literal["flag", "number", "choice", "file", "text"]
+    choices: list[str]
+    default: Any  # null: none
+    required: bool
+    many: bool  # it takes a list of values
+    help: str
+
+
+class VerbFacts(TypedDict):
+    verb: str  # such as "params backup"
+    help: str  # one sentence
+    board: bool  # whether it needs a board
+    arguments: list[ArgumentFacts]
+
+
+def command_line(verb: VerbFacts, given: Mapping[str, Any], folder: Folder) -> list[str]:
+    """The verb and its words; what is unknown, or leads out of the folder, is a UserError."""
+    known = {one["name"] for one in verb["arguments"]}
+    for name in given:
+        if name not in known:
+            raise UserError(f"{verb['verb']} has no argument {cut(repr(name))}.", BAD_USAGE)
+    options: list[str] = []
+    places: list[str] = []
+    for argument in verb["arguments"]:
+        value = given.get(argument["name"])
+        if value is None:
+            continue
+        if argument["kind"] == "flag":
+            options += [argument["option"]] if _flag(argument, value) else []
+            continue
+        for text in _texts(argument, value, folder):
+            (options if argument["option"] else places).append(
+                f"{argument['option']}={text}" if argument["option"] else text
+            )
+    return [*verb["verb"].split(), *options, "--", *places]
+
+
+def _flag(argument: ArgumentFacts, value: object) -> bool:
+    if not isinstance(value, bool):
+        raise UserError(f"{argument['name']} is {cut(repr(value))}, but it must be true or false.", BAD_USAGE)
+    return value
+
+
+def _texts(argument: ArgumentFacts, value: object, folder: Folder) -> Iterator[str]:
+    """The values of an argument. A name is looked at whatever it is called: any text may be a file's."""
+    values: Sequence[object] = value if isinstance(value, list) and argument["many"] else [value]
+    if len(values) > MOST_VALUES:
+        raise UserError(
+            f"{argument['name']} has {len(values)} values, but at most {MOST_VALUES} may be given.", BAD_USAGE
+        )
+    for one in values:
+        text = str(one)
+        fits = isinstance(one, str | int | float) and not isinstance(one, bool)
+        if not fits or not text or not text.isprintable() or len(text) > LONGEST_VALUE:
+            raise UserError(f"{argument['name']} is {cut(repr(one))}, but it must be text or a number.", BAD_USAGE)
+        if isinstance(one, str):
+            folder.inside(text.rpartition("=")[2] or text)
+        yield text

@@ -1,0 +1,204 @@
+"""Verbs that run for a page: the same answers, errors and files as in a terminal, and nothing outside of the folder."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+import queue
+import threading
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from jsonschema import Draft202012Validator
+
+from greywhale.base.errors import UserError
+from greywhale.cli import entry
+from greywhale.cli.catalogue import catalogue
+from greywhale.dashboard.folder import Folder
+from greywhale.dashboard.job import Facts
+from greywhale.dashboard.jobs import Jobs
+from greywhale.dashboard.verbs import command_line
+from greywhale.files.log import read_log
+from greywhale_sim.lockstep import LockStepBench
+from tests.dashboard.shared import Shared, Viewer, jobs_of
+from tools.docs.schemas import schemas
+
+PATIENCE_S = 120.0  # a verb that says nothing for so long hangs
+
+
+class Desk:
+    """Jobs over a board that lives in a thread, and a page that drives."""
+
+    def __init__(self, shared: Shared, folder: Path) -> None:
+        self.shared = shared
+        self.jobs: Jobs = jobs_of(shared.relay, Folder(folder))
+        self.told: queue.Queue[Facts] = queue.Queue()
+        self.jobs.listeners.append(lambda facts: self.told.put({**facts}))
+        self.page: Viewer = shared.page(0)
+        shared.relay.drive(self.page.client)
+
+    def start(self, verb: str, **arguments: Any) -> str:
+        return self.jobs.start({"verb": verb, "arguments": arguments}, self.page.client.id)["id"]
+
+    def wait(self, id: str, until: Callable[[Facts], object] = lambda facts: facts["state"] != "running") -> Facts:
+        while True:
+            facts = self.told.get(timeout=PATIENCE_S)
+            if facts["id"] == id and until(facts):
+                return facts
+
+    def run(self, verb: str, **arguments: Any) -> Facts:
+        return self.wait(self.start(verb, **arguments))
+
+
+@pytest.fixture
+def desk(shared: Shared, tmp_path: Path) -> Iterator[Desk]:
+    ended = threading.Event()
+
+    def live() -> None:
+        while not ended.is_set():
+            shared.turn()
+
+    desk = Desk(shared, tmp_path)
+    thread = threading.Thread(target=live)
+    thread.start()
+    try:
+        yield desk
+    finally:
+        desk.jobs.close()
+        ended.set()
+        thread.join()
+
+
+def in_a_terminal(words: list[str], folder: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[int, dict[str, Any]]:
+    """The verb's exit code there, and what it prints with --json."""
+    monkeypatch.chdir(folder)
+    with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()):
+        code = entry.run([*words, "--json"])
+    return code, json.loads(out.getvalue())
+
+
+@pytest.mark.slow
+def test_a_verb_answers_and_fails_as_in_a_terminal(
+    desk: Desk, bench: LockStepBench, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for verb, arguments in (
+        ("record", {"seconds": 0.3, "out": "log.csv"}),
+        ("params backup", {"file": "kept.toml"}),
+    ):
+        job = desk.run(verb, **arguments)
+        assert (job["state"], job["exit_code"], job["error"]) == ("done", 0, None), job
+        Draft202012Validator(schemas()[verb]).validate(job["result"])
+        assert job["result"]["port"] == bench.port
+    for file in ("log.csv", "none.csv"):
+        job = desk.run("evaluate", logs=[file])
+        code, answer = in_a_terminal(["evaluate", file], tmp_path, monkeypatch)
+        assert job["exit_code"] == code
+        assert (job["result"] or {"error": job["error"], "exit_code": code}) == answer
+    assert any(answer["error"] in line for line in job["said"])
+
+
+@pytest.mark.slow
+def test_a_recording_tells_how_far_it_is_and_keeps_what_it_has_when_it_is_stopped(desk: Desk, tmp_path: Path) -> None:
+    id = desk.start("record", seconds=3600, out="long.csv")
+    half = desk.wait(id, lambda facts: (facts["progress"] or {"done": 0})["done"] > 0)
+    assert half["progress"] is not None
+    assert half["progress"]["total"] == 1.0
+    assert "record" in half["progress"]["text"]
+    desk.jobs.stop(id)
+    job = desk.wait(id)
+    assert (job["state"], job["exit_code"]) == ("stopped", entry.INTERRUPTED)
+    assert read_log(tmp_path / "long.csv").time.size > 0
+
+
+@pytest.mark.slow
+def test_what_uses_the_board_ends_with_the_page_that_drives(desk: Desk) -> None:
+    watcher = desk.shared.page(0)
+    id = desk.start("record", seconds=3600)
+    desk.wait(id, lambda facts: facts["progress"])
+    with pytest.raises(UserError, match="another verb uses the board"):
+        desk.start("info")
+    with pytest.raises(UserError, match="another verb uses|only watches"):
+        desk.jobs.start({"verb": "info", "arguments": {}}, watcher.client.id)
+    word = watcher.words("driver")[-1]
+    assert (word["job"], word["verb"]) == (id, "record")
+    desk.shared.relay.leave(desk.page.client)
+    assert desk.wait(id)["state"] == "stopped"
+
+
+@pytest.mark.slow
+def test_a_board_that_goes_away_ends_the_verb_with_its_sentence(desk: Desk, bench: LockStepBench) -> None:
+    id = desk.start("record", seconds=3600)
+    desk.wait(id, lambda facts: facts["progress"])
+    desk.shared.relay.close(bench.port, "It was unplugged.")
+    job = desk.wait(id)
+    assert job["state"] == "failed"
+    assert f"{bench.port}: the port went away" in (job["error"] or "")
+    with pytest.raises(UserError, match="unplugged"):
+        desk.start("info")
+
+
+def test_a_page_that_watches_starts_nothing_on_the_board(desk: Desk) -> None:
+    watcher = desk.shared.page(0)
+    with pytest.raises(UserError, match="only watches"):
+        desk.jobs.start({"verb": "info", "arguments": {}}, watcher.client.id)
+    with pytest.raises(UserError, match="is no job"):
+        desk.jobs.stop("none")
+
+
+VERBS = {one["verb"]: one for one in catalogue()}
+
+
+def test_the_catalogue_is_that_of_the_command_line() -> None:
+    record = {one["name"]: one for one in VERBS["record"]["arguments"]}
+    assert (record["seconds"]["kind"], record["out"]["kind"], record["enable"]["kind"]) == ("number", "file", "flag")
+    assert (record["ranges"]["option"], record["ranges"]["many"]) == ("--range", True)
+    assert record["out"]["default"] == "log.csv"
+    assert VERBS["record"]["board"]
+    assert not VERBS["tune"]["board"]
+    assert VERBS["tune"]["arguments"][0]["kind"] == "file"
+    for verb in VERBS.values():
+        assert verb["help"].endswith(".")
+        assert not {"port", "as_json"} & {one["name"] for one in verb["arguments"]}
+
+
+def test_words_are_those_of_the_command_line(tmp_path: Path) -> None:
+    folder = Folder(tmp_path)
+    assert command_line(VERBS["record"], {"enable": True, "seconds": 2, "out": "-x.csv"}, folder) == [
+        *("record", "--out=-x.csv", "--seconds=2", "--enable", "--"),
+    ]
+    assert command_line(VERBS["evaluate"], {"logs": ["--help", "b.csv"]}, folder) == [
+        *("evaluate", "--", "--help", "b.csv"),
+    ]
+    assert command_line(VERBS["params backup"], {"file": "a.toml", "overwrite": False}, folder) == [
+        *("params", "backup", "--", "a.toml"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("verb", "given", "reason"),
+    [
+        ("record", {"out": "../log.csv"}, "it is not in"),
+        ("record", {"out": "/tmp/log.csv"}, "it is not in"),
+        ("record", {"excite": True, "arm_file": "/etc/passwd"}, "it is not in"),
+        ("record", {"ranges": ["0:-1:1", "x=/etc/passwd"]}, "it is not in"),
+        ("evaluate", {"logs": ["log.csv", "way/log.csv"]}, "it is not in"),
+        ("tune", {"model_file": "way/model.toml"}, "it is not in"),
+        ("record", {"dance": 1}, "has no argument 'dance'"),
+        ("record", {"enable": "yes"}, "true or false"),
+        ("record", {"seconds": [1]}, "text or a number"),
+        ("record", {"seconds": True}, "text or a number"),
+        ("record", {"out": ""}, "text or a number"),
+        ("record", {"out": "a\nb"}, "text or a number"),
+        ("evaluate", {"logs": ["a.csv"] * 101}, "at most"),
+    ],
+)
+def test_what_leads_out_of_the_folder_or_is_no_argument_is_refused(
+    verb: str, given: dict[str, Any], reason: str, tmp_path: Path
+) -> None:
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "folder" / "way").symlink_to(tmp_path)
+    with pytest.raises(UserError, match=reason):
+        command_line(VERBS[verb], given, Folder(tmp_path / "folder"))
