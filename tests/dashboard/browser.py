@@ -11,7 +11,7 @@ from types import TracebackType
 from typing import Any, Self
 
 from wsproto import ConnectionType, WSConnection
-from wsproto.events import AcceptConnection, BytesMessage, CloseConnection, RejectConnection, Request, TextMessage
+from wsproto.events import AcceptConnection, BytesMessage, CloseConnection, Ping, RejectConnection, Request, TextMessage
 
 from greywhale.protocol.declared import Message
 from greywhale.protocol.frames import Frame, FrameDecoder, encode_frame
@@ -119,6 +119,8 @@ class WebSocket:
                     self._accepted = True
                 case RejectConnection():
                     raise RefusedError(event.status_code)
+                case Ping():
+                    self._send(event.response())
                 case CloseConnection():
                     self.closed = event.code
                     return
