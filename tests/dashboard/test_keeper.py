@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import ExitStack
 
 import pytest
@@ -11,7 +11,7 @@ import pytest
 from greywhale.base.errors import UserError
 from greywhale.board.session import ask_to_stop
 from greywhale.dashboard.history import History
-from greywhale.dashboard.keeper import AFTER_STOP_S, ASK_AGAIN_S, LOOK_AGAIN_S, STOPPED, Keeper
+from greywhale.dashboard.keeper import ASK_AGAIN_S, LOOK_AGAIN_S, STOPPED, Keeper
 from greywhale.dashboard.outbox import Outbox
 from greywhale.dashboard.relay import Client, Relay
 from greywhale.protocol import schema
@@ -64,12 +64,14 @@ def test_a_board_is_taken_when_it_comes_and_again_after_it_went(relay: Relay) ->
         page = Told(relay, 400, keeper.end)
         assert [keeper.hold() for _ in range(4)] == [LOOK_AGAIN_S] * 4
     nothing = "No board was found on any serial port; plug it in."
-    assert [one for one in page.sentences if one] == [
+    assert page.sentences == [
+        "",
         nothing,
         f"open {first.port}",
         f"{first.port}: the port went away in the middle; check the cable and try again.".capitalize(),
         nothing,
         f"open {second.port}",
+        "",
     ]
     assert page.samples >= 400
 
@@ -97,28 +99,18 @@ def test_a_board_that_falls_silent_is_given_up(relay: Relay) -> None:
     assert "the board fell silent" in relay.link["sentence"]
 
 
-@pytest.fixture
-def held(relay: Relay) -> Iterator[tuple[PortBoard, Keeper, threading.Event]]:
-    """A board on a port, held in another thread as by a server; the event says that it sends samples."""
+@pytest.mark.slow
+def test_a_stop_from_another_terminal_turns_the_motors_off_and_is_told(relay: Relay) -> None:
     there = threading.Event()
     with ExitStack() as stack:
         board = stack.enter_context(PortBoard())
         keeper = Keeper(relay, board.port)
-        Told(relay, 1, there.set)
+        page = Told(relay, 1, there.set)
         stack.callback(keeper.close)
         keeper.start()
-        yield board, keeper, there
-
-
-@pytest.mark.slow
-def test_a_stop_from_another_terminal_turns_the_motors_off_and_is_told(
-    relay: Relay, held: tuple[PortBoard, Keeper, threading.Event]
-) -> None:
-    board, _, there = held
-    assert there.wait(60)
-    answer = ask_to_stop(board.port, wait_for_end=True)
+        assert there.wait(60)
+        answer = ask_to_stop(board.port, wait_for_end=True)
     assert answer is not None
     assert answer["state"] == "disabled"
     assert board.asked(schema.StopRequest) > 0
-    assert relay.link["sentence"] in (STOPPED, "")
-    assert AFTER_STOP_S > LOOK_AGAIN_S
+    assert page.sentences[:3] == ["", f"open {board.port}", STOPPED]

@@ -58,10 +58,10 @@ class Keeper:
         port, again_s = "", LOOK_AGAIN_S
         try:
             port, again_s = self._choose(self._named), ASK_AGAIN_S
-            name = lasting_name(port)
             with Device(port, restart=False) as device:
-                self._named = self._named and name  # the socket that it is plugged into, where that has a name
-                self._share(device, name)
+                port = lasting_name(port)
+                self._named = self._named and port  # the socket that it is plugged into, where that has a name
+                self._share(device, port)
         except StopAsked:
             self._relay.close(port, STOPPED)
             return AFTER_STOP_S
@@ -73,19 +73,25 @@ class Keeper:
             return again_s
         return LOOK_AGAIN_S
 
-    def _tell(self, port: str, error: UserError) -> None:
-        logger.info("%s", error.message)
-        self._relay.close(port, upper_first(error.message))
-
     def _share(self, device: Device, port: str) -> None:
+        """Share the board. At the end its clients are told why, then its motors are stopped and its port is closed."""
         line, session = device.lend()
         self._relay.open(line, port, session.refuse_motion)
         try:
             while not self._ending.is_set():
                 turn(self._relay, line, session)
                 line.wait(ROUND_S)
-        finally:
-            self._relay.close(port, "")
+        except StopAsked:
+            self._relay.close(port, STOPPED)
+            raise
+        except UserError as error:
+            self._tell(port, error)
+            raise
+        self._relay.close(port, "")
+
+    def _tell(self, port: str, error: UserError) -> None:
+        logger.info("%s", error.message)
+        self._relay.close(port, upper_first(error.message))
 
 
 def turn(relay: Relay, line: Line, session: Session) -> None:
