@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import json
-import secrets
 import subprocess
 import sys
 import threading
 import webbrowser
+from collections.abc import Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any, TypedDict
 
@@ -69,43 +70,44 @@ def command(
         raise UserError("--sim brings a board of its own; leave --port out, or --sim.", BAD_USAGE)
     if arm is not None:
         load_arm(arm)
-    from greywhale.dashboard import server
-    from greywhale.dashboard.bench import BenchControls
-    from greywhale.dashboard.folder import Folder
-    from greywhale.dashboard.history import History
-    from greywhale.dashboard.house import House
-    from greywhale.dashboard.jobs import Jobs
-    from greywhale.dashboard.keeper import Keeper
-    from greywhale.dashboard.relay import Relay
 
-    page = server.require_page()
-    with contextlib.ExitStack() as held:
-        own_folder, bench = Folder(folder), None
-        if sim:
-            need_bench("greywhale_sim")
-            process = held.enter_context(
-                bench_process.BenchProcess("--board", board, *(["--arm", str(arm)] if arm else []))
-            )
-            port, bench = process.port, BenchControls(process, own_folder)
-        relay = Relay(History())
-        jobs = Jobs(relay, own_folder, _catalogue, [sys.executable, "-m", "greywhale.cli.job"])
-        house = House(relay, own_folder, str(arm or "default"), jobs, bench)
-        keeper = Keeper(house.relay, port)
-        listener = held.enter_context(server.listen(http_port))
-        number: int = listener.getsockname()[1]
-        token = secrets.token_urlsafe(24)
-        address = f"http://127.0.0.1:{number}/#token={token}"
-        running = server.make_server(server.application(house, page, token, number))
-        held.callback(keeper.close)
-        held.callback(jobs.close)  # first, while their board is there
-        keeper.start()
+    def ready(address: str) -> None:
         answer: Answer = {"address": address}
         click.echo(json_of(answer) if as_json else address)
         tell("greywhale: the page is there; Ctrl-C here ends it, motors off.")
         if browser:
             threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
+
+    with contextlib.ExitStack() as held:
+        starting = held.enter_context(_starting(board, arm)) if sim else None
+        # It takes as long to import as a bench to start.
+        from greywhale.dashboard import run
+
+        bench = None if starting is None else starting.result()
+        options = run.Options(
+            port=port if bench is None else bench.port,
+            arm=str(arm or "default"),
+            folder=folder,
+            http_port=http_port,
+            catalogue=_catalogue,
+            program=(sys.executable, "-m", "greywhale.cli.job"),
+        )
         with contextlib.suppress(KeyboardInterrupt):  # the usual end
-            running.run([listener])
+            run.serve(options, bench, ready)
+
+
+@contextlib.contextmanager
+def _starting(board: str, arm: Path | None) -> Iterator[Future[bench_process.BenchProcess]]:
+    """A bench that comes up meanwhile, and is ended whatever happens."""
+    need_bench("greywhale_sim")
+    words = ["--board", board, *([] if arm is None else ["--arm", str(arm)])]
+    with ThreadPoolExecutor(1) as pool:
+        starting = pool.submit(bench_process.BenchProcess, *words)
+        try:
+            yield starting
+        finally:
+            if starting.exception() is None:
+                starting.result().close()
 
 
 def _catalogue() -> Any:

@@ -8,8 +8,8 @@ from collections.abc import Callable
 from typing import Any
 
 Message = dict[str, Any]
-# A page that reads so little more slowly than the board speaks loses the oldest pictures: two seconds of ticks.
-MOST_SAMPLES = 2000
+# A page that has not read for so many ticks loses the oldest pictures; the history has them.
+MOST_SAMPLES = 10_000
 # A client that takes no answers is beyond help.
 MOST_ANSWERS = 4096
 

@@ -1,0 +1,51 @@
+"""Puts a dashboard together and serves it until it is ended: motors off and port free then."""
+
+from __future__ import annotations
+
+import contextlib
+import secrets
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from greywhale.base.bench_process import RunningBench
+from greywhale.dashboard import server
+from greywhale.dashboard.bench import BenchControls
+from greywhale.dashboard.folder import Folder
+from greywhale.dashboard.history import History
+from greywhale.dashboard.house import House
+from greywhale.dashboard.jobs import Jobs
+from greywhale.dashboard.keeper import Keeper
+from greywhale.dashboard.relay import Relay
+from greywhale.dashboard.verbs import VerbFacts
+
+
+@dataclass(frozen=True)
+class Options:
+    """What is served: `port` is the board's, None for the only one found; `catalogue` and `program` as in `Jobs`."""
+
+    port: str | None
+    arm: str
+    folder: Path
+    http_port: int
+    catalogue: Callable[[], list[VerbFacts]]
+    program: Sequence[str]
+
+
+def serve(options: Options, bench: RunningBench | None, ready: Callable[[str], None]) -> None:
+    """Serve until Ctrl-C; `ready` gets the address, with its token, when the page can be opened."""
+    page = server.require_page()
+    folder, relay = Folder(options.folder), Relay(History())
+    jobs = Jobs(relay, folder, options.catalogue, options.program)
+    house = House(relay, folder, options.arm, jobs, None if bench is None else BenchControls(bench, folder))
+    keeper = Keeper(relay, options.port)
+    token = secrets.token_urlsafe(24)
+    with contextlib.ExitStack() as held:
+        listener = held.enter_context(server.listen(options.http_port))
+        port: int = listener.getsockname()[1]
+        running = server.make_server(server.application(house, page, token, port))
+        held.callback(keeper.close)
+        held.callback(jobs.close)  # first, while their board is there
+        keeper.start()
+        ready(f"http://127.0.0.1:{port}/#token={token}")
+        running.run([listener])
