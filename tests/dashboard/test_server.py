@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import secrets
 import threading
@@ -10,11 +11,12 @@ from pathlib import Path
 from urllib.parse import quote
 
 import pytest
+from starlette.types import Message, Receive, Scope, Send
 
 from greywhale.base.errors import UserError
 from greywhale.dashboard import server
 from greywhale.dashboard.folder import Folder
-from greywhale.dashboard.guard import AT_ONCE, MOST_BODY_BYTES, Bucket
+from greywhale.dashboard.guard import AT_ONCE, MOST_BODY_BYTES, Bucket, Guard
 from greywhale.dashboard.house import House
 from greywhale.protocol import schema
 from greywhale.protocol.frames import FrameDecoder
@@ -98,12 +100,33 @@ def test_localhost_is_this_server_too(page: Page) -> None:
 
 
 def test_what_is_too_large_is_refused(page: Page) -> None:
-    assert page.ask("POST", "/state", b"x" * (MOST_BODY_BYTES + 1))[0] == 413
+    for length in (str(MOST_BODY_BYTES + 1), "x"):
+        assert page.ask("POST", "/predict", headers={"Content-Length": length})[0] in (400, 413)
     with page.open("/board") as socket:
         with pytest.raises(ConnectionError, match="1009"):
             socket.say(bytes(2_000_000))
             while True:
                 socket.take()
+
+
+def test_a_body_that_comes_in_pieces_breaks_off_where_it_is_too_long() -> None:
+    pieces = [b"x" * MOST_BODY_BYTES, b"x", b"x"]
+    got: list[str] = []
+
+    async def inner(scope: Scope, receive: Receive, send: Send) -> None:
+        while not got or got[-1] != "http.disconnect":
+            got.append((await receive())["type"])
+
+    async def receive() -> Message:
+        return {"type": "http.request", "body": pieces.pop(0), "more_body": True}
+
+    async def send(message: Message) -> None:
+        raise AssertionError(message)
+
+    scope = {"type": "http", "method": "POST", "path": "/jobs", "headers": [(b"host", b"localhost:1")]}
+    scope["headers"].append((b"x-greywhale-token", b"secret"))  # type: ignore[attr-defined]
+    asyncio.run(Guard(inner, "secret", 1, lambda path: False)(scope, receive, send))
+    assert got == ["http.request", "http.disconnect"]
 
 
 def test_a_message_that_is_not_known_ends_the_connection(page: Page) -> None:

@@ -10,7 +10,7 @@ from typing import Any
 
 import uvicorn
 from starlette.applications import Starlette
-from starlette.requests import Request
+from starlette.requests import ClientDisconnect, Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
@@ -25,6 +25,7 @@ from greywhale.dashboard.sockets import serve_board, serve_host
 PAGE = Path(__file__).resolve().parent / "page"
 # Frames of the link are 50 bytes; a page sends some at once.
 MOST_MESSAGE_BYTES = 1 << 16
+MOST_CONNECTIONS = 64  # a page has two, and a moment's more for what it asks
 _END_WAIT_S = 1
 PAGE_ID = "page id"  # among what is asked: which page asks, by the name that its board's socket told it
 
@@ -88,6 +89,7 @@ def make_server(app: ASGIApp) -> uvicorn.Server:
             ws_max_size=MOST_MESSAGE_BYTES,
             ws_per_message_deflate=False,
             timeout_graceful_shutdown=_END_WAIT_S,
+            limit_concurrency=MOST_CONNECTIONS,
             log_config=None,
             access_log=False,
             server_header=False,
@@ -128,6 +130,8 @@ def _told(answer: Callable[[dict[str, Any]], object]) -> Callable[[Request], Awa
             return JSONResponse(await asyncio.to_thread(answer, asked))
         except UserError as error:
             return JSONResponse({"error": error.message, "exit_code": error.exit_code}, 400)
+        except ClientDisconnect:  # also what is too long breaks off so
+            return Response(status_code=413)
 
     return tell
 
