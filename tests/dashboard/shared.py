@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from contextlib import nullcontext
 from types import TracebackType
 from typing import Any, Self
 
@@ -20,8 +21,8 @@ from greywhale.protocol.frames import Frame, FrameDecoder, encode_frame
 
 
 def jobs_of(relay: Relay, folder: Folder) -> Jobs:
-    """As the dashboard has them."""
-    return Jobs(relay, folder, catalogue, [sys.executable, "-m", "greywhale.cli.job"])
+    """As the dashboard has them, over a board whose port nobody takes."""
+    return Jobs(relay, folder, catalogue, [sys.executable, "-m", "greywhale.cli.job"], nullcontext)
 
 
 HERE_S = 0.1  # between two signs of life of a page that drives

@@ -6,6 +6,7 @@ import contextlib
 import io
 import json
 import queue
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -146,6 +147,34 @@ def test_a_page_that_watches_starts_nothing_on_the_board(desk: Desk) -> None:
         desk.jobs.start({"verb": "info", "arguments": {}}, watcher.client.id)
     with pytest.raises(UserError, match="is no job"):
         desk.jobs.stop("none")
+
+
+ECHO = "import json, sys; print(json.dumps({'words': sys.argv[3:]}))"  # a verb that tells how it was called
+
+
+def test_what_needs_the_port_itself_has_it_as_long_as_it_runs(shared: Shared, tmp_path: Path) -> None:
+    events: list[str] = []
+    told: queue.Queue[Facts] = queue.Queue()
+
+    @contextlib.contextmanager
+    def away(sentence: str) -> Iterator[str]:
+        events.append(sentence)
+        yield "the port"
+        events.append("taken again")
+
+    page = shared.page(0)
+    jobs = Jobs(shared.relay, Folder(tmp_path), catalogue, [sys.executable, "-c", ECHO], away)
+    jobs.listeners.append(lambda facts: told.put({**facts}))
+    asked = {"verb": "flash", "arguments": {"hex_file": "a.hex"}}
+    with pytest.raises(UserError, match="only watches"):
+        jobs.start(asked, page.client.id)
+    shared.relay.drive(page.client)
+    shared.relay.close("the port", "No firmware answers there; flash it.")
+    assert jobs.start(asked, page.client.id)["state"] == "running"
+    ended = told.get(timeout=PATIENCE_S)
+    jobs.close()
+    assert ended["result"]["words"] == ["-", "flash", "--hex=a.hex", "--port", "the port", "--json", "--"]
+    assert events == ["`greywhale flash` has the port.", "taken again"]
 
 
 VERBS = {one["verb"]: one for one in catalogue()}

@@ -9,12 +9,14 @@ from contextlib import ExitStack
 import pytest
 
 from greywhale.base.errors import UserError
+from greywhale.board.device import Device
 from greywhale.board.session import ask_to_stop
 from greywhale.dashboard.history import History
 from greywhale.dashboard.keeper import ASK_AGAIN_S, LOOK_AGAIN_S, STOPPED, Keeper
 from greywhale.dashboard.outbox import Outbox
 from greywhale.dashboard.relay import Client, Relay
 from greywhale.protocol import schema
+from greywhale.protocol.transport import open_line
 from tests.board.fake_board import FakeBoard, Faults
 from tests.board.port_board import PortBoard
 
@@ -114,3 +116,32 @@ def test_a_stop_from_another_terminal_turns_the_motors_off_and_is_told(relay: Re
     assert answer["state"] == "disabled"
     assert board.asked(schema.StopRequest) > 0
     assert page.sentences[:3] == ["", f"open {board.port}", STOPPED]
+
+
+def test_a_port_is_lent_out_whole_and_taken_again(relay: Relay) -> None:
+    seen = threading.Semaphore(0)
+    with FakeBoard() as board, ExitStack() as stack:
+        keeper = Keeper(relay, board.port)
+        page = Told(relay, 1, seen.release)
+        stack.callback(keeper.close)
+        keeper.start()
+        assert seen.acquire(timeout=60)
+        with keeper.away("`greywhale flash` has the port.") as port:
+            assert port == board.port
+            assert not relay.link["open"]
+            with Device(port) as device:
+                assert device.restarted
+            Told(relay, 1, seen.release)
+        assert seen.acquire(timeout=60)
+    away = f"open {board.port}"
+    assert page.sentences == ["", away, "`greywhale flash` has the port.", away, ""]
+
+
+def test_a_board_that_no_firmware_answers_on_can_be_flashed_too(relay: Relay) -> None:
+    with FakeBoard(Faults(silent=True)) as board, ExitStack() as stack:
+        keeper = Keeper(relay, board.port)
+        stack.callback(keeper.close)
+        keeper.start()
+        with keeper.away("`greywhale flash` has the port.") as port:
+            assert relay.link["sentence"] == "`greywhale flash` has the port."
+            assert open_line(port).read() == b""

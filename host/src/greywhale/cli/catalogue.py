@@ -17,8 +17,9 @@ from greywhale.dashboard.verbs import ArgumentFacts, VerbFacts
 
 VERBS = (
     *("record", "replay", "calibrate", "doctor", "info", "evaluate", "identify", "tune", "commission", "upload"),
-    *("params backup", "params restore", "params diff"),
+    *("params backup", "params restore", "params diff", "flash"),
 )
+TAKES_PORT = {"flash"}
 # Of all verbs: what the server adds by itself. Of some: what needs the port itself, or a terminal.
 _SERVERS = {"as_json", "port"}
 _NOT_HERE = {"doctor": {"image", "hex_file"}, "record": {"reconnect"}, "info": {"watch", "seconds"}}
@@ -41,6 +42,7 @@ def _facts(verb: str) -> VerbFacts:
         "verb": verb,
         "help": command.get_short_help_str(200),
         "board": any(one.name == "port" for one in command.params),
+        "takes_port": verb in TAKES_PORT,
         "arguments": [_argument(one) for one in command.params if one.name not in hidden],
     }
 

@@ -60,15 +60,18 @@ class Job:
         folder: Path,
         changed: Callable[[Job], None],
         lender: tuple[Relay, str, str] | None = None,
+        done: Callable[[], None] | None = None,
     ) -> None:
         """`program` takes two descriptors, a port and the verb's words; `lender` is a relay, its port and the page's id
-        for a verb that uses the board.
+        for a verb that uses the board. `done` is called when a verb that has the port itself has ended.
         """
         self.facts: Facts = {
             "kind": "job", "id": secrets.token_hex(4), "verb": verb, "arguments": arguments, "state": "running",
             "progress": None, "result": None, "error": None, "exit_code": None, "said": [],
         }  # fmt: skip
         self.page = lender[2] if lender else None  # that must be there for the job to go on
+        self.uses_board = lender is not None or done is not None
+        self._done = done
         self._changed = changed
         self._printed = b""
         self._rests: dict[str, bytes] = {"progress": b"", "said": b""}
@@ -188,6 +191,8 @@ class Job:
         code = self._process.wait()
         if self._line is not None:
             self._line.close()
+        if self._done is not None:
+            self._done()
         for pipe in (self._process.stdin, self._process.stdout, self._process.stderr):
             assert pipe is not None
             with contextlib.suppress(OSError):

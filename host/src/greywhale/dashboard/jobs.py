@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, ExitStack
 from typing import Any, TypedDict
 
 from greywhale.base.errors import BAD_USAGE, UserError, cut
@@ -25,13 +26,21 @@ class Jobs:
     """Any thread may call it. `listeners` are called with a job's facts after each change, in the job's thread."""
 
     def __init__(
-        self, relay: Relay, folder: Folder, catalogue: Callable[[], list[VerbFacts]], program: Sequence[str]
+        self,
+        relay: Relay,
+        folder: Folder,
+        catalogue: Callable[[], list[VerbFacts]],
+        program: Sequence[str],
+        away: Callable[[str], AbstractContextManager[str]],
     ) -> None:
-        """`catalogue` tells the verbs there are, and may take seconds; `program` runs one as `Job` says."""
+        """`catalogue` tells the verbs there are, and may take seconds; `program` runs one as `Job` says; `away` frees
+        the board's port (`Keeper.away`).
+        """
         self._relay = relay
         self._folder = folder
         self._catalogue = catalogue
         self._program = program
+        self._away = away
         self._verbs: list[VerbFacts] = []
         self._jobs: list[Job] = []
         self._lock, self._asking = threading.Lock(), threading.Lock()
@@ -59,15 +68,22 @@ class Jobs:
             names = ", ".join(one["verb"] for one in self.verbs())
             raise UserError(f"{cut(repr(name))} is no verb of a page; there are: {names}.", BAD_USAGE)
         words = command_line(verb, arguments, self._folder)
-        port: list[str] = []
-        with self._lock:
+        with self._lock, ExitStack() as failed:
             if sum(job.running for job in self._jobs) >= MOST_RUNNING:
                 raise UserError(f"{MOST_RUNNING} verbs are running; wait for the end of one, or stop it.")
-            lender = self._lender(verb, page)
-            if lender is not None:
-                port = ["--port", lender[1]]
-            line = [*words[: words.index("--")], *port, "--json", *words[words.index("--") :]]
-            job = Job(self._program, verb["verb"], line, arguments, self._folder.path, self._tell, lender)
+            port, lender, done = "", None, None
+            if verb["board"]:
+                self._require_board(page, there=not verb["takes_port"])
+                port = self._relay.link["port"]
+                lender = self._relay, port, page
+            if verb["takes_port"]:
+                freed = failed.enter_context(ExitStack())
+                port = freed.enter_context(self._away(f"`greywhale {verb['verb']}` has the port."))
+                lender, done = None, freed.close
+            options = [*(["--port", port] if port else []), "--json"]
+            line = [*words[: words.index("--")], *options, *words[words.index("--") :]]
+            job = Job(self._program, verb["verb"], line, arguments, self._folder.path, self._tell, lender, done)
+            failed.pop_all()
             self._jobs = [*self._jobs, job][-MOST_KEPT:]
         return job.facts
 
@@ -92,16 +108,14 @@ class Jobs:
         for job in self._jobs:
             job.join()
 
-    def _lender(self, verb: VerbFacts, page: str) -> tuple[Relay, str, str] | None:
-        if not verb["board"]:
-            return None
-        if not self._relay.link["open"]:
+    def _require_board(self, page: str, there: bool) -> None:
+        """Refuse a verb that uses the board, where it is to be `there`, or where others have it."""
+        if there and not self._relay.link["open"]:
             raise UserError(self._relay.link["sentence"] or "no board is there yet.")
-        if any(job.running and job.page is not None for job in self._jobs):
+        if any(job.running and job.uses_board for job in self._jobs):
             raise UserError("another verb uses the board; wait for its end, or stop it.")
         if not self._relay.drives(page):
             raise UserError("this page only watches; let it drive first.")
-        return self._relay, self._relay.link["port"], page
 
     def _find(self, id: str) -> Job:
         job = next((one for one in self._jobs if one.facts["id"] == id), None)

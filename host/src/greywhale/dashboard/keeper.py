@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import logging
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 from greywhale.base.errors import UserError
 from greywhale.board.device import Device
@@ -19,6 +20,8 @@ from greywhale.protocol.transport import Line, PortBusyError, PortLostError
 LOOK_AGAIN_S = 0.5
 ASK_AGAIN_S = 6.0
 AFTER_STOP_S = 3.0
+# A board that is just being greeted keeps its port for so long.
+LET_GO_S = 10.0
 # Samples of so many milliseconds are read at once: to wake up at each tick would cost more than all else.
 ROUND_S = 0.004
 STOPPED = "The motors are off: `greywhale stop` was called in another terminal. The board is taken again in a moment."
@@ -35,6 +38,9 @@ class Keeper:
         self._named = named
         self._choose = choose
         self._ending = threading.Event()
+        self._changed = threading.Condition()
+        self._away = ""  # why the port is not to be held
+        self._free = False
         self._thread = threading.Thread(target=self._run, name="greywhale-board", daemon=True)
 
     def start(self) -> None:
@@ -43,15 +49,41 @@ class Keeper:
     def end(self) -> None:
         """Let `hold` return soon; from any thread."""
         self._ending.set()
+        with self._changed:
+            self._changed.notify_all()
 
     def close(self) -> None:
         """Motors off, port free."""
         self.end()
         self._thread.join()
 
+    @contextlib.contextmanager
+    def away(self, sentence: str) -> Iterator[str]:
+        """Meanwhile the port is free for somebody who needs it itself: its name. The sentence tells pages why."""
+        with self._changed:
+            self._away = sentence
+            self._changed.notify_all()
+            free = self._changed.wait_for(lambda: self._free, LET_GO_S)
+        try:
+            if not free:
+                raise UserError("the board's port is not free yet; try again.")
+            yield self._choose(self._named)
+        finally:
+            with self._changed:
+                self._away = ""
+                self._changed.notify_all()
+
     def _run(self) -> None:
         while not self._ending.is_set():
-            self._ending.wait(self.hold())
+            pause_s = self.hold()
+            with self._changed:
+                self._changed.wait_for(lambda: bool(self._away) or self._ending.is_set(), pause_s)
+                if self._away:
+                    self._relay.close(self._relay.link["port"], self._away)
+                    self._free = True
+                    self._changed.notify_all()
+                    self._changed.wait_for(lambda: not self._away or self._ending.is_set())
+                    self._free = False
 
     def hold(self) -> float:
         """Hold the board until it is lost or the server ends; after how many seconds to try again."""
@@ -78,7 +110,7 @@ class Keeper:
         line, session = device.lend()
         self._relay.open(line, port, session.refuse_motion)
         try:
-            while not self._ending.is_set():
+            while not (self._ending.is_set() or self._away):
                 turn(self._relay, line, session)
                 line.wait(ROUND_S)
         except StopAsked:
@@ -87,7 +119,7 @@ class Keeper:
         except UserError as error:
             self._tell(port, error)
             raise
-        self._relay.close(port, "")
+        self._relay.close(port, self._away)
 
     def _tell(self, port: str, error: UserError) -> None:
         logger.info("%s", error.message)

@@ -36,9 +36,9 @@ def serve(options: Options, bench: RunningBench | None, ready: Callable[[str], N
     """Serve until Ctrl-C; `ready` gets the address, with its token, when the page can be opened."""
     page = server.require_page()
     folder, relay = Folder(options.folder), Relay(History())
-    jobs = Jobs(relay, folder, options.catalogue, options.program)
-    house = House(relay, folder, options.arm, jobs, None if bench is None else BenchControls(bench, folder))
     keeper = Keeper(relay, options.port)
+    jobs = Jobs(relay, folder, options.catalogue, options.program, keeper.away)
+    house = House(relay, folder, options.arm, jobs, None if bench is None else BenchControls(bench, folder))
     token = secrets.token_urlsafe(24)
     with contextlib.ExitStack() as held:
         listener = held.enter_context(server.listen(options.http_port))

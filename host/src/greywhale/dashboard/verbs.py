@@ -29,6 +29,7 @@ class VerbFacts(TypedDict):
     verb: str  # such as "params backup"
     help: str  # one sentence
     board: bool  # whether it needs a board
+    takes_port: bool  # whether it needs the port itself, so that the page sees nothing meanwhile
     arguments: list[ArgumentFacts]
 
 
