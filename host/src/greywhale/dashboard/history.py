@@ -49,6 +49,5 @@ class History:
             begin = first % self._most
             end = min(self._most, begin + count)
             rest = count - (end - begin)
-            return bytes(self._frames[begin * FRAME_BYTES : end * FRAME_BYTES]) + bytes(
-                self._frames[: rest * FRAME_BYTES]
-            )
+            frames = memoryview(self._frames)  # so that all is copied once
+            return b"".join((frames[begin * FRAME_BYTES : end * FRAME_BYTES], frames[: rest * FRAME_BYTES]))
