@@ -92,6 +92,7 @@ def test_help_needs_no_heavy_imports() -> None:
         (["reproduce", "--seeds", "1001"], "seeds is 1001, but it must be at most 1000."),
         (["sim", "--eeprom", "none/e.bin"], "none/e.bin: the folder none does not exist; create it"),
         (["sim", "--blank", "--firmware", "a.hex"], "a blank board has no firmware: leave out --blank or --firmware."),
+        (["dashboard", "--sim", "--port", "p"], "--sim brings a board of its own; leave --port out, or --sim."),
         (["calibrate", "--backup", "none/b.toml"], "none/b.toml: the folder none does not exist; create it"),
         (["record", "--out", ""], "the value of --out is empty; give one, or leave it out."),
         (["info", "--port="], "the value of --port is empty"),
