@@ -97,7 +97,7 @@ def test_a_board_that_is_no_greywhale_is_told_and_asked_again_later(
 def test_a_board_that_falls_silent_is_given_up(relay: Relay) -> None:
     with FakeBoard(Faults(stop_sampling_at=300)) as board:
         assert Keeper(relay, board.port).hold() == ASK_AGAIN_S
-        assert board.asked(schema.TelemetryRequest) == 2, "once more before it is given up"
+        assert board.asked(schema.TelemetryRequest) == 3, "once more before it is given up, and off"
     assert "the board fell silent" in relay.link["sentence"]
 
 

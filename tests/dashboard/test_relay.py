@@ -172,6 +172,20 @@ def test_a_board_that_restarts_is_told_and_speaks_on(bench: LockStepBench, share
     assert page.samples()[-1].state is schema.State.DISABLED
 
 
+def test_a_silent_board_is_told_and_that_it_speaks_again(bench: LockStepBench, shared: Shared) -> None:
+    page = shared.page()
+    shared.live(0.1)
+    page.words("link")
+    bench.command("power off")
+    shared.live(1.0)
+    (told,) = page.words("link")
+    assert told["open"]
+    assert "is its supply on?" in told["sentence"]
+    bench.command("power on")
+    shared.live(2.0)
+    assert "restarted" in page.words("link")[-1]["sentence"]
+
+
 def test_garbage_between_frames_is_nobodys(shared: Shared) -> None:
     page = shared.page(0)
     seq = page.ask(schema.HelloRequest())

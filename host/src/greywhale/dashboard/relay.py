@@ -27,8 +27,10 @@ SILENCE_S = 0.28
 LEASE_MS = 250
 RENEW_S = 0.06
 # A board that sent no sample for so long may have restarted. A bootloader to which anybody speaks stays for 5 s, so
-# nothing but a stop is sent until its firmware must run; then it is asked for samples again, and then given up.
+# nothing but a stop is sent until its firmware must run; then it is asked for samples again, and then given up. Pages
+# are told in between.
 QUIET_S = 0.1
+TOLD_S = 0.5
 ASK_AGAIN_S = 6.0
 GIVE_UP_S = 7.0
 
@@ -89,7 +91,7 @@ class Relay:
         self._confirmed = False  # that they do
         self._renewed_s = self._heard_s = 0.0
         self.on_let_go: Callable[[str], None] = lambda page: None  # called with a page's id when it drives no more
-        self._asked_again = False
+        self._asked_again = self._told_silent = False
 
     # --- the board --------------------------------------------------------------------------------------------------
 
@@ -105,12 +107,15 @@ class Relay:
             self._decoder = FrameDecoder()
             self._asked.clear()
             self._motors = None
+            self._told_silent = False
             self._want_samples()
             self._tell_link(True, port, "")
 
     def close(self, port: str, sentence: str) -> None:
         """No board is there, and why."""
         with self._lock:
+            if self._board is not None:
+                self._ask(schema.TelemetryRequest(0))  # whoever opens the port next asks for samples by himself
             self._board = self._motors = None
             if self._verb is not None:
                 self._verb.outbox.add_answer({"kind": "gone"})
@@ -216,6 +221,9 @@ class Relay:
         assert self._board is not None
         if silent_s > GIVE_UP_S:
             raise UserError(f"{self._board.port}: the board fell silent; check its cable and its supply.")
+        if silent_s > TOLD_S and not self._told_silent:
+            self._told_silent = True
+            self._tell_link(True, self._board.port, "The board is silent: is its supply on?")
         if silent_s > ASK_AGAIN_S and not self._asked_again:
             self._asked_again = True
             self._ask(schema.TelemetryRequest(1))
@@ -312,6 +320,9 @@ class Relay:
         assert self._board is not None
         self._heard_s = self._board.line.clock()
         self._asked_again = False
+        if self._told_silent:
+            self._told_silent = False
+            self._tell_link(True, self._board.port, "")
         if len(frame.payload) != schema.Sample.SIZE:
             return
         tick = int.from_bytes(frame.payload[:_STATE], "little")
@@ -326,6 +337,7 @@ class Relay:
         """The board says hello by itself: it has started, its motors are off, and it sends no samples."""
         assert self._board is not None
         self._motors = None
+        self._told_silent = False
         self._asked.clear()
         for client in self._clients:
             client.outbox.add_answer(wire)
