@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import contextlib
 import secrets
-from collections.abc import Callable, Sequence
+import signal
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from types import FrameType
+
+import uvicorn
 
 from greywhale.base.bench_process import RunningBench
 from greywhale.dashboard import server
@@ -46,6 +50,23 @@ def serve(options: Options, bench: RunningBench | None, ready: Callable[[str], N
         running = server.make_server(server.application(house, page, token, port))
         held.callback(keeper.close)
         held.callback(jobs.close)  # first, while their board is there
+        held.enter_context(_ending_on_hangup(running))
         keeper.start()
         ready(f"http://127.0.0.1:{port}/#token={token}")
         running.run([listener])
+
+
+@contextlib.contextmanager
+def _ending_on_hangup(running: uvicorn.Server) -> Iterator[None]:
+    """End in good order with the terminal too; uvicorn sees to the other signals. nohup means what it says."""
+
+    def end(number: int, frame: FrameType | None) -> None:
+        running.should_exit = True
+
+    before = signal.getsignal(signal.SIGHUP)
+    if before is not signal.SIG_IGN:
+        signal.signal(signal.SIGHUP, end)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGHUP, before)
