@@ -28,6 +28,9 @@ def npm(*words: str, what: str) -> None:
 
 
 def step() -> None:
+    if not all(path.is_file() for path in LOCK):
+        say("host/web is not there: no page is built, all else is")
+        return
     packages = stamps.digest(LOCK)
     if not (stamps.is_current("page_packages", packages) and (WEB / "node_modules").is_dir()):
         say("installing the page's packages")
