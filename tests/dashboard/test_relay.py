@@ -159,7 +159,7 @@ def test_a_page_cannot_ask_for_a_longer_lease(bench: LockStepBench) -> None:
 def test_a_board_that_restarts_is_told_and_speaks_on(bench: LockStepBench, shared: Shared) -> None:
     page = start(shared)
     bench.command("power off")
-    shared.live(0.15, here=page)
+    shared.live(0.6, here=page)
     bench.command("power on")
     for _ in range(20):  # a page that goes on asking does not keep the bootloader
         page.ask(schema.StatusRequest())
@@ -184,6 +184,15 @@ def test_a_silent_board_is_told_and_that_it_speaks_again(bench: LockStepBench, s
     bench.command("power on")
     shared.live(2.0)
     assert "restarted" in page.words("link")[-1]["sentence"]
+
+
+def test_a_host_that_is_late_itself_refuses_nothing(shared: Shared) -> None:
+    page = shared.page(0)
+    shared.line.wait(0.4)
+    seq = page.ask(schema.StatusRequest())
+    shared.live(0.05)
+    assert page.words("refused") == []
+    assert [frame.seq for frame in page.answers()] == [seq]
 
 
 def test_garbage_between_frames_is_nobodys(shared: Shared) -> None:

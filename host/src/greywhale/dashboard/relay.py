@@ -26,9 +26,9 @@ from greywhale.protocol.transport import Line
 SILENCE_S = 0.28
 LEASE_MS = 250
 RENEW_S = 0.06
-# A board that sent no sample for so long may have restarted. A bootloader to which anybody speaks stays for 5 s, so
-# nothing but a stop is sent until its firmware must run; then it is asked for samples again, and then given up. Pages
-# are told in between.
+# A board that sent no sample for so long may have restarted. A bootloader to which anybody speaks stays for 5 s. So its
+# lease is not renewed; soon, when this host's own delay cannot be the reason, pages are told, and nothing but their
+# stop is sent; when its firmware must run, it is asked for samples again; at last it is given up.
 QUIET_S = 0.1
 TOLD_S = 0.5
 ASK_AGAIN_S = 6.0
@@ -146,7 +146,7 @@ class Relay:
             if now_s > page.seen_s + SILENCE_S:
                 self._stop()
                 self._refuse(page, "the motors are off: the page that drives fell silent.")
-            elif now_s >= self._renewed_s + RENEW_S and not self._silent:
+            elif now_s >= self._renewed_s + RENEW_S and now_s <= self._heard_s + QUIET_S:
                 self._renewed_s = now_s
                 self._ask(schema.RenewRequest(LEASE_MS))
 
@@ -212,11 +212,6 @@ class Relay:
 
     # --- inside -----------------------------------------------------------------------------------------------------
 
-    @property
-    def _silent(self) -> bool:
-        assert self._board is not None
-        return self._board.line.clock() > self._heard_s + QUIET_S
-
     def _look_for_samples(self, silent_s: float) -> None:
         assert self._board is not None
         if silent_s > GIVE_UP_S:
@@ -244,7 +239,8 @@ class Relay:
 
     def _why_not(self, client: Client, frame: Frame) -> str:
         """Why a request may not go on, in a sentence."""
-        if self._silent:
+        assert self._board is not None
+        if self._board.line.clock() > self._heard_s + TOLD_S:
             return "the board is silent; perhaps it has just restarted."
         if frame.type in _FOR_ALL or client.verb is not None:
             return ""
@@ -253,7 +249,6 @@ class Relay:
         if self._driver is not client:
             return "this page only watches; let it drive first."
         if frame.type in _STARTS:
-            assert self._board is not None
             try:
                 self._board.may_move()
             except UserError as error:
