@@ -21,15 +21,13 @@ from typing import Any, Literal, TypedDict
 
 from greywhale.base import processes
 from greywhale.base.errors import printable
-from greywhale.dashboard.outbox import Outbox
-from greywhale.dashboard.relay import Client, Relay
+from greywhale.dashboard.lending import LentEnd
+from greywhale.dashboard.relay import Relay
 
 INTERRUPTED = 130
 # A verb that was interrupted stops motors and writes its files; one that does not end by then hangs.
 END_WAIT_S = 15.0
 MOST_SAID = 200
-# A verb may compute for a minute before it reads; it loses no sample that a port would have kept.
-MOST_SAMPLES = 60_000
 _PIECE = 65536
 
 
@@ -78,7 +76,7 @@ class Job:
         self._kill_at: float | None = None
         self._wake_out, self._wake_in = os.pipe()
         os.set_blocking(self._wake_in, False)
-        self._line: _LentEnd | None = None
+        self._line: LentEnd | None = None
         progress, told = os.pipe()
         handed = [told]
         port, line = "-", "-"
@@ -86,7 +84,7 @@ class Job:
             port, (own, theirs) = lender[1], socket.socketpair()
             handed.append(theirs.fileno())
             line = str(theirs.fileno())
-            self._line = _LentEnd(lender[0], own, self.facts, self._wake)
+            self._line = LentEnd(lender[0], own, verb, self.facts["id"], self._wake)
         self._process = processes.start(
             [*program, str(told), line, port, *words],
             cwd=folder,
@@ -209,64 +207,3 @@ class Job:
         self.facts["result"] = None if failed else answer
         self.facts["state"] = ("stopped" if code == INTERRUPTED else "failed") if failed else "done"
         self._changed(self)
-
-
-class _LentEnd:
-    """The server's end of a line that is lent to a job."""
-
-    def __init__(self, relay: Relay, connection: socket.socket, facts: Facts, wake: Callable[[bool], None]) -> None:
-        self._relay = relay
-        self._connection = connection
-        connection.setblocking(False)
-        self._client = Client(Outbox(wake, MOST_SAMPLES), facts["verb"], facts["id"])
-        self._waiting = b""
-        self._open = True
-        relay.join(self._client)
-
-    def register(self, selector: selectors.BaseSelector) -> None:
-        selector.register(self._connection, selectors.EVENT_READ)
-
-    def serve(self, selector: selectors.BaseSelector, events: int) -> None:
-        """Take what the verb sent."""
-        if events & selectors.EVENT_READ:
-            try:
-                data = self._connection.recv(_PIECE)
-            except BlockingIOError:
-                return
-            except OSError:
-                data = b""
-            if data:
-                self._relay.receive(self._client, data)
-            else:
-                selector.unregister(self._connection)
-                self.close()
-
-    def pass_on(self, selector: selectors.BaseSelector) -> None:
-        """Send the verb what waits for it, as far as it takes it."""
-        while self._open:
-            if not self._waiting:
-                answers, samples = self._client.outbox.take()
-                if any(isinstance(one, dict) for one in answers):  # the board is gone
-                    selector.unregister(self._connection)
-                    self.close()
-                    return
-                self._waiting = b"".join(one for one in answers if isinstance(one, bytes)) + samples
-            if not self._waiting:
-                break
-            try:
-                sent = self._connection.send(self._waiting)
-            except BlockingIOError:
-                break
-            except OSError:
-                return
-            self._waiting = self._waiting[sent:]
-        if self._open:
-            wanted = selectors.EVENT_READ | (selectors.EVENT_WRITE if self._waiting else 0)
-            selector.modify(self._connection, wanted)
-
-    def close(self) -> None:
-        """The verb has the board no more: what it started is stopped."""
-        if self._open:
-            self._open = False
-            self._relay.leave(self._client)
-            self._connection.close()
