@@ -18,6 +18,7 @@ GENERATED = [
     "firmware/lib/params/src/params/table.cpp",
     "firmware/test/native/test_link/golden.h",
     "host/src/greywhale/protocol/schema.py",
+    "host/web/src/link/schema.ts",
     "shared/link/golden.toml",
     "docs/link.md",
 ]

@@ -1,8 +1,8 @@
 """Makes everything that is derived from shared/link/*.toml: `python -m tools.generate.link [--check]`.
 
 The declarations become a C++ header of messages, the firmware's parameter table, the host's Python module, the
-reference page and golden vectors for the tests of both sides. With --check nothing is written; stale files are named
-and the exit code is 1.
+page's TypeScript module, the reference page and golden vectors for the tests of all sides. With --check nothing is
+written; stale files are named and the exit code is 1.
 Needs nothing but Python 3.11.
 """
 
@@ -13,7 +13,7 @@ import sys
 from pathlib import Path
 
 from tools import ROOT
-from tools.generate.link import cpp_codes, cpp_messages, cpp_parameters, golden, page, python_module
+from tools.generate.link import cpp_codes, cpp_messages, cpp_parameters, golden, page, python_module, typescript
 from tools.generate.link.declaration import Declaration, DeclarationError, load
 
 
@@ -26,6 +26,7 @@ def outputs(declaration: Declaration) -> dict[str, str]:
         "firmware/lib/params/src/params/table.cpp": cpp_parameters.source(declaration),
         "firmware/test/native/test_link/golden.h": golden.header(declaration),
         "host/src/greywhale/protocol/schema.py": python_module.module(declaration),
+        "host/web/src/link/schema.ts": typescript.module(declaration),
         "shared/link/golden.toml": golden.toml(declaration),
         "docs/link.md": page.page(declaration),
     }

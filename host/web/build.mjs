@@ -1,0 +1,44 @@
+// Bundles the page into the Python package (`npm run build`), or its tests and runs them (`npm test`).
+import { spawnSync } from "node:child_process";
+import { copyFileSync, mkdirSync, readdirSync, rmSync } from "node:fs";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+import { build } from "esbuild";
+
+const here = dirname(fileURLToPath(import.meta.url));
+const common = { bundle: true, target: "es2022", logLevel: "warning", absWorkingDir: here };
+
+async function buildPage(out) {
+  rmSync(out, { recursive: true, force: true });
+  mkdirSync(out, { recursive: true });
+  await build({
+    ...common,
+    entryPoints: { page: "src/page.ts" },
+    outdir: out,
+    format: "esm",
+    splitting: true,
+    minify: true,
+    chunkNames: "[name]-[hash]",
+    legalComments: "eof",
+  });
+  copyFileSync(join(here, "src/index.html"), join(out, "index.html"));
+}
+
+async function runTests(out, args) {
+  rmSync(out, { recursive: true, force: true });
+  const tests = readdirSync(join(here, "test")).filter((name) => name.endsWith(".test.ts"));
+  await build({
+    ...common,
+    entryPoints: tests.map((name) => `test/${name}`),
+    outdir: out,
+    platform: "node",
+    format: "esm",
+    outExtension: { ".js": ".mjs" },
+  });
+  const files = tests.map((name) => join(out, name.replace(/ts$/, "mjs")));
+  return spawnSync(process.execPath, ["--test", ...args, ...files], { stdio: "inherit" }).status ?? 1;
+}
+
+const [what, ...args] = process.argv.slice(2);
+if (what === "test") process.exitCode = await runTests(join(here, "../../build/page-tests"), args);
+else await buildPage(what ?? join(here, "../src/greywhale/dashboard/page"));

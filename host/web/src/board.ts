@@ -1,0 +1,30 @@
+// What every view knows of a board: send a frame; frames arrive. No view knows where they come from.
+
+export type LinkState = { readonly open: boolean; readonly port: string; readonly sentence: string };
+
+/** Who may change what the board does; `job` is the id of a job of the host that uses the board now. */
+export type DriverState = { readonly you: boolean; readonly free: boolean; readonly job: string | null };
+
+export type BoardListener = {
+  /** Bytes of the link, in pieces of any size; the listener may not keep them. */
+  bytes(data: Uint8Array): void;
+  link(state: LinkState): void;
+  driver(state: DriverState): void;
+  /** A frame that did not reach the board, and why. */
+  refused(seq: number, type: number, sentence: string): void;
+};
+
+/**
+ * A source of frames: a server, a serial port of the browser, a board inside the page. Whoever enables the motors gives
+ * a lease; the source renews it for as long as this page is open and visible, and no longer.
+ */
+export interface Board {
+  listen(listener: BoardListener): void;
+  /** Sends one whole frame; what is sent while no board is there is lost. */
+  send(frame: Uint8Array): void;
+  /** Asks for the right to change things; `driver` tells when it is this page's. */
+  drive(): void;
+  release(): void;
+  /** Frames of the samples from before this page was opened, oldest first; empty where nobody keeps them. */
+  history(): Promise<Uint8Array>;
+}
