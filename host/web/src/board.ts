@@ -25,6 +25,6 @@ export interface Board {
   /** Asks for the right to change things; `driver` tells when it is this page's. */
   drive(): void;
   release(): void;
-  /** Frames of the samples from before this page was opened, oldest first; empty where nobody keeps them. */
-  history(): Promise<Uint8Array>;
+  /** Frames of the kept samples from a tick on, null for all, oldest first; empty where nobody keeps them. */
+  history(from: number | null): Promise<Uint8Array>;
 }

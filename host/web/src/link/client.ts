@@ -5,7 +5,7 @@ import { encodeFrame, FrameDecoder, type Frame } from "./frames";
 import { refusalSentence } from "./refusal";
 import { HelloReply, Nack, Sample } from "./schema";
 
-export const PATIENCE_MS = 250; // until a request is sent again
+export const PATIENCE_MS = 500; // until a request is sent again
 const ATTEMPTS = 4;
 
 /** Runs `action` after some milliseconds and returns what cancels it. */

@@ -1,0 +1,54 @@
+// The board's state, its fault with the remedy, and the counters of firmware and link.
+
+import { Fault, State, StopReason, SaveState } from "../link/schema";
+import { faultSentence, upperFirst } from "../link/refusal";
+import { button, el, setText } from "../parts/dom";
+import type { Session } from "../session";
+
+export class StatePanel {
+  readonly element: HTMLElement;
+  private readonly sentence = el("p", { class: "state-text" });
+  private readonly fault = el("div", { class: "fault", hidden: true, attrs: { role: "alert" } });
+  private readonly faultText = el("p");
+  private readonly rows = new Map<string, HTMLElement>();
+
+  constructor(private readonly session: Session) {
+    this.fault.append(this.faultText, button("Clear fault", () => void session.attempt(() => session.clearFault())));
+    const names = [
+      "last stop", "ticks", "late ticks", "longest tick", "samples lost", "frames damaged", "bytes lost", "no rule", "stored sets",
+    ];
+    const list = el("dl", { class: "facts" });
+    for (const name of names) {
+      const value = el("dd", {}, "–");
+      this.rows.set(name, value);
+      list.append(el("dt", {}, name), value);
+    }
+    this.element = el("section", { class: "card" }, el("h2", {}, "Board"), this.sentence, this.fault, list);
+    session.changed.on(() => this.show());
+    this.show();
+  }
+
+  private show(): void {
+    const { status, link, samples, damaged } = this.session;
+    if (!status || !link.open) {
+      setText(this.sentence, link.sentence || "No board is there yet.");
+      this.fault.hidden = true;
+      return;
+    }
+    setText(this.sentence, `${upperFirst(State.of(status.state).description)}.`);
+    this.fault.hidden = status.fault === Fault.is.none;
+    if (status.fault !== Fault.is.none) setText(this.faultText, faultSentence(status));
+    const facts: Record<string, string> = {
+      "last stop": StopReason.of(status.stop_reason).description,
+      ticks: status.tick.toLocaleString("en"),
+      "late ticks": String(status.late_ticks),
+      "longest tick": `${status.tick_us_max} µs`,
+      "samples lost": String(samples.lost + status.telemetry_dropped),
+      "frames damaged": String(status.frames_bad + damaged),
+      "bytes lost": String(status.rx_overruns),
+      "no rule": String(status.no_rule),
+      "stored sets": `${status.saves}, ${SaveState.of(status.save_state).description}`,
+    };
+    for (const [name, text] of Object.entries(facts)) setText(this.rows.get(name)!, text);
+  }
+}

@@ -1,0 +1,135 @@
+// The live view: charts of every tick, what stands under the cursor, running measures, capture and export.
+
+import { button, download, el, select, setText } from "../parts/dom";
+import { themeChanged } from "../parts/theme";
+import type { View } from "../parts/view";
+import { logText } from "../samples/log";
+import { COUNT, QUANTITIES, TICKS_A_SECOND, traceOf } from "../samples/samples";
+import type { Session } from "../session";
+import { Charts } from "./charts";
+import { MeasuresTable } from "./measures_table";
+import { StatePanel } from "./state_panel";
+import { TriggerPanel } from "./trigger_panel";
+import { PAN_STEP, TimeWindow, ZOOM_STEP } from "./window";
+
+const SPANS_S = [1, 2, 5, 10, 30, 60, 600];
+const JOINT_NAMES = ["base yaw", "shoulder pitch", "wrist pitch", "wrist roll"];
+
+export class LiveView implements View {
+  readonly name = "Live";
+  readonly element: HTMLElement;
+  private readonly window: TimeWindow;
+  private readonly charts: Charts;
+  private readonly pause = button("Pause", () => this.window.toggle(), { title: "Pause or go on (P)" });
+  private readonly span: HTMLSelectElement;
+  private readonly resolution = el("span", { class: "quiet" });
+  private readonly values: HTMLTableCellElement[][] = [];
+  private readonly moment = el("th", { attrs: { scope: "col" } }, "joint");
+  private readonly measures: MeasuresTable;
+  private readonly trigger: TriggerPanel;
+
+  constructor(private readonly session: Session) {
+    this.window = new TimeWindow(session.samples);
+    this.charts = new Charts(session.samples, this.window);
+    this.measures = new MeasuresTable(session.samples);
+    this.trigger = new TriggerPanel(session, this.window);
+    this.span = select("Span shown", SPANS_S.map((s) => [String(s), s < 60 ? `${s} s` : `${s / 60} min`] as const),
+      (seconds) => this.window.setSpan(Number(seconds) * TICKS_A_SECOND));
+    this.element = el("div", { class: "live" },
+      el("div", { class: "live-main" }, this.tools(), this.charts.element, this.table()),
+      el("aside", { class: "side" }, new StatePanel(session).element, this.measures.element, this.trigger.element));
+    this.window.changed.on(() => this.showWindow());
+    themeChanged.on(() => this.charts.rebuild());
+    this.showWindow();
+  }
+
+  private tools(): HTMLElement {
+    const zoom = (factor: number): void => this.window.zoom(factor);
+    return el("div", { class: "tools", attrs: { role: "toolbar", "aria-label": "Time" } },
+      this.pause,
+      this.span,
+      button("−", () => zoom(ZOOM_STEP), { title: "Zoom out (minus)", attrs: { "aria-label": "Zoom out" } }),
+      button("+", () => zoom(1 / ZOOM_STEP), { title: "Zoom in (plus)", attrs: { "aria-label": "Zoom in" } }),
+      button("◀", () => this.window.pan(-PAN_STEP), { title: "Earlier (left arrow)", attrs: { "aria-label": "Earlier" } }),
+      button("▶", () => this.window.pan(PAN_STEP), { title: "Later (right arrow)", attrs: { "aria-label": "Later" } }),
+      button("Save view", () => void this.session.attempt(() => this.export()), { title: "Keep what is in view as a log that greywhale reads" }),
+      this.resolution);
+  }
+
+  private table(): HTMLElement {
+    const rows = JOINT_NAMES.map((name, joint) => {
+      const cells = QUANTITIES.map(() => el("td", {}, "–"));
+      this.values.push(cells);
+      const box = el("input", { type: "checkbox", checked: true, on: {
+        change: (event) => this.charts.showJoint(joint, (event.target as HTMLInputElement).checked),
+      } });
+      const label = el("label", {}, box, el("span", { class: `key key-${joint}` }), `${joint} `, el("span", { class: "wide" }, name));
+      return el("tr", {}, el("th", { attrs: { scope: "row" } }, label), ...cells);
+    });
+    const head = ["leader rad", "follower rad", "error rad", "voltage V"];
+    return el("table", { class: "values" },
+      el("thead", {}, el("tr", {}, this.moment, ...head.map((text) => el("th", { attrs: { scope: "col" } }, text)))),
+      el("tbody", {}, ...rows));
+  }
+
+  private showWindow(): void {
+    setText(this.pause, this.window.live ? "Pause" : "Go on");
+    this.pause.setAttribute("aria-pressed", String(!this.window.live));
+    const seconds = String(this.window.spanTicks / TICKS_A_SECOND);
+    const known = [...this.span.options].some(({ value }) => value === seconds);
+    this.span.value = known ? seconds : "";
+  }
+
+  private async export(): Promise<void> {
+    const { samples, hello } = this.session;
+    const from = samples.at(this.window.begin);
+    const to = Math.min(samples.end, samples.at(this.window.end) + 1);
+    if (to <= from) {
+      this.session.tell("There is no sample in view; wait for some, or show another time.");
+      return;
+    }
+    const raw = await this.session.readParameters();
+    const begin = (samples.timeOf(from) / TICKS_A_SECOND).toFixed(0);
+    download(`view-${begin}s.csv`, logText(samples, from, to, { hello, raw }));
+  }
+
+  enter(): void {
+    this.charts.rebuild();
+  }
+
+  frame(): void {
+    this.trigger.look();
+    this.charts.draw();
+    this.showValues();
+    this.measures.refresh();
+    setText(this.resolution, this.charts.exact ? "every sample" : "least and greatest of each column");
+  }
+
+  private showValues(): void {
+    const { samples } = this.session;
+    const { cursor } = this.charts;
+    if (!samples.end) return;
+    const number = cursor === null ? samples.end - 1 : Math.min(samples.at(cursor), samples.end - 1);
+    const shown = samples.timeOf(number) / TICKS_A_SECOND;
+    setText(this.moment, cursor === null ? "now" : `at ${shown.toFixed(3)} s`);
+    this.values.forEach((cells, joint) => QUANTITIES.forEach((quantity, place) => {
+      const value = samples.count(number, traceOf(quantity, joint)) * COUNT[quantity];
+      setText(cells[place]!, value.toFixed(quantity === "voltage" ? 3 : 4));
+    }));
+    this.element.dataset["tick"] = String(samples.timeOf(number));
+    this.element.dataset["first"] = String(samples.timeOf(samples.first));
+  }
+
+  key(event: KeyboardEvent): boolean {
+    const act: Readonly<Record<string, () => void>> = {
+      p: () => this.window.toggle(),
+      "+": () => this.window.zoom(1 / ZOOM_STEP),
+      "-": () => this.window.zoom(ZOOM_STEP),
+      ArrowLeft: () => this.window.pan(-PAN_STEP),
+      ArrowRight: () => this.window.pan(PAN_STEP),
+    };
+    act[event.key]?.();
+    return event.key in act;
+  }
+}
+

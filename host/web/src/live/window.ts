@@ -1,0 +1,83 @@
+// The span of time that all charts show: it moves with the newest sample until somebody pauses or looks back.
+
+import { Signal } from "../parts/signal";
+import { TICKS_A_SECOND, type Samples } from "../samples/samples";
+
+const SHORTEST_TICKS = 20;
+const LONGEST_TICKS = 600 * TICKS_A_SECOND;
+export const ZOOM_STEP = 1.6;
+export const PAN_STEP = 0.2; // of the span
+
+export class TimeWindow {
+  readonly changed = new Signal();
+  private span = 10 * TICKS_A_SECOND;
+  private held: number | null = null; // the end while it does not move, in ticks
+
+  constructor(private readonly samples: Samples) {}
+
+  get live(): boolean {
+    return this.held === null;
+  }
+
+  get spanTicks(): number {
+    return this.span;
+  }
+
+  get end(): number {
+    return this.held ?? this.samples.lastTime;
+  }
+
+  get begin(): number {
+    return this.end - this.span;
+  }
+
+  hold(): void {
+    this.held = this.end;
+    this.changed.emit();
+  }
+
+  follow(): void {
+    this.held = null;
+    this.changed.emit();
+  }
+
+  toggle(): void {
+    if (this.live) this.hold();
+    else this.follow();
+  }
+
+  setSpan(ticks: number): void {
+    this.span = Math.max(SHORTEST_TICKS, Math.min(LONGEST_TICKS, ticks));
+    this.changed.emit();
+  }
+
+  /** Shows from `begin` to `end` and stays there. */
+  show(begin: number, end: number): void {
+    this.span = Math.max(SHORTEST_TICKS, Math.min(LONGEST_TICKS, end - begin));
+    this.held = begin + this.span;
+    this.changed.emit();
+  }
+
+  /** Zooms by a factor about a time that keeps its place; without one, about the end while live, else the middle. */
+  zoom(factor: number, about?: number): void {
+    if (this.held === null) {
+      this.setSpan(this.span * factor);
+      return;
+    }
+    const fixed = about ?? (this.begin + this.held) / 2;
+    const share = (fixed - this.begin) / this.span;
+    const span = Math.max(SHORTEST_TICKS, Math.min(LONGEST_TICKS, this.span * factor));
+    this.show(fixed - share * span, fixed + (1 - share) * span);
+  }
+
+  /** Moves by a share of the span; moving past the newest sample follows it again. */
+  pan(share: number): void {
+    const end = this.end + share * this.span;
+    if (end >= this.samples.lastTime) {
+      this.follow();
+      return;
+    }
+    this.held = Math.max(end, this.samples.timeOf(this.samples.first));
+    this.changed.emit();
+  }
+}

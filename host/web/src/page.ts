@@ -1,0 +1,25 @@
+// The page's entry: takes the token out of the address, opens the board, and shows the views.
+
+import "./page.css";
+import { LiveView } from "./live/view";
+import { startTheme } from "./parts/theme";
+import { Session } from "./session";
+import { Shell } from "./shell";
+import { ServerBoard } from "./sources/server";
+
+const KEY = "greywhale-token";
+
+/** The secret of the server, out of the address bar and kept for a reload of this tab. */
+function takeToken(): string {
+  const given = new URLSearchParams(location.hash.slice(1)).get("token");
+  if (given) {
+    sessionStorage.setItem(KEY, given);
+    history.replaceState(null, "", location.pathname);
+  }
+  return given ?? sessionStorage.getItem(KEY) ?? "";
+}
+
+startTheme();
+const board = new ServerBoard(takeToken());
+const session = new Session(board);
+new Shell(session, [new LiveView(session)]);

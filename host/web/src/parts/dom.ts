@@ -1,0 +1,65 @@
+// Builds elements. Whatever is shown is set as text, never read as HTML.
+
+type Props = {
+  readonly class?: string;
+  readonly title?: string;
+  readonly type?: string;
+  readonly value?: string;
+  readonly href?: string;
+  readonly disabled?: boolean;
+  readonly checked?: boolean;
+  readonly hidden?: boolean;
+  /** Any other attribute, such as aria-label or role. */
+  readonly attrs?: Readonly<Record<string, string>>;
+  readonly on?: Readonly<Record<string, (event: Event) => void>>;
+};
+
+export function el<Tag extends keyof HTMLElementTagNameMap>(
+  tag: Tag, props: Props = {}, ...children: (Node | string)[]
+): HTMLElementTagNameMap[Tag] {
+  const element = document.createElement(tag);
+  const { class: classes, attrs = {}, on = {}, ...direct } = props;
+  if (classes) element.className = classes;
+  for (const [name, value] of Object.entries(attrs)) element.setAttribute(name, value);
+  for (const [name, listener] of Object.entries(on)) element.addEventListener(name, listener);
+  Object.assign(element, direct);
+  element.append(...children);
+  return element;
+}
+
+export function button(label: string, act: () => void, props: Props = {}): HTMLButtonElement {
+  return el("button", { type: "button", ...props, on: { click: act, ...props.on } }, label);
+}
+
+/** A choice from a list of values with their labels; `chosen` hears each new one. */
+export function select<Value extends string>(
+  label: string, values: readonly (readonly [Value, string])[], chosen: (value: Value) => void,
+): HTMLSelectElement {
+  const box = el("select", { attrs: { "aria-label": label } });
+  box.append(...values.map(([value, text]) => el("option", { value }, text)));
+  box.addEventListener("change", () => chosen(box.value as Value));
+  return box;
+}
+
+const SVG = "http://www.w3.org/2000/svg";
+
+export function svg<Tag extends keyof SVGElementTagNameMap>(
+  tag: Tag, attrs: Readonly<Record<string, string | number>> = {}, ...children: (Node | string)[]
+): SVGElementTagNameMap[Tag] {
+  const element = document.createElementNS(SVG, tag);
+  for (const [name, value] of Object.entries(attrs)) element.setAttribute(name, String(value));
+  element.append(...children);
+  return element;
+}
+
+/** Sets a text only where it differs, so that nothing is laid out or read aloud anew. */
+export function setText(node: Node, text: string): void {
+  if (node.textContent !== text) node.textContent = text;
+}
+
+/** Hands a text to the browser as a file to keep. */
+export function download(name: string, text: string): void {
+  const address = URL.createObjectURL(new Blob([text], { type: "text/csv" }));
+  el("a", { href: address, attrs: { download: name } }).click();
+  URL.revokeObjectURL(address);
+}

@@ -1,0 +1,47 @@
+// Light or dark, as the person or else the system wants it, and the colours for what draws itself.
+
+import { Signal } from "./signal";
+
+export const themeChanged = new Signal();
+const KEY = "greywhale-theme";
+const dark = matchMedia("(prefers-color-scheme: dark)");
+
+export function isDark(): boolean {
+  const chosen = localStorage.getItem(KEY);
+  return chosen ? chosen === "dark" : dark.matches;
+}
+
+function apply(): void {
+  document.documentElement.dataset["theme"] = isDark() ? "dark" : "light";
+  themeChanged.emit();
+}
+
+/** Takes the theme that was chosen before, and follows the system where none was. */
+export function startTheme(): void {
+  dark.addEventListener("change", apply);
+  apply();
+}
+
+export function switchTheme(): void {
+  localStorage.setItem(KEY, isDark() ? "light" : "dark");
+  apply();
+}
+
+export type Colours = {
+  readonly ink: string;
+  readonly quiet: string;
+  readonly line: string;
+  readonly surface: string;
+  readonly accent: string;
+  readonly joints: readonly string[];
+};
+
+/** The colours of page.css as they are now. */
+export function colours(): Colours {
+  const style = getComputedStyle(document.documentElement);
+  const of = (name: string): string => style.getPropertyValue(`--${name}`).trim();
+  return {
+    ink: of("ink"), quiet: of("quiet"), line: of("line"), surface: of("surface"), accent: of("accent"),
+    joints: [0, 1, 2, 3].map((joint) => of(`joint-${joint}`)),
+  };
+}

@@ -1,0 +1,269 @@
+// What all views share of one board: its samples, its words, its parameters, and the right to change them.
+
+import type { Board, DriverState, LinkState } from "./board";
+import { LinkClient } from "./link/client";
+import { LinkError } from "./link/declared";
+import { FrameDecoder } from "./link/frames";
+import {
+  ClearFaultRequest, EnableRequest, HelloReply, HelloRequest, ParamApplyRequest, ParamGetRequest, ParamSaveRequest,
+  ParamSetRequest, Sample, SCHEMA_HASH, State, StatusReply, StatusRequest, StopRequest, TABLE, TelemetryRequest,
+} from "./link/schema";
+import { upperFirst } from "./link/refusal";
+import { Signal } from "./parts/signal";
+import { Samples } from "./samples/samples";
+
+export const LEASE_MS = 300;
+const STATUS_EVERY_MS = 500;
+const AT_ONCE = 3; // requests on their way to a board, whose receiver is small and has other pages too
+const LONGEST_DELAY_TICKS = 5000; // of a sample behind the history's
+
+export type Notice = { readonly sentence: string; readonly kind: "error" | "info" };
+
+const TICK_AT = Sample.place("tick").at;
+
+function tickOf(payload: Uint8Array): number {
+  return new DataView(payload.buffer, payload.byteOffset).getUint32(TICK_AT, true);
+}
+
+export class Session {
+  readonly samples = new Samples();
+  readonly changed = new Signal(); // link, driver, hello, status
+  readonly parametersChanged = new Signal();
+  readonly noticed = new Signal();
+  link: LinkState = { open: false, port: "", sentence: "" };
+  driver: DriverState = { you: false, free: true, job: null };
+  hello: HelloReply | null = null;
+  status: StatusReply | null = null;
+  /** The running parameter set in raw values, null until it is read. */
+  parameters: readonly number[] | null = null;
+  notice: Notice | null = null;
+  /** Whether the samples from before are here; until then new ones wait. */
+  private waiting: Uint8Array[] | null = [];
+  private readonly client: LinkClient;
+  private asking = false;
+  private reading: Promise<readonly number[]> | null = null;
+  private startTold = false;
+
+  constructor(private readonly board: Board) {
+    this.client = new LinkClient((frame) => board.send(frame), {
+      sample: (payload) => this.sampled(payload),
+      hello: (reply) => this.restarted(reply),
+    });
+    board.listen({
+      bytes: (data) => this.client.receive(data),
+      link: (state) => this.linked(state),
+      driver: (state) => {
+        this.driver = state;
+        this.changed.emit();
+      },
+      refused: (seq, type, sentence) => {
+        this.client.refuse(seq, type, sentence);
+        if (!type) this.tell(sentence);
+      },
+    });
+    setInterval(() => void this.askStatus(), STATUS_EVERY_MS);
+  }
+
+  /** State by the newest sample, which is ahead of the last status. */
+  get state(): number {
+    const { samples } = this;
+    return samples.end ? samples.state[(samples.end - 1) % samples.capacity]! : (this.status?.state ?? State.is.boot);
+  }
+
+  get motorsOn(): boolean {
+    return this.link.open && (this.state === State.is.soft_start || this.state === State.is.following);
+  }
+
+  /** Frames that were damaged between the board and this page. */
+  get damaged(): number {
+    return this.client.bad;
+  }
+
+  tell(sentence: string, kind: Notice["kind"] = "error"): void {
+    this.notice = { sentence, kind };
+    this.noticed.emit();
+  }
+
+  /** Runs what a person asked for; an error becomes a notice. */
+  async attempt(act: () => Promise<void>): Promise<boolean> {
+    try {
+      await act();
+      return true;
+    } catch (error) {
+      this.tell(error instanceof Error ? error.message : String(error));
+      return false;
+    }
+  }
+
+  drive(): void {
+    this.board.drive();
+  }
+
+  /** Fails unless this page may change what the board does. */
+  private mustDrive(): void {
+    if (!this.driver.you) {
+      throw new LinkError(this.driver.free
+        ? "This page only watches; choose `Take control` first."
+        : "Another page drives this arm; let go there first.");
+    }
+  }
+
+  release(): void {
+    this.board.release();
+  }
+
+  async enable(): Promise<void> {
+    this.mustDrive();
+    await this.client.ask(EnableRequest, { lease_ms: LEASE_MS });
+    await this.askStatus();
+  }
+
+  async stop(): Promise<void> {
+    await this.client.ask(StopRequest, {});
+    await this.askStatus();
+  }
+
+  async clearFault(): Promise<void> {
+    await this.client.ask(ClearFaultRequest, {});
+    await this.askStatus();
+  }
+
+  // --- parameters -----------------------------------------------------------------------------------------------------
+
+  /** The running set: as it is known, else read from the board. */
+  async readParameters(): Promise<readonly number[]> {
+    if (this.parameters) return this.parameters;
+    this.reading ??= this.fetchParameters().finally(() => { this.reading = null; });
+    return this.reading;
+  }
+
+  private async fetchParameters(): Promise<readonly number[]> {
+    const raw = new Array<number>(TABLE.parameters.length);
+    const left = TABLE.parameters.map(({ index }) => index);
+    const read = async (): Promise<void> => {
+      for (let index = left.shift(); index !== undefined; index = left.shift()) {
+        raw[index] = (await this.client.ask(ParamGetRequest, { index })).value;
+      }
+    };
+    await Promise.all(Array.from({ length: AT_ONCE }, read));
+    this.parameters = raw;
+    this.parametersChanged.emit();
+    return raw;
+  }
+
+  /** Makes a whole set the running one; nothing is stored. The motors must be off. */
+  async apply(raw: readonly number[]): Promise<void> {
+    const before = await this.readParameters();
+    const changed = TABLE.parameters.filter(({ index }) => raw[index] !== before[index]);
+    try {
+      await this.stageAndApply(changed.map(({ index }) => index), raw);
+    } catch {
+      // Another host may have left values in the staged set: all of them, then.
+      await this.stageAndApply(TABLE.parameters.map(({ index }) => index), raw);
+    }
+    this.parameters = [...raw];
+    this.parametersChanged.emit();
+  }
+
+  private async stageAndApply(indices: readonly number[], raw: readonly number[]): Promise<void> {
+    for (const index of indices) await this.client.ask(ParamSetRequest, { index, value: raw[index]! });
+    await this.client.ask(ParamApplyRequest, { crc: TABLE.crc(raw) });
+  }
+
+  /** Writes the running set to the board's EEPROM; returns when it is written. */
+  async store(): Promise<void> {
+    await this.client.ask(ParamSaveRequest, {});
+    await this.askStatus();
+  }
+
+  // --- what comes -------------------------------------------------------------------------------------------------------
+
+  private sampled(payload: Uint8Array): void {
+    const { lastTick } = this.samples;
+    if (this.waiting) {
+      this.waiting.push(payload.slice());
+    } else if (lastTick >= 0 && tickOf(payload) > lastTick + 1) {
+      this.waiting = [payload.slice()]; // a slow page has lost pictures; who keeps the samples has them still
+      void this.attempt(() => this.fetchHistory(lastTick + 1));
+    } else if (tickOf(payload) > lastTick || this.isNewStart(tickOf(payload))) {
+      this.samples.add(payload);
+    }
+  }
+
+  /** Whether an earlier tick is that of a board which has started anew, and not one that the history had as well. */
+  private isNewStart(tick: number): boolean {
+    if (!this.startTold && tick > this.samples.lastTick - LONGEST_DELAY_TICKS) return false;
+    this.startTold = false;
+    return true;
+  }
+
+  private restarted(reply: HelloReply): void {
+    this.hello = reply;
+    this.startTold = true;
+    this.parameters = null;
+    void this.greet();
+  }
+
+  private linked(state: LinkState): void {
+    const opened = state.open && !this.link.open;
+    this.link = state;
+    if (!state.open) {
+      this.client.abandon(state.sentence || "The board went away.");
+      this.status = null;
+      this.parameters = null;
+    }
+    if (state.sentence && this.hello) this.tell(state.sentence, state.open ? "info" : "error");
+    this.changed.emit();
+    if (opened) void this.greet();
+  }
+
+  private async greet(): Promise<void> {
+    await this.attempt(async () => {
+      this.hello = await this.client.ask(HelloRequest, {});
+      if (this.hello.schema_hash !== SCHEMA_HASH) {
+        throw new LinkError("The board's firmware is another version than this page; flash it with `greywhale flash`.");
+      }
+      await this.askStatus();
+      this.startTold = this.status !== null && this.status.tick < this.samples.lastTick;
+      await this.client.ask(TelemetryRequest, { every: 1 });
+      if (this.waiting && !this.samples.end) await this.fetchHistory(null);
+      await this.readParameters();
+    });
+    this.changed.emit();
+  }
+
+  private async fetchHistory(from: number | null): Promise<void> {
+    try {
+      const frames = await this.board.history(from);
+      new FrameDecoder().feed(frames, ({ type, payload }) => {
+        if (type === Sample.type && payload.length === Sample.size) this.samples.add(payload);
+      });
+      if (from === null) this.samples.lost = 0;
+    } finally {
+      this.takeWaiting();
+    }
+  }
+
+  private takeWaiting(): void {
+    const waiting = this.waiting ?? [];
+    this.waiting = null;
+    for (const payload of waiting) {
+      const tick = tickOf(payload);
+      if (tick > this.samples.lastTick || this.isNewStart(tick)) this.samples.add(payload);
+    }
+  }
+
+  private async askStatus(): Promise<void> {
+    if (!this.link.open || this.asking) return;
+    this.asking = true;
+    try {
+      this.status = await this.client.ask(StatusRequest, {});
+    } catch (error) {
+      this.status = null;
+      if (this.link.open && error instanceof LinkError) this.tell(upperFirst(error.message));
+    } finally {
+      this.asking = false;
+    }
+    this.changed.emit();
+  }
+}

@@ -1,0 +1,134 @@
+// The frame around all views: state, enable and stop always in sight, the views by tabs, notices, the space bar.
+
+import { Fault, State } from "./link/schema";
+import { button, el, setText } from "./parts/dom";
+import { isDark, switchTheme, themeChanged } from "./parts/theme";
+import type { View } from "./parts/view";
+import type { Session } from "./session";
+
+const WRITING = new Set(["text", "number", "search", ""]);
+
+export class Shell {
+  private readonly stop = button("Stop", () => this.stopNow(), {
+    class: "stop", title: "Motors off (space bar)", attrs: { "aria-keyshortcuts": "Space" },
+  });
+  private readonly enable = button("Enable", () => void this.session.attempt(() => this.session.enable()), {
+    class: "enable", title: "Starts the motors through the soft start",
+  });
+  private readonly control = button("", () => this.takeOrLetGo(), { class: "control" });
+  private readonly state = el("span", { class: "pill", attrs: { role: "status" } });
+  private readonly place = el("span", { class: "place" });
+  private readonly notice = el("div", { class: "notice", hidden: true, attrs: { role: "alert" } });
+  private readonly noticeText = el("p");
+  private readonly empty = el("section", { class: "empty" });
+  private readonly emptyText = el("p");
+  private readonly main = el("main", { attrs: { id: "view", tabindex: "-1" } });
+  private readonly tabs: HTMLButtonElement[];
+  private front: View;
+  private asked = false;
+
+  constructor(private readonly session: Session, private readonly views: readonly View[]) {
+    this.front = views[0]!;
+    this.tabs = views.map((view) => button(view.name, () => this.show(view), { attrs: { "aria-controls": "view" } }));
+    this.notice.append(this.noticeText, button("×", () => { this.notice.hidden = true; }, {
+      attrs: { "aria-label": "Close this notice" },
+    }));
+    this.empty.append(el("h2", {}, "No board"), this.emptyText,
+      el("p", {}, "Plug the board in by USB: this page takes it by itself. Without a board, start ",
+        el("code", {}, "greywhale dashboard --sim"), ": it brings a simulated arm with the real firmware."));
+    const theme = button("", switchTheme, { class: "theme" });
+    const nameTheme = (): void => setText(theme, isDark() ? "Light" : "Dark");
+    themeChanged.on(nameTheme);
+    nameTheme();
+    document.body.append(
+      el("header", {},
+        el("div", { class: "brand" }, el("h1", {}, "greywhale"), this.place),
+        this.state,
+        el("div", { class: "motors" }, this.control, this.enable, this.stop, theme)),
+      el("nav", { attrs: { "aria-label": "Views" } }, ...this.tabs),
+      this.notice, this.empty, this.main);
+    session.changed.on(() => this.refresh());
+    session.noticed.on(() => this.showNotice());
+    addEventListener("keydown", (event) => this.pressed(event), { capture: true });
+    this.show(this.front);
+    this.refresh();
+    const draw = (): void => {
+      this.picture();
+      requestAnimationFrame(draw);
+    };
+    requestAnimationFrame(draw);
+  }
+
+  private show(view: View): void {
+    this.front.leave?.();
+    this.front = view;
+    this.views.forEach(({ name }, place) => {
+      if (name === view.name) this.tabs[place]!.setAttribute("aria-current", "page");
+      else this.tabs[place]!.removeAttribute("aria-current");
+    });
+    this.main.replaceChildren(view.element);
+    this.main.setAttribute("aria-label", view.name);
+    view.enter?.();
+  }
+
+  private picture(): void {
+    this.showState();
+    if (!this.empty.hidden && this.session.samples.end) this.refresh();
+    this.front.frame?.();
+  }
+
+  private showState(): void {
+    const { session } = this;
+    const state = session.link.open ? State.of(session.state).name : "no board";
+    setText(this.state, state.replace("_", " "));
+    this.state.dataset["state"] = state;
+    const faulty = session.status !== null && session.status.fault !== Fault.is.none;
+    document.body.dataset["motors"] = session.motorsOn ? "on" : "off";
+    this.enable.disabled = !session.link.open || session.motorsOn || faulty || !session.driver.you;
+  }
+
+  private refresh(): void {
+    const { link, driver, samples, hello } = this.session;
+    setText(this.place, link.open ? link.port : "");
+    this.empty.hidden = link.open || samples.end > 0;
+    setText(this.emptyText, link.sentence || "Looking for a board.");
+    setText(this.control, driver.you ? "Let go" : "Take control");
+    this.control.title = driver.you ? "Let another page drive; the motors go off" : "Drive the arm from this page";
+    this.control.disabled = !driver.you && !driver.free;
+    if (hello && !this.asked) {
+      this.asked = true; // the first page drives; later it is a person's wish
+      if (driver.free) this.session.drive();
+    }
+  }
+
+  private takeOrLetGo(): void {
+    if (this.session.driver.you) this.session.release();
+    else this.session.drive();
+  }
+
+  private stopNow(): void {
+    void this.session.attempt(() => this.session.stop());
+  }
+
+  private showNotice(): void {
+    const { notice } = this.session;
+    if (!notice) return;
+    this.notice.hidden = false;
+    this.notice.dataset["kind"] = notice.kind;
+    setText(this.noticeText, notice.sentence);
+  }
+
+  /** While motors run, the space bar stops them wherever the focus is, but in a field where a person writes. */
+  private pressed(event: KeyboardEvent): void {
+    const { target } = event;
+    const writing = target instanceof HTMLInputElement && WRITING.has(target.type);
+    if (event.key === " " && !writing && (this.session.motorsOn || target === document.body)) {
+      event.preventDefault();
+      if (!event.repeat) this.stopNow();
+      return;
+    }
+    const choosing = writing || target instanceof HTMLSelectElement || target instanceof HTMLInputElement;
+    if (event.ctrlKey || event.altKey || event.metaKey || choosing) return;
+    if (this.front.key?.(event)) event.preventDefault();
+  }
+}

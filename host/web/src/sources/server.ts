@@ -1,0 +1,91 @@
+// A board behind the dashboard's server: a WebSocket that carries the link's frames unchanged, and words beside them.
+
+import type { Board, BoardListener } from "../board";
+
+const HERE_EVERY_MS = 100; // the server's patience is 280 ms
+const AGAIN_MS = 500; // until a server that went is tried again
+
+type Told =
+  | { kind: "link"; open: boolean; port: string; sentence: string }
+  | { kind: "driver"; you: boolean; free: boolean; job?: string | null; verb?: string | null }
+  | { kind: "refused"; sentence: string; seq?: number; type?: number }
+  | { kind: "page"; id: string };
+
+export class ServerBoard implements Board {
+  /** The server's name for this page, which the requests that start jobs carry. */
+  page = "";
+  private socket: WebSocket | null = null;
+  private listener: BoardListener | null = null;
+  private driving = false;
+
+  constructor(private readonly token: string) {
+    setInterval(() => {
+      if (this.driving && document.visibilityState === "visible") this.say("here");
+    }, HERE_EVERY_MS);
+  }
+
+  listen(listener: BoardListener): void {
+    this.listener = listener;
+    this.open();
+  }
+
+  private open(): void {
+    const address = `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/board`;
+    const socket = new WebSocket(address, ["greywhale", `token.${this.token}`]);
+    socket.binaryType = "arraybuffer";
+    socket.addEventListener("message", ({ data }: MessageEvent<ArrayBuffer | string>) => {
+      if (typeof data === "string") this.told(JSON.parse(data) as Told);
+      else this.listener?.bytes(new Uint8Array(data));
+    });
+    socket.addEventListener("close", () => {
+      this.socket = null;
+      this.driving = false;
+      this.listener?.driver({ you: false, free: false, job: null });
+      this.listener?.link({
+        open: false, port: "", sentence: "The dashboard's server does not answer; start `greywhale dashboard` again.",
+      });
+      setTimeout(() => this.open(), AGAIN_MS);
+    });
+    this.socket = socket;
+  }
+
+  private told(message: Told): void {
+    switch (message.kind) {
+      case "page":
+        this.page = message.id;
+        break;
+      case "link":
+        this.listener?.link({ open: message.open, port: message.port, sentence: message.sentence });
+        break;
+      case "driver":
+        this.driving = message.you;
+        this.listener?.driver({ you: message.you, free: message.free, job: message.job ?? message.verb ?? null });
+        break;
+      case "refused":
+        this.listener?.refused(message.seq ?? 0, message.type ?? 0, message.sentence);
+        break;
+    }
+  }
+
+  send(frame: Uint8Array): void {
+    if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(frame as Uint8Array<ArrayBuffer>);
+  }
+
+  drive(): void {
+    this.say("drive");
+  }
+
+  release(): void {
+    this.say("release");
+  }
+
+  private say(kind: string): void {
+    if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify({ kind }));
+  }
+
+  async history(from: number | null): Promise<Uint8Array> {
+    const answer = await fetch(from === null ? "/history" : `/history?from=${from}`, { headers: { "X-Greywhale-Token": this.token } });
+    if (!answer.ok) throw new Error(`The server keeps no history (${answer.status}); reload the page.`);
+    return new Uint8Array(await answer.arrayBuffer());
+  }
+}

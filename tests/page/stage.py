@@ -1,0 +1,212 @@
+"""The page on a stage: the real server around a bench in lock step, and a browser in which time cannot run away.
+
+The board lives a moment from each sign of life of the page that drives, and then waits for the next one. So a slow
+browser holds the board up, and never loses its lease; whoever wants a page to fall silent lets the board live on.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from playwright.sync_api import Browser, BrowserContext, Page, Request, expect, sync_playwright
+
+from greywhale.base.errors import UserError
+from greywhale.board.device import Device
+from greywhale.dashboard import server
+from greywhale.dashboard.bench import BenchControls
+from greywhale.dashboard.folder import Folder
+from greywhale.dashboard.history import History
+from greywhale.dashboard.house import House
+from greywhale.dashboard.keeper import turn
+from greywhale.dashboard.relay import Client, Relay
+from greywhale.protocol.frames import FrameDecoder
+from greywhale.protocol.schema import PARAMETERS, ParamGetReply, ParamGetRequest, Sample, StopRequest
+from greywhale_sim.lockstep import LockStepBench
+from greywhale_sim.words import lock_step
+from tests.dashboard.browser import BoardSocket
+from tests.dashboard.browser import Page as Watcher
+from tests.dashboard.shared import jobs_of
+
+CHROMIUM = "/usr/bin/chromium"
+FLAGS = [
+    *("--no-sandbox", "--disable-background-timer-throttling", "--disable-gpu-compositing"),
+    *("--disable-accelerated-2d-canvas", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"),
+]
+TOKEN = "a-token-of-a-test"
+PATIENCE_MS = 10_000  # a page that shows nothing for so long has hung
+MOMENT_S = 0.1  # the board lives so long after a sign of life
+
+
+class Stage:
+    """A context: server and board. `page_address` is what a person would open."""
+
+    def __init__(self, folder: Path) -> None:
+        self.plugged = threading.Event()  # the board comes with it
+        self.plugged.set()
+        self.relay = _PacedRelay(self)
+        own = Folder(folder)
+        self.jobs = jobs_of(self.relay, own)
+        self.house = House(self.relay, own, "default", self.jobs, BenchControls(_Bench(self), own))
+        self._listener = server.listen()
+        self.port: int = self._listener.getsockname()[1]
+        self.page_address = f"http://127.0.0.1:{self.port}/#token={TOKEN}"
+        self._server = server.make_server(server.application(self.house, server.require_page(), TOKEN, self.port))
+        self._ready = threading.Condition()
+        self.still = False  # only a stop lets the board live
+        self._until_s = 0.0
+        self._now_s = 0.0
+        self._ending = False
+        self._commands: list[tuple[str, Future[dict[str, Any]]]] = []
+
+    def stand_still(self) -> int:
+        """Let time stand still until a stop comes; the tick at which it stands."""
+        self.still = True
+        self.wait_for(lambda: self._now_s >= self._until_s)
+        return self.samples()[-1].tick
+
+    def let_live(self, seconds: float) -> None:
+        """Let the board live on from now, whoever is there."""
+        with self._ready:
+            self._until_s = max(self._until_s, self._now_s + seconds)
+            self._ready.notify_all()
+
+    def wait_for(self, condition: Callable[[], bool]) -> None:
+        """Wait for what the board does in the time that it has."""
+        with self._ready:
+            assert self._ready.wait_for(condition, PATIENCE_MS / 1000)
+
+    def command(self, text: str) -> dict[str, Any]:
+        """The answer of the bench to a command, such as `pot follower 1 open`."""
+        asked: Future[dict[str, Any]] = Future()
+        with self._ready:
+            self._commands.append((text, asked))
+            self._ready.notify_all()
+        return asked.result()
+
+    def parameters(self) -> tuple[int, ...]:
+        """The raw values of the set that the board runs, asked by another client of the server."""
+        with Watcher(self.port, TOKEN).open("/board") as socket:
+            board = BoardSocket(socket)
+            return tuple(
+                ParamGetReply.unpack(board.frame(ParamGetReply.TYPE, board.ask(ParamGetRequest(index))).payload).value
+                for index in range(len(PARAMETERS))
+            )
+
+    def samples(self) -> list[Sample]:
+        """All that the board has sent."""
+        return [Sample.unpack(frame.payload) for frame in FrameDecoder().feed(self.relay.history.since(None))]
+
+    def _live(self, bench: LockStepBench) -> None:
+        self.plugged.wait()
+        with Device(bench.port, restart=False) as device:
+            line, session = device.lend()
+            self.relay.open(line, bench.port, session.refuse_motion)
+            start_s = line.clock()
+            while True:
+                with self._ready:
+                    self._now_s = line.clock() - start_s
+                    self._ready.notify_all()
+                    self._ready.wait_for(lambda: self._ending or self._commands or self._now_s < self._until_s)
+                    if self._ending:
+                        break
+                    commands, self._commands = self._commands, []
+                for text, asked in commands:
+                    try:
+                        asked.set_result(bench.command(text))
+                    except UserError as error:
+                        asked.set_exception(error)
+                turn(self.relay, line, session)
+            self.relay.close(bench.port, "")
+
+    @contextlib.contextmanager
+    def open(self) -> Iterator[LockStepBench]:
+        with lock_step() as bench:
+            threads = [
+                threading.Thread(target=self._live, args=(bench,)),
+                threading.Thread(target=self._server.run, args=([self._listener],)),
+            ]
+            for thread in threads:
+                thread.start()
+            try:
+                yield bench
+            finally:
+                self.plugged.set()
+                self.jobs.close()
+                with self._ready:
+                    self._ending = True
+                    self._ready.notify_all()
+                self._server.should_exit = True
+                for thread in threads:
+                    thread.join()
+
+
+@dataclass
+class _Bench:
+    """The bench as the server has it: commands go to the thread in which the board lives."""
+
+    stage: Stage
+    port = "in lock step"
+
+    def command(self, text: str) -> dict[str, Any]:
+        return self.stage.command(text)
+
+
+class _PacedRelay(Relay):
+    def __init__(self, stage: Stage) -> None:
+        super().__init__(History())
+        self._stage = stage
+
+    def seen(self, client: Client) -> None:
+        super().seen(client)
+        if not self._stage.still and (client.verb or self._driver in (client, None)):
+            self._stage.let_live(MOMENT_S)
+
+    def receive(self, client: Client, data: bytes) -> None:
+        super().receive(client, data)
+        if any(frame.type == StopRequest.TYPE for frame in FrameDecoder().feed(data)):
+            self._stage.let_live(1.0)
+
+
+@dataclass
+class Visit:
+    """A page in a browser, and what it did that no page may do."""
+
+    page: Page
+    strange: list[str] = field(default_factory=list)
+
+
+@contextlib.contextmanager
+def browser() -> Iterator[Browser]:
+    with sync_playwright() as playwright:
+        expect.set_options(timeout=PATIENCE_MS)
+        running = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        yield running
+        running.close()
+
+
+@contextlib.contextmanager
+def visit(context: BrowserContext, stage: Stage) -> Iterator[Visit]:
+    """Open the page; afterwards, every request that left the server, every error and every broken policy is told."""
+    page = context.new_page()
+    page.set_default_timeout(PATIENCE_MS)
+    told = Visit(page)
+    here = (f"http://127.0.0.1:{stage.port}/", f"ws://127.0.0.1:{stage.port}/", "data:", "blob:")
+
+    def judge(request: Request) -> None:
+        if not request.url.startswith(here):
+            told.strange.append(f"asked for {request.url}")
+
+    page.on("request", judge)
+    page.on("websocket", lambda socket: None if socket.url.startswith(here) else told.strange.append(socket.url))
+    page.on("pageerror", lambda error: told.strange.append(str(error)))
+    page.on("console", lambda said: told.strange.append(said.text) if said.type == "error" else None)
+    page.goto(stage.page_address)
+    yield told
+    page.close()
+    assert told.strange == []

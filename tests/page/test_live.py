@@ -1,0 +1,136 @@
+"""The live view and the frame around it: every sample, stop in each way, nothing left to chance or to strangers."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+from greywhale.files.log import read_log
+from greywhale.files.log.check import Check
+from greywhale.protocol.schema import Sample, State
+from tests.page import stage as stages
+from tests.page.stage import Stage
+from tools import ROOT
+
+pytestmark = pytest.mark.slow
+
+LEAST_LOG = 1500  # samples
+OFF_TICKS = 300
+SERIOUS = ("serious", "critical")
+
+
+def start(page: Page) -> None:
+    page.get_by_role("button", name="Enable").click()
+    expect(page.locator(".pill")).to_have_text("following")
+
+
+def test_the_page_shows_and_saves_the_boards_samples_as_they_are(page: Page, stage: Stage, tmp_path: Path) -> None:
+    start(page)
+    stage.wait_for(lambda: len(stage.samples()) > LEAST_LOG)
+    page.get_by_role("button", name="Pause").click()
+    with page.expect_download() as saved:
+        page.get_by_role("button", name="Save view").click()
+    saved.value.save_as(tmp_path / "view.csv")
+    log = read_log(tmp_path / "view.csv")
+    assert log.condition.check is Check.WHOLE
+    sent = {sample.tick: sample for sample in stage.samples()}
+    ticks = np.round(log.time * 1000).astype(int)
+    assert len(ticks) > LEAST_LOG
+    assert set(np.diff(ticks)) == {1}
+    for name, column in (("leader", log.leader), ("follower", log.follower), ("voltage", log.voltage)):
+        counts = np.round(column / Sample.LSB[name]).astype(int)
+        assert counts.tolist() == [list(getattr(sent[tick], name)) for tick in ticks], name
+    assert log.origin.table is not None  # so the whole parameter set stands in the header
+
+
+def test_what_stands_under_the_cursor_is_that_sample(page: Page, stage: Stage) -> None:
+    start(page)
+    page.get_by_label("Span shown").select_option("1")
+    page.get_by_role("button", name="Pause").click()
+    page.get_by_role("button", name="Zoom in").click()
+    expect(page.get_by_text("every sample")).to_be_visible()
+    plot = page.locator(".u-over").first.bounding_box()
+    assert plot is not None
+    page.mouse.move(plot["x"] + 0.6 * plot["width"], plot["y"] + 20)
+    expect(page.locator(".values thead th").first).to_contain_text("at ")
+    tick = int(page.locator(".live").get_attribute("data-tick") or "")
+    shown = [row.split() for row in page.locator(".values tbody tr").all_inner_texts()]
+    sample = {sample.tick: sample for sample in stage.samples()}[tick]
+    for joint in range(4):
+        leader, follower = (values[joint] * Sample.LSB["leader"] for values in (sample.leader, sample.follower))
+        volts = sample.voltage[joint] * Sample.LSB["voltage"]
+        wanted = [f"{leader:.4f}", f"{follower:.4f}", f"{leader - follower:.4f}", f"{volts:.3f}"]
+        assert [float(cell) for cell in shown[joint][-4:]] == [float(cell) for cell in wanted]
+
+
+@pytest.mark.parametrize("way", ["button", "space", "gone"])
+def test_the_motors_go_off(page: Page, stage: Stage, way: str) -> None:
+    """By the button, by the space bar wherever the focus is, and when the page is gone."""
+    start(page)
+    page.locator("select").first.focus()
+    pressed = stage.stand_still()
+    match way:
+        case "button":
+            page.get_by_role("button", name="Stop").click()
+        case "space":
+            page.keyboard.press("Space")
+        case _:
+            page.close()
+            stage.let_live(0.5)
+    stage.wait_for(lambda: stage.samples()[-1].state is State.DISABLED)
+    running = [sample.tick for sample in stage.samples() if sample.state is State.FOLLOWING]
+    assert running[-1] - pressed <= OFF_TICKS
+
+
+def test_a_second_page_watches_and_a_reload_loses_nothing(browser: Browser, page: Page, stage: Stage) -> None:
+    start(page)
+    context = browser.new_context()
+    with stages.visit(context, stage) as second:
+        expect(second.page.locator(".pill")).to_have_text("following")
+        expect(second.page.get_by_role("button", name="Enable")).to_be_disabled()
+        expect(second.page.get_by_role("button", name="Take control")).to_be_disabled()
+        page.get_by_role("button", name="Let go").click()
+        expect(second.page.locator(".pill")).to_have_text("disabled")
+        second.page.get_by_role("button", name="Take control").click()
+        expect(second.page.get_by_role("button", name="Enable")).to_be_enabled()
+        assert "token" not in second.page.url
+        second.page.reload()
+        expect(second.page.locator("dt:text-is('samples lost') + dd")).to_have_text("0")
+        second.page.get_by_label("Span shown").select_option("600")
+        first = stage.samples()[0].tick
+        expect(second.page.locator(".values thead th").first).to_have_text("now")
+        shown = int(second.page.locator(".live").get_attribute("data-first") or "-1")
+        assert shown == first
+    context.close()
+
+
+def test_a_fault_is_told_with_its_remedy_until_it_is_cleared(page: Page, stage: Stage) -> None:
+    start(page)
+    stage.command("pot follower 1 open")
+    fault = page.get_by_role("alert").filter(has_text="follower potentiometer 1")
+    expect(fault).to_contain_text("wiper")
+    stage.command("pot follower 1 connected")
+    stage.let_live(1.0)
+    fault.get_by_role("button", name="Clear fault").click()
+    expect(page.locator(".pill")).to_have_text("disabled")
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_nothing_bars_a_person(page: Page, theme: Literal["light", "dark"]) -> None:
+    """axe finds nothing serious in any view; wide and narrow, nothing lies beyond the screen."""
+    page.emulate_media(color_scheme=theme, reduced_motion="reduce")
+    page.evaluate((ROOT / "host/web/node_modules/axe-core/axe.min.js").read_text("utf-8"))
+    for tab in page.locator("nav button").all():
+        tab.click()
+        for width in (1280, 390):
+            page.set_viewport_size({"width": width, "height": 800})
+            found = page.evaluate("axe.run().then(({violations}) => violations)")
+            serious = [
+                (one["id"], [node["target"] for node in one["nodes"]]) for one in found if one["impact"] in SERIOUS
+            ]
+            assert serious == [], f"{tab.inner_text()} at {width} px"
+            assert page.evaluate("document.documentElement.scrollWidth") <= width, tab.inner_text()
