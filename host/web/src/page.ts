@@ -1,11 +1,13 @@
 // The page's entry: takes the token out of the address, opens the board, and shows the views.
 
 import "./page.css";
+import { ControllerView } from "./controller/view";
 import { LiveView } from "./live/view";
 import { startTheme } from "./parts/theme";
 import { Session } from "./session";
 import { Shell } from "./shell";
 import { ServerBoard } from "./sources/server";
+import { ServerHost } from "./sources/server_host";
 
 const KEY = "greywhale-token";
 
@@ -20,6 +22,8 @@ function takeToken(): string {
 }
 
 startTheme();
-const board = new ServerBoard(takeToken());
+const token = takeToken();
+const board = new ServerBoard(token);
+const host = new ServerHost(token, () => board.page);
 const session = new Session(board);
-new Shell(session, [new LiveView(session)]);
+new Shell(session, [new LiveView(session), new ControllerView(session, host)]);

@@ -84,6 +84,12 @@ export class Session {
     this.noticed.emit();
   }
 
+  /** Takes a notice back that holds no more. */
+  private withdraw(): void {
+    this.notice = null;
+    this.noticed.emit();
+  }
+
   /** Runs what a person asked for; an error becomes a notice. */
   async attempt(act: () => Promise<void>): Promise<boolean> {
     try {
@@ -212,6 +218,7 @@ export class Session {
       this.status = null;
       this.parameters = null;
     }
+    if (opened) this.withdraw();
     if (state.sentence && this.hello) this.tell(state.sentence, state.open ? "info" : "error");
     this.changed.emit();
     if (opened) void this.greet();

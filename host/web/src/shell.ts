@@ -112,8 +112,8 @@ export class Shell {
 
   private showNotice(): void {
     const { notice } = this.session;
+    this.notice.hidden = notice === null;
     if (!notice) return;
-    this.notice.hidden = false;
     this.notice.dataset["kind"] = notice.kind;
     setText(this.noticeText, notice.sentence);
   }

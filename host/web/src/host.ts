@@ -1,0 +1,38 @@
+// What views know of a host beside the board: files, predictions, verbs, a bench. Without one they hide what needs it.
+
+export type NamedFile = { readonly name: string; readonly kind: string };
+
+export type HostState = {
+  readonly greywhale: string;
+  readonly arm: string;
+  readonly folder: string;
+  readonly sim: boolean;
+  readonly files: readonly NamedFile[];
+  readonly controllers: readonly string[];
+};
+
+/** A motion and how a model follows it: rows of four joints, rad and V. */
+export type Predicted = {
+  readonly time_s: readonly number[];
+  readonly leader: readonly (readonly number[])[];
+  readonly follower: readonly (readonly number[])[];
+  readonly voltage: readonly (readonly number[])[];
+  readonly mse: readonly number[];
+};
+
+export type Prediction = { readonly step: Predicted; readonly reach: Predicted };
+
+export type ArmDescription = {
+  readonly name: string;
+  readonly urdf: string;
+  readonly joints: readonly { readonly id: string; readonly min: number; readonly max: number; readonly fixed: boolean }[];
+};
+
+export interface Host {
+  state(): Promise<HostState>;
+  /** Raw values by parameter name of a built-in controller or a file. */
+  controller(file: string): Promise<Readonly<Record<string, number>>>;
+  /** What the model does with a whole parameter set in raw values. */
+  predict(raw: readonly number[], board: number): Promise<Prediction>;
+  arm(): Promise<ArmDescription>;
+}

@@ -1,0 +1,44 @@
+// The host behind the dashboard's server, over HTTP: every request carries the token, every error is a sentence.
+
+import type { ArmDescription, Host, HostState, Prediction } from "../host";
+
+export class ServerHost implements Host {
+  constructor(private readonly token: string, protected readonly page: () => string) {}
+
+  state(): Promise<HostState> {
+    return this.ask("GET", "/state");
+  }
+
+  async controller(file: string): Promise<Readonly<Record<string, number>>> {
+    const answer = await this.ask<{ raw: Record<string, number> }>("GET", `/controller?file=${encodeURIComponent(file)}`);
+    return answer.raw;
+  }
+
+  predict(raw: readonly number[], board: number): Promise<Prediction> {
+    return this.ask("POST", "/predict", { raw, board });
+  }
+
+  arm(): Promise<ArmDescription> {
+    return this.ask("GET", "/arm");
+  }
+
+  protected async ask<Answer>(method: "GET" | "POST" | "DELETE", path: string, body?: object): Promise<Answer> {
+    const answer = await fetch(path, {
+      method,
+      headers: { "X-Greywhale-Token": this.token, "X-Greywhale-Page": this.page(), "Content-Type": "application/json" },
+      ...(body ? { body: JSON.stringify(body) } : {}),
+    });
+    const told = await answer.text();
+    if (answer.ok) return JSON.parse(told) as Answer;
+    throw new Error(sentenceIn(told) ?? `The server answers ${answer.status} to ${path}; reload the page.`);
+  }
+}
+
+function sentenceIn(told: string): string | null {
+  try {
+    const { error } = JSON.parse(told) as { error?: string };
+    return error ?? null;
+  } catch {
+    return told.length < 300 && told ? told : null;
+  }
+}

@@ -1,0 +1,85 @@
+"""The controller view: a set dragged in the browser runs on the board as the page says, and comes back as it was."""
+
+from __future__ import annotations
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from greywhale.protocol.schema import DEFAULTS, PARAMETER_BY_NAME
+from tests.page.stage import Stage
+
+pytestmark = pytest.mark.slow
+
+PE_B, KP = PARAMETER_BY_NAME["joint1.pe_b"], PARAMETER_BY_NAME["joint1.kp"]
+
+
+def drag(page: Page, corner: str, by_share: float) -> None:
+    """Drag a corner by a share of the picture's width."""
+    page.get_by_role("slider", name=corner, exact=True).wait_for()
+    knob = page.get_by_role("slider", name=corner, exact=True).bounding_box()
+    picture = page.locator("svg.sets").first.bounding_box()
+    assert knob is not None
+    assert picture is not None
+    x, y = knob["x"] + knob["width"] / 2, knob["y"] + knob["height"] / 2
+    page.mouse.move(x, y)
+    page.mouse.down()
+    for step in (0.3, 0.7, 1.0):
+        page.mouse.move(x + step * by_share * picture["width"], y)
+    page.mouse.up()
+
+
+def value_of(page: Page, corner: str) -> float:
+    return float(page.get_by_role("slider", name=corner, exact=True).get_attribute("aria-valuenow") or "nan")
+
+
+def test_a_dragged_set_runs_on_the_board(page: Page, stage: Stage) -> None:
+    page.get_by_role("button", name="Controller").click()
+    page.get_by_role("button", name="Joint 1").click()
+    predicted = page.locator(".predict[data-rms]")
+    before = predicted.get_attribute("data-rms")
+    drag(page, "Pe_b", 0.1)
+    assert value_of(page, "Pe_b") == pytest.approx(0.5, abs=0.03)
+    expect(page.locator(f".predict:not([data-rms='{before}'])")).to_be_visible()  # the model's answer to the new set
+    page.get_by_label("Kp 1/rad").fill("0.75")
+    page.get_by_label("Kp 1/rad").press("Enter")
+    expect(page.locator(".differences").first).to_contain_text("joint1.kp")
+    page.get_by_role("button", name="Apply").click()
+    expect(page.get_by_text("The board runs these controllers.")).to_be_visible()
+    board = stage.parameters()
+    assert PE_B.to_physical(board[PE_B.index]) == pytest.approx(value_of(page, "Pe_b"), abs=PE_B.lsb)
+    assert KP.to_physical(board[KP.index]) == 0.75
+    others = {index for index, raw in enumerate(board) if raw != DEFAULTS[index]}
+    assert others == {PE_B.index, KP.index}
+    page.get_by_role("button", name="Store").click()
+    page.get_by_role("button", name="Live").click()
+    expect(page.locator(".facts")).to_contain_text("written and read back")
+
+
+def test_corners_keep_to_what_the_board_takes_and_steps_can_be_undone(page: Page, stage: Stage) -> None:
+    page.get_by_role("button", name="Controller").click()
+    drag(page, "Pe_b", -0.9)
+    assert value_of(page, "Pe_b") == pytest.approx(0.01, abs=1e-4)
+    page.get_by_role("slider", name="Pe_b", exact=True).press("ArrowRight")
+    assert value_of(page, "Pe_b") == pytest.approx(0.02, abs=1e-4)
+    for wanted in (0.01, 0.3):
+        page.get_by_role("button", name="Undo").click()
+        assert value_of(page, "Pe_b") == pytest.approx(wanted, abs=1e-4)
+    expect(page.get_by_role("button", name="Apply")).to_be_disabled()
+    page.get_by_label("Kp 1/rad").fill("65")
+    page.get_by_label("Kp 1/rad").press("Enter")
+    expect(page.get_by_role("alert")).to_contain_text("joint0.kp is 65; choose a value from 0 to 64.")
+
+
+def test_two_controllers_are_compared_on_the_running_arm_by_one_key(page: Page, stage: Stage) -> None:
+    page.get_by_role("button", name="Enable").click()
+    expect(page.locator(".pill")).to_have_text("following")
+    page.get_by_role("button", name="Controller").click()
+    drag(page, "Ze_c", 0.1)
+    page.get_by_role("button", name="Apply").click()
+    expect(page.get_by_role("button", name="A / B")).to_be_enabled()
+    expect(page.locator(".pill")).to_have_text("following")
+    assert stage.parameters() != DEFAULTS
+    page.keyboard.press("x")
+    expect(page.get_by_role("button", name="B / A")).to_be_enabled()
+    assert stage.parameters() == DEFAULTS
+    expect(page.locator(".pill")).to_have_text("following")
