@@ -28,7 +28,33 @@ export type ArmDescription = {
   readonly joints: readonly { readonly id: string; readonly min: number; readonly max: number; readonly fixed: boolean }[];
 };
 
+export type Range = { readonly minimum: number; readonly maximum: number; readonly value: number };
+
+/** What there is to change on a simulated bench; what a bench lacks is left out. */
+export type BenchControls = {
+  readonly leader: { readonly minimum: readonly number[]; readonly maximum: readonly number[] };
+  readonly faults: readonly { readonly name: string; readonly places: readonly string[]; readonly description: string }[];
+  readonly supply?: Range;
+  readonly load?: Range;
+  readonly speed?: Range;
+};
+
+/** One change: live angles of the leader, a motion, a fault by its name (null mends all), power, a size. */
+export type BenchWish =
+  | { readonly leader: readonly number[] }
+  | { readonly motion: string }
+  | { readonly fault: string | null }
+  | { readonly power: boolean }
+  | { readonly estop: boolean }
+  | { readonly [size in "supply" | "load" | "speed"]?: number };
+
+export interface Bench {
+  controls(): Promise<BenchControls>;
+  change(wish: BenchWish): Promise<void>;
+}
+
 export interface Host {
+  readonly bench: Bench;
   state(): Promise<HostState>;
   /** Raw values by parameter name of a built-in controller or a file. */
   controller(file: string): Promise<Readonly<Record<string, number>>>;

@@ -1,6 +1,7 @@
 // The page's entry: takes the token out of the address, opens the board, and shows the views.
 
 import "./page.css";
+import { BenchView } from "./bench/view";
 import { ControllerView } from "./controller/view";
 import { LiveView } from "./live/view";
 import { startTheme } from "./parts/theme";
@@ -26,4 +27,7 @@ const token = takeToken();
 const board = new ServerBoard(token);
 const host = new ServerHost(token, () => board.page);
 const session = new Session(board);
-new Shell(session, [new LiveView(session), new ControllerView(session, host)]);
+const shell = new Shell(session, [new LiveView(session), new ControllerView(session, host)]);
+void session.attempt(async () => {
+  if ((await host.state()).sim) shell.add(new BenchView(session, host.bench));
+});

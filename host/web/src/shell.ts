@@ -23,13 +23,14 @@ export class Shell {
   private readonly empty = el("section", { class: "empty" });
   private readonly emptyText = el("p");
   private readonly main = el("main", { attrs: { id: "view", tabindex: "-1" } });
-  private readonly tabs: HTMLButtonElement[];
+  private readonly nav = el("nav", { attrs: { "aria-label": "Views" } });
+  private readonly tabs = new Map<View, HTMLButtonElement>();
   private front: View;
   private asked = false;
 
-  constructor(private readonly session: Session, private readonly views: readonly View[]) {
+  constructor(private readonly session: Session, views: readonly View[]) {
     this.front = views[0]!;
-    this.tabs = views.map((view) => button(view.name, () => this.show(view), { attrs: { "aria-controls": "view" } }));
+    for (const view of views) this.add(view);
     this.notice.append(this.noticeText, button("×", () => { this.notice.hidden = true; }, {
       attrs: { "aria-label": "Close this notice" },
     }));
@@ -45,7 +46,7 @@ export class Shell {
         el("div", { class: "brand" }, el("h1", {}, "greywhale"), this.place),
         this.state,
         el("div", { class: "motors" }, this.control, this.enable, this.stop, theme)),
-      el("nav", { attrs: { "aria-label": "Views" } }, ...this.tabs),
+      this.nav,
       this.notice, this.empty, this.main);
     session.changed.on(() => this.refresh());
     session.noticed.on(() => this.showNotice());
@@ -59,13 +60,20 @@ export class Shell {
     requestAnimationFrame(draw);
   }
 
+  /** Adds a view behind the others, as for what only some hosts have. */
+  add(view: View): void {
+    const tab = button(view.name, () => this.show(view), { attrs: { "aria-controls": "view" } });
+    this.tabs.set(view, tab);
+    this.nav.append(tab);
+  }
+
   private show(view: View): void {
     this.front.leave?.();
     this.front = view;
-    this.views.forEach(({ name }, place) => {
-      if (name === view.name) this.tabs[place]!.setAttribute("aria-current", "page");
-      else this.tabs[place]!.removeAttribute("aria-current");
-    });
+    for (const [one, tab] of this.tabs) {
+      if (one === view) tab.setAttribute("aria-current", "page");
+      else tab.removeAttribute("aria-current");
+    }
     this.main.replaceChildren(view.element);
     this.main.setAttribute("aria-label", view.name);
     view.enter?.();

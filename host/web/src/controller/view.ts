@@ -79,13 +79,14 @@ export class ControllerView implements View {
       this.reading,
       this.editor);
     this.editor.append(
+      el("div", { class: "side" },
         el("section", { class: "card" }, el("h2", {}, "Error"), this.errorSets.element,
           el("h2", {}, "Change of error"), this.changeSets.element, el("div", { class: "factors" }, ...fields)),
-        el("div", { class: "side" },
-          el("section", { class: "card" }, el("h2", {}, "Control surface"), this.surface.element),
-          ...(this.predict ? [this.predict.element] : []),
-          el("section", { class: "card" }, el("h2", {}, "Not yet on the board"), this.toBoard,
-            ...(this.host ? [el("h2", {}, "Against a file"), this.files, this.toFile] : []))));
+        el("section", { class: "card" }, el("h2", {}, "Not yet on the board"), this.toBoard,
+          ...(this.host ? [el("h2", {}, "Against a file"), this.files, this.toFile] : []))),
+      el("div", { class: "side" },
+        el("section", { class: "card" }, el("h2", {}, "Control surface"), this.surface.element),
+        ...(this.predict ? [this.predict.element] : [])));
   }
 
   /** One thing at a time: while the board takes a set, no other one may begin. */

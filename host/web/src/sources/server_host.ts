@@ -1,9 +1,14 @@
 // The host behind the dashboard's server, over HTTP: every request carries the token, every error is a sentence.
 
-import type { ArmDescription, Host, HostState, Prediction } from "../host";
+import type { ArmDescription, Bench, Host, HostState, Prediction } from "../host";
 
 export class ServerHost implements Host {
-  constructor(private readonly token: string, protected readonly page: () => string) {}
+  readonly bench: Bench = {
+    controls: () => this.ask("GET", "/bench"),
+    change: (wish) => this.ask<unknown>("POST", "/bench", wish).then(() => undefined),
+  };
+
+  constructor(private readonly token: string, private readonly page: () => string) {}
 
   state(): Promise<HostState> {
     return this.ask("GET", "/state");
@@ -22,7 +27,7 @@ export class ServerHost implements Host {
     return this.ask("GET", "/arm");
   }
 
-  protected async ask<Answer>(method: "GET" | "POST" | "DELETE", path: string, body?: object): Promise<Answer> {
+  private async ask<Answer>(method: "GET" | "POST" | "DELETE", path: string, body?: object): Promise<Answer> {
     const answer = await fetch(path, {
       method,
       headers: { "X-Greywhale-Token": this.token, "X-Greywhale-Page": this.page(), "Content-Type": "application/json" },

@@ -1,0 +1,99 @@
+// The simulated bench under a person's hands: lead, break and mend, supply, load, slow motion, power.
+
+import { upperFirst } from "../link/refusal";
+import { button, el, select, setText } from "../parts/dom";
+import type { View } from "../parts/view";
+import type { Bench, BenchControls, BenchWish, Range } from "../host";
+import type { Session } from "../session";
+import { Lead } from "./lead";
+
+const SIZES = [
+  ["supply", "Supply", "V"], ["load", "Load at the tip", "kg"], ["speed", "Speed of time", "×"],
+] as const;
+
+export class BenchView implements View {
+  readonly name = "Bench";
+  readonly element = el("div", { class: "editor" });
+  private lead: Lead | null = null;
+  private readonly broken = el("ul", { class: "differences" });
+
+  constructor(private readonly session: Session, private readonly bench: Bench) {}
+
+  enter(): void {
+    if (this.lead) return;
+    void this.session.attempt(async () => this.build(await this.bench.controls()));
+  }
+
+  private build(controls: BenchControls): void {
+    this.lead = new Lead(this.bench, this.session.samples, controls.leader, (error) =>
+      this.session.tell(error instanceof Error ? error.message : String(error)));
+    this.element.replaceChildren(this.lead.element,
+      el("div", { class: "side" }, this.motions(), this.faults(controls), this.sizes(controls)));
+  }
+
+  private change(wish: BenchWish): Promise<boolean> {
+    return this.session.attempt(() => this.bench.change(wish));
+  }
+
+  private motions(): HTMLElement {
+    const lead = (motion: string): void => {
+      void this.change({ motion });
+      this.lead?.letGo();
+    };
+    return el("section", { class: "card" }, el("h2", {}, "A person leads"),
+      el("div", { class: "row" },
+        button("Reach here and there", () => lead("reaches"), { title: "Smooth reaches, as a person makes them; while the motors are off" }),
+        button("Hold still", () => lead("hold"))));
+  }
+
+  private faults({ faults }: BenchControls): HTMLElement {
+    const words = el("p", { class: "quiet" });
+    const place = select<string>("Where", [], () => undefined);
+    const fault = select("Fault", faults.map(({ name }) => [name, name.replace(/-/g, " ")] as const), () => show());
+    const show = (): void => {
+      const chosen = faults.find(({ name }) => name === fault.value);
+      setText(words, chosen ? `${upperFirst(chosen.description)}.` : "");
+      place.replaceChildren(...(chosen?.places ?? []).map((one) => el("option", { value: one }, one)));
+      place.hidden = !chosen?.places.length;
+    };
+    show();
+    const breakIt = async (): Promise<void> => {
+      const name = place.hidden ? fault.value : `${fault.value}:${place.value}`;
+      if (await this.change({ fault: name })) this.broken.append(el("li", {}, name));
+    };
+    const mend = async (): Promise<void> => {
+      if (await this.change({ fault: null })) this.broken.replaceChildren();
+    };
+    return el("section", { class: "card" }, el("h2", {}, "Break something"),
+      el("div", { class: "row" }, fault, place, button("Break", () => void breakIt()), button("Mend all", () => void mend())),
+      words, this.broken);
+  }
+
+  private sizes(controls: BenchControls): HTMLElement {
+    const rows = SIZES.flatMap(([key, title, unit]) => {
+      const range = controls[key];
+      return range ? [this.size(key, title, unit, range)] : [];
+    });
+    return el("section", { class: "card" }, el("h2", {}, "Power, load and time"), ...rows,
+      el("div", { class: "row" },
+        button("Cut the power", () => void this.change({ power: false })),
+        button("Power on", () => void this.change({ power: true })),
+        button("Press emergency stop", () => void this.change({ estop: true })),
+        button("Release it", () => void this.change({ estop: false }))));
+  }
+
+  private size(key: "supply" | "load" | "speed", title: string, unit: string, range: Range): HTMLElement {
+    const words = el("span", { class: "number" });
+    const show = (): void => setText(words, `${Number(Number(slider.value).toFixed(3))} ${unit}`);
+    const slider = el("input", { type: "range", attrs: {
+      min: String(range.minimum), max: String(range.maximum), step: String((range.maximum - range.minimum) / 100), "aria-label": `${title}, ${unit}`,
+    }, on: { input: () => show(), change: () => void this.change({ [key]: Number(slider.value) }) } });
+    slider.value = String(range.value);
+    show();
+    return el("div", { class: "lead-row" }, el("span"), el("span", {}, title), slider, words);
+  }
+
+  frame(): void {
+    this.lead?.draw();
+  }
+}
