@@ -53,7 +53,48 @@ export interface Bench {
   change(wish: BenchWish): Promise<void>;
 }
 
+export type Argument = {
+  readonly name: string;
+  readonly kind: "flag" | "number" | "choice" | "file" | "text";
+  readonly choices: readonly string[];
+  readonly default: unknown;
+  readonly required: boolean;
+  readonly many: boolean;
+  readonly help: string;
+};
+
+export type Verb = {
+  readonly verb: string;
+  readonly help: string;
+  readonly board: boolean;
+  readonly arguments: readonly Argument[];
+};
+
+/** What a verb may answer with: JSON. */
+export type Json = null | boolean | number | string | readonly Json[] | { readonly [key: string]: Json };
+
+export type Job = {
+  readonly id: string;
+  readonly verb: string;
+  readonly state: "running" | "done" | "failed" | "stopped";
+  readonly progress: { readonly done: number; readonly total: number; readonly text: string } | null;
+  readonly result: Json;
+  readonly error: string | null;
+  readonly said: readonly string[];
+};
+
+export interface Jobs {
+  verbs(): Promise<readonly Verb[]>;
+  start(verb: string, given: Readonly<Record<string, unknown>>): Promise<void>;
+  stop(id: string): Promise<void>;
+  /** Writes a line to a verb that asks. */
+  answer(id: string, line: string): Promise<void>;
+  /** Hears each job as it is, and whenever something about it changes. */
+  listen(heard: (job: Job) => void): void;
+}
+
 export interface Host {
+  readonly jobs: Jobs;
   readonly bench: Bench;
   state(): Promise<HostState>;
   /** Raw values by parameter name of a built-in controller or a file. */

@@ -3,6 +3,7 @@
 import "./page.css";
 import { BenchView } from "./bench/view";
 import { ControllerView } from "./controller/view";
+import { DoView } from "./do/view";
 import { LiveView } from "./live/view";
 import { startTheme } from "./parts/theme";
 import { Session } from "./session";
@@ -27,7 +28,7 @@ const token = takeToken();
 const board = new ServerBoard(token);
 const host = new ServerHost(token, () => board.page);
 const session = new Session(board);
-const shell = new Shell(session, [new LiveView(session), new ControllerView(session, host)]);
+const shell = new Shell(session, [new LiveView(session), new ControllerView(session, host), new DoView(session, host)]);
 void session.attempt(async () => {
   if ((await host.state()).sim) shell.add(new BenchView(session, host.bench));
 });

@@ -1,0 +1,78 @@
+// One job: how far it is, what it says and asks, its result or its error.
+
+import { button, el, setText } from "../parts/dom";
+import type { Job, Jobs, Json } from "../host";
+
+const WORDS: Readonly<Record<Job["state"], string>> = {
+  running: "running", done: "done", failed: "failed", stopped: "stopped",
+};
+
+export class JobCard {
+  readonly element: HTMLElement;
+  private readonly title: HTMLElement;
+  private readonly state = el("span", { class: "pill", attrs: { role: "status" } });
+  private readonly bar = el("progress", { attrs: { "aria-label": "Progress" } });
+  private readonly text = el("p", { class: "quiet" });
+  private readonly error = el("p", { class: "job-error", attrs: { role: "alert" } });
+  private readonly said = el("pre", { class: "said", attrs: { tabindex: "0", "aria-label": "What the verb says" } });
+  private readonly answer: HTMLFormElement;
+  private readonly result = el("div", { class: "result" });
+  private readonly stop: HTMLButtonElement;
+  private shown: Job["state"] | null = null;
+
+  constructor(id: string, verb: string, jobs: Jobs, attempt: (act: () => Promise<void>) => void) {
+    this.title = el("h2", {}, verb);
+    this.stop = button("Stop this", () => attempt(() => jobs.stop(id)));
+    const line = el("input", { type: "text", attrs: { "aria-label": `Answer to ${verb}` } });
+    this.answer = el("form", { class: "row", on: { submit: (event) => {
+      event.preventDefault();
+      attempt(() => jobs.answer(id, line.value));
+      line.value = "";
+    } } }, line, el("button", { type: "submit" }, "Answer"));
+    this.element = el("section", { class: "card job" },
+      el("div", { class: "row" }, this.title, this.state, el("span", { class: "gap" }), this.stop),
+      this.bar, this.text, this.error, this.said, this.answer, this.result);
+  }
+
+  show(job: Job): void {
+    const running = job.state === "running";
+    setText(this.state, WORDS[job.state]);
+    this.state.dataset["state"] = job.state === "failed" ? "fault" : running ? "following" : job.state;
+    this.stop.hidden = this.answer.hidden = this.bar.hidden = !running;
+    if (job.progress) {
+      this.bar.max = job.progress.total || 1;
+      this.bar.value = job.progress.done;
+    } else {
+      this.bar.removeAttribute("value");
+    }
+    setText(this.text, running ? (job.progress?.text ?? "") : "");
+    setText(this.error, job.error ?? "");
+    const lines = job.said.join("\n");
+    this.said.hidden = !lines;
+    if (this.said.textContent !== lines) {
+      this.said.textContent = lines;
+      this.said.scrollTop = this.said.scrollHeight;
+    }
+    if (job.state !== this.shown && job.result !== null) this.result.replaceChildren(describe(job.result, 0));
+    this.shown = job.state;
+  }
+}
+
+const DEEPEST = 4;
+
+/** JSON as nested tables; numbers with the digits that a person reads. */
+function describe(value: Json, depth: number): HTMLElement {
+  if (Array.isArray(value) && value.every((one) => typeof one !== "object" || one === null)) {
+    return el("span", {}, value.map(plain).join(", "));
+  }
+  if (typeof value !== "object" || value === null) return el("span", {}, plain(value as Exclude<Json, object>));
+  if (depth >= DEEPEST) return el("code", {}, JSON.stringify(value));
+  const rows = Object.entries(value).map(([key, inner]) =>
+    el("div", { class: "entry" }, el("span", { class: "quiet" }, key.replace(/_/g, " ")), describe(inner as Json, depth + 1)));
+  return el("div", { class: "entries" }, ...rows);
+}
+
+function plain(value: Json): string {
+  if (typeof value === "number") return Number.isInteger(value) ? String(value) : String(Number(value.toPrecision(5)));
+  return value === null ? "–" : String(value);
+}
