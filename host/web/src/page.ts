@@ -1,6 +1,7 @@
 // The page's entry: takes the token out of the address, opens the board, and shows the views.
 
 import "./page.css";
+import { ArmView } from "./arm3d/view";
 import { BenchView } from "./bench/view";
 import { ControllerView } from "./controller/view";
 import { DoView } from "./do/view";
@@ -28,7 +29,9 @@ const token = takeToken();
 const board = new ServerBoard(token);
 const host = new ServerHost(token, () => board.page);
 const session = new Session(board);
-const shell = new Shell(session, [new LiveView(session), new ControllerView(session, host), new DoView(session, host)]);
+const shell = new Shell(session, [
+  new LiveView(session), new ArmView(session, host), new ControllerView(session, host), new DoView(session, host),
+]);
 void session.attempt(async () => {
   if ((await host.state()).sim) shell.add(new BenchView(session, host.bench));
 });

@@ -15,6 +15,7 @@ import { Samples } from "./samples/samples";
 export const LEASE_MS = 300;
 const STATUS_EVERY_MS = 500;
 const AT_ONCE = 3; // requests on their way to a board, whose receiver is small and has other pages too
+const GREETINGS = 10; // until a person is told
 const LONGEST_DELAY_TICKS = 5000; // of a sample behind the history's
 
 export type Notice = { readonly sentence: string; readonly kind: "error" | "info" };
@@ -224,19 +225,33 @@ export class Session {
     if (opened) void this.greet();
   }
 
+  /** Learns who is there, again while a board that has just started is still silent. */
   private async greet(): Promise<void> {
-    await this.attempt(async () => {
-      this.hello = await this.client.ask(HelloRequest, {});
-      if (this.hello.schema_hash !== SCHEMA_HASH) {
-        throw new LinkError("The board's firmware is another version than this page; flash it with `greywhale flash`.");
+    for (let left = GREETINGS; this.link.open; left--) {
+      try {
+        await this.meet();
+        break;
+      } catch (error) {
+        if (left <= 0) {
+          this.tell(error instanceof Error ? error.message : String(error));
+          break;
+        }
+        await new Promise((resolve) => setTimeout(resolve, STATUS_EVERY_MS));
       }
-      await this.askStatus();
-      this.startTold = this.status !== null && this.status.tick < this.samples.lastTick;
-      await this.client.ask(TelemetryRequest, { every: 1 });
-      if (this.waiting && !this.samples.end) await this.fetchHistory(null);
-      await this.readParameters();
-    });
+    }
     this.changed.emit();
+  }
+
+  private async meet(): Promise<void> {
+    this.hello = await this.client.ask(HelloRequest, {});
+    if (this.hello.schema_hash !== SCHEMA_HASH) {
+      throw new LinkError("The board's firmware is another version than this page; flash it with `greywhale flash`.");
+    }
+    const status = await this.client.ask(StatusRequest, {});
+    this.startTold = status.tick < this.samples.lastTick;
+    await this.client.ask(TelemetryRequest, { every: 1 });
+    if (this.waiting && !this.samples.end) await this.fetchHistory(null);
+    await this.readParameters();
   }
 
   private async fetchHistory(from: number | null): Promise<void> {
@@ -266,8 +281,8 @@ export class Session {
     try {
       this.status = await this.client.ask(StatusRequest, {});
     } catch (error) {
+      if (this.link.open && this.status && error instanceof LinkError) this.tell(upperFirst(error.message));
       this.status = null;
-      if (this.link.open && error instanceof LinkError) this.tell(upperFirst(error.message));
     } finally {
       this.asking = false;
     }

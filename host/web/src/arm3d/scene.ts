@@ -1,0 +1,152 @@
+// The arm in three dimensions from its URDF: follower solid, leader a ghost, stops as arcs, voltage as rings.
+
+import {
+  AmbientLight, BufferGeometry, Color, DirectionalLight, GridHelper, Group, Line, LineBasicMaterial, Mesh,
+  MeshBasicMaterial, MeshStandardMaterial, PerspectiveCamera, Quaternion, Scene, TorusGeometry, Vector3, WebGLRenderer,
+  type Object3D,
+} from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import URDFLoader, { type URDFRobot } from "urdf-loader";
+import type { ArmDescription } from "../host";
+import type { Colours } from "../parts/theme";
+
+const AT_STOP_RAD = 0.03;
+const RING_RADIUS = 0.034;
+const ARC_RADIUS = 0.05;
+const ARC_POINTS = 48;
+const SOLID = "#a9b8c4"; // told apart from light and dark ground alike
+const CENTRE = new Vector3(0.09, 0, 0.11);
+
+export const PRESETS = { corner: [0.5, -0.5, 0.42], front: [0.8, 0, 0.16], side: [0.09, -0.7, 0.16], top: [0.09, -0.01, 0.85] } as const;
+export type Preset = keyof typeof PRESETS;
+
+export type Pose = {
+  readonly leader: readonly number[]; // rad
+  readonly follower: readonly number[];
+  readonly voltage: readonly number[]; // as a share of the supply
+};
+
+export class ArmScene {
+  private readonly renderer: WebGLRenderer;
+  private readonly scene = new Scene();
+  private readonly camera = new PerspectiveCamera(42, 1, 0.01, 10);
+  private readonly controls: OrbitControls;
+  private readonly follower: URDFRobot;
+  private readonly ghost: URDFRobot;
+  private readonly rings: Mesh<TorusGeometry, MeshBasicMaterial>[] = [];
+  private readonly arcs: Line<BufferGeometry, LineBasicMaterial>[] = [];
+  private readonly grid = new GridHelper(0.8, 16);
+  private shades: Colours | null = null;
+  private moved = true;
+  private last = "";
+
+  /** Draws on a canvas; throws where the browser has no WebGL. */
+  constructor(canvas: HTMLCanvasElement, private readonly arm: ArmDescription) {
+    this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.target.copy(CENTRE);
+    this.controls.addEventListener("change", () => { this.moved = true; });
+    this.follower = this.robot();
+    this.ghost = this.robot();
+    this.grid.rotation.x = Math.PI / 2;
+    const sun = new DirectionalLight(0xffffff, 2.2);
+    sun.position.set(0.6, -0.8, 1.4);
+    this.scene.add(new AmbientLight(0xffffff, 1.1), sun, this.grid, this.follower, this.ghost);
+    this.arm.joints.forEach(({ id, min, max }) => this.mark(id, min, max));
+    this.look("corner");
+  }
+
+  private robot(): URDFRobot {
+    const loader = new URDFLoader();
+    loader.parseCollision = false;
+    const robot = loader.parse(this.arm.urdf);
+    for (const joint of Object.values(robot.joints)) joint.ignoreLimits = true;
+    return robot;
+  }
+
+  /** A ring about a joint for its voltage, and an arc in the link before for where its stops are. */
+  private mark(id: string, min: number, max: number): void {
+    const joint = this.follower.joints[id]!;
+    const turn = new Quaternion().setFromUnitVectors(new Vector3(0, 0, 1), joint.axis);
+    const ring = new Mesh(new TorusGeometry(RING_RADIUS, 0.004, 10, 40), new MeshBasicMaterial());
+    ring.quaternion.copy(turn);
+    joint.add(ring);
+    this.rings.push(ring);
+    const points = Array.from({ length: ARC_POINTS + 1 }, (_, i) => {
+      const angle = min + ((max - min) * i) / ARC_POINTS;
+      return new Vector3(ARC_RADIUS * Math.cos(angle), ARC_RADIUS * Math.sin(angle), 0);
+    });
+    const arc = new Line(new BufferGeometry().setFromPoints(points), new LineBasicMaterial());
+    const still = new Group();
+    still.position.copy(joint.position);
+    still.quaternion.copy(joint.quaternion);
+    arc.quaternion.copy(turn);
+    still.add(arc);
+    joint.parent?.add(still);
+    this.arcs.push(arc);
+  }
+
+  paint(shades: Colours): void {
+    this.shades = shades;
+    const solid = new MeshStandardMaterial({ color: SOLID, roughness: 0.6, metalness: 0.1 });
+    const pale = new MeshStandardMaterial({
+      color: shades.accent, transparent: true, opacity: 0.26, depthWrite: false, roughness: 1,
+    });
+    paintLinks(this.follower, solid, this.rings);
+    paintLinks(this.ghost, pale, []);
+    for (const arc of this.arcs) arc.material.color.set(shades.line);
+    const lines = this.grid.material as LineBasicMaterial;
+    lines.vertexColors = false;
+    lines.color.set(shades.line);
+    lines.needsUpdate = true;
+    this.moved = true;
+  }
+
+  look(preset: Preset): void {
+    const [x, y, z] = PRESETS[preset];
+    this.camera.position.set(x, y, z);
+    this.controls.target.copy(CENTRE);
+    this.controls.update();
+    this.moved = true;
+  }
+
+  resize(width: number, height: number): void {
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.moved = true;
+  }
+
+  /** Draws a pose, unless it looks as the last one did. */
+  draw(pose: Pose): void {
+    const key = [...pose.leader, ...pose.follower, ...pose.voltage].map((value) => value.toFixed(3)).join();
+    if (!this.moved && key === this.last) return;
+    this.last = key;
+    this.moved = false;
+    this.arm.joints.forEach(({ id, min, max, fixed }, joint) => {
+      if (fixed) return;
+      const angle = pose.follower[joint]!;
+      this.follower.setJointValue(id, angle);
+      this.ghost.setJointValue(id, pose.leader[joint]!);
+      const atStop = angle < min + AT_STOP_RAD || angle > max - AT_STOP_RAD;
+      this.showVoltage(joint, pose.voltage[joint]!, atStop);
+    });
+    this.renderer.render(this.scene, this.camera);
+  }
+
+  private showVoltage(joint: number, share: number, atStop: boolean): void {
+    if (!this.shades) return;
+    const { material, scale } = this.rings[joint]!;
+    material.color.set(this.shades.line).lerp(new Color(this.shades.joints[joint]), Math.min(1, 0.25 + Math.abs(share)));
+    scale.setScalar(1 + 0.35 * Math.min(1, Math.abs(share)));
+    this.arcs[joint]!.material.color.set(atStop ? "#d12f3e" : this.shades.quiet);
+  }
+}
+
+function paintLinks(robot: Object3D, material: MeshStandardMaterial, others: readonly Object3D[]): void {
+  robot.traverse((part) => {
+    if (part instanceof Mesh && !others.includes(part)) part.material = material;
+  });
+}

@@ -1,0 +1,65 @@
+// The arm in three dimensions. What draws it is loaded when somebody looks for the first time.
+
+import { button, el, setText } from "../parts/dom";
+import { colours, themeChanged } from "../parts/theme";
+import type { View } from "../parts/view";
+import type { Host } from "../host";
+import { TABLE } from "../link/schema";
+import { COUNT, JOINTS, traceOf, type Quantity } from "../samples/samples";
+import type { Session } from "../session";
+import type { ArmScene, Preset } from "./scene";
+
+const PRESET_NAMES: readonly Preset[] = ["corner", "front", "side", "top"];
+const DEFAULT_SUPPLY_V = TABLE.named("supply_mv").initial / 1000;
+
+export class ArmView implements View {
+  readonly name = "Arm";
+  readonly element: HTMLElement;
+  private readonly canvas = el("canvas", { attrs: { role: "img", "aria-label": "The arm: follower solid, leader as a ghost" } });
+  private readonly words = el("p", { class: "quiet" }, "Loading the arm.");
+  private scene: ArmScene | null = null;
+  private loading = false;
+
+  constructor(private readonly session: Session, private readonly host: Host) {
+    this.element = el("section", { class: "card arm" },
+      el("div", { class: "tools" }, ...PRESET_NAMES.map((preset) =>
+        button(preset.slice(0, 1).toUpperCase() + preset.slice(1), () => this.scene?.look(preset))), this.words),
+      el("div", { class: "stage" }, this.canvas));
+    themeChanged.on(() => this.scene?.paint(colours()));
+    new ResizeObserver(() => this.resize()).observe(this.element);
+  }
+
+  enter(): void {
+    if (this.scene || this.loading) return;
+    this.loading = true;
+    void this.session.attempt(() => this.load()).then(() => { this.loading = false; });
+  }
+
+  private async load(): Promise<void> {
+    const [{ ArmScene }, arm] = await Promise.all([import("./scene"), this.host.arm()]);
+    try {
+      this.scene = new ArmScene(this.canvas, arm);
+    } catch {
+      setText(this.words, "This browser cannot draw in three dimensions; turn WebGL on.");
+      return;
+    }
+    this.scene.paint(colours());
+    this.resize();
+    setText(this.words, `${arm.name}: solid is the follower, the ghost the leader; rings grow with the voltage, arcs end at the stops, red when one is reached.`);
+  }
+
+  private resize(): void {
+    const { clientWidth, clientHeight } = this.canvas.parentElement!;
+    if (clientWidth && clientHeight) this.scene?.resize(clientWidth, clientHeight);
+  }
+
+  frame(): void {
+    const { samples, parameters } = this.session;
+    if (!this.scene || !samples.end) return;
+    const of = (quantity: Quantity): number[] => Array.from({ length: JOINTS }, (_, joint) =>
+      samples.count(samples.end - 1, traceOf(quantity, joint)) * COUNT[quantity]);
+    const supply = parameters ? parameters[TABLE.named("supply_mv").index]! / 1000 : DEFAULT_SUPPLY_V;
+    this.scene.draw({ leader: of("leader"), follower: of("follower"), voltage: of("voltage").map((volts) => volts / supply) });
+    this.canvas.dataset["tick"] = String(samples.lastTick);
+  }
+}
