@@ -71,6 +71,7 @@ def test_corners_keep_to_what_the_board_takes_and_steps_can_be_undone(page: Page
 
 
 def test_two_controllers_are_compared_on_the_running_arm_by_one_key(page: Page, stage: Stage) -> None:
+    stage.command("hold 20")  # a leader that rests is still near when the motors go on again
     page.get_by_role("button", name="Enable").click()
     expect(page.locator(".pill")).to_have_text("following")
     page.get_by_role("button", name="Controller").click()
@@ -81,5 +82,6 @@ def test_two_controllers_are_compared_on_the_running_arm_by_one_key(page: Page, 
     assert stage.parameters() != DEFAULTS
     page.keyboard.press("x")
     expect(page.get_by_role("button", name="B / A")).to_be_enabled()
+    expect(page.locator(".notice")).to_be_hidden()
     assert stage.parameters() == DEFAULTS
     expect(page.locator(".pill")).to_have_text("following")

@@ -33,5 +33,5 @@ const shell = new Shell(session, [
   new LiveView(session), new ArmView(session, host), new ControllerView(session, host), new DoView(session, host),
 ]);
 void session.attempt(async () => {
-  if ((await host.state()).sim) shell.add(new BenchView(session, host.bench));
+  if ((await host.state()).sim) shell.add(new BenchView(session, host));
 });

@@ -6,9 +6,8 @@ import { LinkError } from "./link/declared";
 import { FrameDecoder } from "./link/frames";
 import {
   ClearFaultRequest, EnableRequest, HelloReply, HelloRequest, ParamApplyRequest, ParamGetRequest, ParamSaveRequest,
-  ParamSetRequest, Sample, SCHEMA_HASH, State, StatusReply, StatusRequest, StopRequest, TABLE, TelemetryRequest,
+  ParamSetRequest, Sample, SaveState, SCHEMA_HASH, State, StatusReply, StatusRequest, StopRequest, TABLE, TelemetryRequest,
 } from "./link/schema";
-import { upperFirst } from "./link/refusal";
 import { Signal } from "./parts/signal";
 import { Samples } from "./samples/samples";
 
@@ -37,6 +36,8 @@ export class Session {
   status: StatusReply | null = null;
   /** The running parameter set in raw values, null until it is read. */
   parameters: readonly number[] | null = null;
+  /** The set that this page has stored last; the link does not tell what a board had stored before. */
+  stored: readonly number[] | null = null;
   notice: Notice | null = null;
   /** Whether the samples from before are here; until then new ones wait. */
   private waiting: Uint8Array[] | null = [];
@@ -179,8 +180,16 @@ export class Session {
 
   /** Writes the running set to the board's EEPROM; returns when it is written. */
   async store(): Promise<void> {
+    const raw = await this.readParameters();
     await this.client.ask(ParamSaveRequest, {});
-    await this.askStatus();
+    do {
+      this.status = await this.client.ask(StatusRequest, {});
+    } while (this.status.save_state === SaveState.is.saving);
+    if (this.status.save_state === SaveState.is.failed) {
+      throw new LinkError("The board could not store the set, and keeps the one before; check its supply and store again.");
+    }
+    this.stored = raw;
+    this.parametersChanged.emit();
   }
 
   // --- what comes -------------------------------------------------------------------------------------------------------
@@ -280,9 +289,8 @@ export class Session {
     this.asking = true;
     try {
       this.status = await this.client.ask(StatusRequest, {});
-    } catch (error) {
-      if (this.link.open && this.status && error instanceof LinkError) this.tell(upperFirst(error.message));
-      this.status = null;
+    } catch {
+      this.status = null; // a board that stays silent is told by its source
     } finally {
       this.asking = false;
     }

@@ -3,7 +3,7 @@
 import { upperFirst } from "../link/refusal";
 import { button, el, select, setText } from "../parts/dom";
 import type { View } from "../parts/view";
-import type { Bench, BenchControls, BenchWish, Range } from "../host";
+import type { Bench, BenchControls, BenchWish, Host, Range } from "../host";
 import type { Session } from "../session";
 import { Lead } from "./lead";
 
@@ -14,14 +14,22 @@ const SIZES = [
 export class BenchView implements View {
   readonly name = "Bench";
   readonly element = el("div", { class: "editor" });
+  private readonly bench: Bench;
   private lead: Lead | null = null;
+  private readonly recorded = el("select", { attrs: { "aria-label": "Recorded motion" } });
   private readonly broken = el("ul", { class: "differences" });
 
-  constructor(private readonly session: Session, private readonly bench: Bench) {}
+  constructor(private readonly session: Session, private readonly host: Host) {
+    this.bench = host.bench;
+  }
 
   enter(): void {
-    if (this.lead) return;
-    void this.session.attempt(async () => this.build(await this.bench.controls()));
+    void this.session.attempt(async () => {
+      if (!this.lead) this.build(await this.bench.controls());
+      const motions = (await this.host.state()).files.filter(({ kind }) => kind === "motion");
+      this.recorded.replaceChildren(el("option", { value: "" }, motions.length ? "a recorded motion" : "no motion in this folder"),
+        ...motions.map(({ name }) => el("option", { value: name }, name)));
+    });
   }
 
   private build(controls: BenchControls): void {
@@ -40,10 +48,13 @@ export class BenchView implements View {
       void this.change({ motion });
       this.lead?.letGo();
     };
+    this.recorded.addEventListener("change", () => {
+      if (this.recorded.value) lead(this.recorded.value);
+    });
     return el("section", { class: "card" }, el("h2", {}, "A person leads"),
       el("div", { class: "row" },
         button("Reach here and there", () => lead("reaches"), { title: "Smooth reaches, as a person makes them; while the motors are off" }),
-        button("Hold still", () => lead("hold"))));
+        button("Hold still", () => lead("hold")), this.recorded));
   }
 
   private faults({ faults }: BenchControls): HTMLElement {

@@ -38,6 +38,7 @@ export class ControllerView implements View {
   private readonly reading = el("p", { class: "quiet" }, "The board's controllers are being read.");
   private readonly editor = el("div", { class: "editor", hidden: true });
   private readonly toBoard = el("ul", { class: "differences" });
+  private readonly toStore = el("ul", { class: "differences" });
   private readonly toFile = el("ul", { class: "differences" });
   private readonly files: HTMLSelectElement;
   private readonly buttons = {
@@ -83,6 +84,7 @@ export class ControllerView implements View {
         el("section", { class: "card" }, el("h2", {}, "Error"), this.errorSets.element,
           el("h2", {}, "Change of error"), this.changeSets.element, el("div", { class: "factors" }, ...fields)),
         el("section", { class: "card" }, el("h2", {}, "Not yet on the board"), this.toBoard,
+          el("h2", {}, "Not yet stored"), this.toStore,
           ...(this.host ? [el("h2", {}, "Against a file"), this.files, this.toFile] : []))),
       el("div", { class: "side" },
         el("section", { class: "card" }, el("h2", {}, "Control surface"), this.surface.element),
@@ -202,6 +204,9 @@ export class ControllerView implements View {
       if (document.activeElement !== input) input.value = physicalText(TABLE.named(parameterName(this.joint, name)), settings[name]);
     }
     list(this.toBoard, draft.joints, jointsOf(parameters), "The board runs these controllers.");
+    const { stored } = this.session;
+    if (stored) list(this.toStore, draft.joints, jointsOf(stored), "The board has stored these controllers.");
+    else this.toStore.replaceChildren(el("li", { class: "quiet" }, "A board tells what it runs, not what it has stored; Store makes both the same."));
     if (this.compared) list(this.toFile, draft.joints, this.compared.joints, `As in ${this.compared.name}.`);
     else this.toFile.replaceChildren();
     this.showRefusal(draft.joints, this.periodMs(parameters));
