@@ -2,6 +2,7 @@
 
 import "./page.css";
 import { ArmView } from "./arm3d/view";
+import { LeaderHand } from "./bench/hand";
 import { BenchView } from "./bench/view";
 import { ControllerView } from "./controller/view";
 import { DoView } from "./do/view";
@@ -29,9 +30,14 @@ const token = takeToken();
 const board = new ServerBoard(token);
 const host = new ServerHost(token, () => board.page);
 const session = new Session(board);
+const arm = new ArmView(session, host);
 const shell = new Shell(session, [
-  new LiveView(session), new ArmView(session, host), new ControllerView(session, host), new DoView(session, host),
+  new LiveView(session), arm, new ControllerView(session, host), new DoView(session, host),
 ]);
 void session.attempt(async () => {
-  if ((await host.state()).sim) shell.add(new BenchView(session, host));
+  if (!(await host.state()).sim) return;
+  const hand = new LeaderHand(host.bench, session.samples, (error) =>
+    session.tell(error instanceof Error ? error.message : String(error)));
+  arm.leadBy(hand);
+  shell.add(new BenchView(session, host, hand));
 });

@@ -2,11 +2,13 @@
 
 import {
   AmbientLight, BufferGeometry, Color, DirectionalLight, GridHelper, Group, Line, LineBasicMaterial, Mesh,
-  MeshBasicMaterial, MeshStandardMaterial, PerspectiveCamera, Quaternion, Scene, TorusGeometry, Vector3, WebGLRenderer,
+  MeshBasicMaterial, MeshStandardMaterial, PerspectiveCamera, Quaternion, Raycaster, Scene, TorusGeometry, Vector2,
+  Vector3, WebGLRenderer,
   type Object3D,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import URDFLoader, { type URDFRobot } from "urdf-loader";
+import type { LeaderHand } from "../bench/hand";
 import type { ArmDescription } from "../host";
 import type { Colours } from "../parts/theme";
 
@@ -14,6 +16,10 @@ const AT_STOP_RAD = 0.03;
 const RING_RADIUS = 0.034;
 const ARC_RADIUS = 0.05;
 const ARC_POINTS = 48;
+const DRAG_RAD = 0.008; // a pixel
+const ACROSS = new Set([0, 3]); // joints that turn by a drag to the side; the others by one up or down
+const FIELD_DEG = 42;
+const WIDE = 1.3; // a narrower picture shows as much to the sides, and more above and below
 const SOLID = "#a9b8c4"; // told apart from light and dark ground alike
 const CENTRE = new Vector3(0.09, 0, 0.11);
 
@@ -29,7 +35,7 @@ export type Pose = {
 export class ArmScene {
   private readonly renderer: WebGLRenderer;
   private readonly scene = new Scene();
-  private readonly camera = new PerspectiveCamera(42, 1, 0.01, 10);
+  private readonly camera = new PerspectiveCamera(FIELD_DEG, 1, 0.01, 10);
   private readonly controls: OrbitControls;
   private readonly follower: URDFRobot;
   private readonly ghost: URDFRobot;
@@ -115,8 +121,49 @@ export class ArmScene {
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
+    const stretch = Math.max(1, WIDE / this.camera.aspect);
+    this.camera.fov = (360 / Math.PI) * Math.atan(stretch * Math.tan((FIELD_DEG * Math.PI) / 360));
     this.camera.updateProjectionMatrix();
     this.moved = true;
+  }
+
+  /** Lets a hand drag the links of both arms; where none is hit, the view turns. */
+  leadBy(hand: LeaderHand | null): void {
+    if (!hand) return;
+    const canvas = this.renderer.domElement;
+    let joint: number | null = null;
+    let [x, y] = [0, 0];
+    canvas.addEventListener("pointerdown", (event) => {
+      joint = this.jointAt(event);
+      this.controls.enabled = joint === null;
+      [x, y] = [event.clientX, event.clientY];
+      if (joint !== null) canvas.setPointerCapture(event.pointerId);
+    }, { capture: true });
+    canvas.addEventListener("pointermove", (event) => {
+      if (joint === null) return;
+      const { min, max } = this.arm.joints[joint]!;
+      const moved = ACROSS.has(joint) ? event.clientX - x : y - event.clientY;
+      [x, y] = [event.clientX, event.clientY];
+      hand.take(joint, Math.max(min, Math.min(max, hand.angles[joint]! + DRAG_RAD * moved)));
+    });
+    canvas.addEventListener("pointerup", () => {
+      joint = null;
+      this.controls.enabled = true;
+    });
+  }
+
+  /** The joint that moves the link under the pointer. */
+  private jointAt(event: PointerEvent): number | null {
+    const { left, top, width, height } = this.renderer.domElement.getBoundingClientRect();
+    const at = new Vector2(((event.clientX - left) / width) * 2 - 1, 1 - ((event.clientY - top) / height) * 2);
+    const ray = new Raycaster();
+    ray.setFromCamera(at, this.camera);
+    const [hit] = ray.intersectObjects([this.follower, this.ghost], true).filter(({ object }) => object instanceof Mesh);
+    for (let part: Object3D | null = hit?.object ?? null; part; part = part.parent) {
+      const joint = this.arm.joints.findIndex(({ id }) => part === this.follower.joints[id] || part === this.ghost.joints[id]);
+      if (joint >= 0 && !this.arm.joints[joint]!.fixed) return joint;
+    }
+    return null;
   }
 
   /** Draws a pose, unless it looks as the last one did. */

@@ -2,6 +2,7 @@
 
 import { button, el, setText } from "../parts/dom";
 import { colours, themeChanged } from "../parts/theme";
+import type { LeaderHand } from "../bench/hand";
 import type { View } from "../parts/view";
 import type { Host } from "../host";
 import { TABLE } from "../link/schema";
@@ -18,6 +19,7 @@ export class ArmView implements View {
   private readonly canvas = el("canvas", { attrs: { role: "img", "aria-label": "The arm: follower solid, leader as a ghost" } });
   private readonly words = el("p", { class: "quiet" }, "Loading the arm.");
   private scene: ArmScene | null = null;
+  private hand: LeaderHand | null = null;
   private loading = false;
 
   constructor(private readonly session: Session, private readonly host: Host) {
@@ -27,6 +29,12 @@ export class ArmView implements View {
       el("div", { class: "stage" }, this.canvas));
     themeChanged.on(() => this.scene?.paint(colours()));
     new ResizeObserver(() => this.resize()).observe(this.element);
+  }
+
+  /** From now on the leader's joints can be dragged. */
+  leadBy(hand: LeaderHand): void {
+    this.hand = hand;
+    this.scene?.leadBy(hand);
   }
 
   enter(): void {
@@ -44,8 +52,9 @@ export class ArmView implements View {
       return;
     }
     this.scene.paint(colours());
+    this.scene.leadBy(this.hand);
     this.resize();
-    setText(this.words, `${arm.name}: solid is the follower, the ghost the leader; rings grow with the voltage, arcs end at the stops, red when one is reached.`);
+    setText(this.words, `${arm.name}: solid is the follower, the ghost the leader; rings grow with the voltage, arcs end at the stops, red when one is reached.${this.hand ? " Drag a link to lead." : ""}`);
   }
 
   private resize(): void {

@@ -5,6 +5,7 @@ import { button, el, select, setText } from "../parts/dom";
 import type { View } from "../parts/view";
 import type { Bench, BenchControls, BenchWish, Host, Range } from "../host";
 import type { Session } from "../session";
+import type { LeaderHand } from "./hand";
 import { Lead } from "./lead";
 
 const SIZES = [
@@ -19,7 +20,7 @@ export class BenchView implements View {
   private readonly recorded = el("select", { attrs: { "aria-label": "Recorded motion" } });
   private readonly broken = el("ul", { class: "differences" });
 
-  constructor(private readonly session: Session, private readonly host: Host) {
+  constructor(private readonly session: Session, private readonly host: Host, private readonly hand: LeaderHand) {
     this.bench = host.bench;
   }
 
@@ -33,8 +34,7 @@ export class BenchView implements View {
   }
 
   private build(controls: BenchControls): void {
-    this.lead = new Lead(this.bench, this.session.samples, controls.leader, (error) =>
-      this.session.tell(error instanceof Error ? error.message : String(error)));
+    this.lead = new Lead(this.hand, controls.leader);
     this.element.replaceChildren(this.lead.element,
       el("div", { class: "side" }, this.motions(), this.faults(controls), this.sizes(controls)));
   }
@@ -46,7 +46,7 @@ export class BenchView implements View {
   private motions(): HTMLElement {
     const lead = (motion: string): void => {
       void this.change({ motion });
-      this.lead?.letGo();
+      this.hand.letGo();
     };
     this.recorded.addEventListener("change", () => {
       if (this.recorded.value) lead(this.recorded.value);

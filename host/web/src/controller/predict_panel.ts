@@ -97,7 +97,7 @@ function paint(canvas: HTMLCanvasElement, motion: Predicted, joint: number): voi
     line(context, [[x(0), y(value)], [x(end), y(value)]]);
   }
   context.textAlign = "center";
-  for (let time = 0; time <= end; time += end / 4) context.fillText(`${Number(time.toFixed(2))} s`, Math.min(x(time), WIDTH - 18), HEIGHT - 5);
+  for (let time = 0; time <= end; time += 0.5) context.fillText(`${Number(time.toFixed(2))} s`, Math.min(x(time), WIDTH - 18), HEIGHT - 5);
   traces.forEach((values, place) => {
     context.strokeStyle = place ? shades.joints[joint]! : shades.quiet;
     context.lineWidth = place ? 2 : 1.2;

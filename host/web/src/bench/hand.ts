@@ -1,0 +1,60 @@
+// The hand that leads the bench's leader arm from this page: one for all views, and the newest wish wins.
+
+import type { Bench } from "../host";
+import { COUNT, JOINTS, traceOf, type Samples } from "../samples/samples";
+
+export class LeaderHand {
+  private readonly wanted: number[] = new Array<number>(JOINTS).fill(0);
+  private held = false;
+  private sending = false;
+  private waiting = false;
+
+  constructor(
+    private readonly bench: Bench, private readonly samples: Samples, private readonly failed: (error: unknown) => void,
+  ) {}
+
+  /** Whether this hand leads; until then the leader moves by itself. */
+  get leads(): boolean {
+    return this.held;
+  }
+
+  /** Where the leader is wanted while the hand leads, else where it is; rad. */
+  get angles(): readonly number[] {
+    return this.held ? this.wanted : this.measured("leader");
+  }
+
+  /** The newest angles of the board, rad. */
+  measured(quantity: "leader" | "follower"): number[] {
+    const { samples } = this;
+    return Array.from({ length: JOINTS }, (_, joint) =>
+      samples.end ? samples.count(samples.end - 1, traceOf(quantity, joint)) * COUNT[quantity] : 0);
+  }
+
+  /** Brings one joint to an angle in rad. */
+  take(joint: number, angle: number): void {
+    if (!this.held) this.wanted.splice(0, JOINTS, ...this.measured("leader"));
+    this.held = true;
+    this.wanted[joint] = angle;
+    this.waiting = true;
+    void this.send();
+  }
+
+  /** Another motion leads now. */
+  letGo(): void {
+    this.held = false;
+  }
+
+  private async send(): Promise<void> {
+    if (this.sending) return;
+    this.sending = true;
+    while (this.waiting) {
+      this.waiting = false;
+      try {
+        await this.bench.change({ leader: this.wanted });
+      } catch (error) {
+        this.failed(error);
+      }
+    }
+    this.sending = false;
+  }
+}
