@@ -2,8 +2,8 @@
 
 export type LinkState = { readonly open: boolean; readonly port: string; readonly sentence: string };
 
-/** Who may change what the board does; `job` is the id of a job of the host that uses the board now. */
-export type DriverState = { readonly you: boolean; readonly free: boolean; readonly job: string | null };
+/** Who may change what the board does; `verb` is what uses the board now at the host, in the place of any page. */
+export type DriverState = { readonly you: boolean; readonly free: boolean; readonly verb: string | null };
 
 export type BoardListener = {
   /** Bytes of the link, in pieces of any size; the listener may not keep them. */

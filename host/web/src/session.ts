@@ -31,7 +31,7 @@ export class Session {
   readonly parametersChanged = new Signal();
   readonly noticed = new Signal();
   link: LinkState = { open: false, port: "", sentence: "" };
-  driver: DriverState = { you: false, free: true, job: null };
+  driver: DriverState = { you: false, free: true, verb: null };
   hello: HelloReply | null = null;
   status: StatusReply | null = null;
   /** The running parameter set in raw values, null until it is read. */

@@ -92,12 +92,13 @@ export class Shell {
     this.state.dataset["state"] = state;
     const faulty = session.status !== null && session.status.fault !== Fault.is.none;
     document.body.dataset["motors"] = session.motorsOn ? "on" : "off";
-    this.enable.disabled = !session.link.open || session.motorsOn || faulty || !session.driver.you;
+    this.enable.disabled = !session.link.open || session.motorsOn || faulty || !session.driver.you
+      || session.driver.verb !== null;
   }
 
   private refresh(): void {
     const { link, driver, samples, hello } = this.session;
-    setText(this.place, link.open ? link.port : "");
+    setText(this.place, !link.open ? "" : driver.verb ? `${link.port}, used by ${driver.verb}` : link.port);
     this.empty.hidden = link.open || samples.end > 0;
     setText(this.emptyText, link.sentence || "Looking for a board.");
     setText(this.control, driver.you ? "Let go" : "Take control");

@@ -228,7 +228,7 @@ export class ControllerView implements View {
   private refreshButtons(): void {
     const { draft, session } = this;
     const { apply, store, discard, undo, redo, swap } = this.buttons;
-    const may = !this.busy && session.driver.you && session.link.open && draft !== null;
+    const may = !this.busy && session.driver.you && session.driver.verb === null && session.link.open && draft !== null;
     const changed = may && session.parameters !== null
       && differences(draft.joints, jointsOf(session.parameters)).length > 0;
     apply.disabled = !changed || apply.dataset["refused"] === "yes";

@@ -38,7 +38,8 @@ export class JobCard {
     const running = job.state === "running";
     setText(this.state, WORDS[job.state]);
     this.state.dataset["state"] = job.state === "failed" ? "fault" : running ? "following" : job.state;
-    this.stop.hidden = this.answer.hidden = this.bar.hidden = !running;
+    this.stop.hidden = this.bar.hidden = !running;
+    this.answer.hidden = !running || !job.said.length; // a verb that asks has said what
     if (job.progress) {
       this.bar.max = job.progress.total || 1;
       this.bar.value = job.progress.done;
@@ -58,18 +59,46 @@ export class JobCard {
   }
 }
 
-const DEEPEST = 4;
+const DEEPEST = 6;
+const MOST_SHOWN = 24; // of a list of numbers
+const MOST_COLUMNS = 4;
 
 /** JSON as nested tables; numbers with the digits that a person reads. */
 function describe(value: Json, depth: number): HTMLElement {
   if (Array.isArray(value) && value.every((one) => typeof one !== "object" || one === null)) {
-    return el("span", {}, value.map(plain).join(", "));
+    const more = value.length > MOST_SHOWN ? `, ... (${value.length} in all)` : "";
+    return el("span", {}, value.slice(0, MOST_SHOWN).map(plain).join(", ") + more);
   }
   if (typeof value !== "object" || value === null) return el("span", {}, plain(value as Exclude<Json, object>));
+  if (isMatrix(value)) return el("span", {}, `${value.length} x ${value[0]?.length ?? 0} numbers`);
+  if (Array.isArray(value) && value.length > 1 && value.every(isRecord)) return table(value.filter(isRecord));
+  if (Array.isArray(value) && value.length === 1) return describe(value[0] as Json, depth);
   if (depth >= DEEPEST) return el("code", {}, JSON.stringify(value));
   const rows = Object.entries(value).map(([key, inner]) =>
     el("div", { class: "entry" }, el("span", { class: "quiet" }, key.replace(/_/g, " ")), describe(inner as Json, depth + 1)));
   return el("div", { class: "entries" }, ...rows);
+}
+
+function isMatrix(value: Json): value is readonly (readonly number[])[] {
+  const isRow = (row: Json): boolean => Array.isArray(row) && row.length > 0 && row.every((one) => typeof one === "number");
+  return Array.isArray(value) && value.length > 1 && value.every(isRow);
+}
+
+type Entries = { readonly [key: string]: Json };
+
+function isRecord(value: Json): value is Entries {
+  return typeof value === "object" && value !== null && !Array.isArray(value);
+}
+
+/** Objects of one kind: four joints side by side, many findings one below the other. */
+function table(records: readonly Entries[]): HTMLElement {
+  const keys = [...new Set(records.flatMap((record) => Object.keys(record)))];
+  const cell = (record: Entries, key: string): HTMLElement => el("td", {}, describe(record[key] ?? null, DEEPEST));
+  const head = (key: string, scope: string): HTMLElement => el("th", { attrs: { scope } }, key.replace(/_/g, " "));
+  const rows = records.length > MOST_COLUMNS
+    ? [el("tr", {}, ...keys.map((key) => head(key, "col"))), ...records.map((record) => el("tr", {}, ...keys.map((key) => cell(record, key))))]
+    : keys.map((key) => el("tr", {}, head(key, "row"), ...records.map((record) => cell(record, key))));
+  return el("div", { class: "scroll", attrs: { tabindex: "0" } }, el("table", {}, el("tbody", {}, ...rows)));
 }
 
 function plain(value: Json): string {

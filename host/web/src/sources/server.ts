@@ -7,7 +7,7 @@ const AGAIN_MS = 500; // until a server that went is tried again
 
 type Told =
   | { kind: "link"; open: boolean; port: string; sentence: string }
-  | { kind: "driver"; you: boolean; free: boolean; job?: string | null; verb?: string | null }
+  | { kind: "driver"; you: boolean; free: boolean; verb: string | null }
   | { kind: "refused"; sentence: string; seq?: number; type?: number }
   | { kind: "page"; id: string };
 
@@ -40,7 +40,7 @@ export class ServerBoard implements Board {
     socket.addEventListener("close", () => {
       this.socket = null;
       this.driving = false;
-      this.listener?.driver({ you: false, free: false, job: null });
+      this.listener?.driver({ you: false, free: false, verb: null });
       this.listener?.link({
         open: false, port: "", sentence: "The dashboard's server does not answer; start `greywhale dashboard` again.",
       });
@@ -59,7 +59,7 @@ export class ServerBoard implements Board {
         break;
       case "driver":
         this.driving = message.you;
-        this.listener?.driver({ you: message.you, free: message.free, job: message.job ?? message.verb ?? null });
+        this.listener?.driver({ you: message.you, free: message.free, verb: message.verb });
         break;
       case "refused":
         this.listener?.refused(message.seq ?? 0, message.type ?? 0, message.sentence);
