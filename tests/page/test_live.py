@@ -127,6 +127,10 @@ def test_without_a_board_the_page_says_what_to_do_and_takes_one_that_comes(brows
         stage.plugged.set()
         visit.page.locator("button.enable:enabled").wait_for()
         expect(visit.page.get_by_text("Plug the board in by USB")).to_be_hidden()
+        stranger = browser.new_page()
+        stranger.goto(f"http://127.0.0.1:{stage.port}/")
+        expect(stranger.locator(".empty")).to_contain_text("This address lacks its secret")
+        stranger.close()
     context.close()
 
 

@@ -6,6 +6,7 @@ import { LeaderHand } from "./bench/hand";
 import { BenchView } from "./bench/view";
 import { ControllerView } from "./controller/view";
 import { DoView } from "./do/view";
+import type { Host } from "./host";
 import { LiveView } from "./live/view";
 import { startTheme } from "./parts/theme";
 import { Session } from "./session";
@@ -28,16 +29,19 @@ function takeToken(): string {
 startTheme();
 const token = takeToken();
 const board = new ServerBoard(token);
-const host = new ServerHost(token, () => board.page);
 const session = new Session(board);
-const arm = new ArmView(session, host);
-const shell = new Shell(session, [
-  new LiveView(session), arm, new ControllerView(session, host), new DoView(session, host),
-]);
-void session.attempt(async () => {
-  if (!(await host.state()).sim) return;
-  const hand = new LeaderHand(host.bench, session.samples, (error) =>
-    session.tell(error instanceof Error ? error.message : String(error)));
-  arm.leadBy(hand);
-  shell.add(new BenchView(session, host, hand));
-});
+const shell = new Shell(session, [new LiveView(session)]);
+if (token) addHost(new ServerHost(token, () => board.page));
+
+/** Adds what needs a host beside the board. */
+function addHost(host: Host): void {
+  const arm = new ArmView(session, host);
+  for (const view of [arm, new ControllerView(session, host), new DoView(session, host)]) shell.add(view);
+  void session.attempt(async () => {
+    if (!(await host.state()).sim) return;
+    const hand = new LeaderHand(host.bench, session.samples, (error) =>
+      session.tell(error instanceof Error ? error.message : String(error)));
+    arm.leadBy(hand);
+    shell.add(new BenchView(session, host, hand));
+  });
+}

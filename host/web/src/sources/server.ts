@@ -26,7 +26,12 @@ export class ServerBoard implements Board {
 
   listen(listener: BoardListener): void {
     this.listener = listener;
-    this.open();
+    if (this.token) {
+      this.open();
+      return;
+    }
+    const sentence = "This address lacks its secret; open the whole one that `greywhale dashboard` printed.";
+    listener.link({ open: false, port: "", sentence });
   }
 
   private open(): void {
