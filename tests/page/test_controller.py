@@ -5,12 +5,15 @@ from __future__ import annotations
 import pytest
 from playwright.sync_api import Page, expect
 
-from greywhale.protocol.schema import DEFAULTS, PARAMETER_BY_NAME
-from tests.page.stage import Stage
+from greywhale.protocol.schema import DEFAULTS, PARAMETER_BY_NAME, ParamSetReply, ParamSetRequest
+from tests.dashboard.browser import BoardSocket
+from tests.dashboard.browser import Page as Watcher
+from tests.page.stage import TOKEN, Stage
 
 pytestmark = pytest.mark.slow
 
 PE_B, KP = PARAMETER_BY_NAME["joint1.pe_b"], PARAMETER_BY_NAME["joint1.kp"]
+ZE_A = PARAMETER_BY_NAME["joint0.ze_a"]
 
 
 def drag(page: Page, corner: str, by_share: float) -> None:
@@ -85,3 +88,19 @@ def test_two_controllers_are_compared_on_the_running_arm_by_one_key(page: Page, 
     expect(page.locator(".notice")).to_be_hidden()
     assert stage.parameters() == DEFAULTS
     expect(page.locator(".pill")).to_have_text("following")
+
+
+def test_what_another_host_left_half_done_does_not_run(page: Page, stage: Stage) -> None:
+    page.get_by_role("button", name="Let go").click()
+    with Watcher(stage.port, TOKEN).open("/board") as socket:
+        other = BoardSocket(socket)
+        socket.say({"kind": "drive"})
+        other.word("driver", you=True)
+        other.frame(ParamSetReply.TYPE, other.ask(ParamSetRequest(KP.index, 2 * DEFAULTS[KP.index])))
+    page.get_by_role("button", name="Take control").click()
+    page.get_by_role("button", name="Controller").click()
+    drag(page, "Ze_a", -0.1)
+    page.get_by_role("button", name="Apply").click()
+    expect(page.get_by_text("The board runs these controllers.")).to_be_visible()
+    board = stage.parameters()
+    assert [index for index, raw in enumerate(board) if raw != DEFAULTS[index]] == [ZE_A.index]

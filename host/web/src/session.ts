@@ -2,10 +2,10 @@
 
 import type { Board, DriverState, LinkState } from "./board";
 import { LinkClient } from "./link/client";
-import { LinkError } from "./link/declared";
+import { LinkError, RefusedError } from "./link/declared";
 import { FrameDecoder } from "./link/frames";
 import {
-  ClearFaultRequest, EnableRequest, HelloReply, HelloRequest, ParamApplyRequest, ParamGetRequest, ParamSaveRequest,
+  ClearFaultRequest, EnableRequest, HelloReply, HelloRequest, NackCode, ParamApplyRequest, ParamGetRequest, ParamSaveRequest,
   ParamSetRequest, Sample, SaveState, SCHEMA_HASH, State, StatusReply, StatusRequest, StopRequest, TABLE, TelemetryRequest,
 } from "./link/schema";
 import { Signal } from "./parts/signal";
@@ -165,8 +165,9 @@ export class Session {
     const changed = TABLE.parameters.filter(({ index }) => raw[index] !== before[index]);
     try {
       await this.stageAndApply(changed.map(({ index }) => index), raw);
-    } catch {
-      // Another host may have left values in the staged set: all of them, then.
+    } catch (error) {
+      if (!(error instanceof RefusedError) || error.code !== NackCode.is.crc_mismatch) throw error;
+      // Another host has left values in the staged set: all of them, then.
       await this.stageAndApply(TABLE.parameters.map(({ index }) => index), raw);
     }
     this.parameters = [...raw];

@@ -1,6 +1,6 @@
 // Requests and their replies over frames: sequence numbers, repeats after silence, refusals as sentences.
 
-import { LinkError, type Message, type Request } from "./declared";
+import { LinkError, RefusedError, type Message, type Request } from "./declared";
 import { encodeFrame, FrameDecoder, type Frame } from "./frames";
 import { refusalSentence } from "./refusal";
 import { HelloReply, Nack, Sample } from "./schema";
@@ -110,7 +110,7 @@ export class LinkClient {
     if (type === Nack.type && payload.length === Nack.size) {
       const nack = Nack.unpack(payload);
       if (waiting?.request.type === nack.request) {
-        waiting.failed(new LinkError(refusalSentence(waiting.request.name, nack)));
+        waiting.failed(new RefusedError(refusalSentence(waiting.request.name, nack), nack.code));
       }
     } else if (waiting && (waiting.request as Request<object, object>).reply().type === type) {
       waiting.arrived(payload);

@@ -42,6 +42,13 @@ function viewOf(bytes: Uint8Array): DataView {
 /** One sentence: what is wrong on the link, where, and what to do. */
 export class LinkError extends Error {}
 
+/** The board understood a request and said no; `code` is a value of NackCode. */
+export class RefusedError extends LinkError {
+  constructor(sentence: string, readonly code: number) {
+    super(sentence);
+  }
+}
+
 export type Word = {
   readonly value: number;
   readonly name: string;
