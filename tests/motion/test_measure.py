@@ -16,7 +16,7 @@ from greywhale.files.log import Log
 from greywhale.files.log.layout import Origin
 from greywhale.motion import Settings, evaluate
 from greywhale.motion.delay import correlations
-from greywhale.motion.runs import gap_free_runs, resting
+from greywhale.motion.runs import gap_free_runs, last_part, resting
 
 STEP = 0.5
 TIME = np.arange(0, 10, 0.001)
@@ -115,14 +115,35 @@ def test_the_onset_delay_ignores_offsets_slow_drifts_and_small_moves() -> None:
     assert joint.onset_delay_s == pytest.approx(0.1, abs=0.0005)
 
 
-def test_steady_state_error_is_the_mean_error_while_the_leader_has_rested() -> None:
+def test_the_settling_error_is_the_mean_error_while_the_leader_has_rested() -> None:
     leader = motion(TIME)
     joint = evaluate(log(TIME, leader, 0.9 * leader)).joints[0]
     # Rests at 0, 0.5, 0.8, 0.2 and 0.7 rad; the error is a tenth of that. The first half second of a rest does not
     # count, so each weighs by the rest of its length.
     lengths = np.array([1.0 - 0.5, 2.0 - 0.9, 2.0 - 0.9, 2.0 - 0.9, 3.0 - 0.9])
     expected = float(lengths @ [0, 0.05, 0.08, 0.02, 0.07] / lengths.sum())
-    assert joint.steady_state_error == pytest.approx(expected, rel=0.05)
+    assert joint.settling_error == pytest.approx(expected, rel=0.05)
+
+
+def test_the_steady_state_error_is_that_of_the_final_position() -> None:
+    leader, time = reach(TIME, 1.0, 1.0), TIME[:6000]
+    follower = 0.9 * np.clip(leader - np.clip((3.5 - TIME) / 2.0, 0.0, 1.0) * (TIME > 1.0), 0.0, None)  # there at 3.5 s
+    measured = log(time, leader[:6000], follower[:6000])
+    joint = evaluate(measured).joints[0]
+    # The rest at 0 has no error and counts for as long as the other.
+    assert joint.steady_state_error == pytest.approx((0.0 + 0.1) / 2, rel=0.02)
+    assert joint.settling_error is not None
+    assert joint.settling_error > 0.15
+
+
+@given(st.lists(st.booleans(), min_size=1, max_size=60), st.integers(1, 20))
+def test_the_last_part_of_a_rest_is_no_longer_than_its_window(values: list[bool], window: int) -> None:
+    rest = np.array(values)
+    expected = [
+        here and any(rest[j] and not rest[j + 1 : j + 2].any() for j in range(k, min(k + window, len(rest))))
+        for k, here in enumerate(rest)
+    ]
+    assert list(last_part(rest, window)) == expected
 
 
 def test_tremor_within_the_band_is_rest_and_beyond_it_is_not() -> None:

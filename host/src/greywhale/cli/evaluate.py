@@ -19,7 +19,7 @@ from greywhale.motion.evaluate import EvaluationFacts
 from greywhale.pictures.kinds import kind_of
 from greywhale.protocol.joints import named, unused
 
-_WIDTHS = (11, 14, 10, 11, 11, 10)  # of the table's columns behind the first
+_WIDTHS = (10, 13, 11, 8, 10, 11, 10)  # of the table's columns behind the first
 
 
 class LogFacts(EvaluationFacts):
@@ -47,11 +47,12 @@ class Answer(TypedDict):
 def command(logs: tuple[Path, ...], picture: Path | None, overwrite: bool, as_json: bool) -> None:
     """Measure how well the follower followed in a log.
 
-    Per joint: the mean squared error (the total is the sum over the joints), the steady-state error (mean of the
-    absolute error while the leader has rested for half a second), and the time delay (the lag at which the follower
-    resembles the leader most). For steps out of a rest also the time between both onsets, as the paper measures it, the
-    overshoot (how far the follower gets beyond the leader's new place, in % of the step), and the settling time (until
-    it stays within 5 % of the step, or 0.02 rad, of that place); of several steps, the worst.
+    Per joint: the mean squared error (the total is the sum over the joints), the steady-state error (mean absolute
+    error in the last half second of each of the leader's rests), the settling error (the same from half a second after
+    the leader came to rest), and the time delay (the lag at which the follower resembles the leader most). For steps
+    out of a rest also the time between both onsets, as the paper measures it, the overshoot (how far the follower gets
+    beyond the leader's new place, in % of the step), and the settling time (until it stays within 5 % of the step, or
+    0.02 rad, of that place); of several steps, the worst.
     Several logs are measured one by one and drawn into one picture. A log that is not as it was recorded, or has gaps,
     is measured too, with a warning.
     """
@@ -105,12 +106,12 @@ def _text(log: Log, evaluation: Evaluation) -> str:
         notes.append("the motors never followed; the whole log is measured")
     lines = [
         f"{log.name}: {', '.join(notes)}",
-        _row("", "MSE", "steady-state", "delay", "onset", "overshoot", "settling"),
-        _row("", "[rad²]", "error [rad]", "[s]", "delay [s]", "[%]", "[s]"),
+        _row("", "MSE", "steady-state", "settling", "delay", "onset", "overshoot", "settling"),
+        _row("", "[rad²]", "error [rad]", "err. [rad]", "[s]", "delay [s]", "[%]", "time [s]"),
     ]
     for number in evaluation.joints_in_use:
         joint = evaluation.joints[number]
-        errors = f"{joint.mse:.6f}", _number(joint.steady_state_error)
+        errors = f"{joint.mse:.6f}", _number(joint.steady_state_error), _number(joint.settling_error)
         delays = _number(joint.delay_s), _number(joint.onset_delay_s)
         steps = _number(joint.overshoot_percent, ".1f"), joint.settling(".3f") or "n/a"
         lines.append(_row(f"joint {number}", *errors, *delays, *steps))

@@ -1,10 +1,12 @@
-"""The paper's three measures of a log (section 5.1), made exact, and overshoot and settling time of steps.
+"""The paper's three measures of a log (section 5.1), made exact, and how the follower settles.
 
 - Input tracking: mean of (leader - follower)^2 over the measured samples; the total is the sum over the joints, as in
   equation 5 and table 11.
 - Steady-state error: "the difference between the desired final position and the actual position in steady state".
-  Here the mean of |leader - follower| over all samples at which the leader has stayed within `rest_band` for
-  `rest_s`. None where the leader never rests.
+  Here the mean of |leader - follower| over the last `rest_s` of each rest, and no sooner than `rest_s` after the
+  leader came to rest, which is when it has stayed within `rest_band` for so long. None where it never rests.
+- Settling error: the same mean over all samples from `rest_s` after the leader came to rest. A slow follower is then
+  still on its way; so it tells how soon and how well the follower gets there, and the steady-state error where it ends.
 - Time delay: two definitions, see `delay.py`. `delay_s` is the lag at which the follower resembles the leader most,
   defined for any motion; `onset_delay_s` is the paper's, "the difference between the times that the leader gives a
   position command and the follower begins to respond", and exists only where the leader steps out of a rest.
@@ -30,7 +32,7 @@ from greywhale.base.types import Floats, PerJoint
 from greywhale.files.log import Log
 from greywhale.motion.delay import correlation_delay, onset_delay
 from greywhale.motion.following import follows
-from greywhale.motion.runs import Run, gap_free_runs, resting
+from greywhale.motion.runs import Run, gap_free_runs, last_part, resting
 from greywhale.motion.settings import Settings
 from greywhale.motion.step_response import Answer, answer, departures, worst
 from greywhale.motion.swings import RIPPLE_S, ripple_of_record
@@ -41,7 +43,8 @@ from greywhale.protocol.joints import ALL, Joints
 class JointFacts(TypedDict):
     in_use: bool  # whether the arm has this joint
     mse_rad2: float
-    steady_state_error_rad: float | None  # mean absolute error while the leader rests; null where it never does
+    steady_state_error_rad: float | None  # mean absolute error at the end of rests; null where there is none
+    settling_error_rad: float | None  # mean absolute error from 0.5 s after the leader came to rest
     time_delay_s: float | None  # lag at which the follower resembles the leader most; null where nothing moves
     onset_delay_s: float | None  # between the onsets of steps; null without steps out of a rest
     overshoot_percent: float | None  # beyond the leader's new place, % of the step, the largest; null without steps
@@ -80,6 +83,7 @@ class JointMeasures:
     settling_s: float | None = None
     unsettled_steps: int = 0
     ripple_v: float | None = None
+    settling_error: float | None = None
 
     def settling(self, form: str) -> str | None:
         """The settling time as a person reads it; "never" where a step did not settle, None without steps."""
@@ -111,6 +115,7 @@ class Evaluation:
                     "in_use": number in self.joints_in_use,
                     "mse_rad2": joint.mse,
                     "steady_state_error_rad": joint.steady_state_error,
+                    "settling_error_rad": joint.settling_error,
                     "time_delay_s": joint.delay_s,
                     "onset_delay_s": joint.onset_delay_s,
                     "overshoot_percent": joint.overshoot_percent,
@@ -167,6 +172,10 @@ def _ripple(voltage: Floats, run: Run) -> float | None:
     return float(ripple_of_record(voltage[run.slice, None])[0])
 
 
+def _mean_error(error: Floats) -> float | None:
+    return float(np.mean(np.abs(error))) if error.size else None
+
+
 def _joint(
     leader: Floats,
     follower: Floats,
@@ -176,13 +185,14 @@ def _joint(
     settings: Settings,
 ) -> tuple[JointMeasures, float]:
     error = leader - follower
-    at_rest = np.zeros(len(leader), dtype=bool)
+    at_rest, at_end = np.zeros((2, len(leader)), dtype=bool)
     onsets: list[float] = []
     answers: list[Answer] = []
     for run in runs:
         led, followed, window = leader[run.slice], follower[run.slice], run.samples(settings.rest_s)
         rest = resting(led, window, settings.rest_band)
         at_rest[run.slice] = rest
+        at_end[run.slice] = last_part(rest, window)
         for step in departures(led, rest, run.period, settings):
             onset = onset_delay(led, followed, step, window, settings.onset_band)
             onsets += [] if onset is None else [onset * run.period]
@@ -192,7 +202,7 @@ def _joint(
     overshoot, settling = worst(answers)
     measures = JointMeasures(
         mse=float(np.mean(error[measured] ** 2)),
-        steady_state_error=float(np.mean(np.abs(error[at_rest]))) if at_rest.any() else None,
+        steady_state_error=_mean_error(error[at_end]),
         delay_s=correlation_delay(
             leader[longest.slice], follower[longest.slice], longest.period, settings.longest_delay_s
         ),
@@ -203,5 +213,6 @@ def _joint(
         settling_s=settling,
         unsettled_steps=sum(one.settling_s is None for one in answers),
         ripple_v=_ripple(voltage, longest),
+        settling_error=_mean_error(error[at_rest]),
     )
     return measures, float(np.count_nonzero(at_rest) * longest.period)

@@ -55,3 +55,10 @@ def resting(angle: NDArray[np.float64], window: int, band: float) -> NDArray[np.
     lowest = minimum_filter1d(angle, size, origin=origin)
     rest[window:] = (highest - lowest)[window:] <= band
     return rest
+
+
+def last_part(rest: NDArray[np.bool_], window: int) -> NDArray[np.bool_]:
+    """Of each rest, the last `window` samples at most."""
+    ends = rest & ~np.append(rest[1:], False)
+    near_end: NDArray[np.bool_] = maximum_filter1d(ends, window, origin=-(window // 2), mode="constant")
+    return rest & near_end

@@ -18,6 +18,7 @@ Measure = tuple[str, Callable[[JointMeasures], str]]  # heading, and a joint's c
 MEASURES: tuple[Measure, ...] = (
     ("MSE [rad²]", lambda joint: f"{joint.mse:.6f}"),
     ("steady-state error [rad]", lambda joint: _cell(joint.steady_state_error, ".4f")),
+    ("settling error [rad]", lambda joint: _cell(joint.settling_error, ".4f")),
     ("time delay [s]", lambda joint: _cell(joint.delay_s, ".3f")),
     ("overshoot [%]", lambda joint: _cell(joint.overshoot_percent, ".1f")),
     ("settling time [s]", lambda joint: joint.settling(".2f") or "-"),

@@ -119,6 +119,7 @@ def _table_11(found: Found) -> tuple[Any, ...]:
     rows = [Row("Mean squared error (rad²)"), *_mse_rows(found, "steps", PAPER_STEP_MSE)]
     for heading, measure, theirs, form in (
         ("Steady-state error (rad)", "steady", PAPER_STEADY_STATE, ".3f"),
+        ("Settling error (rad): the end of the move is in it; not in the paper", "settling", None, ".3f"),
         ("Time delay (s), from onset to onset", "onset", PAPER_DELAY, ".3f"),
         ("Time delay (s), of best correlation; not in the paper", "delay", None, ".3f"),
         ("Swing in the last second (rad, from end to end); not in the paper", "swing", None, ".3f"),

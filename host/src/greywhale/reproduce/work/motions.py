@@ -83,6 +83,7 @@ def measures(one: Evaluation) -> dict[str, Any]:
     return {
         "mse": [joint.mse for joint in one.joints],
         "steady": [joint.steady_state_error for joint in one.joints],
+        "settling": [joint.settling_error for joint in one.joints],
         "onset": [joint.onset_delay_s for joint in one.joints],
         "delay": [joint.delay_s for joint in one.joints],
     }
