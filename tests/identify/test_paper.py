@@ -26,10 +26,14 @@ def test_table_4_gives_the_papers_arms(recorded: Recorded, white_box: ArmParamet
         np.testing.assert_allclose(search.plants(x)[0], plant_row(arm), rtol=1e-12)
 
 
+def test_the_budget_is_the_first_pack_and_fifty_moves() -> None:
+    assert paper.BUDGET == 510
+
+
 def test_search_stays_within_table_2_and_never_gets_worse(
     recorded: Recorded, white_box: ArmParameters, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(paper, "ITERATIONS", 6)
+    monkeypatch.setattr(paper, "BUDGET", 60)
     outcome = identify([recorded.fit], white_box, validate=[recorded.second], method="paper", seed=3)
     values = np.array([one.value for one in outcome.estimates]).reshape(4, 5)
     assert np.all(values >= paper.LOWER)

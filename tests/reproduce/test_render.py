@@ -12,7 +12,9 @@ from reportlab.pdfbase import pdfmetrics
 from greywhale.pictures.page import png
 from greywhale.reproduce.pages import law, system
 from greywhale.reproduce.pages.document import Chapter, Code, Document, Entry, Picture, Row, Status, sheet, words
-from greywhale.reproduce.pages.numbers import one, percent, several
+from greywhale.reproduce.pages.numbers import change, one, percent, several
+from greywhale.reproduce.pages.printed import TABLE_2
+from greywhale.reproduce.pages.tuning import quoted
 from greywhale.reproduce.render.html import write_html
 from greywhale.reproduce.render.pdf import (
     GOOD_POINTS,
@@ -119,6 +121,18 @@ def test_numbers_are_medians_with_their_range() -> None:
     assert "1 without" in several([1.0, None, 2.0], ".0f")
     assert percent(2.0, 1.0) == "50.0 % lower"
     assert percent(1.0, 2.0) == "100.0 % higher"
+
+
+def test_a_change_too_small_to_be_seen_has_no_sign() -> None:
+    assert [change(value, ".2f") for value in (1.234, -1.234, -0.001, 0.0)] == ["+1.23 %", "-1.23 %", "< 0.01 %", "0 %"]
+    assert change(0.3, ".0f") == "< 1 %"
+
+
+def test_what_is_quoted_is_what_the_paper_prints() -> None:
+    assert len(TABLE_2["Lower bounds"].partition(" (")[0].split(",")) == 19
+    assert quoted("table_9", 1, "ku_mv") == 19.8269
+    assert quoted("table_9", 0, "ze_c") == 0.0
+    assert quoted("table_10", 2, "pe_b") == 0.0423
 
 
 def test_the_rules_of_the_firmware_are_the_printed_ones(monkeypatch: pytest.MonkeyPatch) -> None:

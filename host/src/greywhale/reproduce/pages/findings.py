@@ -10,7 +10,7 @@ from greywhale.arm.printed import ERRATA
 from greywhale.reproduce.pages.document import Chapter, Entry, Row, Sheet, Status, sheet, words
 from greywhale.reproduce.pages.experiment import changes
 from greywhale.reproduce.pages.found import Found
-from greywhale.reproduce.pages.numbers import lower, one, percent, several
+from greywhale.reproduce.pages.numbers import change, lower, one, percent, several
 from greywhale.reproduce.pages.optimisers import SAID, costs_of, function_ranks
 from greywhale.reproduce.pages.printed import GREY_BOX_BETTER, STEPS_LOWER
 from greywhale.reproduce.pages.significance import mean_ranks
@@ -21,6 +21,8 @@ from greywhale.reproduce.work.optimisers import METHODS, SETTINGS
 from greywhale.tune.report.tables import PAPER_STEADY_STATE
 
 WORSE_PLACES = 2
+# Simulated angles are kept in single precision.
+ROUNDED_RAD = 1e-6
 
 
 def chapter(found: Found) -> Chapter:
@@ -100,7 +102,7 @@ def _errata(found: Found) -> tuple[Any, ...]:
         shown = "runs away" if energy is None else "none" if energy < 1e-6 else f"{energy:.2g} J"
         cells = [ERRATA.get(name, "the links' errata together" if name != "all" else "all together"), shown]
         for arm in ("white_box", "grey_box"):
-            cells += [f"{effect[arm]['angle']:.2g} rad", f"{100 * (effect[arm]['mse'] - 1):+.2f} %"]
+            cells += [f"{effect[arm]['angle']:.2g} rad", change(100 * (effect[arm]["mse"] - 1), ".2f")]
         rows.append(Row(name, tuple(cells)))
     table = sheet(
         ("", "printed", "energy", "white box: angle", "MSE", "grey box: angle", "MSE"),
@@ -113,10 +115,10 @@ def _errata(found: Found) -> tuple[Any, ...]:
     links, motor = (found.errata()[name]["grey_box"]["mse"] for name in ("E1 to E8", "E14"))
     white = found.errata()["E1 to E8"]["white_box"]["mse"]
     return table, words(
-        f"The errata of the links change the white box's error by {100 * (white - 1):+.1f} %, but the grey box's by "
-        f"{100 * (links - 1):+.3f} % only: its motors are so heavy that the links hardly count. Eq. 1 read literally "
-        f"(E14) changes the grey box's error by {100 * (motor - 1):+.0f} %. So the authors must have simulated "
-        "something else than what is printed."
+        f"The errata of the links change the white box's error by {change(100 * (white - 1))}, but the grey box's by "
+        f"{change(100 * (links - 1), '.3f')} only: its motors are so heavy that the links hardly count. Eq. 1 read "
+        f"literally (E14) changes the grey box's error by {change(100 * (motor - 1), '.0f')}. So the authors must have "
+        "simulated something else than what is printed."
     )
 
 
@@ -131,7 +133,7 @@ def _feet(found: Found) -> tuple[Any, ...]:
                 (
                     f"{before['mse']:.3f}",
                     f"{after['mse']:.3f}",
-                    f"{lower(before['mse'], after['mse']):+.1f} %",
+                    change(lower(before["mse"], after["mse"])),
                     f"{silent} %",
                 ),
             )
@@ -302,8 +304,8 @@ def _identifiability(found: Found) -> tuple[Any, ...]:
     factors = ", ".join(f"{name} x {factor:g}" for name, factor in facts["factors"].items() if factor != 1.0)
     said = words(
         f"Eq. 1 depends on the {facts['values']} motor values by {facts['rank']} combinations only. Motors with other "
-        f"values ({factors.replace('_', ' ')}) but the same combinations move the arm on data set 1 within "
-        f"{facts['angle']:.1g} rad of the white box: no log can tell them apart. The {facts['rank']} combinations "
+        f"values ({factors.replace('_', ' ')}) but the same combinations move the arm on data set 1 as the white box, "
+        f"to {max(facts['angle'], ROUNDED_RAD):.1g} rad: no log can tell them apart. The {facts['rank']} combinations "
         f"themselves are seen with a condition number of the Fisher information of {facts['condition']:.2g}.",
         f"Of joints drawn uniformly from [0, 100] {100 * facts['stuck']:.0f} % do not even reach {STUCK_RAD_S:g} rad/s "
         "under the whole supply: nearly all of a first pack are stuck arms.",

@@ -160,8 +160,8 @@ def _by_seed(found: Found) -> list[tuple[int, Any]]:
 
 
 def _flat(curve: Sequence[float]) -> int:
-    """The iteration that brought the last improvement."""
-    return int(np.argmax(np.array(curve) <= curve[-1])) + 1
+    """The iteration that brought the last improvement; 0 is the first pack."""
+    return int(np.argmax(np.array(curve) <= curve[-1]))
 
 
 def _responses(found: Found, place: int) -> Entry:

@@ -31,6 +31,14 @@ def lower(before: float, after: float) -> float:
     return 100.0 * (1.0 - after / before)
 
 
+def change(percents: float, form: str = ".1f") -> str:
+    """A change with its sign; what is too small to be seen says so, and has none."""
+    text = f"{percents:+{form}}"
+    if float(text) != 0.0:
+        return f"{text} %"
+    return "0 %" if percents == 0.0 else f"< {text[1:-1]}1 %"
+
+
 def percent(before: float, after: float) -> str:
     """The same, as words."""
     change = lower(before, after)

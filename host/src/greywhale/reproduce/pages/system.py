@@ -37,7 +37,7 @@ def chapter() -> Chapter:
                 "Table 1",
                 "Scientific contributions that apply optimisation algorithms",
                 Status.OPEN,
-                (words("A survey of nineteen publications. It holds no number that could be computed."),),
+                (words("A survey of twenty publications. It holds no number that could be computed."),),
             ),
             Entry(
                 "Fig. 1",

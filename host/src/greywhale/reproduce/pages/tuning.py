@@ -8,14 +8,17 @@ from typing import Any
 import numpy as np
 
 from greywhale.base.types import Controllers
+from greywhale.files.controller import load
+from greywhale.files.paper_tables import paper_table
 from greywhale.pictures import looks
 from greywhale.pictures import paper_curves as curves
 from greywhale.pictures.paper_curves import Trace
 from greywhale.protocol.firmware import JOINTS
+from greywhale.protocol.joints import named
 from greywhale.reproduce.pages.document import Chapter, Entry, Picture, Row, Sheet, Status, sheet, words
 from greywhale.reproduce.pages.found import Found, controllers
 from greywhale.reproduce.pages.numbers import lower, one, several
-from greywhale.reproduce.pages.printed import FIG_19_FLAT, TABLE_7
+from greywhale.reproduce.pages.printed import FIG_19_FLAT, NO_WIDTH, TABLE_7
 from greywhale.reproduce.work.grey_box import STRATEGIES, supply_of
 from greywhale.reproduce.work.motions import PERIOD_MS, printed
 from greywhale.simulate import CONTROLLER_COLUMNS
@@ -80,11 +83,12 @@ def _values(found: Found, strategy: str, wanted: Mapping[str, tuple[str, int]]) 
     units = f"K_p in 1/rad, K_d in 1/rad over {PERIOD_MS} ms, K_i in V/(rad s), K_u in V."
     notes = [note, units] if "K_p" in wanted else [note]
     if strategy == "both":
-        notes.append("The paper prints joint 0's Ze_trimf_c as 0, a set without width; 0.01, the least, stands here.")
-    blocks: list[Any] = [_beside(wanted, printed(STRATEGIES[strategy]), runs, before, notes)]
+        notes.append("Joint 0's printed Ze_trimf_c is 0, a set without width; where it is tried it is 0.01, the least.")
+    blocks: list[Any] = [_beside(wanted, STRATEGIES[strategy], runs, before, notes)]
     if strategy == "both":
         own = [controllers(run["tuned"]) for run in found.default()]
         note = f"greywhale's own tuning, by its own objective, for the model that it identified: {found.few_seeds}."
+        note += _untouched(own)
         rows = [
             Row(name, tuple(several([value_of(run, joint, *where) for run in own]) for joint in range(JOINTS)))
             for name, where in wanted.items()
@@ -93,9 +97,24 @@ def _values(found: Found, strategy: str, wanted: Mapping[str, tuple[str, int]]) 
     return (*blocks, *_spread(results, runs, wanted))
 
 
+def _untouched(runs: Sequence[Controllers]) -> str:
+    """A sentence on joints for which a run found nothing better than what they had."""
+    before = printed("before_tuning")
+    kept = tuple(joint for joint in range(JOINTS) if any((run[joint] == before[joint]).all() for run in runs))
+    return f" Nothing better than before tuning was found in at least one run: {named(kept)}." if kept else ""
+
+
+def quoted(table: str, joint: int, column: str) -> float:
+    """A number as a table of the paper prints it, before it is rounded to what a board stores."""
+    known = load(paper_table(table)).joint[joint]
+    values = {name.lower(): value for name, value in (known.model_dump() | known.sets.model_dump()).items()}
+    key = column.removesuffix("_mv")
+    return float(NO_WIDTH.get((table, joint, key), values[key]))
+
+
 def _beside(
     wanted: Mapping[str, tuple[str, int]],
-    theirs: Controllers,
+    theirs: str,
     runs: Sequence[Controllers],
     before: Controllers | None,
     notes: Sequence[str],
@@ -107,7 +126,7 @@ def _beside(
         cells = [] if before is None else [one(value_of(before, 0, *where))]
         for joint in range(JOINTS):
             cells += [
-                one(value_of(theirs, joint, *where)),
+                one(quoted(theirs, joint, where[0])),
                 several([value_of(run, joint, *where) for run in runs], ".3f"),
             ]
         rows.append(Row(name, tuple(cells)))

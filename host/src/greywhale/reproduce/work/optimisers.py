@@ -10,7 +10,8 @@ from greywhale.base.types import show_no_progress
 from greywhale.files.arm import load_arm
 from greywhale.identify.closed_loop import Loop
 from greywhale.identify.data import prepare
-from greywhale.identify.paper import AGENTS, ITERATIONS, PaperSearch
+from greywhale.identify.paper import BUDGET as IDENTIFYING
+from greywhale.identify.paper import PaperSearch
 from greywhale.optimise import minimise
 from greywhale.optimise.comparison import Plan, compare
 from greywhale.optimise.functions import FUNCTIONS, Setting
@@ -24,7 +25,6 @@ from greywhale.tune.search.space import Space
 
 # The paper's hybrid first, then what it is made of, then established others, then chance.
 METHODS = ("gwo-woa", "gwo-woa-printed", "gwo-woa-relative", "gwo", "woa", "pso", "de", "cma-es", "random")
-IDENTIFYING = AGENTS * ITERATIONS
 SETTINGS: tuple[Setting, ...] = ("plain", "shifted")
 
 
