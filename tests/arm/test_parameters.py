@@ -10,12 +10,15 @@ import pytest
 from greywhale.arm import Arm
 from greywhale.base.errors import UserError
 from greywhale.files.arm import arm_names, default_arm, load_arm
+from greywhale.files.controller import load
+from greywhale.files.paper_tables import paper_table
+from greywhale.tune.report.tables import PAPER_STEADY_STATE
 
 DEFAULT = resources.files("greywhale.arm").joinpath("data", "default.toml").read_text(encoding="utf-8")
 
 
 def test_shipped_arms_load_and_move() -> None:
-    assert arm_names() == ["default", "grey_box", "two_joints", "white_box", "worn"]
+    assert arm_names() == ["default", "grey_box", "sticky_grey_box", "two_joints", "white_box", "worn"]
     for name in arm_names():
         arm = Arm(load_arm(name))
         moved = abs(arm.step([10.0] * 4, 0.5))
@@ -32,6 +35,16 @@ def test_paper_arms_hold_the_papers_values() -> None:
         assert [link.mass for link in arm.link] == [0.21, 0.13, 0.11, 0.2148]
         assert [link.length for link in arm.link] == [0.086, 0.14, 0.049, 0.172]
         assert arm.link[0].inertia.yy == 8.26e-5
+
+
+def test_friction_holds_the_sticky_arm_where_table_11_says_that_it_rests() -> None:
+    grey, sticky = load_arm("grey_box"), load_arm("sticky_grey_box")
+    laws = load(paper_table("before_tuning")).joint
+    for number, (joint, left) in enumerate(zip(sticky.joint, PAPER_STEADY_STATE[0], strict=True)):
+        assert joint.motor == grey.joint[number].motor
+        law = laws[number]
+        volts = law.ku * min(1.0, law.kp * left / law.sets.Pe_b)
+        assert joint.friction.coulomb / sticky.actuator(number).torque_per_volt == pytest.approx(volts, abs=0.05)
 
 
 def test_default_motors_are_near_the_white_box_but_not_equal() -> None:

@@ -33,7 +33,7 @@ def test_names_that_are_alike(name: str, question: str) -> None:
 
 def test_arms_and_controllers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(UserError, match=r"gray_box: cannot be read: .*\. Did you mean grey_box\?$"):
+    with pytest.raises(UserError, match=r"gray_box: cannot be read: .*\. Did you mean grey_box or sticky_grey_box\?$"):
         load_arm("gray_box")
     with pytest.raises(UserError, match=r"table_7: cannot be read: .*\. Did you mean table_\d or table_\d+ or"):
         controller.load("table_7")

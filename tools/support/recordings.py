@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from greywhale.arm import ArmParameters, Potentiometers
+from greywhale.arm.draw import draw_arm
 from greywhale.base.types import Floats
 from greywhale.files import controller
 from greywhale.files.arm import load_arm
@@ -87,46 +88,8 @@ def _readings(angles: Floats, arm: ArmParameters, table: ParameterTable, seed: i
 
 
 def random_arm(seed: int) -> ArmParameters:
-    """The white box with motor combinations times e^(+-0.9), friction, backlash and sensor noise of its own."""
-    random = np.random.default_rng(seed)
-    white = load_arm("white_box")
-    joints = []
-    for number, joint in enumerate(white.joint):
-        known = white.actuator(number)
-        alpha, inertia_volts, damping_volts = random.uniform(-0.9, 0.9, 3)
-        torque_per_volt = known.torque_per_volt * np.exp(-alpha)
-        inertia = known.inertia * np.exp(inertia_volts - alpha)
-        damping = known.damping * np.exp(damping_volts - alpha)
-        coulomb = random.uniform(0.2, 0.9) * torque_per_volt
-        motor = {
-            "gear_ratio": 1.0,
-            "torque_constant": 0.5 * damping / torque_per_volt,
-            "resistance": 0.5 * damping / torque_per_volt**2,
-            "inertia": inertia,
-            "viscous": 0.5 * damping,
-        }
-        stiffness = 15.0 * torque_per_volt / 0.004
-        joints.append(
-            joint.model_dump()
-            | {
-                "motor": {key: float(value) for key, value in motor.items()},
-                "friction": {
-                    "coulomb": float(coulomb),
-                    "breakaway": float(coulomb * random.uniform(1.05, 1.5)),
-                    "stribeck_velocity": float(random.uniform(0.05, 0.15)),
-                },
-                "gear": {
-                    "half_gap": float(random.uniform(0.001, 0.006)),
-                    "stiffness": float(stiffness),
-                    "damping": float(stiffness * 0.002),
-                    "drag": float(0.02 * damping),
-                },
-            }
-        )
-    noise = float(random.uniform(0.001, 0.004))
-    pots = {"supply": 5.0, "joint": [{"noise": noise}] * 4}
-    data = white.model_dump() | {"name": f"random arm {seed}", "joint": joints, "motor_equation": "physical"}
-    return ArmParameters.model_validate(data | {"follower_pots": pots, "leader_pots": pots}, strict=False)
+    """An arm drawn around the white box."""
+    return draw_arm(load_arm("white_box"), seed)
 
 
 def record_three(arm: ArmParameters, folder: Path, seed: int = 1, seconds: float = 30.0) -> Recorded:

@@ -12,7 +12,9 @@ from greywhale.files.names import suggesting
 
 
 def arm_names() -> list[str]:
-    """The arms that come with greywhale: default, worn, two_joints, and the paper's white_box and grey_box."""
+    """The arms that come with greywhale: default, worn, two_joints, and the paper's white_box, grey_box and
+    sticky_grey_box.
+    """
     folder = _shipped()
     return sorted(entry.name.removesuffix(".toml") for entry in folder.iterdir() if entry.name.endswith(".toml"))
 
