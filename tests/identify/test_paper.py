@@ -8,7 +8,7 @@ import pytest
 from greywhale.arm import ArmParameters
 from greywhale.base.types import show_no_progress
 from greywhale.files.arm import load_arm
-from greywhale.identify import paper
+from greywhale.identify import pack_search, paper
 from greywhale.identify.closed_loop import Loop
 from greywhale.identify.data import prepare
 from greywhale.identify.run import identify
@@ -27,13 +27,36 @@ def test_table_4_gives_the_papers_arms(recorded: Recorded, white_box: ArmParamet
 
 
 def test_the_budget_is_the_first_pack_and_fifty_moves() -> None:
-    assert paper.BUDGET == 510
+    assert pack_search.BUDGET == 510
+
+
+@pytest.mark.parametrize("method", ["paper-started", "gwo-woa"])
+def test_with_the_white_box_in_its_pack_no_search_ends_worse(
+    method: str, recorded: Recorded, white_box: ArmParameters, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(pack_search, "BUDGET", 20)
+    outcome = identify([recorded.fit], white_box, method=method, seed=3)
+    (fitted,) = outcome.verdicts
+    assert outcome.found.simulations == 20
+    assert outcome.complete
+    assert sum(fitted.model) <= sum(fitted.white_box) * 1.001  # the judge's noise is its own
+
+
+def test_the_search_on_logarithms_finds_friction_and_a_better_arm(
+    recorded: Recorded, white_box: ArmParameters, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(pack_search, "BUDGET", 100)
+    outcome = identify([recorded.fit], white_box, validate=[recorded.second], method="gwo-woa", seed=3)
+    assert {one.name.split(".")[1] for one in outcome.estimates} == {"alpha", "inertia", "damping", "coulomb"}
+    for one in outcome.estimates:
+        assert one.white_box / 12.2 <= one.value <= 12.2 * one.white_box  # e^2.5
+    assert outcome.verdicts[1].improvement > 0.3
 
 
 def test_search_stays_within_table_2_and_never_gets_worse(
     recorded: Recorded, white_box: ArmParameters, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(paper, "BUDGET", 60)
+    monkeypatch.setattr(pack_search, "BUDGET", 60)
     outcome = identify([recorded.fit], white_box, validate=[recorded.second], method="paper", seed=3)
     values = np.array([one.value for one in outcome.estimates]).reshape(4, 5)
     assert np.all(values >= paper.LOWER)

@@ -59,7 +59,7 @@ def shrink(patch: pytest.MonkeyPatch) -> None:
         patch.setattr(f"greywhale.reproduce.{name}.METHODS", METHODS)
     for name in ("grey_box.BUDGET", "optimisers.BUDGET", "optimisers.IDENTIFYING"):
         patch.setattr(f"greywhale.reproduce.work.{name}", BUDGET)
-    patch.setattr("greywhale.identify.paper.BUDGET", 50)
+    patch.setattr("greywhale.identify.pack_search.BUDGET", 50)
     patch.setattr(optimisers, "functions", lambda: ("sphere",))
     patch.setattr(errata, "cases", lambda: {"E14": ("E14",), "E1 to E8": ("E2",)})
     patch.setattr(errata, "HOLD_S", 0.2)

@@ -56,7 +56,7 @@ def find_default(task: IdentificationRequest) -> FoundModel:
         orders=tuple((one.order, float(one.held_out or 0.0)) for one in search.tried),
         combinations=combinations(best.space, best.x, sure.covariance),
         rivals=tuple(Rival(one.order, float(one.held_out or 0.0), one.plant) for one in search.rivals()),
-        estimates=_estimates(best.space, best.x, sure.deviations),
+        estimates=estimates_of(best.space, best.x, sure.deviations),
         covariance=sure.covariance,
         draws=draw_plants(best.space, best.x, sure.covariance, DRAWS, task.seed),
         condition=sure.condition,
@@ -79,13 +79,14 @@ def _begin(task: IdentificationRequest) -> Candidate | None:
     return Candidate(space, np.clip(space.translate(x, known), low, high), str(facts.get("order", "")))
 
 
-def _estimates(space: Space, x: Floats, deviations: Floats) -> tuple[ParameterEstimate, ...]:
+def estimates_of(space: Space, x: Floats, deviations: Floats | None) -> tuple[ParameterEstimate, ...]:
     """Values and standard deviations as people read them: a logarithm's deviation is a share of the value."""
     start, values = space.values(space.start()), space.values(x)
     estimates = []
     for index, parameter in enumerate(space.parameters):
         kind = KINDS[parameter.kind]
-        deviation = float(deviations[index]) * (float(values[index]) if kind.logarithmic else 1.0)
+        scale = float(values[index]) if kind.logarithmic else 1.0
+        deviation = None if deviations is None else scale * float(deviations[index])
         before, after = float(start[index]), float(values[index])
         estimates.append(ParameterEstimate(parameter.name, kind.means, kind.unit, before, after, deviation))
     return tuple(estimates)

@@ -46,7 +46,7 @@ class IdentificationRequest:
         loops = self.loops()
         if not loops:
             raise UserError(
-                f"{self.fitted[0].log.log.name}: the paper's method needs the controller that the log was recorded "
-                "with; give it with --controller."
+                f"{self.fitted[0].log.log.name}: a search in the closed loop needs the controller that the log was "
+                "recorded with; give it with --controller."
             )
         return loops

@@ -13,6 +13,9 @@ from greywhale.files.log.reader import refuse_altered
 from greywhale.identify import checks, controllers, judge
 from greywhale.identify.data import prepare
 from greywhale.identify.default import find_default
+from greywhale.identify.found_model import FoundModel
+from greywhale.identify.gwo_woa import METHOD as GWO_WOA
+from greywhale.identify.gwo_woa import find_by_gwo_woa
 from greywhale.identify.overlap import refuse_shared
 from greywhale.identify.paper import METHODS as PAPER_METHODS
 from greywhale.identify.paper import find_as_paper
@@ -21,7 +24,7 @@ from greywhale.identify.result import IdentificationResult
 from greywhale.protocol.joints import ALL, require_same
 from greywhale.protocol.table import ParameterTable
 
-METHODS = ("default", *PAPER_METHODS)
+METHODS = ("default", GWO_WOA, *PAPER_METHODS)
 
 
 def identify(
@@ -47,7 +50,7 @@ def identify(
         raise UserError(f"method is {method!r}, but it must be one of {', '.join(METHODS)}.", BAD_USAGE)
     if not logs:
         raise UserError("identification needs at least one log.", BAD_USAGE)
-    if method != "default" and arm.joints_in_use != ALL:
+    if method in PAPER_METHODS and arm.joints_in_use != ALL:
         raise UserError("the paper's methods are for arms with all four joints; use --method default.", BAD_USAGE)
     require_within("seed", seed, 0, MOST_SEED)
     for log in (*logs, *validate):
@@ -55,7 +58,7 @@ def identify(
     refuse_shared(logs, validate)
     subjects, doubts = _subjects(logs, validate, arm, tables)
     task = IdentificationRequest(arm, tuple(subjects), seed, report or show_no_progress, begin)
-    found = find_default(task) if method == "default" else find_as_paper(task, method)
+    found = _find(task, method)
     verdicts = tuple(
         judge.judge(subject, arm, found.plant, found.zero, found.joints, found.draws) for subject in subjects
     )
@@ -69,6 +72,12 @@ def identify(
         doubts=judge.doubts_of(verdicts, found.joints),
         subjects=tuple(subjects),
     )
+
+
+def _find(task: IdentificationRequest, method: str) -> FoundModel:
+    if method in PAPER_METHODS:
+        return find_as_paper(task, method)
+    return find_by_gwo_woa(task) if method == GWO_WOA else find_default(task)
 
 
 def _remarks(*logs: Sequence[Log]) -> list[str]:

@@ -9,7 +9,8 @@ import numpy as np
 
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.files.arm import load_arm
-from greywhale.identify.paper import AGENTS, ITERATIONS, LOWER, UPPER, VALUES
+from greywhale.identify.pack_search import AGENTS, ITERATIONS
+from greywhale.identify.paper import LOWER, UPPER, VALUES
 from greywhale.pictures import looks
 from greywhale.pictures import paper_curves as curves
 from greywhale.pictures import paper_diagrams as diagrams

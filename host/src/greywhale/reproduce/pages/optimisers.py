@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from greywhale.identify.paper import BUDGET as IDENTIFYING
+from greywhale.identify.pack_search import BUDGET as IDENTIFYING
 from greywhale.pictures import paper_curves as curves
 from greywhale.reproduce.pages.document import Chapter, Entry, Picture, Row, Sheet, Status, sheet, words
 from greywhale.reproduce.pages.found import Found

@@ -10,7 +10,7 @@ from greywhale.base.types import show_no_progress
 from greywhale.files.arm import load_arm
 from greywhale.identify.closed_loop import Loop
 from greywhale.identify.data import prepare
-from greywhale.identify.paper import BUDGET as IDENTIFYING
+from greywhale.identify.pack_search import BUDGET as IDENTIFYING
 from greywhale.identify.paper import PaperSearch
 from greywhale.optimise import minimise
 from greywhale.optimise.comparison import Plan, compare
