@@ -15,6 +15,7 @@ from greywhale.pictures import paper_curves as curves
 from greywhale.pictures import paper_diagrams as diagrams
 from greywhale.pictures.paper_curves import Trace
 from greywhale.reproduce.work import errata, findings, on_the_bench, optimisers
+from greywhale.reproduce.work.arms import DEFAULT
 from greywhale.reproduce.work.motions import MOTIONS
 
 METHODS = ("gwo-woa", "gwo", "woa", "pso")
@@ -26,15 +27,17 @@ _responses = curves.responses
 
 
 @cache
-def followed(seed: int, seconds: float, period_ms: int, traces: bool) -> dict[str, Any]:
+def followed(seed: int, seconds: float, period_ms: int, traces: bool, arm: str = DEFAULT) -> dict[str, Any]:
     """The paper's way, once for both that ask for it."""
-    return _follow(seed, seconds, period_ms, traces)
+    return _follow(seed, seconds, period_ms, traces, arm)
 
 
 def as_paper(seed: int, seconds: float, period_ms: int, budget: int | None, traces: bool) -> dict[str, Any]:
     """In the place of greywhale's own tuning, which takes a hundred times as long."""
     assert budget is not None
-    return followed(seed=seed, seconds=seconds, period_ms=period_ms, traces=traces)  # as the other task calls it
+    return followed(
+        seed=seed, seconds=seconds, period_ms=period_ms, traces=traces, arm=DEFAULT
+    )  # as the other task calls it
 
 
 def responses(traces: Sequence[Trace], *titles: Any, **window: Any) -> bytes:

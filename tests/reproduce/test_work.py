@@ -8,10 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from greywhale.arm.draw import draw_arm
+from greywhale.arm.plants import plant_row
+from greywhale.files.arm import load_arm
 from greywhale.fuzzy.exact import Feet, infer
 from greywhale.fuzzy.settings import JointSettings
 from greywhale.motion import human_reaches, steps
-from greywhale.reproduce.work import bench, errata, findings, grey_box
+from greywhale.reproduce.work import arms, bench, errata, findings, grey_box
 from greywhale.reproduce.work.errata import Law
 from greywhale.reproduce.work.motions import PERIOD_MS, printed
 from tests.reproduce.small import shrink
@@ -45,6 +48,12 @@ def test_the_bench_gives_the_same_log_byte_for_byte(tmp_path: Path) -> None:
     other = bench.record(tmp_path, "three", human_reaches(3, 1.5), table, bench.BENCH_SEED + 1)
     assert other.follower.shape != (0, 4)
     assert (tmp_path / "three.csv").read_bytes() != logs[0]
+
+
+def test_a_drawn_arm_reaches_the_bench_as_it_was_drawn(tmp_path: Path) -> None:
+    assert arms.file_of("sticky_grey_box", tmp_path) == Path("sticky_grey_box")  # a bench knows it by its name
+    path = arms.file_of("drawn 2", tmp_path)
+    assert (plant_row(load_arm(path)) == plant_row(draw_arm(load_arm("white_box"), 2))).all()
 
 
 def test_the_floor_lies_below_every_printed_controller(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -15,7 +15,7 @@ def plot_convergence(costs: tuple[float, ...], method: str) -> Figure:
     """The best cost so far, rad², over iterations; one column wide."""
     figure, axes = plt.subplots(figsize=(COLUMN, 2.5))
     figure.subplots_adjust(**leave(figure, 0.7, 0.12, 0.42, 0.3))
-    axes.step(np.arange(1, len(costs) + 1), costs, where="post", **looks.MODEL.line)
+    axes.step(np.arange(len(costs)), costs, where="post", **looks.MODEL.line)
     make_logarithmic(axes)
     axes.set_xlabel("iteration")
     axes.set_ylabel("best summed MSE [rad²]")

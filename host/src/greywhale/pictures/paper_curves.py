@@ -118,7 +118,7 @@ def convergence(curves: Mapping[str, Sequence[float]], title: str, y: str, first
         for name, curve in curves.items():
             strong = name == first
             axes.step(
-                np.arange(1, len(curve) + 1),
+                np.arange(len(curve)),
                 curve,
                 where="post",
                 color=PAPER if strong else GREY,

@@ -7,10 +7,12 @@ from typing import Any
 
 from greywhale.base.errors import MOST_SEED, require_within
 
-SEEDS, QUICK_SEEDS = 10, 3
+SEEDS, QUICK_SEEDS = 10, 4
 MOST_SEEDS = 1000
 # greywhale's own tuning takes a hundred times the paper's, so it is done for fewer seeds.
 DEFAULT_SEEDS, QUICK_DEFAULT_SEEDS = 3, 1
+# Arms drawn around the white box, and the seeds on each.
+DRAWN_ARMS, QUICK_DRAWN_ARMS, DRAWN_SEEDS = 3, 1, 4
 
 
 @dataclass(frozen=True)
@@ -40,6 +42,16 @@ class Request:
     def few_seeds(self) -> tuple[int, ...]:
         """For greywhale's own tuning."""
         return self.every_seed[: QUICK_DEFAULT_SEEDS if self.quick else DEFAULT_SEEDS]
+
+    @property
+    def arm_seeds(self) -> tuple[int, ...]:
+        """For arms that were drawn."""
+        return self.every_seed[:DRAWN_SEEDS]
+
+    @property
+    def drawn(self) -> tuple[str, ...]:
+        """The arms that were drawn."""
+        return tuple(f"drawn {number + 1}" for number in range(QUICK_DRAWN_ARMS if self.quick else DRAWN_ARMS))
 
     @property
     def tuning_budget(self) -> int | None:

@@ -7,12 +7,15 @@ from typing import Any
 from greywhale.base.study import Task
 from greywhale.reproduce.request import Request
 from greywhale.reproduce.work import bench, errata, findings, grey_box, on_the_bench, optimisers
+from greywhale.reproduce.work.arms import DEFAULT, STICKY
 from greywhale.reproduce.work.motions import PERIOD_MS, printed
 
 # The board's own control period, at which greywhale's own controllers run and the data sets are recorded.
 OWN_PERIOD_MS = 1
 # What was tried on the bench without a tuning here: controllers, control period.
-UNTUNED = (("before_tuning", PERIOD_MS), ("before_tuning", OWN_PERIOD_MS), ("table_10", PERIOD_MS))
+UNTUNED = tuple((name, period) for name in ("before_tuning", "table_10") for period in (PERIOD_MS, OWN_PERIOD_MS))
+# Ways to read the paper's identification, and its optimiser as good as it can be.
+IDENTIFICATIONS = ("paper", "paper-started", "gwo-woa")
 
 
 def tasks_of(request: Request) -> list[Task]:
@@ -33,8 +36,28 @@ def tasks_of(request: Request) -> list[Task]:
         for name in optimisers.functions()
     ]
     tasks += [
-        Task(f"paper {seed}", on_the_bench.follow_as_paper, seed, {**data, "traces": seed == first})
+        Task(
+            f"paper {arm} {seed}",
+            on_the_bench.follow_as_paper,
+            seed,
+            {**data, "traces": arm == DEFAULT and seed == first, "arm": arm},
+        )
+        for arm in (DEFAULT, STICKY)
         for seed in request.every_seed
+    ]
+    tasks += [
+        Task(
+            f"identified {method} {arm} {seed}",
+            on_the_bench.identify_on_bench,
+            seed,
+            {**data, "method": method, "arm": arm},
+        )
+        for arm, methods, seeds in (
+            *((arm, IDENTIFICATIONS[1:], request.every_seed) for arm in (DEFAULT, STICKY)),
+            *((arm, IDENTIFICATIONS, request.arm_seeds) for arm in request.drawn),
+        )
+        for method in methods
+        for seed in seeds
     ]
     tasks += [
         Task(f"errata {name}", errata.effect, first, {"names": list(names)}) for name, names in errata.cases().items()
@@ -69,7 +92,13 @@ def _grey_box(request: Request) -> list[Task]:
 def _experiments(seed: int) -> list[Task]:
     """What nobody tuned here: the controllers from before at both periods, and those of Table 10."""
     return [
-        Task(f"bench {name} {period}", bench.try_controllers, 0, {"rows": printed(name).tolist(), "period_ms": period})
+        Task(
+            f"bench {arm} {name} {period}",
+            bench.try_controllers,
+            0,
+            {"rows": printed(name).tolist(), "period_ms": period, "arm": arm},
+        )
+        for arm in (DEFAULT, STICKY)
         for name, period in UNTUNED
     ]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from greywhale.pictures import looks
@@ -15,6 +15,7 @@ from greywhale.reproduce.pages.numbers import lower, one, several
 from greywhale.reproduce.pages.printed import MULTI_STEPS_LOWER, STEPS_LOWER
 from greywhale.reproduce.pages.tuning import totals
 from greywhale.reproduce.tasks import OWN_PERIOD_MS
+from greywhale.reproduce.work.arms import DEFAULT, STICKY
 from greywhale.reproduce.work.motions import PERIOD_MS
 from greywhale.tune.report.tables import PAPER_DELAY, PAPER_MULTI_STEP_MSE, PAPER_STEADY_STATE, PAPER_STEP_MSE
 
@@ -22,14 +23,13 @@ from greywhale.tune.report.tables import PAPER_DELAY, PAPER_MULTI_STEP_MSE, PAPE
 RESTLESS_RAD = 0.03
 ERROR = "leader less follower"
 LOOKS = (looks.BEFORE, looks.PAPERS_METHOD, looks.AFTER)
-COLUMNS = (
-    "before, printed",
-    "after, printed",
-    f"before, {PERIOD_MS} ms",
-    "paper's method",
-    "paper's Table 10",
-    f"before, {OWN_PERIOD_MS} ms",
-    "greywhale",
+# Heading of Table 11, our name, the paper's numbers, and their form.
+MEASURES: tuple[tuple[str, str, tuple[Sequence[float], Sequence[float]] | None, str], ...] = (
+    ("Steady-state error (rad)", "steady", PAPER_STEADY_STATE, ".3f"),
+    ("Settling error (rad): the end of the move is in it; not in the paper", "settling", None, ".3f"),
+    ("Time delay (s), from onset to onset", "onset", PAPER_DELAY, ".3f"),
+    ("Time delay (s), of best correlation; not in the paper", "delay", None, ".3f"),
+    ("Swing in the last second (rad, from end to end); not in the paper", "swing", None, ".3f"),
 )
 
 
@@ -42,6 +42,7 @@ def chapter(found: Found) -> Chapter:
             Entry("Table 11", "Performance before and after tuning", Status.MEASURED, _table_11(found)),
             Entry("Fig. 20", "Multi-step responses", Status.MEASURED, _figure(found, "multi-steps")),
             Entry("Table 12", "MSE of the multi-step response", Status.MEASURED, _table_12(found)),
+            Entry("", "Tables 11 and 12 on an arm like the paper's", Status.MEASURED, _sticky(found)),
             Entry("", "The same controllers on their models", Status.COMPUTED, (_simulated(found),)),
         ),
     )
@@ -49,7 +50,7 @@ def chapter(found: Found) -> Chapter:
 
 def _figure(found: Found, motion: str) -> tuple[Any, ...]:
     runs = {
-        "before tuning": found[f"bench before_tuning {PERIOD_MS}"],
+        "before tuning": found.untuned("before_tuning", PERIOD_MS),
         "paper's method": found.paper()[0]["measured"],
         "greywhale": found.default()[0]["measured"],
     }
@@ -82,29 +83,34 @@ def _figure(found: Found, motion: str) -> tuple[Any, ...]:
     return tuple(shown)
 
 
-def _reference(found: Found, name: str, period: int) -> Any:
-    return found[f"bench {name} {period}"]
+def columns_of(found: Found, arm: str = DEFAULT) -> dict[str, list[Any]]:
+    """Our columns for an arm: name -> runs on the bench."""
+    paper = found.paper(arm)
+    columns = {
+        f"before, {PERIOD_MS} ms": [found.untuned("before_tuning", PERIOD_MS, arm)],
+        "paper's method": [run["measured"] for run in paper],
+        "Table 10": [found.untuned("table_10", PERIOD_MS, arm)],
+        f"before, {OWN_PERIOD_MS} ms": [found.untuned("before_tuning", OWN_PERIOD_MS, arm)],
+        f"paper's method, {OWN_PERIOD_MS} ms": [run["measured, own period"] for run in paper],
+        f"Table 10, {OWN_PERIOD_MS} ms": [found.untuned("table_10", OWN_PERIOD_MS, arm)],
+    }
+    return columns | ({"greywhale": [run["measured"] for run in found.default()]} if arm == DEFAULT else {})
 
 
-def _columns(found: Found, motion: str, measure: str) -> list[list[Sequence[float | None]]]:
+Columns = Mapping[str, Sequence[Any]]
+
+
+def _numbers(columns: Columns, motion: str, measure: str) -> list[list[Sequence[float | None]]]:
     """For each of our columns the runs, each four numbers."""
-    single = [
-        [_reference(found, "before_tuning", PERIOD_MS)],
-        [run["measured"] for run in found.paper()],
-        [_reference(found, "table_10", PERIOD_MS)],
-        [_reference(found, "before_tuning", OWN_PERIOD_MS)],
-        [run["measured"] for run in found.default()],
-    ]
-    return [[run[motion]["after"][measure] for run in runs] for runs in single]
+    return [[run[motion]["after"][measure] for run in runs] for runs in columns.values()]
 
 
-def _mse_rows(found: Found, motion: str, theirs: tuple[Sequence[float], Sequence[float]]) -> list[Row]:
-    columns = _columns(found, motion, "mse")
+def _mse_rows(columns: Columns, motion: str, theirs: tuple[Sequence[float], Sequence[float]]) -> list[Row]:
     rows = []
     for joint in range(JOINTS + 1):
         label = f"Joint {joint}" if joint < JOINTS else "All joints"
         cells = [one(side[joint]) for side in theirs]
-        for runs in columns:
+        for runs in _numbers(columns, motion, "mse"):
             cells.append(several([_joint_or_all(run, joint) for run in runs], ".4f"))
         rows.append(Row(label, tuple(cells)))
     return rows
@@ -115,86 +121,90 @@ def _joint_or_all(run: Sequence[float | None], joint: int) -> float:
     return sum(known) if joint == JOINTS else known[joint]
 
 
-def _table_11(found: Found) -> tuple[Any, ...]:
-    rows = [Row("Mean squared error (rad²)"), *_mse_rows(found, "steps", PAPER_STEP_MSE)]
-    for heading, measure, theirs, form in (
-        ("Steady-state error (rad)", "steady", PAPER_STEADY_STATE, ".3f"),
-        ("Settling error (rad): the end of the move is in it; not in the paper", "settling", None, ".3f"),
-        ("Time delay (s), from onset to onset", "onset", PAPER_DELAY, ".3f"),
-        ("Time delay (s), of best correlation; not in the paper", "delay", None, ".3f"),
-        ("Swing in the last second (rad, from end to end); not in the paper", "swing", None, ".3f"),
-    ):
+def _rows_11(columns: Columns) -> list[Row]:
+    rows = [Row("Mean squared error (rad²)"), *_mse_rows(columns, "steps", PAPER_STEP_MSE)]
+    for heading, measure, theirs, form in MEASURES:
         rows.append(Row(heading))
-        columns = _columns(found, "steps", measure)
         for joint in range(JOINTS):
             cells = ["–", "–"] if theirs is None else [one(side[joint], ".2f") for side in theirs]
-            cells += [several([run[joint] for run in runs], form) for runs in columns]
+            cells += [several([run[joint] for run in runs], form) for runs in _numbers(columns, "steps", measure)]
             rows.append(Row(f"Joint {joint}", tuple(cells)))
-    return _sheet(found, rows), _summary(found, "steps", STEPS_LOWER), _hunting(found)
+    return rows
 
 
-def _hunting(found: Found) -> Any:
+def _table_11(found: Found) -> tuple[Any, ...]:
+    columns = columns_of(found)
+    rows = _rows_11(columns)
+    return _sheet(found, columns, rows), _summary(found, "steps", STEPS_LOWER), _hunting(columns)
+
+
+def _sticky(found: Found) -> tuple[Any, ...]:
+    """Tables 11 and 12 on an arm like the paper's."""
+    columns = columns_of(found, STICKY)
+    rows = [*_rows_11(columns), Row("Mean squared error of the multi-steps (rad²)")]
+    rows += _mse_rows(columns, "multi-steps", PAPER_MULTI_STEP_MSE)
+    return (
+        words(
+            "The bench with the paper's grey box and the friction that Table 11's errors before tuning imply "
+            "(docs/arm.md). Model and controllers come from its own logs, by the paper's method: its model has no "
+            "friction."
+        ),
+        _sheet(found, columns, rows),
+        _summary(found, "steps", STEPS_LOWER, STICKY),
+        _summary(found, "multi-steps", MULTI_STEPS_LOWER, STICKY),
+    )
+
+
+def _hunting(columns: Columns) -> Any:
     """How many joints never come to rest after the step."""
     hunting = []
-    for runs in _columns(found, "steps", "swing"):
+    for name, runs in zip(columns, _numbers(columns, "steps", "swing"), strict=True):
         swings = [swing or 0.0 for run in runs for swing in run]
-        hunting.append(f"{sum(swing > RESTLESS_RAD for swing in swings)} of {len(swings)}")
-    before, paper, table_10, own, ours = hunting
+        hunting.append(f"{name} {sum(swing > RESTLESS_RAD for swing in swings)} of {len(swings)}")
     return words(
         f"Joints that still swing by more than {RESTLESS_RAD:g} rad in the last second of the step, over all seeds: "
-        f"before tuning {before} ({PERIOD_MS} ms) and {own} ({OWN_PERIOD_MS} ms), paper's method {paper}, Table 10 "
-        f"{table_10}, greywhale {ours}. A joint that hunts costs more than the paper's measures show."
+        f"{'; '.join(hunting)}. A joint that hunts costs more than the paper's measures show."
     )
 
 
 def _table_12(found: Found) -> tuple[Any, ...]:
-    rows = _mse_rows(found, "multi-steps", PAPER_MULTI_STEP_MSE)
+    columns = columns_of(found)
+    rows = _mse_rows(columns, "multi-steps", PAPER_MULTI_STEP_MSE)
     worse = PAPER_MULTI_STEP_MSE[1][2] / PAPER_MULTI_STEP_MSE[0][2]
     return (
-        _sheet(found, rows),
+        _sheet(found, columns, rows),
         _summary(found, "multi-steps", MULTI_STEPS_LOWER),
         words(f"In the paper's own table joint 2 is {worse:.1f} times worse after tuning; the total hides it."),
     )
 
 
-def _sheet(found: Found, rows: list[Row]) -> Sheet:
-    stopped = sorted(
-        {
-            run[motion]["stopped"]
-            for run in (*[one["measured"] for one in found.paper()], *[one["measured"] for one in found.default()])
-            for motion in ("steps", "multi-steps")
-            if run[motion]["stopped"]
-        }
-    )
+def _sheet(found: Found, columns: Columns, rows: list[Row]) -> Sheet:
+    ends = {run[motion]["stopped"] for runs in columns.values() for run in runs for motion in ("steps", "multi-steps")}
     notes = [
         f"Paper's method: {found.seeds}, each with its own identification. greywhale: {found.few_seeds}.",
         "The supervisor's checks of motion were off, so that each experiment is seen to its end.",
     ]
-    notes += [f"A recording ended early: {reason}" for reason in stopped]
-    return sheet(("", *COLUMNS), rows, (1, 2), notes)
+    notes += [f"A recording ended early: {reason}" for reason in sorted(ends - {""})]
+    return sheet(("", "before, printed", "after, printed", *columns), rows, (1, 2), notes)
 
 
-def changes(found: Found, motion: str) -> dict[str, list[float]]:
-    """By how many per cent the total MSE on the bench fell: paper's method, Table 10, greywhale."""
-    before = _total(_reference(found, "before_tuning", PERIOD_MS), motion)
-    own = _total(_reference(found, "before_tuning", OWN_PERIOD_MS), motion)
-    return {
-        "paper": [lower(before, _total(run["measured"], motion)) for run in found.paper()],
-        "table 10": [lower(before, _total(_reference(found, "table_10", PERIOD_MS), motion))],
-        "greywhale": [lower(own, _total(run["measured"], motion)) for run in found.default()],
-    }
+def changes(found: Found, motion: str, arm: str = DEFAULT) -> dict[str, list[float]]:
+    """By how many per cent the total MSE on the bench fell, for each of our columns that is no start of another."""
+    columns = columns_of(found, arm)
+    fell = {}
+    for name, runs in columns.items():
+        own = name == "greywhale" or name.endswith(f", {OWN_PERIOD_MS} ms")
+        (start,) = columns[f"before, {OWN_PERIOD_MS if own else PERIOD_MS} ms"]
+        if not name.startswith("before"):
+            fell[name] = [lower(totals(start, motion), totals(run, motion)) for run in runs]
+    return fell
 
 
-def _total(run: Any, motion: str) -> float:
-    return totals(run, motion)
-
-
-def _summary(found: Found, motion: str, theirs: float) -> Any:
-    fell = changes(found, motion)
+def _summary(found: Found, motion: str, theirs: float, arm: str = DEFAULT) -> Any:
+    fell = [f"{name} {several(gains, '.1f')} %" for name, gains in changes(found, motion, arm).items()]
     return words(
-        f"The paper reports a total that is {theirs:g} % lower after tuning. On the bench the paper's method lowers it "
-        f"by {several(fell['paper'], '.1f')} %, the paper's printed Table 10 by {several(fell['table 10'], '.1f')} %, "
-        f"greywhale by {several(fell['greywhale'], '.1f')} %. A negative number is an increase."
+        f"The paper reports a total on {motion} that is {theirs:g} % lower after tuning. Here it is lower by, each "
+        f"against before tuning at its own period: {'; '.join(fell)}. A negative number is an increase."
     )
 
 

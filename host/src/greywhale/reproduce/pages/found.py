@@ -11,6 +11,7 @@ import numpy as np
 from greywhale.base.types import Controllers
 from greywhale.reproduce.request import Request
 from greywhale.reproduce.work import errata, optimisers
+from greywhale.reproduce.work.arms import DEFAULT, STICKY
 
 Result = Mapping[str, Any]
 
@@ -25,9 +26,20 @@ class Found:
     def __getitem__(self, key: str) -> Any:
         return self.results[key]
 
-    def paper(self) -> list[Any]:
-        """The paper's way on the bench, a result a seed."""
-        return [self[f"paper {seed}"] for seed in self.request.every_seed]
+    def paper(self, arm: str = DEFAULT) -> list[Any]:
+        """The paper's way on the bench with an arm, a result a seed."""
+        return [self[f"paper {arm} {seed}"] for seed in self.request.every_seed]
+
+    def untuned(self, name: str, period_ms: int, arm: str = DEFAULT) -> Any:
+        """Printed controllers on the bench."""
+        return self[f"bench {arm} {name} {period_ms}"]
+
+    def identified(self, method: str, arm: str) -> list[Any]:
+        """What a method of identification found on an arm, a result a seed."""
+        if method == "paper" and arm in (DEFAULT, STICKY):
+            return [run["identified"] for run in self.paper(arm)]
+        seeds = self.request.arm_seeds if arm in self.request.drawn else self.request.every_seed
+        return [self[f"identified {method} {arm} {seed}"] for seed in seeds]
 
     def default(self) -> list[Any]:
         """greywhale's own way on the bench, a result a seed."""

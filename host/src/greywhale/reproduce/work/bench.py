@@ -1,4 +1,4 @@
-"""The experiment: the compiled firmware on the simulated board drives the default arm; all that comes back are logs.
+"""The experiment: the compiled firmware on the simulated board drives an arm; all that comes back are logs.
 
 The bench runs in lock step with its host, so the logs are the same byte for byte whenever they are recorded again.
 """
@@ -21,6 +21,7 @@ from greywhale.files.log import Log, read_evidence
 from greywhale.files.trajectory import Trajectory
 from greywhale.motion import evaluate, human_reaches
 from greywhale.protocol.table import ParameterTable
+from greywhale.reproduce.work.arms import DEFAULT, file_of
 from greywhale.reproduce.work.motions import MOTIONS, SHOWN_S, measures, paper_board, printed, rounded, shown
 
 SUPPLY_V = 15.0
@@ -50,13 +51,15 @@ def board(rows: Controllers, period_ms: int) -> ParameterTable:
     return paper_board(SUPPLY_V, period_ms).with_raw(UNGUARDED).with_controllers(rows.tolist())
 
 
-def record(folder: Path, name: str, motion: Trajectory, table: ParameterTable, seed: int = BENCH_SEED) -> Log:
-    """The log `name`.csv of the arm that follows a motion; the leader's own file lies beside it."""
+def record(
+    folder: Path, name: str, motion: Trajectory, table: ParameterTable, seed: int = BENCH_SEED, arm: str = DEFAULT
+) -> Log:
+    """The log `name`.csv of an arm that follows a motion; the leader's own file lies beside it."""
     lock_step: Any = importlib.import_module("greywhale_sim.lockstep")
     assemble: Any = importlib.import_module("greywhale_sim.assemble")
     leader, path = folder / f"{name}.leader.csv", folder / f"{name}.csv"
     save_leader(leader, motion)
-    options = assemble.BenchOptions(leader=leader, seed=seed)
+    options = assemble.BenchOptions(leader=leader, arm=file_of(arm, folder), seed=seed)
     seconds = BEFORE_S + motion.duration_s + AFTER_S
     try:
         lock_step.record_in_lock_step(path, options, table, seconds)
@@ -69,8 +72,10 @@ def record(folder: Path, name: str, motion: Trajectory, table: ParameterTable, s
 
 
 @cache
-def record_data(seconds: float, period_ms: int) -> tuple[tuple[Log, ...], tuple[ParameterTable, ...]]:
-    """The data sets at a control period, and the tables with which they were recorded.
+def record_data(
+    seconds: float, period_ms: int, arm: str = DEFAULT
+) -> tuple[tuple[Log, ...], tuple[ParameterTable, ...]]:
+    """The data sets of an arm at a control period, and the tables with which they were recorded.
 
     Every process records them for itself, once: they come out the same.
     """
@@ -78,7 +83,7 @@ def record_data(seconds: float, period_ms: int) -> tuple[tuple[Log, ...], tuple[
     with tempfile.TemporaryDirectory(prefix="greywhale-reproduce-") as folder:
         for number, (_, seed, controllers) in enumerate(DATA_SETS, 1):
             motion, table = human_reaches(seed, seconds), board(printed(controllers), period_ms)
-            logs.append(record(Path(folder), f"data set {number}", motion, table))
+            logs.append(record(Path(folder), f"data set {number}", motion, table, arm=arm))
     names = dict.fromkeys(controllers for _, _, controllers in DATA_SETS)
     return tuple(logs), tuple(board(printed(name), period_ms).with_name(name) for name in names)
 
@@ -96,7 +101,9 @@ def swings(log: Log) -> list[float]:
     return found
 
 
-def try_controllers(seed: int, rows: list[list[int]], period_ms: int, traces: bool = True) -> dict[str, Any]:
+def try_controllers(
+    seed: int, rows: list[list[int]], period_ms: int, traces: bool = True, arm: str = DEFAULT
+) -> dict[str, Any]:
     """Steps and multi-steps of controllers (4, 13) on the bench: the paper's measures of the logs.
 
     `seed` changes the noise of the bench's potentiometers, and where its gears stand.
@@ -105,7 +112,7 @@ def try_controllers(seed: int, rows: list[list[int]], period_ms: int, traces: bo
     found: dict[str, Any] = {}
     with tempfile.TemporaryDirectory(prefix="greywhale-reproduce-") as folder:
         for motion, make in MOTIONS.items():
-            log = record(Path(folder), motion, make(), table, BENCH_SEED + seed)
+            log = record(Path(folder), motion, make(), table, BENCH_SEED + seed, arm)
             numbers = measures(evaluate(log)) | {"swing": swings(log)}
             one: dict[str, Any] = {"after": numbers, "stopped": why_ended(log), "samples": len(log.time)}
             if traces:

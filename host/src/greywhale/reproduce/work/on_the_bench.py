@@ -10,6 +10,7 @@ from greywhale.arm.plants import plant_row
 from greywhale.files.arm import load_arm
 from greywhale.identify import IdentificationResult, identify
 from greywhale.identify.closed_loop import COMPARED_TICKS, Loop
+from greywhale.reproduce.work.arms import DEFAULT
 from greywhale.reproduce.work.bench import record_data, try_controllers
 from greywhale.reproduce.work.grey_box import setting, tune_as_paper
 from greywhale.reproduce.work.motions import judged, measures, printed, rounded
@@ -20,9 +21,11 @@ from greywhale.tune.model import Model, load_model
 SHOWN_EVERY = 4
 
 
-def identify_on_bench(seconds: float, period_ms: int, method: str, seed: int, traces: bool) -> dict[str, Any]:
+def identify_on_bench(
+    seed: int, seconds: float, period_ms: int, method: str, traces: bool = False, arm: str = DEFAULT
+) -> dict[str, Any]:
     """A model from data set 1, judged on all three; with it the text of its model.toml."""
-    logs, tables = record_data(seconds, period_ms)
+    logs, tables = record_data(seconds, period_ms, arm)
     outcome = identify(logs[:1], load_arm("white_box"), validate=logs[1:], tables=tables, method=method, seed=seed)
     _require_whole(outcome.complete)
     found = _facts(outcome)
@@ -74,22 +77,25 @@ def _responses(outcome: IdentificationResult, place: int) -> dict[str, Any]:
     }
 
 
-def follow_as_paper(seed: int, seconds: float, period_ms: int, traces: bool) -> dict[str, Any]:
+def follow_as_paper(
+    seed: int, seconds: float, period_ms: int, traces: bool = False, arm: str = DEFAULT
+) -> dict[str, Any]:
     """The paper from section 3 to section 5.4: its identification, its tuning of the sets, steps and multi-steps."""
-    found = {"identified": identify_on_bench(seconds, period_ms, "paper", seed, traces)}
+    found = {"identified": identify_on_bench(seed, seconds, period_ms, "paper", traces, arm)}
     model = _model(found["identified"]["model"], seed)
     method, tuned = tune_as_paper(model, "mf", seed)
     controllers = {"before": printed("before_tuning"), "after": method.found.best}
     table, plant = setting(model, float(model.arm.drive.supply))
     found["tuned"] = tuned
     found["simulated"] = judged(model.arm, table, plant, controllers)
-    found["measured"] = try_controllers(0, tuned["controllers"], table.period_ms, traces)
+    found["measured"] = try_controllers(0, tuned["controllers"], table.period_ms, traces, arm)
+    found["measured, own period"] = try_controllers(0, tuned["controllers"], period_ms, False, arm)
     return found
 
 
 def follow_as_default(seed: int, seconds: float, period_ms: int, budget: int | None, traces: bool) -> dict[str, Any]:
     """The same with greywhale's own identification and tuning, at the board's own control period."""
-    found = {"identified": identify_on_bench(seconds, period_ms, "default", seed, traces)}
+    found = {"identified": identify_on_bench(seed, seconds, period_ms, "default", traces)}
     model = _model(found["identified"]["model"], seed)
     outcome = tune(model, budget=budget, seed=seed, threads=1, start=printed("before_tuning"), floors=False)
     _require_whole(outcome.complete)
