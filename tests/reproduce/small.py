@@ -14,7 +14,7 @@ from greywhale.pictures import page
 from greywhale.pictures import paper_curves as curves
 from greywhale.pictures import paper_diagrams as diagrams
 from greywhale.pictures.paper_curves import Trace
-from greywhale.reproduce.work import errata, findings, on_the_bench, optimisers
+from greywhale.reproduce.work import errata, findings, on_the_bench, optimisers, readings
 from greywhale.reproduce.work.arms import DEFAULT
 from greywhale.reproduce.work.motions import MOTIONS
 
@@ -68,6 +68,9 @@ def shrink(patch: pytest.MonkeyPatch) -> None:
     patch.setattr(errata, "HOLD_S", 0.2)
     patch.setattr(errata, "SWING_S", 0.1)
     patch.setattr(findings, "PERIODS_MS", (1, 20))
+    for name in ("work.readings", "work.findings", "pages.readings"):
+        patch.setattr(f"greywhale.reproduce.{name}.LENGTHS_S", (0.5, 0.6, 0.7, 0.8))
+    patch.setattr(readings, "SMALL_STEP_S", 0.5)
     patch.setitem(MOTIONS, "steps", lambda: steps(1.0, 0.3, 0.8))
     patch.setitem(MOTIONS, "multi-steps", lambda: multi_steps([0.0, 1.0, -0.5], [0.3, 0.5, 0.8]))
     patch.setattr("greywhale.reproduce.request.Request.logged_s", 5.0)

@@ -14,7 +14,8 @@ from greywhale.files.arm import load_arm
 from greywhale.fuzzy.exact import Feet, infer
 from greywhale.fuzzy.settings import JointSettings
 from greywhale.motion import human_reaches, steps
-from greywhale.reproduce.work import arms, bench, errata, findings, grey_box
+from greywhale.reproduce.pages.numbers import lower
+from greywhale.reproduce.work import arms, bench, errata, findings, grey_box, motions, readings
 from greywhale.reproduce.work.errata import Law
 from greywhale.reproduce.work.motions import PERIOD_MS, printed
 from tests.reproduce.small import shrink
@@ -63,6 +64,34 @@ def test_the_floor_lies_below_every_printed_controller(monkeypatch: pytest.Monke
         for motion in ("steps", "multi-steps"):
             floor = sum(floors[f"{'mf' if strategy == 'mf' else 'sf'} {motion}"]["mse"])
             assert floor < min(sum(found[strategy][motion][which]["mse"]) for which in ("before", "after"))
+
+
+def test_a_float_law_moves_the_sticky_arm_as_the_firmwares_does() -> None:
+    rows = printed("before_tuning")
+    floats = errata.follow("sticky_grey_box", frozenset(), Law.of(rows), (1.0,), 3.0)
+    arm = load_arm("sticky_grey_box")
+    _, leader, angles = motions.play(
+        arm, motions.paper_board(15.0), plant_row(arm), rows[None], steps(1.0, 1.0, 3.0), every=1
+    )
+    firmware = (leader - angles[0])[-3000:]
+    assert errata.total_mse(firmware) == pytest.approx(errata.total_mse(floats), rel=0.03)
+    assert np.abs(firmware[-500:]).mean(axis=0) == pytest.approx(np.abs(floats[-500:]).mean(axis=0), abs=0.015)
+
+
+def test_the_reading_decides_what_table_10_gains(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(readings, "LENGTHS_S", (4.0,))
+    gains = []
+    for law in ("feet at 0, ce(k) = e(k) - e(k-1)", "crisp feet, ce = de/dt"):
+        found = readings.judge_reading(0, law, "no friction", PERIOD_MS)
+        gains.append(lower(*(found[table]["steps"][0] for table in readings.TABLES)))
+    assert gains == pytest.approx([-1.0, 67.0], abs=1.0)
+
+
+def test_friction_explains_where_table_11_rests(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(findings, "LENGTHS_S", (4.0,))
+    none, _, implied = findings.friction(0).values()
+    assert max(none["before_tuning"]["steady"][0]) < 0.005
+    assert implied["before_tuning"]["steady"][0] == pytest.approx([0.12, 0.21, 0.14, 0.11], abs=0.02)
 
 
 def test_a_seed_gives_the_same_controllers_again(monkeypatch: pytest.MonkeyPatch) -> None:

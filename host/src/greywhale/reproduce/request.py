@@ -6,6 +6,8 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from greywhale.base.errors import MOST_SEED, require_within
+from greywhale.reproduce.work.motions import PERIOD_MS
+from greywhale.reproduce.work.readings import READINGS, Reading
 
 SEEDS, QUICK_SEEDS = 10, 4
 MOST_SEEDS = 1000
@@ -52,6 +54,11 @@ class Request:
     def drawn(self) -> tuple[str, ...]:
         """The arms that were drawn."""
         return tuple(f"drawn {number + 1}" for number in range(QUICK_DRAWN_ARMS if self.quick else DRAWN_ARMS))
+
+    @property
+    def readings(self) -> tuple[Reading, ...]:
+        """Of the controllers; a control period of 1 ms takes much longer to simulate."""
+        return tuple(one for one in READINGS if not self.quick or one.period_ms == PERIOD_MS)
 
     @property
     def tuning_budget(self) -> int | None:

@@ -6,7 +6,7 @@ from typing import Any
 
 from greywhale.base.study import Task
 from greywhale.reproduce.request import Request
-from greywhale.reproduce.work import bench, errata, findings, grey_box, on_the_bench, optimisers
+from greywhale.reproduce.work import bench, errata, findings, grey_box, on_the_bench, optimisers, readings
 from greywhale.reproduce.work.arms import DEFAULT, STICKY
 from greywhale.reproduce.work.motions import PERIOD_MS, printed
 
@@ -106,7 +106,17 @@ def _experiments(seed: int) -> list[Task]:
 def _findings(request: Request, data: dict[str, Any]) -> list[Task]:
     first = request.seed
     return [
-        Task("feet", findings.feet, first),
+        *(
+            Task(
+                one.key,
+                readings.judge_reading,
+                first,
+                {"law": one.law, "friction": one.friction, "period_ms": one.period_ms},
+            )
+            for one in request.readings
+        ),
+        Task("reading floors", readings.floors, first),
+        Task("silent", readings.silent, first),
         Task("periods", findings.periods, first),
         Task("friction", findings.friction, first),
         *(Task(f"objective {seed}", findings.objective, seed) for seed in request.every_seed),

@@ -6,6 +6,7 @@ sets' feet and the change of error can be read in other ways too.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -25,7 +26,7 @@ SWING = (0.0, 0.4, -0.6, 0.2, 2.0, -1.0, 1.5, 3.0)  # rad and rad/s of the free 
 RUNS_AWAY_J = 100.0
 STEP_S = 1e-3
 LEVELS = (0.0, 1.0, 0.4, -0.6, -1.0, 0.2)  # rad, of the multi-step
-HOLD_S = 2.0
+HOLD_S = 2.0  # s, each level
 SUPPLY_V = 15.0
 ARMS = ("white_box", "grey_box")
 
@@ -49,7 +50,7 @@ class Law:
         return cls(sets.astype(np.float64), np.hstack([gains, ku]), crisp, rate)
 
     def fuzzy(self, e: Floats, change: Floats) -> tuple[Floats, npt.NDArray[np.bool_]]:
-        """u_fuzzy of each joint (..., 4), and where no rule fires; `change` is that of one period."""
+        """u_fuzzy of each joint (..., 4), and where no rule fires; `change` is that of 20 ms."""
         per = 1000.0 / PERIOD_MS if self.rate else 1.0
         x = np.clip(self.gains[:, 0] * e, -1.0, 1.0)
         y = np.clip(self.gains[:, 1] * change * per, -1.0, 1.0)
@@ -81,31 +82,49 @@ def surface(rows: Controllers, joint: int, points: int = 201) -> Floats:
     return found
 
 
-def follow(arm: str, wrong: frozenset[str], law: Law) -> tuple[Floats, float]:
-    """Angles (rows, 4) and total MSE (rad²) of the multi-step with the errata in `wrong`; motor damping is implicit."""
+def follow(
+    arm: str,
+    wrong: frozenset[str],
+    law: Law,
+    levels: Sequence[float] | None = None,
+    hold_s: float | None = None,
+    period_ms: int = PERIOD_MS,
+) -> Floats:
+    """Errors (rows, 4), rad, at every ms of a leader that jumps through `levels` (rad), with the errata in `wrong`.
+
+    Motor damping is implicit, and so is friction, for which each joint counts alone: the paper's motors are so heavy
+    that the links hardly couple them.
+    """
+    levels, hold_s = LEVELS if levels is None else levels, HOLD_S if hold_s is None else hold_s
     parameters = load_arm(arm)
     right = set(ERRATA) - wrong
     body = PrintedBody(parameters, right)
     inertia, push, share, drag = motor_equation([joint.motor for joint in parameters.joint], right)
+    friction = np.array([joint.friction.coulomb for joint in parameters.joint])
     q: Floats = np.zeros(4)
     v, u, before, total = q.copy(), q.copy(), q.copy(), q.copy()
-    rows = round(len(LEVELS) * HOLD_S / STEP_S)
-    angles, squares = np.empty((rows, 4)), 0.0
+    rows = round(len(levels) * hold_s / STEP_S)
+    errors = np.empty((rows, 4))
     for k in range(rows):
-        e = LEVELS[int(k * STEP_S / HOLD_S)] - q
-        squares += float(e @ e)
-        if k % PERIOD_MS == 0:
-            total = total + PERIOD_MS * STEP_S * e
-            change = e - before if k else np.zeros(4)
+        e = errors[k] = levels[int(k * STEP_S / hold_s)] - q
+        if k % period_ms == 0:
+            total = total + period_ms * STEP_S * e
+            change = (e - before) * PERIOD_MS / period_ms if k else np.zeros(4)
             before = e
             wanted = law.gains[:, 3] * law.fuzzy(e, change)[0] + law.gains[:, 2] * total
             u = np.clip(wanted, -SUPPLY_V, SUPPLY_V, dtype=np.float64)
         torque = push * u - share * body.bias(q, v)
         mass = body.mass_matrix(q) + np.diag(inertia)
-        v = np.asarray(np.linalg.solve(mass + STEP_S * np.diag(drag), mass @ v + STEP_S * torque), dtype=np.float64)
+        yielding = np.linalg.inv(mass + STEP_S * np.diag(drag))
+        v = yielding @ (mass @ v + STEP_S * torque)
+        v = np.sign(v) * np.maximum(np.abs(v) - STEP_S * friction * np.diag(yielding), 0.0)
         q = q + STEP_S * v
-        angles[k] = q
-    return angles, squares / rows
+    return errors
+
+
+def total_mse(errors: Floats) -> float:
+    """The paper's: summed over the joints, rad²."""
+    return float(np.mean(errors**2, axis=0).sum())
 
 
 def swing(wrong: frozenset[str]) -> float | None:
@@ -148,7 +167,6 @@ def effect(seed: int, names: list[str]) -> dict[str, Any]:
     law = Law.of(printed("before_tuning"))
     found: dict[str, Any] = {"energy": swing(wrong) if wrong & set(BODY_ERRATA) else 0.0}
     for arm in ARMS:
-        correct, mse = follow(arm, frozenset(), law)
-        angles, now = follow(arm, wrong, law)
-        found[arm] = {"angle": float(np.abs(angles - correct).max()), "mse": now / mse}
+        correct, now = follow(arm, frozenset(), law), follow(arm, wrong, law)
+        found[arm] = {"angle": float(np.abs(now - correct).max()), "mse": total_mse(now) / total_mse(correct)}
     return found

@@ -1,11 +1,10 @@
-"""What decides whether the paper's figures come out: feet, period, objective, friction, and what motion can show.
+"""What decides whether the paper's figures come out: period, objective, friction, and what motion can show.
 
 A `seed` that draws nothing is taken all the same, as every task has one.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -17,11 +16,12 @@ from greywhale.fuzzy.settings import GAIN_UNIT
 from greywhale.identify.closed_loop import Loop
 from greywhale.identify.data import prepare
 from greywhale.identify.paper import LOWER, UPPER, VALUES, PaperSearch
+from greywhale.motion import steps
 from greywhale.protocol.firmware import JOINTS
 from greywhale.reproduce.work.bench import record_data
-from greywhale.reproduce.work.errata import Law, follow
 from greywhale.reproduce.work.grey_box import setting, supply_of
 from greywhale.reproduce.work.motions import MOTIONS, WAIT_S, judged, paper_board, play, printed
+from greywhale.reproduce.work.readings import LENGTHS_S
 from greywhale.simulate import CONTROLLER_COLUMNS, Experiment
 from greywhale.tune.model import load_model
 from greywhale.tune.paper import AGENTS, BUDGET, METHOD, Loops
@@ -30,41 +30,14 @@ from greywhale.tune.search.lockstep import SearchState, search_in_lockstep
 from greywhale.tune.search.space import Space
 
 PERIODS_MS = (1, 2, 5, 10, 20, 50)
-# Readings of the sets' feet and of the change of error: name -> crisp, rate.
-READINGS = {
-    "feet at 0, ce(k) = e(k) - e(k-1)": (False, False),
-    "feet at 0, ce = de/dt": (False, True),
-    "crisp feet, ce(k) = e(k) - e(k-1)": (True, False),
-}
-PLANE = 201  # points a side
-COULOMB_V = 4.0
+# Coulomb friction of the joints: none, as much for each, and what Table 11's errors before tuning imply (docs/arm.md).
+FRICTION_V = ((0.0,) * 4, (4.0,) * 4, (3.6, 7.0, 4.1, 4.5))
+CONTROLLERS = ("before_tuning", "table_8", "table_10")
 # Another motor that moves the same: its Kt/R, J r and Kt² r/R are the same.
 OTHER = {"inertia": 0.1, "resistance": 0.1, "torque_constant": 0.1, "viscous": 1.0, "gear_ratio": 10.0}
 # Of so many arms, a joint that does not reach this speed (rad/s) under the whole supply counts as stuck.
 DRAWS, STUCK_RAD_S = 2000, 0.1
 STEP = 0.05  # of a logarithm, for differences
-
-
-def feet(seed: int) -> dict[str, Any]:
-    """Each reading on the paper's grey-box arm: total MSE (rad²) of the multi-step, and the plane without any rule."""
-    found: dict[str, Any] = {}
-    for name, (crisp, rate) in READINGS.items():
-        one: dict[str, Any] = {}
-        for table in ("before_tuning", "table_10"):
-            law = Law.of(printed(table), crisp, rate)
-            one[table] = {"mse": follow("grey_box", frozenset(), law)[1], "silent": _silent(law)}
-        found[name] = one
-    return found
-
-
-def _silent(law: Law) -> list[float]:
-    """The share of the plane of both inputs, from -1 to 1, on which no rule of a joint fires."""
-    axis = np.linspace(-1.0, 1.0, PLANE)
-    x, y = np.meshgrid(axis, axis)
-    unit = replace(law, gains=np.ones_like(law.gains), rate=False)
-    points = [np.repeat(one.ravel()[:, None], JOINTS, axis=1) for one in (x, y)]
-    shares: list[float] = unit.fuzzy(points[0], points[1])[1].mean(axis=0).tolist()
-    return shares
 
 
 def periods(seed: int) -> dict[str, Any]:
@@ -79,14 +52,33 @@ def periods(seed: int) -> dict[str, Any]:
 
 
 def friction(seed: int) -> dict[str, Any]:
-    """The paper's grey-box arm with Coulomb friction of so many volts, which the paper leaves out."""
+    """Steps of the paper's grey box with Coulomb friction (V) under the firmware's own controllers."""
     model = load_model("grey_box", force=True)
-    table, plant = setting(model, supply_of("mf"))
-    for joint in range(JOINTS):
-        pull = COULOMB_V * plant[column("torque_per_volt", joint)]
-        plant[column("coulomb", joint)] = plant[column("breakaway", joint)] = pull
-    controllers = {"before": printed("before_tuning"), "after": printed("table_10")}
-    return {"volts": COULOMB_V, "motions": judged(model.arm, table, plant, controllers)}
+    found: dict[str, Any] = {}
+    for volts in FRICTION_V:
+        table, plant = setting(model, supply_of("mf"))
+        for joint in range(JOINTS):
+            pull = volts[joint] * plant[column("torque_per_volt", joint)]
+            plant[column("coulomb", joint)] = plant[column("breakaway", joint)] = pull
+        rows = np.stack([printed(name) for name in CONTROLLERS])
+        time_s, leader, angles = play(model.arm, table, plant, rows, steps(1.0, 1.0, max(LENGTHS_S)))
+        found["/".join(f"{one:g}" for one in volts)] = {
+            name: _held(time_s, leader, follower) for name, follower in zip(CONTROLLERS, angles, strict=True)
+        }
+    return found
+
+
+def _held(time_s: Floats, leader: Floats, follower: Floats) -> dict[str, list[Any]]:
+    """For a record of each length from the step on: the total MSE (rad²), and each joint's last half second (rad)."""
+    begin = int(np.argmax(leader[:, 0] > 0.5))
+    error = leader - follower
+    found: dict[str, list[Any]] = {"mse": [], "steady": []}
+    for length in LENGTHS_S:
+        held = error[begin : begin + round(length / float(time_s[1] - time_s[0]))]
+        last = held[-round(0.5 / float(time_s[1] - time_s[0])) :]
+        found["mse"].append(float(np.mean(held**2, axis=0).sum()))
+        found["steady"].append(np.abs(last).mean(axis=0).tolist())
+    return found
 
 
 class TwoSided:

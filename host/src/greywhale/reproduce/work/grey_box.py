@@ -8,6 +8,7 @@ from greywhale.arm.plants import column, plant_row
 from greywhale.base.types import Floats, show_no_progress
 from greywhale.files.arm import load_arm
 from greywhale.protocol.table import ParameterTable
+from greywhale.reproduce.work.arms import STICKY
 from greywhale.reproduce.work.motions import MOTIONS, judged, paper_board, printed
 from greywhale.tune.judge.floor import saturation_floor
 from greywhale.tune.model import Model, load_model
@@ -51,12 +52,18 @@ def tune_as_paper(model: Model, strategy: str, seed: int) -> tuple[PaperMethod, 
 
 
 def tune_on_grey_box(seed: int, strategy: str, traces: bool) -> dict[str, Any]:
-    """One run of the paper's method, and how its controllers follow."""
+    """One run of the paper's method, and how its controllers follow: on its model, and on the arm with friction."""
     model = load_model("grey_box", force=True)
     method, found = tune_as_paper(model, strategy, seed)
     controllers = {"before": printed("before_tuning"), "after": method.found.best}
     table, plant = setting(model, supply_of(strategy))
-    return found | {"motions": judged(model.arm, table, plant, controllers, traces)}
+    sticky = load_arm(STICKY)
+    real = plant_row(sticky)
+    real[column("supply")] = supply_of(strategy)
+    return found | {
+        "motions": judged(model.arm, table, plant, controllers, traces),
+        "sticky": judged(sticky, table, real, controllers),
+    }
 
 
 def print_on_grey_box(seed: int) -> dict[str, Any]:
