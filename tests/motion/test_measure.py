@@ -130,10 +130,12 @@ def test_the_steady_state_error_is_that_of_the_final_position() -> None:
     follower = 0.9 * np.clip(leader - np.clip((3.5 - TIME) / 2.0, 0.0, 1.0) * (TIME > 1.0), 0.0, None)  # there at 3.5 s
     measured = log(time, leader[:6000], follower[:6000])
     joint = evaluate(measured).joints[0]
-    # The rest at 0 has no error and counts for as long as the other.
-    assert joint.steady_state_error == pytest.approx((0.0 + 0.1) / 2, rel=0.02)
+    # The rest at 0 follows no move.
+    assert joint.steady_state_error == pytest.approx(0.1, rel=0.02)
     assert joint.settling_error is not None
     assert joint.settling_error > 0.15
+    waiting = evaluate(log(TIME[:900], 0.0 * TIME[:900], 0.0 * TIME[:900] - 0.03)).joints[0]
+    assert waiting.steady_state_error == pytest.approx(0.03)  # where there is no other rest, it counts
 
 
 @given(st.lists(st.booleans(), min_size=1, max_size=60), st.integers(1, 20))

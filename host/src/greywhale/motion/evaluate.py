@@ -4,7 +4,8 @@
   equation 5 and table 11.
 - Steady-state error: "the difference between the desired final position and the actual position in steady state".
   Here the mean of |leader - follower| over the last `rest_s` of each rest, and no sooner than `rest_s` after the
-  leader came to rest, which is when it has stayed within `rest_band` for so long. None where it never rests.
+  leader came to rest, which is when it has stayed within `rest_band` for so long. The rest with which a log begins
+  follows no move, so it counts only where there is no other. None where the leader never rests.
 - Settling error: the same mean over all samples from `rest_s` after the leader came to rest. A slow follower is then
   still on its way; so it tells how soon and how well the follower gets there, and the steady-state error where it ends.
 - Time delay: two definitions, see `delay.py`. `delay_s` is the lag at which the follower resembles the leader most,
@@ -32,7 +33,7 @@ from greywhale.base.types import Floats, PerJoint
 from greywhale.files.log import Log
 from greywhale.motion.delay import correlation_delay, onset_delay
 from greywhale.motion.following import follows
-from greywhale.motion.runs import Run, gap_free_runs, last_part, resting
+from greywhale.motion.runs import Run, first_part, gap_free_runs, last_part, resting
 from greywhale.motion.settings import Settings
 from greywhale.motion.step_response import Answer, answer, departures, worst
 from greywhale.motion.swings import RIPPLE_S, ripple_of_record
@@ -185,7 +186,7 @@ def _joint(
     settings: Settings,
 ) -> tuple[JointMeasures, float]:
     error = leader - follower
-    at_rest, at_end = np.zeros((2, len(leader)), dtype=bool)
+    at_rest, at_end, at_begin = np.zeros((3, len(leader)), dtype=bool)
     onsets: list[float] = []
     answers: list[Answer] = []
     for run in runs:
@@ -193,6 +194,8 @@ def _joint(
         rest = resting(led, window, settings.rest_band)
         at_rest[run.slice] = rest
         at_end[run.slice] = last_part(rest, window)
+        if run is runs[0]:
+            at_begin[run.slice] = first_part(rest, window)
         for step in departures(led, rest, run.period, settings):
             onset = onset_delay(led, followed, step, window, settings.onset_band)
             onsets += [] if onset is None else [onset * run.period]
@@ -202,7 +205,7 @@ def _joint(
     overshoot, settling = worst(answers)
     measures = JointMeasures(
         mse=float(np.mean(error[measured] ** 2)),
-        steady_state_error=_mean_error(error[at_end]),
+        steady_state_error=_mean_error(error[final if (final := at_end & ~at_begin).any() else at_end]),
         delay_s=correlation_delay(
             leader[longest.slice], follower[longest.slice], longest.period, settings.longest_delay_s
         ),

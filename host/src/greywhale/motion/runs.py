@@ -62,3 +62,9 @@ def last_part(rest: NDArray[np.bool_], window: int) -> NDArray[np.bool_]:
     ends = rest & ~np.append(rest[1:], False)
     near_end: NDArray[np.bool_] = maximum_filter1d(ends, window, origin=-(window // 2), mode="constant")
     return rest & near_end
+
+
+def first_part(rest: NDArray[np.bool_], window: int) -> NDArray[np.bool_]:
+    """The rest with which a record begins: it is known to rest from row `window` on."""
+    begun: NDArray[np.bool_] = np.logical_and.accumulate(rest[window:])
+    return np.concatenate((np.zeros(min(window, len(rest)), dtype=bool), begun))
