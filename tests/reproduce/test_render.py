@@ -83,6 +83,20 @@ def test_a_long_table_goes_on_over_pages_of_the_pdf(tmp_path: Path) -> None:
     assert data.count(b"/Type /Page\n") + data.count(b"/Type /Page ") >= 2
 
 
+def test_a_picture_that_hardly_fits_gets_smaller_instead_of_leaving_a_hole(tmp_path: Path) -> None:
+    figure, axes = plt.subplots(figsize=(6.0, 3.6))
+    axes.plot([0, 1], [1, 0])
+    picture = Picture(png(figure), "Nothing.")
+    pages = []
+    for rows in (1, 6, 30):  # beside so many lines both fit, both fit smaller, and the picture needs another page
+        lines = Code(("x",) * rows)
+        blocks = (picture, lines, picture)
+        chapter = Chapter("One", (Entry("Fig. 1", "A", Status.COMPUTED, blocks),))
+        data = write_pdf(Document("A report", (), (chapter,)), tmp_path / "pictures.pdf").read_bytes()
+        pages.append(data.count(b"/Type /Page\n") + data.count(b"/Type /Page "))
+    assert pages == [1, 1, 2]
+
+
 def test_a_line_breaks_before_a_range_and_not_inside_of_it() -> None:
     assert keep_ranges("0.1 (0.05 to 0.2) of it") == "0.1 (0.05\xa0to\xa00.2) of it"
     long = "(a remark in brackets that needs several lines)"
@@ -126,6 +140,7 @@ def test_numbers_are_medians_with_their_range() -> None:
 def test_a_change_too_small_to_be_seen_has_no_sign() -> None:
     assert [change(value, ".2f") for value in (1.234, -1.234, -0.001, 0.0)] == ["+1.23 %", "-1.23 %", "< 0.01 %", "0 %"]
     assert change(0.3, ".0f") == "< 1 %"
+    assert (one(-0.3, ".0f"), several([-0.4, -0.2], ".0f")) == ("0", "0")
 
 
 def test_what_is_quoted_is_what_the_paper_prints() -> None:

@@ -62,14 +62,14 @@ def plot_responses(
     traces: Sequence[Trace], against: Trace, title: str, error: str, *, window: tuple[float, float] | None = None
 ) -> Figure:
     """What `responses` shows, as a figure of pyplot's that the caller closes."""
-    figure = plt.figure(figsize=(WIDE, 6.2))
+    figure = plt.figure(figsize=(WIDE, 5.1))
     headline(figure, title)
     behind = list(traces)[list(traces).index(against) + 1 :]
     first, last = window or (min(np.min(one.time) for one in traces), max(np.max(one.time) for one in traces))
     off = [[_off(one, against, joint, first, last) for one in behind] for joint in range(JOINTS)]
     largest = max(float(np.abs(one[1]).max(initial=0.0)) for joint in off for one in joint)
     below = _label_responses(figure, traces, error, largest)
-    grid = figure.add_gridspec(2, 2, **leave(figure, 0.67, 0.12, 0.46 + below, 0.48), wspace=0.29, hspace=0.28)
+    grid = figure.add_gridspec(2, 2, **leave(figure, 0.67, 0.12, 0.46 + below, 0.48), wspace=0.29, hspace=0.4)
     for joint, name in enumerate(JOINT_TITLES):
         cells = grid[divmod(joint, 2)].subgridspec(2, 1, height_ratios=(2.2, 1), hspace=0.07)
         angle = figure.add_subplot(cells[0])

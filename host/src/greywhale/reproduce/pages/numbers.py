@@ -12,7 +12,13 @@ Number = float | None
 
 def one(value: Number, form: str = ".4f") -> str:
     """A number, or a dash where there is none."""
-    return NONE if value is None else f"{value:{form}}"
+    return NONE if value is None else _shown(value, form)
+
+
+def _shown(value: float, form: str) -> str:
+    """Without the sign of what is rounded to nothing."""
+    text = f"{value:{form}}"
+    return text.removeprefix("-") if float(text) == 0.0 else text
 
 
 def several(values: Sequence[Number], form: str = ".4f") -> str:
@@ -20,8 +26,7 @@ def several(values: Sequence[Number], form: str = ".4f") -> str:
     known = [value for value in values if value is not None]
     if not known:
         return NONE
-    low, high = f"{min(known):{form}}", f"{max(known):{form}}"
-    middle = f"{float(np.median(known)):{form}}"
+    low, high, middle = (_shown(value, form) for value in (min(known), max(known), float(np.median(known))))
     missing = f", {len(values) - len(known)} without" if len(known) < len(values) else ""
     return f"{middle}{missing and ' (' + missing[2:] + ')'}" if low == high else f"{middle} ({low} to {high}{missing})"
 

@@ -44,6 +44,7 @@ FONTS = {"Body": "DejaVuSans", "Strong": "DejaVuSans-Bold", "Fixed": "DejaVuSans
 PRINTED = colors.HexColor("#f6f3e8")
 MOST_POINTS, GOOD_POINTS, LEAST_POINTS = 8.0, 6.8, 4.8
 PADDING = 6.5
+LEAST_SHARE = 0.7  # of a picture's size
 
 
 def write_pdf(document: Document, path: Path) -> Path:
@@ -94,6 +95,26 @@ class _Bookmark(Spacer):
         canvas.addOutlineEntry(self._title, key, self._level, closed=self._level > 0)
 
 
+class _Together(KeepTogether):
+    """Keeps to one page, for which its picture may become a little smaller: better than a hole on the page."""
+
+    def __init__(self, parts: list[Any]) -> None:
+        super().__init__(parts)
+        self._parts = parts
+
+    def split(self, width: float, height: float) -> list[Any]:
+        images = [one for one in self._parts if isinstance(one, Image)]
+        if images:
+            image = images[0]
+            rest = sum(one.wrap(width, height)[1] + one.getSpaceAfter() for one in self._parts if one is not image)
+            share = (height - rest - image.getSpaceAfter() - MARGIN / 4) / image.drawHeight
+            if LEAST_SHARE <= share < 1.0:
+                image.drawWidth, image.drawHeight = share * image.drawWidth, share * image.drawHeight
+                return list(self._parts)
+        found: list[Any] = super().split(width, height)
+        return found
+
+
 def _chapter(chapter: Chapter) -> list[Any]:
     head = [_Bookmark(chapter.title, 1), Spacer(0, 14), Paragraph(escape(chapter.title), _style("Strong", 13))]
     story: list[Any] = []
@@ -114,7 +135,7 @@ def _entry(entry: Entry, head: list[Any]) -> list[Any]:
             # A long table may break, but not between its title and its first rows.
             parts += [CondPageBreak(TITLE_AND_SOME_ROWS), *first, *shown] if first else shown
         else:
-            parts.append(KeepTogether([*first, *shown]))
+            parts.append(_Together([*first, *shown]))
         first = []
     return parts
 
