@@ -68,7 +68,7 @@ def shrink(patch: pytest.MonkeyPatch) -> None:
     patch.setattr(errata, "HOLD_S", 0.2)
     patch.setattr(errata, "SWING_S", 0.1)
     patch.setattr(findings, "PERIODS_MS", (1, 20))
-    for name in ("work.readings", "work.findings", "pages.readings"):
+    for name in ("work.readings", "work.findings", "pages.readings", "pages.claims"):
         patch.setattr(f"greywhale.reproduce.{name}.LENGTHS_S", (0.5, 0.6, 0.7, 0.8))
     patch.setattr(readings, "SMALL_STEP_S", 0.5)
     patch.setitem(MOTIONS, "steps", lambda: steps(1.0, 0.3, 0.8))

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from greywhale.reproduce.pages.significance import against, holm, mean_ranks
+from greywhale.reproduce.pages.claims import judge
+from greywhale.reproduce.pages.significance import against, against_each, holm, mean_ranks
 
 
 def test_holm_multiplies_by_what_is_left_and_never_falls() -> None:
@@ -24,6 +25,29 @@ def test_clear_differences_are_told_in_both_directions() -> None:
 def test_the_same_costs_are_not_told_apart() -> None:
     costs = {"a": [1.0, 2.0, 3.0], "b": [3.0, 1.0, 2.0]}
     assert against(costs, "a")["b"].word == "not told apart"
+
+
+def test_more_questions_make_each_answer_less_sure() -> None:
+    costs = {"a": [1.0, 2.0, 3.0, 4.0, 5.0], "b": [6.0, 7.0, 8.0, 9.0, 10.0]}
+    alone, among = against(costs, "a")["b"], against_each({str(n): costs for n in range(8)}, "a")
+    assert alone.word == "lower"
+    assert alone.chance == pytest.approx(2 / 252)
+    assert {one["b"].word for one in among.values()} == {"not told apart"}
+    assert among["0"]["b"].chance == pytest.approx(8 * alone.chance)
+
+
+@pytest.mark.parametrize(
+    ("default", "sticky", "seeds", "said"),
+    [
+        (True, True, 4, "reproduces"),
+        (False, True, 10, "on an arm like the paper's"),
+        (True, False, 10, "on the default arm"),
+        (False, False, 10, "does not"),
+        (True, True, 3, "open: 3 of 4 seeds"),
+    ],
+)
+def test_a_claim_needs_both_arms_and_enough_seeds(default: bool, sticky: bool, seeds: int, said: str) -> None:
+    assert judge(default, sticky, seeds) == said
 
 
 def test_ranks_are_means_over_runs_with_ties_shared() -> None:

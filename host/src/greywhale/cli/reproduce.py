@@ -33,7 +33,7 @@ class Answer(TypedDict):
     help="Folder for the report and the results of its parts.",
 )
 @click.option("--quick", is_flag=True, help="Fewer seeds, shorter logs, smaller budgets: a look at everything.")
-@click.option("--seeds", type=int, help="Runs of everything random; without it 10, with --quick 3.")
+@click.option("--seeds", type=int, help="Runs of everything random; without it 10, with --quick 4.")
 @click.option("--seed", type=int, default=0, show_default=True, help="The first of them.")
 @workers_option()
 @json_option(Answer)

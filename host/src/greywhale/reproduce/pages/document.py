@@ -50,7 +50,7 @@ class Sheet:
         found = {0}
         for place in range(1, len(self.columns)):
             cells = [row.cells[place - 1] for row in self.rows if row.cells and row.cells[place - 1]]
-            if cells and 2 * sum(cell[0].isalpha() or cell[0] == "{" for cell in cells) > len(cells):
+            if cells and 2 * sum(cell[0].isalpha() or cell[0] == "{" or ";" in cell for cell in cells) > len(cells):
                 found.add(place)
         return frozenset(found)
 

@@ -1,4 +1,4 @@
-"""The last part: what did and did not reproduce, and why. Every number is this run's own."""
+"""The last part: why claims did or did not reproduce. Every number is this run's own."""
 
 from __future__ import annotations
 
@@ -8,13 +8,10 @@ import numpy as np
 
 from greywhale.arm.printed import ERRATA
 from greywhale.reproduce.pages import readings
-from greywhale.reproduce.pages.document import Chapter, Entry, Row, Sheet, Status, sheet, words
-from greywhale.reproduce.pages.experiment import changes
+from greywhale.reproduce.pages.document import Chapter, Entry, Row, Status, sheet, words
 from greywhale.reproduce.pages.found import Found
 from greywhale.reproduce.pages.numbers import change, lower, one, percent, several
-from greywhale.reproduce.pages.optimisers import SAID, costs_of, function_ranks
-from greywhale.reproduce.pages.printed import GREY_BOX_BETTER, STEPS_LOWER
-from greywhale.reproduce.pages.significance import mean_ranks
+from greywhale.reproduce.pages.optimisers import SAID, function_ranks
 from greywhale.reproduce.pages.tuning import totals
 from greywhale.reproduce.work.findings import STUCK_RAD_S
 from greywhale.reproduce.work.motions import PERIOD_MS
@@ -26,13 +23,11 @@ ROUNDED_RAD = 1e-6
 
 
 def chapter(found: Found) -> Chapter:
-    """Claim by claim, then the reasons."""
+    """The reasons for what did and did not come out."""
     return Chapter(
-        "What did and did not reproduce, and why",
+        "Why",
         (
-            Entry("", "The paper's claims", Status.OURS, (_claims(found),)),
             Entry("", "The errata", Status.OURS, _errata(found)),
-            Entry("", "Where the 78 % comes from", Status.OURS, (readings.where_it_comes_from(),)),
             Entry("", "Every reading: steps", Status.OURS, readings.steps(found)),
             Entry("", "Every reading: multi-steps", Status.OURS, readings.multi_steps(found)),
             Entry("", "The control period", Status.OURS, _periods(found)),
@@ -45,59 +40,8 @@ def chapter(found: Found) -> Chapter:
     )
 
 
-def _claims(found: Found) -> Sheet:
-    errors = [run["identified"] for run in found.paper()]
-    better = [lower(sum(one["white_box"][1]), sum(one["mse"][1])) for one in errors]
-    fell = changes(found, "steps")["paper's method"]
-    sets, factors = (
-        [lower(totals(run["motions"], "multi-steps", "before"), totals(run["motions"], "multi-steps")) for run in runs]
-        for runs in (found.grey_box("mf"), found.grey_box("sf"))
-    )
-    plain, shifted = (_place(function_ranks(found, setting), "gwo-woa") for setting in SETTINGS)
-    problems = [_place(mean_ranks(costs_of(found, name)), "gwo-woa") for name in ("identify", "sets")]
-    rows = [
-        Row(
-            f"The grey box is {GREY_BOX_BETTER:g} % better than the white box on new data",
-            (f"{several(better, '.1f')} %", _verdict(float(np.median(better)) >= GREY_BOX_BETTER)),
-        ),
-        Row(
-            f"Tuning lowers the error on steps by {STEPS_LOWER:g} %",
-            (
-                f"{several(fell, '.1f')} %",
-                _verdict(float(np.median(fell)) >= STEPS_LOWER),
-            ),
-        ),
-        Row(
-            "Tuning the sets alone is best in simulation",
-            (
-                f"sets {several(sets, '.1f')} %, factors {several(factors, '.1f')} %",
-                _verdict(float(np.median(sets)) > float(np.median(factors))),
-            ),
-        ),
-        Row(
-            "GWO-WOA is superior to GWO, WOA and PSO",
-            (
-                f"place {plain} of {len(METHODS)} on plain functions, {shifted} on shifted ones; "
-                f"{problems[0]} on identification, {problems[1]} on tuning",
-                _verdict(_leads(found)),
-            ),
-        ),
-    ]
-    return sheet(("the paper says", "here", "reproduced"), rows)
-
-
-def _verdict(holds: bool) -> str:
-    return "yes" if holds else "no"
-
-
 def _place(ranks: dict[str, float], method: str) -> int:
     return 1 + sum(other < ranks[method] for other in ranks.values())
-
-
-def _leads(found: Found) -> bool:
-    """Whether the paper's hybrid is before its rivals of the paper on shifted functions."""
-    ranks = function_ranks(found, "shifted")
-    return all(ranks["gwo-woa"] < ranks[rival] for rival in ("gwo", "woa", "pso"))
 
 
 def _errata(found: Found) -> tuple[Any, ...]:

@@ -148,7 +148,7 @@ def _figure_6(found: Found) -> tuple[Any, ...]:
         "best summed MSE [rad²]",
         first,
     )
-    flat = [_flat(curve) for curve in runs.values()]
+    flat = [last_improvement(curve) for curve in runs.values()]
     return (
         Picture(picture, "Best cost so far; one line a seed."),
         words(
@@ -162,7 +162,7 @@ def _by_seed(found: Found) -> list[tuple[int, Any]]:
     return list(zip(found.request.every_seed, found.paper(), strict=True))
 
 
-def _flat(curve: Sequence[float]) -> int:
+def last_improvement(curve: Sequence[float]) -> int:
     """The iteration that brought the last improvement; 0 is the first pack."""
     return int(np.argmax(np.array(curve) <= curve[-1]))
 

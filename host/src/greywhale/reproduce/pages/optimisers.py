@@ -12,7 +12,7 @@ from greywhale.pictures import paper_curves as curves
 from greywhale.reproduce.pages.document import Chapter, Entry, Picture, Row, Sheet, Status, sheet, words
 from greywhale.reproduce.pages.found import Found
 from greywhale.reproduce.pages.numbers import several
-from greywhale.reproduce.pages.significance import FEWEST, SIGNIFICANCE, against, mean_ranks
+from greywhale.reproduce.pages.significance import FEWEST, SIGNIFICANCE, against, against_each, mean_ranks
 from greywhale.reproduce.work.optimisers import METHODS, SETTINGS
 from greywhale.tune.paper import BUDGET
 
@@ -122,9 +122,8 @@ def _functions(found: Found) -> Sheet:
     rows = []
     for setting in SETTINGS:
         ranks = function_ranks(found, setting)
-        duels = {
-            name: [against(one[setting], OURS)[name].word for one in found.functions().values()] for name in METHODS[1:]
-        }
+        every = against_each({name: one[setting] for name, one in found.functions().items()}, OURS)
+        duels = {name: [duel[name].word for duel in every.values()] for name in METHODS[1:]}
         rows.append(Row(setting))
         for name in sorted(METHODS, key=lambda name: ranks[name]):
             words_ = duels.get(name)
@@ -134,7 +133,10 @@ def _functions(found: Found) -> Sheet:
     return sheet(
         ("method", "mean rank", "GWO-WOA (2 to 0) is lower / higher / not told apart, functions"),
         rows,
-        notes=(f"{len(found.functions())} functions in 10 dimensions, 500 evaluations, {runs} runs each.",),
+        notes=(
+            f"{len(found.functions())} functions in 10 dimensions, 500 evaluations, {runs} runs each.",
+            "Holm's correction is over all pairs of a setting.",
+        ),
     )
 
 

@@ -25,6 +25,11 @@ def gain(found: Found, reading: Reading, length: float) -> float:
     return lower(*(found[reading.key][table]["steps"][place] for table in (BEFORE, AFTER)))
 
 
+def multi_step_gain(found: Found, reading: Reading) -> float:
+    """By how many per cent Table 10 lowers the error on multi-steps."""
+    return lower(*(found[reading.key][table]["multi-steps"] for table in (BEFORE, AFTER)))
+
+
 def most(found: Found, reading: Reading, length: float) -> float:
     """By how many per cent any controller could lower it."""
     floor = found["reading floors"][reading.friction]["steps"] / length
@@ -94,7 +99,7 @@ def multi_steps(found: Found) -> tuple[Any, ...]:
         rows += _heading(rows, reading)
         before, after = (found[reading.key][table]["multi-steps"] for table in (BEFORE, AFTER))
         floor = found["reading floors"][reading.friction]["multi-steps"] / seconds
-        gains.append(lower(before, after))
+        gains.append(multi_step_gain(found, reading))
         rows.append(
             Row(
                 reading.law,
@@ -202,7 +207,7 @@ def where_it_comes_from() -> Any:
     moving = [side[4] - rest for side, rest in zip(PAPER_STEP_MSE, left, strict=True)]
     odd = PAPER_STEADY_STATE[0][1] ** 2
     return words(
-        f"Where the {STEPS_LOWER:g} % comes from. The squares of Table 11's own steady-state errors add up to "
+        "The squares of Table 11's own steady-state errors add up to "
         f"{left[0]:.3f} rad² before tuning, {100 * left[0] / PAPER_STEP_MSE[0][4]:.0f} % of its mean squared error "
         f"of {PAPER_STEP_MSE[0][4]:g}, and to {left[1]:.4f} rad² after. What is left for the moves is "
         f"{moving[0]:.3f} rad² before and {moving[1]:.3f} rad² after. So the whole gain is error at rest that went "

@@ -26,13 +26,18 @@ class Verdict:
 
 def against(costs: Mapping[str, Sequence[float]], method: str) -> dict[str, Verdict]:
     """`method` against every other."""
-    own = np.array(costs[method])
-    rivals = [name for name in costs if name != method]
-    raw = [_chance(own, np.array(costs[name])) for name in rivals]
-    return {
-        name: Verdict(_word(own, np.array(costs[name]), chance), chance)
-        for name, chance in zip(rivals, holm(raw), strict=True)
-    }
+    return against_each({"": costs}, method)[""]
+
+
+def against_each(problems: Mapping[str, Mapping[str, Sequence[float]]], method: str) -> dict[str, dict[str, Verdict]]:
+    """The same on several problems: each pair on each problem is one of the many questions that Holm corrects for."""
+    pairs = [(problem, rival) for problem, costs in problems.items() for rival in costs if rival != method]
+    samples = [(np.array(problems[problem][method]), np.array(problems[problem][rival])) for problem, rival in pairs]
+    found: dict[str, dict[str, Verdict]] = {problem: {} for problem in problems}
+    corrected = holm([_chance(*both) for both in samples])
+    for (problem, rival), both, chance in zip(pairs, samples, corrected, strict=True):
+        found[problem][rival] = Verdict(_word(*both, chance), chance)
+    return found
 
 
 def _chance(own: np.ndarray, other: np.ndarray) -> float:

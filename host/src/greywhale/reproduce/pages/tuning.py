@@ -201,7 +201,7 @@ def _figure_16(found: Found) -> tuple[Any, ...]:
 def _figure_19(found: Found) -> tuple[Any, ...]:
     runs = [run["curves"] for run in found.grey_box("mf")]
     picture = curves.convergence_of_joints(runs, "Tuning the sets by the paper's method", AGENTS)
-    flat = [[_flat(run[joint]) for run in runs] for joint in range(JOINTS)]
+    flat = [[last_improvement_of_joint(run[joint]) for run in runs] for joint in range(JOINTS)]
     rows = [Row(f"Joint {joint}", (str(FIG_19_FLAT[joint]), several(flat[joint], ".0f"))) for joint in range(JOINTS)]
     return (
         Picture(picture, "Best J so far; one line a seed."),
@@ -209,7 +209,7 @@ def _figure_19(found: Found) -> tuple[Any, ...]:
     )
 
 
-def _flat(curve: Mapping[str, Sequence[float]]) -> int:
+def last_improvement_of_joint(curve: Mapping[str, Sequence[float]]) -> int:
     """The iteration that brought the last improvement."""
     cost = np.array(curve["cost"])
     return round(curve["evaluations"][int(np.argmax(cost <= cost[-1]))] / AGENTS) - 1

@@ -52,7 +52,7 @@ class Reading:
         return f"reading {self.law}, {self.friction}, {self.period_ms} ms"
 
 
-READINGS = tuple(Reading(*one) for one in itertools.product(LAWS, ARMS, PERIODS_MS))
+READINGS = tuple(Reading(law, friction, period) for friction, period, law in itertools.product(ARMS, PERIODS_MS, LAWS))
 
 
 def judge_reading(seed: int, law: str, friction: str, period_ms: int) -> dict[str, Any]:
