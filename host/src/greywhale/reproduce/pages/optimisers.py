@@ -18,9 +18,9 @@ from greywhale.tune.paper import BUDGET
 
 OURS = METHODS[0]
 SAID = {
-    "gwo-woa": "GWO-WOA, a from 2 to 0",
-    "gwo-woa-printed": "GWO-WOA, a as printed (2 to 1)",
-    "gwo-woa-relative": "GWO-WOA, greywhale's",
+    "gwo-woa": "paper's GWO-WOA, a 2 to 0",
+    "gwo-woa-printed": "paper's GWO-WOA, a 2 to 1",
+    "gwo-woa-relative": "greywhale's GWO-WOA",
     "gwo": "GWO",
     "woa": "WOA",
     "pso": "PSO",
@@ -91,7 +91,7 @@ def _table(costs: Mapping[str, list[float]], found: Found) -> Sheet:
         for name in sorted(costs, key=lambda name: ranks[name])
     ]
     return sheet(
-        ("method", f"lowest cost, {found.seeds}", "mean rank", "GWO-WOA (2 to 0) against it"),
+        ("method", f"lowest cost, {found.seeds}", "mean rank", "paper's GWO-WOA (2 to 0) against it"),
         rows,
         notes=(
             f"Mann-Whitney over the seeds with Holm's correction, {100 * SIGNIFICANCE:g} %. Equal budgets; a pack of "
@@ -131,7 +131,7 @@ def _functions(found: Found) -> Sheet:
             rows.append(Row(SAID[name], (f"{ranks[name]:.2f}", tally)))
     runs = found.request.function_runs
     return sheet(
-        ("method", "mean rank", "GWO-WOA (2 to 0) is lower / higher / not told apart, functions"),
+        ("method", "mean rank", "paper's GWO-WOA (2 to 0) is lower / higher / not told apart, functions"),
         rows,
         notes=(
             f"{len(found.functions())} functions in 10 dimensions, 500 evaluations, {runs} runs each.",
