@@ -1,15 +1,16 @@
-"""The default method: a global search that starts with the user's arm, then least squares, then more quantities.
+"""The default method: least squares from the user's arm on, then more quantities.
 
-1. GWO-WOA searches motors and Coulomb friction, on some windows of the log under its logged voltages.
-2. Least squares starts from the user's arm and from the best different points of that search; the best result goes on.
-3. Groups of quantities are added one after the other: Stribeck friction, backlash, zero angles. Each is fitted to three
+1. Least squares fits motors and Coulomb friction to some windows of the log under its logged voltages. It starts from
+   the user's arm and from a fit without friction; the best result goes on. A global search before it adds nothing
+   (docs/identify.md).
+2. Groups of quantities are added one after the other: Stribeck friction, backlash, zero angles. Each is fitted to three
    quarters of the log's windows, spread all over it. It stays only if the model then predicts the other quarter better.
-4. Where the controller is known, a fit to windows and closed loop together competes with the fit to windows alone. It
+3. Where the controller is known, a fit to windows and closed loop together competes with the fit to windows alone. It
    wins if it predicts the held-out part of the closed loop better.
-5. The chosen model is fitted to the whole log.
+4. The chosen model is fitted to the whole log.
 
 A search may begin with a model of the same arm, found from fewer logs. Its quantities are then fitted at once after
-step 2, and only orders that it lacks are tried.
+step 1, and only orders that it lacks are tried.
 """
 
 from __future__ import annotations
@@ -24,11 +25,10 @@ from greywhale.base.types import Floats, Progress
 from greywhale.identify.candidate import Candidate, Observed, WindowsAndLoop
 from greywhale.identify.closed_loop import Loop, LoopResidual
 from greywhale.identify.data import FINE_STEP_S, Prepared
-from greywhale.identify.fit import Pattern, least_squares_fit, pick_different
+from greywhale.identify.fit import Pattern, least_squares_fit
 from greywhale.identify.space import COUPLED, MOTOR, Space
 from greywhale.identify.steps import WindowFit
 from greywhale.identify.windows import WindowResidual
-from greywhale.optimise import DEFAULT, create
 
 # The quantities that each order of the model adds to the one before.
 ORDERS: dict[str, tuple[str, ...]] = {
@@ -63,14 +63,10 @@ GEARS: tuple[dict[str, float], ...] = (
 WORTH = 0.01
 # The same for the closed loop. It is rough: chance alone moves its error by a tenth.
 WORTH_CLOSED = 0.2
-GLOBAL_EVALUATIONS = 500
-GLOBAL_WINDOWS = 12
 SOME_WINDOWS = 20
-GLOBAL_SPREAD = 2.5  # the box of the global search: factors e^(+-2.5) around the user's arm
 # Other orders whose held-out misfit is at most so much above the best one's are kept as rivals, and so many of them.
 RIVAL = 0.02
 MOST_RIVALS = 2
-STARTS = 2  # the global search's points from which least squares starts, besides the user's arm
 WINDOW_STEPS = 20
 # An order gets a whole fit only if a short one leaves at most so much more of the held-out misfit than there was.
 # Orders of the first two turns always get one: much hangs on them.
@@ -104,7 +100,6 @@ class Search:
     tried: list[Candidate] = field(default_factory=list)
     simulations: int = 0
     simulated: float = 0.0  # s
-    globally: int = 0
     complete: bool = False
 
     def __post_init__(self) -> None:
@@ -236,10 +231,10 @@ class Search:
         return self._refine(self._some_windows(), Candidate(space, space.start(), "motors"))
 
     def _fit_friction(self) -> Candidate:
-        """Global search, then least squares from several points; the best by the fitted data."""
+        """Least squares from several points; the best by the fitted data."""
         space = Space.of(self.arm, (*MOTOR, "coulomb"), self.joints)
         motors = self.tried[0]
-        starts = [space.start(), space.translate(motors.x, motors.space), *self._search_globally(space)]
+        starts = self._starts(space, motors)
         residual = self._some_windows()
         # The last fit sees so many times the windows of the others.
         what, parts = "least squares from several starts", len(starts) + max(1, self._fitted.windows // SOME_WINDOWS)
@@ -251,6 +246,10 @@ class Search:
         return self._refine(
             self._fitted, Candidate(space, self._mix_blocks(self._fitted, space, fits), "Coulomb friction")
         )
+
+    def _starts(self, space: Space, motors: Candidate) -> list[Floats]:
+        """Where least squares begins: the user's arm, and the fit without friction."""
+        return [space.start(), space.translate(motors.x, motors.space)]
 
     def _mix_blocks(self, windows: WindowResidual, space: Space, fits: Sequence[Floats]) -> Floats:
         """For each group of joints that feel each other, the numbers of the fit that is best for them: others may be
@@ -268,27 +267,6 @@ class Search:
             mine = [index for index, one in enumerate(space.parameters) if one.joint in joints]
             mixed[mine] = best[mine]
         return mixed
-
-    def _search_globally(self, space: Space) -> list[Floats]:
-        """The best points of GWO-WOA that differ from each other."""
-        count = WindowResidual(self.logs, self.arm, self.joints).windows
-        residual = WindowResidual(self.logs, self.arm, self.joints, False, max(1, count // GLOBAL_WINDOWS))
-        middle = space.start()
-        low, high = space.bounds()
-        low, high = np.maximum(low, middle - GLOBAL_SPREAD), np.minimum(high, middle + GLOBAL_SPREAD)
-        seen: list[tuple[float, Floats]] = []
-        with create(DEFAULT, low, high, budget=GLOBAL_EVALUATIONS, seed=self.seed, start=middle[None]) as pack:
-            while not pack.done:
-                points = pack.ask()
-                # Bounded per number, so that one joint with a large error does not hide what the others gain.
-                costs = np.mean(np.log1p(residual(space, points) ** 2), axis=1)
-                pack.tell(costs)
-                seen += [(float(cost), point.copy()) for cost, point in zip(costs, points, strict=True)]
-                self.simulations += len(points)
-                self.simulated += len(points) * residual.seconds
-                self.globally += len(points)
-                self.report("global search", self.globally / GLOBAL_EVALUATIONS)
-        return pick_different(seen, STARTS)
 
     def _extend(self, candidate: Candidate, order: str) -> Candidate:
         """The same model with the quantities of another order at their usual start."""
