@@ -73,7 +73,7 @@ def shrink(patch: pytest.MonkeyPatch) -> None:
     patch.setattr(readings, "SMALL_STEP_S", 0.5)
     patch.setitem(MOTIONS, "steps", lambda: steps(1.0, 0.3, 0.8))
     patch.setitem(MOTIONS, "multi-steps", lambda: multi_steps([0.0, 1.0, -0.5], [0.3, 0.5, 0.8]))
-    patch.setattr("greywhale.reproduce.request.Request.logged_s", 5.0)
+    patch.setattr("greywhale.reproduce.request.Request.logged_s", 6.0)
     patch.setattr("greywhale.reproduce.request.Request.function_runs", 4)
 
 

@@ -14,7 +14,7 @@ MOST_SEEDS = 1000
 # greywhale's own tuning takes a hundred times the paper's, so it is done for fewer seeds.
 DEFAULT_SEEDS, QUICK_DEFAULT_SEEDS = 3, 1
 # Arms drawn around the white box, and the seeds on each.
-DRAWN_ARMS, QUICK_DRAWN_ARMS, DRAWN_SEEDS = 3, 1, 4
+DRAWN_ARMS, QUICK_DRAWN_ARMS, DRAWN_SEEDS = 3, 0, 4
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ class Request:
     @property
     def logged_s(self) -> float:
         """Length of the recordings for the identification."""
-        return 12.0 if self.quick else 20.0
+        return 10.0 if self.quick else 20.0
 
     @property
     def function_runs(self) -> int:

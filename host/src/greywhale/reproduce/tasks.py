@@ -7,7 +7,7 @@ from typing import Any
 from greywhale.base.study import Task
 from greywhale.reproduce.request import Request
 from greywhale.reproduce.work import bench, errata, findings, grey_box, on_the_bench, optimisers, readings
-from greywhale.reproduce.work.arms import DEFAULT, STICKY
+from greywhale.reproduce.work.arms import DEFAULT, OTHER_HAND, STICKY
 from greywhale.reproduce.work.motions import PERIOD_MS, printed
 
 # The board's own control period, at which greywhale's own controllers run and the data sets are recorded.
@@ -50,10 +50,11 @@ def tasks_of(request: Request) -> list[Task]:
             f"identified {method} {arm} {seed}",
             on_the_bench.identify_on_bench,
             seed,
-            {**data, "method": method, "arm": arm},
+            {**data, "method": method, "arm": STICKY if arm == OTHER_HAND else arm, "hand": int(arm == OTHER_HAND)},
         )
         for arm, methods, seeds in (
             *((arm, IDENTIFICATIONS[1:], request.every_seed) for arm in (DEFAULT, STICKY)),
+            (OTHER_HAND, IDENTIFICATIONS, request.every_seed),
             *((arm, IDENTIFICATIONS, request.arm_seeds) for arm in request.drawn),
         )
         for method in methods

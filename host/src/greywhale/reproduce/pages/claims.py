@@ -25,7 +25,7 @@ from greywhale.reproduce.pages.printed import (
 )
 from greywhale.reproduce.pages.significance import FEWEST, Verdict, against_each
 from greywhale.reproduce.pages.tuning import last_improvement_of_joint, totals
-from greywhale.reproduce.work.arms import DEFAULT, STICKY
+from greywhale.reproduce.work.arms import DEFAULT, OTHER_HAND, STICKY
 from greywhale.reproduce.work.motions import PERIOD_MS
 from greywhale.reproduce.work.readings import LENGTHS_S
 from greywhale.tune.report.tables import PAPER_DELAY
@@ -87,8 +87,8 @@ def table(found: Found) -> Sheet:
         notes=(
             f"Median (lowest to highest) of {found.seeds.split(' (')[0].removeprefix('median of ')}; negative: "
             f"worse. A figure is reached where a median is at least {NEAR:g} of the printed one. {YES}: on both "
-            f"arms; no verdict below {FEWEST} seeds. The first pack is random, or started with the white box in it. "
-            "Whose arm is which: docs/arm.md.",
+            f"arms; no verdict below {FEWEST} seeds. The first pack is random, or started with "
+            "the white box in it. Whose arm is which: docs/arm.md.",
         ),
     )
 
@@ -118,17 +118,15 @@ def _grey_box(found: Found, data_set: int, says: str, printed: float) -> Claim:
         drawn, started = (identified.gains(found, method, arm, data_set) for method in ("paper", "paper-started"))
         cells[arm] = f"random: {_percent(drawn)}; started: {_percent(started)}"
         holds[arm] = _reached(printed, drawn, started)
-    drawn_arms = "; ".join(
-        f"{name} started {_percent(identified.gains(found, 'paper-started', name, data_set))}"
+    drawn_arms = [
+        f"{name} started: {_percent(identified.gains(found, 'paper-started', name, data_set))}"
         for name in found.request.drawn
-    )
-    return Claim(
-        says,
-        cells[DEFAULT],
-        cells[STICKY],
-        drawn_arms,
-        _judge(found, holds[DEFAULT], holds[STICKY]),
-    )
+    ]
+    elsewhere = "; ".join([f"like the paper's, another hand: {cells[OTHER_HAND]}", *drawn_arms])
+    verdict = _judge(found, holds[DEFAULT], holds[STICKY])
+    if verdict in (YES, LIKE) and not holds[OTHER_HAND]:
+        verdict += ", with one of two hands"
+    return Claim(says.format(printed), cells[DEFAULT], cells[STICKY], elsewhere, verdict)
 
 
 def _method_and_table(values: Mapping[str, Sequence[float | None]]) -> str:

@@ -9,9 +9,13 @@ from greywhale.reproduce.pages.found import Found
 from greywhale.reproduce.pages.numbers import lower, several
 from greywhale.reproduce.pages.printed import GREY_BOX_BETTER, GREY_BOX_BETTER_FITTED
 from greywhale.reproduce.tasks import IDENTIFICATIONS
-from greywhale.reproduce.work.arms import DEFAULT, STICKY
+from greywhale.reproduce.work.arms import DEFAULT, OTHER_HAND, STICKY
 
-ARMS = {DEFAULT: "the bench's default arm", STICKY: "an arm like the paper's"}
+ARMS = {
+    DEFAULT: "the bench's default arm",
+    STICKY: "an arm like the paper's",
+    OTHER_HAND: "the same arm, led by another hand",
+}
 READINGS = {
     "paper": "paper's method, first pack at random",
     "paper-started": "the same, white box in the first pack",

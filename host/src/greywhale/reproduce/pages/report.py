@@ -33,7 +33,7 @@ def document(found: Found) -> Document:
         (
             f"{TITLE}.",
             f"Of its 12 tables and 20 figures: {told}. Shaded columns are printed in the paper; every other number is "
-            "computed by this run.",
+            "computed by this run, except the cycles of the output sets on page 1.",
             f"{size}The paper's methods and the optimisers ran with {_name(request.every_seed)}, greywhale's own "
             f"tuning with {_name(request.few_seeds)}. The experiment is the compiled firmware on the simulated "
             "board, with the default arm and with one like the paper's, seen through its logs only; it runs in "

@@ -12,6 +12,8 @@ from greywhale.files.arm import arm_names, load_arm
 from greywhale.files.model import arm_toml
 
 DEFAULT, STICKY = "default", "sticky_grey_box"
+# The latter, led by another hand: no arm of its own, but other data sets.
+OTHER_HAND = f"{STICKY}, another hand"
 
 
 @cache

@@ -38,12 +38,10 @@ UNGUARDED = {
     "runaway_limit": 0,
     "stall_volts": 0,
 }
-# The motions from which models are identified: name, seed of the hand, controllers.
-DATA_SETS = (
-    ("data set 1", 1001, "before_tuning"),
-    ("data set 2", 1002, "before_tuning"),
-    ("data set 3", 1003, "table_9"),
-)
+# The motions from which models are identified: name, controllers; and the seeds of the hand that makes them, and of
+# another hand.
+DATA_SETS = (("data set 1", "before_tuning"), ("data set 2", "before_tuning"), ("data set 3", "table_9"))
+HANDS = ((1001, 1002, 1003), (11, 12, 13))
 
 
 def board(rows: Controllers, period_ms: int) -> ParameterTable:
@@ -73,7 +71,7 @@ def record(
 
 @cache
 def record_data(
-    seconds: float, period_ms: int, arm: str = DEFAULT
+    seconds: float, period_ms: int, arm: str = DEFAULT, hand: int = 0
 ) -> tuple[tuple[Log, ...], tuple[ParameterTable, ...]]:
     """The data sets of an arm at a control period, and the tables with which they were recorded.
 
@@ -81,10 +79,10 @@ def record_data(
     """
     logs = []
     with tempfile.TemporaryDirectory(prefix="greywhale-reproduce-") as folder:
-        for number, (_, seed, controllers) in enumerate(DATA_SETS, 1):
+        for number, ((_, controllers), seed) in enumerate(zip(DATA_SETS, HANDS[hand], strict=True), 1):
             motion, table = human_reaches(seed, seconds), board(printed(controllers), period_ms)
             logs.append(record(Path(folder), f"data set {number}", motion, table, arm=arm))
-    names = dict.fromkeys(controllers for _, _, controllers in DATA_SETS)
+    names = dict.fromkeys(controllers for _, controllers in DATA_SETS)
     return tuple(logs), tuple(board(printed(name), period_ms).with_name(name) for name in names)
 
 

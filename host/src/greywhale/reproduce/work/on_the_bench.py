@@ -22,10 +22,10 @@ SHOWN_EVERY = 4
 
 
 def identify_on_bench(
-    seed: int, seconds: float, period_ms: int, method: str, traces: bool = False, arm: str = DEFAULT
+    seed: int, seconds: float, period_ms: int, method: str, traces: bool = False, arm: str = DEFAULT, hand: int = 0
 ) -> dict[str, Any]:
     """A model from data set 1, judged on all three; with it the text of its model.toml."""
-    logs, tables = record_data(seconds, period_ms, arm)
+    logs, tables = record_data(seconds, period_ms, arm, hand)
     outcome = identify(logs[:1], load_arm("white_box"), validate=logs[1:], tables=tables, method=method, seed=seed)
     _require_whole(outcome.complete)
     found = _facts(outcome)
