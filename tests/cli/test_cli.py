@@ -297,7 +297,7 @@ def test_evaluate_prints_a_table_for_people(tmp_path: Path, capsys: Captured) ->
     assert entry.run(["evaluate", str(tmp_path / "log.csv")]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].endswith("1000 samples, 1.00 s")
-    assert lines[3].split() == ["joint", "0", "0.010000", "0.1000", "n/a", "n/a", "n/a", "n/a"]
+    assert lines[3].split() == ["joint", "0", "0.010000", "0.1000", "0.1000", "n/a", "n/a", "n/a", "n/a"]
     assert lines[7].split() == ["total", "0.040000"]
     assert max(map(len, lines[1:])) <= 80
 

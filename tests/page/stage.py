@@ -39,7 +39,7 @@ FLAGS = [
     *("--disable-accelerated-2d-canvas", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"),
 ]
 TOKEN = "a-token-of-a-test"
-PATIENCE_MS = 10_000  # a page that shows nothing for so long has hung
+PATIENCE_MS = 60_000  # a page that shows nothing for so long has hung
 MOMENT_S = 0.1  # the board lives so long after a sign of life
 
 
