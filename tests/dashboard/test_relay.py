@@ -12,7 +12,7 @@ from tests.board.fake_board import FakeBoard, Faults
 from tests.dashboard.shared import Shared, Viewer
 
 # By then the motors are off, whatever becomes of the page.
-OFF_S = 0.3
+OFF_S = SILENCE_S + 0.02
 
 
 def start(shared: Shared) -> Viewer:

@@ -19,7 +19,7 @@ from tools import ROOT
 pytestmark = pytest.mark.slow
 
 LEAST_LOG = 1500  # samples
-OFF_TICKS = 300
+OFF_TICKS = {"button": 300, "space": 300, "gone": 550}  # a page that is gone may be one that is only busy
 
 
 def start(page: Page) -> None:
@@ -79,10 +79,10 @@ def test_the_motors_go_off(page: Page, stage: Stage, way: str) -> None:
             page.keyboard.press("Space")
         case _:
             page.close()
-            stage.let_live(0.5)
+            stage.let_live(1.0)
     stage.wait_for(lambda: stage.samples()[-1].state is State.DISABLED)
     running = [sample.tick for sample in stage.samples() if sample.state is State.FOLLOWING]
-    assert running[-1] - pressed <= OFF_TICKS
+    assert running[-1] - pressed <= OFF_TICKS[way]
 
 
 def test_a_second_page_watches_and_a_reload_loses_nothing(browser: Browser, page: Page, stage: Stage) -> None:

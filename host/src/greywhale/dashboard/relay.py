@@ -23,7 +23,8 @@ from greywhale.protocol.frames import Frame, FrameDecoder, encode_frame
 from greywhale.protocol.transport import Line
 
 # The motors go off when the page that drives says nothing for so long; the board's lease ends them if this host hangs.
-SILENCE_S = 0.28
+# A page may be busy for some tenths of a second, and is not gone. One that is closed is noticed at once.
+SILENCE_S = 0.5
 LEASE_MS = 250
 RENEW_S = 0.06
 # A board that sent no sample for so long may have restarted. A bootloader to which anybody speaks stays for 5 s. So its

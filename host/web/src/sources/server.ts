@@ -2,7 +2,7 @@
 
 import type { Board, BoardListener } from "../board";
 
-const HERE_EVERY_MS = 100; // the server's patience is 280 ms
+const HERE_EVERY_MS = 100; // the server's patience is 500 ms
 const AGAIN_MS = 500; // until a server that went is tried again
 
 type Told =
