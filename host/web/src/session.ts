@@ -265,6 +265,7 @@ export class Session {
   }
 
   private async fetchHistory(from: number | null): Promise<void> {
+    const before = this.samples.end;
     try {
       const frames = await this.board.history(from);
       new FrameDecoder().feed(frames, ({ type, payload }) => {
@@ -272,16 +273,23 @@ export class Session {
       });
       if (from === null) this.samples.lost = 0;
     } finally {
-      this.takeWaiting();
+      this.takeWaiting(this.samples.end > before);
     }
   }
 
-  private takeWaiting(): void {
+  /** Takes what came meanwhile. Where that has a gap as well, the history is asked again, as long as it gives more. */
+  private takeWaiting(askAgain: boolean): void {
     const waiting = this.waiting ?? [];
     this.waiting = null;
-    for (const payload of waiting) {
+    for (const [number, payload] of waiting.entries()) {
       const tick = tickOf(payload);
-      if (tick > this.samples.lastTick || this.isNewStart(tick)) this.samples.add(payload);
+      const { lastTick } = this.samples;
+      if (askAgain && tick > lastTick + 1) {
+        this.waiting = waiting.slice(number);
+        void this.attempt(() => this.fetchHistory(lastTick + 1));
+        return;
+      }
+      if (tick > lastTick || this.isNewStart(tick)) this.samples.add(payload);
     }
   }
 
