@@ -18,6 +18,7 @@ from greywhale.dashboard import server
 from greywhale.dashboard.folder import Folder
 from greywhale.dashboard.guard import AT_ONCE, MOST_BODY_BYTES, Bucket, Guard
 from greywhale.dashboard.house import House
+from greywhale.files.log.layout import HEADING, TITLE
 from greywhale.protocol import schema
 from greywhale.protocol.frames import FrameDecoder
 from tests.dashboard.browser import BoardSocket, Page, RefusedError
@@ -36,6 +37,7 @@ def page(shared: Shared, tmp_path: Path) -> Iterator[Page]:
     folder = tmp_path / "folder"
     folder.mkdir()
     (folder / "a motion.csv").write_text("time_s,leader_0,leader_1,leader_2,leader_3\n")
+    (folder / "a log.csv").write_text(f"# {TITLE}\n{HEADING}\n" + "".join(f"{t}{12 * ',0'},boot\n" for t in (1, 1.001)))
     listener = server.listen()
     port: int = listener.getsockname()[1]
     token = secrets.token_urlsafe(8)
@@ -58,7 +60,8 @@ def test_the_pages_files_need_no_token_and_forbid_what_they_do_not_need(page: Pa
 
 def test_all_else_needs_it(page: Page) -> None:
     state = page.get("/state")
-    assert state["files"] == [{"name": "a motion.csv", "kind": "motion"}]
+    kinds = {one["name"]: one["kind"] for one in state["files"]}
+    assert kinds == {"a log.csv": "log", "a motion.csv": "motion"}
     assert state["schema"] == f"{schema.SCHEMA_HASH:#010x}"
     for path in ("/state", "/history", "/board"):
         for token in ("", page.token + "x"):
@@ -172,6 +175,16 @@ def test_a_board_over_the_wire(page: Page, shared: Shared) -> None:
         watcher.word("driver", free=True)
         shared.live(0.05)
         assert states(first)[-1] is schema.State.DISABLED
+
+
+def test_a_log_comes_as_bytes_and_its_errors_as_a_terminals_sentence(page: Page) -> None:
+    status, told = page.ask("GET", "/log?file=a%20log.csv")
+    assert status == 200
+    assert [schema.Sample.unpack(told[at : at + schema.Sample.SIZE]).tick for at in (0, schema.Sample.SIZE)] == [0, 1]
+    for file, reason in (("a%20motion.csv", "column"), ("none.csv", "no such file"), ("../log.csv", "it is not in")):
+        status, told = page.ask("GET", f"/log?file={file}")
+        assert status == 400
+        assert reason in json.loads(told)["error"]
 
 
 @pytest.mark.parametrize("tick", ["-1", "x", "4294967296", "", "١"])

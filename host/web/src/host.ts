@@ -85,7 +85,8 @@ export type Job = {
 
 export interface Jobs {
   verbs(): Promise<readonly Verb[]>;
-  start(verb: string, given: Readonly<Record<string, unknown>>): Promise<void>;
+  /** Starts a verb; the id of its job. */
+  start(verb: string, given: Readonly<Record<string, unknown>>): Promise<string>;
   stop(id: string): Promise<void>;
   /** Writes a line to a verb that asks. */
   answer(id: string, line: string): Promise<void>;
@@ -97,6 +98,8 @@ export interface Host {
   readonly jobs: Jobs;
   readonly bench: Bench;
   state(): Promise<HostState>;
+  /** The samples of a log: payloads of the link's Sample, one after the other, ticks from the log's first row. */
+  log(file: string): Promise<Uint8Array>;
   /** Raw values by parameter name of a built-in controller or a file. */
   controller(file: string): Promise<Readonly<Record<string, number>>>;
   /** What the model does with a whole parameter set in raw values. */

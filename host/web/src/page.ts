@@ -8,6 +8,7 @@ import { ControllerView } from "./controller/view";
 import { DoView } from "./do/view";
 import type { Host } from "./host";
 import { LiveView } from "./live/view";
+import { LogsView } from "./logs/view";
 import { startTheme } from "./parts/theme";
 import { Session } from "./session";
 import { Shell } from "./shell";
@@ -36,7 +37,9 @@ if (token) addHost(new ServerHost(token, () => board.page));
 /** Adds what needs a host beside the board. */
 function addHost(host: Host): void {
   const arm = new ArmView(session, host);
-  for (const view of [arm, new ControllerView(session, host), new DoView(session, host)]) shell.add(view);
+  for (const view of [arm, new ControllerView(session, host), new DoView(session, host), new LogsView(session, host)]) {
+    shell.add(view);
+  }
   void session.attempt(async () => {
     if (!(await host.state()).sim) return;
     const hand = new LeaderHand(host.bench, session.samples, (error) =>

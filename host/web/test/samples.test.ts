@@ -4,6 +4,7 @@ import { test } from "node:test";
 import { Sample } from "../src/link/schema";
 import { Trigger } from "../src/live/trigger";
 import { TimeWindow } from "../src/live/window";
+import { samplesIn } from "../src/logs/recording";
 import { delay, ripple } from "../src/samples/measures";
 import { draw, emptyPicture } from "../src/samples/picture";
 import { COUNT, Samples, traceOf } from "../src/samples/samples";
@@ -58,6 +59,19 @@ test("a line breaks where samples are missing, also within a column", () => {
     assert.equal(broken.length, 1);
     assert.ok(broken[0]! > 0.99 && broken[0]! < 3, `${columns}`);
   }
+});
+
+test("a log with a sample each 50 ticks is drawn without breaks but where samples are missing", () => {
+  const ticks = Array.from({ length: 500 }, (_, number) => 50 * number + (number < 300 ? 0 : 5_000));
+  const payloads = ticks.map((tick) => sample(tick, tick % 1000));
+  const samples = samplesIn(Uint8Array.from(payloads.flatMap((payload) => [...payload])));
+  assert.deepEqual([samples.end, samples.every, samples.lastTime], [500, 50, 29_950]);
+  const picture = emptyPicture();
+  for (const columns of [10, 100, 1_000]) {
+    draw(samples, 0, 30_000, columns, picture);
+    assert.equal(picture.y[0]!.filter((value) => value === null).length, 1);
+  }
+  assert.equal(samplesIn(new Uint8Array()).end, 0);
 });
 
 test("a window moves with the newest sample, and stays where somebody looks", () => {

@@ -15,6 +15,7 @@ from greywhale.dashboard.bench import BenchControls
 from greywhale.dashboard.folder import FileFacts, Folder
 from greywhale.dashboard.jobs import Jobs
 from greywhale.dashboard.relay import Relay
+from greywhale.dashboard.samples import samples_of_log
 from greywhale.files import controller, parameter_file
 from greywhale.files.arm import arm_names, load_arm
 from greywhale.files.paper_tables import controller_names, controller_path
@@ -99,6 +100,10 @@ class House:
             return {"file": file, "source": "", "raw": parameter_file.load(path).by_name()}
         loaded = controller.load(path)
         return {"file": file, "source": loaded.source, "raw": loaded.raw_values()}
+
+    def log(self, file: str) -> bytes:
+        """The samples of a log of the folder, as `samples_of_log` says."""
+        return samples_of_log(self.folder.inside(file))
 
     def predict(self, asked: dict[str, Any]) -> object:
         """What the arm would do under a whole parameter table."""

@@ -27,6 +27,7 @@ PAGE = Path(__file__).resolve().parent / "page"
 MOST_MESSAGE_BYTES = 1 << 16
 MOST_CONNECTIONS = 64  # a page has two, and a moment's more for what it asks
 _END_WAIT_S = 1
+_BYTES = "application/octet-stream"
 PAGE_ID = "page id"  # among what is asked: which page asks, by the name that its board's socket told it
 
 
@@ -46,6 +47,7 @@ def application(house: House, page: Path, token: str, port: int) -> ASGIApp:
         Route("/state", _told(lambda asked: house.state())),
         Route("/arm", _told(lambda asked: house.describe_arm(asked.get("file")))),
         Route("/controller", _told(lambda asked: house.controller(asked.get("file", "")))),
+        Route("/log", _told(lambda asked: house.log(asked.get("file", "")))),
         Route("/predict", _told(house.predict), methods=["POST"]),
         Route("/jobs", _told(lambda asked: house.jobs.listed()), methods=["GET"]),
         Route("/jobs", _told(lambda asked: house.jobs.start(asked, asked.get(PAGE_ID, ""))), methods=["POST"]),
@@ -113,13 +115,13 @@ def _history(house: House) -> Callable[[Request], Awaitable[Response]]:
         if given is not None and not (given.isascii() and given.isdigit() and int(given) < 1 << 32):
             return JSONResponse({"error": f"from is {given[:20]}; it must be a tick, 0 to 4294967295."}, 400)
         frames = await asyncio.to_thread(house.relay.history.since, None if given is None else int(given))
-        return Response(frames, media_type="application/octet-stream")
+        return Response(frames, media_type=_BYTES)
 
     return answer
 
 
 def _told(answer: Callable[[dict[str, Any]], object]) -> Callable[[Request], Awaitable[Response]]:
-    """An answer in JSON that takes a moment; what is asked is in the address, or a JSON object in the body."""
+    """An answer, JSON or bytes, that takes a moment; what is asked is in the address, or a JSON object in the body."""
 
     async def tell(request: Request) -> Response:
         try:
@@ -127,7 +129,8 @@ def _told(answer: Callable[[dict[str, Any]], object]) -> Callable[[Request], Awa
             asked |= request.path_params
             if (page := request.headers.get("x-greywhale-page")) is not None:
                 asked[PAGE_ID] = page
-            return JSONResponse(await asyncio.to_thread(answer, asked))
+            told = await asyncio.to_thread(answer, asked)
+            return Response(told, media_type=_BYTES) if isinstance(told, bytes) else JSONResponse(told)
         except UserError as error:
             return JSONResponse({"error": error.message, "exit_code": error.exit_code}, 400)
         except ClientDisconnect:  # also what is too long breaks off so

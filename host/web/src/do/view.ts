@@ -40,7 +40,7 @@ export class DoView implements View {
   private async choose(verb: Verb): Promise<void> {
     const { files } = await this.host.state();
     const form = new VerbForm(verb, files, (given) =>
-      void this.session.attempt(() => this.host.jobs.start(verb.verb, given)));
+      void this.session.attempt(async () => void await this.host.jobs.start(verb.verb, given)));
     this.form.replaceChildren(form.element);
   }
 

@@ -1,10 +1,11 @@
-// Three charts over one span of time: angles, errors, voltages. They draw what a Picture holds and share one cursor.
+// Charts over one span of time: angles, errors, voltages, of one source of samples or of several over each other.
+// They draw what a Picture of each source holds, and share one cursor.
 
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import { el } from "../parts/dom";
 import { colours, type Colours } from "../parts/theme";
-import { emptyPicture, draw } from "../samples/picture";
+import { draw, emptyPicture, type Picture } from "../samples/picture";
 import { JOINTS, TICKS_A_SECOND, traceOf, type Quantity, type Samples } from "../samples/samples";
 import type { TimeWindow } from "./window";
 import { ZOOM_STEP } from "./window";
@@ -16,24 +17,33 @@ const PLANS: readonly Plan[] = [
   { title: "Error", unit: "rad", of: ["error"], least: 0.01 },
   { title: "Voltage", unit: "V", of: ["voltage"], least: 1 },
 ];
-const SYNC = "time";
 const PIXELS_A_COLUMN = 1.5;
 
+/** Samples to draw, and the colours of their joints. */
+export type Layer = { readonly samples: Samples; readonly shade: (shades: Colours, joint: number) => string };
+
 export class Charts {
+  private static made = 0;
   readonly element = el("div", { class: "charts" });
   /** Time under the cursor in ticks, null while it is elsewhere. */
   cursor: number | null = null;
-  private readonly picture = emptyPicture();
-  private plots: { plot: uPlot; plan: Plan; traces: readonly number[] }[] = [];
+  private readonly sync = uPlot.sync(`charts-${Charts.made++}`).key;
+  private pictures: Picture[] = [];
+  private plots: { plot: uPlot; traces: readonly number[] }[] = [];
   private readonly shown = new Array<boolean>(JOINTS).fill(true);
 
-  constructor(private readonly samples: Samples, private readonly window: TimeWindow) {
+  constructor(private layers: readonly Layer[], private readonly window: TimeWindow) {
     new ResizeObserver(() => this.resize()).observe(this.element);
   }
 
   /** Whether the last picture shows each sample. */
   get exact(): boolean {
-    return this.picture.exact;
+    return this.pictures.every((picture) => picture.exact);
+  }
+
+  lay(layers: readonly Layer[]): void {
+    this.layers = layers;
+    this.rebuild();
   }
 
   showJoint(joint: number, shown: boolean): void {
@@ -41,11 +51,18 @@ export class Charts {
     this.rebuild();
   }
 
+  /** Shows this joint alone. */
+  showOnly(joint: number): void {
+    this.shown.fill(false);
+    this.showJoint(joint, true);
+  }
+
   /** Makes the charts anew, as after a change of colours. */
   rebuild(): void {
     for (const { plot } of this.plots) plot.destroy();
     this.element.replaceChildren();
     const shades = colours();
+    this.pictures = this.layers.map(emptyPicture);
     this.plots = PLANS.map((plan, place) => {
       const traces = plan.of.flatMap((quantity) =>
         [...this.shown.keys()].filter((joint) => this.shown[joint]).map((joint) => traceOf(quantity, joint)));
@@ -53,10 +70,11 @@ export class Charts {
         el("h3", {}, `${plan.title} `, el("span", { class: "unit" }, plan.unit)));
       this.element.append(frame);
       const plot = new uPlot(
-        this.options(plan, traces, shades, place === PLANS.length - 1), [[], ...traces.map(() => [])], frame,
+        this.options(plan, traces, shades, place === PLANS.length - 1),
+        [[], ...this.layers.flatMap(() => traces.map(() => []))], frame,
       );
       this.wire(plot);
-      return { plot, plan, traces };
+      return { plot, traces };
     });
     this.resize();
   }
@@ -73,7 +91,7 @@ export class Charts {
       height: 180,
       legend: { show: false },
       cursor: {
-        sync: { key: SYNC }, drag: { x: true, y: false, setScale: false }, points: { show: false },
+        sync: { key: this.sync }, drag: { x: true, y: false, setScale: false }, points: { show: false },
       },
       scales: {
         x: { time: false, range: () => [this.window.begin / TICKS_A_SECOND, this.window.end / TICKS_A_SECOND] },
@@ -83,13 +101,13 @@ export class Charts {
         { ...axis, size: last ? 30 : 8, values: last ? (_plot, ticks) => ticks.map(timeText) : () => [] },
         { ...axis, size: 54, space: 24 },
       ],
-      series: [{}, ...traces.map((trace) => ({
-        stroke: shades.joints[trace % JOINTS]!,
+      series: [{}, ...this.layers.flatMap(({ shade }) => traces.map((trace) => ({
+        stroke: shade(shades, trace % JOINTS),
         width: trace < JOINTS ? 1 : 1.5,
         ...(trace < JOINTS ? { dash: [5, 4] } : {}),
         points: { show: false },
         spanGaps: false,
-      }))],
+      })))],
       hooks: {
         setCursor: [(plot) => {
           const { left } = plot.cursor;
@@ -132,11 +150,13 @@ export class Charts {
   /** Draws the window as it is now. */
   draw(): void {
     const width = this.plots[0]?.plot.bbox.width ?? 0;
-    if (!width) return;
+    if (!width || !this.layers.length) return;
     const columns = Math.floor(width / devicePixelRatio / PIXELS_A_COLUMN);
-    draw(this.samples, this.window.begin, this.window.end, columns, this.picture);
+    this.layers.forEach(({ samples }, place) =>
+      draw(samples, this.window.begin, this.window.end, columns, this.pictures[place]!));
     for (const { plot, traces } of this.plots) {
-      plot.setData([this.picture.x, ...traces.map((trace) => this.picture.y[trace]!)]);
+      const tables = this.pictures.map(({ x, y }): uPlot.AlignedData => [x, ...traces.map((trace) => y[trace]!)]);
+      plot.setData(tables.length === 1 ? tables[0]! : uPlot.join(tables));
     }
   }
 }

@@ -9,8 +9,9 @@ import type { Session } from "../session";
 import { Charts } from "./charts";
 import { MeasuresTable } from "./measures_table";
 import { StatePanel } from "./state_panel";
+import { moveByKey, timeButtons } from "./time_buttons";
 import { TriggerPanel } from "./trigger_panel";
-import { PAN_STEP, TimeWindow, ZOOM_STEP } from "./window";
+import { TimeWindow } from "./window";
 
 const SPANS_S = [1, 2, 5, 10, 30, 60, 600];
 const JOINT_NAMES = ["base yaw", "shoulder pitch", "wrist pitch", "wrist roll"];
@@ -30,7 +31,7 @@ export class LiveView implements View {
 
   constructor(private readonly session: Session) {
     this.window = new TimeWindow(session.samples);
-    this.charts = new Charts(session.samples, this.window);
+    this.charts = new Charts([{ samples: session.samples, shade: (shades, joint) => shades.joints[joint]! }], this.window);
     this.measures = new MeasuresTable(session.samples);
     this.trigger = new TriggerPanel(session, this.window);
     this.span = select("Span shown", SPANS_S.map((s) => [String(s), s < 60 ? `${s} s` : `${s / 60} min`] as const),
@@ -44,14 +45,10 @@ export class LiveView implements View {
   }
 
   private tools(): HTMLElement {
-    const zoom = (factor: number): void => this.window.zoom(factor);
     return el("div", { class: "tools", attrs: { role: "toolbar", "aria-label": "Time" } },
       this.pause,
       this.span,
-      button("−", () => zoom(ZOOM_STEP), { title: "Zoom out (minus)", attrs: { "aria-label": "Zoom out" } }),
-      button("+", () => zoom(1 / ZOOM_STEP), { title: "Zoom in (plus)", attrs: { "aria-label": "Zoom in" } }),
-      button("◀", () => this.window.pan(-PAN_STEP), { title: "Earlier (left arrow)", attrs: { "aria-label": "Earlier" } }),
-      button("▶", () => this.window.pan(PAN_STEP), { title: "Later (right arrow)", attrs: { "aria-label": "Later" } }),
+      ...timeButtons(this.window),
       button("Save view", () => void this.session.attempt(() => this.export()), { title: "Keep what is in view as a log that greywhale reads" }),
       this.resolution);
   }
@@ -121,15 +118,9 @@ export class LiveView implements View {
   }
 
   key(event: KeyboardEvent): boolean {
-    const act: Readonly<Record<string, () => void>> = {
-      p: () => this.window.toggle(),
-      "+": () => this.window.zoom(1 / ZOOM_STEP),
-      "-": () => this.window.zoom(ZOOM_STEP),
-      ArrowLeft: () => this.window.pan(-PAN_STEP),
-      ArrowRight: () => this.window.pan(PAN_STEP),
-    };
-    act[event.key]?.();
-    return event.key in act;
+    if (event.key !== "p") return moveByKey(this.window, event.key);
+    this.window.toggle();
+    return true;
   }
 }
 

@@ -1,19 +1,21 @@
 // The span of time that all charts show: it moves with the newest sample until somebody pauses or looks back.
 
 import { Signal } from "../parts/signal";
-import { TICKS_A_SECOND, type Samples } from "../samples/samples";
+import { TICKS_A_SECOND } from "../samples/samples";
+
+/** What there is to show, in ticks. */
+export type Extent = { readonly firstTime: number; readonly lastTime: number };
 
 const SHORTEST_TICKS = 20;
 const LONGEST_TICKS = 600 * TICKS_A_SECOND;
 export const ZOOM_STEP = 1.6;
-export const PAN_STEP = 0.2; // of the span
 
 export class TimeWindow {
   readonly changed = new Signal();
   private span = 10 * TICKS_A_SECOND;
   private held: number | null = null; // the end while it does not move, in ticks
 
-  constructor(private readonly samples: Samples) {}
+  constructor(private readonly extent: Extent, private readonly longest = LONGEST_TICKS) {}
 
   get live(): boolean {
     return this.held === null;
@@ -24,7 +26,7 @@ export class TimeWindow {
   }
 
   get end(): number {
-    return this.held ?? this.samples.lastTime;
+    return this.held ?? this.extent.lastTime;
   }
 
   get begin(): number {
@@ -47,13 +49,13 @@ export class TimeWindow {
   }
 
   setSpan(ticks: number): void {
-    this.span = Math.max(SHORTEST_TICKS, Math.min(LONGEST_TICKS, ticks));
+    this.span = Math.max(SHORTEST_TICKS, Math.min(this.longest, ticks));
     this.changed.emit();
   }
 
   /** Shows from `begin` to `end` and stays there. */
   show(begin: number, end: number): void {
-    this.span = Math.max(SHORTEST_TICKS, Math.min(LONGEST_TICKS, end - begin));
+    this.span = Math.max(SHORTEST_TICKS, Math.min(this.longest, end - begin));
     this.held = begin + this.span;
     this.changed.emit();
   }
@@ -66,18 +68,18 @@ export class TimeWindow {
     }
     const fixed = about ?? (this.begin + this.held) / 2;
     const share = (fixed - this.begin) / this.span;
-    const span = Math.max(SHORTEST_TICKS, Math.min(LONGEST_TICKS, this.span * factor));
+    const span = Math.max(SHORTEST_TICKS, Math.min(this.longest, this.span * factor));
     this.show(fixed - share * span, fixed + (1 - share) * span);
   }
 
   /** Moves by a share of the span; moving past the newest sample follows it again. */
   pan(share: number): void {
     const end = this.end + share * this.span;
-    if (end >= this.samples.lastTime) {
+    if (end >= this.extent.lastTime) {
       this.follow();
       return;
     }
-    this.held = Math.max(end, this.samples.timeOf(this.samples.first));
+    this.held = Math.max(end, this.extent.firstTime);
     this.changed.emit();
   }
 }

@@ -2,7 +2,7 @@
 
 import { BLOCK, COUNT, QUANTITIES, TICKS_A_SECOND, TRACES, JOINTS, type Samples } from "./samples";
 
-const GAP_TICKS = 20; // a longer hole is drawn as one
+const GAP_SAMPLES = 20; // a longer hole is drawn as one
 
 /** x in seconds; y has one list for each trace, null where a line breaks. Reused from one picture to the next. */
 export type Picture = { readonly x: number[]; readonly y: (number | null)[][]; exact: boolean };
@@ -30,20 +30,23 @@ export function draw(samples: Samples, begin: number, end: number, columns: numb
 class Pen {
   private at = 0;
   private before = NaN; // time of the last sample drawn
+  private readonly gap: number; // ticks
 
-  constructor(private readonly samples: Samples, private readonly into: Picture) {}
+  constructor(private readonly samples: Samples, private readonly into: Picture) {
+    this.gap = GAP_SAMPLES * samples.every;
+  }
 
   column(from: number, to: number, blocks: boolean): void {
     const { samples } = this;
     const time = samples.timeOf(from);
     const last = samples.timeOf(to - 1);
-    if (last - time - (to - 1 - from) > GAP_TICKS) {
+    if (last - time - (to - 1 - from) * samples.every > this.gap) {
       const behind = this.gapIn(from, to);
       this.column(from, behind, false);
       this.column(behind, to, false);
       return;
     }
-    if (time - this.before > GAP_TICKS) this.point((time + this.before) / 2, null);
+    if (time - this.before > this.gap) this.point((time + this.before) / 2, null);
     if (to - from === 1) {
       this.point(time, samples.values, (from % samples.capacity) * TRACES);
     } else {
@@ -57,7 +60,7 @@ class Pen {
   /** The first sample behind the first gap of a column that has one; in one that only lacks single samples, its middle. */
   private gapIn(from: number, to: number): number {
     for (let number = from + 1; number < to; number++) {
-      if (this.samples.timeOf(number) - this.samples.timeOf(number - 1) > GAP_TICKS) return number;
+      if (this.samples.timeOf(number) - this.samples.timeOf(number - 1) > this.gap) return number;
     }
     return (from + to) >> 1;
   }

@@ -52,7 +52,8 @@ export class Samples {
   private offset = 0;
   private tick = -1;
 
-  constructor(readonly capacity = MOST_SAMPLES) {
+  /** `capacity` is a multiple of BLOCK; `every` is how many ticks there are from one sample to the next. */
+  constructor(readonly capacity = MOST_SAMPLES, readonly every = 1) {
     this.time = new Float64Array(capacity);
     this.values = new Int16Array(capacity * TRACES);
     this.state = new Uint8Array(capacity);
@@ -126,6 +127,10 @@ export class Samples {
       else high = middle;
     }
     return low;
+  }
+
+  get firstTime(): number {
+    return this.end ? this.timeOf(this.first) : 0;
   }
 
   get lastTime(): number {

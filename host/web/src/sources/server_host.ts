@@ -2,6 +2,8 @@
 
 import type { ArmDescription, Bench, Host, HostState, Job, Jobs, Prediction, Verb } from "../host";
 
+type Method = "GET" | "POST" | "DELETE";
+
 const AGAIN_MS = 1000; // until a server that went is tried again
 
 export class ServerHost implements Host {
@@ -12,22 +14,33 @@ export class ServerHost implements Host {
 
   readonly jobs: Jobs = {
     verbs: async () => (await this.ask<{ verbs: Verb[] }>("GET", "/jobs")).verbs,
-    start: (verb, given) => this.ask<unknown>("POST", "/jobs", { verb, arguments: given }).then(() => undefined),
+    start: async (verb, given) => (await this.ask<Job>("POST", "/jobs", { verb, arguments: given })).id,
     stop: (id) => this.ask<unknown>("DELETE", `/jobs/${encodeURIComponent(id)}`).then(() => undefined),
     answer: (id, line) => this.ask<unknown>("POST", `/jobs/${encodeURIComponent(id)}`, { line }).then(() => undefined),
-    listen: (heard) => this.hear(heard),
+    listen: (heard) => {
+      this.listeners.push(heard);
+      if (this.listeners.length === 1) this.hear();
+    },
   };
+  private readonly listeners: ((job: Job) => void)[] = [];
 
   constructor(private readonly token: string, private readonly page: () => string) {}
 
-  private hear(heard: (job: Job) => void): void {
+  private hear(): void {
     const socket = new WebSocket(`ws://${location.host}/host`, ["greywhale", `token.${this.token}`]);
-    socket.addEventListener("message", ({ data }: MessageEvent<string>) => heard(JSON.parse(data) as Job));
-    socket.addEventListener("close", () => setTimeout(() => this.hear(heard), AGAIN_MS));
+    socket.addEventListener("message", ({ data }: MessageEvent<string>) => {
+      const job = JSON.parse(data) as Job;
+      for (const heard of this.listeners) heard(job);
+    });
+    socket.addEventListener("close", () => setTimeout(() => this.hear(), AGAIN_MS));
   }
 
   state(): Promise<HostState> {
     return this.ask("GET", "/state");
+  }
+
+  async log(file: string): Promise<Uint8Array> {
+    return new Uint8Array(await (await this.request("GET", `/log?file=${encodeURIComponent(file)}`)).arrayBuffer());
   }
 
   async controller(file: string): Promise<Readonly<Record<string, number>>> {
@@ -43,15 +56,20 @@ export class ServerHost implements Host {
     return this.ask("GET", "/arm");
   }
 
-  private async ask<Answer>(method: "GET" | "POST" | "DELETE", path: string, body?: object): Promise<Answer> {
+  private async ask<Answer>(method: Method, path: string, body?: object): Promise<Answer> {
+    const told = await (await this.request(method, path, body)).text();
+    return (told ? JSON.parse(told) : {}) as Answer;
+  }
+
+  /** The server's answer; one that refuses is an error with its sentence. */
+  private async request(method: Method, path: string, body?: object): Promise<Response> {
     const answer = await fetch(path, {
       method,
       headers: { "X-Greywhale-Token": this.token, "X-Greywhale-Page": this.page(), "Content-Type": "application/json" },
       ...(body ? { body: JSON.stringify(body) } : {}),
     });
-    const told = await answer.text();
-    if (answer.ok) return (told ? JSON.parse(told) : {}) as Answer;
-    throw new Error(sentenceIn(told) ?? `The server answers ${answer.status} to ${path}; reload the page.`);
+    if (answer.ok) return answer;
+    throw new Error(sentenceIn(await answer.text()) ?? `The server answers ${answer.status} to ${path}; reload the page.`);
   }
 }
 

@@ -1,0 +1,77 @@
+"""The logs of the folder on the page: one laid over the other, with the measures and the sentences of a terminal."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+from greywhale.files.log import LogWriter, read_log
+from greywhale.files.log.layout import Origin
+from greywhale.motion import evaluate
+from tests.page import stage as stages
+from tests.page.stage import Stage
+
+pytestmark = pytest.mark.slow
+
+LAG_TICKS = {"close.csv": 40, "late.csv": 90}
+JOINT = 1
+
+
+def write(path: Path, lag: int) -> None:
+    """Two moves between rests, followed after so many ticks and never quite."""
+    t = np.arange(6000) / 1000
+    leader = np.clip(t - 1.0, 0.0, 0.8) - np.clip(t - 3.5, 0.0, 0.8)
+    follower = 0.95 * np.concatenate([np.zeros(lag), leader[:-lag]])
+    with LogWriter(path, Origin()) as log:
+        for time_s, led, followed in zip(t, leader, follower, strict=True):
+            log.append(time_s, 4 * [led], 4 * [followed], 4 * [led - followed], "following")
+
+
+def test_two_logs_lie_over_each_other_with_the_measures_of_evaluate(page: Page, tmp_path: Path) -> None:
+    for name, lag in LAG_TICKS.items():
+        write(tmp_path / name, lag)
+    page.get_by_role("button", name="Logs").click()
+    for name in LAG_TICKS:
+        page.get_by_role("button", name=name).click()
+    page.get_by_label("Joint shown").select_option(str(JOINT))
+    logs = {name: read_log(tmp_path / name) for name in LAG_TICKS}
+    measured = page.get_by_role("region", name="Measures").locator("tbody tr")
+    for row, (name, log) in enumerate(logs.items()):
+        found = evaluate(log).as_dict()["joints"][JOINT]
+        sizes = found["mse_rad2"], found["steady_state_error_rad"], found["settling_error_rad"], found["time_delay_s"]
+        texts = [f"{size:.{digits}f}" for size, digits in zip(sizes, (6, 4, 4, 4), strict=True) if size is not None]
+        assert len(texts) == len(sizes)
+        expect(measured.nth(row).locator("th, td")).to_have_text([name, *texts])
+    plot = page.locator(".logs .u-over").first.bounding_box()
+    assert plot is not None
+    page.mouse.move(plot["x"] + 0.25 * plot["width"], plot["y"] + 20)
+    moment = page.locator(".logs thead th").first
+    expect(moment).to_contain_text("at 1.")
+    tick = int(np.ceil(1000 * float(moment.inner_text().split()[1])))
+    shown = page.locator(".logs .values").first.locator("tbody tr")
+    for row, log in enumerate(logs.values()):
+        told = [float(text) for text in shown.nth(row).locator("td").all_inner_texts()]
+        led, followed = log.leader[tick, JOINT], log.follower[tick, JOINT]
+        assert told[:3] == pytest.approx([led, followed, led - followed], abs=1.1e-3)
+
+
+def test_what_is_no_sound_log_is_told_as_in_a_terminal(browser: Browser, stage: Stage, tmp_path: Path) -> None:
+    write(tmp_path / "good.csv", 40)
+    whole = (tmp_path / "good.csv").read_text()
+    (tmp_path / "bad.csv").write_text(whole.replace(",following\n", ",<b>x</b>\n", 1))
+    with browser.new_context() as context, stages.visit(context, stage) as visit:
+        page = visit.page
+        page.get_by_role("button", name="Logs").click()
+        for name in ("good.csv", "bad.csv"):
+            page.get_by_role("button", name=name).click()
+        told = page.get_by_role("alert").first
+        expect(told).to_contain_text("bad.csv, line")
+        expect(told).to_contain_text("'<b>x</b>' is not one of boot, disabled")
+        expect(page.get_by_role("button", name="good.csv")).to_have_attribute("aria-pressed", "true")
+        expect(page.get_by_role("button", name="bad.csv")).to_have_attribute("aria-pressed", "false")
+        (said,) = visit.strange  # by the browser, of each answer that refuses
+        assert "status of 400" in said
+        visit.strange.clear()
