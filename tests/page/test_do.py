@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 from playwright.sync_api import Page, expect
 
+from greywhale.commission.measures import NAMES, Measures
+from greywhale.commission.motions import PARTS
+from greywhale.dashboard.job import Facts
 from greywhale.files.log import read_log
 from tests.page.stage import Stage
 
@@ -32,3 +38,50 @@ def test_a_recording_from_the_page_is_a_log_and_its_errors_are_sentences(
     failed = page.locator(".job").first
     expect(failed.get_by_role("status")).to_have_text("failed")
     expect(failed.get_by_role("alert")).to_contain_text("none.csv")
+
+
+def test_a_search_draws_its_curve_while_it_runs_and_each_joints_at_its_end(page: Page, stage: Stage) -> None:
+    page.get_by_role("button", name="Do", exact=True).click()
+    page.get_by_role("button", name="tune", exact=True).click()
+    page.get_by_label("model file", exact=True).fill("default")
+    page.locator(".verb-form summary").click()
+    page.get_by_label("budget", exact=True).fill("40")
+    page.get_by_label("force", exact=True).check()
+    page.get_by_role("button", name="Start tune").click()
+    job = page.locator(".job").first
+    expect(job.locator("figcaption")).to_contain_text("Best cost so far: ")
+    expect(job.locator("polyline.accent")).to_have_count(1)
+    expect(job.get_by_role("status")).to_have_text("done")
+    for joint, curve in enumerate(stage.jobs.facts()[-1]["result"]["curves"]):
+        drawn = job.locator(f"polyline.joint-{joint}").get_attribute("points")
+        assert drawn is not None
+        depths = [float(point.split(",")[1]) for point in drawn.split()]
+        assert len(depths) == len(curve["evaluations"]) > 2
+        assert depths[int(np.argmin(curve["cost"]))] == max(depths), "the lower on the screen, the better"
+
+
+def test_a_commissioning_shows_what_was_predicted_beside_what_was_measured(page: Page, stage: Stage) -> None:
+    def told(mrad: float) -> dict[str, Any]:
+        sizes = np.add.outer(np.arange(len(PARTS)), np.arange(4) + mrad) / 1000
+        return dict(Measures(**dict.fromkeys(NAMES, sizes**2)).as_dict())
+
+    unplayed = json.loads(json.dumps(told(7.0)).replace("4.9e-05", "null"))
+    trials = [
+        {"trial": "before", "predicted": told(30.0), "measured": told(32.5)},
+        {"trial": "trial-1", "predicted": told(5.0), "measured": unplayed},
+    ]
+    facts: Facts = {
+        "kind": "job", "id": "c", "verb": "commission", "arguments": {}, "state": "done", "progress": None,
+        "result": {"improved": True, "trials": trials}, "error": None, "exit_code": 0, "said": [],
+    }  # fmt: skip
+    page.get_by_role("button", name="Do", exact=True).click()
+    for listener in stage.jobs.listeners:
+        listener(facts)
+    table = page.get_by_role("region", name="Predicted and measured")
+    rows = table.locator("tbody tr")
+    expect(rows.nth(0).locator("td")).to_have_text([f"{30 + joint}.0 / {32 + joint}.5" for joint in range(4)])
+    expect(rows.nth(1).locator("td").first).to_have_text("5.0 / –")
+    table.get_by_label("Part of the check").select_option(PARTS[2])
+    expect(rows.nth(0).locator("td").first).to_have_text("32.0 / 34.5")
+    table.get_by_label("Measure").select_option("unrest")
+    expect(rows.nth(0).locator("td").first).to_have_text("1.02 / 1.19")

@@ -77,7 +77,7 @@ export type Job = {
   readonly id: string;
   readonly verb: string;
   readonly state: "running" | "done" | "failed" | "stopped";
-  readonly progress: { readonly done: number; readonly total: number; readonly text: string } | null;
+  readonly progress: { readonly done: number; readonly total: number; readonly text: string; readonly note: string } | null;
   readonly result: Json;
   readonly error: string | null;
   readonly said: readonly string[];

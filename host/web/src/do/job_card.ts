@@ -2,6 +2,8 @@
 
 import { button, el, setText } from "../parts/dom";
 import type { Job, Jobs, Json } from "../host";
+import { predictedBeside, trialsIn } from "./predicted";
+import { SearchCurve } from "./search_curve";
 
 const WORDS: Readonly<Record<Job["state"], string>> = {
   running: "running", done: "done", failed: "failed", stopped: "stopped",
@@ -16,6 +18,7 @@ export class JobCard {
   private readonly error = el("p", { class: "job-error", attrs: { role: "alert" } });
   private readonly said = el("pre", { class: "said", attrs: { tabindex: "0", "aria-label": "What the verb says" } });
   private readonly answer: HTMLFormElement;
+  private readonly curve = new SearchCurve();
   private readonly result = el("div", { class: "result" });
   private readonly stop: HTMLButtonElement;
   private shown: Job["state"] | null = null;
@@ -31,7 +34,7 @@ export class JobCard {
     } } }, line, el("button", { type: "submit" }, "Answer"));
     this.element = el("section", { class: "card job" },
       el("div", { class: "row" }, this.title, this.state, el("span", { class: "gap" }), this.stop),
-      this.bar, this.text, this.error, this.said, this.answer, this.result);
+      this.bar, this.text, this.curve.element, this.error, this.said, this.answer, this.result);
   }
 
   show(job: Job): void {
@@ -46,6 +49,7 @@ export class JobCard {
     } else {
       this.bar.removeAttribute("value");
     }
+    if (job.progress && running) this.curve.hear(job.progress);
     setText(this.text, running ? (job.progress?.text ?? "") : "");
     setText(this.error, job.error ?? "");
     const lines = job.said.join("\n");
@@ -54,8 +58,16 @@ export class JobCard {
       this.said.textContent = lines;
       this.said.scrollTop = this.said.scrollHeight;
     }
-    if (job.state !== this.shown && job.result !== null) this.result.replaceChildren(describe(job.result, 0));
+    if (job.state !== this.shown && job.result !== null) this.showResult(job.result);
     this.shown = job.state;
+  }
+
+  private showResult(result: Json): void {
+    const { curves = null, ...rest }: Entries = isRecord(result) ? result : { result };
+    this.curve.end(curves);
+    const trials = trialsIn(rest);
+    const told = trials.length ? { ...rest, trials: trials.map(({ predicted, measured, ...other }) => other) } : rest;
+    this.result.replaceChildren(...(trials.length ? [predictedBeside(trials)] : []), describe(told, 0));
   }
 }
 
