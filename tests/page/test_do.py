@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -13,8 +14,9 @@ from playwright.sync_api import Page, expect
 from greywhale.commission.measures import NAMES, Measures
 from greywhale.commission.motions import PARTS
 from greywhale.dashboard.job import Facts
+from greywhale.dashboard.jobs import Listed
 from greywhale.files.log import read_log
-from tests.page.stage import Stage
+from tests.page.stage import PATIENCE_MS, Stage
 
 pytestmark = pytest.mark.slow
 
@@ -38,6 +40,24 @@ def test_a_recording_from_the_page_is_a_log_and_its_errors_are_sentences(
     failed = page.locator(".job").first
     expect(failed.get_by_role("status")).to_have_text("failed")
     expect(failed.get_by_role("alert")).to_contain_text("none.csv")
+
+
+def test_the_view_says_that_it_reads_the_verbs_until_they_are_there(
+    page: Page, stage: Stage, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ready, listed = threading.Event(), stage.jobs.listed
+
+    def listed_later() -> Listed:
+        ready.wait(PATIENCE_MS / 1000)
+        return listed()
+
+    monkeypatch.setattr(stage.jobs, "listed", listed_later)
+    page.get_by_role("button", name="Do", exact=True).click()
+    reading = page.get_by_text("Reading what can be done ...")
+    expect(reading).to_be_visible()
+    ready.set()
+    expect(page.get_by_role("button", name="record", exact=True)).to_be_visible()
+    expect(reading).to_be_hidden()
 
 
 def test_a_search_draws_its_curve_while_it_runs_and_each_joints_at_its_end(page: Page, stage: Stage) -> None:

@@ -11,6 +11,7 @@ export class DoView implements View {
   readonly name = "Do";
   readonly element: HTMLElement;
   private readonly list = el("div", { class: "verbs", attrs: { role: "group", "aria-label": "Verbs" } });
+  private readonly reading = el("p", { class: "quiet", hidden: true, attrs: { role: "status" } }, "Reading what can be done ...");
   private readonly form = el("div");
   private readonly jobs = el("div", { class: "side jobs" });
   private readonly none = el("p", { class: "quiet" }, "Nothing was started yet.");
@@ -19,13 +20,15 @@ export class DoView implements View {
   constructor(private readonly session: Session, private readonly host: Host) {
     this.jobs.append(this.none);
     this.element = el("div", { class: "editor" },
-      el("section", { class: "card" }, el("h2", {}, "What shall greywhale do?"), this.list, this.form), this.jobs);
+      el("section", { class: "card" }, el("h2", {}, "What shall greywhale do?"), this.reading, this.list, this.form),
+      this.jobs);
     host.jobs.listen((job) => this.heard(job));
   }
 
   enter(): void {
     if (this.list.childElementCount) return;
-    void this.session.attempt(async () => {
+    this.reading.hidden = false;
+    const read = this.session.attempt(async () => {
       const verbs = await this.host.jobs.verbs();
       this.list.replaceChildren(...verbs.map((verb) => {
         const choice = button(verb.verb, () => {
@@ -35,6 +38,7 @@ export class DoView implements View {
         return choice;
       }));
     });
+    void read.then(() => { this.reading.hidden = true; });
   }
 
   private async choose(verb: Verb): Promise<void> {
