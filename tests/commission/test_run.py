@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +15,7 @@ from greywhale.commission import CommissioningRequest, commission, foresee, lear
 from greywhale.commission.journal import CommissioningJournal
 from greywhale.commission.learn import LearntController
 from greywhale.commission.page import facts, save_page
-from greywhale.commission.result import CommissioningResult
+from greywhale.commission.result import CommissioningResult, errors_beside
 from greywhale.commission.search import KD, KI, KP, JointSearch
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.files.leader import load_leader
@@ -123,15 +123,27 @@ def test_a_good_joint_is_varied_along_with_the_others_but_gets_no_trial_of_its_o
     rig: SimulatedRig, options: Make, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setattr(JointSearch, "good", property(lambda search: search.joint == 0))
-    steps: list[str] = []
-    trials = commission(options(trials=3), lambda what, fraction, note="": steps.append(what)).rounds[0].trials
+    steps: list[tuple[str, str]] = []
+    outcome = commission(options(trials=3), lambda what, fraction, note="": steps.append((what, note)))
+    trials = outcome.rounds[0].trials
     assert len(trials) == 3
-    assert [step for step in steps if "trial" in step] == [
-        f"round 1, trial {number} of 3 at most: recording" for number in (1, 2, 3)
+    beside = [errors_beside(outcome.predicted(trial, outcome.rounds[0]), trial) for trial in trials]
+    assert [step for step in steps if "trial" in step[0]] == [
+        (f"round 1, trial {number} of 3 at most: recording", note) for number, note in enumerate(["", *beside[:2]], 1)
     ]
     assert len({trial.rows[0].tobytes() for trial in trials}) > 1
     monkeypatch.setattr(JointSearch, "good", property(lambda search: True))
     assert len(commission(options(out=tmp_path / "all good")).rounds[0].trials) == 1
+
+
+def test_the_errors_of_a_trial_stand_beside_what_the_model_said(whole: Whole) -> None:
+    before = whole.outcome.trials.before
+    joints = list(before.table.joints_in_use)
+    sizes = [1e3 * np.sqrt(scale * before.measured.error[:, joints].mean()) for scale in (4, 1)]
+    twice = replace(before.measured, error=4 * before.measured.error)
+    assert errors_beside(twice, before) == f"before: error {sizes[0]:.1f} mrad rms predicted, {sizes[1]:.1f} measured"
+    nothing = replace(before.measured, error=np.full_like(before.measured.error, np.nan))
+    assert errors_beside(twice, replace(before, measured=nothing, stopped="it hunted")) == "before: it hunted"
 
 
 @pytest.mark.slow

@@ -85,6 +85,10 @@ def test_a_commissioning_shows_what_was_predicted_beside_what_was_measured(page:
         sizes = np.add.outer(np.arange(len(PARTS)), np.arange(4) + mrad) / 1000
         return dict(Measures(**dict.fromkeys(NAMES, sizes**2)).as_dict())
 
+    def tell(facts: Facts) -> None:
+        for listener in stage.jobs.listeners:
+            listener(facts)
+
     unplayed = json.loads(json.dumps(told(7.0)).replace("4.9e-05", "null"))
     trials = [
         {"trial": "before", "predicted": told(30.0), "measured": told(32.5)},
@@ -94,9 +98,12 @@ def test_a_commissioning_shows_what_was_predicted_beside_what_was_measured(page:
         "kind": "job", "id": "c", "verb": "commission", "arguments": {}, "state": "done", "progress": None,
         "result": {"improved": True, "trials": trials}, "error": None, "exit_code": 0, "said": [],
     }  # fmt: skip
+    note = "trial-1: error 6.1 mrad rms predicted, 7.2 measured"
+    progress = {"done": 0.5, "total": 1.0, "text": "round 1, trial 2 of 6 at most: recording", "note": note}
     page.get_by_role("button", name="Do", exact=True).click()
-    for listener in stage.jobs.listeners:
-        listener(facts)
+    tell({**facts, "state": "running", "result": None, "progress": progress})
+    expect(page.get_by_text(f"{progress['text']} ({note})")).to_be_visible()
+    tell(facts)
     table = page.get_by_role("region", name="Predicted and measured")
     rows = table.locator("tbody tr")
     expect(rows.nth(0).locator("td")).to_have_text([f"{30 + joint}.0 / {32 + joint}.5" for joint in range(4)])

@@ -8,11 +8,11 @@ from typing import TypedDict
 
 import numpy as np
 
-from greywhale.arm.parameters import JOINT_NAMES
+from greywhale.arm.parameters import JOINT_NAMES, ArmParameters
 from greywhale.base.types import Crc
 from greywhale.commission.learn import LearntController
 from greywhale.commission.measures import Measures, PartFacts, measure
-from greywhale.commission.motions import PARTS
+from greywhale.commission.motions import PARTS, Check
 from greywhale.commission.predict import predict
 from greywhale.commission.trials import Trial, TrialFacts, Trials
 
@@ -50,6 +50,21 @@ class Round:
     trials: tuple[Trial, ...]
 
 
+def predict_trial(arm: ArmParameters, trial: Trial, check: Check) -> Measures:
+    """What a model says about a trial."""
+    return measure(predict(arm, trial.table, trial.traces)[0], check, trial.table.supply_v)
+
+
+def errors_beside(predicted: Measures, trial: Trial) -> str:
+    """The error over the joints in use and the parts played, as a model predicted it and as the arm made it."""
+    joints = list(trial.table.joints_in_use)
+    known = np.isfinite(predicted.error[:, joints]) & np.isfinite(trial.measured.error[:, joints])
+    if not known.any():
+        return f"{trial.name}: {trial.stopped}"
+    shown, seen = (1e3 * np.sqrt(one.error[:, joints][known].mean()) for one in (predicted, trial.measured))
+    return f"{trial.name}: error {shown:.1f} mrad rms predicted, {seen:.1f} measured"
+
+
 @dataclass(frozen=True)
 class CommissioningResult:
     """What was tried, and the set `best` that the board runs and stores now."""
@@ -67,8 +82,7 @@ class CommissioningResult:
         """What a round's model says about a trial; asked once, and told to all."""
         key = trial.name, round_.number
         if key not in self._predicted:
-            shown = predict(round_.learnt.arm, trial.table, trial.traces)[0]
-            self._predicted[key] = measure(shown, self.trials.check, self.trials.table.supply_v)
+            self._predicted[key] = predict_trial(round_.learnt.arm, trial, self.trials.check)
         return self._predicted[key]
 
     def round_of(self, trial: Trial) -> Round:

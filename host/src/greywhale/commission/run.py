@@ -22,7 +22,7 @@ from greywhale.commission.foresee import foresee
 from greywhale.commission.journal import CommissioningJournal
 from greywhale.commission.motions import JointRange, check_motion
 from greywhale.commission.request import CommissioningRequest
-from greywhale.commission.result import CommissioningResult, Round
+from greywhale.commission.result import CommissioningResult, Round, errors_beside, predict_trial
 from greywhale.commission.search import JointSearch, Row
 from greywhale.commission.trials import Trials
 from greywhale.files.arm import load_arm
@@ -58,6 +58,7 @@ class _Commissioning:
         self.rounds: list[Round] = []
         self.before: ParameterTable | None = None
         self.trying = ""  # which trial of a round runs, for the reports
+        self.tried = ""  # how the last one went, for those that say nothing else
 
     def run(self) -> CommissioningResult:
         options = self.options
@@ -73,7 +74,7 @@ class _Commissioning:
             if learnt.stall_volts is not None:
                 trials.stall_volts = learnt.stall_volts
             with self._arm(f"round {number}") as arm:
-                self._try(arm, learnt.controllers)
+                self._try(arm, learnt)
             self.rounds.append(Round(number, learnt, tuple(trials.done[first:])))
             if not self._is_wanting():
                 break
@@ -160,10 +161,10 @@ class _Commissioning:
             self.book.note("excite", {"log": path.name})
         return read_evidence(path)
 
-    def _try(self, arm: Callable[[], ArmOnPort], tuned: Controllers) -> None:
+    def _try(self, arm: Callable[[], ArmOnPort], learnt: learn.LearntController) -> None:
         """Try a round's controllers on the arm, then vary what failed or follows poorly."""
         trials, searches = self.trials, self.searches
-        wanted: list[npt.NDArray[np.int32] | None] = [tuned[search.joint] for search in searches]
+        wanted: list[npt.NDArray[np.int32] | None] = [learnt.controllers[search.joint] for search in searches]
         for search in searches:
             search.begin()
         for number in range(1, self.options.trials + 1):
@@ -173,6 +174,7 @@ class _Commissioning:
                 if row is not None:
                     rows[joint] = row
             trial = trials.play(None if trials.known() else arm(), rows)
+            self.tried = errors_beside(predict_trial(learnt.arm, trial, trials.check), trial)
             for search, verdict in zip(searches, trial.verdicts, strict=True):
                 joint = search.joint
                 if wanted[joint] is not None and verdict.known:
@@ -206,7 +208,7 @@ class _Commissioning:
 
     def _report(self, stage: str) -> NotedProgress:
         def told(what: str, fraction: float, note: str = "") -> None:
-            self.report(f"{stage}{self.trying}: {what}", fraction, note)
+            self.report(f"{stage}{self.trying}: {what}", fraction, note or self.tried)
 
         return told
 

@@ -49,8 +49,7 @@ export class JobCard {
     } else {
       this.bar.removeAttribute("value");
     }
-    if (job.progress && running) this.curve.hear(job.progress);
-    setText(this.text, running ? (job.progress?.text ?? "") : "");
+    setText(this.text, job.progress && running ? this.step(job.progress) : "");
     setText(this.error, job.error ?? "");
     const lines = job.said.join("\n");
     this.said.hidden = !lines;
@@ -60,6 +59,11 @@ export class JobCard {
     }
     if (job.state !== this.shown && job.result !== null) this.showResult(job.result);
     this.shown = job.state;
+  }
+
+  /** What is done now; a cost is in the curve, any other note stands beside. */
+  private step(progress: NonNullable<Job["progress"]>): string {
+    return this.curve.hear(progress) || !progress.note ? progress.text : `${progress.text} (${progress.note})`;
   }
 
   private showResult(result: Json): void {

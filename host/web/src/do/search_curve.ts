@@ -19,9 +19,10 @@ export class SearchCurve {
     this.element.append(this.words);
   }
 
-  hear({ done, total, note }: NonNullable<Job["progress"]>): void {
+  /** Takes the cost that stands in a note; false where it holds none. */
+  hear({ done, total, note }: NonNullable<Job["progress"]>): boolean {
     const told = COST.exec(note);
-    if (!told) return;
+    if (!told) return false;
     const share = (100 * done) / (total || 1);
     const last = this.share.at(-1) ?? -1;
     if (share < last) this.share.length = this.cost.length = 0; // another search
@@ -31,6 +32,7 @@ export class SearchCurve {
     this.cost[place] = Number(told[2]);
     setText(this.words, `Best ${told[1]} so far: ${told[2]}`);
     this.draw("% of the search", [{ x: this.share, y: this.cost, shade: "accent" }]);
+    return true;
   }
 
   /** Draws the curves that a result holds, in place of what was told before. */
