@@ -13,7 +13,7 @@ import numpy as np
 from greywhale.arm import ArmParameters
 from greywhale.base.bench_process import RunningBench
 from greywhale.base.types import Progress, show_no_progress
-from greywhale.cli.story.recorder import record_excitation, record_motion
+from greywhale.cli.story.recorder import HuntedError, record_excitation, record_motion
 from greywhale.files import controller as controller_file
 from greywhale.files.leader import save_leader
 from greywhale.files.log import Log
@@ -45,7 +45,8 @@ def practise(
 ) -> list[Log]:
     """Record practice of about `seconds` into `folder`, then the checks: the log to fit first, then those to validate.
 
-    `nominal` is what is known of the arm; `base` the parameters that the board has besides its controllers.
+    `nominal` is what is known of the arm; `base` the parameters that the board has besides its controllers. A check
+    with which the arm hunts proves nothing of the arm: it ends early, and is left out.
     """
     report = progress or show_no_progress
 
@@ -63,7 +64,10 @@ def practise(
     for number, (name, controller) in enumerate(CHECKS):
         leader, path = folder / f"{name}_leader.csv", folder / f"{name}.csv"
         save_leader(leader, human_reaches(FIRST_SEED + number, CHECK_SHARE * seconds))
-        logs.append(record_motion(bench, leader, path, paper_table(controller), named(name)).log())
+        try:
+            logs.append(record_motion(bench, leader, path, paper_table(controller), named(name)).log())
+        except HuntedError:
+            report(f"{name}: the arm hunts with {controller}, so the model is judged without this log", 1.0)
     return logs
 
 

@@ -29,6 +29,10 @@ READY_RAD = 0.05  # both arms are back at the start within this
 READY_WAIT_S = 20.0
 
 
+class HuntedError(UserError):
+    """The board stopped a recording because a joint swung to and fro with these controllers."""
+
+
 @dataclass(frozen=True)
 class Recorded:
     """A log, the CRC of its parameters, what the link lost of it, and the wall time of the upload."""
@@ -52,7 +56,8 @@ def record_motion(
 ) -> Recorded:
     """Let the follower follow the whole motion of the file `leader` into `log`; upload `controller` first, if given.
 
-    The log begins LEAD_S before the leader's first movement and ends SETTLE_S after its last.
+    The log begins LEAD_S before the leader's first movement and ends SETTLE_S after its last. Raises HuntedError where
+    the board stopped the arm for its unrest; the fault is cleared then.
     """
     length = LEAD_S + load_leader(leader).duration_s + SETTLE_S
 
@@ -94,7 +99,14 @@ def _recorded(
         uploaded = time.monotonic()
         running = read_parameters(device)
         _wait_for_the_arms(bench, device, leader, running.joints_in_use)
-        recording = play(device)
+        try:
+            recording = play(device)
+        except UserError as error:
+            if device.status().fault is not schema.Fault.UNREST:
+                raise
+            device.telemetry(0)
+            device.ask(schema.ClearFaultRequest())
+            raise HuntedError(error.message) from None
     return Recorded(recording.path, running.crc, recording.rows, recording.dropped, uploaded - started)
 
 
