@@ -12,8 +12,8 @@ from greywhale.cli.catalogue import catalogue
 from greywhale.dashboard.folder import Folder
 from greywhale.dashboard.history import History
 from greywhale.dashboard.jobs import Jobs
-from greywhale.dashboard.keeper import turn
 from greywhale.dashboard.outbox import Outbox
+from greywhale.dashboard.port_holder import turn
 from greywhale.dashboard.relay import Client, Relay
 from greywhale.protocol import schema
 from greywhale.protocol.declared import Message

@@ -16,9 +16,9 @@ from starlette.types import Message, Receive, Scope, Send
 
 from greywhale.base.errors import UserError
 from greywhale.dashboard import server
+from greywhale.dashboard.answers import Answers
 from greywhale.dashboard.folder import Folder
 from greywhale.dashboard.guard import AT_ONCE, MOST_BODY_BYTES, Bucket, Guard
-from greywhale.dashboard.house import House
 from greywhale.files.log.layout import HEADING, TITLE
 from greywhale.protocol import schema
 from greywhale.protocol.frames import FrameDecoder
@@ -42,8 +42,8 @@ def page(shared: Shared, tmp_path: Path) -> Iterator[Page]:
     listener = server.listen()
     port: int = listener.getsockname()[1]
     token = secrets.token_urlsafe(8)
-    house = House(shared.relay, Folder(folder), "default", jobs_of(shared.relay, Folder(folder)))
-    running = server.make_server(server.application(house, files, token, port))
+    answers = Answers(shared.relay, Folder(folder), "default", jobs_of(shared.relay, Folder(folder)))
+    running = server.make_server(server.application(answers, files, token, port))
     thread = threading.Thread(target=running.run, args=([listener],), daemon=True)
     thread.start()
     yield Page(port, token)

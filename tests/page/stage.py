@@ -19,14 +19,24 @@ from playwright.sync_api import Browser, BrowserContext, Page, Request, expect, 
 from greywhale.base.errors import UserError
 from greywhale.board.device import Device
 from greywhale.dashboard import server
+from greywhale.dashboard.answers import Answers
 from greywhale.dashboard.bench import BenchControls
 from greywhale.dashboard.folder import Folder
 from greywhale.dashboard.history import History
-from greywhale.dashboard.house import House
-from greywhale.dashboard.keeper import turn
+from greywhale.dashboard.port_holder import turn
 from greywhale.dashboard.relay import Client, Relay
+from greywhale.protocol.declared import Parameter
 from greywhale.protocol.frames import FrameDecoder
-from greywhale.protocol.schema import PARAMETERS, ParamGetReply, ParamGetRequest, Sample, StopRequest
+from greywhale.protocol.schema import (
+    DEFAULTS,
+    HelloReply,
+    HelloRequest,
+    ParamGetReply,
+    ParamGetRequest,
+    Sample,
+    StopRequest,
+    param_crc,
+)
 from greywhale_sim.lockstep import LockStepBench
 from greywhale_sim.words import lock_step
 from tests.dashboard.browser import BoardSocket
@@ -52,11 +62,11 @@ class Stage:
         self.relay = _PacedRelay(self)
         own = Folder(folder)
         self.jobs = jobs_of(self.relay, own)
-        self.house = House(self.relay, own, "default", self.jobs, BenchControls(_Bench(self), own))
+        self.answers = Answers(self.relay, own, "default", self.jobs, BenchControls(_Bench(self), own))
         self._listener = server.listen()
         self.port: int = self._listener.getsockname()[1]
         self.page_address = f"http://127.0.0.1:{self.port}/#token={TOKEN}"
-        self._server = server.make_server(server.application(self.house, server.require_page(), TOKEN, self.port))
+        self._server = server.make_server(server.application(self.answers, server.require_page(), TOKEN, self.port))
         self._ready = threading.Condition()
         self.still = False  # only a stop lets the board live
         self._until_s = 0.0
@@ -89,14 +99,16 @@ class Stage:
             self._ready.notify_all()
         return asked.result()
 
-    def parameters(self) -> tuple[int, ...]:
-        """The raw values of the set that the board runs, asked by another client of the server."""
+    def runs(self, *changed: Parameter) -> dict[str, int]:
+        """The raw values of these parameters, asked by another client; all others of the running set are defaults."""
         with Watcher(self.port, TOKEN).open("/board") as socket:
-            board = BoardSocket(socket)
-            return tuple(
-                ParamGetReply.unpack(board.frame(ParamGetReply.TYPE, board.ask(ParamGetRequest(index))).payload).value
-                for index in range(len(PARAMETERS))
-            )
+            board, values = BoardSocket(socket), list(DEFAULTS)
+            for one in changed:
+                reply = board.frame(ParamGetReply.TYPE, board.ask(ParamGetRequest(one.index)))
+                values[one.index] = ParamGetReply.unpack(reply.payload).value
+            hello = HelloReply.unpack(board.frame(HelloReply.TYPE, board.ask(HelloRequest())).payload)
+        assert hello.param_crc == param_crc(values)
+        return {one.name: values[one.index] for one in changed}
 
     def samples(self) -> list[Sample]:
         """All that the board has sent."""

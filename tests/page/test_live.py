@@ -124,13 +124,18 @@ def test_without_a_board_the_page_says_what_to_do_and_takes_one_that_comes(brows
     context = browser.new_context()
     with stage.open(), stages.visit(context, stage) as visit:
         expect(visit.page.get_by_text("Plug the board in by USB")).to_be_visible()
+        visit.page.get_by_role("button", name="Logs").click()
+        expect(visit.page.get_by_text("Plug the board in by USB")).to_be_hidden()
+        visit.page.get_by_role("button", name="Live").click()
+        expect(visit.page.get_by_text("Plug the board in by USB")).to_be_visible()
         stage.plugged.set()
         visit.page.locator("button.enable:enabled").wait_for()
         expect(visit.page.get_by_text("Plug the board in by USB")).to_be_hidden()
-        stranger = browser.new_page()
-        stranger.goto(f"http://127.0.0.1:{stage.port}/")
-        expect(stranger.locator(".empty")).to_contain_text("This address lacks its secret")
-        stranger.close()
+        for secret, sentence in (("", "This address lacks its secret"), ("#token=no", "not this server's")):
+            stranger = browser.new_page()
+            stranger.goto(f"http://127.0.0.1:{stage.port}/{secret}")
+            expect(stranger.locator(".empty")).to_contain_text(sentence)
+            stranger.close()
     context.close()
 
 

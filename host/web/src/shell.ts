@@ -77,6 +77,7 @@ export class Shell {
     this.main.replaceChildren(view.element);
     this.main.setAttribute("aria-label", view.name);
     view.enter?.();
+    this.refresh();
   }
 
   private picture(): void {
@@ -99,7 +100,7 @@ export class Shell {
   private refresh(): void {
     const { link, driver, samples, hello } = this.session;
     setText(this.place, !link.open ? "" : driver.verb ? `${link.port}, used by ${driver.verb}` : link.port);
-    this.empty.hidden = link.open || samples.end > 0;
+    this.empty.hidden = link.open || samples.end > 0 || this.front.withoutBoard === true;
     setText(this.emptyText, link.sentence || "Looking for a board.");
     setText(this.control, driver.you ? "Let go" : "Take control");
     this.control.title = driver.you ? "Let another page drive; the motors go off" : "Drive the arm from this page";

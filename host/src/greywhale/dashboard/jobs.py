@@ -34,7 +34,7 @@ class Jobs:
         away: Callable[[str], AbstractContextManager[str]],
     ) -> None:
         """`catalogue` tells the verbs there are, and may take seconds; `program` runs one as `Job` says; `away` frees
-        the board's port (`Keeper.away`).
+        the board's port (`PortHolder.away`).
         """
         self._relay = relay
         self._folder = folder

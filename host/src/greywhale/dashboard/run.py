@@ -14,12 +14,12 @@ import uvicorn
 
 from greywhale.base.bench_process import RunningBench
 from greywhale.dashboard import server
+from greywhale.dashboard.answers import Answers
 from greywhale.dashboard.bench import BenchControls
 from greywhale.dashboard.folder import Folder
 from greywhale.dashboard.history import History
-from greywhale.dashboard.house import House
 from greywhale.dashboard.jobs import Jobs
-from greywhale.dashboard.keeper import Keeper
+from greywhale.dashboard.port_holder import PortHolder
 from greywhale.dashboard.relay import Relay
 from greywhale.dashboard.verbs import VerbFacts
 
@@ -40,18 +40,18 @@ def serve(options: Options, bench: RunningBench | None, ready: Callable[[str], N
     """Serve until Ctrl-C; `ready` gets the address, with its token, when the page can be opened."""
     page = server.require_page()
     folder, relay = Folder(options.folder), Relay(History())
-    keeper = Keeper(relay, options.port)
-    jobs = Jobs(relay, folder, options.catalogue, options.program, keeper.away)
-    house = House(relay, folder, options.arm, jobs, None if bench is None else BenchControls(bench, folder))
+    holder = PortHolder(relay, options.port)
+    jobs = Jobs(relay, folder, options.catalogue, options.program, holder.away)
+    answers = Answers(relay, folder, options.arm, jobs, None if bench is None else BenchControls(bench, folder))
     token = secrets.token_urlsafe(24)
     with contextlib.ExitStack() as held:
         listener = held.enter_context(server.listen(options.http_port))
         port: int = listener.getsockname()[1]
-        running = server.make_server(server.application(house, page, token, port))
-        held.callback(keeper.close)
+        running = server.make_server(server.application(answers, page, token, port))
+        held.callback(holder.close)
         held.callback(jobs.close)  # first, while their board is there
         held.enter_context(_ending_on_hangup(running))
-        keeper.start()
+        holder.start()
         ready(f"http://127.0.0.1:{port}/#token={token}")
         running.run([listener])
 

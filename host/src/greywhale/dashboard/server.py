@@ -18,8 +18,8 @@ from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
 
 from greywhale.base.errors import BAD_USAGE, UserError
+from greywhale.dashboard.answers import Answers
 from greywhale.dashboard.guard import Guard
-from greywhale.dashboard.house import House
 from greywhale.dashboard.sockets import serve_board, serve_host
 
 PAGE = Path(__file__).resolve().parent / "page"
@@ -38,23 +38,23 @@ def require_page(page: Path = PAGE) -> Path:
     return page
 
 
-def application(house: House, page: Path, token: str, port: int) -> ASGIApp:
+def application(answers: Answers, page: Path, token: str, port: int) -> ASGIApp:
     """All that the server does, at this port of the loopback, for who has the token."""
     routes: list[BaseRoute] = [
-        WebSocketRoute("/board", _socket(lambda socket: serve_board(socket, house.relay))),
-        WebSocketRoute("/host", _socket(lambda socket: serve_host(socket, house.jobs))),
-        Route("/history", _history(house)),
-        Route("/state", _told(lambda asked: house.state())),
-        Route("/arm", _told(lambda asked: house.describe_arm(asked.get("file")))),
-        Route("/controller", _told(lambda asked: house.controller(asked.get("file", "")))),
-        Route("/log", _told(lambda asked: house.log(asked.get("file", "")))),
-        Route("/predict", _told(house.predict), methods=["POST"]),
-        Route("/jobs", _told(lambda asked: house.jobs.listed()), methods=["GET"]),
-        Route("/jobs", _told(lambda asked: house.jobs.start(asked, asked.get(PAGE_ID, ""))), methods=["POST"]),
-        Route("/jobs/{id}", _told(lambda asked: house.jobs.stop(asked["id"])), methods=["DELETE"]),
-        Route("/jobs/{id}", _told(lambda asked: house.jobs.say(asked["id"], asked.get("line"))), methods=["POST"]),
+        WebSocketRoute("/board", _socket(lambda socket: serve_board(socket, answers.relay))),
+        WebSocketRoute("/host", _socket(lambda socket: serve_host(socket, answers.jobs))),
+        Route("/history", _history(answers)),
+        Route("/state", _told(lambda asked: answers.state())),
+        Route("/arm", _told(lambda asked: answers.describe_arm(asked.get("file")))),
+        Route("/controller", _told(lambda asked: answers.controller(asked.get("file", "")))),
+        Route("/log", _told(lambda asked: answers.log(asked.get("file", "")))),
+        Route("/predict", _told(answers.predict), methods=["POST"]),
+        Route("/jobs", _told(lambda asked: answers.jobs.listed()), methods=["GET"]),
+        Route("/jobs", _told(lambda asked: answers.jobs.start(asked, asked.get(PAGE_ID, ""))), methods=["POST"]),
+        Route("/jobs/{id}", _told(lambda asked: answers.jobs.stop(asked["id"])), methods=["DELETE"]),
+        Route("/jobs/{id}", _told(lambda asked: answers.jobs.say(asked["id"], asked.get("line"))), methods=["POST"]),
     ]
-    if (bench := house.bench) is not None:
+    if (bench := answers.bench) is not None:
         routes += [
             Route("/bench", _told(lambda asked: bench.controls()), methods=["GET"]),
             Route("/bench", _told(bench.change), methods=["POST"]),
@@ -109,12 +109,12 @@ def _socket(serve: Callable[[WebSocket], Awaitable[None]]) -> Callable[[WebSocke
     return serve_it
 
 
-def _history(house: House) -> Callable[[Request], Awaitable[Response]]:
+def _history(answers: Answers) -> Callable[[Request], Awaitable[Response]]:
     async def answer(request: Request) -> Response:
         given = request.query_params.get("from")
         if given is not None and not (given.isascii() and given.isdigit() and int(given) < 1 << 32):
             return JSONResponse({"error": f"from is {given[:20]}; it must be a tick, 0 to 4294967295."}, 400)
-        frames = await asyncio.to_thread(house.relay.history.since, None if given is None else int(given))
+        frames = await asyncio.to_thread(answers.relay.history.since, None if given is None else int(given))
         return Response(frames, media_type=_BYTES)
 
     return answer

@@ -9,6 +9,7 @@ import { JobCard } from "./job_card";
 
 export class DoView implements View {
   readonly name = "Do";
+  readonly withoutBoard = true;
   readonly element: HTMLElement;
   private readonly list = el("div", { class: "verbs", attrs: { role: "group", "aria-label": "Verbs" } });
   private readonly reading = el("p", { class: "quiet", hidden: true, attrs: { role: "status" } }, "Reading what can be done ...");

@@ -19,6 +19,7 @@ type Chosen = { readonly name: string; readonly samples: Samples };
 
 export class LogsView implements View {
   readonly name = "Logs";
+  readonly withoutBoard = true;
   readonly element: HTMLElement;
   private chosen: readonly Chosen[] = [];
   private names: readonly string[] = []; // as chosen, before they are all read

@@ -3,6 +3,8 @@
 export type View = {
   readonly name: string;
   readonly element: HTMLElement;
+  /** Whether it shows something without a board. */
+  readonly withoutBoard?: boolean;
   /** Called when the view comes to the front, before it is drawn. */
   enter?(): void;
   /** Called when another view comes to the front. */

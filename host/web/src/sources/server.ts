@@ -42,16 +42,27 @@ export class ServerBoard implements Board {
       if (typeof data === "string") this.told(JSON.parse(data) as Told);
       else this.listener?.bytes(new Uint8Array(data));
     });
-    socket.addEventListener("close", () => {
-      this.socket = null;
-      this.driving = false;
-      this.listener?.driver({ you: false, free: false, verb: null });
-      this.listener?.link({
-        open: false, port: "", sentence: "The dashboard's server does not answer; start `greywhale dashboard` again.",
-      });
-      setTimeout(() => this.open(), AGAIN_MS);
-    });
+    socket.addEventListener("close", () => void this.closed());
     this.socket = socket;
+  }
+
+  private async closed(): Promise<void> {
+    this.socket = null;
+    this.driving = false;
+    this.listener?.driver({ you: false, free: false, verb: null });
+    this.listener?.link({ open: false, port: "", sentence: await this.whyClosed() });
+    setTimeout(() => this.open(), AGAIN_MS);
+  }
+
+  /** A socket does not say why it was refused; a request does. */
+  private async whyClosed(): Promise<string> {
+    try {
+      const answer = await fetch("/state", { headers: { "X-Greywhale-Token": this.token } });
+      if (!answer.ok) return await answer.text();
+    } catch {
+      // nobody answers
+    }
+    return "The dashboard's server does not answer; start `greywhale dashboard` again.";
   }
 
   private told(message: Told): void {

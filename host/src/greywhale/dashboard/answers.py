@@ -1,4 +1,4 @@
-"""All that one dashboard has to do with, its board, arm, folder and bench, and what a page asks of them."""
+"""What the server answers to a page: of the board, the arm, the folder, the jobs and the bench of one dashboard."""
 
 from __future__ import annotations
 
@@ -59,8 +59,8 @@ class ControllerFacts(TypedDict):
 
 
 @dataclass
-class House:
-    """What the server's answers come from. `arm` is the name of a built-in arm or an arm.toml."""
+class Answers:
+    """Their sources. `arm` is the name of a built-in arm or an arm.toml."""
 
     relay: Relay
     folder: Folder

@@ -29,7 +29,7 @@ STOPPED = "The motors are off: `greywhale stop` was called in another terminal. 
 logger = logging.getLogger(__name__)
 
 
-class Keeper:
+class PortHolder:
     """A thread between its `start` and its `close`."""
 
     def __init__(self, relay: Relay, named: str | None, choose: Callable[[str | None], str] = choose_port) -> None:

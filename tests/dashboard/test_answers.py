@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from greywhale.base.errors import UserError
+from greywhale.dashboard.answers import Answers
 from greywhale.dashboard.folder import Folder
 from greywhale.dashboard.history import History
-from greywhale.dashboard.house import House
 from greywhale.dashboard.predict import EVERY, predict
 from greywhale.dashboard.relay import Relay
 from greywhale.files import controller, parameter_file
@@ -24,7 +24,7 @@ from tests.dashboard.shared import jobs_of
 
 
 @pytest.fixture
-def house(tmp_path: Path) -> House:
+def answers(tmp_path: Path) -> Answers:
     """Its folder holds a file of each kind, and others."""
     folder = tmp_path / "folder"
     (folder / "out").mkdir(parents=True)
@@ -37,42 +37,42 @@ def house(tmp_path: Path) -> House:
     (tmp_path / "secret.toml").write_bytes(content_of("worn"))
     (folder / "way.toml").symlink_to(tmp_path / "secret.toml")
     relay = Relay(History(10))
-    return House(relay, Folder(folder), "default", jobs_of(relay, Folder(folder)))
+    return Answers(relay, Folder(folder), "default", jobs_of(relay, Folder(folder)))
 
 
-def test_files_are_told_with_their_kind(house: House) -> None:
-    found = {one["name"]: one["kind"] for one in house.state()["files"]}
+def test_files_are_told_with_their_kind(answers: Answers) -> None:
+    found = {one["name"]: one["kind"] for one in answers.state()["files"]}
     assert found == {
         "arm.toml": "arm", "board.toml": "parameters", "c.toml": "controller", "out/log.csv": "log", "way.toml": "arm",
     }  # fmt: skip
 
 
 @pytest.mark.parametrize("name", ["../secret.toml", "/etc/passwd", "way.toml", "out/../../secret.toml", "", "a\0b"])
-def test_a_name_never_leads_out_of_the_folder(house: House, name: str) -> None:
-    for ask in (house.controller, house.describe_arm):
+def test_a_name_never_leads_out_of_the_folder(answers: Answers, name: str) -> None:
+    for ask in (answers.controller, answers.describe_arm):
         with pytest.raises(UserError, match="it is not in .*folder"):
             ask(name)
 
 
-def test_the_arm_is_told_with_the_limits_of_its_joints(house: House) -> None:
-    told = house.describe_arm(None)
+def test_the_arm_is_told_with_the_limits_of_its_joints(answers: Answers) -> None:
+    told = answers.describe_arm(None)
     arm = load_arm("default")
     assert [(one["min"], one["max"]) for one in told["joints"]] == [(one.stops.min, one.stops.max) for one in arm.joint]
     names = {one.get("name") for one in ElementTree.fromstring(told["urdf"]).iter("joint")}
     assert {one["id"] for one in told["joints"]} <= names
-    assert house.describe_arm("arm.toml")["name"] == load_arm("worn").name
-    assert [one["fixed"] for one in house.describe_arm("two_joints")["joints"]].count(True) == 2
+    assert answers.describe_arm("arm.toml")["name"] == load_arm("worn").name
+    assert [one["fixed"] for one in answers.describe_arm("two_joints")["joints"]].count(True) == 2
 
 
-def test_a_controller_is_told_as_a_board_stores_it(house: House) -> None:
+def test_a_controller_is_told_as_a_board_stores_it(answers: Answers) -> None:
     table = ParameterTable.defaults()
-    told = house.controller("c.toml")
+    told = answers.controller("c.toml")
     assert told["source"] == "a <b>test</b>"
     assert table.with_raw(told["raw"]) == table
-    assert house.controller("board.toml")["raw"] == table.by_name()
-    assert house.controller("table_8")["raw"] == controller.load("table_8").raw_values()
+    assert answers.controller("board.toml")["raw"] == table.by_name()
+    assert answers.controller("table_8")["raw"] == controller.load("table_8").raw_values()
     with pytest.raises(UserError, match=r"arm.toml: this is an arm file, but a controller file is needed"):
-        house.controller("arm.toml")
+        answers.controller("arm.toml")
 
 
 def test_a_prediction_is_the_closed_loops() -> None:
@@ -106,7 +106,7 @@ def test_joints_that_the_arm_lacks_stay_where_they_are() -> None:
     assert tuple(np.flatnonzero(moved)) == load_arm("two_joints").joints_in_use == parse("0,1")
 
 
-def test_what_a_board_would_refuse_is_not_predicted(house: House) -> None:
+def test_what_a_board_would_refuse_is_not_predicted(answers: Answers) -> None:
     raw = list(schema.DEFAULTS)
     limits = [schema.PARAMETER_BY_NAME[f"joint0.limit_{end}"].index for end in ("min", "max")]
     raw[limits[0]] = raw[limits[1]] + 1
@@ -119,4 +119,4 @@ def test_what_a_board_would_refuse_is_not_predicted(house: House) -> None:
         ({}, "raw must be"),
     ):
         with pytest.raises(UserError, match=reason):
-            house.predict(asked)
+            answers.predict(asked)

@@ -12,8 +12,8 @@ from greywhale.base.errors import UserError
 from greywhale.board.device import Device
 from greywhale.board.session import ask_to_stop
 from greywhale.dashboard.history import History
-from greywhale.dashboard.keeper import ASK_AGAIN_S, LOOK_AGAIN_S, STOPPED, Keeper
 from greywhale.dashboard.outbox import Outbox
+from greywhale.dashboard.port_holder import ASK_AGAIN_S, LOOK_AGAIN_S, STOPPED, PortHolder
 from greywhale.dashboard.relay import Client, Relay
 from greywhale.protocol import schema
 from greywhale.protocol.transport import open_line
@@ -62,9 +62,9 @@ def chooser(*ports: str | None) -> Callable[[str | None], str]:
 
 def test_a_board_is_taken_when_it_comes_and_again_after_it_went(relay: Relay) -> None:
     with FakeBoard(Faults(unplug_at=200)) as first, FakeBoard() as second:
-        keeper = Keeper(relay, None, chooser(None, first.port, None, second.port))
-        page = Told(relay, 400, keeper.end)
-        assert [keeper.hold() for _ in range(4)] == [LOOK_AGAIN_S] * 4
+        holder = PortHolder(relay, None, chooser(None, first.port, None, second.port))
+        page = Told(relay, 400, holder.end)
+        assert [holder.hold() for _ in range(4)] == [LOOK_AGAIN_S] * 4
     nothing = "No board was found on any serial port; plug it in."
     assert page.sentences == [
         "",
@@ -89,14 +89,14 @@ def test_a_board_that_is_no_greywhale_is_told_and_asked_again_later(
     relay: Relay, faults: Faults, sentence: str
 ) -> None:
     with FakeBoard(faults) as board:
-        assert Keeper(relay, board.port).hold() == ASK_AGAIN_S
+        assert PortHolder(relay, board.port).hold() == ASK_AGAIN_S
     assert sentence in relay.link["sentence"]
     assert not relay.link["open"]
 
 
 def test_a_board_that_falls_silent_is_given_up(relay: Relay) -> None:
     with FakeBoard(Faults(stop_sampling_at=300)) as board:
-        assert Keeper(relay, board.port).hold() == ASK_AGAIN_S
+        assert PortHolder(relay, board.port).hold() == ASK_AGAIN_S
         assert board.asked(schema.TelemetryRequest) == 3, "once more before it is given up, and off"
     assert "the board fell silent" in relay.link["sentence"]
 
@@ -106,10 +106,10 @@ def test_a_stop_from_another_terminal_turns_the_motors_off_and_is_told(relay: Re
     there = threading.Event()
     with ExitStack() as stack:
         board = stack.enter_context(PortBoard())
-        keeper = Keeper(relay, board.port)
+        holder = PortHolder(relay, board.port)
         page = Told(relay, 1, there.set)
-        stack.callback(keeper.close)
-        keeper.start()
+        stack.callback(holder.close)
+        holder.start()
         assert there.wait(60)
         answer = ask_to_stop(board.port, wait_for_end=True)
     assert answer is not None
@@ -121,12 +121,12 @@ def test_a_stop_from_another_terminal_turns_the_motors_off_and_is_told(relay: Re
 def test_a_port_is_lent_out_whole_and_taken_again(relay: Relay) -> None:
     seen = threading.Semaphore(0)
     with FakeBoard() as board, ExitStack() as stack:
-        keeper = Keeper(relay, board.port)
+        holder = PortHolder(relay, board.port)
         page = Told(relay, 1, seen.release)
-        stack.callback(keeper.close)
-        keeper.start()
+        stack.callback(holder.close)
+        holder.start()
         assert seen.acquire(timeout=60)
-        with keeper.away("`greywhale flash` has the port.") as port:
+        with holder.away("`greywhale flash` has the port.") as port:
             assert port == board.port
             assert not relay.link["open"]
             with Device(port) as device:
@@ -139,9 +139,9 @@ def test_a_port_is_lent_out_whole_and_taken_again(relay: Relay) -> None:
 
 def test_a_board_that_no_firmware_answers_on_can_be_flashed_too(relay: Relay) -> None:
     with FakeBoard(Faults(silent=True)) as board, ExitStack() as stack:
-        keeper = Keeper(relay, board.port)
-        stack.callback(keeper.close)
-        keeper.start()
-        with keeper.away("`greywhale flash` has the port.") as port:
+        holder = PortHolder(relay, board.port)
+        stack.callback(holder.close)
+        holder.start()
+        with holder.away("`greywhale flash` has the port.") as port:
             assert relay.link["sentence"] == "`greywhale flash` has the port."
             assert open_line(port).read() == b""
