@@ -88,18 +88,16 @@ export class LogsView implements View {
       ? this.names.filter((one) => one !== name) : [...this.names, name].slice(-MOST_CHOSEN);
     this.names = names;
     this.markChosen();
-    try {
-      const chosen = await Promise.all(names.map((one) => this.read(one)));
-      if (this.names !== names) return; // a later choice goes on
-      this.lay(chosen);
-      await this.measures.measure(names);
-    } catch (error) {
-      if (this.names === names) {
-        this.names = this.chosen.map((one) => one.name);
-        this.markChosen();
-      }
-      throw error;
-    }
+    const read = await Promise.allSettled(names.map((one) => this.read(one)));
+    if (this.names !== names) return; // a later choice goes on
+    const sound = read.flatMap((one) => one.status === "fulfilled" ? [one.value] : []);
+    const refused = read.find((one) => one.status === "rejected");
+    const before = refused ? this.chosen.filter((one) => !names.includes(one.name)) : []; // they make room for nothing
+    this.lay([...before, ...sound].slice(-MOST_CHOSEN));
+    this.names = this.chosen.map((one) => one.name);
+    this.markChosen();
+    await this.measures.measure(this.names);
+    if (refused) throw refused.reason;
   }
 
   private async read(name: string): Promise<Chosen> {
