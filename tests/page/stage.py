@@ -49,8 +49,9 @@ FLAGS = [
     *("--disable-accelerated-2d-canvas", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"),
 ]
 TOKEN = "a-token-of-a-test"
+FRAME_MS = 100  # a page draws so rarely: software draws, and the time is better spent on what is tested
 PATIENCE_MS = 60_000  # a page that shows nothing for so long has hung
-MOMENT_S = 0.1  # the board lives so long after a sign of life
+MOMENT_S = 0.25  # the board lives so long after a sign of life
 
 
 class Stage:
@@ -80,11 +81,18 @@ class Stage:
         self.wait_for(lambda: self._now_s >= self._until_s)
         return self.samples()[-1].tick
 
-    def let_live(self, seconds: float) -> None:
-        """Let the board live on from now, whoever is there."""
+    def live(self, seconds: float) -> None:
+        """Let the board live on from now, whoever is there, and wait until it has."""
+        end_s = self.let_live(seconds)
+        self.wait_for(lambda: self._now_s >= end_s)
+
+    def let_live(self, seconds: float) -> float:
+        """Give the board time from now on; when it ends."""
         with self._ready:
-            self._until_s = max(self._until_s, self._now_s + seconds)
+            end_s = self._now_s + seconds
+            self._until_s = max(self._until_s, end_s)
             self._ready.notify_all()
+        return end_s
 
     def wait_for(self, condition: Callable[[], bool]) -> None:
         """Wait for what the board does in the time that it has."""
@@ -206,6 +214,7 @@ def browser() -> Iterator[Browser]:
 def visit(context: BrowserContext, stage: Stage) -> Iterator[Visit]:
     """Open the page; afterwards, every request that left the server, every error and every broken policy is told."""
     page = context.new_page()
+    page.add_init_script(f"requestAnimationFrame = (draw) => setTimeout(draw, {FRAME_MS}, performance.now())")
     page.set_default_timeout(PATIENCE_MS)
     told = Visit(page)
     here = (f"http://127.0.0.1:{stage.port}/", f"ws://127.0.0.1:{stage.port}/", "data:", "blob:")

@@ -26,7 +26,6 @@ export class Shell {
   private readonly nav = el("nav", { attrs: { "aria-label": "Views" } });
   private readonly tabs = new Map<View, HTMLButtonElement>();
   private front: View;
-  private asked = false;
 
   constructor(private readonly session: Session, views: readonly View[]) {
     this.front = views[0]!;
@@ -98,17 +97,13 @@ export class Shell {
   }
 
   private refresh(): void {
-    const { link, driver, samples, hello } = this.session;
+    const { link, driver, samples } = this.session;
     setText(this.place, !link.open ? "" : driver.verb ? `${link.port}, used by ${driver.verb}` : link.port);
     this.empty.hidden = link.open || samples.end > 0 || this.front.withoutBoard === true;
     setText(this.emptyText, link.sentence || "Looking for a board.");
     setText(this.control, driver.you ? "Let go" : "Take control");
     this.control.title = driver.you ? "Let another page drive; the motors go off" : "Drive the arm from this page";
     this.control.disabled = !driver.you && !driver.free;
-    if (hello && !this.asked) {
-      this.asked = true; // the first page drives; later it is a person's wish
-      if (driver.free) this.session.drive();
-    }
   }
 
   private takeOrLetGo(): void {

@@ -15,7 +15,7 @@ export class StatePanel {
   constructor(private readonly session: Session) {
     this.fault.append(this.faultText, button("Clear fault", () => void session.attempt(() => session.clearFault())));
     const names = [
-      "last stop", "ticks", "late ticks", "longest tick", "samples lost", "frames damaged", "bytes lost", "no rule", "stored sets",
+      "last stop", "ticks", "late ticks", "longest tick", "samples lost", "samples not sent", "frames damaged", "bytes lost", "no rule", "stored sets",
     ];
     const list = el("dl", { class: "facts" });
     for (const name of names) {
@@ -43,7 +43,8 @@ export class StatePanel {
       ticks: status.tick.toLocaleString("en"),
       "late ticks": String(status.late_ticks),
       "longest tick": `${status.tick_us_max} µs`,
-      "samples lost": String(samples.lost + status.telemetry_dropped),
+      "samples lost": String(samples.lost),
+      "samples not sent": String(status.telemetry_dropped),
       "frames damaged": String(status.frames_bad + damaged),
       "bytes lost": String(status.rx_overruns),
       "no rule": String(status.no_rule),

@@ -115,6 +115,7 @@ export class LiveView implements View {
     }));
     this.element.dataset["tick"] = String(samples.timeOf(number));
     this.element.dataset["first"] = String(samples.timeOf(samples.first));
+    this.element.dataset["count"] = String(number + 1 - samples.first);
   }
 
   key(event: KeyboardEvent): boolean {

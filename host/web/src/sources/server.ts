@@ -17,6 +17,7 @@ export class ServerBoard implements Board {
   private socket: WebSocket | null = null;
   private listener: BoardListener | null = null;
   private driving = false;
+  private met = false;
 
   constructor(private readonly token: string) {
     setInterval(() => {
@@ -76,6 +77,8 @@ export class ServerBoard implements Board {
       case "driver":
         this.driving = message.you;
         this.listener?.driver({ you: message.you, free: message.free, verb: message.verb });
+        if (!this.met && message.free) this.drive(); // the first page drives; later it is a person's wish
+        this.met = true;
         break;
       case "refused":
         this.listener?.refused(message.seq ?? 0, message.type ?? 0, message.sentence);
