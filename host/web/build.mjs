@@ -19,6 +19,8 @@ async function buildPage(out) {
     splitting: true,
     minify: true,
     chunkNames: "[name]-[hash]",
+    loader: { ".svg": "file" },
+    assetNames: "[name]",
     legalComments: "eof",
   });
   copyFileSync(join(here, "src/index.html"), join(out, "index.html"));

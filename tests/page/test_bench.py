@@ -43,3 +43,24 @@ def test_what_is_broken_on_the_page_is_broken_on_the_bench(page: Page, stage: St
     page.get_by_role("button", name="Enable").click()
     expect(page.locator(".pill")).to_have_text("following")
     assert stage.command("controls")["supply"]["value"] == pytest.approx(9.0, abs=0.3)
+
+
+def test_a_drawn_motion_leads_the_arm(page: Page, stage: Stage) -> None:
+    page.get_by_role("button", name="Bench").click()
+    expect(page.get_by_role("button", name="Play")).to_be_disabled()
+    page.get_by_label("Joint to draw").select_option("2")
+    page.get_by_label("Duration").select_option("2")
+    picture = page.get_by_role("img", name="Drawn motion")
+    picture.scroll_into_view_if_needed()
+    drawn = picture.bounding_box()
+    assert drawn is not None
+    page.mouse.move(drawn["x"], drawn["y"] + 0.5 * drawn["height"])
+    page.mouse.down()
+    page.mouse.move(drawn["x"] + 0.99 * drawn["width"], drawn["y"] + 0.2 * drawn["height"])
+    page.mouse.up()
+    page.get_by_role("button", name="Play").click()
+    leader = stage.command("controls")["leader"]
+    low, high = leader["minimum"][2], leader["maximum"][2]
+    end = (high - 0.2 * (high - low)) / Sample.LSB["leader"]
+    stage.wait_for(lambda: abs(stage.samples()[-1].leader[2] - end) < 100)
+    expect(page.get_by_role("button", name="Play", exact=True)).to_be_visible()

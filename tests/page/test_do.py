@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import Page, expect
 
+from greywhale.board.calibrate.words import sweep_asked
 from greywhale.commission.measures import NAMES, Measures
 from greywhale.commission.motions import PARTS
 from greywhale.dashboard.job import Facts
@@ -80,30 +81,50 @@ def test_a_search_draws_its_curve_while_it_runs_and_each_joints_at_its_end(page:
         assert depths[int(np.argmin(curve["cost"]))] == max(depths), "the lower on the screen, the better"
 
 
+def facts_of(verb: str) -> Facts:
+    """A job that runs."""
+    return {
+        "kind": "job", "id": "c", "verb": verb, "arguments": {}, "state": "running", "progress": None,
+        "result": None, "error": None, "exit_code": None, "said": [],
+    }  # fmt: skip
+
+
+def tell(stage: Stage, facts: Facts) -> None:
+    for listener in stage.jobs.listeners:
+        listener(facts)
+
+
+def test_a_calibration_shows_the_way_of_the_joint_that_it_asks_for(page: Page, stage: Stage) -> None:
+    page.get_by_role("button", name="Do", exact=True).click()
+    facts = facts_of("calibrate")
+    pictures = []
+    for pot in range(2):
+        tell(stage, {**facts, "said": [sweep_asked(pot, pot + 1, 8)]})
+        shown = page.get_by_role("img", name=f"The positive way of joint {pot}")
+        expect(shown).to_be_visible()
+        pictures.append(shown.screenshot())
+    assert pictures[0] != pictures[1]
+    tell(stage, {**facts, "state": "done", "result": {}, "exit_code": 0, "said": [sweep_asked(1, 2, 8)]})
+    expect(shown).to_be_hidden()
+
+
 def test_a_commissioning_shows_what_was_predicted_beside_what_was_measured(page: Page, stage: Stage) -> None:
     def told(mrad: float) -> dict[str, Any]:
         sizes = np.add.outer(np.arange(len(PARTS)), np.arange(4) + mrad) / 1000
         return dict(Measures(**dict.fromkeys(NAMES, sizes**2)).as_dict())
-
-    def tell(facts: Facts) -> None:
-        for listener in stage.jobs.listeners:
-            listener(facts)
 
     unplayed = json.loads(json.dumps(told(7.0)).replace("4.9e-05", "null"))
     trials = [
         {"trial": "before", "predicted": told(30.0), "measured": told(32.5)},
         {"trial": "trial-1", "predicted": told(5.0), "measured": unplayed},
     ]
-    facts: Facts = {
-        "kind": "job", "id": "c", "verb": "commission", "arguments": {}, "state": "done", "progress": None,
-        "result": {"improved": True, "trials": trials}, "error": None, "exit_code": 0, "said": [],
-    }  # fmt: skip
+    facts = facts_of("commission")
     note = "trial-1: error 6.1 mrad rms predicted, 7.2 measured"
     progress = {"done": 0.5, "total": 1.0, "text": "round 1, trial 2 of 6 at most: recording", "note": note}
     page.get_by_role("button", name="Do", exact=True).click()
-    tell({**facts, "state": "running", "result": None, "progress": progress})
+    tell(stage, {**facts, "progress": progress})
     expect(page.get_by_text(f"{progress['text']} ({note})")).to_be_visible()
-    tell(facts)
+    tell(stage, {**facts, "state": "done", "result": {"improved": True, "trials": trials}, "exit_code": 0})
     table = page.get_by_role("region", name="Predicted and measured")
     rows = table.locator("tbody tr")
     expect(rows.nth(0).locator("td")).to_have_text([f"{30 + joint}.0 / {32 + joint}.5" for joint in range(4)])

@@ -5,7 +5,7 @@ import type { BenchControls } from "../host";
 import type { LeaderHand } from "./hand";
 
 const PADS: readonly (readonly [across: number, up: number])[] = [[0, 1], [3, 2]];
-const NAMES = ["base yaw", "shoulder pitch", "wrist pitch", "wrist roll"];
+export const NAMES = ["base yaw", "shoulder pitch", "wrist pitch", "wrist roll"];
 
 export class Lead {
   readonly element = el("section", { class: "card" });

@@ -6,7 +6,8 @@ import type { View } from "../parts/view";
 import type { Bench, BenchControls, BenchWish, Host, Range } from "../host";
 import type { Session } from "../session";
 import type { LeaderHand } from "./hand";
-import { Lead } from "./lead";
+import { DrawnMotion } from "./drawn_motion";
+import { Lead, NAMES } from "./lead";
 
 const SIZES = [
   ["supply", "Supply", "V"], ["load", "Load at the tip", "kg"], ["speed", "Speed of time", "×"],
@@ -17,6 +18,7 @@ export class BenchView implements View {
   readonly element = el("div", { class: "editor" });
   private readonly bench: Bench;
   private lead: Lead | null = null;
+  private drawn: DrawnMotion | null = null;
   private readonly recorded = el("select", { attrs: { "aria-label": "Recorded motion" } });
   private readonly broken = el("ul", { class: "differences" });
 
@@ -35,7 +37,8 @@ export class BenchView implements View {
 
   private build(controls: BenchControls): void {
     this.lead = new Lead(this.hand, controls.leader);
-    this.element.replaceChildren(this.lead.element,
+    this.drawn = new DrawnMotion(NAMES, this.hand, controls.leader);
+    this.element.replaceChildren(el("div", { class: "side" }, this.lead.element, this.drawn.element),
       el("div", { class: "side" }, this.motions(), this.faults(controls), this.sizes(controls)));
   }
 
@@ -106,5 +109,6 @@ export class BenchView implements View {
 
   frame(): void {
     this.lead?.draw();
+    this.drawn?.frame();
   }
 }

@@ -2,6 +2,7 @@
 
 import { button, el, setText } from "../parts/dom";
 import type { Job, Jobs, Json } from "../host";
+import { JointPicture } from "./joint_picture";
 import { predictedBeside, trialsIn } from "./predicted";
 import { SearchCurve } from "./search_curve";
 
@@ -19,6 +20,7 @@ export class JobCard {
   private readonly said = el("pre", { class: "said", attrs: { tabindex: "0", "aria-label": "What the verb says" } });
   private readonly answer: HTMLFormElement;
   private readonly curve = new SearchCurve();
+  private readonly joint = new JointPicture();
   private readonly result = el("div", { class: "result" });
   private readonly stop: HTMLButtonElement;
   private shown: Job["state"] | null = null;
@@ -34,7 +36,7 @@ export class JobCard {
     } } }, line, el("button", { type: "submit" }, "Answer"));
     this.element = el("section", { class: "card job" },
       el("div", { class: "row" }, this.title, this.state, el("span", { class: "gap" }), this.stop),
-      this.bar, this.text, this.curve.element, this.error, this.said, this.answer, this.result);
+      this.bar, this.text, this.curve.element, this.error, this.said, this.joint.element, this.answer, this.result);
   }
 
   show(job: Job): void {
@@ -53,6 +55,7 @@ export class JobCard {
     setText(this.error, job.error ?? "");
     const lines = job.said.join("\n");
     this.said.hidden = !lines;
+    this.joint.hear(running && job.verb === "calibrate" ? job.said : []);
     if (this.said.textContent !== lines) {
       this.said.textContent = lines;
       this.said.scrollTop = this.said.scrollHeight;
