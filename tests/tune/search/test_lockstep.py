@@ -10,7 +10,7 @@ import pytest
 
 from greywhale.optimise import Optimiser, create
 from greywhale.simulate import default_controller
-from greywhale.tune.judge.choose import choose
+from greywhale.tune.judge.choose import Remembering, choose
 from greywhale.tune.search import lockstep as search
 from greywhale.tune.search.journal import TuningJournal
 from greywhale.tune.search.lockstep import KEPT, TOGETHER, TURNS, SearchState, search_in_lockstep, try_again
@@ -203,6 +203,14 @@ def test_one_bad_joint_does_not_spoil_the_others_tuning() -> None:
     after, before, costs = choose(marked(0, 0, 0, 0), rows, Table(*feuds))
     assert (costs <= before).all()
     assert after[:, 11].tolist() == [2, 0, 2, 2]
+
+
+def test_no_row_is_judged_twice() -> None:
+    hills, rows = Hills(), np.stack([marked(1, 2, 1, 2), marked(3, 1, 2, 1), marked(1, 2, 1, 2), marked(4, 4, 4, 4)])
+    judge = Remembering(hills)
+    for asked in (rows, rows[::-1]):
+        np.testing.assert_array_equal(judge(asked), Hills()(asked))
+    np.testing.assert_array_equal(np.concatenate(hills.rows), rows[[0, 1, 3]])
 
 
 def test_the_journal_is_asked_before_anything_is_simulated(tmp_path: Path) -> None:

@@ -25,7 +25,7 @@ from greywhale.base.types import Controllers, Floats
 from greywhale.optimise.relative import RelativeWolfWhale
 from greywhale.protocol.joints import unused
 from greywhale.protocol.table import CONTROLLER_COLUMNS
-from greywhale.tune.judge.choose import FAIR, choose
+from greywhale.tune.judge.choose import FAIR, Judge, Remembering, choose
 from greywhale.tune.judge.held_out import judge_held_out
 from greywhale.tune.judge.margins import MOVING, REST_LONG_S, Margin, Margins, loosest_plant, penalty
 from greywhale.tune.judge.standard import Standard
@@ -199,8 +199,9 @@ class DefaultMethod:
         costs more than before there, or falls short of the standard, gets its next best, and at last what it had.
         """
         contenders = self._contenders()
-        after, _, _ = choose(self.start, contenders, self.judge_costs)
-        others = [self._next_best(after, contenders, joint) for joint in range(len(after))]
+        judge = Remembering(self.judge_costs)
+        after, _, _ = choose(self.start, contenders, judge)
+        others = [self._next_best(after, contenders, joint, judge) for joint in range(len(after))]
         while True:
             before_cost, after_cost = self.judge_costs(np.stack([self.start, after]), exact=True)
             margins = self.judging_margins.check(after)
@@ -215,11 +216,11 @@ class DefaultMethod:
             for joint in np.flatnonzero(worse & changed):
                 after[joint] = others[joint].pop(0)
 
-    def _next_best(self, after: Controllers, contenders: Controllers, joint: int) -> list[Controllers]:
+    def _next_best(self, after: Controllers, contenders: Controllers, joint: int, judge: Judge) -> list[Controllers]:
         """The rows that a joint may have in the place of its own, the best first; the last is the one from before."""
         rows = np.repeat(after[None], len(contenders), axis=0)
         rows[:, joint] = contenders[:, joint]
-        costs = self.judge_costs(rows).sum(axis=1)
+        costs = judge(rows).sum(axis=1)
         order = [k for k in np.argsort(costs, kind="stable") if not np.array_equal(contenders[k, joint], after[joint])]
         return [*(contenders[k, joint] for k in order[:SECOND_CHANCES]), self.start[joint]]
 
