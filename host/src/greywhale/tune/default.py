@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -199,11 +200,12 @@ class DefaultMethod:
         costs more than before there, or falls short of the standard, gets its next best, and at last what it had.
         """
         contenders = self._contenders()
-        judge = Remembering(self.judge_costs)
-        after, _, _ = choose(self.start, contenders, judge)
-        others = [self._next_best(after, contenders, joint, judge) for joint in range(len(after))]
+        judge, judge_exactly = Remembering(self.judge_costs), Remembering(partial(self.judge_costs, exact=True))
+        first, _, _ = choose(self.start, contenders, judge)
+        after = first.copy()
+        others: dict[int, list[Controllers]] = {}
         while True:
-            before_cost, after_cost = self.judge_costs(np.stack([self.start, after]), exact=True)
+            before_cost, after_cost = judge_exactly(np.stack([self.start, after]))
             margins = self.judging_margins.check(after)
             worse = after_cost > FAIR * before_cost
             if not self.task.on_trial:
@@ -213,7 +215,9 @@ class DefaultMethod:
                 worse = np.full(len(after), worse.any())
             if not (worse & changed).any():
                 return after, margins, before_cost, after_cost
-            for joint in np.flatnonzero(worse & changed):
+            for joint in map(int, np.flatnonzero(worse & changed)):
+                if joint not in others:
+                    others[joint] = self._next_best(first, contenders, joint, judge)
                 after[joint] = others[joint].pop(0)
 
     def _next_best(self, after: Controllers, contenders: Controllers, joint: int, judge: Judge) -> list[Controllers]:
