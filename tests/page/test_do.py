@@ -90,6 +90,8 @@ def facts_of(verb: str) -> Facts:
 
 
 def tell(stage: Stage, facts: Facts) -> None:
+    """The only job is so now: for a page that hears of it, and for one that is still about to ask."""
+    stage.jobs.facts = lambda: [facts]  # type: ignore[method-assign]
     for listener in stage.jobs.listeners:
         listener(facts)
 

@@ -105,7 +105,7 @@ async def serve_host(socket: WebSocket, jobs: Jobs) -> None:
     """Tell a page of all jobs, then of each that has changed, until the page goes."""
     await socket.accept(SUBPROTOCOL)
     waiting = Waiting()
-    changed: dict[str, Facts] = {one["id"]: one for one in jobs.facts()}
+    changed: dict[str, Facts] = {}
 
     def note(facts: Facts) -> None:
         changed[facts["id"]] = facts
@@ -117,7 +117,9 @@ async def serve_host(socket: WebSocket, jobs: Jobs) -> None:
                 await socket.send_text(json.dumps(changed.pop(id)))
             await waiting.wait()
 
-    jobs.listeners.append(note)
+    jobs.listeners.append(note)  # first, so that no change falls between
+    for one in jobs.facts():
+        changed.setdefault(one["id"], one)
     telling = asyncio.create_task(tell())
     try:
         while (await socket.receive())["type"] != "websocket.disconnect":
