@@ -23,6 +23,7 @@ import numpy as np
 from greywhale.arm.parameters import with_usual_noise
 from greywhale.base.errors import counted
 from greywhale.base.types import Controllers, Floats
+from greywhale.optimise.optimiser import PACK
 from greywhale.optimise.relative import RelativeWolfWhale
 from greywhale.protocol.joints import unused
 from greywhale.protocol.table import CONTROLLER_COLUMNS
@@ -63,6 +64,8 @@ STAGES = (
 )
 # The search tracks on so many plants, the estimate among them; the last judgement uses all.
 SEARCH_PLANTS = 2
+FULL_PACK = 16  # on two plants: that fills the lanes of the simulation twice
+SHORT_BUDGET = 1000  # evaluations; below that, more rounds of a smaller pack find more
 JUDGING_SEED = 1000  # of sensor noise that the search does not know by heart
 # More than any controller costs: none is chosen that falls short of the standard.
 UNFIT = 100.0
@@ -164,6 +167,7 @@ class DefaultMethod:
             tick=tick,
             groups=lockstep.TURNS,
             sigma=stage.sigma,
+            pack=FULL_PACK if self.task.budget >= SHORT_BUDGET else PACK,
         )
 
     def costs(self, controllers: Controllers) -> Floats:
