@@ -28,6 +28,9 @@ FOR_CHECKS = (
     "clang",  # libFuzzer and the sanitizers, over the firmware
     "libclang-rt-dev",
     "chromium",  # the page, in a real browser
+    "lld",  # the bench inside a page: linker, C and C++ libraries for WebAssembly
+    "libc++-dev-wasm32",
+    "libclang-rt-dev-wasm32",
 )
 
 

@@ -1,5 +1,6 @@
 // The hardware as the rest of the firmware sees it: plain functions. Each target links one implementation of them.
-// avr/ serves the two boards and holds every register access; fake/ serves unit tests on a computer.
+// avr/ serves the two boards and holds every register access; fake/ serves unit tests on a computer,
+// web/ a bench inside a web page.
 #pragma once
 #include <codes/codes.h>
 #include <stdint.h>

@@ -1,0 +1,44 @@
+// The firmware on its board inside a page, without bootloader: power, reset, and ticks in four slices of 250 us.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include <hal.h>
+
+namespace greywhale::web {
+
+constexpr std::size_t kPots = 8;  // 0..3 leader, 4..7 follower
+using Millivolts = std::array<double, kPots>;
+
+class Board {
+ public:
+  void power_on(hal::ResetCause cause);  // starts the firmware anew
+  void power_off();
+  bool powered() const { return powered_; }
+
+  // Lets 250 us pass with these voltages at the converter. A bit of `floating` marks an input without a wire: the
+  // sampling capacitor keeps what the conversion before left on it.
+  void run_slice(const Millivolts& millivolts, unsigned floating);
+
+  void send(std::uint8_t byte) { to_board_.push_back(byte); }
+  // What the board has said since the last call of `clear`.
+  std::vector<std::uint8_t>& said() { return said_; }
+
+ private:
+  void tick();
+  void convert(const Millivolts& millivolts, unsigned floating);
+  void move_bytes();
+  void work();
+
+  bool powered_ = false;
+  unsigned slice_ = 0;      // of the tick
+  unsigned converted_ = 0;  // in this tick
+  double charge_ = 0.0;     // mV on the sampling capacitor
+  std::deque<std::uint8_t> to_board_;
+  std::vector<std::uint8_t> said_;
+};
+
+}  // namespace greywhale::web
