@@ -6,8 +6,10 @@ import json
 import os
 import struct
 import subprocess
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,9 +42,9 @@ class Scenario:
 
 @dataclass(frozen=True)
 class Run:
-    """OCR1A, OCR1B, OCR2A, OCR2B, PORTB, PORTD at the end of each tick, and all bytes that the board sent."""
+    """Outputs at the end of each tick, of a Nano OCR1A, OCR1B, OCR2A, OCR2B, PORTB, PORTD; all bytes that it sent."""
 
-    outputs: NDArray[np.int64]
+    outputs: NDArray[Any]
     sent: bytes
 
 
@@ -67,9 +69,19 @@ def run_avr8js(scenario: Scenario, folder: Path) -> Run:
 def run_board(scenario: Scenario) -> Run:
     board = Board("atmega328p")
     board.load_hex(str(IMAGE))
+    return run_image(
+        board,
+        TICK_VECTOR,
+        scenario,
+        lambda: [*OUTPUTS.unpack(board.peek(0x88, 4)), *board.peek(0xB3, 2), *board.peek(0x25), *board.peek(0x2B)],
+    )
+
+
+def run_image(board: Any, tick_vector: int, scenario: Scenario, look: Callable[[], Sequence[float]]) -> Run:
+    """Power our own board and run it; `look` at its outputs at the end of each tick."""
     board.power_on(1)
     board.set_millivolts(np.full(CHANNELS, 2500.0))
-    while board.pc != TICK_VECTOR:
+    while board.pc != tick_vector:
         board.run_until(board.cycle + 1)
     first = board.cycle
     outputs, sent = [], b""
@@ -83,9 +95,7 @@ def run_board(scenario: Scenario) -> Run:
             board.run_until(change)
             board.set_millivolts(1000.0 * volts[conversion].astype(float))
         board.run_until(start + PERIOD - 200)
-        outputs.append(
-            [*OUTPUTS.unpack(board.peek(0x88, 4)), *board.peek(0xB3, 2), *board.peek(0x25), *board.peek(0x2B)]
-        )
+        outputs.append(look())
         sent += board.uart_receive()
     return Run(np.array(outputs), sent)
 

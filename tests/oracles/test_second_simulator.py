@@ -48,7 +48,7 @@ COUNT = 5 / 1024  # volts
 APPLYING = (range(50, 100), range(1540, 1620))  # ticks, until the filter of a new set has settled
 
 
-def _volts() -> Volts:
+def bad_following() -> Volts:
     """Four joints that follow badly: slow swings, steps, noise on each conversion, a pot at its rail, a lost joint."""
     random = np.random.default_rng(4)
     tick = np.arange(TICKS)
@@ -66,7 +66,7 @@ def _volts() -> Volts:
     return volts
 
 
-def _sends() -> dict[int, bytes]:
+def all_requests() -> dict[int, bytes]:
     enable = request(schema.EnableRequest, 2, struct.pack("<H", 0))
     # While samples are on their way: both directions of the line are busy.
     sends = {
@@ -87,7 +87,7 @@ def _sends() -> dict[int, bytes]:
 
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory: pytest.TempPathFactory) -> tuple[Run, Run]:
-    scenario = Scenario(_volts(), _sends())
+    scenario = Scenario(bad_following(), all_requests())
     return run_avr8js(scenario, tmp_path_factory.mktemp("avr8js")), run_board(scenario)
 
 
@@ -98,7 +98,7 @@ def test_both_simulators_give_the_same_outputs_in_every_tick(runs: tuple[Run, Ru
     assert len(different) == 0, f"tick {different[0]}: {theirs.outputs[different[0]]} and {ours.outputs[different[0]]}"
 
 
-def _frames(sent: bytes) -> tuple[list[Frame], dict[bytes, Frame]]:
+def frames_of(sent: bytes) -> tuple[list[Frame], dict[bytes, Frame]]:
     """Replies in their order, and samples by their tick."""
     found = list(frames.FrameDecoder().feed(sent))
     samples = {frame.payload[:4]: frame for frame in found if frame.type == schema.Sample.TYPE}
@@ -109,7 +109,7 @@ def test_both_simulators_send_the_same_replies_and_samples(runs: tuple[Run, Run]
     """Interrupts take two cycles more on one of them. So a piece of work that is due at 800 us may begin in a tick or
     not: replies and samples may change places. A set may be applied a tick later, with its filter.
     """
-    (replies, samples), (our_replies, our_samples) = (_frames(run.sent) for run in runs)
+    (replies, samples), (our_replies, our_samples) = (frames_of(run.sent) for run in runs)
     assert replies == our_replies
     common = samples.keys() & our_samples.keys()
     steady = [key for key in common if not any(int.from_bytes(key, "little") in span for span in APPLYING)]

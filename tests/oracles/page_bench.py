@@ -1,0 +1,48 @@
+"""The module with which a page simulates a bench, run by Node.js: its calls, one by one or many at once."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from collections.abc import Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+from greywhale.arm import ArmParameters
+from tools.setup import bench_module, page
+from tools.site.bench_data import arm_numbers
+
+HARNESS = Path(__file__).with_name("wasm") / "bench.mjs"
+TICK_SLICES = 4
+
+
+class PageBench:
+    """A context: a bench with this arm, its power off."""
+
+    def __init__(self, arm: ArmParameters, seed: int = 1) -> None:
+        command = [str(page.node() / "bin" / "node"), str(HARNESS), str(bench_module.MODULE)]
+        self._node = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        self.call("put", arm_numbers(arm))
+        self.call("start", seed)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        assert self._node.stdin is not None
+        self._node.stdin.close()
+        self._node.wait()
+
+    def call(self, name: str, *given: Any) -> Any:
+        return self.calls([[name, *given]])[0]
+
+    def calls(self, calls: Sequence[Sequence[Any]]) -> list[Any]:
+        """Few enough that their answers fit into a pipe."""
+        assert self._node.stdin is not None
+        assert self._node.stdout is not None
+        self._node.stdin.write("".join(json.dumps(call) + "\n" for call in calls))
+        self._node.stdin.flush()
+        return [json.loads(self._node.stdout.readline()) for _ in calls]

@@ -1,0 +1,122 @@
+"""What the bench inside a page needs to know of ours: the arm's numbers, the mistakes, the motion of a person.
+
+A mistake is done to a bench that only writes down what is done to it, so that it is described once, in
+greywhale_sim.faults. sim/web/exports.cpp takes the numbers and the calls.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from greywhale.arm import ArmParameters
+from greywhale.arm.parameters import PotentiometerBank
+from greywhale.motion import human_reaches
+from greywhale.protocol.firmware import JOINTS
+from greywhale_sim import commands, faults, pot_faults
+
+Call = list[str | float]
+
+REACHES_HZ = 25  # a hand takes corners smoothly
+
+
+def arm_numbers(arm: ArmParameters) -> list[float]:
+    """An arm whose joints are all in use, in the order of the Reader in sim/web/exports.cpp."""
+    numbers: list[float] = []
+    for link in arm.link:
+        inertia = link.inertia
+        numbers += [link.mass, link.length, link.centre, inertia.xx, inertia.yy, inertia.zz]
+    numbers += [arm.tip.mass, arm.gravity]
+    for joint, pot in enumerate(arm.follower_pots.joint):
+        actuator, one = arm.actuator(joint), arm.joint[joint]
+        numbers += [actuator.torque_per_volt, actuator.inertia, actuator.damping, actuator.resistance]
+        friction, gear = one.friction, one.gear
+        numbers += [friction.coulomb, friction.breakaway, friction.stribeck_velocity, friction.load]
+        numbers += [friction.creep_velocity, gear.half_gap, gear.stiffness, gear.damping, gear.drag]
+        numbers += [one.stops.min, one.stops.max, pot.play, pot.lag]
+    drive = arm.drive
+    numbers += [drive.supply, drive.supply_resistance, drive.pwm_levels]
+    return numbers + _pot_numbers(arm.leader_pots) + _pot_numbers(arm.follower_pots)
+
+
+def _pot_numbers(bank: PotentiometerBank) -> list[float]:
+    numbers: list[float] = []
+    for pot in bank.joint:
+        numbers += [pot.track, pot.centre, pot.direction, pot.noise, pot.linearity, pot.play, pot.lag]
+    return [*numbers, bank.supply]
+
+
+class _Recorder:
+    """A bench to the functions of greywhale_sim.faults: it writes down what they do, as calls of the module."""
+
+    board = None
+
+    def __init__(self) -> None:
+        self.calls: list[Call] = []
+        self.pot_faults = self
+        self.leader_pots, self.follower_pots = _Bank(self.calls, 0), _Bank(self.calls, JOINTS)
+
+    def inject(self, pot: int, kind: str) -> None:
+        self.calls.append(["inject", pot, 1 + list(pot_faults.KINDS).index(kind)])
+
+    def swap(self, one: int, other: int) -> None:
+        self.calls.append(["swap", one, other])
+
+    def touch(self, one: int, other: int) -> None:
+        self.calls.append(["touch", one, other])
+
+    def let_float(self, pot: int, floats: bool) -> None:
+        self.calls.append(["let_float", pot, int(floats)])
+
+    def wire_motor(self, joint: int, gain: float, driver: int) -> None:
+        self.calls.append(["wire_motor", joint, gain, driver])
+
+    def change_supply(self, volts: float) -> None:
+        self.calls.append(["change_supply", volts])
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name == "shared_supply":
+            self.calls.append(["share_supply"])
+        else:
+            super().__setattr__(name, value)
+
+
+class _Bank:
+    def __init__(self, calls: list[Call], first: int) -> None:
+        self._calls = calls
+        self._first = first
+
+    def set_wiring(self, joint: int, wiring: Any) -> None:
+        self._calls.append(["set_wiring", self._first + joint, int(wiring.value)])
+
+
+def fault_calls(name: str, place: str) -> list[Call]:
+    """The calls that stage a mistake at a place; "" for the one that has none."""
+    recorder: Any = _Recorder()
+    fault = faults.BY_NAME[name]
+    fault.inject(recorder, faults.WHERE[fault.on].index(place))
+    calls: list[Call] = recorder.calls
+    return calls
+
+
+def bench_data(arm: ArmParameters) -> dict[str, Any]:
+    """All of it, as the page reads it."""
+    motion = human_reaches()
+    times = np.arange(0.0, motion.duration_s, 1.0 / REACHES_HZ)
+    stops = [joint.stops for joint in arm.joint]
+    return {
+        "arm": arm_numbers(arm),
+        "leader": {"minimum": [stop.min for stop in stops], "maximum": [stop.max for stop in stops]},
+        "supply": {"minimum": 0.0, "maximum": commands.MOST_SUPPLY_V, "value": arm.drive.supply},
+        "load": {"minimum": 0.0, "maximum": commands.MOST_LOAD_KG, "value": arm.tip.mass},
+        "faults": [
+            {
+                "name": one.name,
+                "description": one.says,
+                "places": {place: fault_calls(one.name, place) for place in faults.WHERE[one.on]},
+            }
+            for one in faults.FAULTS
+        ],
+        "reaches": {"hz": REACHES_HZ, "rows": np.round(motion.at(times), 4).tolist()},
+    }
