@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from playwright.sync_api import Browser, BrowserContext, Page, Request, expect, sync_playwright
 
@@ -210,8 +210,17 @@ def browser() -> Iterator[Browser]:
         running.close()
 
 
+class Place(Protocol):
+    """Who hands out a page, on this machine."""
+
+    @property
+    def port(self) -> int: ...
+    @property
+    def page_address(self) -> str: ...
+
+
 @contextlib.contextmanager
-def visit(context: BrowserContext, stage: Stage) -> Iterator[Visit]:
+def visit(context: BrowserContext, stage: Place) -> Iterator[Visit]:
     """Open the page; afterwards, every request that left the server, every error and every broken policy is told."""
     page = context.new_page()
     page.add_init_script(f"requestAnimationFrame = (draw) => setTimeout(draw, {FRAME_MS}, performance.now())")

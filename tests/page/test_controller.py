@@ -8,31 +8,13 @@ from playwright.sync_api import Page, expect
 from greywhale.protocol.schema import DEFAULTS, PARAMETER_BY_NAME, ParamSetReply, ParamSetRequest
 from tests.dashboard.browser import BoardSocket
 from tests.dashboard.browser import Page as Watcher
+from tests.page.drag import drag, value_of
 from tests.page.stage import TOKEN, Stage
 
 pytestmark = pytest.mark.slow
 
 PE_B, KP = PARAMETER_BY_NAME["joint1.pe_b"], PARAMETER_BY_NAME["joint1.kp"]
 ZE_A, ZE_C = PARAMETER_BY_NAME["joint0.ze_a"], PARAMETER_BY_NAME["joint0.ze_c"]
-
-
-def drag(page: Page, corner: str, by_share: float) -> None:
-    """Drag a corner by a share of the picture's width."""
-    page.get_by_role("slider", name=corner, exact=True).wait_for()
-    knob = page.get_by_role("slider", name=corner, exact=True).bounding_box()
-    picture = page.locator("svg.sets").first.bounding_box()
-    assert knob is not None
-    assert picture is not None
-    x, y = knob["x"] + knob["width"] / 2, knob["y"] + knob["height"] / 2
-    page.mouse.move(x, y)
-    page.mouse.down()
-    for step in (0.3, 0.7, 1.0):
-        page.mouse.move(x + step * by_share * picture["width"], y)
-    page.mouse.up()
-
-
-def value_of(page: Page, corner: str) -> float:
-    return float(page.get_by_role("slider", name=corner, exact=True).get_attribute("aria-valuenow") or "nan")
 
 
 def test_a_dragged_set_runs_on_the_board(page: Page, stage: Stage) -> None:

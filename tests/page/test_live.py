@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
 import pytest
@@ -13,8 +12,8 @@ from greywhale.files.log import read_log
 from greywhale.files.log.check import Check
 from greywhale.protocol.schema import Sample, State
 from tests.page import stage as stages
+from tests.page.barriers import DARK_AND_NARROW, LIGHT_AND_WIDE, require_no_barrier
 from tests.page.stage import Stage
-from tools import ROOT
 
 pytestmark = pytest.mark.slow
 
@@ -138,15 +137,4 @@ def test_without_a_board_the_page_says_what_to_do_and_takes_one_that_comes(brows
 
 
 def test_nothing_bars_a_person(page: Page) -> None:
-    """axe finds nothing serious in any view, light and wide or dark and narrow, and nothing lies beyond the screen."""
-    page.evaluate((ROOT / "host/web/node_modules/axe-core/axe.min.js").read_text("utf-8"))
-    looks: tuple[tuple[Literal["light", "dark"], int], ...] = (("light", 1280), ("dark", 390))
-    for theme, width in looks:
-        page.emulate_media(color_scheme=theme, reduced_motion="reduce")
-        page.set_viewport_size({"width": width, "height": 800})
-        for tab in page.locator("nav button").all():
-            tab.click()
-            found = page.evaluate("axe.run().then(({violations}) => violations)")
-            serious = [one["id"] for one in found if one["impact"] in ("serious", "critical")]
-            assert serious == [], f"{tab.inner_text()}, {theme}, {width} px"
-            assert page.evaluate("document.documentElement.scrollWidth") <= width, tab.inner_text()
+    require_no_barrier(page, LIGHT_AND_WIDE, DARK_AND_NARROW)

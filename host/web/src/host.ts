@@ -28,7 +28,7 @@ export type ArmDescription = {
   readonly joints: readonly { readonly id: string; readonly min: number; readonly max: number; readonly fixed: boolean }[];
 };
 
-export type Range = { readonly minimum: number; readonly maximum: number; readonly value: number };
+export type Range = { readonly minimum: number; readonly maximum: number; readonly value: number; readonly step?: number };
 
 /** What there is to change on a simulated bench; what a bench lacks is left out. */
 export type BenchControls = {

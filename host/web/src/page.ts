@@ -9,6 +9,7 @@ import { DoView } from "./do/view";
 import type { Host } from "./host";
 import { LiveView } from "./live/view";
 import { LogsView } from "./logs/view";
+import { el } from "./parts/dom";
 import { startTheme } from "./parts/theme";
 import { Session } from "./session";
 import { Shell } from "./shell";
@@ -31,7 +32,10 @@ startTheme();
 const token = takeToken();
 const board = new ServerBoard(token);
 const session = new Session(board);
-const shell = new Shell(session, [new LiveView(session)]);
+const shell = new Shell(session, [new LiveView(session)], [
+  "Plug the board in by USB: this page takes it by itself. Without a board, start ", el("code", {}, "greywhale dashboard --sim"),
+  ": it brings a simulated arm with the real firmware.",
+]);
 if (token) addHost(new ServerHost(token, () => board.page));
 
 /** Adds what needs a host beside the board. */
@@ -45,6 +49,6 @@ function addHost(host: Host): void {
     const hand = new LeaderHand(host.bench, session.samples, (error) =>
       session.tell(error instanceof Error ? error.message : String(error)));
     arm.leadBy(hand);
-    shell.add(new BenchView(session, host, hand));
+    shell.add(new BenchView(session, host.bench, hand, host));
   });
 }

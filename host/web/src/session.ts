@@ -259,6 +259,8 @@ export class Session {
     }
     const status = await this.client.ask(StatusRequest, {});
     this.startTold = status.tick < this.samples.lastTick;
+    this.status = status;
+    this.changed.emit();
     await this.client.ask(TelemetryRequest, { every: 1 });
     if (this.waiting && !this.samples.end) await this.fetchHistory(null);
     await this.readParameters();

@@ -27,15 +27,14 @@ export class Shell {
   private readonly tabs = new Map<View, HTMLButtonElement>();
   private front: View;
 
-  constructor(private readonly session: Session, views: readonly View[]) {
+  /** `remedy` says what to do where no board is there. */
+  constructor(private readonly session: Session, views: readonly View[], remedy: readonly (Node | string)[]) {
     this.front = views[0]!;
     for (const view of views) this.add(view);
     this.notice.append(this.noticeText, button("×", () => { this.notice.hidden = true; }, {
       attrs: { "aria-label": "Close this notice" },
     }));
-    this.empty.append(el("h2", {}, "No board"), this.emptyText,
-      el("p", {}, "Plug the board in by USB: this page takes it by itself. Without a board, start ",
-        el("code", {}, "greywhale dashboard --sim"), ": it brings a simulated arm with the real firmware."));
+    this.empty.append(el("h2", {}, "No board"), this.emptyText, el("p", {}, ...remedy));
     const theme = button("", switchTheme, { class: "theme" });
     const nameTheme = (): void => setText(theme, isDark() ? "Light" : "Dark");
     themeChanged.on(nameTheme);

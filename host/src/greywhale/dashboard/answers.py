@@ -58,6 +58,15 @@ class ControllerFacts(TypedDict):
     raw: dict[str, int]  # parameter to raw value; a parameter file has all of them
 
 
+def arm_facts(arm: ArmParameters) -> ArmFacts:
+    """The arm as the page draws it."""
+    joints: list[JointFacts] = [
+        {"id": name, "min": joint.stops.min, "max": joint.stops.max, "fixed": joint.fixed}
+        for name, joint in zip(JOINT_IDS, arm.joint, strict=True)
+    ]
+    return {"name": arm.name, "urdf": urdf(arm), "joints": joints}
+
+
 @dataclass
 class Answers:
     """Their sources. `arm` is the name of a built-in arm or an arm.toml."""
@@ -85,13 +94,7 @@ class Answers:
         }
 
     def describe_arm(self, file: str | None) -> ArmFacts:
-        """The arm as the page draws it."""
-        arm = self._arm(file)
-        joints: list[JointFacts] = [
-            {"id": name, "min": joint.stops.min, "max": joint.stops.max, "fixed": joint.fixed}
-            for name, joint in zip(JOINT_IDS, arm.joint, strict=True)
-        ]
-        return {"name": arm.name, "urdf": urdf(arm), "joints": joints}
+        return arm_facts(self._arm(file))
 
     def controller(self, file: str) -> ControllerFacts:
         """The numbers of a controller.toml, or of a parameter file."""

@@ -22,7 +22,7 @@ export class ArmView implements View {
   private hand: LeaderHand | null = null;
   private loading = false;
 
-  constructor(private readonly session: Session, private readonly host: Host) {
+  constructor(private readonly session: Session, private readonly host: Pick<Host, "arm">) {
     this.element = el("section", { class: "card arm" },
       el("div", { class: "tools" }, ...PRESET_NAMES.map((preset) =>
         button(preset.slice(0, 1).toUpperCase() + preset.slice(1), () => this.scene?.look(preset))), this.words),

@@ -16,19 +16,21 @@ const SIZES = [
 export class BenchView implements View {
   readonly name = "Bench";
   readonly element = el("div", { class: "editor" });
-  private readonly bench: Bench;
   private lead: Lead | null = null;
   private drawn: DrawnMotion | null = null;
   private readonly recorded = el("select", { attrs: { "aria-label": "Recorded motion" } });
   private readonly broken = el("ul", { class: "differences" });
 
-  constructor(private readonly session: Session, private readonly host: Host, private readonly hand: LeaderHand) {
-    this.bench = host.bench;
-  }
+  /** Recorded motions are files of a host, where there is one. */
+  constructor(
+    private readonly session: Session, private readonly bench: Bench, private readonly hand: LeaderHand,
+    private readonly host: Pick<Host, "state"> | null,
+  ) {}
 
   enter(): void {
     void this.session.attempt(async () => {
       if (!this.lead) this.build(await this.bench.controls());
+      if (!this.host) return;
       const motions = (await this.host.state()).files.filter(({ kind }) => kind === "motion");
       this.recorded.replaceChildren(el("option", { value: "" }, motions.length ? "a recorded motion" : "no motion in this folder"),
         ...motions.map(({ name }) => el("option", { value: name }, name)));
@@ -57,7 +59,7 @@ export class BenchView implements View {
     return el("section", { class: "card" }, el("h2", {}, "A person leads"),
       el("div", { class: "row" },
         button("Reach here and there", () => lead("reaches"), { title: "Smooth reaches, as a person makes them; while the motors are off" }),
-        button("Hold still", () => lead("hold")), this.recorded));
+        button("Hold still", () => lead("hold")), ...(this.host ? [this.recorded] : [])));
   }
 
   private faults({ faults }: BenchControls): HTMLElement {
@@ -100,7 +102,8 @@ export class BenchView implements View {
     const words = el("span", { class: "number" });
     const show = (): void => setText(words, `${Number(Number(slider.value).toFixed(3))} ${unit}`);
     const slider = el("input", { type: "range", attrs: {
-      min: String(range.minimum), max: String(range.maximum), step: String((range.maximum - range.minimum) / 100), "aria-label": `${title}, ${unit}`,
+      min: String(range.minimum), max: String(range.maximum), step: String(range.step ?? (range.maximum - range.minimum) / 100),
+      "aria-label": `${title}, ${unit}`,
     }, on: { input: () => show(), change: () => void this.change({ [key]: Number(slider.value) }) } });
     slider.value = String(range.value);
     show();
