@@ -23,7 +23,7 @@ SIDE_BY_SIDE := $(MAKE) READY= --no-print-directory --jobs=$(shell nproc) --outp
 PYTEST := $(PYTHON) -m pytest -n auto
 
 .DEFAULT_GOAL := help
-.PHONY: help setup ready build firmware demo dashboard report check test lint oracles benchmarks attack docs dist format lock hooks clean $(LINT) $(UNIT_TESTS) $(IMAGES)
+.PHONY: help setup ready build firmware demo dashboard report check test lint oracles benchmarks attack docs site dist format lock hooks clean $(LINT) $(UNIT_TESTS) $(IMAGES)
 
 help: ## list the targets
 	@sed -n 's/^\([a-z]*\):[^#]*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12
@@ -110,6 +110,9 @@ docs: setup ## write the generated files again (link schema, reference page, ver
 	$(PYTHON) -m tools.generate.link
 	$(PYTHON) -m tools.generate.version
 	$(PYTHON) -m tools.docs
+
+site: setup ## the page with firmware and arm inside, one folder for any web server, in build/try
+	$(PYTHON) -m tools.site
 
 dist: setup ## build source distributions and wheels of both packages for this machine, in build/dist
 	$(PYTHON) -m tools.dist $(ARGS)

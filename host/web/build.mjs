@@ -1,19 +1,20 @@
-// Bundles the page into the Python package (`npm run build`), or its tests and runs them (`npm test`).
+// Bundles the page into the Python package (`npm run build`), the page with a bench inside into a folder (`npm run site
+// FOLDER`), or the tests and runs them (`npm test`).
 import { spawnSync } from "node:child_process";
 import { copyFileSync, mkdirSync, readdirSync, rmSync } from "node:fs";
-import { dirname, join } from "node:path";
+import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 import { build } from "esbuild";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const common = { bundle: true, target: "es2022", logLevel: "warning", absWorkingDir: here };
 
-async function buildPage(out) {
+async function buildPage(out, entryPoints) {
   rmSync(out, { recursive: true, force: true });
   mkdirSync(out, { recursive: true });
   await build({
     ...common,
-    entryPoints: { page: "src/page.ts" },
+    entryPoints,
     outdir: out,
     format: "esm",
     splitting: true,
@@ -43,4 +44,5 @@ async function runTests(out, args) {
 
 const [what, ...args] = process.argv.slice(2);
 if (what === "test") process.exitCode = await runTests(join(here, "../../build/page-tests"), args);
-else await buildPage(what ?? join(here, "../src/greywhale/dashboard/page"));
+else if (what === "site") await buildPage(resolve(args[0]), { page: "src/try.ts", worker: "src/sources/in_page/worker.ts" });
+else await buildPage(what ?? join(here, "../src/greywhale/dashboard/page"), { page: "src/page.ts" });

@@ -30,6 +30,7 @@ app::App* arm = nullptr;
 void Board::power_on(hal::ResetCause cause) {
   hal::web::power_on(cause);
   powered_ = true;
+  ++starts_;
   slice_ = converted_ = 0;
   to_board_.clear();
   arm = new (storage) app::App;

@@ -18,6 +18,7 @@ class Board {
   void power_on(hal::ResetCause cause);  // starts the firmware anew
   void power_off();
   bool powered() const { return powered_; }
+  unsigned starts() const { return starts_; }
 
   // Lets 250 us pass with these voltages at the converter. A bit of `floating` marks an input without a wire: the
   // sampling capacitor keeps what the conversion before left on it.
@@ -34,6 +35,7 @@ class Board {
   void work();
 
   bool powered_ = false;
+  unsigned starts_ = 0;
   unsigned slice_ = 0;      // of the tick
   unsigned converted_ = 0;  // in this tick
   double charge_ = 0.0;     // mV on the sampling capacitor

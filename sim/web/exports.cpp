@@ -138,6 +138,7 @@ EXPORT(look) void exported_look() {
   }
 }
 EXPORT(powered) unsigned exported_powered() { return bench->board.powered(); }
+EXPORT(starts) unsigned exported_starts() { return bench->board.starts(); }
 
 // Debian's library for wasm has no exceptions; what sim/arm throws ends the module.
 void* __cxa_allocate_exception(std::size_t) { __builtin_trap(); }

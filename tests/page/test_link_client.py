@@ -1,4 +1,4 @@
-"""The page's parts in Node: link client, samples, law, against vectors and numbers that Python makes."""
+"""The page's parts in Node: link client, samples, law, against vectors and numbers that Python makes; its own bench."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from greywhale.fuzzy.exact import Law
 from greywhale.fuzzy.settings import ANGLE_UNIT, SET_UNIT, JointSettings
 from greywhale.protocol.schema import PARAMETER_BY_NAME, Refusal
 from tools import ROOT
+from tools.site.build import write_bench
 
 PAGE = ROOT / "host" / "web"
 NAMES = tuple(field.name for field in fields(JointSettings))
@@ -57,11 +58,12 @@ def numbers_of_the_law() -> dict[str, list[dict[str, Any]]]:
     return {"cases": cases, "refused": refused}
 
 
-def test_link_client_samples_and_law_give_what_python_gives(tmp_path: Path) -> None:
+def test_link_client_samples_law_and_bench_give_what_python_gives(tmp_path: Path) -> None:
     golden, law = tmp_path / "golden.json", tmp_path / "law.json"
     golden.write_text(json.dumps(tomllib.loads((ROOT / "shared/link/golden.toml").read_text("utf-8"))))
     law.write_text(json.dumps(numbers_of_the_law()))
-    environment = {**os.environ, "GOLDEN": str(golden), "LAW": str(law)}
+    environment = {**os.environ, "GOLDEN": str(golden), "LAW": str(law), "SITE": str(tmp_path)}
+    write_bench(tmp_path)
     done = subprocess.run(
         ["node", "build.mjs", "test"], cwd=PAGE, env=environment, capture_output=True, text=True, check=False
     )

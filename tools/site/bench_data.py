@@ -12,6 +12,8 @@ import numpy as np
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.parameters import PotentiometerBank
+from greywhale.base.types import Floats
+from greywhale.dashboard.answers import arm_facts
 from greywhale.motion import human_reaches
 from greywhale.protocol.firmware import JOINTS
 from greywhale_sim import commands, faults, pot_faults
@@ -19,6 +21,7 @@ from greywhale_sim import commands, faults, pot_faults
 Call = list[str | float]
 
 REACHES_HZ = 25  # a hand takes corners smoothly
+BEGINS_RAD = 0.02
 
 
 def arm_numbers(arm: ArmParameters) -> list[float]:
@@ -102,11 +105,10 @@ def fault_calls(name: str, place: str) -> list[Call]:
 
 def bench_data(arm: ArmParameters) -> dict[str, Any]:
     """All of it, as the page reads it."""
-    motion = human_reaches()
-    times = np.arange(0.0, motion.duration_s, 1.0 / REACHES_HZ)
     stops = [joint.stops for joint in arm.joint]
     return {
         "arm": arm_numbers(arm),
+        "description": arm_facts(arm),
         "leader": {"minimum": [stop.min for stop in stops], "maximum": [stop.max for stop in stops]},
         "supply": {"minimum": 0.0, "maximum": commands.MOST_SUPPLY_V, "value": arm.drive.supply},
         "load": {"minimum": 0.0, "maximum": commands.MOST_LOAD_KG, "value": arm.tip.mass},
@@ -118,5 +120,14 @@ def bench_data(arm: ArmParameters) -> dict[str, Any]:
             }
             for one in faults.FAULTS
         ],
-        "reaches": {"hz": REACHES_HZ, "rows": np.round(motion.at(times), 4).tolist()},
+        "reaches": {"hz": REACHES_HZ, "rows": reaches().tolist()},
     }
+
+
+def reaches() -> Floats:
+    """Poses of a person's motion (rows, 4) in rad, from when it begins to move."""
+    motion = human_reaches()
+    rows = np.round(motion.at(np.arange(0.0, motion.duration_s, 1.0 / REACHES_HZ)), 4)
+    moved = np.abs(rows - rows[0]).max(axis=1) > BEGINS_RAD
+    begun: Floats = rows[int(np.argmax(moved)) :]
+    return begun

@@ -1,0 +1,23 @@
+// How many ticks are due by the wall clock. A machine that is too slow falls behind, and that is not made up for.
+
+const GIVE_UP_MS = 50;
+
+export class Clock {
+  private last: number | null = null; // ms of the wall clock; null while time stands still
+  private owed = 0; // ticks
+
+  /** Ticks that are due now, at a speed in simulated seconds a second. */
+  due(nowMs: number, speed: number): number {
+    const passed = this.last === null ? 0 : Math.min(nowMs - this.last, GIVE_UP_MS);
+    this.last = nowMs;
+    this.owed += passed * speed;
+    const whole = Math.floor(this.owed);
+    this.owed -= whole;
+    return whole;
+  }
+
+  /** Lets time stand still until ticks are asked for again. */
+  hold(): void {
+    this.last = null;
+  }
+}

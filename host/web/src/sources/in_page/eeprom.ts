@@ -1,0 +1,42 @@
+// The board's EEPROM, kept by the browser. Content that is damaged is told and set aside.
+
+import { crc32 } from "../../samples/crc32";
+
+const KEY = "greywhale-eeprom";
+const BYTES = 1024; // as hal/web has it
+const ASIDE = "greywhale-eeprom-damaged";
+
+export type Kept = { readonly content: Uint8Array | null; readonly sentence: string };
+
+/** What the browser has kept, and a sentence where something is wrong with it. */
+export function keptEeprom(storage: () => Storage): Kept {
+  let text: string | null;
+  try {
+    text = storage().getItem(KEY);
+  } catch {
+    return { content: null, sentence: "This browser keeps nothing for this page: what the board stores ends with it." };
+  }
+  if (text === null) return { content: null, sentence: "" };
+  const content = unpacked(text);
+  if (content) return { content, sentence: "" };
+  storage().setItem(ASIDE, text);
+  storage().removeItem(KEY);
+  return { content: null, sentence: `What this browser had kept of the board's memory is damaged; it is set aside as ${ASIDE}, and the board has its defaults.` };
+}
+
+/** Keeps it from now on; false where the browser does not. */
+export function keepEeprom(storage: () => Storage, content: Uint8Array): boolean {
+  const data = Array.from(content, (byte) => byte.toString(16).padStart(2, "0")).join("");
+  try {
+    storage().setItem(KEY, `${data} ${crc32(data)}`);
+    return true;
+  } catch {
+    return false;
+  }
+}
+
+function unpacked(text: string): Uint8Array | null {
+  const [data = "", check] = text.split(" ");
+  if (!/^[0-9a-f]*$/.test(data) || data.length !== 2 * BYTES || check !== String(crc32(data))) return null;
+  return Uint8Array.from(data.match(/../g)!, (pair) => parseInt(pair, 16));
+}

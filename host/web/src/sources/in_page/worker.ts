@@ -1,0 +1,112 @@
+// The worker in which the bench lives: by the wall clock, and never far ahead of what the page has worked off.
+
+import { Clock } from "./clock";
+import { Life } from "./life";
+import type { FromBench, ToBench } from "./messages";
+import { BenchModule } from "./module";
+
+const TURN_MS = 4;
+const MOST_UNREAD = 65_536; // bytes, about 1.5 s of samples
+
+const page = globalThis as unknown as {
+  postMessage(message: FromBench, transfer?: Transferable[]): void;
+  addEventListener(kind: "message", heard: (event: MessageEvent<ToBench>) => void): void;
+};
+
+class Bench {
+  private readonly life: Life;
+  private readonly clock = new Clock();
+  private visible = true;
+  private unread = 0;
+  private writes: number;
+  private readonly timer = setInterval(() => this.guard(() => this.turn()), TURN_MS);
+
+  constructor(private readonly module: BenchModule, { data, eeprom }: Extract<ToBench, { kind: "start" }>) {
+    if (eeprom) module.eeprom().set(eeprom);
+    this.life = new Life(module, data);
+    this.life.start();
+    this.writes = module.call("eeprom_writes");
+  }
+
+  hear(message: ToBench): void {
+    switch (message.kind) {
+      case "start":
+        break;
+      case "send":
+        this.guard(() => this.life.send(message.frame));
+        break;
+      case "wish":
+        this.change(message);
+        break;
+      case "visible":
+        this.visible = message.on;
+        break;
+      case "taken":
+        this.unread -= message.count;
+        break;
+    }
+  }
+
+  private change({ id, wish }: Extract<ToBench, { kind: "wish" }>): void {
+    let error: string | null = null;
+    try {
+      this.life.change(wish);
+    } catch (problem) {
+      if (problem instanceof WebAssembly.RuntimeError) return this.fail(problem);
+      error = problem instanceof Error ? problem.message : String(problem);
+    }
+    page.postMessage({ kind: "done", id, error });
+  }
+
+  private turn(): void {
+    if (!this.visible || this.unread > MOST_UNREAD) {
+      this.clock.hold();
+      return;
+    }
+    const said: Uint8Array[] = [];
+    for (let left = this.clock.due(performance.now(), this.life.speed); left; left--) said.push(this.life.tick().slice());
+    const size = said.reduce((sum, piece) => sum + piece.length, 0);
+    this.keepEeprom(); // before the board can say that it has stored something
+    if (this.life.restarted()) page.postMessage({ kind: "restarted" });
+    if (size) {
+      const data = new Uint8Array(size);
+      said.reduce((at, piece) => (data.set(piece, at), at + piece.length), 0);
+      this.unread += size;
+      page.postMessage({ kind: "bytes", data }, [data.buffer]);
+    }
+  }
+
+  private keepEeprom(): void {
+    const writes = this.module.call("eeprom_writes");
+    if (writes === this.writes) return;
+    this.writes = writes;
+    page.postMessage({ kind: "eeprom", content: this.module.eeprom().slice() });
+  }
+
+  private guard(act: () => void): void {
+    try {
+      act();
+    } catch (problem) {
+      this.fail(problem);
+    }
+  }
+
+  private fail(problem: unknown): void {
+    clearInterval(this.timer);
+    const why = problem instanceof Error ? problem.message : String(problem);
+    page.postMessage({ kind: "failed", sentence: `The simulated bench has ended (${why}); reload the page.` });
+  }
+}
+
+let bench: Bench | null = null;
+
+page.addEventListener("message", ({ data: message }) => {
+  if (message.kind !== "start") return bench?.hear(message);
+  BenchModule.load(message.code, message.data.arm).then(
+    (module) => {
+      bench = new Bench(module, message);
+      page.postMessage({ kind: "ready" });
+    },
+    (error: unknown) => page.postMessage({ kind: "failed", sentence: `This browser cannot run the bench: ${String(error)}.` }),
+  );
+});

@@ -1,0 +1,56 @@
+// The page without a host: firmware, arm and a moving hand inside it. The arm follows as soon as the page is open.
+
+import "./page.css";
+import { ArmView } from "./arm3d/view";
+import { LeaderHand } from "./bench/hand";
+import { BenchView } from "./bench/view";
+import { ControllerView } from "./controller/view";
+import { LiveView } from "./live/view";
+import { State } from "./link/schema";
+import { el } from "./parts/dom";
+import { startTheme } from "./parts/theme";
+import { Session } from "./session";
+import { Shell } from "./shell";
+import { PageBoard } from "./sources/in_page/board";
+import type { BenchData } from "./sources/in_page/bench_data";
+
+async function load(file: string): Promise<Response> {
+  const answer = await fetch(new URL(file, import.meta.url));
+  if (!answer.ok) throw new Error(`${file} is missing beside this page (${answer.status})`);
+  return answer;
+}
+
+async function open(): Promise<void> {
+  const [code, data] = await Promise.all([
+    load("bench.wasm").then((answer) => answer.arrayBuffer()),
+    load("bench.json").then((answer) => answer.json() as Promise<BenchData>),
+  ]);
+  const board = new PageBoard(code, data, () => localStorage);
+  const session = new Session(board);
+  const hand = new LeaderHand(board, session.samples, (error) =>
+    session.tell(error instanceof Error ? error.message : String(error)));
+  const arm = new ArmView(session, { arm: async () => data.description });
+  arm.leadBy(hand);
+  const shell = new Shell(session, [arm], [
+    "The firmware of a real board and a simulated arm run inside this page; they need a browser with WebAssembly.",
+  ]);
+  for (const view of [new LiveView(session), new ControllerView(session, null), new BenchView(session, board, hand, null)]) {
+    shell.add(view);
+  }
+  enableOnce(session);
+}
+
+/** Nobody stands near a simulated arm, so it need not wait for a person. */
+function enableOnce(session: Session): void {
+  let begun = false;
+  session.changed.on(() => {
+    if (begun || session.status?.state !== State.is.disabled) return;
+    begun = true;
+    void session.attempt(() => session.enable());
+  });
+}
+
+startTheme();
+open().catch((error: unknown) => {
+  document.body.append(el("main", {}, el("p", {}, `${error instanceof Error ? error.message : String(error)}; load it again.`)));
+});

@@ -1,0 +1,156 @@
+// The bench inside the page: its clock, what a browser keeps, and a life with the module and data in the folder that SITE
+// names.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { test } from "node:test";
+import { encodeFrame, FrameDecoder } from "../src/link/frames";
+import { ClearFaultRequest, EnableRequest, Fault, HelloReply, Sample, State, StopRequest, TelemetryRequest } from "../src/link/schema";
+import type { BenchData } from "../src/sources/in_page/bench_data";
+import { Clock } from "../src/sources/in_page/clock";
+import { keepEeprom, keptEeprom } from "../src/sources/in_page/eeprom";
+import { Life } from "../src/sources/in_page/life";
+import { BenchModule } from "../src/sources/in_page/module";
+
+const site = process.env["SITE"] ?? "";
+const data = JSON.parse(readFileSync(join(site, "bench.json"), "utf8")) as BenchData;
+
+/** A life and what its board has said. */
+async function rig() {
+  const module = await BenchModule.load(readFileSync(join(site, "bench.wasm")), data.arm);
+  const life = new Life(module, data);
+  const decoder = new FrameDecoder();
+  const samples: Sample[] = [];
+  let hellos = 0;
+  const pass = (ticks: number): Sample => {
+    for (; ticks; ticks--) {
+      decoder.feed(life.tick(), ({ type, payload }) => {
+        if (type === Sample.type) samples.push(Sample.unpack(payload));
+        if (type === HelloReply.type) hellos++;
+      });
+    }
+    return samples.at(-1)!;
+  };
+  const ask = (type: number, payload: Uint8Array = new Uint8Array()): void => life.send(encodeFrame(type, 1, payload));
+  const start = (): void => {
+    ask(TelemetryRequest.type, TelemetryRequest.pack({ every: 1 }));
+    ask(EnableRequest.type, EnableRequest.pack({ lease_ms: 300 }));
+  };
+  life.start();
+  return { life, module, pass, ask, start, hellos: () => hellos };
+}
+
+const far = ({ leader, follower }: Sample): number => Math.max(...leader.map((angle, joint) => Math.abs(angle - follower[joint]!)));
+
+test("a clock owes what passed, at any speed, and gives up what a busy machine missed", () => {
+  const clock = new Clock();
+  assert.equal(clock.due(1000, 1), 0);
+  assert.equal(clock.due(1004.5, 1), 4);
+  assert.equal(clock.due(1005, 1), 1);
+  assert.equal(clock.due(1015, 0.25), 2);
+  assert.equal(clock.due(1025, 10), 100);
+  assert.equal(clock.due(9000, 1), 50);
+  clock.hold();
+  assert.equal(clock.due(20_000, 1), 0);
+});
+
+test("motors run as long as the page wants them, and follow the hand that reaches here and there", async () => {
+  const { pass, start, ask } = await rig();
+  start();
+  let moved = 0;
+  for (let seconds = 0; seconds < 10; seconds++) {
+    const sample = pass(1000);
+    if (seconds > 1) assert.equal(sample.state, State.is.following);
+    moved = Math.max(moved, ...sample.follower.map(Math.abs));
+    assert.ok(far(sample) < 1500, `${far(sample)} of 4096 a rad after ${seconds} s`);
+  }
+  assert.ok(moved > 2000);
+  ask(StopRequest.type);
+  assert.equal(pass(2000).state, State.is.disabled);
+});
+
+test("a hand leads, holds, and reaches on; other motions are refused", async () => {
+  const { life, pass, start } = await rig();
+  start();
+  life.change({ leader: [0.5, 0.4, -0.3, 0.2] });
+  const { leader } = pass(2000);
+  [0.5, 0.4, -0.3, 0.2].forEach((angle, joint) => assert.ok(Math.abs(leader[joint]! - angle * 4096) < 60));
+  life.change({ motion: "reaches" });
+  pass(700);
+  life.change({ motion: "hold" });
+  const held = pass(1000);
+  assert.ok(pass(1000).leader.every((angle, joint) => Math.abs(angle - held.leader[joint]!) < 60));
+  assert.throws(() => life.change({ motion: "log.csv" }), /no motion "log.csv"/);
+});
+
+test("a broken wire stops the motors, and mended they run again", async () => {
+  const { life, pass, start, ask } = await rig();
+  start();
+  pass(1500);
+  life.change({ fault: "pot-open:leader2" });
+  const broken = pass(200);
+  assert.deepEqual([broken.state, broken.fault], [State.is.fault, Fault.is.pot_low]);
+  life.change({ fault: null });
+  pass(2000); // until the hands hold both arms
+  ask(ClearFaultRequest.type);
+  pass(10);
+  start();
+  assert.equal(pass(1500).state, State.is.following);
+  for (const wrong of ["pot-open", "pot-open:elbow", "no-such"]) {
+    assert.throws(() => life.change({ fault: wrong }), /no mistake of this bench/);
+  }
+});
+
+test("power, supply and emergency stop do what they say", async () => {
+  const { life, module, pass, start, hellos } = await rig();
+  start();
+  pass(1500);
+  life.change({ estop: true });
+  assert.equal(pass(50).fault, Fault.is.estop);
+  life.change({ estop: false });
+  assert.equal(life.restarted(), false);
+  const before = hellos();
+  life.change({ power: false });
+  pass(50);
+  life.change({ power: true });
+  pass(100);
+  assert.ok(life.restarted());
+  assert.equal(hellos(), before + 1);
+  life.change({ fault: "brown-out" });
+  start();
+  pass(2000);
+  assert.ok(life.restarted() && module.call("powered"));
+  life.change({ speed: 2.5 });
+  assert.equal(life.speed, 2.5);
+  assert.throws(() => life.change({ supply: 31 }), /The supply is 31 V; choose one from 0 to 30/);
+  assert.throws(() => life.change({ load: Number.NaN }), /The load is NaN kg/);
+});
+
+/** A browser's storage with as many places as a test needs; null for one that keeps nothing. */
+function storage(kept: Map<string, string> | null): () => Storage {
+  return () => {
+    if (!kept) throw new Error("denied");
+    return {
+      getItem: (key: string) => kept.get(key) ?? null,
+      setItem: (key: string, text: string) => void kept.set(key, text),
+      removeItem: (key: string) => void kept.delete(key),
+    } as Storage;
+  };
+}
+
+test("a browser keeps the board's memory; what is damaged is told and set aside", () => {
+  const kept = new Map<string, string>();
+  const content = Uint8Array.from({ length: 1024 }, (_, place) => place * 7);
+  assert.deepEqual(keptEeprom(storage(kept)), { content: null, sentence: "" });
+  assert.ok(keepEeprom(storage(kept), content));
+  assert.deepEqual(keptEeprom(storage(kept)).content, content);
+  const [[key, whole]] = [...kept] as [[string, string]];
+  for (const damaged of [whole.replace("07", "08"), whole.slice(2), `${"00".repeat(2000)} 1`, "", "é 0"]) {
+    kept.set(key, damaged);
+    const found = keptEeprom(storage(kept));
+    assert.ok(found.content === null && found.sentence.includes("set aside"), damaged);
+    assert.deepEqual([kept.get(key), [...kept.values()]], [undefined, [damaged]]);
+  }
+  assert.match(keptEeprom(storage(null)).sentence, /keeps nothing/);
+  assert.equal(keepEeprom(storage(null), content), false);
+});

@@ -1,0 +1,121 @@
+"""The page with a bench inside, from a folder of files: what a first visitor sees and does, with no other network."""
+
+from __future__ import annotations
+
+import functools
+import threading
+from collections.abc import Iterator
+from dataclasses import dataclass
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+from tests.page import stage as stages
+from tests.page.barriers import DARK_AND_NARROW, require_no_barrier
+from tests.page.drag import drag, value_of
+from tools.site.build import build
+
+pytestmark = pytest.mark.slow
+
+KEPT, ASIDE = "greywhale-eeprom", "greywhale-eeprom-damaged"
+
+
+@dataclass(frozen=True)
+class Site:
+    """A folder that a plain web server hands out."""
+
+    port: int
+
+    @property
+    def page_address(self) -> str:
+        return f"http://127.0.0.1:{self.port}/"
+
+
+class _Quiet(SimpleHTTPRequestHandler):
+    def log_message(self, format: str, *words: object) -> None: ...
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
+    folder: Path = tmp_path_factory.mktemp("site")
+    build(folder)
+    server = ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(_Quiet, directory=str(folder)))
+    thread = threading.Thread(target=server.serve_forever)
+    thread.start()
+    yield Site(server.server_port)
+    server.shutdown()
+    thread.join()
+    server.server_close()
+
+
+@pytest.fixture
+def visited(browser: Browser, site: Site) -> Iterator[Page]:
+    """A page that somebody opens for the first time."""
+    context = browser.new_context(viewport={"width": 1280, "height": 900})
+    with stages.visit(context, site) as visit:
+        yield visit.page
+    context.close()
+
+
+def test_a_visitor_sees_an_arm_that_follows_and_what_needs_a_host_is_not_there(visited: Page) -> None:
+    expect(visited.locator("nav button")).to_have_text(["Arm", "Live", "Controller", "Bench"])
+    expect(visited.get_by_text("no cycle timing")).to_be_visible()
+    expect(visited.locator(".pill")).to_have_text("following")
+    visited.get_by_role("button", name="Live").click()
+    visited.wait_for_function(
+        """() => [...document.querySelectorAll(".values tbody tr")].some((row) => {
+          const [leader, follower] = [...row.querySelectorAll("td")].slice(-4).map((cell) => Number(cell.innerText));
+          return Math.abs(leader) > 0.3 && Math.abs(leader - follower) < 0.1;
+        })"""
+    )
+    visited.get_by_role("button", name="Controller").click()
+    expect(visited.get_by_text("Control surface")).to_be_visible()
+    expect(visited.get_by_text("The model predicts")).to_have_count(0)
+    expect(visited.get_by_text("Against a file")).to_have_count(0)
+    visited.get_by_role("button", name="Bench").click()
+    expect(visited.get_by_role("button", name="Hold still")).to_be_visible()
+    expect(visited.get_by_label("Recorded motion")).to_have_count(0)
+    require_no_barrier(visited, DARK_AND_NARROW)
+    visited.keyboard.press("Space")
+    expect(visited.locator(".pill")).to_have_text("disabled")
+
+
+def test_a_wire_is_broken_and_mended(visited: Page) -> None:
+    expect(visited.locator(".pill")).to_have_text("following")
+    visited.get_by_role("button", name="Bench").click()
+    visited.get_by_role("button", name="Hold still").click()
+    visited.get_by_label("Speed of time, ×").fill("10")
+    visited.get_by_label("Speed of time, ×").dispatch_event("change")
+    visited.get_by_label("Fault").select_option("pot-open")
+    visited.get_by_label("Where").select_option("follower1")
+    visited.get_by_role("button", name="Break", exact=True).click()
+    expect(visited.locator(".pill")).to_have_text("fault")
+    visited.get_by_role("button", name="Mend all").click()
+    expect(visited.locator(".differences li")).to_have_count(0)
+    visited.get_by_role("button", name="Live").click()
+    fault = visited.get_by_role("alert").filter(has_text="follower potentiometer 1")
+    fault.get_by_role("button", name="Clear fault").click()
+    expect(visited.locator(".pill")).to_have_text("disabled")
+    visited.get_by_role("button", name="Enable").click()
+    expect(visited.locator(".pill")).to_have_text("following")
+
+
+def test_what_is_stored_is_there_after_a_reload_unless_it_is_damaged(visited: Page) -> None:
+    visited.get_by_role("button", name="Stop").click()
+    visited.get_by_role("button", name="Controller").click()
+    drag(visited, "Pe_b", 0.1)
+    dragged = value_of(visited, "Pe_b")
+    visited.get_by_role("button", name="Apply").click()
+    expect(visited.get_by_text("The board runs these controllers.")).to_be_visible()
+    visited.get_by_role("button", name="Store").click()
+    expect(visited.get_by_text("The board has stored these controllers.")).to_be_visible()
+    visited.reload()
+    visited.get_by_role("button", name="Controller").click()
+    visited.get_by_role("slider", name="Pe_b", exact=True).wait_for()
+    assert value_of(visited, "Pe_b") == pytest.approx(dragged, abs=1e-4)
+    visited.evaluate("([key, text]) => localStorage.setItem(key, text)", [KEPT, "no memory"])
+    visited.reload()
+    expect(visited.locator(".notice")).to_contain_text("is damaged; it is set aside")
+    assert visited.evaluate("(key) => localStorage.getItem(key)", ASIDE) == "no memory"
