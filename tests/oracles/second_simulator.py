@@ -34,10 +34,14 @@ Volts = NDArray[np.float32]
 
 @dataclass(frozen=True)
 class Scenario:
-    """Voltages of shape (ticks, 32 conversions, 8 channels), and the bytes to send by tick."""
+    """Voltages of shape (ticks, 32 conversions, 8 channels), the bytes to send by tick, inputs without a wire as bits.
+
+    avr8js knows no such inputs.
+    """
 
     volts: Volts
     sends: dict[int, bytes]
+    floating: int = 0
 
 
 @dataclass(frozen=True)
@@ -81,6 +85,7 @@ def run_image(board: Any, tick_vector: int, scenario: Scenario, look: Callable[[
     """Power our own board and run it; `look` at its outputs at the end of each tick."""
     board.power_on(1)
     board.set_millivolts(np.full(CHANNELS, 2500.0))
+    board.set_floating(scenario.floating)
     while board.pc != tick_vector:
         board.run_until(board.cycle + 1)
     first = board.cycle

@@ -21,7 +21,17 @@ from greywhale.protocol.frames import Frame
 from greywhale_sim._board import Board
 from greywhale_sim.wiring import MEGA
 from tests.oracles.page_bench import TICK_SLICES, PageBench
-from tests.oracles.second_simulator import CONVERSIONS, ROOT, Run, Scenario, request, run_avr8js, run_image, send_at
+from tests.oracles.second_simulator import (
+    CHANNELS,
+    CONVERSIONS,
+    ROOT,
+    Run,
+    Scenario,
+    request,
+    run_avr8js,
+    run_image,
+    send_at,
+)
 from tests.oracles.test_second_simulator import APPLYING, TICKS, all_requests, bad_following, frames_of
 
 IMAGE = ROOT / "firmware/.pio/build" / MEGA.environment / "firmware.hex"
@@ -31,6 +41,8 @@ SLICE_OF = np.array([(135 + 26 * conversion) // 250 for conversion in range(CONV
 FIRST_OF = np.array([np.argmax(one == SLICE_OF) for one in range(TICK_SLICES)])  # conversion of each slice
 PINS = slice(20, 29)  # of what the module shows: enable, duties, directions
 LEAST_STEADY = 3700
+FLOATING_TICKS = 150
+COUNTS_APART = 40  # of 4096 a rad
 STATUS_AT = (130, 1000, 1495, 2650, 3940)
 
 
@@ -44,6 +56,7 @@ def slices_scenario() -> Scenario:
 def run_page(scenario: Scenario) -> Run:
     outputs, sent = [], b""
     with PageBench(default_arm()) as bench:
+        bench.calls([["let_float", pot, scenario.floating >> pot & 1] for pot in range(CHANNELS)])
         bench.calls([["put", [2500.0] * 8], ["hold_inputs"], ["power", 1], ["run", TICK_SLICES]])
         for tick, volts in enumerate(scenario.volts):
             for part, conversion in enumerate(FIRST_OF):
@@ -119,3 +132,13 @@ def test_the_page_and_the_nanos_image_in_avr8js_give_the_same_frames(
     scenario: Scenario, page: Run, tmp_path: Path
 ) -> None:
     require_same_frames(page, run_avr8js(scenario, tmp_path))
+
+
+def test_an_input_without_a_wire_reads_what_the_one_before_left(scenario: Scenario) -> None:
+    """The first of the followers, the first of the leaders, and two in a row."""
+    short = Scenario(scenario.volts[:FLOATING_TICKS], {40: scenario.sends[40]}, floating=0b0101_0011)
+    (_, samples), (_, theirs) = (frames_of(run(short).sent) for run in (run_page, run_mega))
+    assert samples == theirs
+    angles = [schema.Sample.unpack(frame.payload).leader for frame in samples.values()]
+    assert len(angles) > FLOATING_TICKS / 2
+    assert all(abs(first - second) < COUNTS_APART for first, second, *_ in angles)

@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import functools
-import threading
 from collections.abc import Iterator
-from dataclasses import dataclass
-from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
 import pytest
@@ -15,6 +11,7 @@ from playwright.sync_api import Browser, Page, expect
 from tests.page import stage as stages
 from tests.page.barriers import DARK_AND_NARROW, require_no_barrier
 from tests.page.drag import drag, value_of
+from tests.page.serve_folder import Site, serve
 from tools.site.build import build
 
 pytestmark = pytest.mark.slow
@@ -22,32 +19,12 @@ pytestmark = pytest.mark.slow
 KEPT, ASIDE = "greywhale-eeprom", "greywhale-eeprom-damaged"
 
 
-@dataclass(frozen=True)
-class Site:
-    """A folder that a plain web server hands out."""
-
-    port: int
-
-    @property
-    def page_address(self) -> str:
-        return f"http://127.0.0.1:{self.port}/"
-
-
-class _Quiet(SimpleHTTPRequestHandler):
-    def log_message(self, format: str, *words: object) -> None: ...
-
-
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
     folder: Path = tmp_path_factory.mktemp("site")
     build(folder)
-    server = ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(_Quiet, directory=str(folder)))
-    thread = threading.Thread(target=server.serve_forever)
-    thread.start()
-    yield Site(server.server_port)
-    server.shutdown()
-    thread.join()
-    server.server_close()
+    with serve(folder) as served:
+        yield served
 
 
 @pytest.fixture

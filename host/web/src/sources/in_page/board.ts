@@ -79,6 +79,8 @@ export class PageBoard implements Board, BenchActions {
   }
 
   private failed(sentence: string): void {
+    for (const settle of this.wishes.values()) settle(sentence);
+    this.wishes.clear();
     this.listener?.driver({ you: false, free: false, verb: null });
     this.listener?.link({ open: false, port: "", sentence });
   }
