@@ -1,7 +1,7 @@
-// Bundles the page into the Python package (`npm run build`), the page with a bench inside into a folder (`npm run site
-// FOLDER`), or the tests and runs them (`npm test`).
+// Bundles the page into the Python package (`npm run build`); the page with a bench inside into a folder (`npm run site
+// FOLDER`), or into one file there (`npm run single FOLDER`); the tests, and runs them (`npm test`).
 import { spawnSync } from "node:child_process";
-import { copyFileSync, mkdirSync, readdirSync, rmSync } from "node:fs";
+import { copyFileSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 import { build } from "esbuild";
@@ -27,6 +27,29 @@ async function buildPage(out, entryPoints) {
   copyFileSync(join(here, "src/index.html"), join(out, "index.html"));
 }
 
+/** One file that opens from a disk too, in a folder with the module and its data. */
+async function buildSingle(folder) {
+  const bundle = (entry) => build({
+    ...common, entryPoints: { page: entry }, outdir: folder, write: false, minify: true, format: "iife",
+    loader: { ".svg": "dataurl" }, legalComments: "none",
+  });
+  const [page, worker] = await Promise.all([bundle("src/single.ts"), bundle("src/sources/in_page/worker.ts")]);
+  const text = ({ outputFiles }, kind) => outputFiles.find(({ path }) => path.endsWith(kind)).text;
+  // Whatever is text stands within an element that ends at the next such tag.
+  const element = (id, type, content) => `<script type="${type}" id="${id}">${content.replaceAll("</", "<\\/")}</script>\n`;
+  const html = readFileSync(join(here, "src/index.html"), "utf8")
+    .replace('<link rel="stylesheet" href="page.css">', () => `<style>${text(page, ".css")}</style>`)
+    .replace('<script type="module" src="page.js"></script>\n', "")
+    .replace("</body>", () => [
+      element("bench-module", "text/plain", readFileSync(join(folder, "bench.wasm")).toString("base64")),
+      element("bench-data", "application/json", readFileSync(join(folder, "bench.json"), "utf8")),
+      element("bench-worker", "text/plain", text(worker, ".js")),
+      element("page", "text/javascript", text(page, ".js")),
+      "</body>",
+    ].join(""));
+  writeFileSync(join(folder, "greywhale.html"), html);
+}
+
 async function runTests(out, args) {
   rmSync(out, { recursive: true, force: true });
   const tests = readdirSync(join(here, "test")).filter((name) => name.endsWith(".test.ts"));
@@ -44,5 +67,6 @@ async function runTests(out, args) {
 
 const [what, ...args] = process.argv.slice(2);
 if (what === "test") process.exitCode = await runTests(join(here, "../../build/page-tests"), args);
-else if (what === "site") await buildPage(resolve(args[0]), { page: "src/try.ts", worker: "src/sources/in_page/worker.ts" });
+else if (what === "site") await buildPage(resolve(args[0]), { page: "src/site.ts", worker: "src/sources/in_page/worker.ts" });
+else if (what === "single") await buildSingle(resolve(args[0]));
 else await buildPage(what ?? join(here, "../src/greywhale/dashboard/page"), { page: "src/page.ts" });

@@ -226,7 +226,7 @@ def visit(context: BrowserContext, stage: Place) -> Iterator[Visit]:
     page.add_init_script(f"requestAnimationFrame = (draw) => setTimeout(draw, {FRAME_MS}, performance.now())")
     page.set_default_timeout(PATIENCE_MS)
     told = Visit(page)
-    here = (f"http://127.0.0.1:{stage.port}/", f"ws://127.0.0.1:{stage.port}/", "data:", "blob:")
+    here = (stage.page_address, f"http://127.0.0.1:{stage.port}/", f"ws://127.0.0.1:{stage.port}/", "data:", "blob:")
 
     def judge(request: Request) -> None:
         if not request.url.startswith(here):

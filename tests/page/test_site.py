@@ -1,8 +1,9 @@
-"""The page with a bench inside, from a folder of files: what a first visitor sees and does, with no other network."""
+"""The page with a bench inside, as a folder or one file: what a first visitor sees and does, with no other network."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
@@ -19,10 +20,23 @@ pytestmark = pytest.mark.slow
 KEPT, ASIDE = "greywhale-eeprom", "greywhale-eeprom-damaged"
 
 
+@dataclass(frozen=True)
+class OnDisk:
+    """The page as one file, which no server hands out."""
+
+    page_address: str
+    port: int = 0
+
+
 @pytest.fixture(scope="module")
-def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
-    folder: Path = tmp_path_factory.mktemp("site")
-    build(folder)
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    made: Path = tmp_path_factory.mktemp("site")
+    build(made)
+    return made
+
+
+@pytest.fixture(scope="module")
+def site(folder: Path) -> Iterator[Site]:
     with serve(folder) as served:
         yield served
 
@@ -57,6 +71,15 @@ def test_a_visitor_sees_an_arm_that_follows_and_what_needs_a_host_is_not_there(v
     require_no_barrier(visited, DARK_AND_NARROW)
     visited.keyboard.press("Space")
     expect(visited.locator(".pill")).to_have_text("disabled")
+
+
+def test_one_file_alone_opens_from_a_disk(browser: Browser, folder: Path, tmp_path: Path) -> None:
+    alone = (folder / "greywhale.html").rename(tmp_path / "alone.html")
+    context = browser.new_context(viewport={"width": 1280, "height": 900})
+    with stages.visit(context, OnDisk(alone.as_uri())) as visit:
+        expect(visit.page.locator(".pill")).to_have_text("following")
+        visit.page.locator("canvas").first.wait_for()
+    context.close()
 
 
 def test_a_wire_is_broken_and_mended(visited: Page) -> None:

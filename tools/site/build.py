@@ -1,4 +1,4 @@
-"""Puts the page with a bench inside into one folder of files that any web server can hand out."""
+"""Puts the page with a bench inside into one folder of files that any web server can hand out, and into one file."""
 
 from __future__ import annotations
 
@@ -12,9 +12,10 @@ from tools.site.bench_data import bench_data
 
 
 def build(folder: Path) -> None:
-    """Write the page, its worker, the module and its data; what was in the folder is gone."""
+    """Write the page, its worker, the module and its data, and all of it as greywhale.html; nothing else stays."""
     page.npm("run", "site", str(folder), what="Building the page with a bench inside")
     write_bench(folder)
+    page.npm("run", "single", str(folder), what="Building the page as one file")
 
 
 def write_bench(folder: Path) -> None:

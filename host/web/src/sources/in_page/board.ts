@@ -16,19 +16,20 @@ const UNKEPT = "This browser has no room to keep what the board stores; it ends 
 
 export class PageBoard implements Board, BenchActions {
   private listener: BoardListener | null = null;
-  private readonly worker: Worker;
   private readonly wishes = new Map<number, (error: string | null) => void>();
   private wished = 0;
   private readonly sizes: { supply: number; load: number; speed: number };
   private keptSentence = ""; // of what the browser had kept; told once the board is there
   private unkeptTold = false;
 
-  /** `code` is the module, `storage` the browser's own. */
-  constructor(private readonly code: ArrayBuffer, private readonly data: BenchData, private readonly storage: () => Storage) {
+  /** `worker` runs worker.ts, `code` is the module, `storage` the browser's own. */
+  constructor(
+    private readonly worker: Worker, private readonly code: ArrayBuffer, private readonly data: BenchData,
+    private readonly storage: () => Storage,
+  ) {
     this.sizes = { supply: data.supply.value, load: data.load.value, speed: SPEED.value };
-    this.worker = new Worker(new URL("worker.js", import.meta.url), { type: "module" });
-    this.worker.addEventListener("message", ({ data: message }: MessageEvent<FromBench>) => this.heard(message));
-    this.worker.addEventListener("error", ({ message }) => this.failed(`The bench does not start: ${message}; reload the page.`));
+    worker.addEventListener("message", ({ data: message }: MessageEvent<FromBench>) => this.heard(message));
+    worker.addEventListener("error", ({ message }) => this.failed(`The bench does not start: ${message}; reload the page.`));
     document.addEventListener("visibilitychange", () => this.showVisible());
   }
 

@@ -1,4 +1,5 @@
 // The page without a host: firmware, arm and a moving hand inside it. The arm follows as soon as the page is open.
+// Its parts come as files beside it (site.ts) or within it (single.ts).
 
 import "./page.css";
 import { ArmView } from "./arm3d/view";
@@ -14,18 +15,18 @@ import { Shell } from "./shell";
 import { PageBoard } from "./sources/in_page/board";
 import type { BenchData } from "./sources/in_page/bench_data";
 
-async function load(file: string): Promise<Response> {
-  const answer = await fetch(new URL(file, import.meta.url));
-  if (!answer.ok) throw new Error(`${file} is missing beside this page (${answer.status})`);
-  return answer;
+export type Parts = { readonly code: ArrayBuffer; readonly data: BenchData; readonly worker: Worker };
+
+/** Shows the page, or why its parts are not there. */
+export function openPage(parts: Promise<Parts>): void {
+  startTheme();
+  parts.then(show).catch((error: unknown) => {
+    document.body.append(el("main", {}, el("p", {}, `${error instanceof Error ? error.message : String(error)}; load it again.`)));
+  });
 }
 
-async function open(): Promise<void> {
-  const [code, data] = await Promise.all([
-    load("bench.wasm").then((answer) => answer.arrayBuffer()),
-    load("bench.json").then((answer) => answer.json() as Promise<BenchData>),
-  ]);
-  const board = new PageBoard(code, data, () => localStorage);
+function show({ code, data, worker }: Parts): void {
+  const board = new PageBoard(worker, code, data, () => localStorage);
   const session = new Session(board);
   const hand = new LeaderHand(board, session.samples, (error) =>
     session.tell(error instanceof Error ? error.message : String(error)));
@@ -49,8 +50,3 @@ function enableOnce(session: Session): void {
     void session.attempt(() => session.enable());
   });
 }
-
-startTheme();
-open().catch((error: unknown) => {
-  document.body.append(el("main", {}, el("p", {}, `${error instanceof Error ? error.message : String(error)}; load it again.`)));
-});
