@@ -103,6 +103,7 @@ def test_a_wire_is_broken_and_mended(visited: Page) -> None:
 
 
 def test_what_is_stored_is_there_after_a_reload_unless_it_is_damaged(visited: Page) -> None:
+    expect(visited.locator(".pill")).to_have_text("following")
     visited.get_by_role("button", name="Stop").click()
     visited.get_by_role("button", name="Controller").click()
     drag(visited, "Pe_b", 0.1)
