@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
+from greywhale.files.log import read_log
 from tests.page import stage as stages
 from tests.page.barriers import DARK_AND_NARROW, require_no_barrier
 from tests.page.drag import drag, value_of
@@ -17,6 +18,12 @@ from tools.site.build import build
 
 pytestmark = pytest.mark.slow
 
+STOP_AT_ONCE = """new MutationObserver((_, watch) => {
+  const stop = document.querySelector("button.stop");
+  if (!stop) return;
+  watch.disconnect();
+  stop.click();
+}).observe(document, { childList: true, subtree: true })"""
 KEPT, ASIDE = "greywhale-eeprom", "greywhale-eeprom-damaged"
 
 
@@ -71,6 +78,19 @@ def test_a_visitor_sees_an_arm_that_follows_and_what_needs_a_host_is_not_there(v
     require_no_barrier(visited, DARK_AND_NARROW)
     visited.keyboard.press("Space")
     expect(visited.locator(".pill")).to_have_text("disabled")
+
+
+def test_who_stops_before_the_arm_has_moved_is_obeyed(browser: Browser, site: Site, tmp_path: Path) -> None:
+    context = browser.new_context(accept_downloads=True)
+    context.add_init_script(STOP_AT_ONCE)
+    with stages.visit(context, site) as visit:
+        visit.page.get_by_role("button", name="Live").click()
+        visit.page.wait_for_function("document.querySelector('.live')?.dataset.tick > 600")
+        with visit.page.expect_download() as saved:
+            visit.page.get_by_role("button", name="Save view").click()
+        saved.value.save_as(tmp_path / "view.csv")
+    assert set(read_log(tmp_path / "view.csv").state) == {"disabled"}
+    context.close()
 
 
 def test_one_file_alone_opens_from_a_disk(browser: Browser, folder: Path, tmp_path: Path) -> None:

@@ -41,12 +41,13 @@ function show({ code, data, worker }: Parts): void {
   enableOnce(session);
 }
 
-/** Nobody stands near a simulated arm, so it need not wait for a person. */
+/** Nobody stands near a simulated arm, so it need not wait for a person; but one who has pressed Stop meant it. */
 function enableOnce(session: Session): void {
   let begun = false;
   session.changed.on(() => {
     if (begun || session.status?.state !== State.is.disabled) return;
     begun = true;
+    if (session.stopAsked) return;
     void session.attempt(() => session.enable());
   });
 }

@@ -39,6 +39,8 @@ export class Session {
   /** The set that this page has stored last; the link does not tell what a board had stored before. */
   stored: readonly number[] | null = null;
   notice: Notice | null = null;
+  /** Whether a person has asked for a stop since the page was opened. */
+  stopAsked = false;
   /** Whether the samples from before are here; until then new ones wait. */
   private waiting: Uint8Array[] | null = [];
   private readonly client: LinkClient;
@@ -127,6 +129,7 @@ export class Session {
   }
 
   async stop(): Promise<void> {
+    this.stopAsked = true;
     await this.client.ask(StopRequest, {});
     await this.askStatus();
   }
