@@ -48,9 +48,11 @@ def test_corners_keep_to_what_the_board_takes_and_steps_can_be_undone(page: Page
         page.get_by_role("button", name="Undo").click()
         assert value_of(page, "Pe_b") == pytest.approx(wanted, abs=1e-4)
     expect(page.get_by_role("button", name="Apply")).to_be_disabled()
+    place = page.locator("svg.sets").first.bounding_box()
     page.get_by_label("Kp 1/rad").fill("65")
     page.get_by_label("Kp 1/rad").press("Enter")
     expect(page.get_by_role("alert")).to_contain_text("joint0.kp is 65; choose a value from 0 to 64.")
+    assert page.locator("svg.sets").first.bounding_box() == place, "a notice moves nothing under a hand that drags"
 
 
 def test_two_controllers_are_compared_on_the_running_arm_by_one_key(page: Page, stage: Stage) -> None:
