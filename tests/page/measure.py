@@ -5,6 +5,7 @@ A dashboard with its bench in real time, the motors on, all sixteen traces over 
 
 from __future__ import annotations
 
+import contextlib
 import gzip
 import json
 import signal
@@ -12,8 +13,9 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Iterator
 
-from playwright.sync_api import CDPSession
+from playwright.sync_api import CDPSession, Page
 
 from greywhale.dashboard.server import PAGE
 from tests.page import stage as stages
@@ -34,48 +36,52 @@ def metric(session: CDPSession, name: str) -> float:
     return float(next(one["value"] for one in found if one["name"] == name))
 
 
-def measure() -> dict[str, float]:
-    begun = time.monotonic()
+@contextlib.contextmanager
+def dashboard() -> Iterator[tuple[int, str]]:
+    """`greywhale dashboard --sim` in a folder of its own: its process, and the page's address."""
     with tempfile.TemporaryDirectory() as folder:
-        command = [
-            sys.executable,
-            "-m",
-            "greywhale",
-            "dashboard",
-            "--sim",
-            "--no-browser",
-            "--json",
-            "--folder",
-            folder,
-        ]
-        process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+        words = ["dashboard", "--sim", "--no-browser", "--json", "--folder", folder]
+        process = subprocess.Popen([sys.executable, "-m", "greywhale", *words], stdout=subprocess.PIPE, text=True)
         assert process.stdout is not None
         try:
-            with stages.browser() as browser:
-                page = browser.new_context(viewport={"width": 1280, "height": 900}).new_page()
-                page.goto(json.loads(process.stdout.readline())["address"])
-                page.wait_for_function("() => document.querySelector('.live')?.dataset.tick > 0")
-                first_s = time.monotonic() - begun
-                page.locator("button.enable:enabled").click()
-                page.wait_for_timeout(MEASURED_MS)
-                session = page.context.new_cdp_session(page)
-                session.send("Performance.enable")
-                script_s = metric(session, "ScriptDuration")
-                page.evaluate(COUNT_FRAMES)
-                page.wait_for_timeout(MEASURED_MS)
-                script_s = metric(session, "ScriptDuration") - script_s
-                drawn = int(page.evaluate("window.drawn"))
-                lost = page.locator("dt:text-is('samples lost') + dd").inner_text()
-                return {
-                    "script_ms_per_frame": round(1000 * script_s / drawn, 2),
-                    "frames_per_s": round(1000 * drawn / MEASURED_MS, 1),
-                    "first_picture_s": round(first_s, 2),
-                    "samples_lost": int(lost),
-                    "heap_mb": round(metric(session, "JSHeapUsedSize") / 1e6, 1),
-                }
+            yield process.pid, json.loads(process.stdout.readline())["address"]
         finally:
             process.send_signal(signal.SIGINT)
             process.wait()
+
+
+def open_live(page: Page, address: str) -> None:
+    """Open the page and wait for its first picture."""
+    page.goto(address)
+    page.wait_for_function("() => document.querySelector('.live')?.dataset.tick > 0")
+
+
+def samples_lost(page: Page) -> int:
+    return int(page.locator("dt:text-is('samples lost') + dd").inner_text())
+
+
+def measure() -> dict[str, float]:
+    begun = time.monotonic()
+    with dashboard() as (_, address), stages.browser() as browser:
+        page = browser.new_context(viewport={"width": 1280, "height": 900}).new_page()
+        open_live(page, address)
+        first_s = time.monotonic() - begun
+        page.locator("button.enable:enabled").click()
+        page.wait_for_timeout(MEASURED_MS)
+        session = page.context.new_cdp_session(page)
+        session.send("Performance.enable")
+        script_s = metric(session, "ScriptDuration")
+        page.evaluate(COUNT_FRAMES)
+        page.wait_for_timeout(MEASURED_MS)
+        script_s = metric(session, "ScriptDuration") - script_s
+        drawn = int(page.evaluate("window.drawn"))
+        return {
+            "script_ms_per_frame": round(1000 * script_s / drawn, 2),
+            "frames_per_s": round(1000 * drawn / MEASURED_MS, 1),
+            "first_picture_s": round(first_s, 2),
+            "samples_lost": samples_lost(page),
+            "heap_mb": round(metric(session, "JSHeapUsedSize") / 1e6, 1),
+        }
 
 
 if __name__ == "__main__":
