@@ -5,7 +5,15 @@ from __future__ import annotations
 import pytest
 from playwright.sync_api import Page, expect
 
-from greywhale.protocol.schema import DEFAULTS, PARAMETER_BY_NAME, ParamSetReply, ParamSetRequest
+from greywhale.protocol.schema import (
+    DEFAULTS,
+    PARAMETER_BY_NAME,
+    ParamApplyReply,
+    ParamApplyRequest,
+    ParamSetReply,
+    ParamSetRequest,
+    param_crc,
+)
 from tests.dashboard.browser import BoardSocket
 from tests.dashboard.browser import Page as Watcher
 from tests.page.drag import drag, value_of
@@ -14,11 +22,13 @@ from tests.page.stage import TOKEN, Stage
 pytestmark = pytest.mark.slow
 
 PE_B, KP = PARAMETER_BY_NAME["joint1.pe_b"], PARAMETER_BY_NAME["joint1.kp"]
+KP0 = PARAMETER_BY_NAME["joint0.kp"]
 ZE_A, ZE_C = PARAMETER_BY_NAME["joint0.ze_a"], PARAMETER_BY_NAME["joint0.ze_c"]
 
 
 def test_a_dragged_set_runs_on_the_board(page: Page, stage: Stage) -> None:
     page.get_by_role("button", name="Controller").click()
+    expect(page.get_by_text("Nothing is stored: the board starts with these, its defaults.")).to_be_visible()
     page.get_by_role("button", name="Joint 1").click()
     predicted = page.locator(".predict[data-rms]")
     before = predicted.get_attribute("data-rms")
@@ -33,9 +43,15 @@ def test_a_dragged_set_runs_on_the_board(page: Page, stage: Stage) -> None:
     board = stage.runs(PE_B, KP)
     assert PE_B.to_physical(board[PE_B.name]) == pytest.approx(value_of(page, "Pe_b"), abs=PE_B.lsb)
     assert KP.to_physical(board[KP.name]) == 0.75
+    stored = page.locator(".differences").nth(1)
+    expect(stored).to_contain_text("joint1.kp0.75 (")  # its default
     page.get_by_role("button", name="Store").click()
+    expect(stored).to_have_text("The board has stored these controllers.")
     page.get_by_role("button", name="Live").click()
     expect(page.locator(".facts")).to_contain_text("written and read back")
+    page.reload()
+    page.get_by_role("button", name="Controller").click()
+    expect(stored).to_have_text("The board has stored these controllers.")
 
 
 def test_corners_keep_to_what_the_board_takes_and_steps_can_be_undone(page: Page, stage: Stage) -> None:
@@ -72,16 +88,23 @@ def test_two_controllers_are_compared_on_the_running_arm_by_one_key(page: Page, 
     expect(page.locator(".pill")).to_have_text("following")
 
 
-def test_what_another_host_left_half_done_does_not_run(page: Page, stage: Stage) -> None:
+def test_what_another_host_changed_is_shown_and_what_it_left_half_done_does_not_run(page: Page, stage: Stage) -> None:
+    page.get_by_role("button", name="Controller").click()
+    expect(page.get_by_label("Kp 1/rad")).to_have_value(f"{KP0.to_physical(DEFAULTS[KP0.index]):g}")
     page.get_by_role("button", name="Let go").click()
     with Watcher(stage.port, TOKEN).open("/board") as socket:
         other = BoardSocket(socket)
         socket.say({"kind": "drive"})
         other.word("driver", you=True)
+        values = list(DEFAULTS)
+        values[KP0.index] = KP0.to_raw(0.5)
+        other.frame(ParamSetReply.TYPE, other.ask(ParamSetRequest(KP0.index, values[KP0.index])))
+        other.frame(ParamApplyReply.TYPE, other.ask(ParamApplyRequest(param_crc(values))))
         other.frame(ParamSetReply.TYPE, other.ask(ParamSetRequest(KP.index, 2 * DEFAULTS[KP.index])))
+    expect(page.get_by_label("Kp 1/rad")).to_have_value("0.5")
+    expect(page.get_by_text("The board runs these controllers.")).to_be_visible()
     page.get_by_role("button", name="Take control").click()
-    page.get_by_role("button", name="Controller").click()
     drag(page, "Ze_a", -0.1)
     page.get_by_role("button", name="Apply").click()
     expect(page.get_by_text("The board runs these controllers.")).to_be_visible()
-    assert stage.runs(ZE_A)[ZE_A.name] < DEFAULTS[ZE_A.index]
+    assert stage.runs(ZE_A, KP0)[ZE_A.name] < DEFAULTS[ZE_A.index]

@@ -136,6 +136,7 @@ def test_what_is_stored_is_there_after_a_reload_unless_it_is_damaged(visited: Pa
     visited.get_by_role("button", name="Controller").click()
     visited.get_by_role("slider", name="Pe_b", exact=True).wait_for()
     assert value_of(visited, "Pe_b") == pytest.approx(dragged, abs=1e-4)
+    expect(visited.get_by_text("The board has stored these controllers.")).to_be_visible()
     visited.evaluate("([key, text]) => localStorage.setItem(key, text)", [KEPT, "no memory"])
     visited.reload()
     expect(visited.locator(".notice")).to_contain_text("is damaged; it is set aside")

@@ -10,6 +10,8 @@ export type BoardListener = {
   bytes(data: Uint8Array): void;
   link(state: LinkState): void;
   driver(state: DriverState): void;
+  /** The CRC of the set that the board stores, as far as the source has seen it start or store; null: unknown. */
+  stored(crc: number | null): void;
   /** A frame that did not reach the board, and why. */
   refused(seq: number, type: number, sentence: string): void;
 };

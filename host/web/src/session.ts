@@ -36,8 +36,9 @@ export class Session {
   status: StatusReply | null = null;
   /** The running parameter set in raw values, null until it is read. */
   parameters: readonly number[] | null = null;
-  /** The set that this page has stored last; the link does not tell what a board had stored before. */
-  stored: readonly number[] | null = null;
+  /** CRC of the set that the board stores, null while nobody saw it start or store. */
+  storedCrc: number | null = null;
+  private readonly known = new Map<number, readonly number[]>(); // sets by their CRC
   notice: Notice | null = null;
   /** Whether a person has asked for a stop since the page was opened. */
   stopAsked = false;
@@ -60,6 +61,7 @@ export class Session {
         this.driver = state;
         this.changed.emit();
       },
+      stored: (crc) => this.learnStored(crc),
       refused: (seq, type, sentence) => {
         this.client.refuse(seq, type, sentence);
         if (!type) this.tell(sentence);
@@ -76,6 +78,28 @@ export class Session {
 
   get motorsOn(): boolean {
     return this.link.open && (this.state === State.is.soft_start || this.state === State.is.following);
+  }
+
+  /** Whether the board has never stored a set, so that it starts with its defaults. */
+  get storesNothing(): boolean {
+    return this.status?.saves === 0;
+  }
+
+  /** The set that the board starts with; null where it is not known. */
+  get stored(): readonly number[] | null {
+    if (this.storesNothing) return TABLE.parameters.map(({ initial }) => initial);
+    return this.storedCrc === null ? null : this.known.get(this.storedCrc) ?? null;
+  }
+
+  private learnStored(crc: number | null): void {
+    this.storedCrc = crc;
+    this.parametersChanged.emit();
+  }
+
+  private runs(raw: readonly number[]): void {
+    this.parameters = raw;
+    this.known.set(TABLE.crc(raw), raw);
+    this.parametersChanged.emit();
   }
 
   /** Frames that were damaged between the board and this page. */
@@ -141,9 +165,13 @@ export class Session {
 
   // --- parameters -----------------------------------------------------------------------------------------------------
 
-  /** The running set: as it is known, else read from the board. */
+  /** The running set: as it is known while the board says that nobody has changed it, else read from the board. */
   async readParameters(): Promise<readonly number[]> {
-    if (this.parameters) return this.parameters;
+    const { parameters } = this;
+    if (parameters) {
+      this.hello = await this.client.ask(HelloRequest, {});
+      if (this.hello.param_crc === TABLE.crc(parameters)) return parameters;
+    }
     this.reading ??= this.fetchParameters().finally(() => { this.reading = null; });
     return this.reading;
   }
@@ -157,8 +185,7 @@ export class Session {
       }
     };
     await Promise.all(Array.from({ length: AT_ONCE }, read));
-    this.parameters = raw;
-    this.parametersChanged.emit();
+    this.runs(raw);
     return raw;
   }
 
@@ -173,8 +200,7 @@ export class Session {
       // Another host has left values in the staged set: all of them, then.
       await this.stageAndApply(TABLE.parameters.map(({ index }) => index), raw);
     }
-    this.parameters = [...raw];
-    this.parametersChanged.emit();
+    this.runs([...raw]);
   }
 
   private async stageAndApply(indices: readonly number[], raw: readonly number[]): Promise<void> {
@@ -192,8 +218,7 @@ export class Session {
     if (this.status.save_state === SaveState.is.failed) {
       throw new LinkError("The board could not store the set, and keeps the one before; check its supply and store again.");
     }
-    this.stored = raw;
-    this.parametersChanged.emit();
+    this.learnStored(TABLE.crc(raw));
   }
 
   // --- what comes -------------------------------------------------------------------------------------------------------
@@ -221,6 +246,7 @@ export class Session {
     this.hello = reply;
     this.startTold = true;
     this.parameters = null;
+    this.learnStored(reply.param_crc);
     void this.greet();
   }
 
@@ -231,6 +257,7 @@ export class Session {
       this.client.abandon(state.sentence || "The board went away.");
       this.status = null;
       this.parameters = null;
+      this.storedCrc = null;
     }
     if (opened) this.withdraw();
     if (state.sentence && this.hello) this.tell(state.sentence, state.open ? "info" : "error");
@@ -303,6 +330,7 @@ export class Session {
     this.asking = true;
     try {
       this.status = await this.client.ask(StatusRequest, {});
+      if (this.parameters) await this.readParameters(); // a verb, another page or another host may have changed it
     } catch {
       this.status = null; // a board that stays silent is told by its source
     } finally {

@@ -18,6 +18,7 @@ from greywhale.board.device import stop_message
 from greywhale.board.refusal import upper_first
 from greywhale.dashboard.history import History
 from greywhale.dashboard.outbox import Message, Outbox
+from greywhale.dashboard.stored import StoredSet
 from greywhale.protocol import schema
 from greywhale.protocol.frames import Frame, FrameDecoder, encode_frame
 from greywhale.protocol.transport import Line
@@ -85,6 +86,7 @@ class Relay:
         self._verb: Client | None = None
         self._board: _Open | None = None
         self._link: Message = {"kind": "link", "open": False, "port": "", "sentence": ""}
+        self._stored = StoredSet()
         self._decoder = FrameDecoder()
         self._asked: dict[int, _Asked] = {}
         self._sequence = 0
@@ -106,11 +108,13 @@ class Relay:
         with self._lock:
             self._board = _Open(line, port, may_move)
             self._decoder = FrameDecoder()
+            self._stored = StoredSet()
             self._asked.clear()
             self._motors = None
             self._told_silent = False
             self._want_samples()
             self._tell_link(True, port, "")
+            self._tell_stored()
 
     def close(self, port: str, sentence: str) -> None:
         """No board is there, and why."""
@@ -129,10 +133,13 @@ class Relay:
             for frame, wire in self._decoder.feed_wire(data) if self._board is not None else ():
                 if frame.type == schema.Sample.TYPE:
                     self._pass_sample(frame, wire)
-                elif frame.type == schema.HelloReply.TYPE and frame.seq == 0:
+                    continue
+                if frame.type == schema.HelloReply.TYPE and frame.seq == 0:
                     self._note_restart(frame, wire)
                 else:
                     self._pass_answer(frame)
+                if self._stored.hear(frame):
+                    self._tell_stored()
 
     def look(self) -> None:
         """Keep the lease, or end it. A UserError says that the board is silent for good."""
@@ -159,6 +166,7 @@ class Relay:
             if client.verb is None:
                 client.outbox.add_answer({"kind": "page", "id": client.id})
                 client.outbox.add_answer(self._link)
+                client.outbox.add_answer(self._stored_word())
             else:
                 self._verb = client
             self._tell_drivers()
@@ -345,6 +353,13 @@ class Relay:
         self._link = {"kind": "link", "open": open, "port": port, "sentence": sentence}
         for client in self._pages():
             client.outbox.add_answer(self._link)
+
+    def _stored_word(self) -> Message:
+        return {"kind": "stored", "crc": self._stored.crc}
+
+    def _tell_stored(self) -> None:
+        for client in self._pages():
+            client.outbox.add_answer(self._stored_word())
 
     def _tell_drivers(self) -> None:
         job, verb = (None, None) if self._verb is None else (self._verb.id, self._verb.verb)

@@ -23,6 +23,7 @@ export class ControllerView implements View {
   readonly name = "Controller";
   readonly element = el("div", { class: "controller" });
   private draft: Draft | null = null;
+  private running: Four | null = null; // as they were taken last
   private joint = 0;
   private busy = false;
   private compared: { name: string; joints: Four } | null = null;
@@ -105,10 +106,15 @@ export class ControllerView implements View {
   private take(): void {
     const { parameters } = this.session;
     if (!parameters) return;
+    const running = jointsOf(parameters);
+    const before = this.running;
+    this.running = running;
     if (!this.draft) {
-      this.draft = new Draft(jointsOf(parameters));
+      this.draft = new Draft(running);
       this.kept = this.draft.joints;
       this.draft.changed.on(() => this.show());
+    } else if (before && differences(before, running).length && !differences(this.draft.joints, before).length) {
+      this.draft.replace(running);
     }
     this.show();
   }
@@ -204,14 +210,26 @@ export class ControllerView implements View {
       if (document.activeElement !== input) input.value = physicalText(TABLE.named(parameterName(this.joint, name)), settings[name]);
     }
     list(this.toBoard, draft.joints, jointsOf(parameters), "The board runs these controllers.");
-    const { stored } = this.session;
-    if (stored) list(this.toStore, draft.joints, jointsOf(stored), "The board has stored these controllers.");
-    else this.toStore.replaceChildren(el("li", { class: "quiet" }, "A board tells what it runs, not what it has stored; Store makes both the same."));
+    this.showStored(draft.joints);
     if (this.compared) list(this.toFile, draft.joints, this.compared.joints, `As in ${this.compared.name}.`);
     else this.toFile.replaceChildren();
     this.showRefusal(draft.joints, this.periodMs(parameters));
     this.predict?.want(withJoints(parameters, draft.joints), hello?.board ?? 0);
     this.refreshButtons();
+  }
+
+  private showStored(joints: Four): void {
+    const { stored, storedCrc, storesNothing } = this.session;
+    if (stored) {
+      list(this.toStore, joints, jointsOf(stored), storesNothing
+        ? "Nothing is stored: the board starts with these, its defaults."
+        : "The board has stored these controllers.");
+      return;
+    }
+    const why = storedCrc === null
+      ? "Not known: a board tells what it runs, and stored before anybody watched. Store makes both the same."
+      : "The board stores another set than it runs, which this page has not seen. Store makes both the same.";
+    this.toStore.replaceChildren(el("li", { class: "quiet" }, why));
   }
 
   private periodMs(parameters: readonly number[]): number {

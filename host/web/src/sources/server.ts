@@ -8,6 +8,7 @@ const AGAIN_MS = 500; // until a server that went is tried again
 type Told =
   | { kind: "link"; open: boolean; port: string; sentence: string }
   | { kind: "driver"; you: boolean; free: boolean; verb: string | null }
+  | { kind: "stored"; crc: number | null }
   | { kind: "refused"; sentence: string; seq?: number; type?: number }
   | { kind: "page"; id: string };
 
@@ -79,6 +80,9 @@ export class ServerBoard implements Board {
         this.listener?.driver({ you: message.you, free: message.free, verb: message.verb });
         if (!this.met && message.free) this.drive(); // the first page drives; later it is a person's wish
         this.met = true;
+        break;
+      case "stored":
+        this.listener?.stored(message.crc);
         break;
       case "refused":
         this.listener?.refused(message.seq ?? 0, message.type ?? 0, message.sentence);

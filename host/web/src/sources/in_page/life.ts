@@ -27,9 +27,13 @@ export class Life {
     this.starts = module.call("starts");
   }
 
-  /** Lets the board start: until it says hello by itself, as it does where nobody has asked. */
-  start(): void {
-    for (let left = MOST_START_TICKS; left && !this.tick().length; left--);
+  /** Lets the board start: until it says hello by itself, as it does where nobody has asked; what it said. */
+  start(): Uint8Array {
+    let said: Uint8Array;
+    let left = MOST_START_TICKS;
+    do said = this.tick();
+    while (!said.length && --left);
+    return said;
   }
 
   /** Lets a tick pass; what the board said, the callee's only until the next call. */

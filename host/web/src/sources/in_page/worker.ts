@@ -24,7 +24,7 @@ class Bench {
   constructor(private readonly module: BenchModule, { data, eeprom }: Extract<ToBench, { kind: "start" }>) {
     if (eeprom) module.eeprom().set(eeprom);
     this.life = new Life(module, data);
-    this.life.start();
+    this.pass(this.life.start().slice()); // by its hello, the page learns what the board stores
     this.writes = module.call("eeprom_writes");
   }
 
@@ -71,9 +71,13 @@ class Bench {
     if (size) {
       const data = new Uint8Array(size);
       said.reduce((at, piece) => (data.set(piece, at), at + piece.length), 0);
-      this.unread += size;
-      page.postMessage({ kind: "bytes", data }, [data.buffer]);
+      this.pass(data);
     }
+  }
+
+  private pass(data: Uint8Array<ArrayBuffer>): void {
+    this.unread += data.length;
+    page.postMessage({ kind: "bytes", data }, [data.buffer]);
   }
 
   private keepEeprom(): void {
