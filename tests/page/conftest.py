@@ -2,20 +2,29 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import BrowserContext, Page
 
 from tests.page import stage as stages
 from tests.page.stage import Stage
 
 
 @pytest.fixture(scope="session")
-def browser() -> Iterator[Browser]:
-    with stages.browser() as running:
-        yield running
+def context() -> Iterator[BrowserContext]:
+    with stages.browser() as browser, stages.profile(browser) as shared:
+        yield shared
+
+
+@contextlib.contextmanager
+def at_rest(context: BrowserContext, stage: Stage) -> Iterator[Page]:
+    """A page that drives."""
+    with stages.visit(context, stage) as visit:
+        visit.page.locator("button.enable:enabled").wait_for()
+        yield visit.page
 
 
 @pytest.fixture
@@ -27,10 +36,20 @@ def stage(tmp_path: Path) -> Iterator[Stage]:
 
 
 @pytest.fixture
-def page(browser: Browser, stage: Stage) -> Iterator[Page]:
-    """A page that drives, at rest."""
-    context = browser.new_context(viewport={"width": 1280, "height": 900}, accept_downloads=True)
-    with stages.visit(context, stage) as visit:
-        visit.page.locator("button.enable:enabled").wait_for()
-        yield visit.page
-    context.close()
+def page(context: BrowserContext, stage: Stage) -> Iterator[Page]:
+    with at_rest(context, stage) as opened:
+        yield opened
+
+
+@pytest.fixture(scope="module")
+def shared_stage(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Stage]:
+    """One for all tests of a file: for those that do not mind what others did."""
+    made = Stage(tmp_path_factory.mktemp("folder"))
+    with made.open():
+        yield made
+
+
+@pytest.fixture(scope="module")
+def shared_page(context: BrowserContext, shared_stage: Stage) -> Iterator[Page]:
+    with at_rest(context, shared_stage) as opened:
+        yield opened

@@ -34,6 +34,7 @@ from greywhale.protocol.schema import (
     ParamGetReply,
     ParamGetRequest,
     Sample,
+    State,
     StopRequest,
     param_crc,
 )
@@ -45,13 +46,27 @@ from tests.dashboard.shared import jobs_of
 
 CHROMIUM = "/usr/bin/chromium"
 FLAGS = [
-    *("--no-sandbox", "--disable-background-timer-throttling", "--disable-gpu-compositing"),
+    # One renderer for all pages: to start one takes longer than most tests.
+    *(
+        "--no-sandbox",
+        "--renderer-process-limit=1",
+        "--disable-background-timer-throttling",
+        "--disable-gpu-compositing",
+    ),
     *("--disable-accelerated-2d-canvas", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"),
 ]
 TOKEN = "a-token-of-a-test"
 FRAME_MS = 100  # a page draws so rarely: software draws, and the time is better spent on what is tested
 PATIENCE_MS = 60_000  # a page that shows nothing for so long has hung
-MOMENT_S = 0.25  # the board lives so long after a sign of life
+MOMENT_S = 0.1  # the board lives so long after a sign of life
+VERB_S = 0.2  # and so long after one of a verb, which renews its lease each 0.1 s
+ENDED = UserError("the bench has ended.")
+# A page waits half a second for an answer, four times. Here the board answers in its own time, on any machine.
+OWN_TIME = f"""
+  requestAnimationFrame = (draw) => setTimeout(draw, {FRAME_MS}, performance.now());
+  const wait = setTimeout;
+  setTimeout = (act, ms, ...given) => wait(act, ms < 500 ? ms : {PATIENCE_MS} / 4, ...given);
+"""
 
 
 class Stage:
@@ -61,6 +76,7 @@ class Stage:
         self.plugged = threading.Event()  # the board comes with it
         self.plugged.set()
         self.relay = _PacedRelay(self)
+        self.folder = folder
         own = Folder(folder)
         self.jobs = jobs_of(self.relay, own)
         self.answers = Answers(self.relay, own, "default", self.jobs, BenchControls(_Bench(self), own))
@@ -103,6 +119,8 @@ class Stage:
         """The answer of the bench to a command, such as `pot follower 1 open`."""
         asked: Future[dict[str, Any]] = Future()
         with self._ready:
+            if self._ending:
+                raise ENDED
             self._commands.append((text, asked))
             self._ready.notify_all()
         return asked.result()
@@ -142,6 +160,8 @@ class Stage:
                     except UserError as error:
                         asked.set_exception(error)
                 turn(self.relay, line, session)
+            for _, asked in self._commands:
+                asked.set_exception(ENDED)
             self.relay.close(bench.port, "")
 
     @contextlib.contextmanager
@@ -181,16 +201,27 @@ class _PacedRelay(Relay):
     def __init__(self, stage: Stage) -> None:
         super().__init__(History())
         self._stage = stage
+        self._frames = FrameDecoder()
+        self._moves = False
 
     def seen(self, client: Client) -> None:
         super().seen(client)
-        if not self._stage.still and (client.verb or self._driver in (client, None)):
+        if not self._stage.still and self._driver in (client, None) and not (self._verb and self._moves):
             self._stage.let_live(MOMENT_S)
 
     def receive(self, client: Client, data: bytes) -> None:
+        """A verb that moves the arm has all the board's time for itself, so its lease never ends."""
         super().receive(client, data)
-        if any(frame.type == StopRequest.TYPE for frame in FrameDecoder().feed(data)):
+        if client.verb:
+            self._stage.let_live(VERB_S)
+        elif any(frame.type == StopRequest.TYPE for frame in FrameDecoder().feed(data)):
             self._stage.let_live(1.0)
+
+    def heard(self, data: bytes) -> None:
+        super().heard(data)
+        for frame in self._frames.feed(data):
+            if frame.type == Sample.TYPE:
+                self._moves = Sample.unpack(frame.payload).state in (State.SOFT_START, State.FOLLOWING)
 
 
 @dataclass
@@ -210,6 +241,15 @@ def browser() -> Iterator[Browser]:
         running.close()
 
 
+@contextlib.contextmanager
+def profile(browser: Browser) -> Iterator[BrowserContext]:
+    """What all pages of a test run share; each has an address, and so a memory, of its own."""
+    context = browser.new_context(viewport={"width": 1280, "height": 900})
+    context.new_page()  # keeps the renderer
+    yield context
+    context.close()
+
+
 class Place(Protocol):
     """Who hands out a page, on this machine."""
 
@@ -220,10 +260,12 @@ class Place(Protocol):
 
 
 @contextlib.contextmanager
-def visit(context: BrowserContext, stage: Place) -> Iterator[Visit]:
-    """Open the page; afterwards, every request that left the server, every error and every broken policy is told."""
+def visit(context: BrowserContext, stage: Place, script: str = "") -> Iterator[Visit]:
+    """Open the page, in which a script may run first; afterwards, every request that left the server, every error and
+    every broken policy is told.
+    """
     page = context.new_page()
-    page.add_init_script(f"requestAnimationFrame = (draw) => setTimeout(draw, {FRAME_MS}, performance.now())")
+    page.add_init_script(OWN_TIME + script)
     page.set_default_timeout(PATIENCE_MS)
     told = Visit(page)
     here = (stage.page_address, f"http://127.0.0.1:{stage.port}/", f"ws://127.0.0.1:{stage.port}/", "data:", "blob:")

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import BrowserContext, Page, expect
 
 from greywhale.files.log import LogWriter, read_log
 from greywhale.files.log.layout import Origin
@@ -58,11 +58,11 @@ def test_two_logs_lie_over_each_other_with_the_measures_of_evaluate(page: Page, 
         assert told[:3] == pytest.approx([led, followed, led - followed], abs=1.1e-3)
 
 
-def test_what_is_no_sound_log_is_told_as_in_a_terminal(browser: Browser, stage: Stage, tmp_path: Path) -> None:
+def test_what_is_no_sound_log_is_told_as_in_a_terminal(context: BrowserContext, stage: Stage, tmp_path: Path) -> None:
     write(tmp_path / "good.csv", 40)
     whole = (tmp_path / "good.csv").read_text()
     (tmp_path / "bad.csv").write_text(whole.replace(",following\n", ",<b>x</b>\n", 1))
-    with browser.new_context() as context, stages.visit(context, stage) as visit:
+    with stages.visit(context, stage) as visit:
         page = visit.page
         page.get_by_role("button", name="Logs").click()
         for name in ("good.csv", "bad.csv"):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import BrowserContext, Page, expect
 
 from greywhale.files.log import read_log
 from tests.page import stage as stages
@@ -42,19 +42,17 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return made
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def site(folder: Path) -> Iterator[Site]:
     with serve(folder) as served:
         yield served
 
 
 @pytest.fixture
-def visited(browser: Browser, site: Site) -> Iterator[Page]:
+def visited(context: BrowserContext, site: Site) -> Iterator[Page]:
     """A page that somebody opens for the first time."""
-    context = browser.new_context(viewport={"width": 1280, "height": 900})
     with stages.visit(context, site) as visit:
         yield visit.page
-    context.close()
 
 
 def test_a_visitor_sees_an_arm_that_follows_and_what_needs_a_host_is_not_there(visited: Page) -> None:
@@ -80,26 +78,21 @@ def test_a_visitor_sees_an_arm_that_follows_and_what_needs_a_host_is_not_there(v
     expect(visited.locator(".pill")).to_have_text("disabled")
 
 
-def test_who_stops_before_the_arm_has_moved_is_obeyed(browser: Browser, site: Site, tmp_path: Path) -> None:
-    context = browser.new_context(accept_downloads=True)
-    context.add_init_script(STOP_AT_ONCE)
-    with stages.visit(context, site) as visit:
+def test_who_stops_before_the_arm_has_moved_is_obeyed(context: BrowserContext, site: Site, tmp_path: Path) -> None:
+    with stages.visit(context, site, STOP_AT_ONCE) as visit:
         visit.page.get_by_role("button", name="Live").click()
         visit.page.wait_for_function("document.querySelector('.live')?.dataset.tick > 600")
         with visit.page.expect_download() as saved:
             visit.page.get_by_role("button", name="Save view").click()
         saved.value.save_as(tmp_path / "view.csv")
     assert set(read_log(tmp_path / "view.csv").state) == {"disabled"}
-    context.close()
 
 
-def test_one_file_alone_opens_from_a_disk(browser: Browser, folder: Path, tmp_path: Path) -> None:
+def test_one_file_alone_opens_from_a_disk(context: BrowserContext, folder: Path, tmp_path: Path) -> None:
     alone = (folder / "greywhale.html").rename(tmp_path / "alone.html")
-    context = browser.new_context(viewport={"width": 1280, "height": 900})
     with stages.visit(context, OnDisk(alone.as_uri())) as visit:
         expect(visit.page.locator(".pill")).to_have_text("following")
         visit.page.locator("canvas").first.wait_for()
-    context.close()
 
 
 def test_a_wire_is_broken_and_mended(visited: Page) -> None:
