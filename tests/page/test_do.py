@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import json
 import threading
-from pathlib import Path
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Locator, Page, expect
 
 from greywhale.board.calibrate.words import sweep_asked
 from greywhale.commission.measures import NAMES, Measures
@@ -17,63 +17,112 @@ from greywhale.commission.motions import PARTS
 from greywhale.dashboard.job import Facts
 from greywhale.dashboard.jobs import Listed
 from greywhale.files.log import read_log
+from greywhale.protocol.schema import DEFAULTS, PARAMETER_BY_NAME
 from tests.page.stage import PATIENCE_MS, Stage
 
 pytestmark = pytest.mark.slow
 
+KP = PARAMETER_BY_NAME["joint0.kp"]
 
-def test_a_recording_from_the_page_is_a_log_and_its_errors_are_sentences(
-    page: Page, stage: Stage, tmp_path: Path
-) -> None:
-    page.get_by_role("button", name="Do", exact=True).click()
-    page.get_by_role("button", name="record", exact=True).click()
-    page.get_by_label("out", exact=True).fill("first.csv")
-    page.get_by_label("seconds", exact=True).fill("1")
-    page.get_by_role("button", name="Start record").click()
-    job = page.locator(".job").first
+
+@pytest.fixture
+def desk(shared_page: Page) -> Page:
+    """A page that shows the verbs, and the cards of jobs that other tests had."""
+    shared_page.get_by_role("button", name="Do", exact=True).click()
+    return shared_page
+
+
+def begin(desk: Page, verb: str, **given: str | bool) -> Locator:
+    """Start a verb by its form; its card."""
+    desk.get_by_role("button", name=verb, exact=True).click()
+    start = desk.get_by_role("button", name=f"Start {verb}")
+    start.wait_for()
+    for hidden in desk.locator(".verb-form details:not([open]) summary").all():
+        hidden.click()
+    for name, value in given.items():
+        field = desk.get_by_label(name.replace("_", " "), exact=True)
+        field.check() if value is True else field.fill(str(value))
+    cards = desk.locator(".job")
+    before = cards.count()
+    start.click()
+    expect(cards).to_have_count(before + 1)
+    return cards.first
+
+
+def done(job: Locator) -> Locator:
+    """Its result, when it has one."""
     expect(job.get_by_role("status")).to_have_text("done")
-    rows = len(read_log(tmp_path / "first.csv").time)
-    assert rows > 900
-    expect(job.locator(".result")).to_contain_text(str(rows))
-    page.get_by_role("button", name="evaluate", exact=True).click()
-    page.get_by_label("logs", exact=True).fill("none.csv")
-    page.get_by_role("button", name="Start evaluate").click()
-    failed = page.locator(".job").first
-    expect(failed.get_by_role("status")).to_have_text("failed")
-    expect(failed.get_by_role("alert")).to_contain_text("none.csv")
+    return job.locator(".result")
+
+
+def failed(job: Locator) -> Locator:
+    """Its one sentence."""
+    expect(job.get_by_role("status")).to_have_text("failed")
+    return job.get_by_role("alert")
+
+
+def test_verbs_end_with_their_result_or_their_sentence(desk: Page, shared_stage: Stage) -> None:
+    stage, folder = shared_stage, shared_stage.folder
+    stage.command("hold 20")
+    record = begin(desk, "record", out="first.csv", seconds="0.5", enable=True)
+    result = done(record)
+    rows = len(read_log(folder / "first.csv").time)
+    assert rows > 400
+    expect(result).to_contain_text(str(rows))
+    expect(failed(begin(desk, "evaluate", logs="none.csv"))).to_contain_text("none.csv")
+    expect(failed(begin(desk, "identify", logs="first.csv"))).to_contain_text("first.csv: only 0.")
+    (folder / "fast.csv").write_text(
+        "time_s,leader_0,leader_1,leader_2,leader_3\n0,0,0,0,0\n0.016,0.48,0,0,0\n1,0.48,0,0,0\n"
+    )
+    expect(failed(begin(desk, "replay", motion="fast.csv", yes=True))).to_contain_text(
+        "at 30 rad/s, but a board can be"
+    )
+    expect(done(begin(desk, "params backup", file="kept.toml"))).to_contain_text("kept.toml")
+    expect(done(begin(desk, "upload", controller="table_8", yes=True))).to_contain_text("joint0.kp")
+    desk.get_by_role("button", name="Controller").click()  # which follows
+    raw = stage.answers.controller("table_8")["raw"][KP.name]
+    assert raw != DEFAULTS[KP.index]
+    expect(desk.get_by_label("Kp 1/rad")).to_have_value(f"{KP.to_physical(raw):.7g}")
+    expect(desk.get_by_text("The board has stored these controllers.")).to_be_visible()
+    desk.get_by_role("button", name="Do", exact=True).click()
+    done(begin(desk, "params restore", file="kept.toml"))
+    assert stage.runs() == {}
+    calibrate = begin(desk, "calibrate")
+    expect(desk.get_by_role("img", name="The positive way of joint 0")).to_be_visible()
+    calibrate.get_by_label("Answer to calibrate").fill("q")
+    calibrate.get_by_role("button", name="Answer").click()
+    expect(failed(calibrate)).to_contain_text("the calibration was ended.")
+    expect(failed(begin(desk, "commission", resume=True, yes=True))).to_contain_text("no interrupted commissioning")
+    expect(failed(begin(desk, "flash", hex_file="none.hex"))).to_contain_text("none.hex")
 
 
 def test_the_view_says_that_it_reads_the_verbs_until_they_are_there(
-    page: Page, stage: Stage, monkeypatch: pytest.MonkeyPatch
+    shared_page: Page, shared_stage: Stage, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    ready, listed = threading.Event(), stage.jobs.listed
+    page, jobs, ready = shared_page, shared_stage.jobs, threading.Event()
+    listed = jobs.listed
 
     def listed_later() -> Listed:
         ready.wait(PATIENCE_MS / 1000)
         return listed()
 
-    monkeypatch.setattr(stage.jobs, "listed", listed_later)
+    monkeypatch.setattr(jobs, "listed", listed_later)
+    page.reload()
     page.get_by_role("button", name="Do", exact=True).click()
     reading = page.get_by_text("Reading what can be done ...")
     expect(reading).to_be_visible()
     ready.set()
     expect(page.get_by_role("button", name="record", exact=True)).to_be_visible()
     expect(reading).to_be_hidden()
+    page.locator("button.enable:enabled").wait_for()
 
 
-def test_a_search_draws_its_curve_while_it_runs_and_each_joints_at_its_end(page: Page, stage: Stage) -> None:
-    page.get_by_role("button", name="Do", exact=True).click()
-    page.get_by_role("button", name="tune", exact=True).click()
-    page.get_by_label("model file", exact=True).fill("default")
-    page.locator(".verb-form summary").click()
-    page.get_by_label("budget", exact=True).fill("40")
-    page.get_by_label("force", exact=True).check()
-    page.get_by_role("button", name="Start tune").click()
-    job = page.locator(".job").first
+def test_a_search_draws_its_curve_while_it_runs_and_each_joints_at_its_end(desk: Page, shared_stage: Stage) -> None:
+    job = begin(desk, "tune", model_file="default", budget="12", force=True)
     expect(job.locator("figcaption")).to_contain_text("Best cost so far: ")
     expect(job.locator("polyline.accent")).to_have_count(1)
     expect(job.get_by_role("status")).to_have_text("done")
-    for joint, curve in enumerate(stage.jobs.facts()[-1]["result"]["curves"]):
+    for joint, curve in enumerate(shared_stage.jobs.facts()[-1]["result"]["curves"]):
         drawn = job.locator(f"polyline.joint-{joint}").get_attribute("points")
         assert drawn is not None
         depths = [float(point.split(",")[1]) for point in drawn.split()]
@@ -84,33 +133,39 @@ def test_a_search_draws_its_curve_while_it_runs_and_each_joints_at_its_end(page:
 def facts_of(verb: str) -> Facts:
     """A job that runs."""
     return {
-        "kind": "job", "id": "c", "verb": verb, "arguments": {}, "state": "running", "progress": None,
+        "kind": "job", "id": verb, "verb": verb, "arguments": {}, "state": "running", "progress": None,
         "result": None, "error": None, "exit_code": None, "said": [],
     }  # fmt: skip
 
 
-def tell(stage: Stage, facts: Facts) -> None:
+@pytest.fixture
+def tell(shared_stage: Stage, monkeypatch: pytest.MonkeyPatch) -> Callable[[Facts], None]:
     """The only job is so now: for a page that hears of it, and for one that is still about to ask."""
-    stage.jobs.facts = lambda: [facts]  # type: ignore[method-assign]
-    for listener in stage.jobs.listeners:
-        listener(facts)
+
+    def tell(facts: Facts) -> None:
+        monkeypatch.setattr(shared_stage.jobs, "facts", lambda: [facts])
+        for listener in shared_stage.jobs.listeners:
+            listener(facts)
+
+    return tell
 
 
-def test_a_calibration_shows_the_way_of_the_joint_that_it_asks_for(page: Page, stage: Stage) -> None:
-    page.get_by_role("button", name="Do", exact=True).click()
+def test_a_calibration_shows_the_way_of_the_joint_that_it_asks_for(desk: Page, tell: Callable[[Facts], None]) -> None:
     facts = facts_of("calibrate")
     pictures = []
     for pot in range(2):
-        tell(stage, {**facts, "said": [sweep_asked(pot, pot + 1, 8)]})
-        shown = page.get_by_role("img", name=f"The positive way of joint {pot}")
+        tell({**facts, "said": [sweep_asked(pot, pot + 1, 8)]})
+        shown = desk.get_by_role("img", name=f"The positive way of joint {pot}")
         expect(shown).to_be_visible()
         pictures.append(shown.screenshot())
     assert pictures[0] != pictures[1]
-    tell(stage, {**facts, "state": "done", "result": {}, "exit_code": 0, "said": [sweep_asked(1, 2, 8)]})
+    tell({**facts, "state": "done", "result": {}, "exit_code": 0, "said": [sweep_asked(1, 2, 8)]})
     expect(shown).to_be_hidden()
 
 
-def test_a_commissioning_shows_what_was_predicted_beside_what_was_measured(page: Page, stage: Stage) -> None:
+def test_a_commissioning_shows_what_was_predicted_beside_what_was_measured(
+    desk: Page, tell: Callable[[Facts], None]
+) -> None:
     def told(mrad: float) -> dict[str, Any]:
         sizes = np.add.outer(np.arange(len(PARTS)), np.arange(4) + mrad) / 1000
         return dict(Measures(**dict.fromkeys(NAMES, sizes**2)).as_dict())
@@ -123,11 +178,10 @@ def test_a_commissioning_shows_what_was_predicted_beside_what_was_measured(page:
     facts = facts_of("commission")
     note = "trial-1: error 6.1 mrad rms predicted, 7.2 measured"
     progress = {"done": 0.5, "total": 1.0, "text": "round 1, trial 2 of 6 at most: recording", "note": note}
-    page.get_by_role("button", name="Do", exact=True).click()
-    tell(stage, {**facts, "progress": progress})
-    expect(page.get_by_text(f"{progress['text']} ({note})")).to_be_visible()
-    tell(stage, {**facts, "state": "done", "result": {"improved": True, "trials": trials}, "exit_code": 0})
-    table = page.get_by_role("region", name="Predicted and measured")
+    tell({**facts, "progress": progress})
+    expect(desk.get_by_text(f"{progress['text']} ({note})")).to_be_visible()
+    tell({**facts, "state": "done", "result": {"improved": True, "trials": trials}, "exit_code": 0})
+    table = desk.get_by_role("region", name="Predicted and measured")
     rows = table.locator("tbody tr")
     expect(rows.nth(0).locator("td")).to_have_text([f"{30 + joint}.0 / {32 + joint}.5" for joint in range(4)])
     expect(rows.nth(1).locator("td").first).to_have_text("5.0 / –")
