@@ -1,8 +1,8 @@
 // Leads the bench's leader arm by hand: sliders, and two pads on which two joints are dragged at once.
 
 import { el, setText } from "../parts/dom";
-import type { BenchControls } from "../host";
 import type { LeaderHand } from "./hand";
+import { angleAt, pointed, shareOf, type Limits } from "./limits";
 
 const PADS: readonly (readonly [across: number, up: number])[] = [[0, 1], [3, 2]];
 export const NAMES = ["base yaw", "shoulder pitch", "wrist pitch", "wrist roll"];
@@ -13,7 +13,7 @@ export class Lead {
   private readonly words: HTMLElement[] = [];
   private readonly pads: { pad: HTMLElement; knob: HTMLElement; follower: HTMLElement }[] = [];
 
-  constructor(private readonly hand: LeaderHand, private readonly limits: BenchControls["leader"]) {
+  constructor(private readonly hand: LeaderHand, private readonly limits: Limits) {
     const rows = NAMES.map((name, joint) => {
       const slider = el("input", { type: "range", attrs: {
         min: String(limits.minimum[joint]), max: String(limits.maximum[joint]), step: "0.01", "aria-label": `Leader, ${name}, rad`,
@@ -32,9 +32,10 @@ export class Lead {
     const follower = el("div", { class: "knob follower" });
     const pad = el("div", { class: "pad", title: "Drag: the follower (ring) follows" }, follower, knob);
     const drag = (event: PointerEvent): void => {
-      const box = pad.getBoundingClientRect();
-      this.hand.take(across, this.angleAt(across, (event.clientX - box.left) / box.width));
-      this.hand.take(up, this.angleAt(up, 1 - (event.clientY - box.top) / box.height));
+      pointed(pad, event).forEach((share, axis) => {
+        const joint = axis ? up : across;
+        this.hand.take(joint, angleAt(this.limits, joint, share));
+      });
     };
     pad.addEventListener("pointerdown", (event) => {
       pad.setPointerCapture(event.pointerId);
@@ -45,16 +46,6 @@ export class Lead {
     });
     this.pads.push({ pad, knob, follower });
     return el("figure", {}, pad, el("figcaption", { class: "quiet" }, `${NAMES[across]} →, ${NAMES[up]} ↑`));
-  }
-
-  private angleAt(joint: number, share: number): number {
-    const low = this.limits.minimum[joint]!;
-    return low + Math.max(0, Math.min(1, share)) * (this.limits.maximum[joint]! - low);
-  }
-
-  private shareOf(joint: number, angle: number): number {
-    const low = this.limits.minimum[joint]!;
-    return Math.max(0, Math.min(1, (angle - low) / (this.limits.maximum[joint]! - low)));
   }
 
   draw(): void {
@@ -73,7 +64,7 @@ export class Lead {
   }
 
   private put(knob: HTMLElement, across: number, up: number, angles: readonly number[]): void {
-    knob.style.left = `${100 * this.shareOf(across, angles[across]!)}%`;
-    knob.style.bottom = `${100 * this.shareOf(up, angles[up]!)}%`;
+    knob.style.left = `${100 * shareOf(this.limits, across, angles[across]!)}%`;
+    knob.style.bottom = `${100 * shareOf(this.limits, up, angles[up]!)}%`;
   }
 }
