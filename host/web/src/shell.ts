@@ -68,6 +68,7 @@ export class Shell {
   private show(view: View): void {
     this.front.leave?.();
     this.front = view;
+    this.notice.hidden = true; // it was about the view before, and may cover something of this one
     for (const [one, tab] of this.tabs) {
       if (one === view) tab.setAttribute("aria-current", "page");
       else tab.removeAttribute("aria-current");
