@@ -40,7 +40,7 @@ from greywhale.tune.search.journal import TuningJournal
 from greywhale.tune.search.lockstep import SearchState
 from greywhale.tune.search.objective import Objective
 from greywhale.tune.search.space import Space
-from greywhale.tune.search.training import training_motions
+from greywhale.tune.search.training import TrainingMotion, own_motion, training_motions
 
 BUDGET = 3000
 METHOD = RelativeWolfWhale.name  # of the default method
@@ -88,13 +88,13 @@ class DefaultMethod:
         supply = self.table["supply_mv"]
         period = self.table.period_ms
         self.space = Space.default(task.strategy, task.before, supply, period).with_bounds(task.bounds, period)
-        motions = training_motions(model.arm, self.table, model.plants, task.seed)
+        motions = self._motions(task.seed)
         scale = scale_of(motions, model.plants, task.before, task.threads)
         some = model.plants[:SEARCH_PLANTS]
         # The samples, and the estimate with the loosest gears that any of them has.
         self.everywhere = np.vstack([model.plants, loosest_plant(model.plants)])
         self.objective = Objective(motions, some, scale.first(len(some)), task.threads)
-        other_noise = training_motions(model.arm, self.table, model.plants, task.seed + JUDGING_SEED)
+        other_noise = self._motions(task.seed + JUDGING_SEED)
         self.judging = Objective(other_noise, model.plants, scale, task.threads)
         # Longer and with other noise, since a search learns its own noise by heart.
         self.judging_margins = self._margins(self.everywhere, rest_s=REST_LONG_S, noise=1)
@@ -104,6 +104,12 @@ class DefaultMethod:
         self.margins_before = self.judging_margins.check(self.start)
         self.standard = Standard.of(self.margins_before, self.table.supply_v, task.quiet)
         self.found = SearchState.nothing(self.start)
+
+    def _motions(self, seed: int) -> tuple[TrainingMotion, ...]:
+        arm, plants = self.model.arm, self.model.plants
+        if self.task.motion is None:
+            return training_motions(arm, self.table, plants, seed)
+        return (own_motion(self.task.motion, arm, self.table, plants, seed),)
 
     def _margins(self, plants: Floats, **options: Any) -> Margins:
         task = self.task

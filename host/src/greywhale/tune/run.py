@@ -6,6 +6,7 @@ from pathlib import Path
 
 from greywhale.base.errors import BAD_USAGE, MOST_SEED, MOST_WORKERS, UserError, require_within
 from greywhale.base.types import Controllers, NotedProgress, show_no_progress
+from greywhale.files.trajectory import Trajectory
 from greywhale.optimise import METHODS as OPTIMISERS
 from greywhale.protocol.joints import ALL
 from greywhale.simulate.controllers import check_controllers
@@ -64,6 +65,7 @@ def tune(
     quiet: float = 1.0,
     floors: bool = True,
     on_trial: bool = False,
+    motion: Trajectory | None = None,
 ) -> TuningResult:
     """Tune the four controllers of a model.
 
@@ -71,9 +73,9 @@ def tune(
     controller from before: int32 (4, 13), by default that of the model's table. `journal` is a file that keeps every
     cost; with `resume` the tuning goes on from it. `threads` (0: all cores) changes no bit. `quiet` divides the ripple
     that is allowed at rest. `floors` False leaves out the held-out motions' floors. `on_trial`: the arm itself will
-    judge, so unrest on the model counts less. After an interrupt (KeyboardInterrupt) the best so far comes back at
-    once, with `complete` False and not judged; if nothing was evaluated yet, the interrupt is raised again. Raises
-    UserError.
+    judge, so unrest on the model counts less. `motion` is a motion to train on in the place of the usual ones (default
+    method only, without a journal). After an interrupt (KeyboardInterrupt) the best so far comes back at once, with
+    `complete` False and not judged; if nothing was evaluated yet, the interrupt is raised again. Raises UserError.
     """
     check_request(strategy=strategy, method=method, budget=budget, seed=seed, threads=threads, bounds=bounds)
     if method == "paper" and model.arm.joints_in_use != ALL:
@@ -92,6 +94,7 @@ def tune(
         quiet=quiet,
         floors=floors,
         on_trial=on_trial,
+        motion=motion,
     )
     return _run(task, PaperMethod(task) if method == "paper" else DefaultMethod(task), journal, resume)
 

@@ -73,12 +73,30 @@ def training_motions(
     }
     made = []
     for number, (name, (motion, weight, importance)) in enumerate(classes.items()):
-        experiment = Experiment(
-            motion, arm, table=table, seed=100 * seed + number + 11, wait_s=WAIT_S, soft_start=False,
-            weight_s=weight,
-        )  # fmt: skip
-        made.append(TrainingMotion(name, motion, experiment, float(weight.sum()) * 1e-3, importance))
+        made.append(_training_motion(name, motion, weight, importance, arm, table, 100 * seed + number + 11))
     return tuple(made)
+
+
+def own_motion(
+    motion: Trajectory, arm: ArmParameters, table: ParameterTable, plants: Floats, seed: int = 0
+) -> TrainingMotion:
+    """A motion that a person made, within the range of this arm and table, with sensor noise."""
+    clipped = clip_motion(motion, *reach(arm, table, plants))
+    weight = time_since_move(clipped, WAIT_S)
+    return _training_motion("the person's own", clipped, weight, 1.0, arm, table, 100 * seed + 11)
+
+
+def _training_motion(
+    name: str,
+    motion: Trajectory,
+    weight: Floats,
+    importance: float,
+    arm: ArmParameters,
+    table: ParameterTable,
+    seed: int,
+) -> TrainingMotion:
+    experiment = Experiment(motion, arm, table=table, seed=seed, wait_s=WAIT_S, soft_start=False, weight_s=weight)
+    return TrainingMotion(name, motion, experiment, float(weight.sum()) * 1e-3, importance)
 
 
 def reach(arm: ArmParameters, table: ParameterTable, plants: Floats) -> tuple[Floats, Floats]:
