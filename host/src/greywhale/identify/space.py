@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
+from greywhale.arm.parameters import Tip
 from greywhale.arm.plants import column, plant_row
 from greywhale.base.types import Floats
 from greywhale.protocol.firmware import JOINTS
@@ -68,6 +69,7 @@ KINDS = {
     "creep": Kind("rad/s", "speed at which a joint gives way just below breakaway", False, 5e-3, 0.0, 0.3, 1e-3, 0.05),
     "lag": Kind("s", "time constant of the low-pass behind the potentiometer", False, 5e-4, 0.0, 2e-2, 1e-4, 2e-3),
     "sag": Kind("ohm", "resistance of supply and cables, shared by all motors", False, 0.1, 0.0, 5.0, 1e-2, 0.5),
+    "tip": Kind("kg", "load at the tip", False, 0.0, -0.01, 2.0, 1e-3, 0.2),
     "offset": Kind("rad", "angle at which the potentiometer reads 0", False, 0.0, -0.3, 0.3, 1e-3, 0.1),
 }
 MOTOR = ("alpha", "inertia", "damping")
@@ -75,7 +77,7 @@ MOTOR = ("alpha", "inertia", "damping")
 # roll feel the others through their poses only, and each other by a few per cent at most.
 COUPLED = ((0,), (1, 2), (3,))
 # Quantities of the arm as a whole: their joint is this number.
-OF_THE_ARM = ("sag",)
+OF_THE_ARM = ("sag", "tip")
 WHOLE_ARM = JOINTS
 PITCH = (1, 2)  # only these feel gravity, so only they have a zero angle that matters
 TEETH_S = 2e-3  # how long the damping of teeth of unknown stiffness lasts, s
@@ -191,6 +193,10 @@ class Space:
                 _set_joint(rows, joint, here, supply)
         if "arm.sag" in found:
             rows[:, column("supply_resistance")] = found["arm.sag"]
+        if "arm.tip" in found:
+            # Every constant of the links is linear in a point mass.
+            heavier = self.arm.model_copy(update={"tip": Tip(mass=self.arm.tip.mass + 1.0)})
+            rows += (found["arm.tip"] - self.arm.tip.mass)[:, None] * (plant_row(heavier) - plant_row(self.arm))
         return rows
 
     def offsets(self, points: Floats) -> Floats:
@@ -204,6 +210,8 @@ class Space:
     def _known(self, parameter: Parameter) -> float:
         if parameter.kind == "sag":
             return self.arm.drive.supply_resistance or KINDS["sag"].start
+        if parameter.kind == "tip":
+            return self.arm.tip.mass
         pot = self.arm.follower_pots.joint[parameter.joint]
         joint = self.arm.joint[parameter.joint]
         motor = self.arm.actuator(parameter.joint)

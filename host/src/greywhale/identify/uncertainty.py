@@ -28,6 +28,7 @@ OPEN = {
     "creep": 0.05,
     "lag": 1e-3,
     "sag": 0.3,
+    "tip": 0.05,
     "offset": 0.05,
 }
 # These matter little: to know them within a factor of e is enough.
@@ -51,6 +52,7 @@ EXCITATION = {
     "creep": "rest in poses that the motor must hold",
     "lag": "reverse the motion quickly, several times a second",
     "sag": "move several joints at full voltage at once",
+    "tip": "move the pitch joints through a wide range of poses",
     "offset": "turn the joint through a wide range of poses, so that gravity changes sign",
 }
 
