@@ -6,7 +6,7 @@ all of it changes between two ticks. So a broken upload leaves the running and t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypedDict
@@ -108,16 +108,27 @@ def run_set(device: Device, table: ParameterTable, progress: Progress | None = N
     _prove(device, table)
 
 
-def _apply(device: Device, table: ParameterTable, report: Progress, save_wait_s: float) -> None:
+def staging(device: Device, table: ParameterTable) -> Iterator[int]:
+    """Stage a whole set, a parameter at each step; the motors may run meanwhile. Yields how many are staged."""
     for index, value in enumerate(table.raw):
-        report("uploading parameters", index / len(table.raw))
         echo = device.ask(schema.ParamSetRequest(index, value))
         if (echo.index, echo.value) != (index, value):
             raise UserError(
                 f"{device.port}: sent {schema.PARAMETERS[index].name} = {value}, the board understood parameter "
                 f"{echo.index} = {echo.value}; nothing was changed, try again."
             )
+        yield index + 1
+
+
+def apply_staged(device: Device, table: ParameterTable, save_wait_s: float = SAVE_WAIT_S) -> None:
+    """Let the board run the staged set, which must be `table`; the motors must be off."""
     _when_not_saving(device, save_wait_s, lambda: device.ask(schema.ParamApplyRequest(table.crc)))
+
+
+def _apply(device: Device, table: ParameterTable, report: Progress, save_wait_s: float) -> None:
+    for staged in staging(device, table):
+        report("uploading parameters", staged / len(table.raw))
+    apply_staged(device, table, save_wait_s)
 
 
 def _prove(device: Device, table: ParameterTable) -> None:
