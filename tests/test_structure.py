@@ -17,7 +17,7 @@ SOURCE = ROOT / "host" / "src"
 # The rooms of the package in the order in which they stand on each other: each imports only rooms before it.
 ROOMS = [
     *("base", "protocol", "arm", "files", "fuzzy", "motion", "simulate", "board", "pictures"),
-    *("optimise", "identify", "tune", "commission", "reproduce", "dashboard", "cli"),
+    *("optimise", "identify", "tune", "commission", "adapt", "reproduce", "dashboard", "cli"),
 ]
 # Extension modules whose names begin with an underscore. Both are rooms of their own with public classes and functions.
 EXTENSIONS = {"_native", "_board"}

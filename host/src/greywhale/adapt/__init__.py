@@ -1,0 +1,1 @@
+"""Adaptation: the controllers stay right while a person works with the arm. The paper's wish: online tuning."""

@@ -1,0 +1,310 @@
+"""The decisions of an adaptation: when to search, what to try, what to keep. No clock, no board, no file.
+
+It is fed with stretches of work, and says what should be computed in the background and which set should run.
+
+    watching, enough seen: a task; its proposal is better by more than its uncertainty: a wish, which comes at a rest
+    trying, a gain told from chance: kept, watching with the new set
+    trying, worse or restless or nothing told after TRIAL_MOST: a wish for the set from before, watching
+
+Over any half minute the error may exceed what the set from the start would have shown by LIMIT at most: a share of
+that, or of its usual error where the person hardly moves. It is looked at with every stretch, and a set on trial goes
+back at once when it is above ALERT.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from enum import Enum
+
+import numpy as np
+
+from greywhale.adapt.foresee import LEAD, foresee, judged_of
+from greywhale.adapt.gain import GROUP, Ratio, Scale
+from greywhale.adapt.live_model import LiveModel
+from greywhale.adapt.propose import Proposal, Task
+from greywhale.adapt.quiet import Swings, find_excess
+from greywhale.adapt.stretch import Stretch
+from greywhale.base.types import Controllers
+from greywhale.protocol.table import ParameterTable
+from greywhale.simulate.controllers import controllers_of
+from greywhale.tune.model import Model
+
+# Stretches (of a second): kept in all, seen with the running set before a search, and new ones between two searches.
+KEPT, ENOUGH, APART = 60, 20, 10
+# A search needs a person at work: some joint's leader went this far (rad) in the stretches seen.
+WORK_RAD = 0.2
+# A set is judged by its last stretch, with so many before it: what the model's integral holds takes time to build up.
+LOOKED = 12
+# The longest trial, and how much of it is looked at for swings, in stretches.
+TRIAL_MOST, SWINGS_MOST = 60, 20
+# A set on trial goes back at half of the limit, since it takes a stretch to see it. By chance alone, half a minute
+# differs by some 0.05 from what was expected.
+HALF_MINUTE, LIMIT, ALERT = 30, 0.20, 0.10  # stretches, shares
+# A model's ratio of two sets is wrong by this much (a logarithm), and by as much as its last promise was; every further
+# search fits the model anew, so this share of that remains. A proposal must be better by CERTAIN times its deviation.
+MODEL_DEVIATION, REMEMBERED, CERTAIN = 0.04, 0.5, 2.0
+# A set is kept that is better by this share for certain.
+LEAST_GAIN = 0.03
+# A model that misses some joint's error by more than this factor (a logarithm) does not know the arm yet.
+BELIEVED = 0.7
+
+
+class Outcome(Enum):
+    """How a trial ended."""
+
+    KEPT = "kept"
+    WORSE = "worse"
+    RESTLESS = "restless"
+    UNTOLD = "untold"
+
+
+@dataclass(frozen=True)
+class Wish:
+    """A set that should run. `urgent`: now, wherever the leader is; otherwise at a rest."""
+
+    table: ParameterTable
+    why: str
+    urgent: bool = False
+
+
+@dataclass(frozen=True)
+class TriedSet:
+    """A set that ran on trial: `ratio` is its error as a share of what the one before would have had, which lies within
+    `low` to `high` with 98 %.
+    """
+
+    rows: Controllers = field(repr=False)
+    crc: int
+    begun_s: float
+    predicted: float
+    outcome: Outcome
+    why: str
+    seconds: float
+    ratio: float | None
+    low: float | None
+    high: float | None
+
+
+@dataclass
+class _Trial:
+    proposal: Proposal
+    table: ParameterTable
+    swings_before: Swings | None
+    stretches: list[Stretch] = field(default_factory=list)
+    seen: list[float] = field(default_factory=list)  # errors of the judged stretches, in the scale's unit
+    expected: list[float] = field(default_factory=list)  # what they would have been with the set from before
+    begun: bool = False
+
+    @property
+    def ratio(self) -> Ratio:
+        return Ratio.of(np.array(self.seen), np.array(self.expected))
+
+
+class Adaptation:
+    """See the head of this file. `table` is what the board runs at the start."""
+
+    def __init__(self, model: Model, table: ParameterTable, *, budget: int, seed: int = 0, threads: int = 1) -> None:
+        self.model = model
+        self.start = self.running = self.kept = table
+        self.live = LiveModel.of(model.arm)
+        self.trials: list[TriedSet] = []
+        self.searches = 0
+        self.doubt = ""  # why the model proposes nothing now
+        self.wish: Wish | None = None
+        self._budget, self._seed, self._threads = budget, seed, threads
+        self._own: list[Stretch] = []  # with the kept set
+        self._last_half: deque[tuple[float, float]] = deque(maxlen=HALF_MINUTE)  # error, and what it would have been
+        self._scale: Scale | None = None
+        self._missed = 0.0  # by how much the last promise was wrong (a logarithm)
+        self._trial: _Trial | None = None
+        self._since = 0  # stretches since the last search
+        self._thinking = False
+
+    @property
+    def standby(self) -> ParameterTable | None:
+        """The set that the board should have at hand: what is wished for, or what a bad set gives way to."""
+        if self.wish is not None:
+            return self.wish.table
+        if self._trial is not None:
+            return self.kept
+        return self.start if self.kept.crc != self.start.crc else None
+
+    @property
+    def activity(self) -> str:
+        """What goes on, in a clause."""
+        if self._trial is not None and self._trial.begun:
+            return "trying a set"
+        return "watching" if self._thinking is False else "watching, a search runs"
+
+    # --- what comes in ------------------------------------------------------------------------------------------------
+
+    def take(self, stretch: Stretch) -> None:
+        """The arm worked for another second."""
+        self._since += 1
+        if self._trial is not None and self._trial.begun:
+            self._trial.stretches.append(stretch)
+            self._look_at_trial(self._trial)
+        else:
+            self._own = [*self._own, stretch][-KEPT:]
+            self._look_at_kept()
+
+    def changed(self) -> None:
+        """The board runs the set that was wished for."""
+        wish = self.wish
+        assert wish is not None
+        self.running, self.wish = wish.table, None
+        trial = self._trial
+        if trial is not None and wish.table is trial.table:
+            trial.begun = True
+        else:
+            self._own = []
+
+    def answer(self, proposal: Proposal) -> None:
+        """The background is done."""
+        self._thinking = False
+        self.live, self._scale = proposal.live, proposal.scale
+        if self._trial is not None:
+            return
+        self._missed *= REMEMBERED
+        self.doubt = self._doubt(proposal)
+        if self.doubt or np.array_equal(proposal.rows, controllers_of(self.kept)):
+            return
+        table = self.kept.with_controllers(proposal.rows)
+        self._trial = _Trial(proposal, table, Swings.of(self._own, self.kept.supply_v))
+        self.wish = Wish(table, f"{_lower(proposal.predicted)} error is predicted")
+
+    def hunted(self, joint: int) -> None:
+        """A joint swings so that nobody can overlook it."""
+        if self.wish is not None:
+            self.wish = replace(self.wish, urgent=self._trial is None)
+        elif self._trial is not None and self._trial.begun:
+            self._end(self._trial, Outcome.RESTLESS, f"joint {joint} hunted", urgent=True)
+        elif self.kept.crc != self.start.crc:
+            self._give_up_kept(f"joint {joint} hunted")
+
+    # --- what goes out ------------------------------------------------------------------------------------------------
+
+    def task(self) -> Task | None:
+        """What the background should do now, once; None for nothing."""
+        if self._thinking or self._trial is not None or self.wish is not None:
+            return None
+        if len(judged_of(self._own)) < ENOUGH or self._since < APART or not _works(self._own):
+            return None
+        self._thinking, self._since = True, 0
+        self.searches += 1
+        return Task(
+            self.model,
+            self.live,
+            self.kept,
+            controllers_of(self.start),
+            tuple(self._own),
+            self._budget,
+            self._seed + self.searches,
+            self._threads,
+        )
+
+    # --- how it decides -----------------------------------------------------------------------------------------------
+
+    def _doubt(self, proposal: Proposal) -> str:
+        if proposal.scale.error > BELIEVED:
+            return f"the model misses a joint's error by a factor of {np.exp(proposal.scale.error):.2g}"
+        deviation = np.sqrt(proposal.spread**2 + proposal.scale.deviation**2 + MODEL_DEVIATION**2 + self._missed**2)
+        if np.log(proposal.predicted) + CERTAIN * deviation > 0.0:
+            return f"nothing is predicted better by more than the uncertainty of {100 * CERTAIN * deviation:.0f} %"
+        return ""
+
+    def _look_at_kept(self) -> None:
+        if self._scale is None or not all(one.joined for one in self._own[-LEAD:]) or len(self._own) <= LEAD:
+            return
+        self._note_half_minute(self._scale, self._own)
+        if self.kept.crc != self.start.crc and self.wish is None and self._excess(self._scale) > LIMIT:
+            self._give_up_kept("it follows worse than the set from the start would")
+
+    def _look_at_trial(self, trial: _Trial) -> None:
+        if (
+            self.wish is not None
+            or len(trial.stretches) <= LEAD
+            or not all(one.joined for one in trial.stretches[-LEAD:])
+        ):
+            return
+        scale = trial.proposal.scale
+        self._note_half_minute(scale, trial.stretches)
+        trial.seen.append(float(scale.seen(trial.stretches[-1].error[None])[0]))
+        trial.expected.append(self._expected(scale, self.kept, trial.stretches))
+        excess = self._excess(scale)
+        if excess > ALERT:
+            return self._end(trial, Outcome.WORSE, f"{100 * excess:.0f} % more error in half a minute", urgent=True)
+        swings = Swings.of(trial.stretches[-SWINGS_MOST:], self.kept.supply_v)
+        if swings is not None and trial.swings_before is not None:
+            clause = find_excess(swings, trial.swings_before, self.kept.supply_v)
+            if clause:
+                return self._end(trial, Outcome.RESTLESS, clause)
+        # Each look is another chance to be wrong: one for every new group.
+        low, high = trial.ratio.within(scale.deviation) if len(trial.seen) % GROUP == 0 else (0.0, np.inf)
+        if high < 1.0 - LEAST_GAIN:
+            return self._end(trial, Outcome.KEPT, f"{_lower(trial.ratio.value)} error")
+        if low > 1.0:
+            return self._end(trial, Outcome.WORSE, "more error")
+        if len(trial.stretches) >= TRIAL_MOST:
+            return self._end(trial, Outcome.UNTOLD, f"no gain could be told from chance in {TRIAL_MOST} s")
+        return None
+
+    def _note_half_minute(self, scale: Scale, chain: Sequence[Stretch]) -> None:
+        """The last stretch's error, and what it would have been with the set from the start."""
+        seen = float(scale.seen(chain[-1].error[None])[0])
+        is_start = self.running.crc == self.start.crc
+        self._last_half.append((seen, seen if is_start else self._expected(scale, self.start, chain)))
+
+    def _excess(self, scale: Scale) -> float:
+        """How much more error than with the set from the start, as a share, over the last half minute."""
+        if not self._last_half:
+            return 0.0
+        seen, expected = np.array(self._last_half).sum(axis=0)
+        return float((seen - expected) / max(expected, HALF_MINUTE * scale.usual))
+
+    def _expected(self, scale: Scale, table: ParameterTable, chain: Sequence[Stretch]) -> float:
+        """The last stretch's error, had another set run; in the scale's unit."""
+        rows, plant = controllers_of(table), self.live.plants[:1]
+        return float(scale.expected(foresee(self.live, table, rows, chain[-LOOKED:], plant)[0])[-1])
+
+    def _end(self, trial: _Trial, outcome: Outcome, why: str, urgent: bool = False) -> None:
+        ratio = trial.ratio if trial.seen else None
+        low, high = (None, None) if ratio is None else ratio.within(trial.proposal.scale.deviation)
+        self.trials.append(
+            TriedSet(
+                rows=trial.proposal.rows,
+                crc=trial.table.crc,
+                begun_s=trial.stretches[0].begins_s if trial.stretches else 0.0,
+                predicted=trial.proposal.predicted,
+                outcome=outcome,
+                why=why,
+                seconds=float(len(trial.stretches)),
+                ratio=None if ratio is None else ratio.value,
+                low=low,
+                high=high if high is not None and np.isfinite(high) else None,
+            )
+        )
+        if ratio is not None:
+            self._missed = float(np.log(max(ratio.value, 1e-3) / trial.proposal.predicted))
+        self._trial = None
+        if outcome is Outcome.KEPT:
+            self.kept = trial.table
+            self._own = trial.stretches
+        else:
+            self.wish = Wish(self.kept, why, urgent)
+
+    def _give_up_kept(self, why: str) -> None:
+        self.kept = self.start
+        self._missed = BELIEVED
+        self.wish = Wish(self.start, why, urgent=True)
+
+
+def _works(stretches: Sequence[Stretch]) -> bool:
+    leader = np.concatenate([one.leader for one in stretches])
+    return bool(np.ptp(leader, axis=0).max() > WORK_RAD)
+
+
+def _lower(ratio: float) -> str:
+    return f"{100 * (1 - ratio):.0f} % less"

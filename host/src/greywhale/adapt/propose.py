@@ -1,0 +1,112 @@
+"""The work in the background: the model is brought up to date, and GWO-WOA searches sets and factors on it.
+
+It trains on what this person did, and says how much better the arm should follow that, and how certain this is. The
+model is fitted to the newest stretches alone: a load may have been taken up since the older ones.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from greywhale.adapt.foresee import LEAD, foresee, judged_of
+from greywhale.adapt.gain import Scale
+from greywhale.adapt.live_model import LiveModel
+from greywhale.adapt.stretch import ROWS, Stretch, chains_of, traces_of
+from greywhale.base.types import Controllers, Floats
+from greywhale.files.trajectory import Trajectory
+from greywhale.protocol.firmware import JOINTS, TICK_S
+from greywhale.protocol.table import ParameterTable
+from greywhale.simulate.controllers import controllers_of
+from greywhale.tune import tune
+from greywhale.tune.model import Model
+
+# The newest stretches: the model is fitted to them, and the motion of those without a gap is trained on, with a row
+# every so many ticks.
+NEWEST, EVERY = 24, 5
+# Older stretches count for the comparison, so many at a time, while the model explains each joint's error in them as
+# well as in the newest, up to this factor (a logarithm): then it is the same arm.
+BLOCK, SAME_ARM = 8, 0.4
+
+
+@dataclass(frozen=True)
+class Task:
+    """What the background is given. `recent` ran with the controllers of `table`."""
+
+    model: Model
+    live: LiveModel
+    table: ParameterTable
+    start: Controllers  # (4, 13), from before this session
+    recent: tuple[Stretch, ...] = field(repr=False)
+    budget: int
+    seed: int
+    threads: int = 1
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """A set (4, 13) and its predicted error as a share of that of the set that runs, on what this person did.
+
+    `spread` is how much that differs between plants that are as likely; `scale` is how measured errors of the set that
+    runs relate to the model's.
+    """
+
+    live: LiveModel
+    rows: Controllers
+    predicted: float
+    spread: float
+    scale: Scale
+
+
+def propose(task: Task) -> Proposal:
+    """Refit the model, search, and compare what was found and the set from the start with the set that runs."""
+    live = task.live.refit(task.recent[-NEWEST:], task.table, task.seed)
+    running = controllers_of(task.table)
+    before = foresee(live, task.table, running, task.recent, live.plants)
+    measured = np.array([one.error for one in judged_of(task.recent)])
+    count = _count_alike(measured, before[0])
+    before = before[:, -count:]
+    scale = Scale.of(measured[-count:], before[0])
+    found = tune(
+        replace(task.model, table=task.table, plants=live.plants, doubts=(), stall=None),
+        budget=task.budget,
+        seed=task.seed,
+        threads=task.threads,
+        start=running,
+        floors=False,
+        motion=motion_of(task.recent),
+    ).after
+    best = (1.0, 0.0, running)
+    for rows in (found, task.start):
+        errors = foresee(live, task.table, rows, task.recent, live.plants)[:, -count:]
+        ratios = [_ratio(scale, one, was) for one, was in zip(errors, before, strict=True)]
+        if ratios[0] < best[0]:
+            best = ratios[0], float(np.std(np.log(ratios))), rows
+    return Proposal(live, best[2], best[0], best[1], scale)
+
+
+def _count_alike(measured: Floats, predicted: Floats) -> int:
+    """How many of the last stretches show the arm as it is now, from their errors (n, 4)."""
+    newest = NEWEST - LEAD
+    scale = Scale.of(measured[-newest:], predicted[-newest:])
+    count = min(newest, len(measured))
+    while count + BLOCK <= len(measured):
+        block = slice(len(measured) - count - BLOCK, len(measured) - count)
+        if Scale.of(measured[block], scale.factor * predicted[block]).error > SAME_ARM:
+            break
+        count += BLOCK
+    return count
+
+
+def _ratio(scale: Scale, errors: Floats, before: Floats) -> float:
+    return float(scale.expected(errors).sum() / scale.expected(before).sum())
+
+
+def motion_of(stretches: Sequence[Stretch]) -> Trajectory:
+    """What the person did in the longest part without a gap, from rest; readings' noise is averaged."""
+    chain = max(chains_of(stretches), key=len)[-NEWEST:]
+    leader = traces_of(chain).leader
+    angles: Floats = leader.reshape(len(chain) * ROWS // EVERY, EVERY, JOINTS).mean(axis=1)
+    return Trajectory(EVERY * TICK_S * np.arange(len(angles), dtype=np.float64), angles)

@@ -1,0 +1,102 @@
+"""A person at work with an arm that changes, simulated in a moment by the native loop, stretch by stretch.
+
+Every piece of work begins and ends at a rest of the leader, which is where sets and arms change: the controllers begin
+anew there, and at no other place.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from greywhale.adapt.decide import Adaptation
+from greywhale.adapt.stretch import ROWS, Stretch
+from greywhale.arm import ArmParameters
+from greywhale.arm.parameters import with_usual_noise
+from greywhale.arm.plants import plant_row
+from greywhale.base.types import Floats
+from greywhale.motion import human_reaches
+from greywhale.protocol.firmware import ANGLE_LSB, JOINTS, TICK_S, pwm_steps
+from greywhale.protocol.table import ParameterTable
+from greywhale.simulate.closed_loop import ClosedLoop, known_readings
+from greywhale.simulate.controllers import controllers_of
+
+PIECE_S = 6  # of work, then a rest
+REST_S = 1
+READING_RAD = 7e-4  # noise of a reading
+
+
+class Work:
+    """`arm` may be another one from piece to piece."""
+
+    def __init__(self, arm: ArmParameters, seed: int = 1) -> None:
+        self.arm = arm
+        self.time_s = 0.0
+        self._seed = seed
+        self._joined = False
+        self._stands: Floats | None = None  # where the follower was when the last run began, rad
+        self._run: list[Floats] = []  # the leader since then, piece by piece
+        self._runs_with: tuple[ParameterTable, ArmParameters] | None = None
+        self._last: Floats | None = None  # where the follower is, rad
+
+    def cut(self) -> None:
+        """The set changed: what comes is not joined to what was."""
+        self._joined = False
+
+    def piece(self, table: ParameterTable) -> list[Stretch]:
+        """The next seconds of work with a set: one stretch each."""
+        self._seed += 1
+        if self._runs_with != (table, self.arm):
+            self._runs_with, self._run, self._stands = (table, self.arm), [], self._last
+        self._run.append(self._leader())
+        rows = len(self._run[-1])
+        parts = [part[-rows:] for part in self.follow(table, np.concatenate(self._run))]
+        self._last = parts[1][-1]
+        made = [
+            Stretch(self.time_s + number, self._joined or number > 0, *(one[number * ROWS :][:ROWS] for one in parts))
+            for number in range(rows // ROWS)
+        ]
+        self.time_s += len(made)
+        self._joined = True
+        return made
+
+    def _leader(self) -> Floats:
+        path = human_reaches(self._seed, float(PIECE_S))
+        time_s = np.arange((PIECE_S + REST_S) * ROWS, dtype=np.float64) * TICK_S - 0.5 * REST_S
+        middle = path.angles[0]
+        angles = path.at(time_s)
+        late = np.clip((time_s - path.time_s[-1]) / 0.4, 0.0, 1.0)[:, None]  # back to the middle
+        share: Floats = late**3 * (10.0 - late * (15.0 - 6.0 * late))
+        found: Floats = angles + share * (middle - angles)
+        return found
+
+    def follow(self, table: ParameterTable, leader: Floats, seed: int = 1) -> tuple[Floats, Floats, Floats]:
+        """Leader, follower (rad) and voltage (V) as the board tells them, (rows, 4) each."""
+        arm = with_usual_noise(self.arm)
+        loop = ClosedLoop(
+            table,
+            known_readings(leader),
+            arm.follower_pots,
+            seed=seed,
+            home=(leader[0] if self._stands is None else self._stands).tolist(),
+            gap=[0.0] * JOINTS,
+            weight_s=np.zeros(len(leader)),
+        )
+        result = loop.run(controllers_of(table)[None], plant_row(arm)[None], substeps=2, every=1)
+        volts = result.duties[0] / np.array(pwm_steps(table.board)) * table.supply_v
+        read = result.angles[0] + np.random.default_rng(seed).normal(0.0, READING_RAD, leader.shape)
+        return np.round(leader / ANGLE_LSB) * ANGLE_LSB, np.round(read / ANGLE_LSB) * ANGLE_LSB, volts
+
+
+def work_for(adaptation: Adaptation, work: Work, pieces: int) -> int:
+    """Let a person work for so many pieces; what is wished for comes after each. The number of stretches until a wish
+    was there, all of them for none.
+    """
+    until = 0
+    for _ in range(pieces):
+        for stretch in work.piece(adaptation.running):
+            adaptation.take(stretch)
+            until += adaptation.wish is None
+        if adaptation.wish is not None:
+            adaptation.changed()
+            work.cut()
+    return until

@@ -1,0 +1,159 @@
+"""What runs, what is kept and what goes back, with real stretches of work and proposals made by hand."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from greywhale.adapt.decide import ENOUGH, TRIAL_MOST, Adaptation, Outcome
+from greywhale.adapt.foresee import LEAD, foresee, judged_of
+from greywhale.adapt.gain import Scale
+from greywhale.adapt.propose import Proposal, Task
+from greywhale.arm.parameters import Tip
+from greywhale.base.types import Controllers
+from greywhale.files.arm import default_arm
+from greywhale.protocol.table import CONTROLLER_COLUMNS
+from greywhale.simulate.controllers import controllers_of
+from tests.adapt.conftest import TABLE
+from tests.adapt.simulated import Work, work_for
+
+BEFORE = controllers_of(TABLE)
+PIECES = 4  # of seven stretches: enough for a search
+
+
+def stiffer(factor: float) -> Controllers:
+    rows = BEFORE.copy()
+    place = CONTROLLER_COLUMNS.index("kp")
+    rows[:, place] = np.round(factor * rows[:, place])
+    return rows
+
+
+def proposal_of(task: Task, rows: Controllers, predicted: float = 0.5, spread: float = 0.0) -> Proposal:
+    """What the background would say of a set that somebody else found."""
+    before = foresee(task.live, task.table, controllers_of(task.table), task.recent, task.live.plants[:1])[0]
+    measured = np.array([one.error for one in judged_of(task.recent)])
+    return Proposal(task.live, rows, predicted, spread, Scale.of(measured, before))
+
+
+def task_after_work(adaptation: Adaptation, work: Work) -> Task:
+    work_for(adaptation, work, PIECES)
+    task = adaptation.task()
+    assert task is not None
+    return task
+
+
+def test_a_search_begins_once_enough_was_seen_and_only_one_at_a_time(adaptation: Adaptation, work: Work) -> None:
+    work_for(adaptation, work, 2)
+    assert adaptation.task() is None
+    task = task_after_work(adaptation, work)
+    assert len(judged_of(task.recent)) >= ENOUGH
+    work_for(adaptation, work, 2)
+    assert adaptation.task() is None, "one is under way"
+    adaptation.answer(proposal_of(task, BEFORE, 1.0))
+    assert adaptation.wish is None
+    assert adaptation.task() is not None
+
+
+def test_who_does_not_work_is_not_searched_for(adaptation: Adaptation, work: Work) -> None:
+    still = work.follow(TABLE, np.zeros((1000, 4)), 1)
+    for stretch in work.piece(TABLE) * PIECES:
+        adaptation.take(type(stretch)(stretch.begins_s, True, *still))
+    assert adaptation.task() is None
+
+
+def test_a_better_set_is_tried_and_kept(adaptation: Adaptation, work: Work) -> None:
+    task = task_after_work(adaptation, work)
+    adaptation.answer(proposal_of(task, stiffer(1.6)))
+    wish = adaptation.wish
+    assert wish is not None
+    assert not wish.urgent
+    assert adaptation.standby == wish.table
+    work_for(adaptation, work, 1)
+    assert adaptation.running == wish.table
+    assert adaptation.standby == TABLE, "what a bad set gives way to is at hand"
+    work_for(adaptation, work, 4)
+    (tried,) = adaptation.trials
+    assert tried.outcome is Outcome.KEPT
+    assert tried.high is not None
+    assert tried.high < 1.0
+    assert adaptation.kept == adaptation.running == wish.table
+
+
+def test_a_worse_set_goes_back_within_seconds(adaptation: Adaptation, work: Work) -> None:
+    """Whatever a model promises."""
+    task = task_after_work(adaptation, work)
+    adaptation.answer(proposal_of(task, stiffer(0.4)))
+    work_for(adaptation, work, 1)
+    assert adaptation.running != TABLE
+    for stretch in work.piece(adaptation.running):
+        adaptation.take(stretch)
+        if adaptation.wish is not None:
+            break
+    (tried,) = adaptation.trials
+    assert tried.outcome is Outcome.WORSE
+    assert tried.seconds <= 7
+    assert adaptation.wish is not None
+    assert adaptation.wish.urgent
+    assert adaptation.wish.table == adaptation.kept == TABLE
+
+
+def test_a_set_that_is_the_same_goes_back_untold(adaptation: Adaptation, work: Work) -> None:
+    task = task_after_work(adaptation, work)
+    adaptation.answer(proposal_of(task, stiffer(1.001)))
+    work_for(adaptation, work, 1)
+    work_for(adaptation, work, TRIAL_MOST // 7 + 2)
+    (tried,) = adaptation.trials
+    assert tried.outcome is Outcome.UNTOLD
+    assert adaptation.running == TABLE
+
+
+def test_after_a_wrong_promise_more_must_be_promised(adaptation: Adaptation, work: Work) -> None:
+    task = task_after_work(adaptation, work)
+    adaptation.answer(proposal_of(task, stiffer(0.4), 0.7))
+    work_for(adaptation, work, 3)
+    assert adaptation.running == TABLE
+    task = task_after_work(adaptation, work)
+    adaptation.answer(proposal_of(task, stiffer(3.0), 0.7))
+    assert adaptation.wish is None
+    assert "uncertainty" in adaptation.doubt
+
+
+def test_a_load_taken_up_with_the_set_from_the_start_is_no_fault_of_the_next(
+    adaptation: Adaptation, work: Work
+) -> None:
+    task = task_after_work(adaptation, work)
+    adaptation.answer(proposal_of(task, stiffer(1.6)))
+    work.arm = default_arm().model_copy(update={"tip": Tip(mass=0.2)})
+    work_for(adaptation, work, 1)
+    for stretch in work.piece(adaptation.running)[: LEAD + 1]:
+        adaptation.take(stretch)
+    assert adaptation.wish is None
+    assert adaptation.activity == "trying a set"
+
+
+@pytest.mark.parametrize(("predicted", "spread"), [(0.97, 0.0), (0.6, 0.5)])
+def test_what_is_not_better_by_more_than_its_uncertainty_is_not_tried(
+    adaptation: Adaptation, work: Work, predicted: float, spread: float
+) -> None:
+    task = task_after_work(adaptation, work)
+    adaptation.answer(proposal_of(task, stiffer(3.0), predicted, spread))
+    assert adaptation.wish is None
+    assert "uncertainty" in adaptation.doubt
+
+
+def test_a_joint_that_hunts_ends_a_trial_at_once(adaptation: Adaptation, work: Work) -> None:
+    task = task_after_work(adaptation, work)
+    adaptation.answer(proposal_of(task, stiffer(3.0)))
+    work_for(adaptation, work, 1)
+    adaptation.hunted(2)
+    assert adaptation.wish is not None
+    assert adaptation.wish.urgent
+    assert adaptation.trials[0].outcome is Outcome.RESTLESS
+    assert "joint 2" in adaptation.trials[0].why
+
+
+def test_hunting_with_the_set_from_the_start_changes_nothing(adaptation: Adaptation, work: Work) -> None:
+    task_after_work(adaptation, work)
+    adaptation.hunted(1)
+    assert adaptation.wish is None
+    assert adaptation.trials == []

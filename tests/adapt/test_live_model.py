@@ -1,0 +1,64 @@
+"""The model follows what drifts, from half a minute of work, and leaves alone what it cannot see."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from greywhale.adapt.foresee import foresee, judged_of
+from greywhale.adapt.live_model import PLANTS, LiveModel
+from greywhale.adapt.stretch import Stretch
+from greywhale.arm import ArmParameters
+from greywhale.arm.parameters import Tip
+from greywhale.files.arm import default_arm
+from greywhale.simulate.controllers import controllers_of
+from tests.adapt.conftest import TABLE
+from tests.adapt.simulated import Work
+from tools.support.worker import grown_friction
+
+LIVE = LiveModel.of(default_arm())
+
+
+def half_minute(arm: ArmParameters) -> list[Stretch]:
+    work = Work(arm)
+    return [stretch for _ in range(4) for stretch in work.piece(TABLE)]
+
+
+def missed(live: LiveModel, stretches: list[Stretch]) -> float:
+    """By how much the model misses the error of the whole arm, as a share."""
+    found = foresee(live, TABLE, controllers_of(TABLE), stretches, live.plants[:1])[0]
+    return float(abs(found.sum() / np.sum([one.error for one in judged_of(stretches)]) - 1.0))
+
+
+def test_friction_that_grew_is_found() -> None:
+    stretches = half_minute(grown_friction(default_arm(), 1.4))
+    refitted = LIVE.refit(stretches, TABLE, 1)
+    friction = [ratio for name, ratio in refitted.changes().items() if name.endswith("coulomb")]
+    assert friction == pytest.approx([1.4] * 4, rel=0.08)
+    assert len(refitted.plants) == PLANTS
+    assert missed(LIVE, stretches) > 0.15
+    assert missed(refitted, stretches) < 0.1
+
+
+def test_a_load_that_was_taken_up_is_weighed() -> None:
+    stretches = half_minute(default_arm().model_copy(update={"tip": Tip(mass=0.3)}))
+    refitted = LIVE.refit(stretches, TABLE, 1)
+    assert refitted.changes()["arm.tip"] == pytest.approx(0.3, abs=0.03)
+    assert missed(LIVE, stretches) > 0.3
+    assert missed(refitted, stretches) < 0.1
+
+
+def test_an_unchanged_arm_stays_as_it_was() -> None:
+    refitted = LIVE.refit(half_minute(default_arm()), TABLE, 1)
+    friction = [ratio for name, ratio in refitted.changes().items() if name.endswith("coulomb")]
+    assert friction == pytest.approx([1.0] * 4, rel=0.05)
+
+
+def test_a_joint_that_rests_keeps_its_numbers() -> None:
+    stretches = half_minute(grown_friction(default_arm(), 1.4))
+    still = [replace(one, follower=one.follower * [1, 1, 1, 0], leader=one.leader * [1, 1, 1, 0]) for one in stretches]
+    changes = LIVE.refit(still, TABLE, 1).changes()
+    assert changes["joint3.coulomb"] == pytest.approx(1.0, rel=1e-3)
+    assert changes["joint0.coulomb"] == pytest.approx(1.4, rel=0.08)

@@ -1,0 +1,101 @@
+"""What the background says of the sets that it compares; the search itself is tested where it stands."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pytest
+
+from greywhale.adapt import propose as propose_module
+from greywhale.adapt.decide import Adaptation
+from greywhale.adapt.propose import EVERY, NEWEST, Task, motion_of, propose
+from greywhale.arm.parameters import Tip
+from greywhale.base.types import Controllers
+from greywhale.files.arm import default_arm
+from greywhale.files.trajectory import Trajectory
+from greywhale.simulate.controllers import controllers_of
+from greywhale.tune.model import Model
+from tests.adapt.conftest import TABLE
+from tests.adapt.simulated import Work, work_for
+from tests.adapt.test_decide import stiffer
+
+
+@dataclass
+class Search:
+    """In the place of a tuning: finds `after`, and keeps what it was asked."""
+
+    after: Controllers
+    asked: dict[str, Any]
+
+    def __call__(self, model: Any, **asked: Any) -> Search:
+        self.asked.update(asked, model=model)
+        return self
+
+
+@pytest.fixture(scope="module")
+def task(model: Model) -> Task:
+    adaptation = Adaptation(model, TABLE, budget=1)
+    work_for(adaptation, Work(default_arm()), 4)
+    found = adaptation.task()
+    assert found is not None
+    return found
+
+
+def search(after: Controllers, monkeypatch: pytest.MonkeyPatch) -> Search:
+    stand_in = Search(after, {})
+    monkeypatch.setattr(propose_module, "tune", stand_in)
+    return stand_in
+
+
+def test_a_better_set_is_proposed_with_what_the_arm_will_show(
+    task: Task, work: Work, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stand_in = search(stiffer(1.6), monkeypatch)
+    proposal = propose(task)
+    assert np.array_equal(proposal.rows, stiffer(1.6))
+    assert proposal.scale.factor == pytest.approx([1.0] * 4, abs=0.25)
+    errors = [
+        np.mean([one.error for _ in range(3) for one in again.piece(TABLE.with_controllers(rows))], axis=0)
+        for rows in (proposal.rows, task.start)
+        for again in [Work(work.arm, seed=40)]
+    ]
+    assert proposal.predicted == pytest.approx(np.mean(errors[0] / errors[1]), abs=0.12)
+    assert 0.0 <= proposal.spread < 0.2
+    assert stand_in.asked["start"].tolist() == controllers_of(TABLE).tolist()
+    assert len(stand_in.asked["model"].plants) == len(proposal.live.plants)
+
+
+def test_the_set_that_runs_is_proposed_where_nothing_is_better(task: Task, monkeypatch: pytest.MonkeyPatch) -> None:
+    search(stiffer(0.5), monkeypatch)
+    proposal = propose(task)
+    assert np.array_equal(proposal.rows, controllers_of(TABLE))
+    assert proposal.predicted == 1.0
+
+
+def test_the_set_from_the_start_competes(task: Task, monkeypatch: pytest.MonkeyPatch) -> None:
+    search(controllers_of(TABLE), monkeypatch)
+    proposal = propose(Task(**(vars(task) | {"start": stiffer(1.6)})))
+    assert np.array_equal(proposal.rows, stiffer(1.6))
+
+
+def test_what_was_seen_before_a_load_was_taken_up_is_left_out(
+    adaptation: Adaptation, work: Work, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    search(controllers_of(TABLE), monkeypatch)
+    work_for(adaptation, work, 3)
+    work.arm = default_arm().model_copy(update={"tip": Tip(mass=0.3)})
+    work_for(adaptation, work, 4)
+    task = adaptation.task()
+    assert task is not None
+    proposal = propose(task)
+    assert proposal.live.changes()["arm.tip"] == pytest.approx(0.3, abs=0.03)
+    assert proposal.scale.factor == pytest.approx([1.0] * 4, abs=0.4)
+
+
+def test_it_trains_on_the_longest_stretches_of_this_person(task: Task) -> None:
+    motion: Trajectory = motion_of(task.recent)
+    assert motion.duration_s == pytest.approx(NEWEST, abs=0.01)
+    last = task.recent[-1].leader
+    np.testing.assert_allclose(motion.angles[-1], last[-EVERY:].mean(axis=0))

@@ -1,0 +1,72 @@
+"""A person who works with an arm that changes, on a bench in lock step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from greywhale.arm import Arm, ArmParameters
+from greywhale.base.types import Floats
+from greywhale.files.arm import default_arm
+from greywhale.files.trajectory import Trajectory
+from greywhale_sim.assemble import BenchOptions, build_bench
+from greywhale_sim.bench import SLICE_S, Bench
+from greywhale_sim.leader import LeaderPlayer
+from greywhale_sim.lockstep import LockStepBench
+
+# Motors that are off for less than this (s) do not end the work: the person waits where they are.
+PATIENCE_S = 0.3
+# The arm changes at every so many seconds.
+CHANGE_S = 5.0
+
+ArmAt = Callable[[float], ArmParameters]
+
+
+class Person(LeaderPlayer):
+    """Goes on with the motion after a short pause of the motors; `at_time` is called with the seconds of work."""
+
+    def __init__(self, motion: Trajectory, at_time: Callable[[float], None]) -> None:
+        super().__init__(motion, SLICE_S)
+        self._at_time = at_time
+        self._worked = self._paused = 0
+
+    def step(self, enabled: bool, follower: Floats) -> None:
+        """Advance one slice."""
+        self._paused = 0 if enabled else self._paused + 1
+        if self._worked and 0 < self._paused * SLICE_S < PATIENCE_S:
+            return
+        if enabled:
+            self._worked += 1
+            if self._worked % round(CHANGE_S / SLICE_S) == 0:
+                self._at_time(self._worked * SLICE_S)
+        super().step(enabled, follower)
+
+
+def working_bench(motion: Trajectory, arm_at: ArmAt, options: BenchOptions | None = None) -> LockStepBench:
+    """The default arm, which becomes what `arm_at` says of the seconds of work."""
+    options = options or BenchOptions()
+    bench = build_bench(options)
+    bench.leader = Person(motion, lambda seconds: become(bench, arm_at(seconds)))
+    bench.place(bench.leader.home)
+    return LockStepBench(options, bench)
+
+
+def become(bench: Bench, parameters: ArmParameters) -> None:
+    """Let the bench's arm have other parameters from now on, where it is and at rest."""
+    plant = bench.plant
+    if isinstance(plant, Arm) and plant.parameters != parameters:
+        bench.plant = Arm(parameters)
+        bench.plant.reset(bench.angles)
+
+
+def grown_friction(arm: ArmParameters, factor: float) -> ArmParameters:
+    """The same arm with so many times the dry friction at every joint."""
+    joints = []
+    for joint in arm.joint:
+        more = {name: factor * getattr(joint.friction, name) for name in ("coulomb", "breakaway")}
+        joints.append(joint.model_copy(update={"friction": joint.friction.model_copy(update=more)}))
+    return arm.model_copy(update={"joint": tuple(joints)})
+
+
+def stickier(seconds: float, within_s: float = 120.0, by: float = 0.4) -> ArmParameters:
+    """The default arm, whose friction grows evenly."""
+    return grown_friction(default_arm(), 1.0 + by * min(1.0, seconds / within_s))
