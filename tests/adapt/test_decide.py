@@ -157,3 +157,20 @@ def test_hunting_with_the_set_from_the_start_changes_nothing(adaptation: Adaptat
     adaptation.hunted(1)
     assert adaptation.wish is None
     assert adaptation.trials == []
+
+
+def test_a_kept_set_that_follows_worse_later_gives_way_to_the_start(adaptation: Adaptation, work: Work) -> None:
+    task = task_after_work(adaptation, work)
+    adaptation.answer(proposal_of(task, stiffer(1.6)))
+    work_for(adaptation, work, 5)
+    assert [one.outcome for one in adaptation.trials] == [Outcome.KEPT]
+    # As if the arm had become one on which this very set is bad.
+    bad = TABLE.with_controllers(stiffer(0.4))
+    while adaptation.wish is None:
+        for stretch in work.piece(bad):
+            adaptation.take(stretch)
+        assert work.time_s < 100.0
+    assert adaptation.wish.table == adaptation.kept == TABLE
+    assert adaptation.wish.urgent
+    assert [one.outcome for one in adaptation.trials] == [Outcome.WORSE]
+    assert "after it had been kept" in adaptation.trials[0].why

@@ -31,6 +31,7 @@ from tools.docs.examples import Block, Command, split
 
 SHORTER = {
     "record": "--seconds 0.5",
+    "adapt": "--seconds 1",
     "record --excite": "--seconds 4 --budget 2",
     "info --watch": "--seconds 0.5",
     "dashboard": "--no-browser",

@@ -38,6 +38,7 @@ CALLS = {
     "identify": ["fit.csv --validate second.csv"],
     "tune": ["model.toml", "model.toml --tables"],
     "commission": ["--model model.toml"],
+    "adapt": ["model.toml --seconds 1 --out new.toml"],
     "demo": ["--controller controller.toml"],
     "sim": ["--speed max", "--mistake list"],
     "export": ["--fis controller.toml --out c.fis", "--urdf arm.toml --out a.urdf"],

@@ -1,1 +1,10 @@
-"""Adaptation: the controllers stay right while a person works with the arm. The paper's wish: online tuning."""
+"""Adaptation: the controllers stay right while a person works with the arm. The paper's wish: online tuning by GWO-WOA.
+
+>>> outcome = adapt(AdaptationRequest(port, Path("model.toml"), Path("adapted.toml"), LocalWorkers(1)))
+"""
+
+from greywhale.adapt.request import BUDGET, SECONDS, AdaptationRequest
+from greywhale.adapt.result import AdaptationResult
+from greywhale.adapt.run import adapt, store_kept
+
+__all__ = ["BUDGET", "SECONDS", "AdaptationRequest", "AdaptationResult", "adapt", "store_kept"]

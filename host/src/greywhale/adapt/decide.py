@@ -182,7 +182,7 @@ class Adaptation:
         elif self._trial is not None and self._trial.begun:
             self._end(self._trial, Outcome.RESTLESS, f"joint {joint} hunted", urgent=True)
         elif self.kept.crc != self.start.crc:
-            self._give_up_kept(f"joint {joint} hunted")
+            self._give_up_kept(Outcome.RESTLESS, f"joint {joint} hunted")
 
     # --- what goes out ------------------------------------------------------------------------------------------------
 
@@ -220,7 +220,7 @@ class Adaptation:
             return
         self._note_half_minute(self._scale, self._own)
         if self.kept.crc != self.start.crc and self.wish is None and self._excess(self._scale) > LIMIT:
-            self._give_up_kept("it follows worse than the set from the start would")
+            self._give_up_kept(Outcome.WORSE, "it follows worse than the set from the start would")
 
     def _look_at_trial(self, trial: _Trial) -> None:
         if (
@@ -295,7 +295,10 @@ class Adaptation:
         else:
             self.wish = Wish(self.kept, why, urgent)
 
-    def _give_up_kept(self, why: str) -> None:
+    def _give_up_kept(self, outcome: Outcome, why: str) -> None:
+        """A set that was kept disappoints later: back to the start."""
+        last = max(place for place, one in enumerate(self.trials) if one.outcome is Outcome.KEPT)
+        self.trials[last] = replace(self.trials[last], outcome=outcome, why=f"{why}, after it had been kept")
         self.kept = self.start
         self._missed = BELIEVED
         self.wish = Wish(self.start, why, urgent=True)

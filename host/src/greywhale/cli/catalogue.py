@@ -16,8 +16,8 @@ from greywhale.cli.verbs import greywhale
 from greywhale.dashboard.verbs import ArgumentFacts, VerbFacts
 
 VERBS = (
-    *("record", "replay", "calibrate", "doctor", "info", "evaluate", "identify", "tune", "commission", "upload"),
-    *("params backup", "params restore", "params diff", "flash"),
+    *("record", "replay", "calibrate", "doctor", "info", "evaluate", "identify", "tune", "commission", "adapt"),
+    *("upload", "params backup", "params restore", "params diff", "flash"),
 )
 TAKES_PORT = {"flash"}
 # Of all verbs: what the server adds by itself. Of some: what needs the port itself, or a terminal.

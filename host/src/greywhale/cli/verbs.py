@@ -29,6 +29,7 @@ VERBS = {
     "stop": ("stop", "Stop the motors; clear a fault."),
     "evaluate": ("evaluate", "Measure how well the follower followed in a log."),
     "commission": ("commission", "Identify, tune and prove the controllers on the connected arm itself."),
+    "adapt": ("adapt", "Keep the controllers right while a person works with the arm."),
     "identify": ("identify", "Find the arm that made a log: a model with its uncertainties."),
     "tune": ("tune", "Find controllers for a model: a controller.toml for upload."),
     "arm": ("arm", "Make an arm.toml: from a ruler, a scale and data sheets, or from a URDF."),

@@ -1,0 +1,50 @@
+"""Where the searches run: in a process of their own, so that samples and lease never wait for them."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from concurrent.futures import BrokenExecutor, Executor, Future
+
+from greywhale.adapt.propose import Proposal, Task, propose
+from greywhale.base.errors import UserError
+from greywhale.base.study.workers import Workers
+
+
+class Background:
+    """At most one search at a time."""
+
+    def __init__(self, executor: Executor) -> None:
+        self._executor = executor
+        self._future: Future[Proposal] | None = None
+
+    @property
+    def busy(self) -> bool:
+        return self._future is not None
+
+    def begin(self, task: Task) -> None:
+        self._future = self._executor.submit(propose, task)
+
+    def take(self) -> Proposal | None:
+        """What was found, once; None before that. Raises UserError where the process of the search ended."""
+        if self._future is None or not self._future.done():
+            return None
+        future, self._future = self._future, None
+        try:
+            return future.result()
+        except BrokenExecutor:
+            raise UserError(
+                "the process that searches in the background was ended, perhaps because memory was short; start again."
+            ) from None
+
+
+class _Left(Exception):
+    """Workers that are left after an error end at once."""
+
+
+@contextlib.contextmanager
+def background(workers: Workers) -> Iterator[Background]:
+    """Leaving it waits for no search."""
+    with contextlib.suppress(_Left), workers.executor() as executor:
+        yield Background(executor)
+        raise _Left

@@ -1,0 +1,90 @@
+"""Changes the set that the board runs, while a person works with the arm.
+
+The firmware takes a set over only with the motors off, and it begins the integral anew. So a change needs a rest of the
+leader with a small error: all parameters are staged before, while the motors run; then the motors are off for some 20
+ms and come back within SOFT_START_MS. Friction holds the arm meanwhile.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator
+
+import numpy as np
+
+from greywhale.board.device import Device
+from greywhale.board.record import LEASE_MS
+from greywhale.board.stream import Received
+from greywhale.board.upload import apply_staged, staging
+from greywhale.protocol.firmware import ANGLE_LSB
+from greywhale.protocol.table import ParameterTable
+
+# The soft start of a set that runs for now, the shortest that the firmware takes; a stored set keeps its own.
+SOFT_START_MS = 100
+# One parameter is staged every so many samples: the answers take less time than the samples between.
+STAGE_EVERY = 4
+# At rest leader and follower stay within STILL_RAD for so many samples, LOOKED_AT of them looked at, and no error is
+# larger than CLOSE_RAD. An urgent change waits only until no error is larger than REACH_RAD, for which no board refuses
+# to start the motors.
+REST_SAMPLES, STILL_RAD, CLOSE_RAD, REACH_RAD = 250, 0.02, 0.12, 0.5
+LOOK_EVERY = 10
+
+
+def with_quick_start(table: ParameterTable) -> ParameterTable:
+    """The same set, as it runs while sets change."""
+    return table.with_raw({"soft_start_ms": SOFT_START_MS})
+
+
+class RestWatch:
+    """Sees every sample, and knows whether leader and follower rest close to each other."""
+
+    def __init__(self) -> None:
+        self._seen: deque[tuple[int, ...]] = deque(maxlen=REST_SAMPLES // LOOK_EVERY)
+        self._count = 0
+        self.error = np.inf  # the largest, rad
+
+    def take(self, received: Received) -> None:
+        self._count += 1
+        if self._count % LOOK_EVERY == 0:
+            sample = received.sample
+            self._seen.append((*sample.leader, *sample.follower))
+            self.error = ANGLE_LSB * max(abs(a - b) for a, b in zip(sample.leader, sample.follower, strict=True))
+
+    @property
+    def resting(self) -> bool:
+        full = len(self._seen) == self._seen.maxlen
+        return (
+            full and self.error < CLOSE_RAD and bool(np.ptp(np.array(self._seen), axis=0).max() < STILL_RAD / ANGLE_LSB)
+        )
+
+
+class SetChanger:
+    """Stages a set in the background of a stream of samples, and lets the board run it when asked."""
+
+    def __init__(self, device: Device) -> None:
+        self._device = device
+        self._table: ParameterTable | None = None
+        self._staging: Iterator[int] = iter(())
+        self._staged = 0
+        self._count = 0
+
+    def prepare(self, table: ParameterTable) -> None:
+        """Call it with every sample: stage this set, bit by bit."""
+        if self._table is None or self._table.crc != table.crc:
+            self._table, self._staging, self._staged = table, staging(self._device, table), 0
+        self._count += 1
+        if self._count % STAGE_EVERY == 0:
+            self._staged = next(self._staging, self._staged)
+
+    def is_ready(self, table: ParameterTable) -> bool:
+        """Whether this set is staged as a whole."""
+        return self._table is not None and self._table.crc == table.crc and self._staged == len(table.raw)
+
+    def change(self) -> None:
+        """Motors off, the staged set runs, motors on."""
+        assert self._table is not None
+        self._device.stop()
+        apply_staged(self._device, self._table)
+        self._device.enable(LEASE_MS)
+        # What the board has staged now is not known for certain.
+        self._table = None

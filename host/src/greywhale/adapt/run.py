@@ -1,0 +1,239 @@
+"""An adaptation on a port: a person's work goes into the decisions, and the set they wish for onto the board.
+
+Nothing that runs on trial is stored. Whatever ends the session early (Ctrl-C, a lost port, a fault), the motors go off
+and the set from the start runs again, at the latest after the board's next start.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from greywhale.adapt.background import Background, background
+from greywhale.adapt.change import LOOK_EVERY, REACH_RAD, STILL_RAD, RestWatch, SetChanger, with_quick_start
+from greywhale.adapt.decide import Adaptation
+from greywhale.adapt.request import AdaptationRequest
+from greywhale.adapt.result import AdaptationResult, say
+from greywhale.adapt.stretch import Collector
+from greywhale.base.errors import UserError
+from greywhale.base.types import NotedProgress, show_no_progress
+from greywhale.board.device import Device, hold_ctrl_c
+from greywhale.board.record import LEASE_MS
+from greywhale.board.stream import Received, stream, why_stopped
+from greywhale.board.upload import read_parameters, run_set, upload_set
+from greywhale.commission.hunting_stop import Hunting, HuntingStop
+from greywhale.commission.start import refuse_uncalibrated
+from greywhale.files import controller as controller_file
+from greywhale.protocol import schema
+from greywhale.protocol.firmware import ANGLE_LSB
+from greywhale.protocol.table import ParameterTable
+from greywhale.tune.model import Model, load_model
+
+# The longest that a change of the set may take.
+MOST_OFF_TICKS = 1000
+# The first soft start, of the stored set.
+MOST_START_TICKS = 12_000
+# How long after a change errors are looked at (ticks).
+BUMP_TICKS = 400
+
+
+def adapt(request: AdaptationRequest, report: NotedProgress | None = None) -> AdaptationResult:
+    """Watch a person work for `request.seconds`, and adapt the controllers meanwhile.
+
+    The set from the start runs again at the end; `store_kept` stores what was kept. Raises UserError.
+    """
+    told = report or show_no_progress
+    model = load_model(request.model, force=True)
+    with background(request.workers) as searches, Device(request.port) as device:
+        start = read_parameters(device, told)
+        refuse_uncalibrated(model.arm, start)
+        session = _Session(device, request, model, start, searches, told)
+        try:
+            session.work()
+            if session.changes:
+                run_set(device, start, told)
+        except BaseException as error:
+            _put_back(device, start, session.changes, error)
+            raise
+        return session.result()
+
+
+def store_kept(port: str, result: AdaptationResult, report: NotedProgress | None = None) -> AdaptationResult:
+    """Let the board run and store what an adaptation kept. Raises UserError."""
+    with Device(port) as device:
+        upload_set(device, result.kept, report or show_no_progress)
+    return replace(result, stored=True)
+
+
+def _put_back(device: Device, start: ParameterTable, changes: int, error: BaseException) -> None:
+    """Run the set from the start after an error or Ctrl-C; the motors are off by now."""
+    if not changes:
+        return
+    with hold_ctrl_c():
+        try:
+            run_set(device, start)
+        except UserError:
+            error.add_note("The board runs the controllers from before again after its next start.")
+
+
+class _Session:
+    """The motors are on while it works."""
+
+    def __init__(
+        self,
+        device: Device,
+        request: AdaptationRequest,
+        model: Model,
+        start: ParameterTable,
+        searches: Background,
+        report: NotedProgress,
+    ) -> None:
+        self.changes = 0
+        self._device, self._request, self._start = device, request, start
+        self._searches, self._report = searches, report
+        quick = with_quick_start(start)
+        self._core = Adaptation(
+            replace(model, table=quick), quick, budget=request.budget, seed=request.seed, threads=request.threads
+        )
+        self._collector, self._changer = Collector(), SetChanger(device)
+        self._rest, self._hunting = RestWatch(), HuntingStop()
+        self._worked_s = 0.0
+        self._bump = _Bump()
+        self._kept = self._core.kept  # what the file `out` holds, if it is not the start
+
+    def work(self) -> None:
+        """Until the time is over."""
+        received = stream(self._device, 1)
+        with self._device.enabled(LEASE_MS):
+            pause = _Pause(MOST_START_TICKS)
+            begun: int | None = None
+            for one in received:
+                if one.sample.state is schema.State.FAULT or pause.is_too_long(one):
+                    raise why_stopped(self._device)
+                if pause.lasts(one):
+                    continue
+                begun = one.elapsed if begun is None else begun
+                self._worked_s = (one.elapsed - begun) / 1000
+                if self._worked_s >= self._request.seconds:
+                    break
+                if self._take(one):
+                    pause = _Pause(one.elapsed + MOST_OFF_TICKS)
+        self._device.telemetry(0)
+
+    def _take(self, one: Received) -> bool:
+        """Look at a sample, and at what is to be done; True where the set was changed."""
+        core = self._core
+        self._rest.take(one)
+        self._bump.take(one)
+        try:
+            self._hunting(one)
+        except Hunting as hunting:
+            core.hunted(hunting.joint)
+            self._hunting = HuntingStop()
+        stretch = self._collector.take(one)
+        if stretch is not None:
+            core.take(stretch)
+            self._think()
+            self._tell()
+        standby = core.standby
+        if standby is not None:
+            self._changer.prepare(standby)
+        wish = core.wish
+        if wish is None or not self._changer.is_ready(wish.table):
+            return False
+        if not (self._rest.resting or (wish.urgent and self._rest.error < REACH_RAD)):
+            return False
+        self._bump.begin(one)
+        self.changes += 1
+        self._changer.change()
+        core.changed()
+        self._collector.cut()
+        self._rest, self._hunting = RestWatch(), HuntingStop()
+        return True
+
+    def _think(self) -> None:
+        """Hand the background what is to be computed, and take what is done."""
+        proposal = self._searches.take()
+        if proposal is not None:
+            self._core.answer(proposal)
+        if not self._searches.busy:
+            task = self._core.task()
+            if task is not None:
+                self._searches.begin(task)
+
+    def _tell(self) -> None:
+        core = self._core
+        what = "waiting for a rest of the leader" if core.wish is not None else core.activity
+        if core.kept is not self._kept:
+            self._kept = core.kept
+            self._keep_file()
+        note = say(core.trials[-1]) if core.trials else core.doubt
+        self._report(what, min(1.0, self._worked_s / self._request.seconds), note)
+
+    def _keep_file(self) -> None:
+        """Write down what was kept, so that it outlives whatever comes; what was given up again has no file."""
+        if self._kept is self._core.start:
+            self._request.out.unlink(missing_ok=True)
+            return
+        controller_file.save(
+            self._request.out,
+            self._kept.controllers,
+            "greywhale adapt",
+            header=(f"Kept after {self._worked_s:.0f} s of work: {self._core.trials[-1].why}.",),
+        )
+
+    def result(self) -> AdaptationResult:
+        core = self._core
+        return AdaptationResult(
+            start=self._start,
+            kept=self._start.with_controllers(np.array(core.kept.controllers, dtype=np.int32)),
+            trials=tuple(core.trials),
+            seconds=self._worked_s,
+            searches=core.searches,
+            changes=self.changes,
+            bump_rad=self._bump.most_rad,
+            model=core.live.changes(),
+            note=core.doubt,
+        )
+
+
+class _Pause:
+    """From a change of the set until the follower follows again. Samples from before the change still arrive first."""
+
+    def __init__(self, most_ticks: int) -> None:
+        self._most = most_ticks
+        self._seen = self._over = False
+
+    def lasts(self, one: Received) -> bool:
+        following = one.sample.state is schema.State.FOLLOWING
+        self._seen = self._seen or not following
+        self._over = self._over or (following and (self._seen or one.elapsed > self._most))
+        return not self._over
+
+    def is_too_long(self, one: Received) -> bool:
+        """Whether the motors are off although nobody asked for that, or for longer than a change takes."""
+        return one.sample.state is not schema.State.FOLLOWING and (self._over or one.elapsed > self._most)
+
+
+class _Bump:
+    """By how much a joint's error grows in a change of the set, at most, while its leader rests."""
+
+    def __init__(self) -> None:
+        self.most_rad = 0.0
+        self._begun: Received | None = None
+
+    def begin(self, one: Received) -> None:
+        self._begun = one
+
+    def take(self, one: Received) -> None:
+        begun = self._begun
+        if begun is None or one.elapsed % LOOK_EVERY:
+            return
+        if one.elapsed > begun.elapsed + BUMP_TICKS:
+            self._begun = None
+            return
+        joints = zip(begun.sample.leader, begun.sample.follower, one.sample.leader, one.sample.follower, strict=True)
+        for led, followed, leads, follows in joints:
+            if abs(leads - led) < STILL_RAD / ANGLE_LSB:
+                self.most_rad = max(self.most_rad, ANGLE_LSB * (abs(leads - follows) - abs(led - followed)))
