@@ -152,6 +152,20 @@ def test_a_joint_that_hunts_ends_a_trial_at_once(adaptation: Adaptation, work: W
     assert "joint 2" in adaptation.trials[0].why
 
 
+def test_what_was_found_for_a_set_that_was_given_up_meanwhile_is_not_tried(adaptation: Adaptation, work: Work) -> None:
+    task = task_after_work(adaptation, work)
+    adaptation.answer(proposal_of(task, stiffer(1.6)))
+    work_for(adaptation, work, 5)
+    task = task_after_work(adaptation, work)
+    adaptation.hunted(2)
+    adaptation.answer(proposal_of(task, stiffer(2.0)))
+    assert adaptation.wish is not None
+    assert adaptation.wish.table == TABLE
+    adaptation.changed()
+    assert adaptation.task() is None
+    assert [one.outcome for one in adaptation.trials] == [Outcome.RESTLESS]
+
+
 def test_hunting_with_the_set_from_the_start_changes_nothing(adaptation: Adaptation, work: Work) -> None:
     task_after_work(adaptation, work)
     adaptation.hunted(1)

@@ -56,7 +56,8 @@ def bench() -> Iterator[LockStepBench]:
     """A leader that goes to and fro at the first joint, and rests in between."""
     times = np.arange(0.0, 20.0, 0.02)
     swing = 0.3 * np.clip(np.sin(2 * np.pi * times / 2.5), 0.0, None) ** 2
-    with working_bench(Trajectory(times, swing[:, None] * [1.0, 0.0, 0.0, 0.0]), lambda _: default_arm()) as running:
+    made, _ = working_bench(Trajectory(times, swing[:, None] * [1.0, 0.0, 0.0, 0.0]), lambda _: default_arm())
+    with made as running:
         yield running
 
 

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import numpy as np
+
 from greywhale.arm import Arm, ArmParameters
 from greywhale.base.types import Floats
 from greywhale.files.arm import default_arm
 from greywhale.files.trajectory import Trajectory
+from greywhale.protocol.firmware import JOINTS
 from greywhale_sim.assemble import BenchOptions, build_bench
 from greywhale_sim.bench import SLICE_S, Bench
 from greywhale_sim.leader import LeaderPlayer
@@ -22,12 +25,17 @@ ArmAt = Callable[[float], ArmParameters]
 
 
 class Person(LeaderPlayer):
-    """Goes on with the motion after a short pause of the motors; `at_time` is called with the seconds of work."""
+    """Goes on with the motion after a short pause of the motors; `at_time` is called with the seconds of work.
+
+    `errors` holds the mean of (leader - follower)², (4,) rad², of every whole second of work.
+    """
 
     def __init__(self, motion: Trajectory, at_time: Callable[[float], None]) -> None:
         super().__init__(motion, SLICE_S)
         self._at_time = at_time
         self._worked = self._paused = 0
+        self.errors: list[Floats] = []
+        self._sum: Floats = np.zeros(JOINTS)
 
     def step(self, enabled: bool, follower: Floats) -> None:
         """Advance one slice."""
@@ -36,18 +44,23 @@ class Person(LeaderPlayer):
             return
         if enabled:
             self._worked += 1
+            self._sum = self._sum + (self.angles - follower) ** 2
+            if self._worked % round(1.0 / SLICE_S) == 0:
+                self.errors.append(self._sum * SLICE_S)
+                self._sum = np.zeros(JOINTS)
             if self._worked % round(CHANGE_S / SLICE_S) == 0:
                 self._at_time(self._worked * SLICE_S)
         super().step(enabled, follower)
 
 
-def working_bench(motion: Trajectory, arm_at: ArmAt, options: BenchOptions | None = None) -> LockStepBench:
-    """The default arm, which becomes what `arm_at` says of the seconds of work."""
-    options = options or BenchOptions()
+def working_bench(motion: Trajectory, arm_at: ArmAt) -> tuple[LockStepBench, Person]:
+    """The default arm, which becomes what `arm_at` says of the seconds of work, and who works with it."""
+    options = BenchOptions()
     bench = build_bench(options)
-    bench.leader = Person(motion, lambda seconds: become(bench, arm_at(seconds)))
-    bench.place(bench.leader.home)
-    return LockStepBench(options, bench)
+    person = Person(motion, lambda seconds: become(bench, arm_at(seconds)))
+    bench.leader = person
+    bench.place(person.home)
+    return LockStepBench(options, bench), person
 
 
 def become(bench: Bench, parameters: ArmParameters) -> None:

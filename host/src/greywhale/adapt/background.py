@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import contextlib
+import multiprocessing
+import os
 from collections.abc import Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future
 
 from greywhale.adapt.propose import Proposal, Task, propose
 from greywhale.base.errors import UserError
 from greywhale.base.study.workers import Workers
+
+# A search gives way to the program that listens to the board.
+NICENESS = 10
 
 
 class Background:
@@ -23,7 +28,7 @@ class Background:
         return self._future is not None
 
     def begin(self, task: Task) -> None:
-        self._future = self._executor.submit(propose, task)
+        self._future = self._executor.submit(_search, task)
 
     def take(self) -> Proposal | None:
         """What was found, once; None before that. Raises UserError where the process of the search ended."""
@@ -36,6 +41,12 @@ class Background:
             raise UserError(
                 "the process that searches in the background was ended, perhaps because memory was short; start again."
             ) from None
+
+
+def _search(task: Task) -> Proposal:
+    if multiprocessing.parent_process() is not None:
+        os.setpriority(os.PRIO_PROCESS, 0, NICENESS)
+    return propose(task)
 
 
 class _Left(Exception):

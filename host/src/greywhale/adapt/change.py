@@ -13,12 +13,13 @@ from collections.abc import Iterator
 import numpy as np
 
 from greywhale.board.device import Device
-from greywhale.board.record import LEASE_MS
 from greywhale.board.stream import Received
 from greywhale.board.upload import apply_staged, staging
 from greywhale.protocol.firmware import ANGLE_LSB
 from greywhale.protocol.table import ParameterTable
 
+# A computer that also searches may stand still for longer than one that only records.
+LEASE_MS = 1000
 # The soft start of a set that runs for now, the shortest that the firmware takes; a stored set keeps its own.
 SOFT_START_MS = 100
 # One parameter is staged every so many samples: the answers take less time than the samples between.

@@ -36,7 +36,7 @@ KEPT, ENOUGH, APART = 60, 20, 10
 # A search needs a person at work: some joint's leader went this far (rad) in the stretches seen.
 WORK_RAD = 0.2
 # A set is judged by its last stretch, with so many before it: what the model's integral holds takes time to build up.
-LOOKED = 12
+LOOKED = 8
 # The longest trial, and how much of it is looked at for swings, in stretches.
 TRIAL_MOST, SWINGS_MOST = 60, 20
 # A set on trial goes back at half of the limit, since it takes a stretch to see it. By chance alone, half a minute
@@ -121,6 +121,7 @@ class Adaptation:
         self._trial: _Trial | None = None
         self._since = 0  # stretches since the last search
         self._thinking = False
+        self._asked = table  # the set that the last search wanted to better
 
     @property
     def standby(self) -> ParameterTable | None:
@@ -132,11 +133,16 @@ class Adaptation:
         return self.start if self.kept.crc != self.start.crc else None
 
     @property
+    def on_trial(self) -> bool:
+        """Whether the board runs a set that may go back."""
+        return self._trial is not None and self._trial.begun
+
+    @property
     def activity(self) -> str:
         """What goes on, in a clause."""
-        if self._trial is not None and self._trial.begun:
+        if self.on_trial:
             return "trying a set"
-        return "watching" if self._thinking is False else "watching, a search runs"
+        return "watching, a search runs" if self._thinking else "watching"
 
     # --- what comes in ------------------------------------------------------------------------------------------------
 
@@ -165,7 +171,7 @@ class Adaptation:
         """The background is done."""
         self._thinking = False
         self.live, self._scale = proposal.live, proposal.scale
-        if self._trial is not None:
+        if self.wish is not None or self._asked is not self.kept:
             return
         self._missed *= REMEMBERED
         self.doubt = self._doubt(proposal)
@@ -192,7 +198,7 @@ class Adaptation:
             return None
         if len(judged_of(self._own)) < ENOUGH or self._since < APART or not _works(self._own):
             return None
-        self._thinking, self._since = True, 0
+        self._thinking, self._since, self._asked = True, 0, self.kept
         self.searches += 1
         return Task(
             self.model,
@@ -230,9 +236,10 @@ class Adaptation:
         ):
             return
         scale = trial.proposal.scale
-        self._note_half_minute(scale, trial.stretches)
-        trial.seen.append(float(scale.seen(trial.stretches[-1].error[None])[0]))
-        trial.expected.append(self._expected(scale, self.kept, trial.stretches))
+        seen, by_start = self._note_half_minute(scale, trial.stretches)
+        trial.seen.append(seen)
+        same = self.kept.crc == self.start.crc
+        trial.expected.append(by_start if same else self._expected(scale, self.kept, trial.stretches))
         excess = self._excess(scale)
         if excess > ALERT:
             return self._end(trial, Outcome.WORSE, f"{100 * excess:.0f} % more error in half a minute", urgent=True)
@@ -251,11 +258,12 @@ class Adaptation:
             return self._end(trial, Outcome.UNTOLD, f"no gain could be told from chance in {TRIAL_MOST} s")
         return None
 
-    def _note_half_minute(self, scale: Scale, chain: Sequence[Stretch]) -> None:
-        """The last stretch's error, and what it would have been with the set from the start."""
+    def _note_half_minute(self, scale: Scale, chain: Sequence[Stretch]) -> tuple[float, float]:
+        """The last stretch's error, and what it would have been with the set from the start; both are remembered."""
         seen = float(scale.seen(chain[-1].error[None])[0])
         is_start = self.running.crc == self.start.crc
         self._last_half.append((seen, seen if is_start else self._expected(scale, self.start, chain)))
+        return self._last_half[-1]
 
     def _excess(self, scale: Scale) -> float:
         """How much more error than with the set from the start, as a share, over the last half minute."""

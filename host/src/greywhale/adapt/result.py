@@ -80,7 +80,7 @@ class AdaptationResult:
         lines = [f"{self.seconds:.0f} s of work, searches: {self.searches}, sets on trial: {len(self.trials)}."]
         lines += [f"  at {one.begun_s:.0f} s: {say(one)}" for one in self.trials]
         if self.note:
-            lines.append(f"Last search: {self.note}.")
+            lines.append(f"At the end: {self.note}.")
         if self.changes:
             lines.append(f"A change of sets made an error grow by {1e3 * self.bump_rad:.1f} mrad at most.")
         lines.append(self._ending())

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from greywhale.adapt.background import Background, background
-from greywhale.adapt.change import LOOK_EVERY, REACH_RAD, STILL_RAD, RestWatch, SetChanger, with_quick_start
+from greywhale.adapt.change import LEASE_MS, LOOK_EVERY, REACH_RAD, STILL_RAD, RestWatch, SetChanger, with_quick_start
 from greywhale.adapt.decide import Adaptation
 from greywhale.adapt.request import AdaptationRequest
 from greywhale.adapt.result import AdaptationResult, say
@@ -19,7 +19,6 @@ from greywhale.adapt.stretch import Collector
 from greywhale.base.errors import UserError
 from greywhale.base.types import NotedProgress, show_no_progress
 from greywhale.board.device import Device, hold_ctrl_c
-from greywhale.board.record import LEASE_MS
 from greywhale.board.stream import Received, stream, why_stopped
 from greywhale.board.upload import read_parameters, run_set, upload_set
 from greywhale.commission.hunting_stop import Hunting, HuntingStop
@@ -133,6 +132,7 @@ class _Session:
             self._hunting = HuntingStop()
         stretch = self._collector.take(one)
         if stretch is not None:
+            self._device.renew()  # what follows takes a moment
             core.take(stretch)
             self._think()
             self._tell()
@@ -194,7 +194,7 @@ class _Session:
             changes=self.changes,
             bump_rad=self._bump.most_rad,
             model=core.live.changes(),
-            note=core.doubt,
+            note="a set was still on trial" if core.on_trial else core.doubt,
         )
 
 
