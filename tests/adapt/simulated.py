@@ -87,16 +87,17 @@ class Work:
         return np.round(leader / ANGLE_LSB) * ANGLE_LSB, np.round(read / ANGLE_LSB) * ANGLE_LSB, volts
 
 
-def work_for(adaptation: Adaptation, work: Work, pieces: int) -> int:
-    """Let a person work for so many pieces; what is wished for comes after each. The number of stretches until a wish
-    was there, all of them for none.
+def work_for(adaptation: Adaptation, work: Work, pieces: int) -> None:
+    """Let a person work for so many pieces; what is wished for comes after each. Fits during a trial find the model as
+    it was.
     """
-    until = 0
     for _ in range(pieces):
         for stretch in work.piece(adaptation.running):
             adaptation.take(stretch)
-            until += adaptation.wish is None
+            task = adaptation.task() if adaptation.on_trial else None
+            if task is not None:
+                assert task.budget == 0
+                adaptation.answer(task.live)
         if adaptation.wish is not None:
             adaptation.changed()
             work.cut()
-    return until

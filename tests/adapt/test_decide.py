@@ -8,7 +8,7 @@ import pytest
 from greywhale.adapt.decide import ENOUGH, TRIAL_MOST, Adaptation, Outcome
 from greywhale.adapt.foresee import LEAD, foresee, judged_of
 from greywhale.adapt.gain import Scale
-from greywhale.adapt.propose import Proposal, Task
+from greywhale.adapt.propose import Proposal, Task, work_on
 from greywhale.arm.parameters import Tip
 from greywhale.base.types import Controllers
 from greywhale.files.arm import default_arm
@@ -129,6 +129,22 @@ def test_a_load_taken_up_with_the_set_from_the_start_is_no_fault_of_the_next(
         adaptation.take(stretch)
     assert adaptation.wish is None
     assert adaptation.activity == "trying a set"
+
+
+def test_a_load_taken_up_is_no_fault_of_the_set_that_was_kept(adaptation: Adaptation, work: Work) -> None:
+    task = task_after_work(adaptation, work)
+    adaptation.answer(proposal_of(task, stiffer(1.2)))
+    work_for(adaptation, work, 6)
+    assert [one.outcome for one in adaptation.trials] == [Outcome.KEPT]
+    work.arm = default_arm().model_copy(update={"tip": Tip(mass=0.3)})
+    for _ in range(4):
+        for stretch in work.piece(adaptation.running):
+            adaptation.take(stretch)
+            asked = adaptation.task()
+            if asked is not None:
+                same = controllers_of(asked.table)
+                adaptation.answer(proposal_of(asked, same, 1.0) if asked.budget else work_on(asked))
+        assert adaptation.wish is None, "without fits it would be given up"
 
 
 @pytest.mark.parametrize(("predicted", "spread"), [(0.97, 0.0), (0.6, 0.5)])

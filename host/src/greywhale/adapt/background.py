@@ -8,7 +8,8 @@ import os
 from collections.abc import Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future
 
-from greywhale.adapt.propose import Proposal, Task, propose
+from greywhale.adapt.live_model import LiveModel
+from greywhale.adapt.propose import Proposal, Task, work_on
 from greywhale.base.errors import UserError
 from greywhale.base.study.workers import Workers
 
@@ -17,20 +18,20 @@ NICENESS = 10
 
 
 class Background:
-    """At most one search at a time."""
+    """At most one search, or fit, at a time."""
 
     def __init__(self, executor: Executor) -> None:
         self._executor = executor
-        self._future: Future[Proposal] | None = None
+        self._future: Future[Proposal | LiveModel] | None = None
 
     @property
     def busy(self) -> bool:
         return self._future is not None
 
     def begin(self, task: Task) -> None:
-        self._future = self._executor.submit(_search, task)
+        self._future = self._executor.submit(_work, task)
 
-    def take(self) -> Proposal | None:
+    def take(self) -> Proposal | LiveModel | None:
         """What was found, once; None before that. Raises UserError where the process of the search ended."""
         if self._future is None or not self._future.done():
             return None
@@ -43,10 +44,10 @@ class Background:
             ) from None
 
 
-def _search(task: Task) -> Proposal:
+def _work(task: Task) -> Proposal | LiveModel:
     if multiprocessing.parent_process() is not None:
         os.setpriority(os.PRIO_PROCESS, 0, NICENESS)
-    return propose(task)
+    return work_on(task)
 
 
 class _Left(Exception):

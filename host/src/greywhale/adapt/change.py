@@ -24,10 +24,9 @@ LEASE_MS = 1000
 SOFT_START_MS = 100
 # One parameter is staged every so many samples: the answers take less time than the samples between.
 STAGE_EVERY = 4
-# At rest leader and follower stay within STILL_RAD for so many samples, LOOKED_AT of them looked at, and no error is
-# larger than CLOSE_RAD. An urgent change waits only until no error is larger than REACH_RAD, for which no board refuses
-# to start the motors.
-REST_SAMPLES, STILL_RAD, CLOSE_RAD, REACH_RAD = 250, 0.02, 0.12, 0.5
+# At rest leader and follower stay within STILL_RAD for so many samples, and no error is larger than CLOSE_RAD. An
+# urgent change waits for such an error only: with a larger one the arm would be left behind in the middle of a move.
+REST_SAMPLES, STILL_RAD, CLOSE_RAD = 250, 0.02, 0.12
 LOOK_EVERY = 10
 
 

@@ -3,18 +3,20 @@
 It is fed with stretches of work, and says what should be computed in the background and which set should run.
 
     watching, enough seen: a task; its proposal is better by more than its uncertainty: a wish, which comes at a rest
+    another set than that from the start runs: every few seconds a fit, since a load that is taken up is not its fault
     trying, a gain told from chance: kept, watching with the new set
     trying, worse or restless or nothing told after TRIAL_MOST: a wish for the set from before, watching
 
 Over any half minute the error may exceed what the set from the start would have shown by LIMIT at most: a share of
 that, or of its usual error where the person hardly moves. It is looked at with every stretch, and a set on trial goes
-back at once when it is above ALERT.
+back at once when it is above ALERT. Only a model that was fitted just now speaks against a set that was kept, or any
+above twice the LIMIT.
 """
 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
 
@@ -37,6 +39,9 @@ KEPT, ENOUGH, APART = 60, 20, 10
 WORK_RAD = 0.2
 # A set is judged by its last stretch, with so many before it: what the model's integral holds takes time to build up.
 LOOKED = 8
+# While another set than that from the start runs, the model is fitted to so many stretches, and so often; a verdict
+# needs one that knows the arm until FRESH stretches ago.
+FITTED, REFIT, FRESH = 12, 8, 12
 # The longest trial, and how much of it is looked at for swings, in stretches.
 TRIAL_MOST, SWINGS_MOST = 60, 20
 # A set on trial goes back at half of the limit, since it takes a stretch to see it. By chance alone, half a minute
@@ -115,6 +120,8 @@ class Adaptation:
         self.wish: Wish | None = None
         self._budget, self._seed, self._threads = budget, seed, threads
         self._own: list[Stretch] = []  # with the kept set
+        self._newest: deque[Stretch] = deque(maxlen=FITTED)  # with any
+        self._age = self._age_asked = 0  # stretches since those that the model knows; and since those of the task
         self._last_half: deque[tuple[float, float]] = deque(maxlen=HALF_MINUTE)  # error, and what it would have been
         self._scale: Scale | None = None
         self._missed = 0.0  # by how much the last promise was wrong (a logarithm)
@@ -149,6 +156,8 @@ class Adaptation:
     def take(self, stretch: Stretch) -> None:
         """The arm worked for another second."""
         self._since += 1
+        self._age, self._age_asked = self._age + 1, self._age_asked + 1
+        self._newest.append(stretch)
         if self._trial is not None and self._trial.begun:
             self._trial.stretches.append(stretch)
             self._look_at_trial(self._trial)
@@ -167,9 +176,18 @@ class Adaptation:
         else:
             self._own = []
 
-    def answer(self, proposal: Proposal) -> None:
-        """The background is done."""
+    def answer(self, found: Proposal | LiveModel) -> None:
+        """The background is done with a search, or with a fit."""
         self._thinking = False
+        self._age = self._age_asked
+        if isinstance(found, LiveModel):
+            self.live = found
+            self._reckon_again()
+            return
+        self._weigh(found)
+
+    def _weigh(self, proposal: Proposal) -> None:
+        """Wish for what was found, if that promises enough."""
         self.live, self._scale = proposal.live, proposal.scale
         if self.wish is not None or self._asked is not self.kept:
             return
@@ -194,22 +212,21 @@ class Adaptation:
 
     def task(self) -> Task | None:
         """What the background should do now, once; None for nothing."""
-        if self._thinking or self._trial is not None or self.wish is not None:
+        if self._thinking or self.wish is not None:
             return None
-        if len(judged_of(self._own)) < ENOUGH or self._since < APART or not _works(self._own):
-            return None
-        self._thinking, self._since, self._asked = True, 0, self.kept
-        self.searches += 1
-        return Task(
-            self.model,
-            self.live,
-            self.kept,
-            controllers_of(self.start),
-            tuple(self._own),
-            self._budget,
-            self._seed + self.searches,
-            self._threads,
-        )
+        enough = len(judged_of(self._own)) >= ENOUGH and self._since >= APART and _works(self._own)
+        if enough and self._trial is None:
+            self._since, self._asked = 0, self.kept
+            self.searches += 1
+            return self._ask(self.kept, self._own, self._budget)
+        if self.running.crc != self.start.crc and self._age >= REFIT and len(self._newest) == FITTED:
+            return self._ask(self.running, self._newest, 0)
+        return None
+
+    def _ask(self, table: ParameterTable, stretches: Iterable[Stretch], budget: int) -> Task:
+        self._thinking, self._age_asked = True, 0
+        start, seed = controllers_of(self.start), self._seed + self.searches
+        return Task(self.model, self.live, table, start, tuple(stretches), budget, seed, self._threads)
 
     # --- how it decides -----------------------------------------------------------------------------------------------
 
@@ -225,7 +242,9 @@ class Adaptation:
         if self._scale is None or not all(one.joined for one in self._own[-LEAD:]) or len(self._own) <= LEAD:
             return
         self._note_half_minute(self._scale, self._own)
-        if self.kept.crc != self.start.crc and self.wish is None and self._excess(self._scale) > LIMIT:
+        if self.kept.crc == self.start.crc or self.wish is not None:
+            return
+        if self._excess(self._scale) > (LIMIT if self._age <= FRESH else 2 * LIMIT):
             self._give_up_kept(Outcome.WORSE, "it follows worse than the set from the start would")
 
     def _look_at_trial(self, trial: _Trial) -> None:
@@ -240,7 +259,7 @@ class Adaptation:
         trial.seen.append(seen)
         same = self.kept.crc == self.start.crc
         trial.expected.append(by_start if same else self._expected(scale, self.kept, trial.stretches))
-        excess = self._excess(scale)
+        excess, fresh = self._excess(scale), self._age <= FRESH
         if excess > ALERT:
             return self._end(trial, Outcome.WORSE, f"{100 * excess:.0f} % more error in half a minute", urgent=True)
         swings = Swings.of(trial.stretches[-SWINGS_MOST:], self.kept.supply_v)
@@ -249,7 +268,8 @@ class Adaptation:
             if clause:
                 return self._end(trial, Outcome.RESTLESS, clause)
         # Each look is another chance to be wrong: one for every new group.
-        low, high = trial.ratio.within(scale.deviation) if len(trial.seen) % GROUP == 0 else (0.0, np.inf)
+        told = fresh and len(trial.seen) % GROUP == 0
+        low, high = trial.ratio.within(scale.deviation) if told else (0.0, np.inf)
         if high < 1.0 - LEAST_GAIN:
             return self._end(trial, Outcome.KEPT, f"{_lower(trial.ratio.value)} error")
         if low > 1.0:
@@ -264,6 +284,23 @@ class Adaptation:
         is_start = self.running.crc == self.start.crc
         self._last_half.append((seen, seen if is_start else self._expected(scale, self.start, chain)))
         return self._last_half[-1]
+
+    def _reckon_again(self) -> None:
+        """The arm may have changed: what would have been in the last stretches, by the model fitted to them."""
+        trial = self._trial
+        chain = (self._own if trial is None else trial.stretches)[-FITTED - LEAD :]
+        scale = self._scale if trial is None else trial.proposal.scale
+        if scale is None or not all(one.joined for one in chain[1:]):
+            return
+        by_start, by_kept = (
+            scale.expected(foresee(self.live, one, controllers_of(one), chain, self.live.plants[:1])[0]).tolist()
+            for one in (self.start, self.kept)
+        )
+        for back in range(1, min(len(by_start), len(self._last_half)) + 1):
+            self._last_half[-back] = self._last_half[-back][0], by_start[-back]
+        if trial is not None:
+            count = min(len(by_kept), len(trial.expected))
+            trial.expected[len(trial.expected) - count :] = by_kept[len(by_kept) - count :]
 
     def _excess(self, scale: Scale) -> float:
         """How much more error than with the set from the start, as a share, over the last half minute."""

@@ -33,7 +33,9 @@ BLOCK, SAME_ARM = 8, 0.4
 
 @dataclass(frozen=True)
 class Task:
-    """What the background is given. `recent` ran with the controllers of `table`."""
+    """What the background is given. `recent` ran with the controllers of `table`. A `budget` of 0: only fit the model,
+    to them all, whatever controllers they ran with.
+    """
 
     model: Model
     live: LiveModel
@@ -62,7 +64,7 @@ class Proposal:
 
 def propose(task: Task) -> Proposal:
     """Refit the model, search, and compare what was found and the set from the start with the set that runs."""
-    live = task.live.refit(task.recent[-NEWEST:], task.table, task.seed)
+    live = _fit(task)
     running = controllers_of(task.table)
     before = foresee(live, task.table, running, task.recent, live.plants)
     measured = np.array([one.error for one in judged_of(task.recent)])
@@ -85,6 +87,15 @@ def propose(task: Task) -> Proposal:
         if ratios[0] < best[0]:
             best = ratios[0], float(np.std(np.log(ratios))), rows
     return Proposal(live, best[2], best[0], best[1], scale)
+
+
+def work_on(task: Task) -> Proposal | LiveModel:
+    """What a task asks for."""
+    return propose(task) if task.budget else _fit(task)
+
+
+def _fit(task: Task) -> LiveModel:
+    return task.live.refit(task.recent[-NEWEST:], task.table, task.seed)
 
 
 def _count_alike(measured: Floats, predicted: Floats) -> int:

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from greywhale.adapt.background import Background, background
-from greywhale.adapt.change import LEASE_MS, LOOK_EVERY, REACH_RAD, STILL_RAD, RestWatch, SetChanger, with_quick_start
+from greywhale.adapt.change import CLOSE_RAD, LEASE_MS, LOOK_EVERY, STILL_RAD, RestWatch, SetChanger, with_quick_start
 from greywhale.adapt.decide import Adaptation
 from greywhale.adapt.request import AdaptationRequest
 from greywhale.adapt.result import AdaptationResult, say
@@ -142,7 +142,7 @@ class _Session:
         wish = core.wish
         if wish is None or not self._changer.is_ready(wish.table):
             return False
-        if not (self._rest.resting or (wish.urgent and self._rest.error < REACH_RAD)):
+        if not (self._rest.resting or (wish.urgent and self._rest.error < CLOSE_RAD)):
             return False
         self._bump.begin(one)
         self.changes += 1
@@ -154,9 +154,9 @@ class _Session:
 
     def _think(self) -> None:
         """Hand the background what is to be computed, and take what is done."""
-        proposal = self._searches.take()
-        if proposal is not None:
-            self._core.answer(proposal)
+        found = self._searches.take()
+        if found is not None:
+            self._core.answer(found)
         if not self._searches.busy:
             task = self._core.task()
             if task is not None:
