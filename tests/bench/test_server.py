@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, cast
@@ -221,7 +222,7 @@ def test_what_can_be_changed_is_told_with_its_ends_and_as_it_is(server: Server) 
     for fault in found["faults"]:
         for place in fault["places"] or [""]:
             commands.run(server, f"mistake {fault['name']}{place and ':'}{place}")
-    with pytest.raises(UserError, match="can carry a load"):
+    with pytest.raises(UserError, match="can be loaded, pushed or obstructed"):
         commands.run(server, "load 0.2")
 
 
@@ -241,6 +242,27 @@ def test_a_load_hangs_on_the_arm_where_it_is(board: Any) -> None:
         bench.load_tip(mass)
         np.testing.assert_allclose(cast(Any, bench.plant).step([0.0] * 4, 1e-6), before, atol=1e-6)
     assert falls[0.5] > falls[0.0] + 0.01
+
+
+def test_a_hand_pushes_a_joint_against_what_is_in_its_way(eeprom: Path, wall: Wall) -> None:
+    bench = build_bench(BenchOptions())
+    server = serve(bench, wall, eeprom)
+
+    def rest() -> float:
+        for _ in range(500):
+            bench.angles[:] = cast(Any, bench.plant).step([0.0] * 4, 0.001)
+        return float(bench.angles[0])
+
+    bench.place(np.zeros(4))
+    assert commands.run(server, "push 0 0.5") == {"push": 0, "torque_nm": 0.5}
+    assert commands.run(server, "obstacle 0 20")["angle"] == pytest.approx(math.radians(20))
+    assert rest() == pytest.approx(math.radians(20), abs=1e-3)
+    bench.load_tip(0.1)
+    assert rest() == pytest.approx(math.radians(20), abs=1e-3), "neither goes away with another load"
+    commands.run(server, "obstacle 0 none")
+    assert rest() > math.radians(30)
+    commands.run(server, "push 0 0")
+    assert rest() == pytest.approx(rest(), abs=1e-3)
 
 
 def test_a_person_leads_live(server: Server) -> None:
@@ -288,6 +310,7 @@ def test_the_person_takes_up_another_motion_between_two_enables(server: Server, 
         *("", "fly", "speed", "speed 2", "power maybe", "line flip", "line flip much", "line flip 2"),
         *("pot nobody 1 open", "pot leader 4 open", "pot leader x open", "pot leader 1 melted", "status now"),
         *("estop", "estop hit", "speed 0.01", "speed nan", "supply -1", "supply", "load 100", "load nan"),
+        *("obstacle 4 0", "obstacle 0 nan", "obstacle 0", "push 0 100", "push 4 0", "push 0 nan"),
         *("lead 1 2 3", "lead 1 2 3 nan", "lead 1 2 3 7"),
     ],
 )

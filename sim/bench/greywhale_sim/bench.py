@@ -15,7 +15,7 @@ from typing import Protocol
 import numpy as np
 
 from greywhale import arm
-from greywhale.arm.parameters import Tip
+from greywhale.arm.parameters import Stops, Tip
 from greywhale.base.errors import UserError
 from greywhale.base.types import Floats
 from greywhale.protocol.joints import ALL, Joints
@@ -101,7 +101,8 @@ class Bench:
         self.motor_wires = [0, 1, 2, 3]  # which driver each motor is on
         self.floating = 0  # bit i: the wire of potentiometer i is off and nothing pulls its input
         self.plant = plant
-        self._stops = stops_of(plant)
+        self._stops = self._own_stops = stops_of(plant)
+        self._pushes: Floats = np.zeros(4)  # N m
         self.leader = leader
         self.leader_pots = leader_pots
         self.follower_pots = follower_pots
@@ -163,12 +164,35 @@ class Bench:
         self._last_outputs = b""
 
     def load_tip(self, mass: float) -> None:
-        """Let the arm carry so many kg; it is built anew where it is, at rest. Only the built-in arm can."""
+        """Let the arm carry so many kg."""
+        self._build_anew(self._own_arm().parameters.model_copy(update={"tip": Tip(mass=mass)}))
+
+    def obstruct(self, joint: int, angle: float | None) -> None:
+        """Put something hard in a joint's way, at an angle (rad) on either side of it; None takes it away."""
+        parameters = self._own_arm().parameters
+        low, high = (float(ends[joint]) for ends in self._own_stops)
+        if angle is not None and low < angle < high:
+            low, high = (low, angle) if angle > self.angles[joint] else (angle, high)
+        joints = list(parameters.joint)
+        joints[joint] = joints[joint].model_copy(update={"stops": Stops(min=low, max=high)})
+        self._build_anew(parameters.model_copy(update={"joint": tuple(joints)}))
+
+    def push(self, joint: int, torque: float) -> None:
+        """Let a hand push on a joint of the follower (N m), until it is told otherwise."""
+        self._pushes[joint] = torque
+        self._own_arm().set_load(self._pushes)
+
+    def _own_arm(self) -> arm.Arm:
         if not isinstance(self.plant, arm.Arm):
-            raise UserError("only the bench's own arm can carry a load.")
-        parameters = self.plant.parameters
-        self.plant = arm.Arm(parameters.model_copy(update={"tip": Tip(mass=mass)}))
+            raise UserError("only the bench's own arm can be loaded, pushed or obstructed.")
+        return self.plant
+
+    def _build_anew(self, parameters: arm.ArmParameters) -> None:
+        """Where the arm is, at rest."""
+        self.plant = arm.Arm(parameters)
+        self._stops = stops_of(self.plant)
         self.plant.reset(self.angles)
+        self.plant.set_load(self._pushes)
 
     @property
     def tip_kg(self) -> float | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import shlex
 from collections.abc import Callable
 from typing import Any
@@ -24,6 +25,7 @@ QUIT = "quit"  # obeyed by whoever reads the commands
 FARTHEST_RAD = 6.28
 MOST_SUPPLY_V = 30.0
 MOST_LOAD_KG = 2.0
+MOST_PUSH_NM = 20.0
 SLOWEST = 0.05  # simulated seconds a second
 _WIRINGS = {
     "connected": arm.Wiring.CONNECTED,
@@ -178,6 +180,21 @@ def load(server: Server, mass: str) -> Answer:
     return {"load_kg": float(mass)}
 
 
+def obstacle(server: Server, joint: str, degrees: str) -> Answer:
+    angle = None if degrees == "none" else math.radians(float(degrees))
+    if not 0 <= int(joint) <= 3 or (angle is not None and not abs(angle) <= FARTHEST_RAD):
+        raise ValueError
+    server.bench.obstruct(int(joint), angle)
+    return {"obstacle": int(joint), "angle": angle}
+
+
+def push(server: Server, joint: str, torque: str) -> Answer:
+    if not 0 <= int(joint) <= 3 or not abs(float(torque)) <= MOST_PUSH_NM:
+        raise ValueError
+    server.bench.push(int(joint), float(torque))
+    return {"push": int(joint), "torque_nm": float(torque)}
+
+
 def controls(server: Server) -> Answer:
     """What can be changed while a bench runs, between which ends, and how it is now."""
     bench = server.bench
@@ -216,6 +233,8 @@ COMMANDS: dict[str, tuple[Callable[..., Answer], str]] = {
     "help": (hands.explain, ""),
     "supply": (supply, "VOLTS"),
     "load": (load, "KG"),
+    "obstacle": (obstacle, "0..3 DEGREES|none"),
+    "push": (push, "0..3 NM"),
     "speed": (speed, f"{SLOWEST:g}..1|max"),
     "controls": (controls, ""),
 }
