@@ -176,6 +176,6 @@ def test_a_blocked_arm_and_an_uncalibrated_one_are_refused_in_a_sentence(
         assert run(["-q", "commission", *arguments]) == 1
         second = capsys.readouterr().err
         assert running(bench) == (BEFORE, State.DISABLED)
-    assert "its follower did not move (joint 1)" in first, "the board told it"
+    assert "joint 1 (shoulder pitch) did not move when led" in first
     assert "joint 3 (wrist roll) was never calibrated" in second
     assert first.count("\n") == second.count("\n") == 1

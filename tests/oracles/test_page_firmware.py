@@ -91,13 +91,13 @@ def page(scenario: Scenario) -> Run:
 
 
 def without_cycles(frame: Frame) -> object:
-    """A reply without what only a board with cycles can say."""
+    """A reply without what only a board with cycles can say; its work can put an answer off to the next tick."""
     if frame.type == schema.HelloReply.TYPE:
         hello = schema.HelloReply.unpack(frame.payload)
         return replace(hello, board=schema.Board.UNKNOWN, reset_cause=schema.ResetCause.UNKNOWN)
     if frame.type == schema.StatusReply.TYPE:
         status = schema.StatusReply.unpack(frame.payload)
-        return replace(status, tick_us_max=0, telemetry_dropped=0)
+        return replace(status, tick=0, tick_us_max=0, telemetry_dropped=0)
     return frame
 
 

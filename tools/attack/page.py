@@ -24,14 +24,14 @@ FAULTS_HEAD = """## The faults and how soon the motors are off
 
 From the moment at which the cause began to the drivers' enable pin, the longest of all moments on each board,
 to 0.25 ms. The [link reference](link.md#fault) has the remedies. Without a time: a trial that other faults may end as
-well, see its row below. Not in the table: `params` is found at start, with the motors off; the times of `tracking` and
-`unrest` are parameters; a hang turns the motors off as `late_tick` before the watchdog restarts the board, if
-interrupts are on.
+well, see its row below. Not in the table: `params` is found at start, with the motors off; the times of `tracking`,
+`stalled` and `unrest` are parameters; a hang turns the motors off as `late_tick` before the watchdog restarts the
+board, if interrupts are on.
 """
 
 MOSTLY = 0.95  # a flipped bit may also be that of another fault's parameter
 
-# The injected fault that shows a fault best. A person must move the joint before `runaway` and `stalled` can show.
+# The injected fault that shows a fault best. A person must move the joint before `runaway` can show.
 INJECTED_AS = {
     "pot_low": "follower open",
     "pot_high": "follower shorted",
@@ -40,7 +40,6 @@ INJECTED_AS = {
     "estop": "emergency stop pressed",
     "speed": "follower reads neighbour",
     "runaway": "motor reversed",
-    "stalled": "joint blocked",
     "memory": "bit of the running set flips",
 }
 

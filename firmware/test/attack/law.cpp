@@ -85,12 +85,21 @@ void Law::judge_size(std::uint8_t joint, int volts_mv) const {
   must(100 * away <= 56 * supply, "the duty is the one nearest to the voltage");
 }
 
+// A joint that does not move gets less than the law asks for, and never something the other way.
+bool Law::is_held_back(int volts_mv, int asked_mv) const {
+  return table_.stall_volts != 0 && std::abs(volts_mv) < std::abs(asked_mv) &&
+         (volts_mv == 0 || (volts_mv < 0) == (asked_mv < 0));
+}
+
 void Law::judge(const wire::Sample& sample, bool leading) {
   if (control_) predict(sample, leading);
   control_ = false;
   for (std::uint8_t i = 0; i < 4; ++i) {
     judge_size(i, sample.voltage[i]);
-    must(!known_ || sample.voltage[i] == volts_mv_[i], "the voltage is that of the law with the set that should run");
+    must(!known_ || sample.voltage[i] == volts_mv_[i] || is_held_back(sample.voltage[i], volts_mv_[i]),
+         "the voltage is that of the law with the set that should run");
+    // What a controller keeps depends on what it may give.
+    known_ = known_ && sample.voltage[i] == volts_mv_[i];
   }
 }
 

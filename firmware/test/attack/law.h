@@ -23,6 +23,7 @@ class Law {
 
  private:
   void predict(const wire::Sample& sample, bool leading);
+  bool is_held_back(int volts_mv, int asked_mv) const;
   void judge_size(std::uint8_t joint, int volts_mv) const;
   std::uint16_t limit_mv() const;
 

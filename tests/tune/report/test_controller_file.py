@@ -24,8 +24,8 @@ def test_it_is_a_controller_file_with_the_very_numbers(outcome: TuningResult, tm
 
 def test_it_tells_the_crc_that_the_board_will_have(outcome: TuningResult) -> None:
     defaults = ParameterTable.defaults()
-    assert outcome.model.stall is not None
-    changed = defaults.with_raw({"joint2.kp": defaults["joint2.kp"] + 1, "stall_volts": outcome.model.stall.raw})
+    assert outcome.model.travel is not None
+    changed = defaults.with_raw({"joint2.kp": defaults["joint2.kp"] + 1} | outcome.model.travel.raw())
     assert provenance(outcome)["parameter_crc"] == f"0x{changed.crc:04x}"
 
 

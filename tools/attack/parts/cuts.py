@@ -15,7 +15,7 @@ from tools.attack.part import Part, Piece, Row, split
 
 CUTS, PER_PIECE = 10_000, 250
 SUPPLY_MV = 5000.0
-SAVE_MS = 900.0  # a save of a whole set takes up to 750 ms
+SAVE_MS = 1000.0  # a save of a whole set takes up to 910 ms
 HISTORIES = ("the first save of a blank EEPROM", "the second save, into the other bank", "the third, over the oldest")
 CHANGED = ("kp", "kd", "ki", "zero", "soft_start_ms", "tracking_ms")
 SAVE = frames.encode_frame(schema.ParamSaveRequest.TYPE, 9, b"")

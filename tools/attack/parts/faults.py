@@ -7,15 +7,15 @@ from functools import partial
 from greywhale.files import controller
 from greywhale.files.arm import default_arm
 from greywhale.files.paper_tables import paper_table
-from greywhale.protocol.table import ParameterTable, physical
-from greywhale.tune.stall import STALL_VOLTS, stall_limit
+from greywhale.protocol.table import ParameterTable
+from greywhale.tune.travel import travel_of
 from greywhale_sim.wiring import BOARDS
 from tools.attack.arm_faults import LEASE_MS, SOFT_START_MS, Trial, begin, faults, person, suffer
 from tools.attack.arm_on_board import ArmOnBoard
 from tools.attack.copies import in_a_copy
 from tools.attack.part import Part, Piece, Row, split
 
-MOMENTS, PER_PIECE = 1000, 20
+MOMENTS, PER_PIECE = 250, 10
 AT_ONCE_MS = 10.0
 # What takes longer, and why: docs/firmware.md. A hang inside an interrupt is one with interrupts off.
 SLOWER_MS = {
@@ -31,8 +31,8 @@ SLOWER_MS = {
 BY_ERROR = {"follower frozen", "follower reads neighbour", "follower floats"}
 BY_WAY = {"motor dead", "motor reversed", "follower pot reversed", "joint blocked"}
 FARTHEST_RAD = 0.5
-# What these cost depends on the voltage that a standing joint may have: a row for each `stall_volts`.
-BY_LIMIT = {"follower frozen", "follower floats"}
+# What these cost depends on what the board knows of the arm: a row without and a row with the numbers of `tune`.
+BY_TRAVEL = {"follower frozen", "follower floats"}
 
 
 def is_violation(name: str, trial: Trial) -> bool:
@@ -51,33 +51,33 @@ def count(board: str, name: str, trial: Trial, limit: str = "") -> Row:
     return Row(f"{board}: {name}{limit}", 1, int(is_violation(name, trial)), {seen: 1}, worst)
 
 
-def tuned_stall_volts() -> int:
-    """`stall_volts` as `greywhale tune` works it out for the default arm, raw."""
-    limit = stall_limit(default_arm(), ParameterTable.defaults(), samples=1)
-    assert limit is not None
-    return limit.raw
+def tuned_travel() -> dict[str, int]:
+    """How far a voltage moves each joint, as `greywhale tune` works it out for the default arm, raw."""
+    travel = travel_of(default_arm(), ParameterTable.defaults(), samples=1)
+    assert travel is not None
+    return travel.raw()
 
 
 def run(piece: Piece) -> list[Row]:
     """At each moment every fault in a copy of its own: all of them meet the same motion and the same phase of a tick.
 
-    Even seeds run the paper's untuned controllers, odd ones its tuned ones and the `stall_volts` that belongs to the
-    arm. Unrest is off: the tuned ones make a joint of this arm ring at times, which is not the fault that is meant.
+    Even seeds run the paper's untuned controllers, odd ones its tuned ones and the numbers of travel that belong to
+    the arm. Unrest is off: the tuned ones make a joint of this arm ring at times, which is not the fault that is meant.
     """
     seed = piece["seed"]
-    stall = tuned_stall_volts() if seed % 2 else ParameterTable.defaults()["stall_volts"]
-    limit = f", stall_volts {physical(STALL_VOLTS, stall):g} V"
+    travel = tuned_travel() if seed % 2 else {}
+    known = ", travel known" if travel else ", travel unknown"
     arm = ArmOnBoard(piece["board"], person(seed), seed)
     table = paper_table(("before_tuning", "table_10")[seed % 2])
     changes = {key: int(raw) for key, raw in controller.load(table).raw_values().items()}
-    arm.run_set(changes | {"soft_start_ms": SOFT_START_MS, "unrest_amplitude": 0, "stall_volts": stall})
+    arm.run_set(changes | {"soft_start_ms": SOFT_START_MS, "unrest_amplitude": 0} | travel)
     chosen = {name: inject for name, inject in faults().items() if name in piece.get("faults", faults())}
     rows = []
     for moment in range(piece["trials"]):
         begin(arm)
         for name, inject in chosen.items():
             trial = in_a_copy(partial(suffer, arm, inject, moment % 4))
-            rows.append(count(piece["board"], name, trial, limit if name in BY_LIMIT else ""))
+            rows.append(count(piece["board"], name, trial, known if name in BY_TRAVEL else ""))
     return rows
 
 
@@ -89,7 +89,8 @@ PART = Part(
     "faults",
     "From a fault to the motors off",
     f"""The real images on both simulated boards with the default arm, a person's motion and the paper's controllers
-        before and after tuning, those with the `stall_volts` that `tune` works out for this arm. At {MOMENTS:,} random
+        before and after tuning, those with the numbers of travel that `tune` works out for
+        this arm. At {MOMENTS:,} random
         moments of a run, and of a tick, each fault begins. The motors must be off within {AT_ONCE_MS:g} ms; within
         {LEASE_MS + 2} ms for the lease, 20 ms for a hang (the watchdog's time) and for a wire that touches only 2 ms
         in 10, 30 ms for a flood, 24 ms for a supply that sinks (the brown-out detector acts after 23), 103 ms for a
@@ -100,7 +101,7 @@ PART = Part(
     (
         "firmware/lib",
         "firmware/src",
-        "host/src/greywhale/tune/stall.py",
+        "host/src/greywhale/tune/travel.py",
         "shared",
         "sim/board",
         "sim/arm",

@@ -20,8 +20,13 @@ bool App::service() {
   const uint16_t age_us = hal::tick_age_us();
   if (budget_.is_spent(age_us)) return false;
   server_.note_lost_bytes(tick_);
-  if (!LinkServer::can_reply()) return false;
-  return tick_.set_changes() ? apply_set(age_us) : serve_link(age_us);
+  const bool serves = LinkServer::can_reply() && !tick_.set_changes();
+  if (serves && hal::rx_available() && budget_.may_serve_link_first(age_us)) return receive();
+  if (!TickBudget::may_work(age_us)) return false;
+  if (serves && server_.send_due(tick_)) return true;
+  if (tick_.check_memory()) return true;
+  if (serves) return serve_link();
+  return LinkServer::can_reply() && apply_set(age_us);
 }
 
 // Requests wait meanwhile. The next one is judged by what a tick has seen with the new set.
@@ -32,10 +37,7 @@ bool App::apply_set(uint16_t age_us) {
   return true;
 }
 
-bool App::serve_link(uint16_t age_us) {
-  if (hal::rx_available() && budget_.may_serve_link_first(age_us)) return receive();
-  if (!TickBudget::may_work(age_us)) return false;
-  if (server_.send_due(tick_)) return true;
+bool App::serve_link() {
   if (hal::rx_available()) return receive();
   return tick_.sets().work_on_save();
 }

@@ -16,7 +16,7 @@ class App {
 
  private:
   bool apply_set(uint16_t age_us);
-  bool serve_link(uint16_t age_us);
+  bool serve_link();
   bool receive();
 
   Tick tick_;

@@ -16,7 +16,7 @@ namespace app {
 
 class Tick {
  public:
-  Tick() : finished_(true), set_touched_(false) {}
+  Tick() : finished_(true), checked_(true), set_touched_(false) {}
   void begin();
   void run();  // when hal::tick_pending()
 
@@ -24,8 +24,10 @@ class Tick {
   // Moves the host's reference on, once in each tick and before anything else. When the motors have gone off, for
   // whatever reason, the leader arm leads again before any request is taken. False when there was nothing to do.
   bool move_reference();
-  // Looks at a joint, checks memory and prepares the next tick, once after each. False when that has been done.
+  // Looks at a joint and prepares the next tick, once after each. False when that has been done.
   bool finish();
+  // Checks some of the memory that the tick works by, once after each. False when that has been done.
+  bool check_memory();
   // A set is being applied, or has been since the last tick, or the motors wait for the safe set.
   bool set_changes() const { return sets_.applying() || set_touched_ || sets_.safe() == ParameterSets::Safe::applied; }
   ParameterSets::Progress apply_step();  // while sets().applying()
@@ -64,6 +66,8 @@ class Tick {
   void control();
   template <uint8_t joint>
   void control_joint(uint16_t limit_mv);
+  int16_t gravity_mv(uint8_t joint) const;
+  uint16_t most_mv(uint8_t joint, int16_t gravity_mv) const;
   void set_limit();
   void note_rails();
   void look_at_joint();
@@ -75,7 +79,6 @@ class Tick {
   Part checked_part(uint8_t number) const;
   bool check_some_bytes();
   void learn_memory();
-  void check_memory();
 
   Sampling sampling_;
   Controllers controllers_;
@@ -85,12 +88,13 @@ class Tick {
   ParameterSets sets_;
   Lead lead_;
   MemoryCheck memory_;
+  uint16_t most_mv_[hal::joint_count] = {};  // what the joints' last looks leave to the controllers
 
   uint32_t number_ = 0;
   uint16_t late_ticks_ = 0, longest_us_ = 0;
   uint8_t until_control_ = 1;  // ticks
   bool drivers_on_ = false;
-  bool finished_ : 1;
+  bool finished_ : 1, checked_ : 1;
   bool set_touched_ : 1;  // by a step of applying it since the last tick, so the next one may be late uncounted
 };
 

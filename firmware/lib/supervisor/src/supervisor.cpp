@@ -100,13 +100,13 @@ void Supervisor::look_at_joint(uint8_t joint, const JointSeen& seen, const Motio
 
 void Supervisor::watch_joint(uint8_t joint, const JointSeen& seen, const MotionLimits& limits) {
   const auto reference = static_cast<int16_t>(seen.follower + seen.error);
-  switch (motion_.look(joint, seen.follower, seen.volts_mv, seen.supply_mv, limits)) {
+  switch (motion_.look(joint, seen, limits)) {
     case MotionFault::speed: return raise(Fault::speed, joint);
     case MotionFault::runaway: return raise(Fault::runaway, joint);
     case MotionFault::stalled: return raise(Fault::stalled, joint);
     case MotionFault::none: break;
   }
-  if (is_lost(joint, seen.distance)) return raise(Fault::tracking, joint);
+  if (is_lost(joint, size_of(seen.error))) return raise(Fault::tracking, joint);
   if (unrest_.look(joint, reference, seen.error)) raise(Fault::unrest, joint);
 }
 

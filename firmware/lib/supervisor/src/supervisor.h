@@ -39,14 +39,6 @@ struct Distances {
   uint16_t of[joint_count];
 };
 
-// What the last tick has seen of a joint, and what its motor was told.
-struct JointSeen {
-  int16_t follower, error;  // q12 rad
-  uint16_t distance;
-  int16_t volts_mv;
-  uint16_t supply_mv;
-};
-
 // Why a request is refused, or NackCode::none.
 struct Reply {
   NackCode refusal;
@@ -87,6 +79,9 @@ class Supervisor {
   Fault fault() const { return fault_; }
   uint8_t fault_where() const { return fault_where_; }
   bool motors_on() const { return state_ == State::soft_start || state_ == State::following; }
+  // Bit i: joint i is pushed gently at most; is held back.
+  Hold hold(uint8_t joint) const { return motion_.hold(joint); }
+  int16_t load_mv(uint8_t joint) const { return motion_.load_mv(joint); }
   // Share of the supply that the controllers may use in the next tick; 32768 is all of it.
   uint16_t share_q15() const { return soft_start_.share_q15(); }
 

@@ -53,7 +53,7 @@ struct Arm : Supervisor {
       tick(seen);
       note_rails(seen);
       const auto joint = static_cast<std::uint8_t>(now % joint_count);
-      look_at_joint(joint, {0, 0, seen.distances.of[joint], 0, 15000}, {});
+      look_at_joint(joint, {0, static_cast<std::int16_t>(seen.distances.of[joint]), 0, 0}, {});
     }
     last = seen;
     return *this;

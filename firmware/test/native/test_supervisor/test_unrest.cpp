@@ -47,8 +47,7 @@ struct Arm : Supervisor {
 
   void look_at(std::uint8_t joint, double leader, double error) {
     const auto reference = std::lround(q12 * leader), apart = std::lround(q12 * error);
-    look_at_joint(joint, {static_cast<std::int16_t>(reference - apart), static_cast<std::int16_t>(apart), 0, 0, 15000},
-                  {});
+    look_at_joint(joint, {static_cast<std::int16_t>(reference - apart), static_cast<std::int16_t>(apart), 0, 0}, {});
   }
 
   unsigned now = 0;  // ms

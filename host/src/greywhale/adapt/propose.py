@@ -72,7 +72,7 @@ def propose(task: Task) -> Proposal:
     before = before[:, -count:]
     scale = Scale.of(measured[-count:], before[0])
     found = tune(
-        replace(task.model, table=task.table, plants=live.plants, doubts=(), stall=None),
+        replace(task.model, table=task.table, plants=live.plants, doubts=(), travel=None),
         budget=task.budget,
         seed=task.seed,
         threads=task.threads,

@@ -206,8 +206,8 @@ def _advice(found: Summary) -> str:
     if hold <= MUCH_TO_HOLD * shipped or any(one.share >= 1.0 for one in found.joints):
         return ""
     return (
-        f"a joint needs {hold:.1f} V to hold still, and the board takes more than stall_volts ({shipped:g} V) without "
-        f"motion for a stall: run `greywhale params set stall_volts={np.ceil(1.5 * hold):.0f}`."
+        f"a joint needs {hold:.1f} V to hold still, and the board holds a joint back that has more than stall_volts "
+        f"({shipped:g} V) without motion: run `greywhale params set stall_volts={np.ceil(1.5 * hold):.0f}`."
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -36,7 +36,7 @@ class LearntController:
     controllers: Controllers
     doubts: tuple[str, ...]
     steady: bool  # whether all margins hold on the model
-    stall_volts: int | None = None  # raw, None where the board's stays
+    others: dict[str, int] = field(default_factory=dict)  # raw, what the model says of the board's other parameters
 
 
 def find_model(
@@ -101,8 +101,8 @@ def find_controllers(
         known = {"steady": outcome.steady, "doubts": list(model.doubts)}
         book.note(name, known)
     found = controller_file.load(path)
-    stall = found.raw_values().get("stall_volts")
-    return LearntController(model.arm, controller_row(found), tuple(known["doubts"]), known["steady"], stall)
+    others = found.other_values()
+    return LearntController(model.arm, controller_row(found), tuple(known["doubts"]), known["steady"], others)
 
 
 def read_model(path: Path, seed: int, params: Path) -> Model:

@@ -71,8 +71,7 @@ class _Commissioning:
         for number in range(1, self.options.rounds + 1):
             learnt = self._learn(number)
             first = len(trials.done)
-            if learnt.stall_volts is not None:
-                trials.stall_volts = learnt.stall_volts
+            trials.others |= learnt.others
             with self._arm(f"round {number}") as arm:
                 self._try(arm, learnt)
             self.rounds.append(Round(number, learnt, tuple(trials.done[first:])))

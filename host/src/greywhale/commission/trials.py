@@ -94,7 +94,7 @@ class Trials:
         self.table = before
         self.done: list[Trial] = []
         self.foresight: Foresight | None = None  # of the model of this round
-        self.stall_volts = before["stall_volts"]  # raw, of the trials to come
+        self.others: dict[str, int] = {}  # raw, what the model says besides controllers, for the trials to come
         self._befores: list[Measures] = []
 
     @property
@@ -103,7 +103,7 @@ class Trials:
 
     def table_of(self, rows: Controllers) -> ParameterTable:
         """The board's table with these controllers, for a trial to come."""
-        return self.table.with_controllers(rows).with_raw({"stall_volts": self.stall_volts})
+        return self.table.with_controllers(rows).with_raw(self.others)
 
     def known(self) -> bool:
         """Whether the next trial was played before an interrupt, so that no arm is needed for it."""

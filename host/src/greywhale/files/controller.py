@@ -1,4 +1,4 @@
-"""controller.toml: the fuzzy sets and gains of four joints, and on request the board's `stall_volts`.
+"""controller.toml: the fuzzy sets and gains of four joints, and how far a voltage moves each joint.
 
 They are checked before any of them reaches a board. Reading a written file back gives the board's own numbers. The sets
 are named as in the paper: NE [-1,-1,Ne_c,0], ZE [Ze_a,0,Ze_c], PE [0,Pe_b,1,1], and the same for the change of error
@@ -28,6 +28,8 @@ from greywhale.protocol.table import CONTROLLER_COLUMNS, ParameterTable
 # No flank of a fuzzy set may be narrower than this.
 NARROWEST = 0.01
 GAINS = ("kp", "kd", "ki", "ku")
+OF_A_JOINT = ("speed_per_volt", "time_constant", "breakaway_volts")
+OF_THE_ARM = ("gravity_1", "gravity_12", "gravity_2")
 _STALL = schema.PARAMETER_BY_NAME["stall_volts"]
 
 
@@ -88,6 +90,27 @@ class JointController(toml_file.Table):
         ]
 
 
+class Travel(toml_file.Table):
+    """How far a voltage moves each joint: by these numbers the board holds a joint back that does not move.
+
+    Of joint 0..3: `speed_per_volt` (rad/(s V)), `time_constant` (ms), `breakaway_volts` (V). Against gravity, with the
+    arm level: `gravity_1`, `gravity_12` (V at joint 1), `gravity_2` (V at joint 2).
+    """
+
+    speed_per_volt: tuple[float, float, float, float]
+    time_constant: tuple[float, float, float, float]
+    breakaway_volts: tuple[float, float, float, float]
+    gravity_1: float
+    gravity_12: float
+    gravity_2: float
+
+    def parameters(self) -> list[tuple[Parameter, float]]:
+        """Each parameter with its physical value."""
+        names = {f"joint{joint}.{key}": getattr(self, key)[joint] for key in OF_A_JOINT for joint in range(JOINTS)}
+        names |= {key: getattr(self, key) for key in OF_THE_ARM}
+        return [(schema.PARAMETER_BY_NAME[name], value) for name, value in names.items()]
+
+
 class Controller(toml_file.Table):
     """Controllers of joint 0..3, and where their numbers come from."""
 
@@ -95,6 +118,7 @@ class Controller(toml_file.Table):
 
     source: str = ""
     stall_volts: float | None = None  # V: the board's own stays where the file says nothing
+    travel: Travel | None = None  # the same
     joint: tuple[JointController, ...] = Field(min_length=JOINTS, max_length=JOINTS)
     tuning: dict[str, Any] | None = None  # how `greywhale tune` found it and what it expects; no board gets it
 
@@ -109,12 +133,17 @@ class Controller(toml_file.Table):
 
     def raw_values(self) -> dict[str, int]:
         """Parameter name -> raw value, for everything that a controller file says."""
-        others = {} if self.stall_volts is None else {_STALL.name: _STALL.to_raw(self.stall_volts)}
-        return others | {
+        return self.other_values() | {
             parameter.name: parameter.to_raw(value)
             for number, joint in enumerate(self.joint)
             for _, parameter, value in joint.parameters(number)
         }
+
+    def other_values(self) -> dict[str, int]:
+        """The same of what is not in a controller."""
+        stall = {} if self.stall_volts is None else {_STALL.name: _STALL.to_raw(self.stall_volts)}
+        travel = [] if self.travel is None else self.travel.parameters()
+        return stall | {parameter.name: parameter.to_raw(value) for parameter, value in travel}
 
     def table(self, rest: ParameterTable | None = None) -> ParameterTable:
         """A whole parameter table with these controllers. The other values are as given, or the firmware's defaults."""
@@ -147,16 +176,17 @@ def save(
     *,
     header: Sequence[str] = (),
     notes: Sequence[str] = ("",) * JOINTS,
-    stall_volts: float | None = None,
+    travel: Mapping[str, int] | None = None,
     tuning: Mapping[str, Any] | None = None,
 ) -> None:
     """Write a controller file, or nothing at all where a board would refuse it.
 
     `rows` are raw as a board stores them: (4, 13), a joint's keys in the order of its parameters (sets 1/16384, gains
-    1/65536, mV, control periods); an int32 array is one. `load` gives the same raw values back. `header` are lines of
-    comment on top, `notes` one for each joint.
+    1/65536, mV, control periods); an int32 array is one. `travel` are the raw parameters of Travel by
+    their names. `load` gives the same raw values back. `header` are lines of comment on top, `notes` one for each
+    joint.
     """
-    text = to_text(rows, source, header=header, notes=notes, stall_volts=stall_volts, tuning=tuning)
+    text = to_text(rows, source, header=header, notes=notes, travel=travel, tuning=tuning)
     toml_file.loads(text, Controller, str(path))
     write_text(path, text)
 
@@ -167,21 +197,30 @@ def to_text(
     *,
     header: Sequence[str] = (),
     notes: Sequence[str] = ("",) * JOINTS,
-    stall_volts: float | None = None,
+    travel: Mapping[str, int] | None = None,
     tuning: Mapping[str, Any] | None = None,
 ) -> str:
     """The text of a controller file; see `save`."""
     lines = [*(f"# {line}".rstrip() for line in header), f"source = {toml_text.value(source)}"]
-    if stall_volts is not None:
-        lines.append(f"stall_volts = {toml_text.value(stall_volts)}")
     for joint, (row, note) in enumerate(zip(rows, notes, strict=True)):
         values = _in_file(joint, row)
         lines += ["", f"[[joint]]  # {joint}" + (f": {note}" if note else "")]
         lines += [f"{key} = {toml_text.value(values[key])}" for key in (*GAINS, "ce_ticks")]
         lines += ["[joint.sets]", *(f"{key} = {toml_text.value(values[key])}" for key in Sets.model_fields)]
+    if travel is not None:
+        lines += ["", "[travel]  # how far a voltage moves each joint", *_travel_lines(travel)]
     if tuning is not None:
         lines += ["", *toml_text.table("tuning", tuning)]
     return "\n".join(lines) + "\n"
+
+
+def _travel_lines(raw: Mapping[str, int]) -> list[str]:
+    def physical(name: str) -> float:
+        return schema.PARAMETER_BY_NAME[name].to_physical(raw[name])
+
+    values: dict[str, Any] = {key: [physical(f"joint{joint}.{key}") for joint in range(JOINTS)] for key in OF_A_JOINT}
+    values |= {key: physical(key) for key in OF_THE_ARM}
+    return [f"{key} = {toml_text.value(value)}" for key, value in values.items()]
 
 
 def _in_file(joint: int, row: Iterable[int]) -> dict[str, float]:

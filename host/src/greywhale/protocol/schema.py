@@ -18,10 +18,10 @@ from typing import ClassVar
 from .declared import Described, Field, Group, Message, Parameter, Table, check_length
 
 PROTOCOL = 1
-SCHEMA_HASH = 0x106689E6
+SCHEMA_HASH = 0xA4FBF154
 MAX_PAYLOAD = 48
 REPLY_BIT = 0x80
-LAYOUT = 3
+LAYOUT = 4
 
 
 class State(Described):
@@ -59,7 +59,7 @@ class Fault(Described):
     ESTOP = 9, "the emergency stop was pressed", "Release the emergency stop once it is safe, then clear the fault; without such a button set estop_input to 0, or check its wire."
     SPEED = 10, "a follower's potentiometer jumped, or turned faster than any joint does", "Check that potentiometer's three wires, its wiper and its coupling to the joint, or raise speed_limit, then clear the fault."
     RUNAWAY = 11, "a follower moved against its motor's voltage, faster and faster", "Check motor_sign, both motor wires and the sign of the potentiometer's scale, and that the potentiometer is that joint's own, then clear the fault."
-    STALLED = 12, "a motor had voltage, but its follower did not move", "Check for something in the joint's way, its motor supply, and that its potentiometer turns with it; for a heavy load raise stall_volts or stall_ms, then clear the fault."
+    STALLED = 12, "a motor had voltage, but its follower did not move", "Check for something in the joint's way, its motor supply, and that its potentiometer turns with it; for a heavy load raise breakaway_volts or stall_volts, then clear the fault."
     MEMORY = 13, "the running parameters had changed in the board's memory", "Upload a controller file with `greywhale upload` or reset the board; if it comes back, check the board's supply for noise."
 
 
@@ -1023,11 +1023,11 @@ TABLE = Table((
         Field("unrest_time", "u8", "s", 0.1, 2, 60, (11,), False, None, "time of unrest that becomes a fault"),
         Field("unrest_action", "u8", "", 1.0, 0, 1, (0,), False, None, "what unrest does: 0 turns the motors off, 1 goes on with the safe controllers, and turns the motors off at the next unrest"),
     )),
-    Group("", 1, "What a follower's motion must be like: a reading that lies, a motor or potentiometer the wrong way round and a stuck joint are faults.", 2, (
+    Group("", 1, "What a follower's motion must be like: a reading that lies and a motor or potentiometer the wrong way round are faults. A joint that does not go where its voltage should have moved it is held back.", 2, (
         Field("speed_limit", "u8", "rad/s", 1.0, 0, 100, (25,), False, None, "a follower's reading that moves faster is a fault; 0 turns the check off"),
         Field("runaway_limit", "u8", "rad", 0.0078125, 0, 192, (40,), False, None, "way of a follower against its voltage of at least 2 V, without slowing down, that becomes a fault; 0 turns the check off"),
-        Field("stall_volts", "u8", "V", 0.1, 0, 250, (32,), False, None, "voltage above which a follower must move; more than any joint needs to hold its load. 0 turns the check off"),
-        Field("stall_ms", "u8", "ms", 4.0, 5, 125, (42,), False, None, "time above stall_volts without motion that becomes a fault; half of it with more than half the supply, and time below takes off three times as much"),
+        Field("stall_volts", "u8", "V", 0.1, 0, 250, (32,), False, None, "voltage above which a follower must move: breakaway_volts of joints that have none. 0 turns the check off"),
+        Field("stall_time", "u8", "s", 0.25, 4, 240, (80,), False, None, "time that a joint may be held back before that is a fault"),
     )),
     Group("", 1, "A button that turns the motors off, between the emergency stop's pin and ground.", 2, (
         Field("estop_input", "u8", "", 1.0, 0, 2, (1,), False, None, "the emergency stop: 0 is none, 1 a button that closes to ground (without one, nothing is stopped), 2 one that opens, so that a broken wire stops as well"),
@@ -1037,6 +1037,16 @@ TABLE = Table((
     )),
     Group("joint", 4, "How one joint's change of error is formed.", 3, (
         Field("ce_ticks", "u8", "control periods", 1.0, 1, 20, (1, 1, 1, 1), False, None, "the change of error is the error less that of so many control periods ago; more make the motor quieter and the controller later"),
+    )),
+    Group("joint", 4, "How far a voltage moves one joint. `greywhale tune` works these out; the defaults suit an arm of which nothing is known.", 4, (
+        Field("speed_per_volt", "u8", "rad/(s V)", 0.03125, 1, 255, (24, 24, 24, 24), False, None, "speed that a volt gives in the end, beyond those for gravity and friction"),
+        Field("time_constant", "u8", "ms", 4.0, 1, 255, (100, 100, 100, 100), False, None, "time in which the speed reaches 63 % of that"),
+        Field("breakaway_volts", "u8", "V", 0.1, 0, 250, (0, 0, 0, 0), False, None, "voltage beyond that against gravity with which the joint must move. 0: stall_volts"),
+    )),
+    Group("", 1, "The voltages that hold the arm against gravity: gravity_1 cos(q1) + gravity_12 cos(q1 + q2) at joint 1, gravity_2 cos(q1 + q2) at joint 2. `greywhale tune` works them out; with 0 stall_volts must be enough for it.", 4, (
+        Field("gravity_1", "i8", "V", 0.1, -127, 127, (0,), False, None, "at joint 1 for link 1, level"),
+        Field("gravity_12", "i8", "V", 0.1, -127, 127, (0,), False, None, "at joint 1 for what joint 2 carries, level"),
+        Field("gravity_2", "i8", "V", 0.1, -127, 127, (0,), False, None, "at joint 2 for what it carries, level"),
     )),
 ))
 PARAMETERS: tuple[Parameter, ...] = TABLE.parameters

@@ -26,7 +26,7 @@ from greywhale.simulate.controllers import controllers_of
 from greywhale.tune import model_checks as checks
 from greywhale.tune.model_checks import Doubt, Identification
 from greywhale.tune.model_edits import UNSEALED, doubt_edits
-from greywhale.tune.stall import StallLimit, stall_limit
+from greywhale.tune.travel import Travel, travel_of
 
 SAMPLES = 8
 MOST_SAMPLES = 1000  # every one is simulated for every controller that is tried
@@ -43,7 +43,7 @@ class Model:
     doubts: tuple[str, ...]
     file: str
     digest: str  # SHA-256 of the file, hexadecimal
-    stall: StallLimit | None = None  # None: the board's stays, because nothing says how uncertain the arm is
+    travel: Travel | None = None  # None: the board's stays, because nothing says how uncertain the arm is
 
     @property
     def controllers(self) -> NDArray[np.int32]:
@@ -79,11 +79,11 @@ def load_model(
     require_same(str(path), identified.joints_in_use, table.name, table.joints_in_use)
     doubts = _doubts(identified, facts, table, arm)
     plants = plant_row(identified)[None]
-    stall = None
+    travel = None
     if facts is not None and facts.covariance is not None:
         plants = sampled_plants(identified, samples, seed)
         doubts += checks.doubt_precision(identified, table)
-        stall = stall_limit(identified, table)
+        travel = travel_of(identified, table)
     doubts += table_doubts
     if doubts and not force:
         raise UserError(_refusal(str(path), doubts))
@@ -96,7 +96,7 @@ def load_model(
         doubts=(*(doubt.reason + "." for doubt in doubts), *remarks),
         file=str(path),
         digest=hashlib.sha256(content_of(path)).hexdigest(),
-        stall=stall,
+        travel=travel,
     )
 
 

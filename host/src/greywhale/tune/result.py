@@ -13,7 +13,7 @@ from greywhale.tune.judge.margins import Margin, MarginFacts
 from greywhale.tune.model import Model
 from greywhale.tune.search.lockstep import SearchState
 from greywhale.tune.search.space import STRATEGIES
-from greywhale.tune.stall import StallFacts
+from greywhale.tune.travel import TravelFacts
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ class TuningFacts(TypedDict):
     margins: list[MarginFacts]  # with the controllers after; empty where the tuning was interrupted
     held_out: list[HeldOutFacts]  # motions that nobody trained on
     curves: PerJoint[CurveFacts]
-    stall: StallFacts | None  # null: the board's own limit stays
+    travel: TravelFacts | None  # null: the board's own numbers stay
     notes: list[str]
 
 
@@ -105,9 +105,9 @@ class TuningResult:
 
     @property
     def board_table(self) -> ParameterTable:
-        """The table with what the controller file says: the controllers, and `stall_volts` where the model knows it."""
-        stall = self.model.stall
-        return self.table.with_controllers(self.after).with_raw({} if stall is None else {"stall_volts": stall.raw})
+        """The table with what the controller file says: the controllers, and the travel where the model knows it."""
+        travel = self.model.travel
+        return self.table.with_controllers(self.after).with_raw({} if travel is None else travel.raw())
 
     @property
     def steady(self) -> bool:
@@ -133,7 +133,7 @@ class TuningResult:
             "margins": [margin.as_dict() for margin in self.margins],
             "held_out": [one.as_dict() for one in self.held_out],
             "curves": [{"evaluations": list(one.evaluations), "cost": list(one.cost)} for one in self.curves],
-            "stall": None if self.model.stall is None else self.model.stall.as_dict(),
+            "travel": None if self.model.travel is None else self.model.travel.as_dict(),
             "notes": list(self.notes),
         }
 

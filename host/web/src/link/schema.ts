@@ -4,7 +4,7 @@
 import { Enumeration, Message, Request, Table } from "./declared";
 
 export const PROTOCOL = 1;
-export const SCHEMA_HASH = 0x106689e6;
+export const SCHEMA_HASH = 0xa4fbf154;
 export const MAX_PAYLOAD = 48;
 
 /** States of the supervisor. */
@@ -39,7 +39,7 @@ export const Fault = new Enumeration("Fault", {
   estop: [9, "the emergency stop was pressed", "Release the emergency stop once it is safe, then clear the fault; without such a button set estop_input to 0, or check its wire."],
   speed: [10, "a follower's potentiometer jumped, or turned faster than any joint does", "Check that potentiometer's three wires, its wiper and its coupling to the joint, or raise speed_limit, then clear the fault."],
   runaway: [11, "a follower moved against its motor's voltage, faster and faster", "Check motor_sign, both motor wires and the sign of the potentiometer's scale, and that the potentiometer is that joint's own, then clear the fault."],
-  stalled: [12, "a motor had voltage, but its follower did not move", "Check for something in the joint's way, its motor supply, and that its potentiometer turns with it; for a heavy load raise stall_volts or stall_ms, then clear the fault."],
+  stalled: [12, "a motor had voltage, but its follower did not move", "Check for something in the joint's way, its motor supply, and that its potentiometer turns with it; for a heavy load raise breakaway_volts or stall_volts, then clear the fault."],
   memory: [13, "the running parameters had changed in the board's memory", "Upload a controller file with `greywhale upload` or reset the board; if it comes back, check the board's supply for noise."],
 });
 
@@ -393,8 +393,8 @@ export const TABLE = new Table([
   ["", 1, [
     ["speed_limit", "u8", "rad/s", 1, 0, 100, [25], false, null, "a follower's reading that moves faster is a fault; 0 turns the check off"],
     ["runaway_limit", "u8", "rad", 1/128, 0, 192, [40], false, null, "way of a follower against its voltage of at least 2 V, without slowing down, that becomes a fault; 0 turns the check off"],
-    ["stall_volts", "u8", "V", 1/10, 0, 250, [32], false, null, "voltage above which a follower must move; more than any joint needs to hold its load. 0 turns the check off"],
-    ["stall_ms", "u8", "ms", 4, 5, 125, [42], false, null, "time above stall_volts without motion that becomes a fault; half of it with more than half the supply, and time below takes off three times as much"],
+    ["stall_volts", "u8", "V", 1/10, 0, 250, [32], false, null, "voltage above which a follower must move: breakaway_volts of joints that have none. 0 turns the check off"],
+    ["stall_time", "u8", "s", 1/4, 4, 240, [80], false, null, "time that a joint may be held back before that is a fault"],
   ]],
   ["", 1, [
     ["estop_input", "u8", "", 1, 0, 2, [1], false, null, "the emergency stop: 0 is none, 1 a button that closes to ground (without one, nothing is stopped), 2 one that opens, so that a broken wire stops as well"],
@@ -404,5 +404,15 @@ export const TABLE = new Table([
   ]],
   ["joint", 4, [
     ["ce_ticks", "u8", "control periods", 1, 1, 20, [1, 1, 1, 1], false, null, "the change of error is the error less that of so many control periods ago; more make the motor quieter and the controller later"],
+  ]],
+  ["joint", 4, [
+    ["speed_per_volt", "u8", "rad/(s V)", 1/32, 1, 255, [24, 24, 24, 24], false, null, "speed that a volt gives in the end, beyond those for gravity and friction"],
+    ["time_constant", "u8", "ms", 4, 1, 255, [100, 100, 100, 100], false, null, "time in which the speed reaches 63 % of that"],
+    ["breakaway_volts", "u8", "V", 1/10, 0, 250, [0, 0, 0, 0], false, null, "voltage beyond that against gravity with which the joint must move. 0: stall_volts"],
+  ]],
+  ["", 1, [
+    ["gravity_1", "i8", "V", 1/10, -127, 127, [0], false, null, "at joint 1 for link 1, level"],
+    ["gravity_12", "i8", "V", 1/10, -127, 127, [0], false, null, "at joint 1 for what joint 2 carries, level"],
+    ["gravity_2", "i8", "V", 1/10, -127, 127, [0], false, null, "at joint 2 for what it carries, level"],
   ]],
 ]);

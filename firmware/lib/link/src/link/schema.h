@@ -21,7 +21,7 @@ using codes::ResetCause;
 using codes::SaveState;
 
 constexpr uint8_t protocol = 1;
-constexpr uint32_t schema_hash = 0x106689E6;
+constexpr uint32_t schema_hash = 0xA4FBF154;
 constexpr uint8_t max_payload = 48;
 constexpr uint8_t reply_bit = 0x80;
 

@@ -63,6 +63,7 @@ bool locate(uint16_t index, Field& field, uint8_t& offset) {
 
 // A damaged table may hold a u32 above INT32_MAX. It reads as a negative number, which is below every u32's minimum.
 bool holds(const uint8_t* element, const Group& group, const Field& field, bool ranges) {
+  if (!ranges && field.below == no_field) return true;
   const int32_t value = read(element + field.offset, field.kind);
   if (ranges && !in_range(field, value)) return false;
   if (field.below == no_field) return true;
@@ -110,17 +111,17 @@ Access set(Table& table, uint16_t index, int32_t value) {
 void load_defaults(Table& table) { read_flash(table, default_table); }
 
 void make_safe(Table& table, uint8_t joint) {
-  const JointParameters own = table.joint[joint];
+  JointParameters& own = table.joint[joint];
   JointParameters safe;
   read_flash(safe, default_table.joint[joint]);
-  safe.kp = safe.kp < own.kp ? uint32_t{safe.kp} : uint32_t{own.kp};
-  safe.kd = safe.kd < own.kd ? uint32_t{safe.kd} : uint32_t{own.kd};
-  safe.ki = safe.ki < own.ki ? uint32_t{safe.ki} : uint32_t{own.ki};
-  safe.ku_mv = safe.ku_mv < own.ku_mv ? uint16_t{safe.ku_mv} : uint16_t{own.ku_mv};
+  if (own.kp < safe.kp) safe.kp = own.kp;
+  if (own.kd < safe.kd) safe.kd = own.kd;
+  if (own.ki < safe.ki) safe.ki = own.ki;
+  if (own.ku_mv < safe.ku_mv) safe.ku_mv = own.ku_mv;
   safe.motor_sign = own.motor_sign;
   safe.limit_min = own.limit_min;
   safe.limit_max = own.limit_max;
-  table.joint[joint] = safe;
+  own = safe;
   read_flash(table.change[joint], default_table.change[joint]);
 }
 

@@ -42,10 +42,16 @@ const Field fields[field_count] PROGMEM = {
     {Kind::u8, offsetof(Table, speed_limit), no_field, false, 0, 100},
     {Kind::u8, offsetof(Table, runaway_limit), no_field, false, 0, 192},
     {Kind::u8, offsetof(Table, stall_volts), no_field, false, 0, 250},
-    {Kind::u8, offsetof(Table, stall_ms), no_field, false, 5, 125},
+    {Kind::u8, offsetof(Table, stall_time), no_field, false, 4, 240},
     {Kind::u8, offsetof(Table, estop_input), no_field, false, 0, 2},
     {Kind::u8, offsetof(Table, driver), no_field, false, 0, 3},
     {Kind::u8, offsetof(ChangeParameters, ce_ticks), no_field, false, 1, 20},
+    {Kind::u8, offsetof(TravelParameters, speed_per_volt), no_field, false, 1, 255},
+    {Kind::u8, offsetof(TravelParameters, time_constant), no_field, false, 1, 255},
+    {Kind::u8, offsetof(TravelParameters, breakaway_volts), no_field, false, 0, 250},
+    {Kind::i8, offsetof(Table, gravity_1), no_field, false, -127, 127},
+    {Kind::i8, offsetof(Table, gravity_12), no_field, false, -127, 127},
+    {Kind::i8, offsetof(Table, gravity_2), no_field, false, -127, 127},
 };
 
 const Group groups[group_count] PROGMEM = {
@@ -58,6 +64,8 @@ const Group groups[group_count] PROGMEM = {
     {1, 1, 35, 0, 0},
     {1, 1, 36, 0, 0},
     {4, 1, 37, offsetof(Table, change), sizeof(ChangeParameters)},
+    {4, 3, 38, offsetof(Table, travel), sizeof(TravelParameters)},
+    {1, 3, 41, 0, 0},
 };
 
 const Table default_table PROGMEM = {
@@ -81,7 +89,7 @@ const Table default_table PROGMEM = {
         {8184, 10734},
     },
     10, 6, 11, 0,
-    25, 40, 32, 42,
+    25, 40, 32, 80,
     1,
     0,
     {
@@ -90,6 +98,13 @@ const Table default_table PROGMEM = {
         {1},
         {1},
     },
+    {
+        {24, 100, 0},
+        {24, 100, 0},
+        {24, 100, 0},
+        {24, 100, 0},
+    },
+    0, 0, 0,
 };
 
 }  // namespace params

@@ -7,10 +7,10 @@
 
 namespace params {
 
-constexpr uint8_t layout = 3;
-constexpr uint8_t count = 98;
-constexpr uint8_t field_count = 38;
-constexpr uint8_t group_count = 9;
+constexpr uint8_t layout = 4;
+constexpr uint8_t count = 113;
+constexpr uint8_t field_count = 44;
+constexpr uint8_t group_count = 11;
 
 // Packed, so that the bytes in RAM are the bytes on the link and in EEPROM, in the order of the flat index.
 // Read members by value: a reference to a packed member does not compile.
@@ -41,6 +41,12 @@ struct __attribute__((packed)) ChangeParameters {
   uint8_t ce_ticks;  // the change of error is the error less that of so many control periods ago; more make the motor quieter and the controller later [control periods]
 };
 
+struct __attribute__((packed)) TravelParameters {
+  uint8_t speed_per_volt;  // speed that a volt gives in the end, beyond those for gravity and friction [1/32 rad/(s V)]
+  uint8_t time_constant;  // time in which the speed reaches 63 % of that [4 ms]
+  uint8_t breakaway_volts;  // voltage beyond that against gravity with which the joint must move. 0: stall_volts [1/10 V]
+};
+
 struct __attribute__((packed)) Table {
   uint8_t period_ms;  // control period [ms]
   uint16_t supply_mv;  // motor supply; a duty of 1 puts this on a motor [mV]
@@ -59,16 +65,20 @@ struct __attribute__((packed)) Table {
   uint8_t unrest_action;  // what unrest does: 0 turns the motors off, 1 goes on with the safe controllers, and turns the motors off at the next unrest
   uint8_t speed_limit;  // a follower's reading that moves faster is a fault; 0 turns the check off [rad/s]
   uint8_t runaway_limit;  // way of a follower against its voltage of at least 2 V, without slowing down, that becomes a fault; 0 turns the check off [1/128 rad]
-  uint8_t stall_volts;  // voltage above which a follower must move; more than any joint needs to hold its load. 0 turns the check off [1/10 V]
-  uint8_t stall_ms;  // time above stall_volts without motion that becomes a fault; half of it with more than half the supply, and time below takes off three times as much [4 ms]
+  uint8_t stall_volts;  // voltage above which a follower must move: breakaway_volts of joints that have none. 0 turns the check off [1/10 V]
+  uint8_t stall_time;  // time that a joint may be held back before that is a fault [1/4 s]
   uint8_t estop_input;  // the emergency stop: 0 is none, 1 a button that closes to ground (without one, nothing is stopped), 2 one that opens, so that a broken wire stops as well
   uint8_t driver;  // the signals of a motor: 0 PWM and direction, 1 PWM and two directions (IN1, IN2), 2 two PWM inputs, both low between pulses, 3 two PWM inputs, both high between pulses; 1 to 3 need a Mega
   ChangeParameters change[4];
+  TravelParameters travel[4];
+  int8_t gravity_1;  // at joint 1 for link 1, level [1/10 V]
+  int8_t gravity_12;  // at joint 1 for what joint 2 carries, level [1/10 V]
+  int8_t gravity_2;  // at joint 2 for what it carries, level [1/10 V]
 };
 
-constexpr uint16_t table_size = 199;
+constexpr uint16_t table_size = 214;
 // Of every layout so far: each is the beginning of the next.
-constexpr uint8_t layout_sizes[layout] = {185, 195, 199};
+constexpr uint8_t layout_sizes[layout] = {185, 195, 199, 214};
 static_assert(sizeof(Table) == table_size, "the table must have no padding");
 
 enum class Kind : uint8_t { u8, i8, u16, i16, u32, i32 };

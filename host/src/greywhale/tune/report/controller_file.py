@@ -28,7 +28,7 @@ def save(outcome: TuningResult, path: str | Path) -> None:
         _source(outcome),
         header=_header(outcome),
         notes=notes,
-        stall_volts=None if outcome.model.stall is None else outcome.model.stall.volts,
+        travel=None if outcome.model.travel is None else outcome.model.travel.raw(),
         tuning=provenance(outcome),
     )
 
@@ -55,8 +55,6 @@ def provenance(outcome: TuningResult) -> dict[str, Any]:
         "cost_before": _rounded(outcome.cost_before),
         "cost_after": _rounded(outcome.cost_after),
     }
-    if outcome.model.stall is not None:
-        facts["stall"] = outcome.model.stall.as_dict()
     # An unfinished tuning was not judged.
     if outcome.margins:
         facts |= {"margins_hold": outcome.steady, "margin": _margins(outcome.margins)}
@@ -77,8 +75,8 @@ def _header(outcome: TuningResult) -> list[str]:
     ]
     if not outcome.complete:
         lines.append("UNFINISHED: interrupted; these are the best so far. The same command with --resume goes on.")
-    if outcome.model.stall is not None:
-        lines.append(f"For the board's {outcome.model.stall.sentence}")
+    if outcome.model.travel is not None:
+        lines.append(f"For the board: {outcome.model.travel.sentence}")
     lines += [f"Expected on {one.name}, all joints: {_change(one)}." for one in outcome.held_out]
     lines += [*overshooting(outcome), *failing_margins(outcome)]
     return [*lines, *(f"Doubt: {doubt}" for doubt in outcome.model.doubts)]

@@ -29,9 +29,9 @@ def summary(outcome: TuningResult) -> str:
     if outcome.margins:
         lines += ["", *_margins(outcome)]
     notes = list(outcome.notes)
-    if (stall := outcome.model.stall) is not None:
-        lines += ["", f"For the board's {stall.sentence}"]
-        notes += [stall.note] if stall.note else []
+    if (travel := outcome.model.travel) is not None:
+        lines += ["", f"For the board: {travel.sentence}"]
+        notes += [travel.note] if travel.note else []
     for title, sentences in (("Notes", notes), ("Doubts about the model", outcome.model.doubts)):
         if sentences:
             lines += ["", f"{title}:", *(f"- {sentence}" for sentence in sentences)]
