@@ -5,6 +5,7 @@
 #include <app.h>
 #include <hal.h>
 
+// Nothing but zeros until begin(): a constructor that runs at the start would take flash for each of its members.
 BEHIND_RINGS static app::App arm;
 
 void firmware_tick() { arm.tick(); }

@@ -42,7 +42,7 @@ class Lead {
   int16_t last_[hal::joint_count] = {};  // q12 rad, the last point taken
   uint8_t first_ = 0, waiting_ = 0;      // in steps_
   uint8_t next_ = 0;
-  uint8_t done_ = ticks_per_point;  // ticks of this piece
+  uint8_t done_ = 0;  // ticks of this piece
   uint8_t tick_ = 0;                // lower byte of the tick of the last advance()
   bool on_ = false;
 };

@@ -42,8 +42,8 @@ bool LinkServer::send_due(const Tick& tick) {
     send_sample(tick);
     return true;
   }
-  if (!hello_due_ || tick.supervisor().state() == supervisor::State::boot) return false;
-  hello_due_ = false;
+  if (hello_sent_ || tick.supervisor().state() == supervisor::State::boot) return false;
+  hello_sent_ = true;
   send_hello(0, tick);  // without a request: the host waits for the bootloader to end
   return true;
 }

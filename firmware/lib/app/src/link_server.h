@@ -11,7 +11,7 @@ namespace app {
 
 class LinkServer {
  public:
-  LinkServer() : sample_due_(false), hello_due_(true) {}
+  constexpr LinkServer() : sample_due_(false), hello_sent_(false) {}
 
   // Once after each tick.
   void schedule_sample();
@@ -68,7 +68,7 @@ class LinkServer {
   uint16_t every_ = 0, until_sample_ = 0;             // ticks
   uint8_t sample_seq_ = 0;
   bool sample_due_ : 1;
-  bool hello_due_ : 1;
+  bool hello_sent_ : 1;
 };
 
 }  // namespace app

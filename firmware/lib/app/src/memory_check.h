@@ -40,7 +40,7 @@ class MemoryCheck {
   }
 
  private:
-  wire::Crc16 crc_;
+  wire::Crc16 crc_{0};  // until restart()
   uint16_t right_ = 0;
   uint8_t part_ = 0, at_ = 0;
 };

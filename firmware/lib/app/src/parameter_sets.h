@@ -64,8 +64,7 @@ class ParameterSets {
   bool take(Controllers& controllers, const params::Table& table, uint8_t joint);
 
   params::Sets sets_;
-  HalEeprom eeprom_;
-  params::Store<HalEeprom> store_{eeprom_};
+  params::Store<HalEeprom> store_;
   uint16_t apply_crc_ = 0;  // the CRC that the host wants, then the one that was found
   Step step_ = Step::none;
   Safe safe_ = Safe::no;

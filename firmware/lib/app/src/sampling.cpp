@@ -60,7 +60,7 @@ void Sampling::tick(const uint16_t* sums, supervisor::Observation& seen) {
 }
 
 void Sampling::prepare_low_passes() {
-  if (primed_) signals_.low_pass = signal_chain::low_pass(shift_);
+  signals_.low_pass = signal_chain::low_pass(primed_ ? shift_ : 0);  // the first sample is taken whole
   app::prepare_low_passes(signals_);
 }
 

@@ -11,7 +11,7 @@ namespace app {
 
 class Sampling {
  public:
-  Sampling() : shift_(0), primed_(false) {}
+  constexpr Sampling() : shift_(0), primed_(false) {}
 
   void configure(const params::Table& table);
   // The same for one joint. True when that changed anything: if the table is as before, a bit had flipped. While the
@@ -52,7 +52,7 @@ class Sampling {
  private:
   static constexpr int16_t not_seen = INT16_MIN;  // the least error is one more
 
-  Signals signals_ = {signal_chain::low_pass(0), 0, hal::rail_mark - 1, 0, {}};  // the first sample is taken whole
+  Signals signals_ = {};
   uint8_t pots_in_use_ = 0;
   uint8_t shift_ : 7;  // of the low-passes
   bool primed_ : 1;    // a tick has come, so the low-passes hold something

@@ -28,6 +28,7 @@ void show(supervisor::State state, uint16_t ms) {
 
 void Tick::begin() {
   const bool same_set = sets_.begin(controllers_);
+  finished_ = checked_ = true;
   take_running_set();
   supervisor_.begin(hal::reset_cause() == hal::ResetCause::watchdog, same_set);
   hal::begin();

@@ -16,7 +16,7 @@ namespace app {
 
 class Tick {
  public:
-  Tick() : finished_(true), checked_(true), set_touched_(false) {}
+  constexpr Tick() : finished_(false), checked_(false), set_touched_(false) {}
   void begin();
   void run();  // when hal::tick_pending()
 
@@ -92,7 +92,7 @@ class Tick {
 
   uint32_t number_ = 0;
   uint16_t late_ticks_ = 0, longest_us_ = 0;
-  uint8_t until_control_ = 1;  // ticks
+  uint8_t until_control_ = 0;  // ticks
   bool drivers_on_ = false;
   bool finished_ : 1, checked_ : 1;
   bool set_touched_ : 1;  // by a step of applying it since the last tick, so the next one may be late uncounted

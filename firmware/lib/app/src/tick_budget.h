@@ -7,7 +7,7 @@ namespace app {
 
 class TickBudget {
  public:
-  TickBudget() : link_served_(false), quiet_ticks_(0) {}
+  constexpr TickBudget() : link_served_(false), quiet_ticks_(0) {}
 
   // Once after each tick.
   void renew() {

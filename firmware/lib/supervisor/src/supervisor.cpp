@@ -16,6 +16,9 @@ uint8_t lowest_bit(uint8_t mask) {
 }  // namespace
 
 void Supervisor::begin(bool after_watchdog, bool params_ok) {
+  boot_left_ = boot_ticks;
+  stop_reason_ = StopReason::reset;
+  fault_where_ = nowhere;
   params_ok_ = params_ok;
   boot_fault_ = after_watchdog ? Fault::watchdog : params_ok ? Fault::none : Fault::params;
 }

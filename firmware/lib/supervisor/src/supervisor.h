@@ -96,7 +96,7 @@ class Supervisor {
 
   static constexpr uint8_t boot_ticks = 20;  // meanwhile the filters settle and bad pots are found
 
-  Limits limits_ = {0, UINT16_MAX, 0, 0};  // a tracking limit of UINT16_MAX: no distance is beyond it
+  Limits limits_ = {0, 0, 0, 0};  // a tracking limit of UINT16_MAX: no distance is beyond it
   Rails rails_;
   uint16_t lost_ms_[joint_count] = {};  // time beyond the tracking limit
   signal_chain::SoftStart soft_start_;
@@ -104,13 +104,13 @@ class Supervisor {
   Unrest unrest_;
   Motion motion_;
   uint16_t lease_ = 0;  // ticks, 0 = until stop; it stays after a fault, for restart()
-  uint8_t boot_left_ = boot_ticks;
-  bool params_ok_ = true;
+  uint8_t boot_left_ = 0;
+  bool params_ok_ = false;
   State state_ = State::boot;
-  StopReason stop_reason_ = StopReason::reset;
+  StopReason stop_reason_ = StopReason::none;
   Fault fault_ = Fault::none;
   Fault boot_fault_ = Fault::none;
-  uint8_t fault_where_ = nowhere;
+  uint8_t fault_where_ = 0;
 };
 
 }  // namespace supervisor

@@ -45,7 +45,7 @@ class Unrest {
 
   Joint joints_[joint_count] = {};
   uint8_t amplitude_ = 0;
-  uint8_t slot_looks_ = 1, slots_ = 0;  // a slot in looks, the time in slots
+  uint8_t slot_looks_ = 0, slots_ = 0;  // a slot in looks, the time in slots
   uint8_t look_ = 0;                    // of this slot; at the first one the slot before is judged
 };
 

@@ -1,4 +1,6 @@
 // From power-on to disabled, and what a reset leaves behind.
+#include <cstring>
+
 #include "bench.h"
 
 using bench::Bench;
@@ -16,6 +18,12 @@ TEST_CASE("nothing moves from power-on on, and hello is said once without being 
   REQUIRE(arm.frames.size() == 1);
   CHECK(arm.frames[0].type == 0x81);
   CHECK(arm.frames[0].seq == 0);
+}
+
+TEST_CASE("a firmware that has not begun is nothing but zeros, so that a board needs no code to construct it") {
+  static constexpr app::App arm;
+  static const char zeros[sizeof arm] = {};
+  CHECK(std::memcmp(&arm, zeros, sizeof arm) == 0);
 }
 
 TEST_CASE("hello tells what this firmware is") {

@@ -10,7 +10,7 @@
 
 namespace {
 
-using Store = params::Store<FakeEeprom>;
+using Store = params::Store<FakeEeprom&>;
 namespace bank = params::bank;
 
 // Saves sets in turn, with a boot before each.

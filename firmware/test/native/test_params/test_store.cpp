@@ -11,7 +11,7 @@
 
 namespace {
 
-using Store = params::Store<FakeEeprom>;
+using Store = params::Store<FakeEeprom&>;
 namespace bank = params::bank;
 
 params::Table defaults() {

@@ -8,6 +8,9 @@ namespace wire {
 // Kept as two bytes, because a wide shift is slow on an 8-bit machine. It needs no table.
 class Crc16 {
  public:
+  constexpr explicit Crc16(uint16_t start = 0xFFFF)
+      : high_(static_cast<uint8_t>(start >> 8)), low_(static_cast<uint8_t>(start & 0xFF)) {}
+
   // Adds a byte. t is the high byte ^ data, folded by four bits. The eight steps of the polynomial then make
   // t << 12 ^ t << 5 ^ t, which is added to the low byte moved up.
   void add(uint8_t byte) {
@@ -23,8 +26,7 @@ class Crc16 {
   uint16_t value() const { return static_cast<uint16_t>((high_ << 8) | low_); }
 
  private:
-  uint8_t high_ = 0xFF;
-  uint8_t low_ = 0xFF;
+  uint8_t high_, low_;
 };
 
 inline uint16_t crc_over(const uint8_t* data, uint8_t size) {

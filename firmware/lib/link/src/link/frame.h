@@ -31,7 +31,7 @@ class Decoder {
  private:
   bool finish();
 
-  uint8_t buffer_[max_frame];
+  uint8_t buffer_[max_frame] = {};
   uint8_t size_ = 0;      // bytes decoded; kept after a frame for payload_size()
   uint8_t run_ = 0;       // bytes left of the current COBS block
   bool started_ = false;  // something came since the last zero
@@ -57,7 +57,7 @@ class Encoder {
   uint8_t size() const { return size_; }
 
  private:
-  uint8_t buffer_[max_wire];
+  uint8_t buffer_[max_wire] = {};
   uint8_t size_ = 0;
 };
 

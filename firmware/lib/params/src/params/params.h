@@ -50,8 +50,8 @@ class Sets {
   void apply();
 
  private:
-  Table running_;
-  Table staged_;
+  Table running_ = {};
+  Table staged_ = {};
   uint16_t running_crc_ = 0;
 };
 

@@ -17,7 +17,7 @@
 // sequence 1. The next save makes both banks whole again, in turn.
 //
 // Eeprom has `uint8_t read(uint16_t)`, `void begin_write(uint16_t, uint8_t)` and `bool busy()`. While it is busy,
-// neither of the other two is called.
+// neither of the other two is called. It is kept by value: give a reference where it has a state.
 #pragma once
 
 #include <stddef.h>
@@ -46,7 +46,8 @@ constexpr uint16_t start_b = start_a + 256;
 template <class Eeprom>
 class Store {
  public:
-  explicit Store(Eeprom& eeprom) : eeprom_(eeprom) {}
+  constexpr Store() : eeprom_() {}
+  explicit Store(Eeprom eeprom) : eeprom_(eeprom) {}
 
   // At boot: loads the newest bank that is whole and in range, or else the defaults. Waits for a write that a reset
   // left behind.
@@ -86,12 +87,12 @@ class Store {
   void stored();
   void finish(wire::SaveState state);
 
-  Eeprom& eeprom_;
+  Eeprom eeprom_;
   const Table* table_ = nullptr;
   uint16_t sequence_ = 0;  // the newest in EEPROM, or the one that is being written
-  wire::Crc16 crc_;        // over the positions walked so far
+  wire::Crc16 crc_{0};     // over the positions walked so far
   uint8_t position_ = 0;
-  uint8_t current_ = no_bank;  // the bank that a boot would load
+  uint8_t current_ = 0;  // the bank that a boot would load
   uint8_t target_ = 0;
   uint8_t spoilt_ = 0;  // bit b: bank b held a set, or was to, and does not
   Phase phase_ = Phase::idle;
