@@ -97,6 +97,7 @@ EXPORT(power) void exported_power(unsigned on) {
 }
 EXPORT(reset) void exported_reset() { bench->board.power_on(hal::ResetCause::external); }
 EXPORT(estop) void exported_estop(unsigned pressed) { hal::web::press_estop(pressed != 0); }
+EXPORT(clutch) void exported_clutch(unsigned pressed) { hal::web::press_clutch(pressed != 0); }
 
 // The leader is led to the first four numbers, rad.
 EXPORT(lead) void exported_lead() { bench->hand.lead({numbers[0], numbers[1], numbers[2], numbers[3]}); }

@@ -95,6 +95,7 @@ def test_a_person_is_answered_in_words_and_told_when_the_hands_are_there(
         server.bench.run(1.0)
         assert say("estop press") == ["There.", "estop_pressed: True"]
         assert say("estop release") == ["estop_pressed: False"]
+        assert say("clutch press") == ["clutch_pressed: True"]
         os.close(into)
         person.look()
     assert server.ending, "the end of the input ends the bench"

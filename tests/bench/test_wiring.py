@@ -23,12 +23,13 @@ def wires(motor: Motor) -> list[Pin | Pwm]:
 @pytest.mark.parametrize("wiring", BOARDS.values(), ids=BOARDS.keys())
 def test_every_wire_has_a_pin_of_its_own(wiring: Wiring) -> None:
     pins = [wire.arduino for motor in wiring.motors for wire in wires(motor)]
-    pins += [wiring.enable.arduino, wiring.led.arduino, wiring.estop.arduino]
+    singles = (wiring.enable, wiring.led, wiring.estop, wiring.clutch)
+    pins += [pin.arduino for pin in singles]
     assert len(set(pins)) == len(pins)
     assert not SERIAL_PINS & set(pins)
     bits = [(motor.direction.port, motor.direction.bit) for motor in wiring.motors]
-    others = [(pin.port, pin.bit) for pin in (wiring.enable, wiring.led, wiring.estop)]
-    assert len({*bits, *others}) == 7
+    others = [(pin.port, pin.bit) for pin in singles]
+    assert len({*bits, *others}) == 8
 
 
 @pytest.mark.parametrize("wiring", BOARDS.values(), ids=BOARDS.keys())

@@ -88,6 +88,7 @@ class FakeBoard:
         self._saving = 0
         self._save_state = SaveState.IDLE
         self.saves = 0
+        self.clutch = schema.Clutch.ENGAGED
         self._samples = 0
         self._enabled_at = 0
         self._decoder = FrameDecoder()
@@ -285,6 +286,10 @@ class FakeBoard:
                     self._points.append(point.step)
                     self._next_point = (self._next_point + 1) % 256
                 return schema.LeadPointReply(self._next_point, len(self._points)).pack()
+            case schema.ClutchRequest.TYPE:
+                disengages = schema.ClutchRequest.unpack(payload).action is schema.ClutchAction.DISENGAGE
+                self.clutch = schema.Clutch.DISENGAGED if disengages else schema.Clutch.SHIFTED
+                return schema.ClutchReply(self.clutch).pack()
             case schema.StopRequest.TYPE:
                 self.state, self.stop_reason = State.DISABLED, StopReason.HOST
                 return schema.StopReply(self.state).pack()
@@ -315,7 +320,7 @@ class FakeBoard:
                     self.stored = list(self.running)
         return schema.StatusReply(
             self.state, self.stop_reason, self.fault, self.fault_where, self.tick, 0, 0, 0, 0, 0, 300, self._save_state,
-            self.saves,
+            self.saves, self.clutch,
         ).pack()  # fmt: skip
 
 

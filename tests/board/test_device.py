@@ -65,7 +65,8 @@ def test_a_board_that_falls_silent_is_named() -> None:
 def test_answers_to_earlier_requests_are_not_taken_for_this_one() -> None:
     with served() as (board, device):
         stale = schema.StatusReply(
-            State.FOLLOWING, schema.StopReason.NONE, Fault.NONE, 255, 0, 0, 0, 0, 0, 0, 0, schema.SaveState.IDLE, 0
+            *(State.FOLLOWING, schema.StopReason.NONE, Fault.NONE, 255, 0, 0, 0, 0, 0, 0, 0, schema.SaveState.IDLE, 0),
+            schema.Clutch.ENGAGED,
         )
         board.say(encode_frame(schema.StatusReply.TYPE, 200, stale.pack()))
         assert device.status().state is State.DISABLED

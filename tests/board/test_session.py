@@ -24,10 +24,10 @@ from greywhale.board import meeting, session
 from greywhale.board.device import Device
 from greywhale.board.meeting import Peer
 from greywhale.board.record import record
-from greywhale.board.session import NOTE, Session, StopAsked, ask_to_stop
+from greywhale.board.session import NOTE, Session, StopAsked, ask_for_clutch, ask_to_stop
 from greywhale.files.log import read_log
 from greywhale.protocol import schema
-from greywhale.protocol.schema import State, StopReason
+from greywhale.protocol.schema import Clutch, State, StopReason
 from tests.board.fake_board import open_device
 from tests.board.port_board import PortBoard
 
@@ -377,6 +377,20 @@ def test_a_client_that_says_something_else_stops_nothing() -> None:
         client.sendall(b"hello\n")
         assert client.recv(64) == b""
         assert device.status().state is State.DISABLED
+
+
+def test_the_clutch_is_used_from_elsewhere_and_the_session_goes_on() -> None:
+    with PortBoard() as board, open_device(board) as device:
+        for action, becomes in (("disengage", Clutch.DISENGAGED), ("engage", Clutch.SHIFTED)):
+            assert ask_for_clutch(board.port, action) == os.getpid()
+            assert device.status().clutch is becomes
+    assert ask_for_clutch(board.port, "engage") is None
+
+
+def test_a_session_without_an_open_port_has_no_clutch_to_use() -> None:
+    with PortBoard() as board, Session.of(board.port):
+        with pytest.raises(UserError, match=r"has the port, but not open just now; try again in a moment\.$"):
+            ask_for_clutch(board.port, "engage")
 
 
 def test_a_client_that_does_not_wait_for_the_answer_is_heard() -> None:

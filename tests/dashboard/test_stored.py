@@ -11,6 +11,7 @@ from greywhale.protocol.schema import (
     DEFAULTS,
     PARAMETER_BY_NAME,
     Board,
+    Clutch,
     Fault,
     HelloReply,
     ParamApplyRequest,
@@ -37,7 +38,9 @@ def frame(message: Message, seq: int = 9) -> Frame:
 
 
 def status(state: SaveState) -> Frame:
-    return frame(StatusReply(State.DISABLED, StopReason.NONE, Fault.NONE, 255, 0, 0, 0, 0, 0, 0, 0, state, 1))
+    return frame(
+        StatusReply(State.DISABLED, StopReason.NONE, Fault.NONE, 255, 0, 0, 0, 0, 0, 0, 0, state, 1, Clutch.ENGAGED)
+    )
 
 
 def test_only_what_is_written_and_read_back_is_stored() -> None:

@@ -34,6 +34,7 @@ CALLS = {
     "record": ["--seconds 0.5", "--excite --seconds 4 --budget 2 --save-motion new.csv"],
     "replay": ["motion.csv --out replayed.csv"],
     "stop": ["", "--clear-fault"],
+    "clutch": ["disengage", "engage"],
     "evaluate": ["log.csv", "log.csv before.csv --picture both.svg"],
     "identify": ["fit.csv --validate second.csv"],
     "tune": ["model.toml", "model.toml --tables"],

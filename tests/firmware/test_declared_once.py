@@ -38,6 +38,6 @@ def test_what_is_declared_today_compiles(tmp_path: Path) -> None:
 
 def test_a_request_without_a_case_is_named(tmp_path: Path) -> None:
     stop = next(message for message in DECLARED.messages if message.struct == "StopRequest")
-    park = replace(stop, name="park", struct="ParkRequest", type=0x0F)
+    park = replace(stop, name="park", struct="ParkRequest", type=0x10)
     found = errors(tmp_path, replace(DECLARED, messages=(*DECLARED.messages, park)))
     assert "'park' not handled in switch" in found

@@ -142,7 +142,7 @@ def test_contradicting_limits_are_named() -> None:
 
 
 def test_a_set_that_is_not_whole_is_refused() -> None:
-    with pytest.raises(UserError, match=r"113 values, but 112"):
+    with pytest.raises(UserError, match=r"119 values, but 118"):
         param_crc(DEFAULTS[:-1])
-    with pytest.raises(UserError, match=r"214 bytes, but 198"):
+    with pytest.raises(UserError, match=r"220 bytes, but 198"):
         unpack_parameters(bytes(198))

@@ -24,7 +24,7 @@ from greywhale_sim.drivers import CHIPS, OPEN, Bridge, Chip, Pins, mean_volts
 from greywhale_sim.leader import LeaderPlayer
 from greywhale_sim.pins_seen import PinsSeen
 from greywhale_sim.pot_faults import PotFaults
-from greywhale_sim.wiring import Wiring
+from greywhale_sim.wiring import Pin, Wiring
 
 CLOCK_HZ = 16_000_000
 SLICE_CYCLES = 4000
@@ -93,7 +93,7 @@ class Bench:
         self.wiring = wiring
         self.chip = chip
         self.emf: Floats = np.zeros(4) if emf is None else emf
-        self.estop_pressed = False
+        self.estop_pressed = self.clutch_pressed = False
         self.pot_faults = PotFaults()
         self.joints = joints
         # -1: both wires of a motor are swapped; 0: one is off; 0.2: it is weak
@@ -138,12 +138,19 @@ class Bench:
 
     def press_estop(self, pressed: bool) -> None:
         """Press the emergency stop, which closes to ground, or release it."""
-        pin = self.wiring.estop
-        if pressed:
+        self._ground(self.wiring.estop, pressed)
+        self.estop_pressed = pressed
+
+    def press_clutch(self, pressed: bool) -> None:
+        """Press the clutch's pedal, which closes to ground, or release it."""
+        self._ground(self.wiring.clutch, pressed)
+        self.clutch_pressed = pressed
+
+    def _ground(self, pin: Pin, closed: bool) -> None:
+        if closed:
             self.board.hold_pin(pin.port, pin.bit, False)
         else:
             self.board.let_pin_go(pin.port, pin.bit)
-        self.estop_pressed = pressed
 
     def wire_motor(self, joint: int, gain: float, driver: int) -> None:
         """Put a motor on a driver (0..3), the right way (1), the wrong way (-1) a wire off (0), or weak (0.2)."""

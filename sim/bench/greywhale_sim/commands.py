@@ -61,6 +61,7 @@ def status(server: Server) -> Answer:
         "leader": [round(float(angle), 5) for angle in bench.leader.angles],
         "follower": [round(float(angle), 5) for angle in bench.angles],
         "estop_pressed": bench.estop_pressed,
+        "clutch_pressed": bench.clutch_pressed,
         "leader_plays": bench.leader.plays,
         "in_bootloader": server.board.in_bootloader,
         "connected": server.port.connected,
@@ -133,6 +134,13 @@ def estop(server: Server, action: str) -> Answer:
         raise ValueError
     server.bench.press_estop(action == "press")
     return {"estop_pressed": server.bench.estop_pressed}
+
+
+def clutch(server: Server, action: str) -> Answer:
+    if action not in ("press", "release"):
+        raise ValueError
+    server.bench.press_clutch(action == "press")
+    return {"clutch_pressed": server.bench.clutch_pressed}
 
 
 def line(server: Server, what: str, probability: str) -> Answer:
@@ -228,6 +236,7 @@ COMMANDS: dict[str, tuple[Callable[..., Answer], str]] = {
     "pins": (pins, ""),
     "motor": (motor, "0..3 connected|reversed|dead|weak|0..3"),
     "estop": (estop, "press|release"),
+    "clutch": (clutch, "press|release"),
     "line": (line, "flip|lose PROBABILITY"),
     "power": (power, "on|off [WRITES]"),
     "help": (hands.explain, ""),

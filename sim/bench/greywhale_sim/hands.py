@@ -23,6 +23,7 @@ hold 60 50 -45 40  both arms with each joint at an angle of its own
 hang               the follower hangs down, for the motors' pulses
 mistake NAME       wire it wrongly, a name of sim --mistake list; none mends all
 estop press        the emergency stop's button; release
+clutch press       the clutch's pedal; release
 quit               end the bench; docs/bench.md has more commands"""
 
 

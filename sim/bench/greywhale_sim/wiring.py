@@ -61,6 +61,7 @@ class Wiring:
     enable: Pin  # the drivers' enable inputs, high = motors powered; an external pull-down keeps them off at reset
     led: Pin
     estop: Pin  # a button to ground, optional; the pin has a pull-up
+    clutch: Pin  # a pedal to ground, optional; the pin has a pull-up
 
 
 MEGA = Wiring(
@@ -79,6 +80,7 @@ MEGA = Wiring(
     enable=Pin("D9", "H", 6),
     led=Pin("D13", "B", 7),
     estop=Pin("D10", "B", 4),
+    clutch=Pin("D11", "B", 5),
 )
 
 NANO = Wiring(
@@ -98,6 +100,7 @@ NANO = Wiring(
     enable=Pin("D12", "B", 4),
     led=Pin("D13", "B", 5),
     estop=Pin("D5", "D", 5),
+    clutch=Pin("D6", "D", 6),
 )
 
 BOARDS: Mapping[str, Wiring] = {wiring.name: wiring for wiring in (MEGA, NANO)}
@@ -116,5 +119,6 @@ def markdown_table() -> str:
         rows.append([f"motor {joint}, direction", *(board.motors[joint].direction.arduino for board in boards)])
     rows.append(["enable of all drivers", *(board.enable.arduino for board in boards)])
     rows.append(["emergency stop, a button to ground (optional)", *(board.estop.arduino for board in boards)])
+    rows.append(["clutch, a pedal to ground (optional)", *(board.clutch.arduino for board in boards)])
     rows.append(["state LED (on the board)", *(board.led.arduino for board in boards)])
     return "\n".join("| " + " | ".join(row) + " |" for row in rows)

@@ -23,6 +23,7 @@ from tools.support.hands import SECOND_DEG, Hands, bench_of, mounted_anyhow, run
 
 SECOND = ("--second", ",".join(f"{angle:g}" for angle in SECOND_DEG))
 POSE = np.array([-30.0, 20.0, 35.0, -25.0])
+HALF = 32  # raw, of a ratio
 
 
 @pytest.fixture
@@ -43,11 +44,11 @@ def shown(bench: RunningBench, degrees: np.ndarray) -> np.ndarray:
 
 
 def test_arms_mounted_anyhow_show_true_angles_after_two_known_poses(benches: ExitStack, tmp_path: Path) -> None:
-    """A motor that turns the wrong way is turned round, and joints that were not in use are again."""
+    """A motor that turns the wrong way is turned round, joints that were not in use are again, and a ratio stays."""
     bench = benches.enter_context(bench_of(mounted_anyhow(1), tmp_path))
     with Device(bench.port) as device:
         idle = {f"{side}{joint}.scale": 0 for side in ("leader", "follower") for joint in (1, 3)}
-        upload_set(device, read_parameters(device).with_raw(idle))
+        upload_set(device, read_parameters(device).with_raw(idle | {"joint2.ratio": HALF}))
     bench.command("motor 1 reversed")
     done = run_calibrate(Hands(bench), tmp_path, *SECOND)
     assert done.code == 0, done.said
@@ -57,7 +58,9 @@ def test_arms_mounted_anyhow_show_true_angles_after_two_known_poses(benches: Exi
     assert np.degrees(facts["limits_rad"]) == pytest.approx(np.tile((-68.3, 73.3), (4, 1)), abs=0.6)
     assert [motor["sign"] for motor in facts["motors"]] == [1, -1, 1, 1]
     with Device(bench.port) as device:
-        assert read_parameters(device).each("joint", "motor_sign")[1] == -1
+        table = read_parameters(device)
+    assert table.each("joint", "motor_sign")[1] == -1
+    assert table["joint2.ratio"] == HALF
 
 
 def test_without_a_protractor_the_two_arms_agree(benches: ExitStack, tmp_path: Path) -> None:

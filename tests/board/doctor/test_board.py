@@ -22,7 +22,7 @@ HELLO = schema.HelloReply(
 )  # fmt: skip
 STATUS = schema.StatusReply(
     schema.State.DISABLED, schema.StopReason.NONE, schema.Fault.NONE, 255, 5000, 0, 0, 0, 0, 0, 120,
-    schema.SaveState.IDLE, 12,
+    schema.SaveState.IDLE, 12, schema.Clutch.ENGAGED,
 )  # fmt: skip
 
 

@@ -89,7 +89,9 @@ class Nano {
     this.ports = Object.fromEntries(
       ["B", "C", "D"].map((letter) => [letter, new avr.AVRIOPort(cpu, avr[`port${letter}Config`])]),
     );
-    this.ports.D.setPin(5, true); // the emergency stop: a pull-up holds it high, and avr8js has none
+    // Emergency stop and clutch: their pull-ups hold them high, and avr8js has none.
+    this.ports.D.setPin(5, true);
+    this.ports.D.setPin(6, true);
     this.timers = [avr.timer0Config, ...(pwm ? [avr.timer1Config, avr.timer2Config] : [])].map(
       (config) => new avr.AVRTimer(cpu, config),
     );

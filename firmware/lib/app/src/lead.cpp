@@ -53,8 +53,7 @@ void Lead::begin_piece() {
 // A piece of the curve leads from the middle of one step to the middle of the next. Its speed changes evenly from that
 // of the first step to that of the second. Its tick n = 0..15 moves the reference by (32 before + (2 n + 1)(after -
 // before)) / 512. The sum of all is exactly (before + after) / 2, so nothing is lost.
-void Lead::advance(uint8_t tick, Sampling& sampling) {
-  tick_ = tick;
+void Lead::advance(Sampling& sampling) {
   if (done_ == ticks_per_point) begin_piece();
   const auto share = static_cast<int16_t>(2 * done_ + 1);
   ++done_;

@@ -29,9 +29,8 @@ class Lead {
   uint8_t waiting() const { return waiting_; }
   int16_t last(uint8_t joint) const { return last_[joint]; }
 
-  bool due(uint8_t tick) const { return tick != tick_; }
   // Moves the reference on by a tick.
-  void advance(uint8_t tick, Sampling& sampling);
+  void advance(Sampling& sampling);
 
  private:
   void begin_piece();
@@ -43,7 +42,6 @@ class Lead {
   uint8_t first_ = 0, waiting_ = 0;      // in steps_
   uint8_t next_ = 0;
   uint8_t done_ = 0;  // ticks of this piece
-  uint8_t tick_ = 0;                // lower byte of the tick of the last advance()
   bool on_ = false;
 };
 

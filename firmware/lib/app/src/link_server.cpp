@@ -1,4 +1,8 @@
 // See link_server.h.
+#ifdef __AVR__
+#pragma GCC optimize("Os")  // between ticks there is time, and flash is short
+#endif
+
 #include "link_server.h"
 
 #include <hal.h>
@@ -71,6 +75,7 @@ void LinkServer::handle_frame(Tick& tick) {
     case wire::RequestType::telemetry: return handle<wire::TelemetryRequest>(tick);
     case wire::RequestType::lead: return handle<wire::LeadRequest>(tick);
     case wire::RequestType::lead_point: return handle<wire::LeadPointRequest>(tick);
+    case wire::RequestType::clutch: return handle<wire::ClutchRequest>(tick);
   }
   refuse(wire::NackCode::unknown_type, decoder_.type());
 }
@@ -127,6 +132,16 @@ void LinkServer::serve(const wire::LeadPointRequest& request, Tick& tick) {
   const Lead::Verdict verdict = tick.take_point(request);
   if (verdict.refusal != wire::LeadRefusal::none) return refuse_lead(verdict.refusal, verdict.joint);
   reply(wire::LeadPointReply{tick.lead().next(), tick.lead().waiting()});
+}
+
+void LinkServer::serve(const wire::ClutchRequest& request, Tick& tick) {
+  if (request.action == wire::ClutchAction::reset) {
+    if (tick.supervisor().motors_on()) return refuse_not_disabled(tick);
+    tick.reset_clutch();
+  } else {
+    tick.use_clutch(request.action != wire::ClutchAction::engage);
+  }
+  reply(wire::ClutchReply{tick.clutch()});
 }
 
 // When the supervisor has refused, the host is told why.
@@ -214,6 +229,7 @@ void LinkServer::serve(const wire::StatusRequest&, const Tick& tick) {
   status.telemetry_dropped = telemetry_dropped_;
   status.no_rule = tick.controllers().no_rule();
   status.tick_us_max = tick.longest_us();
+  status.clutch = tick.clutch();
   status.save_state = tick.sets().save_state();
   status.saves = tick.sets().saves();
   reply(status);
@@ -226,8 +242,7 @@ void LinkServer::send_sample(const Tick& tick) {
   sample.state = tick.supervisor().state();
   sample.fault = tick.supervisor().fault();
   for (uint8_t i = 0; i < hal::joint_count; ++i) {
-    // When the host leads, tick.sampling().leader() is already that of the next tick.
-    sample.leader[i] = tick.lead().on() ? tick.sampling().reference(i) : tick.sampling().leader(i);
+    sample.leader[i] = tick.leader(i);
     sample.follower[i] = tick.sampling().follower(i);
     sample.voltage[i] = tick.controllers().volts_mv(i);
   }
@@ -252,7 +267,12 @@ void LinkServer::refuse(wire::NackCode code, uint16_t detail) { reply(wire::Nack
 // The ring has room: can_reply() has said that the largest frame fits.
 template <class Message>
 void LinkServer::send(uint8_t seq, const Message& message) {
-  encoder_.encode(seq, message);
+  message.encode(encoder_.payload());
+  finish(seq, Message::type, Message::size);
+}
+
+__attribute__((noinline)) void LinkServer::finish(uint8_t seq, uint8_t type, uint8_t size) {
+  encoder_.finish(type, seq, size);
   hal::tx_write(encoder_.data(), encoder_.size());
 }
 

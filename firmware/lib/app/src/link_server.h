@@ -45,6 +45,7 @@ class LinkServer {
   void serve(const wire::TelemetryRequest& request, const Tick&);
   void serve(const wire::LeadRequest& request, Tick& tick);
   void serve(const wire::LeadPointRequest& request, Tick& tick);
+  void serve(const wire::ClutchRequest& request, Tick& tick);
   bool granted(const supervisor::Reply& result, const Tick& tick);
 
   void send_hello(uint8_t seq, const Tick& tick);
@@ -56,6 +57,7 @@ class LinkServer {
   void refuse(wire::NackCode code, uint16_t detail);
   template <class Message>
   void send(uint8_t seq, const Message& message);
+  void finish(uint8_t seq, uint8_t type, uint8_t size);
   // To the frame that came last: while it waits for its answer, the decoder takes no other.
   template <class Message>
   void reply(const Message& message) {

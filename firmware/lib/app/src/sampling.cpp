@@ -87,4 +87,17 @@ void Sampling::lead(uint8_t joint, int16_t angle) {
 
 void Sampling::move_lead(uint8_t joint, int32_t by) { signals_.joint[joint].leader.offset += by; }
 
+void Sampling::approach(uint8_t joint, int32_t angle_q25, uint8_t shift) {
+  constexpr int32_t most = 0xfff0000;
+  const int32_t within = angle_q25 < -most ? -most : angle_q25 > most ? most : angle_q25;
+  signal_chain::Pot& pot = signals_.joint[joint].leader;
+  pot.scale = 0;
+  pot.offset += (within * 4 + 0x4000 - pot.offset) >> shift;
+}
+
+int32_t Sampling::leader_q27(uint8_t joint, const params::Table& table) const {
+  const params::PotParameters& pot = table.leader[joint];
+  return (int32_t{signals_.joint[joint].leader.filtered} - int32_t{pot.zero} * 4) * pot.scale;
+}
+
 }  // namespace app

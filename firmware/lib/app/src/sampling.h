@@ -48,6 +48,10 @@ class Sampling {
   // tick does what it always does. move_lead() moves the reference, in 2^-15 q12 rad.
   void lead(uint8_t joint, int16_t angle);
   void move_lead(uint8_t joint, int32_t by);
+  // The same by 2^-shift of the reference's distance from an angle, which counts within +-8 rad.
+  void approach(uint8_t joint, int32_t angle_q25, uint8_t shift);
+  // What the leader's potentiometer says while a reference is in its place.
+  int32_t leader_q27(uint8_t joint, const params::Table& table) const;
 
  private:
   static constexpr int16_t not_seen = INT16_MIN;  // the least error is one more

@@ -39,7 +39,7 @@ void Tick::begin() {
 // by joint.
 void Tick::take_running_set() {
   const params::Table& table = sets_.running();
-  sampling_.configure(table);
+  leader_leads();
   drive_.configure(table);
   supervisor_.set_limits({table.enable_limit, table.tracking_limit, table.tracking_ms, table.soft_start_ms});
   supervisor_.set_unrest_limits({table.unrest_amplitude, table.unrest_rate, table.unrest_time});
@@ -58,7 +58,7 @@ void Tick::run() {
   if (drivers_on_) control();
   const uint16_t age_us = hal::tick_age_us();
   if (age_us > longest_us_ && !set_touched_) longest_us_ = age_us;
-  set_touched_ = finished_ = checked_ = false;
+  set_touched_ = finished_ = checked_ = led_ = false;
   hal::watchdog_kick();
   hal::tick_end();
 }
@@ -70,10 +70,10 @@ void Tick::count(hal::TickStart start) {
 }
 
 // A closing button pulls its input low. An opening one holds it low until it is pressed, or until a wire breaks.
-inline bool Tick::estop_pressed() const {
-  const uint8_t button = sets_.running().estop_input;
-  return button != 0 && hal::estop_low() == (button == 1);
-}
+inline bool is_pressed(uint8_t button, bool low) { return button != 0 && low == (button == 1); }
+
+inline bool Tick::estop_pressed() const { return is_pressed(sets_.running().estop_input, hal::estop_low()); }
+inline bool Tick::clutch_pressed() const { return is_pressed(sets_.running().clutch_input, hal::clutch_low()); }
 
 void Tick::supervise(bool late) {
   seen_.late = late;
@@ -123,17 +123,18 @@ inline __attribute__((always_inline)) void Tick::control_joint(uint16_t limit_mv
 // --- Between two ticks
 
 bool Tick::move_reference() {
-  if (!lead_.on()) return false;
-  const auto number = static_cast<uint8_t>(number_);
-  if (drivers_on_) {
-    if (!lead_.due(number)) return false;
-    lead_.advance(number, sampling_);
-    return true;
+  if (lead_.on() && !drivers_on_) {
+    lead_.end();
+    leader_leads();
   }
-  lead_.end();
-  sampling_.configure(sets_.running());
+  if (led_) return false;
+  led_ = true;
+  if (!lead_.on()) return follow_leader();
+  lead_.advance(sampling_);
   return true;
 }
+
+bool Tick::follow_leader() { return scaling_.advance(drivers_on_, clutch_pressed(), sets_.running(), sampling_); }
 
 bool Tick::finish() {
   if (finished_) return false;
@@ -237,6 +238,29 @@ void Tick::stop() {
   follow_supervisor();
 }
 
+int16_t Tick::leader(uint8_t joint) const {
+  if (!lead_.on() && !scaling_.on()) return sampling_.leader(joint);
+  if (drivers_on_) return sampling_.reference(joint);  // what stands in the leader's place has moved on since
+  return static_cast<int16_t>((sampling_.leader_q27(joint, sets_.running()) + 0x4000) >> 15);
+}
+
+void Tick::use_clutch(bool disengage) {
+  scaling_.ask(disengage);
+  if (!lead_.on()) follow_leader();
+}
+
+void Tick::reset_clutch() {
+  scaling_.reset();
+  leader_leads();
+}
+
+// While the motors are off.
+__attribute__((noinline)) void Tick::leader_leads() {
+  sampling_.configure(sets_.running());
+  scaling_.begin(sets_.running());
+  led_ = false;
+}
+
 void Tick::note_lost_bytes() {
   supervisor_.bytes_lost(static_cast<uint16_t>(number_));
   follow_supervisor();
@@ -276,7 +300,7 @@ __attribute__((noinline)) bool Tick::check_memory() {
   if (checked_ || sets_.applying()) return false;
   checked_ = true;
   const uint8_t joint = static_cast<uint8_t>(number_) % hal::joint_count;
-  const bool pots_are_right = !sampling_.configure_joint(sets_.running(), joint, lead_.on());
+  const bool pots_are_right = !sampling_.configure_joint(sets_.running(), joint, lead_.on() || scaling_.on());
   if (pots_are_right && (check_some_bytes() || memory_.ends_well())) return true;
   supervisor_.lose_params();
   follow_supervisor();

@@ -11,12 +11,13 @@
 #include "memory_check.h"
 #include "parameter_sets.h"
 #include "sampling.h"
+#include "scaling.h"
 
 namespace app {
 
 class Tick {
  public:
-  constexpr Tick() : finished_(false), checked_(false), set_touched_(false) {}
+  constexpr Tick() : finished_(false), checked_(false), led_(false), set_touched_(false) {}
   void begin();
   void run();  // when hal::tick_pending()
 
@@ -39,6 +40,8 @@ class Tick {
   supervisor::Reply enable_with_host_leading(uint16_t lease_ms);
   supervisor::Reply clear_fault();
   void stop();
+  void use_clutch(bool disengage);
+  void reset_clutch();  // while the motors are off
   void renew(uint16_t lease_ms) { supervisor_.renew(lease_ms); }
   Lead::Verdict take_point(const wire::LeadPointRequest& point) { return lead_.take(point, sampling_); }
   void note_lost_bytes();
@@ -50,6 +53,9 @@ class Tick {
   const Sampling& sampling() const { return sampling_; }
   const Controllers& controllers() const { return controllers_; }
   const Lead& lead() const { return lead_; }
+  wire::Clutch clutch() const { return scaling_.clutch(); }
+  // What the last tick has taken for the leader's angle; with the motors off its own, without ratio and clutch.
+  int16_t leader(uint8_t joint) const;
   uint32_t number() const { return number_; }
   uint16_t late_ticks() const { return late_ticks_; }  // stops at 65535
   uint16_t longest_us() const { return longest_us_; }  // tick, from the timer's start to its end
@@ -58,11 +64,14 @@ class Tick {
   void count(hal::TickStart start);
   void supervise(bool late);
   bool estop_pressed() const;
+  bool clutch_pressed() const;
+  bool follow_leader();
   // Switches the drivers as the supervisor has decided. Call it wherever the supervisor may have changed its mind.
   void follow_supervisor() {
     if (supervisor_.motors_on() != drivers_on_) switch_drivers();
   }
   void switch_drivers();
+  void leader_leads();
   void control();
   template <uint8_t joint>
   void control_joint(uint16_t limit_mv);
@@ -87,6 +96,7 @@ class Tick {
   supervisor::Observation seen_ = {};  // what the last tick has seen
   ParameterSets sets_;
   Lead lead_;
+  Scaling scaling_;
   MemoryCheck memory_;
   uint16_t most_mv_[hal::joint_count] = {};  // what the joints' last looks leave to the controllers
 
@@ -94,7 +104,8 @@ class Tick {
   uint16_t late_ticks_ = 0, longest_us_ = 0;
   uint8_t until_control_ = 0;  // ticks
   bool drivers_on_ = false;
-  bool finished_ : 1, checked_ : 1;
+  bool finished_ : 1, checked_ : 1;  // since the last tick
+  bool led_ : 1;                     // the reference has been moved on since then
   bool set_touched_ : 1;  // by a step of applying it since the last tick, so the next one may be late uncounted
 };
 

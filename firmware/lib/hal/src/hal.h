@@ -61,8 +61,9 @@ void set_duty(bool positive, uint16_t size);
 void set_drivers(bool on);
 void set_led(bool on);
 
-// --- The emergency stop's input, which its pull-up holds high: its level now.
+// --- The inputs of the emergency stop and of the clutch's pedal, which their pull-ups hold high: their levels now.
 bool estop_low();
+bool clutch_low();
 
 // --- Serial port, interrupt-driven both ways.
 constexpr uint8_t tx_capacity = 127;

@@ -154,5 +154,6 @@ TEST_CASE("every declared request is answered by its own reply") {
   answers(wire::StopRequest{});
   answers(wire::LeadRequest{500});
   answers(wire::LeadPointRequest{0, {0, 0, 0, 0}});
+  answers(wire::ClutchRequest{wire::ClutchAction::disengage});
   CHECK(asked == declared());
 }

@@ -85,7 +85,7 @@ class Device:
             held.callback(self._session.detach)
             self._transport: Line = open_line(port, restart)
             held.callback(self._transport.close)
-            self._session.attach(self._send_stop)
+            self._session.attach(self._send_stop, self._send_clutch)
             self.hello: schema.HelloReply = self._greet(quiet_s if self.restarted else 0.0, patience_s)
             self._held = held.pop_all()
         logger.info(
@@ -148,6 +148,10 @@ class Device:
 
     def status(self) -> schema.StatusReply:
         return self.ask(schema.StatusRequest())
+
+    def clutch(self, action: schema.ClutchAction) -> schema.Clutch:
+        """Engage or disengage the leader arm, or reset the clutch; how it is from now on."""
+        return self.ask(schema.ClutchRequest(action)).clutch
 
     def telemetry(self, every: int) -> None:
         """Ask for a sample every so many ticks; 0 turns them off. Earlier samples are forgotten."""
@@ -283,6 +287,11 @@ class Device:
     def _send_stop(self) -> None:
         """Send a stop from any thread. Nobody waits for the answer, whose number no request has."""
         self._transport.write(stop_message(_UNASKED))
+
+    def _send_clutch(self, action: str) -> None:
+        """The same for the clutch: engage or disengage."""
+        request = schema.ClutchRequest(schema.ClutchAction[action.upper()])
+        self._transport.write(encode_frame(request.TYPE, _UNASKED, request.pack()))
 
     def _next_sequence(self) -> int:
         self._sequence = self._sequence % 255 + 1

@@ -22,6 +22,7 @@ from typing import NamedTuple
 from greywhale.base.errors import UserError
 from greywhale.protocol.holder import describe
 
+STOP, CLUTCH = "stop", ("engage", "disengage")  # what a client may say
 NAMES = 8
 # So many clients wait to be let in, and so many have said nothing yet.
 MOST_CLIENTS = 64
@@ -161,7 +162,8 @@ class Clients:
     def __init__(self, listener: socket.socket) -> None:
         self._listener = listener
         self._silent: list[socket.socket] = []
-        self.asking: list[socket.socket] = []
+        self.asking: list[socket.socket] = []  # for a stop
+        self.clutching: list[tuple[str, socket.socket]] = []  # what the clutch is to do; who takes one closes it
         self._answered: list[socket.socket] = []
 
     def descriptors(self) -> list[int]:
@@ -170,18 +172,22 @@ class Clients:
 
     def hear(self, ready: Container[int]) -> bool:
         """Whether one of those who are `ready` asks for a stop; also let a newcomer in."""
-        speaking = [client for client in self._silent if client.fileno() in ready]
-        asking = [client for client in speaking if _says_stop(client)]
-        for client in speaking:
+        stops = False
+        for client in [client for client in self._silent if client.fileno() in ready]:
             self._silent.remove(client)
-            if client not in asking:
+            word = _word(client)
+            if word == STOP:
+                stops = True
+                self.asking.append(client)
+            elif word in CLUTCH:
+                self.clutching.append((word, client))
+            else:
                 client.close()
-        self.asking += asking
         if self._listener.fileno() in ready:
             self._silent += _accept(self._listener)
         if len(self._silent) > MOST_CLIENTS:
             self._silent.pop(0).close()
-        return bool(asking)
+        return stops
 
     def answer(self, line: bytes) -> None:
         for client in self.asking:
@@ -191,20 +197,21 @@ class Clients:
         self.asking = []
 
     def close(self) -> None:
-        for one in (self._listener, *self._silent, *self.asking, *self._answered):
+        clutching = [client for _, client in self.clutching]
+        for one in (self._listener, *self._silent, *self.asking, *clutching, *self._answered):
             one.close()
 
 
-def _says_stop(client: socket.socket) -> bool:
-    """Whether a client asks for a stop; it is told at once that it was heard."""
+def _word(client: socket.socket) -> str:
+    """What a client asks for, empty where that is unknown; who asks for a stop is told at once that it was heard."""
     try:
-        if not client.recv(16).startswith(b"stop"):
-            return False
+        word = client.recv(16).partition(b"\n")[0].decode("ascii", "replace")
     except OSError:
-        return False
-    with contextlib.suppress(OSError):  # whether it still listens or not
-        client.send(b"\n")
-    return True
+        return ""
+    if word == STOP:
+        with contextlib.suppress(OSError):  # whether it still listens or not
+            client.send(b"\n")
+    return word
 
 
 def _accept(listener: socket.socket) -> list[socket.socket]:

@@ -107,8 +107,9 @@ def record(
     every: int = 1,
     enable: bool = False,
     progress: Progress | None = None,
+    disengaged: bool = False,
 ) -> Recording:
-    """Record `seconds` of samples, one every `every` ticks of 1 ms."""
+    """Record `seconds` of samples, one every `every` ticks of 1 ms; with `enable` perhaps `disengaged` first."""
     check_request(seconds, every, enable)
     report = progress or show_no_progress
     origin = origin_of(device, read_parameters(device), every)
@@ -116,6 +117,8 @@ def record(
     with LogWriter(path, origin) as log:
         received = stream(device, every)
         if enable:
+            if disengaged:
+                device.clutch(schema.ClutchAction.DISENGAGE)
             with device.enabled(max(LEASE_MS, 20 * every)):
                 received = _await_following(device, received, report)
                 duration = write_samples(device, log, received, length, True, report)

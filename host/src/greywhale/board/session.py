@@ -52,6 +52,7 @@ class Session:
         self.asked = False
         self._users = 0
         self._send_stop: Callable[[], None] | None = None
+        self._send_clutch: Callable[[str], None] | None = None
         self._told = False
         self._unreachable = ""  # why `greywhale stop` does not reach this session
         self._interrupts = threading.current_thread() is threading.main_thread()
@@ -92,13 +93,13 @@ class Session:
         """Whether somebody asked for a stop and has no answer yet."""
         return self.asked and not self._confirmed.is_set()
 
-    def attach(self, send_stop: Callable[[], None]) -> None:
-        """The port is open; `send_stop` sends a stop from any thread, without waiting for the answer."""
-        self._send_stop = send_stop
+    def attach(self, send_stop: Callable[[], None], send_clutch: Callable[[str], None]) -> None:
+        """The port is open; both send from any thread, without waiting for the answer: a stop, or engage, disengage."""
+        self._send_stop, self._send_clutch = send_stop, send_clutch
 
     def detach(self) -> None:
         """The port is closed, and so no motor is on by this session."""
-        self._send_stop = None
+        self._send_stop = self._send_clutch = None
         if self.asked:
             self.confirm({"state": None})
 
@@ -182,9 +183,19 @@ class Session:
                 self.asked = True
                 self._confirm_until = time.monotonic() + _CONFIRM_S
                 self._end_motion()
+            while clients.clutching:
+                self._use_clutch(*clients.clutching.pop())
             if clients.asking:
                 self._answer(clients)
         clients.close()
+
+    def _use_clutch(self, action: str, client: socket.socket) -> None:
+        """Send it on, and say so; without an open port hang up."""
+        send = self._send_clutch
+        with client, contextlib.suppress(UserError, OSError):  # the main thread finds out by itself
+            if send is not None:
+                send(action)
+                client.send(b"\n")
 
     def _answer(self, clients: meeting.Clients) -> None:
         """Tell those who asked what came of it, as soon as it is known."""
@@ -245,6 +256,22 @@ def ask_to_stop(port: str, wait_for_end: bool = False, heard_s: float = HEARD_S)
     if "problem" in told:
         raise UserError(told["problem"])
     return told
+
+
+def ask_for_clutch(port: str, action: str, heard_s: float = HEARD_S) -> int | None:
+    """Have the session that holds a port engage or disengage the clutch: its process, None where none holds it."""
+    found = meeting.find(port, heard_s)
+    if found is None:
+        return None
+    client, peer = found
+    heard = b""
+    with client, contextlib.suppress(OSError):
+        client.settimeout(heard_s)
+        client.sendall(f"{action}\n".encode())
+        heard = client.recv(1)
+    if not heard:
+        raise UserError(f"{port}: {describe(peer.pid)} has the port, but not open just now; try again in a moment.")
+    return peer.pid
 
 
 def _key(port: str) -> str:

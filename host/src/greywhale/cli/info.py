@@ -38,6 +38,7 @@ class Answer(OnPort):
     parameter_source: str  # where the running parameters came from at the start
     reset_cause: str
     state: Annotated[str, ("enum", [one.key for one in schema.State])]
+    clutch: Annotated[str, ("enum", [one.key for one in schema.Clutch])]
     fault: str  # of the link reference, or none
     fault_where: int | None  # joint, potentiometer or other place of the fault
     stop_reason: str  # what last turned the motors off
@@ -99,6 +100,7 @@ def _facts(device: Device, hello: schema.HelloReply, status: schema.StatusReply,
         "parameter_source": hello.param_source.key,
         "reset_cause": hello.reset_cause.key,
         "state": status.state.key,
+        "clutch": status.clutch.key,
         "fault": status.fault.key,
         "fault_where": None if status.fault_where == 0xFF else status.fault_where,
         "stop_reason": status.stop_reason.key,
@@ -136,6 +138,7 @@ def _text(device: Device, hello: schema.HelloReply, status: schema.StatusReply, 
         ("parameters", f"CRC {hello.param_crc:#06x}, from: {hello.param_source.description}"),
         ("last start", f"{hello.reset_cause.description}, {status.tick / 1000:.1f} s ago"),
         ("state", f"{status.state.key}: {status.state.description}"),
+        ("clutch", f"{status.clutch.key}: {status.clutch.description}"),
         ("motors off by", status.stop_reason.description),
         ("fault", fault_text(status) if status.fault is not schema.Fault.NONE else "none"),
         ("longest tick", f"{status.tick_us_max} us of 1000, {status.late_ticks} late"),

@@ -75,6 +75,11 @@ class ExciteAnswer(OnPort, LedRecordingFacts, Saved):
 @click.option("--every", type=int, default=1, show_default=True, help="One sample every so many ticks of 1 ms.")
 @click.option("--enable", is_flag=True, help="Turn the motors on: the follower follows while the log is recorded.")
 @click.option(
+    "--disengaged",
+    is_flag=True,
+    help="With --enable: begin with the clutch disengaged, so the leader may be anywhere.",
+)
+@click.option(
     "--reconnect",
     is_flag=True,
     help="Motors off: if the port goes away, wait for it until the end of --seconds, and go on after the gap.",
@@ -115,6 +120,7 @@ def command(
     seconds: float | None,
     every: int,
     enable: bool,
+    disengaged: bool,
     reconnect: bool,
     excite: bool,
     arm_file: str | None,
@@ -131,6 +137,7 @@ def command(
 
     Without --enable the motors stay off and the log shows what the potentiometers say. With it the log begins when the
     soft start is over. Ctrl-C stops the motors and keeps what was recorded, marked as interrupted.
+    With --disengaged too, the arm holds its pose until `greywhale clutch engage`, or the pedal, takes it up.
     A recording that is killed leaves what it has in log.unfinished.csv beside log.csv, which all verbs read.
     A port that goes away ends the log, which is whole and says so; with --reconnect it goes on when the port is back.
     That never starts a motor.
@@ -146,6 +153,8 @@ def command(
             "ends there; leave it out.",
             BAD_USAGE,
         )
+    if disengaged and not enable:
+        raise UserError("--disengaged is for a leader that the follower follows; add --enable.", BAD_USAGE)
     if not excite:
         require_new(overwrite, out)
         _refuse_without_excite(arm_file=arm_file, ranges=ranges, save_motion=save_motion, seed=seed, budget=budget)
@@ -155,7 +164,7 @@ def command(
                 recorded = record_through_losses(chosen, out, length, every, report)
         else:
             with Device(chosen) as device, progress() as report:
-                recorded = record(device, out, length, every, enable, report)
+                recorded = record(device, out, length, every, enable, report, disengaged)
         answer: Answer = {"port": chosen, **recorded.as_dict()}
         show(as_json, answer, describe(recorded))
         return

@@ -27,6 +27,7 @@ VERBS = {
     "record": ("record", "Record leader, follower and voltages into a CSV log."),
     "replay": ("replay", "Lead the arm along a motion from a file and record it."),
     "stop": ("stop", "Stop the motors; clear a fault."),
+    "clutch": ("clutch", "Move the leader without the follower: disengage, engage, reset."),
     "evaluate": ("evaluate", "Measure how well the follower followed in a log."),
     "commission": ("commission", "Identify, tune and prove the controllers on the connected arm itself."),
     "adapt": ("adapt", "Keep the controllers right while a person works with the arm."),

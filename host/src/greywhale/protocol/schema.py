@@ -18,10 +18,10 @@ from typing import ClassVar
 from .declared import Described, Field, Group, Message, Parameter, Table, check_length
 
 PROTOCOL = 1
-SCHEMA_HASH = 0xA4FBF154
+SCHEMA_HASH = 0x423FE615
 MAX_PAYLOAD = 48
 REPLY_BIT = 0x80
-LAYOUT = 4
+LAYOUT = 5
 
 
 class State(Described):
@@ -142,6 +142,22 @@ class SaveState(Described):
     FAILED = 3, "the EEPROM does not hold what was written; the previous set is still there"
 
 
+class ClutchAction(Described):
+    """What the clutch is to do. Any other value disengages as well."""
+
+    ENGAGE = 0, "the leader moves the reference again, from where both are"
+    DISENGAGE = 1, "the reference rests, and the leader can be moved by itself"
+    RESET = 2, "engaged, and the reference is the leader's angle times the ratio again; only while the motors are off"
+
+
+class Clutch(Described):
+    """Whether the leader arm moves the reference."""
+
+    ENGAGED = 0, "the reference is the leader's angle times the ratio"
+    DISENGAGED = 1, "the reference rests"
+    SHIFTED = 2, "engaged in another place: the reference is away from the leader's angle times the ratio"
+
+
 _HELLOREQUEST = Struct("<")
 
 
@@ -225,7 +241,7 @@ class StatusRequest(Message):
         return StatusReply.unpack(payload)
 
 
-_STATUSREPLY = Struct("<BBBBIHHHHHHBH")
+_STATUSREPLY = Struct("<BBBBIHHHHHHBHB")
 
 
 @dataclass(frozen=True, slots=True)
@@ -234,7 +250,7 @@ class StatusReply(Message):
 
     NAME: ClassVar[str] = "status"
     TYPE: ClassVar[int] = 0x82
-    SIZE: ClassVar[int] = 23
+    SIZE: ClassVar[int] = 24
     LSB: ClassVar[dict[str, float]] = {}
 
     state: State  # state of the supervisor
@@ -250,16 +266,17 @@ class StatusReply(Message):
     tick_us_max: int  # longest tick since boot [us]
     save_state: SaveState  # progress of the last param_save
     saves: int  # sequence of the newest bank in EEPROM, which counts the saves of a new set (0 follows 65535); 0 when no set is stored
+    clutch: Clutch  # whether the leader arm moves the reference
 
     def pack(self) -> bytes:
-        return self._checked(_STATUSREPLY, self.state, self.stop_reason, self.fault, self.fault_where, self.tick, self.late_ticks, self.frames_bad, self.rx_overruns, self.telemetry_dropped, self.no_rule, self.tick_us_max, self.save_state, self.saves)
+        return self._checked(_STATUSREPLY, self.state, self.stop_reason, self.fault, self.fault_where, self.tick, self.late_ticks, self.frames_bad, self.rx_overruns, self.telemetry_dropped, self.no_rule, self.tick_us_max, self.save_state, self.saves, self.clutch)
 
     @classmethod
     def unpack(cls, payload: bytes) -> StatusReply:
         if len(payload) != cls.SIZE:
             check_length(cls, payload)
-        state, stop_reason, fault, fault_where, tick, late_ticks, frames_bad, rx_overruns, telemetry_dropped, no_rule, tick_us_max, save_state, saves = _STATUSREPLY.unpack(payload)
-        return cls(State.of(state), StopReason.of(stop_reason), Fault.of(fault), fault_where, tick, late_ticks, frames_bad, rx_overruns, telemetry_dropped, no_rule, tick_us_max, SaveState.of(save_state), saves)
+        state, stop_reason, fault, fault_where, tick, late_ticks, frames_bad, rx_overruns, telemetry_dropped, no_rule, tick_us_max, save_state, saves, clutch = _STATUSREPLY.unpack(payload)
+        return cls(State.of(state), StopReason.of(stop_reason), Fault.of(fault), fault_where, tick, late_ticks, frames_bad, rx_overruns, telemetry_dropped, no_rule, tick_us_max, SaveState.of(save_state), saves, Clutch.of(clutch))
 
 
 _PARAMGETREQUEST = Struct("<H")
@@ -890,6 +907,59 @@ class LeadPointReply(Message):
         return cls(next, waiting)
 
 
+_CLUTCHREQUEST = Struct("<B")
+
+
+@dataclass(frozen=True, slots=True)
+class ClutchRequest(Message):
+    """Disengages the leader arm, so that it can be moved without the follower, or engages it where it stands. Works in every state. While it is disengaged the reference rests, and enable starts from the pose that the followers have."""
+
+    NAME: ClassVar[str] = "clutch"
+    TYPE: ClassVar[int] = 0x0F
+    SIZE: ClassVar[int] = 1
+    LSB: ClassVar[dict[str, float]] = {}
+
+    action: ClutchAction  # what to do
+
+    def pack(self) -> bytes:
+        return self._checked(_CLUTCHREQUEST, self.action)
+
+    @classmethod
+    def unpack(cls, payload: bytes) -> ClutchRequest:
+        if len(payload) != cls.SIZE:
+            check_length(cls, payload)
+        action, = _CLUTCHREQUEST.unpack(payload)
+        return cls(ClutchAction.of(action))
+
+    def reply(self, payload: bytes) -> ClutchReply:
+        return ClutchReply.unpack(payload)
+
+
+_CLUTCHREPLY = Struct("<B")
+
+
+@dataclass(frozen=True, slots=True)
+class ClutchReply(Message):
+    """Disengages the leader arm, so that it can be moved without the follower, or engages it where it stands. Works in every state. While it is disengaged the reference rests, and enable starts from the pose that the followers have."""
+
+    NAME: ClassVar[str] = "clutch"
+    TYPE: ClassVar[int] = 0x8F
+    SIZE: ClassVar[int] = 1
+    LSB: ClassVar[dict[str, float]] = {}
+
+    clutch: Clutch  # as it is from now on; a pedal that is pressed keeps it disengaged
+
+    def pack(self) -> bytes:
+        return self._checked(_CLUTCHREPLY, self.clutch)
+
+    @classmethod
+    def unpack(cls, payload: bytes) -> ClutchReply:
+        if len(payload) != cls.SIZE:
+            check_length(cls, payload)
+        clutch, = _CLUTCHREPLY.unpack(payload)
+        return cls(Clutch.of(clutch))
+
+
 _SAMPLE = Struct("<IBB4h4h4h")
 
 
@@ -905,7 +975,7 @@ class Sample(Message):
     tick: int  # ticks since boot [ticks]
     state: State  # state of the supervisor
     fault: Fault  # current fault
-    leader: tuple[int, int, int, int]  # leader angles, or the reference that the host leads [1/4096 rad]
+    leader: tuple[int, int, int, int]  # motors on: the reference, which is the leader angles, or what ratio, tremor filter, clutch and host make of them; motors off: the leader angles [1/4096 rad]
     follower: tuple[int, int, int, int]  # follower angles [1/4096 rad]
     voltage: tuple[int, int, int, int]  # motor voltages asked for [1/1000 V]
 
@@ -976,6 +1046,8 @@ MESSAGES: tuple[type[Message], ...] = (
     LeadReply,
     LeadPointRequest,
     LeadPointReply,
+    ClutchRequest,
+    ClutchReply,
     Sample,
     Nack,
 )
@@ -1047,6 +1119,13 @@ TABLE = Table((
         Field("gravity_1", "i8", "V", 0.1, -127, 127, (0,), False, None, "at joint 1 for link 1, level"),
         Field("gravity_12", "i8", "V", 0.1, -127, 127, (0,), False, None, "at joint 1 for what joint 2 carries, level"),
         Field("gravity_2", "i8", "V", 0.1, -127, 127, (0,), False, None, "at joint 2 for what it carries, level"),
+    )),
+    Group("joint", 4, "How far a follower goes for its leader.", 5, (
+        Field("ratio", "u8", "", 0.015625, 6, 192, (64, 64, 64, 64), False, None, "motion scaling: the reference is the leader's angle times this"),
+    )),
+    Group("", 1, "What the board makes of the leader arm's motion.", 5, (
+        Field("tremor_shift", "u8", "", 1.0, 0, 8, (0,), False, None, "low-pass against a hand's tremor: each tick the reference takes 2^-tremor_shift of its distance from the leader, which delays it by 2^tremor_shift ticks; 0 is no filter"),
+        Field("clutch_input", "u8", "", 1.0, 0, 2, (1,), False, None, "the clutch's pedal: 0 is none, 1 one that closes to ground while it disengages, 2 one that opens, so that a broken wire disengages as well"),
     )),
 ))
 PARAMETERS: tuple[Parameter, ...] = TABLE.parameters

@@ -4,7 +4,7 @@
 import { Enumeration, Message, Request, Table } from "./declared";
 
 export const PROTOCOL = 1;
-export const SCHEMA_HASH = 0xa4fbf154;
+export const SCHEMA_HASH = 0x423fe615;
 export const MAX_PAYLOAD = 48;
 
 /** States of the supervisor. */
@@ -115,6 +115,20 @@ export const SaveState = new Enumeration("SaveState", {
   failed: [3, "the EEPROM does not hold what was written; the previous set is still there"],
 });
 
+/** What the clutch is to do. Any other value disengages as well. */
+export const ClutchAction = new Enumeration("ClutchAction", {
+  engage: [0, "the leader moves the reference again, from where both are"],
+  disengage: [1, "the reference rests, and the leader can be moved by itself"],
+  reset: [2, "engaged, and the reference is the leader's angle times the ratio again; only while the motors are off"],
+});
+
+/** Whether the leader arm moves the reference. */
+export const Clutch = new Enumeration("Clutch", {
+  engaged: [0, "the reference is the leader's angle times the ratio"],
+  disengaged: [1, "the reference rests"],
+  shifted: [2, "engaged in another place: the reference is away from the leader's angle times the ratio"],
+});
+
 /** Asks who is there. Works in every state and in every protocol version. */
 export type HelloRequest = Record<never, never>;
 export const HelloRequest: Request<HelloRequest, HelloReply> = new Request("hello", 0x01, [], () => HelloReply);
@@ -152,8 +166,9 @@ export type StatusReply = {
   readonly tick_us_max: number; // longest tick since boot [us]
   readonly save_state: number; // progress of the last param_save (SaveState)
   readonly saves: number; // sequence of the newest bank in EEPROM, which counts the saves of a new set (0 follows 65535); 0 when no set is stored
+  readonly clutch: number; // whether the leader arm moves the reference (Clutch)
 };
-export const StatusReply: Message<StatusReply> = new Message("status", 0x82, [["state", "u8"], ["stop_reason", "u8"], ["fault", "u8"], ["fault_where", "u8"], ["tick", "u32"], ["late_ticks", "u16"], ["frames_bad", "u16"], ["rx_overruns", "u16"], ["telemetry_dropped", "u16"], ["no_rule", "u16"], ["tick_us_max", "u16"], ["save_state", "u8"], ["saves", "u16"]]);
+export const StatusReply: Message<StatusReply> = new Message("status", 0x82, [["state", "u8"], ["stop_reason", "u8"], ["fault", "u8"], ["fault_where", "u8"], ["tick", "u32"], ["late_ticks", "u16"], ["frames_bad", "u16"], ["rx_overruns", "u16"], ["telemetry_dropped", "u16"], ["no_rule", "u16"], ["tick_us_max", "u16"], ["save_state", "u8"], ["saves", "u16"], ["clutch", "u8"]]);
 
 /** Reads one parameter of the running set. */
 export type ParamGetRequest = {
@@ -296,12 +311,24 @@ export type LeadPointReply = {
 };
 export const LeadPointReply: Message<LeadPointReply> = new Message("lead_point", 0x8e, [["next", "u8"], ["waiting", "u8"]]);
 
+/** Disengages the leader arm, so that it can be moved without the follower, or engages it where it stands. Works in every state. While it is disengaged the reference rests, and enable starts from the pose that the followers have. */
+export type ClutchRequest = {
+  readonly action: number; // what to do (ClutchAction)
+};
+export const ClutchRequest: Request<ClutchRequest, ClutchReply> = new Request("clutch", 0x0f, [["action", "u8"]], () => ClutchReply);
+
+/** Disengages the leader arm, so that it can be moved without the follower, or engages it where it stands. Works in every state. While it is disengaged the reference rests, and enable starts from the pose that the followers have. */
+export type ClutchReply = {
+  readonly clutch: number; // as it is from now on; a pedal that is pressed keeps it disengaged (Clutch)
+};
+export const ClutchReply: Message<ClutchReply> = new Message("clutch", 0x8f, [["clutch", "u8"]]);
+
 /** One tick as the controllers saw it. Sent without being asked, see telemetry; seq counts samples, so that a gap shows. */
 export type Sample = {
   readonly tick: number; // ticks since boot [ticks]
   readonly state: number; // state of the supervisor (State)
   readonly fault: number; // current fault (Fault)
-  readonly leader: readonly number[]; // leader angles, or the reference that the host leads [1/4096 rad]
+  readonly leader: readonly number[]; // motors on: the reference, which is the leader angles, or what ratio, tremor filter, clutch and host make of them; motors off: the leader angles [1/4096 rad]
   readonly follower: readonly number[]; // follower angles [1/4096 rad]
   readonly voltage: readonly number[]; // motor voltages asked for [1/1000 V]
 };
@@ -344,6 +371,8 @@ export const MESSAGES = {
   LeadReply,
   LeadPointRequest,
   LeadPointReply,
+  ClutchRequest,
+  ClutchReply,
   Sample,
   Nack,
 } as const;
@@ -414,5 +443,12 @@ export const TABLE = new Table([
     ["gravity_1", "i8", "V", 1/10, -127, 127, [0], false, null, "at joint 1 for link 1, level"],
     ["gravity_12", "i8", "V", 1/10, -127, 127, [0], false, null, "at joint 1 for what joint 2 carries, level"],
     ["gravity_2", "i8", "V", 1/10, -127, 127, [0], false, null, "at joint 2 for what it carries, level"],
+  ]],
+  ["joint", 4, [
+    ["ratio", "u8", "", 1/64, 6, 192, [64, 64, 64, 64], false, null, "motion scaling: the reference is the leader's angle times this"],
+  ]],
+  ["", 1, [
+    ["tremor_shift", "u8", "", 1, 0, 8, [0], false, null, "low-pass against a hand's tremor: each tick the reference takes 2^-tremor_shift of its distance from the leader, which delays it by 2^tremor_shift ticks; 0 is no filter"],
+    ["clutch_input", "u8", "", 1, 0, 2, [1], false, null, "the clutch's pedal: 0 is none, 1 one that closes to ground while it disengages, 2 one that opens, so that a broken wire disengages as well"],
   ]],
 ]);

@@ -114,4 +114,18 @@ enum class SaveState : uint8_t {
   failed = 3,  // the EEPROM does not hold what was written; the previous set is still there
 };
 
+// What the clutch is to do. Any other value disengages as well.
+enum class ClutchAction : uint8_t {
+  engage = 0,  // the leader moves the reference again, from where both are
+  disengage = 1,  // the reference rests, and the leader can be moved by itself
+  reset = 2,  // engaged, and the reference is the leader's angle times the ratio again; only while the motors are off
+};
+
+// Whether the leader arm moves the reference.
+enum class Clutch : uint8_t {
+  engaged = 0,  // the reference is the leader's angle times the ratio
+  disengaged = 1,  // the reference rests
+  shifted = 2,  // engaged in another place: the reference is away from the leader's angle times the ratio
+};
+
 }  // namespace codes

@@ -44,6 +44,7 @@ inline void set_duty(bool positive, uint16_t size) {
 }
 
 inline bool estop_low() { return pins::estop_low(); }
+inline bool clutch_low() { return pins::clutch_low(); }
 
 namespace internal {
 

@@ -30,6 +30,7 @@ inline void drivers_off();
 
 constexpr Board board = Board::mega2560;
 constexpr uint8_t enable_bit = 1 << PH6, led_bit = 1 << PB7, estop_bit = 1 << PB4;
+constexpr uint8_t clutch_bit = 1 << PB5;
 constexpr uint8_t directions = (1 << PA0) | (1 << PA2) | (1 << PA4) | (1 << PA6);
 constexpr uint8_t pwm_e = 1 << PE3, pwm_h = (1 << PH3) | (1 << PH4) | (1 << PH5);
 // What only some drivers need. These pins are inputs until a parameter set asks for them.
@@ -74,7 +75,7 @@ inline void all_outputs_low() {
   DDRE = pwm_e;
   PORTA = 0;
   DDRA = directions;
-  PORTB = estop_bit;  // an input with its pull-up
+  PORTB = estop_bit | clutch_bit;  // inputs with their pull-ups
   DDRB = led_bit;
 }
 
@@ -91,6 +92,7 @@ inline void start_pwm() {
 inline void stop_unused_timers() { TCCR1B = TCCR2B = 0; }
 
 inline bool estop_low() { return (PINB & estop_bit) == 0; }
+inline bool clutch_low() { return (PINB & clutch_bit) == 0; }
 
 // Single-bit instructions, so interrupts may touch the same port. Of two directions one goes low before the other goes
 // high.
@@ -136,6 +138,7 @@ inline void compare_pair(uint8_t joint, uint16_t first, uint16_t second) {
 
 constexpr Board board = Board::nano328;
 constexpr uint8_t enable_bit = 1 << PB4, led_bit = 1 << PB5, estop_bit = 1 << PD5;
+constexpr uint8_t clutch_bit = 1 << PD6;
 constexpr uint8_t directions_d = (1 << PD2) | (1 << PD4) | (1 << PD7), direction_b = 1 << PB0;
 constexpr uint16_t pwm_top8 = 255;
 constexpr uint8_t pwm_b = (1 << PB1) | (1 << PB2) | (1 << PB3), pwm_d = 1 << PD3;
@@ -173,7 +176,7 @@ inline void led(bool on) {
 inline void all_outputs_low() {
   PORTB = 0;
   DDRB = enable_bit | led_bit | pwm_b | direction_b;
-  PORTD = estop_bit;  // an input with its pull-up
+  PORTD = estop_bit | clutch_bit;  // inputs with their pull-ups
   DDRD = pwm_d | directions_d;
 }
 
@@ -193,6 +196,7 @@ inline void start_pwm() {
 inline void stop_unused_timers() {}
 
 inline bool estop_low() { return (PIND & estop_bit) == 0; }
+inline bool clutch_low() { return (PIND & clutch_bit) == 0; }
 
 inline void direction(uint8_t joint, bool positive) {
   switch (joint) {  // single-bit instructions, so interrupts may touch the same port

@@ -66,6 +66,7 @@ void set_duty(std::uint8_t joint, bool positive, std::uint16_t size) {
 void set_drivers(bool on) { fake::board.drivers = on; }
 void set_led(bool on) { fake::board.led = on; }
 bool estop_low() { return fake::board.estop_low; }
+bool clutch_low() { return fake::board.clutch_low; }
 
 bool rx_available() { return !fake::board.received.empty(); }
 

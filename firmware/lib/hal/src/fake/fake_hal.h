@@ -25,6 +25,7 @@ struct FakeBoard {
   bool late = false;         // the next tick finds the last one unfinished
   bool samples_ready = true;
   bool estop_low = false;
+  bool clutch_low = false;
   Driver last_driver = Driver::two_pwm_high;  // that it has pins for
   std::uint16_t age_us = 100;
   std::array<std::uint8_t, eeprom_size> eeprom;

@@ -60,6 +60,7 @@ Board board;
 Eeprom memory = erased();
 unsigned memory_writes = 0;
 bool estop_pressed = false;
+bool clutch_pressed = false;
 
 }  // namespace
 
@@ -95,6 +96,8 @@ void convert(std::uint8_t pot, unsigned count) {
 }
 
 void press_estop(bool pressed) { estop_pressed = pressed; }
+
+void press_clutch(bool pressed) { clutch_pressed = pressed; }
 
 bool receive(std::uint8_t byte) {
   if (board.received.free()) {
@@ -163,6 +166,7 @@ void set_duty(std::uint8_t joint, bool positive, std::uint16_t size) { board.dut
 void set_drivers(bool on) { board.drivers = on; }
 void set_led(bool) {}  // the page shows the state itself
 bool estop_low() { return web::estop_pressed; }
+bool clutch_low() { return web::clutch_pressed; }
 
 bool rx_available() { return !board.received.empty(); }
 std::uint8_t rx_read() { return board.received.pop(); }

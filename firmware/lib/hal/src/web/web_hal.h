@@ -29,6 +29,7 @@ void start_tick();                               // what the timer does each mil
 void set_age(std::uint16_t us);                  // of this tick
 void convert(std::uint8_t pot, unsigned count);  // one conversion, 10 bits; a tick has all of them
 void press_estop(bool pressed);
+void press_clutch(bool pressed);
 
 bool receive(std::uint8_t byte);  // from the host; false where there was no room, which the firmware hears of
 bool take_sent(std::uint8_t& byte);

@@ -19,9 +19,11 @@ using codes::Board;
 using codes::ParamSource;
 using codes::ResetCause;
 using codes::SaveState;
+using codes::ClutchAction;
+using codes::Clutch;
 
 constexpr uint8_t protocol = 1;
-constexpr uint32_t schema_hash = 0xA4FBF154;
+constexpr uint32_t schema_hash = 0x423FE615;
 constexpr uint8_t max_payload = 48;
 constexpr uint8_t reply_bit = 0x80;
 
@@ -41,6 +43,7 @@ enum class RequestType : uint8_t {
   telemetry = 0x0C,
   lead = 0x0D,
   lead_point = 0x0E,
+  clutch = 0x0F,
 };
 
 // Asks who is there. Works in every state and in every protocol version.
@@ -108,7 +111,7 @@ struct StatusRequest {
 // Asks for the state, the fault and the counters.
 struct StatusReply {
   static constexpr uint8_t type = 0x82;
-  static constexpr uint8_t size = 23;
+  static constexpr uint8_t size = 24;
 
   State state;  // state of the supervisor
   StopReason stop_reason;  // why the motors last went off
@@ -123,6 +126,7 @@ struct StatusReply {
   uint16_t tick_us_max;  // longest tick since boot [us]
   SaveState save_state;  // progress of the last param_save
   uint16_t saves;  // sequence of the newest bank in EEPROM, which counts the saves of a new set (0 follows 65535); 0 when no set is stored
+  Clutch clutch;  // whether the leader arm moves the reference
 
   void encode(uint8_t *out) const {
     put_u8(out + 0, static_cast<uint8_t>(state));
@@ -138,6 +142,7 @@ struct StatusReply {
     put_u16(out + 18, tick_us_max);
     put_u8(out + 20, static_cast<uint8_t>(save_state));
     put_u16(out + 21, saves);
+    put_u8(out + 23, static_cast<uint8_t>(clutch));
   }
 
   static bool decode(const uint8_t *in, uint8_t length, StatusReply &out) {
@@ -155,6 +160,7 @@ struct StatusReply {
     out.tick_us_max = get_u16(in + 18);
     out.save_state = static_cast<SaveState>(get_u8(in + 20));
     out.saves = get_u16(in + 21);
+    out.clutch = static_cast<Clutch>(get_u8(in + 23));
     return true;
   }
 };
@@ -584,6 +590,42 @@ struct LeadPointReply {
   }
 };
 
+// Disengages the leader arm, so that it can be moved without the follower, or engages it where it stands. Works in every state. While it is disengaged the reference rests, and enable starts from the pose that the followers have.
+struct ClutchRequest {
+  static constexpr uint8_t type = 0x0F;
+  static constexpr uint8_t size = 1;
+
+  ClutchAction action;  // what to do
+
+  void encode(uint8_t *out) const {
+    put_u8(out + 0, static_cast<uint8_t>(action));
+  }
+
+  static bool decode(const uint8_t *in, uint8_t length, ClutchRequest &out) {
+    if (length != size) return false;
+    out.action = static_cast<ClutchAction>(get_u8(in + 0));
+    return true;
+  }
+};
+
+// Disengages the leader arm, so that it can be moved without the follower, or engages it where it stands. Works in every state. While it is disengaged the reference rests, and enable starts from the pose that the followers have.
+struct ClutchReply {
+  static constexpr uint8_t type = 0x8F;
+  static constexpr uint8_t size = 1;
+
+  Clutch clutch;  // as it is from now on; a pedal that is pressed keeps it disengaged
+
+  void encode(uint8_t *out) const {
+    put_u8(out + 0, static_cast<uint8_t>(clutch));
+  }
+
+  static bool decode(const uint8_t *in, uint8_t length, ClutchReply &out) {
+    if (length != size) return false;
+    out.clutch = static_cast<Clutch>(get_u8(in + 0));
+    return true;
+  }
+};
+
 // One tick as the controllers saw it. Sent without being asked, see telemetry; seq counts samples, so that a gap shows.
 struct Sample {
   static constexpr uint8_t type = 0x40;
@@ -592,7 +634,7 @@ struct Sample {
   uint32_t tick;  // ticks since boot [ticks]
   State state;  // state of the supervisor
   Fault fault;  // current fault
-  int16_t leader[4];  // leader angles, or the reference that the host leads [1/4096 rad]
+  int16_t leader[4];  // motors on: the reference, which is the leader angles, or what ratio, tremor filter, clutch and host make of them; motors off: the leader angles [1/4096 rad]
   int16_t follower[4];  // follower angles [1/4096 rad]
   int16_t voltage[4];  // motor voltages asked for [1/1000 V]
 

@@ -52,6 +52,9 @@ const Field fields[field_count] PROGMEM = {
     {Kind::i8, offsetof(Table, gravity_1), no_field, false, -127, 127},
     {Kind::i8, offsetof(Table, gravity_12), no_field, false, -127, 127},
     {Kind::i8, offsetof(Table, gravity_2), no_field, false, -127, 127},
+    {Kind::u8, offsetof(ScalingParameters, ratio), no_field, false, 6, 192},
+    {Kind::u8, offsetof(Table, tremor_shift), no_field, false, 0, 8},
+    {Kind::u8, offsetof(Table, clutch_input), no_field, false, 0, 2},
 };
 
 const Group groups[group_count] PROGMEM = {
@@ -66,6 +69,8 @@ const Group groups[group_count] PROGMEM = {
     {4, 1, 37, offsetof(Table, change), sizeof(ChangeParameters)},
     {4, 3, 38, offsetof(Table, travel), sizeof(TravelParameters)},
     {1, 3, 41, 0, 0},
+    {4, 1, 44, offsetof(Table, scaling), sizeof(ScalingParameters)},
+    {1, 2, 45, 0, 0},
 };
 
 const Table default_table PROGMEM = {
@@ -105,6 +110,13 @@ const Table default_table PROGMEM = {
         {24, 100, 0},
     },
     0, 0, 0,
+    {
+        {64},
+        {64},
+        {64},
+        {64},
+    },
+    0, 1,
 };
 
 }  // namespace params

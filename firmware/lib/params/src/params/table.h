@@ -7,10 +7,10 @@
 
 namespace params {
 
-constexpr uint8_t layout = 4;
-constexpr uint8_t count = 113;
-constexpr uint8_t field_count = 44;
-constexpr uint8_t group_count = 11;
+constexpr uint8_t layout = 5;
+constexpr uint8_t count = 119;
+constexpr uint8_t field_count = 47;
+constexpr uint8_t group_count = 13;
 
 // Packed, so that the bytes in RAM are the bytes on the link and in EEPROM, in the order of the flat index.
 // Read members by value: a reference to a packed member does not compile.
@@ -47,6 +47,10 @@ struct __attribute__((packed)) TravelParameters {
   uint8_t breakaway_volts;  // voltage beyond that against gravity with which the joint must move. 0: stall_volts [1/10 V]
 };
 
+struct __attribute__((packed)) ScalingParameters {
+  uint8_t ratio;  // motion scaling: the reference is the leader's angle times this [1/64]
+};
+
 struct __attribute__((packed)) Table {
   uint8_t period_ms;  // control period [ms]
   uint16_t supply_mv;  // motor supply; a duty of 1 puts this on a motor [mV]
@@ -74,11 +78,14 @@ struct __attribute__((packed)) Table {
   int8_t gravity_1;  // at joint 1 for link 1, level [1/10 V]
   int8_t gravity_12;  // at joint 1 for what joint 2 carries, level [1/10 V]
   int8_t gravity_2;  // at joint 2 for what it carries, level [1/10 V]
+  ScalingParameters scaling[4];
+  uint8_t tremor_shift;  // low-pass against a hand's tremor: each tick the reference takes 2^-tremor_shift of its distance from the leader, which delays it by 2^tremor_shift ticks; 0 is no filter
+  uint8_t clutch_input;  // the clutch's pedal: 0 is none, 1 one that closes to ground while it disengages, 2 one that opens, so that a broken wire disengages as well
 };
 
-constexpr uint16_t table_size = 214;
+constexpr uint16_t table_size = 220;
 // Of every layout so far: each is the beginning of the next.
-constexpr uint8_t layout_sizes[layout] = {185, 195, 199, 214};
+constexpr uint8_t layout_sizes[layout] = {185, 195, 199, 214, 220};
 static_assert(sizeof(Table) == table_size, "the table must have no padding");
 
 enum class Kind : uint8_t { u8, i8, u16, i16, u32, i32 };
