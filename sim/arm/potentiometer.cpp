@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "elementary.h"
+
 namespace greywhale::arm {
 
 Potentiometers::Potentiometers(const std::array<Potentiometer, kJoints>& pots, double supply, std::uint64_t seed,
@@ -17,8 +19,9 @@ double Potentiometers::wiper(std::size_t joint, double angle) const {
   constexpr double kTurn = 6.283185307179586;
   const Potentiometer& pot = pots_[joint];
   const double along = std::clamp(pot.direction * (angle - pot.centre) / pot.track + 0.5, 0.0, 1.0);
+  if (pot.linearity == 0.0) return supply_ * along;
   // One sine period over the track: exact at both ends and at the centre, as a pot that was calibrated there.
-  return supply_ * (along + pot.linearity * std::sin(kTurn * along));
+  return supply_ * (along + pot.linearity * sine(kTurn * along));
 }
 
 void Potentiometers::millivolts(const double (&angles)[kJoints], double (&out)[kJoints]) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "elementary.h"
+
 namespace greywhale::arm {
 
 // SplitMix64's finaliser: every bit of the result depends on every bit of the input.
@@ -25,7 +27,7 @@ class Noise {
   // Mean 0, standard deviation 1 (Box and Muller).
   double gaussian(std::uint64_t n) const {
     constexpr double kTurn = 6.283185307179586;
-    return std::sqrt(-2.0 * std::log(uniform(2 * n))) * std::cos(kTurn * uniform(2 * n + 1));
+    return std::sqrt(-2.0 * logarithm(uniform(2 * n))) * cosine(kTurn * uniform(2 * n + 1));
   }
 
  private:

@@ -6,6 +6,7 @@
 // equations from here.
 #pragma once
 
+#include "elementary.h"
 #include "parameters.h"
 #include "scalar.h"
 
@@ -80,8 +81,7 @@ inline RigidBody<double> rigid_body(const ArmParameters& p) {
 template <class T, class Angle>
 GREYWHALE_INLINE Pose<T> pose_of(Angle q1, Angle q2) {
   Pose<T> pose;
-  sine_cosine(q1, pose.s1, pose.c1);
-  sine_cosine(q2, pose.s2, pose.c2);
+  sines_cosines(q1, q2, pose.s1, pose.c1, pose.s2, pose.c2);
   pose.sphi = pose.s1 * pose.c2 + pose.c1 * pose.s2;
   pose.cphi = pose.c1 * pose.c2 - pose.s1 * pose.s2;
   return pose;

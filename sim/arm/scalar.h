@@ -1,8 +1,6 @@
 // What the plant asks of its number type, so that the same equations run on double and on a vector of candidates.
 #pragma once
 
-#include <cmath>
-
 // Lanes must not be passed to functions and back, as that costs more than most functions do.
 #define GREYWHALE_INLINE inline __attribute__((always_inline))
 
@@ -34,10 +32,5 @@ T sign(T value) {
 }
 
 inline bool any(bool mask) { return mask; }
-
-inline void sine_cosine(double angle, double& sine, double& cosine) {
-  sine = std::sin(angle);
-  cosine = std::cos(angle);
-}
 
 }  // namespace greywhale::arm

@@ -1,6 +1,7 @@
 // Steps eight random arms as one vector and one by one; exit code 0 when every bit of every state is the same.
 #include "scalar.h"
 
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <random>
@@ -16,13 +17,6 @@ inline bool any(Mask mask) {
     if (mask[lane] != 0) return true;
   }
   return false;
-}
-
-inline void sine_cosine(Lanes angle, Lanes& sine, Lanes& cosine) {
-  for (int lane = 0; lane < kLanes; ++lane) {
-    sine[lane] = std::sin(angle[lane]);
-    cosine[lane] = std::cos(angle[lane]);
-  }
 }
 
 }  // namespace greywhale::arm

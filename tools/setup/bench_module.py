@@ -1,7 +1,7 @@
 """Compiles the bench inside a page, firmware/lib and sim/arm with sim/web, to WebAssembly: build/web/bench.wasm.
 
 The same sources as for the board and for the simulation, by another compiler. No multiplication and addition may be
-fused, so that the arm moves by the same bits as elsewhere but for the C library's sine.
+fused, so that the arm moves by the same bits as elsewhere.
 """
 
 from __future__ import annotations

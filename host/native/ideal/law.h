@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "arm/elementary.h"
 #include "arm/step.h"
 
 namespace greywhale::ideal {
@@ -36,7 +37,7 @@ struct Braking {
 inline double stopping_distance(const Braking& b, double w) {
   const double ratio = b.damping * w / b.stop;
   if (ratio < 1e-4) return 0.5 * b.inertia * w * w / b.stop * (1.0 - 2.0 / 3.0 * ratio);
-  return b.inertia / b.damping * (w - b.stop / b.damping * std::log1p(ratio));
+  return b.inertia / b.damping * (w - b.stop / b.damping * arm::logarithm_of_1_and(ratio));
 }
 
 // The closing speed whose stopping distance is `way`: Newton's method on a convex function, from the undamped solution.

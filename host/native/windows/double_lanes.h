@@ -5,7 +5,6 @@
 #include <immintrin.h>
 #endif
 
-#include <cmath>
 #include <cstddef>
 
 #include "arm/scalar.h"
@@ -59,13 +58,6 @@ GREYWHALE_INLINE bool any(Condition mask) {
 #else
   return (mask.v[0] | mask.v[1]) != 0;
 #endif
-}
-
-GREYWHALE_INLINE void sine_cosine(Lanes angle, Lanes& sine, Lanes& cosine) {
-  for (std::size_t n = 0; n < kLanes; ++n) {
-    sine.v[n] = std::sin(angle.v[n]);
-    cosine.v[n] = std::cos(angle.v[n]);
-  }
 }
 
 }  // namespace greywhale::windows::GREYWHALE_INSTRUCTIONS
