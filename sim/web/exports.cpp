@@ -141,10 +141,6 @@ EXPORT(look) void exported_look() {
 EXPORT(powered) unsigned exported_powered() { return bench->board.powered(); }
 EXPORT(starts) unsigned exported_starts() { return bench->board.starts(); }
 
-// Debian's library for wasm has no exceptions; what sim/arm throws ends the module.
-void* __cxa_allocate_exception(std::size_t) { __builtin_trap(); }
-void __cxa_throw(void*, void*, void (*)(void*)) { __builtin_trap(); }
-
 }  // extern "C"
 
 }  // namespace greywhale::web

@@ -1,4 +1,4 @@
-"""Calls of greywhale._native, kept with their results and written down, so that another processor can repeat them."""
+"""Calls of greywhale._native, kept with their results and written down, so that another target can repeat them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ JOINTS = 4
 
 @dataclass(frozen=True)
 class Call:
-    """A function's name, its arguments as bytes in the order of aarch64/driver.cpp, and what it gave here by name."""
+    """A function's name, its arguments as bytes in the order of driver.cpp, and what it gave here by name."""
 
     name: str
     arguments: bytes

@@ -1,4 +1,4 @@
-// Repeats calls of greywhale._native on another processor: driver CALLS RESULTS. See tests/oracles/native_calls.py for
+// Repeats calls of greywhale._native on another target: driver CALLS RESULTS. See tests/oracles/native_calls.py for
 // the file's form.
 //
 // Every call is its name and its arguments in the order of the functions here: whole numbers as int64, others as

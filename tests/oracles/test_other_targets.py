@@ -1,13 +1,14 @@
-"""The native code compiled for 64-bit ARM and run under qemu gives the same bits as on this machine.
+"""The native code compiled for 64-bit ARM (under qemu) and for wasm (in Node.js) gives the same bits as here.
 
-The library greywhale_core is compiled, by the package's own CMake file; tests/oracles/aarch64/driver.cpp repeats the
-calls that the package makes of its native module here.
+The library greywhale_core is compiled, by the package's own CMake file; tests/oracles/other_targets/driver.cpp repeats
+the calls that the package makes of its native module.
 """
 
 from __future__ import annotations
 
 import subprocess
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -27,27 +28,49 @@ from tests.identify.test_windows import arguments as windows_of_test
 from tests.oracles.native_calls import Calls, array, read, wholes, written
 from tests.simulate.test_batch import search_box
 from tests.simulate.test_law_in_lanes import LANES, random_angles, random_controllers
+from tools.setup import page
 
-SOURCE = Path(__file__).with_name("aarch64")
-BUILD = Path(__file__).parents[2] / "build" / "oracles" / "aarch64"
-CROSS = (
-    "-DCMAKE_SYSTEM_NAME=Linux",
-    "-DCMAKE_SYSTEM_PROCESSOR=aarch64",
-    "-DCMAKE_CXX_COMPILER=aarch64-linux-gnu-g++",
-    "-DCMAKE_BUILD_TYPE=Release",
-)
-QEMU = ("qemu-aarch64", "-L", "/usr/aarch64-linux-gnu")
+HERE = Path(__file__).parent
+BUILD = HERE.parents[1] / "build" / "oracles"
+CMAKE = {
+    "aarch64": {
+        "SYSTEM_NAME": "Linux",
+        "SYSTEM_PROCESSOR": "aarch64",
+        "CXX_COMPILER": "aarch64-linux-gnu-g++",
+    },
+    "wasm": {
+        "SYSTEM_NAME": "Generic",
+        "SYSTEM_PROCESSOR": "wasm32",
+        "CXX_COMPILER": "clang++",
+        "CXX_COMPILER_TARGET": "wasm32-wasi",
+        "CXX_FLAGS": "-fexceptions -msimd128",
+        "TRY_COMPILE_TARGET_TYPE": "STATIC_LIBRARY",
+    },
+}
 
 
-@pytest.fixture(scope="session")
-def driver() -> Path:
-    cmake = str(Path(sys.executable).with_name("cmake"))
-    ninja = str(Path(sys.executable).with_name("ninja"))
-    configure = [cmake, "-S", str(SOURCE), "-B", str(BUILD), "-G", "Ninja", f"-DCMAKE_MAKE_PROGRAM={ninja}", *CROSS]
-    for command in (configure, [cmake, "--build", str(BUILD)]):
+@dataclass(frozen=True)
+class Driver:
+    """The program for a target, and the command that runs it."""
+
+    target: str
+    command: tuple[str, ...]
+
+
+@pytest.fixture(scope="session", params=list(CMAKE))
+def driver(request: pytest.FixtureRequest) -> Driver:
+    target, build = request.param, BUILD / request.param
+    cmake, ninja = (str(Path(sys.executable).with_name(name)) for name in ("cmake", "ninja"))
+    options = [f"-DCMAKE_{name}={value}" for name, value in CMAKE[target].items()]
+    source = ["-S", str(HERE / "other_targets"), "-B", str(build), "-G", "Ninja", f"-DCMAKE_MAKE_PROGRAM={ninja}"]
+    for command in ([cmake, *source, "-DCMAKE_BUILD_TYPE=Release", *options], [cmake, "--build", str(build)]):
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stdout + done.stderr
-    return BUILD / "driver"
+    runs = {
+        "aarch64": ("qemu-aarch64", "-L", "/usr/aarch64-linux-gnu"),
+        "wasm": (str(page.node() / "bin" / "node"), "--no-warnings", str(HERE / "wasm" / "driver.mjs")),
+    }
+    return Driver(target, (*runs[target], str(build / "driver")))
 
 
 @pytest.fixture
@@ -55,11 +78,11 @@ def calls(monkeypatch: pytest.MonkeyPatch) -> Calls:
     return Calls(monkeypatch)
 
 
-def require_same_bits(calls: Calls, driver: Path, folder: Path) -> None:
-    """Repeats all calls on the other processor."""
+def require_same_bits(calls: Calls, driver: Driver, folder: Path) -> None:
+    """Repeats all calls on the other target."""
     given, found = folder / "calls", folder / "results"
     given.write_bytes(written(calls.kept))
-    subprocess.run([*QEMU, str(driver), str(given), str(found)], check=True, timeout=300)
+    subprocess.run([*driver.command, str(given), str(found)], check=True, timeout=300)
     for number, (call, there) in enumerate(zip(calls.kept, read(calls.kept, found.read_bytes()), strict=True)):
         for name, here in call.results.items():
             if here.tobytes() == there[name].tobytes():
@@ -103,6 +126,9 @@ STEPS_PER_TICK = {
 }
 
 
+SHADOW = -2  # of the candidates
+
+
 def candidates() -> tuple[Any, Any]:
     """Of four arms; some against a stop all the time, some with short ramps, some that cannot be.
 
@@ -123,15 +149,17 @@ def candidates() -> tuple[Any, Any]:
     lasting = [column("supply")]
     for name in ("stribeck_velocity", "half_gap", "stop_min", "stop_max"):
         lasting += columns(name)
-    plants[-2, [place for place in range(len(PLANT_COLUMNS)) if place not in lasting]] *= 1e-35
+    plants[SHADOW, [place for place in range(len(PLANT_COLUMNS)) if place not in lasting]] *= 1e-35
     plants[-1, columns("torque_per_volt")] *= 1e36
     return controllers, plants
 
 
 @pytest.mark.parametrize("name", STEPS_PER_TICK)
-def test_batch(name: str, calls: Calls, driver: Path, tmp_path: Path) -> None:
+def test_batch(name: str, calls: Calls, driver: Driver, tmp_path: Path) -> None:
     steps, loop = STEPS_PER_TICK[name], experiment(name)
     controllers, plants = candidates()
+    if driver.target == "wasm":  # it cannot take such numbers for 0
+        controllers, plants = (np.delete(rows, SHADOW, axis=0) for rows in (controllers, plants))
     results = [loop.run(controllers, plants, every=5, steps_per_tick=number) for number in steps]
     assert [call.name for call in calls.kept] == ["leader_readings"] + ["run"] * len(steps)
     assert name != "mega" or all(result.diverged[-1] for result in results)
@@ -140,7 +168,7 @@ def test_batch(name: str, calls: Calls, driver: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", STEPS_PER_TICK)
-def test_single_runs(name: str, calls: Calls, driver: Path, tmp_path: Path) -> None:
+def test_single_runs(name: str, calls: Calls, driver: Driver, tmp_path: Path) -> None:
     loop = experiment(name)
     controllers, plants = candidates()
     result = loop.run_exact(controllers[::3], plants[::3], every=5)
@@ -149,7 +177,7 @@ def test_single_runs(name: str, calls: Calls, driver: Path, tmp_path: Path) -> N
     require_same_bits(calls, driver, tmp_path)
 
 
-def test_identification_windows(calls: Calls, driver: Path, tmp_path: Path) -> None:
+def test_identification_windows(calls: Calls, driver: Driver, tmp_path: Path) -> None:
     spacing = 1e-3 * np.random.default_rng(2).uniform(0.5, 1.5, 150)
     for arm in ("default", "white_box", "grey_box", "worn"):
         for count in (1, 3, 5):
@@ -160,7 +188,7 @@ def test_identification_windows(calls: Calls, driver: Path, tmp_path: Path) -> N
     require_same_bits(calls, driver, tmp_path)
 
 
-def test_ideal_law(calls: Calls, driver: Path, tmp_path: Path) -> None:
+def test_ideal_law(calls: Calls, driver: Driver, tmp_path: Path) -> None:
     slices = leader_slices(human_reaches(4, 2.0), 0.5, 0.0, False)
     tunings = np.tile([1.1, 0.02, 1.0, 1.0], (3, 4, 1)) * np.array([1.0, 1.1, 1.2])[:, None, None]
     direction = np.where(np.arange(len(slices)) % 4000 < 1500, 1, 0).astype(np.int8)
@@ -183,7 +211,7 @@ def test_ideal_law(calls: Calls, driver: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("period_ms", [1, 5])
-def test_fuzzy_law_alone_and_in_lanes(period_ms: int, calls: Calls, driver: Path, tmp_path: Path) -> None:
+def test_fuzzy_law_alone_and_in_lanes(period_ms: int, calls: Calls, driver: Driver, tmp_path: Path) -> None:
     random = np.random.default_rng(period_ms)
     controllers = random_controllers(random, period_ms)
     leader, follower = random_angles(random), random_angles(random)
