@@ -20,6 +20,9 @@ struct Potentiometer {
   Sensor<double> sensor;
 };
 
+constexpr std::size_t kPots = 2 * kJoints;  // 0..3 leader, 4..7 follower
+using Millivolts = std::array<double, kPots>;
+
 // Connected; open: the wire is off and the input's pull-down wins; shorted: the wiper touches the supply.
 enum class Wiring : std::uint8_t { connected, open, shorted };
 

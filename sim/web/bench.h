@@ -6,10 +6,10 @@
 #include <cstdint>
 
 #include "arm/arm.h"
+#include "arm/pot_faults.h"
 #include "arm/potentiometer.h"
 #include "board.h"
 #include "hand.h"
-#include "pot_faults.h"
 
 namespace greywhale::web {
 
@@ -29,7 +29,7 @@ class Bench {
 
   Board board;
   Hand hand;
-  PotFaults pot_faults;
+  arm::PotFaults pot_faults;
   void set_wiring(std::size_t pot, arm::Wiring wiring);
   void let_float(std::size_t pot, bool floats);
   void wire_motor(std::size_t joint, double gain, std::size_t driver);

@@ -1,17 +1,18 @@
 // The firmware on its board inside a page, without bootloader: power, reset, and ticks in four slices of 250 us.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <deque>
 #include <vector>
 
 #include <hal.h>
 
+#include "arm/potentiometer.h"
+
 namespace greywhale::web {
 
-constexpr std::size_t kPots = 8;  // 0..3 leader, 4..7 follower
-using Millivolts = std::array<double, kPots>;
+using arm::kPots;
+using arm::Millivolts;
 
 class Board {
  public:

@@ -108,7 +108,7 @@ EXPORT(hold_inputs) void exported_hold_inputs() {  // mV
 }
 
 EXPORT(inject) void exported_inject(unsigned pot, unsigned kind) {
-  bench->pot_faults.inject(pot, static_cast<PotFault>(kind));
+  bench->pot_faults.inject(pot, static_cast<arm::PotFault>(kind));
 }
 EXPORT(swap) void exported_swap(unsigned one, unsigned other) { bench->pot_faults.swap(one, other); }
 EXPORT(touch) void exported_touch(unsigned one, unsigned other) { bench->pot_faults.touch(one, other); }

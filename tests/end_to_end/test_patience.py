@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from greywhale.arm import ArmParameters
+from greywhale.arm import ArmParameters, PotFault
 from greywhale.files import controller
 from greywhale.files.arm import load_arm
 from greywhale.files.leader import save_leader
@@ -146,7 +146,7 @@ def test_a_frozen_potentiometer_cannot_let_a_known_arm_run_away(lock_step: Any, 
     set_parameters(host, tuned() | travel(load_arm("default")))
     host.follow()
     lead(host, joint, 0.0, 2.0)
-    host.bench.pot_faults.inject(4 + joint, "frozen")
+    host.bench.pot_faults.inject(4 + joint, PotFault.FROZEN)
     host.bench.leader.lead(np.eye(4)[joint] * 0.4)
     farthest = 0.0
     for _ in range(300):

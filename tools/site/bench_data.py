@@ -10,13 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from greywhale.arm import ArmParameters
+from greywhale.arm import ArmParameters, PotFault
 from greywhale.arm.parameters import PotentiometerBank
 from greywhale.base.types import Floats
 from greywhale.dashboard.answers import arm_facts
 from greywhale.motion import human_reaches
 from greywhale.protocol.firmware import JOINTS
-from greywhale_sim import commands, faults, pot_faults
+from greywhale_sim import commands, faults
 
 Call = list[str | float]
 
@@ -60,8 +60,8 @@ class _Recorder:
         self.pot_faults = self
         self.leader_pots, self.follower_pots = _Bank(self.calls, 0), _Bank(self.calls, JOINTS)
 
-    def inject(self, pot: int, kind: str) -> None:
-        self.calls.append(["inject", pot, 1 + list(pot_faults.KINDS).index(kind)])
+    def inject(self, pot: int, kind: PotFault) -> None:
+        self.calls.append(["inject", pot, kind.value])
 
     def swap(self, one: int, other: int) -> None:
         self.calls.append(["swap", one, other])

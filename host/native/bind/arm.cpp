@@ -2,6 +2,7 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/variant.h>
 
 #include <array>
@@ -14,6 +15,7 @@
 
 #include "arm/arm.h"
 #include "arm/motor.h"
+#include "arm/pot_faults.h"
 #include "arm/potentiometer.h"
 #include "arm/rigid_body.h"
 #include "bindings.h"
@@ -238,6 +240,41 @@ void bind_pots(nb::module_& m) {
       .def("wiring", &arm::Potentiometers::wiring, "joint"_a);
 }
 
+void bind_pot_faults(nb::module_& m) {
+  nb::enum_<arm::PotFault>(m, "PotFault", "How a potentiometer lies.")
+      .value("FROZEN", arm::PotFault::frozen)
+      .value("SLIPPING", arm::PotFault::slipping, "its shaft, with every way up")
+      .value("LOOSE", arm::PotFault::loose, "the wire is off for 2 ms again and again")
+      .value("NOISY", arm::PotFault::noisy)
+      .value("HUMMING", arm::PotFault::humming)
+      .value("REVERSED", arm::PotFault::reversed, "the two ends of the track are exchanged")
+      .value("TURNED", arm::PotFault::turned, "the dead zone lies in its travel")
+      .value("CROSSED", arm::PotFault::crossed, "the wiper's wire and an end's are exchanged");
+
+  using Millivolts = nb::ndarray<double, nb::shape<arm::kPots>, nb::c_contig, nb::device::cpu>;
+  nb::class_<arm::PotFaults>(m, "PotFaults",
+                             "Mistakes between the potentiometers, 0..3 leader and 4..7 follower, and the converter.")
+      .def(nb::init<>())
+      .def(
+          "inject",
+          [](arm::PotFaults& self, std::size_t pot, std::optional<arm::PotFault> kind) {
+            self.inject(pot, kind.value_or(arm::PotFault::none));
+          },
+          "pot"_a, "kind"_a.none(), "Let it lie in this way from now on; None: it tells the truth again.")
+      .def("swap", &arm::PotFaults::swap, "one"_a, "other"_a, "Exchange the wires of two inputs.")
+      .def("touch", &arm::PotFaults::touch, "one"_a, "other"_a, "Let the wipers' wires of two potentiometers touch.")
+      .def_prop_ro("any", &arm::PotFaults::any, "Whether anything is wrong.")
+      .def(
+          "apply",
+          [](arm::PotFaults& self, const Millivolts& millivolts) {
+            arm::Millivolts values;
+            std::memcpy(values.data(), millivolts.data(), sizeof values);
+            self.apply(values);
+            std::memcpy(millivolts.data(), values.data(), sizeof values);
+          },
+          "millivolts"_a, "Change the voltages (8,) mV in place, once a slice of 250 us.");
+}
+
 }  // namespace
 
 void bind_arm(nb::module_& m) {
@@ -245,4 +282,5 @@ void bind_arm(nb::module_& m) {
   bind_body(m);
   bind_motion(m);
   bind_pots(m);
+  bind_pot_faults(m);
 }

@@ -23,7 +23,6 @@ from greywhale_sim.board_supply import SharedSupply
 from greywhale_sim.drivers import CHIPS, OPEN, Bridge, Chip, Pins, mean_volts
 from greywhale_sim.leader import LeaderPlayer
 from greywhale_sim.pins_seen import PinsSeen
-from greywhale_sim.pot_faults import PotFaults
 from greywhale_sim.wiring import Pin, Wiring
 
 CLOCK_HZ = 16_000_000
@@ -94,7 +93,7 @@ class Bench:
         self.chip = chip
         self.emf: Floats = np.zeros(4) if emf is None else emf
         self.estop_pressed = self.clutch_pressed = False
-        self.pot_faults = PotFaults()
+        self.pot_faults = arm.PotFaults()
         self.joints = joints
         # -1: both wires of a motor are swapped; 0: one is off; 0.2: it is weak
         self.motor_gains = [1.0 if joint in joints else 0.0 for joint in ALL]

@@ -13,7 +13,7 @@ from greywhale import arm
 from greywhale.base.errors import UserError
 from greywhale.files.leader import load_leader
 from greywhale.motion import human_reaches
-from greywhale_sim import faults, hands, pot_faults
+from greywhale_sim import faults, hands
 from greywhale_sim.bench import CLOCK_HZ, stops_of
 from greywhale_sim.faults import POTS
 from greywhale_sim.pins_seen import PinsSeen
@@ -33,6 +33,7 @@ _WIRINGS = {
     "floating": arm.Wiring.CONNECTED,
     "shorted": arm.Wiring.SHORTED,
 }
+_LIES = {kind.name.lower(): kind for kind in arm.PotFault}
 
 
 def run(server: Server, text: str) -> Answer:
@@ -94,12 +95,12 @@ def hand(server: Server, side: str, *words: str) -> Answer:
 
 def pot(server: Server, side: str, joint: str, state: str) -> Answer:
     pots = {"leader": server.bench.leader_pots, "follower": server.bench.follower_pots}
-    if side not in pots or not 0 <= int(joint) <= 3 or state not in (*_WIRINGS, *pot_faults.KINDS):
+    if side not in pots or not 0 <= int(joint) <= 3 or state not in (*_WIRINGS, *_LIES):
         raise ValueError
     number = int(joint) + (4 if side == "follower" else 0)
     pots[side].set_wiring(int(joint), _WIRINGS.get(state, arm.Wiring.CONNECTED))  # type: ignore[attr-defined]
     server.bench.let_float(number, state == "floating")
-    server.bench.pot_faults.inject(number, state if state in pot_faults.KINDS else None)
+    server.bench.pot_faults.inject(number, _LIES.get(state))
     return {"pot": f"{side}_{joint}", "state": state}
 
 
@@ -230,7 +231,7 @@ COMMANDS: dict[str, tuple[Callable[..., Answer], str]] = {
     "turn": (hands.turn, "leader|follower 0..3 [SECONDS]"),
     "hold": (hands.hold, "DEGREES, once or four times"),
     "hang": (hands.hang, ""),
-    "pot": (pot, f"leader|follower 0..3 {'|'.join((*_WIRINGS, *pot_faults.KINDS))}"),
+    "pot": (pot, f"leader|follower 0..3 {'|'.join((*_WIRINGS, *_LIES))}"),
     "swap": (swap, "POT POT"),
     "mistake": (mistake, "NAME[:PLACE]|none|list"),
     "pins": (pins, ""),

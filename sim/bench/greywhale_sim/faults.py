@@ -9,13 +9,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from greywhale import arm
+from greywhale.arm import PotFault, PotFaults, Wiring
 from greywhale.base.errors import UserError
 from greywhale.board.refusal import pot_name
 from greywhale.protocol.firmware import JOINTS
 from greywhale_sim.bench import Bench
 from greywhale_sim.board_supply import SharedSupply
-from greywhale_sim.pot_faults import PotFaults
 
 POTS = tuple(f"{side}{joint}" for side in ("leader", "follower") for joint in range(JOINTS))
 WHERE = {"pot": POTS, "motor": tuple(map(str, range(JOINTS))), "arm": ("",)}
@@ -62,7 +61,7 @@ def _near(number: int) -> int:
     return number - number % JOINTS + (number + 1) % JOINTS
 
 
-def _at_pot(kind: str) -> Callable[[Bench, int], None]:
+def _at_pot(kind: PotFault) -> Callable[[Bench, int], None]:
     return lambda bench, pot: bench.pot_faults.inject(pot, kind)
 
 
@@ -111,15 +110,15 @@ FAULTS = (
     ),
     Fault(
         "pot-reversed", "pot", "the two ends of the track are exchanged, so that it reads the other way", "calibrate",
-        r'"reversed": \[[^]]*"<id>"', _at_pot("reversed"), ends="mended",
+        r'"reversed": \[[^]]*"<id>"', _at_pot(PotFault.REVERSED), ends="mended",
     ),
     Fault(
         "pot-crossed", "pot", "the wiper is on 5 V and an end of the track on the pin", "calibrate",
-        "<pot> reads .* and hardly changes .* its wiper's wire and an end's are exchanged", _at_pot("crossed"),
+        "<pot> reads .* and hardly changes .* its wiper's wire and an end's are exchanged", _at_pot(PotFault.CROSSED),
     ),
     Fault(
         "pot-open", "pot", "the wiper's wire is off, and a pull-down wins", "doctor",
-        "<pot> reads 0..0 of 1023, at a rail", _wire(arm.Wiring.OPEN),
+        "<pot> reads 0..0 of 1023, at a rail", _wire(Wiring.OPEN),
     ),
     Fault(
         "pot-floating", "pot", "the wiper's wire is off, and nothing pulls the pin down", "doctor",
@@ -127,7 +126,7 @@ FAULTS = (
     ),
     Fault(
         "pot-shorted", "pot", "the wiper's wire touches 5 V", "doctor",
-        "<pot> reads 1023..1023 of 1023, at a rail", _wire(arm.Wiring.SHORTED),
+        "<pot> reads 1023..1023 of 1023, at a rail", _wire(Wiring.SHORTED),
     ),
     Fault(
         "pot-touching", "pot", "the wiper's wire touches that of the next joint", "doctor",
@@ -135,27 +134,27 @@ FAULTS = (
     ),
     Fault(
         "pot-loose", "pot", "the wiper's wire is off for 2 ms again and again", "doctor",
-        r"Readings jumped: .<pot> \d+ times", _at_pot("loose"),
+        r"Readings jumped: .<pot> \d+ times", _at_pot(PotFault.LOOSE),
     ),
     Fault(
         "pot-noisy", "pot", "the wiper's wire runs along a motor's", "doctor",
-        r"Noisy, in counts rms: .<pot> \d", _at_pot("noisy"),
+        r"Noisy, in counts rms: .<pot> \d", _at_pot(PotFault.NOISY),
     ),
     Fault(
         "pot-humming", "pot", "the mains reach the wiper's wire", "doctor",
-        r"Mains hum: .<pot> \d.* counts at 50 Hz", _at_pot("humming"), ends="noted",
+        r"Mains hum: .<pot> \d.* counts at 50 Hz", _at_pot(PotFault.HUMMING), ends="noted",
     ),
     Fault(
         "pot-dead-zone", "pot", "the track is mounted so that its dead zone lies within the joint's range", "calibrate",
-        "<pot> jumps from one end of its track to the other .* its dead zone lies there", _at_pot("turned"),
+        "<pot> jumps from one end of its track to the other .* its dead zone lies there", _at_pot(PotFault.TURNED),
     ),
     Fault(
         "pot-slipping", "pot", "its shaft slips and loses a part of every way up", "calibrate",
-        r"<pot> (reads? \d+|reaches an end|turned the other way)", _at_pot("slipping"),
+        r"<pot> (reads? \d+|reaches an end|turned the other way)", _at_pot(PotFault.SLIPPING),
     ),
     Fault(
         "pot-frozen", "pot", "its shaft does not turn with the joint", "calibrate",
-        "<pot> reads .* and did not move: check that its shaft", _at_pot("frozen"),
+        "<pot> reads .* and did not move: check that its shaft", _at_pot(PotFault.FROZEN),
     ),
     Fault(
         "motor-swapped", "motor", "this motor and the next joint's are on each other's drivers", "calibrate",
@@ -212,7 +211,7 @@ def mend(bench: Bench) -> None:
     """Wire everything rightly again."""
     bench.pot_faults = PotFaults()
     for pot in range(len(POTS)):
-        _wire(arm.Wiring.CONNECTED)(bench, pot)
+        _wire(Wiring.CONNECTED)(bench, pot)
     bench.connect_all()
     bench.change_supply(bench.own_supply_v)
     if bench.shared_supply is not None:

@@ -4,7 +4,7 @@
 >>> angles = arm.step([3.0, 0.0, 0.0, 0.0], 0.001)
 """
 
-from greywhale._native import Wiring
+from greywhale._native import PotFault, PotFaults, Wiring
 from greywhale.arm.parameters import ArmParameters, PotentiometerBank
 from greywhale.arm.plant import Arm, Potentiometers
 from greywhale.arm.printed import ERRATA, PrintedBody
@@ -13,6 +13,8 @@ __all__ = [
     "ERRATA",
     "Arm",
     "ArmParameters",
+    "PotFault",
+    "PotFaults",
     "PotentiometerBank",
     "Potentiometers",
     "PrintedBody",

@@ -1,5 +1,5 @@
-// Mistakes between the potentiometers and the converter inside a page. The same as greywhale_sim.pot_faults, but for
-// the numbers of the noise; tests/oracles proves it.
+// Mistakes between the potentiometers of both arms and the converter: swapped wires, slipping shafts, loose contacts,
+// noise.
 #pragma once
 
 #include <algorithm>
@@ -9,19 +9,26 @@
 #include <optional>
 #include <utility>
 
-#include "arm/random.h"
-#include "board.h"
+#include "elementary.h"
+#include "potentiometer.h"
+#include "random.h"
 
-namespace greywhale::web {
+namespace greywhale::arm {
 
+// How a potentiometer lies. Turned: its shaft is half a turn farther in its coupling, so that the dead zone, where the
+// wiper touches nothing, comes first. Crossed: the wiper is on the supply and an end of the track on the input, where
+// only the pull-down's current makes a difference.
 enum class PotFault : std::uint8_t { none, frozen, slipping, loose, noisy, humming, reversed, turned, crossed };
-constexpr unsigned kPotFaults = 9;
 
 class PotFaults {
  public:
   void inject(std::size_t pot, PotFault kind) { liars_.at(pot) = {kind}; }
   void swap(std::size_t one, std::size_t other) { std::swap(order_.at(one), order_.at(other)); }
   void touch(std::size_t one, std::size_t other) { touching_ = {one, other}; }
+  bool any() const {
+    const auto lies = [](const Liar& one) { return one.kind != PotFault::none; };
+    return touching_ || order_ != kRightly || std::any_of(liars_.begin(), liars_.end(), lies);
+  }
 
   // Changes the voltages, once a slice. Where nothing is wrong, time does not count.
   void apply(Millivolts& millivolts) {
@@ -32,8 +39,8 @@ class PotFaults {
       millivolts[pot] = std::clamp(shown(liars_[pot], millivolts[pot], pot), 0.0, kSupply);
     }
     if (touching_) {
-      double& one = millivolts[touching_->first];
-      double& other = millivolts[touching_->second];
+      double& one = millivolts.at(touching_->first);
+      double& other = millivolts.at(touching_->second);
       one = other = (one + other) / 2.0;
     }
     const Millivolts before = millivolts;
@@ -41,10 +48,15 @@ class PotFaults {
   }
 
  private:
-  static constexpr double kSupply = 5000.0, kStill = 30.0, kNoisy = 100.0, kHum = 25.0;  // mV
-  static constexpr double kSlips = 0.3, kPullDown = 10.0, kTrackShare = 300.0 / 360.0;
-  static constexpr unsigned kLooseEvery = 920, kLooseFor = 8;             // slices
-  static constexpr double kHumTurns = 6.283185307179586 * 50.0 * 250e-6;  // rad a slice
+  static constexpr double kSupply = 5000.0, kHum = 25.0;  // mV
+  static constexpr double kNoisy = 100.0;                 // mV rms, of a wiper's wire along a motor's
+  static constexpr double kStill = 30.0;                  // mV; less is noise, and no slipping shaft moves
+  static constexpr double kSlips = 0.3;                 // of every way up, so that the same angle reads lower each time
+  static constexpr double kPullDown = 10.0;             // how many times its resistance is the track's
+  static constexpr double kTrackShare = 300.0 / 360.0;  // of a turn; the rest is the dead zone
+  static constexpr unsigned kLooseEvery = 920, kLooseFor = 8;         // slices
+  static constexpr unsigned kHumSlices = 80;                          // of 250 us: 50 Hz
+  static constexpr double kHumTurn = 6.283185307179586 / kHumSlices;  // rad a slice
 
   static constexpr std::array<std::size_t, kPots> kRightly{0, 1, 2, 3, 4, 5, 6, 7};
 
@@ -52,11 +64,6 @@ class PotFaults {
     PotFault kind = PotFault::none;
     double had = -1.0, showed = -1.0;
   };
-
-  bool any() const {
-    const auto lies = [](const Liar& one) { return one.kind != PotFault::none; };
-    return touching_ || order_ != kRightly || std::any_of(liars_.begin(), liars_.end(), lies);
-  }
 
   double shown(Liar& liar, double truth, std::size_t pot) const {
     switch (liar.kind) {
@@ -66,8 +73,8 @@ class PotFaults {
         return liar.showed;
       case PotFault::slipping: return slipped(liar, truth);
       case PotFault::loose: return slice_ % kLooseEvery < kLooseFor ? 0.0 : truth;
-      case PotFault::noisy: return truth + kNoisy * arm::Noise(1, pot).gaussian(slice_);
-      case PotFault::humming: return truth + kHum * std::sin(kHumTurns * slice_);
+      case PotFault::noisy: return truth + kNoisy * Noise(1, pot).gaussian(slice_);
+      case PotFault::humming: return truth + kHum * sine(kHumTurn * (slice_ % kHumSlices));
       case PotFault::reversed: return kSupply - truth;
       case PotFault::turned: {
         const double turn = std::fmod(kTrackShare * truth / kSupply + 0.5, 1.0);
@@ -93,4 +100,4 @@ class PotFaults {
   std::uint32_t slice_ = 0;
 };
 
-}  // namespace greywhale::web
+}  // namespace greywhale::arm
