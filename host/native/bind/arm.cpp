@@ -283,4 +283,5 @@ void bind_arm(nb::module_& m) {
   bind_motion(m);
   bind_pots(m);
   bind_pot_faults(m);
+  m.def("logarithm", &arm::logarithm, "x"_a, "The natural logarithm of x > 0, the same bits with every C library.");
 }
