@@ -328,8 +328,10 @@ export class Session {
   private async askStatus(): Promise<void> {
     if (!this.link.open || this.asking) return;
     this.asking = true;
+    const { storesNothing } = this;
     try {
       this.status = await this.client.ask(StatusRequest, {});
+      if (this.storesNothing !== storesNothing) this.parametersChanged.emit(); // its CRC may have been here before
       if (this.parameters) await this.readParameters(); // a verb, another page or another host may have changed it
     } catch {
       this.status = null; // a board that stays silent is told by its source

@@ -1,0 +1,54 @@
+// What all views share of a board, over a board that answers at once.
+import assert from "node:assert/strict";
+import { mock, test } from "node:test";
+import type { Board, BoardListener } from "../src/board";
+import { encodeFrame, FrameDecoder } from "../src/link/frames";
+import {
+  HelloReply, HelloRequest, ParamGetReply, ParamGetRequest, SCHEMA_HASH, StatusReply, StatusRequest, TABLE, TelemetryReply, TelemetryRequest,
+} from "../src/link/schema";
+import { Session } from "../src/session";
+
+const zeros = (size: number): Uint8Array => new Uint8Array(size);
+const settled = (): Promise<void> => new Promise((done) => setImmediate(done));
+
+test("a set that another program stored is shown, whichever tells of it first: its CRC or the status", async () => {
+  mock.timers.enable({ apis: ["setInterval", "setTimeout"] });
+  const values = TABLE.parameters.map(({ initial }) => initial);
+  let saves = 0;
+  let heard!: BoardListener;
+  const answers = new Map<number, (payload: Uint8Array) => [number, Uint8Array]>([
+    [HelloRequest.type, () => [HelloReply.type, HelloReply.pack({
+      ...HelloReply.unpack(zeros(HelloReply.size)), schema_hash: SCHEMA_HASH, param_crc: TABLE.crc(values),
+    })]],
+    [StatusRequest.type, () => [StatusReply.type, StatusReply.pack({ ...StatusReply.unpack(zeros(StatusReply.size)), saves })]],
+    [TelemetryRequest.type, (payload) => [TelemetryReply.type, payload]],
+    [ParamGetRequest.type, (payload) => {
+      const { index } = ParamGetRequest.unpack(payload);
+      return [ParamGetReply.type, ParamGetReply.pack({ index, value: values[index]! })];
+    }],
+  ]);
+  const board: Board = {
+    listen: (listener) => { heard = listener; },
+    send: (frame) => new FrameDecoder().feed(frame, ({ type, seq, payload }) => {
+      const [reply, answer] = answers.get(type)!(payload);
+      queueMicrotask(() => heard.bytes(encodeFrame(reply, seq, answer)));
+    }),
+    drive: () => undefined,
+    release: () => undefined,
+    history: () => Promise.resolve(zeros(0)),
+  };
+  const session = new Session(board);
+  let shown: unknown = null;
+  session.parametersChanged.on(() => { shown = { nothing: session.storesNothing, stored: session.stored?.[0] }; });
+  heard.link({ open: true, port: "here", sentence: "" });
+  await settled();
+  assert.deepEqual(shown, { nothing: true, stored: TABLE.parameters[0]!.initial });
+  values[0]!++;
+  mock.timers.tick(500);
+  await settled(); // it has read the set
+  saves = 1;
+  heard.stored(TABLE.crc(values));
+  mock.timers.tick(500);
+  await settled();
+  assert.deepEqual(shown, { nothing: false, stored: values[0] });
+});
