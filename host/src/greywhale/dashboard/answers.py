@@ -14,6 +14,7 @@ from greywhale.base.formats.kinds import Kind, kind_of
 from greywhale.dashboard.bench import BenchControls
 from greywhale.dashboard.folder import FileFacts, Folder
 from greywhale.dashboard.jobs import Jobs
+from greywhale.dashboard.predict import predict  # here, for a server that imports later lets its board wait
 from greywhale.dashboard.relay import Relay
 from greywhale.dashboard.samples import samples_of_log
 from greywhale.files import controller, parameter_file
@@ -110,9 +111,6 @@ class Answers:
 
     def predict(self, asked: dict[str, Any]) -> object:
         """What the arm would do under a whole parameter table."""
-        # The native loop takes a moment to import.
-        from greywhale.dashboard.predict import predict
-
         raw, board, file = asked.get("raw"), asked.get("board"), asked.get("file")
         if not isinstance(raw, list) or len(raw) != len(schema.PARAMETERS) or not all(type(one) is int for one in raw):
             raise UserError(f"raw must be {len(schema.PARAMETERS)} whole numbers, a board's parameters.", BAD_USAGE)

@@ -7,6 +7,7 @@ from typing import Any, TypedDict
 
 import numpy as np
 import numpy.typing as npt
+import scipy.interpolate  # noqa: F401 # a trajectory would load it when it is first asked for an angle
 
 from greywhale.arm.parameters import ArmParameters
 from greywhale.arm.plants import plant_row
