@@ -171,6 +171,7 @@ def test_what_needs_the_port_itself_has_it_as_long_as_it_runs(shared: Shared, tm
     shared.relay.drive(page.client)
     shared.relay.close("the port", "No firmware answers there; flash it.")
     assert jobs.start(asked, page.client.id)["state"] == "running"
+    assert told.get(timeout=PATIENCE_S)["state"] == "running", "a page sees at once what it has started"
     ended = told.get(timeout=PATIENCE_S)
     jobs.close()
     assert ended["result"]["words"] == ["-", "flash", "--hex=a.hex", "--port", "the port", "--json", "--"]

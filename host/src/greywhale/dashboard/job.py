@@ -47,7 +47,7 @@ class Facts(TypedDict):
 
 
 class Job:
-    """Starts at once; `changed` is called in the job's thread after every change of `facts`."""
+    """Starts at once; `changed` is called in the job's thread, first and after every change of `facts`."""
 
     def __init__(
         self,
@@ -127,6 +127,7 @@ class Job:
             os.write(self._wake_in, b"w")
 
     def _run(self, progress: int) -> None:
+        self._changed(self)  # a verb may say nothing for seconds
         assert self._process.stdout is not None
         assert self._process.stderr is not None
         open_pipes = {
