@@ -1,7 +1,8 @@
 """The page on a stage: the real server around a bench in lock step, and a browser in which time cannot run away.
 
 The board lives a moment from each sign of life of the page that drives, and then waits for the next one. So a slow
-browser holds the board up, and never loses its lease; whoever wants a page to fall silent lets the board live on.
+browser holds the board up, and never loses its lease; whoever wants a page to fall silent lets the board live on. Each
+tick costs the server, the page and this machine time, so a board at rest lives less.
 """
 
 from __future__ import annotations
@@ -22,13 +23,14 @@ from greywhale.dashboard import server
 from greywhale.dashboard.answers import Answers
 from greywhale.dashboard.bench import BenchControls
 from greywhale.dashboard.folder import Folder
-from greywhale.dashboard.history import History
+from greywhale.dashboard.history import FRAME_BYTES, History
 from greywhale.dashboard.port_holder import turn
 from greywhale.dashboard.relay import Client, Relay
 from greywhale.protocol.declared import Parameter
 from greywhale.protocol.frames import FrameDecoder
 from greywhale.protocol.schema import (
     DEFAULTS,
+    EnableRequest,
     HelloReply,
     HelloRequest,
     ParamGetReply,
@@ -56,10 +58,10 @@ FLAGS = [
     *("--disable-accelerated-2d-canvas", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"),
 ]
 TOKEN = "a-token-of-a-test"
-FRAME_MS = 100  # a page draws so rarely: software draws, and the time is better spent on what is tested
+FRAME_MS = 200  # a page draws so rarely: software draws, and the time is better spent on what is tested
 PATIENCE_MS = 60_000  # a page that shows nothing for so long has hung
-MOMENT_S = 0.1  # the board lives so long after a sign of life
-VERB_S = 0.2  # and so long after one of a verb, which renews its lease each 0.1 s
+# So long the board lives after a sign of life: of a verb or, every 0.1 s, of a page.
+MOVING_S, RESTING_S = 0.2, 0.03
 ENDED = UserError("the bench has ended.")
 # A page waits half a second for an answer, four times. Here the board answers in its own time, on any machine.
 OWN_TIME = f"""
@@ -95,7 +97,7 @@ class Stage:
         """Let time stand still until a stop comes; the tick at which it stands."""
         self.still = True
         self.wait_for(lambda: self._now_s >= self._until_s)
-        return self.samples()[-1].tick
+        return self.newest().tick
 
     def live(self, seconds: float) -> None:
         """Let the board live on from now, whoever is there, and wait until it has."""
@@ -139,6 +141,11 @@ class Stage:
     def samples(self) -> list[Sample]:
         """All that the board has sent."""
         return [Sample.unpack(frame.payload) for frame in FrameDecoder().feed(self.relay.history.since(None))]
+
+    def newest(self) -> Sample:
+        """The last that the board has sent."""
+        (frame,) = FrameDecoder().feed(self.relay.history.since(None)[-FRAME_BYTES:])
+        return Sample.unpack(frame.payload)
 
     def _live(self, bench: LockStepBench) -> None:
         self.plugged.wait()
@@ -202,26 +209,36 @@ class _PacedRelay(Relay):
         super().__init__(History())
         self._stage = stage
         self._frames = FrameDecoder()
-        self._moves = False
+        self.moves = False
+
+    def _let_live(self, seconds: float = RESTING_S) -> None:
+        if not self._stage.still:
+            self._stage.let_live(MOVING_S if self.moves else seconds)
 
     def seen(self, client: Client) -> None:
         super().seen(client)
-        if not self._stage.still and self._driver in (client, None) and not (self._verb and self._moves):
-            self._stage.let_live(MOMENT_S)
+        if self._driver in (client, None) and not (self._verb and self.moves):
+            self._let_live()
+
+    def release(self, client: Client) -> None:
+        """What others have asked meanwhile is answered."""
+        super().release(client)
+        self._let_live()
 
     def receive(self, client: Client, data: bytes) -> None:
         """A verb that moves the arm has all the board's time for itself, so its lease never ends."""
         super().receive(client, data)
+        asked = {frame.type for frame in FrameDecoder().feed(data)}
         if client.verb:
-            self._stage.let_live(VERB_S)
-        elif any(frame.type == StopRequest.TYPE for frame in FrameDecoder().feed(data)):
+            self._let_live(MOVING_S if EnableRequest.TYPE in asked else RESTING_S)
+        elif StopRequest.TYPE in asked:
             self._stage.let_live(1.0)
 
     def heard(self, data: bytes) -> None:
         super().heard(data)
         for frame in self._frames.feed(data):
             if frame.type == Sample.TYPE:
-                self._moves = Sample.unpack(frame.payload).state in (State.SOFT_START, State.FOLLOWING)
+                self.moves = Sample.unpack(frame.payload).state in (State.SOFT_START, State.FOLLOWING)
 
 
 @dataclass

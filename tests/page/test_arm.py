@@ -13,7 +13,15 @@ from tests.page.stage import Stage
 pytestmark = pytest.mark.slow
 
 
-def test_the_arm_is_drawn_where_the_board_says(page: Page, stage: Stage) -> None:
+def look_from(page: Page, stage: Stage, side: str) -> None:
+    """Choose where to look from, and wait until the arm is drawn from there."""
+    page.get_by_role("button", name=side, exact=True).click()
+    tick = stage.newest().tick
+    page.wait_for_function("seen => document.querySelector('.stage canvas').dataset.tick > seen", arg=tick)
+
+
+def test_the_arm_is_drawn_where_the_board_says(shared_page: Page, shared_stage: Stage) -> None:
+    page, stage = shared_page, shared_stage
     asked: list[str] = []
     page.on("request", lambda request: asked.append(request.url.rpartition("/")[2]))
     page.get_by_role("button", name="Controller").click()
@@ -21,26 +29,23 @@ def test_the_arm_is_drawn_where_the_board_says(page: Page, stage: Stage) -> None
     page.get_by_role("button", name="Arm", exact=True).click()
     expect(page.get_by_text("default arm: solid is the follower")).to_be_visible()
     canvas = page.get_by_role("img", name="The arm")
-    tick = stage.samples()[-1].tick
-    page.get_by_role("button", name="Side").click()
-    page.wait_for_function("seen => document.querySelector('.stage canvas').dataset.tick > seen", arg=tick)
+    look_from(page, stage, "Side")
     picture = Image.open(io.BytesIO(canvas.screenshot())).convert("RGB")
     assert len(picture.getcolors(1 << 20) or []) > 50  # an empty canvas has one
 
 
-def test_a_link_dragged_in_the_picture_leads(page: Page, stage: Stage) -> None:
+def test_a_link_dragged_in_the_picture_leads(shared_page: Page, shared_stage: Stage) -> None:
+    page, stage = shared_page, shared_stage
     page.get_by_role("button", name="Arm", exact=True).click()
     expect(page.get_by_text("Drag a link to lead")).to_be_visible()
-    page.get_by_role("button", name="Top", exact=True).click()
+    look_from(page, stage, "Top")
     canvas = page.get_by_role("img", name="The arm").bounding_box()
     assert canvas is not None
     # From above, the base stands left of the middle, and the hand reaches beyond it to the right.
     x, y = canvas["x"] + canvas["width"] / 2, canvas["y"] + canvas["height"] / 2
-    before = stage.samples()[-1].leader
+    before = stage.newest().leader
     page.mouse.move(x + 60, y)
     page.mouse.down()
     page.mouse.move(x + 160, y + 100, steps=4)
     page.mouse.up()
-    stage.wait_for(
-        lambda: any(abs(now - then) > 1000 for now, then in zip(stage.samples()[-1].leader, before, strict=True))
-    )
+    stage.wait_for(lambda: any(abs(now - then) > 1000 for now, then in zip(stage.newest().leader, before, strict=True)))

@@ -17,15 +17,15 @@ def test_a_hand_on_the_page_leads_and_the_arm_follows(page: Page, stage: Stage) 
     page.get_by_role("button", name="Bench").click()
     page.get_by_label("Leader, base yaw, rad").fill("0.5")
     wanted = 0.5 / Sample.LSB["leader"]
-    stage.wait_for(lambda: abs(stage.samples()[-1].leader[0] - wanted) < 100)
-    stage.wait_for(lambda: abs(stage.samples()[-1].follower[0] - wanted) < 500)
+    stage.wait_for(lambda: abs(stage.newest().leader[0] - wanted) < 100)
+    stage.wait_for(lambda: abs(stage.newest().follower[0] - wanted) < 500)
     pad = page.locator(".pad").first.bounding_box()
     assert pad is not None
     page.mouse.move(pad["x"] + pad["width"] / 2, pad["y"] + pad["height"] / 2)
     page.mouse.down()
     page.mouse.move(pad["x"] + 0.45 * pad["width"], pad["y"] + 0.45 * pad["height"])
     page.mouse.up()
-    stage.wait_for(lambda: stage.samples()[-1].leader[0] < 0 < stage.samples()[-1].leader[1])
+    stage.wait_for(lambda: stage.newest().leader[0] < 0 < stage.newest().leader[1])
 
 
 def test_what_is_broken_on_the_page_is_broken_on_the_bench(page: Page, stage: Stage) -> None:
@@ -62,5 +62,5 @@ def test_a_drawn_motion_leads_the_arm(page: Page, stage: Stage) -> None:
     leader = stage.command("controls")["leader"]
     low, high = leader["minimum"][2], leader["maximum"][2]
     end = (high - 0.2 * (high - low)) / Sample.LSB["leader"]
-    stage.wait_for(lambda: abs(stage.samples()[-1].leader[2] - end) < 100)
+    stage.wait_for(lambda: abs(stage.newest().leader[2] - end) < 100)
     expect(page.get_by_role("button", name="Play", exact=True)).to_be_visible()

@@ -18,6 +18,7 @@ from greywhale.dashboard.job import Facts
 from greywhale.dashboard.jobs import Listed
 from greywhale.files.log import read_log
 from greywhale.protocol.schema import DEFAULTS, PARAMETER_BY_NAME
+from tests.page.barriers import DARK_AND_NARROW, LIGHT_AND_WIDE, require_no_barrier
 from tests.page.stage import PATIENCE_MS, Stage
 
 pytestmark = pytest.mark.slow
@@ -37,28 +38,32 @@ def begin(desk: Page, verb: str, **given: str | bool) -> Locator:
     desk.get_by_role("button", name=verb, exact=True).click()
     start = desk.get_by_role("button", name=f"Start {verb}")
     start.wait_for()
-    for hidden in desk.locator(".verb-form details:not([open]) summary").all():
-        hidden.click()
+    desk.locator(".verb-form details").evaluate_all("all => all.forEach((one) => { one.open = true; })")
     for name, value in given.items():
         field = desk.get_by_label(name.replace("_", " "), exact=True)
         field.check() if value is True else field.fill(str(value))
-    cards = desk.locator(".job")
+    cards = desk.locator(".job").filter(has=desk.get_by_role("heading", name=verb, exact=True))
     before = cards.count()
     start.click()
     expect(cards).to_have_count(before + 1)
     return cards.first
 
 
+def end(job: Locator, state: str) -> Locator:
+    """Wait for its end, which must be this one; its card."""
+    expect(job.get_by_role("status")).not_to_have_text("running")
+    assert job.get_by_role("status").inner_text() == state, job.inner_text()
+    return job
+
+
 def done(job: Locator) -> Locator:
     """Its result, when it has one."""
-    expect(job.get_by_role("status")).to_have_text("done")
-    return job.locator(".result")
+    return end(job, "done").locator(".result")
 
 
 def failed(job: Locator) -> Locator:
     """Its one sentence."""
-    expect(job.get_by_role("status")).to_have_text("failed")
-    return job.get_by_role("alert")
+    return end(job, "failed").get_by_role("alert")
 
 
 # Notes on the card what the curve of a search shows while that runs.
@@ -76,8 +81,9 @@ SEE = """card => {
 def search(shared_page: Page) -> Locator:
     """The card of a search that runs while other tests are at work."""
     shared_page.get_by_role("button", name="Do", exact=True).click()
-    begin(shared_page, "tune", model_file="default", budget="12", force=True).evaluate(SEE)
-    return shared_page.locator(".job").filter(has=shared_page.get_by_role("heading", name="tune", exact=True))
+    card = begin(shared_page, "tune", model_file="default", budget="12", force=True)
+    card.evaluate(SEE)
+    return card
 
 
 def test_verbs_end_with_their_result_or_their_sentence(search: Locator, desk: Page, shared_stage: Stage) -> None:
@@ -88,13 +94,15 @@ def test_verbs_end_with_their_result_or_their_sentence(search: Locator, desk: Pa
     rows = len(read_log(folder / "first.csv").time)
     assert rows > 400
     expect(result).to_contain_text(str(rows))
-    expect(failed(begin(desk, "identify", logs="first.csv"))).to_contain_text("first.csv: only 0.")
+    identify = begin(desk, "identify", logs="first.csv")  # which needs no board
     (folder / "fast.csv").write_text(
         "time_s,leader_0,leader_1,leader_2,leader_3\n0,0,0,0,0\n0.016,0.48,0,0,0\n1,0.48,0,0,0\n"
     )
     expect(failed(begin(desk, "replay", motion="fast.csv", yes=True))).to_contain_text(
         "at 30 rad/s, but a board can be"
     )
+    expect(done(begin(desk, "info"))).to_contain_text("firmware")
+    expect(done(begin(desk, "doctor"))).to_contain_text("There is no port bench in lock step")
     expect(done(begin(desk, "params backup", file="kept.toml"))).to_contain_text("kept.toml")
     expect(done(begin(desk, "upload", controller="table_8", yes=True))).to_contain_text("joint0.kp")
     desk.get_by_role("button", name="Controller").click()  # which follows
@@ -103,6 +111,7 @@ def test_verbs_end_with_their_result_or_their_sentence(search: Locator, desk: Pa
     expect(desk.get_by_label("Kp 1/rad")).to_have_value(f"{KP.to_physical(raw):.7g}")
     expect(desk.get_by_text("The board has stored these controllers.")).to_be_visible()
     desk.get_by_role("button", name="Do", exact=True).click()
+    expect(done(begin(desk, "params diff", file="kept.toml"))).to_contain_text("joint0.kp")
     done(begin(desk, "params restore", file="kept.toml"))
     assert stage.runs() == {}
     calibrate = begin(desk, "calibrate")
@@ -111,6 +120,8 @@ def test_verbs_end_with_their_result_or_their_sentence(search: Locator, desk: Pa
     calibrate.get_by_role("button", name="Answer").click()
     expect(failed(calibrate)).to_contain_text("the calibration was ended.")
     expect(failed(begin(desk, "commission", resume=True, yes=True))).to_contain_text("no interrupted commissioning")
+    expect(failed(begin(desk, "adapt", model="none.toml"))).to_contain_text("none.toml")
+    expect(failed(identify)).to_contain_text("first.csv: only 0.")
     expect(failed(begin(desk, "flash", hex_file="none.hex"))).to_contain_text("none.hex")
 
 
@@ -187,6 +198,10 @@ def test_a_commissioning_shows_what_was_predicted_beside_what_was_measured(
     expect(rows.nth(0).locator("td").first).to_have_text("32.0 / 34.5")
     table.get_by_label("Measure").select_option("unrest")
     expect(rows.nth(0).locator("td").first).to_have_text("1.02 / 1.19")
+
+
+def test_nothing_bars_a_person(shared_page: Page) -> None:
+    require_no_barrier(shared_page, LIGHT_AND_WIDE, DARK_AND_NARROW)
 
 
 def test_the_view_says_that_it_reads_the_verbs_until_they_are_there(

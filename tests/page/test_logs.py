@@ -30,14 +30,15 @@ def write(path: Path, lag: int) -> None:
             log.append(time_s, 4 * [led], 4 * [followed], 4 * [led - followed], "following")
 
 
-def test_two_logs_lie_over_each_other_with_the_measures_of_evaluate(page: Page, tmp_path: Path) -> None:
+def test_two_logs_lie_over_each_other_with_the_measures_of_evaluate(shared_page: Page, shared_stage: Stage) -> None:
+    page, folder = shared_page, shared_stage.folder
     for name, lag in LAG_TICKS.items():
-        write(tmp_path / name, lag)
+        write(folder / name, lag)
     page.get_by_role("button", name="Logs").click()
     for name in LAG_TICKS:
         page.get_by_role("button", name=name).click()
     page.get_by_label("Joint shown").select_option(str(JOINT))
-    logs = {name: read_log(tmp_path / name) for name in LAG_TICKS}
+    logs = {name: read_log(folder / name) for name in LAG_TICKS}
     measured = page.get_by_role("region", name="Measures").locator("tbody tr")
     for row, (name, log) in enumerate(logs.items()):
         found = evaluate(log).as_dict()["joints"][JOINT]
@@ -58,11 +59,11 @@ def test_two_logs_lie_over_each_other_with_the_measures_of_evaluate(page: Page, 
         assert told[:3] == pytest.approx([led, followed, led - followed], abs=1.1e-3)
 
 
-def test_what_is_no_sound_log_is_told_as_in_a_terminal(context: BrowserContext, stage: Stage, tmp_path: Path) -> None:
-    write(tmp_path / "good.csv", 40)
-    whole = (tmp_path / "good.csv").read_text()
-    (tmp_path / "bad.csv").write_text(whole.replace(",following\n", ",<b>x</b>\n", 1))
-    with stages.visit(context, stage) as visit:
+def test_what_is_no_sound_log_is_told_as_in_a_terminal(context: BrowserContext, shared_stage: Stage) -> None:
+    write(shared_stage.folder / "good.csv", 40)
+    whole = (shared_stage.folder / "good.csv").read_text()
+    (shared_stage.folder / "bad.csv").write_text(whole.replace(",following\n", ",<b>x</b>\n", 1))
+    with stages.visit(context, shared_stage) as visit:
         page = visit.page
         page.get_by_role("button", name="Logs").click()
         for name in ("good.csv", "bad.csv"):
