@@ -13,7 +13,6 @@ from greywhale.files.log import read_log
 from greywhale.files.log.check import Check
 from greywhale.protocol.schema import Sample, State
 from tests.page import stage as stages
-from tests.page.barriers import DARK_AND_NARROW, LIGHT_AND_WIDE, require_no_barrier
 from tests.page.stage import Stage
 
 pytestmark = pytest.mark.slow
@@ -27,9 +26,10 @@ def start(page: Page) -> None:
     expect(page.locator(".pill")).to_have_text("following")
 
 
-def test_the_page_shows_and_saves_the_boards_samples_as_they_are(page: Page, stage: Stage, tmp_path: Path) -> None:
+def test_the_page_saves_and_shows_the_boards_samples_as_they_are(page: Page, stage: Stage, tmp_path: Path) -> None:
     start(page)
-    stage.wait_for(lambda: len(stage.samples()) > LEAST_LOG)
+    begun = stage.newest().tick
+    stage.wait_for(lambda: stage.newest().tick > begun + LEAST_LOG)
     page.get_by_role("button", name="Pause").click()
     with page.expect_download() as saved:
         page.get_by_role("button", name="Save view").click()
@@ -44,12 +44,7 @@ def test_the_page_shows_and_saves_the_boards_samples_as_they_are(page: Page, sta
         counts = np.round(column / Sample.LSB[name]).astype(int)
         assert counts.tolist() == [list(getattr(sent[tick], name)) for tick in ticks], name
     assert log.origin.table is not None  # so the whole parameter set stands in the header
-
-
-def test_what_stands_under_the_cursor_is_that_sample(page: Page, stage: Stage) -> None:
-    start(page)
     page.get_by_label("Span shown").select_option("1")
-    page.get_by_role("button", name="Pause").click()
     page.get_by_role("button", name="Zoom in").click()
     expect(page.get_by_text("every sample")).to_be_visible()
     plot = page.locator(".u-over").first.bounding_box()
@@ -58,7 +53,7 @@ def test_what_stands_under_the_cursor_is_that_sample(page: Page, stage: Stage) -
     expect(page.locator(".values thead th").first).to_contain_text("at ")
     tick = int(page.locator(".live").get_attribute("data-tick") or "")
     shown = [row.split() for row in page.locator(".values tbody tr").all_inner_texts()]
-    sample = {sample.tick: sample for sample in stage.samples()}[tick]
+    sample = sent[tick]
     for joint in range(4):
         leader, follower = (values[joint] * Sample.LSB["leader"] for values in (sample.leader, sample.follower))
         volts = sample.voltage[joint] * Sample.LSB["voltage"]
@@ -81,7 +76,7 @@ def test_the_motors_go_off(page: Page, stage: Stage) -> None:
         stop()
         if way == "gone":
             stage.live(1.0)
-        stage.wait_for(lambda: stage.samples()[-1].state is State.DISABLED)
+        stage.wait_for(lambda: stage.newest().state is State.DISABLED)
         running = [sample.tick for sample in stage.samples() if sample.state is State.FOLLOWING]
         assert running[-1] - pressed <= OFF_TICKS[way], way
         stage.still = False
@@ -105,13 +100,19 @@ def test_a_second_page_watches_and_a_reload_loses_nothing(context: BrowserContex
         assert kept == {"first": str(sent[0]), "tick": str(sent[-1]), "count": str(len(sent))}
 
 
-def test_a_fault_is_told_with_its_remedy_until_it_is_cleared(page: Page, stage: Stage) -> None:
+def test_a_fault_is_captured_and_told_with_its_remedy_until_it_is_cleared(page: Page, stage: Stage) -> None:
     start(page)
+    page.get_by_label("Span shown").select_option("1")
+    page.get_by_label("Event").select_option("fault")
+    page.get_by_role("button", name="Wait for it").click()
     stage.command("pot follower 1 open")
     fault = page.get_by_role("alert").filter(has_text="follower potentiometer 1")
     expect(fault).to_contain_text("wiper")
     stage.command("pot follower 1 connected")
     stage.live(1.0)
+    expect(page.get_by_role("button", name="Go on")).to_be_visible()
+    tick = next(sample.tick for sample in stage.samples() if sample.state is State.FAULT)
+    expect(page.get_by_text(f"It happened at {tick / 1000:.3f} s.")).to_be_visible()
     fault.get_by_role("button", name="Clear fault").click()
     expect(page.locator(".pill")).to_have_text("disabled")
 
@@ -135,7 +136,3 @@ def test_without_a_board_the_page_says_what_to_do_and_takes_one_that_comes(
             stranger.goto(f"http://127.0.0.1:{stage.port}/{secret}")
             expect(stranger.locator(".empty")).to_contain_text(sentence)
             stranger.close()
-
-
-def test_nothing_bars_a_person(page: Page) -> None:
-    require_no_barrier(page, LIGHT_AND_WIDE, DARK_AND_NARROW)
