@@ -98,6 +98,7 @@ export class ArmScene {
     const solid = new MeshStandardMaterial({ color: SOLID, roughness: 0.6, metalness: 0.1 });
     const pale = new MeshStandardMaterial({
       color: shades.accent, transparent: true, opacity: 0.26, depthWrite: false, roughness: 1,
+      polygonOffset: true, polygonOffsetFactor: 4, polygonOffsetUnits: 4, // behind the follower where both are alike
     });
     paintLinks(this.follower, solid, this.rings);
     paintLinks(this.ghost, pale, []);
