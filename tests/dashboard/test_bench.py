@@ -74,6 +74,8 @@ def test_every_fault_is_staged_by_its_name_and_mended(bench: LockStepBench, cont
     controls.change({"estop": True})
     assert bench.bench.estop_pressed
     controls.change({"estop": False})
+    controls.change({"clutch": True})
+    assert bench.bench.clutch_pressed
 
 
 @pytest.mark.parametrize(

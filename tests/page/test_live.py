@@ -117,6 +117,22 @@ def test_a_fault_is_captured_and_told_with_its_remedy_until_it_is_cleared(page: 
     expect(page.locator(".pill")).to_have_text("disabled")
 
 
+def test_the_clutch_is_disengaged_by_a_click_and_by_the_pedal(page: Page, stage: Stage) -> None:
+    start(page)
+    card = page.locator(".card").filter(has_text="Clutch")
+    card.get_by_role("button", name="Disengage").click()
+    expect(card).to_contain_text("The reference rests")
+    card.get_by_role("button", name="Engage").click()
+    expect(card).to_contain_text("Engaged in another place")
+    expect(card.get_by_role("button", name="Reset")).to_be_disabled()
+    page.get_by_role("button", name="Stop").click()
+    card.get_by_role("button", name="Reset").click()
+    expect(card).to_contain_text("the leader's angle times the ratio")
+    stage.command("clutch press")
+    stage.live(0.1)
+    expect(card).to_contain_text("The reference rests")
+
+
 def test_without_a_board_the_page_says_what_to_do_and_takes_one_that_comes(
     context: BrowserContext, tmp_path: Path
 ) -> None:

@@ -46,6 +46,7 @@ export type BenchWish =
   | { readonly fault: string | null }
   | { readonly power: boolean }
   | { readonly estop: boolean }
+  | { readonly clutch: boolean }
   | { readonly [size in "supply" | "load" | "speed"]?: number };
 
 export interface Bench {

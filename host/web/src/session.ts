@@ -5,7 +5,7 @@ import { LinkClient } from "./link/client";
 import { LinkError, RefusedError } from "./link/declared";
 import { FrameDecoder } from "./link/frames";
 import {
-  ClearFaultRequest, EnableRequest, HelloReply, HelloRequest, NackCode, ParamApplyRequest, ParamGetRequest, ParamSaveRequest,
+  ClearFaultRequest, ClutchRequest, EnableRequest, HelloReply, HelloRequest, NackCode, ParamApplyRequest, ParamGetRequest, ParamSaveRequest,
   ParamSetRequest, Sample, SaveState, SCHEMA_HASH, State, StatusReply, StatusRequest, StopRequest, TABLE, TelemetryRequest,
 } from "./link/schema";
 import { Signal } from "./parts/signal";
@@ -155,6 +155,13 @@ export class Session {
   async stop(): Promise<void> {
     this.stopAsked = true;
     await this.client.ask(StopRequest, {});
+    await this.askStatus();
+  }
+
+  /** Moves the leader without the follower, or takes it up again from there. */
+  async clutch(action: number): Promise<void> {
+    this.mustDrive();
+    await this.client.ask(ClutchRequest, { action });
     await this.askStatus();
   }
 

@@ -44,6 +44,8 @@ class BenchControls:
                 self._do(f"power {'on' if on else 'off'}")
             case {"estop": bool(pressed)}:
                 self._do(f"estop {'press' if pressed else 'release'}")
+            case {"clutch": bool(pressed)}:
+                self._do(f"clutch {'press' if pressed else 'release'}")
             case {"supply": volts}:
                 self._do(f"supply {_number(volts)}")
             case {"load": mass}:
@@ -51,7 +53,7 @@ class BenchControls:
             case {"speed": rate}:
                 self._do(f"speed {_number(rate)}")
             case _:
-                keys = "leader, motion, fault, power, estop, supply, load and speed"
+                keys = "leader, motion, fault, power, estop, clutch, supply, load and speed"
                 raise UserError(
                     f"{cut(repr(wish))} is nothing that a page does to a bench; it knows {keys}.", BAD_USAGE
                 )

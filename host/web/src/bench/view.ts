@@ -95,7 +95,9 @@ export class BenchView implements View {
         button("Cut the power", () => void this.change({ power: false })),
         button("Power on", () => void this.change({ power: true })),
         button("Press emergency stop", () => void this.change({ estop: true })),
-        button("Release it", () => void this.change({ estop: false }))));
+        button("Release it", () => void this.change({ estop: false })),
+        button("Press the clutch's pedal", () => void this.change({ clutch: true })),
+        button("Release the pedal", () => void this.change({ clutch: false }))));
   }
 
   private size(key: "supply" | "load" | "speed", title: string, unit: string, range: Range): HTMLElement {

@@ -1,6 +1,6 @@
 // The board's state, its fault with the remedy, and the counters of firmware and link.
 
-import { Fault, State, StopReason, SaveState } from "../link/schema";
+import { Clutch, ClutchAction, Fault, State, StopReason, SaveState } from "../link/schema";
 import { faultSentence, upperFirst } from "../link/refusal";
 import { button, el, setText } from "../parts/dom";
 import type { Session } from "../session";
@@ -10,6 +10,11 @@ export class StatePanel {
   private readonly sentence = el("p", { class: "state-text" });
   private readonly fault = el("div", { class: "fault", hidden: true, attrs: { role: "alert" } });
   private readonly faultText = el("p");
+  private readonly clutchText = el("p", { class: "state-text" });
+  private readonly clutch = button("", () => this.use(this.engaged() ? ClutchAction.is.disengage : ClutchAction.is.engage));
+  private readonly reset = button("Reset", () => this.use(ClutchAction.is.reset), {
+    title: "The leader's angles count as they are again; only while the motors are off",
+  });
   private readonly rows = new Map<string, HTMLElement>();
 
   constructor(private readonly session: Session) {
@@ -23,12 +28,31 @@ export class StatePanel {
       this.rows.set(name, value);
       list.append(el("dt", {}, name), value);
     }
-    this.element = el("section", { class: "card" }, el("h2", {}, "Board"), this.sentence, this.fault, list);
+    this.element = el("section", { class: "card" }, el("h2", {}, "Board"), this.sentence, this.fault, list,
+      el("h2", {}, "Clutch"), this.clutchText, el("div", { class: "row" }, this.clutch, this.reset));
     session.changed.on(() => this.show());
     this.show();
   }
 
+  private engaged(): boolean {
+    return this.session.status?.clutch !== Clutch.is.disengaged;
+  }
+
+  private use(action: number): void {
+    void this.session.attempt(() => this.session.clutch(action));
+  }
+
+  private showClutch(): void {
+    const { status, link, motorsOn } = this.session;
+    const there = status !== null && link.open;
+    setText(this.clutchText, there ? `${upperFirst(Clutch.of(status.clutch).description)}.` : "");
+    setText(this.clutch, this.engaged() ? "Disengage" : "Engage");
+    this.clutch.disabled = !there;
+    this.reset.disabled = !there || motorsOn || status.clutch === Clutch.is.engaged;
+  }
+
   private show(): void {
+    this.showClutch();
     const { status, link, samples, damaged } = this.session;
     if (!status || !link.open) {
       setText(this.sentence, link.sentence || "No board is there yet.");

@@ -69,6 +69,7 @@ export class Life {
     else if ("fault" in wish) this.break(wish.fault);
     else if ("power" in wish) this.module.call("power", Number(wish.power));
     else if ("estop" in wish) this.module.call("estop", Number(wish.estop));
+    else if ("clutch" in wish) this.module.call("clutch", Number(wish.clutch));
     else this.size(wish);
   }
 
