@@ -13,7 +13,7 @@ TIDY := $(PORTABLE:%=build/tidy/%.ok)
 FIRMWARE_SOURCES := $(shell find firmware/lib -name '*.h' -o -name '*.inc')
 FIRMWARE_ROOMS := $(patsubst %,-Ifirmware/lib/%/src,$(notdir $(wildcard firmware/lib/*)))
 
-CXX_FILES := $(shell find firmware/lib firmware/src firmware/test host/native sim studies tests tools -name '*.cpp' -o -name '*.h')
+CXX_FILES := $(shell find firmware/lib firmware/src firmware/test host/native sim tests tools -name '*.cpp' -o -name '*.h')
 
 # Parts of the targets below, the longest first. They run side by side on all cores, and what one says stays together.
 LINT := mypy clang-tidy cppcheck-host cppcheck-firmware ruff ruff-format clang-format generated
@@ -76,7 +76,7 @@ cppcheck-firmware: $(READY)
 	$(CPPCHECK) --std=c++14 '-DISR(vector,...)=void vector()' firmware/lib firmware/src
 
 cppcheck-host: $(READY)
-	$(CPPCHECK) --std=c++17 --suppress=assignBoolToPointer:sim/board/binding.cpp sim host/native studies
+	$(CPPCHECK) --std=c++17 --suppress=assignBoolToPointer:sim/board/binding.cpp sim host/native
 
 clang-tidy: $(TIDY)
 
@@ -128,4 +128,4 @@ hooks: setup ## let git run `make lint` before each commit (pre-commit uninstall
 	pre-commit install
 
 clean: ## remove everything that was built; .venv stays
-	rm -rf build firmware/.pio host/src/greywhale/_native.pyi sim/bench/greywhale_sim/_board.pyi studies/one_joint/native/one_joint_native.pyi
+	rm -rf build firmware/.pio host/src/greywhale/_native.pyi sim/bench/greywhale_sim/_board.pyi

@@ -30,7 +30,7 @@ def steps(with_page: bool, checks: bool) -> None:
 
     debian.step(checks)
     venv.step(checks)
-    side_by_side(lambda: extensions.step(checks), what_needs_packages, *([bench_module.step] if checks else []))
+    side_by_side(extensions.step, what_needs_packages, *([bench_module.step] if checks else []))
 
 
 def main(arguments: list[str]) -> int:

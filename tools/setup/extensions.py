@@ -1,4 +1,4 @@
-"""Builds and installs greywhale, greywhale-sim and the fast part of a study, editable and with native extensions."""
+"""Builds and installs greywhale and greywhale-sim, editable and with native extensions."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ SHARED = ("requirements.txt", "LICENSE")
 ROOMS = ("codes", "fuzzy_pdi", "signal_chain")  # of the firmware
 NATIVE = ("pyproject.toml", "host/native", "sim/arm", *(f"firmware/lib/{room}" for room in ROOMS))
 BOARD = ("sim/pyproject.toml", "sim/CMakeLists.txt", "sim/board")
-STUDY = ("studies/one_joint/native", "sim/arm", "host/native/share_out.h")
 
 
 def install(name: str, place: str, stub: str, sources: tuple[str, ...], modules: str | None = None) -> None:
@@ -24,9 +23,6 @@ def install(name: str, place: str, stub: str, sources: tuple[str, ...], modules:
     stamps.set_current(name, wanted)
 
 
-def step(checks: bool) -> None:
+def step() -> None:
     install("greywhale", ".", "host/src/greywhale/_native.pyi", NATIVE, "host/src/greywhale")
     install("greywhale-sim", "sim", "sim/bench/greywhale_sim/_board.pyi", BOARD, "sim/bench/greywhale_sim")
-    if checks:
-        native = "studies/one_joint/native"
-        install("one_joint_native", native, f"{native}/one_joint_native.pyi", STUDY)
