@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Generic, Protocol, TypeVar
 
@@ -114,14 +114,3 @@ def least_squares_fit(
             gtol=1e-8,
         )
     return Fit(space, found.x, float(found.cost), found.fun, found.jac, simulations)
-
-
-def pick_different(seen: Sequence[tuple[float, Floats]], count: int) -> list[Floats]:
-    """The best `count` of points with their costs that differ from each other by more than half a unit somewhere."""
-    kept: list[Floats] = []
-    for _, point in sorted(seen, key=lambda one: one[0]):
-        if all(np.max(np.abs(point - other)) > 0.5 for other in kept):
-            kept.append(point)
-        if len(kept) == count:
-            break
-    return kept
