@@ -36,8 +36,7 @@ ORACLES_HEADER = """\
 # The outside references of tests/oracles, pinned with the digests of their files. What the project itself needs is
 # not repeated. Written by `make lock`.
 """
-# scikit-fuzzy imports networkx, but does not ask for it.
-REFERENCES = ("mujoco", "networkx", "numba", "pin", "scikit-fuzzy", "sympy")
+REFERENCES = ("mujoco", "numba", "pin", "sympy")
 # Nothing of this machine's package index goes into the file.
 COMPILE = (
     "--generate-hashes", "--no-annotate", "--no-header", "--strip-extras", "--quiet",
