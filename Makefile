@@ -106,9 +106,8 @@ benchmarks: setup ## measure the figures of the design beside others; a table he
 attack: setup firmware ## attack everything at full size and write docs/reliability.md; goes on where it stopped
 	@$(PYTHON) -m tools.attack --publish $(ARGS)
 
-docs: setup ## write the generated files again (link schema, reference page, version, schemas), and build the site in build/site
+docs: setup ## write the generated files again (link schema, reference page, schemas), and build the site in build/site
 	$(PYTHON) -m tools.generate.link
-	$(PYTHON) -m tools.generate.version
 	$(PYTHON) -m tools.docs
 
 site: setup ## the page with firmware and arm inside, one folder for any web server and one file for a disk, in build/try
