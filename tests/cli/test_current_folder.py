@@ -29,7 +29,7 @@ def run(folder: Path, command: list[str], arguments: str) -> None:
 @pytest.mark.slow
 def test_a_verb_that_draws_and_starts_processes_runs_nothing_of_the_current_folder(tmp_path: Path) -> None:
     """With CMA-ES, whose package imports Matplotlib too. The other verbs that start a process or draw do it the same
-    way, which tests/test_structure.py watches; tests/end_to_end has the demo in such a folder.
+    way, which tests/test_structure.py watches.
     """
     plant(tmp_path)
     run(tmp_path, INSTALLED, COMPARE)

@@ -20,7 +20,6 @@ from greywhale.files.model import arm_toml
 from greywhale.files.trajectory import Trajectory
 from greywhale_sim.words import lock_step
 from tests.support.demo import in_this_process
-from tests.support.strangers import plant, ran
 from tests.support.tuning import shorten
 from tools import ROOT
 
@@ -38,7 +37,7 @@ def test_the_demo_tells_its_story_and_proves_its_controllers_on_the_arm(
         monkeypatch.setattr(motions, name, value)
     told: list[str] = []
     out = tmp_path / "new" / "demo"
-    options = DemoOptions(out, arm=arm_with_joints(1, tmp_path), duration_s=4.0, practice_s=10.0, budget=40, prove=True)
+    options = DemoOptions(out, arm=arm_with_joints(1, tmp_path), duration_s=4.0, practice_s=10.0, budget=8, prove=True)
     result = run(options, lambda what, fraction, note="": told.append(what))
     recordings = ["before", "after", "proven", "practice", "check", "check_changed"]
     leaders = ["leader", "rest_leader", "practice_leader", "check_leader", "check_changed_leader"]
@@ -73,29 +72,20 @@ def test_the_demo_tells_its_story_and_proves_its_controllers_on_the_arm(
 
 
 @pytest.mark.slow
-def test_the_demo_shows_a_controller_that_it_is_given(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """In a stranger's folder, of which neither the bench nor the flashing imports anything."""
-    plant(tmp_path)
-    monkeypatch.chdir(tmp_path)
-    table = ROOT / "shared" / "fuzzy_tables" / "table_8.toml"
-    result = run(DemoOptions(tmp_path, duration_s=4.0, controller=table))
+def test_the_demo_shows_a_controller_that_it_is_given_on_the_joints_that_there_are(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    in_this_process(monkeypatch)
+    out, table = tmp_path / "demo", ROOT / "shared" / "fuzzy_tables" / "table_8.toml"
+    result = run(DemoOptions(out, arm=arm_with_joints(3, tmp_path), duration_s=4.0, controller=table))
     assert result.learnt is None
     assert [one.name for one in result.runs] == ["before tuning", "table_8"]
-    assert not (tmp_path / "model.toml").exists()
-    assert ran(tmp_path) == set()
+    assert not (out / "model.toml").exists()
+    assert_shows_joints(result, 3)
     assert_same_motion(*(one.recorded.log() for one in result.runs))
     # The paper's tuned gains are larger: where no gravity acts, they follow much more closely.
     for joint in (0, 2):
         assert result.runs[1].measures.joints[joint].mse < 0.5 * result.runs[0].measures.joints[joint].mse
-
-
-@pytest.mark.slow
-def test_the_demo_of_an_arm_with_fewer_joints_shows_those(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    in_this_process(monkeypatch)
-    controller = ROOT / "shared" / "fuzzy_tables" / "table_8.toml"
-    options = DemoOptions(tmp_path / "demo", arm=arm_with_joints(3, tmp_path), duration_s=4.0, controller=controller)
-    result = run(options)
-    assert_shows_joints(result, 3)
 
 
 @pytest.mark.slow

@@ -73,7 +73,6 @@ def test_two_joints_from_the_box_to_a_following_arm(
         assert not any("joint 2" in sentence or "joint 3" in sentence for sentence in told["not_identified"])
         told = ask(
             capsys, "tune", "model.toml", "--budget", "200", "--arm", "mine.toml", "-o", "controller.toml",
-            "--pictures", "tuned",
         )  # fmt: skip
         ask(capsys, "upload", "controller.toml", *port)
         ask(capsys, "record", "--enable", "--seconds", "6", "-o", "after.csv", *port)

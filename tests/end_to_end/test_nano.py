@@ -27,6 +27,7 @@ from greywhale.tune.model import load_model
 from greywhale_sim.assemble import BenchOptions, build_bench
 from greywhale_sim.lockstep import LockStepBench, tell_joints
 from greywhale_sim.words import lock_step
+from tests.support.tuning import shorten
 
 JOINT, FULL = 2, 255
 
@@ -44,6 +45,7 @@ def test_a_nano_is_excited_identified_and_tuned_as_a_nano(
     fit, second, model, controller, after = (
         tmp_path / name for name in ("fit.csv", "second.csv", "model.toml", "controller.toml", "after.csv")
     )
+    shorten(monkeypatch)
     largest = full_duties_of_every_loop(monkeypatch)
     white_box = ("--arm", with_one_joint("white_box", tmp_path))
     with bench_with_one_joint(tmp_path) as bench:

@@ -1,4 +1,6 @@
-"""Tunings in little time: short motions, what is possible is worked out once for all tests, a short last judgement."""
+"""Models and tunings in little time: what fits are off is measured on one log, motions and judgements are short, and
+what is possible is worked out once for all tests.
+"""
 
 from __future__ import annotations
 
@@ -8,12 +10,13 @@ from functools import partial
 import numpy as np
 import pytest
 
+from greywhale.identify import bootstrap
 from greywhale.motion import human_reaches
 from greywhale.tune import default
 from greywhale.tune.judge import held_out
 from greywhale.tune.judge.margins import REST_S, Margins
 from greywhale.tune.possible import scale_of
-from greywhale.tune.search import training
+from greywhale.tune.search import lockstep, training
 from greywhale.tune.search.objective import ErrorScale
 from greywhale.tune.search.training import TrainingMotion
 
@@ -34,6 +37,8 @@ def shorten(patch: pytest.MonkeyPatch) -> None:
             _known[key] = scale_of(drills, plants, before, threads)
         return _known[key]
 
+    patch.setattr(bootstrap, "LOGS", 1)
+    patch.setattr(lockstep, "KEPT", 2)  # two candidates a joint are enough to try the last judgement
     patch.setattr(training, "moves", partial(training.moves, hold_s=0.6))
     patch.setattr(training, "HUMAN_S", 5.0)
     patch.setattr(training, "SLOW_S", 4.0)

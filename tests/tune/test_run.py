@@ -25,7 +25,6 @@ from greywhale.tune.judge.margins import TEETH
 from greywhale.tune.judge.standard import Standard
 from greywhale.tune.model import Model, load_model
 from greywhale.tune.request import TuningRequest
-from greywhale.tune.search import lockstep as search
 from greywhale.tune.search.lockstep import KEPT
 from greywhale.tune.search.objective import Objective
 from tests.support.tuning import judge_nothing, shorten
@@ -43,10 +42,8 @@ def model() -> Model:
 
 @pytest.fixture(scope="module", autouse=True)
 def _short_tunings() -> Iterator[None]:
-    """Two candidates a joint are enough to try the last judgement."""
     with pytest.MonkeyPatch.context() as patch:
         shorten(patch)
-        patch.setattr(search, "KEPT", 2)
         yield
 
 
