@@ -3,20 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cache
 from inspect import isfunction
+from pathlib import Path
 from typing import Any
 
 import pytest
 
+from greywhale.files.arm import load_arm
+from greywhale.files.log import Log
+from greywhale.files.trajectory import Trajectory
 from greywhale.motion import multi_steps, steps
 from greywhale.pictures import page
 from greywhale.pictures import paper_curves as curves
 from greywhale.pictures import paper_diagrams as diagrams
 from greywhale.pictures.paper_curves import Trace
-from greywhale.reproduce.work import errata, findings, on_the_bench, optimisers, readings
-from greywhale.reproduce.work.arms import DEFAULT
+from greywhale.protocol.table import ParameterTable
+from greywhale.reproduce.work import bench, errata, findings, on_the_bench, optimisers, readings
+from greywhale.reproduce.work.arms import DEFAULT, file_of
 from greywhale.reproduce.work.motions import MOTIONS
+from tools.support import recordings
 
 METHODS = ("gwo-woa", "gwo", "woa", "pso")
 BUDGET = 40
@@ -40,6 +47,14 @@ def as_paper(seed: int, seconds: float, period_ms: int, budget: int | None, trac
     )  # as the other task calls it
 
 
+def recorded(
+    folder: Path, name: str, motion: Trajectory, table: ParameterTable, seed: int = bench.BENCH_SEED, arm: str = DEFAULT
+) -> Log:
+    """By the native loop, which does what the bench does in a fraction of the time."""
+    log = recordings.record(load_arm(file_of(arm, folder)), motion, folder / f"{name}.csv", table, seed)
+    return replace(log, name=f"{name}.csv")
+
+
 def responses(traces: Sequence[Trace], *titles: Any, **window: Any) -> bytes:
     """One picture stands for all with as many lines and such a window."""
     key = len(traces), *window.items()
@@ -55,6 +70,7 @@ def shrink(patch: pytest.MonkeyPatch) -> None:
     """Few methods, short motions, no long tuning, coarse pictures; the request is for one seed, quick."""
     patch.setattr(page, "DOCUMENT_DPI", 20)
     patch.setattr(curves, "responses", responses)
+    patch.setattr(bench, "record", recorded)
     patch.setattr(on_the_bench, "follow_as_default", as_paper)
     patch.setattr(on_the_bench, "follow_as_paper", followed)
     patch.setattr(optimisers, "METHODS", METHODS)
