@@ -80,10 +80,3 @@ def test_a_share_is_done_once_and_kept_until_the_code_changes(tmp_path: Path, mo
         attack(part, 0.5, 1, tmp_path)
     with pytest.raises(TaskFailed):
         attack(replace(part, depends=("README.md",)), 1.0, 1, tmp_path)
-
-
-@pytest.mark.slow
-def test_a_real_part_is_done_in_other_processes(tmp_path: Path) -> None:
-    result = attack(parts.eeprom.PART, 1e-6, 2, tmp_path)
-    assert [row.tried for row in result.rows] == list(parts.eeprom.TITLES.values())
-    assert not any(row.violations for row in result.rows)

@@ -18,7 +18,7 @@ from greywhale.files.leader import save_leader
 from greywhale.files.log import read_log
 from greywhale.files.model import arm_toml
 from greywhale.motion import human_reaches
-from tests.support.tuning import shorten
+from tests.support.tuning import judge_nothing, shorten
 from tools.support.hands import SECOND_DEG, Hands, bench_of, mounted_anyhow, run_calibrate
 
 IDLE = slice(2, 4)
@@ -47,6 +47,7 @@ def test_two_joints_from_the_box_to_a_following_arm(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     shorten(monkeypatch)
+    judge_nothing(monkeypatch)
     true = mounted_anyhow(11).model_copy(update={"joint": load_arm("two_joints").joint})
     with_two_joints("white_box", tmp_path / "white.toml")
     save_leader(tmp_path / "motion.csv", human_reaches(1, 6.0))

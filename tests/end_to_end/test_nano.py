@@ -27,7 +27,7 @@ from greywhale.tune.model import load_model
 from greywhale_sim.assemble import BenchOptions, build_bench
 from greywhale_sim.lockstep import LockStepBench, tell_joints
 from greywhale_sim.words import lock_step
-from tests.support.tuning import shorten
+from tests.support.tuning import judge_nothing, shorten
 
 JOINT, FULL = 2, 255
 
@@ -46,6 +46,7 @@ def test_a_nano_is_excited_identified_and_tuned_as_a_nano(
         tmp_path / name for name in ("fit.csv", "second.csv", "model.toml", "controller.toml", "after.csv")
     )
     shorten(monkeypatch)
+    judge_nothing(monkeypatch)
     largest = full_duties_of_every_loop(monkeypatch)
     white_box = ("--arm", with_one_joint("white_box", tmp_path))
     with bench_with_one_joint(tmp_path) as bench:

@@ -101,15 +101,6 @@ def test_every_follower_looks_the_same_in_all_panels_and_in_the_legend() -> None
             assert [(line.get_color(), line.get_linestyle()) for line in lines] == expected
 
 
-def test_an_error_that_leaves_its_panel_is_marked() -> None:
-    figure = figure_of("responses")
-    error = figure.axes[1]
-    assert error.get_ylim() == (-0.2, 0.2)
-    marks = [line for line in error.get_lines() if line.get_marker() in ("^", "v") and len(x_of(line))]
-    assert {line.get_color() for line in marks} == {looks.BEFORE.colour, looks.AFTER.colour, looks.FLOOR.colour}
-    assert any("beyond ±0.2 rad (up to 1.2)" in text.get_text() for text in figure.legends[0].get_texts())
-
-
 def test_the_sets_have_their_corners_where_the_board_has_them() -> None:
     figure = figure_of("sets")
     error, change = figure.axes[0], figure.axes[1]
