@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from greywhale_sim._board import Board
+from tests.board.flash.hex_files import hex_text
 from tests.simulated_board.avr import BUSY, Compile, MakeProgram
 
 # Every instruction of the two chips; letters stand for operand bits.
@@ -44,16 +45,6 @@ def instruction(chip: str, dice: random.Random, pattern: str) -> list[int]:
         in_memory = pattern.startswith("100100")
         words.append(dice.randrange(0x20, LAST_RAM[chip] + 1) if in_memory else dice.randrange(0x3000))
     return words
-
-
-def write_hex(path: Path, memory: bytes) -> None:
-    lines = []
-    for start in range(0, len(memory), 16):
-        if start % 0x10000 == 0:
-            lines.append(bytes([2, 0, 0, 4]) + (start >> 16).to_bytes(2, "big"))
-        lines.append(bytes([16]) + (start & 0xFFFF).to_bytes(2, "big") + b"\0" + memory[start : start + 16])
-    text = "".join(f":{line.hex()}{-sum(line) & 255:02x}\n" for line in lines)
-    path.write_text(text + ":00000001ff\n")
 
 
 def random_state(chip: str, dice: random.Random) -> list[tuple[int, bytes]]:
@@ -93,7 +84,7 @@ def test_every_instruction_does_what_simavr_does(tmp_path: Path, chip: str, seed
             words += instruction(chip, dice, dice.choice([p for p in patterns if p not in MISTAKEN]))
         flash += b"".join(word.to_bytes(2, "little") for word in words[: SPACING // 2])
     image = tmp_path / "random.hex"
-    write_hex(image, bytes(flash))
+    image.write_text(hex_text(bytes(flash)))
 
     fast, reference = Board(chip), Board(chip)
     reference.use_reference_decoder(True)

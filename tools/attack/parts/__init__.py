@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from tools.attack.part import Part
-from tools.attack.parts import cuts, eeprom, faults, fuzz, line, link, soak
+from tools.attack.parts import cuts, eeprom, faults, fuzz, link, soak
 
 PARTS: tuple[Part, ...] = (
     faults.PART,
-    line.PART,
     link.PART,
     fuzz.PART,
     cuts.PART,
