@@ -12,9 +12,9 @@ import select
 import subprocess
 import sys
 import tempfile
-from types import TracebackType
-from typing import Any, Protocol, Self
+from typing import Any, Protocol
 
+from greywhale.base.closing import Closing
 from greywhale.base.errors import UserError
 from greywhale.base.processes import start
 
@@ -29,7 +29,7 @@ class RunningBench(Protocol):
     def command(self, text: str) -> dict[str, Any]: ...
 
 
-class BenchProcess:
+class BenchProcess(Closing):
     """Starts `python -m greywhale_sim`, or another module that serves a bench; `port` is its serial port.
 
     The module must be installed, or its folder be on PYTHONPATH.
@@ -49,14 +49,6 @@ class BenchProcess:
         except BaseException:
             self.close()
             raise
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
 
     @property
     def exit_code(self) -> int | None:

@@ -7,16 +7,16 @@ models and controllers. A step that is in it is not done again; what lies betwee
 from __future__ import annotations
 
 from pathlib import Path
-from types import TracebackType
-from typing import Any, Self
+from typing import Any
 
+from greywhale.base.closing import Closing
 from greywhale.base.errors import BAD_USAGE, UserError, os_reason
 from greywhale.base.formats.checked_lines import CheckedLines, Kind
 
 NAME = "commission.journal"
 
 
-class CommissioningJournal:
+class CommissioningJournal(Closing):
     """Facts of the steps that are done, by the step's name. `request` says what was asked for. Use as a context."""
 
     def __init__(self, folder: Path, request: dict[str, Any], resume: bool) -> None:
@@ -49,12 +49,7 @@ class CommissioningJournal:
         """A file of this commissioning."""
         return self.folder / name
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def close(self) -> None:
         self._lines.close()
 
 

@@ -7,14 +7,14 @@ processes, or on a bench.
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from dataclasses import dataclass
-from types import TracebackType
-from typing import ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from greywhale.base.closing import Closing
 from greywhale.base.types import Floats
 from greywhale.optimise.box import Box, Source, scatter
 
@@ -37,7 +37,7 @@ class History:
     cost: tuple[float, ...]
 
 
-class Optimiser(ABC):
+class Optimiser(Closing):
     """Minimises within a box. `ask()` returns the candidates as rows, `tell(costs)` takes one cost a row.
 
     A batch never exceeds the rest of the budget: the last one is cut short. NaN and infinities (of either sign) are the
@@ -77,7 +77,7 @@ class Optimiser(ABC):
     def _learn(self, candidates: Floats, costs: Floats) -> None:
         """Take in the costs of the last whole batch; +inf stands for every non-finite cost."""
 
-    def close(self) -> None:  # noqa: B027 - most methods hold nothing
+    def close(self) -> None:
         """Free what the method holds besides memory."""
 
     # The interface for a caller.
@@ -131,14 +131,6 @@ class Optimiser(ABC):
     @property
     def history(self) -> History:
         return History(tuple(at for at, _ in self._history), tuple(cost for _, cost in self._history))
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
 
     # The parts that methods share.
 

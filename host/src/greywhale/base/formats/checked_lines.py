@@ -13,9 +13,9 @@ import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
-from typing import IO, Any, Self
+from typing import IO, Any
 
+from greywhale.base.closing import Closing
 from greywhale.base.errors import UserError, os_reason
 from greywhale.base.formats import json_text
 from greywhale.base.formats.draft import sync, sync_folder
@@ -38,7 +38,7 @@ class Kind:
     choices: tuple[str, ...] = ()  # of a request: where several differ, one of these is named
 
 
-class CheckedLines:
+class CheckedLines(Closing):
     """An open file; `found` are the lines after the first that were there. Use as a context.
 
     With `keep` an existing file is gone on with: UserError where it is of another kind, version or request, or is
@@ -85,14 +85,6 @@ class CheckedLines:
             raise self._cannot_be_written(error) from None
         finally:
             self._file.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
 
     def _lock(self) -> None:
         """The system takes the lock away when this process ends, however it ends."""

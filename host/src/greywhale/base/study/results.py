@@ -7,15 +7,15 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from types import TracebackType
-from typing import Any, Self
+from typing import Any
 
+from greywhale.base.closing import Closing
 from greywhale.base.formats.checked_lines import CheckedLines, Kind
 from greywhale.base.study.plain import decode, encode
 from greywhale.base.study.task import Task, versions
 
 
-class Results:
+class Results(Closing):
     """Results by the tasks' keys. Without a path they are kept in memory alone. Use as a context."""
 
     def __init__(self, path: Path | None, tasks: Sequence[Task], about: Mapping[str, Any]) -> None:
@@ -43,12 +43,7 @@ class Results:
         """What is known, in the tasks' order."""
         return {task.key: self._found[task.key] for task in tasks if task.key in self._found}
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def close(self) -> None:
         if self._lines is not None:
             self._lines.close()
 

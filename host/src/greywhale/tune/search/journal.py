@@ -10,17 +10,17 @@ from __future__ import annotations
 
 import zlib
 from pathlib import Path
-from types import TracebackType
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 
+from greywhale.base.closing import Closing
 from greywhale.base.errors import UserError
 from greywhale.base.formats.checked_lines import CheckedLines, Kind
 from greywhale.base.types import Controllers, Floats
 
 
-class TuningJournal:
+class TuningJournal(Closing):
     """The costs in the order in which they are told. Without a path nothing is kept. Use as a context."""
 
     def __init__(self, path: Path | None, request: dict[str, Any], resume: bool = False) -> None:
@@ -55,14 +55,6 @@ class TuningJournal:
         """Close the file; it is on the disk then."""
         if self._lines is not None:
             self._lines.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
 
 
 def _is_batch(value: dict[str, Any]) -> bool:
