@@ -105,13 +105,13 @@ def test_mean_ranks_and_places() -> None:
 
 def test_duels_tell_apart_only_what_chance_would_not() -> None:
     comparison = made_up()
-    assert comparison.duel("plain", "gwo", "de") == Duel(better=2, worse=0, undecided=0)
-    assert comparison.duel("shifted", "gwo", "de") == Duel(better=0, worse=2, undecided=0)
-    assert comparison.duel("shifted", "pso", "de") == Duel(better=0, worse=1, undecided=1)
+    assert comparison.duels("plain", "de")["gwo"] == Duel(better=2, worse=0, undecided=0)
+    assert comparison.duels("shifted", "de")["gwo"] == Duel(better=0, worse=2, undecided=0)
+    assert comparison.duels("shifted", "de")["pso"] == Duel(better=0, worse=1, undecided=1)
     comparison.costs[0, 0, 0] += 9.0  # 9..14 against 10..15
-    assert comparison.duel("plain", "gwo", "de") == Duel(better=1, worse=0, undecided=1)
+    assert comparison.duels("plain", "de")["gwo"] == Duel(better=1, worse=0, undecided=1)
     comparison.costs[0, 0] = np.inf
-    assert comparison.duel("plain", "gwo", "de") == Duel(better=1, worse=0, undecided=1)
+    assert comparison.duels("plain", "de")["gwo"] == Duel(better=1, worse=0, undecided=1)
 
 
 def test_statement_says_who_falls_and_who_rises() -> None:
@@ -119,7 +119,7 @@ def test_statement_says_who_falls_and_who_rises() -> None:
     assert "On plain functions, by mean rank: gwo (1.00), de (2.00), pso (3.00)." in told
     assert "On shifted functions, by mean rank: de (1.25), pso (1.75), gwo (3.00)." in told
     assert "From plain to shifted functions gwo falls from place 1 to 3. What falls was helped by minima" in told
-    assert "against de on 2 shifted functions (Mann-Whitney, 5 %): gwo 0/2/0, pso 0/1/1." in told
+    assert "against de on 2 shifted functions (Mann-Whitney, Holm, 5 %): gwo 0/2/0, pso 0/1/1." in told
 
 
 def test_statement_without_plain_functions_or_without_de(small: Comparison) -> None:

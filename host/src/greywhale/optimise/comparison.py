@@ -21,8 +21,6 @@ from greywhale.base.types import Floats, Progress
 from greywhale.optimise.functions import FUNCTIONS, SETTINGS, Setting, place
 from greywhale.optimise.methods import METHODS, create, minimise
 
-# Two samples count as different when chance would separate them as far in fewer cases than this share.
-SIGNIFICANCE = 0.05
 # Evaluations that a worker does in one go: short enough for a smooth progress bar, long enough to be worth a message.
 PART = 5000
 
@@ -118,20 +116,16 @@ class Comparison:
         ranks = self.mean_ranks(setting)
         return {method: 1 + sum(other < rank for other in ranks.values()) for method, rank in ranks.items()}
 
-    def duel(self, setting: Setting, method: str, rival: str) -> Duel:
-        """Function by function, by the Mann-Whitney test over the runs."""
-        outcomes = [self._outcome(function, setting, method, rival) for function in self.plan.functions]
-        return Duel(outcomes.count(-1), outcomes.count(1), outcomes.count(0))
+    def duels(self, setting: Setting, rival: str) -> dict[str, Duel]:
+        """Every other method against one rival, function by function."""
+        # It imports scipy's statistics, which takes a moment.
+        from greywhale.optimise.significance import against_each
 
-    def _outcome(self, function: str, setting: Setting, method: str, rival: str) -> int:
-        from scipy.stats import mannwhitneyu
-
-        own, other = self.of(function, setting, method), self.of(function, setting, rival)
-        higher, lower = own[:, None] > other, own[:, None] < other
-        balance = int(higher.sum()) - int(lower.sum())
-        if balance == 0 or mannwhitneyu(own, other).pvalue >= SIGNIFICANCE:
-            return 0
-        return 1 if balance > 0 else -1
+        plan = self.plan
+        costs = {function: {m: self.of(function, setting, m) for m in plan.methods} for function in plan.functions}
+        found = against_each(costs, rival)
+        words = {m: [found[function][m].word for function in plan.functions] for m in plan.methods if m != rival}
+        return {m: Duel(w.count("higher"), w.count("lower"), w.count("not told apart")) for m, w in words.items()}
 
 
 def compare(

@@ -61,11 +61,7 @@ def as_dict(comparison: Comparison) -> ComparisonFacts:
             for s, setting in enumerate(plan.settings)
         },
         "mean_rank": {setting: comparison.mean_ranks(setting) for setting in plan.settings},
-        "against_de": {
-            setting: {method: comparison.duel(setting, method, RIVAL) for method in plan.methods if method != RIVAL}
-            for setting in plan.settings
-            if RIVAL in plan.methods
-        },
+        "against_de": {setting: comparison.duels(setting, RIVAL) for setting in plan.settings if RIVAL in plan.methods},
         "statement": statement(comparison),
     }
 
@@ -110,15 +106,13 @@ def _change(comparison: Comparison, setting: Setting) -> str:
 
 def _duels(comparison: Comparison, setting: Setting) -> str:
     count = len(comparison.plan.functions)
-    rows = []
-    for method in comparison.plan.methods:
-        if method != RIVAL:
-            duel = comparison.duel(setting, method, RIVAL)
-            rows.append(f"{method} {duel.better}/{duel.worse}/{duel.undecided}")
+    duels = comparison.duels(setting, RIVAL)
+    rows = [f"{method} {duel.better}/{duel.worse}/{duel.undecided}" for method, duel in duels.items()]
     if not rows:
         return ""
     return (
-        f"Better/worse/undecided against {RIVAL} on {count} {setting} functions (Mann-Whitney, 5 %): {', '.join(rows)}."
+        f"Better/worse/undecided against {RIVAL} on {count} {setting} functions (Mann-Whitney, "
+        f"Holm, 5 %): {', '.join(rows)}."
     )
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from greywhale.optimise.significance import FEWEST, Verdict, against_each
 from greywhale.reproduce.pages import identified, readings
 from greywhale.reproduce.pages.document import Chapter, Entry, Row, Sheet, Status, sheet
 from greywhale.reproduce.pages.experiment import changes, columns_of
@@ -23,7 +24,6 @@ from greywhale.reproduce.pages.printed import (
     STEADY_STATE_LOWER,
     STEPS_LOWER,
 )
-from greywhale.reproduce.pages.significance import FEWEST, Verdict, against_each
 from greywhale.reproduce.pages.tuning import last_improvement_of_joint, totals
 from greywhale.reproduce.work.arms import DEFAULT, OTHER_HAND, STICKY
 from greywhale.reproduce.work.motions import PERIOD_MS

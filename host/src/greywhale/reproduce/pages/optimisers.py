@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from greywhale.identify.pack_search import BUDGET as IDENTIFYING
+from greywhale.optimise.significance import FEWEST, SIGNIFICANCE, against, against_each, mean_ranks
 from greywhale.pictures import paper_curves as curves
 from greywhale.reproduce.pages.document import Chapter, Entry, Picture, Row, Sheet, Status, sheet, words
 from greywhale.reproduce.pages.found import Found
 from greywhale.reproduce.pages.numbers import several
-from greywhale.reproduce.pages.significance import FEWEST, SIGNIFICANCE, against, against_each, mean_ranks
 from greywhale.reproduce.work.optimisers import METHODS, SETTINGS
 from greywhale.tune.paper import BUDGET
 

@@ -8,6 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import mannwhitneyu, rankdata
 
+from greywhale.base.types import Floats
+
+# Two samples count as different when chance would separate them as far in fewer cases than this share.
 SIGNIFICANCE = 0.05
 # With fewer runs no difference can be significant.
 FEWEST = 4
@@ -24,12 +27,14 @@ class Verdict:
         return f"{self.word}, p = {self.chance:.2g}"
 
 
-def against(costs: Mapping[str, Sequence[float]], method: str) -> dict[str, Verdict]:
+def against(costs: Mapping[str, Sequence[float] | Floats], method: str) -> dict[str, Verdict]:
     """`method` against every other."""
     return against_each({"": costs}, method)[""]
 
 
-def against_each(problems: Mapping[str, Mapping[str, Sequence[float]]], method: str) -> dict[str, dict[str, Verdict]]:
+def against_each(
+    problems: Mapping[str, Mapping[str, Sequence[float] | Floats]], method: str
+) -> dict[str, dict[str, Verdict]]:
     """The same on several problems: each pair on each problem is one of the many questions that Holm corrects for."""
     pairs = [(problem, rival) for problem, costs in problems.items() for rival in costs if rival != method]
     samples = [(np.array(problems[problem][method]), np.array(problems[problem][rival])) for problem, rival in pairs]
@@ -62,7 +67,7 @@ def holm(chances: Sequence[float]) -> list[float]:
     return corrected
 
 
-def mean_ranks(costs: Mapping[str, Sequence[float]]) -> dict[str, float]:
+def mean_ranks(costs: Mapping[str, Sequence[float] | Floats]) -> dict[str, float]:
     """Rank 1 is the lowest of a run; the mean over the runs, ties shared."""
     ranks = rankdata(np.array(list(costs.values())), axis=0).mean(axis=1)
     return dict(zip(costs, map(float, ranks), strict=True))

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from greywhale.reproduce.pages.claims import judge
-from greywhale.reproduce.pages.significance import against, against_each, holm, mean_ranks
+from greywhale.optimise.significance import against, against_each, holm, mean_ranks
 
 
 def test_holm_multiplies_by_what_is_left_and_never_falls() -> None:
@@ -34,20 +33,6 @@ def test_more_questions_make_each_answer_less_sure() -> None:
     assert alone.chance == pytest.approx(2 / 252)
     assert {one["b"].word for one in among.values()} == {"not told apart"}
     assert among["0"]["b"].chance == pytest.approx(8 * alone.chance)
-
-
-@pytest.mark.parametrize(
-    ("default", "sticky", "seeds", "said"),
-    [
-        (True, True, 4, "reproduces"),
-        (False, True, 10, "on an arm like the paper's"),
-        (True, False, 10, "on the default arm"),
-        (False, False, 10, "does not"),
-        (True, True, 3, "open: 3 of 4 seeds"),
-    ],
-)
-def test_a_claim_needs_both_arms_and_enough_seeds(default: bool, sticky: bool, seeds: int, said: str) -> None:
-    assert judge(default, sticky, seeds) == said
 
 
 def test_ranks_are_means_over_runs_with_ties_shared() -> None:
