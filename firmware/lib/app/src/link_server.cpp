@@ -48,6 +48,8 @@ bool LinkServer::send_due(const Tick& tick) {
   }
   if (hello_sent_ || tick.supervisor().state() == supervisor::State::boot) return false;
   hello_sent_ = true;
+  const uint8_t end = 0;  // of a frame that was being sent when the supply was cut: it would swallow this one
+  hal::tx_write(&end, 1);
   send_hello(0, tick);  // without a request: the host waits for the bootloader to end
   return true;
 }
