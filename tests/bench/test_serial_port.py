@@ -95,6 +95,17 @@ def test_a_full_queue_loses_bytes_and_blocks_nobody(port: SerialPort) -> None:
     assert fitted[-1] < 1000
 
 
+def test_a_host_that_reads_late_loses_nothing_that_a_real_port_would_keep(port: SerialPort) -> None:
+    sent = bytes(number % 251 for number in range(60_000))
+    with serial.Serial(port.path, timeout=5) as host:
+        assert port.write(sent) == len(sent)
+        got = b""
+        while len(got) < len(sent):
+            got += host.read(max(1, host.in_waiting))
+            port.write(b"")
+    assert got == sent
+
+
 def test_link_names_the_port_while_it_lives(tmp_path: Path) -> None:
     link = tmp_path / "bench"
     link.symlink_to("/dev/pts/999999")  # left behind by a bench that was killed

@@ -8,6 +8,7 @@ one descriptor of its own open, so that the port outlives its users.
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import errno
 import fcntl
@@ -27,6 +28,8 @@ EVENT = struct.Struct("iIII")  # struct inotify_event, without a name: the watch
 TCGETS2 = 0x802C542A  # tells any speed, where tcgetattr knows the classic ones only
 CFLAG = 2  # place of the control flags in what termios returns
 SPEED_OFFSET = 40  # c_ospeed in struct termios2
+# Linux keeps so much of a real port for a program that does not come to read; of a pseudo-terminal it keeps a fifth.
+KEPT_BYTES = 65536
 
 
 class SerialPort:
@@ -45,6 +48,7 @@ class SerialPort:
         self._left_up = False  # DTR, by the last user, or for the user there is
         self._speed = self.baud()
         self._unseen = 0  # bytes written since the host was last known to have read all
+        self._kept = bytearray()  # bytes that the pseudo-terminal has no room for
         self._links: list[Path] = []
         try:
             for link in links:
@@ -96,14 +100,15 @@ class SerialPort:
             return b""
 
     def write(self, data: bytes) -> int:
-        """Hand `data` to the host. Bytes that do not fit into the system's queue are lost. Returns how many bytes
-        fitted.
+        """Hand `data`, and what is kept, to the host. Bytes for which there is no room are lost. Returns how many of
+        `data` fitted.
         """
-        try:
-            fitted = os.write(self._master, data)
-        except BlockingIOError:
-            return 0
+        fitted = min(len(data), KEPT_BYTES - len(self._kept))
+        self._kept += data[:fitted]
         self._unseen += fitted
+        with contextlib.suppress(BlockingIOError):
+            while self._kept:
+                del self._kept[: os.write(self._master, self._kept)]
         return fitted
 
     def unread(self) -> int:
@@ -115,11 +120,12 @@ class SerialPort:
 
     def backlog(self, limit: int) -> int:
         """An upper bound of the bytes that the host has not read; exact enough to compare it with `limit`."""
-        if self._unseen > limit and self.unread() == 0:
+        if self._unseen > limit and not self._kept and self.unread() == 0:
             self._unseen = 0
         return self._unseen
 
     def discard_unread(self) -> None:
+        self._kept.clear()
         while self.unread():
             termios.tcflush(self._slave, termios.TCIFLUSH)
         self._unseen = 0

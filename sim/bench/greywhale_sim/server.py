@@ -118,9 +118,12 @@ class Server:
 
     def _send(self) -> None:
         data = self.board.uart_receive()
-        if data and self.port.connected:
+        if not self.port.connected:
+            return
+        if data:
             self._spoken_s = self.bench.time_s
-            self.port.write(self.noise(line.resample(data, self.board.baud, self.port.baud())))
+            data = self.noise(line.resample(data, self.board.baud, self.port.baud()))
+        self.port.write(data)  # without new data it sends what is kept
 
     def notice_host(self) -> None:
         """Take note of a host that has come or gone."""
