@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import savgol_filter
 
 from greywhale.base.types import Floats
 from greywhale.files.log import Log
@@ -80,6 +79,8 @@ def part_of(count: int, per_block: int, held_out: bool) -> NDArray[np.intp]:
 
 def prepare(log: Log, filter_shift: int | None) -> Prepared:
     """Find the usable stretches. Velocities come from local quadratic fits, noise from the quietest moments."""
+    from scipy.signal import savgol_filter  # slow to import
+
     following = log.state == "following"
     wanted = following if following.any() else np.ones(len(log.time), dtype=bool)
     period = float(np.median(np.diff(log.time)))
