@@ -59,6 +59,13 @@ class Faults:
     followers: tuple[int, int, int, int] = FOLLOWERS  # where the arm is
 
 
+_CLUTCH = {
+    schema.ClutchAction.ENGAGE: schema.Clutch.SHIFTED,
+    schema.ClutchAction.DISENGAGE: schema.Clutch.DISENGAGED,
+    schema.ClutchAction.RESET: schema.Clutch.ENGAGED,
+}
+
+
 class FakeBoard:
     """Use as a context manager; `port` is what a host opens, the other attributes are what a test looks at."""
 
@@ -287,8 +294,7 @@ class FakeBoard:
                     self._next_point = (self._next_point + 1) % 256
                 return schema.LeadPointReply(self._next_point, len(self._points)).pack()
             case schema.ClutchRequest.TYPE:
-                disengages = schema.ClutchRequest.unpack(payload).action is schema.ClutchAction.DISENGAGE
-                self.clutch = schema.Clutch.DISENGAGED if disengages else schema.Clutch.SHIFTED
+                self.clutch = _CLUTCH[schema.ClutchRequest.unpack(payload).action]
                 return schema.ClutchReply(self.clutch).pack()
             case schema.StopRequest.TYPE:
                 self.state, self.stop_reason = State.DISABLED, StopReason.HOST

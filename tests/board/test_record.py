@@ -82,6 +82,14 @@ def test_following_is_recorded_from_the_end_of_the_soft_start(out: Path) -> None
     assert 4 * 5 - 2 <= renewals <= 4 * 5 + 2
 
 
+def test_a_disengaged_leader_is_let_go_before_the_motors_go_on(tmp_path: Path) -> None:
+    with FakeBoard() as board, open_device(board) as device:
+        record(device, tmp_path / "log.csv", 0.1, enable=True, disengaged=True)
+        kinds = [kind for kind, _ in board.requests]
+        assert kinds.index(schema.ClutchRequest.TYPE) < kinds.index(schema.EnableRequest.TYPE)
+        assert board.clutch is schema.Clutch.DISENGAGED
+
+
 def test_every_thins_the_samples(tmp_path: Path) -> None:
     with FakeBoard() as board, open_device(board) as device:
         record(device, tmp_path / "log.csv", 1.0, every=20)

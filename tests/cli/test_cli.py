@@ -78,6 +78,7 @@ def test_help_needs_no_heavy_imports() -> None:
         (["params", "gett"], "No such command 'gett'. Did you mean get?"),
         (["arm", "mach"], "No such command 'mach'. Did you mean match?"),
         (["record", "--secnds", "3"], "No such option '--secnds'. (Did you mean one of: '--seconds'"),
+        (["record", "--disengaged"], "--disengaged is for a leader that the follower follows; add --enable."),
         (["info", "--prt", "x"], "No such option '--prt'"),
         (["upload"], "Missing argument 'CONTROLLER'"),
         (["flash", "--firmware", "a", "--hex", "b"], "--firmware and --hex exclude each other"),

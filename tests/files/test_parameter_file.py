@@ -44,12 +44,19 @@ def test_neighbouring_raw_values_stay_apart_at_the_ends_of_the_range(parameter: 
         assert parameter.to_raw(physical(parameter, raw)) == raw
 
 
-@pytest.mark.parametrize("layout", [1, 2])
+# What an older file lacks, by the layout that brought it.
+NEWER = {"unrest_amplitude": 0, "joint2.ce_ticks": 9, "gravity_1": 5, "joint3.ratio": 32}
+
+
+@pytest.mark.parametrize("layout", range(1, schema.LAYOUT))
 def test_a_backup_of_an_older_layout_gets_the_defaults_of_what_it_lacks(tmp_path: Path, layout: int) -> None:
     newer = tuple(one.name.rpartition(".")[2] for one in schema.PARAMETERS if one.since > layout)
     path = tmp_path / "backup.toml"
     table = ParameterTable.defaults().with_raw({"joint1.kp": 50_000})
-    parameter_file.save(path, table.with_raw({"joint2.ce_ticks": 9} | ({"unrest_amplitude": 0} if layout == 1 else {})))
+    parameter_file.save(
+        path,
+        table.with_raw({name: raw for name, raw in NEWER.items() if schema.PARAMETER_BY_NAME[name].since > layout}),
+    )
     lines = path.read_text().splitlines(keepends=True)
     path.write_text("".join(line for line in lines if not line.startswith(newer)))
     assert parameter_file.load(path) == table

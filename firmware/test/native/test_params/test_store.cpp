@@ -365,9 +365,10 @@ void turn_into(uint8_t old, FakeEeprom& eeprom, uint16_t start) {
 }  // namespace
 
 TEST_CASE("a bank of an older layout keeps its values, the rest gets its defaults, and a save writes today's layout") {
-  for (const int i : {0, 1, 2, 3, 4, 5}) {
-    const int saves = 1 + i / 2;
-    const auto old = static_cast<uint8_t>(1 + i % 2);
+  constexpr int older = params::layout - 1;
+  for (int i = 0; i < 3 * older; ++i) {
+    const int saves = 1 + i / older;
+    const auto old = static_cast<uint8_t>(1 + i % older);
     params::Table newest;
     FakeEeprom eeprom = history(saves, newest);
     turn_into(old, eeprom, bank::start_a);
