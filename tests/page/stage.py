@@ -35,6 +35,7 @@ from greywhale.protocol.schema import (
     HelloRequest,
     ParamGetReply,
     ParamGetRequest,
+    RenewRequest,
     Sample,
     State,
     StopRequest,
@@ -60,8 +61,9 @@ FLAGS = [
 TOKEN = "a-token-of-a-test"
 FRAME_MS = 200  # a page draws so rarely: software draws, and the time is better spent on what is tested
 PATIENCE_MS = 60_000  # a page that shows nothing for so long has hung
-# So long the board lives after a sign of life: of a verb or, every 0.1 s, of a page.
-MOVING_S, RESTING_S = 0.2, 0.03
+# So long the board lives after a request of a verb and, every 0.1 s, a page's sign of life.
+MOVING_S, RESTING_S, ANSWER_S = 0.2, 0.03, 0.005
+LEASES = {EnableRequest.TYPE, RenewRequest.TYPE}  # of a verb that moves the arm
 ENDED = UserError("the bench has ended.")
 # A page waits half a second for an answer, four times. Here the board answers in its own time, on any machine.
 OWN_TIME = f"""
@@ -74,14 +76,17 @@ OWN_TIME = f"""
 class Stage:
     """A context: server and board. `page_address` is what a person would open."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, *options: str) -> None:
+        """`options` are the bench's."""
+        self._options = options
         self.plugged = threading.Event()  # the board comes with it
         self.plugged.set()
         self.relay = _PacedRelay(self)
         self.folder = folder
         own = Folder(folder)
         self.jobs = jobs_of(self.relay, own)
-        self.answers = Answers(self.relay, own, "default", self.jobs, BenchControls(_Bench(self), own))
+        self.bench = _Bench(self)
+        self.answers = Answers(self.relay, own, "default", self.jobs, BenchControls(self.bench, own))
         self._listener = server.listen()
         self.port: int = self._listener.getsockname()[1]
         self.page_address = f"http://127.0.0.1:{self.port}/#token={TOKEN}"
@@ -173,7 +178,7 @@ class Stage:
 
     @contextlib.contextmanager
     def open(self) -> Iterator[LockStepBench]:
-        with lock_step() as bench:
+        with lock_step(*self._options) as bench:
             threads = [
                 threading.Thread(target=self._live, args=(bench,)),
                 threading.Thread(target=self._server.run, args=([self._listener],)),
@@ -211,9 +216,9 @@ class _PacedRelay(Relay):
         self._frames = FrameDecoder()
         self.moves = False
 
-    def _let_live(self, seconds: float = RESTING_S) -> None:
+    def _let_live(self) -> None:
         if not self._stage.still:
-            self._stage.let_live(MOVING_S if self.moves else seconds)
+            self._stage.let_live(MOVING_S if self.moves else RESTING_S)
 
     def seen(self, client: Client) -> None:
         super().seen(client)
@@ -226,11 +231,11 @@ class _PacedRelay(Relay):
         self._let_live()
 
     def receive(self, client: Client, data: bytes) -> None:
-        """A verb that moves the arm has all the board's time for itself, so its lease never ends."""
+        """Where a verb moves the arm, the board lives from one renewal to the next, so the lease never ends."""
         super().receive(client, data)
         asked = {frame.type for frame in FrameDecoder().feed(data)}
         if client.verb:
-            self._let_live(MOVING_S if EnableRequest.TYPE in asked else RESTING_S)
+            self._stage.let_live(MOVING_S if asked & LEASES else ANSWER_S)
         elif StopRequest.TYPE in asked:
             self._stage.let_live(1.0)
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 import json
 import threading
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from playwright.sync_api import Locator, Page, expect
+from playwright.sync_api import BrowserContext, Locator, Page, expect
 
 from greywhale.board.calibrate.words import sweep_asked
 from greywhale.commission.measures import NAMES, Measures
@@ -17,9 +18,12 @@ from greywhale.commission.motions import PARTS
 from greywhale.dashboard.job import Facts
 from greywhale.dashboard.jobs import Listed
 from greywhale.files.log import read_log
+from greywhale.protocol.firmware import ANGLE_LSB
 from greywhale.protocol.schema import DEFAULTS, PARAMETER_BY_NAME
 from tests.page.barriers import DARK_AND_NARROW, LIGHT_AND_WIDE, require_no_barrier
+from tests.page.conftest import at_rest
 from tests.page.stage import PATIENCE_MS, Stage
+from tools.support.hands import Hands, mounted_anyhow, save_arm
 
 pytestmark = pytest.mark.slow
 
@@ -51,7 +55,8 @@ def begin(desk: Page, verb: str, **given: str | bool) -> Locator:
 
 def end(job: Locator, state: str) -> Locator:
     """Wait for its end, which must be this one; its card."""
-    expect(job.get_by_role("status")).not_to_have_text("running")
+    status = job.get_by_role("status").element_handle()
+    job.page.wait_for_function("status => status.textContent !== 'running'", arg=status, polling=50)
     assert job.get_by_role("status").inner_text() == state, job.inner_text()
     return job
 
@@ -114,11 +119,6 @@ def test_verbs_end_with_their_result_or_their_sentence(search: Locator, desk: Pa
     expect(done(begin(desk, "params diff", file="kept.toml"))).to_contain_text("joint0.kp")
     done(begin(desk, "params restore", file="kept.toml"))
     assert stage.runs() == {}
-    calibrate = begin(desk, "calibrate")
-    expect(desk.get_by_role("img", name="The positive way of joint 0")).to_be_visible()
-    calibrate.get_by_label("Answer to calibrate").fill("q")
-    calibrate.get_by_role("button", name="Answer").click()
-    expect(failed(calibrate)).to_contain_text("the calibration was ended.")
     expect(failed(begin(desk, "commission", resume=True, yes=True))).to_contain_text("no interrupted commissioning")
     expect(failed(begin(desk, "adapt", model="none.toml"))).to_contain_text("none.toml")
     expect(failed(identify)).to_contain_text("first.csv: only 0.")
@@ -137,6 +137,30 @@ def test_a_search_draws_its_curve_while_it_runs_and_each_joints_at_its_end(
         depths = [float(point.split(",")[1]) for point in drawn.split()]
         assert len(depths) == len(curve["evaluations"]) > 2
         assert depths[int(np.argmin(curve["cost"]))] == max(depths), "the lower on the screen, the better"
+
+
+POSE_RAD = -0.4
+
+
+def test_a_board_mounted_anyhow_is_calibrated(context: BrowserContext, tmp_path: Path) -> None:
+    stage = Stage(tmp_path, "--arm", save_arm(mounted_anyhow(1), tmp_path))
+    with stage.open(), at_rest(context, stage) as page:
+        page.get_by_role("button", name="Do", exact=True).click()
+        job = begin(page, "calibrate", in_use="1", second="0,50,0,0", no_motors=True, yes=True)
+        hands = Hands(stage.bench, second=np.array([0.0, 50.0, 0.0, 0.0]))
+        said = job.get_by_label("What the verb says")
+        for step in ("Sweep 1 of 2", "Sweep 2 of 2", *(f"Pose {pose} of 4" for pose in range(1, 5))):
+            expect(said).to_contain_text(step)
+            hands.follow(next(line for line in said.inner_text().splitlines() if line.startswith(step)))
+            while hands.answer() is None:
+                stage.live(0.1)
+            job.get_by_role("button", name="Answer").click()
+        done(job)
+        stage.command(f"hand both 0 {POSE_RAD} 0 0 0.2")
+        stage.live(0.5)
+        newest = stage.newest()
+    angles = np.array([newest.leader[1], newest.follower[1]]) * ANGLE_LSB
+    assert angles == pytest.approx([POSE_RAD, POSE_RAD], abs=0.004)
 
 
 def facts_of(verb: str) -> Facts:
