@@ -11,14 +11,10 @@ import numpy as np
 from greywhale.arm.parameters import JOINT_NAMES
 from greywhale.base.formats.whole import refuse_inputs, write_text
 from greywhale.base.types import PerJoint
-from greywhale.board.calibrate.match import with_board_pots
-from greywhale.board.device import Device
-from greywhale.board.upload import read_parameters
 from greywhale.cli.output import json_option, overwrite_option, port_option, show
 from greywhale.files.arm import load_arm
 from greywhale.files.model import arm_toml
 from greywhale.files.outputs import require_new
-from greywhale.protocol.ports import choose_port
 
 
 class Tracks(TypedDict):
@@ -42,6 +38,12 @@ def match(arm: str, port: str | None, out: Path, overwrite: bool, as_json: bool)
 
     After `greywhale calibrate`, commission and tune refuse an arm file that says other tracks or zeros than the board.
     """
+    # The other verbs for arm files run where these modules cannot.
+    from greywhale.board.calibrate.match import with_board_pots
+    from greywhale.board.device import Device
+    from greywhale.board.upload import read_parameters
+    from greywhale.protocol.ports import choose_port
+
     refuse_inputs(out, arm)
     require_new(overwrite, out)
     before = load_arm(arm)

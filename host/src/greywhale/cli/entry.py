@@ -17,6 +17,7 @@ from typing import Annotated, NoReturn, TypedDict
 
 import click
 
+from greywhale.base import system
 from greywhale.base.errors import BAD_USAGE, FAILED, LONGEST, UserError, cut, os_reason, printable
 from greywhale.cli import tracing
 from greywhale.cli.output import json_of
@@ -25,6 +26,9 @@ from greywhale.cli.wrapping import fit
 
 INTERRUPTED = 130
 logger = logging.getLogger(__name__)
+
+
+ON_WINDOWS = "use WSL 2 (docs/your-arm.md), or the page in the browser for a board."
 
 
 class Failure(TypedDict):
@@ -40,7 +44,7 @@ def main() -> NoReturn:
         code = run(sys.argv[1:])
     except KeyboardInterrupt:  # before the verb, or after it
         code = INTERRUPTED
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+    for number in system.ENDING:
         if signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, signal.SIG_DFL)  # a handler's traceback while Python ends would be nobody's
     sys.exit(code)
@@ -52,8 +56,9 @@ def run(arguments: Sequence[str]) -> int:
     if signal.getsignal(signal.SIGINT) is signal.SIG_DFL:  # as at the start, before a Ctrl-C could be answered
         signal.signal(signal.SIGINT, signal.default_int_handler)
     signal.signal(signal.SIGTERM, _terminated)
-    if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:  # nohup means what it says
-        signal.signal(signal.SIGHUP, _terminated)
+    hang_up = system.HANG_UP
+    if hang_up is not None and signal.getsignal(hang_up) is not signal.SIG_IGN:  # nohup means what it says
+        signal.signal(hang_up, _terminated)
     begun = time.monotonic()
     try:
         code = _run(arguments, as_json="--json" in arguments)
@@ -77,6 +82,10 @@ def _run(arguments: Sequence[str], as_json: bool) -> int:
         return _failed(error.format_message(), error.exit_code, as_json)
     except (KeyboardInterrupt, click.Abort) as error:
         return _failed(_with_notes("interrupted.", error.__cause__ or error), INTERRUPTED, as_json)
+    except ModuleNotFoundError as error:
+        if error.name not in system.NOT_ON_WINDOWS:
+            raise
+        return _failed(f"this verb needs {error.name}, which Windows has not; {ON_WINDOWS}", FAILED, as_json)
     except BrokenPipeError:
         # The reader of our output has gone. Nothing is left to say, and Python must not try to say it at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

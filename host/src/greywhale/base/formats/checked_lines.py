@@ -7,7 +7,6 @@ what follows may rest on it. While one program has the file, no other gets it.
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
 from collections.abc import Callable
@@ -15,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
 
+from greywhale.base import system
 from greywhale.base.closing import Closing
 from greywhale.base.errors import UserError, os_reason
 from greywhale.base.formats import json_text
@@ -89,7 +89,7 @@ class CheckedLines(Closing):
     def _lock(self) -> None:
         """The system takes the lock away when this process ends, however it ends."""
         try:
-            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            system.lock(self._file.fileno())
         except BlockingIOError:
             raise UserError(f"{self.path}: another greywhale is using this {self.kind.noun} now.") from None
         except OSError:

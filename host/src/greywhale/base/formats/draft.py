@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import contextlib
 import errno
-import fcntl
 import logging
 import os
 import re
 import secrets
 from pathlib import Path
 from typing import IO
+
+from greywhale.base import system
 
 logger = logging.getLogger(__name__)
 
@@ -60,6 +61,7 @@ class Draft:
     def keep(self) -> None:
         """Give the file its name, so that no power cut can take either: OSError where the disk does not promise."""
         sync(self.file)
+        size = os.fstat(self.file.fileno()).st_size
         if self.path is None:
             try:
                 self._link(self.target)
@@ -67,10 +69,12 @@ class Draft:
                 self._link(_hidden_name(self.target.parent))
         if self.path != self.target:
             assert self.path is not None
+            if not system.RENAMES_OPEN_FILES:
+                self.file.close()
             os.replace(self.path, self.target)
             self.path = self.target
         sync_folder(self.target.parent)
-        logger.info("%s: written, %d bytes", self.target, os.fstat(self.file.fileno()).st_size)
+        logger.info("%s: written, %d bytes", self.target, size)
         self.file.close()
 
     def discard(self) -> None:
@@ -83,9 +87,9 @@ class Draft:
 
     def _create(self) -> int:
         """A locked descriptor: of a file without a name if that can be had."""
-        if _DESCRIPTORS.is_dir():
+        if hasattr(os, "O_TMPFILE") and _DESCRIPTORS.is_dir():
             try:
-                descriptor = os.open(self.target.parent, os.O_TMPFILE | os.O_RDWR | os.O_CLOEXEC, 0o666)
+                descriptor = os.open(self.target.parent, os.O_TMPFILE | os.O_RDWR, 0o666)
             except OSError as error:
                 if error.errno not in _NEEDS_NAME or not self.target.parent.is_dir():
                     raise
@@ -94,7 +98,7 @@ class Draft:
                 return descriptor
         while True:
             self.path = _hidden_name(self.target.parent)
-            descriptor = os.open(self.path, os.O_CREAT | os.O_EXCL | os.O_RDWR | os.O_CLOEXEC, 0o666)
+            descriptor = system.open_plain(self.path, os.O_CREAT | os.O_EXCL | os.O_RDWR)
             _lock(descriptor)
             if os.fstat(descriptor).st_nlink:
                 return descriptor
@@ -119,9 +123,9 @@ def sweep(folder: Path) -> None:
     with contextlib.suppress(OSError):
         for name in filter(_HIDDEN.fullmatch, os.listdir(folder)):
             with contextlib.suppress(OSError):
-                descriptor = os.open(folder / name, os.O_RDWR | os.O_NOFOLLOW | os.O_CLOEXEC)
+                descriptor = system.open_plain(folder / name, os.O_RDWR)
                 try:
-                    fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                    system.lock(descriptor)
                     os.unlink(folder / name)
                 finally:
                     os.close(descriptor)
@@ -135,6 +139,8 @@ def sync(file: IO[bytes]) -> None:
 
 def sync_folder(folder: Path) -> None:
     """Have the names in a folder on the disk, where its file system can promise that."""
+    if not hasattr(os, "O_DIRECTORY"):
+        return  # Windows opens no folder
     descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     try:
         os.fsync(descriptor)
@@ -159,4 +165,4 @@ def _hidden_name(folder: Path) -> Path:
 def _lock(descriptor: int) -> None:
     """Hold a draft, so that nobody sweeps it. A file system without locks has no sweeps either."""
     with contextlib.suppress(OSError):
-        fcntl.flock(descriptor, fcntl.LOCK_EX)
+        system.lock(descriptor, wait=True)

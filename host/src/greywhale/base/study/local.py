@@ -17,6 +17,7 @@ from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
 from typing import Any, ParamSpec, TypeVar
 
+from greywhale.base import system
 from greywhale.base.processes import safe_path
 
 P = ParamSpec("P")
@@ -89,7 +90,7 @@ def _prepare(line: Connection) -> None:
     threading.Thread(target=follow, daemon=True).start()
     # A handler that does nothing, and no mask: a program that a task starts then hears Ctrl-C.
     signal.signal(signal.SIGINT, lambda number, frame: None)
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+    system.hear_interrupts()
 
 
 @contextlib.contextmanager
@@ -108,11 +109,10 @@ def _hold_interrupts() -> Iterator[None]:
     before: dict[int, Any] = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
     for number in before:
         signal.signal(number, lambda number, frame: noted.append(number))
-    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
-        yield
+        with system.no_interrupts_for_children():
+            yield
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
         for number, handler in before.items():
             # None: not a handler of Python's, which cannot be put back.
             signal.signal(number, signal.SIG_DFL if handler is None else handler)
