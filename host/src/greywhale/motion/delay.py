@@ -9,8 +9,8 @@ paper's definition.
 from __future__ import annotations
 
 import numpy as np
+import scipy  # loads a part of itself when it is first used
 from numpy.typing import NDArray
-from scipy.fft import irfft, next_fast_len, rfft
 
 from greywhale.base.types import Floats
 from greywhale.motion.step_response import Departure
@@ -76,7 +76,7 @@ def _sums(values: Floats, without_first: NDArray[np.intp], without_last: NDArray
 def _products(a: Floats, b: Floats, first: int, last: int) -> Floats:
     """Sums of a[k] b[k + lag] for the lags first..last: pieces of `a` against what they can meet in `b`."""
     span = last - first
-    size = next_fast_len(_PIECE + span, real=True)
+    size = scipy.fft.next_fast_len(_PIECE + span, real=True)
     sums = np.zeros(span + 1)
     for start in range(0, len(a), _PIECE):
         piece = a[start : start + _PIECE]
@@ -84,7 +84,7 @@ def _products(a: Floats, b: Floats, first: int, last: int) -> Floats:
         met = np.zeros(high - low)
         inside = slice(max(low, 0), min(high, len(b)))
         met[inside.start - low : inside.stop - low] = b[inside]
-        sums += irfft(np.conj(rfft(piece, size)) * rfft(met, size), size)[: span + 1]
+        sums += scipy.fft.irfft(np.conj(scipy.fft.rfft(piece, size)) * scipy.fft.rfft(met, size), size)[: span + 1]
     return sums
 
 

@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+import scipy  # loads a part of itself when it is first used
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
 # A step of time longer than this many periods is a gap: samples were lost.
 _GAP = 1.5
@@ -51,8 +51,8 @@ def resting(angle: NDArray[np.float64], window: int, band: float) -> NDArray[np.
         return rest
     # The filters are centred. Shifting their origin makes them look only backwards.
     origin = window // 2
-    highest = maximum_filter1d(angle, size, origin=origin)
-    lowest = minimum_filter1d(angle, size, origin=origin)
+    highest = scipy.ndimage.maximum_filter1d(angle, size, origin=origin)
+    lowest = scipy.ndimage.minimum_filter1d(angle, size, origin=origin)
     rest[window:] = (highest - lowest)[window:] <= band
     return rest
 
@@ -60,7 +60,7 @@ def resting(angle: NDArray[np.float64], window: int, band: float) -> NDArray[np.
 def last_part(rest: NDArray[np.bool_], window: int) -> NDArray[np.bool_]:
     """Of each rest, the last `window` samples at most."""
     ends = rest & ~np.append(rest[1:], False)
-    near_end: NDArray[np.bool_] = maximum_filter1d(ends, window, origin=-(window // 2), mode="constant")
+    near_end: NDArray[np.bool_] = scipy.ndimage.maximum_filter1d(ends, window, origin=-(window // 2), mode="constant")
     return rest & near_end
 
 

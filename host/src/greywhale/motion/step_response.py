@@ -17,8 +17,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy  # loads a part of itself when it is first used
 from numpy.typing import NDArray
-from scipy.ndimage import uniform_filter1d
 
 from greywhale.base.types import Floats
 from greywhale.motion.settings import Settings
@@ -75,7 +75,9 @@ def answer(
     if moved < settings.step_size:
         return None
     here, size = slice(step.end, step.limit), max(1, round(SMOOTH_S / period))
-    led, followed = (uniform_filter1d(angles[here], size, mode="nearest") for angles in (leader, follower))
+    led, followed = (
+        scipy.ndimage.uniform_filter1d(angles[here], size, mode="nearest") for angles in (leader, follower)
+    )
     band = max(SETTLED_SHARE * moved, settings.rest_band)
     there, settled = (_last(np.abs(angles - place) > band) for angles in (led, followed))
     # At the end of its rest the leader already moves on, perhaps to the same side.

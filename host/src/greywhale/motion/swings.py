@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.ndimage import maximum_filter1d, uniform_filter1d
+import scipy  # loads a part of itself when it is first used
 
 from greywhale import _native
 from greywhale.base.types import Floats, Integers
@@ -76,7 +76,7 @@ SHORTEST_REST_S = 0.3
 def smooth_motion(angles: Floats, row_s: float) -> Floats:
     """A motion (rows, 4) without its swings: its mean over MEAN_S."""
     size = max(3, round(MEAN_S / row_s))
-    smooth: Floats = uniform_filter1d(angles, size, axis=0, mode="nearest")
+    smooth: Floats = scipy.ndimage.uniform_filter1d(angles, size, axis=0, mode="nearest")
     return smooth
 
 
@@ -92,7 +92,7 @@ def unrest(leader: Floats, follower: Floats, still_rad: float = STILL_RAD) -> Fl
             # A mean over samples of the next move would show that move.
             path = follower[first : last - mean, joint]
             if len(path) >= least:
-                swings.append(path - uniform_filter1d(path, mean, mode="nearest"))
+                swings.append(path - scipy.ndimage.uniform_filter1d(path, mean, mode="nearest"))
         if swings:
             found[joint] = np.sqrt(np.mean(np.concatenate(swings) ** 2))
     return found
@@ -130,7 +130,7 @@ def rattle(angles: Singles, leader: Floats, every: int, wait_s: float) -> Floats
     led = band_power(leader[None], FILTER_EVERY, BLOCK, SECTIONS)
     back = round(REACT_S / BLOCK_S)
     # The filter is centred; shifted, it looks back only.
-    allowed = maximum_filter1d(led, back + 1, axis=1, origin=back // 2)
+    allowed = scipy.ndimage.maximum_filter1d(led, back + 1, axis=1, origin=back // 2)
     first = round(wait_s / BLOCK_S)
     excess = np.maximum(followed - allowed, 0.0)[:, first:]
     found: Floats = np.sqrt(excess.mean(axis=1))
@@ -194,7 +194,7 @@ def ripple(duties: Duties, rows: tuple[int, int], board: Board) -> Floats:
 def ripple_of_record(voltage: Floats) -> Floats:
     """The ripple (4,) of a voltage (rows, 4), in its unit; a row a tick."""
     size = _ticks(RIPPLE_S)
-    less = voltage - uniform_filter1d(voltage, size, axis=0, mode="nearest")
+    less = voltage - scipy.ndimage.uniform_filter1d(voltage, size, axis=0, mode="nearest")
     found: Floats = np.sqrt(np.mean(less[size // 2 : len(less) - size // 2] ** 2, axis=0))
     return found
 

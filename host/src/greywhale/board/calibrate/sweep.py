@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import median_filter
+import scipy  # loads a part of itself when it is first used
 
 from greywhale.base.types import Floats
 from greywhale.board.pots import FULL_SCALE, POTS
@@ -36,7 +36,7 @@ class Sweep:
 
 def judge_sweep(counts: Floats, pot: int) -> Sweep:
     """Judge counts (rows, 8) from a sweep of `pot`; each mistake is a sentence with its remedy."""
-    smooth = median_filter(counts, size=(SMOOTH_TICKS, 1), mode="nearest")
+    smooth = scipy.ndimage.median_filter(counts, size=(SMOOTH_TICKS, 1), mode="nearest")
     own, name = smooth[:, pot], upper_first(pot_name(pot))
     low, high = float(own.min()), float(own.max())
     direction = 1 if int(np.argmax(own)) < int(np.argmin(own)) else -1

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import median_filter, uniform_filter1d
+import scipy  # loads a part of itself when it is first used
 
 from greywhale.base.types import Floats
 from greywhale.board.doctor.finding import Finding, Verdict
@@ -40,12 +40,12 @@ class Quiet:
 
 def look(counts: Floats) -> Quiet:
     """Measure one potentiometer (rows,) of at least half a second."""
-    median = median_filter(counts, MEDIAN_TICKS, mode="nearest")
+    median = scipy.ndimage.median_filter(counts, MEDIAN_TICKS, mode="nearest")
     away = counts - median
     usual = 1.4826 * float(np.median(np.abs(away - np.median(away))))
     jumped = np.abs(away) > max(JUMP_COUNTS, JUMP_NOISES * usual)
     settled = np.where(jumped, median, counts)
-    mean = uniform_filter1d(settled, MEAN_TICKS, mode="nearest")
+    mean = scipy.ndimage.uniform_filter1d(settled, MEAN_TICKS, mode="nearest")
     rest = settled - mean
     humming = [_hum(rest, hertz) for hertz in HUM_HZ]
     loudest = int(np.argmax(humming))
@@ -78,7 +78,7 @@ def examine_pots(counts: Floats, rails: list[str]) -> list[Finding]:
 
 
 def _alike(counts: Floats) -> Finding:
-    rest = counts - uniform_filter1d(counts, MEAN_TICKS, axis=0, mode="nearest")
+    rest = counts - scipy.ndimage.uniform_filter1d(counts, MEAN_TICKS, axis=0, mode="nearest")
     spread = np.sqrt(np.mean(rest**2, axis=0)) + 1e-9
     together = (rest.T @ rest) / len(rest) / np.outer(spread, spread)
     mean = counts.mean(axis=0)
