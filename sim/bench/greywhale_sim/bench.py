@@ -273,15 +273,15 @@ class Bench:
         self._last_outputs = pins.tobytes()
         enable, *values = pins.tolist()
         self._enabled = bool(enable)
+        enabled, chip, bridges = self._enabled, self.chip.bridge, self.bridges
         for driver in range(4):  # quicker than array arithmetic on so few numbers
             second = values[driver + 8 :: 4] if self._second else (0.0, 0.0)
-            self.bridges[driver] = _bridge(self.chip.bridge, self._enabled, values[driver], values[driver + 4], *second)
-        duties = [max(bridge.forwards, bridge.backwards) for bridge in self.bridges]
-        self.seen.look(self.board.cycle, self._enabled or any(duties), duties)
-        self._coasts = any(bridge.open > 0.0 for bridge in self.bridges)
+            bridges[driver] = _bridge(chip, enabled, values[driver], values[driver + 4], *second)
+        duties = [bridge.duty for bridge in bridges]
+        self.seen.look(self.board.cycle, enabled or any(duties), duties)
+        self._coasts = any([bridge.open for bridge in bridges])  # noqa: C419 (quicker than a generator)
         for joint, driver in enumerate(self.motor_wires):
-            bridge = self.bridges[driver]
-            self.voltages[joint] = self.motor_gains[joint] * self.supply_v * (bridge.forwards - bridge.backwards)
+            self.voltages[joint] = self.motor_gains[joint] * self.supply_v * bridges[driver].drive
 
     def _coast(self) -> None:
         """The voltages of motors whose bridges are open for a while depend on how fast these motors turn."""

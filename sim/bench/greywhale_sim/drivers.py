@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 from greywhale._native import logarithm
 
@@ -34,9 +35,18 @@ class Bridge:
     backwards: float
     shorted: float
 
-    @property
+    @cached_property
     def open(self) -> float:
         return max(0.0, 1.0 - self.forwards - self.backwards - self.shorted)
+
+    @cached_property
+    def drive(self) -> float:
+        """Share of the supply on the motor, on the average."""
+        return self.forwards - self.backwards
+
+    @cached_property
+    def duty(self) -> float:
+        return max(self.forwards, self.backwards)
 
 
 OPEN, SHORTED = Bridge(0.0, 0.0, 0.0), Bridge(0.0, 0.0, 1.0)

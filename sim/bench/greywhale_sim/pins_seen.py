@@ -21,7 +21,9 @@ class PinsSeen:
             return
         if self._on_since is None:
             self._on_since = cycle
-        self.duties = [max(most, duty) for most, duty in zip(self.duties, duties, strict=True)]
+        for driver, duty in enumerate(duties):
+            if duty > self.duties[driver]:
+                self.duties[driver] = duty
 
     def longest(self, cycle: int) -> int:
         """The most cycles that the drivers were enabled without a break, up to this cycle."""
