@@ -192,9 +192,14 @@ def _wait_until_still(device: Device) -> None:
     try:
         for one in stream(device, 1):
             angles.append(one.sample.follower)
-            if len(angles) == STILL_TICKS and np.ptp(np.array(angles), axis=0).max() * ANGLE_LSB <= STILL_RAD:
+            if len(angles) == STILL_TICKS and _is_still(angles[0], angles[-1]) and _is_still(*angles):
                 return
             if one.elapsed > PATIENCE_TICKS:
                 raise UserError(f"{device.port}: the follower does not come to rest; lay it down, and begin anew.")
     finally:
         device.telemetry(0)
+
+
+def _is_still(*angles: tuple[int, ...]) -> bool:
+    """Whether no joint moves between these raw angles (4,) of the follower."""
+    return all(max(joint) - min(joint) <= STILL_RAD / ANGLE_LSB for joint in zip(*angles, strict=True))
