@@ -37,9 +37,9 @@ def well(host: Any) -> bool:
     return (status.state, status.fault, counters) == (State.FOLLOWING, Fault.NONE, (0, 0, 0))
 
 
-@pytest.mark.parametrize("raw", [THIRD, DOUBLE])
-def test_the_follower_goes_so_many_times_as_far_as_its_leader(lock_step: Any, board_name: str, raw: int) -> None:
-    host = lock_step(board_name)
+@pytest.mark.parametrize(("board", "raw"), [("mega", THIRD), ("nano", DOUBLE)])
+def test_the_follower_goes_so_many_times_as_far_as_its_leader(lock_step: Any, board: str, raw: int) -> None:
+    host = lock_step(board)
     lead(host, [0.0] * 4, 1.5)
     scaled(host, raw)
     host.follow()

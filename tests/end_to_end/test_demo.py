@@ -20,7 +20,7 @@ from greywhale.files.model import arm_toml
 from greywhale.files.trajectory import Trajectory
 from greywhale_sim.words import lock_step
 from tests.support.demo import in_this_process
-from tests.support.tuning import shorten
+from tests.support.tuning import judge_nothing, shorten
 from tools import ROOT
 
 
@@ -31,8 +31,10 @@ def test_the_demo_tells_its_story_and_proves_its_controllers_on_the_arm(
     """Of an arm with one joint, with a short check; the last recording is with what commissioning left on the board."""
     in_this_process(monkeypatch)
     shorten(monkeypatch)
+    judge_nothing(monkeypatch)
     monkeypatch.setattr(story, "PROVING_TRIALS", 1)
-    short = {"REACHES_S": 2.0, "HOLD_S": 0.6, "SLOW_S": 1.0, "PAUSE_S": 0.3, "MOVES": (0.5, -0.9, 0.3)}
+    short = {"REACHES_S": 2.0, "HOLD_S": 0.5, "SLOW_S": 1.0, "PAUSE_S": 0.3, "MOVES": (0.5, -0.9)}
+    short |= {"SMALL_RAD": (0.1, 0.0), "STILL_SHARES": (0.6, 0.0), "STILL_HOLD_S": 0.3}
     for name, value in short.items():
         monkeypatch.setattr(motions, name, value)
     told: list[str] = []

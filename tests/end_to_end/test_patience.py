@@ -22,6 +22,7 @@ from tests.end_to_end.test_lock_step import set_parameters
 
 pytestmark = pytest.mark.slow
 PLAY_RAD, FRICTION_V, HEAVY_KG, GRIPPED_KG, LEANS_V = 0.05, 2.0, 0.9, 0.5, 3.0
+STALLED_S = 4
 
 
 def worn() -> ArmParameters:
@@ -129,13 +130,13 @@ def test_a_hand_may_lean_on_the_follower_for_ten_seconds(lock_step: Any) -> None
 @pytest.mark.parametrize("joint", [1, 2])
 def test_a_joint_that_stays_blocked_is_stalled_after_its_time(lock_step: Any, joint: int) -> None:
     host = lock_step()
-    set_parameters(host, travel(load_arm("default")) | {"stall_time": 4 * 12})
+    set_parameters(host, travel(load_arm("default")) | {"stall_time": 4 * STALLED_S})
     host.follow()
     lead(host, joint, 0.0, 2.0)
     host.bench.obstruct(joint, 0.1)
-    lead(host, joint, 0.7, 10.0)
+    lead(host, joint, 0.7, STALLED_S - 1.0)
     assert following(host)
-    host.run(12.0)
+    host.run(8.0)
     assert (host.status().fault, host.status().fault_where) == (Fault.STALLED, joint)
     assert not host.bench.motors_enabled
 

@@ -163,7 +163,7 @@ def test_threads_can_watch_a_bench_while_it_is_used(start_bench: Start, tmp_path
     assert len(times) == 20
 
 
-SECONDS = 30
+SECONDS = 15
 
 
 def wait_for_rows(log: Path, bench: BenchProcess, host: subprocess.Popen[str]) -> None:

@@ -38,7 +38,8 @@ def shorten(patch: pytest.MonkeyPatch) -> None:
         return _known[key]
 
     patch.setattr(bootstrap, "LOGS", 1)
-    patch.setattr(lockstep, "KEPT", 2)  # two candidates a joint are enough to try the last judgement
+    patch.setattr(lockstep, "KEPT", 2)  # two candidates a joint are enough to try the last judgement,
+    patch.setattr(default, "CALMER", default.CALMER[::4])  # and of those with less voltage or integral three
     patch.setattr(training, "moves", partial(training.moves, hold_s=0.6))
     patch.setattr(training, "HUMAN_S", 5.0)
     patch.setattr(training, "SLOW_S", 4.0)
