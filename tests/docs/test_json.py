@@ -15,7 +15,6 @@ from greywhale.cli.story.learn import Learnt
 from greywhale.cli.verbs import VERBS
 from tests.docs.running import Once, run, writes_over
 from tools.docs.schemas import answers, schema_of, schemas
-from tools.support.hands import SECOND_DEG, Hands, bench_of, mounted_anyhow, run_calibrate
 
 # Verb -> ways to call it that print different keys.
 CALLS = {
@@ -49,8 +48,8 @@ CALLS = {
     "reproduce": ["--quick --out report"],
     "compare": ["--functions sphere --methods gwo-woa,de --budget 60 --seeds 2 --jobs 1"],
 }
-# A verb with a test of its own.
-BELOW = ("calibrate",)
+# tests/board/calibrate looks at what a whole calibration prints.
+ELSEWHERE = ("calibrate",)
 
 
 known = functools.cache(schemas)
@@ -73,10 +72,10 @@ def validate(verb: str, answer: Any) -> None:
 
 def test_every_verb_is_called() -> None:
     assert {name.split()[0] for name in answers()} == {*VERBS, "error"}
-    assert set(answers()) == {*CALLS, *BELOW, "error"}
+    assert set(answers()) == {*CALLS, *ELSEWHERE, "error"}
 
 
-@pytest.mark.parametrize("verb", [*CALLS, *BELOW, "error"])
+@pytest.mark.parametrize("verb", [*CALLS, *ELSEWHERE, "error"])
 def test_a_schema_is_one_and_leaves_no_key_open(verb: str) -> None:
     Draft202012Validator.check_schema(known()[verb])
     with pytest.raises(ValidationError):
@@ -140,15 +139,6 @@ def test_what_a_verb_prints_is_what_its_schema_says(verb: str, scratch: Path, fr
         done = run([*words, *force, *writes_over(words), "--json"])
         assert done.code == 0, done.err
         validate(verb, read_answer(done.out))
-
-
-@pytest.mark.slow
-def test_calibrate(tmp_path: Path) -> None:
-    with bench_of(mounted_anyhow(1), tmp_path) as bench:
-        second = ",".join(f"{angle:g}" for angle in SECOND_DEG)
-        done = run_calibrate(Hands(bench), tmp_path, "--joints", "1", "--second", second)
-    assert done.code == 0, done.said
-    validate("calibrate", read_answer(done.printed))
 
 
 @pytest.mark.slow

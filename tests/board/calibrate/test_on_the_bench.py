@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from jsonschema import Draft202012Validator
 
 from greywhale.board.device import Device
 from greywhale.board.stream import stream
@@ -19,6 +20,7 @@ from greywhale.cli.entry import run
 from greywhale.cli.story import RunningBench
 from greywhale.files.arm import default_arm
 from greywhale.protocol.firmware import ANGLE_LSB
+from tools.docs.schemas import schemas
 from tools.support.hands import SECOND_DEG, Hands, bench_of, mounted_anyhow, run_calibrate
 
 SECOND = ("--second", ",".join(f"{angle:g}" for angle in SECOND_DEG))
@@ -55,6 +57,7 @@ def test_arms_mounted_anyhow_show_true_angles_after_two_known_poses(benches: Exi
     assert not bench.command("status")["motors_enabled"]
     assert shown(bench, POSE) == pytest.approx(np.tile(np.radians(POSE), 2), abs=0.004)
     facts = json.loads(done.printed)
+    Draft202012Validator(schemas()["calibrate"]).validate(facts)
     assert np.degrees(facts["limits_rad"]) == pytest.approx(np.tile((-68.3, 73.3), (4, 1)), abs=0.6)
     assert [motor["sign"] for motor in facts["motors"]] == [1, -1, 1, 1]
     with Device(bench.port) as device:
