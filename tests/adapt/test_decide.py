@@ -17,6 +17,7 @@ from greywhale.simulate.controllers import controllers_of
 from tests.adapt.conftest import TABLE
 from tests.adapt.simulated import Work, work_for
 
+pytestmark = pytest.mark.slow
 BEFORE = controllers_of(TABLE)
 PIECES = 4  # of seven stretches: enough for a search
 

@@ -18,6 +18,7 @@ from tests.adapt.conftest import TABLE
 from tests.adapt.simulated import Work
 from tools.support.worker import grown_friction
 
+pytestmark = pytest.mark.slow
 LIVE = LiveModel.of(default_arm())
 
 

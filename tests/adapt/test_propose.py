@@ -21,6 +21,8 @@ from tests.adapt.conftest import TABLE
 from tests.adapt.simulated import Work, work_for
 from tests.adapt.test_decide import stiffer
 
+pytestmark = pytest.mark.slow
+
 
 @dataclass
 class Search:

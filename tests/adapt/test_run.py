@@ -31,6 +31,7 @@ from tests.adapt.test_decide import stiffer
 from tests.tune.models import write_model
 from tools.support.worker import working_bench
 
+pytestmark = pytest.mark.slow
 TABLE = ParameterTable.defaults()
 SET = stiffer(1.3)
 SECONDS = 5.0

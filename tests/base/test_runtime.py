@@ -96,6 +96,7 @@ def bench(*options: str) -> subprocess.Popen[str]:
     return subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("place")
 def test_a_bench_runs_unannounced_where_its_folder_is_taken() -> None:
     """The first of several users of a machine must not keep the others from their benches."""
@@ -111,6 +112,7 @@ def test_a_bench_runs_unannounced_where_its_folder_is_taken() -> None:
     assert "name its port with --port" in said
 
 
+@pytest.mark.slow
 def test_a_bench_clears_away_what_killed_ones_left(place: Path) -> None:
     with bench() as killed:
         assert killed.stdout is not None

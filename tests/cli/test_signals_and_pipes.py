@@ -19,6 +19,7 @@ from greywhale.protocol.schema import State
 from tests.board.port_board import PortBoard
 from tests.cli.example_log import write_log
 
+pytestmark = pytest.mark.slow
 RUN = """
 import sys
 from greywhale.board import device
@@ -136,7 +137,6 @@ runpy.run_path(sys.argv[0], run_name="__main__")
 """
 
 
-@pytest.mark.slow
 def test_ctrl_c_at_any_moment_of_the_start_and_of_the_end_is_no_traceback() -> None:
     """Before the first statement of ours Python itself starts, and knows no better."""
     command = [sys.executable, "-c", PRESSED_EVERYWHERE, str(Path(sys.executable).with_name("greywhale"))]

@@ -20,6 +20,7 @@ from greywhale.simulate.controllers import controllers_of
 from tests.commission.simulated import ROOM, SimulatedRig
 from tests.commission.test_trials import BETTER, play, play_before, stiffer
 
+pytestmark = pytest.mark.slow
 GAP = 0.02
 JOINT = 2
 

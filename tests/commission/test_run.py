@@ -29,6 +29,7 @@ from tests.commission.simulated import SimulatedRig, options_in
 from tests.support.tuning import judge_nothing, shorten
 from tests.tune.models import write_model
 
+pytestmark = pytest.mark.slow
 Make = Callable[..., CommissioningRequest]
 
 
@@ -88,7 +89,6 @@ def test_the_board_ends_with_what_passed_on_the_arm(whole: Whole) -> None:
     assert rig.played[0] == before, "the little first motion is made with the controllers from before"
 
 
-@pytest.mark.slow
 def test_interrupted_anywhere_the_board_keeps_what_it_had_and_resuming_ends_the_same(
     rig: SimulatedRig, options: Make, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -118,7 +118,6 @@ def test_interrupted_anywhere_the_board_keeps_what_it_had_and_resuming_ends_the_
         assert len(rig.played) == plays, "no motion is made twice"
 
 
-@pytest.mark.slow
 def test_a_good_joint_is_varied_along_with_the_others_but_gets_no_trial_of_its_own(
     rig: SimulatedRig, options: Make, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
@@ -146,7 +145,6 @@ def test_the_errors_of_a_trial_stand_beside_what_the_model_said(whole: Whole) ->
     assert errors_beside(twice, replace(before, measured=nothing, stopped="it hunted")) == "before: it hunted"
 
 
-@pytest.mark.slow
 def test_an_interrupted_tuning_goes_on(rig: SimulatedRig, options: Make, monkeypatch: pytest.MonkeyPatch) -> None:
     """With the real search, over the model's own plant alone."""
     shorten(monkeypatch)
@@ -250,7 +248,6 @@ def test_the_report_shows_predicted_beside_measured(whole: Whole, tmp_path: Path
     assert page.count("now on the board") == 1
 
 
-@pytest.mark.slow
 def test_of_an_arm_with_two_joints_those_are_tried_and_the_others_keep_what_they_had(
     tmp_path: Path, options: Make, monkeypatch: pytest.MonkeyPatch
 ) -> None:

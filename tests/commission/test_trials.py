@@ -138,6 +138,7 @@ def test_the_joints_best_are_played_together_before_they_count(trials: Trials, r
     assert np.array_equal(best.rows, stiffer(trials, [0, 1, 2], BETTER))
 
 
+@pytest.mark.slow
 def test_a_combination_that_fails_on_the_arm_is_not_chosen(trials: Trials, rig: SimulatedRig) -> None:
     """The third joint's controller passed once; from then on the arm is another, on which it hunts."""
     play_before(trials, rig)

@@ -21,6 +21,7 @@ from greywhale.files.log import read_log
 from greywhale.files.trajectory import Trajectory
 from greywhale.protocol.schema import State
 
+pytestmark = pytest.mark.slow
 Start = Callable[..., BenchProcess]
 
 
@@ -84,7 +85,6 @@ def breaks(bench: BenchProcess) -> None:
     bench.command("pot follower 2 open")
 
 
-@pytest.mark.slow
 def test_a_host_that_stood_still_is_told_of_the_lease(start_bench: Start, tmp_path: Path) -> None:
     """A laptop that slept, Ctrl-Z in the terminal: the board is well, and stopped the motors by itself."""
     bench = start_bench()

@@ -46,6 +46,7 @@ def test_every_open_resets_the_board(start_bench: Start) -> None:
     assert status["resets_by_host"] == 2
 
 
+@pytest.mark.slow
 def test_upload_record_evaluate(start_bench: Start, tmp_path: Path) -> None:
     bench = start_bench()
     with Device(bench.port) as device:

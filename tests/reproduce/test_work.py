@@ -78,6 +78,7 @@ def test_a_float_law_moves_the_sticky_arm_as_the_firmwares_does() -> None:
     assert np.abs(firmware[-500:]).mean(axis=0) == pytest.approx(np.abs(floats[-500:]).mean(axis=0), abs=0.015)
 
 
+@pytest.mark.slow
 def test_the_reading_decides_what_table_10_gains(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(readings, "LENGTHS_S", (4.0,))
     gains = []

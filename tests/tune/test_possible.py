@@ -30,6 +30,7 @@ def scale(motions: tuple[TrainingMotion, ...]) -> ErrorScale:
     return scale_of(motions, PLANTS, BEFORE)
 
 
+@pytest.mark.slow
 def test_the_floor_lies_below_any_controller_that_there_is(
     motions: tuple[TrainingMotion, ...], scale: ErrorScale
 ) -> None:

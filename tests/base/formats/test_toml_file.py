@@ -115,6 +115,7 @@ leaf = st.booleans() | st.integers(-(2**63), 2**63 - 1) | st.floats(allow_nan=Fa
 anything = st.recursive(leaf, lambda some: st.lists(some, max_size=3) | st.dictionaries(words, some, max_size=3))
 
 
+@pytest.mark.slow
 @given(st.dictionaries(words, anything, max_size=4))
 def test_a_table_reads_back_as_it_was(content: dict[str, object]) -> None:
     assert tomllib.loads("\n".join(toml_text.table("name", content)))["name"] == content

@@ -14,6 +14,7 @@ from greywhale.cli.story import RunningBench
 from greywhale_sim.faults import FAULTS, USUAL, WHERE, Fault
 from tools.support.hands import SECOND_DEG, Hands, run_calibrate
 
+pytestmark = pytest.mark.slow
 SECOND = ("--second", ",".join(f"{angle:g}" for angle in SECOND_DEG))
 PWM_STEP = 1 / 400
 TRIED = {"pot": "1", "motor": "1", "arm": "0"}  # where it is

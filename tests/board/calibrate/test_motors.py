@@ -21,6 +21,8 @@ from greywhale.protocol import schema
 from greywhale.protocol.table import ParameterTable
 from tools.support.hands import bench_of
 
+pytestmark = pytest.mark.slow
+
 # At the strongest pulse a motor that runs away is at 5 rad/s when it is stopped, and coasts.
 WITH_COASTING_RAD = 0.45
 MOVING = (schema.State.SOFT_START, schema.State.FOLLOWING)

@@ -23,6 +23,7 @@ from greywhale.protocol.firmware import ANGLE_LSB
 from tools.docs.schemas import schemas
 from tools.support.hands import SECOND_DEG, Hands, bench_of, mounted_anyhow, run_calibrate
 
+pytestmark = pytest.mark.slow
 SECOND = ("--second", ",".join(f"{angle:g}" for angle in SECOND_DEG))
 POSE = np.array([-30.0, 20.0, 35.0, -25.0])
 HALF = 32  # raw, of a ratio

@@ -16,6 +16,7 @@ from greywhale_sim.bench import CLOCK_HZ
 from tests.end_to_end.conftest import LockStep
 from tests.end_to_end.test_lock_step import set_parameters
 
+pytestmark = pytest.mark.slow
 TABLE = ParameterTable.defaults()
 PWM_STEP_V = TABLE.supply_v / 400
 # Of the arm itself, coasting included; with a motor the wrong way round until `tracking` stops it.
