@@ -70,6 +70,7 @@ struct ClosedLoop {
   In<std::int16_t, nb::shape<-1, kJoints>> reference;
   In<double, nb::shape<-1, kJoints>> leader;
   In<double, nb::shape<-1>> weight;
+  std::vector<float> noise;
 };
 
 template <class T, class U>
@@ -110,7 +111,7 @@ void make_loop(ClosedLoop* self, const loop::Settings& settings, const loop::Tim
   if (reference.shape(0) != leader.shape(0) || weight.shape(0) != leader.shape(0)) {
     throw std::invalid_argument("reference, leader and weight differ in length.");
   }
-  new (self) ClosedLoop{{}, reference, leader, weight};
+  new (self) ClosedLoop{{}, reference, leader, weight, {}};
   loop::Experiment& x = self->x;
   x.settings = settings;
   x.timing = timing;
@@ -123,6 +124,8 @@ void make_loop(ClosedLoop* self, const loop::Settings& settings, const loop::Tim
   x.reference = reference.data();
   x.leader = leader.data();
   x.weight = weight.data();
+  self->noise = loop::noise_of(x);
+  x.noise = self->noise.empty() ? nullptr : self->noise.data();
 }
 
 nb::tuple run(const ClosedLoop& self, const ControllerTable& controllers, const PlantTable& plants, int substeps,

@@ -50,23 +50,7 @@ Trace trace_of(std::size_t n, const Outputs& out) {
   return {out.every, out.angles + offset, out.duties + offset};
 }
 
-// The noise of every slice in converter counts, the same for all candidates: the numbers that the exact run draws.
-std::vector<float> noise_of(const Experiment& x) {
-  const bool quiet =
-      std::all_of(x.pots.begin(), x.pots.end(), [](const arm::Potentiometer& pot) { return pot.noise == 0.0; });
-  if (quiet) return {};
-  const std::size_t slices = kSlices * x.ticks + 1;
-  std::vector<float> noise(slices * kJoints);
-  for (std::size_t i = 0; i < kJoints; ++i) {
-    const arm::Noise source(x.seed, i);
-    const double counts = x.pots[i].noise * 1000.0 * 1024.0 / kConverterMillivolts;
-    for (std::size_t slice = 0; slice < slices; ++slice)
-      noise[slice * kJoints + i] = static_cast<float>(counts * source.gaussian(slice));
-  }
-  return noise;
-}
-
-Pots pots_of(const Experiment& x, const std::vector<float>& noise) {
+Pots pots_of(const Experiment& x) {
   Pots pots{};
   const double full = x.pot_supply * 1000.0 * 1024.0 / kConverterMillivolts;  // counts
   for (std::size_t i = 0; i < kJoints; ++i) {
@@ -76,7 +60,7 @@ Pots pots_of(const Experiment& x, const std::vector<float>& noise) {
     pots.offset[i] = static_cast<float>(0.5 * full - per_radian * pot.centre);
     pots.linearity[i] = static_cast<float>(full * pot.linearity);
   }
-  pots.noise = noise.empty() ? nullptr : noise.data();
+  pots.noise = x.noise;
   return pots;
 }
 
@@ -88,9 +72,9 @@ std::vector<std::uint16_t> limits_of(const Experiment& x) {
   return limits;
 }
 
-Shared shared_of(const Experiment& x, const std::vector<float>& noise, const std::vector<std::uint16_t>& limits) {
+Shared shared_of(const Experiment& x, const std::vector<std::uint16_t>& limits) {
   Shared shared{};
-  shared.pots = pots_of(x, noise);
+  shared.pots = pots_of(x);
   for (std::size_t i = 0; i < kJoints; ++i) {
     for (std::size_t turn = 0; turn < kConversions; ++turn) ++shared.turns[i][slice_of(x.timing, turn, kFollower + i)];
     shared.duty_scale[i] = duty_scale(x.settings.pwm_top[i], x.settings.supply_mv);
@@ -106,9 +90,8 @@ const PlantRow& plant_of(const Batch& batch, std::size_t n) { return batch.plant
 
 void run_lanes(const Experiment& x, const Batch& batch, const How& how, const Outputs& out) {
   const Kernel& kernel = chosen(how.instructions);
-  const std::vector<float> noise = noise_of(x);
   const std::vector<std::uint16_t> limits = limits_of(x);
-  const Shared shared = shared_of(x, noise, limits);
+  const Shared shared = shared_of(x, limits);
   share_out((batch.count + kBlock - 1) / kBlock, how.threads, [&](std::size_t piece) {
     const std::size_t first = piece * kBlock;
     std::vector<std::int32_t> waiting(static_cast<std::size_t>(x.timing.late) * kJoints * kBlock);
@@ -128,6 +111,21 @@ void run_lanes(const Experiment& x, const Batch& batch, const How& how, const Ou
 }
 
 }  // namespace
+
+std::vector<float> noise_of(const Experiment& x) {
+  const bool quiet =
+      std::all_of(x.pots.begin(), x.pots.end(), [](const arm::Potentiometer& pot) { return pot.noise == 0.0; });
+  if (quiet) return {};
+  const std::size_t slices = kSlices * x.ticks + 1;
+  std::vector<float> noise(slices * kJoints);
+  for (std::size_t i = 0; i < kJoints; ++i) {
+    const arm::Noise source(x.seed, i);
+    const double counts = x.pots[i].noise * 1000.0 * 1024.0 / kConverterMillivolts;
+    for (std::size_t slice = 0; slice < slices; ++slice)
+      noise[slice * kJoints + i] = static_cast<float>(counts * source.gaussian(slice));
+  }
+  return noise;
+}
 
 void run_batch(const Experiment& x, const Batch& batch, const How& how, const Outputs& out) {
   if (!how.exact) return run_lanes(x, batch, how, out);
