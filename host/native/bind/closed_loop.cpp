@@ -193,11 +193,11 @@ nb::tuple swings(const In<T, nb::shape<-1, -1, kJoints>>& traces, std::size_t fi
   {
     const nb::gil_scoped_release free;
     for (std::size_t n = 0; n < count; ++n) {
+      loop::Swings found[kJoints];
+      loop::swings_of<kJoints>(traces.data() + (n * traces.shape(1) + first) * kJoints, last - first, band, found);
       for (std::size_t i = 0; i < kJoints; ++i) {
-        const T* from = traces.data() + (n * traces.shape(1) + first) * kJoints + i;
-        const loop::Swings found = loop::swings_of(from, last - first, kJoints, band);
-        reversals.data()[n * kJoints + i] = found.reversals;
-        travel.data()[n * kJoints + i] = found.travel;
+        reversals.data()[n * kJoints + i] = found[i].reversals;
+        travel.data()[n * kJoints + i] = found[i].travel;
       }
     }
   }

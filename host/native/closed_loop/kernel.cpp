@@ -210,14 +210,22 @@ class Run {
   void record(std::size_t tick) const {
     const std::size_t every = block_.traces[0].every;
     if (tick % every != 0) return;
+    const std::size_t at = tick / every * kJoints;
+    float angles[kJoints][kBlock];
+    std::int16_t duties[kJoints][kBlock];
     for (std::size_t i = 0; i < kJoints; ++i) {
-      const std::size_t at = tick / every * kJoints + i;
       std::int32_t q[kBlock], compare[kBlock];
       store(q, state_[i].q);
       store(compare, compare_[i]);
-      for (std::size_t n = 0; n < block_.count; ++n) {
-        block_.traces[n].angles[at] = static_cast<float>(q[n] * (6.283185307179586 / 1073741824.0));
-        block_.traces[n].duties[at] = static_cast<std::int16_t>(compare[n]);
+      for (std::size_t n = 0; n < kBlock; ++n) {
+        angles[i][n] = static_cast<float>(q[n] * (6.283185307179586 / 1073741824.0));
+        duties[i][n] = static_cast<std::int16_t>(compare[n]);
+      }
+    }
+    for (std::size_t n = 0; n < block_.count; ++n) {
+      for (std::size_t i = 0; i < kJoints; ++i) {
+        block_.traces[n].angles[at + i] = angles[i][n];
+        block_.traces[n].duties[at + i] = duties[i][n];
       }
     }
   }
