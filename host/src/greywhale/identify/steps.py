@@ -114,7 +114,7 @@ class WindowFit:
     def _proposed(self, block: _Block, jacobian: Floats, weights: Floats) -> Floats:
         """Levenberg-Marquardt steps of one block (dampings, numbers); a number at its bound does not leave the box."""
         rows = block.rows
-        part = jacobian[np.ix_(rows, block.numbers)]
+        part = np.ascontiguousarray(jacobian[np.ix_(rows, block.numbers)])
         doubts = self._doubts[block.numbers]
         weighted = part * weights[rows, None]
         matrix = weighted.T @ part + np.diag(doubts**-2.0)
@@ -147,10 +147,11 @@ class WindowFit:
             points[row, group] += ahead[group]
         moved = self._simulate(points)
         moved -= self._numbers
-        jacobian = np.zeros((len(self._numbers), len(self.x)))
+        jacobian = np.zeros((len(self.x), len(self._numbers)))  # a searched number's derivatives lie side by side
         for row, group in enumerate(groups):
-            jacobian[:, group] = moved[row][:, None] / ahead[group]
-        return jacobian
+            for number in group:
+                np.divide(moved[row], ahead[number], out=jacobian[number])
+        return jacobian.T
 
     def _simulate(self, points: Floats) -> Floats:
         self.simulations += len(points)
