@@ -1,6 +1,6 @@
-// Sine, cosine and logarithm without a C library, so that the arm moves by the same bits wherever it is compiled. They
-// add, subtract, multiply, divide and compare, which IEEE 754 rounds in one way only. Without branches a lane of a
-// vector has the bits of a single number.
+// Sine, cosine, logarithm and exponential without a C library, so that the arm moves and a search walks by the same
+// bits wherever they are compiled. They add, subtract, multiply, divide and compare, which IEEE 754 rounds in one way
+// only. Without branches a lane of a vector has the bits of a single number.
 //
 // The series are Taylor's, and what they leave out is less than 2^-58 of the result. tests/arm/test_elementary.py
 // measures all errors.
@@ -115,6 +115,25 @@ inline double logarithm(double x) {
 inline double logarithm_of_1_and(double x) {
   const double sum = 1.0 + x;
   return logarithm(sum) + (x - (sum - 1.0)) / sum;
+}
+
+// e to the power of x, within 0.9 of the last bit from -708 to 709; beyond, as there.
+inline double exponential(double x) {
+  constexpr double kLn2High = 0x1.62e42fee00000p-1, kLn2Low = 0x1.a39ef35793c76p-33;
+  constexpr double kPerLn2 = 0x1.71547652b82fep+0;
+  const double bounded = x > 709.0 ? 709.0 : x > -708.0 ? x : -708.0;  // also where x is no number
+  const double power = detail::rounded(bounded * kPerLn2);
+  const double nearly = bounded - power * kLn2High, second = power * kLn2Low;
+  const double r = nearly - second, rest = (nearly - r) - second;
+  const double z = r * r, zz = z * z;
+  const double tail =
+      (0.5 + r * (1.0 / 6.0)) + z * (1.0 / 24.0 + r * (1.0 / 120.0)) +
+      zz * ((1.0 / 720.0 + r * (1.0 / 5040.0)) + z * (1.0 / 40320.0 + r * (1.0 / 362880.0))) +
+      zz * zz * ((1.0 / 3628800.0 + r * (1.0 / 39916800.0)) + z * (1.0 / 479001600.0 + r * (1.0 / 6227020800.0)));
+  const std::uint64_t bits = static_cast<std::uint64_t>(static_cast<std::int64_t>(power) + 0x3ff) << 52;
+  double scale;
+  std::memcpy(&scale, &bits, sizeof scale);
+  return scale * (1.0 + (r + (rest + z * tail)));
 }
 
 }  // namespace greywhale::arm

@@ -1,4 +1,4 @@
-"""Sine, cosine and logarithm of the arm: near numpy's of more digits, and no C library's stands in their place."""
+"""The arm's sine, cosine, logarithm and exponential: near numpy's of more digits, and no C library's in their place."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def worst_ulps(program: Path, column: int, function: np.ufunc, of: Floats) -> float:
     """The largest error, in last bits of the true value as numpy's long double has it."""
     done = subprocess.run([str(program)], input=of.tobytes(), stdout=subprocess.PIPE, check=True)
-    found = np.frombuffer(done.stdout).reshape(-1, 4)[:, column]
+    found = np.frombuffer(done.stdout).reshape(-1, 5)[:, column]
     true = function(of.astype(np.longdouble))
     return float((np.abs(found - true) / np.spacing(np.abs(true.astype(np.float64)))).max())
 
@@ -54,6 +54,12 @@ def test_logarithms_are_within_the_last_bits(program: Path) -> None:
     of = np.concatenate([*ways, 2.0 ** random.uniform(-1022.0, 1023.9, 100_000), 2.0 ** np.arange(-1022.0, 1024.0)])
     assert worst_ulps(program, 2, np.log, of) < 1.0
     assert worst_ulps(program, 3, np.log1p, of) < 1.5
+
+
+def test_the_exponential_is_within_the_last_bit(program: Path) -> None:
+    random = np.random.default_rng(3)
+    of = np.concatenate([top * random.uniform(-1.0, 1.0, 50_000) for top in (1e-9, 0.3, 1.0, 20.0, 708.0)])
+    assert worst_ulps(program, 4, np.exp, of) < 0.9
 
 
 def test_nothing_is_taken_from_the_c_library_that_it_may_round_in_its_own_way() -> None:

@@ -6,6 +6,7 @@ NB_MODULE(_native, m) {
   bind_arm(m);
   bind_band_power(m);
   bind_closed_loop(m);
+  bind_elementary(m);
   bind_fuzzy(m);
   bind_ideal(m);
   bind_identify(m);

@@ -14,6 +14,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from greywhale.base.elementary import cos, exp
 from greywhale.base.types import Floats
 from greywhale.optimise.box import Box, Source
 from greywhale.optimise.optimiser import PACK, Optimiser
@@ -38,7 +39,7 @@ class Draw:
 
 def alpha_factor(p: Floats, curl: Floats, gamma: Floats, rho: Floats, b: float = 1.0) -> Floats:
     """The factor of alpha's distance in Eq. 9, a wolf each: encircling below p = 0.5, else the whale's spiral."""
-    spiral = rho * np.exp(b * curl) * np.cos(2 * np.pi * curl)
+    spiral = rho * exp(b * curl) * cos(2 * np.pi * curl)
     return np.where(p < 0.5, gamma, spiral)
 
 
@@ -62,7 +63,8 @@ def hunt(
     if alpha is not None:
         distance[0] *= alpha[:, None]
     towards = leaders[:, None] - big_a * distance
-    moved: Floats = np.einsum("k,kij->ij", np.array(weights), towards)
+    # One after the other, since einsum fuses products and sums on some machines.
+    moved: Floats = weights[0] * towards[0] + weights[1] * towards[1] + weights[2] * towards[2]
     return moved
 
 

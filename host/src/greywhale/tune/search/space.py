@@ -14,6 +14,7 @@ from typing import Self
 import numpy as np
 import numpy.typing as npt
 
+from greywhale.base.elementary import exp, log
 from greywhale.base.errors import BAD_USAGE, UserError
 from greywhale.base.types import Controllers, Floats
 from greywhale.fuzzy.settings import (
@@ -94,12 +95,13 @@ class Variable:
         if not self.logarithmic:
             return self.low, self.high
         sizes = sorted((abs(self.low), abs(self.high)))
-        return float(np.log(sizes[0] + self.offset)), float(np.log(sizes[1] + self.offset))
+        low, high = map(float, log(np.array(sizes) + self.offset))
+        return low, high
 
     def raw(self, x: Floats) -> npt.NDArray[np.int64]:
         """The nearest numbers that the board can store; a width below 0.01 becomes 0.01."""
         sign = -1.0 if self.name in _NEGATIVE else 1.0
-        size = np.exp(x) - self.offset if self.logarithmic else sign * x
+        size = exp(x) - self.offset if self.logarithmic else sign * x
         # A size of 0 comes back from its logarithm with an error of rounding.
         raw = np.maximum(np.rint(size * self.unit), 0.0).astype(np.int64)
         if self.name in SETS:
@@ -110,7 +112,7 @@ class Variable:
         """The point of a stored number, moved into the box where it lies outside."""
         value = raw.astype(np.float64) / self.unit
         if self.logarithmic:
-            value = np.log(np.maximum(np.abs(value) + self.offset, 1e-9))
+            value = log(np.maximum(np.abs(value) + self.offset, 1e-9))
         return np.clip(value, *self.bounds)
 
 
