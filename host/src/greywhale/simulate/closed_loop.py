@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -178,21 +179,26 @@ class ClosedLoop:
 
 def settings_of(table: ParameterTable, soft_start: bool = False) -> _native.LoopSettings:
     """The settings of the firmware around the law, from the table. Joints that are not in use have limits of 0."""
+    return _native.LoopSettings(**settings_numbers(table, soft_start))
+
+
+def settings_numbers(table: ParameterTable, soft_start: bool = False) -> dict[str, Any]:
+    """The same as numbers by name, in the order of Settings in host/native/closed_loop/experiment.h."""
     lower, upper = table.limits_raw()
-    return _native.LoopSettings(
-        period_ms=table.period_ms,
-        supply_mv=table["supply_mv"],
-        soft_start_ms=table["soft_start_ms"] if soft_start else 0,
-        filter_shift=table["filter_shift"],
-        limit_min=lower,
-        limit_max=upper,
-        motor_sign=table.each("joint", "motor_sign"),
-        pwm_top=pwm_steps(table.board),
-        leader_zero=table.each("leader", "zero"),
-        leader_scale=table.each("leader", "scale"),
-        follower_zero=table.each("follower", "zero"),
-        follower_scale=table.each("follower", "scale"),
-    )
+    return {
+        "period_ms": table.period_ms,
+        "supply_mv": table["supply_mv"],
+        "soft_start_ms": table["soft_start_ms"] if soft_start else 0,
+        "filter_shift": table["filter_shift"],
+        "limit_min": lower,
+        "limit_max": upper,
+        "motor_sign": table.each("joint", "motor_sign"),
+        "pwm_top": pwm_steps(table.board),
+        "leader_zero": table.each("leader", "zero"),
+        "leader_scale": table.each("leader", "scale"),
+        "follower_zero": table.each("follower", "zero"),
+        "follower_scale": table.each("follower", "scale"),
+    }
 
 
 def with_ideal_follower(table: ParameterTable) -> ParameterTable:

@@ -152,14 +152,10 @@ class Margins:
         self._threads = threads
         self._band = SEARCH_BAND_RAD if searching else LIMIT_CYCLE.band_rad
         self._beyond = SEARCH_BEYOND if searching else 1.0
-        self._rests = [
-            (round(1e3 * (WAIT_S + (number + 1) * rest_s - rest_s + _FIRST_S + EDGE_S + SETTLE_S)),
-             round(1e3 * (WAIT_S + _FIRST_S + (number + 1) * rest_s)))
-            for number in range(len(STOPS))
-        ]  # fmt: skip
+        self._rests = rest_ticks(rest_s)
         common: dict[str, Any] = {
             "table": table,
-            "seed": 100 * seed + 31 + 2 * noise,
+            "seed": noise_seed(seed, noise),
             "wait_s": WAIT_S,
             "soft_start": False,
         }
@@ -182,17 +178,13 @@ class Margins:
     def _unrest(self, controllers: Controllers, exact: bool) -> dict[str, Unrest]:
         """The same, simulated."""
         plants = len(self.plants)
-        variants = {name: with_gain(self.plants, self._widen(gain)) for name, gain in GAINS.items()}
-        variants[TEETH] = with_softer_teeth(self.plants)
+        variants = variants_of(self.plants, self._beyond)
         prompt = self._run(self._prompt, controllers, np.concatenate(list(variants.values())), exact)
         found = {
             name: _part(prompt, slice(number * plants, (number + 1) * plants)) for number, name in enumerate(variants)
         }
         found[DELAY] = self._run(self._late, controllers, self.plants, exact)
         return found
-
-    def _widen(self, gain: float) -> float:
-        return gain * self._beyond if gain > 1.0 else gain / self._beyond if gain < 1.0 else gain
 
     def _run(self, experiment: Experiment, controllers: Controllers, plants: Floats, exact: bool) -> Unrest:
         laws, arms = pair_with_plants(controllers, plants)
@@ -264,6 +256,7 @@ FAIL_PRICE = 0.15
 TEETH_PRICE = 0.05  # of a failure with softer teeth: what no recording shows well is no reason to follow badly
 RIPPLE_PRICE = 0.05
 LOUD_PRICE = 1.0
+LOST_PRICE = 10.0
 
 
 def penalty(found: dict[str, Unrest], quiet_v: Floats) -> Floats:
@@ -273,9 +266,32 @@ def penalty(found: dict[str, Unrest], quiet_v: Floats) -> Floats:
     for scenario, one in found.items():
         fails = (TEETH_PRICE if scenario == TEETH else FAIL_PRICE) * one.fails
         excess = np.maximum(one.chatter / CHATTER_AT_REST_HZ - SEARCH_CHATTER, 0.0)
-        price = TRAVEL_PRICE * one.travel + CHATTER_PRICE * excess + fails + 10.0 * one.lost
+        price = TRAVEL_PRICE * one.travel + CHATTER_PRICE * excess + fails + LOST_PRICE * one.lost
         total = total + price.mean(axis=1)
     return np.asarray(total, dtype=np.float64)
+
+
+def noise_seed(seed: int, noise: int) -> int:
+    """The seed of the sensor noise in rests; each `noise` is another one."""
+    return 100 * seed + 31 + 2 * noise
+
+
+def rest_ticks(rest_s: float) -> list[tuple[int, int]]:
+    """The first tick of each rest that is judged, and the first after it."""
+    return [
+        (round(1e3 * (WAIT_S + (number + 1) * rest_s - rest_s + _FIRST_S + EDGE_S + SETTLE_S)),
+         round(1e3 * (WAIT_S + _FIRST_S + (number + 1) * rest_s)))
+        for number in range(len(STOPS))
+    ]  # fmt: skip
+
+
+def variants_of(plants: Floats, beyond: float) -> dict[str, Floats]:
+    """The same plants in each scenario in which the arm differs, with gains further off by a factor."""
+    gains = {
+        name: gain if gain == 1.0 else gain * beyond if gain > 1.0 else gain / beyond for name, gain in GAINS.items()
+    }
+    variants = {name: with_gain(plants, gain) for name, gain in gains.items()}
+    return {**variants, TEETH: with_softer_teeth(plants)}
 
 
 def with_gain(plants: Floats, factor: float) -> Floats:

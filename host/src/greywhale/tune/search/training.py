@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from greywhale.arm import ArmParameters
 from greywhale.arm.plants import column
@@ -39,6 +40,7 @@ SLOW_S = 8.0
 SLOW_PERIODS_S = (2.3, 4.1)
 SLOW_SHARES = (0.4, 0.6)
 SLOW_RAD = 0.15
+SLOW = "slow following"
 # Every joint rests in its own part of the record while the others go on; it stops and starts within this time.
 EASE_S = 0.4
 WAIT_S = 0.2
@@ -69,12 +71,17 @@ def training_motions(
     classes = {
         "moves to both sides": (large, time_since_move(large, WAIT_S), 2.0),
         "human-like reaches": (human, time_since_move(human, WAIT_S), 1.0),
-        "slow following": (slow, _equal_weight(slow, WAIT_S), 1.0),
+        SLOW: (slow, _equal_weight(slow, WAIT_S), 1.0),
     }
     made = []
     for number, (name, (motion, weight, importance)) in enumerate(classes.items()):
-        made.append(_training_motion(name, motion, weight, importance, arm, table, 100 * seed + number + 11))
+        made.append(_training_motion(name, motion, weight, importance, arm, table, noise_seed(seed, number)))
     return tuple(made)
+
+
+def noise_seed(seed: int, number: int) -> int:
+    """The seed of the sensor noise in a class."""
+    return 100 * seed + number + 11
 
 
 def own_motion(
@@ -83,7 +90,7 @@ def own_motion(
     """A motion that a person made, within the range of this arm and table, with sensor noise."""
     clipped = clip_motion(motion, *reach(arm, table, plants))
     weight = time_since_move(clipped, WAIT_S)
-    return _training_motion("the person's own", clipped, weight, 1.0, arm, table, 100 * seed + 11)
+    return _training_motion("the person's own", clipped, weight, 1.0, arm, table, noise_seed(seed, 0))
 
 
 def _training_motion(
@@ -180,13 +187,18 @@ def clip_motion(motion: Trajectory, low: Floats, high: Floats) -> Trajectory:
 
 def time_since_move(motion: Trajectory, wait_s: float) -> Floats:
     """The weight (s) of every tick of an Experiment that waits `wait_s`; 0 while it waits."""
-    ticks = int(np.ceil((wait_s + motion.duration_s) / 1e-3 - 1e-9))
-    time_s: Floats = np.arange(ticks, dtype=np.float64) * 1e-3 - wait_s
-    change = np.abs(motion.at(time_s) - motion.at(time_s - MOVING_S)).max(axis=1)
-    moving = change > MOVING_RAD
+    time_s, moving = moving_ticks(motion, wait_s)
     last = np.maximum.accumulate(np.where(moving, time_s, 0.0))
     weight: Floats = np.where(time_s < 0.0, 0.0, SOON_S + time_s - last)
     return weight
+
+
+def moving_ticks(motion: Trajectory, wait_s: float) -> tuple[Floats, NDArray[np.bool_]]:
+    """When every tick of an Experiment that waits `wait_s` is (s), and whether the leader then moves."""
+    ticks = int(np.ceil((wait_s + motion.duration_s) / 1e-3 - 1e-9))
+    time_s: Floats = np.arange(ticks, dtype=np.float64) * 1e-3 - wait_s
+    change = np.abs(motion.at(time_s) - motion.at(time_s - MOVING_S)).max(axis=1)
+    return time_s, change > MOVING_RAD
 
 
 def _equal_weight(motion: Trajectory, wait_s: float) -> Floats:
