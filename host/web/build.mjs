@@ -27,13 +27,15 @@ async function buildPage(out, entryPoints) {
   copyFileSync(join(here, "src/index.html"), join(out, "index.html"));
 }
 
-/** One file that opens from a disk too, in a folder with the module and its data. */
+const WORKERS = { worker: "src/sources/in_page/worker.ts", tuner: "src/tuner/worker.ts" };
+
+/** One file that opens from a disk too, in a folder with the modules and their data. */
 async function buildSingle(folder) {
   const bundle = (entry) => build({
     ...common, entryPoints: { page: entry }, outdir: folder, write: false, minify: true, format: "iife",
     loader: { ".svg": "dataurl" }, legalComments: "none",
   });
-  const [page, worker] = await Promise.all([bundle("src/single.ts"), bundle("src/sources/in_page/worker.ts")]);
+  const [page, bench, tuner] = await Promise.all(["src/single.ts", WORKERS.worker, WORKERS.tuner].map(bundle));
   const text = ({ outputFiles }, kind) => outputFiles.find(({ path }) => path.endsWith(kind)).text;
   // Whatever is text stands within an element that ends at the next such tag.
   const element = (id, type, content) => `<script type="${type}" id="${id}">${content.replaceAll("</", "<\\/")}</script>\n`;
@@ -41,9 +43,11 @@ async function buildSingle(folder) {
     .replace('<link rel="stylesheet" href="page.css">', () => `<style>${text(page, ".css")}</style>`)
     .replace('<script type="module" src="page.js"></script>\n', "")
     .replace("</body>", () => [
-      element("bench-module", "text/plain", readFileSync(join(folder, "bench.wasm")).toString("base64")),
-      element("bench-data", "application/json", readFileSync(join(folder, "bench.json"), "utf8")),
-      element("bench-worker", "text/plain", text(worker, ".js")),
+      ...Object.entries({ bench, tuner }).flatMap(([name, worker]) => [
+        element(`${name}-module`, "text/plain", readFileSync(join(folder, `${name}.wasm`)).toString("base64")),
+        element(`${name}-data`, "application/json", readFileSync(join(folder, `${name}.json`), "utf8")),
+        element(`${name}-worker`, "text/plain", text(worker, ".js")),
+      ]),
       element("page", "text/javascript", text(page, ".js")),
       "</body>",
     ].join(""));
@@ -67,6 +71,6 @@ async function runTests(out, args) {
 
 const [what, ...args] = process.argv.slice(2);
 if (what === "test") process.exitCode = await runTests(join(here, "../../build/page-tests"), args);
-else if (what === "site") await buildPage(resolve(args[0]), { page: "src/site.ts", worker: "src/sources/in_page/worker.ts" });
+else if (what === "site") await buildPage(resolve(args[0]), { page: "src/site.ts", ...WORKERS });
 else if (what === "single") await buildSingle(resolve(args[0]));
 else await buildPage(what ?? join(here, "../src/greywhale/dashboard/page"), { page: "src/page.ts" });

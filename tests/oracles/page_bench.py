@@ -10,7 +10,7 @@ from types import TracebackType
 from typing import Any, Self
 
 from greywhale.arm import ArmParameters
-from tools.setup import bench_module, page
+from tools.setup import page, page_modules
 from tools.site.bench_data import arm_numbers
 
 HARNESS = Path(__file__).with_name("wasm") / "bench.mjs"
@@ -21,7 +21,7 @@ class PageBench:
     """A context: a bench with this arm, its power off."""
 
     def __init__(self, arm: ArmParameters, seed: int = 1) -> None:
-        command = [str(page.node() / "bin" / "node"), str(HARNESS), str(bench_module.MODULE)]
+        command = [str(page.node() / "bin" / "node"), str(HARNESS), str(page_modules.BENCH.path)]
         self._node = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
         self.call("put", arm_numbers(arm))
         self.call("start", seed)

@@ -16,6 +16,7 @@ import numpy as np
 from greywhale.fuzzy.exact import Law
 from greywhale.fuzzy.settings import ANGLE_UNIT, SET_UNIT, JointSettings
 from greywhale.protocol.schema import PARAMETER_BY_NAME, Refusal
+from tests.page.tuning import tuning
 from tools import ROOT
 from tools.site.build import write_bench
 
@@ -58,11 +59,14 @@ def numbers_of_the_law() -> dict[str, list[dict[str, Any]]]:
     return {"cases": cases, "refused": refused}
 
 
-def test_link_client_samples_law_and_bench_give_what_python_gives(tmp_path: Path) -> None:
+def test_link_client_samples_law_bench_and_tuner_give_what_python_gives(tmp_path: Path) -> None:
     golden, law = tmp_path / "golden.json", tmp_path / "law.json"
     golden.write_text(json.dumps(tomllib.loads((ROOT / "shared/link/golden.toml").read_text("utf-8"))))
     law.write_text(json.dumps(numbers_of_the_law()))
-    environment = {**os.environ, "GOLDEN": str(golden), "LAW": str(law), "SITE": str(tmp_path)}
+    tuned = tmp_path / "tuning.json"
+    tuned.write_text(json.dumps(tuning()))
+    files = {"GOLDEN": golden, "LAW": law, "TUNING": tuned, "SITE": tmp_path}
+    environment = {**os.environ, **{name: str(path) for name, path in files.items()}}
     write_bench(tmp_path)
     done = subprocess.run(
         ["node", "build.mjs", "test"], cwd=PAGE, env=environment, capture_output=True, text=True, check=False

@@ -73,7 +73,6 @@ def test_a_visitor_sees_an_arm_that_follows_and_what_needs_a_host_is_not_there(v
     visited.get_by_role("button", name="Bench").click()
     expect(visited.get_by_role("button", name="Hold still")).to_be_visible()
     expect(visited.get_by_label("Recorded motion")).to_have_count(0)
-    require_no_barrier(visited, DARK_AND_NARROW)
     visited.keyboard.press("Space")
     expect(visited.locator(".pill")).to_have_text("disabled")
 
@@ -88,11 +87,34 @@ def test_who_stops_before_the_arm_has_moved_is_obeyed(context: BrowserContext, s
     assert set(read_log(tmp_path / "view.csv").state) == {"disabled"}
 
 
-def test_one_file_alone_opens_from_a_disk(context: BrowserContext, folder: Path, tmp_path: Path) -> None:
+def tune_a_little(page: Page) -> None:
+    """Let the page tune, and end that as soon as it can be."""
+    page.get_by_role("button", name="Controller").click()
+    page.get_by_role("button", name="Tune", exact=True).click()
+    expect(page.get_by_text("of 500 sets")).to_be_visible()
+    page.get_by_role("button", name="Stop the search").click()
+    expect(page.get_by_text("Found; Apply runs it.")).to_be_visible()
+
+
+def test_who_lets_the_page_tune_sees_the_course_and_runs_what_was_found(visited: Page) -> None:
+    expect(visited.locator(".pill")).to_have_text("following")
+    visited.get_by_role("button", name="Controller").click()
+    drag(visited, "Pe_b", 0.1)
+    tune_a_little(visited)
+    expect(visited.get_by_label("Curve of the search")).to_be_visible()
+    expect(visited.get_by_label("The same hand, followed before and after")).to_be_visible()
+    visited.get_by_role("button", name="Apply").click()
+    expect(visited.get_by_text("The board runs these controllers.")).to_be_visible()
+    expect(visited.locator(".pill")).to_have_text("following")
+    require_no_barrier(visited, DARK_AND_NARROW)
+
+
+def test_one_file_alone_opens_from_a_disk_and_tunes(context: BrowserContext, folder: Path, tmp_path: Path) -> None:
     alone = (folder / "greywhale.html").rename(tmp_path / "alone.html")
     with stages.visit(context, OnDisk(alone.as_uri())) as visit:
         expect(visit.page.locator(".pill")).to_have_text("following")
         visit.page.locator("canvas").first.wait_for()
+        tune_a_little(visit.page)
 
 
 def test_a_wire_is_broken_and_mended(visited: Page) -> None:

@@ -16,7 +16,7 @@ from tools import ROOT
 if sys.version_info < (3, 11):  # noqa: UP036 (an older Python is what this is about)
     sys.exit(f"greywhale needs Python 3.11 or newer, but {sys.executable} is {sys.version.split()[0]}.")
 
-from tools.setup import bench_module, debian, extensions, firmware, page, platformio, venv
+from tools.setup import debian, extensions, firmware, page, page_modules, platformio, venv
 from tools.setup.console import SetupError, say, side_by_side
 
 
@@ -30,7 +30,7 @@ def steps(with_page: bool, checks: bool) -> None:
 
     debian.step(checks)
     venv.step(checks)
-    side_by_side(extensions.step, what_needs_packages, *([bench_module.step] if checks else []))
+    side_by_side(extensions.step, what_needs_packages, *([page_modules.step] if checks else []))
 
 
 def main(arguments: list[str]) -> int:

@@ -40,10 +40,11 @@ def arm_numbers(arm: ArmParameters) -> list[float]:
         numbers += [one.stops.min, one.stops.max, pot.play, pot.lag]
     drive = arm.drive
     numbers += [drive.supply, drive.supply_resistance, drive.pwm_levels]
-    return numbers + _pot_numbers(arm.leader_pots) + _pot_numbers(arm.follower_pots)
+    return numbers + pot_numbers(arm.leader_pots) + pot_numbers(arm.follower_pots)
 
 
-def _pot_numbers(bank: PotentiometerBank) -> list[float]:
+def pot_numbers(bank: PotentiometerBank) -> list[float]:
+    """Four potentiometers and their supply, in the same order."""
     numbers: list[float] = []
     for pot in bank.joint:
         numbers += [pot.track, pot.centre, pot.direction, pot.noise, pot.linearity, pot.play, pot.lag]

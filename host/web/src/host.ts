@@ -95,6 +95,33 @@ export interface Jobs {
   listen(heard: (job: Job) => void): void;
 }
 
+/** How far a search for controllers is: the best cost of each joint, now and after each batch. */
+export type Searched = {
+  readonly evaluations: number;
+  readonly budget: number;
+  readonly cost: readonly number[];
+  readonly curve: readonly (readonly [evaluations: number, cost: readonly number[]])[];
+};
+
+/** What a search found, and how the arm then follows a hand and did before: rows of four joints, rad. */
+export type Tuned = {
+  readonly after: readonly (readonly number[])[]; // four joints' settings, in the order of the table
+  /** Joints that were not steady enough as they were found: they have less voltage or integral, or what they had. */
+  readonly calmed: readonly { readonly joint: number; readonly as_before: boolean }[];
+  readonly time_s: readonly number[];
+  readonly leader: readonly (readonly number[])[];
+  readonly followers: readonly (readonly (readonly number[])[])[]; // before, after
+  readonly mse: readonly (readonly number[])[]; // before, after; of each joint
+};
+
+/** Searches controllers within the page. */
+export interface Tuner {
+  /** Tunes from four joints' settings on; one at a time. */
+  tune(before: readonly (readonly number[])[], heard: (searched: Searched) => void): Promise<Tuned>;
+  /** Ends the search with the best so far. */
+  stop(): void;
+}
+
 export interface Host {
   readonly jobs: Jobs;
   readonly bench: Bench;

@@ -14,8 +14,12 @@ import { Session } from "./session";
 import { Shell } from "./shell";
 import { PageBoard } from "./sources/in_page/board";
 import type { BenchData } from "./sources/in_page/bench_data";
+import { PageTuner, type TunerParts } from "./sources/in_page/tuner";
 
-export type Parts = { readonly code: ArrayBuffer; readonly data: BenchData; readonly worker: Worker };
+export type Parts = {
+  readonly code: ArrayBuffer; readonly data: BenchData; readonly worker: Worker;
+  readonly tuner: () => Promise<TunerParts>; // a new worker each time
+};
 
 /** Shows the page, or why its parts are not there. */
 export function openPage(parts: Promise<Parts>): void {
@@ -25,7 +29,7 @@ export function openPage(parts: Promise<Parts>): void {
   });
 }
 
-function show({ code, data, worker }: Parts): void {
+function show({ code, data, worker, tuner }: Parts): void {
   const board = new PageBoard(worker, code, data, () => localStorage);
   const session = new Session(board);
   const hand = new LeaderHand(board, session.samples, (error) =>
@@ -35,7 +39,7 @@ function show({ code, data, worker }: Parts): void {
   const shell = new Shell(session, [arm], [
     "The firmware of a real board and a simulated arm run inside this page; they need a browser with WebAssembly.",
   ]);
-  for (const view of [new LiveView(session), new ControllerView(session, null), new BenchView(session, board, hand, null)]) {
+  for (const view of [new LiveView(session), new ControllerView(session, null, new PageTuner(tuner)), new BenchView(session, board, hand, null)]) {
     shell.add(view);
   }
   enableOnce(session);

@@ -1,6 +1,7 @@
-// The page with a bench inside as a folder of files: the module, its data and the worker lie beside it.
+// The page with a bench inside as a folder of files: modules, their data and workers lie beside it.
 
 import type { BenchData } from "./sources/in_page/bench_data";
+import type { TunerData } from "./tuner/data";
 import { openPage, type Parts } from "./in_page";
 
 async function fetched(file: string): Promise<Response> {
@@ -9,13 +10,22 @@ async function fetched(file: string): Promise<Response> {
   return answer;
 }
 
-async function parts(): Promise<Parts> {
-  const worker = new Worker(new URL("worker.js", import.meta.url), { type: "module" });
+const worker = (file: string): Worker => new Worker(new URL(file, import.meta.url), { type: "module" });
+
+async function module<Data>(name: string): Promise<{ code: ArrayBuffer; data: Data }> {
   const [code, data] = await Promise.all([
-    fetched("bench.wasm").then((answer) => answer.arrayBuffer()),
-    fetched("bench.json").then((answer) => answer.json() as Promise<BenchData>),
+    fetched(`${name}.wasm`).then((answer) => answer.arrayBuffer()),
+    fetched(`${name}.json`).then((answer) => answer.json() as Promise<Data>),
   ]);
-  return { code, data, worker };
+  return { code, data };
+}
+
+async function parts(): Promise<Parts> {
+  const bench = worker("worker.js"); // starts while its module is on the way
+  return {
+    worker: bench, ...await module<BenchData>("bench"),
+    tuner: async () => ({ worker: worker("tuner.js"), ...await module<TunerData>("tuner") }),
+  };
 }
 
 openPage(parts());

@@ -32,6 +32,15 @@ export function withJoints(raw: readonly number[], joints: Four): number[] {
   return all;
 }
 
+/** The joints' settings in the order of the table, and back. */
+export function rowsOf(joints: Four): number[][] {
+  return joints.map((settings) => SETTING_NAMES.map((name) => settings[name]));
+}
+
+export function ofRows(rows: readonly (readonly number[])[]): Four {
+  return rows.map((row) => Object.fromEntries(SETTING_NAMES.map((name, place) => [name, row[place]!])) as Settings);
+}
+
 export type Difference = { readonly name: string; readonly mine: number; readonly other: number };
 
 /** Where two controllers differ, in raw values. */

@@ -1,19 +1,20 @@
 // The controllers of four joints to touch: sets to drag, factors, the surface with the running arm on it, what the model
 // predicts; apply, store, undo, compare.
 
-import type { Host } from "../host";
+import type { Host, Tuner } from "../host";
 import { Refusal, TABLE } from "../link/schema";
 import { upperFirst } from "../link/refusal";
 import { button, el, select, setText } from "../parts/dom";
 import type { View } from "../parts/view";
 import { physicalText } from "../samples/log";
 import type { Session } from "../session";
-import { differences, Draft, jointsOf, JOINTS, parameterName, withJoints, type Four } from "./draft";
+import { differences, Draft, jointsOf, JOINTS, ofRows, parameterName, rowsOf, withJoints, type Four } from "./draft";
 import { FACTOR_NAMES, refusal, SETTING_NAMES, type FactorName, type Settings } from "./law";
 import { operatingPoints } from "./operating";
 import { PredictPanel } from "./predict_panel";
 import { CHANGE_CORNERS, ERROR_CORNERS, SetsEditor } from "./sets_editor";
 import { Surface } from "./surface";
+import { TunePanel } from "./tune_panel";
 
 const FACTORS: Readonly<Record<FactorName, string>> = {
   kp: "Kp 1/rad", kd: "Kd 1/rad", ki: "Ki V/(rad s)", ku_mv: "Ku mV", ce_ticks: "change over, periods",
@@ -34,13 +35,14 @@ export class ControllerView implements View {
   private readonly factors = new Map<FactorName, HTMLInputElement>();
   private readonly surface = new Surface();
   private readonly predict: PredictPanel | null;
+  private readonly tune: TunePanel | null;
   private readonly tabs: HTMLButtonElement[];
   private readonly refused = el("p", { class: "problem", attrs: { role: "status" } });
   private readonly reading = el("p", { class: "quiet" }, "The board's controllers are being read.");
   private readonly editor = el("div", { class: "editor", hidden: true });
-  private readonly toBoard = el("ul", { class: "differences" });
-  private readonly toStore = el("ul", { class: "differences" });
-  private readonly toFile = el("ul", { class: "differences" });
+  private readonly toBoard = listed("Not yet on the board");
+  private readonly toStore = listed("Not yet stored");
+  private readonly toFile = listed("Against a file");
   private readonly files: HTMLSelectElement;
   private readonly buttons = {
     apply: button("Apply", () => void this.act(() => this.apply()), { class: "primary", title: "Run these controllers; they are not stored" }),
@@ -51,13 +53,15 @@ export class ControllerView implements View {
     swap: button("A", () => void this.act(() => this.swap()), { title: "Run the other of two controllers (X)" }),
   };
 
-  constructor(private readonly session: Session, private readonly host: Host | null) {
+  /** `tuner` searches within the page, where no host has a verb for it. */
+  constructor(private readonly session: Session, private readonly host: Host | null, tuner: Tuner | null = null) {
     const moved = (name: keyof Settings, raw: number, grip: string): void =>
       this.draft?.set(this.joint, name, raw, grip && `${this.joint} ${grip}`);
     const letGo = (): void => this.draft?.letGo();
     this.errorSets = new SetsEditor("Sets of the error", ["NE", "ZE", "PE"], ERROR_CORNERS, moved, letGo);
     this.changeSets = new SetsEditor("Sets of the change of error", ["NCE", "ZCE", "PCE"], CHANGE_CORNERS, moved, letGo);
     this.predict = host ? new PredictPanel(host) : null;
+    this.tune = tuner && new TunePanel(tuner, () => this.acceptable(), (rows) => this.draft?.replace(ofRows(rows)));
     this.tabs = Array.from({ length: JOINTS }, (_, joint) => button(`Joint ${joint}`, () => this.showJoint(joint)));
     this.files = select("Compare with", [["", "no file"]], (name) => void this.act(() => this.compare(name)));
     this.build();
@@ -89,7 +93,7 @@ export class ControllerView implements View {
           ...(this.host ? [el("h2", {}, "Against a file"), this.files, this.toFile] : []))),
       el("div", { class: "side" },
         el("section", { class: "card" }, el("h2", {}, "Control surface"), this.surface.element),
-        ...(this.predict ? [this.predict.element] : [])));
+        ...(this.predict ? [this.predict.element] : []), ...(this.tune ? [this.tune.element] : [])));
   }
 
   /** One thing at a time: while the board takes a set, no other one may begin. */
@@ -138,6 +142,7 @@ export class ControllerView implements View {
   private showJoint(joint: number): void {
     this.joint = joint;
     this.predict?.showJoint(joint);
+    this.tune?.showJoint(joint);
     this.show();
   }
 
@@ -243,6 +248,10 @@ export class ControllerView implements View {
     this.buttons.apply.dataset["refused"] = why ? "yes" : "";
   }
 
+  private acceptable(): number[][] | null {
+    return this.draft && this.buttons.apply.dataset["refused"] !== "yes" ? rowsOf(this.draft.joints) : null;
+  }
+
   private refreshButtons(): void {
     const { draft, session } = this;
     const { apply, store, discard, undo, redo, swap } = this.buttons;
@@ -279,6 +288,11 @@ export class ControllerView implements View {
     act[event.key]?.();
     return event.key in act;
   }
+}
+
+/** A list that may be longer than its place. */
+function listed(label: string): HTMLUListElement {
+  return el("ul", { class: "differences", attrs: { tabindex: "0", "aria-label": label } });
 }
 
 /** Differences as lines: name, mine, then the other's value. */

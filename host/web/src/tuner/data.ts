@@ -1,0 +1,87 @@
+// What the tuner gets of greywhale: tools/site/tuner_data.py writes it.
+
+export type Noise = { readonly seeds: readonly [number, number]; readonly gaps: readonly number[] };
+
+/** A motion: of each joint its steps from row to row; after each 0 comes how many there are. */
+export type Steps = readonly (readonly number[])[];
+
+export type Drill = {
+  readonly name: string;
+  readonly steps: Steps;
+  readonly searching: Noise;
+  readonly judging: Noise;
+  readonly moving: readonly (readonly [number, number])[] | null; // ticks; null: all weigh the same
+  readonly total_weight: number;
+  readonly importance: number;
+  readonly floor: readonly number[]; // rad
+  readonly least_room: readonly number[]; // rad
+};
+
+export type Rests = {
+  readonly steps: Steps;
+  readonly noise: Noise;
+  readonly ticks: readonly (readonly [number, number])[];
+  readonly variants: Readonly<Record<string, readonly number[]>>; // the arm in each scenario
+  readonly band: number; // rad
+};
+
+/** A searched number; `mirror` is another column that gets the same size with the other sign. */
+export type Variable = {
+  readonly column: number;
+  readonly mirror: number | null;
+  readonly unit: number;
+  readonly sign: number;
+  readonly is_set: boolean;
+  readonly logarithmic: boolean;
+  readonly offset: number;
+  readonly bounds: readonly [number, number];
+};
+
+export type Stage = {
+  readonly name: string;
+  readonly share: number;
+  readonly sigma: number | null;
+  readonly space: "whole" | "reduced";
+  readonly random: readonly (readonly [string, string])[]; // a generator's state and increment for each joint
+};
+
+export type SearchData = {
+  readonly budget: number;
+  readonly pack: number;
+  readonly turns: readonly (readonly number[])[];
+  readonly a: number;
+  readonly weights: readonly number[];
+  readonly keep: number;
+  readonly stages: readonly Stage[];
+  readonly spaces: Readonly<Record<"whole" | "reduced", readonly Variable[]>>;
+  readonly calmer: readonly (readonly [ku: number, ki: number])[]; // shares of what was found
+  readonly ku: number; // columns
+  readonly ki: number;
+  readonly least_width: number;
+  readonly set_unit: number;
+  readonly stretch: readonly { readonly column: number; readonly raw: number; readonly sets: readonly number[] }[];
+};
+
+export type Price =
+  | "soon_s" | "rms" | "rattle" | "louder" | "quiet_rad" | "chatter_moving" | "bearable" | "chatter_moving_hz" | "effort"
+  | "lost" | "limit_cycle_turns" | "chatter_at_rest_hz" | "quiet_share" | "search_ripple" | "search_chatter" | "travel"
+  | "chatter_at_rest" | "fail" | "teeth" | "ripple" | "loud" | "lost_at_rest" | "same";
+
+export type TunerData = {
+  readonly settings: readonly number[];
+  readonly timing: readonly [prompt: readonly number[], late: readonly number[]];
+  readonly leader_pots: readonly number[];
+  readonly follower_pots: readonly number[];
+  readonly supply_v: number;
+  readonly pwm_top: readonly number[];
+  readonly motion: { readonly scale: number; readonly apart: number; readonly wait_s: number };
+  readonly plant: readonly number[];
+  readonly drills: readonly Drill[];
+  readonly shown: number; // the drill that a person sees
+  readonly rests: { readonly searching: Rests; readonly judging: Rests };
+  readonly rattle: {
+    readonly sections: readonly number[]; readonly blocks: readonly number[]; readonly swing: number; readonly window: number;
+  };
+  readonly prices: Readonly<Record<Price, number>>;
+  readonly search: SearchData;
+};

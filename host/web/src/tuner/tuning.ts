@@ -1,0 +1,70 @@
+// A tuning from its start to what a person sees of it: search, the last look, and both controllers behind the same hand.
+
+import type { Tuned } from "../host";
+import { Costs } from "./costs";
+import type { TunerData } from "./data";
+import type { Controllers, TunerModule } from "./module";
+import { Search, type Found } from "./search";
+import { rint, Space, type Row } from "./space";
+import { Standard } from "./unrest";
+
+const SHOWN_TICKS = 10; // between two points of a picture
+
+export class Tuning {
+  private readonly standard: Standard;
+  private readonly search: Search;
+
+  constructor(private readonly module: TunerModule, private readonly data: TunerData, private readonly before: Controllers) {
+    this.standard = new Standard(module, data, before);
+    const costs = new Costs(module, data, before, this.standard.quietV);
+    this.search = new Search(data.search, before, module, (rows) => costs.of(rows));
+  }
+
+  /** Searches, a batch at each step. */
+  run(): Generator<Found, void> {
+    return this.search.run();
+  }
+
+  /** The best so far; a joint that falls short of what held before becomes calmer, and at last what it was. */
+  result(): Tuned {
+    const { search: { best }, before, data: { search: { calmer } } } = this;
+    const after = [...best];
+    const steps = best.map(() => 0);
+    for (;;) {
+      const changed = after.flatMap((row, joint) => (row === before[joint] ? [] : [joint]));
+      const short = changed.length ? this.standard.short(after) : [];
+      if (!short.length) break;
+      const own = changed.filter((joint) => short.includes(joint));
+      for (const joint of own.length ? own : changed) { // else it is a neighbour's doing
+        const shares = calmer[steps[joint]!];
+        steps[joint]! += 1;
+        after[joint] = shares ? this.calmed(joint, shares) : before[joint]!;
+      }
+    }
+    return this.shown(after, steps.flatMap((step, joint) => (step ? [{ joint, as_before: step > calmer.length }] : [])));
+  }
+
+  private calmed(joint: number, [ku, ki]: readonly [number, number]): Row {
+    const { data: { search }, before, module } = this;
+    const row = [...this.search.best[joint]!];
+    row[search.ku] = rint(ku * row[search.ku]!);
+    row[search.ki] = rint(ki * row[search.ki]!);
+    const space = new Space(search, search.spaces.whole, false, module);
+    return space.row(space.point(row), before[joint]!);
+  }
+
+  /** With noise that the search has not heard. */
+  private shown(after: Controllers, calmed: Tuned["calmed"]): Tuned {
+    const drill = this.data.drills[this.data.shown]!;
+    const experiment = this.module.addDrill(drill, drill.judging);
+    this.module.run(experiment, [this.before, after]);
+    const found = this.module.following(experiment, 2);
+    const [first, second] = [0, 1].map((row) => this.module.trace(experiment, row, SHOWN_TICKS));
+    return {
+      after, calmed,
+      time_s: first!.leader.map((_, place) => (place * SHOWN_TICKS) / 1000),
+      leader: first!.leader, followers: [first!.follower, second!.follower],
+      mse: found.map((row) => row.map(({ mse }) => mse)),
+    };
+  }
+}

@@ -1,0 +1,46 @@
+// The tuner's search against greywhale tune's own (JSON in the file that TUNING names), with the module and data in the
+// folder that SITE names.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { test } from "node:test";
+import { Costs } from "../src/tuner/costs";
+import type { TunerData } from "../src/tuner/data";
+import { TunerModule, type Controllers } from "../src/tuner/module";
+import { Search } from "../src/tuner/search";
+import { Tuning } from "../src/tuner/tuning";
+import { Standard } from "../src/tuner/unrest";
+
+type Golden = {
+  pack: number; budget: number; before: Controllers; best: Controllers; curve: unknown; judged: Controllers[]; short: number[][];
+};
+
+function json<T>(path: string): T {
+  return JSON.parse(readFileSync(path, "utf8")) as T;
+}
+
+const site = process.env["SITE"] ?? "";
+const golden = json<Golden>(process.env["TUNING"] ?? "");
+const shipped = json<TunerData>(join(site, "tuner.json"));
+const data = { ...shipped, search: { ...shipped.search, pack: golden.pack, budget: golden.budget } };
+const module = await TunerModule.load(readFileSync(join(site, "tuner.wasm")), data);
+const standard = new Standard(module, data, golden.before);
+
+test("every cost and the best controllers of a search have the bits of greywhale tune's", () => {
+  const costs = new Costs(module, data, golden.before, standard.quietV);
+  const search = new Search(data.search, golden.before, module, (rows) => costs.of(rows));
+  for (const _ of search.run());
+  assert.deepEqual([search.best, search.curve], [golden.best, golden.curve]);
+});
+
+test("the same joints fall short of what held before", () => {
+  assert.deepEqual(golden.judged.map((one) => standard.short(one)), golden.short);
+  assert.ok(golden.short.some(({ length }) => length) && golden.short.some(({ length }) => !length));
+});
+
+test("a search that is ended at once leaves the controllers as they are, and shows them twice", () => {
+  const tuning = new Tuning(module, data, golden.before);
+  tuning.run().next();
+  const { after, calmed, followers: [first, second], mse } = tuning.result();
+  assert.deepEqual([after, calmed, second, mse[1]], [golden.before, [], first, mse[0]]);
+});

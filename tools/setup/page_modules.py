@@ -1,0 +1,81 @@
+"""Compiles what a page runs to WebAssembly: its bench (firmware/lib, sim/arm, sim/web) and its tuner (host/native).
+
+The same sources as for the board and for the simulation, by another compiler. No multiplication and addition may be
+fused, so that the arm moves by the same bits as elsewhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+from tools import ROOT
+from tools.setup import stamps
+from tools.setup.console import run, say
+
+COMPILER = ("clang++", "--target=wasm32-wasi")
+FLAGS = (
+    *("-std=c++17", "-ffp-contract=off", "-fexceptions", "-Isim", "-Isim/arm", "-Ihost/native"),
+    *("-Wall", "-Wextra", "-Wconversion", "-Werror"),
+)
+LINK = ("-mexec-model=reactor", "-Wl,--strip-all", "-Wl,-z,stack-size=65536")
+# As core.cmake has them, for the vectors of WebAssembly.
+KERNEL = ("-O2", "-fno-trapping-math", "-fno-exceptions", "-DGREYWHALE_INSTRUCTIONS=baseline")
+
+
+@dataclass(frozen=True)
+class Module:
+    """A module, the files and folders that it is compiled from, and where their headers lie."""
+
+    name: str
+    places: tuple[str, ...]
+    headers: tuple[str, ...]
+    flags: tuple[str, ...]
+
+    @property
+    def path(self) -> Path:
+        return ROOT / "build" / "web" / f"{self.name}.wasm"
+
+    def sources(self) -> Iterator[Path]:
+        """Of the hardware's implementations, that for the page alone."""
+        for path in stamps.files_below(*self.places):
+            if path.suffix == ".cpp" and (path.parent.name == "web" or "hal" not in path.parts):
+                yield path
+
+
+BENCH = Module("bench", ("firmware/lib", "sim/arm", "sim/web"), (), ("-O2",))
+TUNER = Module(
+    "tuner",
+    ("firmware/lib/fuzzy_pdi", "sim/arm", "sim/web/no_exceptions.cpp", "host/native/closed_loop", "host/native/web"),
+    ("firmware/lib", "host/native"),
+    ("-Os", "-msimd128"),
+)
+MODULES = (BENCH, TUNER)
+
+
+def step() -> None:
+    for module in MODULES:
+        wanted = stamps.digest([*stamps.files_below(*module.places, *module.headers), Path(__file__)])
+        if not (stamps.is_current(module.name, wanted) and module.path.is_file()):
+            say(f"building the {module.name} for the page")
+            _build(module)
+            stamps.set_current(module.name, wanted)
+
+
+def _build(module: Module) -> None:
+    folder = module.path.parent / module.name
+    folder.mkdir(parents=True, exist_ok=True)
+    rooms = [f"-I{room / 'src'}" for room in sorted((ROOT / "firmware" / "lib").iterdir())]
+    objects = {path: folder / f"{'.'.join(path.relative_to(ROOT).parts)}.o" for path in module.sources()}
+
+    def compile_one(source: Path) -> None:
+        flags = (*FLAGS, *module.flags, *(KERNEL if source.name == "kernel.cpp" else ()))
+        command = [*COMPILER, *flags, *rooms, "-c", str(source), "-o", str(objects[source])]
+        run(command, what=f"Compiling {source.name} for the page")
+
+    with ThreadPoolExecutor() as pool:
+        list(pool.map(compile_one, objects))
+    made = ("-o", str(module.path))
+    run([*COMPILER, *LINK, *map(str, objects.values()), *made], what=f"Linking the {module.name} for the page")

@@ -1,0 +1,236 @@
+"""What the tuner inside a page needs to know of ours: motions and their weights, the arm and its variants, the search.
+
+All of it is what `greywhale tune default --force` searches with, but for the motions: the page has straight lines
+between their rows, rounded to SCALE_RAD. host/native/web/exports.cpp takes the numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from greywhale.base.types import Floats
+from greywhale.files.trajectory import Trajectory
+from greywhale.fuzzy.settings import LEAST_WIDTH, SET_UNIT
+from greywhale.motion import swings
+from greywhale.optimise import relative
+from greywhale.optimise.optimiser import PACK
+from greywhale.protocol.firmware import JOINTS, pwm_steps
+from greywhale.protocol.table import CONTROLLER_COLUMNS
+from greywhale.simulate.closed_loop import Timing, settings_numbers, with_right_motors
+from greywhale.simulate.leader import SLICE_S
+from greywhale.tune import default, possible
+from greywhale.tune.judge import margins, standard
+from greywhale.tune.model import Model, load_model
+from greywhale.tune.search import lockstep, objective, space, training
+from tools.site.bench_data import pot_numbers
+
+SCALE_RAD = 1e-5
+APART = round(1.0 / training.RATE_HZ / SLICE_S)  # slices between two rows
+BUDGET = 500
+SEED = 0
+SHOWN = 1  # the class of motions that a person sees: human-like reaches
+
+
+def steps_of(motion: Trajectory) -> list[list[int]]:
+    """Of each joint its steps from row to row in SCALE_RAD, the first from 0; after each 0 comes how many there are."""
+    packed = []
+    for steps in np.diff(np.rint(motion.angles / SCALE_RAD).astype(int), axis=0, prepend=0).T:
+        numbers: list[int] = []
+        for step in map(int, steps):
+            if step == 0 and len(numbers) > 1 and numbers[-2] == 0:
+                numbers[-1] += 1
+            else:
+                numbers += [step] if step else [0, 1]
+        packed.append(numbers)
+    return packed
+
+
+def straight_slices(motion: Trajectory, wait_s: float) -> Floats:
+    """The angles (rad) in every slice: the first row for `wait_s`, then straight lines between the rounded rows."""
+    rows = np.rint(motion.angles / SCALE_RAD) / round(1.0 / SCALE_RAD)
+    slices = 4 * int(np.ceil((wait_s + motion.duration_s) / (4 * SLICE_S) - 1e-9))
+    at = np.maximum(np.arange(slices) - round(wait_s / SLICE_S), 0)
+    row = np.minimum(at // APART, len(rows) - 2)
+    share = np.minimum((at - row * APART) / APART, 1.0)[:, None]
+    angles: Floats = rows[row] + share * (rows[row + 1] - rows[row])
+    return angles
+
+
+def tuner_data() -> dict[str, Any]:
+    """All of it, as the page reads it."""
+    model = default.give_usual_noise(load_model("default", force=True))
+    board = with_right_motors(model.table)
+    return {
+        "settings": numbers_of(settings_numbers(board).values()),
+        "timing": [_timing(Timing()), _timing(Timing(late=model.period_ms))],
+        "leader_pots": pot_numbers(model.arm.leader_pots),
+        "follower_pots": pot_numbers(model.arm.follower_pots),
+        "pwm_top": pwm_steps(model.table.board),
+        "supply_v": model.table.supply_v,
+        "motion": {"scale": round(1.0 / SCALE_RAD), "apart": APART, "wait_s": training.WAIT_S},
+        "plant": model.plants[0].tolist(),
+        "drills": _drills(model),
+        "shown": SHOWN,
+        "rests": {
+            "searching": _rests(model, margins.REST_S, 0, margins.SEARCH_BEYOND, swings.SEARCH_BAND_RAD),
+            "judging": _rests(model, margins.REST_LONG_S, 1, 1.0, swings.LIMIT_CYCLE.band_rad),
+        },
+        "rattle": _rattle(),
+        "prices": _prices(),
+        "search": _search(model),
+    }
+
+
+def numbers_of(values: Any) -> list[float]:
+    """Numbers and sequences of numbers one after the other."""
+    return [float(one) for value in values for one in (value if isinstance(value, Sequence) else [value])]
+
+
+def _timing(timing: Timing) -> list[float]:
+    return numbers_of([timing.chain_start, timing.acts, timing.drivers_on, timing.late])
+
+
+def _noise(seed: int) -> dict[str, Any]:
+    """An experiment's seeds, of the leader's noise and the follower's, and where its gears stand in their gaps."""
+    return {"seeds": [seed, seed + 1], "gaps": np.random.default_rng(seed).uniform(-1.0, 1.0, JOINTS).tolist()}
+
+
+def _drills(model: Model) -> list[dict[str, Any]]:
+    motions = training.training_motions(model.arm, model.table, model.plants, SEED)
+    floors = possible.scale_of(motions, model.plants, model.controllers).floor[0]
+    told = []
+    for number, (drill, floor) in enumerate(zip(motions, floors, strict=True)):
+        _, moving = training.moving_ticks(drill.motion, training.WAIT_S)
+        edges = np.flatnonzero(np.diff(np.concatenate(([False], moving, [False])).astype(np.int8)))
+        told.append(
+            {
+                "name": drill.name,
+                "steps": steps_of(drill.motion),
+                "searching": _noise(training.noise_seed(SEED, number)),
+                "judging": _noise(training.noise_seed(SEED + default.JUDGING_SEED, number)),
+                # None where all ticks weigh the same.
+                "moving": None if drill.name == training.SLOW else edges.reshape(-1, 2).tolist(),
+                "total_weight": drill.total_weight,
+                "importance": drill.importance,
+                "floor": floor.tolist(),
+                "least_room": np.maximum(possible.LEAST_SHARE * floor, possible.LEAST_RAD).tolist(),
+            }
+        )
+    return told
+
+
+def _rests(model: Model, rest_s: float, noise: int, beyond: float, band_rad: float) -> dict[str, Any]:
+    motion = margins.stops(*training.reach(model.arm, model.table, model.plants), rest_s)
+    return {
+        "steps": steps_of(motion),
+        "noise": _noise(margins.noise_seed(SEED, noise)),
+        "ticks": margins.rest_ticks(rest_s),
+        "variants": {name: rows[0].tolist() for name, rows in margins.variants_of(model.plants, beyond).items()},
+        "band": band_rad,
+    }
+
+
+def _rattle() -> dict[str, Any]:
+    """How swings.rattle filters a record with a row a tick, and what a swing of the duty is."""
+    return {
+        "sections": swings.SECTIONS.ravel().tolist(),
+        "blocks": [
+            swings.FILTER_EVERY,
+            swings.BLOCK,
+            round(swings.REACT_S / swings.BLOCK_S),
+            round(training.WAIT_S / swings.BLOCK_S),
+        ],
+        "swing": swings.CHATTER_SHARE,
+        "window": round(1000 * swings.RIPPLE_S),
+    }
+
+
+def _prices() -> dict[str, float]:
+    return {
+        "soon_s": training.SOON_S,
+        "rms": objective.RMS,
+        "rattle": objective.RATTLE,
+        "louder": objective.LOUDER,
+        "quiet_rad": objective.QUIET_RAD,
+        "chatter_moving": objective.CHATTER,
+        "bearable": objective.BEARABLE,
+        "chatter_moving_hz": swings.CHATTER_MOVING_HZ,
+        "effort": objective.EFFORT,
+        "lost": objective.LOST,
+        "limit_cycle_turns": swings.LIMIT_CYCLE.turns,
+        "chatter_at_rest_hz": swings.CHATTER_AT_REST_HZ,
+        "quiet_share": swings.QUIET_SHARE,
+        "search_ripple": margins.SEARCH_RIPPLE,
+        "search_chatter": margins.SEARCH_CHATTER,
+        "travel": margins.TRAVEL_PRICE,
+        "chatter_at_rest": margins.CHATTER_PRICE,
+        "fail": margins.FAIL_PRICE,
+        "teeth": margins.TEETH_PRICE,
+        "ripple": margins.RIPPLE_PRICE,
+        "loud": margins.LOUD_PRICE,
+        "lost_at_rest": margins.LOST_PRICE,
+        "same": standard.SAME,
+    }
+
+
+def _search(model: Model) -> dict[str, Any]:
+    whole = space.Space.default("both", model.controllers, model.table["supply_mv"], model.period_ms)
+    reduced = whole.reduce()
+    return {
+        "budget": BUDGET,
+        "pack": PACK if BUDGET < default.SHORT_BUDGET else default.FULL_PACK,
+        "turns": lockstep.TURNS,
+        "a": relative.A,
+        "weights": relative.WEIGHTS,
+        "keep": relative.KEEP,
+        "stages": [
+            {
+                "name": stage.name,
+                "share": stage.share,
+                "sigma": stage.sigma,
+                "space": "whole" if stage.every_corner else "reduced",
+                "random": [_state(SEED, number, joint) for joint in range(JOINTS)],
+            }
+            for number, stage in enumerate(default.STAGES, 1)
+        ],
+        "spaces": {"whole": _space(whole), "reduced": _space(reduced)},
+        "calmer": default.CALMER,
+        "ku": default.KU,
+        "ki": default.KI,
+        "least_width": LEAST_WIDTH,
+        "set_unit": SET_UNIT,
+        # What the reduced space holds fast, and the sets that stretch in its place.
+        "stretch": [
+            {
+                "column": CONTROLLER_COLUMNS.index(gain.lower()),
+                "raw": int(reduced.base[0, CONTROLLER_COLUMNS.index(gain.lower())]),
+                "sets": [CONTROLLER_COLUMNS.index(name.lower()) for name in sets],
+            }
+            for gain, sets in (("Kp", space.SETS[:4]), ("Kd", space.SETS[4:]))
+        ],
+    }
+
+
+def _space(of: space.Space) -> list[dict[str, Any]]:
+    return [
+        {
+            "column": one.column,
+            "mirror": CONTROLLER_COLUMNS.index(one.mirror.lower()) if one.mirror else None,
+            "unit": one.unit,
+            "sign": -1 if one.high <= 0.0 else 1,
+            "is_set": one.name in space.SETS,
+            "logarithmic": one.logarithmic,
+            "offset": one.offset,
+            "bounds": one.bounds,
+        }
+        for one in of.variables
+    ]
+
+
+def _state(*seed: int) -> list[str]:
+    """State and increment of numpy's PCG64 from a seed, hexadecimal."""
+    state: Any = np.random.PCG64(seed).state
+    return [f"{state['state'][name]:x}" for name in ("state", "inc")]
