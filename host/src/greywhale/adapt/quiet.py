@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
+import scipy.ndimage  # both are loaded before an arm is led, since to load one takes
+import scipy.signal  # noqa: F401 # longer than the arm's lease on a small computer
 
 from greywhale.adapt.stretch import Stretch, chains_of, traces_of
 from greywhale.base.types import Floats
