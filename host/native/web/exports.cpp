@@ -79,6 +79,7 @@ struct Kept {
   std::vector<loop::PlantRow> plants;
   std::vector<std::int16_t> reference;
   std::vector<double> leader, weight;
+  std::vector<float> noise;
   std::size_t count = 0;  // candidates times plants
   std::vector<double> mse, itae, itau;
   std::unique_ptr<bool[]> diverged;
@@ -123,10 +124,19 @@ std::vector<double> power(const T* angles, std::size_t ticks, const std::vector<
   return power;
 }
 
-double duty_swings(const Kept& kept, std::size_t n, std::size_t joint, std::size_t first, std::size_t last,
-                   double share) {
-  const std::int16_t* from = &kept.duties[(n * kept.x.ticks + first) * kJoints + joint];
-  return loop::swings_of(from, last - first, kJoints, share * kept.x.settings.pwm_top[joint]).reversals;
+// Turns of the duties of a row's joints by more than a share of the largest.
+std::array<std::int32_t, kJoints> duty_swings(const Kept& kept, std::size_t n, std::size_t first, std::size_t last,
+                                              double share) {
+  const auto& top = kept.x.settings.pwm_top;
+  std::array<std::int32_t, kJoints> turns{};
+  loop::Swings swings[kJoints];
+  for (std::size_t i = 0; i < kJoints; ++i) {
+    if (i == 0 || top[i] != top[i - 1])
+      loop::swings_of<kJoints>(&kept.duties[(n * kept.x.ticks + first) * kJoints], last - first, share * top[i],
+                               swings);
+    turns[i] = swings[i].reversals;
+  }
+  return turns;
 }
 
 }  // namespace
@@ -178,6 +188,8 @@ EXPORT(add) unsigned exported_add() {
   x.reference = kept->reference.data();
   x.leader = kept->leader.data();
   x.weight = kept->weight.data();
+  kept->noise = loop::noise_of(x);
+  x.noise = kept->noise.empty() ? nullptr : kept->noise.data();
   experiments.push_back(std::move(kept));
   return static_cast<unsigned>(experiments.size() - 1);
 }
@@ -220,14 +232,15 @@ EXPORT(following) void exported_following(unsigned experiment) {
   found.clear();
   for (std::size_t n = 0; n < kept.count; ++n) {
     const std::vector<double> followed = power(&kept.angles[n * ticks * kJoints], ticks, sections, every, length);
+    const std::array<std::int32_t, kJoints> turns = duty_swings(kept, n, 0, ticks, share);
     for (std::size_t i = 0; i < kJoints; ++i) {
       double excess = 0.0;
       for (std::size_t block = wait; block < blocks; ++block)
         excess += std::max(followed[block * kJoints + i] - allowed(led, block, back, i), 0.0);
       const std::size_t at = n * kJoints + i;
       const double rattle = std::sqrt(excess / static_cast<double>(blocks - wait));
-      found.insert(found.end(), {kept.mse[at], kept.itae[at], kept.itau[at], rattle,
-                                 duty_swings(kept, n, i, 0, ticks, share), kept.diverged[n] ? 1.0 : 0.0});
+      found.insert(found.end(), {kept.mse[at], kept.itae[at], kept.itau[at], rattle, static_cast<double>(turns[i]),
+                                 kept.diverged[n] ? 1.0 : 0.0});
     }
   }
 }
@@ -240,13 +253,15 @@ void exported_resting(unsigned experiment, unsigned first, unsigned last, double
   const Kept& kept = *experiments.at(experiment);
   found.clear();
   for (std::size_t n = 0; n < kept.count; ++n) {
-    for (std::size_t i = 0; i < kJoints; ++i) {
-      const std::size_t from = (n * kept.x.ticks + first) * kJoints + i;
-      const loop::Swings swings = loop::swings_of(&kept.angles[from], last - first, kJoints, band);
-      found.insert(found.end(),
-                   {static_cast<double>(swings.reversals), swings.travel, duty_swings(kept, n, i, first, last, share),
-                    loop::ripple_of(&kept.duties[from], last - first, kJoints, window), kept.diverged[n] ? 1.0 : 0.0});
-    }
+    const std::size_t from = (n * kept.x.ticks + first) * kJoints;
+    const std::array<std::int32_t, kJoints> turns = duty_swings(kept, n, first, last, share);
+    loop::Swings swings[kJoints];
+    loop::swings_of<kJoints>(&kept.angles[from], last - first, band, swings);
+    for (std::size_t i = 0; i < kJoints; ++i)
+      found.insert(
+          found.end(),
+          {static_cast<double>(swings[i].reversals), swings[i].travel, static_cast<double>(turns[i]),
+           loop::ripple_of(&kept.duties[from + i], last - first, kJoints, window), kept.diverged[n] ? 1.0 : 0.0});
   }
 }
 
