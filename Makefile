@@ -110,7 +110,7 @@ docs: setup ## write the generated files again (link schema, reference page, sch
 	$(PYTHON) -m tools.generate.link
 	$(PYTHON) -m tools.docs
 
-site: setup ## the page with firmware and arm inside, one folder for any web server and one file for a disk, in build/try
+site: setup ## the page with firmware and arm inside, and the documentation: one folder for any web server, in build/try
 	$(PYTHON) -m tools.site
 
 dist: setup ## build source distributions and wheels of both packages for this machine, in build/dist

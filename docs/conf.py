@@ -22,7 +22,8 @@ templates_path: list[str] = []
 
 # Headings have the anchors that they have on a forge, so that one link serves both.
 myst_heading_anchors = 4
-myst_url_schemes = ["http", "https", "mailto"]
+# page:STATE opens the page with a bench inside, which lies beside the site, in a state (host/web/src/address).
+myst_url_schemes = {"http": None, "https": None, "mailto": None, "page": "../index.html#{{path}}"}
 
 smartquotes = False  # --option is no dash
 default_role = "code"  # docstrings write `name`

@@ -28,6 +28,7 @@ async function buildPage(out, entryPoints) {
 }
 
 const WORKERS = { worker: "src/sources/in_page/worker.ts", tuner: "src/tuner/worker.ts" };
+const SITE = { page: "src/site.ts", ...WORKERS, offline: "src/offline/service_worker.ts" };
 
 /** One file that opens from a disk too, in a folder with the modules and their data. */
 async function buildSingle(folder) {
@@ -71,6 +72,6 @@ async function runTests(out, args) {
 
 const [what, ...args] = process.argv.slice(2);
 if (what === "test") process.exitCode = await runTests(join(here, "../../build/page-tests"), args);
-else if (what === "site") await buildPage(resolve(args[0]), { page: "src/site.ts", ...WORKERS });
+else if (what === "site") await buildPage(resolve(args[0]), SITE);
 else if (what === "single") await buildSingle(resolve(args[0]));
 else await buildPage(what ?? join(here, "../src/greywhale/dashboard/page"), { page: "src/page.ts" });

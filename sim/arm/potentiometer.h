@@ -34,6 +34,7 @@ class Potentiometers {
                  double interval = kInterval);
 
   void set_wiring(std::size_t joint, Wiring wiring) { wiring_.at(joint) = wiring; }
+  void set_noise(std::size_t joint, double rms) { pots_.at(joint).noise = rms; }  // V
   Wiring wiring(std::size_t joint) const { return wiring_.at(joint); }
 
   // Voltages at the converter in mV, 0 to the supply. Each call is a reading, `interval` after the one before, and

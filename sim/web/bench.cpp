@@ -100,8 +100,26 @@ void Bench::wire_motor(std::size_t joint, double gain, std::size_t driver) {
 
 void Bench::load_tip(double mass) {
   parameters_.arm.tip_mass = mass;
-  arm_ = arm::Arm(parameters_.arm, 0);
+  build_arm();
+}
+
+void Bench::scale_play(double times) {
+  play_ = times;
+  build_arm();
+}
+
+void Bench::build_arm() {
+  arm::ArmParameters arm = parameters_.arm;
+  for (arm::Joint<double>& joint : arm.joints) joint.gear.half_gap *= play_;
+  arm_ = arm::Arm(arm, 0);
   place(follower_);
+}
+
+void Bench::scale_noise(double times) {
+  for (std::size_t joint = 0; joint < arm::kJoints; ++joint) {
+    leader_pots_.set_noise(joint, times * parameters_.leader_pots[joint].noise);
+    follower_pots_.set_noise(joint, times * parameters_.follower_pots[joint].noise);
+  }
 }
 
 void Bench::mend() {

@@ -36,6 +36,8 @@ class Bench {
   void change_supply(double volts) { supply_ = volts; }
   void share_supply() { shared_ = true; }  // the board lives on the motors' supply, which sinks when a motor draws
   void load_tip(double mass);              // kg; the arm is built anew where it is, at rest
+  void scale_play(double times);           // of the gears, times their own; the arm is built anew as well
+  void scale_noise(double times);          // of the potentiometers, times their own
   void mend();                             // wires everything rightly again
 
   // From now on the converter sees these voltages, and not the potentiometers'.
@@ -48,6 +50,7 @@ class Bench {
  private:
   void drive();
   void place(const Four& pose);
+  void build_arm();
   void look_at_supply();
 
   Parameters parameters_;
@@ -56,6 +59,7 @@ class Bench {
   Four gains_{1.0, 1.0, 1.0, 1.0};  // of the motors: -1 wrong way round, 0 off, 0.2 weak
   std::array<std::size_t, arm::kJoints> drivers_{0, 1, 2, 3};
   double supply_;
+  double play_ = 1.0;  // times the gears' own
   bool shared_ = false;
   unsigned sunk_ = 0;      // slices until the shared supply is back
   unsigned floating_ = 0;  // bits of the inputs without a wire

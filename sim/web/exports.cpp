@@ -122,6 +122,8 @@ EXPORT(wire_motor) void exported_wire_motor(unsigned joint, double gain, unsigne
 EXPORT(change_supply) void exported_change_supply(double volts) { bench->change_supply(volts); }
 EXPORT(share_supply) void exported_share_supply() { bench->share_supply(); }
 EXPORT(load_tip) void exported_load_tip(double mass) { bench->load_tip(mass); }
+EXPORT(scale_play) void exported_scale_play(double times) { bench->scale_play(times); }
+EXPORT(scale_noise) void exported_scale_noise(double times) { bench->scale_noise(times); }
 EXPORT(mend) void exported_mend() { bench->mend(); }
 
 // Numbers become: voltages at the converter (8, mV), at the motors (4, V), leader and follower (4 each, rad), enable,

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import re
+import shutil
 from collections.abc import Iterator
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
+from urllib.parse import parse_qsl
 
 import pytest
 from playwright.sync_api import BrowserContext, Page, expect
@@ -14,6 +18,8 @@ from tests.page import stage as stages
 from tests.page.barriers import DARK_AND_NARROW, require_no_barrier
 from tests.page.drag import drag, value_of
 from tests.page.serve_folder import Site, serve
+from tools import ROOT
+from tools.docs.links import anchors
 from tools.site.build import build
 
 pytestmark = pytest.mark.slow
@@ -24,6 +30,10 @@ STOP_AT_ONCE = """new MutationObserver((_, watch) => {
   watch.disconnect();
   stop.click();
 }).observe(document, { childList: true, subtree: true })"""
+ONLY_KEPT = """(build) => {
+  caches.keys().then((names) => { window.kept = names.join(); });
+  return window.kept?.lastIndexOf("greywhale") === 0 && window.kept.endsWith(build);
+}"""
 KEPT, ASIDE = "greywhale-eeprom", "greywhale-eeprom-damaged"
 
 
@@ -33,6 +43,11 @@ class OnDisk:
 
     page_address: str
     port: int = 0
+
+
+def state_of(fragment: str) -> dict[str, float | str]:
+    """What a link says of the page, numbers as such."""
+    return {key: float(text) if re.fullmatch(r"[-.\d]+", text) else text for key, text in parse_qsl(fragment)}
 
 
 @pytest.fixture(scope="module")
@@ -66,7 +81,7 @@ def test_a_visitor_sees_an_arm_that_follows_and_what_needs_a_host_is_not_there(v
           return Math.abs(leader) > 0.3 && Math.abs(leader - follower) < 0.1;
         })"""
     )
-    visited.get_by_role("button", name="Controller").click()
+    visited.get_by_role("button", name="Controller", exact=True).click()
     expect(visited.get_by_text("Control surface")).to_be_visible()
     expect(visited.get_by_text("The model predicts")).to_have_count(0)
     expect(visited.get_by_text("Against a file")).to_have_count(0)
@@ -75,6 +90,48 @@ def test_a_visitor_sees_an_arm_that_follows_and_what_needs_a_host_is_not_there(v
     expect(visited.get_by_label("Recorded motion")).to_have_count(0)
     visited.keyboard.press("Space")
     expect(visited.locator(".pill")).to_have_text("disabled")
+
+
+def test_each_thing_to_try_says_what_happened_and_where_to_read_more(visited: Page) -> None:
+    expect(visited.locator(".try h2")).to_have_text(["Pull the leader", "Break a wire", "Let it tune"])
+    pill, said = visited.locator(".pill"), visited.locator(".try p[role=status]:visible")
+    expect(pill).to_have_text("following")
+    expect(said).to_have_count(0)
+    visited.get_by_role("button", name="Pull the shoulder").click()
+    expect(said).to_have_count(1)
+    visited.get_by_role("button", name="Break the wire").click()
+    expect(pill).to_have_text("fault")
+    visited.get_by_role("button", name="Mend it and go on").click()
+    expect(pill).to_have_text("following")
+    visited.get_by_role("button", name="Let it reach on").click()
+    expect(visited.get_by_role("button", name="Pull the shoulder")).to_be_visible()
+    visited.get_by_role("button", name="Open the controllers").click()
+    expect(visited.get_by_text("Control surface")).to_be_visible()
+    visited.get_by_role("button", name="Arm", exact=True).click()
+    expect(said).to_have_count(3)
+    for more in said.get_by_role("link").all():
+        page, _, anchor = (more.get_attribute("href") or "").removeprefix("docs/").partition("#")
+        there = ROOT / "docs" / page.replace(".html", ".md")
+        assert there.is_file()
+        assert anchor in {"", *anchors(there)}
+
+
+def test_each_lesson_opens_in_the_state_that_its_link_names(context: BrowserContext, site: Site) -> None:
+    lessons = re.findall(r"\]\(page:([^)]+)\)", (ROOT / "docs" / "lessons.md").read_text("utf-8"))
+    assert len(lessons) > 10
+    with stages.visit(context, site) as visit:
+        page = visit.page
+        for lesson in lessons:
+            page.goto("about:blank")
+            page.goto(f"{site.page_address}#{lesson}")
+            page.get_by_role("button", name="Copy link").click()
+            expect(page.locator(".notice")).to_contain_text("link is")
+            assert state_of(page.url.partition("#")[2]) == {"joint": 0, **state_of(lesson)}
+        page.evaluate("location.hash = 'view=live&noise=99'")
+        expect(page.locator(".notice")).to_have_text(
+            re.compile('set aside, for noise is "99": choose a number from 0 to 10.')
+        )
+        expect(page.locator(".pill")).to_have_text("following")
 
 
 def test_who_stops_before_the_arm_has_moved_is_obeyed(context: BrowserContext, site: Site, tmp_path: Path) -> None:
@@ -117,6 +174,37 @@ def test_one_file_alone_opens_from_a_disk_and_tunes(context: BrowserContext, fol
         tune_a_little(visit.page)
 
 
+def test_it_opens_without_a_network_after_the_first_visit_and_a_new_build_shows_at_once(
+    context: BrowserContext, folder: Path, tmp_path: Path
+) -> None:
+    own = shutil.copytree(folder, tmp_path / "site")
+    with ExitStack() as online, ExitStack() as visits:
+        page = visits.enter_context(stages.visit(context, online.enter_context(serve(own)))).page
+        page.evaluate("navigator.serviceWorker.ready.then(() => null)")
+        new = build_anew(own)
+        page.reload()
+        expect(page).to_have_title("anew")
+        page.wait_for_function(ONLY_KEPT, arg=new)
+        online.close()
+        page.reload()
+        expect(page).to_have_title("anew")
+        expect(page.locator(".pill")).to_have_text("following")
+        page.locator("canvas[data-tick]").wait_for()
+
+
+def build_anew(folder: Path) -> str:
+    """Another build with another title; the folder of its parts."""
+    (old,) = (path for path in folder.iterdir() if path.is_dir())
+    new = old.name[::-1]
+    old.rename(folder / new)
+    for name in ("index.html", "offline.js"):
+        text = (folder / name).read_text("utf-8")
+        (folder / name).write_text(
+            text.replace(old.name, new).replace("<title>greywhale", "<title>anew"), encoding="utf-8"
+        )
+    return new
+
+
 def test_a_wire_is_broken_and_mended(visited: Page) -> None:
     expect(visited.locator(".pill")).to_have_text("following")
     visited.get_by_role("button", name="Bench").click()
@@ -140,7 +228,7 @@ def test_a_wire_is_broken_and_mended(visited: Page) -> None:
 def test_what_is_stored_is_there_after_a_reload_unless_it_is_damaged(visited: Page) -> None:
     expect(visited.locator(".pill")).to_have_text("following")
     visited.get_by_role("button", name="Stop").click()
-    visited.get_by_role("button", name="Controller").click()
+    visited.get_by_role("button", name="Controller", exact=True).click()
     drag(visited, "Pe_b", 0.1)
     dragged = value_of(visited, "Pe_b")
     visited.get_by_role("button", name="Apply").click()
@@ -148,7 +236,7 @@ def test_what_is_stored_is_there_after_a_reload_unless_it_is_damaged(visited: Pa
     visited.get_by_role("button", name="Store").click()
     expect(visited.get_by_text("The board has stored these controllers.")).to_be_visible()
     visited.reload()
-    visited.get_by_role("button", name="Controller").click()
+    visited.get_by_role("button", name="Controller", exact=True).click()
     visited.get_by_role("slider", name="Pe_b", exact=True).wait_for()
     assert value_of(visited, "Pe_b") == pytest.approx(dragged, abs=1e-4)
     expect(visited.get_by_text("The board has stored these controllers.")).to_be_visible()

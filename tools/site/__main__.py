@@ -1,10 +1,12 @@
-"""`make site`: the page with a bench inside, in build/try."""
+"""`make site`: the page with a bench inside, in build/try, and the documentation beside it."""
 
 from __future__ import annotations
 
+import shutil
 import sys
 
 from tools import ROOT
+from tools.docs import __main__ as docs
 from tools.setup.console import SetupError, say
 from tools.site.build import build
 
@@ -17,6 +19,9 @@ def main() -> int:
     except SetupError as error:
         print(f"site: {error}", file=sys.stderr)
         return 1
+    if code := docs.build(docs.SITE, theme=""):
+        return code
+    shutil.copytree(docs.SITE, FOLDER / "docs")
     say(f"the page is in {FOLDER}; any web server can hand it out, such as python3 -m http.server --directory {FOLDER}")
     return 0
 

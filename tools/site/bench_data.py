@@ -22,6 +22,7 @@ Call = list[str | float]
 
 REACHES_HZ = 25  # a hand takes corners smoothly
 BEGINS_RAD = 0.02
+MOST_TIMES = 10.0  # of the arm's own noise and play
 
 
 def arm_numbers(arm: ArmParameters) -> list[float]:
@@ -113,6 +114,8 @@ def bench_data(arm: ArmParameters) -> dict[str, Any]:
         "leader": {"minimum": [stop.min for stop in stops], "maximum": [stop.max for stop in stops]},
         "supply": {"minimum": 0.0, "maximum": commands.MOST_SUPPLY_V, "value": arm.drive.supply},
         "load": {"minimum": 0.0, "maximum": commands.MOST_LOAD_KG, "value": arm.tip.mass},
+        "noise": {"minimum": 0.0, "maximum": MOST_TIMES, "value": 1.0},
+        "play": {"minimum": 0.0, "maximum": MOST_TIMES, "value": 1.0},
         "faults": [
             {
                 "name": one.name,

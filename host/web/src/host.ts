@@ -30,14 +30,16 @@ export type ArmDescription = {
 
 export type Range = { readonly minimum: number; readonly maximum: number; readonly value: number; readonly step?: number };
 
+export const SIZES = ["supply", "load", "noise", "play", "speed"] as const;
+export type Size = (typeof SIZES)[number];
+
 /** What there is to change on a simulated bench; what a bench lacks is left out. */
 export type BenchControls = {
   readonly leader: { readonly minimum: readonly number[]; readonly maximum: readonly number[] };
   readonly faults: readonly { readonly name: string; readonly places: readonly string[]; readonly description: string }[];
-  readonly supply?: Range;
-  readonly load?: Range;
-  readonly speed?: Range;
-};
+  /** What is broken now, as it is wished; left out by a bench that does not tell. */
+  readonly broken?: readonly string[];
+} & { readonly [size in Size]?: Range };
 
 /** One change: live angles of the leader, a motion, a fault by its name (null mends all), power, a size. */
 export type BenchWish =
@@ -47,7 +49,7 @@ export type BenchWish =
   | { readonly power: boolean }
   | { readonly estop: boolean }
   | { readonly clutch: boolean }
-  | { readonly [size in "supply" | "load" | "speed"]?: number };
+  | { readonly [size in Size]?: number };
 
 export interface Bench {
   controls(): Promise<BenchControls>;

@@ -1,15 +1,19 @@
-// The page without a host: firmware, arm and a moving hand inside it. The arm follows as soon as the page is open.
-// Its parts come as files beside it (site.ts) or within it (single.ts).
+// The page without a host: firmware, arm and a moving hand inside it. The arm follows as soon as the page is open, or is
+// in the state that the address names. Its parts come as files beside it (site.ts) or within it (single.ts).
 
 import "./page.css";
+import { fragmentOf, stateOf, type PageState } from "./address/state";
 import { ArmView } from "./arm3d/view";
 import { LeaderHand } from "./bench/hand";
 import { BenchView } from "./bench/view";
 import { ControllerView } from "./controller/view";
+import { TryCards } from "./first_visit/try_cards";
+import type { BenchWish } from "./host";
 import { LiveView } from "./live/view";
 import { State } from "./link/schema";
-import { el } from "./parts/dom";
+import { button, el } from "./parts/dom";
 import { startTheme } from "./parts/theme";
+import { beside } from "./parts/view";
 import { Session } from "./session";
 import { Shell } from "./shell";
 import { PageBoard } from "./sources/in_page/board";
@@ -17,41 +21,92 @@ import type { BenchData } from "./sources/in_page/bench_data";
 import { PageTuner, type TunerParts } from "./sources/in_page/tuner";
 
 export type Parts = {
-  readonly code: ArrayBuffer; readonly data: BenchData; readonly worker: Worker;
+  readonly code: ArrayBuffer;
+  readonly data: BenchData;
+  readonly worker: Worker;
   readonly tuner: () => Promise<TunerParts>; // a new worker each time
+  /** The folder of the documentation, where one lies beside the page. */
+  readonly docs: string | null;
 };
 
 /** Shows the page, or why its parts are not there. */
 export function openPage(parts: Promise<Parts>): void {
   startTheme();
+  addEventListener("hashchange", () => location.reload());
   parts.then(show).catch((error: unknown) => {
-    document.body.append(el("main", {}, el("p", {}, `${error instanceof Error ? error.message : String(error)}; load it again.`)));
+    document.body.append(el("main", {}, el("p", {}, `${sentence(error)}; load it again.`)));
   });
 }
 
-function show({ code, data, worker, tuner }: Parts): void {
-  const board = new PageBoard(worker, code, data, () => localStorage);
-  const session = new Session(board);
-  const hand = new LeaderHand(board, session.samples, (error) =>
-    session.tell(error instanceof Error ? error.message : String(error)));
-  const arm = new ArmView(session, { arm: async () => data.description });
-  arm.leadBy(hand);
-  const shell = new Shell(session, [arm], [
-    "The firmware of a real board and a simulated arm run inside this page; they need a browser with WebAssembly.",
-  ]);
-  for (const view of [new LiveView(session), new ControllerView(session, null, new PageTuner(tuner)), new BenchView(session, board, hand, null)]) {
-    shell.add(view);
-  }
-  enableOnce(session);
+function sentence(error: unknown): string {
+  return error instanceof Error ? error.message : String(error);
 }
 
-/** Nobody stands near a simulated arm, so it need not wait for a person; but one who has pressed Stop meant it. */
-function enableOnce(session: Session): void {
+async function show({ code, data, worker, tuner, docs }: Parts): Promise<void> {
+  const board = new PageBoard(worker, code, data, () => localStorage);
+  const session = new Session(board);
+  const hand = new LeaderHand(board, session.samples, (error) => session.tell(sentence(error)));
+  const arm = new ArmView(session, { arm: async () => data.description });
+  arm.leadBy(hand);
+  const controller = new ControllerView(session, null, new PageTuner(tuner));
+  const cards = new TryCards(session, board, hand, docs, () => {
+    shell.show(controller);
+    document.getElementById("view")!.focus(); // the button is gone
+  });
+  const views = [beside(arm, cards), new LiveView(session), controller, new BenchView(session, board, hand, null)];
+  let state: PageState | null = null;
+  let problem = "";
+  try {
+    state = stateOf(location.hash.slice(1), views.map(({ name }) => name), await board.controls());
+  } catch (error) {
+    problem = sentence(error);
+  }
+  if (state) controller.showJoint(state.joint);
+  const shell = new Shell(session, views, [
+    "The firmware of a real board and a simulated arm run inside this page; they need a browser with WebAssembly.",
+  ], views.find(({ name }) => name === state?.view));
+  const copy = button("Copy link", () => void session.attempt(async () => copyLink(session, {
+    view: shell.shown, joint: controller.shownJoint, ...board.condition(hand.measured("leader")), raw: await session.readParameters(),
+  })), { title: "An address that opens this page as it is now", disabled: true });
+  shell.offer(copy);
+  if (docs) shell.offer(el("a", { href: `${docs}index.html` }, "Documentation"));
+  whenDisabled(session, async () => {
+    if (problem) session.tell(problem);
+    await open(session, board, state);
+    copy.disabled = false;
+  });
+}
+
+/** The address bar has the link as well: not every browser lets a page write to the clipboard. */
+async function copyLink(session: Session, state: PageState): Promise<void> {
+  history.replaceState(null, "", `#${fragmentOf(state)}`);
+  try {
+    await navigator.clipboard.writeText(location.href);
+    session.tell("The link is copied; it opens this page as it is now.", "info");
+  } catch {
+    session.tell("The link is in the address bar; copy it from there.", "info");
+  }
+}
+
+/** Acts once, when the board has started. */
+function whenDisabled(session: Session, act: () => Promise<void>): void {
   let begun = false;
   session.changed.on(() => {
     if (begun || session.status?.state !== State.is.disabled) return;
     begun = true;
-    if (session.stopAsked) return;
-    void session.attempt(() => session.enable());
+    void act();
   });
+}
+
+/** Opens in a state, and enables: nobody stands near a simulated arm. But who has pressed Stop meant it. */
+async function open(session: Session, board: PageBoard, state: PageState | null): Promise<void> {
+  const change = (wishes: readonly BenchWish[]): Promise<boolean> => session.attempt(async () => {
+    for (const wish of wishes) await board.change(wish);
+  });
+  if (state) {
+    await change(state.sizes);
+    await session.attempt(() => session.apply(state.raw));
+  }
+  if (!session.stopAsked) await session.attempt(() => session.enable());
+  if (state) await change(state.acts); // with the motors on, so that what comes of them is seen
 }

@@ -24,12 +24,15 @@ export class Shell {
   private readonly emptyText = el("p");
   private readonly main = el("main", { attrs: { id: "view", tabindex: "-1" } });
   private readonly nav = el("nav", { attrs: { "aria-label": "Views" } });
+  private readonly offers = el("div", { class: "offers" });
   private readonly tabs = new Map<View, HTMLButtonElement>();
   private front: View;
 
-  /** `remedy` says what to do where no board is there. */
-  constructor(private readonly session: Session, views: readonly View[], remedy: readonly (Node | string)[]) {
-    this.front = views[0]!;
+  /** `remedy` says what to do where no board is there; `front` is the view to begin with. */
+  constructor(
+    private readonly session: Session, views: readonly View[], remedy: readonly (Node | string)[], front: View = views[0]!,
+  ) {
+    this.front = front;
     for (const view of views) this.add(view);
     this.notice.append(this.noticeText, button("×", () => { this.notice.hidden = true; }, {
       attrs: { "aria-label": "Close this notice" },
@@ -44,7 +47,7 @@ export class Shell {
         el("div", { class: "brand" }, el("h1", {}, "greywhale"), this.place),
         this.state,
         el("div", { class: "motors" }, this.control, this.enable, this.stop, theme)),
-      this.nav,
+      el("div", { class: "bar" }, this.nav, this.offers),
       this.notice, this.empty, this.main);
     session.changed.on(() => this.refresh());
     session.noticed.on(() => this.showNotice());
@@ -65,7 +68,16 @@ export class Shell {
     this.nav.append(tab);
   }
 
-  private show(view: View): void {
+  /** Adds what is at hand in every view, beside the tabs. */
+  offer(element: HTMLElement): void {
+    this.offers.append(element);
+  }
+
+  get shown(): string {
+    return this.front.name;
+  }
+
+  show(view: View): void {
     this.front.leave?.();
     this.front = view;
     this.notice.hidden = true; // it was about the view before, and may cover something of this one

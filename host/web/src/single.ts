@@ -16,7 +16,7 @@ function module<Data>(name: string): { code: ArrayBuffer; data: Data; worker: Wo
 }
 
 async function parts(): Promise<Parts> {
-  return { ...module<BenchData>("bench"), tuner: async () => module<TunerData>("tuner") };
+  return { ...module<BenchData>("bench"), tuner: async () => module<TunerData>("tuner"), docs: null };
 }
 
 openPage(parts());

@@ -24,8 +24,15 @@ async function parts(): Promise<Parts> {
   const bench = worker("worker.js"); // starts while its module is on the way
   return {
     worker: bench, ...await module<BenchData>("bench"),
-    tuner: async () => ({ worker: worker("tuner.js"), ...await module<TunerData>("tuner") }),
+    tuner: async () => ({ worker: worker("tuner.js"), ...await module<TunerData>("tuner") }), docs: "docs/",
   };
 }
 
-openPage(parts());
+/** A browser offers this on a secure connection and on this machine. */
+async function keepForOffline(): Promise<void> {
+  if ("serviceWorker" in navigator) await navigator.serviceWorker.register(new URL("offline.js", document.baseURI));
+}
+
+const all = parts();
+openPage(all);
+all.then(keepForOffline).catch(() => undefined); // without it, the page needs the network each time

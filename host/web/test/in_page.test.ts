@@ -42,14 +42,15 @@ async function rig() {
 
 const far = ({ leader, follower }: Sample): number => Math.max(...leader.map((angle, joint) => Math.abs(angle - follower[joint]!)));
 
-test("a clock owes what passed, at any speed, and gives up what a busy machine missed", () => {
+test("a clock owes what passed, at any speed, and gives up what is more than a second", () => {
   const clock = new Clock();
   assert.equal(clock.due(1000, 1), 0);
   assert.equal(clock.due(1004.5, 1), 4);
   assert.equal(clock.due(1005, 1), 1);
   assert.equal(clock.due(1015, 0.25), 2);
   assert.equal(clock.due(1025, 10), 100);
-  assert.equal(clock.due(9000, 1), 50);
+  assert.equal(clock.due(1525, 1), 500);
+  assert.equal(clock.due(9000, 1), 1000);
   clock.hold();
   assert.equal(clock.due(20_000, 1), 0);
 });
@@ -124,6 +125,37 @@ test("power, supply and emergency stop do what they say", async () => {
   assert.equal(life.speed, 2.5);
   assert.throws(() => life.change({ supply: 31 }), /The supply is 31 V; choose one from 0 to 30/);
   assert.throws(() => life.change({ load: Number.NaN }), /The load is NaN kg/);
+});
+
+test("noise grows with its factor, or is none", async () => {
+  const { life, pass, start } = await rig();
+  const swing = (): number => {
+    const angles = Array.from({ length: 500 }, () => pass(1).leader[0]!);
+    return Math.max(...angles) - Math.min(...angles);
+  };
+  life.change({ motion: "hold" });
+  start();
+  pass(1500);
+  const usual = swing();
+  life.change({ noise: 0 });
+  pass(20);
+  assert.equal(swing(), 0);
+  life.change({ noise: 10 });
+  assert.ok(swing() > 5 * usual);
+});
+
+test("play in the gears lets a joint run past its goal", async () => {
+  const past = async (play: number): Promise<number> => {
+    const { life, pass, start } = await rig();
+    life.change({ play });
+    life.change({ leader: [0, 0, 0, 0] });
+    start();
+    pass(1500);
+    life.change({ leader: [0, 0.7, 0.3, 0.5] });
+    return Math.max(...Array.from({ length: 3000 }, () => pass(1).follower[3]!)) - 0.5 * 4096;
+  };
+  assert.ok(await past(10) > 100 + await past(0));
+  await assert.rejects(() => past(11), /The play is 11 times; choose one from 0 to 10/);
 });
 
 /** A browser's storage with as many places as a test needs; null for one that keeps nothing. */

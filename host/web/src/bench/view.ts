@@ -3,15 +3,16 @@
 import { upperFirst } from "../link/refusal";
 import { button, el, select, setText } from "../parts/dom";
 import type { View } from "../parts/view";
-import type { Bench, BenchControls, BenchWish, Host, Range } from "../host";
+import { SIZES, type Bench, type BenchControls, type BenchWish, type Host, type Range, type Size } from "../host";
 import type { Session } from "../session";
 import type { LeaderHand } from "./hand";
 import { DrawnMotion } from "./drawn_motion";
 import { Lead, NAMES } from "./lead";
 
-const SIZES = [
-  ["supply", "Supply", "V"], ["load", "Load at the tip", "kg"], ["speed", "Speed of time", "×"],
-] as const;
+const TITLES: Readonly<Record<Size, readonly [title: string, unit: string]>> = {
+  supply: ["Supply", "V"], load: ["Load at the tip", "kg"], noise: ["Sensor noise", "×"], play: ["Gear play", "×"],
+  speed: ["Speed of time", "×"],
+};
 
 export class BenchView implements View {
   readonly name = "Bench";
@@ -29,7 +30,9 @@ export class BenchView implements View {
 
   enter(): void {
     void this.session.attempt(async () => {
-      if (!this.lead) this.build(await this.bench.controls());
+      const controls = await this.bench.controls();
+      if (!this.lead) this.build(controls);
+      if (controls.broken) this.broken.replaceChildren(...controls.broken.map((name) => el("li", {}, name)));
       if (!this.host) return;
       const motions = (await this.host.state()).files.filter(({ kind }) => kind === "motion");
       this.recorded.replaceChildren(el("option", { value: "" }, motions.length ? "a recorded motion" : "no motion in this folder"),
@@ -86,11 +89,11 @@ export class BenchView implements View {
   }
 
   private sizes(controls: BenchControls): HTMLElement {
-    const rows = SIZES.flatMap(([key, title, unit]) => {
-      const range = controls[key];
-      return range ? [this.size(key, title, unit, range)] : [];
+    const rows = SIZES.flatMap((size) => {
+      const range = controls[size];
+      return range ? [this.size(size, range)] : [];
     });
-    return el("section", { class: "card" }, el("h2", {}, "Power, load and time"), ...rows,
+    return el("section", { class: "card" }, el("h2", {}, "Power, load, wear and time"), ...rows,
       el("div", { class: "row" },
         button("Cut the power", () => void this.change({ power: false })),
         button("Power on", () => void this.change({ power: true })),
@@ -100,7 +103,8 @@ export class BenchView implements View {
         button("Release the pedal", () => void this.change({ clutch: false }))));
   }
 
-  private size(key: "supply" | "load" | "speed", title: string, unit: string, range: Range): HTMLElement {
+  private size(key: Size, range: Range): HTMLElement {
+    const [title, unit] = TITLES[key];
     const words = el("span", { class: "number" });
     const show = (): void => setText(words, `${Number(Number(slider.value).toFixed(3))} ${unit}`);
     const slider = el("input", { type: "range", attrs: {

@@ -125,7 +125,7 @@ export class ControllerView implements View {
 
   enter(): void {
     void this.act(async () => {
-      await this.session.readParameters();
+      if (this.session.link.open) await this.session.readParameters(); // else the session reads them once it is
       this.take();
       if (this.host) await this.listFiles(this.host);
     });
@@ -139,7 +139,11 @@ export class ControllerView implements View {
     this.files.value = chosen;
   }
 
-  private showJoint(joint: number): void {
+  get shownJoint(): number {
+    return this.joint;
+  }
+
+  showJoint(joint: number): void {
     this.joint = joint;
     this.predict?.showJoint(joint);
     this.tune?.showJoint(joint);

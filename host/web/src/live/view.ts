@@ -36,7 +36,7 @@ export class LiveView implements View {
     this.trigger = new TriggerPanel(session, this.window);
     this.span = select("Span shown", SPANS_S.map((s) => [String(s), s < 60 ? `${s} s` : `${s / 60} min`] as const),
       (seconds) => this.window.setSpan(Number(seconds) * TICKS_A_SECOND));
-    this.element = el("div", { class: "live" },
+    this.element = el("div", { class: "live with-side" },
       el("div", { class: "live-main" }, this.tools(), this.charts.element, this.table()),
       el("aside", { class: "side" }, new StatePanel(session).element, this.measures.element, this.trigger.element));
     this.window.changed.on(() => this.showWindow());

@@ -11,6 +11,8 @@ export type BenchData = {
   readonly leader: BenchControls["leader"];
   readonly supply: Range;
   readonly load: Range;
+  readonly noise: Range; // times the arm's own
+  readonly play: Range;
   readonly faults: readonly {
     readonly name: string;
     readonly description: string;

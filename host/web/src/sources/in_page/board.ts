@@ -1,7 +1,7 @@
 // A board inside the page, in a worker of its own, with the bench around it.
 
 import type { Board, BoardListener } from "../../board";
-import type { BenchControls, BenchWish, Bench as BenchActions } from "../../host";
+import { SIZES, type BenchControls, type BenchWish, type Bench as BenchActions, type Size } from "../../host";
 import { encodeFrame } from "../../link/frames";
 import { StopRequest } from "../../link/schema";
 import type { BenchData } from "./bench_data";
@@ -18,7 +18,9 @@ export class PageBoard implements Board, BenchActions {
   private listener: BoardListener | null = null;
   private readonly wishes = new Map<number, (error: string | null) => void>();
   private wished = 0;
-  private readonly sizes: { supply: number; load: number; speed: number };
+  private readonly sizes: Record<Size, number>;
+  private broken: readonly string[] = [];
+  private led: readonly number[] | "held" | null = null; // null while it reaches here and there
   private keptSentence = ""; // of what the browser had kept; told once the board is there
   private unkeptTold = false;
 
@@ -27,7 +29,7 @@ export class PageBoard implements Board, BenchActions {
     private readonly worker: Worker, private readonly code: ArrayBuffer, private readonly data: BenchData,
     private readonly storage: () => Storage,
   ) {
-    this.sizes = { supply: data.supply.value, load: data.load.value, speed: SPEED.value };
+    this.sizes = this.ownSizes();
     worker.addEventListener("message", ({ data: message }: MessageEvent<FromBench>) => this.heard(message));
     worker.addEventListener("error", ({ message }) => this.failed(`The bench does not start: ${message}; reload the page.`));
     document.addEventListener("visibilitychange", () => this.showVisible());
@@ -106,12 +108,15 @@ export class PageBoard implements Board, BenchActions {
   }
 
   async controls(): Promise<BenchControls> {
-    const { leader, supply, load, faults } = this.data;
+    const { leader, supply, load, noise, play, faults } = this.data;
     return {
       leader,
+      broken: this.broken,
       faults: faults.map(({ name, description, places }) => ({ name, description, places: Object.keys(places).filter(Boolean) })),
       supply: { ...supply, value: this.sizes.supply },
       load: { ...load, value: this.sizes.load },
+      noise: { ...noise, value: this.sizes.noise },
+      play: { ...play, value: this.sizes.play },
       speed: { ...SPEED, value: this.sizes.speed },
     };
   }
@@ -124,8 +129,34 @@ export class PageBoard implements Board, BenchActions {
     });
     if (error) throw new Error(error);
     if ("power" in wish && !wish.power) this.listener?.link({ open: true, port: PORT, sentence: UNPOWERED });
-    for (const size of ["supply", "load", "speed"] as const) {
-      if (size in wish) this.sizes[size] = (wish as Readonly<Record<string, number>>)[size]!;
+    if ("fault" in wish) this.takeFault(wish.fault);
+    else if ("leader" in wish) this.led = [...wish.leader];
+    else if ("motion" in wish) this.led = wish.motion === "hold" ? "held" : null;
+    for (const size of SIZES) {
+      if (size in wish) this.sizes[size] = (wish as Readonly<Record<Size, number>>)[size];
     }
+  }
+
+  private takeFault(fault: string | null): void {
+    this.broken = fault === null ? [] : [...this.broken, fault];
+    if (fault === null) this.sizes.supply = this.data.supply.value; // mended as well
+  }
+
+  private ownSizes(): Record<Size, number> {
+    const { supply, load, noise, play } = this.data;
+    return { supply: supply.value, load: load.value, noise: noise.value, play: play.value, speed: SPEED.value };
+  }
+
+  /** What would bring a fresh bench to where this one is, its leader being at these angles now. */
+  condition(leader: readonly number[]): { readonly sizes: readonly BenchWish[]; readonly acts: readonly BenchWish[] } {
+    const own = this.ownSizes();
+    const led = this.led === "held" ? leader : this.led;
+    return {
+      sizes: SIZES.filter((size) => this.sizes[size] !== own[size]).map((size) => ({ [size]: this.sizes[size] })),
+      acts: [
+        ...(led ? [{ leader: led.map((angle) => Number(angle.toFixed(3))) }] : []),
+        ...this.broken.map((fault) => ({ fault })),
+      ],
+    };
   }
 }

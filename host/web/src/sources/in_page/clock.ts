@@ -1,6 +1,7 @@
-// How many ticks are due by the wall clock. A machine that is too slow falls behind, and that is not made up for.
+// How many ticks are due by the wall clock. What a busy machine missed is made up for, as a second of ticks takes some
+// milliseconds; one that is too slow falls behind.
 
-const GIVE_UP_MS = 50;
+const GIVE_UP_MS = 1000;
 
 export class Clock {
   private last: number | null = null; // ms of the wall clock; null while time stands still

@@ -1,6 +1,6 @@
 // The life of a bench inside the page, tick by tick: what the page sends, what a person wishes, the lease, the hand.
 
-import type { BenchWish, Range } from "../../host";
+import type { BenchWish, Range, Size } from "../../host";
 import { encodeFrame, FrameDecoder } from "../../link/frames";
 import { EnableRequest, LeadRequest, RenewRequest, StopRequest } from "../../link/schema";
 import type { BenchData } from "./bench_data";
@@ -95,10 +95,11 @@ export class Life {
     for (const call of calls) this.module.call(...call);
   }
 
-  private size(wish: { readonly [size in "supply" | "load" | "speed"]?: number }): void {
-    const { supply, load, speed } = wish;
+  private size({ supply, load, noise, play, speed }: { readonly [size in Size]?: number }): void {
     if (supply !== undefined) this.module.call("change_supply", within("supply", "V", supply, this.data.supply));
     if (load !== undefined) this.module.call("load_tip", within("load", "kg", load, this.data.load));
+    if (noise !== undefined) this.module.call("scale_noise", within("noise", "times", noise, this.data.noise));
+    if (play !== undefined) this.module.call("scale_play", within("play", "times", play, this.data.play));
     if (speed !== undefined) this.speed = within("speed", "times", speed, SPEED);
   }
 
