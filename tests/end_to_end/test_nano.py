@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -20,18 +18,12 @@ from greywhale.simulate import plant_row
 from greywhale_sim.words import lock_step
 
 
-def told(capsys: pytest.CaptureFixture[str], *arguments: str | Path) -> dict[str, Any]:
-    assert run([*map(str, arguments), "--json"]) == 0
-    answer: dict[str, Any] = json.loads(capsys.readouterr().out)
-    return answer
-
-
 @pytest.mark.slow
-def test_the_very_voltages_of_a_nanos_log_come_in_its_steps(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_very_voltages_of_a_nanos_log_come_in_its_steps(tmp_path: Path) -> None:
     """Told by the log alone: 15 V in 255 steps on the last two joints, in 400 on the first two."""
     path = tmp_path / "log.csv"
     with lock_step("--board", "nano") as bench:
-        told(capsys, "record", "--enable", "-p", bench.port, "-o", path, "--seconds", "4")
+        assert run(["record", "--enable", "-p", bench.port, "-o", str(path), "--seconds", "4"]) == 0
     log = read_log(path)
     table = controllers.table_of(log, [])
     assert table == ParameterTable.defaults(Board.NANO328)
