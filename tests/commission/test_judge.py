@@ -134,9 +134,17 @@ def test_a_joint_that_ended_the_trial_failed_and_the_others_are_not_judged() -> 
     assert np.isnan(other.score)
 
 
-def test_the_score_is_the_error_relative_to_before() -> None:
-    better = replace(BEFORE, error=BEFORE.error * np.array([0.1, 1.0, 0.1, 1.0, 1.0])[:, None])
-    assert verdict(better, 0).score == pytest.approx(0.1**0.4)
+def test_the_score_is_the_error_in_what_a_hand_leads_relative_to_before() -> None:
+    better = replace(BEFORE, error=BEFORE.error * np.array([0.5, 0.5, 0.1, 0.3, 0.5])[:, None])
+    assert verdict(better, 0).score == pytest.approx(0.2)
+    assert verdict(better, 0).share == pytest.approx(0.25)
+
+
+def test_a_joint_that_holds_still_may_be_two_milliradians_worse() -> None:
+    still = PARTS.index("holding still")
+    was = np.sqrt(BEFORE.error[still, 2])
+    assert verdict(with_joint("error", 2, (was + 0.0019) ** 2, still), 2).passed
+    assert "holding still" in verdict(with_joint("error", 2, (was + 0.0021) ** 2, still), 2).faults[0]
 
 
 def test_how_much_two_recordings_differ_is_allowed_for() -> None:

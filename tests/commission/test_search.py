@@ -22,7 +22,9 @@ def verdict(
     score: float, *, restless: bool = False, chatters: bool = False, worse: bool = False, excess: float = 3.0
 ) -> TrialVerdict:
     faults = (("restless",) if restless or chatters else ()) + (("worse",) if worse else ())
-    return TrialVerdict(0, faults, restless or chatters, chatters and not restless, excess, score, True, not faults)
+    return TrialVerdict(
+        0, faults, restless or chatters, chatters and not restless, excess, score, 0.25, True, not faults
+    )
 
 
 def begun() -> JointSearch:
@@ -76,7 +78,7 @@ def test_a_joint_that_hunts_hardly_more_than_it_may_is_softened_a_little() -> No
 
 
 def test_what_can_be_borne_is_softened_a_little_and_then_varied_like_what_passed() -> None:
-    borne = TrialVerdict(0, ("restless",), True, False, 1.05, 0.2, True, True)
+    borne = TrialVerdict(0, ("restless",), True, False, 1.05, 0.2, 0.25, True, True)
     search = after_trial(borne)
     for number in range(MOST_SOFTER):
         row = proposal(search)

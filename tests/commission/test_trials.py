@@ -49,14 +49,14 @@ def test_better_controllers_pass_and_are_ranked(trials: Trials, rig: SimulatedRi
 
 def judged(trial: Trial, faults: tuple[str, ...], bearable: bool, score: float) -> Trial:
     """The trial with other verdicts: joint 0 has these faults, and all joints follow alike."""
-    verdicts = [replace(one, faults=(), bearable=True, score=score) for one in trial.verdicts]
+    verdicts = [replace(one, faults=(), bearable=True, score=score, share=0.25) for one in trial.verdicts]
     verdicts[0] = replace(verdicts[0], faults=faults, bearable=bearable, excess=BEARABLE)
     return replace(trial, verdicts=tuple(verdicts))
 
 
 @pytest.mark.parametrize(
     ("bearable", "score", "taken"),
-    [(True, 0.67, True), (True, 0.68, False), (False, 0.1, False)],
+    [(True, 0.63, True), (True, 0.65, False), (False, 0.1, False)],
     ids=["follows far better", "follows hardly better", "is too restless"],
 )
 def test_a_little_unrest_has_its_price(

@@ -61,7 +61,7 @@ def record(
     result = experiment.run_exact(every=1)
     if result.diverged[0]:
         raise RuntimeError("the recorded arm left the range of numbers")
-    follower = _readings(np.asarray(result.angles[0], dtype=np.float64), arm, table, seed)
+    follower = readings_of(np.asarray(result.angles[0], dtype=np.float64), arm, table, seed)
     volts = result.duties[0].astype(np.float64) / pwm_steps(table.board) * arm.drive.supply
     origin = Origin("0.1.0", table.board.key, table.crc, table.period_ms, every, joints=table.joints_in_use)
     first = round(START_S * 1000)
@@ -72,7 +72,7 @@ def record(
     return read_log(path)
 
 
-def _readings(angles: Floats, arm: ArmParameters, table: ParameterTable, seed: int) -> Floats:
+def readings_of(angles: Floats, arm: ArmParameters, table: ParameterTable, seed: int) -> Floats:
     """What the firmware makes of the true angles at every tick."""
     pots = Potentiometers(arm.follower_pots, seed + 1)
     shift = table["filter_shift"]

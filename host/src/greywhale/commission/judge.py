@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from greywhale.base.types import Floats
-from greywhale.commission.measures import NAMES, Measures
+from greywhale.commission.measures import HAND_LED, HOLDING, NAMES, Measures
 from greywhale.commission.motions import PARTS
 from greywhale.motion.swings import CHATTER_AT_REST_HZ
 from greywhale.protocol.firmware import JOINTS
@@ -25,8 +25,13 @@ BEARABLE, PRICE = 1.15, 2.0
 # Two recordings with the same controllers may differ by so much more than two others did: as a share, and in rad² (1
 # mrad rms). Friction holds a joint now here, now there.
 SAME_SHARE, SAME_RAD2 = 0.02, 1e-6
+# While a joint holds still its error is hardly more than its play, and its neighbours push it: so much more (rad rms)
+# nobody sees.
+UNSEEN_RAD = 0.002
 # A joint that keeps its controller feels its neighbours' quicker moves, and how stiffly they rest.
 KEPT_SHARE, KEPT_GROWTH = 0.1, 2.0
+# The parts whose error ranks controllers as a person's reaches do (docs/commission.md). In the others it has a limit.
+LED = [PARTS.index(name) for name in HAND_LED]
 
 
 @dataclass(frozen=True)
@@ -48,7 +53,9 @@ class Limits:
         controllers are those from before.
         """
         before = Measures(**{name: np.fmax.reduce([getattr(one, name) for one in befores]) for name in NAMES})
-        share = np.where(kept, KEPT_SHARE, SAME_SHARE)
+        error = (1.0 + np.where(kept, KEPT_SHARE, SAME_SHARE)) * before.error + SAME_RAD2
+        still = PARTS.index(HOLDING)
+        error[still] = np.maximum(error[still], (np.sqrt(before.error[still]) + UNSEEN_RAD) ** 2)
         return cls(
             unrest=_allowed(
                 before.unrest,
@@ -58,7 +65,7 @@ class Limits:
             ),
             rattle=_allowed(before.rattle, lambda known: RATTLE_GROWTH * known, LEAST_RATTLE, MOST_RATTLE),
             chatter=np.maximum(CHATTER_AT_REST_HZ, 1.1 * np.nan_to_num(before.chatter)),
-            error=(1.0 + share) * before.error + SAME_RAD2,
+            error=error,
         )
 
 
@@ -71,7 +78,8 @@ class TrialVerdict:
     restless: bool  # one of the faults is unrest, rattling or chatter
     chatters_only: bool
     excess: float  # how many times its unrest, rattling or chatter are what they may be; inf where it ended the trial
-    score: float  # geometric mean over the parts; NaN where the check was not played to its end, 0 for one not in use
+    score: float  # in what a hand leads; NaN where the check was not played to its end, 0 for one not in use
+    share: float  # of all joints' error there, with the controllers from before
     known: bool  # whether the joint can be judged: the check was whole, or this joint ended it
     bearable: bool  # whether it passed, or has no other fault than a little too much unrest, rattling or chatter
 
@@ -126,12 +134,13 @@ def _judge(
             faults.append(f"it follows {part} worse than before ({ratio:.2g} times the error)")
     if foreseen:
         faults.append(foreseen)
-    ratios = measured.error[:, joint] / np.maximum(before.error[:, joint], 1e-9)
-    score = float(np.exp(np.mean(np.log(np.maximum(ratios, 1e-9))))) if before.error[:, joint].any() else 0.0
+    was = before.error[LED].sum(axis=0)
+    score = float(measured.error[LED, joint].sum() / max(was[joint], 1e-9))
+    share = float(was[joint] / max(was.sum(), 1e-9))
     known = measured.whole or bool(faults)
     hardly = restless and len(faults) == 1 and excess <= BEARABLE
     bearable = measured.whole and (hardly or not faults)
-    return TrialVerdict(joint, tuple(faults), restless, restless and quiet, excess, score, known, bearable)
+    return TrialVerdict(joint, tuple(faults), restless, restless and quiet, excess, score, share, known, bearable)
 
 
 @dataclass(frozen=True)

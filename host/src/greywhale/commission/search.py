@@ -33,9 +33,9 @@ HARDLY, GENTLY = 1.5, 0.35
 STEPS: tuple[dict[int, float], ...] = ({KP: 1.5, KD: 1.3}, {KI: 6.0}, {KD: 1.4}, {KP: 0.7}, {KI: 0.15})
 # A step that follows better, but is hardly too much (as above), is made again half as far.
 HALF = 0.5
-# A joint whose error is this share of before (mean over the check) is good: no more trials for its sake. In trials for
-# the sake of others it is varied as well, at no cost.
-GOOD = 0.1
+# A joint whose error is this share of before (in what a hand leads) is good: no more trials for its sake. In trials
+# for the sake of others it is varied as well, at no cost.
+GOOD = 0.05
 LEAST_KI, MOST_KI = 30.0, 300.0  # V/(rad s), where a step enlarges it; less does next to nothing in a move
 
 

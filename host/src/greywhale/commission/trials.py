@@ -64,13 +64,13 @@ class Trial:
 
     @property
     def score(self) -> float:
-        """The geometric mean of the scores of the joints in use."""
-        return _mean([verdict.score for verdict in self.verdicts])
+        """The error of all joints together in what a hand leads, relative to before."""
+        return sum(verdict.share * verdict.score for verdict in self.verdicts)
 
     @property
     def value(self) -> float:
-        """The geometric mean of the values of the joints in use; less is better."""
-        return _mean([verdict.value for verdict in self.verdicts])
+        """The same with what has to be borne priced; less is better."""
+        return sum(verdict.share * verdict.value for verdict in self.verdicts)
 
     def as_dict(self) -> TrialFacts:
         return {
@@ -169,8 +169,3 @@ class Trials:
         foreseen = ("",) * JOINTS if self.foresight is None else self.foresight.clauses(rows)
         verdicts = judge(measured, self._befores[0], Limits.of(self._befores, kept), guilty, foreseen)
         return Trial(name, rows.copy(), self.table_of(rows), path, played.stopped, measured, verdicts, traces)
-
-
-def _mean(values: list[float]) -> float:
-    """The geometric mean; a joint that is not in use has 0 and does not count."""
-    return float(np.exp(np.mean([np.log(value) for value in values if value != 0.0])))
