@@ -49,6 +49,7 @@ async function buildSingle(folder) {
         element(`${name}-data`, "application/json", readFileSync(join(folder, `${name}.json`), "utf8")),
         element(`${name}-worker`, "text/plain", text(worker, ".js")),
       ]),
+      ...["mega", "nano"].map((board) => element(`firmware-${board}`, "text/plain", readFileSync(join(folder, `${board}.hex`), "utf8"))),
       element("page", "text/javascript", text(page, ".js")),
       "</body>",
     ].join(""));

@@ -1,4 +1,4 @@
-"""The page's parts in Node: link client, samples, law, against vectors and numbers that Python makes; its own bench."""
+"""The page's parts in Node: link client, samples, law, files, against what Python makes of the same; its own bench."""
 
 from __future__ import annotations
 
@@ -12,7 +12,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 
+from greywhale.base.errors import UserError
+from greywhale.board.calibrate.solve import Pose, solve
+from greywhale.board.calibrate.sweep import Sweep
+from greywhale.files import controller
+from greywhale.files.paper_tables import paper_table
 from greywhale.fuzzy.exact import Law
 from greywhale.fuzzy.settings import ANGLE_UNIT, SET_UNIT, JointSettings
 from greywhale.protocol.schema import PARAMETER_BY_NAME, Refusal
@@ -59,14 +65,110 @@ def numbers_of_the_law() -> dict[str, list[dict[str, Any]]]:
     return {"cases": cases, "refused": refused}
 
 
-def test_link_client_samples_law_bench_and_tuner_give_what_python_gives(tmp_path: Path) -> None:
-    golden, law = tmp_path / "golden.json", tmp_path / "law.json"
+# What a person may get wrong in a controller.toml: a text and what stands in its place, once.
+SLIPS = (
+    *[
+        ("kp = ", one)
+        for one in ("kq = ", "kp = 1", "kp = -", "kp = true #", 'kp = "x" #', "kp = [1] #", "#", "kp = nan #")
+    ],
+    *[("kd = ", one) for one in ("kd = 0.000001 #", "kd = 1e-30 #", "kd = 65 #", "kd = 1e300 #", "kd = -0.5 #")],
+    *[("ku = ", one) for one in ("ku = 30.5 #", "ku = 0.0001 #", "ku = 2023-01-01 #")],
+    *[("Ne_c = ", one) for one in ("Ne_d = ", "Ne_c = 0.5 #", "Ne_c = -0.001 #", "Ne_c = -2 #", "Ne_c = -1e6 #", "#")],
+    ("[joint.sets]", "ce_ticks = 2\n[joint.sets]"),
+    ("[joint.sets]", "ce_ticks = 1.5\n[joint.sets]"),
+    ("[joint.sets]", "ce_ticks = 21\n[joint.sets]"),
+    ("[joint.sets]", "[joint.set]"),
+    ("[joint.sets]", "sets = 3\n[joint.other]"),
+    *[("[[joint]]", one) for one in ("[[join]]", "[[joint]]\n[[joint]]", "[joint]", "stall_volts = 3.2\n[[joint]]")],
+    *[("[[joint]]", f"stall_volts = {one}\n[[joint]]") for one in ("30", '"3"', "inf", "0")],
+    ("[[joint]]", "source = 5\n[[joint]]"),
+    ("[[joint]]", "tuning = 5\n[[joint]]"),
+    ("[[joint]]", "[travel]\nspeed_per_volt = [1, 2, 3]\ngravity_1 = 0.5\n[[joint]]"),
+)
+TRAVEL = """
+[travel]
+speed_per_volt = [0.75, 1, 1.5, {speed}]
+time_constant = [400, 100, 80, 50.5]
+breakaway_volts = [0, 1, 2, 3]
+gravity_1 = 1.5
+gravity_12 = -0.5
+gravity_2 = 0
+"""
+
+
+def answers_to_files() -> list[dict[str, Any]]:
+    """Controller files and others, each with its raw values or with the sentence that refuses it."""
+    sound = "\n".join(
+        line for line in paper_table("before_tuning").read_text("utf-8").splitlines() if not line.startswith("source")
+    )
+    texts = [sound, *(sound.replace(slip, made, 1) for slip, made in SLIPS)]
+    texts += [
+        sound.replace("kp = ", "kq = "),
+        sound.replace("[[joint]]", "[[joint]]\nmotor = 1"),
+        "",
+        "# nothing",
+        "a = 1",
+    ]
+    texts += [sound[: sound.rindex("[[joint]]")], sound + TRAVEL.format(speed=2), sound + TRAVEL.format(speed=9)]
+    texts += ["time_s,leader_0\n0,1", "[[joint]]\nmotor = 1", "[joint0]\nkp = 1", "supply_v = 3", "x = ["]
+    cases = []
+    for text in texts:
+        told: dict[str, Any] = {"text": text, "raw": None, "error": ""}
+        Path("c.toml").write_text(text, "utf-8")
+        try:
+            told["raw"] = controller.load("c.toml").raw_values()
+        except UserError as error:
+            told["error"] = error.message
+        cases.append(told)
+    return cases
+
+
+def calibrations() -> list[dict[str, Any]]:
+    """Sweeps and poses of arms whose potentiometers are mounted anyhow, and some that contradict each other."""
+    chance = np.random.default_rng(1)
+    cases: list[dict[str, Any]] = []
+    for slip in ["", "", "", "poses too near", "shaft slips", "other ends"]:
+        scale = np.radians(chance.uniform(260, 340, 8)) / 1023 * chance.choice([-1, 1], 8)
+        zero = chance.uniform(400, 600, 8)
+        ends = chance.uniform(1.0, 1.4, (8, 2)) * [-1, 1]
+        poses = [np.zeros(4), chance.choice([-1, 1], 4) * (0.2 if slip == "poses too near" else 0.8)]
+        counts = [zero + np.tile(pose, 2) / scale for pose in poses]
+        if slip == "shaft slips":
+            counts[1][6] = counts[0][6] + 20
+        if slip == "other ends":
+            ends[4] = [1.1, 1.4]
+            ends[0] = [-1.4, 1.0]
+        turned = np.sort(zero[:, None] + ends / scale[:, None], axis=1)
+        sweeps = [Sweep(pot, int(np.sign(scale[pot])), low, high, ()) for pot, (low, high) in enumerate(turned)]
+        first, second = (Pose(angles, read) for angles, read in zip(poses, counts, strict=True))
+        told: dict[str, Any] = {"sweep": [{"low": low, "high": high} for low, high in turned.tolist()]}
+        told |= {
+            name: {"angles": one.angles.tolist(), "counts": one.counts.tolist()}
+            for name, one in (("first", first), ("second", second))
+        }
+        try:
+            cases.append({**told, "raw": solve(sweeps, first, second, None).changes(), "error": ""})
+        except UserError as error:
+            cases.append({**told, "raw": None, "error": error.message})
+    assert [one["raw"] is None for one in cases] == 3 * [False] + 3 * [True]
+    return cases
+
+
+def test_link_client_samples_law_files_bench_and_tuner_give_what_python_gives(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    golden, law, files = tmp_path / "golden.json", tmp_path / "law.json", tmp_path / "files.json"
     golden.write_text(json.dumps(tomllib.loads((ROOT / "shared/link/golden.toml").read_text("utf-8"))))
     law.write_text(json.dumps(numbers_of_the_law()))
+    files.write_text(json.dumps(answers_to_files()))
+    calibrated = tmp_path / "calibrations.json"
+    calibrated.write_text(json.dumps(calibrations()))
     tuned = tmp_path / "tuning.json"
     tuned.write_text(json.dumps(tuning()))
-    files = {"GOLDEN": golden, "LAW": law, "TUNING": tuned, "SITE": tmp_path}
-    environment = {**os.environ, **{name: str(path) for name, path in files.items()}}
+    given = {"CALIBRATIONS": calibrated, "GOLDEN": golden, "LAW": law, "CONTROLLER_FILES": files, "TUNING": tuned}
+    given |= {"SITE": tmp_path}
+    environment = {**os.environ, **{name: str(path) for name, path in given.items()}}
     write_bench(tmp_path)
     done = subprocess.run(
         ["node", "build.mjs", "test"], cwd=PAGE, env=environment, capture_output=True, text=True, check=False

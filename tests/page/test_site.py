@@ -20,7 +20,6 @@ from tests.page.drag import drag, value_of
 from tests.page.serve_folder import Site, serve
 from tools import ROOT
 from tools.docs.links import anchors
-from tools.site.build import build
 
 pytestmark = pytest.mark.slow
 
@@ -50,19 +49,6 @@ def state_of(fragment: str) -> dict[str, float | str]:
     return {key: float(text) if re.fullmatch(r"[-.\d]+", text) else text for key, text in parse_qsl(fragment)}
 
 
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    made: Path = tmp_path_factory.mktemp("site")
-    build(made)
-    return made
-
-
-@pytest.fixture
-def site(folder: Path) -> Iterator[Site]:
-    with serve(folder) as served:
-        yield served
-
-
 @pytest.fixture
 def visited(context: BrowserContext, site: Site) -> Iterator[Page]:
     """A page that somebody opens for the first time."""
@@ -71,7 +57,7 @@ def visited(context: BrowserContext, site: Site) -> Iterator[Page]:
 
 
 def test_a_visitor_sees_an_arm_that_follows_and_what_needs_a_host_is_not_there(visited: Page) -> None:
-    expect(visited.locator("nav button")).to_have_text(["Arm", "Live", "Controller", "Bench"])
+    expect(visited.locator("nav button")).to_have_text(["Arm", "Live", "Controller", "Parameters", "Bench"])
     expect(visited.get_by_text("no cycle timing")).to_be_visible()
     expect(visited.locator(".pill")).to_have_text("following")
     visited.get_by_role("button", name="Live").click()

@@ -8,6 +8,8 @@ import re
 import shutil
 from pathlib import Path
 
+from greywhale.board.flash import BOARDS
+from greywhale.board.flash.readback import shipped_image
 from greywhale.files.arm import default_arm
 from tools.setup import page, page_modules
 from tools.site.bench_data import bench_data
@@ -22,6 +24,8 @@ def build(folder: Path) -> None:
     parts = folder / "parts"
     page.npm("run", "site", str(parts), what="Building the page with a bench inside")
     write_bench(parts)
+    for board in BOARDS:
+        shutil.copyfile(shipped_image(board).path, parts / f"{board}.hex")
     page.npm("run", "single", str(parts), what="Building the page as one file")
     arrange(folder, parts)
 

@@ -1,30 +1,39 @@
-// The page without a host: firmware, arm and a moving hand inside it. The arm follows as soon as the page is open, or is
-// in the state that the address names. Its parts come as files beside it (site.ts) or within it (single.ts).
+// The page without a host: firmware, arm and a moving hand inside it, which follows as soon as the page is open, or is in
+// the state that the address names; or a real board at a port, where the address says ?board=port. Its parts come as files
+// beside it (site.ts) or within it (single.ts).
 
 import "./page.css";
 import { fragmentOf, stateOf, type PageState } from "./address/state";
 import { ArmView } from "./arm3d/view";
 import { LeaderHand } from "./bench/hand";
 import { BenchView } from "./bench/view";
+import { CalibrateView } from "./calibrate/view";
+import { ConnectView } from "./connect/view";
 import { ControllerView } from "./controller/view";
 import { TryCards } from "./first_visit/try_cards";
 import type { BenchWish } from "./host";
 import { LiveView } from "./live/view";
 import { State } from "./link/schema";
-import { button, el } from "./parts/dom";
+import { ParametersView } from "./parameters/view";
+import { button, el, select } from "./parts/dom";
 import { startTheme } from "./parts/theme";
 import { beside } from "./parts/view";
+import type { NamedText } from "./port";
 import { Session } from "./session";
 import { Shell } from "./shell";
 import { PageBoard } from "./sources/in_page/board";
 import type { BenchData } from "./sources/in_page/bench_data";
 import { PageTuner, type TunerParts } from "./sources/in_page/tuner";
+import { SerialBoard } from "./sources/serial/board";
 
+/** What the page is made of. */
 export type Parts = {
   readonly code: ArrayBuffer;
   readonly data: BenchData;
   readonly worker: Worker;
   readonly tuner: () => Promise<TunerParts>; // a new worker each time
+  /** The HEX file of a board, mega or nano. */
+  readonly firmware: (board: string) => Promise<NamedText>;
   /** The folder of the documentation, where one lies beside the page. */
   readonly docs: string | null;
 };
@@ -33,7 +42,7 @@ export type Parts = {
 export function openPage(parts: Promise<Parts>): void {
   startTheme();
   addEventListener("hashchange", () => location.reload());
-  parts.then(show).catch((error: unknown) => {
+  parts.then(atPort() ? showPort : showBench).catch((error: unknown) => {
     document.body.append(el("main", {}, el("p", {}, `${sentence(error)}; load it again.`)));
   });
 }
@@ -42,7 +51,37 @@ function sentence(error: unknown): string {
   return error instanceof Error ? error.message : String(error);
 }
 
-async function show({ code, data, worker, tuner, docs }: Parts): Promise<void> {
+function atPort(): boolean {
+  return new URLSearchParams(location.search).get("board") === "port";
+}
+
+/** Which board the page shows. Another one begins anew, so that nothing of the one before is taken for its own. */
+function choice(): HTMLElement {
+  const box = select("Board", [["", "Bench in this page"], ["port", "Board at a port"]], (board) => {
+    location.href = `${location.pathname}${board && `?board=${board}`}`;
+  });
+  box.value = atPort() ? "port" : "";
+  return box;
+}
+
+function showPort({ data, worker, firmware, docs }: Parts): void {
+  worker.terminate();
+  const board = new SerialBoard((navigator as { serial?: Serial }).serial, firmware);
+  const session = new Session(board);
+  const shell = new Shell(session, [
+    new ConnectView(session, board), new LiveView(session), new ArmView(session, { arm: async () => data.description }),
+    new ControllerView(session, null), new ParametersView(session), new CalibrateView(session),
+  ], ["Plug the board in by USB and connect it in the view Port."]);
+  offerOthers(shell, docs);
+}
+
+/** Other boards, and what there is to read. */
+function offerOthers(shell: Shell, docs: string | null): void {
+  shell.offer(choice());
+  if (docs) shell.offer(el("a", { href: `${docs}index.html` }, "Documentation"));
+}
+
+async function showBench({ code, data, worker, tuner, docs }: Parts): Promise<void> {
   const board = new PageBoard(worker, code, data, () => localStorage);
   const session = new Session(board);
   const hand = new LeaderHand(board, session.samples, (error) => session.tell(sentence(error)));
@@ -53,7 +92,9 @@ async function show({ code, data, worker, tuner, docs }: Parts): Promise<void> {
     shell.show(controller);
     document.getElementById("view")!.focus(); // the button is gone
   });
-  const views = [beside(arm, cards), new LiveView(session), controller, new BenchView(session, board, hand, null)];
+  const views = [
+    beside(arm, cards), new LiveView(session), controller, new ParametersView(session), new BenchView(session, board, hand, null),
+  ];
   let state: PageState | null = null;
   let problem = "";
   try {
@@ -69,7 +110,7 @@ async function show({ code, data, worker, tuner, docs }: Parts): Promise<void> {
     view: shell.shown, joint: controller.shownJoint, ...board.condition(hand.measured("leader")), raw: await session.readParameters(),
   })), { title: "An address that opens this page as it is now", disabled: true });
   shell.offer(copy);
-  if (docs) shell.offer(el("a", { href: `${docs}index.html` }, "Documentation"));
+  offerOthers(shell, docs);
   whenDisabled(session, async () => {
     if (problem) session.tell(problem);
     await open(session, board, state);

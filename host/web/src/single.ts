@@ -4,6 +4,7 @@
 import type { BenchData } from "./sources/in_page/bench_data";
 import type { TunerData } from "./tuner/data";
 import { openPage, type Parts } from "./in_page";
+import type { NamedText } from "./port";
 
 function within(id: string): string {
   return document.getElementById(id)!.textContent!;
@@ -16,7 +17,8 @@ function module<Data>(name: string): { code: ArrayBuffer; data: Data; worker: Wo
 }
 
 async function parts(): Promise<Parts> {
-  return { ...module<BenchData>("bench"), tuner: async () => module<TunerData>("tuner"), docs: null };
+  const firmware = async (board: string): Promise<NamedText> => ({ name: `${board}.hex`, text: within(`firmware-${board}`) });
+  return { ...module<BenchData>("bench"), tuner: async () => module<TunerData>("tuner"), firmware, docs: null };
 }
 
 openPage(parts());

@@ -3,6 +3,7 @@
 import type { BenchData } from "./sources/in_page/bench_data";
 import type { TunerData } from "./tuner/data";
 import { openPage, type Parts } from "./in_page";
+import type { NamedText } from "./port";
 
 async function fetched(file: string): Promise<Response> {
   const answer = await fetch(new URL(file, import.meta.url));
@@ -20,11 +21,16 @@ async function module<Data>(name: string): Promise<{ code: ArrayBuffer; data: Da
   return { code, data };
 }
 
+async function firmware(board: string): Promise<NamedText> {
+  const name = `${board}.hex`;
+  return { name, text: await (await fetched(name)).text() };
+}
+
 async function parts(): Promise<Parts> {
   const bench = worker("worker.js"); // starts while its module is on the way
   return {
     worker: bench, ...await module<BenchData>("bench"),
-    tuner: async () => ({ worker: worker("tuner.js"), ...await module<TunerData>("tuner") }), docs: "docs/",
+    tuner: async () => ({ worker: worker("tuner.js"), ...await module<TunerData>("tuner") }), firmware, docs: "docs/",
   };
 }
 

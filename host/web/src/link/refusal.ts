@@ -53,7 +53,7 @@ export function faultSentence(status: Pick<StatusReply, "fault" | "fault_where">
 }
 
 /** 0..3 are the leader's potentiometers, 4..7 the follower's. */
-function potName(number: number): string {
+export function potName(number: number): string {
   return number < 4 ? `leader potentiometer ${number}` : `follower potentiometer ${number - 4}`;
 }
 

@@ -28,6 +28,8 @@ export class LiveView implements View {
   private readonly moment = el("th", { attrs: { scope: "col" } }, "joint");
   private readonly measures: MeasuresTable;
   private readonly trigger: TriggerPanel;
+  private readonly record = button("Record", () => this.recordOrEnd(), { title: "Begin a log; its end keeps it as a file that greywhale reads" });
+  private recordedFrom: number | null = null; // sample
 
   constructor(private readonly session: Session) {
     this.window = new TimeWindow(session.samples);
@@ -50,6 +52,7 @@ export class LiveView implements View {
       this.span,
       ...timeButtons(this.window),
       button("Save view", () => void this.session.attempt(() => this.export()), { title: "Keep what is in view as a log that greywhale reads" }),
+      this.record,
       this.resolution);
   }
 
@@ -78,16 +81,30 @@ export class LiveView implements View {
   }
 
   private async export(): Promise<void> {
-    const { samples, hello } = this.session;
+    const { samples } = this.session;
     const from = samples.at(this.window.begin);
     const to = Math.min(samples.end, samples.at(this.window.end) + 1);
     if (to <= from) {
       this.session.tell("There is no sample in view; wait for some, or show another time.");
       return;
     }
-    const raw = await this.session.readParameters();
+    await this.keep("view", from, to);
+  }
+
+  private recordOrEnd(): void {
+    const { session: { samples }, recordedFrom: from } = this;
+    this.recordedFrom = from === null ? samples.end : null;
+    setText(this.record, from === null ? "End recording" : "Record");
+    this.record.setAttribute("aria-pressed", String(from === null));
+    if (from === null) return;
+    if (from < samples.first) this.session.tell("This page keeps the last ten minutes: the log begins with them.", "info");
+    if (samples.end > from) void this.session.attempt(() => this.keep("recording", Math.max(from, samples.first), samples.end));
+  }
+
+  private async keep(name: string, from: number, to: number): Promise<void> {
+    const { samples, hello } = this.session;
     const begin = (samples.timeOf(from) / TICKS_A_SECOND).toFixed(0);
-    download(`view-${begin}s.csv`, logText(samples, from, to, { hello, raw }));
+    download(`${name}-${begin}s.csv`, logText(samples, from, to, { hello, raw: await this.session.readParameters() }));
   }
 
   enter(): void {

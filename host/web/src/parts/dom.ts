@@ -57,9 +57,24 @@ export function setText(node: Node, text: string): void {
   if (node.textContent !== text) node.textContent = text;
 }
 
+/** A labelled field for a text file; `chosen` hears each one that a person gives, null while there is none. */
+export function fileField(label: string, ending: string, chosen: (file: { name: string; text: string } | null) => void): HTMLLabelElement {
+  const input = el("input", { type: "file", attrs: { accept: ending } });
+  input.addEventListener("click", () => { // so that the same file, mended, is taken again
+    input.value = "";
+    chosen(null);
+  });
+  input.addEventListener("change", () => {
+    const [file] = input.files ?? [];
+    if (file) void file.text().then((text) => chosen({ name: file.name, text }));
+    else chosen(null);
+  });
+  return el("label", { class: "file" }, el("span", {}, label), input);
+}
+
 /** Hands a text to the browser as a file to keep. */
-export function download(name: string, text: string): void {
-  const address = URL.createObjectURL(new Blob([text], { type: "text/csv" }));
+export function download(name: string, text: string, type = "text/csv"): void {
+  const address = URL.createObjectURL(new Blob([text], { type }));
   el("a", { href: address, attrs: { download: name } }).click();
   URL.revokeObjectURL(address);
 }

@@ -1,0 +1,65 @@
+// Words of sentences about files, as Python words them: numbers, what is quoted, which key was meant.
+
+import type { Path, Toml } from "./check";
+
+const LONGEST = 60;
+const LONGEST_PATH = 120;
+const DIGITS = 6;
+const ALIKE = 0.6;
+
+/** A number with at most six digits, as "%g" writes it. */
+export function short(value: number): string {
+  if (value === 0) return "0";
+  const exponent = Number(value.toExponential(DIGITS - 1).split("e")[1]);
+  if (exponent >= -4 && exponent < DIGITS) return String(Number(value.toPrecision(DIGITS)));
+  const [digits, power] = value.toExponential(DIGITS - 1).split("e") as [string, string];
+  return `${String(Number(digits))}e${power.slice(0, 1)}${power.slice(1).padStart(2, "0")}`;
+}
+
+export function cut(text: string, most = LONGEST): string {
+  if (text.length <= most) return text;
+  const end = Math.floor(most / 3);
+  return `${text.slice(0, most - end - 3)}...${text.slice(-end)}`;
+}
+
+/** A value as JSON, a float with its point. */
+export function quoted(value: Toml): string {
+  if (typeof value === "number") return Number.isInteger(value) && Math.abs(value) < 1e16 ? `${value}.0` : String(value);
+  if (typeof value === "bigint") return cut(String(value));
+  const text = JSON.stringify(value instanceof Date ? value.toISOString() : value);
+  return cut(text.replace(/[^ -~]/g, (one) => `\\u${one.charCodeAt(0).toString(16).padStart(4, "0")}`));
+}
+
+/** A key as people write it: joint[2].sets.Ne_c. */
+export function keyPath(path: Path): string {
+  const words = path.map((part, place) => {
+    if (typeof part === "number") return `[${part}]`;
+    return (place ? "." : "") + cut(/^[A-Za-z0-9_-]+$/.test(part) ? part : quoted(part));
+  });
+  return cut(words.join(""), LONGEST_PATH) || "the file";
+}
+
+/** What to do about an unknown key: the one that was probably meant, if there is one. */
+export function advice(key: string, known: readonly string[]): string {
+  const [best] = known.map((name) => ({ name, score: likeness(name, key) })).filter(({ score }) => score >= ALIKE)
+    .sort((a, b) => b.score - a.score || (a.name < b.name ? 1 : -1));
+  return best ? `perhaps ${best.name} is meant` : "remove it or check its spelling";
+}
+
+function likeness(one: string, other: string): number {
+  return (2 * matching(one, other)) / (one.length + other.length);
+}
+
+/** How many letters match: the longest common piece, and the same to its left and to its right. */
+function matching(one: string, other: string): number {
+  for (let size = Math.min(one.length, other.length); size; size--) {
+    for (let at = 0; at + size <= one.length; at++) {
+      const there = other.indexOf(one.slice(at, at + size));
+      if (there < 0) continue;
+      return size + matching(one.slice(0, at), other.slice(0, there)) + matching(one.slice(at + size), other.slice(there + size));
+    }
+  }
+  return 0;
+}
+
+

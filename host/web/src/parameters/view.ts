@@ -1,0 +1,115 @@
+// All parameters of the board: read, change, store; a controller.toml onto the board, the whole set into a file.
+
+import { controllerIn } from "../files/controller_file";
+import { parameterFile } from "../files/parameter_file";
+import type { Parameter } from "../link/declared";
+import { TABLE } from "../link/schema";
+import { button, download, el, fileField, setText } from "../parts/dom";
+import type { View } from "../parts/view";
+import type { NamedText } from "../port";
+import { physicalText } from "../samples/log";
+import type { Session } from "../session";
+
+export class ParametersView implements View {
+  readonly name = "Parameters";
+  readonly element: HTMLElement;
+  private readonly inputs: readonly HTMLInputElement[];
+  private readonly edited = new Map<number, number>(); // raw values by index, not yet on the board
+  private readonly said = el("p", { class: "quiet", attrs: { role: "status" } });
+  private readonly apply = button("Apply", () => this.act(() => this.run()), { class: "primary", title: "Run what is changed here; it is not stored" });
+  private readonly store = button("Store", () => this.act(() => this.session.store()), { title: "Write what runs to the board's memory" });
+  private readonly save = button("Save to a file", () => this.act(() => this.keep()), { title: "All parameters, as greywhale params restore takes them" });
+  private waiting = 0;
+  private last: Promise<void> = Promise.resolve();
+
+  constructor(private readonly session: Session) {
+    this.inputs = TABLE.parameters.map((parameter) => this.field(parameter));
+    const head = ["parameter", "value", "unit", "from", "to"].map((text) => el("th", { attrs: { scope: "col" } }, text));
+    const rows = TABLE.parameters.map((parameter, place) => el("tr", { title: parameter.description },
+      el("th", { attrs: { scope: "row" } }, parameter.name), el("td", {}, this.inputs[place]!), el("td", {}, parameter.unit),
+      el("td", {}, physicalText(parameter, parameter.minimum)), el("td", {}, physicalText(parameter, parameter.maximum))));
+    this.element = el("section", { class: "card" },
+      el("div", { class: "tools" }, fileField("Upload a controller.toml", ".toml", (file) => file && this.act(() => this.upload(file))),
+        el("span", { class: "gap" }), this.save, this.store, this.apply),
+      this.said,
+      el("div", { class: "scroll" }, el("table", {}, el("thead", {}, el("tr", {}, ...head)), el("tbody", {}, ...rows))));
+    session.parametersChanged.on(() => this.show());
+    session.changed.on(() => this.refreshButtons());
+    this.refreshButtons();
+  }
+
+  enter(): void {
+    this.act(async () => void await this.session.readParameters());
+  }
+
+  private field(parameter: Parameter): HTMLInputElement {
+    const { index, name, description } = parameter;
+    const input = el("input", { type: "number", title: description, attrs: { step: "any", "aria-label": name } });
+    input.addEventListener("change", () => {
+      const raw = Math.round(Number(input.value) / parameter.lsb);
+      const fits = input.value !== "" && raw >= parameter.minimum && raw <= parameter.maximum && !(parameter.nonzero && !raw);
+      if (!fits) {
+        const [low, high] = [parameter.minimum, parameter.maximum].map((one) => physicalText(parameter, one));
+        this.session.tell(`${name} is ${input.value || "empty"}; choose a value from ${low} to ${high}${parameter.nonzero ? ", other than 0" : ""}.`);
+      } else if (raw === this.session.parameters?.[index]) {
+        this.edited.delete(index);
+      } else {
+        this.edited.set(index, raw);
+      }
+      this.show();
+    });
+    return input;
+  }
+
+  /** One thing after the other. */
+  private act(act: () => Promise<void>): void {
+    this.waiting++;
+    this.refreshButtons();
+    this.last = this.last.then(async () => {
+      await this.session.attempt(act);
+      this.waiting--;
+      this.refreshButtons();
+    });
+  }
+
+  private async run(): Promise<void> {
+    const raw = [...await this.session.readParameters()];
+    for (const [index, value] of this.edited) raw[index] = value;
+    await this.session.apply(raw);
+    this.edited.clear();
+    this.show();
+  }
+
+  /** Runs and stores what a controller file says; every other parameter keeps its value. */
+  private async upload(file: NamedText): Promise<void> {
+    const values = controllerIn(file);
+    const before = await this.session.readParameters();
+    const raw = TABLE.parameters.map(({ name, index }) => values.get(name) ?? before[index]!);
+    await this.session.apply(raw);
+    await this.session.store();
+    const changed = raw.filter((value, index) => value !== before[index]).length;
+    setText(this.said, `${file.name} runs and is stored; ${changed} ${changed === 1 ? "parameter has" : "parameters have"} changed.`);
+  }
+
+  private async keep(): Promise<void> {
+    download("parameters.toml", parameterFile(await this.session.readParameters()), "application/toml");
+  }
+
+  private show(): void {
+    const { parameters } = this.session;
+    TABLE.parameters.forEach((parameter, place) => {
+      const input = this.inputs[place]!;
+      const raw = this.edited.get(parameter.index) ?? parameters?.[parameter.index];
+      if (document.activeElement !== input) input.value = raw === undefined ? "" : physicalText(parameter, raw);
+      input.classList.toggle("edited", this.edited.has(parameter.index));
+    });
+    this.refreshButtons();
+  }
+
+  private refreshButtons(): void {
+    const may = !this.waiting && this.session.link.open && this.session.driver.you;
+    this.apply.disabled = !may || !this.edited.size;
+    this.store.disabled = !may;
+    this.save.disabled = this.waiting > 0 || !this.session.link.open;
+  }
+}

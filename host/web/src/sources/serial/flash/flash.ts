@@ -1,0 +1,90 @@
+// Flashes a board: finds its bootloader and its chip, refuses what is for another, writes, and reads all of it back.
+
+import { LinkError } from "../../../link/declared";
+import type { NamedText, Report } from "../../../port";
+import { bootloaderOf, type Bootloader } from "./bootloader";
+import { checkImage, ERASED, hex, readImage, type Image } from "./image";
+import { Talk } from "./talk";
+import { TARGETS, titleOf, type Target } from "./targets";
+
+const ROUNDS = 3;
+const ATTEMPTS = 3;
+
+/** Writes the file, or else the firmware of the board that answers; the board's name. The port is closed afterwards. */
+export async function flash(
+  port: SerialPort, file: NamedText | null, firmware: (board: string) => Promise<NamedText>, report: Report,
+): Promise<string> {
+  const named = file && readImage(file); // nothing is touched for a broken file
+  report("looking for the bootloader", 0);
+  const { talk, bootloader } = await findBootloader(port);
+  try {
+    const board = await boardOf(bootloader);
+    const image = named ?? readImage(await firmware(board.name));
+    checkImage(image, board);
+    await writeImage(bootloader, image, board, report);
+    await verify(bootloader, image, board, report);
+    await bootloader.leave();
+    return titleOf(board);
+  } finally {
+    await talk.close();
+  }
+}
+
+async function findBootloader(port: SerialPort): Promise<{ talk: Talk; bootloader: Bootloader }> {
+  const dialects = TARGETS.flatMap((board) => board.dialects);
+  for (let round = 0; round < ROUNDS; round++) {
+    for (const { speaks, baud } of dialects) {
+      const talk = await Talk.open(port, baud);
+      const bootloader = bootloaderOf(speaks, talk);
+      if (await bootloader.enter()) return { talk, bootloader };
+      await talk.close();
+    }
+  }
+  const bauds = [...new Set(dialects.map(({ baud }) => baud))].join(" and ");
+  throw new LinkError(`No bootloader answers at ${bauds} baud; check that the board's reset works, or burn a bootloader with a programmer.`);
+}
+
+async function boardOf(bootloader: Bootloader): Promise<Target> {
+  let signature: Uint8Array | null = null;
+  // Half a question that was asked twice may be waiting for its other half: the first answer is lost then.
+  for (let left = ATTEMPTS; left && !signature; left--) signature = await bootloader.signature();
+  const told = signature && hex(signature);
+  const board = TARGETS.find((one) => one.signature === told);
+  if (board) return board;
+  const known = TARGETS.map((one) => `${titleOf(one)} (${one.signature})`).join(" and ");
+  throw new LinkError(`The chip has ${told ? `signature ${told}` : "no readable signature"}; greywhale runs on ${known} only.`);
+}
+
+async function writeImage(bootloader: Bootloader, { memory }: Image, { page }: Target, report: Report): Promise<void> {
+  for (let at = 0; at < memory.length; at += page) {
+    const held = memory.subarray(at, at + page);
+    const content = new Uint8Array(page).fill(ERASED);
+    content.set(held);
+    if (!await (isErased(held) ? bootloader.pass(at) : bootloader.write(at, content))) throw new LinkError(stopped("writing", at));
+    report("writing", (at + page) / memory.length);
+  }
+}
+
+function isErased(memory: Uint8Array): boolean {
+  return memory.every((byte) => byte === ERASED);
+}
+
+/** Reads back all that the image has something for; what it leaves out is never executed. */
+async function verify(bootloader: Bootloader, { memory }: Image, { page }: Target, report: Report): Promise<void> {
+  for (let at = 0; at < memory.length; at += page) {
+    const wanted = memory.subarray(at, at + page);
+    if (isErased(wanted)) continue;
+    const found = await bootloader.read(at, wanted.length + wanted.length % 2); // whole words
+    if (!found) throw new LinkError(stopped("reading", at));
+    const wrong = wanted.findIndex((byte, i) => byte !== found[i]);
+    if (wrong >= 0) {
+      const [is, was] = [hex(found.subarray(wrong, wrong + 1)), hex(wanted.subarray(wrong, wrong + 1))];
+      throw new LinkError(`The board holds 0x${is} at address 0x${(at + wrong).toString(16)} instead of 0x${was}; flash it again.`);
+    }
+    report("verifying", (at + page) / memory.length);
+  }
+}
+
+function stopped(what: string, at: number): string {
+  return `The bootloader stopped answering while ${what} at address 0x${at.toString(16)}; check the cable and flash the board again.`;
+}

@@ -1,0 +1,49 @@
+// A board at a port: what is refused before any byte is written, and a browser without ports.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import type { LinkState } from "../src/board";
+import { SerialBoard } from "../src/sources/serial/board";
+import { checkImage, readImage } from "../src/sources/serial/flash/image";
+import { TARGETS } from "../src/sources/serial/flash/targets";
+
+function record(address: number, kind: number, data: readonly number[]): string {
+  const bytes = [data.length, address >> 8, address & 0xff, kind, ...data];
+  const sum = -bytes.reduce((total, byte) => total + byte, 0) & 0xff;
+  return `:${[...bytes, sum].map((byte) => byte.toString(16).padStart(2, "0")).join("")}\n`;
+}
+
+const END = record(0, 1, []);
+const nano = TARGETS.find(({ name }) => name === "nano")!;
+
+test("a HEX file is read with its segments and gaps", () => {
+  const { memory, signature } = readImage({ name: "a.hex", text: record(2, 0, [1, 2]) + record(0, 2, [0x10, 0]) + record(0, 0, [3]) + END });
+  assert.deepEqual([...memory.subarray(0, 5)], [255, 255, 1, 2, 255]);
+  assert.deepEqual([memory.length, memory.at(-1), signature], [0x10001, 3, null]);
+});
+
+test("a file that is no image for this board is refused in one sentence", () => {
+  const refused = (text: string): string => {
+    try {
+      checkImage(readImage({ name: "a.hex", text }), nano);
+    } catch (error) {
+      return (error as Error).message;
+    }
+    return "";
+  };
+  const other = [...new TextEncoder().encode("greywhale image\0"), 1, 0x1e, 0x93, 0x0b];
+  assert.equal(refused("time_s,leader_0\n"), "a.hex, line 1: this is no Intel HEX record; give the .hex that PlatformIO built.");
+  assert.equal(refused(record(0, 0, [1]).replace("01", "02") + END).slice(0, 14), "a.hex, line 1:");
+  assert.equal(refused(record(0, 0, [1])), "a.hex: the file ends too early; copy or build it again.");
+  assert.equal(refused(END), "a.hex: the file holds no data; give the .hex that PlatformIO built.");
+  assert.match(refused(record(30_720, 0, [1]) + END), /reaches up to byte 30721, but an Arduino Nano .* has room for 30720; choose another file/);
+  assert.match(refused(record(0, 4, [0, 0x10]) + record(0, 0, [1]) + END), /data at address 0x100000; no board has as much memory/);
+  assert.match(refused(record(0, 0, other) + END), /this image is for a chip with signature 1e930b, but the board on this port is an Arduino Nano/);
+});
+
+test("a browser without serial ports is told so", () => {
+  const told: LinkState[] = [];
+  const nothing = (): void => undefined;
+  new SerialBoard(undefined, async (name) => ({ name, text: "" }))
+    .listen({ bytes: nothing, driver: nothing, stored: nothing, refused: nothing, link: (state) => told.push(state) });
+  assert.match(told[0]!.sentence, /^This browser reaches no serial port: take a recent Chromium/);
+});

@@ -1,0 +1,96 @@
+"""A page whose navigator.serial leads to a bench in lock step, which lives while the page has the port open."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from playwright.sync_api import BrowserContext, Page
+
+from greywhale.protocol.transport import BAUD, LINES, Line
+from greywhale_sim.lockstep import LockStepBench
+from tests.page import stage as stages
+from tests.page.serve_folder import Site
+
+TURN_S, BOOTLOADER_TURN_S = 0.02, 0.04
+SCRIPT = Path(__file__).with_name("false_serial.js").read_text("utf-8")
+
+
+@dataclass(frozen=True)
+class AtPort:
+    """The site, opened for a board at a port."""
+
+    site: Site
+
+    @property
+    def port(self) -> int:
+        return self.site.port
+
+    @property
+    def page_address(self) -> str:
+        return f"{self.site.page_address}?board=port"
+
+
+class Cable:
+    """From the page's port to a bench: it can be unplugged, and a port that is opened may restart the board."""
+
+    def __init__(self, bench: LockStepBench) -> None:
+        self.plugged = True
+        self.opening_restarts = False
+        self.restarts = 0
+        self._bench = bench
+        self._line: Line | None = None
+        self._baud = 0
+
+    def carry(self, what: str, given: Any) -> Any:
+        """What the false port asks of its other end; but for `open`, with what was written to it."""
+        if what == "open":
+            return self._open(given)
+        if self._line is not None:
+            self._line.write(given.encode("latin-1"))
+        if what == "close" or not self.plugged:
+            self._close()
+        elif what == "restart":
+            self._restart()
+        return None if self._line is None else self._live(self._line)
+
+    def _open(self, baud: int) -> str:
+        if not self.plugged:
+            return "Failed to open serial port."
+        self._baud = baud
+        self._line = LINES[self._bench.port](self.opening_restarts, baud)
+        return ""
+
+    def _restart(self) -> None:
+        self._close()
+        self.restarts += 1
+        self._line = LINES[self._bench.port](True, self._baud)
+
+    def _live(self, line: Line) -> tuple[float, str]:
+        """Let firmware live for a turn, a bootloader until it has said all; its time in ms, and what it said."""
+        said, new, firmware = b"", b"", self._baud == BAUD
+        end_s = line.clock() + (TURN_S if firmware else BOOTLOADER_TURN_S)
+        while line.clock() < end_s or (new and not firmware):
+            new = line.read()
+            if said and not new and not firmware:
+                break
+            said += new
+        return 1000 * line.clock(), said.decode("latin-1")
+
+    def _close(self) -> None:
+        if self._line is not None:
+            self._line.read()  # what was written goes out first
+            self._line.close()
+        self._line = None
+
+
+@contextlib.contextmanager
+def connected(context: BrowserContext, site: Site, bench: LockStepBench) -> Iterator[tuple[Page, Cable]]:
+    """A page for the board at the port, which is not open yet."""
+    cable = Cable(bench)
+    with stages.visit(context, AtPort(site), SCRIPT) as visit:
+        visit.page.expose_function("boardPort", cable.carry)
+        yield visit.page, cable

@@ -1,0 +1,152 @@
+"""A real board from the page: its serial port is false, and leads to the simulated board with its real bootloader."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import BrowserContext, Page, expect
+
+from greywhale.base.errors import UserError
+from greywhale.board.calibrate.solve import MARGIN_RAD
+from greywhale.board.device import Device
+from greywhale.board.flash.images import read_image
+from greywhale.board.pots import POTS
+from greywhale.board.upload import read_parameters
+from greywhale.files import controller, parameter_file
+from greywhale.files.log import read_log
+from greywhale.files.paper_tables import paper_table
+from greywhale.protocol.table import ParameterTable
+from greywhale_sim.lockstep import LockStepBench
+from greywhale_sim.words import lock_step
+from tests.page.barriers import DARK_AND_NARROW, require_no_barrier
+from tests.page.false_serial import connected
+from tests.page.serve_folder import Site
+
+pytestmark = pytest.mark.slow
+
+HIDE = 'Object.defineProperty(document, "visibilityState", { get: () => "hidden", configurable: true })'
+DEFAULTS = ParameterTable.defaults()
+SHOW = "delete document.visibilityState"
+
+
+def press(page: Page, *names: str) -> None:
+    for name in names:
+        page.get_by_role("button", name=name, exact=True).click()
+
+
+def hold(page: Page, bench: LockStepBench, angle: float) -> None:
+    """Bring both arms into a pose, every joint at an angle, and hold them there for a while of the board's time."""
+    bench.command(f"hand both {angle} {angle} {angle} {angle} 0.3")
+    held_s = bench.bench.time_s + 1.0
+    while bench.bench.time_s < held_s:
+        page.wait_for_timeout(20)
+
+
+def test_a_board_is_watched_driven_and_changed(context: BrowserContext, site: Site, tmp_path: Path) -> None:
+    with lock_step() as bench, connected(context, site, bench) as (page, cable):
+        pill = page.locator(".pill")
+        expect(page.get_by_role("main")).to_contain_text("No board is connected.")
+        press(page, "Connect")
+        expect(pill).to_have_text("disabled")
+        assert cable.restarts == 0
+        press(page, "Live", "Record", "Enable")
+        expect(pill).to_have_text("following")
+        page.wait_for_timeout(1000)  # longer than a lease
+        expect(pill).to_have_text("following")
+        page.evaluate(HIDE)
+        expect(pill).to_have_text("disabled")
+        expect(page.get_by_text("the lease ran out without being renewed")).to_be_visible()
+        page.evaluate(SHOW)
+        press(page, "Enable")
+        expect(pill).to_have_text("following")
+        with page.expect_download() as saved:
+            press(page, "Stop", "End recording")
+        saved.value.save_as(tmp_path / "recording.csv")
+        assert {"soft_start", "following"} <= set(read_log(tmp_path / "recording.csv").state)
+
+        wanted = tmp_path / "controller.toml"
+        wanted.write_text(paper_table("table_10").read_text("utf-8"))
+        wrong = tmp_path / "wrong.toml"
+        wrong.write_text(wanted.read_text("utf-8").replace("kp = ", "kp = 9", 1))
+        press(page, "Parameters")
+        page.get_by_label("tracking_ms").fill("300")
+        page.get_by_label("tracking_ms").press("Tab")
+        press(page, "Apply")
+        expect(page.get_by_role("button", name="Apply")).to_be_disabled()
+        page.get_by_label("Upload a controller.toml").set_input_files(wrong)
+        with pytest.raises(UserError) as refused:
+            controller.load(wrong)
+        expect(page.get_by_role("alert")).to_have_text(refused.value.message.replace(str(wrong), wrong.name) + "×")
+        page.get_by_label("Upload a controller.toml").set_input_files(wanted)
+        expect(page.get_by_text("controller.toml runs and is stored")).to_be_visible()
+
+        press(page, "Calibrate", "Begin the sweep")
+        for end in (-1.2, 1.2):
+            hold(page, bench, end)
+        press(page, "End the sweep")
+        for place, angle in (("first", 0.0), ("second", 1.0)):
+            hold(page, bench, angle)
+            press(page, f"Take the {place} pose")
+            expect(page.get_by_role("main")).to_contain_text(f"{place.capitalize()} pose is taken.")
+        press(page, "Store")
+        expect(page.get_by_role("main")).to_contain_text("Zeros, scales and limits run and are stored.")
+        require_no_barrier(page, DARK_AND_NARROW)
+
+        press(page, "Parameters")
+        with page.expect_download() as saved:
+            press(page, "Save to a file")
+        saved.value.save_as(tmp_path / "parameters.toml")
+
+        cable.plugged = False
+        press(page, "Port")
+        expect(page.get_by_role("main")).to_contain_text("The board was unplugged")
+        cable.plugged = cable.opening_restarts = True
+        page.evaluate("navigator.serial.plugIn()")
+        expect(page.get_by_role("alert")).to_contain_text("Opening the port has restarted the board.")
+        expect(pill).to_have_text("disabled")
+        press(page, "Restart and connect")
+        expect(page.get_by_role("main")).to_contain_text("USB 2341:0042 is connected.")
+        assert cable.restarts == 1
+        press(page, "Disconnect")
+        expect(page.get_by_role("button", name="Connect", exact=True)).to_be_enabled()
+        with Device(bench.port) as device:
+            stored = read_parameters(device)
+        assert stored == parameter_file.load(tmp_path / "parameters.toml")
+        assert stored.controllers == controller.load(wanted).table().controllers
+        for pot in POTS:  # as the default arm's are mounted
+            assert stored[f"{pot}.zero"] == pytest.approx(DEFAULTS[f"{pot}.zero"], abs=40)
+            assert stored[f"{pot}.scale"] == pytest.approx(DEFAULTS[f"{pot}.scale"], rel=0.01)
+        assert stored.each("joint", "limit_max") == pytest.approx([4096 * (1.2 - MARGIN_RAD)] * 4, abs=60)
+
+
+def full_of_zeros(size: int) -> str:
+    """A HEX file of a program that does nothing."""
+    lines = []
+    for at in range(0, size, 16):
+        for address, kind, data in ((0, 4, (at >> 16).to_bytes(2, "big")), (at & 0xFFFF, 0, bytes(16))):
+            record = bytes([len(data), *address.to_bytes(2, "big"), kind, *data])
+            lines.append(f":{record.hex()}{-sum(record) & 0xFF:02x}\n")
+    return "".join(lines) + ":00000001ff\n"
+
+
+@pytest.mark.parametrize(
+    ("board", "other", "title"), [("mega", "nano", "Mega 2560"), ("nano", "mega", "Nano (ATmega328P)")]
+)
+def test_a_board_of_another_program_is_flashed_and_the_other_boards_image_refused(
+    context: BrowserContext, site: Site, folder: Path, tmp_path: Path, board: str, other: str, title: str
+) -> None:
+    image = read_image(folder / f"{board}.hex").memory
+    before = tmp_path / "before.hex"
+    before.write_text(full_of_zeros(len(image)))  # what was not erased stays zero
+    words = ("--board", board, "--firmware", str(before))
+    with lock_step(*words) as bench, connected(context, site, bench) as (page, _):
+        page.get_by_label("A HEX file in its place").set_input_files(folder / f"{other}.hex")
+        press(page, "Flash")
+        expect(page.get_by_role("alert")).to_contain_text(f"but the board on this port is an Arduino {title}; choose")
+        assert bench.server.board.flash()[: len(image)] == bytes(len(image))
+        page.get_by_label("A HEX file in its place").set_input_files([])
+        press(page, "Flash")
+        expect(page.get_by_role("main")).to_contain_text(f"The Arduino {title} holds what was written; firmware")
+        expect(page.locator(".pill")).to_have_text("disabled")
+        assert bench.server.board.flash()[: len(image)] == image
