@@ -65,7 +65,15 @@ window.Worker = class extends Plain {
     });
   }
 };"""
-NOW = "() => [performance.now(), Number(document.querySelector('.live').dataset.tick)]"
+# Of some pictures the one that is least behind: others show late what was made in time.
+NOW = """async () => {
+  const pictures = [];
+  while (pictures.length < 30) {
+    await new Promise(requestAnimationFrame);
+    pictures.push([performance.now(), Number(document.querySelector(".live").dataset.tick)]);
+  }
+  return pictures.reduce((one, other) => (one[0] - one[1] < other[0] - other[1] ? one : other));
+}"""
 
 
 def script(text: str) -> str:
