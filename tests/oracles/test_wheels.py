@@ -78,9 +78,10 @@ def wheels(built: list[Path]) -> tuple[Path, Path]:
 
 def install(folder: Path, *wheels: Path) -> Installation:
     """A new environment with these wheels and what they depend on; avrdude is the only other program."""
-    python_venv.create(folder / "env", with_pip=True)
-    pip = [folder / "env/bin/python", "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-index"]
-    subprocess.run([*pip, "--find-links", WHEELHOUSE, *wheels], check=True)
+    python_venv.create(folder / "env")
+    pip = [sys.executable, "-m", "pip", "--python", folder / "env/bin/python", "--disable-pip-version-check"]
+    offline = ["--no-index", "--find-links", WHEELHOUSE, "--no-compile"]  # a module is compiled when it is imported
+    subprocess.run([*pip, "install", "--quiet", *offline, *wheels], check=True)
     avrdude = shutil.which("avrdude")
     assert avrdude is not None
     tools = folder / "tools"
