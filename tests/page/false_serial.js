@@ -73,7 +73,6 @@
     granted: [],
     getPorts: async () => serial.granted,
     requestPort: async () => {
-      if (!serial.granted.length && serial.cancelled) throw new DOMException("No port selected by the user.", "NotFoundError");
       serial.granted = [port];
       return port;
     },

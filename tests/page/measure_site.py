@@ -102,7 +102,7 @@ def kilobytes(folder: Path) -> dict[str, float]:
 
 def tune(visited: Page) -> float:
     """Seconds from a click until all sets are tried; the bench goes on meanwhile."""
-    visited.get_by_role("button", name="Controller").click()
+    visited.get_by_role("button", name="Controller", exact=True).click()
     visited.get_by_role("button", name="Tune", exact=True).click()
     begun = time.monotonic()
     visited.get_by_text("Found; Apply runs it.").wait_for(timeout=TUNED_BY_MS)

@@ -136,12 +136,13 @@ def full_of_zeros(size: int) -> str:
 def test_a_board_of_another_program_is_flashed_and_the_other_boards_image_refused(
     context: BrowserContext, site: Site, folder: Path, tmp_path: Path, board: str, other: str, title: str
 ) -> None:
-    image = read_image(folder / f"{board}.hex").memory
+    (parts,) = (path for path in folder.iterdir() if path.is_dir())
+    image = read_image(parts / f"{board}.hex").memory
     before = tmp_path / "before.hex"
     before.write_text(full_of_zeros(len(image)))  # what was not erased stays zero
     words = ("--board", board, "--firmware", str(before))
     with lock_step(*words) as bench, connected(context, site, bench) as (page, _):
-        page.get_by_label("A HEX file in its place").set_input_files(folder / f"{other}.hex")
+        page.get_by_label("A HEX file in its place").set_input_files(parts / f"{other}.hex")
         press(page, "Flash")
         expect(page.get_by_role("alert")).to_contain_text(f"but the board on this port is an Arduino {title}; choose")
         assert bench.server.board.flash()[: len(image)] == bytes(len(image))

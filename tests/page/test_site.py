@@ -132,7 +132,7 @@ def test_who_stops_before_the_arm_has_moved_is_obeyed(context: BrowserContext, s
 
 def tune_a_little(page: Page) -> None:
     """Let the page tune, and end that as soon as it can be."""
-    page.get_by_role("button", name="Controller").click()
+    page.get_by_role("button", name="Controller", exact=True).click()
     page.get_by_role("button", name="Tune", exact=True).click()
     expect(page.get_by_text("of 500 sets")).to_be_visible()
     page.get_by_role("button", name="Stop the search").click()
@@ -141,7 +141,7 @@ def tune_a_little(page: Page) -> None:
 
 def test_who_lets_the_page_tune_sees_the_course_and_runs_what_was_found(visited: Page) -> None:
     expect(visited.locator(".pill")).to_have_text("following")
-    visited.get_by_role("button", name="Controller").click()
+    visited.get_by_role("button", name="Controller", exact=True).click()
     drag(visited, "Pe_b", 0.1)
     tune_a_little(visited)
     expect(visited.get_by_label("Curve of the search")).to_be_visible()
