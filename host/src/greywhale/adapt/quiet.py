@@ -17,6 +17,7 @@ from greywhale.adapt.stretch import Stretch, chains_of, traces_of
 from greywhale.base.types import Floats
 from greywhale.commission.judge import BEARABLE, Limits
 from greywhale.commission.measures import NAMES, Measures
+from greywhale.commission.motions import PARTS
 from greywhale.motion.swings import QUIET_SHARE, chatter_of_record, rattle_of_record, ripple_of_record, unrest
 from greywhale.protocol.firmware import JOINTS
 
@@ -76,6 +77,6 @@ def _beyond(follower: Floats, leader: Floats) -> Floats:
 
 
 def _as_measures(swings: Swings) -> Measures:
-    """A check with a single part, as the commissioning's limits take it."""
+    """A check all of whose parts are alike, as the commissioning's limits take it."""
     known = {"unrest": swings.unrest, "rattle": swings.rattle, "chatter": swings.chatter}
-    return Measures(**{name: known.get(name, np.zeros(JOINTS))[None] for name in NAMES})
+    return Measures(**{name: np.tile(known.get(name, np.zeros(JOINTS)), (len(PARTS), 1)) for name in NAMES})
