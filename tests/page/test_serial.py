@@ -38,8 +38,13 @@ def press(page: Page, *names: str) -> None:
 def hold(page: Page, bench: LockStepBench, angle: float) -> None:
     """Bring both arms into a pose, every joint at an angle, and hold them there for a while of the board's time."""
     bench.command(f"hand both {angle} {angle} {angle} {angle} 0.3")
-    held_s = bench.bench.time_s + 1.0
-    while bench.bench.time_s < held_s:
+    live(page, bench, 0.8)
+
+
+def live(page: Page, bench: LockStepBench, seconds: float) -> None:
+    """Let so much of the board's time pass, in which the page is served."""
+    until_s = bench.bench.time_s + seconds
+    while bench.bench.time_s < until_s:
         page.wait_for_timeout(20)
 
 
@@ -52,7 +57,7 @@ def test_a_board_is_watched_driven_and_changed(context: BrowserContext, site: Si
         assert cable.restarts == 0
         press(page, "Live", "Record", "Enable")
         expect(pill).to_have_text("following")
-        page.wait_for_timeout(1000)  # longer than a lease
+        live(page, bench, 0.5)  # longer than a lease
         expect(pill).to_have_text("following")
         page.evaluate(HIDE)
         expect(pill).to_have_text("disabled")

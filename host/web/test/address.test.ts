@@ -1,5 +1,6 @@
 // The page's state in its address: what is written is read again, and whatever is wrong is told in a sentence.
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { fragmentOf, stateOf, type PageState } from "../src/address/state";
 import type { BenchControls } from "../src/host";
@@ -49,5 +50,15 @@ test("whatever is wrong in a fragment is named, with what would be right", () =>
     ["%E0%A4%A", "the page knows no such word"],
   ] as const) {
     assert.throws(() => read(`view=live&${fragment}`), (error: Error) => error.message.includes("set aside") && error.message.includes(remedy), fragment);
+  }
+});
+
+test("every link of the lessons names a state", () => {
+  const controls = { ...CONTROLS, play: { minimum: 0, maximum: 10, value: 1 } };
+  const lessons = [...readFileSync("../../docs/lessons.md", "utf8").matchAll(/\]\(page:([^)]+)\)/g)];
+  assert.ok(lessons.length > 10);
+  for (const [, lesson] of lessons) {
+    const state = stateOf(lesson!, VIEWS, controls)!;
+    assert.deepEqual(stateOf(fragmentOf(state), VIEWS, controls), state, lesson);
   }
 });
