@@ -4,6 +4,7 @@ import { spawnSync } from "node:child_process";
 import { copyFileSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
+import { gzipSync } from "node:zlib";
 import { build } from "esbuild";
 
 const here = dirname(fileURLToPath(import.meta.url));
@@ -44,12 +45,9 @@ async function buildSingle(folder) {
     .replace('<link rel="stylesheet" href="page.css">', () => `<style>${text(page, ".css")}</style>`)
     .replace('<script type="module" src="page.js"></script>\n', "")
     .replace("</body>", () => [
-      ...Object.entries({ bench, tuner }).flatMap(([name, worker]) => [
-        element(`${name}-module`, "text/plain", readFileSync(join(folder, `${name}.wasm`)).toString("base64")),
-        element(`${name}-data`, "application/json", readFileSync(join(folder, `${name}.json`), "utf8")),
-        element(`${name}-worker`, "text/plain", text(worker, ".js")),
-      ]),
-      ...["mega", "nano"].map((board) => element(`firmware-${board}`, "text/plain", readFileSync(join(folder, `${board}.hex`), "utf8"))),
+      ...["bench.wasm", "bench.json", "tuner.wasm", "tuner.json", "mega.hex", "nano.hex"].map((name) =>
+        element(name, "text/plain", gzipSync(readFileSync(join(folder, name))).toString("base64"))),
+      ...Object.entries({ bench, tuner }).map(([name, worker]) => element(`${name}-worker`, "text/plain", text(worker, ".js"))),
       element("page", "text/javascript", text(page, ".js")),
       "</body>",
     ].join(""));

@@ -1,5 +1,5 @@
-// The page with a bench inside as one file, which opens from a disk too: build.mjs has put modules, their data and
-// workers into elements of the page.
+// The page with a bench inside as one file, which opens from a disk too: build.mjs has put modules, their data,
+// workers and the boards' firmware into elements of the page.
 
 import type { BenchData } from "./sources/in_page/bench_data";
 import type { TunerData } from "./tuner/data";
@@ -10,15 +10,25 @@ function within(id: string): string {
   return document.getElementById(id)!.textContent!;
 }
 
-function module<Data>(name: string): { code: ArrayBuffer; data: Data; worker: Worker } {
-  const code = Uint8Array.from(atob(within(`${name}-module`)), (byte) => byte.charCodeAt(0)).buffer;
+/** A file of the folder, compressed within the page. */
+function file(name: string): Response {
+  const packed = Uint8Array.from(atob(within(name)), (byte) => byte.charCodeAt(0));
+  return new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip")));
+}
+
+async function module<Data>(name: string): Promise<{ code: ArrayBuffer; data: Data; worker: Worker }> {
   const worker = new Worker(URL.createObjectURL(new Blob([within(`${name}-worker`)], { type: "text/javascript" })));
-  return { code, data: JSON.parse(within(`${name}-data`)) as Data, worker };
+  const [code, data] = await Promise.all([file(`${name}.wasm`).arrayBuffer(), file(`${name}.json`).json() as Promise<Data>]);
+  return { code, data, worker };
+}
+
+async function firmware(board: string): Promise<NamedText> {
+  const name = `${board}.hex`;
+  return { name, text: await file(name).text() };
 }
 
 async function parts(): Promise<Parts> {
-  const firmware = async (board: string): Promise<NamedText> => ({ name: `${board}.hex`, text: within(`firmware-${board}`) });
-  return { ...module<BenchData>("bench"), tuner: async () => module<TunerData>("tuner"), firmware, docs: null };
+  return { ...await module<BenchData>("bench"), tuner: () => module<TunerData>("tuner"), firmware, docs: null };
 }
 
 openPage(parts());
