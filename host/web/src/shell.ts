@@ -53,7 +53,7 @@ export class Shell {
     session.noticed.on(() => this.showNotice());
     addEventListener("keydown", (event) => this.pressed(event), { capture: true });
     this.show(this.front);
-    this.refresh();
+    this.showState(); // before the first picture: nothing can be enabled yet
     const draw = (): void => {
       this.picture();
       requestAnimationFrame(draw);
