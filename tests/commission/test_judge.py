@@ -70,11 +70,14 @@ def test_an_arm_that_was_restless_before_may_stay_as_it_was_but_no_more() -> Non
 
 
 def test_a_joint_that_keeps_its_controller_may_feel_its_neighbours() -> None:
-    felt = with_joint("error", 3, 1.09e-3)
+    """A tenth of its error, or two milliradians."""
     kept = np.array([False, False, False, True])
-    assert not verdict(felt, 3).passed
-    assert verdict(felt, 3, kept).passed
-    assert not verdict(with_joint("error", 3, 1.11e-3), 3, kept).passed
+    seen = np.sqrt(1e-3) + 0.002
+    assert not verdict(with_joint("error", 3, 1.09e-3), 3).passed
+    assert verdict(with_joint("error", 3, (seen - 1e-4) ** 2), 3, kept).passed
+    assert not verdict(with_joint("error", 3, (seen + 1e-4) ** 2), 3, kept).passed
+    far = replace(BEFORE, error=np.full(SHAPE, 1e-2))
+    assert Limits.of([far], kept).error[1, 3] == pytest.approx(1.1e-2, rel=1e-3)
 
 
 def test_a_joint_that_keeps_its_controller_may_rest_less_quietly() -> None:
@@ -140,11 +143,12 @@ def test_the_score_is_the_error_in_what_a_hand_leads_relative_to_before() -> Non
     assert verdict(better, 0).share == pytest.approx(0.25)
 
 
-def test_a_joint_that_holds_still_may_be_two_milliradians_worse() -> None:
-    still = PARTS.index("holding still")
-    was = np.sqrt(BEFORE.error[still, 2])
-    assert verdict(with_joint("error", 2, (was + 0.0019) ** 2, still), 2).passed
-    assert "holding still" in verdict(with_joint("error", 2, (was + 0.0021) ** 2, still), 2).faults[0]
+@pytest.mark.parametrize("name", ["small moves", "holding still"])
+def test_a_joint_that_hardly_moves_may_be_two_milliradians_worse(name: str) -> None:
+    part = PARTS.index(name)
+    was = np.sqrt(BEFORE.error[part, 2])
+    assert verdict(with_joint("error", 2, (was + 0.0019) ** 2, part), 2).passed
+    assert name in verdict(with_joint("error", 2, (was + 0.0021) ** 2, part), 2).faults[0]
 
 
 def test_how_much_two_recordings_differ_is_allowed_for() -> None:

@@ -16,7 +16,7 @@ from greywhale.commission.journal import CommissioningJournal
 from greywhale.commission.learn import LearntController
 from greywhale.commission.page import facts, save_page
 from greywhale.commission.result import CommissioningResult, errors_beside
-from greywhale.commission.search import KD, KI, KP, JointSearch
+from greywhale.commission.search import KD, KI, KP
 from greywhale.files.arm import default_arm, load_arm
 from greywhale.files.leader import load_leader
 from greywhale.files.model import arm_toml
@@ -118,10 +118,9 @@ def test_interrupted_anywhere_the_board_keeps_what_it_had_and_resuming_ends_the_
         assert len(rig.played) == plays, "no motion is made twice"
 
 
-def test_a_good_joint_is_varied_along_with_the_others_but_gets_no_trial_of_its_own(
+def test_a_round_ends_where_more_trials_are_not_worth_their_time(
     rig: SimulatedRig, options: Make, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr(JointSearch, "good", property(lambda search: search.joint == 0))
     steps: list[tuple[str, str]] = []
     outcome = commission(options(trials=3), lambda what, fraction, note="": steps.append((what, note)))
     trials = outcome.rounds[0].trials
@@ -130,9 +129,17 @@ def test_a_good_joint_is_varied_along_with_the_others_but_gets_no_trial_of_its_o
     assert [step for step in steps if "trial" in step[0]] == [
         (f"round 1, trial {number} of 3 at most: recording", note) for number, note in enumerate(["", *beside[:2]], 1)
     ]
-    assert len({trial.rows[0].tobytes() for trial in trials}) > 1
-    monkeypatch.setattr(JointSearch, "good", property(lambda search: True))
+    monkeypatch.setattr(run, "GOOD", 1.0)
     assert len(commission(options(out=tmp_path / "all good")).rounds[0].trials) == 1
+
+
+@pytest.mark.parametrize(
+    ("hoped", "enough"),
+    [([0.03], True), ([1.0, 1.0, 1.0], False), ([1.0, 1.0, 1.0, 0.5], False), ([0.3, 0.29, 0.28, 0.28], True)],
+    ids=["good", "still restless", "rests at last", "gains no more"],
+)
+def test_joints_that_follow_well_or_gain_no_more_get_no_more_trials(hoped: list[float], enough: bool) -> None:
+    assert run.is_enough(hoped) == enough
 
 
 def test_the_errors_of_a_trial_stand_beside_what_the_model_said(whole: Whole) -> None:

@@ -152,6 +152,28 @@ def test_a_combination_that_fails_on_the_arm_is_not_chosen(trials: Trials, rig: 
     assert np.array_equal(best.rows[1], stiffer(trials, [1], BETTER)[1]), "the other joint keeps its better controller"
 
 
+def test_where_a_joint_that_kept_its_controller_is_shaken_those_beside_it_step_back(
+    trials: Trials, rig: SimulatedRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = play_before(trials, rig)
+    mild, strong = (stiffer(trials, [1], factor) for factor in (1.5, BETTER))
+    searches = searches_of(trials)
+    for rows, score in ((mild, 0.5), (strong, 0.2)):
+        searches[1].add(rows[1], replace(before.verdicts[1], score=score), "alone")
+
+    def play(rig: ArmOnPort | None, rows: np.ndarray) -> Trial:
+        verdicts = list(before.verdicts)
+        verdicts[1] = replace(verdicts[1], score=0.5)
+        verdicts[3] = replace(verdicts[3], bearable=not np.array_equal(rows[1], strong[1]))
+        trials.done.append(replace(before, rows=rows.copy(), verdicts=tuple(verdicts)))
+        return trials.done[-1]
+
+    monkeypatch.setattr(trials, "play", play)
+    monkeypatch.setattr(JointSearch, "propose", lambda search: None)
+    best = confirm(trials, searches, lambda: rig)  # type: ignore[arg-type, return-value]
+    assert np.array_equal(best.rows, mild)
+
+
 def test_where_nothing_passes_what_was_before_is_chosen(trials: Trials, rig: SimulatedRig) -> None:
     before = play_before(trials, rig)
     play(trials, rig, stiffer(trials, [1], WILD))

@@ -1,4 +1,7 @@
-"""The end of a commissioning: each joint's best, tried together on the arm; where that is worse, joints step back."""
+"""The end of a commissioning: each joint's best, tried together on the arm; where that is worse, joints step back.
+
+First those that fail; where they have nothing else left, those beside them, which shake them.
+"""
 
 from __future__ import annotations
 
@@ -23,12 +26,17 @@ def confirm(trials: Trials, searches: Sequence[JointSearch], arm: Callable[[], A
         trial = known or trials.play(None if trials.known() else arm(), rows)
         if trial.bearable:
             break
-        tried = rows.copy()
-        for search, verdict in zip(searches, trial.verdicts, strict=True):
-            if not verdict.bearable:
-                failed[search.joint].append(rows[search.joint].tobytes())
-                rows[search.joint] = _next(search, failed[search.joint], trials)
-        if np.array_equal(rows, tried):
+        bearable = np.array([verdict.bearable for verdict in trial.verdicts])
+        kept = (rows == controllers_of(trials.table)).all(axis=1)
+        for back in (~bearable, bearable & ~kept):
+            stepped = rows.copy()
+            for joint in np.flatnonzero(back).tolist():
+                failed[joint].append(rows[joint].tobytes())
+                stepped[joint] = _next(searches[joint], failed[joint], trials)
+            if not np.array_equal(stepped, rows):
+                rows = stepped
+                break
+        else:
             break
     return trials.ranked()[0]
 

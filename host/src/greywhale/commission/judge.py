@@ -25,10 +25,11 @@ BEARABLE, PRICE = 1.15, 2.0
 # Two recordings with the same controllers may differ by so much more than two others did: as a share, and in rad² (1
 # mrad rms). Friction holds a joint now here, now there.
 SAME_SHARE, SAME_RAD2 = 0.02, 1e-6
-# While a joint holds still its error is hardly more than its play, and its neighbours push it: so much more (rad rms)
-# nobody sees.
+# Where a joint hardly moves, friction and play make its error: so much more (rad rms) nobody sees.
 UNSEEN_RAD = 0.002
-# A joint that keeps its controller feels its neighbours' quicker moves, and how stiffly they rest.
+HARDLY_MOVED = [PARTS.index(name) for name in ("small moves", HOLDING)]
+# A joint that keeps its controller feels its neighbours' quicker moves, and how stiffly they rest. It is no worse
+# controller, so what nobody sees never counts against it.
 KEPT_SHARE, KEPT_GROWTH = 0.1, 2.0
 # The parts whose error ranks controllers as a person's reaches do (docs/commission.md). In the others it has a limit.
 LED = [PARTS.index(name) for name in HAND_LED]
@@ -54,8 +55,9 @@ class Limits:
         """
         before = Measures(**{name: np.fmax.reduce([getattr(one, name) for one in befores]) for name in NAMES})
         error = (1.0 + np.where(kept, KEPT_SHARE, SAME_SHARE)) * before.error + SAME_RAD2
-        still = PARTS.index(HOLDING)
-        error[still] = np.maximum(error[still], (np.sqrt(before.error[still]) + UNSEEN_RAD) ** 2)
+        unseen = np.maximum(error, (np.sqrt(before.error) + UNSEEN_RAD) ** 2)
+        error = np.where(kept, unseen, error)
+        error[HARDLY_MOVED] = unseen[HARDLY_MOVED]
         return cls(
             unrest=_allowed(
                 before.unrest,

@@ -6,7 +6,7 @@ before until the end, when it gets the best that was measured.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 
 import numpy as np
@@ -23,7 +23,7 @@ from greywhale.commission.journal import CommissioningJournal
 from greywhale.commission.motions import JointRange, check_motion
 from greywhale.commission.request import CommissioningRequest
 from greywhale.commission.result import CommissioningResult, Round, errors_beside, predict_trial
-from greywhale.commission.search import JointSearch, Row
+from greywhale.commission.search import MOST_SOFTER, JointSearch, Row
 from greywhale.commission.trials import Trials
 from greywhale.files.arm import load_arm
 from greywhale.files.leader import load_leader, save_leader
@@ -39,7 +39,18 @@ from greywhale.tune.model_checks import doubt_other_arm
 
 DESIGN_BUDGET = 150  # the last evaluations of a search for a motion would gain little
 # Another round follows while a joint's best is above this share of before.
-WANTING = 0.3
+WANTING = 0.5
+# A round's trials end when the joints' best together have this share of the error from before, or gained less than so
+# much in so many trials: a joint may need as many until it rests.
+GOOD, LEAST_GAIN, PATIENCE = 0.04, 0.1, MOST_SOFTER
+
+
+def is_enough(hoped: Sequence[float]) -> bool:
+    """Whether more trials are not worth their time; `hoped` is the error of the joints' best together after each trial,
+    relative to before.
+    """
+    stalls = len(hoped) > PATIENCE and hoped[-1] > (1.0 - LEAST_GAIN) * hoped[-1 - PATIENCE]
+    return stalls or hoped[-1] <= GOOD
 
 
 def commission(options: CommissioningRequest, report: NotedProgress | None = None) -> CommissioningResult:
@@ -166,6 +177,7 @@ class _Commissioning:
         wanted: list[npt.NDArray[np.int32] | None] = [learnt.controllers[search.joint] for search in searches]
         for search in searches:
             search.begin()
+        hoped: list[float] = []
         for number in range(1, self.options.trials + 1):
             self.trying = f", trial {number} of {self.options.trials} at most"
             rows = self._best_rows()
@@ -179,7 +191,8 @@ class _Commissioning:
                 if wanted[joint] is not None and verdict.known:
                     search.add(rows[joint], verdict, trial.name)
                     wanted[joint] = search.propose(self._promises(joint))
-            if all(row is None or search.good for row, search in zip(wanted, searches, strict=True)):
+            hoped.append(sum(search.best.verdict.share * search.best.verdict.value for search in searches))
+            if all(row is None for row in wanted) or is_enough(hoped):
                 break
         self.trying = ""
 
@@ -197,13 +210,12 @@ class _Commissioning:
         """Every joint's best so far, of whatever trial."""
         rows = controllers_of(self.trials.table).copy()
         for search in self.searches:
-            if search.best is not None:
-                rows[search.joint] = search.best.row
+            rows[search.joint] = search.best.row
         return rows
 
     def _is_wanting(self) -> bool:
         """Whether another round may help: a joint follows little better than before."""
-        return any(search.best is None or search.best.verdict.value > WANTING for search in self.searches)
+        return any(search.best.verdict.value > WANTING for search in self.searches)
 
     def _report(self, stage: str) -> NotedProgress:
         def told(what: str, fraction: float, note: str = "") -> None:

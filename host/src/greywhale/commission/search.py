@@ -33,9 +33,6 @@ HARDLY, GENTLY = 1.5, 0.35
 STEPS: tuple[dict[int, float], ...] = ({KP: 1.5, KD: 1.3}, {KI: 6.0}, {KD: 1.4}, {KP: 0.7}, {KI: 0.15})
 # A step that follows better, but is hardly too much (as above), is made again half as far.
 HALF = 0.5
-# A joint whose error is this share of before (in what a hand leads) is good: no more trials for its sake. In trials
-# for the sake of others it is varied as well, at no cost.
-GOOD = 0.05
 LEAST_KI, MOST_KI = 30.0, 300.0  # V/(rad s), where a step enlarges it; less does next to nothing in a move
 
 
@@ -67,14 +64,9 @@ class JointSearch:
     _factors: dict[int, float] | None = None  # of the step that is on trial, None where it is not to be halved
 
     @property
-    def best(self) -> TriedController | None:
-        """The best that passed or can be borne."""
-        return next(iter(self.ranked()), None)
-
-    @property
-    def good(self) -> bool:
-        """Whether the best follows so well that no trial is made for its sake."""
-        return self.best is not None and self.best.verdict.value <= GOOD
+    def best(self) -> TriedController:
+        """The best that passed or can be borne, as the controller from before always can."""
+        return self.ranked()[0]
 
     def ranked(self) -> list[TriedController]:
         """All that passed or can be borne, the best first."""
