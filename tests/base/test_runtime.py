@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from greywhale.base import runtime
+from greywhale.base import runtime, system
 from greywhale.base.errors import UserError
 from greywhale.base.runtime import VARIABLE, make_runtime_directory, private_runtime_directories, runtime_directories
 from greywhale.protocol import ports
@@ -86,7 +86,7 @@ def test_what_cannot_be_trusted_is_not_used(kind: str, words: str) -> None:
 
 def test_a_folder_of_another_user_is_not_used(place: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     place.mkdir(mode=0o700)
-    monkeypatch.setattr(os, "getuid", lambda: os.geteuid() + 1)
+    monkeypatch.setattr(system, "user", lambda: os.geteuid() + 1)
     with pytest.raises(UserError, match="belongs to another user"):
         make_runtime_directory()
 

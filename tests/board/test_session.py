@@ -5,22 +5,20 @@ from __future__ import annotations
 import contextlib
 import logging
 import os
-import pty
 import signal
 import socket
-import stat
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
+from greywhale.base import system
 from greywhale.base.errors import UserError
 from greywhale.base.runtime import VARIABLE
-from greywhale.board import meeting, session
+from greywhale.board import meeting
 from greywhale.board.device import Device
 from greywhale.board.meeting import Peer
 from greywhale.board.record import record
@@ -36,7 +34,7 @@ STOPPED = {"pid": os.getpid(), "state": "disabled"}
 
 def names(board: PortBoard) -> list[str]:
     """Where a session on the board may listen."""
-    device = meeting.device_of(board.port)
+    device = system.device_of(board.port)
     assert device is not None
     return meeting.names_of(device)
 
@@ -315,7 +313,7 @@ def test_another_user_who_takes_a_name_first_hinders_nobody(monkeypatch: pytest.
 
 
 def test_no_motor_starts_where_nothing_could_stop_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(session, "in_foreground", lambda: False)
+    monkeypatch.setattr(system, "in_foreground", lambda: False)
     with PortBoard() as board, squat(monkeypatch, names(board)) as child, open_device(board) as device:
         assert device.status().state is State.DISABLED, "to look is safe"
         for start in (device.enable, device.lead):
@@ -327,27 +325,12 @@ def test_no_motor_starts_where_nothing_could_stop_it(monkeypatch: pytest.MonkeyP
 def test_where_only_ctrl_c_stops_it_that_is_said_before_the_motors_start(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    monkeypatch.setattr(session, "in_foreground", lambda: True)
+    monkeypatch.setattr(system, "in_foreground", lambda: True)
     with PortBoard() as board, squat(monkeypatch, names(board)), open_device(board) as device:
         device.enable(500)
         device.enable(500)
     (warning,) = [record for record in caplog.records if record.levelno == logging.WARNING]
     assert "only Ctrl-C in this terminal stops the arm" in warning.getMessage()
-
-
-@pytest.mark.parametrize("terminal", [True, False])
-def test_a_terminals_ctrl_c_is_known_to_reach_a_process(terminal: bool) -> None:
-    reader, writer = os.pipe()
-    child, master = pty.fork() if terminal else (os.fork(), reader)
-    if child == 0:
-        if not terminal:
-            os.setsid()
-        os.write(writer, str(session.in_foreground()).encode())
-        os.kill(os.getpid(), signal.SIGKILL)
-    os.waitpid(child, 0)
-    assert os.read(reader, 8) == str(terminal).encode()
-    for descriptor in {reader, writer, master}:
-        os.close(descriptor)
 
 
 def test_a_port_is_found_by_whatever_name(tmp_path: Path) -> None:
@@ -398,30 +381,6 @@ def test_a_client_that_does_not_wait_for_the_answer_is_heard() -> None:
         with connected(board) as client:
             client.sendall(b"stop\n")
         listen(device)
-
-
-def test_a_device_is_one_under_all_its_names(tmp_path: Path) -> None:
-    (tmp_path / "link").symlink_to("/dev/null")
-    assert meeting.device_of(str(tmp_path / "link")) == meeting.device_of("/dev/null") == "1:3"
-    assert meeting.device_of("/dev/zero") == "1:5"
-
-
-def test_what_is_no_device_has_none(tmp_path: Path) -> None:
-    for name in (str(tmp_path), str(tmp_path / "none"), "bench in lock step", "a\0b"):
-        assert meeting.device_of(name) is None
-
-
-def test_a_pseudo_terminal_is_not_the_one_that_had_its_number_before(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Else a session that is just ending would keep others from a new bench."""
-
-    def made_at(time: int, major: int) -> str | None:
-        found = SimpleNamespace(st_mode=stat.S_IFCHR | 0o620, st_rdev=os.makedev(major, 5), st_ctime_ns=time)
-        with monkeypatch.context() as patch:
-            patch.setattr(os, "stat", lambda name: found)
-            return meeting.device_of("/dev/x")
-
-    assert made_at(1, 136) != made_at(2, 136)
-    assert made_at(1, 166) == made_at(2, 166), "but the owner of a real port may change while it is in use"
 
 
 def test_the_names_are_the_users_own(monkeypatch: pytest.MonkeyPatch) -> None:

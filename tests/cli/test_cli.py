@@ -380,8 +380,8 @@ def test_a_bench_whose_eeprom_has_no_place_does_not_start(tmp_path: Path, capsys
 
 @pytest.mark.parametrize("verb", ["sim", "demo"])
 def test_a_missing_bench_is_one_sentence(capsys: Captured, monkeypatch: pytest.MonkeyPatch, verb: str) -> None:
-    monkeypatch.setitem(sys.modules, "greywhale_sim", None)
-    monkeypatch.setitem(sys.modules, "greywhale_sim.serve", None)
+    for module in ("greywhale_sim", "greywhale_sim.serve", "greywhale_sim.serial_port"):
+        monkeypatch.setitem(sys.modules, module, None)
     code, answer = ask(capsys, verb)
     assert code == 1
     assert "run `pip install greywhale-sim`" in answer["error"]

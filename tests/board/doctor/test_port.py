@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from greywhale.base import system
 from greywhale.board.doctor import port as doctor_port
 from greywhale.board.doctor.finding import Verdict
 from greywhale.board.doctor.port import examine_port, udev_rules
@@ -44,7 +45,7 @@ def test_without_permission_the_remedy_names_the_ports_own_group(
     terminal: str, group: str, says: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(os, "access", lambda path, mode: False)
-    monkeypatch.setattr(doctor_port, "group_of", lambda port: group)
+    monkeypatch.setattr(system, "group_of", lambda port: group)
     found = examine_port(terminal)[-1]
     assert found.verdict is Verdict.BAD
     assert found.remedy.startswith(says)

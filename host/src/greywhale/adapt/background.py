@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import multiprocessing
-import os
 from collections.abc import Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future
 
 from greywhale.adapt.live_model import LiveModel
 from greywhale.adapt.propose import Proposal, Task, work_on
+from greywhale.base import system
 from greywhale.base.errors import UserError
 from greywhale.base.study.workers import Workers
 
@@ -46,7 +46,7 @@ class Background:
 
 def _work(task: Task) -> Proposal | LiveModel:
     if multiprocessing.parent_process() is not None:
-        os.setpriority(os.PRIO_PROCESS, 0, NICENESS)
+        system.give_way(NICENESS)
     return work_on(task)
 
 

@@ -6,6 +6,7 @@ import os
 import stat
 from pathlib import Path
 
+from greywhale.base import system
 from greywhale.base.errors import UserError, os_reason
 
 # Names another folder, for tests: what runs in it is found only by those who name it too.
@@ -17,7 +18,7 @@ def runtime_directories() -> list[Path]:
     given = os.environ.get(VARIABLE)
     if given:
         return [Path(given)]
-    return [Path(f"/run/user/{os.getuid()}/greywhale"), Path(f"/tmp/greywhale-{os.getuid()}")]
+    return [Path(f"/run/user/{system.user()}/greywhale"), Path(f"/tmp/greywhale-{system.user()}")]
 
 
 def make_runtime_directory() -> Path:
@@ -55,7 +56,7 @@ def _why_not_private(folder: Path) -> str | None:
         return f"cannot be used: {os_reason(error)}"
     if not stat.S_ISDIR(found.st_mode):
         return "is not a folder"
-    if found.st_uid != os.getuid():
+    if found.st_uid != system.user():
         return "belongs to another user"
     if found.st_mode & 0o077:
         return f"is open to other users (mode {stat.S_IMODE(found.st_mode):o})"

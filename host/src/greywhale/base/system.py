@@ -1,36 +1,60 @@
-"""Where operating systems differ, for all that needs no board: locks on files, and signals that end.
+"""Where operating systems differ: all that does is here, so that a port to another one is a matter of trying it.
 
-Linux is tried. Windows has neither `fcntl` nor the signal of a closed terminal. Verbs without a board get by with what
-is here; a verb with one says that it needs another system (`greywhale.cli.entry`).
+Linux is tried. Of Windows and macOS only the names and types are checked (`make lint`). What they do in another way, or
+not at all, is said at each function. The simulated bench needs a pseudo-terminal, which Windows does not have.
 """
 
 from __future__ import annotations
 
 import contextlib
 import errno
+import io
 import os
+import re
+import select
 import signal
+import socket
+import stat
+import struct
+import sys
+import threading
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import TextIO
 
-NOT_ON_WINDOWS = ("fcntl", "termios", "tty")  # modules of Python for what meets a board, or stands for one
-
-fcntl: Any  # a system has one of both
-msvcrt: Any
-try:
-    import fcntl
-except ImportError:
+if sys.platform == "win32":
+    import _thread
+    import mmap
     import msvcrt
+    import subprocess
+else:
+    import fcntl
+    import grp
+    import termios
 
-    fcntl = None
+NOT_ON_WINDOWS = ("fcntl", "termios", "tty")  # modules of Python, which the simulated bench needs
 
-HANG_UP: signal.Signals | None = getattr(signal, "SIGHUP", None)  # of a terminal that is closed
-ENDING = (signal.SIGINT, signal.SIGTERM, *([HANG_UP] if HANG_UP is not None else []))
-RENAMES_OPEN_FILES = fcntl is not None
+if sys.platform == "win32":
+    HANG_UP = signal.SIGBREAK  # of a console that is closed, and Ctrl-Break
+    WAKE = signal.SIGILL  # Windows never sends it
+else:
+    HANG_UP = signal.SIGHUP  # of a terminal that is closed
+    WAKE = signal.SIGURG  # nobody else uses it
+ENDING = (signal.SIGINT, signal.SIGTERM, HANG_UP)
+RENAMES_OPEN_FILES = sys.platform != "win32"
+HANDS_DOWN_DESCRIPTORS = sys.platform != "win32"  # to the programs that it starts
+# Sockets whose name is no file, and which tell who is at the other end.
+HAS_ABSTRACT_SOCKETS = sys.platform == "linux"
+
 # How a file is opened: as it is on the disk, and not where a link leads.
 _PLAIN = getattr(os, "O_BINARY", 0) | getattr(os, "O_NOFOLLOW", 0)
 _FAR = 1 << 40  # Windows keeps others from reading what is locked, and no file of ours is so long
+_PSEUDO_TERMINALS = range(136, 144)  # major numbers of devices
+_PEER = struct.Struct("3i")  # struct ucred: process, user, group
+_CFLAG = 2  # place of the control flags in what termios returns
+
+
+# --- files and folders ------------------------------------------------------------------------------------------------
 
 
 def open_plain(path: Path, flags: int) -> int:
@@ -42,23 +66,62 @@ def lock(descriptor: int, wait: bool = False) -> None:
     """Hold an open file until it is closed or this process ends, however it ends: BlockingIOError where another process
     holds it, another OSError where a file system knows no locks.
     """
-    if fcntl is not None:
+    if sys.platform == "win32":
+        place = os.lseek(descriptor, 0, os.SEEK_CUR)
+        os.lseek(descriptor, _FAR, os.SEEK_SET)
+        try:
+            msvcrt.locking(descriptor, msvcrt.LK_LOCK if wait else msvcrt.LK_NBLCK, 1)
+        except PermissionError as error:
+            raise BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN)) from error
+        finally:
+            os.lseek(descriptor, place, os.SEEK_SET)
+    else:
         fcntl.flock(descriptor, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
+
+
+def read_all(descriptor: int) -> bytes:
+    """All that a file holds; the place where another process writes into it stays."""
+    size = os.fstat(descriptor).st_size
+    if sys.platform == "win32":
+        if size == 0:
+            return b""  # cannot be mapped
+        with mmap.mmap(descriptor, size, access=mmap.ACCESS_READ) as held:
+            return held[:]
+    else:
+        return os.pread(descriptor, size, 0)
+
+
+@contextlib.contextmanager
+def inside(folder: Path) -> Iterator[None]:
+    """Work in a folder for a while."""
+    if sys.platform == "win32":
+        with contextlib.chdir(folder):
+            yield
         return
-    place = os.lseek(descriptor, 0, os.SEEK_CUR)
-    os.lseek(descriptor, _FAR, os.SEEK_SET)
+    before = os.open(".", getattr(os, "O_PATH", os.O_RDONLY))  # its name may have gone
     try:
-        msvcrt.locking(descriptor, msvcrt.LK_LOCK if wait else msvcrt.LK_NBLCK, 1)
-    except PermissionError as error:
-        raise BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN)) from error
+        os.chdir(folder)
+        yield
     finally:
-        os.lseek(descriptor, place, os.SEEK_SET)
+        os.fchdir(before)
+        os.close(before)
+
+
+# --- signals and processes --------------------------------------------------------------------------------------------
+
+
+def user() -> int:
+    """This user's number; Windows has none, and says 0 of every file's owner too."""
+    if sys.platform == "win32":
+        return 0
+    else:
+        return os.geteuid()
 
 
 @contextlib.contextmanager
 def no_interrupts_for_children() -> Iterator[None]:
     """Programs that are started meanwhile do not hear Ctrl-C, where a system can tell them so."""
-    if not hasattr(signal, "pthread_sigmask"):
+    if sys.platform == "win32":
         yield
         return
     mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
@@ -70,5 +133,176 @@ def no_interrupts_for_children() -> Iterator[None]:
 
 def hear_interrupts() -> None:
     """End what `no_interrupts_for_children` began in the process that started this one."""
-    if hasattr(signal, "pthread_sigmask"):
+    if sys.platform != "win32":
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+
+
+def signal_main_thread(number: signal.Signals) -> None:
+    """Send it there, which ends a system call that waits; on Windows the handler runs after the call."""
+    if sys.platform == "win32":
+        _thread.interrupt_main(number)
+    else:
+        signal.pthread_kill(threading.main_thread().ident or 0, number)
+
+
+def end_group(leader: int, by_force: bool) -> None:
+    """End a process that began a session, and all that it has started; on Windows by force in any case."""
+    if sys.platform == "win32":
+        subprocess.run(["taskkill", "/F", "/T", "/PID", str(leader)], check=False, capture_output=True)
+        return
+    with contextlib.suppress(ProcessLookupError):
+        os.killpg(leader, signal.SIGKILL if by_force else signal.SIGTERM)
+
+
+def give_way(niceness: int) -> None:
+    """Let other processes go first; on Windows this one competes with them."""
+    if sys.platform != "win32":
+        os.setpriority(os.PRIO_PROCESS, 0, niceness)
+
+
+# --- terminals and sockets --------------------------------------------------------------------------------------------
+
+
+def in_foreground() -> bool:
+    """Whether a terminal's Ctrl-C reaches this process."""
+    try:
+        with open("CONIN$" if sys.platform == "win32" else "/dev/tty", "rb", buffering=0) as terminal:
+            return sys.platform == "win32" or os.tcgetpgrp(terminal.fileno()) == os.getpgrp()
+    except OSError:
+        return False
+
+
+def has_typed(stream: TextIO, wait: bool) -> bool:
+    """Whether something can be read; `wait` until it can. On Windows a key is enough: reading waits for its line."""
+    if sys.platform == "win32":
+        return wait or not stream.isatty() or msvcrt.kbhit()
+    return bool(select.select([stream], [], [], None if wait else 0.0)[0])
+
+
+def forget_typed(terminal: TextIO) -> None:
+    """Nobody reads what was typed so far."""
+    if sys.platform == "win32":
+        while msvcrt.kbhit():
+            msvcrt.getwch()
+    else:
+        termios.tcflush(terminal, termios.TCIFLUSH)
+
+
+def readable(descriptors: list[int], pause_s: float | None) -> set[int]:
+    """Those that have something to read, or have ended, after at most the pause; Windows takes sockets only."""
+    if sys.platform == "win32":
+        return set(select.select(descriptors, [], [], pause_s)[0])
+    poll = select.poll()
+    for descriptor in descriptors:
+        poll.register(descriptor, select.POLLIN)
+    return {descriptor for descriptor, _ in poll.poll(None if pause_s is None else pause_s * 1000)}
+
+
+def abstract_socket() -> socket.socket:
+    """One that can be bound to a name that is no file; OSError where there is no such thing."""
+    if sys.platform != "linux":
+        raise OSError(errno.EAFNOSUPPORT, "this system has no abstract sockets")
+    return socket.socket(socket.AF_UNIX)
+
+
+def peer_of(connection: socket.socket) -> tuple[int, int]:
+    """Process and user at the other end of an abstract socket, by the system's word."""
+    if sys.platform != "linux":
+        raise OSError(errno.EAFNOSUPPORT, "this system has no abstract sockets")
+    pid, uid, _ = _PEER.unpack(connection.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, _PEER.size))
+    return pid, uid
+
+
+# --- serial ports -----------------------------------------------------------------------------------------------------
+
+
+def device_of(port: str) -> str | None:
+    """The device behind a port by its number, whatever it is called; None where no device is. On Windows its name.
+
+    A pseudo-terminal's number is soon another one's, so the time at which it was made counts too.
+    """
+    if sys.platform == "win32":
+        return port.upper() if re.fullmatch(r"(?i)COM\d+", port) else None
+    try:
+        found = os.stat(port)
+    except (OSError, ValueError):
+        return None
+    if not stat.S_ISCHR(found.st_mode):
+        return None
+    made = f":{found.st_ctime_ns}" if os.major(found.st_rdev) in _PSEUDO_TERMINALS else ""
+    return f"{os.major(found.st_rdev)}:{os.minor(found.st_rdev)}{made}"
+
+
+def numbers(device: int) -> tuple[int, int]:
+    """Major and minor number of a device; Windows has none."""
+    if sys.platform == "win32":
+        return 0, 0
+    else:
+        return os.major(device), os.minor(device)
+
+
+def device_in(found: os.stat_result) -> int:
+    """The number of the device that a file stands for, 0 where it stands for none, and on Windows."""
+    if sys.platform == "win32":
+        return 0
+    else:
+        return found.st_rdev
+
+
+def exists(port: str) -> bool:
+    return device_of(port) is not None if sys.platform == "win32" else os.path.exists(port)
+
+
+def may_open(port: str) -> bool:
+    """Whether this user has the right to; on Windows everybody has."""
+    return sys.platform == "win32" or os.access(port, os.R_OK | os.W_OK)
+
+
+def group_of(port: str) -> str:
+    """The group that owns the port; "" where there is none."""
+    if sys.platform == "win32":
+        return ""
+    else:
+        try:
+            return grp.getgrgid(os.stat(port).st_gid).gr_name
+        except (KeyError, OSError):
+            return ""
+
+
+def is_own_terminal(port: str) -> bool:
+    """Whether a person types there: to open it as a port would spoil it."""
+    if sys.platform == "win32":
+        return False
+    device = os.stat(port).st_rdev
+    return device == os.makedev(5, 0) or any(  # /dev/tty, whichever terminal that is
+        os.isatty(stream) and os.fstat(stream).st_rdev == device for stream in range(3)
+    )
+
+
+def open_errno(error: OSError) -> int | None:
+    """Why pyserial could not open a port. On Windows its words tell, and access is denied where a port is in use."""
+    if sys.platform != "win32":
+        return error.errno
+    told = re.search(r"Error\((\d+),", str(error))
+    number = None if told is None else int(told[1])
+    return errno.EBUSY if number == errno.EACCES else number
+
+
+def keeps_dtr(line: io.RawIOBase) -> bool:
+    """Whether DTR stays up when an open port is closed; on Windows it falls."""
+    if sys.platform == "win32":
+        return False
+    else:
+        try:
+            return not termios.tcgetattr(line.fileno())[_CFLAG] & termios.HUPCL
+        except termios.error:
+            return False
+
+
+def keep_dtr(line: io.RawIOBase, up: bool) -> None:
+    """Say whether DTR stays up when an open port is closed, where a system can be told."""
+    if sys.platform != "win32":
+        with contextlib.suppress(termios.error):  # an unplugged cable has no DTR
+            flags = termios.tcgetattr(line.fileno())
+            flags[_CFLAG] = flags[_CFLAG] & ~termios.HUPCL if up else flags[_CFLAG] | termios.HUPCL
+            termios.tcsetattr(line.fileno(), termios.TCSANOW, flags)

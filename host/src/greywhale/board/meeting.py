@@ -13,12 +13,11 @@ import contextlib
 import errno
 import os
 import socket
-import stat
-import struct
 import time
 from collections.abc import Container, Iterator
 from typing import NamedTuple
 
+from greywhale.base import system
 from greywhale.base.errors import UserError
 from greywhale.protocol.holder import describe
 
@@ -26,8 +25,6 @@ STOP, CLUTCH = "stop", ("engage", "disengage")  # what a client may say
 NAMES = 8
 # So many clients wait to be let in, and so many have said nothing yet.
 MOST_CLIENTS = 64
-_PEER = struct.Struct("3i")  # struct ucred: process, user, group
-_PSEUDO_TERMINALS = range(136, 144)  # major numbers of devices
 _RETRY_S = 0.01
 
 
@@ -39,39 +36,23 @@ class Peer(NamedTuple):
 
     @property
     def ours(self) -> bool:
-        return self.uid == os.geteuid()
+        return self.uid == system.user()
 
 
 def peer_of(connection: socket.socket) -> Peer:
     """Who is at the other end, by the system's word."""
-    pid, uid, _ = _PEER.unpack(connection.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, _PEER.size))
-    return Peer(pid, uid)
-
-
-def device_of(port: str) -> str | None:
-    """The device behind a port by its number, whatever it is called; None where no device is.
-
-    A pseudo-terminal's number is soon another one's, so the time at which it was made counts too.
-    """
-    try:
-        found = os.stat(port)
-    except (OSError, ValueError):
-        return None
-    if not stat.S_ISCHR(found.st_mode):
-        return None
-    made = f":{found.st_ctime_ns}" if os.major(found.st_rdev) in _PSEUDO_TERMINALS else ""
-    return f"{os.major(found.st_rdev)}:{os.minor(found.st_rdev)}{made}"
+    return Peer(*system.peer_of(connection))
 
 
 def names_of(device: str) -> list[str]:
-    """Where this user's session on a device may listen. A system without abstract sockets needs other names."""
-    return [f"\0greywhale/{os.geteuid()}/{device}/{number}" for number in range(NAMES)]
+    """Where this user's session on a device may listen."""
+    return [f"\0greywhale/{system.user()}/{device}/{number}" for number in range(NAMES)]
 
 
 def listen(port: str, device: str) -> socket.socket:
     """Listen for this user. A UserError where another session of this user has the port, an OSError without a name."""
     for name in names_of(device):
-        listener = socket.socket(socket.AF_UNIX)
+        listener = system.abstract_socket()
         try:
             taken = not _take(listener, name)
             _refuse_second(port, device)
@@ -122,7 +103,7 @@ def find(port: str, patience_s: float) -> tuple[socket.socket, Peer] | None:
 
     Where others crowd a name, it is tried again until the patience ends.
     """
-    device = device_of(port)
+    device = system.device_of(port) if system.HAS_ABSTRACT_SOCKETS else None
     end = time.monotonic() + patience_s
     while device is not None:
         try:
@@ -142,7 +123,7 @@ def _connections(device: str) -> Iterator[tuple[socket.socket, Peer]]:
     """Every one who listens at a device's names, of whatever user; at last BlockingIOError where a door was crowded."""
     crowded = None
     for name in names_of(device):
-        client = socket.socket(socket.AF_UNIX)
+        client = system.abstract_socket()
         client.setblocking(False)
         try:
             client.connect(name)

@@ -11,7 +11,6 @@ import contextlib
 import json
 import logging
 import os
-import select
 import signal
 import socket
 import threading
@@ -20,6 +19,7 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import Any, Self
 
+from greywhale.base import system
 from greywhale.base.errors import UserError, os_reason
 from greywhale.board import meeting
 from greywhale.protocol.holder import describe
@@ -31,8 +31,7 @@ HEARD_S = 3.0
 # It then answers within this time, or says that the board does not confirm.
 _CONFIRM_S = 5.0
 # An interrupt that comes just before the main thread falls asleep in a system call is noticed only when the call ends.
-# So this signal, which nobody else uses and which does nothing, ends the call, again and again until the session does.
-_WAKE = signal.SIGURG
+# So a signal that does nothing (system.WAKE) ends the call, again and again until the session does.
 _WAKE_S = 0.05
 _open: dict[str, Session] = {}
 logger = logging.getLogger(__name__)
@@ -48,7 +47,7 @@ class Session:
     def __init__(self, port: str) -> None:
         self.port = port
         self._key = _key(port)
-        self._device = None if port in LENT else meeting.device_of(port)  # whoever lends a port listens for it
+        self._device = None if port in LENT else system.device_of(port)  # whoever lends a port listens for it
         self.asked = False
         self._users = 0
         self._send_stop: Callable[[], None] | None = None
@@ -126,7 +125,7 @@ class Session:
     def _rely_on_ctrl_c(self) -> None:
         """Say once that only Ctrl-C stops this session; where that does not reach it either, refuse."""
         problem = f"{self.port}: `greywhale stop` cannot reach this session, because {self._unreachable}"
-        if not (self._interrupts and in_foreground()):
+        if not (self._interrupts and system.in_foreground()):
             raise UserError(
                 f"{problem}; nor can the Ctrl-C of a terminal, so the motors stay off: run it in the foreground of a "
                 "terminal, or end what is in the way."
@@ -147,7 +146,7 @@ class Session:
             return
         self._wake_out, self._wake_in = os.pipe()
         if self._interrupts:
-            self._woken_before = signal.signal(_WAKE, lambda number, frame: None)
+            self._woken_before = signal.signal(system.WAKE, lambda number, frame: None)
         clients = meeting.Clients(listener)
         self._thread = threading.Thread(target=self._serve, args=(clients,), name="greywhale-stop", daemon=True)
         self._thread.start()
@@ -163,7 +162,7 @@ class Session:
         self._thread.join()
         self._thread = None
         if self._interrupts:
-            signal.signal(_WAKE, self._woken_before)
+            signal.signal(system.WAKE, self._woken_before)
         os.close(self._wake_out)
         os.close(self._wake_in)
 
@@ -177,7 +176,7 @@ class Session:
         ended = False
         while not ended:
             pause_s = self._wake_main_thread() or (_WAKE_S if clients.asking else None)
-            ready = _readable([self._wake_out, *clients.descriptors()], pause_s)
+            ready = system.readable([self._wake_out, *clients.descriptors()], pause_s)
             ended = self._wake_out in ready and b"x" in os.read(self._wake_out, 64)
             if clients.hear(ready):
                 self.asked = True
@@ -215,13 +214,13 @@ class Session:
                 send()
         if self._interrupts and callable(signal.getsignal(signal.SIGINT)) and not self._told:
             self._told = self._interrupted = True
-            signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
+            system.signal_main_thread(signal.SIGINT)
 
     def _wake_main_thread(self) -> float | None:
         """See that an interrupt is noticed: in how many seconds again, None where none was sent."""
         if not self._interrupted:
             return None
-        signal.pthread_kill(threading.main_thread().ident or 0, _WAKE)
+        system.signal_main_thread(system.WAKE)
         return _WAKE_S
 
 
@@ -276,24 +275,7 @@ def ask_for_clutch(port: str, action: str, heard_s: float = HEARD_S) -> int | No
 
 def _key(port: str) -> str:
     """What is the same for all names of a port."""
-    return meeting.device_of(port) or os.path.realpath(port)
-
-
-def _readable(descriptors: list[int], pause_s: float | None) -> set[int]:
-    """Those that have something to read, or have ended, after at most the pause."""
-    poll = select.poll()
-    for descriptor in descriptors:
-        poll.register(descriptor, select.POLLIN)
-    return {descriptor for descriptor, _ in poll.poll(None if pause_s is None else pause_s * 1000)}
-
-
-def in_foreground() -> bool:
-    """Whether a terminal's Ctrl-C reaches this process."""
-    try:
-        with open("/dev/tty", "rb", buffering=0) as terminal:
-            return os.tcgetpgrp(terminal.fileno()) == os.getpgrp()
-    except OSError:
-        return False
+    return system.device_of(port) or os.path.realpath(port)
 
 
 def _read_line(client: socket.socket) -> bytes:

@@ -99,7 +99,7 @@ def command(
 @contextlib.contextmanager
 def _starting(board: str, arm: Path | None) -> Iterator[Future[bench_process.BenchProcess]]:
     """A bench that comes up meanwhile, and is ended whatever happens."""
-    need_bench("greywhale_sim")
+    need_bench("greywhale_sim.serial_port")
     words = ["--board", board, *([] if arm is None else ["--arm", str(arm)])]
     with ThreadPoolExecutor(1) as pool:
         starting = pool.submit(bench_process.BenchProcess, *words)

@@ -76,7 +76,7 @@ def command(
     """
     require_folder(out, "logs and pictures")
     _check_inputs(leader, arm, controller)
-    need_bench("greywhale_sim")
+    need_bench("greywhale_sim.serial_port")
     from greywhale.cli import story
 
     options = story.DemoOptions(

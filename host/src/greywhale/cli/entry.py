@@ -28,7 +28,7 @@ INTERRUPTED = 130
 logger = logging.getLogger(__name__)
 
 
-ON_WINDOWS = "use WSL 2 (docs/your-arm.md), or the page in the browser for a board."
+ON_WINDOWS = "use WSL 2 (docs/your-arm.md), or the page in the browser, which has a bench inside."
 
 
 class Failure(TypedDict):
@@ -56,9 +56,8 @@ def run(arguments: Sequence[str]) -> int:
     if signal.getsignal(signal.SIGINT) is signal.SIG_DFL:  # as at the start, before a Ctrl-C could be answered
         signal.signal(signal.SIGINT, signal.default_int_handler)
     signal.signal(signal.SIGTERM, _terminated)
-    hang_up = system.HANG_UP
-    if hang_up is not None and signal.getsignal(hang_up) is not signal.SIG_IGN:  # nohup means what it says
-        signal.signal(hang_up, _terminated)
+    if signal.getsignal(system.HANG_UP) is not signal.SIG_IGN:  # nohup means what it says
+        signal.signal(system.HANG_UP, _terminated)
     begun = time.monotonic()
     try:
         code = _run(arguments, as_json="--json" in arguments)
@@ -85,7 +84,7 @@ def _run(arguments: Sequence[str], as_json: bool) -> int:
     except ModuleNotFoundError as error:
         if error.name not in system.NOT_ON_WINDOWS:
             raise
-        return _failed(f"this verb needs {error.name}, which Windows has not; {ON_WINDOWS}", FAILED, as_json)
+        return _failed(f"this verb needs {error.name}, which Windows does not have; {ON_WINDOWS}", FAILED, as_json)
     except BrokenPipeError:
         # The reader of our output has gone. Nothing is left to say, and Python must not try to say it at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import os
-import select
 import shutil
 import sys
-import termios
 import textwrap
 
 import click
 
+from greywhale.base import system
 from greywhale.base.errors import UserError, cut
 from greywhale.board.calibrate import Answer
 
@@ -81,12 +80,12 @@ class Terminal:
     def _forget_typed(self) -> None:
         if self.patient:
             self._typed = b""
-            termios.tcflush(sys.stdin, termios.TCIFLUSH)
+            system.forget_typed(sys.stdin)
 
     def _line(self, wait: bool) -> str | None:
         """The next line without its end, None where it has not come yet. Nothing is read ahead of the need."""
         while b"\n" not in self._typed:
-            if not select.select([sys.stdin], [], [], None if wait else 0.0)[0]:
+            if not system.has_typed(sys.stdin, wait):
                 return None
             data = os.read(sys.stdin.fileno(), 4096)
             if not (data or self._typed):

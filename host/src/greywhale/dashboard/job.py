@@ -74,8 +74,8 @@ class Job:
         self._printed = b""
         self._rests: dict[str, bytes] = {"progress": b"", "said": b""}
         self._kill_at: float | None = None
-        self._wake_out, self._wake_in = os.pipe()
-        os.set_blocking(self._wake_in, False)
+        self._wake_out, self._wake_in = socket.socketpair()
+        self._wake_in.setblocking(False)
         self._line: LentEnd | None = None
         progress, told = os.pipe()
         handed = [told]
@@ -124,7 +124,7 @@ class Job:
 
     def _wake(self, urgent: bool = True) -> None:
         with contextlib.suppress(OSError):  # awake already, or at its end
-            os.write(self._wake_in, b"w")
+            self._wake_in.send(b"w")
 
     def _run(self, progress: int) -> None:
         self._changed(self)  # a verb may say nothing for seconds
@@ -136,14 +136,14 @@ class Job:
             progress: self._take_progress,
         }
         with selectors.DefaultSelector() as selector:
-            for descriptor in (*open_pipes, self._wake_out):
+            for descriptor in (*open_pipes, self._wake_out.fileno()):
                 selector.register(descriptor, selectors.EVENT_READ)
             if self._line is not None:
                 self._line.register(selector)
             while open_pipes:
                 for key, events in selector.select(self._patience_s()):
-                    if key.fd == self._wake_out:
-                        os.read(self._wake_out, _PIECE)
+                    if key.fd == self._wake_out.fileno():
+                        self._wake_out.recv(_PIECE)
                     elif key.fd in open_pipes:
                         data = os.read(key.fd, _PIECE)
                         if data:
@@ -196,8 +196,8 @@ class Job:
             assert pipe is not None
             with contextlib.suppress(OSError):
                 pipe.close()
-        os.close(self._wake_out)
-        os.close(self._wake_in)
+        self._wake_out.close()
+        self._wake_in.close()
         try:
             answer = json.loads(self._printed)
         except ValueError:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, ExitStack
 from typing import Any, TypedDict
 
+from greywhale.base import system
 from greywhale.base.errors import BAD_USAGE, UserError, cut
 from greywhale.dashboard.folder import Folder
 from greywhale.dashboard.job import Facts, Job
@@ -67,6 +68,8 @@ class Jobs:
         if verb is None or not isinstance(arguments, dict):
             names = ", ".join(one["verb"] for one in self.verbs())
             raise UserError(f"{cut(repr(name))} is no verb of a page; there are: {names}.", BAD_USAGE)
+        if not system.HANDS_DOWN_DESCRIPTORS:
+            raise UserError(f"a page starts no verbs on Windows; run `greywhale {name}` in a terminal.")
         words = command_line(verb, arguments, self._folder)
         with self._lock, ExitStack() as failed:
             if sum(job.running for job in self._jobs) >= MOST_RUNNING:

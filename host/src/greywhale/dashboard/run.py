@@ -12,6 +12,7 @@ from types import FrameType
 
 import uvicorn
 
+from greywhale.base import system
 from greywhale.base.bench_process import RunningBench
 from greywhale.dashboard import server
 from greywhale.dashboard.answers import Answers
@@ -63,10 +64,10 @@ def _ending_on_hangup(running: uvicorn.Server) -> Iterator[None]:
     def end(number: int, frame: FrameType | None) -> None:
         running.should_exit = True
 
-    before = signal.getsignal(signal.SIGHUP)
+    before = signal.getsignal(system.HANG_UP)
     if before is not signal.SIG_IGN:
-        signal.signal(signal.SIGHUP, end)
+        signal.signal(system.HANG_UP, end)
     try:
         yield
     finally:
-        signal.signal(signal.SIGHUP, before)
+        signal.signal(system.HANG_UP, before)

@@ -2,28 +2,17 @@
 
 Such a file may be a stranger's, and can have TeX run. Matplotlib reads it while it is imported.
 """
-# ruff: noqa: E402
 
 from __future__ import annotations
 
-import os
 import sys
 from pathlib import Path
 
-
-def _import_matplotlib() -> None:
-    """Import it in a folder that is ours."""
-    here = os.open(".", getattr(os, "O_PATH", os.O_RDONLY))  # the folder's name may have gone
-    try:
-        os.chdir(Path(__file__).parent)
-        __import__("matplotlib")
-    finally:
-        os.fchdir(here)
-        os.close(here)
-
+from greywhale.base import system
 
 if "matplotlib" not in sys.modules:
-    _import_matplotlib()
+    with system.inside(Path(__file__).parent):  # a folder that is ours
+        __import__("matplotlib")
 
 import matplotlib
 

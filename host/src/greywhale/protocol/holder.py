@@ -6,6 +6,7 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 
+from greywhale.base import system
 from greywhale.base.errors import cut
 
 PROCESSES = Path("/proc")  # not there on every system
@@ -36,7 +37,8 @@ def _locker(port: str) -> int | None:
         lines = (PROCESSES / "locks").read_text(encoding="ascii").splitlines()
     except OSError:
         return None
-    place = f"{os.major(found.st_dev):02x}:{os.minor(found.st_dev):02x}:{found.st_ino}"
+    major, minor = system.numbers(found.st_dev)
+    place = f"{major:02x}:{minor:02x}:{found.st_ino}"
     for line in lines:
         match line.split():  # 1: FLOCK ADVISORY WRITE 4711 00:1a:9 0 EOF
             case [_, "FLOCK", _, _, pid, at, *_] if at == place:
@@ -47,12 +49,12 @@ def _locker(port: str) -> int | None:
 def _users(port: str) -> Iterator[int]:
     """Who has it open, of this user's processes."""
     try:
-        device = os.stat(port).st_rdev
+        device = system.device_in(os.stat(port))
     except OSError:
         return
     for link in PROCESSES.glob("[0-9]*/fd/*"):
         try:
-            if device and os.stat(link).st_rdev == device:
+            if device and system.device_in(os.stat(link)) == device:
                 yield int(link.parts[2])
         except OSError:  # it has ended, or closed it
             continue

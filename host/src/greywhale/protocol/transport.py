@@ -7,10 +7,7 @@ open the port without a restart, or lets DTR fall first where it wants one.
 
 from __future__ import annotations
 
-import contextlib
 import errno
-import os
-import termios
 import threading
 import time
 from collections.abc import Callable
@@ -18,6 +15,7 @@ from typing import Protocol
 
 import serial
 
+from greywhale.base import system
 from greywhale.base.errors import UserError, os_reason
 from greywhale.protocol.holder import holder_of
 
@@ -29,8 +27,6 @@ _WRITE_WAIT_S = 1.0
 # So long is DTR down before it rises again: a board's reset line needs some 2 ms.
 _DTR_DOWN_S = 0.05
 _BUSY = (errno.EBUSY, errno.EAGAIN, errno.EWOULDBLOCK)
-_TERMINAL = os.makedev(5, 0)  # /dev/tty, whichever terminal that is
-_CFLAG = 2  # place of the control flags in what termios returns
 
 
 class PortLostError(UserError):
@@ -82,7 +78,7 @@ class Transport:
         self.port = port
         self._to_firmware = baud == BAUD
         self._serial = _open_serial(port, baud, restart)
-        self.restarted = restart or not _stays_up(self._serial)
+        self.restarted = restart or not system.keeps_dtr(self._serial)
         self._writing = threading.Lock()  # two threads never mix their frames
 
     def read(self) -> bytes:
@@ -113,15 +109,15 @@ class Transport:
     def close(self) -> None:
         with self._writing:
             if self._serial.is_open and self._to_firmware:
-                _keep_up(self._serial, True)
+                system.keep_dtr(self._serial, True)
             self._serial.close()
 
 
 def _open_serial(port: str, baud: int, restart: bool) -> serial.Serial:
     """Open the port for this process alone; with `restart`, the board behind it restarts for sure."""
     line = _open(port, baud)
-    if restart and _stays_up(line):
-        _keep_up(line, False)
+    if restart and system.keeps_dtr(line):
+        system.keep_dtr(line, False)
         line.close()
         time.sleep(_DTR_DOWN_S)
         line = _open(port, baud)
@@ -129,50 +125,29 @@ def _open_serial(port: str, baud: int, restart: bool) -> serial.Serial:
 
 
 def _open(port: str, baud: int) -> serial.Serial:
-    if not os.path.exists(port):
+    if not system.exists(port):
         raise UserError(f"{port}: there is no such port; `greywhale ports` lists those there are.")
     try:
-        if _is_own_terminal(port):
+        if system.is_own_terminal(port):
             raise UserError(f"{port}: this is a terminal, not a board's port; `greywhale ports` lists those there are.")
         return serial.Serial(port, baud, timeout=READ_WAIT_S, write_timeout=_WRITE_WAIT_S, exclusive=True)
     except ValueError as error:
         raise UserError(f"{port}: cannot be opened: {error}.") from None
     except OSError as error:
-        if error.errno in _BUSY:
+        if system.open_errno(error) in _BUSY:
             raise PortBusyError(port) from None
         raise UserError(_why_not_open(port, error)) from None
 
 
-def _is_own_terminal(port: str) -> bool:
-    """Whether a person types there: to open it as a port would spoil it."""
-    device = os.stat(port).st_rdev
-    return device == _TERMINAL or any(os.isatty(stream) and os.fstat(stream).st_rdev == device for stream in range(3))
-
-
-def _stays_up(line: serial.Serial) -> bool:
-    """Whether DTR is not lowered at the end; it was up already, then, when the port was opened."""
-    try:
-        return not termios.tcgetattr(line.fileno())[_CFLAG] & termios.HUPCL
-    except termios.error:
-        return False
-
-
-def _keep_up(line: serial.Serial, up: bool) -> None:
-    """Say whether DTR stays up when the port is closed."""
-    with contextlib.suppress(termios.error):  # an unplugged cable has no DTR
-        flags = termios.tcgetattr(line.fileno())
-        flags[_CFLAG] = flags[_CFLAG] & ~termios.HUPCL if up else flags[_CFLAG] | termios.HUPCL
-        termios.tcsetattr(line.fileno(), termios.TCSANOW, flags)
-
-
 def _why_not_open(port: str, error: OSError) -> str:
-    if error.errno in (errno.EACCES, errno.EPERM):
+    number = system.open_errno(error)
+    if number in (errno.EACCES, errno.EPERM):
         return (
             f"{port}: no permission to open the port; add yourself to its group "
             "(`sudo usermod -aG dialout $USER`) and log in again."
         )
-    if error.errno in (errno.ENOENT, errno.ENODEV, errno.ENXIO):
+    if number in (errno.ENOENT, errno.ENODEV, errno.ENXIO):
         return f"{port}: there is no such port any more; `greywhale ports` lists those there are."
-    if error.errno in (errno.ENOTTY, errno.EISDIR, errno.EINVAL) or error.errno is None:
+    if number in (errno.ENOTTY, errno.EISDIR, errno.EINVAL) or number is None:
         return f"{port}: this is not a serial port; `greywhale ports` lists those there are."
     return f"{port}: the port cannot be opened: {os_reason(error)}."

@@ -14,7 +14,6 @@ import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from multiprocessing import resource_tracker
-from multiprocessing.connection import Connection
 from typing import Any, ParamSpec, TypeVar
 
 from greywhale.base import system
@@ -56,7 +55,7 @@ class LocalWorkers:
         context = multiprocessing.get_context("spawn")
         theirs, ours = context.Pipe(duplex=False)
         with safe_path():  # the pool's semaphores start multiprocessing's resource tracker
-            pool = _Pool(self.at_once, mp_context=context, initializer=_prepare, initargs=(theirs,))
+            pool = _Pool(self.at_once, mp_context=context, initializer=_prepare, initargs=(theirs.recv,))
         try:
             yield pool
         except BaseException:
@@ -79,12 +78,12 @@ class _Pool(ProcessPoolExecutor):
             return super().submit(fn, *args, **kwargs)
 
 
-def _prepare(line: Connection) -> None:
+def _prepare(receive: Callable[[], object]) -> None:
     """In a new process: end when the other end of the line is closed, and leave Ctrl-C to the process there."""
 
     def follow() -> None:
         with contextlib.suppress(EOFError, OSError):
-            line.recv()
+            receive()
         os._exit(1)
 
     threading.Thread(target=follow, daemon=True).start()
@@ -103,8 +102,9 @@ def _hold_interrupts() -> Iterator[None]:
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    # Starting it removes the mask, so it must run already when the others start.
-    resource_tracker.ensure_running()
+    if system.HANDS_DOWN_DESCRIPTORS:  # else there is no tracker
+        # Starting it removes the mask, so it must run already when the others start.
+        resource_tracker.ensure_running()
     noted: list[int] = []
     before: dict[int, Any] = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
     for number in before:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
-import stat
-
+from greywhale.base import system
 from greywhale.board.doctor.finding import Finding, Verdict
 from greywhale.board.refusal import upper_first
 from greywhale.protocol.ports import find_ports, is_bench
@@ -20,16 +18,16 @@ def examine_port(port: str) -> list[Finding]:
     """Findings about a port, before it is opened; a bad one is the last."""
     if port in LINES:
         return [Finding("port", Verdict.GOOD, f"{port} is in this program.")]
-    if not os.path.exists(port):
+    if not system.exists(port):
         others = ", ".join(one.device for one in find_ports()) or "none"
         return [Finding("port", Verdict.BAD, f"There is no port {port}; there are: {others}.", "Plug the board in.")]
-    if not stat.S_ISCHR(os.stat(port).st_mode):
+    if system.device_of(port) is None:
         return [
             Finding("port", Verdict.BAD, f"{port} is not a serial port.", "`greywhale ports` lists those there are.")
         ]
     what = "a simulated board's port" if is_bench(port) else "a serial port"
     found = [Finding("port", Verdict.GOOD, f"{port} is {what}.")]
-    if os.access(port, os.R_OK | os.W_OK):
+    if system.may_open(port):
         return [*found, Finding("permission", Verdict.GOOD, "This user may open it.")]
     return [*found, Finding("permission", Verdict.BAD, f"This user may not open {port}.", _permission_remedy(port))]
 
@@ -51,17 +49,7 @@ def udev_rules() -> str:
 
 def _permission_remedy(port: str) -> str:
     install = f"`greywhale udev | sudo tee {RULES_FILE}` lets whoever sits here open it (then plug the board in again)."
-    group = group_of(port)
+    group = system.group_of(port)
     if group in ("", "root"):
         return upper_first(install)
     return f"`sudo usermod -aG {group} $USER` and log in again; or {install}"
-
-
-def group_of(port: str) -> str:
-    """The group that owns the port; "" where there is none."""
-    try:
-        import grp  # not on Windows
-
-        return grp.getgrgid(os.stat(port).st_gid).gr_name
-    except (ImportError, KeyError, OSError):
-        return ""

@@ -43,7 +43,7 @@ def _watch(tool: subprocess.Popen[bytes], limit_s: float, port: str, first: tupl
     os.read(sys.stdin.fileno(), 1)
     while time.monotonic() < deadline and _identity(port) == first:
         time.sleep(LOOK_EVERY_S)
-    if os.name == "posix":
+    if sys.platform != "win32":
         os.killpg(0, signal.SIGKILL)  # with all that the tool has started, and this process
     tool.kill()
 

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import re
-import signal
 import subprocess
 import sys
 import tempfile
@@ -15,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO
 
+from greywhale.base import system
 from greywhale.base.errors import UserError
 from greywhale.base.processes import start
 from greywhale.board.flash import guard
@@ -90,22 +89,16 @@ def _wait(process: subprocess.Popen[bytes], tool: Tool, output: IO[bytes], look:
 
 def _end(process: subprocess.Popen[bytes]) -> None:
     """End the tool and everything it has started: an avrdude left behind would hold the port and a processor."""
-    _signal_all(process, signal.SIGTERM)
+    system.end_group(process.pid, by_force=False)
     with contextlib.suppress(subprocess.TimeoutExpired):
         process.wait(GRACE_S)
-    _signal_all(process, signal.SIGKILL)
+    system.end_group(process.pid, by_force=True)
     process.wait()
-
-
-def _signal_all(process: subprocess.Popen[bytes], number: signal.Signals) -> None:
-    with contextlib.suppress(ProcessLookupError):
-        os.killpg(process.pid, number)
 
 
 def _read(output: IO[bytes]) -> str:
     """All that is there. The tool writes where this process would read: its place in the file is the same."""
-    written = os.pread(output.fileno(), os.fstat(output.fileno()).st_size, 0)
-    return _ESCAPE.sub("", written.decode("utf-8", "replace"))
+    return _ESCAPE.sub("", system.read_all(output.fileno()).decode("utf-8", "replace"))
 
 
 def _problem(text: str) -> str:
