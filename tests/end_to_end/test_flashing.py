@@ -14,20 +14,28 @@ from greywhale.cli.story import BenchProcess
 from greywhale.protocol import schema
 from greywhale_sim.assemble import BUILDS
 from greywhale_sim.words import lock_step
+from tests.board.flash.hex_files import hex_text
 
 NANO_IMAGE = BUILDS / "nanoatmega328" / "firmware.hex"
 Start = Callable[..., BenchProcess]
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("board", "hex_file"), [("mega", None), ("nano", NANO_IMAGE)], ids=["mega", "nano"])
-def test_flash_a_blank_board(start_bench: Start, board: str, hex_file: Path | None) -> None:
-    """A Mega gets what PlatformIO builds and uploads, a Nano the HEX file that avrdude writes; both are verified."""
-    bench = start_bench("--blank", board=board)
+def test_flash_a_mega_that_an_old_program_fills(start_bench: Start, tmp_path: Path) -> None:
+    """PlatformIO builds and uploads, and avrdude verifies: the image's part behind its gap was erased before."""
+    (tmp_path / "old.hex").write_text(hex_text(bytes(0x20100)))  # what is not erased stays zero
+    bench = start_bench("--firmware", str(tmp_path / "old.hex"))
+    hello = flash.flash(bench.port, "mega")
+    assert (hello.schema_hash, hello.board) == (schema.SCHEMA_HASH, schema.Board.MEGA2560)
+
+
+@pytest.mark.slow
+def test_flash_a_blank_nano(start_bench: Start) -> None:
+    """avrdude writes and verifies a HEX file."""
+    bench = start_bench("--blank", board="nano")
     assert bench.command("status")["in_bootloader"]
-    hello = flash.flash(bench.port, board, hex_file=hex_file)
-    assert hello.schema_hash == schema.SCHEMA_HASH
-    assert hello.board.key == {"mega": "mega2560", "nano": "nano328"}[board]
+    hello = flash.flash(bench.port, "nano", hex_file=NANO_IMAGE)
+    assert (hello.schema_hash, hello.board) == (schema.SCHEMA_HASH, schema.Board.NANO328)
     assert not bench.command("status")["in_bootloader"]
 
 

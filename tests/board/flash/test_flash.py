@@ -186,6 +186,8 @@ def test_an_installed_package_writes_the_image_that_came_with_it(
 @pytest.mark.usefixtures("quick_device")
 def test_platformio_builds_first_and_then_uploads(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     commands = commands_of(tmp_path, monkeypatch)
+    (folder := tmp_path / ".pio" / "build" / "megaatmega2560").mkdir(parents=True)
+    write_image(folder / "firmware.hex")
     answering(monkeypatch, "wiring", 115200, MEGA2560)
     with FakeBoard() as board:
         module.flash(board.port, "mega", firmware_dir=tmp_path)

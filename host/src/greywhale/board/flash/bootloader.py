@@ -167,4 +167,13 @@ def version_2_answer(line: Talk, body: bytes, sequence: int = 1) -> bytes | None
     return rest[:-1] if len(rest) > 1 and reduce(xor, head + rest) == 0 else None
 
 
+def read_version_2(line: Talk, word: int, count: int) -> bytes | None:
+    """So many bytes of program memory from a word address on; None where the answer was wrong."""
+    if version_2_answer(line, b"\x06" + word.to_bytes(4, "big")) != b"\x06\x00":
+        return None
+    answer = version_2_answer(line, b"\x14" + count.to_bytes(2, "big") + b"\x20")
+    whole = answer is not None and len(answer) == count + 3 and answer[:2] == b"\x14\x00" and answer[-1] == 0
+    return answer[2:-1] if answer is not None and whole else None
+
+
 _DIALECTS = {"arduino": (_ask_version_1, _read_signature_1), "wiring": (_ask_version_2, _read_signature_2)}

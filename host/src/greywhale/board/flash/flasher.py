@@ -15,6 +15,7 @@ from greywhale.board.flash import platformio
 from greywhale.board.flash.avrdude import need_avrdude, upload_image
 from greywhale.board.flash.bootloader import Bootloader, Dialect, find_bootloader
 from greywhale.board.flash.images import Image, check_image, packaged_image, read_image
+from greywhale.board.flash.late_pages import erase_late_pages
 from greywhale.board.flash.targets import BOARDS, FlashBoard
 from greywhale.board.session import Session
 from greywhale.protocol import schema
@@ -53,11 +54,11 @@ def flash(
         # avrdude waits for ever for a port that is not there, and breaks into one that is in use.
         open_line(port).close()
         report("looking for the bootloader", 0.0)
-        target, _ = find_target(port, expected)
+        target, found = find_target(port, expected)
         if sources is not None:
-            _build_and_upload(port, target, sources, report)
+            _build_and_upload(port, target, found, sources, report)
         else:
-            _upload(port, target, image or _packaged(target.name), report)
+            _upload(port, target, found, image or _packaged(target.name), report)
         report("greeting the firmware", 0.0)
         return _greet(port, target)
 
@@ -108,17 +109,19 @@ def _name_of(port: str, found: Bootloader) -> str:
     raise UserError(f"{port}: the chip has signature {found.signature.hex()}; greywhale runs on {known} only.")
 
 
-def _build_and_upload(port: str, target: Target, sources: Path, report: Progress) -> None:
+def _build_and_upload(port: str, target: Target, found: Bootloader, sources: Path, report: Progress) -> None:
     # Built first and on its own: nothing is erased before there is something to write.
     built = platformio.build(sources, target.board, report)
     if len(target.board.bauds) == 1:
+        erase_late_pages(port, found, read_image(built), report)
         platformio.upload(sources, target.board, port, report)
     else:  # PlatformIO knows one speed a board
         upload_image(port, target.board, target.baud, built, report)
 
 
-def _upload(port: str, target: Target, image: Image, report: Progress) -> None:
+def _upload(port: str, target: Target, found: Bootloader, image: Image, report: Progress) -> None:
     check_image(image, target.board, port)
+    erase_late_pages(port, found, image, report)
     upload_image(port, target.board, target.baud, image.path, report)
 
 

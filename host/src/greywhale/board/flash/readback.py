@@ -13,7 +13,14 @@ from pathlib import Path
 from greywhale.base.errors import BAD_USAGE, UserError
 from greywhale.base.types import Progress, show_no_progress
 from greywhale.board.flash.boot_code import BootCode, look_at_boot_code
-from greywhale.board.flash.bootloader import Bootloader, Talk, enter_bootloader, version_1_answer, version_2_answer
+from greywhale.board.flash.bootloader import (
+    Bootloader,
+    Talk,
+    enter_bootloader,
+    read_version_2,
+    version_1_answer,
+    version_2_answer,
+)
 from greywhale.board.flash.flasher import find_target
 from greywhale.board.flash.images import Image, check_image, packaged_image, read_image
 from greywhale.board.flash.platformio import find_sources, last_build
@@ -128,19 +135,11 @@ def _leave_1(line: Talk) -> None:
     version_1_answer(line, 0)
 
 
-def _read_2(line: Talk, word: int, count: int) -> bytes | None:
-    if version_2_answer(line, b"\x06" + word.to_bytes(4, "big")) != b"\x06\x00":
-        return None
-    answer = version_2_answer(line, b"\x14" + count.to_bytes(2, "big") + b"\x20")
-    whole = answer is not None and len(answer) == count + 3 and answer[:2] == b"\x14\x00" and answer[-1] == 0
-    return answer[2:-1] if answer is not None and whole else None
-
-
 def _leave_2(line: Talk) -> None:
     version_2_answer(line, b"\x11\x01\x01")
 
 
 _READERS: dict[str, tuple[_Reader, Callable[[Talk], None]]] = {
     "arduino": (_read_1, _leave_1),
-    "wiring": (_read_2, _leave_2),
+    "wiring": (read_version_2, _leave_2),
 }
