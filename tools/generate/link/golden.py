@@ -122,10 +122,7 @@ def header(declaration: Declaration) -> str:
         f"// Golden vectors of the link.\n// {NOTICE}\n#pragma once\n",
         '#include <stddef.h>\n#include <stdint.h>\n\n#include "link/schema.h"\n',
         "namespace golden {\n",
-        f"constexpr uint8_t default_table[] = {_bytes(table)};",
         f"constexpr uint16_t default_crc = 0x{crc16(table):04X};\n",
-        "struct Range {\n  int32_t minimum;\n  int32_t maximum;\n  int32_t initial;\n  bool nonzero;\n};\n",
-        f"constexpr Range ranges[] = {{  // in index order\n{_ranges(declaration)}\n}};\n",
         f"constexpr int vector_count = {len(vectors(declaration))};\n",
         f"struct Bytes {{\n  size_t size;\n  uint8_t data[{longest}];\n}};\n",
         "// Calls visit(name, seq, message, payload, wire) for every vector.",
@@ -133,17 +130,6 @@ def header(declaration: Declaration) -> str:
         *(_visit(vector) for vector in vectors(declaration)),
     ]
     return "\n".join([*lines, "}\n", "}  // namespace golden"]) + "\n"
-
-
-def _ranges(declaration: Declaration) -> str:
-    return "\n".join(
-        "    "
-        + " ".join(
-            f"{{{p.minimum}, {p.maximum}, {p.defaults[element]}, {str(p.nonzero).lower()}}}," for p in group.parameters
-        )
-        for group in declaration.groups
-        for element in range(group.count)
-    )
 
 
 def _bytes(data: bytes) -> str:

@@ -23,19 +23,6 @@ TEST_CASE("enable is refused while leader and follower differ too much, and name
   CHECK(arm.enable() == wire::State::soft_start);
 }
 
-TEST_CASE("enable is refused while a pot is at a rail, and names the pot") {
-  Bench arm;
-  arm.set_count(6, 2);
-  arm.boot();
-  wire::Nack nack = arm.refused(wire::EnableRequest{0});
-  CHECK(nack.code == wire::NackCode::pot_bad);
-  CHECK(nack.detail == (6 << 8 | static_cast<int>(wire::Fault::pot_low)));
-  arm.set_count(6, 1023);
-  arm.run(5);
-  nack = arm.refused(wire::EnableRequest{0});
-  CHECK(nack.detail == (6 << 8 | static_cast<int>(wire::Fault::pot_high)));
-}
-
 TEST_CASE("soft start: the duty stays below the ramp, and the ramp reaches the top") {
   Bench arm;
   for (std::uint8_t i = 0; i < 4; ++i) arm.set_leader(i, 0.79);  // as far as enable allows: more volts than the ramp
@@ -54,18 +41,6 @@ TEST_CASE("soft start: the duty stays below the ramp, and the ramp reaches the t
   CHECK(over == 0);
   CHECK(at_end > bench::full_duty * 3 / 10);
   CHECK(arm.state() == wire::State::following);
-}
-
-TEST_CASE("the followers come to their leaders, each to its own") {
-  Bench arm;
-  arm.speed = 3.0;
-  const double wanted[4] = {0.6, -0.6, 0.3, -0.2};
-  for (std::uint8_t i = 0; i < 4; ++i) arm.set_leader(i, wanted[i]);
-  arm.boot();
-  REQUIRE(arm.enable() == wire::State::soft_start);
-  arm.run(6000);
-  CHECK(arm.state() == wire::State::following);
-  for (std::uint8_t i = 0; i < 4; ++i) CHECK(arm.follower(i) == doctest::Approx(wanted[i]).epsilon(0.05));
 }
 
 TEST_CASE("a motor that turns the other way is set right by motor_sign") {
@@ -170,17 +145,6 @@ TEST_CASE("a late tick stops the arm at once and is counted") {
   arm.tick();
   CHECK(arm.stopped_by(wire::Fault::late_tick));
   CHECK(arm.status().late_ticks == 2);
-}
-
-TEST_CASE("a follower that does not come is lost after tracking_ms") {
-  Bench arm(bench::unwatched());
-  arm.follow();  // the plant stands still
-  arm.set_leader(3, 2.4);
-  arm.set_follower(3, 1.4);  // 1 rad; with 0.8 rad it might go on
-  arm.run(195);
-  CHECK(board.drivers);
-  arm.run(20);
-  CHECK(arm.stopped_by(wire::Fault::tracking, 3));
 }
 
 TEST_CASE("controllers run every period_ms ticks and hold in between") {

@@ -4,7 +4,6 @@
 using bench::Bench;
 using bench::board;
 using bench::Booted;
-using bench::Following;
 
 namespace {
 
@@ -27,24 +26,6 @@ params::Table with_amplitude(std::uint8_t amplitude) {
 }
 
 }  // namespace
-
-TEST_CASE("a follower that swings about its still leader is off within a second and a half, each joint, and named") {
-  for (std::uint8_t joint = 0; joint < 4; ++joint) {
-    Following arm;
-    const unsigned off = shake(arm, joint, 5000, 0.04);
-    CHECK(off > 1100);
-    CHECK(off < 1550);
-    CHECK(arm.stopped_by(wire::Fault::unrest, joint));
-    CHECK(arm.clear_fault() == wire::State::disabled);
-  }
-}
-
-TEST_CASE("a follower that swings with its leader, or against it, is not restless") {
-  for (const double follower : {0.04, -0.04}) {
-    Following arm;
-    CHECK(shake(arm, 1, 8000, follower, 0.04) == 8000);
-  }
-}
 
 TEST_CASE("unrest is seen in the soft start too") {
   params::Table table = with_amplitude(10);
@@ -164,4 +145,27 @@ TEST_CASE("a host that leads gets no safe set: the motors stay off") {
   CHECK(shake(arm, 2, 3000, 0.04) < 1550);
   arm.run(50);
   CHECK(arm.stopped_by(wire::Fault::unrest, 2));
+}
+
+TEST_CASE("the safe set does not start the motors while the stop is pressed, nor after a tap") {
+  for (const unsigned pressed_ms : {1u, 100u}) {
+    params::Table table = bench::defaults();
+    table.estop_input = 1;
+    table.unrest_action = 1;
+    Bench arm(table);
+    arm.run(2);
+    REQUIRE(arm.enable() == wire::State::soft_start);
+    arm.run(1001);
+    for (unsigned t = 0; board.drivers && t < 3000; ++t) {
+      arm.set_follower(1, 0.05 * std::sin(0.05 * t));
+      arm.tick();
+    }
+    REQUIRE_FALSE(board.drivers);
+    arm.set_follower(1, 0);
+    board.estop_low = true;
+    arm.run(pressed_ms);
+    board.estop_low = false;
+    arm.run(100);
+    CHECK(arm.stopped_by(wire::Fault::estop));
+  }
 }

@@ -1,8 +1,8 @@
-// The frame codec against published values, golden vectors, and garbage.
+// The frame codec against a published value and the golden vectors, and at its ends. What it makes of any bytes is judged
+// in tests/protocol (beside the host's codec) and in firmware/test/attack (by definition).
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -39,38 +39,12 @@ Bytes frame_of(uint8_t type, uint8_t seq, const Bytes& payload) {
   return Bytes(encoder.data(), encoder.data() + encoder.size());
 }
 
-Bytes random_payload(std::mt19937& random, size_t size) {
-  Bytes payload(size);
-  for (uint8_t& byte : payload) byte = static_cast<uint8_t>(random() % 4 == 0 ? 0 : random());
-  return payload;
-}
-
 }  // namespace
 
 TEST_CASE("crc has the published check value") {
   const std::string text = "123456789";
   CHECK(wire::crc_over(reinterpret_cast<const uint8_t*>(text.data()), 9) == 0x29B1);
   CHECK(wire::crc_over(nullptr, 0) == 0xFFFF);
-}
-
-TEST_CASE("crc equals the bitwise definition for every high byte and data byte") {
-  int pairs = 0;
-  for (unsigned high = 0; high < 256; ++high) {
-    for (unsigned data = 0; data < 256; ++data) {
-      // The first byte steers the high byte of the CRC through all values, the second is the data.
-      const uint8_t bytes[2] = {static_cast<uint8_t>(high), static_cast<uint8_t>(data)};
-      uint16_t expected = 0xFFFF;
-      for (const uint8_t byte : bytes) {
-        expected = static_cast<uint16_t>(expected ^ (byte << 8));
-        for (int bit = 0; bit < 8; ++bit) {
-          expected = static_cast<uint16_t>((expected << 1) ^ ((expected & 0x8000) != 0 ? 0x1021 : 0));
-        }
-      }
-      EXPECT(wire::crc_over(bytes, 2) == expected);
-      ++pairs;
-    }
-  }
-  CHECK(pairs == 65536);
 }
 
 namespace {
@@ -116,61 +90,6 @@ TEST_CASE("every message has the golden bytes, both ways") {
   CHECK(count == golden::vector_count);
 }
 
-TEST_CASE("every payload size from empty to the largest survives") {
-  std::mt19937 random(1);
-  wire::Decoder decoder;
-  for (size_t size = 0; size <= wire::max_payload; ++size) {
-    for (int trial = 0; trial < 200; ++trial) {
-      const Bytes payload = random_payload(random, size);
-      const Bytes wire_bytes = frame_of(0x40, static_cast<uint8_t>(trial), payload);
-      EXPECT(std::count(wire_bytes.begin(), wire_bytes.end(), uint8_t{0}) == 1);
-      const auto frames = feed(decoder, wire_bytes);
-      EXPECT(frames.size() == 1);
-      EXPECT(frames[0].payload == payload);
-    }
-  }
-  CHECK(decoder.bad() == 0);
-}
-
-TEST_CASE("any single changed byte is noticed") {
-  std::mt19937 random(2);
-  size_t changes = 0;
-  for (const size_t size : {size_t{0}, size_t{6}, size_t{30}, size_t{wire::max_payload}}) {
-    const Bytes payload = random_payload(random, size);
-    const Bytes good = frame_of(0x04, 9, payload);
-    for (size_t at = 0; at < good.size(); ++at) {
-      for (unsigned change = 1; change < 256; ++change) {
-        Bytes wire_bytes = good;
-        wire_bytes[at] = static_cast<uint8_t>(wire_bytes[at] ^ change);
-        wire_bytes.push_back(0);
-        wire::Decoder decoder;
-        EXPECT(feed(decoder, wire_bytes).empty());
-        EXPECT(decoder.bad() >= 1);
-        // and the frame after it arrives
-        EXPECT(feed(decoder, good).size() == 1);
-        ++changes;
-      }
-    }
-  }
-  CHECK(changes == 255 * (6 + 12 + 36 + 54));
-}
-
-TEST_CASE("garbage of any kind is survived, counted and left behind") {
-  std::mt19937 random(3);
-  const Bytes good = frame_of(0x02, 1, {1, 2, 0, 3});
-  wire::Decoder decoder;
-  // Noise passes for a frame with a chance of about 1 in 65,536; this seed has no such piece.
-  for (int trial = 0; trial < 20000; ++trial) {
-    Bytes noise(1 + random() % 200);
-    for (uint8_t& byte : noise) byte = static_cast<uint8_t>(random() % 255 + 1);
-    noise.push_back(0);
-    EXPECT(feed(decoder, noise).empty());
-    EXPECT(decoder.bad() == trial + 1);
-    EXPECT(feed(decoder, good).size() == 1);
-  }
-  CHECK(decoder.bad() == 20000);
-}
-
 TEST_CASE("an endless frame does not write past the buffer") {
   wire::Decoder decoder;
   CHECK(feed(decoder, Bytes(100000, 0xFF)).empty());
@@ -191,27 +110,6 @@ TEST_CASE("a frame one byte too long is refused, though its CRC is right") {
   wire::Decoder decoder;
   CHECK(feed(decoder, body).empty());
   CHECK(decoder.bad() == 1);
-}
-
-TEST_CASE("zeros between frames mean nothing") {
-  Bytes stream = {0, 0, 0};
-  for (int i = 0; i < 3; ++i) {
-    const Bytes one = frame_of(9, static_cast<uint8_t>(i), {});
-    stream.insert(stream.end(), one.begin(), one.end());
-    stream.push_back(0);
-  }
-  wire::Decoder decoder;
-  CHECK(feed(decoder, stream).size() == 3);
-  CHECK(decoder.bad() == 0);
-}
-
-TEST_CASE("lost bytes spoil the frame they belong to and no other") {
-  const Bytes good = frame_of(7, 7, {7, 7, 7});
-  wire::Decoder decoder;
-  feed(decoder, Bytes(good.begin(), good.begin() + 4));
-  CHECK(feed(decoder, Bytes(good.begin() + 6, good.end())).empty());
-  CHECK(decoder.bad() == 1);
-  CHECK(feed(decoder, good).size() == 1);
 }
 
 TEST_CASE("the count of bad frames stops at its end") {

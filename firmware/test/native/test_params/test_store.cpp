@@ -104,13 +104,6 @@ TEST_CASE("a blank EEPROM gives the defaults and is not written") {
   }
 }
 
-TEST_CASE("after any number of saves nothing is lost") {
-  for (int saves = 0; saves < 5; ++saves) {
-    params::Table last;
-    CHECK_FALSE(lost(history(saves, last)));
-  }
-}
-
 TEST_CASE("what is saved is found at boot, the banks taking turns") {
   FakeEeprom eeprom;
   for (unsigned i = 0; i < 6; ++i) {
@@ -220,31 +213,6 @@ TEST_CASE("a half-written bank is never taken, even when its CRC happens to be r
   }
 }
 
-TEST_CASE("power cuts one after another never lose the last set that was whole") {
-  std::mt19937 random(5);
-  int boots = 0;
-  for (int run = 0; run < 300; ++run) {
-    FakeEeprom eeprom;
-    params::Table last = defaults();
-    for (unsigned i = 0; i < 12; ++i) {
-      const params::Table next = variant(static_cast<unsigned>(random() % 50));
-      eeprom.cut_at = random() % 4 == 0 ? 0 : 1 + static_cast<int>(random() % 200);
-      eeprom.torn = static_cast<int>(random() % 257) - 1;
-      bool was_cut = false;
-      try {
-        EXPECT(save(eeprom, next) == wire::SaveState::saved);
-      } catch (const PowerCut&) {
-        was_cut = true;
-      }
-      const params::Table found = boot(eeprom);
-      EXPECT((same(found, next) || (was_cut && same(found, last))));
-      last = found;
-      boots += 1;
-    }
-  }
-  CHECK(boots == 300 * 12);
-}
-
 TEST_CASE("a set that is stored already costs no write") {
   FakeEeprom eeprom;
   const params::Table table = variant(1);
@@ -274,31 +242,6 @@ TEST_CASE("bytes that are right already are not worn") {
   Store store(eeprom);
   store.load(table);
   CHECK(store.sequence() == 1000);  // so it tells the wear of the worst cell
-}
-
-TEST_CASE("one flipped bit anywhere in the newer bank falls back to the older one, in both to the defaults") {
-  params::Table newest;
-  const FakeEeprom before = history(2, newest);
-  const params::Table older = variant(100);
-  int flips = 0;
-  for (int at = 0; at < bank::size; ++at) {
-    for (int bit = 0; bit < 8; ++bit) {
-      FakeEeprom eeprom = before;
-      auto& cell = eeprom.cells.at(static_cast<size_t>(bank::start_b + at));
-      cell = static_cast<uint8_t>(cell ^ (1 << bit));
-      wire::ParamSource source;
-      EXPECT(same(boot(eeprom, &source), older));
-      EXPECT(source == wire::ParamSource::bank_a);
-      EXPECT(lost(eeprom));
-      auto& other = eeprom.cells.at(static_cast<size_t>(bank::start_a + at));
-      other = static_cast<uint8_t>(other ^ (1 << bit));
-      EXPECT(same(boot(eeprom, &source), defaults()));
-      EXPECT(source == wire::ParamSource::defaults);
-      EXPECT(lost(eeprom));
-      ++flips;
-    }
-  }
-  CHECK(flips == 8 * bank::size);
 }
 
 TEST_CASE("rot that is found while saving is healed by a fresh bank") {
